@@ -47,6 +47,12 @@ std::string rule(std::string_view argument, std::string_view shape, std::string_
   return text.str();
 }
 
+// Whether some values of a numpy.ma.MaskedArray are masked: what stands in their places means nothing.
+bool is_masked(py::handle value) {
+  return py::hasattr(value, "mask") && py::isinstance<py::array>(value) &&
+         py::module_::import("numpy.ma").attr("is_masked")(value).cast<bool>();
+}
+
 Vec3 vec3_at(const double* numbers) { return {numbers[0], numbers[1], numbers[2]}; }
 
 Quaternion quaternion_at(const double* wxyz, std::string_view argument) {
@@ -89,8 +95,10 @@ py::array array_of_kind(py::handle value, std::string_view argument, std::string
   const py::array array = py::array::ensure(value);
   if (!array) {
     PyErr_Clear();
-    throw py::type_error(rule(argument, shape, what) + shown(array && array.ndim() > 0 ? py::handle(array) : value));
+    throw py::type_error(rule(argument, shape, what) + shown(value));
   }
+  if (is_masked(value))
+    throw py::value_error(rule(argument, shape, what) + "a masked array, some of whose values are not there");
   // An empty list has no kind of its own.
   if (array.size() > 0 && kinds.find(array.dtype().kind()) == std::string_view::npos)
     throw py::type_error(rule(argument, shape, what) + shown(array && array.ndim() > 0 ? py::handle(array) : value));

@@ -58,6 +58,7 @@ void bind_angle_spectrum(py::module_& m) {
 
 Axes are direction cosines along the columns and rows of the array's grid: for antennas in the y-z plane
 sin(azimuth) cos(elevation) and sin(elevation).)");
+  define_no_init(bound, "ep.angle_fft");
   bound
       .def_property_readonly(
           "values",
@@ -96,7 +97,8 @@ Units stand in `attrs["units"]` of values and coordinates. Needs xarray, raises 
 
 range: m, velocity: m/s, of the cell, the nearest is taken; None: those of the strongest cell
 ax: Matplotlib axes to draw in, None: new ones; title: what stands above, the cell is added
-Returns the axes: azimuth in degrees across (left positive); up power in dBm, or elevation in degrees.)");
+Returns the axes: azimuth in degrees across (left positive); up power in dBm, or elevation in degrees. Raises TypeError or ValueError
+naming the argument, and for a map of several cells without range and velocity.)");
   def_travel_checked(
       bound, [](const AngleSpectrum& made) { require_shape(made.values, shape_of(made), "values"); },
       field("sin_azimuth", &AngleSpectrum::sin_azimuth), field("sin_elevation", &AngleSpectrum::sin_elevation),
@@ -106,6 +108,7 @@ Returns the axes: azimuth in degrees across (left positive); up power in dBm, or
 
 void bind_beam_power(py::module_& m) {
   py::class_<BeamPower> bound(m, "BeamPower", "Power of beams with their axes; made by beamform.");
+  define_no_init(bound, "ep.beamform");
   bound
       .def_property_readonly(
           "power",
@@ -128,6 +131,7 @@ void bind_beam_power(py::module_& m) {
 
 void bind_range_azimuth_map(py::module_& m) {
   py::class_<RangeAzimuth> bound(m, "RangeAzimuth", "A range-azimuth map with its axes; made by range_azimuth.");
+  define_no_init(bound, "ep.range_azimuth");
   bound
       .def_property_readonly(
           "power",
@@ -161,7 +165,8 @@ Units stand in `attrs["units"]` of values and coordinates. Needs xarray, raises 
 
 ax: Matplotlib axes to draw in, None: new ones; title: what stands above the map
 vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak
-Returns the axes: metres to the left across (right negative), metres ahead up, in the radar's frame.)");
+Returns the axes: metres to the left across (right negative), metres ahead up, in the radar's frame. Raises
+TypeError or ValueError naming the argument.)");
   def_travel_checked(
       bound,
       [](const RangeAzimuth& made) { require_shape(made.power, {size_of(made.azimuth), size_of(made.range)}, "power"); },
@@ -173,6 +178,7 @@ Returns the axes: metres to the left across (right negative), metres ahead up, i
 void bind_estimates(py::module_& m) {
   py::class_<AngleEstimates> bound(m, "AngleEstimates",
                                    "Directions of echoes, arrays over all peaks; made by estimate_angles.");
+  define_no_init(bound, "ep.estimate_angles");
   bound
       .def_property_readonly(
           "cell", [](const py::object& self) { return numpy_view(self.cast<const AngleEstimates&>().cell, self); },

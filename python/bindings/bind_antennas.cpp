@@ -17,6 +17,7 @@
 #include "echopath/base/range_of_coordinates.h"
 #include "echopath/radar/radar.h"
 #include "in_package.h"
+#include "plausible.h"
 #include "value.h"
 
 namespace echopath::bindings {
@@ -68,6 +69,7 @@ Antenna antenna(const Arg<"position", Vector3>& position, const Arg<"yaw", Real>
   made.pattern = pattern->value_or(AntennaPattern{});
   make_unit(made.orientation.coeffs(), "orientation");
   make_unit(made.polarization, "polarization");
+  warn_of_turns(*yaw);
   return made;
 }
 
@@ -76,6 +78,7 @@ std::shared_ptr<const Motion> motion_of(const std::optional<std::shared_ptr<Moti
                                         const std::optional<double>& speed, double yaw) {
   if (!speed) return motion.value_or(nullptr);
   require(!motion, "speed", "must not be given together with motion", *speed);
+  require_below_light(*speed, "speed");
   return std::make_shared<LinearMotion>(*speed * Vec3(std::cos(yaw), std::sin(yaw), 0.0));
 }
 
@@ -90,6 +93,7 @@ Radar radar(const Arg<"waveform", Instance<ChirpSequence>>& waveform,
   Radar made{*waveform,     *transmitters, *receivers, *transmit_power, *noise_figure_db,
              *multiplexing, *position,     *yaw,       *pitch,          motion_of(*motion, *speed, *yaw)};
   made.validate();
+  warn_of_turns(made.yaw);
   return made;
 }
 
@@ -176,7 +180,7 @@ orientation: [4] unit quaternion (w, x, y, z), radar from antenna, instead of ya
 pattern: Isotropic(gain), CosinePower(exponent, peak_gain), GainTable(...) or load_antenna(path); None is Isotropic(1)
 polarization: [3] unit vector in the antenna's frame
 Antennas of equal arguments are equal, and pickle.
-Raises ValueError or TypeError naming the argument.)");
+Raises ValueError or TypeError naming the argument. Warns (RuntimeWarning) of a yaw beyond a turn, which looks like degrees.)");
   define_init(type, &antenna, py::arg("position") = py::make_tuple(0.0, 0.0, 0.0), py::kw_only(), py::arg("yaw") = 0.0,
               py::arg("pitch") = 0.0, py::arg("orientation") = py::none(), py::arg("pattern") = py::none(),
               py::arg("polarization") = py::make_tuple(0.0, 0.0, 1.0));
@@ -197,6 +201,7 @@ Raises ValueError or TypeError naming the argument.)");
           "[3], unit, in the antenna's frame")
       .def("__repr__", [](const Antenna& self) { return text_of(self); });
   define_value<Antenna>(type, &keywords_of);
+  define_no_change(type);
   define(type, "replace", &replace_in_antenna, R"(A copy with some arguments of the constructor changed.
 
 changes: keywords of Antenna; yaw or pitch alone keep the other one
@@ -221,7 +226,8 @@ transmit_power: W per transmitter
 noise_figure_db: dB, single sideband
 multiplexing: "tdm": transmitters take turns, one slot each
 Angles that are estimated count in the radar's axes. Radars of equal arguments are equal, and pickle.
-Raises ValueError or TypeError naming the argument.)");
+Raises ValueError or TypeError naming the argument, for a speed of light or more, too. Warns (RuntimeWarning) of a yaw beyond
+a turn, which looks like degrees.)");
   define_init(type, &radar, py::arg("waveform"), py::kw_only(), py::arg("transmitters"), py::arg("receivers"),
               py::arg("position") = py::make_tuple(0.0, 0.0, 0.0), py::arg("yaw") = 0.0, py::arg("pitch") = 0.0,
               py::arg("motion") = py::none(), py::arg("speed") = py::none(), py::arg("transmit_power") = 0.01,
@@ -250,6 +256,7 @@ Returns s after the frame's start. Raises IndexError.)");
 time: s
 Returns [4, 4], translation in m. Raises ValueError where `motion` is not defined.)");
   define_value<Radar>(type, &keywords_of);
+  define_no_change(type);
   define(type, "replace", &replace_in_radar, R"(A copy with some arguments of the constructor changed.
 
 changes: keywords of Radar; a speed takes the place of the motion

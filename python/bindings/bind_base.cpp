@@ -6,8 +6,10 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
+#include "echopath/base/meant_name.h"
 #include "echopath/base/parallel.h"
 #include "echopath/base/simd.h"
+#include "plausible.h"
 #include "run_job.h"
 
 namespace echopath::bindings {
@@ -46,6 +48,9 @@ void bind_base(py::module_& m) {
       "That of the inner loops: baseline, avx2 or avx512; the environment variable ECHOPATH_INSTRUCTION_SET forces one.");
   m.def("nearest_names", &nearest_names, py::arg("word"), py::arg("candidates"), py::arg("count") = 3,
         "The candidates most like `word` by edit distance, best first, at most `count`.");
+  m.def("meant_name", &meant_name, py::arg("word"), py::arg("known"),
+        "The name among `known` that was most likely meant by `word`, \"\" where none is alike.");
+  m.def("warn_of_turns", &warn_of_turns, py::arg("yaw"), "Warns of a yaw (rad) beyond a turn, which looks like degrees.");
   m.def("_wait", &wait_seconds, py::arg("seconds"), py::arg("progress") = py::none());
 }
 

@@ -9,6 +9,7 @@
 
 #include "array.h"
 #include "choice.h"
+#include "define.h"
 #include "echopath/spectrum/cfar/peaks.h"
 #include "run_job.h"
 #include "travel.h"
@@ -114,6 +115,7 @@ void def_cfar_travel(py::class_<CfarResult>& bound) {
 
 void bind_cfar(py::module_& m) {
   py::class_<CfarResult> bound(m, "CfarResult", "Cells of a range-Doppler map that exceed their thresholds; made by cfar.");
+  define_no_init(bound, "ep.cfar");
   bound
       .def_property_readonly(
           "power",

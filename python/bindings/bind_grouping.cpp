@@ -172,7 +172,8 @@ After the Radar Ghost Dataset (Kraus et al. 2021).
 object: name, "" for the background: paths that touch no object
 ghost_type: 0 for real echoes (and the background), 1 for ghosts whose last bounce is on the object, 2 on something else
 order: number of bounces; hits that follow each other on one object are one. 1 for real echoes, 0 for the background
-via: names of what mirrored it, each once, in the order of the first bounce there)");
+via: names of what mirrored it, each once, in the order of the first bounce there
+Raises TypeError or ValueError naming the argument.)");
   define_init(
       family,
       [](Arg<"object", Text> object, Arg<"ghost_type", Whole<0, 2>> ghost_type, Arg<"order", Count> order,

@@ -62,8 +62,13 @@ void check_globs(const Selection& selection, Arg<"scene", Instance<std::shared_p
 // Number of hits of a path, to be compared with whole numbers.
 struct NumBounces {};
 
-// Any whole number is a fair question; beyond the longest path the answer is no path or every path.
 constexpr int64_t kUnlimited = std::numeric_limits<int64_t>::max();
+
+// What the two are compared with; errors name them as they are written.
+using BounceCount = Arg<"ep.num_bounces is compared with a count", Whole<std::numeric_limits<int64_t>::min(), kUnlimited>>;
+using Watts = Arg<"ep.power is compared with a power in W", Number>;
+
+// Any whole number is a fair question; beyond the longest path the answer is no path or every path.
 
 Selection between(int64_t min, int64_t max) {
   const int64_t low = std::max<int64_t>(min, 0);
@@ -93,7 +98,9 @@ text: path expressions, and power > 1e-15 (W, at the trace time for the first an
 Text stands wherever a Selection is asked for. Raises ValueError with a caret under the fault; matching raises one when a glob
 takes no mesh of the scene.)");
   define_init(selection, [](Arg<"text", SelectionOrText> text) { return Selection(*text); }, py::arg("text"));
-  define(selection, "matches", &matches_of, py::arg("paths"), "Bool [P]: which of the paths are selected.");
+  define(selection, "matches", &matches_of, py::arg("paths"),
+         "Bool [P]: which of the paths are selected. Raises TypeError naming the argument, ValueError for names that no "
+         "mesh has.");
   define(selection, "check", &check_globs, py::arg("scene"),
          "Raises ValueError naming near meshes where a glob takes no mesh of `scene`: to know before a long trace.");
   selection.def_property_readonly("text", &Selection::text, "as written; joined ones as (T . R) & ~(T . . R)")
@@ -124,12 +131,12 @@ takes no mesh of the scene.)");
 
 void bind_num_bounces(py::module_& m) {
   py::class_<NumBounces> type(m, "NumBounces", "The number of hits of a path: ep.num_bounces >= 2 is a Selection.");
-  type.def("__eq__", [](const NumBounces&, int64_t count) { return between(count, count); })
-      .def("__ne__", [](const NumBounces&, int64_t count) { return ~between(count, count); })
-      .def("__ge__", [](const NumBounces&, int64_t count) { return between(count, kUnlimited); })
-      .def("__gt__", [](const NumBounces&, int64_t count) { return ~between(0, count); })
-      .def("__lt__", [](const NumBounces&, int64_t count) { return ~between(count, kUnlimited); })
-      .def("__le__", [](const NumBounces&, int64_t count) { return between(0, count); })
+  type.def("__eq__", [](const NumBounces&, BounceCount count) { return between(*count, *count); })
+      .def("__ne__", [](const NumBounces&, BounceCount count) { return ~between(*count, *count); })
+      .def("__ge__", [](const NumBounces&, BounceCount count) { return between(*count, kUnlimited); })
+      .def("__gt__", [](const NumBounces&, BounceCount count) { return ~between(0, *count); })
+      .def("__lt__", [](const NumBounces&, BounceCount count) { return ~between(*count, kUnlimited); })
+      .def("__le__", [](const NumBounces&, BounceCount count) { return between(0, *count); })
       .def("__bool__", [](const NumBounces&) -> bool { refuse_truth("ep.num_bounces"); })
       .def("__repr__", [](const NumBounces&) { return "ep.num_bounces"; });
   m.attr("num_bounces") = NumBounces{};
@@ -143,10 +150,10 @@ void bind_power(py::module_& m) {
                          R"(The power of a path in W, at the trace time for the first antennas of the radar that traced.
 
 ep.power > 1e-15 is a Selection; `paths.power` has the values.)");
-  type.def("__lt__", [](const Power&, double watts) { return power(Comparison::kBelow, watts); })
-      .def("__le__", [](const Power&, double watts) { return power(Comparison::kAtMost, watts); })
-      .def("__gt__", [](const Power&, double watts) { return power(Comparison::kAbove, watts); })
-      .def("__ge__", [](const Power&, double watts) { return power(Comparison::kAtLeast, watts); })
+  type.def("__lt__", [](const Power&, Watts watts) { return power(Comparison::kBelow, *watts); })
+      .def("__le__", [](const Power&, Watts watts) { return power(Comparison::kAtMost, *watts); })
+      .def("__gt__", [](const Power&, Watts watts) { return power(Comparison::kAbove, *watts); })
+      .def("__ge__", [](const Power&, Watts watts) { return power(Comparison::kAtLeast, *watts); })
       .def("__eq__", [](const Power&, const py::object&) -> bool { refuse_equality(); })
       .def("__ne__", [](const Power&, const py::object&) -> bool { refuse_equality(); })
       .def("__bool__", [](const Power&) -> bool { refuse_truth("ep.power"); })

@@ -1,5 +1,6 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
+#include <pybind11/typing.h>
 
 #include <limits>
 #include <memory>
@@ -11,6 +12,7 @@
 #include "echopath/base/errors.h"
 #include "echopath/motion/deformation.h"
 #include "leaving.h"
+#include "plausible.h"
 #include "value.h"
 
 namespace echopath::bindings {
@@ -18,7 +20,7 @@ namespace {
 
 constexpr auto kInterpolation = choice<Interpolation>("interpolation", "cubic", "linear");
 
-py::tuple as_tuple(const TimeSpan& span) {
+py::typing::Tuple<double, double> as_tuple(const TimeSpan& span) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const TimeSpan whole;
   return py::make_tuple(span.begin <= whole.begin ? -kInfinity : span.begin, span.end >= whole.end ? kInfinity : span.end);
@@ -33,6 +35,7 @@ std::string description(const char* kind, const TimeSpan& span, size_t num_times
 
 std::shared_ptr<LinearMotion> linear_motion(Arg<"velocity", Vector3> velocity,
                                             Arg<"angular_velocity", Vector3> angular_velocity) {
+  require_below_light(velocity->norm(), "velocity");
   return std::make_shared<LinearMotion>(*velocity, *angular_velocity);
 }
 
@@ -40,8 +43,13 @@ std::shared_ptr<KeyframeMotion> keyframe_motion(Arg<"times", VectorOf<double>> t
                                                 Arg<"translations", Optional<Points>> translations,
                                                 Arg<"rotations", Optional<UnitQuaternions>> rotations,
                                                 Arg<"interpolation", OneOf<kInterpolation>> interpolation) {
-  return std::make_shared<KeyframeMotion>(*times, translations->value_or(std::vector<Vec3>{}),
-                                          rotations->value_or(std::vector<Quaternion>{}), *interpolation);
+  const auto made = std::make_shared<KeyframeMotion>(*times, translations->value_or(std::vector<Vec3>{}),
+                                                     rotations->value_or(std::vector<Quaternion>{}), *interpolation);
+  for (size_t i = 1; i < made->translations().size(); ++i) {
+    const double way = (made->translations()[i] - made->translations()[i - 1]).norm();
+    require_below_light(way / (made->times()[i] - made->times()[i - 1]), "translations");
+  }
+  return made;
 }
 
 std::shared_ptr<VertexSequence> vertex_sequence(Arg<"times", VectorOf<double>> times, Arg<"vertices", Frames> vertices,
@@ -74,7 +82,7 @@ py::dict keywords_of(const VertexSequence& self) {
 constexpr const char* kTurnRateDoc = R"(Bound in rad/s of how fast what it does comes and goes between `begin` and `end` (s).
 
 That of its angular speed or, where it goes to and fro between samples, pi by the shortest time from one turning point to the
-next: the larger. 0: it goes straight on.)";
+next: the larger. 0: it goes straight on. Raises TypeError or ValueError naming the argument.)";
 
 template <class Moving>
 double turn_rate_of(const Moving& self, Arg<"begin", Real> begin, Arg<"end", Real> end) {
@@ -89,6 +97,7 @@ py::array_t<double> at(const Moving& self, Arg<"time", Real> time) {
 void bind_motions(py::module_& m) {
   py::class_<Motion, std::shared_ptr<Motion>> type(
       m, "Motion", "Time -> rigid transform, in the axes of the node's parent about the node's own origin.");
+  define_no_init(type, "LinearMotion and KeyframeMotion");
   define(type, "at", &at<Motion>, py::arg("time"),
          "Transform [4, 4] (translation in m) at `time` in s. Raises ValueError outside `span`.");
   define(type, "turn_rate", &turn_rate_of<Motion>, py::arg("begin"), py::arg("end"), kTurnRateDoc);
@@ -154,6 +163,7 @@ Between two keys a rotation goes the shorter way. Raises TypeError or ValueError
 void bind_deformation(py::module_& m) {
   py::class_<Deformation, std::shared_ptr<Deformation>> type(
       m, "Deformation", "Time -> vertices, which replace those of a mesh, in the node's own frame.");
+  define_no_init(type, "VertexSequence and Skin");
   define(type, "at", &at<Deformation>, py::arg("time"),
          "Vertices [V, 3] in m at `time` in s. Raises ValueError outside `span`.");
   define(type, "turn_rate", &turn_rate_of<Deformation>, py::arg("begin"), py::arg("end"), kTurnRateDoc);

@@ -194,22 +194,37 @@ std::string paths_text(const Paths& self) {
 void bind_series(PathsClass& type) {
   define(type, "amplitudes", &amplitudes_of, py::arg("times"), py::arg("tx") = 0, py::arg("rx") = 0,
          py::arg("replay") = "material",
-         "Complex amplitudes [T, P] in sqrt(W) at `times` [T] in s for the transmitter tx and the receiver rx (indices); "
-         "replay as in synthesize.");
+         R"(Complex amplitudes of the paths over time.
+
+times: [T] s; tx, rx: indices of the transmitter and the receiver; replay: as in `synthesize`
+Returns [T, P] in sqrt(W), without the phases of the lengths. Raises TypeError or ValueError naming the argument, also for
+times outside a motion, and IndexError for antennas that are not there.)");
   define(type, "lengths", &lengths_of, py::arg("times"), py::arg("transmitter") = 0, py::arg("receiver") = 0,
          py::arg("replay") = "material",
-         "Lengths [T, P] in m at `times` [T] in s from transmitter to receiver: indices, or positions [3] in m in the "
-         "radar's frame; replay as in synthesize.");
-  define(type, "points", &points_of, py::arg("time"), "Hits [H, 3] in m in the world at `time` in s.");
+         R"(Lengths of the paths over time.
+
+times: [T] s; transmitter, receiver: indices of antennas, or positions [3] in m in the radar's frame; replay: as in
+`synthesize`
+Returns [T, P] in m. Raises TypeError or ValueError naming the argument, also for times outside a motion, and IndexError for
+antennas that are not there.)");
+  define(type, "points", &points_of, py::arg("time"),
+         "Hits [H, 3] in m in the world at `time` in s. Raises TypeError or ValueError naming the argument.");
 }
 
 void bind_parts(PathsClass& type) {
   define(type, "select", &select_paths, py::arg("selection"),
-         "The paths that `selection` takes: a Selection, its text, or a mask bool [P] that is true where a path is taken.");
+         R"(The paths that a selection takes, over the same hits.
+
+selection: a Selection, its text, or a mask bool [P] that is true where a path is taken
+Returns Paths. Raises TypeError or ValueError naming the argument, for faults of the text with a caret under them, and for
+names that no mesh has.)");
   define(type, "_select_with_own_hits", &select_with_own_hits, py::arg("selection"),
          "The paths where a mask, bool [P], is true, with only the hits that they use.");
   define(type, "partition", &partition_paths, py::arg("parts"),
-         "{name: Paths} of disjoint parts {name: selection}: the first that takes a path has it, the rest is \"other\".");
+         R"(The paths of disjoint parts: the first that takes a path has it, the rest is "other".
+
+parts: {name: selection}
+Returns {name: Paths}. Raises TypeError or ValueError naming the argument, also for names that are empty, "other" or twice.)");
 }
 
 py::object save_paths(const py::object& self, const py::object& path, Arg<"min_power", Real> min_power) {
@@ -262,6 +277,7 @@ void bind_paths(py::module_& m) {
 
 Path i has the hits offsets[i] to offsets[i] + num_bounces[i], in order of travel from transmitter to receiver. Paths may
 share hits; selections share all hits of their trace.)");
+  define_no_init(type, "ep.trace, Paths.load and Paths.from_arrays");
   type.def_property_readonly("num_paths", &Paths::num_paths, "P, their number")
       .def_property_readonly("num_hits", &Paths::num_hits, "H, of all paths of the trace")
       .def_property_readonly("hits", &hits_of, "[H] structured: mesh_id, triangle_id, u, v")

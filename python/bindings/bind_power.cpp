@@ -6,6 +6,7 @@
 #include <string>
 
 #include "array.h"
+#include "define.h"
 #include "echopath/power/received_power.h"
 #include "run_job.h"
 #include "travel.h"
@@ -55,6 +56,7 @@ hits. [low, high] is the 95 % interval, of bias and chance together: what the fo
 half the density of rays would take, and the spread of the batches or, of one batch, of the hits. The power is resolved if it
 reaches no further than 0.3 dB to either side. Standard errors come from the batches of a trace (`trace(batches=8)`) alone
 and are NaN for one batch.)");
+  define_no_init(bound, "ep.received_power");
   bound.def_readonly("power", &ReceivedPower::power, "W, coherent + diffuse")
       .def_readonly("standard_error", &ReceivedPower::standard_error, "W, of the power")
       .def_readonly("coherent", &ReceivedPower::coherent,

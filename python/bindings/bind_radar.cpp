@@ -13,6 +13,7 @@
 #include "define.h"
 #include "echopath/base/errors.h"
 #include "echopath/radar/radar.h"
+#include "plausible.h"
 #include "value.h"
 
 namespace echopath::bindings {
@@ -29,6 +30,7 @@ ChirpSequence chirp_sequence(Arg<"start_frequency", Real> start_frequency, Arg<"
   const ChirpSequence waveform{*start_frequency, *bandwidth,      *num_samples, *sampling_rate,
                                *num_chirps,      *chirp_interval, *real};
   waveform.validate();
+  require_plausible(waveform);
   return waveform;
 }
 
@@ -150,7 +152,8 @@ sampling_rate: Hz
 num_chirps: per transmitter
 chirp_interval: s between neighbouring slots, at least num_samples / sampling_rate
 real: real IF samples instead of complex ones
-Raises TypeError or ValueError naming the argument.)");
+Raises TypeError or ValueError naming the argument, for a start_frequency below 1 MHz, too. Warns (RuntimeWarning) of a
+bandwidth above start_frequency or below 1 kHz and of a chirp_interval above 1 s, which look like other units.)");
   define_init(type, &chirp_sequence, py::kw_only(), py::arg("start_frequency") = 77e9, py::arg("bandwidth") = 1e9,
               py::arg("num_samples") = 512, py::arg("sampling_rate") = 20e6, py::arg("num_chirps") = 128,
               py::arg("chirp_interval") = 60e-6, py::arg("real") = false)
@@ -170,9 +173,11 @@ Raises TypeError or ValueError naming the argument.)");
       .def_property_readonly("max_range", &ChirpSequence::max_range, "m, unambiguous")
       .def("__repr__", [](const ChirpSequence& self) { return text_of(self); });
   define(type, "velocity_resolution", &velocity_resolution, py::arg("num_slots") = 1,
-         "m/s, when `num_slots` transmitters take turns");
-  define(type, "max_velocity", &max_velocity, py::arg("num_slots") = 1,
-         "m/s, unambiguous up to +- this, when `num_slots` transmitters take turns");
+         "m/s, when `num_slots` transmitters take turns. Raises TypeError or ValueError naming the argument.");
+  define(
+      type, "max_velocity", &max_velocity, py::arg("num_slots") = 1,
+      "m/s, unambiguous up to +- this, when `num_slots` transmitters take turns. Raises TypeError or ValueError naming the "
+      "argument.");
   define_value<ChirpSequence>(type, &keywords_of);
   define_replace<ChirpSequence>(type, &keywords_of);
 }
@@ -180,10 +185,12 @@ Raises TypeError or ValueError naming the argument.)");
 void bind_patterns(py::module_& m) {
   py::class_<AntennaPattern> type(m, "AntennaPattern",
                                   "Power gain over direction; made by Isotropic, CosinePower or GainTable.");
+  define_no_init(type, "ep.Isotropic, ep.CosinePower, ep.GainTable and ep.load_antenna");
   define(type, "gain", &gain_of, py::arg("cos_boresight"),
          "Linear power gain where cos_boresight is the cosine of the angle from the boresight. A table raises ValueError.");
   define(type, "field", &field_of, py::arg("directions"),
-         "sqrt(gain) e^{j phase} [N], complex, toward unit directions [N, 3] in the antenna's frame.");
+         "sqrt(gain) e^{j phase} [N], complex, toward unit directions [N, 3] in the antenna's frame. Raises TypeError or "
+         "ValueError naming the argument.");
   define_value<AntennaPattern>(type, &keywords_of, &maker_of_pattern);
   define_replace<AntennaPattern>(type, &keywords_of, &maker_of_pattern);
   type.def_property_readonly("kind", &kind_of, "\"isotropic\", \"cosine_power\" or \"table\"")
@@ -205,10 +212,12 @@ void bind_patterns(py::module_& m) {
           "[E, A] rad of a table with phases, else None")
       .def("__repr__", [](const AntennaPattern& self) { return text_of(self); });
   define(m, "Isotropic", &isotropic, py::arg("gain") = 1.0,
-         "The same linear power gain in every direction. Raises ValueError for a gain that is not positive.");
+         "The same linear power gain in every direction.\n\n"
+         "gain: linear, at most 1 (1.02 for rounding): without a direction to prefer it is the efficiency of the antenna\n"
+         "Raises TypeError or ValueError naming the argument.");
   define(m, "CosinePower", &cosine_power, py::arg("exponent"), py::arg("peak_gain") = py::none(),
          "Gain peak_gain cos^exponent of the angle from the boresight, nothing behind.\n\n"
-         "exponent: 0 or more\npeak_gain: linear, None for that of a lossless antenna, 2 (exponent + 1)\n"
+         "exponent: 0 or more\npeak_gain: linear, None for that of a lossless antenna, 2 (exponent + 1), which is the most\n"
          "Raises ValueError naming the argument.");
   define(m, "GainTable", &gain_table, py::kw_only(), py::arg("azimuth"), py::arg("elevation"), py::arg("gain"),
          py::arg("phase") = py::none(), py::arg("normalize") = false,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <sstream>
 #include <string>
 
 #include "array.h"
@@ -11,6 +12,7 @@
 #include "echopath/sim/rcs.h"
 #include "error_target.h"
 #include "run_job.h"
+#include "warn.h"
 
 namespace echopath::bindings {
 namespace {
@@ -115,6 +117,31 @@ void warn_of_missed_targets(const std::vector<RadarCrossSection>& entries, doubl
   warn_of_missed_target("rcs: for " + count + " cross sections max_rays", worst, target_error_db);
 }
 
+// Whether the rays do not know a cross section to 3 dB. A null between lobes, far below what is seen next to it, is no matter.
+bool is_unknown(const std::vector<RadarCrossSection>& entries, size_t index, size_t num_channels) {
+  constexpr double kKnown = 2.0, kNull = 0.01;
+  double beside = 0.0;
+  if (index >= num_channels) beside = entries[index - num_channels].high;
+  if (index + num_channels < entries.size()) beside = std::max(beside, entries[index + num_channels].high);
+  return entries[index].high > kKnown * entries[index].total && entries[index].high > kNull * beside;
+}
+
+void warn_of_few_rays(const std::vector<RadarCrossSection>& entries, size_t num_channels, int64_t num_rays) {
+  int64_t unknown = 0;
+  double most = 0.0;
+  for (size_t i = 0; i < entries.size(); ++i) {
+    if (!is_unknown(entries, i, num_channels)) continue;
+    ++unknown;
+    most = std::max(most, entries[i].high);
+  }
+  if (unknown == 0) return;
+  std::ostringstream text;
+  text << "rcs: " << unknown << " of " << entries.size() << " cross sections are not known to 3 dB from " << num_rays
+       << " rays, whose footprints on the target are too wide for its phases: up to " << most
+       << " m^2 (95 %). More num_rays, or target_error_db, find more";
+  warn_caller(text.str());
+}
+
 py::object rcs_of(Scene scene, double frequency, const py::object& incidence, const py::object& observation,
                   const py::object& polarization, std::optional<int64_t> num_rays, int max_bounces, uint64_t seed,
                   const std::string& footprint, const std::string& sampler, std::optional<int> batches,
@@ -140,7 +167,11 @@ py::object rcs_of(Scene scene, double frequency, const py::object& incidence, co
                              effort.batches,
                              effort.target};
   const auto entries = run_job("rcs", progress, [&](Job& job) { return rcs(scene, pairs, settings, &job); });
-  if (target_error_db) warn_of_missed_targets(entries, *target_error_db);
+  if (target_error_db) {
+    warn_of_missed_targets(entries, *target_error_db);
+  } else {
+    warn_of_few_rays(entries, channels.rows.size(), effort.num_rays);
+  }
   Shape shape;
   if (!is_one) shape.push_back(static_cast<py::ssize_t>(pairs.size()));
   if (channels.is_list) shape.push_back(static_cast<py::ssize_t>(channels.rows.size()));

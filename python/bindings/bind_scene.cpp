@@ -93,7 +93,7 @@ Raises TypeError or ValueError naming the field, the rule and the value.)");
       .def_readonly("mirror", &Material::mirror, "bool")
       .def("__repr__", &material_text);
   define_static(type, "metal", &metal, py::arg("mirror") = false,
-                "A perfect conductor; mirror: a plane larger than its Fresnel zone.");
+                "A perfect conductor; mirror: a plane larger than its Fresnel zone. Raises TypeError naming the argument.");
   define_value<Material>(type, &fields_of);
   define_replace<Material>(type, &fields_of);
 }

@@ -18,6 +18,7 @@
 #include "run_job.h"
 #include "shared.h"
 #include "shown.h"
+#include "travel.h"
 
 namespace echopath::bindings {
 namespace {
@@ -70,6 +71,17 @@ struct MeshEntry {
   int node_index;
   Node node;
 };
+
+py::dict state_of(const MeshEntry& self) {
+  return py::dict(py::arg("id") = self.id, py::arg("node_index") = self.node_index, py::arg("node") = self.node);
+}
+
+MeshEntry entry_of_state(const py::dict& state) {
+  require_fields(state, {"id", "node_index", "node"});
+  const Node node = Instance<Node>::from(state["node"], "node");
+  require(node.mesh != nullptr && node.material != nullptr, "node", "must have a mesh and a material", node.name);
+  return {Codec<uint32_t>::value(state["id"], "id"), Codec<int>::value(state["node_index"], "node_index"), node};
+}
 
 uint32_t checked_mesh_id(const Scene& scene, int mesh_id) {
   const auto count = static_cast<int64_t>(scene.meshes().size());
@@ -181,8 +193,9 @@ std::string overlap_text(const NamedOverlap& self) {
 }
 
 void bind_overlaps(py::module_& m) {
-  py::class_<NamedOverlap>(m, "CoplanarOverlap", "Where two meshes, or a mesh and itself, lie on each other.")
-      .def_property_readonly(
+  py::class_<NamedOverlap> type(m, "CoplanarOverlap", "Where two meshes, or a mesh and itself, lie on each other.");
+  define_no_init(type, "scene.coplanar_overlaps()");
+  type.def_property_readonly(
           "names", [](const NamedOverlap& self) { return py::make_tuple(self.first, self.second); },
           "full names of the two meshes; twice the same for a mesh that lies on itself")
       .def_property_readonly(
@@ -197,6 +210,14 @@ void bind_overlaps(py::module_& m) {
       .def_property_readonly(
           "distance", [](const NamedOverlap& self) { return self.overlap.distance; }, "m, largest between the two")
       .def("__repr__", &overlap_text);
+  const auto of_overlap = [](const char* name, auto member) {
+    return field(name, [member](auto& self) -> auto& { return self.overlap.*member; });
+  };
+  def_travel(type, field("first", &NamedOverlap::first), field("second", &NamedOverlap::second),
+             of_overlap("first_mesh_id", &CoplanarOverlap::first_mesh_id),
+             of_overlap("second_mesh_id", &CoplanarOverlap::second_mesh_id),
+             of_overlap("num_triangles", &CoplanarOverlap::num_triangles), of_overlap("area", &CoplanarOverlap::area),
+             of_overlap("distance", &CoplanarOverlap::distance));
 }
 
 std::string scene_text(const Scene& self) {
@@ -210,7 +231,8 @@ void bind_nodes(py::module_& m) {
               py::arg("motion") = py::none(), py::arg("mesh") = py::none(), py::arg("deformation") = py::none(),
               py::arg("material") = py::none(), py::arg("material_name") = "", py::arg("smooth") = false,
               py::arg("visible") = true);
-  define(type, "replace", &changed_node, "A copy with some fields changed: node.replace(visible=False).");
+  define(type, "replace", &changed_node,
+         "A copy with some fields changed: node.replace(visible=False). Raises TypeError or ValueError naming the field.");
   type.def_readonly("name", &Node::name, "full name, \"street/pedestrian/head\"")
       .def_readonly("parent", &Node::parent, "index of the parent, -1 for a child of the root")
       .def_property_readonly(
@@ -231,8 +253,9 @@ void bind_nodes(py::module_& m) {
                       [](const py::dict& fields) { return py::type::of<Node>()(**fields).cast<Node>(); }))
       .def("__repr__", [](const Node& self) { return "Node('" + self.name + "'" + (self.mesh ? ", mesh)" : ")"); });
 
-  py::class_<MeshEntry>(m, "SceneMesh", "A mesh of a scene with its mesh ID.")
-      .def_readonly("id", &MeshEntry::id, "mesh ID")
+  py::class_<MeshEntry> entry(m, "SceneMesh", "A mesh of a scene with its mesh ID.");
+  define_no_init(entry, "scene.meshes");
+  entry.def_readonly("id", &MeshEntry::id, "mesh ID")
       .def_readonly("node", &MeshEntry::node_index, "index into scene.nodes")
       .def_property_readonly(
           "name", [](const MeshEntry& self) { return self.node.name; }, "full name of its node")
@@ -247,10 +270,12 @@ void bind_nodes(py::module_& m) {
       .def_property_readonly(
           "material_name", [](const MeshEntry& self) { return self.node.material_name; },
           "as given, \"\" for a material without a name")
-      .def("__repr__", [](const MeshEntry& self) {
-        const std::string count = std::to_string(self.node.mesh->triangles().size());
-        return "SceneMesh(" + std::to_string(self.id) + ", '" + self.node.name + "', " + count + " triangles)";
-      });
+      .def("__repr__",
+           [](const MeshEntry& self) {
+             const std::string count = std::to_string(self.node.mesh->triangles().size());
+             return "SceneMesh(" + std::to_string(self.id) + ", '" + self.node.name + "', " + count + " triangles)";
+           })
+      .def(py::pickle(&state_of, &entry_of_state));
 }
 
 void bind_tree(py::module_& m) {

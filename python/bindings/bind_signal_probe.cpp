@@ -61,7 +61,7 @@ void bind_signal_probe(py::module_& m) {
 
 A chirp of the frame, or two of an array's (of each stretch, where it is traced anew), drawn by `seed`: eight samples of each
 as direct sums of all echoes, and moving echoes, the strongest and random ones of all blocks of paths, evaluated exactly
-there.)");
+there. Raises TypeError or ValueError naming the argument.)");
   define_init(type, [](Arg<"seed", Seed> seed) { return SignalProbe{*seed, 0, {}}; }, py::kw_only(), py::arg("seed") = 1);
   type.def_readonly("seed", &SignalProbe::seed, "of the chirps and samples that are drawn")
       .def_property_readonly("tx", column(&ProbedChirp::tx), "[N] index of the transmitter")

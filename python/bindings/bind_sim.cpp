@@ -50,6 +50,15 @@ const Radar& radar_or_own(const Paths& paths, const Radar* radar) { return radar
 // Long work is said beforehand. What interpolates in time is quick, and says nothing.
 void warn_of_long_work(const Paths& paths, const Radar& radar, const CubeSettings& settings) {
   constexpr double kLong = 10.0;  // s
+  const double of_stretches = keyframe_seconds(paths, settings.keyframes);
+  if (of_stretches >= kLong) {
+    std::ostringstream told;
+    told << "keyframes: " << settings.keyframes << " stretches with retrace '"
+         << kRetrace.name_of(settings.keyframes.retrace) << "' take about " << std::llround(of_stretches)
+         << " s on this machine; fewer keyframes, or 0, which `validity` "
+         << "settles, are quicker";
+    warn_caller(told.str());
+  }
   const double seconds = exact_seconds(paths, radar, settings);
   if (seconds < kLong) return;
   std::ostringstream text;

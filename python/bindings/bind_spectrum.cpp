@@ -49,6 +49,7 @@ std::string text_of(const RangeDoppler& map) {
 
 void bind_spectrum(py::module_& m) {
   py::class_<RangeDoppler> bound(m, "RangeDoppler", "Range-Doppler maps with their axes; made by range_doppler.");
+  define_no_init(bound, "ep.range_doppler");
   bound.def_property_readonly("values", &values_of, "[tx, rx, velocity, range] complex in sqrt(W), read-only")
       .def_property_readonly(
           "velocity", [](const py::object& self) { return numpy_view(self.cast<const RangeDoppler&>().velocity, self); },
@@ -82,7 +83,8 @@ Units stand in `attrs["units"]` of values and coordinates. Needs xarray, raises 
 
 ax: Matplotlib axes to draw in, None: new ones; title: what stands above the map
 vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak
-Returns the axes: range in m across, radial velocity in m/s up (receding positive).)");
+Returns the axes: range in m across, radial velocity in m/s up (receding positive). Raises TypeError or
+ValueError naming the argument.)");
   define(bound, "_repr_html_", from_package("notebook", "range_doppler_html"), "A table for notebooks.");
   def_travel_checked(bound, &check_map, field("num_transmitters", &RangeDoppler::num_transmitters),
                      field("num_receivers", &RangeDoppler::num_receivers), field("velocity", &RangeDoppler::velocity),

@@ -65,7 +65,7 @@ void bind_trace_frame(py::module_& m) {
   py::class_<Stratum> bound_stratum(
       m, "Stratum",
       "One launch stratum: directions in a cone, or in a strip along a great circle (half_azimuth > 0), "
-      "rays evenly over them.");
+      "rays evenly over them. Raises TypeError or ValueError naming the argument.");
   define_init(bound_stratum, &stratum_of, py::kw_only(), py::arg("axis"), py::arg("versine"), py::arg("num_rays"),
               py::arg("ray_density"), py::arg("name"), py::arg("across") = py::make_tuple(0.0, 0.0, 0.0),
               py::arg("half_azimuth") = 0.0, py::arg("low") = 0.0, py::arg("high") = 0.0, py::arg("object") = -1,
@@ -98,7 +98,8 @@ void bind_trace_frame(py::module_& m) {
              field("ray_density", &Stratum::ray_density), field("name", &Stratum::name), field("object", &Stratum::object),
              field("num_mirrors", &Stratum::num_mirrors), field("focus_of", &Stratum::focus_of));
 
-  py::class_<TraceStatistics> bound_statistics(m, "TraceStatistics", "What a trace did.");
+  py::class_<TraceStatistics> bound_statistics(m, "TraceStatistics",
+                                               "What a trace did. Raises TypeError or ValueError naming the argument.");
   define_init(bound_statistics, &statistics_of, py::kw_only(), py::arg("num_rays") = 0, py::arg("num_queries") = 0,
               py::arg("num_hits") = 0, py::arg("num_paths") = 0, py::arg("num_near_antenna") = 0, py::arg("num_grazing") = 0,
               py::arg("num_small_mirrors") = 0, py::arg("num_false_hits") = 0, py::arg("num_unaimed") = 0,
@@ -125,7 +126,9 @@ void bind_trace_frame(py::module_& m) {
              field("num_false_hits", &TraceStatistics::num_false_hits), field("num_unaimed", &TraceStatistics::num_unaimed),
              field("num_unfollowed_beams", &TraceStatistics::num_unfollowed_beams));
 
-  py::class_<TraceFrame> bound_frame(m, "TraceFrame", "What amplitudes and lengths of paths are relative to.");
+  py::class_<TraceFrame> bound_frame(
+      m, "TraceFrame",
+      "What amplitudes and lengths of paths are relative to. Raises TypeError or ValueError naming the argument.");
   define_init(bound_frame, &frame_of, py::kw_only(), py::arg("start_time"), py::arg("trace_time"), py::arg("transmitter"),
               py::arg("receiver"), py::arg("strata"), py::arg("seed"), py::arg("max_bounces"), py::arg("polarization"),
               py::arg("footprint"), py::arg("statistics"), py::arg("num_batches") = 1, py::arg("target_error_db") = 0.0,

@@ -51,6 +51,7 @@ std::string repr_of(const Validity& self) {
 void bind_shares(py::module_& m) {
   py::class_<ValidityShares> bound(m, "ValidityShares",
                                    "What one trace does not serve, as shares of the power of some paths.");
+  define_no_init(bound, "ep.validity");
   bound.def_readonly("power", &ValidityShares::power, "W, what the shares are of")
       .def_readonly("slid", &ValidityShares::slid, "share: phase error of points of reflection above 0.3 rad")
       .def_readonly("left", &ValidityShares::left, "share: points of reflection that leave the surface around their hit")
@@ -73,6 +74,7 @@ void bind_shares(py::module_& m) {
 void bind_objects(py::module_& m) {
   py::class_<ObjectValidity, ValidityShares> bound(
       m, "ObjectValidity", "What one trace does not serve of an object: of the paths that scattered on it last.");
+  define_no_init(bound, "ep.validity");
   bound.def_readonly("name", &ObjectValidity::name, "of the object")
       .def_property_readonly("ok", &ObjectValidity::ok, "it is served, or out of the dynamic range")
       .def_readonly("disappears", &ObjectValidity::disappears,
@@ -131,6 +133,7 @@ Shares are of the power that the replay carries; a warning is due above 1 %. The
 the trace time and the times of the check; physical-optics paths are scaled to the power of their sum over the band. An object
 within 60 dB of the strongest and above the noise of a range-Doppler cell is not ok where one of its shares exceeds 5 %, its power
 over the frame is off by more than 0.5 dB, or it is seen but has no path.)");
+  define_no_init(bound, "ep.validity");
   bound.def_readonly("num_paths", &Validity::num_paths, "P, their number")
       .def_readonly("times", &Validity::times, "[T] s, of the check")
       .def_readonly("shares", &Validity::shares, "ValidityShares of all paths")
@@ -194,6 +197,7 @@ std::shared_ptr<Renewal> renew_paths(const Paths& paths, const Radar* radar, dou
 
 void bind_renewal(py::module_& m) {
   py::class_<Renewal, std::shared_ptr<Renewal>> bound(m, "Renewal", "A record brought up to another time; made by `renew`.");
+  define_no_init(bound, "ep.renew");
   bound
       .def_property_readonly(
           "paths", [](const Renewal& self) { return std::make_shared<Paths>(self.paths); },

@@ -1,5 +1,6 @@
 #include <pybind11/pybind11.h>
 
+#include <cmath>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -7,8 +8,10 @@
 #include "argument.h"
 #include "array.h"
 #include "define.h"
+#include "echopath/base/range_of_coordinates.h"
 #include "echopath/spectrum/array/steering.h"
 #include "echopath/spectrum/array/virtual_array.h"
+#include "travel.h"
 
 namespace echopath::bindings {
 namespace {
@@ -83,6 +86,16 @@ std::string text_of(const VirtualArray& array) {
   return text.str();
 }
 
+void check_and_arrange(VirtualArray& array) {
+  require(array.num_transmitters >= 1, "num_transmitters", "must be at least 1", array.num_transmitters);
+  require(array.num_receivers >= 1, "num_receivers", "must be at least 1", array.num_receivers);
+  require(std::isfinite(array.wavelength) && array.wavelength > 0.0, "wavelength", "must be finite and positive",
+          array.wavelength);
+  require_shape(array.positions, {array.num_transmitters, array.num_receivers}, "positions");
+  for (const Vec3& position : array.positions) require_in_range(position, "positions", "the antennas");
+  arrange_elements(array);
+}
+
 }  // namespace
 
 void bind_virtual_array(py::module_& m) {
@@ -90,6 +103,7 @@ void bind_virtual_array(py::module_& m) {
 
 Elements are ordered by row and column of their grid. A grid's rows count up and its columns count up to the left, as far
 as the array's plane allows.)");
+  define_no_init(type, "ep.virtual_array");
   type.def_readonly("num_transmitters", &VirtualArray::num_transmitters, "transmitters of the radar")
       .def_readonly("num_receivers", &VirtualArray::num_receivers, "receivers of the radar")
       .def_readonly("wavelength", &VirtualArray::wavelength, "m, at the centre frequency")
@@ -109,11 +123,15 @@ as the array's plane allows.)");
       .def_property_readonly(
           "centre", [](const VirtualArray& self) { return to_numpy(self.centre()); }, "[3] m, mean of the elements")
       .def("__repr__", [](const VirtualArray& self) { return text_of(self); });
+  def_travel_checked(type, &check_and_arrange, field("num_transmitters", &VirtualArray::num_transmitters),
+                     field("num_receivers", &VirtualArray::num_receivers), field("wavelength", &VirtualArray::wavelength),
+                     field("positions", &VirtualArray::positions));
   define(type, "default_angles", &default_axes, py::arg("largest_step") = kPictureStep,
          R"((azimuth [A], elevation [E]) in rad: the directions that the array tells apart.
 
 Azimuths up to +-90 degrees and elevations up to +-45 degrees within the unambiguous field of its grid, in steps of a
-quarter of wavelength / extent, or of largest_step in rad where that is less; 0 alone where it has no extent.)");
+quarter of wavelength / extent, or of largest_step in rad where that is less; 0 alone where it has no extent. Raises TypeError
+or ValueError naming the argument.)");
   m.def("virtual_array", &virtual_array, py::arg("radar"), "What ep.virtual_array calls.");
 }
 

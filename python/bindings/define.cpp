@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "echopath/base/errors.h"
+#include "echopath/base/meant_name.h"
 
 namespace echopath::bindings::detail {
 namespace {
@@ -21,6 +21,12 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
+std::string hint_of_keyword(const std::string& word, const std::vector<std::string>& names) {
+  if (names.empty()) return ", it takes no arguments";
+  const std::string meant = meant_name(word, names);
+  return meant.empty() ? "; its arguments are " + joined(names) : ", the nearest right one is '" + meant + "'";
+}
+
 // The parameters that may be given without their names.
 std::vector<Parameter> by_place(const std::vector<Parameter>& parameters) {
   std::vector<Parameter> found;
@@ -35,8 +41,7 @@ std::string complaint(const std::vector<Parameter>& parameters, const py::args& 
   for (const auto& [key, value] : keywords) {
     const std::string word = escaped(key);
     if (std::find(names.begin(), names.end(), word) != names.end()) continue;
-    if (names.empty()) return "unknown keyword '" + word + "', it takes no arguments";
-    return "unknown keyword '" + word + "', the nearest right one is '" + nearest_names(word, names, 1).front() + "'";
+    return "unknown keyword '" + word + "'" + hint_of_keyword(word, names);
   }
   const std::vector<Parameter> placed = by_place(parameters);
   if (values.size() > placed.size()) {
@@ -62,11 +67,26 @@ PyCFunctionObject* function_of(py::handle scope, const char* name) {
   return reinterpret_cast<PyCFunctionObject*>(bound.ptr());
 }
 
+// The line in front of a docstring that Python shows as the signature and leaves out of the text.
+std::string signature_line(const Callee& callee, const std::vector<Parameter>& parameters) {
+  std::vector<std::string> words;
+  if (callee.bound == Bound::kMethod) words.emplace_back("self");
+  bool is_keyword_only = false;
+  for (const Parameter& each : parameters) {
+    if (each.is_keyword_only && !is_keyword_only) words.emplace_back("*");
+    is_keyword_only = each.is_keyword_only;
+    words.push_back(each.is_required ? each.name : each.name + "=" + each.default_text);
+  }
+  if (callee.takes_keywords) words.emplace_back("**changes");
+  return std::string(callee.name) + "(" + joined(words) + ")\n--\n\n";
+}
+
 }  // namespace
 
-void define_refusal(py::handle scope, const char* name, const Parameters& parameters, Bound bound) {
-  PyCFunctionObject* function = function_of(scope, name);
-  const std::string doc = function->m_ml->ml_doc ? function->m_ml->ml_doc : "";
+void define_refusal(const Callee& defined, const Parameters& parameters) {
+  const auto [scope, name, bound, takes_keywords] = defined;
+  const char* text = function_of(scope, name)->m_ml->ml_doc;
+  const std::string doc = signature_line(defined, parameters.list()) + (text ? text : "");
   const bool is_init = std::strcmp(name, "__init__") == 0;
   const std::string callee = is_init ? py::cast<std::string>(scope.attr("__name__")) : name;
   const auto refuse = [callee, list = parameters.list()](const py::args& values, const py::kwargs& keywords) {
@@ -87,8 +107,12 @@ void define_refusal(py::handle scope, const char* name, const Parameters& parame
   } else {
     py::cpp_function(refuse, named, within, first);
   }
-  // pybind11 owns this text and frees it.
-  std::free(const_cast<char*>(function->m_ml->ml_doc));
+  write_doc(scope, name, doc);
+}
+
+void write_doc(py::handle scope, const char* name, const std::string& doc) {
+  PyCFunctionObject* function = function_of(scope, name);
+  std::free(const_cast<char*>(function->m_ml->ml_doc));  // pybind11 owns this text and frees it
   function->m_ml->ml_doc = strdup(doc.c_str());
 }
 

@@ -18,6 +18,7 @@ struct Parameter {
   std::string name;
   bool is_required;
   bool is_keyword_only;
+  std::string default_text;  // as Python writes it
 };
 
 // Gathers the parameters among what is handed to `def`.
@@ -30,8 +31,10 @@ class Parameters {
   const std::vector<Parameter>& list() const { return list_; }
 
  private:
-  void add(const py::arg& one) { list_.push_back({one.name, true, keyword_only_}); }
-  void add(const py::arg_v& one) { list_.push_back({one.name, false, keyword_only_}); }
+  void add(const py::arg& one) { list_.push_back({one.name, true, keyword_only_, ""}); }
+  void add(const py::arg_v& one) {
+    list_.push_back({one.name, false, keyword_only_, py::cast<std::string>(py::repr(one.value))});
+  }
   void add(const py::kw_only&) { keyword_only_ = true; }
   template <class Other>
   void add(const Other&) {}
@@ -53,9 +56,27 @@ consteval bool all_checked(Return (*)(Arguments...)) {
   return ((place++ < skipped || IsArg<std::decay_t<Arguments>>::value) && ...);
 }
 
-// Binds what `name` of `scope` answers where the arguments do not fit: an error. help() keeps showing the one signature.
+// Whether it takes any keywords, `py::kwargs`.
+template <class Return, class... Arguments>
+consteval bool takes_keywords(Return (*)(Arguments...)) {
+  return (std::is_same_v<std::decay_t<Arguments>, py::kwargs> || ...);
+}
+
 enum class Bound { kFunction, kMethod, kStatic };
-void define_refusal(py::handle scope, const char* name, const Parameters& parameters, Bound bound);
+
+struct Callee {
+  py::handle scope;
+  const char* name;
+  Bound bound;
+  bool takes_keywords = false;  // any
+};
+
+// Binds what a callee answers where the arguments do not fit, an error, and writes its signature down, so that
+// inspect.signature, help() and editors show its parameters.
+void define_refusal(const Callee& callee, const Parameters& parameters);
+
+// Replaces the docstring of a function or method that pybind11 bound.
+void write_doc(py::handle scope, const char* name, const std::string& doc);
 
 }  // namespace detail
 
@@ -66,8 +87,9 @@ Scope& define(Scope& scope, const char* name, Function&& function, const Extra&.
   using Signature = py::detail::function_signature_t<Function>;
   static_assert(detail::all_checked<is_method ? 1 : 0>(static_cast<Signature*>(nullptr)), "arguments must be Arg<...>");
   scope.def(name, std::forward<Function>(function), extra...);
-  detail::define_refusal(scope, name, detail::Parameters(extra...),
-                         is_method ? detail::Bound::kMethod : detail::Bound::kFunction);
+  constexpr bool takes_keywords = detail::takes_keywords(static_cast<Signature*>(nullptr));
+  detail::define_refusal({scope, name, is_method ? detail::Bound::kMethod : detail::Bound::kFunction, takes_keywords},
+                         detail::Parameters(extra...));
   return scope;
 }
 
@@ -76,7 +98,7 @@ Class& define_static(Class& type, const char* name, Function&& function, const E
   using Signature = py::detail::function_signature_t<Function>;
   static_assert(detail::all_checked<0>(static_cast<Signature*>(nullptr)), "arguments must be Arg<...>");
   type.def_static(name, std::forward<Function>(function), extra...);
-  detail::define_refusal(type, name, detail::Parameters(extra...), detail::Bound::kStatic);
+  detail::define_refusal({type, name, detail::Bound::kStatic}, detail::Parameters(extra...));
   return type;
 }
 
@@ -86,7 +108,22 @@ Class& define_init(Class& type, Make make, const Extra&... extra) {
   using Signature = py::detail::function_signature_t<Make>;
   static_assert(detail::all_checked<0>(static_cast<Signature*>(nullptr)), "arguments must be Arg<...>");
   type.def(py::init(make), extra...);
-  detail::define_refusal(type, "__init__", detail::Parameters(extra...), detail::Bound::kMethod);
+  detail::define_refusal({type, "__init__", detail::Bound::kMethod}, detail::Parameters(extra...));
+  return type;
+}
+
+// Of a class whose objects no caller makes; `makers` are the functions that return them, as an error names them.
+template <class Class>
+Class& define_no_init(Class& type, const char* makers) {
+  const std::string text = std::string("is made by ") + makers;
+  type.def(
+      "__init__",
+      [type_name = py::cast<std::string>(type.attr("__name__")), text](py::detail::value_and_holder&, const py::args&,
+                                                                       const py::kwargs&) {
+        throw py::type_error(type_name + ": " + text);
+      },
+      py::detail::is_new_style_constructor());
+  detail::write_doc(type, "__init__", "__init__(self)\n--\n\nRaises TypeError: " + text + ".");
   return type;
 }
 

@@ -10,10 +10,22 @@ import sys
 import tempfile
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from stub_types import IMPORTS as TYPE_IMPORTS
+from stub_types import with_known_types
+
+# The signatures that Python shows of the extension have no types: those of its docstrings have.
+RUN = """
+import inspect
+import pybind11_stubgen
+def no_signature(function): raise TypeError("to be read from the docstring")
+inspect.getfullargspec = no_signature
+pybind11_stubgen.main()
+"""
 TARGET = Path(__file__).resolve().parents[1] / "echopath" / "_core.pyi"
 HEAD = ('"""The C++ core of echopath; use it through the package.\n\n'
         'Written by python/bindings/make_stubs.py: do not edit.\n"""\n')
-IMPORTS = "from collections.abc import Sequence\nfrom numpy.typing import ArrayLike\nimport types\n"
+IMPORTS = "from collections.abc import Sequence\nfrom numpy.typing import ArrayLike\nimport types\n" + TYPE_IMPORTS
 # What pybind11-stubgen writes -> what a reader and a type checker make more of.
 PLAIN = [
     (r"\A\"\"\".*?\"\"\"\n", HEAD),                                       # of the module
@@ -32,6 +44,12 @@ PLAIN = [
     (r"(def __eq__\(self, [^:]*: )[^)]*\) -> [^:]*:", r"\1object) -> bool:"),
     (r"numpy\.ndarray(?!\[)", "numpy.ndarray[typing.Any, typing.Any]"),
     (r"(\w+: [A-Z]\w+) = None", r"\1 | None = None"),
+    (r"    def __setattr__\(self, .*\n        \.\.\.\n", ""),                   # says what to write instead
+    (r"(    @staticmethod\n)?    def __init__\(\*args: .*\n +\"\"\"\n +Raises TypeError: is made by .*\n +\"\"\"\n", ""),
+    (r"(__hash__: typing\.ClassVar\[None\] = None)", r"\1  # type: ignore[assignment]"),
+    (r"def __(eq|ne)__\(self, arg0: [^)]*\) -> Selection:",
+     r"def __\1__(self, arg0: object) -> Selection:  # type: ignore[override]"),
+    (r"(?m)(-> (?:list|tuple)\[)(.*\b)tuple\b(?!\[)", r"\1\2tuple[typing.Any, ...]"),
     (r"(?m)[ \t]+$", ""),
 ]
 
@@ -39,12 +57,12 @@ PLAIN = [
 def stubs() -> str:
     """The text that the file should hold. Raises CalledProcessError where pybind11-stubgen fails."""
     with tempfile.TemporaryDirectory() as folder:
-        subprocess.run([sys.executable, "-m", "pybind11_stubgen", "echopath._core", "-o", folder], check=True,
-                       capture_output=True)
+        subprocess.run([sys.executable, "-c", RUN, "echopath._core", "-o", folder], check=True, capture_output=True)
         text = (Path(folder) / "echopath" / "_core" / "__init__.pyi").read_text(encoding="utf-8")
     for pattern, plain in PLAIN:
         text = re.sub(pattern, plain, text, flags=re.DOTALL) if pattern.startswith(r"\A") else re.sub(pattern, plain, text)
-    return text.replace("from __future__ import annotations\n", f"from __future__ import annotations\n{IMPORTS}", 1)
+    text = text.replace("from __future__ import annotations\n", f"from __future__ import annotations\n{IMPORTS}", 1)
+    return with_known_types(text)
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <cmath>
 #include <complex>
 #include <numeric>
 #include <stdexcept>
@@ -12,6 +13,7 @@
 
 #include "array.h"
 #include "choice.h"
+#include "echopath/base/errors.h"
 #include "echopath/base/parallel.h"
 #include "echopath/power/path_power.h"
 #include "echopath/replay/replay.h"
@@ -44,6 +46,7 @@ struct Series {
 // Of all paths. Runs beside Python, so that Ctrl-C is answered.
 Series evaluate_one_channel(const Paths& paths, const std::vector<double>& times, const Antenna& transmitter,
                             const Antenna& receiver, SpecularPoints specular = SpecularPoints::kMaterial) {
+  for (const double time : times) require(std::isfinite(time), "times", "must be finite", time);
   return run_job("replay", py::none(), [&](Job& job) {
     Radar radar = paths.radar;
     radar.transmitters = {transmitter};

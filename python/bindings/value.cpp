@@ -53,4 +53,12 @@ py::dict checked_state(const py::object& state, const char* type_name) {
   return py::reinterpret_borrow<py::dict>(state);
 }
 
+void refuse_change(py::handle self, py::handle name, py::handle value) {
+  if (PyObject_GenericSetAttr(self.ptr(), name.ptr(), value.ptr()) == 0) return;
+  PyErr_Clear();
+  const std::string of = py::cast<std::string>(py::type::handle_of(self).attr("__name__")), called = escaped(name);
+  throw py::attribute_error(called + ": cannot be set, a " + of + " does not change; replace(" + called +
+                            "=...) returns a copy that differs");
+}
+
 }  // namespace echopath::bindings::detail

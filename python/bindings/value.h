@@ -22,6 +22,9 @@ pybind11::object remade(const pybind11::object& make, const pybind11::dict& keyw
 // The keywords in the state of a pickle. Raises TypeError where it is none.
 pybind11::dict checked_state(const pybind11::object& state, const char* type_name);
 
+// Sets an attribute as Python does, or raises AttributeError with a hint at `replace`.
+void refuse_change(pybind11::handle self, pybind11::handle name, pybind11::handle value);
+
 // How pybind11 hands over new objects of a class.
 template <class Value, class Holder>
 using Held = std::conditional_t<std::is_same_v<Holder, std::shared_ptr<Value>>, std::shared_ptr<Value>, Value>;
@@ -58,6 +61,15 @@ void define_value(pybind11::class_<Value, Options...>& type, pybind11::dict (*ke
                       }));
 }
 
+// Answers `value.name = ...` by what to write instead: attributes of a value are set by nobody. Classes derived in Python
+// keep what they have of their own.
+template <class Value, class... Options>
+void define_no_change(pybind11::class_<Value, Options...>& type) {
+  type.def("__setattr__", [](const pybind11::object& self, const pybind11::str& name, const pybind11::object& value) {
+    detail::refuse_change(self, name, value);
+  });
+}
+
 // Gives a value `replace`: a copy with other values of some of its keywords.
 template <class Value, class... Options>
 void define_replace(pybind11::class_<Value, Options...>& type, pybind11::dict (*keywords_of)(const Value&),
@@ -73,6 +85,7 @@ void define_replace(pybind11::class_<Value, Options...>& type, pybind11::dict (*
       "A copy with other values of some arguments.\n\n"
       "changes: arguments of the constructor, by name\n"
       "Raises TypeError or ValueError as the constructor does.");
+  define_no_change(type);
 }
 
 }  // namespace echopath::bindings

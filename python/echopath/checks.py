@@ -11,7 +11,6 @@ import inspect
 import math
 import numbers
 import os
-import reprlib
 from collections.abc import Callable, Mapping
 from typing import Any, Literal, ParamSpec, TypeVar, get_args
 
@@ -19,7 +18,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from .keywords import refuse_unknown
+from .keywords import refuse_misplaced, refuse_unknown
+from .shown import shown, writable
 
 Parameters = ParamSpec("Parameters")
 Result = TypeVar("Result")
@@ -31,32 +31,6 @@ Window = WindowName | tuple[Literal["chebyshev"], float]           # a name, or 
 LARGEST_SEED = 2**64 - 1
 LARGEST_COUNT = 2**31 - 1  # of what the core keeps in an int
 KINDS = {"real": "iuf", "complex": "iufc", "whole": "iu"}
-
-
-class _Short(reprlib.Repr):
-    def __init__(self):
-        super().__init__()
-        self.maxstring = self.maxother = self.maxlong = 60
-
-    def repr_ndarray(self, value, level):
-        return f"an array {list(value.shape)} of {value.dtype}" if value.ndim else repr(value[()])
-
-
-_short = _Short()
-
-
-def shown(value) -> str:
-    """A value as a message repeats it: short, on one line, and text that every terminal can print."""
-    try:
-        text = _short.repr(value)
-    except Exception:  # whatever a foreign __repr__ raises
-        text = f"a {type(value).__name__}"
-    return " ".join(_writable(text).split())
-
-
-def _writable(text: str) -> str:
-    """Text with its lone surrogates written out."""
-    return text.encode("utf-8", "backslashreplace").decode("utf-8")
 
 
 def refused(kind: type[Exception], argument: str, rule: str, value) -> Exception:
@@ -187,6 +161,8 @@ def path(argument: str, value) -> str:
         raise refused(TypeError, argument, "the name of a file as text", value)
     if not name or not is_writable(name):
         raise refused(ValueError, argument, "the name of a file, without lone surrogates and NUL", value)
+    if os.path.isdir(name):
+        raise refused(_core.FileError, argument, "the name of a file, not of a folder", value)
     return name
 
 
@@ -196,7 +172,8 @@ def window(argument: str, value):
     rule = ", ".join(f"'{name}'" for name in names) + " or ('chebyshev', sidelobe level in dB)"
     if isinstance(value, str):
         if value not in (*names, "chebyshev"):
-            nearest = _core.nearest_names(_writable(value), names, 1)[0]
+            known = (*names, "chebyshev")
+            nearest = _core.meant_name(writable(value), known) or _core.nearest_names(writable(value), known, 1)[0]
             raise refused(ValueError, argument, f"{rule} (nearest: {nearest})", value)
         return str(value)
     if not (isinstance(value, (tuple, list)) and len(value) == 2 and isinstance(value[0], str) and _is_number(value[1])):
@@ -214,10 +191,16 @@ def an(*kinds: type, called: str = "") -> Rule:
 
     def check(argument: str, value):
         if not isinstance(value, kinds):
-            raise refused(TypeError, argument, names, value)
+            raise refused(TypeError, argument, names + _where_else(argument, value, kinds), value)
         return value
 
     return check
+
+
+def _where_else(argument: str, value, kinds: tuple) -> str:
+    """A hint at what was meant where a Frame, or another record of the package, stands in the place of what it holds."""
+    is_own = type(value).__module__.startswith("echopath") and hasattr(type(value), "__dataclass_fields__")
+    return f" (its .{argument} is one)" if is_own and isinstance(getattr(value, argument, None), kinds) else ""
 
 
 def optional(rule: Rule) -> Rule:
@@ -283,6 +266,10 @@ def array(*shapes: str, kind: str = "real", finite: bool = False) -> Rule:
     def check(argument: str, value) -> np.ndarray:
         if isinstance(value, (str, bytes, Mapping, set, frozenset)) or value is None:
             raise refused(TypeError, argument, rule, value)
+        if hint := _where_else(argument, value, (np.ndarray,)):
+            raise refused(TypeError, argument, rule + hint, value)
+        if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+            raise refused(ValueError, argument, f"{rule}, none of them masked", value)
         try:
             found = np.asarray(value)
         except (TypeError, ValueError, OverflowError):  # ragged rows
@@ -330,7 +317,8 @@ def checked(settings: Mapping[str, type] | None = None, **rules: Rule) -> Callab
         leaves out
     """
     def decorate(function: Callable[Parameters, Result]) -> Callable[Parameters, Result]:
-        order = tuple(inspect.signature(function).parameters)
+        signature = inspect.signature(function)
+        order = tuple(signature.parameters)
         ruled = {name: rules[name] if name in rules else COMMON[name] for name in order if name not in (settings or {})}
 
         @functools.wraps(function)
@@ -338,7 +326,8 @@ def checked(settings: Mapping[str, type] | None = None, **rules: Rule) -> Callab
             refuse_unknown(function.__name__, given, order)
             for argument, kind in (settings or {}).items():
                 given = _spread(argument, kind, given, order)
-            passed = [ruled[name](name, value) for name, value in zip(order, values)] + list(values[len(order):])
+            refuse_misplaced(function.__name__, signature, values, given)
+            passed = [ruled[name](name, value) for name, value in zip(order, values)]
             return function(*passed, **{name: ruled[name](name, value) for name, value in given.items()})
 
         return call

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from . import _core
-from .checks import checked, refused, text
+from .checks import an, checked, refused, text
 from .equality import is_same
 
 NamedGlobs = tuple[tuple[str, tuple[str, ...]], ...]  # ((name, globs), ...), as objects are kept
@@ -57,7 +57,9 @@ class Families:
         """Indices of the paths of a Family, i64 [N]; none where it does not occur.
 
         family: one of `families` or of another record of the scene
+        Raises TypeError naming the argument.
         """
+        an(_core.Family)("family", family)
         if family not in self.families:
             return np.zeros(0, np.int64)
         return np.flatnonzero(self.family_of_path == self.families.index(family))

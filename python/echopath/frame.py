@@ -105,6 +105,7 @@ class Frame:
         """Range-azimuth map of a part by the settings of the frame, power [azimuth, range] in W.
 
         spectrum: RangeDoppler of the frame's radar; progress: callable (stage, fraction), True for bars, or None
+        Raises TypeError or ValueError naming the argument, also for arrays that see no azimuth.
         """
         return range_azimuth(spectrum, self.radar, **self.angle_settings, progress=progress)
 

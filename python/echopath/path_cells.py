@@ -6,9 +6,10 @@ import dataclasses
 import numpy as np
 
 from . import _core
-from .checks import checked, row_of_channel
+from .checks import ArrayLike, anything, array, checked, row_of_channel
 
 OUTSIDE = -1  # index of a path that the anti-alias filter removes, or that lies beyond the axis
+_ENDS = array("[2]", kind="whole")
 
 
 @dataclasses.dataclass(frozen=True)
@@ -27,10 +28,12 @@ class PathCells:
     range_index: np.ndarray
     velocity_index: np.ndarray
 
-    def within(self, range_indices, velocity_indices):
+    @checked(self=anything, range_indices=_ENDS, velocity_indices=_ENDS)
+    def within(self, range_indices: ArrayLike, velocity_indices: ArrayLike) -> np.ndarray:
         """Which paths lie in a rectangle of cells: bool [P].
 
-        range_indices, velocity_indices: (first, last) index along each axis of the map, both included.
+        range_indices, velocity_indices: (first, last) index along each axis of the map, both included
+        Raises TypeError or ValueError naming the argument.
         """
         (near, far), (slow, fast) = range_indices, velocity_indices
         inside = (self.range_index >= near) & (self.range_index <= far)

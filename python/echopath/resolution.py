@@ -18,6 +18,7 @@ RESOLVED_DB = 0.3       # the 95 % interval of a resolved power reaches no furth
 MOST_TIMES = 100.0      # of the rays: what needs more is not a matter of rays
 UNSEEN_HITS = 3.0       # rays that may have met what none has met (95 % limit of a Poisson count)
 FRESNEL_ZONES = 4.0     # across a plane, from which on its image is the better answer
+FAINT = 0.01            # of the upper end of an interval
 SURROUNDINGS = "the surroundings"  # what belongs to no object
 _FLAT = 1e-6            # of a plane, relative to its width
 
@@ -45,9 +46,12 @@ class Interval(NamedTuple):
             return "nothing"
         if self.resolved:
             return f"{in_dbm(self.power):.2f} dBm"
-        low = f"{in_dbm(self.low):.1f}" if self.low > 0.0 else "nothing"
-        level = f"{in_dbm(self.power):.1f} dBm" if self.power > 0.0 else "no path"
-        return f"{level}, {low} to {in_dbm(self.high):.1f} dBm"
+        high = f"{in_dbm(self.high):.1f} dBm"
+        if self.low > 0.0:
+            return f"{in_dbm(self.power):.1f} dBm, {in_dbm(self.low):.1f} to {high}"
+        if self.power < FAINT * self.high:  # so far below what may be there that it tells nothing
+            return f"below {high}" if self.power > 0.0 else f"no path, below {high}"
+        return f"{in_dbm(self.power):.1f} dBm, below {high}"
 
 
 @dataclasses.dataclass(frozen=True)

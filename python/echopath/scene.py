@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
@@ -25,7 +26,7 @@ class Scene(_core.Scene):
     world_vertices(mesh_id, time): [V, 3] in m; num_triangles; breakpoints [N] in s, of one run of what is looped
     Mesh IDs count without gaps the meshes that take part now, so they change when objects are removed or hidden; names do
     not. Paths keep the scene that they were traced in, with its mesh IDs.
-    scene: another Scene to copy, such as `paths.scene`; None: empty
+    scene: another Scene to copy, such as `paths.scene`; None: empty. Raises TypeError for anything else.
     """
 
     def __init__(self, scene: _core.Scene | None = None):
@@ -66,8 +67,10 @@ class Scene(_core.Scene):
         smooth: True for meshes that stand for curved surfaces: normals, positions and curvature are interpolated, except
             across creases of more than 30 degrees; parts of actors may bring it themselves
         visible: False: it takes no part in anything until `scene[name].visible` is set
-        Raises ValueError or TypeError naming the argument; then nothing has been added.
+        Raises ValueError or TypeError naming the argument; then nothing has been added. Warns (RuntimeWarning) of a yaw
+        beyond a turn, which looks like degrees.
         """
+        _core.warn_of_turns(yaw)
         place = placement(position, yaw, transform)
         if speed is not None:
             if motion is not None:
@@ -184,9 +187,16 @@ def _parts_of(content, material) -> list:
                  placement(part.position, 0.0, None), getattr(part, "smooth", False)) for part in content.parts]
     if isinstance(content, (list, tuple)):
         if not all(_is_named_mesh(item) for item in content):
-            raise refused(TypeError, "mesh_or_actor", "a list of pairs (name, Mesh)", content)
+            hint = "; arrays make one by ep.Mesh(vertices, triangles)" if _are_arrays(content) else ""
+            raise refused(TypeError, "mesh_or_actor", f"a list of pairs (name, Mesh){hint}", content)
         return [(name, mesh, material, None, None, False) for name, mesh in content]
-    raise refused(TypeError, "mesh_or_actor", "a Mesh, an Actor, a list of (name, Mesh) or None", content)
+    hint = "; ep.mesh_from makes one of it" if hasattr(content, "faces") or hasattr(content, "cells") else ""
+    raise refused(TypeError, "mesh_or_actor", f"a Mesh, an Actor, a list of (name, Mesh) or None{hint}", content)
+
+
+def _are_arrays(content) -> bool:
+    """Whether a pair may be meant as the vertices [V, 3] and triangles [F, 3] of a mesh."""
+    return len(content) == 2 and all(not isinstance(item, str) and np.ndim(item) == 2 for item in content)
 
 
 def _is_named_mesh(item) -> bool:

@@ -89,6 +89,7 @@ class SceneNode:
     @yaw.setter
     def yaw(self, value) -> None:
         yaw = ANGLE("yaw", value)
+        _core.warn_of_turns(yaw)
         self._change(placement=placements.turned_to(self._node.placement, yaw))
 
     @property

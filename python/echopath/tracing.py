@@ -12,6 +12,7 @@ from .checks import ArrayLike, Progress, array, checked, flag, one_of, optional,
 from .lost_rays import warn_of_lost_rays, warn_of_unaimed, warn_of_unfollowed_beams
 from .polarization import FIELD_VECTORS, SCALAR, antennas_of, chosen_model
 from .settings import Footprint, Polarization, Sampler, TraceSettings
+from .sizes import warn_of_sizes
 from .tessellation import warn_of_coarse_meshes
 
 Channel = Literal["vv", "hh", "vh", "hv"]  # transmitted, received
@@ -59,11 +60,13 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
     scene lives.
     Returns Paths. Raises TypeError or ValueError naming the argument, also for mirrors that are not flat and motions that do
     not cover the frame. Warns (TessellationWarning) of curved meshes that err by more than 0.3 dB, with the edge length in m
-    that would do, and (RuntimeWarning) where over 1 % of the rays are lost to a surface that the radar touches, or not every
-    sequence of mirrors was tried.
+    that would do, and (RuntimeWarning) where over 1 % of the rays are lost to a surface that the radar touches, not every
+    sequence of mirrors was tried, the scene is empty, or the lengths of an object look like those of another unit.
     """
-    warn_of_coarse_meshes(scene, radar.waveform.start_frequency, stacklevel=_CALLER)
     wavelength = _core.speed_of_light / radar.waveform.start_frequency
+    if not getattr(scene, "_was_traced", False):
+        warn_of_sizes(scene, wavelength, start_time, stacklevel=_CALLER)
+    warn_of_coarse_meshes(scene, radar.waveform.start_frequency, stacklevel=_CALLER)
     model = chosen_model(polarization, scene, wavelength, antennas_of(radar), argument="polarization")
     paths = _core.trace(scene, radar, num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
                         polarization=model, footprint=footprint, sampler=sampler, batches=batches,
@@ -115,16 +118,17 @@ def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observati
     target_error_db: dB; doubles the rays, from num_rays (16 384 unless given) to at most max_rays, as `trace` does, until
         each cross section, of a list of polarizations the first with each transmitter, is known that well
     components: True returns {"coherent": ..., "diffuse": ...}, which add up to the cross section
-    return_error: True returns (cross section, standard error), alike in shape; the error, in m^2, is that of the rays alone
-        and comes from the batches: what the footprints of too few rays leave out is not in it, and each batch has a part
-        of the rays alone, so give enough of them. An estimate from batches is free of bias by chance, so that it may fall
-        below zero where it is smaller than its error
+    return_error: True returns (cross section, standard error), alike in shape; the error, in m^2, is that of the batches and,
+        as root sum of squares, what the footprints of too few rays may leave out. Each batch has a part of the rays alone,
+        so give enough of them. An estimate from batches is free of bias by chance, so that it may fall below zero where it
+        is smaller than its error
     progress: callable (stage, fraction), True for bars, or None
     Returns a number, or [N] where directions are [N, 3], with a last axis [C] for a list of polarizations. Each direction
     and transmit polarization costs a trace of its own. Raises TypeError or ValueError naming the argument, also for a zero
     direction, one along the polarization, an empty scene, and mirrors, which have no cross section. Warns
     (TessellationWarning) of curved meshes that err by more than 0.3 dB, with the edge length in m that would do, and
-    (RuntimeWarning) where max_rays did not do.
+    (RuntimeWarning) where max_rays did not do, or, without target_error_db, where the rays do not know cross sections to
+    3 dB; of nulls between lobes they need not.
     """
     warn_of_coarse_meshes(scene, frequency, stacklevel=_CALLER)
     chosen = chosen_model(model, scene, _core.speed_of_light / frequency, argument="model")

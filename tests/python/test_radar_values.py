@@ -16,7 +16,7 @@ def waveform(**changes):
 
 def placed_radar():
     """No argument as it is by default."""
-    patterns = ep.CosinePower(2.5, peak_gain=5.0), ep.Isotropic(1.5)
+    patterns = ep.CosinePower(2.5, peak_gain=5.0), ep.Isotropic(0.6)
     antennas = [ep.Antenna((0.1, 0.2, 0.3), yaw=0.1 + i, pitch=0.2, pattern=pattern, polarization=(0, 0.6, 0.8))
                 for i, pattern in enumerate(patterns)]
     return ep.Radar(waveform(real=True), transmitters=antennas[:1], receivers=antennas, position=(1, 2, 3), yaw=0.7,

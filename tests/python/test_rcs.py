@@ -1,5 +1,6 @@
 """Radar cross sections against physical optics, Lambert's law and the Mie series."""
 import math
+import warnings
 
 import numpy as np
 import pytest
@@ -383,3 +384,22 @@ def test_scenes_without_a_cross_section_are_refused():
         ep.rcs(plate_scene(material=ep.Material.metal(mirror=True)), frequency=FREQUENCY, incidence=(1, 0, 0))
     with pytest.raises(TypeError, match="num_rays"):
         ep.rcs(plate_scene(), frequency=FREQUENCY, incidence=(1, 0, 0), num_ray=1)
+
+
+PLATE_ASKEW = {"frequency": 10e9, "incidence": (-np.cos(np.radians(52)), -np.sin(np.radians(52)), 0.0)}
+
+
+def test_few_rays_are_warned_of():
+    """5000 rays are 30 wavelengths apart on a plate of 33: -34 dBsm where physical optics has -7."""
+    with pytest.warns(RuntimeWarning, match=r"^rcs: 1 of 1 cross sections are not known to 3 dB from 5000 rays, .*num_rays"):
+        ep.rcs(plate_scene(1.0), num_rays=5000, **PLATE_ASKEW)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ep.rcs(plate_scene(1.0), **PLATE_ASKEW)
+
+
+def test_errors_hold_what_footprints_take_away():
+    with pytest.warns(RuntimeWarning, match="not known to 3 dB"):
+        few, error = ep.rcs(plate_scene(1.0), num_rays=8 * 5000, return_error=True, **PLATE_ASKEW)
+    many = ep.rcs(plate_scene(1.0), **PLATE_ASKEW)
+    assert abs(few - many) < 3 * error and abs(few - many) > 0.5 * many

@@ -37,6 +37,16 @@ def test_long_work_is_told_of_before_it_begins(paths, one_thread, work, settings
             work(paths, build_radar(**LONG), **settings)
 
 
+@pytest.mark.parametrize("retrace", ["always", "invalid"])
+def test_many_stretches_are_told_of_before_they_begin(paths, one_thread, retrace):
+    """Each is a trace or a renewal of its own: 1e8 of them are hours for any record."""
+    radar = build_radar(num_chirps=2**31 - 1, chirp_interval=1e-4)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(RuntimeWarning, match=rf"keyframes: 100000000 stretches with retrace '{retrace}' take about \d+ s"):
+            ep.synthesize(paths, radar, retrace=retrace, keyframes=100_000_000)
+
+
 @pytest.mark.parametrize("settings", [{"evaluate": "samples"}, {"evaluate": "chirps", "replay": "fermat"}, {}])
 def test_of_short_work_there_is_no_word(paths, settings):
     with warnings.catch_warnings():

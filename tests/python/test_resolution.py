@@ -211,7 +211,7 @@ def test_the_label_command_says_what_is_not_resolved(frame, tmp_path, capsys):
     ep.save_frame(frame, tmp_path / "frame.h5")
     ask = ["labels", str(tmp_path / "frame.h5"), "--out", str(tmp_path / "out")]
     sign = next(label for label in frame.labels["parts"].objects if label.name == "sign")
-    interval = f"nothing to {10.0 * np.log10(1e3 * sign.received.high):.1f} dBm"
+    interval = f"below {10.0 * np.log10(1e3 * sign.received.high):.1f} dBm"
     for extra, name in (([], "sign"), (["--object", "metal=sign", "--object", "rough=board"], "metal")):
         assert main(ask + extra) == 0
         lines = capsys.readouterr().out.splitlines()
@@ -232,3 +232,39 @@ def test_ghosts_of_one_mirror_are_told_apart():
     titles = [one.title for one in ep.unresolved(ep.trace(scene, build_radar(), num_rays=300, max_bounces=3))]
     assert "body via wall, type 1/2" in titles and "body via wall, type 2/2" in titles
     assert len(titles) == len(set(titles))
+
+
+@pytest.mark.parametrize("angle_deg", [20.0, 52.0])
+@pytest.mark.parametrize("num_rays, batches", [(3000, 1), (40_000, 4)])
+def test_without_a_footprint_nothing_is_claimed_of_coherent_echoes(angle_deg, num_rays, batches):
+    """A square plate seen askew sends back 4 pi (A cos / lambda)^2 sinc^2, far below the sum of its few rays."""
+    angle, side, distance = np.radians(angle_deg), 1.0, 2000.0
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(side, side), name="plate", material="metal", position=(distance, 0, 0), yaw=angle)
+    radar = build_radar([(0, 0, 0)], [(0, 0, 0)])
+    wavelength = ep.speed_of_light / radar.waveform.start_frequency
+    section = 4 * np.pi * (side ** 2 * np.cos(angle) / wavelength * np.sinc(2 * side * np.sin(angle) / wavelength)) ** 2
+    found = ep.received_power(ep.trace(scene, radar, num_rays=num_rays, footprint="none", batches=batches))
+    assert found.low <= power_of(section, distance) <= found.high and not found.resolved
+
+
+def test_rough_echoes_need_no_footprint():
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(1, 1), name="rough", material=ep.Material(reflectivity=0.5, scattering=1.0), position=(9, 0, 0))
+    assert ep.received_power(ep.trace(scene, build_radar(), num_rays=50_000, footprint="none")).resolved
+
+
+@pytest.mark.parametrize("power, low, high, text", [
+    (6e-30, 0.0, 2e-13, "below -97.0 dBm"), (0.0, 0.0, 2e-13, "no path, below -97.0 dBm"), (0.0, 0.0, 0.0, "nothing"),
+    (1e-13, 0.0, 2e-13, "-100.0 dBm, below -97.0 dBm"), (1e-13, 5e-14, 2e-13, "-100.0 dBm, -103.0 to -97.0 dBm"),
+    (1e-13, 1e-13, 1e-13, "-100.00 dBm")])
+def test_intervals_in_words(power, low, high, text):
+    """10 lg of W / mW, by hand."""
+    assert str(ep.Interval(power, low, high)) == text
+
+
+def test_labels_of_a_selection_say_nothing_of_what_it_leaves_out(frame):
+    labels = ep.annotate(frame.paths.select("T 'sign' R"))
+    board = next(label for label in labels.objects if label.name == "board")
+    assert board.received is None and "NOT resolved" not in next(
+        line for line in str(labels).splitlines() if line.startswith("object board"))

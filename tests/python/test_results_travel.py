@@ -124,7 +124,16 @@ def values_of(frame, radar) -> dict:
         "TraceFrame": paths.frame, "Stratum": paths.frame.strata[0], "TraceStatistics": paths.frame.statistics,
         "ValidityShares": ep.validity(paths).shares, "Selection": ep.hits("wall") & (ep.power > 1e-15) | ~(ep.num_bounces >= 2),
         "Chebyshev": ep.range_doppler(frame.cube, radar, window=("chebyshev", 60.0), zero_pad=2),
+        "VirtualArray": ep.virtual_array(radar), "CoplanarOverlap": overlapping_scene().coplanar_overlaps()[0],
     }
+
+
+def overlapping_scene():
+    """Two plates of which one lies on a quarter of the other."""
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(2.0, 2.0), name="large", material="metal")
+    scene.add(ep.actors.plate(1.0, 1.0), name="small", material="concrete", position=(0.0, 0.5, 0.5))
+    return scene
 
 
 @pytest.fixture(scope="module")
@@ -133,7 +142,8 @@ def values(frame, radar):
 
 
 KINDS = ("RangeDoppler", "RangeAzimuth", "AngleSpectrum", "BeamPower", "beams of cells", "AngleEstimates", "CfarResult",
-         "ReceivedPower", "one batch", "TraceFrame", "Stratum", "TraceStatistics", "ValidityShares", "Selection", "Chebyshev")
+         "ReceivedPower", "one batch", "TraceFrame", "Stratum", "TraceStatistics", "ValidityShares", "Selection", "Chebyshev",
+         "VirtualArray", "CoplanarOverlap")
 
 
 def properties(value) -> dict:
@@ -244,3 +254,13 @@ def test_frames_read_from_a_file_travel(frame, tmp_path):
     ep.save_frame(frame, tmp_path / "frame.h5")
     loaded = ep.load_frame(tmp_path / "frame.h5")
     assert_same_bits(bits_of_frame(there_and_back(loaded)), bits_of_frame(frame))
+
+
+@pytest.mark.parametrize("copied", [there_and_back, copy.deepcopy], ids=["pickle", "deepcopy"])
+def test_meshes_of_a_scene_travel(copied):
+    for mesh in overlapping_scene().meshes:
+        other = copied(mesh)
+        assert (other.id, other.node, other.name, other.material) == (mesh.id, mesh.node, mesh.name, mesh.material)
+        assert other.mesh == mesh.mesh and np.array_equal(other.triangles, mesh.triangles)
+    with pytest.raises(ValueError, match="state: must have the field 'node'"):
+        type(mesh).__new__(type(mesh)).__setstate__({"id": 0, "node_index": 0})

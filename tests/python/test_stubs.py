@@ -1,10 +1,12 @@
 """What editors and type checkers know of echopath is what is there."""
 import importlib.util
 import os
+import runpy
 import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import echopath
@@ -44,6 +46,42 @@ def _complaints(path) -> str:
 
 def test_type_checker_is_content_with_what_a_user_writes():
     assert _complaints(ROOT / "tests" / "typing" / "first_experiment.py").startswith("Success")
+
+
+def test_the_first_experiment_sees_its_ball():
+    """At 11.7 m, the near side of a ball of 0.3 m radius at 12 m, and at -3 m/s, within a cell of the map."""
+    experiment = runpy.run_path(str(ROOT / "tests" / "typing" / "first_experiment.py"))
+    distance, velocity = experiment["seen_at"]
+    cells = experiment["spectrum"].range[1], np.diff(experiment["spectrum"].velocity).mean()
+    assert abs(distance - 11.7) < cells[0] and abs(velocity + 3.0) < cells[1]
+    assert "ball" in experiment["found"].object
+
+
+def test_type_checker_is_content_with_the_stubs_themselves():
+    pytest.importorskip("mypy", reason="mypy, of the extra 'test', is not installed")
+    command = [sys.executable, "-m", "mypy", "--strict", "-p", "echopath._core", "--cache-dir", os.devnull]
+    told = subprocess.run(command, capture_output=True, text=True, cwd=ROOT / "python").stdout
+    assert told.startswith("Success"), told
+
+
+def test_stubs_know_the_types_of_what_users_hold():
+    """No Any for members of public classes but those whose types other libraries have, if these are there."""
+    text = (ROOT / "python" / "echopath" / "_core.pyi").read_text(encoding="utf-8")
+    foreign = ("to_xarray", "to_dataframe", "def plot", "state__", "def replace(self, **kwargs: typing.Any) -> AntennaPattern")
+    name, left = "", []
+    for line in text.splitlines():
+        name = line.split("(")[0].split(":")[0].removeprefix("class ") if line.startswith(("class ", "def ")) else name
+        if "typing.Any" in line and name in echopath.__all__ and line.startswith("    def ") and "def _" not in line:
+            left += [] if any(word in line for word in foreign) else [f"{name}: {line.strip()}"]
+    assert not left, "\n".join(left)
+
+
+def test_replace_has_the_arguments_of_the_constructor(tmp_path):
+    wrong = tmp_path / "wrong.py"
+    wrong.write_text("import echopath as ep\nep.ChirpSequence().replace(num_chirp=4)\n"
+                     "chirps: ep.ChirpSequence = ep.ChirpSequence().replace(num_chirps=4)\nchirps.num_chirps = 5\n")
+    told = _complaints(wrong)
+    assert 'Unexpected keyword argument "num_chirp"' in told and "read-only" in told and told.count("error:") == 2
 
 
 def test_type_checker_finds_what_is_wrong(tmp_path):

@@ -26,7 +26,7 @@ class Deviation:
 def random_radar(random, num_chirps=3):
     waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1.5e8, num_samples=16, sampling_rate=20e6,
                                 num_chirps=num_chirps, chirp_interval=1e-4)
-    pattern = ep.CosinePower(2.0) if random.random() < 0.5 else ep.Isotropic(1.5)
+    pattern = ep.CosinePower(2.0) if random.random() < 0.5 else ep.Isotropic(0.6)
     polarization = [(0.0, 0.0, 1.0), (0.0, 1.0, 0.0)][random.integers(2)]
     receiver = random.uniform(-0.05, 0.05, 3)
     return ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 0), pattern=pattern, polarization=polarization)],

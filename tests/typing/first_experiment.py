@@ -1,4 +1,4 @@
-"""A first experiment as a user types it; mypy --strict must be content with it (tests/python/test_stubs.py)."""
+"""A first experiment as a user types it: mypy --strict is content with it, and it sees its ball (test_stubs.py)."""
 import copy
 import math
 
@@ -33,3 +33,18 @@ place = (car if same else turn).at(0.5)[:3, 3]
 arm = ep.Skin(mesh.vertices, [ep.Joint("upper"), ep.Joint("lower", "upper", position=(0, 0, -0.3), motion=turn)],
               [[1.0, 0.0], [0.5, 0.5], [0.0, 1.0]])
 names: list[str] = [name for name, _ in arm.parts(mesh)]
+
+scene = ep.Scene()
+scene.add(ep.actors.sphere(0.3), name="ball", material="metal", smooth=True, position=(12, 0, 1), speed=-3.0)
+scene.add(ep.actors.wall(6.0, 3.0), name="wall", material=concrete, position=(20, 0, 0), yaw=math.pi / 2)
+paths = ep.trace(scene, radar, num_rays=20_000, seed=1)
+parts = ep.decompose(paths, radar, {"ball": "T 'ball' R"})
+cube = ep.add_noise(ep.synthesize(paths, radar), radar, seed=1)
+spectrum = ep.range_doppler(cube, radar, window="hann")
+power = np.mean(np.abs(spectrum.values) ** 2, axis=(0, 1))
+moving = np.abs(spectrum.velocity) > 1.0
+row, column = np.unravel_index(int(np.where(moving[:, None], power, 0.0).argmax()), power.shape)
+seen_at: tuple[float, float] = float(spectrum.range[column]), float(spectrum.velocity[row])
+found = ep.detect(spectrum, radar, paths=paths, parts=parts)
+if __name__ == "__main__":
+    print(f"{seen_at[0]:.2f} m {seen_at[1]:+.2f} m/s, {len(found.range)} detections, {found.object[0]}")

@@ -85,7 +85,7 @@ def test_paths_are_synthesised_as_asked(frame):
 @pytest.mark.parametrize("change", [
     {"waveform": {"bandwidth": 5e8}}, {"waveform": {"start_frequency": 60e9}}, {"transmit_power": 1.0},
     {"receivers": [ep.Antenna((0, 0.02, 0)), ep.Antenna((0, -0.4, 0.2))]},
-    {"receivers": [ep.Antenna((0, 0.01, 0)), ep.Antenna((0, -0.4, 0.2), pattern=ep.Isotropic(gain=2.0))]},
+    {"receivers": [ep.Antenna((0, 0.01, 0)), ep.Antenna((0, -0.4, 0.2), pattern=ep.Isotropic(gain=0.5))]},
     {"motion": ep.LinearMotion(velocity=(1.0, 0.0, 0.0))},
 ])
 def test_parts_for_another_radar_are_refused(frame, change):

@@ -1,27 +1,10 @@
 #include "echopath/base/errors.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "echopath/base/edit_distance.h"
 
 namespace echopath {
-namespace {
-
-size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), size_t{0});
-  for (size_t i = 1; i <= a.size(); ++i) {
-    size_t diagonal = row[0];
-    row[0] = i;
-    for (size_t j = 1; j <= b.size(); ++j) {
-      const size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
-    }
-  }
-  return row.back();
-}
-
-}  // namespace
 
 std::vector<std::string> nearest_names(std::string_view word, const std::vector<std::string>& candidates, int count) {
   using Rank = std::pair<bool, size_t>;  // not begun by the word, edits

@@ -118,6 +118,7 @@ class Sums {
       of_kind.field[view] += field;
       of_kind.power[view] += std::norm(field);
     }
+    if (has_cell) sums.largest_field += std::abs(arriving[kAsLaunched * stride]);
     const double edge = has_cell ? std::norm(arriving[kEdges * stride]) : 0.0;
     of_kind.edge_squares += edge * edge;
     const double power = std::norm(arriving[kAsLaunched * stride]), wide = std::norm(arriving[kHalfDensity * stride]);

@@ -17,6 +17,7 @@ struct GroupSums {
   double steady_power = 0.0, steady_squares = 0.0;    // W, W^2, of coherent paths that cells hardly change (PowerEvidence)
   double lattice_squares = 0.0, drawn_squares = 0.0;  // W^2, of the powers of diffuse hits (PowerEvidence)
   double strongest_hit = 0.0;                         // W, of a diffuse hit
+  double largest_field = 0.0;                         // sqrt(W), sum of |a| of coherent paths that have a launch cell
   int64_t num_coherent_paths = 0, num_diffuse_hits = 0;
 };
 

@@ -110,6 +110,14 @@ Reach chance_reach(const PowerEvidence& evidence, double power, double standard_
           power * (1.0 - squared(std::max(1.0 - of_root, 0.0)))};
 }
 
+// Returns the reach by what the rays have in common.
+Reach bias_reach(const PowerEvidence& evidence, double coherent) {
+  if (evidence.coherent_at_most) return {std::max(*evidence.coherent_at_most - coherent, 0.0), coherent};
+  const FieldBias bias = field_bias(evidence);
+  const double size = std::sqrt(coherent);
+  return {squared(size + bias.above) - coherent, coherent - squared(std::max(size - bias.below, 0.0))};
+}
+
 }  // namespace
 
 double power_between_rays(const CoherentKind& kind, int num_batches) {
@@ -129,16 +137,15 @@ double student_t95(int degrees_of_freedom) {
 }
 
 PowerInterval power_interval(const PowerEvidence& evidence) {
-  const double coherent = std::max(evidence.coherent, 0.0), power = coherent + evidence.diffuse, size = std::sqrt(coherent);
-  const FieldBias bias = field_bias(evidence);
+  const double coherent = std::max(evidence.coherent, 0.0), power = coherent + evidence.diffuse;
   const bool has_batches = evidence.num_batches > 1;
   PowerInterval out;
   out.chance = has_batches ? evidence.standard_error : chance_of_record(evidence);
   const Reach chance = chance_reach(evidence, power, out.chance);
-  const double above = squared(size + bias.above) - coherent, below = coherent - squared(std::max(size - bias.below, 0.0));
-  out.bias = above;
-  out.low = std::max(power - std::hypot(below, chance.below), 0.0);
-  out.high = power + std::hypot(above, chance.above);
+  const Reach bias = bias_reach(evidence, coherent);
+  out.bias = bias.above;
+  out.low = std::max(power - std::hypot(bias.below, chance.below), 0.0);
+  out.high = power + std::hypot(bias.above, chance.above);
   return out;
 }
 

@@ -2,6 +2,7 @@
 // Computes the 95 % interval of a received power from what the launch cells take away and what chance adds.
 #include <complex>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "echopath/replay/kernels/cell_formula.h"
@@ -35,6 +36,8 @@ struct PowerEvidence {
   double drawn_squares = 0.0;    // W^2, of those that were found by directions drawn at random
   int num_batches = 1;
   double standard_error = 0.0;  // W, of coherent + diffuse by the batches; not used for one
+  // W, where no footprint filter tells how coarse the rays are: what the coherent paths would send back all in phase.
+  std::optional<double> coherent_at_most;
 };
 
 struct PowerInterval {
@@ -55,6 +58,8 @@ double power_between_rays(const CoherentKind& kind, int num_batches);
 // the filter takes edges for a surface without end; a change below kAliases there is the lattice showing through. The
 // changes of all kinds add up as fields, but to no less than their root sum of squares, and the powers between rays add up:
 // kinds whose echoes cancel are known as well as they are one by one.
+// Without a footprint filter nothing tells how coarse the rays are for the phases of a surface: its waves may cancel, or add
+// up as coherent_at_most has them.
 // Chance: with batches it is Student's t of these, and no less than half a hit in each of them, which errs by itself. For
 // one batch, directions drawn at random give the variance sum p^2. A lattice errs only along the outline of what it meets,
 // so that its variance is kOutline^2 sum p^2 / sqrt(n) over n equal hits. The same holds for fields, but less where the

@@ -90,7 +90,7 @@ ReceivedPower estimate(const GroupSums& sums) {
   return out;
 }
 
-PowerEvidence evidence_of(const GroupSums& sums, const ReceivedPower& power) {
+PowerEvidence evidence_of(const GroupSums& sums, const ReceivedPower& power, Footprint footprint) {
   PowerEvidence evidence;
   evidence.coherent = power.coherent;
   evidence.diffuse = power.diffuse;
@@ -101,12 +101,14 @@ PowerEvidence evidence_of(const GroupSums& sums, const ReceivedPower& power) {
   evidence.drawn_squares = sums.drawn_squares;
   evidence.num_batches = power.num_batches;
   evidence.standard_error = power.standard_error;
+  if (footprint == Footprint::kNone && sums.largest_field > 0.0)
+    evidence.coherent_at_most = sums.largest_field * sums.largest_field;
   return evidence;
 }
 
-ReceivedPower with_interval(const GroupSums& sums) {
+ReceivedPower with_interval(const GroupSums& sums, Footprint footprint) {
   ReceivedPower out = estimate(sums);
-  const PowerEvidence evidence = evidence_of(sums, out);
+  const PowerEvidence evidence = evidence_of(sums, out, footprint);
   const PowerInterval interval = power_interval(evidence);
   out.low = interval.low;
   out.high = interval.high;
@@ -164,7 +166,8 @@ std::vector<std::vector<ReceivedPower>> received_powers(const Paths& paths, std:
   for (const Sorting& sorting : sortings) check(sorting, paths);
   std::vector<std::vector<ReceivedPower>> powers;
   for (const std::vector<GroupSums>& groups : sum_groups(paths, one_channel(paths.radar, channel), sortings, job)) {
-    std::transform(groups.begin(), groups.end(), std::back_inserter(powers.emplace_back()), with_interval);
+    std::transform(groups.begin(), groups.end(), std::back_inserter(powers.emplace_back()),
+                   [&](const GroupSums& sums) { return with_interval(sums, paths.frame.footprint); });
   }
   return powers;
 }

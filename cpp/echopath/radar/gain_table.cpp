@@ -7,11 +7,11 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
+#include "echopath/radar/largest_efficiency.h"
 
 namespace echopath {
 namespace {
 
-constexpr double kMaxEfficiency = 1.02;   // larger means no power gain; smaller excess is noise of tables
 constexpr double kAngleTolerance = 1e-6;  // rad, degrees with five written digits
 constexpr double kNothing = 1e-12;        // of the peak: what rounding leaves of a zero
 constexpr double kSeamTolerance = 1e-3;   // of the peak: samples one turn apart are the same direction
@@ -93,7 +93,7 @@ GainTable::GainTable(std::vector<double> azimuth, std::vector<double> elevation,
     set_field();
     efficiency_ = integrate();
   }
-  require(efficiency_ <= kMaxEfficiency, "gain",
+  require(efficiency_ <= kLargestEfficiency, "gain",
           "must have a mean over the sphere of at most 1.02 (0.09 dB), as no antenna radiates more power than it is fed; "
           "normalize=True scales it to a mean of 1",
           in_words(efficiency_));

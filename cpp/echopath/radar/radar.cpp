@@ -1,12 +1,14 @@
 #include "echopath/radar/radar.h"
 
 #include <cmath>
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
 #include "echopath/base/range_of_coordinates.h"
+#include "echopath/radar/largest_efficiency.h"
 
 namespace echopath {
 namespace {
@@ -86,13 +88,21 @@ double ChirpSequence::max_velocity(int num_slots) const { return 0.5 * num_chirp
 
 AntennaPattern AntennaPattern::isotropic(double gain) {
   require_positive(gain, "gain");
+  require(
+      gain <= kLargestEfficiency, "gain",
+      "must be at most 1, as the same gain in every direction is the efficiency; CosinePower and GainTable have more ahead",
+      gain);
   return {Kind::kIsotropic, gain, 0.0, nullptr};
 }
 
 AntennaPattern AntennaPattern::cosine_power(double exponent, double peak_gain) {
   require(std::isfinite(exponent) && exponent >= 0.0, "exponent", "must be finite and not negative", exponent);
   require(std::isfinite(peak_gain), "peak_gain", "must be finite", peak_gain);
-  return {Kind::kCosinePower, peak_gain > 0.0 ? peak_gain : 2.0 * (exponent + 1.0), exponent, nullptr};
+  const double lossless = 2.0 * (exponent + 1.0);
+  std::ostringstream rule;
+  rule << "must be at most that of an antenna without losses, 2 (exponent + 1) = " << lossless;
+  require(peak_gain <= kLargestEfficiency * lossless, "peak_gain", rule.str(), peak_gain);
+  return {Kind::kCosinePower, peak_gain > 0.0 ? peak_gain : lossless, exponent, nullptr};
 }
 
 AntennaPattern AntennaPattern::of_table(GainTable table) {

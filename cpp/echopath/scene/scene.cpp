@@ -51,7 +51,8 @@ void require_span(const TimeSpan& span, double begin, double end, const std::str
   const double slack = 1e-12 * std::max({std::abs(span.begin), std::abs(span.end), span.end - span.begin});
   if (begin >= span.begin - slack && end <= span.end + slack) return;
   std::ostringstream rule, value;
-  rule << "must cover the frame, " << begin << " to " << end << " s; node " << name;
+  rule << "must cover the frame, " << begin << " to " << end << " s (that of an actor is as long as its duration=); node "
+       << name;
   value << span.begin << " to " << span.end << " s";
   require(false, "motion", rule.str(), value.str());
 }

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kPhaseError = 1e-3;      // rad, of the spherical wave fronts of both antennas together
 constexpr double kAmplitudeError = 1e-4;  // relative, of their spreading
+constexpr double kReachOfBias = 1.96;     // the bias reaches to the end of a 95 % interval
 constexpr double kSmallestSine = 1e-3;    // of the angle between line of sight and polarization
 
 struct Target {
@@ -132,8 +133,17 @@ Paths shoot(const Scene& scene, const Radar& radar, const RcsSettings& settings,
 // `scale` is in m^2 per W at the antenna port for 1 W transmitted.
 RadarCrossSection cross_section(const Paths& paths, int receiver, double scale, Job* job) {
   const ReceivedPower power = received_power(paths, job, {0, receiver});
-  return {scale * power.power,   scale * power.standard_error, scale * power.coherent, scale * power.coherent_error,
-          scale * power.diffuse, scale * power.diffuse_error,  paths.frame.error_db};
+  const double bias = power.bias / kReachOfBias;
+  RadarCrossSection out;
+  out.total = scale * power.power;
+  out.standard_error = scale * std::hypot(power.standard_error, bias);
+  out.coherent = scale * power.coherent;
+  out.coherent_error = scale * std::hypot(power.coherent_error, bias);
+  out.diffuse = scale * power.diffuse;
+  out.diffuse_error = scale * power.diffuse_error;
+  out.error_db = paths.frame.error_db;
+  out.high = scale * power.high;
+  return out;
 }
 
 }  // namespace

@@ -49,7 +49,8 @@ struct RcsSettings {
   void validate() const;
 };
 
-// Holds cross sections in m^2 with the standard errors of power/received_power.h: NaN for one batch. Coherent echoes add as
+// Holds cross sections in m^2. The errors are the standard errors of power/received_power.h, NaN for one batch, and beside
+// them, as root sum of squares, what the footprint filter may take away, at the same confidence. Coherent echoes add as
 // fields; diffuse ones, whose phases are random, as powers: their mean over realisations of the roughness. With batches the
 // coherent part is free of bias by noise, which can take it below zero where it is not resolved.
 struct RadarCrossSection {
@@ -57,6 +58,7 @@ struct RadarCrossSection {
   double coherent = 0.0, coherent_error = 0.0;
   double diffuse = 0.0, diffuse_error = 0.0;
   double error_db = 0.0;  // dB, what was reached where there is a target; else 0
+  double high = 0.0;      // upper end of the 95 % interval of `total`, of bias and chance together
 };
 
 // Computes sigma = |sum a e^{-jkL}|^2 (4 pi)^3 R^4 / (Q^2 lambda^2) for each pair, of the scene at time 0, from isotropic

@@ -13,6 +13,9 @@ struct Moving {
   double paths = 0.0, places = 0.0;  // hits and ends
 };
 
+// Seconds of one thread for a ray query of a trace, and for a hit that is renewed, which asks for both its legs.
+constexpr double kQuerySeconds = 5e-7, kRenewalSeconds = 1e-6;
+
 // Counts the paths that touch what moves.
 Moving count_moving(const Paths& paths, const Radar& radar) {
   std::vector<uint8_t> moves(paths.scene->meshes().size());
@@ -37,6 +40,14 @@ double exact_seconds(const Paths& paths, const Radar& radar, const CubeSettings&
                           (settings.synthesis.per_sample ? kSampleSeconds * moving.paths * radar.waveform.num_samples : 0.0);
   const double num_chirps = static_cast<double>(radar.waveform.num_chirps) * radar.num_slots();
   return of_chirp * num_chirps * static_cast<double>(radar.receivers.size()) / num_threads();
+}
+
+double keyframe_seconds(const Paths& paths, const KeyframeSettings& settings) {
+  if (settings.retrace == Retrace::kNever) return 0.0;
+  const double of_stretch = settings.retrace == Retrace::kAlways
+                                ? kQuerySeconds * static_cast<double>(paths.frame.statistics.num_queries)
+                                : kRenewalSeconds * static_cast<double>(paths.num_hits());
+  return of_stretch * settings.keyframes / num_threads();
 }
 
 }  // namespace echopath

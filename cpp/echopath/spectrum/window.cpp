@@ -7,6 +7,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
+#include "echopath/base/meant_name.h"
 
 namespace echopath {
 namespace {
@@ -77,8 +78,9 @@ double sum_of(const std::vector<double>& samples) { return std::accumulate(sampl
 Window Window::named(const std::string& name, double sidelobe_db) {
   const auto found = std::find(kNames.begin(), kNames.end(), name);
   if (found == kNames.end()) {
+    const std::string meant = meant_name(name, kNames);
     throw std::invalid_argument("window: must be rect, hann, hamming, blackman_harris or chebyshev, got '" + name +
-                                "'; nearest: " + nearest_names(name, kNames, 1).front());
+                                "'; nearest: " + (meant.empty() ? nearest_names(name, kNames, 1).front() : meant));
   }
   return {static_cast<WindowKind>(found - kNames.begin()), sidelobe_db};
 }

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..labels.report import peak_words
 from ..measures import in_dbm, power_dbm, velocity_extent, with_error
-from ..resolution import RESOLVED_DB
+from ..resolution import FAINT, RESOLVED_DB
 
 LABEL_WIDTH = 34
 MAX_WIDTH = 118  # columns
@@ -151,7 +151,7 @@ def _objects(of_cells) -> list[str]:
     rows = [("objects", "status", "cells", "power", "peak", "in sight", "hidden by", UNRESOLVED_MEAN)]
     for label in of_cells.objects:
         by = ", ".join(f"{name} {share:.0%}" for name, share in label.occluders.items() if share >= 0.005)
-        rows.append((f"  {label.name}", label.status, f"{label.cells:,}", _level(label.power), _peak(label),
+        rows.append((f"  {label.name}", label.status, f"{label.cells:,}", _power(label), _peak(label),
                      f"{label.visible_share:.0%}", by, _interval(label)))
     return _table(rows, right=(2, 3, 5))
 
@@ -163,13 +163,21 @@ def _ghosts(of_cells) -> list[str]:
     rows = [("ghosts", "type", "order", "class", "cells", "power", "peak", "via", UNRESOLVED_MEAN)]
     for ghost in sorted(shown, key=lambda ghost: -ghost.power):
         rows.append((f"  {ghost.object}", str(ghost.ghost_type), str(ghost.order), str(ghost.class_code), f"{ghost.cells:,}",
-                     _level(ghost.power), _peak(ghost), ", ".join(ghost.via), _interval(ghost)))
+                     _power(ghost), _peak(ghost), ", ".join(ghost.via), _interval(ghost)))
     hidden = len(of_cells.ghosts) - len(shown)
     return _table(rows, right=(1, 2, 3, 4, 5)) + ([f"  and {hidden:,} without cells"] if hidden else [])
 
 
 def _level(power: float) -> str:
     return f"{in_dbm(power):.1f} dBm" if power > 0.0 else "nothing"
+
+
+def _power(label) -> str:
+    """Of this realisation; the upper end of its interval where the rays have found next to nothing of it."""
+    received = label.received
+    if received and received.is_in_doubt and label.power < FAINT * received.high:
+        return f"below {_level(received.high)}"
+    return _level(label.power)
 
 
 def _peak(label) -> str:
@@ -181,7 +189,9 @@ def _peak(label) -> str:
 def _interval(label) -> str:
     """Of the mean received power, where the rays do not know it; "" where they do or nobody knows."""
     received = label.received
-    return f"{_level(received.low)} to {_level(received.high)}" if received and received.is_in_doubt else ""
+    if not (received and received.is_in_doubt):
+        return ""
+    return f"{_level(received.low)} to {_level(received.high)}" if received.low > 0.0 else f"below {_level(received.high)}"
 
 
 def _table(rows: list, right=()) -> list[str]:

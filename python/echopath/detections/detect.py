@@ -15,6 +15,7 @@ from ..families import families as find_families
 from ..families import objects_rule
 from ..keywords import parameters_of
 from ..labels.labels import Labels
+from ..parts import decompose
 from ..same_radar import difference
 from ..spectra import CFAR_RULES, FALSE_ALARM_RATE, RANK, CfarMethod, cfar
 from . import labelling
@@ -25,11 +26,25 @@ from .noise import warn_of_missing_noise
 
 
 def _parts(argument: str, value):
-    """{name: cube or RangeDoppler} of at least one part."""
-    an(Mapping, called="a dict of cubes or RangeDoppler")(argument, value)
+    """{name: cube or RangeDoppler}, or {name: selection}, of at least one part."""
+    an(Mapping, called="a dict of cubes, RangeDoppler or selections")(argument, value)
     if not value:
         raise refused(ValueError, argument, "a dict of at least one part", value)
-    return {text(argument, name): part for name, part in value.items()}
+    return {_name(argument, name): part for name, part in value.items()}
+
+
+def _name(argument: str, name) -> str:
+    """Of a part; parts of Families are named by these."""
+    return str(name) if isinstance(name, _core.Family) else text(argument, name)
+
+
+def _signals_of(parts: dict, paths, radar, progress) -> dict:
+    """{name: cube or RangeDoppler} of parts that may be selections of the paths."""
+    if not any(isinstance(part, (str, _core.Selection)) for part in parts.values()):
+        return parts
+    if paths is None:
+        raise ValueError(f"parts: selections need paths to choose from, got {', '.join(parts)} without paths")
+    return decompose(paths, radar, parts, progress=progress)
 
 
 _CALLER = 3  # of detect: behind it and the check of its arguments
@@ -54,7 +69,8 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     method, false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank: as in `cfar`, in cells
     angles: keywords of `estimate_angles`, such as {"max_peaks": 2} for several directions of a cell
     paths: of `trace` with that radar: objects, ghosts and the paths behind each detection
-    parts: {name: cube or RangeDoppler} without noise, of `decompose` or `Frame.part_spectra[view]`
+    parts: {name: cube or RangeDoppler} without noise, of `decompose` or `Frame.part_spectra[view]`; or, with paths, {name:
+        selection} as `decompose` takes them
     labels: Labels of the map instead of parts; without paths their objects and ghosts too
     objects: of `families`, with paths
     progress: callable (stage, fraction), True for bars, or None
@@ -65,6 +81,7 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
         raise ValueError("labels: cannot be given beside parts")
     if paths is not None and (field := difference(radar, paths.radar, paths.frame.start_time)):
         raise ValueError(f"paths: must be traced with the radar of the spectrum, got another {field}")
+    parts = None if parts is None else _signals_of(parts, paths, radar, progress)
     found = cfar(spectrum, radar, method=method, false_alarm_rate=false_alarm_rate, guard_velocity=guard_velocity,
                  guard_range=guard_range, training_velocity=training_velocity, training_range=training_range, rank=rank,
                  progress=progress)

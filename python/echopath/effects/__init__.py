@@ -37,7 +37,8 @@ def effects(scene: _core.Scene, radar: _core.Radar, *, max_bounces: int = TraceS
 
     max_bounces, footprint, polarization, sampler, batches, target_error_db (dB): as in `trace`; replay, evaluate,
     retrace: as in `synthesize`; noise_seed: as in `simulate`. Returns a list [E] of Effect, modelled ones first. Effects
-    that nothing can ask for stand last, under reasons that begin with "out of scope" or "not modelled".
+    that nothing can ask for stand last, under reasons that begin with "out of scope" or "not modelled". Raises TypeError or
+    ValueError naming the argument.
     """
     batches = batches or 1
     return _of_case(Case(scene, radar, Settings(max_bounces, footprint, polarization, sampler, batches, target_error_db,

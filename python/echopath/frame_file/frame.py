@@ -67,6 +67,7 @@ def save_paths(paths, path, min_power: float = 0.0) -> LeftOut:
         return _write_record(file, paths, paths.effects, min_power)[0]
 
 
+@checked()
 @interrupts_are_kept()
 def load_paths(path):
     """Reads the paths of a frame file at `path`: the same bits that were written. Raises ep.FileError."""

@@ -35,7 +35,7 @@ def check_rays(probe: _core.SignalProbe, frame: _core.TraceFrame) -> list[Check]
     probe: a SignalProbe that was filled with all paths of a trace; frame: TraceFrame of these paths
     Returns list [C] of Check: halves of the rays in dB, or with batches in standard errors; half of the batches and each
     single one against the others; the share of the strongest path; the error in dB where a target was set. Empty for no
-    paths.
+    paths. Raises TypeError naming the argument.
     """
     if len(probe.share_power) != 2 * frame.num_batches + 1 or not _has_paths(probe):
         return []

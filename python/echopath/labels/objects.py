@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import _core
-from ..resolution import unmet_interval
+from ..resolution import Interval, unmet_interval
 from .labels import COMES_INTO_VIEW, NONE, GhostLabel, ObjectLabel, is_occluded
 from .powers import parts_by_rival
 
@@ -84,7 +84,12 @@ def _object_label(name, real, mine, found: FamilyCells, seen, appears: bool, pla
     return ObjectLabel(name=name, status=_status(real, mine, found, seen, appears, plane),
                        power=0.0 if real is None else found.received[real], visible_share=seen.visible_share,
                        occluders=dict(seen.occluders), **_cells(region, plane),
-                       received=unmet_interval(paths, seen) if real is None else found.intervals[real])
+                       received=_unmet(paths, seen) if real is None else found.intervals[real])
+
+
+def _unmet(paths, seen) -> Interval | None:
+    """Of an object without a path: None where the record leaves paths out, which tells nothing of those that it had."""
+    return unmet_interval(paths, seen) if paths.num_paths == paths.frame.statistics.num_paths else None
 
 
 def _status(real, mine, found: FamilyCells, seen, appears: bool, plane) -> str:

@@ -1,4 +1,26 @@
 """Scene files: TOML read against a schema, faults told by their place (keys: data/README.md)."""
-from .load import SceneFile, load_scene
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+from ..checks import checked
+from .scene_file import SceneFile
+
+
+@checked()
+def load_scene(path: str | os.PathLike[str]) -> SceneFile:
+    """Reads a scene file (keys and units: data/README.md), or what load_model reads as the content of a scene.
+
+    path: of the TOML file, or of a foreign scene in one of the formats of load_model, by its suffix
+    Returns a SceneFile; that of a foreign scene has its content below one object, named after the file, the settings of an
+    empty scene file, and no radar. `[[objects]]` with `model` put it into a scene file.
+    Raises ep.FileError when the file cannot be read; ValueError naming the file, the dotted path of the key, the rule
+    and the value for each fault of its content, or the line of a fault of its syntax.
+    """
+    from .load import read_scene  # with scene files alone: pydantic and the schema take a third of the time to import
+
+    return read_scene(Path(path))
+
 
 __all__ = ["SceneFile", "load_scene"]

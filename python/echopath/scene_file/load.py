@@ -1,81 +1,26 @@
 """Scene files: TOML -> a scene, a radar and the settings of a simulation."""
 from __future__ import annotations
 
-import dataclasses
 import math
-import os
 import tomllib
 from pathlib import Path
 
-import numpy as np
 from .. import _core
 from ..antennas import load_antenna
 from ..azimuth_map import checked_settings
-from ..checks import checked
 from ..families import named_globs
-from ..parts import as_partitions, check_partitions
+from ..parts import check_partitions
 from ..readers.load import is_foreign
 from ..settings import LabelSettings, SignalSettings, TraceSettings
 from .errors import blamed, validated
 from .foreign import foreign_scene
 from .objects import build_scene, motion_of
-from .schema import AngleTable, DetectionsTable, RadarTable, SceneTable
+from .scene_file import SceneFile
+from .schema import AngleTable, RadarTable, SceneTable
 
 
-@dataclasses.dataclass(frozen=True)
-class SceneFile:
-    """What a scene file says.
-
-    path: of the file; title: one line; scene, radar: ready to trace, radar None of a foreign scene, which has none; parts:
-    {name: expression} (one partition), {name: {name: expression}} (several) or {}; trace: TraceSettings, signal:
-    SignalSettings, labels: LabelSettings or None: none are asked for; angle, detections: tables of the file, as keywords by
-    `angle_settings()` and `detection_settings()`; guard: of `ep.simulate`.
-    """
-
-    path: Path
-    title: str
-    scene: object
-    radar: object
-    trace: TraceSettings
-    signal: SignalSettings
-    angle: AngleTable
-    parts: dict
-    labels: LabelSettings | None = None
-    detections: DetectionsTable | None = None
-    guard: bool = True
-
-    def angle_settings(self) -> dict:
-        """Keywords of `ep.range_azimuth`, angles in rad; those without a value are left out."""
-        settings = self.angle.model_dump(exclude={"azimuth_deg", "elevation_deg"}, exclude_none=True)
-        settings["elevation"] = np.radians(self.angle.elevation_deg).tolist()
-        if self.angle.azimuth_deg is not None:
-            first, last, step = self.angle.azimuth_deg
-            settings["azimuth"] = np.radians(first + step * np.arange(math.floor((last - first) / step + 1e-9) + 1)).tolist()
-        return settings
-
-    def detection_settings(self) -> dict | None:
-        """`detections` of `ep.simulate`: keywords of `ep.detect_frame`, None: no detections."""
-        if self.detections is None:
-            return None
-        objects = None if self.labels is None else self.labels.objects
-        return self.detections.model_dump() | {"objects": objects}
-
-    def partitions(self) -> dict:
-        """`parts` as {partition: {name: expression}}."""
-        return as_partitions(self.parts)
-
-
-@checked()
-def load_scene(path: str | os.PathLike[str]) -> SceneFile:
-    """Reads a scene file (keys and units: data/README.md), or what load_model reads as the content of a scene.
-
-    path: of the TOML file, or of a foreign scene in one of the formats of load_model, by its suffix
-    Returns a SceneFile; that of a foreign scene has its content below one object, named after the file, the settings of an
-    empty scene file, and no radar. `[[objects]]` with `model` put it into a scene file.
-    Raises ep.FileError when the file cannot be read; ValueError naming the file, the dotted path of the key, the rule
-    and the value for each fault of its content, or the line of a fault of its syntax.
-    """
-    path = Path(path)
+def read_scene(path: Path) -> SceneFile:
+    """What `load_scene` returns."""
     if is_foreign(path):
         return _foreign(path)
     table = _parse(path)

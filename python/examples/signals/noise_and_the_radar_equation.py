@@ -13,7 +13,7 @@ import echopath as ep
 radius = 0.1
 chirps = ep.ChirpSequence(start_frequency=77e9, bandwidth=250e6, num_samples=512, sampling_rate=20e6, num_chirps=64,
                           chirp_interval=30e-6)
-antenna = ep.Antenna((0, 0, 0), pattern=ep.Isotropic(gain=100.0))
+antenna = ep.Antenna((0, 0, 0), pattern=ep.CosinePower(49))
 radar = ep.Radar(chirps, transmitters=[antenna], receivers=[antenna], transmit_power=0.01, noise_figure_db=12)
 
 
@@ -29,7 +29,7 @@ def measured(distance, seed):
 
 
 # %%
-# Isotropic antennas of a gain of 100 stand for beams.
+# A beam of cos^49 has a gain of 2 (49 + 1) = 100 ahead, where the ball is.
 distances = np.geomspace(8, 80, 14)
 signal, noise = np.array([measured(d, seed) for seed, d in enumerate(distances)]).T
 

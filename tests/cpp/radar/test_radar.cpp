@@ -93,18 +93,22 @@ TEST(AntennaPattern, CosinePowerIsLossless) {
 }
 
 TEST(AntennaPattern, CosinePowerIsDarkBehindAndPeaksAhead) {
-  const AntennaPattern pattern = AntennaPattern::cosine_power(2.0, 10.0);
-  EXPECT_EQ(pattern.gain(1.0), 10.0);
-  EXPECT_NEAR(pattern.gain(std::cos(1.0)), 10.0 * std::pow(std::cos(1.0), 2), kRounding);
+  const AntennaPattern pattern = AntennaPattern::cosine_power(2.0, 5.0);
+  EXPECT_EQ(pattern.gain(1.0), 5.0);
+  EXPECT_NEAR(pattern.gain(std::cos(1.0)), 5.0 * std::pow(std::cos(1.0), 2), kRounding);
   EXPECT_EQ(pattern.gain(0.0), 0.0);
   EXPECT_EQ(pattern.gain(-0.5), 0.0);
-  EXPECT_EQ(AntennaPattern::isotropic(3.0).gain(-1.0), 3.0);
+  EXPECT_EQ(AntennaPattern::isotropic(0.3).gain(-1.0), 0.3);
 }
 
 TEST(AntennaPattern, BadValuesAreErrors) {
   EXPECT_THROW(AntennaPattern::isotropic(0.0), std::invalid_argument);
   EXPECT_THROW(AntennaPattern::cosine_power(-1.0), std::invalid_argument);
   EXPECT_THROW(AntennaPattern::cosine_power(1.0, std::nan("")), std::invalid_argument);
+  // More than an antenna without losses has: 1 in every direction, 2 (exponent + 1) ahead of a cosine (as GainTable).
+  EXPECT_THROW(AntennaPattern::isotropic(1.1), std::invalid_argument);
+  EXPECT_THROW(AntennaPattern::cosine_power(2.0, 6.2), std::invalid_argument);
+  EXPECT_NO_THROW(AntennaPattern::cosine_power(2.0, 6.0));
 }
 
 TEST(Radar, EachBadFieldIsNamed) {

@@ -111,9 +111,14 @@ VirtualArray virtual_array(const Radar& radar) {
   array.num_receivers = static_cast<int>(radar.receivers.size());
   array.wavelength = radar.waveform.wavelength();
   array.positions = sums_of_positions(radar);
-  array.elements = merged(array.positions, kArrayTolerance * array.wavelength);
-  put_on_grid(array);
+  arrange_elements(array);
   return array;
+}
+
+void arrange_elements(VirtualArray& array) {
+  array.elements = merged(array.positions, kArrayTolerance * array.wavelength);
+  array.grid.reset();
+  put_on_grid(array);
 }
 
 }  // namespace echopath

@@ -51,4 +51,7 @@ struct VirtualArray {
 // times as many points as elements along each axis.
 VirtualArray virtual_array(const Radar& radar);
 
+// Makes the elements and the grid of an array from its positions and its wavelength.
+void arrange_elements(VirtualArray& array);
+
 }  // namespace echopath

@@ -1,0 +1,14 @@
+#pragma once
+// Looks for slips of units: what no radar can be raises ValueError, what is merely unlikely is warned of, once for each line.
+#include "echopath/base/geometry.h"
+#include "echopath/radar/radar.h"
+
+namespace echopath::bindings {
+
+void require_plausible(const ChirpSequence& waveform);
+// rad: more than a turn is more likely degrees.
+void warn_of_turns(double yaw);
+// m/s; raises where it is not below the speed of light.
+void require_below_light(double speed, const char* argument);
+
+}  // namespace echopath::bindings

@@ -1,0 +1,58 @@
+"""What a scene file says."""
+from __future__ import annotations
+
+import dataclasses
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..parts import as_partitions
+from ..settings import LabelSettings, SignalSettings, TraceSettings
+
+if TYPE_CHECKING:
+    from .schema import AngleTable, DetectionsTable
+
+
+@dataclasses.dataclass(frozen=True)
+class SceneFile:
+    """What a scene file says.
+
+    path: of the file; title: one line; scene, radar: ready to trace, radar None of a foreign scene, which has none; parts:
+    {name: expression} (one partition), {name: {name: expression}} (several) or {}; trace: TraceSettings, signal: SignalSettings, labels: LabelSettings or None: none are asked
+    for; angle, detections: tables of the file, as keywords by `angle_settings()` and `detection_settings()`; guard: of
+    `ep.simulate`.
+    """
+
+    path: Path
+    title: str
+    scene: object
+    radar: object
+    trace: TraceSettings
+    signal: SignalSettings
+    angle: AngleTable
+    parts: dict
+    labels: LabelSettings | None = None
+    detections: DetectionsTable | None = None
+    guard: bool = True
+
+    def angle_settings(self) -> dict:
+        """Keywords of `ep.range_azimuth`, angles in rad; those without a value are left out."""
+        settings = self.angle.model_dump(exclude={"azimuth_deg", "elevation_deg"}, exclude_none=True)
+        settings["elevation"] = np.radians(self.angle.elevation_deg).tolist()
+        if self.angle.azimuth_deg is not None:
+            first, last, step = self.angle.azimuth_deg
+            settings["azimuth"] = np.radians(first + step * np.arange(math.floor((last - first) / step + 1e-9) + 1)).tolist()
+        return settings
+
+    def detection_settings(self) -> dict | None:
+        """`detections` of `ep.simulate`: keywords of `ep.detect_frame`, None: no detections."""
+        if self.detections is None:
+            return None
+        objects = None if self.labels is None else self.labels.objects
+        return self.detections.model_dump() | {"objects": objects}
+
+    def partitions(self) -> dict:
+        """`parts` as {partition: {name: expression}}."""
+        return as_partitions(self.parts)

@@ -1,0 +1,30 @@
+"""Values as error messages repeat them."""
+from __future__ import annotations
+
+import reprlib
+
+
+class _Short(reprlib.Repr):
+    def __init__(self):
+        super().__init__()
+        self.maxstring = self.maxother = self.maxlong = 60
+
+    def repr_ndarray(self, value, level):
+        return f"an array {list(value.shape)} of {value.dtype}" if value.ndim else repr(value[()])
+
+
+_short = _Short()
+
+
+def shown(value) -> str:
+    """A value as a message repeats it: short, on one line, and text that every terminal can print."""
+    try:
+        text = _short.repr(value)
+    except Exception:  # whatever a foreign __repr__ raises
+        text = f"a {type(value).__name__}"
+    return " ".join(writable(text).split())
+
+
+def writable(text: str) -> str:
+    """Text with its lone surrogates written out."""
+    return text.encode("utf-8", "backslashreplace").decode("utf-8")

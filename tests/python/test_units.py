@@ -1,0 +1,82 @@
+"""Slips of units: what no radar can be is refused, what is unlikely is warned of once, at the line of the caller."""
+import warnings
+
+import numpy as np
+import pytest
+
+import echopath as ep
+
+CHIRPS = ep.ChirpSequence(num_samples=16, num_chirps=4)
+
+
+def _radar(**settings):
+    return ep.Radar(CHIRPS, transmitters=[ep.Antenna()], receivers=[ep.Antenna((0, 0.01, 0))], **settings)
+
+
+def _scene(scale=1.0, name="car"):
+    scene = ep.Scene()
+    block = ep.actors.box((4.0 * scale, 1.8 * scale, 1.5 * scale))
+    scene.add(block, name=name, material="metal", position=(30.0, 0.0, 0.0))
+    return scene
+
+
+@pytest.mark.parametrize("make, says", [
+    (lambda: ep.ChirpSequence(start_frequency=77), r"^start_frequency: must be at least 1e6 Hz \(77 GHz are 77e9\), got 77"),
+    (lambda: _radar(speed=3e8), "^speed: must be below the speed of light"),
+    (lambda: ep.LinearMotion(velocity=(0, -4e8, 0)), "^velocity: must be below the speed of light"),
+    (lambda: ep.KeyframeMotion([0, 1e-6], [[0, 0, 0], [1000, 0, 0]]), "^translations: must be below the speed of light"),
+    (lambda: _scene().add(ep.actors.plate(1, 1), name="b", material="metal", speed=1e9), "must be below the speed of light"),
+])
+def test_what_cannot_be_is_refused(make, says):
+    with pytest.raises(ValueError, match=says):
+        make()
+
+
+@pytest.mark.parametrize("make, says", [
+    (lambda: _radar(yaw=90), r"^yaw: 90 rad are 14\.3239 turns; angles are in rad, 90 degrees would be 1\.5708"),
+    (lambda: ep.Antenna(yaw=-45), "^yaw: -45 rad are"),
+    (lambda: _scene().add(ep.actors.plate(1, 1), name="b", material="metal", yaw=180), "^yaw: 180 rad are"),
+    (lambda: ep.ChirpSequence(start_frequency=77e6), r"^bandwidth: 1e\+09 Hz is more than start_frequency, 7\.7e\+07 Hz"),
+    (lambda: ep.ChirpSequence(bandwidth=1), "^bandwidth: 1 Hz makes range cells of 149896 km"),
+    (lambda: ep.ChirpSequence(chirp_interval=60), "^chirp_interval: 60 s from chirp to chirp"),
+    (lambda: ep.trace(_scene(1000.0), _radar(position=(-9e3, 0, 0)), num_rays=100), "^scene: 'car' is 4,000 m long .* mm"),
+    (lambda: ep.trace(_scene(1e-4), _radar(), num_rays=100), "^scene: 'car' is 0.0004 m large, less than half a wavelength"),
+    (lambda: ep.trace(ep.Scene(), _radar(), num_rays=100), "^scene: has no mesh that takes part"),
+])
+def test_what_is_unlikely_is_warned_of_once(make, says):
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        make()
+    assert [one.category for one in caught] == [RuntimeWarning] and caught[0].filename == __file__
+    with pytest.warns(RuntimeWarning, match=says):
+        make()
+
+
+def test_a_node_that_is_turned_by_degrees_is_warned_of():
+    scene = _scene()
+    with pytest.warns(RuntimeWarning, match="^yaw: 90 rad"):
+        scene["car"].yaw = 90
+
+
+def test_what_is_likely_passes_without_a_word():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ep.trace(_scene(), _radar(yaw=-np.pi, position=(-5, 0, 0), speed=30), num_rays=100)
+        ep.ChirpSequence(start_frequency=24e9, bandwidth=250e6, chirp_interval=1e-3)
+        ground = ep.Scene()
+        ground.add(ep.actors.wall(5000.0, 30.0), name="cliff", material="concrete", position=(100, 0, 0), yaw=np.pi / 2)
+        ep.trace(ground, _radar(), num_rays=100)
+
+
+@pytest.mark.parametrize("make, says", [
+    (lambda: ep.Isotropic(100), "^gain: must be at most 1, .*, got 100"),
+    (lambda: ep.CosinePower(2, peak_gain=100), r"^peak_gain: must be at most .* 2 \(exponent \+ 1\) = 6, got 100"),
+    (lambda: ep.GainTable(azimuth=[-3.1, 3.1], elevation=[-1.5, 1.5], gain=np.full((2, 2), 100.0)), "^gain: .*at most 1.02"),
+])
+def test_no_antenna_radiates_more_than_it_is_fed(make, says):
+    with pytest.raises(ValueError, match=says):
+        make()
+
+
+def test_lossless_antennas_are_accepted():
+    assert ep.CosinePower(2, peak_gain=6.0) == ep.CosinePower(2) and ep.Isotropic(1.0).efficiency == 1.0

@@ -130,11 +130,15 @@ double weight_of_target(int num_mirrors) { return num_mirrors < 2 ? 1.0 : std::p
 RayTargets find_ray_targets(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                             const RayTargetSettings& settings) {
   RayTargets out;
+  const std::vector<SceneObject> scene_objects = objects_of(scene);
+  out.num_objects = static_cast<int>(scene_objects.size());
   out.object_of_mesh.assign(scene.meshes().size(), -1);
+  out.any_unaimed = out.num_objects > settings.most_objects;
+  if (out.any_unaimed) return out;
   const RayTargetFinder finder(scene, geometry, mirrors, settings);
   std::vector<RayTarget> objects, images;
-  for (const SceneObject& object : objects_of(scene)) {
-    const int index = out.num_objects++;
+  for (int index = 0; index < out.num_objects; ++index) {
+    const SceneObject& object = scene_objects[static_cast<size_t>(index)];
     for (const uint32_t id : object.mesh_ids) out.object_of_mesh[id] = index;
     const Target target = target_of(scene, geometry, object, index);
     std::optional<RayTarget> direct = finder.at_object(target);

@@ -1,5 +1,7 @@
 #pragma once
 // Finds the objects of a scene and their images over mirrors, as targets of rays.
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "echopath/trace/launch/stratum.h"
@@ -23,6 +25,7 @@ struct RayTargetSettings {
   int max_mirrors = 0;
   double largest_solid_angle = 0.0;  // sr: larger objects are left to the field of view
   bool may_use_strips = true;
+  int64_t most_objects = std::numeric_limits<int64_t>::max();  // nothing is aimed at where there are more
 };
 
 struct RayTargets {

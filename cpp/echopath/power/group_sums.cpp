@@ -57,6 +57,7 @@ uint64_t kind_of(const Paths& paths, int64_t path) {
   constexpr uint64_t kMirrorsAlone = ~uint64_t{0};
   const auto p = static_cast<size_t>(path);
   const Hit* hits = paths.hits_of(path);
+  if (paths.stratum[p] == kNoStratum) return kMirrorsAlone;
   const bool is_reversed = (paths.flags[p] & kReversedPath) != 0;
   uint64_t radiating = 0, count = 0;
   for (int k = 0; k < paths.num_bounces[p]; ++k) {

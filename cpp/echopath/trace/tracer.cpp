@@ -5,6 +5,7 @@
 #include "echopath/base/machine_memory.h"
 #include "echopath/base/parallel.h"
 #include "echopath/trace/mirrors/mirror_paths.h"
+#include "echopath/trace/mirrors/plane_images.h"
 #include "echopath/trace/record/record_writer.h"
 
 namespace echopath {
@@ -153,10 +154,16 @@ Paths Tracer::run(Job* job) const {
   if (num_blocks() > std::ssize(wave)) ahead = shoot_ahead(step, job);
   require_memory(ahead);
   record.expect(ahead, num_blocks());
+  PlaneImages images(*empty_.scene, geometry_, sbr_);
   for (int64_t begin = 0; begin < num_blocks(); begin += std::ssize(wave)) {
-    record.append(shoot_wave(begin, ahead, step, wave, job), job);
+    const std::vector<const PathBlock*> blocks = shoot_wave(begin, ahead, step, wave, job);
+    for (const PathBlock* block : blocks) images.add_chains(*block);
+    record.append(blocks, job);
   }
+  const PathBlock over_planes = images.find(job);
+  record.append({&over_planes}, job);
   record.finish();
+  images.leave_out_doubles(paths, job);
   return paths;
 }
 

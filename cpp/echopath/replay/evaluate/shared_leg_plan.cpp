@@ -33,6 +33,7 @@ struct SharedLegPlanner::TracedHits {
   int count;
   uint64_t diffuse_bits;
   bool is_reversed;
+  uint16_t stratum;
 
   int index(int k) const { return is_reversed ? count - 1 - k : k; }
   const Hit& hit(int k) const { return recorded[index(k)]; }
@@ -80,7 +81,7 @@ void SharedLegPlanner::clear() {
 }
 
 bool SharedLegPlanner::is_image(const TracedHits& hits, int k) const {
-  return preparer_->is_mirror(hits.hit(k).mesh_id) && !hits.is_diffuse(k);
+  return preparer_->is_image(hits.hit(k).mesh_id, hits.stratum) && !hits.is_diffuse(k);
 }
 
 SharedLegPlanner::Ends SharedLegPlanner::ends_of(const TracedHits& hits) const {
@@ -120,7 +121,7 @@ bool SharedLegPlanner::add_direct(size_t place, int64_t path) {
 void SharedLegPlanner::add_chain(size_t place, int64_t path) {
   const auto p = static_cast<size_t>(path);
   const TracedHits hits{paths_->hits_of(path), paths_->num_bounces[p], paths_->diffuse[p],
-                        (paths_->flags[p] & kReversedPath) != 0};
+                        (paths_->flags[p] & kReversedPath) != 0, paths_->stratum[p]};
   const Ends ends = ends_of(hits);
   const std::complex<double> weight(paths_->weight[p]);
   if (ends.first < 0) {

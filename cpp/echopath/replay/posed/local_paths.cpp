@@ -117,7 +117,7 @@ LocalPath PathPreparer::local_path(int64_t index, LocalPaths& block) const {
     const Hit& hit = paths_.hits_of(index)[recorded];
     path.diffuse |= (paths_.diffuse[p] >> recorded & 1) << k;
     block.hits.push_back(this->hit(hit, block.normals));
-    if (mesh_is_mirror_[hit.mesh_id] && !path.is_diffuse(k)) {
+    if (is_image(hit.mesh_id, paths_.stratum[p]) && !path.is_diffuse(k)) {
       path.image |= uint64_t{1} << k;
     } else {
       if (path.first_material < 0) path.first_material = k;

@@ -32,6 +32,9 @@ class PathPreparer {
   // Returns a hit with its normals, which are stored in `normals`.
   LocalHit hit(const Hit& hit, std::deque<std::array<Vec3, 3>>& normals) const;
   bool is_mirror(uint32_t mesh_id) const { return mesh_is_mirror_[mesh_id] != 0; }
+  // Returns whether a specular hit on the mesh is replayed by images: that of a flagged mirror, or of a path of the image
+  // method.
+  bool is_image(uint32_t mesh_id, uint16_t stratum) const { return stratum == kNoStratum || is_mirror(mesh_id); }
   bool may_stretch(uint32_t mesh_id) const { return mesh_may_stretch_[mesh_id] != 0; }
   // Returns whether each triangle of the mesh stays a plane in the mesh's frame: the mesh is neither smooth nor deforming.
   bool is_plane(uint32_t mesh_id) const { return mesh_is_plane_[mesh_id] != 0; }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "echopath/base/plane.h"
 #include "echopath/trace/near_antenna.h"
 
 namespace echopath {
@@ -41,7 +42,10 @@ void Connector<Weight>::connect(Connection& at) const {
   legs_.find_receive(surface, context_.settings.max_bounces - (is_in_pairs ? 1 : ray.depth), at.legs);
   if (at.legs.receive.empty() && ray.coherent) return;
   weight_.find_receive_axes(at);
-  if (radiates_field) connect_coherent(at);
+  if (radiates_field) {
+    connect_coherent(at);
+    show_image(at);
+  }
   if (!radiates_power) return;
   if (!ray.coherent) chains_.connect(at);
   else if (is_in_pairs) pairs_.connect(at);
@@ -65,6 +69,18 @@ void Connector<Weight>::connect_coherent(Connection& at) const {
         ray.num_mirrors > 0 ? orders_.shares(ray, surface, leg, at.block.statistics.num_queries) : OrderShares{};
     writer_.write(at, leg, 0, weight * weight_.held(leg.gain), shares);
   }
+}
+
+// Notes the ray's planes where it shows an image of the receiver over unflagged planes alone.
+template <class Weight>
+void Connector<Weight>::show_image(Connection& at) const {
+  const Ray& ray = at.ray;
+  const bool is_over_planes = ray.num_mirrors + 1 == ray.depth && !ray.is_curved && !at.surface.point.is_smooth;
+  if (!is_over_planes || at.legs.receive.empty() || at.legs.receive.front().num_bounces > 0) return;
+  const RayHit& point = at.surface.point;
+  const Vec3 direction = mirrored(ray.direction, point.normal), to_receiver = context_.settings.receiver - point.position;
+  if (reach_of(unpacked(to_receiver), unpacked(direction), ray.leg_length, ray.leg_density) > 0)
+    at.block.add_chain(ray.hits.data(), ray.depth);
 }
 
 template <class Weight>

@@ -99,6 +99,7 @@ class EmbreeScene {
   }
   // Returns vertices relative to the origin.
   const std::vector<Vec3>& vertices(uint32_t mesh_id) const { return meshes_.vertices(mesh_id); }
+  const Eigen::AlignedBox3d& box(uint32_t mesh_id) const { return meshes_.box(mesh_id); }
 
  private:
   struct Device;

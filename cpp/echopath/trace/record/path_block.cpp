@@ -64,6 +64,8 @@ void PathBlock::clear() {
   fans.clear();
   fan_legs.clear();
   fan_hits.clear();
+  chain_hits.clear();
+  chain_sizes.clear();
   statistics = TraceStatistics();
   num_fan_paths_ = num_fan_hits_ = 0;
   first_of_ray_ = 0;

@@ -21,6 +21,10 @@ class PathBlock {
   std::vector<PathFan> fans;
   std::vector<FanLeg> fan_legs;  // of each fan in turn
   std::vector<Hit> fan_hits;     // of their mirrors
+  // Hits of rays that go by so near to the receiver that images are looked for on their planes (mirrors/plane_images.h), and
+  // how many each of them has.
+  std::vector<Hit> chain_hits;
+  std::vector<uint8_t> chain_sizes;
 
   // Adds a path with hits of its own.
   void add(const Hit* first, int count, uint64_t diffuse_bits, std::complex<float> path_weight, int path_stratum);
@@ -44,6 +48,10 @@ class PathBlock {
   }
   // Adds the next hit of the leg added last, in order of travel.
   void add_leg_hit(const Hit& hit);
+  void add_chain(const Hit* first, int count) {
+    chain_hits.insert(chain_hits.end(), first, first + count);
+    chain_sizes.push_back(static_cast<uint8_t>(count));
+  }
   // Adds the matrix of the next pair of a polarised fan, by way in and then by way out.
   void add_pair_jones(const JonesMatrix& matrix) { fan_jones.push_back(matrix); }
   void end_fan();

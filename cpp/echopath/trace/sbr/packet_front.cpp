@@ -25,11 +25,13 @@ ECHOPATH_INLINE void see_lanes(FirstHits* first, Antennas at, double lift) {
   }
 }
 
-ECHOPATH_INLINE void leave_lanes(FirstHits* first) {
+ECHOPATH_INLINE void leave_lanes(FirstHits* first, VectorOf<double> receiver) {
   ECHOPATH_SIDE_BY_SIDE
   for (int lane = 0; lane < kPacketSize; ++lane) {
     const VectorOf<double> normal = first->hits.normal.at(lane);
     const VectorOf<double> specular = mirrored(normal, first->directions.at(lane), first->cos_incidence[lane]);
+    const VectorOf<double> to_receiver = receiver - first->hits.position.at(lane);
+    first->receiver_reach[lane] = reach_of(to_receiver, specular, first->hits.distance[lane], first->densities[lane]);
     const VectorOf<double> diffuse = over_surface(normal, first->samples.lobe.at(lane));
     const double sample = first->samples.lobe_sample[lane], probability = first->specular_probability[lane];
     first->out.x[lane] = sample < probability ? specular.x : diffuse.x;
@@ -48,7 +50,7 @@ void PacketFront::trace(int64_t begin, int count, FirstHits& first, TraceStatist
   statistics.num_queries += count;
   arrive(first, statistics);
   see_receiver(first, statistics);
-  run_simd<&leave_lanes>(&first);
+  run_simd<&leave_lanes>(&first, unpacked(context_.settings.receiver));
 }
 
 void PacketFront::launch(FirstHits& first) const {

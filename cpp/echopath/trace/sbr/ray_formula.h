@@ -5,6 +5,17 @@
 
 namespace echopath {
 
+// Returns by how much (m^2) the radius of the sphere around the receiver exceeds the distance at which a ray passes it,
+// squares of both. The ray leaves a point toward `direction` after a way of `length` (m); `density` is in rays per sr.
+ECHOPATH_INLINE double reach_of(const VectorOf<double>& to_receiver, const VectorOf<double>& direction, double length,
+                                double density) {
+  constexpr double kSpacings = 2.0;  // of rays: a dozen rays of each path meet the sphere
+  const double ahead = dot(to_receiver, direction), squared = dot(to_receiver, to_receiver);
+  const double whole = length + ScalarMath::root(squared), radius = kSpacings * whole;
+  const double reach = radius * radius / density - (squared - ahead * ahead);
+  return ahead > 0.0 ? reach : -1.0;
+}
+
 struct Facet {
   VectorOf<double> corner, along_u, along_v;  // m
 };

@@ -42,12 +42,21 @@ void RayWalk<Weight>::shoot_lane(int lane, Scratch& scratch, PathBlock& block) c
   RayHit met;
   const bool goes_on = first.goes_on[k] && meets(first.lifted[lane], first.out[lane], met, block);
   const bool has_plain_hit = has_straight_legs_ && is_plain(first, lane);
-  if (has_plain_hit) scratch.echoes.add(first, lane, block);
+  if (has_plain_hit) add_plain_echoes(lane, scratch, block);
   if (has_plain_hit && !goes_on) return block.end_ray(&first.hits.met[k]);
   start(lane, scratch);
   if (!has_plain_hit) connect(scratch, block);
   if (goes_on && travel(first.sample(lane), met, scratch, block)) follow(scratch, block);
   block.end_ray(scratch.ray.hits.data());
+}
+
+template <class Weight>
+void RayWalk<Weight>::add_plain_echoes(int lane, const Scratch& scratch, PathBlock& block) const {
+  const FirstHits& first = scratch.first;
+  const auto k = static_cast<size_t>(lane);
+  scratch.echoes.add(first, lane, block);
+  const bool shows_image = first.receiver_reach[lane] > 0 && first.coherent[lane] > 0;
+  if (shows_image && first.receiver[k] == ShadowState::kOpen) block.add_chain(&first.hits.met[k], 1);
 }
 
 template <class Weight>

@@ -21,6 +21,7 @@ class RayWalk {
  private:
   struct Scratch;
   void shoot_lane(int lane, Scratch& scratch, PathBlock& block) const;
+  void add_plain_echoes(int lane, const Scratch& scratch, PathBlock& block) const;
   void start(int lane, Scratch& scratch) const;
   void follow(Scratch& scratch, PathBlock& block) const;
   void connect(Scratch& scratch, PathBlock& block) const;

@@ -1,0 +1,74 @@
+#pragma once
+// Follows one sequence of planes from transmitter to receiver by the image method.
+#include <complex>
+#include <optional>
+#include <vector>
+
+#include "echopath/trace/geometry/embree_scene.h"
+#include "echopath/trace/mirrors/mirrors.h"
+#include "echopath/trace/record/path_block.h"
+#include "echopath/trace/sbr/sbr_settings.h"
+
+namespace echopath {
+
+inline constexpr double kAtEdge = 1e-4;  // m: bounces this near to each other are at a common edge
+
+// Finds where on a mirror a point of its plane lies, as a wave sees it that comes from `from`.
+class PointLocator {
+ public:
+  virtual ~PointLocator() = default;
+  virtual std::optional<Hit> locate(const Mirror& mirror, const Vec3& from, const Vec3& point) const = 0;
+};
+
+// Looks the point up in the triangles of the mirror.
+class MeshLocator final : public PointLocator {
+ public:
+  std::optional<Hit> locate(const Mirror& mirror, const Vec3&, const Vec3& point) const override {
+    return mirror.mesh.locate(point);
+  }
+};
+
+// Describes a path over planes alone: its hits, the points where it meets the planes, and its weight.
+struct ImagePath {
+  std::vector<Hit> hits;
+  std::vector<Vec3> points;         // m
+  std::complex<double> weight;      // without the coefficients where polarised
+  JonesMatrix jones;                // where polarised
+};
+
+// All must outlive it.
+class ImageMethod {
+ public:
+  ImageMethod(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const PointLocator& locator,
+              const SbrSettings& settings)
+      : geometry_(geometry), mirrors_(mirrors), locator_(locator), settings_(settings) {}
+  // Returns the path over the mirrors of these indices, in travel order; nothing where there is none. A path through an edge
+  // has half of its weight (mirror_paths.h).
+  std::optional<ImagePath> path_over(const std::vector<int>& sequence);
+  // Finds the specular points toward a receiver on the planes, wherever these end; returns false where there are none.
+  bool find_points(const std::vector<int>& sequence, const Vec3& receiver, std::vector<Vec3>& points) const;
+  int64_t num_queries() const { return num_queries_; }
+
+ private:
+  const Mirror& mirror(size_t k) const { return mirrors_[static_cast<size_t>(sequence_[k])]; }
+  bool follow(const Vec3& receiver);
+  Vec3 lifted_toward(size_t k, const Vec3& target) const;
+  bool sees_all(const Vec3& receiver);
+  Vec3 departure() const;
+  JonesMatrix jones_matrix() const;
+  std::complex<double> field() const;
+
+  const EmbreeScene& geometry_;
+  const std::vector<Mirror>& mirrors_;
+  const PointLocator& locator_;
+  const SbrSettings& settings_;
+  int64_t num_queries_ = 0;
+  std::vector<int> sequence_;
+  std::vector<Vec3> points_;
+  std::vector<Hit> hits_;
+};
+
+// Adds an image path to a block.
+void add_path(const ImagePath& path, bool is_polarized, PathBlock& block);
+
+}  // namespace echopath

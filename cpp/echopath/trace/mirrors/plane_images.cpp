@@ -1,0 +1,202 @@
+#include "echopath/trace/mirrors/plane_images.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/base/constants.h"
+#include "echopath/base/parallel.h"
+#include "echopath/trace/mirrors/mirror_zone.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kSamePoint = 1e-3;        // m: paths whose points lie so near to each other are one
+constexpr double kFlatPhase = 1.0 / 16.0;  // wavelengths by which a surface may stray from a plane of which it is a part
+constexpr double kZoneShare = 1.0 - 1e-9;  // of the Fresnel zone that each surface must cover
+
+// Shoots a ray at the point.
+class RayLocator final : public PointLocator {
+ public:
+  RayLocator(const EmbreeScene& geometry, double tolerance) : geometry_(geometry), tolerance_(tolerance) {}
+  std::optional<Hit> locate(const Mirror& mirror, const Vec3& from, const Vec3& point) const override {
+    const Vec3 line = point - from;
+    const double length = line.norm();
+    RayHit met;
+    const Vec3 direction = line / length;
+    if (geometry_.intersect(from, direction, met) != EmbreeScene::Verdict::kHit) return std::nullopt;
+    const bool is_there = std::abs(met.distance - length) * std::abs(direction.dot(mirror.normal)) < tolerance_;
+    if (!is_there || met.hit.mesh_id != mirror.mesh_id || met.is_smooth) return std::nullopt;
+    for (const Vec3& corner : geometry_.corners(met.hit.mesh_id, met.hit.triangle_id)) {
+      if (std::abs(mirror.height(corner)) > tolerance_) return std::nullopt;
+    }
+    return met.hit;
+  }
+
+ private:
+  const EmbreeScene& geometry_;
+  double tolerance_;
+};
+
+bool reaches_plane(const Eigen::AlignedBox3d& box, const Plane& plane, double tolerance) {
+  return !box.isEmpty() && std::abs(plane.height(box.center())) <= 0.5 * plane.normal.cwiseAbs().dot(box.sizes()) + tolerance;
+}
+
+bool is_near(const std::vector<Vec3>& points, const std::vector<Vec3>& others) {
+  return std::equal(points.begin(), points.end(), others.begin(), others.end(),
+                    [](const Vec3& a, const Vec3& b) { return (a - b).norm() < kSamePoint; });
+}
+
+}  // namespace
+
+PlaneImages::PlaneImages(const Scene& scene, const EmbreeScene& geometry, const SbrSettings& settings)
+    : scene_(scene), geometry_(geometry), settings_(settings), wavelength_(kSpeedOfLight / settings.frequency),
+      tolerance_(std::max(kFlatPhase * wavelength_, 4.0 * geometry.lift())) {}
+
+void PlaneImages::add_chains(const PathBlock& block) {
+  size_t first = 0;
+  for (const uint8_t count : block.chain_sizes) {
+    Chain chain;
+    for (size_t k = 0; k < count; ++k) {
+      const Hit& hit = block.chain_hits[first + k];
+      chain.emplace_back(hit.mesh_id, hit.triangle_id);
+    }
+    first += count;
+    chains_.insert(std::move(chain));
+  }
+}
+
+// Sets planes_ to the planes of the chain, and returns their indices in travel order; returns none where a surface has no
+// plane that lasts.
+std::vector<int> PlaneImages::planes_of(const Chain& chain) {
+  planes_.clear();
+  std::vector<int> sequence;
+  for (const auto& [mesh_id, triangle_id] : chain) {
+    const Node& node = scene_.node_of(mesh_id);
+    if (node.deformation || node.material->mirror) return {};
+    const auto [a, b, c] = geometry_.corners(mesh_id, triangle_id);
+    Mirror plane;
+    plane.point = a;
+    plane.normal = (b - a).cross(c - a).normalized();
+    plane.mesh_id = mesh_id;
+    plane.material = node.material.get();
+    plane.outline = {a, b, c};
+    sequence.push_back(static_cast<int>(planes_.size()));
+    planes_.push_back(std::move(plane));
+  }
+  return sequence;
+}
+
+// Returns whether a path through these points was tried before.
+bool PlaneImages::is_known(const Chain& chain, const std::vector<Vec3>& points) {
+  std::vector<uint32_t> meshes;
+  for (const auto& [mesh_id, triangle_id] : chain) meshes.push_back(mesh_id);
+  std::vector<std::vector<Vec3>>& tried = tried_[meshes];
+  const bool is_old = std::any_of(tried.begin(), tried.end(), [&](const auto& old) { return is_near(points, old); });
+  if (!is_old) tried.push_back(points);
+  return is_old;
+}
+
+// Returns whether each surface of the path covers its Fresnel zone.
+bool PlaneImages::holds_zones(const ImagePath& path, int64_t& num_queries) const {
+  double whole = (settings_.receiver - path.points.back()).norm(), before = 0.0;
+  for (size_t k = 0; k < path.points.size(); ++k)
+    whole += (path.points[k] - (k == 0 ? settings_.transmitter : path.points[k - 1])).norm();
+  for (size_t k = 0; k < path.points.size(); ++k) {
+    const Vec3 line = path.points[k] - (k == 0 ? settings_.transmitter : path.points[k - 1]);
+    before += line.norm();
+    RayHit point;
+    point.hit = path.hits[k];
+    point.position = path.points[k];
+    point.normal = line.dot(planes_[k].normal) < 0 ? planes_[k].normal : Vec3(-planes_[k].normal);
+    const MirrorView view{point, line.normalized(), before, whole - before};
+    if (cover_of_zone(geometry_, view, nullptr, wavelength_, num_queries).share < kZoneShare) return false;
+  }
+  return true;
+}
+
+bool PlaneImages::is_same_plane(const Mirror& plane, const Mirror& other) const {
+  return std::all_of(other.outline.begin(), other.outline.end(),
+                     [&](const Vec3& corner) { return std::abs(plane.height(corner)) <= tolerance_; });
+}
+
+// Returns the planes of the sequence among joined_, of which planes that differ by little are one.
+std::vector<int> PlaneImages::joined(const std::vector<int>& sequence) {
+  std::vector<int> out;
+  for (const int index : sequence) {
+    const Mirror& plane = planes_[static_cast<size_t>(index)];
+    const auto same = std::find_if(joined_.begin(), joined_.end(), [&](const Mirror& old) { return is_same_plane(old, plane); });
+    out.push_back(static_cast<int>(same - joined_.begin()));
+    if (same == joined_.end()) joined_.push_back(plane);
+  }
+  return out;
+}
+
+PathBlock PlaneImages::find(const Job* job) {
+  PathBlock block;
+  const RayLocator locator(geometry_, tolerance_);
+  std::vector<Vec3> points;
+  for (const Chain& chain : chains_) {
+    if (job) job->throw_if_cancelled();
+    const std::vector<int> sequence = planes_of(chain);
+    if (sequence.empty()) continue;
+    ImageMethod images(geometry_, planes_, locator, settings_);
+    if (!images.find_points(sequence, settings_.receiver, points) || is_known(chain, points)) continue;
+    const std::optional<ImagePath> path = images.path_over(sequence);
+    block.statistics.num_queries += images.num_queries();
+    if (!path || !holds_zones(*path, block.statistics.num_queries)) continue;
+    if (!sequences_.insert(joined(sequence)).second) continue;
+    add_path(*path, settings_.is_polarized, block);
+  }
+  find_triangles();
+  return block;
+}
+
+// Finds the triangles of the joined planes.
+void PlaneImages::find_triangles() {
+  plane_of_triangle_.resize(scene_.meshes().size());
+  for (uint32_t mesh_id = 0; !joined_.empty() && mesh_id < scene_.meshes().size(); ++mesh_id) {
+    const Node& node = scene_.node_of(mesh_id);
+    if (node.material->mirror || node.deformation) continue;
+    const auto num_triangles = static_cast<uint32_t>(node.mesh->triangles().size());
+    std::vector<int>& of_triangle = plane_of_triangle_[mesh_id];
+    for (size_t plane = 0; plane < joined_.size(); ++plane) {
+      if (!reaches_plane(geometry_.box(mesh_id), joined_[plane], tolerance_)) continue;
+      for (uint32_t triangle = 0; triangle < num_triangles; ++triangle) {
+        const std::array<Vec3, 3> corners = geometry_.corners(mesh_id, triangle);
+        const bool lies_in = std::all_of(corners.begin(), corners.end(), [&](const Vec3& corner) {
+          return std::abs(joined_[plane].height(corner)) <= tolerance_;
+        });
+        if (!lies_in) continue;
+        if (of_triangle.empty()) of_triangle.assign(num_triangles, -1);
+        if (of_triangle[triangle] < 0) of_triangle[triangle] = static_cast<int>(plane);
+      }
+    }
+  }
+}
+
+bool PlaneImages::is_double(const Paths& paths, size_t path) const {
+  if (paths.diffuse[path] != 0 || paths.stratum[path] == kNoStratum) return false;
+  const Hit* hits = paths.hits_of(static_cast<int64_t>(path));
+  std::vector<int> sequence;
+  for (int k = 0; k < paths.num_bounces[path]; ++k) {
+    const std::vector<int>& of_triangle = plane_of_triangle_[hits[k].mesh_id];
+    const int plane = of_triangle.empty() ? -1 : of_triangle[hits[k].triangle_id];
+    if (plane < 0) return false;
+    sequence.push_back(plane);
+  }
+  return sequences_.contains(sequence);
+}
+
+void PlaneImages::leave_out_doubles(Paths& paths, Job* job) const {
+  if (sequences_.empty()) return;
+  constexpr int64_t kTogether = 1 << 14;
+  std::vector<uint8_t> keep(static_cast<size_t>(paths.num_paths()));
+  Job own(job);
+  parallel_for((paths.num_paths() + kTogether - 1) / kTogether, [&](int64_t task) {
+    const size_t end = std::min(keep.size(), static_cast<size_t>((task + 1) * kTogether));
+    for (size_t path = static_cast<size_t>(task * kTogether); path < end; ++path) keep[path] = !is_double(paths, path);
+  }, &own);
+  paths = paths.select(keep, &own);
+}
+
+}  // namespace echopath

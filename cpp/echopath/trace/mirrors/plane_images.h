@@ -1,0 +1,56 @@
+#pragma once
+// Finds the paths over planes that nobody flagged, by images.
+//
+// Rays show the way: a coherent ray whose hits reflect it to within a few spacings of rays of the receiver names the planes
+// of one path (its chain), as in the method of shooting and bouncing rays with a sphere around the receiver. The image
+// method finds the path itself, to rounding. It counts where each of its surfaces is larger than its Fresnel zone
+// (mirror_zone.h): then the field is that of geometrical optics, as over flagged mirrors, and the echoes by physical optics
+// that rays send over the same planes in the same order are left out, because they add up to the same field. Everything
+// else stays with the rays: smaller surfaces, planes without a point of reflection, diffuse echoes, paths that meet anything
+// else. Source: Schaubach, Davis, Rappaport 1992 (sphere around the receiver).
+#include <cstdint>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "echopath/base/job.h"
+#include "echopath/trace/mirrors/image_method.h"
+#include "echopath/trace/record/paths.h"
+
+namespace echopath {
+
+class PlaneImages {
+ public:
+  // All must outlive it.
+  PlaneImages(const Scene& scene, const EmbreeScene& geometry, const SbrSettings& settings);
+  // Takes the chains that the rays of a block found.
+  void add_chains(const PathBlock& block);
+  // Finds the paths over these chains, each once, and writes them to a block. Raises Cancelled when the job is cancelled.
+  PathBlock find(const Job* job);
+  // Leaves out the rays' paths that the images stand for. Raises Cancelled.
+  void leave_out_doubles(Paths& paths, Job* job) const;
+
+ private:
+  using Chain = std::vector<std::pair<uint32_t, uint32_t>>;  // mesh and triangle of each hit
+  std::vector<int> planes_of(const Chain& chain);
+  bool is_known(const Chain& chain, const std::vector<Vec3>& points);
+  bool holds_zones(const ImagePath& path, int64_t& num_queries) const;
+  std::vector<int> joined(const std::vector<int>& sequence);
+  bool is_same_plane(const Mirror& plane, const Mirror& other) const;
+  void find_triangles();
+  bool is_double(const Paths& paths, size_t path) const;
+
+  const Scene& scene_;
+  const EmbreeScene& geometry_;
+  const SbrSettings& settings_;
+  double wavelength_;  // m
+  double tolerance_;   // m: surfaces that stray no farther from a plane are parts of it
+  std::set<Chain> chains_;
+  std::vector<Mirror> planes_;                                  // of the chain at hand
+  std::map<std::vector<uint32_t>, std::vector<std::vector<Vec3>>> tried_;  // points of the sequences tried, by their meshes
+  std::vector<Mirror> joined_;                                  // planes of the paths found
+  std::set<std::vector<int>> sequences_;                        // the paths found, by joined planes
+  std::vector<std::vector<int>> plane_of_triangle_;             // by mesh ID; empty: none
+};
+
+}  // namespace echopath

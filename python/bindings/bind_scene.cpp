@@ -3,8 +3,10 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -12,7 +14,8 @@
 
 #include "argument.h"
 #include "define.h"
-#include "echopath/em/material.h"
+#include "echopath/em/coherent_share.h"
+#include "echopath/scene/mesh/tessellation.h"
 #include "echopath/scene/readers/readers.h"
 #include "leaving.h"
 #include "shared.h"
@@ -78,7 +81,8 @@ conductivity: S/m, adds to the permittivity
 roughness_height: rms height in m (Ament), or scattering: S in [0, 1], S^2 is the diffuse share of power
 cross_polarization: K in [0, 0.5], share of diffuse power that leaves in the cross polarisation (polarised traces); 0.5 is
 full depolarisation, the most a reciprocal surface without a preferred axis does
-mirror: True for a plane larger than its Fresnel zone, which is treated by images
+mirror: True for planes larger than their Fresnel zone, which are treated by images whatever they meet; of a mesh that is no
+    plane each of its planes
 Raises TypeError or ValueError naming the field, the rule and the value.)");
   define_init(type, &material, py::kw_only(), py::arg("conductor") = false, py::arg("permittivity") = py::none(),
               py::arg("conductivity") = 0.0, py::arg("reflectivity") = py::none(), py::arg("roughness_height") = 0.0,
@@ -226,6 +230,20 @@ std::shared_ptr<Mesh> mesh_of_file(const std::filesystem::path& path, double uni
   return shared(load_mesh(path.string(), unit));
 }
 
+// (edge, radius, curved_area, area), or None.
+std::optional<std::array<double, 4>> tessellation_of_mesh(const std::shared_ptr<Mesh>& mesh) {
+  const WithoutGil released;
+  const std::optional<Tessellation> found = tessellation_of(*mesh);
+  if (!found) return std::nullopt;
+  return std::array<double, 4>{found->edge, found->radius, found->curved_area, found->area};
+}
+
+void bind_surfaces(py::module_& m) {
+  m.def("tessellation", &tessellation_of_mesh, py::arg("mesh"), "What echopath.tessellation.tessellation calls.");
+  m.def("coherent_share", &coherent_share, py::arg("material"), py::arg("wavelength"),
+        "What echopath.polarization.coherent_share calls.");
+}
+
 void bind_readers(py::module_& m) {
   m.def("load_mesh", &mesh_of_file, py::arg("path"), py::arg("unit") = 1.0, "What ep.load_mesh calls.");
   m.def("load_meshes", &meshes_of_file, py::arg("path"), py::arg("unit") = 1.0, "What ep.load_meshes calls.");
@@ -238,6 +256,7 @@ void bind_readers(py::module_& m) {
 void bind_scene(py::module_& m) {
   bind_material(m);
   bind_mesh(m);
+  bind_surfaces(m);
   bind_readers(m);
 }
 

@@ -13,6 +13,7 @@
 #include "array.h"
 #include "define.h"
 #include "echopath/base/errors.h"
+#include "echopath/scene/coherent_meshes.h"
 #include "echopath/scene/overlap/coplanar.h"
 #include "echopath/scene/scene.h"
 #include "run_job.h"
@@ -341,6 +342,9 @@ void bind_scene_tree(py::module_& m) {
   bind_nodes(m);
   bind_overlaps(m);
   bind_tree(m);
+  m.def("coherent_meshes", &coherent_meshes, py::arg("scene"), py::arg("wavelength"), py::arg("least_share"),
+        py::arg("without_planes") = false,
+        "IDs of the meshes that reflect this share of the power in phase at a wavelength in m, mirrors left out.");
 }
 
 }  // namespace echopath::bindings

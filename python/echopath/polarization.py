@@ -5,7 +5,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from .names import first_names
+from . import _core
+from .names import MOST_NAMES, first_names
 
 COHERENT_SHARE = 0.01  # of the reflected power, below it a surface has no coherent echo
 CO_POLARISED = 0.99    # cosine between the polarisations of two antennas that count as equal
@@ -18,9 +19,7 @@ def coherent_share(material, wavelength: float) -> float:
 
     wavelength: m
     """
-    if material.scattering is not None:
-        return 1.0 - material.scattering**2
-    return float(np.exp(-((4.0 * np.pi * material.roughness_height / wavelength) ** 2)))
+    return _core.coherent_share(material, wavelength)
 
 
 def need_of_field_vectors(scene, wavelength: float, antennas: Iterable = ()) -> str:
@@ -30,10 +29,11 @@ def need_of_field_vectors(scene, wavelength: float, antennas: Iterable = ()) -> 
     are mostly met in one of both; off by some dB for coherent surfaces at any angle, and blind for cross-polar echoes.
     wavelength: m
     """
-    coherent = [mesh.name for mesh in scene.meshes
-                if not mesh.material.mirror and coherent_share(mesh.material, wavelength) >= COHERENT_SHARE]
+    coherent = _core.coherent_meshes(scene, wavelength, COHERENT_SHARE)
     if coherent:
-        return "coherent surfaces that are no flagged mirrors: " + first_names(coherent)
+        meshes = scene.meshes
+        names = [meshes[index].name for index in coherent[:MOST_NAMES + 1]]
+        return "coherent surfaces that are no flagged mirrors: " + first_names(names)
     turning = [mesh.name for mesh in scene.meshes
                if mesh.material.cross_polarization > 0.0 and coherent_share(mesh.material, wavelength) < 1.0]
     if turning:

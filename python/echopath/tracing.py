@@ -58,10 +58,11 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
     progress: callable (stage, fraction), True for bars, or None
     From a scene's second trace on, what has not moved since is not built again, for about 200 bytes a triangle while the
     scene lives.
-    Returns Paths. Raises TypeError or ValueError naming the argument, also for mirrors that are not flat and motions that do
-    not cover the frame. Warns (TessellationWarning) of curved meshes that err by more than 0.3 dB, with the edge length in m
-    that would do, and (RuntimeWarning) where over 1 % of the rays are lost to a surface that the radar touches, not every
-    sequence of mirrors was tried, the scene is empty, or the lengths of an object look like those of another unit.
+    Returns Paths. Raises TypeError or ValueError naming the argument, also for smooth mirrors that are not flat and motions
+    that do not cover the frame. Warns (TessellationWarning, once) of curved meshes that err by more than 0.3 dB, with the
+    edge length in m that would do, and (RuntimeWarning) where over 1 % of the rays are lost to a surface that the radar
+    touches, not every sequence of mirrors was tried, the scene is empty, or the lengths of an object look like those of
+    another unit.
     """
     wavelength = _core.speed_of_light / radar.waveform.start_frequency
     if not getattr(scene, "_was_traced", False):

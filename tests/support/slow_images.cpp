@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace echopath::testing {
 namespace {
@@ -86,6 +87,28 @@ SlowPaths slow_mirror_paths(const Vec3& transmitter, const Vec3& receiver, const
   Search search(transmitter, receiver, rectangles);
   search.extend(transmitter, static_cast<size_t>(max_bounces));
   return std::move(search.out);
+}
+
+std::vector<MirrorRectangle> city_block(int num_boxes) {
+  std::mt19937 draw(5);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::vector<MirrorRectangle> mirrors = {{{-200.0, -200.0, 0.0}, {400.0, 0.0, 0.0}, {0.0, 400.0, 0.0}}};
+  const int side = static_cast<int>(std::ceil(std::sqrt(num_boxes)));
+  for (int i = 0; i < num_boxes; ++i) {
+    const double turn = 0.4 * uniform(draw), length = 8.0 + 3.0 * uniform(draw), width = 8.0 + 3.0 * uniform(draw);
+    const double y = 20.0 * (i / side - side / 2) + 3.0 * uniform(draw),
+                 x = 20.0 * (i % side - side / 2) + 3.0 * uniform(draw);
+    const Vec3 middle(x, y, 0.0);
+    const Vec3 along = length * Vec3(std::cos(turn), std::sin(turn), 0.0);
+    const Vec3 across = width * Vec3(-std::sin(turn), std::cos(turn), 0.0);
+    const Vec3 up(0.0, 0.0, 6.0 + 6.0 * uniform(draw)), corner = middle - 0.5 * along - 0.5 * across;
+    mirrors.push_back({corner, along, up});
+    mirrors.push_back({corner + across, along, up});
+    mirrors.push_back({corner, across, up});
+    mirrors.push_back({corner + along, across, up});
+    mirrors.push_back({corner + up, along, across});
+  }
+  return mirrors;
 }
 
 }  // namespace echopath::testing

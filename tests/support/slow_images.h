@@ -22,4 +22,7 @@ struct SlowPaths {
 SlowPaths slow_mirror_paths(const Vec3& transmitter, const Vec3& receiver, const std::vector<MirrorRectangle>& rectangles,
                             int max_bounces);
 
+// Walls and roofs of `num_boxes` houses that stand askew on a grid, and before them the ground: 5 num_boxes + 1 rectangles.
+std::vector<MirrorRectangle> city_block(int num_boxes);
+
 }  // namespace echopath::testing

@@ -98,14 +98,15 @@ def _parser() -> argparse.ArgumentParser:
 
     bench = commands.add_parser("bench", help="measure error and speed side by side")
     bench.add_argument("what", choices=["physics", "replay", "labels", "hard", "speed", "crowd", "certificate", "targets",
-                                       "actors"],
+                                       "actors", "worlds"],
                        help="physics: levels of canonical targets; replay: one record against tracing every chirp and "
                             "antenna; labels: cost of parts, rate of path expressions; hard: cases that break ray tracers "
                             "and coherent sums, each with its bound; speed: synthesis beside FINUFFT, frames, memory; "
                             "crowd: objects of a crowded scene against themselves alone; certificate: objects of random "
                             "moving scenes against traces of every 8th chirp, and what `validity` says of them; targets: a "
-                            "pedestrian, a road and spheres beside published levels; actors: cross sections of vehicles, people "
-                            "and the rest over aspect")
+                             "pedestrian, a road and spheres beside published levels; actors: cross sections of vehicles, people "
+                             "and the rest over aspect; worlds: cities of many walls and meshes, their mirror paths against a "
+                             "search over all walls")
     bench.add_argument("--out", required=True, metavar="DIR", help="folder of its results")
     bench.add_argument("--quick", action="store_true", help="few shifts and rays, for a look; hard: without the heavy cases")
     bench.add_argument("--rays-max", type=_positive, default=2**16, metavar="N",
@@ -257,7 +258,7 @@ def _labels(options) -> None:
 
 def _bench(options) -> None:
     from ..bench import (actors, certificate, crowd, hard, labels, published, replay, report, run_actors, run_certificate,
-                         run_crowd, run_labels, run_physics, run_published, run_replay, run_speed, speed)
+                         run_crowd, run_labels, run_physics, run_published, run_replay, run_speed, run_worlds, speed, worlds)
     from ..progress import progress_bars
 
     require_writable(options.out, "--out")
@@ -278,6 +279,8 @@ def _bench(options) -> None:
             lines = speed.describe(run_speed(options.out, quick=options.quick, progress=progress))
         elif options.what == "actors":
             lines = actors.describe(run_actors(options.out, quick=options.quick, progress=progress))
+        elif options.what == "worlds":
+            lines = worlds.describe(run_worlds(options.out, quick=options.quick, progress=progress))
         elif options.what == "targets":
             lines = published.describe(run_published(options.out, quick=options.quick, progress=progress))
         else:

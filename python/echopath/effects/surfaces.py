@@ -73,7 +73,7 @@ def bistatic_limit_deg(radius: float, frequency: float) -> float:
 def _tessellation(case: Case):
     if not case.coherent:
         return False, "no coherent echoes"
-    coarse = [mesh for mesh, _ in coarse_meshes(case.scene, case.radar.waveform.start_frequency)]
+    coarse = [case.meshes[one.mesh_id] for one in coarse_meshes(case.scene, case.radar.waveform.start_frequency)]
     return True, f"too coarse: {named(coarse)}" if coarse else "errs by 0.3 dB at most"
 
 

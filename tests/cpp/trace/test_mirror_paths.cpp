@@ -34,29 +34,6 @@ Scene scene_of(const std::vector<MirrorRectangle>& rectangles) {
   return scene;
 }
 
-// Walls and roofs of `num_boxes` houses that stand askew on a grid, and the ground: 5 num_boxes + 1 mirrors.
-std::vector<MirrorRectangle> city_block(int num_boxes) {
-  std::mt19937 draw(5);
-  std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  std::vector<MirrorRectangle> mirrors = {{{-200.0, -200.0, 0.0}, {400.0, 0.0, 0.0}, {0.0, 400.0, 0.0}}};
-  const int side = static_cast<int>(std::ceil(std::sqrt(num_boxes)));
-  for (int i = 0; i < num_boxes; ++i) {
-    const double turn = 0.4 * uniform(draw), length = 8.0 + 3.0 * uniform(draw), width = 8.0 + 3.0 * uniform(draw);
-    const double y = 20.0 * (i / side - side / 2) + 3.0 * uniform(draw),
-                 x = 20.0 * (i % side - side / 2) + 3.0 * uniform(draw);
-    const Vec3 middle(x, y, 0.0);
-    const Vec3 along = length * Vec3(std::cos(turn), std::sin(turn), 0.0);
-    const Vec3 across = width * Vec3(-std::sin(turn), std::cos(turn), 0.0);
-    const Vec3 up(0.0, 0.0, 6.0 + 6.0 * uniform(draw)), corner = middle - 0.5 * along - 0.5 * across;
-    mirrors.push_back({corner, along, up});
-    mirrors.push_back({corner + across, along, up});
-    mirrors.push_back({corner, across, up});
-    mirrors.push_back({corner + along, across, up});
-    mirrors.push_back({corner + up, along, across});
-  }
-  return mirrors;
-}
-
 std::vector<MirrorRectangle> random_mirrors(int count, unsigned seed) {
   std::mt19937 draw(seed);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
@@ -120,7 +97,7 @@ void expect_same(const Paths& paths, const testing::SlowPaths& slow, size_t leas
 }
 
 TEST(MirrorPaths, ACityOf400MirrorsHasThePathsOfAllSequencesOfThree) {
-  const auto mirrors = city_block(test::kIsSanitized ? 16 : 80);
+  const auto mirrors = testing::city_block(test::kIsSanitized ? 16 : 80);
   const Vec3 transmitter(9.3, 8.7, 3.1), receiver(11.2, -29.6, 2.3);
   const testing::SlowPaths slow = testing::slow_mirror_paths(transmitter, receiver, mirrors, 3);
   expect_same(traced(mirrors, transmitter, receiver, 3), slow, test::kIsSanitized ? 1 : 10);
@@ -137,7 +114,7 @@ TEST(MirrorPaths, SequencesOfAnyLengthMeetHalfway) {
 }
 
 TEST(MirrorPaths, AreInOrderWhateverTheNumberOfThreads) {
-  const auto mirrors = city_block(20);
+  const auto mirrors = testing::city_block(20);
   const int threads = num_threads();
   std::vector<std::vector<std::vector<int>>> found;
   for (const int count : {1, 4}) {
@@ -236,7 +213,7 @@ TEST(BoxHierarchy, FindsTheBoxesThatALoopFinds) {
 
 // What can be seen of a mirror lies in what shadows leave of it, and of a house one sees no back.
 TEST(FrustumShadows, LeaveAllThatIsSeenAndHideTheBacksOfHouses) {
-  const auto rectangles = city_block(20);
+  const auto rectangles = testing::city_block(20);
   const Scene scene = scene_of(rectangles);
   const PosedScene pose(scene, 0.0);
   const EmbreeScene geometry(scene, pose, Vec3::Zero());

@@ -1,6 +1,7 @@
 // Points of a flat mesh find their triangles.
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <random>
 
 #include "echopath/trace/geometry/plane_mesh.h"
@@ -32,10 +33,16 @@ struct HoledRectangle {
 
 constexpr double kSamePoint = 1e-6;  // m: u and v are in single precision
 
+std::vector<uint32_t> numbers(size_t count) {
+  std::vector<uint32_t> all(count);
+  std::iota(all.begin(), all.end(), 0u);
+  return all;
+}
+
 TEST(PlaneMesh, HitsLieWhereTheyWereAsked) {
   const HoledRectangle mesh;
   const Corners corners = mesh.corners();
-  const PlaneMesh plane(3, corners, mesh.along.cross(mesh.across).normalized());
+  const PlaneMesh plane(3, numbers(corners.size()), corners, mesh.along.cross(mesh.across).normalized());
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(-0.1, 1.1);
   int num_found = 0, num_missed = 0;
@@ -62,7 +69,7 @@ TEST(PlaneMesh, HitsLieWhereTheyWereAsked) {
 // Corners and edges belong to some triangle, however the rounding falls.
 TEST(PlaneMesh, HasNoCracks) {
   const HoledRectangle mesh;
-  const PlaneMesh plane(0, mesh.corners(), mesh.along.cross(mesh.across).normalized());
+  const PlaneMesh plane(0, numbers(mesh.corners().size()), mesh.corners(), mesh.along.cross(mesh.across).normalized());
   for (int i = 0; i <= 4 * HoledRectangle::kColumns; ++i) {
     for (int row = 0; row <= HoledRectangle::kRows; ++row) {
       EXPECT_TRUE(plane.locate(mesh.at(0.25 * i, row)) || (row > 4 && row < 8));
@@ -72,8 +79,8 @@ TEST(PlaneMesh, HasNoCracks) {
 
 TEST(PlaneMesh, TrianglesWithoutAreaHoldNoPoint) {
   const Vec3 a(0, 0, 0), b(1, 0, 0);
-  EXPECT_FALSE(PlaneMesh(0, {{a, b, Vec3(0.5 * (a + b))}}, Vec3::UnitZ()).locate(Vec3(0.5, 0, 0)));
-  EXPECT_FALSE(PlaneMesh(0, {}, Vec3::UnitZ()).locate(a));
+  EXPECT_FALSE(PlaneMesh(0, {0}, {{a, b, Vec3(0.5 * (a + b))}}, Vec3::UnitZ()).locate(Vec3(0.5, 0, 0)));
+  EXPECT_FALSE(PlaneMesh(0, {}, {}, Vec3::UnitZ()).locate(a));
 }
 
 }  // namespace

@@ -254,6 +254,10 @@ TEST(Trace, BadInputIsNamed) {
   Scene bent;
   add_mesh(bent, "bent", {{5, 0, 0}, {5, 1, 0}, {5, 1, 1}, {5.5, 0, 1}}, {{0, 1, 2}, {0, 2, 3}},
            share(Material::metal(true)));
+  EXPECT_EQ(message(bent, radar, small()), "");  // its two planes are mirrors
+  Node smooth = bent.nodes().front();
+  smooth.smooth = true;
+  bent.change(0, smooth);
   EXPECT_NE(message(bent, radar, small()).find("'bent' must be flat"), std::string::npos);
 
   Scene brief;

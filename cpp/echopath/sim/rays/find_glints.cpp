@@ -19,11 +19,15 @@ namespace {
 constexpr double kBeside = 1.5;     // cells: a point of reflection is seen where a path lies this near
 constexpr double kSamePoint = 0.5;  // of the narrower Fresnel zone
 
+// Names the mesh of a flagged mirror and, where the mesh is no plane, the triangle that was hit.
+using MirrorFace = std::pair<uint32_t, uint32_t>;
+constexpr uint32_t kWholeMesh = 0xFFFFFFFFu;
+
 // Identifies paths of one stratum that run over the same flagged mirrors to the same mesh and on.
 struct RouteKind {
   uint16_t stratum;
   uint32_t mesh;
-  std::vector<uint32_t> before, behind;  // meshes of the mirrors, from antenna to antenna
+  std::vector<MirrorFace> before, behind;  // from antenna to antenna
 
   bool operator<(const RouteKind& other) const {
     return std::tie(stratum, mesh, before, behind) < std::tie(other.stratum, other.mesh, other.before, other.behind);
@@ -99,7 +103,7 @@ class GlintSearch {
     for (int k = 0; k < paths_.num_bounces[p]; ++k) {
       const uint32_t mesh = paths_.hits_of(path)[k].mesh_id;
       if (paths_.scene->node_of(mesh).material->mirror) {
-        (surfaces == 0 ? kind.before : kind.behind).push_back(mesh);
+        (surfaces == 0 ? kind.before : kind.behind).push_back(face_of(paths_.hits_of(path)[k]));
       } else {
         kind.mesh = mesh;
         ++surfaces;
@@ -142,8 +146,17 @@ class GlintSearch {
     return out;
   }
 
-  // Returns the plane of the largest triangle; the others lie in it to a tenth of a millimetre.
-  Plane plane_of(uint32_t mirror) const {
+  MirrorFace face_of(const Hit& hit) const {
+    return {hit.mesh_id, paths_.scene->node_of(hit.mesh_id).mesh->is_flat() ? kWholeMesh : hit.triangle_id};
+  }
+
+  // Returns the plane of the triangle, or that of the mesh's largest one: the others lie in it to a tenth of a millimetre.
+  Plane plane_of(const MirrorFace& face) const {
+    const auto& [mirror, only] = face;
+    if (only != kWholeMesh) {
+      const auto [a, b, c] = pose_.world_triangle(mirror, only);
+      return {a, (b - a).cross(c - a).normalized()};
+    }
     const uint32_t num_triangles = static_cast<uint32_t>(paths_.scene->node_of(mirror).mesh->triangles().size());
     Plane largest{Vec3::Zero(), Vec3::Zero()};  // the normal is as long as twice the area
     for (uint32_t triangle = 0; triangle < num_triangles; ++triangle) {
@@ -157,7 +170,7 @@ class GlintSearch {
 
   std::vector<Glint> glints_of(const RouteKind& kind, const std::vector<SeenPath>& seen) const {
     std::vector<Plane> before;
-    for (const uint32_t mirror : kind.before) before.push_back(plane_of(mirror));
+    for (const MirrorFace& mirror : kind.before) before.push_back(plane_of(mirror));
     Vec3 first = paths_.frame.transmitter, second = paths_.frame.receiver;
     for (const Plane& plane : before) first = plane.image(first);
     for (size_t k = kind.behind.size(); k-- > 0;) second = plane_of(kind.behind[k]).image(second);

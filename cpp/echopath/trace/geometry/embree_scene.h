@@ -97,6 +97,7 @@ class EmbreeScene {
     const Triangle& triangle = surface.triangles[triangle_id];
     return {surface.vertices[triangle[0]], surface.vertices[triangle[1]], surface.vertices[triangle[2]]};
   }
+  size_t num_triangles(uint32_t mesh_id) const { return meshes_.triangles(mesh_id).size(); }
   // Returns vertices relative to the origin.
   const std::vector<Vec3>& vertices(uint32_t mesh_id) const { return meshes_.vertices(mesh_id); }
   const Eigen::AlignedBox3d& box(uint32_t mesh_id) const { return meshes_.box(mesh_id); }

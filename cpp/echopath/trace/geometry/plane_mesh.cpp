@@ -21,7 +21,8 @@ PlaneMesh::Facet PlaneMesh::facet_of(uint32_t triangle_id, const std::array<Vec3
   return facet;
 }
 
-PlaneMesh::PlaneMesh(uint32_t mesh_id, const std::vector<std::array<Vec3, 3>>& corners, const Vec3& normal)
+PlaneMesh::PlaneMesh(uint32_t mesh_id, const std::vector<uint32_t>& triangles,
+                     const std::vector<std::array<Vec3, 3>>& corners, const Vec3& normal)
     : mesh_id_(mesh_id), size_(std::max(1, static_cast<int>(std::sqrt(static_cast<double>(corners.size()) / 4.0)))) {
   const Vec3 first = normal.unitOrthogonal(), second = normal.cross(first);
   Eigen::AlignedBox2d box;
@@ -34,8 +35,8 @@ PlaneMesh::PlaneMesh(uint32_t mesh_id, const std::vector<std::array<Vec3, 3>>& c
   first_begin_ = box.isEmpty() ? 0.0 : box.min()[0] * size_ / extent[0];
   second_begin_ = box.isEmpty() ? 0.0 : box.min()[1] * size_ / extent[1];
   cells_.resize(static_cast<size_t>(size_) * static_cast<size_t>(size_));
-  for (uint32_t id = 0; id < corners.size(); ++id) {
-    const Facet facet = facet_of(id, corners[id]);
+  for (size_t id = 0; id < corners.size(); ++id) {
+    const Facet facet = facet_of(triangles[id], corners[id]);
     if (!facet.along_u.allFinite() || !facet.along_v.allFinite()) continue;
     Cell low{size_, size_}, high{0, 0};
     for (const Vec3& corner : corners[id]) {

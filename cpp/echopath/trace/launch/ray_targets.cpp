@@ -80,7 +80,7 @@ class RayTargetFinder {
   std::string name_over(const Target& target, const MirrorFrustum& frustum) const {
     std::string name = target.name;
     for (size_t k = frustum.mirrors.size(); k-- > 0;) {
-      name += " over " + scene_.node_of(mirrors_[static_cast<size_t>(frustum.mirrors[k])].mesh_id).name;
+      name += " over " + name_of(mirrors_[static_cast<size_t>(frustum.mirrors[k])], scene_);
     }
     return name;
   }
@@ -134,7 +134,7 @@ RayTargets find_ray_targets(const Scene& scene, const EmbreeScene& geometry, con
   out.num_objects = static_cast<int>(scene_objects.size());
   out.object_of_mesh.assign(scene.meshes().size(), -1);
   out.any_unaimed = out.num_objects > settings.most_objects;
-  if (out.any_unaimed) return out;
+  if (out.any_unaimed || scene_objects.empty()) return out;
   const RayTargetFinder finder(scene, geometry, mirrors, settings);
   std::vector<RayTarget> objects, images;
   for (int index = 0; index < out.num_objects; ++index) {

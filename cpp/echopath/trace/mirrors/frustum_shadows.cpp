@@ -59,12 +59,7 @@ std::vector<Vec3> rims_of(const std::vector<Vec3>& polygon, const Vec3& apex) {
 }
 
 FrustumShadows::FrustumShadows(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors)
-    : geometry_(geometry), mirrors_(mirrors) {
-  for (size_t i = 0; i < mirrors.size(); ++i) {
-    mirror_of_mesh_.resize(std::max<size_t>(mirror_of_mesh_.size(), mirrors[i].mesh_id + 1), -1);
-    mirror_of_mesh_[mirrors[i].mesh_id] = static_cast<int>(i);
-  }
-}
+    : geometry_(geometry), mirrors_(mirrors), mirror_of_(mirrors, geometry) {}
 
 // Returns whether something stands between the source and a point of the target. Sets `occluder` to a polygon of it, as far
 // as that lies between the two planes, or to none where its shadow cannot be told.
@@ -84,7 +79,7 @@ bool FrustumShadows::look(const FrustumSource& source, const Mirror& target, con
       source.lit_normal ? geometry_.intersect_from_surface(from, direction, met) : geometry_.intersect(from, direction, met);
   if (verdict != EmbreeScene::Verdict::kHit || met.distance > length - kBefore) return false;
   const uint32_t mesh = met.hit.mesh_id;
-  const int mirror = mesh < mirror_of_mesh_.size() ? mirror_of_mesh_[mesh] : -1;
+  const int mirror = mirror_of_(mesh, met.hit.triangle_id);
   if (mirror >= 0 && mirrors_[static_cast<size_t>(mirror)].is_solid) {
     occluder = mirrors_[static_cast<size_t>(mirror)].outline;
   } else {

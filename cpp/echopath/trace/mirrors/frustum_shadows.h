@@ -34,7 +34,7 @@ class FrustumShadows {
 
   const EmbreeScene& geometry_;
   const std::vector<Mirror>& mirrors_;
-  std::vector<int> mirror_of_mesh_;  // by mesh ID as far as mirrors go, -1: none
+  MirrorIndex mirror_of_;
 };
 
 }  // namespace echopath

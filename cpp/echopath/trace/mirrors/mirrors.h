@@ -1,5 +1,6 @@
 #pragma once
 // Finds the planes flagged `mirror`, and tells which coefficient of a surface holds for a polarisation.
+#include <string>
 #include <vector>
 
 #include "echopath/base/plane.h"
@@ -9,21 +10,45 @@
 
 namespace echopath {
 
-// Describes a mirror mesh; its point is relative to the trace origin.
+// Describes a plane of a flagged mesh; its point is relative to the trace origin.
 struct Mirror : Plane {
   uint32_t mesh_id = 0;
+  int face = -1;                    // which of its planes, where the mesh has several; -1: the whole mesh
+  std::vector<uint32_t> triangles;  // of the face; empty: all of the mesh
   const Material* material = nullptr;
   std::vector<Vec3> outline;  // corners of the convex hull, in order around it
-  bool is_solid = false;      // the mesh fills its outline: it has no holes and no notches
+  bool is_solid = false;      // the triangles fill the outline: they leave no holes and no notches
   PlaneMesh mesh;
 };
 
 // Returns the corners of the convex hull of points of a mirror's plane, in order around it (Andrew 1979).
 std::vector<Vec3> outline_of(const Mirror& mirror, const std::vector<Vec3>& points);
 
-// Returns all mirror meshes of the scene. Raises invalid_argument naming a mesh that is not flat (0.1 mm plus 1e-6 of its
-// size).
+// Returns the planes of all flagged meshes of the scene: one of a mesh that is flat (to 0.1 mm plus 1e-6 of its size), else
+// those that its triangles make (scene/mesh/planar_patches.h). Raises invalid_argument naming a smooth mesh that is not flat.
 std::vector<Mirror> find_mirrors(const Scene& scene, const EmbreeScene& geometry);
+
+// Returns the name of the mirror's mesh, with the number of its face where the mesh has several.
+std::string name_of(const Mirror& mirror, const Scene& scene);
+
+// Tells on which mirror a hit lies.
+class MirrorIndex {
+ public:
+  MirrorIndex(const std::vector<Mirror>& mirrors, const EmbreeScene& geometry);
+  // Returns whether the mesh is flagged.
+  bool is_mirror(uint32_t mesh_id) const { return mesh_id < of_mesh_.size() && of_mesh_[mesh_id] != kNone; }
+  // Returns the index of the mirror that the triangle is a part of; -1 for other meshes.
+  int operator()(uint32_t mesh_id, uint32_t triangle_id) const {
+    if (!is_mirror(mesh_id)) return kNone;
+    const int mirror = of_mesh_[mesh_id];
+    return mirror == kFaces ? of_triangle_[mesh_id][triangle_id] : mirror;
+  }
+
+ private:
+  static constexpr int kNone = -1, kFaces = -2;
+  std::vector<int> of_mesh_;                   // as far as mirrors go
+  std::vector<std::vector<int>> of_triangle_;  // by mesh ID, of those with several faces
+};
 
 // Decides between TE and TM at a hit by the transmit polarisation (scalar mode). It is TE where the part of `polarization`
 // across `direction` lies within 45 degrees of the normal of the plane of incidence. It is TM where the field would lie

@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kSamePoint = 1e-3;        // m: paths whose points lie so near to each other are one
 constexpr double kFlatPhase = 1.0 / 16.0;  // wavelengths by which a surface may stray from a plane of which it is a part
+constexpr double kAboutCorner = 4.0;       // half Fresnel zones between bounces at the same corner
+constexpr size_t kMostAtCorner = 4;        // bounces
 constexpr double kZoneShare = 1.0 - 1e-9;  // of the Fresnel zone that each surface must cover
 
 // Shoots a ray at the point.
@@ -38,7 +40,8 @@ class RayLocator final : public PointLocator {
 };
 
 bool reaches_plane(const Eigen::AlignedBox3d& box, const Plane& plane, double tolerance) {
-  return !box.isEmpty() && std::abs(plane.height(box.center())) <= 0.5 * plane.normal.cwiseAbs().dot(box.sizes()) + tolerance;
+  return !box.isEmpty() &&
+         std::abs(plane.height(box.center())) <= 0.5 * plane.normal.cwiseAbs().dot(box.sizes()) + tolerance;
 }
 
 bool is_near(const std::vector<Vec3>& points, const std::vector<Vec3>& others) {
@@ -124,7 +127,8 @@ std::vector<int> PlaneImages::joined(const std::vector<int>& sequence) {
   std::vector<int> out;
   for (const int index : sequence) {
     const Mirror& plane = planes_[static_cast<size_t>(index)];
-    const auto same = std::find_if(joined_.begin(), joined_.end(), [&](const Mirror& old) { return is_same_plane(old, plane); });
+    const auto same =
+        std::find_if(joined_.begin(), joined_.end(), [&](const Mirror& old) { return is_same_plane(old, plane); });
     out.push_back(static_cast<int>(same - joined_.begin()));
     if (same == joined_.end()) joined_.push_back(plane);
   }
@@ -144,11 +148,35 @@ PathBlock PlaneImages::find(const Job* job) {
     const std::optional<ImagePath> path = images.path_over(sequence);
     block.statistics.num_queries += images.num_queries();
     if (!path || !holds_zones(*path, block.statistics.num_queries)) continue;
-    if (!sequences_.insert(joined(sequence)).second) continue;
+    const std::vector<int> planes = joined(sequence);
+    if (!sequences_.insert(planes).second) continue;
     add_path(*path, settings_.is_polarized, block);
+    add_orders(planes, path->points);
   }
   find_triangles();
   return block;
+}
+
+// Leaves out the sequence, and its other orders of bounces that lie about a corner: what rays send over those by physical
+// optics is the part of the same field beyond the corner's edge.
+void PlaneImages::add_orders(const std::vector<int>& planes, const std::vector<Vec3>& points) {
+  std::vector<std::vector<int>> orders = {planes};
+  for (size_t begin = 0, end; begin < planes.size(); begin = end) {
+    for (end = begin + 1; end < planes.size() && end - begin < kMostAtCorner; ++end) {
+      const double before = (points[end] - settings_.transmitter).norm(), behind = (points[end] - settings_.receiver).norm();
+      const double half_zone = std::sqrt(wavelength_ * before * behind / (before + behind));
+      if ((points[end] - points[end - 1]).norm() > kAboutCorner * half_zone) break;
+    }
+    const size_t count = orders.size();
+    for (size_t i = 0; i < count; ++i) {
+      std::vector<int> order = orders[i];
+      const auto first = order.begin() + static_cast<int64_t>(begin), last = order.begin() + static_cast<int64_t>(end);
+      std::sort(first, last);
+      do orders.push_back(order);
+      while (std::next_permutation(first, last));
+    }
+  }
+  left_out_.insert(orders.begin(), orders.end());
 }
 
 // Finds the triangles of the joined planes.
@@ -184,7 +212,7 @@ bool PlaneImages::is_double(const Paths& paths, size_t path) const {
     if (plane < 0) return false;
     sequence.push_back(plane);
   }
-  return sequences_.contains(sequence);
+  return left_out_.contains(sequence);
 }
 
 void PlaneImages::leave_out_doubles(Paths& paths, Job* job) const {

@@ -37,6 +37,7 @@ class PlaneImages {
   bool holds_zones(const ImagePath& path, int64_t& num_queries) const;
   std::vector<int> joined(const std::vector<int>& sequence);
   bool is_same_plane(const Mirror& plane, const Mirror& other) const;
+  void add_orders(const std::vector<int>& planes, const std::vector<Vec3>& points);
   void find_triangles();
   bool is_double(const Paths& paths, size_t path) const;
 
@@ -46,11 +47,12 @@ class PlaneImages {
   double wavelength_;  // m
   double tolerance_;   // m: surfaces that stray no farther from a plane are parts of it
   std::set<Chain> chains_;
-  std::vector<Mirror> planes_;                                  // of the chain at hand
+  std::vector<Mirror> planes_;                                             // of the chain at hand
   std::map<std::vector<uint32_t>, std::vector<std::vector<Vec3>>> tried_;  // points of the sequences tried, by their meshes
-  std::vector<Mirror> joined_;                                  // planes of the paths found
-  std::set<std::vector<int>> sequences_;                        // the paths found, by joined planes
-  std::vector<std::vector<int>> plane_of_triangle_;             // by mesh ID; empty: none
+  std::vector<Mirror> joined_;                                             // planes of the paths found
+  std::set<std::vector<int>> sequences_;                                   // the paths found, by joined planes
+  std::set<std::vector<int>> left_out_;              // orders of planes whose echoes by rays are left out
+  std::vector<std::vector<int>> plane_of_triangle_;  // by mesh ID; empty: none
 };
 
 }  // namespace echopath

@@ -24,7 +24,7 @@ struct RayContext {
   }
   // Returns whether these rays pass over this mesh on their way to their target.
   bool is_passed(int stratum, uint32_t mesh_id) const {
-    return surfaces.mirror(mesh_id) >= 0 && !plan.is_field_of_view(stratum);
+    return surfaces.is_mirror(mesh_id) && !plan.is_field_of_view(stratum);
   }
   LobeProbabilities probabilities(const SurfaceModel& model, const SurfaceResponse& response) const {
     return lobe_probabilities(model, response, settings.specular_probability);

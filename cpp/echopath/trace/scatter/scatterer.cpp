@@ -64,7 +64,7 @@ template <class Weight>
 void Scatterer<Weight>::leave_mirror(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample) const {
   const SurfaceResponse& response = surface.response;
   const RayHit& point = surface.point;
-  const int mirror = context_.surfaces.mirror(point.hit.mesh_id);
+  const int mirror = context_.surfaces.mirror(point.hit);
   if (mirror >= 0) {
     ray.coefficient *=
         mirror_sign(*surface.material, surface.mode, context_.settings.polarization, ray.direction, point.normal);

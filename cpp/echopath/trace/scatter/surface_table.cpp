@@ -37,14 +37,13 @@ double width_of_smooth(const Node& node, const std::vector<Vec3>& vertices) {
 
 SurfaceTable::SurfaceTable(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                            double frequency)
-    : mirror_of_mesh_(scene.meshes().size(), -1) {
+    : mirror_of_(mirrors, geometry) {
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
     const Node& node = scene.node_of(id);
     models_.emplace_back(*node.material, frequency);
     smooth_width_.push_back(width_of_smooth(node, geometry.vertices(id)));
     has_smooth_ = has_smooth_ || is_unflagged_smooth(node);
   }
-  for (size_t i = 0; i < mirrors.size(); ++i) mirror_of_mesh_[mirrors[i].mesh_id] = static_cast<int>(i);
 }
 
 }  // namespace echopath

@@ -11,8 +11,9 @@ class SurfaceTable {
  public:
   SurfaceTable(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, double frequency);
   const SurfaceModel& model(uint32_t mesh_id) const { return models_[mesh_id]; }
-  // Returns the index of the flagged mirror that the mesh is; -1 for other meshes.
-  int mirror(uint32_t mesh_id) const { return mirror_of_mesh_[mesh_id]; }
+  bool is_mirror(uint32_t mesh_id) const { return mirror_of_.is_mirror(mesh_id); }
+  // Returns the index of the flagged mirror on which a hit lies; -1 on other meshes.
+  int mirror(const Hit& hit) const { return mirror_of_(hit.mesh_id, hit.triangle_id); }
   // Returns the width in m of the unflagged smooth surface of which the mesh is a part; 0 for meshes of facets, whose extent
   // is measured where they are hit.
   double smooth_width(uint32_t mesh_id) const { return smooth_width_[mesh_id]; }
@@ -21,7 +22,7 @@ class SurfaceTable {
 
  private:
   std::vector<SurfaceModel> models_;
-  std::vector<int> mirror_of_mesh_;
+  MirrorIndex mirror_of_;
   std::vector<double> smooth_width_;
   bool has_smooth_ = false;
 };

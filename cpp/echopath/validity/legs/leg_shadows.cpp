@@ -92,8 +92,9 @@ bool LegTester::is_blocked(const Vec3& from, const Vec3& to, int image) {
   const EmbreeScene::Verdict verdict = geometry_.intersect(from, (to - from) / length, met);
   if (verdict == EmbreeScene::Verdict::kFalseHit) return false;
   const bool is_there = verdict == EmbreeScene::Verdict::kHit;
-  if (is_there && met.hit.mesh_id == path_.hits[image].mesh_id) return false;
   const double slack = kOnMirrorAbsolute + kOnMirrorRelative * length;
+  const bool is_on_plane = is_there && std::abs(hits_[image].normal.dot(met.position - hits_[image].point)) < slack;
+  if (is_on_plane && met.hit.mesh_id == path_.hits[image].mesh_id) return false;
   if (is_there && std::abs(met.distance - length) < slack) return false;
   if (is_there && met.distance < length) return true;
   shadows_.off_mirror |= uint64_t{1} << image;

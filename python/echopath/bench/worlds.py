@@ -1,0 +1,220 @@
+"""`echopath bench worlds`: what a city costs, and whether all of its mirror paths are there.
+
+The city is one of houses that stand askew on a grid, each house one mesh of five walls, and the ground. Its truth is a slow
+search: images over every pair of walls that the antennas can light, shadows by a loop over all walls. Beside the seconds of
+a trace stand those of its ray queries alone, and the error stands beside both.
+"""
+from __future__ import annotations
+
+import dataclasses
+import json
+from pathlib import Path
+
+import numpy as np
+
+import echopath as ep
+
+from ..files import write_texts
+from .speed_tracer import bare_share
+from .timing import processor_time
+
+FREQUENCY = 3.5e9                        # Hz
+TRANSMITTER, RECEIVER = (9.3, 8.7, 13.1), (11.2, -29.6, 12.3)   # m
+HOUSES, QUICK_HOUSES = 64, 9
+RAYS, QUICK_RAYS = 1_000_000, 50_000
+MESHES, QUICK_MESHES = 100_000, 2_000
+MESH_RAYS = 100_000
+BOUNCES = 3                              # of traces; the slow search goes to two
+DELAY_LIMIT = 1e-12                      # s
+LEVEL_LIMIT_DB = 0.01
+NO_STRATUM = 65535                       # of paths by images
+AT_RIM = 1e-6                            # m: paths that pass a rim this near may be there or not
+
+
+@dataclasses.dataclass(frozen=True)
+class Wall:
+    """A rectangle: corner [3] and edges [3] in m, at right angles."""
+
+    corner: np.ndarray
+    first: np.ndarray
+    second: np.ndarray
+
+    @property
+    def normal(self) -> np.ndarray:
+        """Unit vector."""
+        across = np.cross(self.first, self.second)
+        return across / np.linalg.norm(across)
+
+    def height(self, point) -> float:
+        """Distance in m from the plane, on the side of the normal."""
+        return float(self.normal @ (point - self.corner))
+
+    def image(self, point) -> np.ndarray:
+        """The mirror image of a point."""
+        return point - 2.0 * self.height(point) * self.normal
+
+    def margin(self, point) -> float:
+        """How far in m a point of the plane lies within the rectangle; negative outside."""
+        parts = [np.dot(point - self.corner, edge) / np.linalg.norm(edge) for edge in (self.first, self.second)]
+        sizes = [np.linalg.norm(edge) for edge in (self.first, self.second)]
+        return min(min(part, size - part) for part, size in zip(parts, sizes))
+
+
+def houses(count: int, seed: int = 5) -> list[list[Wall]]:
+    """The ground, and the walls and the roof of each house."""
+    draw = np.random.default_rng(seed)
+    side = int(np.ceil(np.sqrt(count)))
+    ground = Wall(np.array([-200.0, -200.0, 0.0]), np.array([400.0, 0.0, 0.0]), np.array([0.0, 400.0, 0.0]))
+    city = [[ground]]
+    for index in range(count):
+        turn, length, width, high = draw.uniform((0.0, 8.0, 8.0, 6.0), (0.4, 11.0, 11.0, 12.0))
+        middle = np.array([20.0 * (index % side - side // 2), 20.0 * (index // side - side // 2), 0.0])
+        along = length * np.array([np.cos(turn), np.sin(turn), 0.0])
+        across = width * np.array([-np.sin(turn), np.cos(turn), 0.0])
+        up, corner = np.array([0.0, 0.0, high]), middle - 0.5 * along - 0.5 * across
+        city.append([Wall(corner, along, up), Wall(corner + across, along, up), Wall(corner, across, up),
+                     Wall(corner + along, across, up), Wall(corner + up, along, across)])
+    return city
+
+
+def scene_of(city: list[list[Wall]], *, mirror: bool) -> ep.Scene:
+    """Each house a mesh of metal."""
+    scene = ep.Scene()
+    for index, walls in enumerate(city):
+        vertices = np.concatenate([[wall.corner, wall.corner + wall.first, wall.corner + wall.first + wall.second,
+                                    wall.corner + wall.second] for wall in walls])
+        triangles = [[4 * k, 4 * k + i, 4 * k + i + 1] for k in range(len(walls)) for i in (1, 2)]
+        scene.add(ep.Mesh(vertices, triangles), name=f"house_{index}" if index else "ground",
+                  material=ep.Material.metal(mirror=mirror))
+    return scene
+
+
+def radar() -> ep.Radar:
+    """One antenna each."""
+    waveform = ep.ChirpSequence(start_frequency=FREQUENCY, bandwidth=1e8, num_samples=64, num_chirps=1)
+    return ep.Radar(waveform, transmitters=[ep.Antenna(TRANSMITTER)], receivers=[ep.Antenna(RECEIVER)])
+
+
+def slow_lengths(walls: list[Wall], max_bounces: int = 2) -> list[float]:
+    """Lengths in m of all paths over at most `max_bounces` walls, by images over every sequence."""
+    transmitter, receiver = np.array(TRANSMITTER), np.array(RECEIVER)
+    sequences = [(wall,) for wall in walls]
+    if max_bounces > 1:
+        sequences += [(one, two) for one in walls for two in walls if one is not two]
+    lengths = []
+    for sequence in sequences:
+        points = _points(sequence, transmitter, receiver)
+        if points is not None and not _is_blocked(points, walls):
+            lengths.append(float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum()))
+    return sorted(lengths)
+
+
+def _points(sequence, transmitter, receiver):
+    images = [transmitter]
+    for wall in sequence:
+        images.append(wall.image(images[-1]))
+    points = [receiver]
+    for wall, image in zip(reversed(sequence), reversed(images)):
+        before, behind = wall.height(points[0]), wall.height(image)
+        if before * behind >= 0.0:
+            return None
+        point = points[0] + before / (before - behind) * (image - points[0])
+        if wall.margin(point) < 0.0:
+            return None
+        points.insert(0, point)
+    return np.array([transmitter, *points])
+
+
+def _is_blocked(points, walls) -> bool:
+    for begin, end in zip(points[:-1], points[1:]):
+        for wall in walls:
+            one, other = wall.height(begin), wall.height(end)
+            if one * other < 0.0 and min(abs(one), abs(other)) > AT_RIM:
+                if wall.margin(begin + one / (one - other) * (end - begin)) > 0.0:
+                    return True
+    return False
+
+
+def image_paths(paths: ep.Paths, max_bounces: int):
+    """(lengths in m, errors in dB of the level) of the image paths over at most so many walls, by length. Metal walls keep
+    the level of the length."""
+    own = (np.asarray(paths.stratum) == NO_STRATUM) & (np.asarray(paths.num_bounces) <= max_bounces)
+    lengths = np.asarray(paths.lengths([paths.frame.trace_time], 0, 0))[0][own]
+    wavelength = ep.speed_of_light / FREQUENCY
+    expected = wavelength * np.sqrt(radar().transmit_power) / (4.0 * np.pi * lengths)
+    order = np.argsort(lengths)
+    return lengths[order], 20.0 * np.log10(np.abs(paths.amplitude[own]) / expected)[order]
+
+
+def compare(found, truth) -> dict:
+    """Paths of the truth that are missing, paths beside it, and the worst delay error in s of those that are there."""
+    gaps = np.abs(np.subtract.outer(np.asarray(truth), np.asarray(found))) if len(found) and len(truth) else np.empty((0, 0))
+    errors = gaps.min(axis=1) / ep.speed_of_light if gaps.size else np.empty(0)
+    is_there = errors < DELAY_LIMIT
+    return {"paths": len(truth), "missing": len(truth) - int(is_there.sum()), "beside": len(found) - int(is_there.sum()),
+            "delay_error_s": float(errors[is_there].max()) if is_there.any() else 0.0}
+
+
+def measure_city(*, mirror: bool, quick: bool) -> dict:
+    """A city of houses whose walls are marked as mirrors, or nothing is."""
+    city = houses(QUICK_HOUSES if quick else HOUSES)
+    scene, rays = scene_of(city, mirror=mirror), 1000 if mirror else QUICK_RAYS if quick else RAYS
+    seconds, paths = processor_time(lambda: ep.trace(scene, radar(), num_rays=rays, max_bounces=BOUNCES, polarization="scalar"))
+    walls = [wall for house in city for wall in house]
+    lengths, level_errors = image_paths(paths, 2)
+    bare = bare_share(scene, radar(), rays, 3) if not mirror else {"share": float("nan")}
+    return {"name": "marked walls" if mirror else "unmarked walls", "walls": len(walls), "rays": rays, "seconds": seconds,
+            "bare_share": bare["share"], **compare(lengths, slow_lengths(walls)),
+            "level_error_db": float(np.abs(level_errors).max()) if len(level_errors) else 0.0}
+
+
+def measure_meshes(*, quick: bool) -> dict:
+    """Many plates, each a mesh of its own, and how the seconds grow from a tenth of them."""
+    count = QUICK_MESHES if quick else MESHES
+    seconds = {}
+    for number in (count // 10, count):
+        scene = _plates(number)
+        seconds[number], _ = processor_time(lambda: ep.trace(scene, radar(), num_rays=MESH_RAYS, max_bounces=2))
+    return {"name": "meshes", "meshes": count, "rays": MESH_RAYS, "seconds": seconds[count],
+            "seconds_of_a_tenth": seconds[count // 10]}
+
+
+def _plates(count: int) -> ep.Scene:
+    scene, metal = ep.Scene(), ep.Material.metal()
+    mesh = ep.Mesh([[-0.5, -0.5, 0.0], [0.5, -0.5, 0.0], [0.5, 0.5, 0.0], [-0.5, 0.5, 0.0]], [[0, 1, 2], [0, 2, 3]])
+    side = int(np.ceil(np.sqrt(count)))
+    for index in range(count):
+        scene.add(mesh, name=f"plate_{index}", material=metal, position=(3.0 * (index % side), 3.0 * (index // side), 0.0))
+    return scene
+
+
+def run_worlds(folder, *, quick: bool = False, progress=None) -> dict:
+    """Measures cities and many meshes, and writes worlds.json to `folder`. progress: callable (stage, fraction), or None."""
+    stages = (lambda: measure_city(mirror=False, quick=quick), lambda: measure_city(mirror=True, quick=quick),
+              lambda: measure_meshes(quick=quick))
+    rows = []
+    for index, stage in enumerate(stages):
+        if progress:
+            progress("worlds", index / len(stages))
+        rows.append(stage())
+    if progress:
+        progress("worlds", 1.0)
+    results = {"rows": rows}
+    write_texts(Path(folder), {"worlds.json": json.dumps(results, indent=1)})
+    return results
+
+
+def describe(results: dict) -> list[str]:
+    """The rows in words."""
+    lines = []
+    for row in results["rows"]:
+        if row["name"] == "meshes":
+            lines.append(f"{row['meshes']} meshes, {row['rays']} rays: {row['seconds']:.2f} s of the processor, a tenth of the "
+                         f"meshes {row['seconds_of_a_tenth']:.2f} s")
+            continue
+        bare = "" if np.isnan(row["bare_share"]) else f", its queries alone {100.0 * row['bare_share']:.0f} % of the trace"
+        lines.append(f"{row['name']}, {row['walls']}, {row['rays']} rays, {BOUNCES} bounces: {row['seconds']:.2f} s of the "
+                     f"processor{bare}; {row['paths'] - row['missing']} of {row['paths']} paths over one or two walls, "
+                     f"{row['beside']} beside them, delays to {row['delay_error_s']:.1e} s (limit {DELAY_LIMIT:g}), levels to "
+                     f"{row['level_error_db']:.4f} dB (limit {LEVEL_LIMIT_DB:g})")
+    return lines

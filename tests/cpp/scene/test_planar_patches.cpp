@@ -1,0 +1,48 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "echopath/scene/mesh/planar_patches.h"
+
+namespace echopath::test_planar_patches {
+namespace {
+
+using Patches = std::vector<std::vector<uint32_t>>;
+
+TEST(PlanarPatches, ABoxHasSixPlanesOfTwoTriangles) {
+  std::vector<Vec3> vertices;
+  for (int i = 0; i < 8; ++i) vertices.emplace_back(i & 1, i >> 1 & 1, i >> 2 & 1);
+  const std::vector<Triangle> triangles = {{0, 1, 3}, {0, 3, 2}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                                           {2, 3, 7}, {2, 7, 6}, {0, 2, 6}, {0, 6, 4}, {1, 3, 7}, {1, 7, 5}};
+  const Patches expected = {{0, 1}, {2, 3}, {4, 5}, {6, 7}, {8, 9}, {10, 11}};
+  EXPECT_EQ(planar_patches(vertices, triangles, 1e-6), expected);
+}
+
+// A wall of many triangles with noise below the tolerance, and a plane across its last edge.
+TEST(PlanarPatches, JoinTrianglesWithinTheToleranceAndNoOthers) {
+  constexpr uint32_t kSide = 12;
+  std::mt19937 draw(3);
+  std::uniform_real_distribution<double> noise(-1e-5, 1e-5);
+  std::vector<Vec3> vertices;
+  for (uint32_t row = 0; row <= kSide; ++row) {
+    for (uint32_t column = 0; column <= kSide; ++column)
+      vertices.emplace_back(row == kSide ? 0.5 : noise(draw), 0.1 * column, 0.1 * row);
+  }
+  std::vector<Triangle> triangles;
+  for (uint32_t row = 0; row < kSide; ++row) {
+    for (uint32_t column = 0; column < kSide; ++column) {
+      const uint32_t a = row * (kSide + 1) + column, b = a + kSide + 1;
+      triangles.push_back({a, a + 1, b + 1});
+      triangles.push_back({a, b + 1, b});
+    }
+  }
+  const Patches found = planar_patches(vertices, triangles, 1e-4);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].size(), 2 * kSide);  // the slope has the largest triangles
+  EXPECT_EQ(found[1].size(), 2 * kSide * (kSide - 1));
+  EXPECT_EQ(planar_patches({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}}, {{0, 1, 2}, {3, 4, 5}}, 1e-4),
+            (Patches{{0}, {1}}));  // they do not touch
+}
+
+}  // namespace
+}  // namespace echopath::test_planar_patches

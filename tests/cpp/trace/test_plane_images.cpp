@@ -1,0 +1,143 @@
+// Images on planes that nobody flagged, against loops over all sequences and the closed form of an endless plane.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "echopath/base/parallel.h"
+#include "echopath/trace/trace.h"
+#include "support/sanitized.h"
+#include "support/scenes.h"
+#include "support/slow_images.h"
+
+namespace echopath::test_plane_images {
+namespace {
+
+using testing::MirrorRectangle;
+using Sequences = std::set<std::vector<int>>;
+
+constexpr double kFieldTolerance = 1e-6;  // single precision of the weight
+
+MaterialPtr metal(bool mirror) {
+  Material material;
+  material.conductor = true;
+  material.mirror = mirror;
+  return testing::share(material);
+}
+
+void add_house(Scene& scene, const std::string& name, const MirrorRectangle* faces, int count, const MaterialPtr& material) {
+  std::vector<Vec3> vertices;
+  std::vector<Triangle> triangles;
+  for (int i = 0; i < count; ++i) {
+    const auto& [corner, a, b] = faces[i];
+    const auto first = static_cast<uint32_t>(vertices.size());
+    for (const Vec3& vertex : {corner, Vec3(corner + a), Vec3(corner + a + b), Vec3(corner + b)}) vertices.push_back(vertex);
+    triangles.push_back({first, first + 1, first + 2});
+    triangles.push_back({first, first + 2, first + 3});
+  }
+  testing::add_mesh(scene, name, vertices, triangles, material);
+}
+
+// The ground and houses of five rectangles, each one mesh.
+Scene houses(const std::vector<MirrorRectangle>& rectangles, bool mirror) {
+  Scene scene;
+  add_house(scene, "ground", rectangles.data(), 1, metal(mirror));
+  for (size_t i = 1; i < rectangles.size(); i += 5)
+    add_house(scene, "house_" + std::to_string(i), rectangles.data() + i, 5, metal(mirror));
+  return scene;
+}
+
+// Waves so short that every surface is larger than its Fresnel zone.
+Radar short_waves(const Vec3& transmitter, const Vec3& receiver) {
+  Radar radar = testing::plain_radar(transmitter, receiver);
+  radar.waveform.start_frequency = 1e12;
+  return radar;
+}
+
+Sequences image_sequences(const Paths& paths) {
+  Sequences found;
+  int count = 0;
+  for (size_t i = 0; i < static_cast<size_t>(paths.num_paths()); ++i) {
+    if (paths.stratum[i] != kNoStratum) continue;
+    std::vector<int> sequence;
+    for (int k = 0; k < paths.num_bounces[i]; ++k) {
+      const Hit& hit = paths.hits_of(static_cast<int64_t>(i))[k];
+      const int mesh = static_cast<int>(hit.mesh_id), face = static_cast<int>(hit.triangle_id) / 2;
+      sequence.push_back(mesh == 0 ? 0 : 1 + 5 * (mesh - 1) + face);
+    }
+    found.insert(sequence);
+    ++count;
+  }
+  EXPECT_EQ(static_cast<int>(found.size()), count);
+  return found;
+}
+
+Paths traced(const Scene& scene, const Radar& radar, int64_t num_rays, int max_bounces) {
+  TraceSettings settings;
+  settings.num_rays = num_rays;
+  settings.max_bounces = max_bounces;
+  return trace(scene, radar, settings);
+}
+
+TEST(PlaneImages, RaysShowAllPathsOfACityOfHouses) {
+  const auto rectangles = testing::city_block(test::kIsSanitized ? 9 : 20);
+  const Vec3 transmitter(9.3, 8.7, 3.1), receiver(11.2, -29.6, 2.3);
+  const testing::SlowPaths slow = testing::slow_mirror_paths(transmitter, receiver, rectangles, 2);
+  const Sequences found = image_sequences(traced(houses(rectangles, false), short_waves(transmitter, receiver), 100'000, 2));
+  for (const auto& sequence : slow.found) EXPECT_TRUE(found.contains(sequence)) << ::testing::PrintToString(sequence);
+  for (const auto& sequence : found) {
+    EXPECT_TRUE(slow.found.contains(sequence) || slow.unsure.contains(sequence)) << ::testing::PrintToString(sequence);
+  }
+  EXPECT_GE(slow.found.size(), test::kIsSanitized ? 1u : 4u);
+}
+
+TEST(PlaneImages, FacesOfFlaggedHousesAreMirrorsOfTheirOwn) {
+  const auto rectangles = testing::city_block(test::kIsSanitized ? 4 : 20);
+  const Vec3 transmitter(9.3, 8.7, 3.1), receiver(11.2, -29.6, 2.3);
+  const testing::SlowPaths slow = testing::slow_mirror_paths(transmitter, receiver, rectangles, 3);
+  const Sequences found = image_sequences(traced(houses(rectangles, true), short_waves(transmitter, receiver), 1, 3));
+  for (const auto& sequence : slow.found) EXPECT_TRUE(found.contains(sequence)) << ::testing::PrintToString(sequence);
+  for (const auto& sequence : found) {
+    EXPECT_TRUE(slow.found.contains(sequence) || slow.unsure.contains(sequence)) << ::testing::PrintToString(sequence);
+  }
+}
+
+// Returns the one coherent path that lies on a square of that width at x = 10 m before the radar.
+std::vector<size_t> coherent_paths(const Paths& paths) {
+  std::vector<size_t> out;
+  for (size_t i = 0; i < static_cast<size_t>(paths.num_paths()); ++i) {
+    if (paths.diffuse[i] == 0) out.push_back(i);
+  }
+  return out;
+}
+
+Paths before_a_square(double width) {
+  Scene scene;
+  testing::add_rectangle(scene, "wall", {10.0, -0.51 * width, -0.49 * width}, {0, width, 0}, {0, 0, width}, metal(false));
+  return traced(scene, testing::plain_radar(Vec3::Zero(), Vec3(0, 0.1, 0)), 20'000, 2);
+}
+
+TEST(PlaneImages, AWallLargerThanItsZoneIsOnePathAndASmallerOneIsNone) {
+  const Paths wall = before_a_square(4.0);
+  ASSERT_EQ(coherent_paths(wall).size(), 1u);
+  EXPECT_EQ(wall.stratum[coherent_paths(wall)[0]], kNoStratum);
+  EXPECT_NEAR(std::abs(wall.weight[coherent_paths(wall)[0]]), 1.0, kFieldTolerance);
+  const Paths plate = before_a_square(0.2);
+  EXPECT_GT(coherent_paths(plate).size(), 100u);
+  for (const size_t path : coherent_paths(plate)) EXPECT_NE(plate.stratum[path], kNoStratum);
+}
+
+TEST(PlaneImages, AreTheSameForAnyNumberOfThreads) {
+  const Scene scene = houses(testing::city_block(9), false);
+  const Radar radar = short_waves({9.3, 8.7, 3.1}, {11.2, -29.6, 2.3});
+  set_num_threads(1);
+  const Paths one = traced(scene, radar, 20'000, 3);
+  set_num_threads(3);
+  const Paths three = traced(scene, radar, 20'000, 3);
+  set_num_threads(0);
+  EXPECT_EQ(one.weight, three.weight);
+  EXPECT_EQ(one.offsets, three.offsets);
+  EXPECT_EQ(one.stratum, three.stratum);
+}
+
+}  // namespace
+}  // namespace echopath::test_plane_images

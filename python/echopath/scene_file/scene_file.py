@@ -20,9 +20,9 @@ class SceneFile:
     """What a scene file says.
 
     path: of the file; title: one line; scene, radar: ready to trace, radar None of a foreign scene, which has none; parts:
-    {name: expression} (one partition), {name: {name: expression}} (several) or {}; trace: TraceSettings, signal: SignalSettings, labels: LabelSettings or None: none are asked
-    for; angle, detections: tables of the file, as keywords by `angle_settings()` and `detection_settings()`; guard: of
-    `ep.simulate`.
+    {name: expression} (one partition), {name: {name: expression}} (several) or {}; trace: TraceSettings, signal:
+    SignalSettings, labels: LabelSettings or None: none are asked for; angle, detections: tables of the file, as keywords by
+    `angle_settings()` and `detection_settings()`; guard: of `ep.simulate`.
     """
 
     path: Path

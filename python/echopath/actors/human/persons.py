@@ -6,7 +6,7 @@ from ...checks import checked, optional, positive, real
 from ..actor import Actor
 from ..surfaces import edge_length
 from .anthropometry import Proportions
-from .pedestrian import HEIGHTS, MIN_KEYFRAME_RATE, _material, body_arrays, pedestrian, walker_arrays
+from .pedestrian import HEIGHTS, MIN_KEYFRAME_RATE, body_arrays, material_rule, pedestrian, walker_arrays
 from .posture import standing
 from .running import RunningGait, running_speeds
 
@@ -15,7 +15,7 @@ CHILD_HEIGHTS = (0.8, 1.5)   # m, of children of about 1 to 12 years
 
 @checked(height=real(*HEIGHTS, unit="m"), speed=positive("m/s"), start_time=real(unit="s"), duration=positive("s"),
          phase=real(unit="cycles"), edge=positive("m"), keyframe_rate=real(MIN_KEYFRAME_RATE, unit="1/s"),
-         clothing=_material, skin=_material)
+         clothing=material_rule, skin=material_rule)
 def runner(*, height: float = 1.78, speed: float = 3.0, start_time: float = -0.5, duration: float = 2.5, phase: float = 0.0,
            edge: float = 0.018, keyframe_rate: float = 240.0, clothing: str | _core.Material = "clothing",
            skin: str | _core.Material = "skin") -> Actor:
@@ -36,7 +36,7 @@ def runner(*, height: float = 1.78, speed: float = 3.0, start_time: float = -0.5
     return Actor([part.build() for part in arrays])
 
 
-@checked(height=real(*HEIGHTS, unit="m"), edge=positive("m"), clothing=_material, skin=_material)
+@checked(height=real(*HEIGHTS, unit="m"), edge=positive("m"), clothing=material_rule, skin=material_rule)
 def standing_person(*, height: float = 1.78, edge: float = 0.018, clothing: str | _core.Material = "clothing",
                     skin: str | _core.Material = "skin") -> Actor:
     """A person who stands still at the origin and looks along +x, arms hanging; the parts are those of `pedestrian`.

@@ -11,7 +11,7 @@ from ..actor import Actor, PartArrays
 from ..human.anthropometry import Proportions
 from ..human.foot import Sole
 from ..human.gait import Frames
-from ..human.pedestrian import MIN_KEYFRAME_RATE, _material, body_arrays, keyframe_times
+from ..human.pedestrian import MIN_KEYFRAME_RATE, body_arrays, keyframe_times, material_rule
 from ..human.posture import leg, reaching_arm, trunk
 from ..human.rotations import about_y
 from ..solids import block
@@ -26,8 +26,8 @@ SEAT_DEPTH = 0.052                       # of the saddle below the hip joints, i
 
 
 @checked(height=real(*RIDER_HEIGHTS, unit="m"), speed=positive("m/s"), start_time=real(unit="s"), duration=positive("s"),
-         phase=real(unit="cycles"), edge=positive("m"), keyframe_rate=real(MIN_KEYFRAME_RATE, unit="1/s"), clothing=_material,
-         skin=_material)
+         phase=real(unit="cycles"), edge=positive("m"), keyframe_rate=real(MIN_KEYFRAME_RATE, unit="1/s"), clothing=material_rule,
+         skin=material_rule)
 def cyclist(*, height: float = 1.78, speed: float = 5.0, start_time: float = -0.5, duration: float = 2.5, phase: float = 0.25,
             edge: float = 0.02, keyframe_rate: float = 120.0, clothing: str | _core.Material = "clothing",
             skin: str | _core.Material = "skin") -> Actor:

@@ -6,6 +6,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from numpy.typing import ArrayLike
 import types
+from echopath.effects.rules import Effect
+from echopath.frame_file.frame import LeftOut
+from typing import Literal
 import collections.abc
 from echopath import DeviceError
 from echopath import FileError
@@ -36,7 +39,7 @@ class Motion:
         Times [N] in s, ascending, where the motion is not smooth; of a loop those of one run.
         """
     @property
-    def span(self) -> tuple[typing.Any, ...]:
+    def span(self) -> tuple[float, float]:
         """
         (begin, end) in s of the times it is defined on; infinite where unlimited.
         """
@@ -62,7 +65,7 @@ class LinearMotion(Motion):
         ...
     def __setstate__(self, arg0: typing.Any) -> None:
         ...
-    def replace(self, **kwargs: typing.Any) -> LinearMotion:
+    def replace(self, *, velocity: ArrayLike = ..., angular_velocity: ArrayLike = ...) -> LinearMotion:
         """
         A copy with other values of some arguments.
 
@@ -97,13 +100,13 @@ class KeyframeMotion(Motion):
         ...
     def __hash__(self) -> int:
         ...
-    def __init__(self, times: ArrayLike, translations: ArrayLike | None = None, rotations: ArrayLike | None = None, interpolation: str = 'cubic') -> None:
+    def __init__(self, times: ArrayLike, translations: ArrayLike | None = None, rotations: ArrayLike | None = None, interpolation: Literal['cubic', 'linear'] = 'cubic') -> None:
         ...
     def __repr__(self) -> str:
         ...
     def __setstate__(self, arg0: typing.Any) -> None:
         ...
-    def replace(self, **kwargs: typing.Any) -> KeyframeMotion:
+    def replace(self, *, times: ArrayLike = ..., translations: ArrayLike | None = ..., rotations: ArrayLike | None = ..., interpolation: Literal['cubic', 'linear'] = ...) -> KeyframeMotion:
         """
         A copy with other values of some arguments.
 
@@ -156,7 +159,7 @@ class Deformation:
         V, of each instant
         """
     @property
-    def span(self) -> tuple[typing.Any, ...]:
+    def span(self) -> tuple[float, float]:
         """
         (begin, end) in s of the times it is defined on; infinite where unlimited.
         """
@@ -177,13 +180,13 @@ class VertexSequence(Deformation):
         ...
     def __hash__(self) -> int:
         ...
-    def __init__(self, times: ArrayLike, vertices: ArrayLike, interpolation: str = 'cubic') -> None:
+    def __init__(self, times: ArrayLike, vertices: ArrayLike, interpolation: Literal['cubic', 'linear'] = 'cubic') -> None:
         ...
     def __repr__(self) -> str:
         ...
     def __setstate__(self, arg0: typing.Any) -> None:
         ...
-    def replace(self, **kwargs: typing.Any) -> VertexSequence:
+    def replace(self, *, times: ArrayLike = ..., vertices: ArrayLike = ..., interpolation: Literal['cubic', 'linear'] = ...) -> VertexSequence:
         """
         A copy with other values of some arguments.
 
@@ -233,7 +236,7 @@ class Curve:
         """
         Values [C] at `time` in s, column by column. Raises ValueError.
         """
-    def replace(self, **kwargs: typing.Any) -> Curve:
+    def replace(self, *, times: ArrayLike = ..., values: ArrayLike = ..., interpolation: str = ..., in_tangents: ArrayLike | None = ..., out_tangents: ArrayLike | None = ...) -> Curve:
         """
         A copy with other values of some arguments.
 
@@ -290,7 +293,7 @@ class CurveMotion(Motion):
         ...
     def __setstate__(self, arg0: typing.Any) -> None:
         ...
-    def replace(self, **kwargs: typing.Any) -> CurveMotion:
+    def replace(self, *, translation: Curve | None = ..., rotation: Curve | None = ..., scale: Curve | None = ..., period: float | None = ..., offset: float = ...) -> CurveMotion:
         """
         A copy with other values of some arguments.
 
@@ -347,7 +350,7 @@ class MorphTargets(Deformation):
         ...
     def __setstate__(self, arg0: typing.Any) -> None:
         ...
-    def replace(self, **kwargs: typing.Any) -> MorphTargets:
+    def replace(self, *, vertices: ArrayLike = ..., targets: ArrayLike = ..., weights: Curve = ..., period: float | None = ..., offset: float = ...) -> MorphTargets:
         """
         A copy with other values of some arguments.
 
@@ -414,7 +417,7 @@ class Material:
         ...
     def __setstate__(self, arg0: typing.Any) -> None:
         ...
-    def replace(self, **kwargs: typing.Any) -> Material:
+    def replace(self, *, conductor: bool = ..., permittivity: complex | None = ..., conductivity: float = ..., reflectivity: float | None = ..., roughness_height: float = ..., scattering: float | None = ..., cross_polarization: float = ..., mirror: bool = ...) -> Material:
         """
         A copy with other values of some arguments.
 
@@ -490,7 +493,7 @@ class Mesh:
         ...
     def __setstate__(self, arg0: typing.Any) -> None:
         ...
-    def part(self, triangles: typing.Any) -> Mesh:
+    def part(self, triangles: ArrayLike) -> Mesh:
         """
         Some triangles as a mesh of their own, to be labelled.
 
@@ -583,7 +586,7 @@ class Node:
         ...
     def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
-    def replace(self, **kwargs: typing.Any) -> typing.Any:
+    def replace(self, *, name: str = ..., parent: int = ..., placement: ArrayLike | None = ..., motion: Motion | None = ..., mesh: Mesh | None = ..., deformation: Deformation | None = ..., material: Material | None = ..., material_name: str = ..., smooth: bool = ..., visible: bool = ...) -> Node:
         """
         A copy with some fields changed: node.replace(visible=False).
         """
@@ -674,7 +677,7 @@ class SceneMesh:
         index into scene.nodes
         """
     @property
-    def triangles(self) -> typing.Any:
+    def triangles(self) -> numpy.typing.NDArray[numpy.uint32]:
         """
         [F, 3] indices of vertices
         """
@@ -713,17 +716,17 @@ class Scene:
     """
     A tree of named nodes with placements, motions and meshes.
     """
-    def __contains__(self, name: typing.Any) -> bool:
+    def __contains__(self, name: object) -> bool:
         """
         Whether there is a node with that full name.
         """
-    def __copy__(self) -> typing.Any:
+    def __copy__(self) -> Scene:
         ...
-    def __deepcopy__(self, memo: dict[typing.Any, typing.Any]) -> typing.Any:
+    def __deepcopy__(self, memo: dict[int, object]) -> Scene:
         """
         Shares meshes, motions and materials, which cannot change.
         """
-    def __getitem__(self, name: typing.Any) -> Node:
+    def __getitem__(self, name: str) -> Node:
         """
         The Node with that full name, "street/car". Raises KeyError naming the nearest names.
         """
@@ -737,7 +740,7 @@ class Scene:
         """
         A copy.
         """
-    def __iter__(self) -> typing.Any:
+    def __iter__(self) -> collections.abc.Iterator[str]:
         """
         Full names, parents first.
         """
@@ -834,7 +837,7 @@ class Joint:
         ...
     def __setstate__(self, arg0: typing.Any) -> None:
         ...
-    def replace(self, **kwargs: typing.Any) -> Joint:
+    def replace(self, *, name: str = ..., parent: str | None = ..., position: ArrayLike | None = ..., transform: ArrayLike | None = ..., motion: Motion | None = ..., inverse_bind: ArrayLike | None = ...) -> Joint:
         """
         A copy with other values of some arguments.
 
@@ -842,7 +845,7 @@ class Joint:
         Raises TypeError or ValueError as the constructor does.
         """
     @property
-    def inverse_bind(self) -> typing.Any:
+    def inverse_bind(self) -> numpy.typing.NDArray[numpy.float64] | None:
         """
         [4, 4], or None where it follows from the joints at rest
         """
@@ -898,7 +901,7 @@ class Skin(Deformation):
 
         time: s. Returns [J, 4, 4], translations in m. Raises ValueError outside `span`.
         """
-    def parts(self, mesh: Mesh) -> list[typing.Any]:
+    def parts(self, mesh: Mesh) -> list[tuple[str, Mesh]]:
         """
         The regions of a skinned mesh: triangles by dominant joint.
 
@@ -906,7 +909,7 @@ class Skin(Deformation):
         Returns a list of (name of joint, Mesh) of those joints that dominate any triangle; all are parts of `mesh`.
         Raises ValueError for another number of vertices.
         """
-    def replace(self, **kwargs: typing.Any) -> Skin:
+    def replace(self, *, vertices: ArrayLike = ..., joints: typing.Sequence[Joint] = ..., weights: ArrayLike = ..., joint_indices: ArrayLike | None = ..., shape: Deformation | None = ...) -> Skin:
         """
         A copy with other values of some arguments.
 
@@ -969,7 +972,7 @@ class ChirpSequence:
         """
         m/s, unambiguous up to +- this, when `num_slots` transmitters take turns
         """
-    def replace(self, **kwargs: typing.Any) -> ChirpSequence:
+    def replace(self, *, start_frequency: float = ..., bandwidth: float = ..., num_samples: int = ..., sampling_rate: float = ..., num_chirps: int = ..., chirp_interval: float = ..., real: bool = ...) -> ChirpSequence:
         """
         A copy with other values of some arguments.
 
@@ -1082,7 +1085,7 @@ class AntennaPattern:
         Raises TypeError or ValueError as the constructor does.
         """
     @property
-    def azimuth(self) -> typing.Any:
+    def azimuth(self) -> numpy.typing.NDArray[numpy.float64] | None:
         """
         [A] rad of a table, else None
         """
@@ -1092,7 +1095,7 @@ class AntennaPattern:
         integral of the gain over the sphere / 4 pi; at most 1 for a power gain
         """
     @property
-    def elevation(self) -> typing.Any:
+    def elevation(self) -> numpy.typing.NDArray[numpy.float64] | None:
         """
         [E] rad of a table, else None
         """
@@ -1112,12 +1115,12 @@ class AntennaPattern:
         linear; of a table its largest sample
         """
     @property
-    def table_gain(self) -> typing.Any:
+    def table_gain(self) -> numpy.typing.NDArray[numpy.float64] | None:
         """
         [E, A] linear power gain of a table, else None
         """
     @property
-    def table_phase(self) -> typing.Any:
+    def table_phase(self) -> numpy.typing.NDArray[numpy.float64] | None:
         """
         [E, A] rad of a table with phases, else None
         """
@@ -1148,7 +1151,7 @@ class Antenna:
         ...
     def __setstate__(self, arg0: typing.Any) -> None:
         ...
-    def replace(self, **kwargs: typing.Any) -> typing.Any:
+    def replace(self, *, position: ArrayLike = ..., yaw: float = ..., pitch: float = ..., orientation: ArrayLike | None = ..., pattern: AntennaPattern | None = ..., polarization: ArrayLike = ...) -> Antenna:
         """
         A copy with some arguments of the constructor changed.
 
@@ -1214,13 +1217,13 @@ class Radar:
         ...
     def __hash__(self) -> int:
         ...
-    def __init__(self, waveform: ChirpSequence, *, transmitters: typing.Sequence[Antenna], receivers: typing.Sequence[Antenna], position: ArrayLike = (0.0, 0.0, 0.0), yaw: float = 0.0, pitch: float = 0.0, motion: Motion | None = None, speed: float | None = None, transmit_power: float = 0.01, noise_figure_db: float = 12.0, multiplexing: str = 'tdm') -> None:
+    def __init__(self, waveform: ChirpSequence, *, transmitters: typing.Sequence[Antenna], receivers: typing.Sequence[Antenna], position: ArrayLike = (0.0, 0.0, 0.0), yaw: float = 0.0, pitch: float = 0.0, motion: Motion | None = None, speed: float | None = None, transmit_power: float = 0.01, noise_figure_db: float = 12.0, multiplexing: Literal['tdm'] = 'tdm') -> None:
         ...
     def __repr__(self) -> str:
         ...
     def __setstate__(self, arg0: typing.Any) -> None:
         ...
-    def _repr_html_(self) -> typing.Any:
+    def _repr_html_(self) -> str:
         """
         A table for notebooks.
         """
@@ -1231,7 +1234,7 @@ class Radar:
         tx, chirp: indices of the transmitter and of its chirp
         Returns s after the frame's start. Raises IndexError.
         """
-    def replace(self, **kwargs: typing.Any) -> typing.Any:
+    def replace(self, *, waveform: ChirpSequence = ..., transmitters: typing.Sequence[Antenna] = ..., receivers: typing.Sequence[Antenna] = ..., position: ArrayLike = ..., yaw: float = ..., pitch: float = ..., motion: Motion | None = ..., speed: float | None = ..., transmit_power: float = ..., noise_figure_db: float = ..., multiplexing: Literal['tdm'] = ...) -> Radar:
         """
         A copy with some arguments of the constructor changed.
 
@@ -1251,7 +1254,7 @@ class Radar:
         s, from the first sample to the last
         """
     @property
-    def motion(self) -> typing.Any:
+    def motion(self) -> Motion | None:
         """
         Motion of the placed radar in world axes, or None
         """
@@ -1304,7 +1307,7 @@ class RangeDoppler:
     """
     Range-Doppler maps with their axes; made by range_doppler.
     """
-    __hash__: typing.ClassVar[None] = None
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, arg0: object) -> bool:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
@@ -1313,11 +1316,11 @@ class RangeDoppler:
         ...
     def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
-    def _repr_html_(self) -> typing.Any:
+    def _repr_html_(self) -> str:
         """
         A table for notebooks.
         """
-    def plot(self, *, ax: typing.Any = None, vmin: typing.Any = None, vmax: typing.Any = None, title: str = 'Received power by range and radial velocity') -> typing.Any:
+    def plot(self, *, ax: typing.Any = None, vmin: float | None = None, vmax: float | None = None, title: str = 'Received power by range and radial velocity') -> typing.Any:
         """
         Draws the map, the mean over the channels, cropped to where there is signal.
 
@@ -1344,7 +1347,7 @@ class RangeDoppler:
         [range] in m, ascending from 0
         """
     @property
-    def values(self) -> numpy.ndarray[typing.Any, typing.Any]:
+    def values(self) -> numpy.typing.NDArray[numpy.complex128]:
         """
         [tx, rx, velocity, range] complex in sqrt(W), read-only
         """
@@ -1354,7 +1357,7 @@ class RangeDoppler:
         [velocity] in m/s, ascending, receding positive
         """
     @property
-    def window(self) -> typing.Any:
+    def window(self) -> str | tuple[str, float]:
         """
         of both axes, as range_doppler takes it: a name, or ("chebyshev", sidelobe level in dB)
         """
@@ -1372,7 +1375,7 @@ class VirtualArray:
     """
     def __repr__(self) -> str:
         ...
-    def default_angles(self, largest_step: float = 0.017453292519943295) -> tuple[typing.Any, ...]:
+    def default_angles(self, largest_step: float = 0.017453292519943295) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
         (azimuth [A], elevation [E]) in rad: the directions that the array tells apart.
 
@@ -1385,42 +1388,42 @@ class VirtualArray:
         [3] m, mean of the elements
         """
     @property
-    def element_of_channel(self) -> numpy.ndarray[typing.Any, typing.Any]:
+    def element_of_channel(self) -> numpy.typing.NDArray[numpy.int64]:
         """
         [tx, rx] index into elements
         """
     @property
-    def elements(self) -> numpy.ndarray[typing.Any, typing.Any]:
+    def elements(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         [N, 3] m, the positions that differ by 0.01 wavelengths or more
         """
     @property
-    def gaps(self) -> numpy.ndarray[typing.Any, typing.Any]:
+    def gaps(self) -> numpy.typing.NDArray[numpy.int64]:
         """
         [G, 2] rows and columns of the grid without an element
         """
     @property
-    def grid_axes(self) -> typing.Any:
+    def grid_axes(self) -> numpy.typing.NDArray[numpy.float64] | None:
         """
         [2, 3] unit vectors along which rows and columns count up, or None
         """
     @property
-    def grid_deviation(self) -> typing.Any:
+    def grid_deviation(self) -> float | None:
         """
         m, largest distance of an element from its point of the grid, or None
         """
     @property
-    def grid_index(self) -> typing.Any:
+    def grid_index(self) -> numpy.typing.NDArray[numpy.int64] | None:
         """
         [N, 2] row and column of each element, or None
         """
     @property
-    def grid_shape(self) -> typing.Any:
+    def grid_shape(self) -> tuple[int, int] | None:
         """
         (rows, columns) of the grid of equal steps, or None
         """
     @property
-    def grid_spacing(self) -> typing.Any:
+    def grid_spacing(self) -> tuple[float, float] | None:
         """
         (row, column) step in m, 0 where there is one, or None
         """
@@ -1440,7 +1443,7 @@ class VirtualArray:
         transmitters of the radar
         """
     @property
-    def positions(self) -> numpy.ndarray[typing.Any, typing.Any]:
+    def positions(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         [tx, rx, 3] m, sums of the antennas' positions
         """
@@ -1453,7 +1456,7 @@ class CfarResult:
     """
     Cells of a range-Doppler map that exceed their thresholds; made by cfar.
     """
-    __hash__: typing.ClassVar[None] = None
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, arg0: object) -> bool:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
@@ -1516,7 +1519,7 @@ class AngleSpectrum:
     Axes are direction cosines along the columns and rows of the array's grid: for antennas in the y-z plane
     sin(azimuth) cos(elevation) and sin(elevation).
     """
-    __hash__: typing.ClassVar[None] = None
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, arg0: object) -> bool:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
@@ -1525,7 +1528,7 @@ class AngleSpectrum:
         ...
     def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
-    def plot(self, range: typing.Any = None, velocity: typing.Any = None, *, ax: typing.Any = None, title: str = 'Received power by direction') -> typing.Any:
+    def plot(self, range: float | None = None, velocity: float | None = None, *, ax: typing.Any = None, title: str = 'Received power by direction') -> typing.Any:
         """
         Draws the power by direction in one cell of the map: a curve, or a map where the array is a plane.
 
@@ -1580,7 +1583,7 @@ class BeamPower:
     """
     Power of beams with their axes; made by beamform.
     """
-    __hash__: typing.ClassVar[None] = None
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, arg0: object) -> bool:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
@@ -1618,7 +1621,7 @@ class RangeAzimuth:
     """
     A range-azimuth map with its axes; made by range_azimuth.
     """
-    __hash__: typing.ClassVar[None] = None
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, arg0: object) -> bool:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
@@ -1627,7 +1630,7 @@ class RangeAzimuth:
         ...
     def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
-    def plot(self, *, ax: typing.Any = None, vmin: typing.Any = None, vmax: typing.Any = None, title: str = 'Received power from above') -> typing.Any:
+    def plot(self, *, ax: typing.Any = None, vmin: float | None = None, vmax: float | None = None, title: str = 'Received power from above') -> typing.Any:
         """
         Draws the map as a sector seen from above, the radar below, cropped to where there is signal.
 
@@ -1673,7 +1676,7 @@ class AngleEstimates:
     """
     Directions of echoes, arrays over all peaks; made by estimate_angles.
     """
-    __hash__: typing.ClassVar[None] = None
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, arg0: object) -> bool:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
@@ -1776,7 +1779,7 @@ class Power:
 
     ep.power > 1e-15 is a Selection; `paths.power` has the values.
     """
-    __hash__: typing.ClassVar[None] = None
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __bool__(self) -> bool:
         ...
     def __eq__(self, arg0: object) -> bool:
@@ -1789,7 +1792,7 @@ class Power:
         ...
     def __lt__(self, arg0: float) -> Selection:
         ...
-    def __ne__(self, arg0: typing.Any) -> bool:
+    def __ne__(self, arg0: object) -> bool:
         ...
     def __repr__(self) -> str:
         ...
@@ -1797,7 +1800,7 @@ class NumBounces:
     """
     The number of hits of a path: ep.num_bounces >= 2 is a Selection.
     """
-    __hash__: typing.ClassVar[None] = None
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __bool__(self) -> bool:
         ...
     def __eq__(self, arg0: object) -> bool:
@@ -1810,7 +1813,7 @@ class NumBounces:
         ...
     def __lt__(self, arg0: int) -> Selection:
         ...
-    def __ne__(self, arg0: int) -> Selection:
+    def __ne__(self, arg0: object) -> Selection:  # type: ignore[override]
         ...
     def __repr__(self) -> str:
         ...
@@ -1818,7 +1821,7 @@ class Stratum:
     """
     One launch stratum: directions in a cone, or in a strip along a great circle (half_azimuth > 0), rays evenly over them.
     """
-    __hash__: typing.ClassVar[None] = None
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, arg0: object) -> bool:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
@@ -1898,7 +1901,7 @@ class TraceStatistics:
     """
     What a trace did.
     """
-    __hash__: typing.ClassVar[None] = None
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, arg0: object) -> bool:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
@@ -1961,7 +1964,7 @@ class TraceFrame:
     """
     What amplitudes and lengths of paths are relative to.
     """
-    __hash__: typing.ClassVar[None] = None
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, arg0: object) -> bool:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
@@ -2058,7 +2061,7 @@ class Paths:
         Raises ValueError where an index leads nowhere.
         """
     @staticmethod
-    def load(path: typing.Any) -> typing.Any:
+    def load(path: str | os.PathLike[str]) -> Paths:
         """
         Reads the paths of a frame file at `path`: the same bits that were written. Raises ep.FileError.
         """
@@ -2070,7 +2073,7 @@ class Paths:
         ...
     def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
-    def _repr_html_(self) -> typing.Any:
+    def _repr_html_(self) -> str:
         """
         A table for notebooks.
         """
@@ -2078,23 +2081,23 @@ class Paths:
         """
         The paths where a mask, bool [P], is true, with only the hits that they use.
         """
-    def amplitudes(self, times: ArrayLike, tx: int = 0, rx: int = 0, replay: str = 'material') -> numpy.ndarray[typing.Any, typing.Any]:
+    def amplitudes(self, times: ArrayLike, tx: int = 0, rx: int = 0, replay: Literal['material', 'fermat'] = 'material') -> numpy.typing.NDArray[numpy.complex128]:
         """
         Complex amplitudes [T, P] in sqrt(W) at `times` [T] in s for the transmitter tx and the receiver rx (indices); replay as in synthesize.
         """
-    def lengths(self, times: ArrayLike, transmitter: int | ArrayLike = 0, receiver: int | ArrayLike = 0, replay: str = 'material') -> numpy.ndarray[typing.Any, typing.Any]:
+    def lengths(self, times: ArrayLike, transmitter: int | ArrayLike = 0, receiver: int | ArrayLike = 0, replay: Literal['material', 'fermat'] = 'material') -> numpy.typing.NDArray[numpy.float64]:
         """
         Lengths [T, P] in m at `times` [T] in s from transmitter to receiver: indices, or positions [3] in m in the radar's frame; replay as in synthesize.
         """
-    def partition(self, parts: dict[str, Selection | str]) -> dict[typing.Any, typing.Any]:
+    def partition(self, parts: dict[str, Selection | str]) -> dict[str, Paths]:
         """
         {name: Paths} of disjoint parts {name: selection}: the first that takes a path has it, the rest is "other".
         """
-    def points(self, time: float) -> numpy.ndarray[typing.Any, typing.Any]:
+    def points(self, time: float) -> numpy.typing.NDArray[numpy.float64]:
         """
         Hits [H, 3] in m in the world at `time` in s.
         """
-    def save(self, path: typing.Any, min_power: float = 0.0) -> typing.Any:
+    def save(self, path: str | os.PathLike[str], min_power: float = 0.0) -> LeftOut:
         """
         Writes the paths with their scene and radar to an HDF5 file.
 
@@ -2124,7 +2127,7 @@ class Paths:
         attrs["mesh_names"]. Needs xarray, raises ModuleNotFoundError without it.
         """
     @property
-    def amplitude(self) -> numpy.ndarray[typing.Any, typing.Any]:
+    def amplitude(self) -> numpy.typing.NDArray[numpy.complex128]:
         """
         [P] complex, sqrt(W), at the trace time for the first antennas; without the phase of the length
         """
@@ -2134,7 +2137,7 @@ class Paths:
         [P] batch of rays, 255: all of them (image method)
         """
     @property
-    def curved_cell(self) -> numpy.ndarray[typing.Any, typing.Any]:
+    def curved_cell(self) -> numpy.typing.NDArray[numpy.float32]:
         """
         [P, 7] or [0, 7]: launch cells behind curved specular bounces (trace/record/paths.h); zeros on flat chains
         """
@@ -2144,7 +2147,7 @@ class Paths:
         [P] bit k: hit k is diffuse; 0: coherent
         """
     @property
-    def effects(self) -> typing.Any:
+    def effects(self) -> list[Effect]:
         """
         list of Effect: what the trace modelled, what not, and why
         """
@@ -2159,12 +2162,12 @@ class Paths:
         times, antenna positions, strata and settings of the trace
         """
     @property
-    def hits(self) -> numpy.ndarray[typing.Any, typing.Any]:
+    def hits(self) -> numpy.typing.NDArray[numpy.void]:
         """
         [H] structured: mesh_id, triangle_id, u, v
         """
     @property
-    def jones(self) -> numpy.ndarray[typing.Any, typing.Any]:
+    def jones(self) -> numpy.typing.NDArray[numpy.complex64]:
         """
         [P, 2, 2] or [0, 2, 2] complex: (horizontal, vertical) at the receiver from the same at the transmitter
         """
@@ -2194,7 +2197,7 @@ class Paths:
         [P] first hit
         """
     @property
-    def power(self) -> numpy.ndarray[typing.Any, typing.Any]:
+    def power(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         [P] W, |amplitude|^2
         """
@@ -2243,7 +2246,7 @@ class ReceivedPower:
     reaches no further than 0.3 dB to either side. Standard errors come from the batches of a trace (`trace(batches=8)`) alone
     and are NaN for one batch.
     """
-    __hash__: typing.ClassVar[None] = None
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, arg0: object) -> bool:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
@@ -2367,7 +2370,7 @@ class Renewal:
     """
     A record brought up to another time; made by `renew`.
     """
-    __hash__: typing.ClassVar[None] = None
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, arg0: object) -> bool:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
@@ -2400,7 +2403,7 @@ class ValidityShares:
     """
     What one trace does not serve, as shares of the power of some paths.
     """
-    __hash__: typing.ClassVar[None] = None
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, arg0: object) -> bool:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
@@ -2501,7 +2504,7 @@ class Validity:
     within 60 dB of the strongest and above the noise of a range-Doppler cell is not ok where one of its shares exceeds 5 %, its power
     over the frame is off by more than 0.5 dB, or it is seen but has no path.
     """
-    __hash__: typing.ClassVar[None] = None
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, arg0: object) -> bool:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
@@ -2512,7 +2515,7 @@ class Validity:
         ...
     def __str__(self) -> str:
         ...
-    def _repr_html_(self) -> typing.Any:
+    def _repr_html_(self) -> str:
         """
         A table for notebooks.
         """
@@ -2567,7 +2570,7 @@ class Validity:
         P, their number
         """
     @property
-    def objects(self) -> dict[typing.Any, typing.Any]:
+    def objects(self) -> dict[str, ObjectValidity]:
         """
         {name: ObjectValidity} by the object that a path scattered on last (mirrors by images apart), by strength
         """
@@ -2659,7 +2662,7 @@ class Family:
     """
     def __eq__(self, arg0: object) -> bool:
         ...
-    def __getstate__(self) -> tuple[str, int, int, tuple]:
+    def __getstate__(self) -> tuple[str, int, int, tuple[typing.Any, ...]]:
         ...
     def __hash__(self) -> int:
         ...
@@ -2699,7 +2702,7 @@ class Family:
         number of bounces; 0: background
         """
     @property
-    def via(self) -> tuple[typing.Any, ...]:
+    def via(self) -> tuple[str, ...]:
         """
         tuple of the names of what mirrored it
         """
@@ -2789,12 +2792,12 @@ class SignalProbe:
         of the chirps and samples that are drawn
         """
     @property
-    def share_field(self) -> numpy.ndarray[typing.Any, typing.Any]:
+    def share_field(self) -> numpy.typing.NDArray[numpy.complex128]:
         """
         [2 batches + 1, 8] in sqrt(W): sums of the coherent paths at the samples of the first chirp, of both halves of the rays of each batch in turn, then of the paths that rays did not find
         """
     @property
-    def share_power(self) -> numpy.ndarray[typing.Any, typing.Any]:
+    def share_power(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         [2 batches + 1] in W: sums of |amplitude|^2 of the paths over rough surfaces, likewise
         """

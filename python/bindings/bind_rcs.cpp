@@ -117,7 +117,8 @@ void warn_of_missed_targets(const std::vector<RadarCrossSection>& entries, doubl
   warn_of_missed_target("rcs: for " + count + " cross sections max_rays", worst, target_error_db);
 }
 
-// Whether the rays do not know a cross section to 3 dB. A null between lobes, far below what is seen next to it, is no matter.
+// Whether the rays do not know a cross section to 3 dB. A null between lobes, far below what is seen next to it, is no
+// matter.
 bool is_unknown(const std::vector<RadarCrossSection>& entries, size_t index, size_t num_channels) {
   constexpr double kKnown = 2.0, kNull = 0.01;
   double beside = 0.0;
@@ -169,7 +170,7 @@ py::object rcs_of(Scene scene, double frequency, const py::object& incidence, co
   const auto entries = run_job("rcs", progress, [&](Job& job) { return rcs(scene, pairs, settings, &job); });
   if (target_error_db) {
     warn_of_missed_targets(entries, *target_error_db);
-  } else {
+  } else if (settings.footprint != Footprint::kNone) {  // without one nothing tells whether they are few
     warn_of_few_rays(entries, channels.rows.size(), effort.num_rays);
   }
   Shape shape;

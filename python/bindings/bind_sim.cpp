@@ -53,7 +53,7 @@ void warn_of_long_work(const Paths& paths, const Radar& radar, const CubeSetting
   const double of_stretches = keyframe_seconds(paths, settings.keyframes);
   if (of_stretches >= kLong) {
     std::ostringstream told;
-    told << "keyframes: " << settings.keyframes << " stretches with retrace '"
+    told << "keyframes: " << settings.keyframes.keyframes << " stretches with retrace '"
          << kRetrace.name_of(settings.keyframes.retrace) << "' take about " << std::llround(of_stretches)
          << " s on this machine; fewer keyframes, or 0, which `validity` "
          << "settles, are quicker";

@@ -36,11 +36,12 @@ std::vector<Parameter> by_place(const std::vector<Parameter>& parameters) {
 }
 
 // What is wrong with a call that does not fit the parameters.
-std::string complaint(const std::vector<Parameter>& parameters, const py::args& values, const py::kwargs& keywords) {
+std::string complaint(const std::vector<Parameter>& parameters, bool takes_keywords, const py::args& values,
+                      const py::kwargs& keywords) {
   const std::vector<std::string> names = names_of(parameters);
   for (const auto& [key, value] : keywords) {
     const std::string word = escaped(key);
-    if (std::find(names.begin(), names.end(), word) != names.end()) continue;
+    if (takes_keywords || std::find(names.begin(), names.end(), word) != names.end()) continue;
     return "unknown keyword '" + word + "'" + hint_of_keyword(word, names);
   }
   const std::vector<Parameter> placed = by_place(parameters);
@@ -89,8 +90,9 @@ void define_refusal(const Callee& defined, const Parameters& parameters) {
   const std::string doc = signature_line(defined, parameters.list()) + (text ? text : "");
   const bool is_init = std::strcmp(name, "__init__") == 0;
   const std::string callee = is_init ? py::cast<std::string>(scope.attr("__name__")) : name;
-  const auto refuse = [callee, list = parameters.list()](const py::args& values, const py::kwargs& keywords) {
-    throw py::type_error(callee + ": " + complaint(list, values, keywords));
+  const auto refuse = [callee, list = parameters.list(), any = takes_keywords](const py::args& values,
+                                                                               const py::kwargs& keywords) {
+    throw py::type_error(callee + ": " + complaint(list, any, values, keywords));
   };
   // pybind11 tries the functions of one name in turn, so this one is asked only where the right one does not fit.
   const py::name named(name);

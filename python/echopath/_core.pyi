@@ -588,7 +588,7 @@ class Node:
         ...
     def replace(self, *, name: str = ..., parent: int = ..., placement: ArrayLike | None = ..., motion: Motion | None = ..., mesh: Mesh | None = ..., deformation: Deformation | None = ..., material: Material | None = ..., material_name: str = ..., smooth: bool = ..., visible: bool = ...) -> Node:
         """
-        A copy with some fields changed: node.replace(visible=False).
+        A copy with some fields changed: node.replace(visible=False). Raises TypeError or ValueError naming the field.
         """
     @property
     def deformation(self) -> Deformation:
@@ -970,7 +970,7 @@ class ChirpSequence:
         ...
     def max_velocity(self, num_slots: int = 1) -> float:
         """
-        m/s, unambiguous up to +- this, when `num_slots` transmitters take turns
+        m/s, unambiguous up to +- this, when `num_slots` transmitters take turns. Raises TypeError or ValueError naming the argument.
         """
     def replace(self, *, start_frequency: float = ..., bandwidth: float = ..., num_samples: int = ..., sampling_rate: float = ..., num_chirps: int = ..., chirp_interval: float = ..., real: bool = ...) -> ChirpSequence:
         """
@@ -981,7 +981,7 @@ class ChirpSequence:
         """
     def velocity_resolution(self, num_slots: int = 1) -> float:
         """
-        m/s, when `num_slots` transmitters take turns
+        m/s, when `num_slots` transmitters take turns. Raises TypeError or ValueError naming the argument.
         """
     @property
     def bandwidth(self) -> float:
@@ -1071,7 +1071,7 @@ class AntennaPattern:
         ...
     def field(self, directions: ArrayLike) -> numpy.typing.NDArray[numpy.complex128]:
         """
-        sqrt(gain) e^{j phase} [N], complex, toward unit directions [N, 3] in the antenna's frame.
+        sqrt(gain) e^{j phase} [N], complex, toward unit directions [N, 3] in the antenna's frame. Raises TypeError or ValueError naming the argument.
         """
     def gain(self, cos_boresight: float) -> float:
         """
@@ -1326,7 +1326,8 @@ class RangeDoppler:
 
         ax: Matplotlib axes to draw in, None: new ones; title: what stands above the map
         vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak
-        Returns the axes: range in m across, radial velocity in m/s up (receding positive).
+        Returns the axes: range in m across, radial velocity in m/s up (receding positive). Raises TypeError or
+        ValueError naming the argument.
         """
     def to_xarray(self) -> typing.Any:
         """
@@ -1380,7 +1381,8 @@ class VirtualArray:
         (azimuth [A], elevation [E]) in rad: the directions that the array tells apart.
 
         Azimuths up to +-90 degrees and elevations up to +-45 degrees within the unambiguous field of its grid, in steps of a
-        quarter of wavelength / extent, or of largest_step in rad where that is less; 0 alone where it has no extent.
+        quarter of wavelength / extent, or of largest_step in rad where that is less; 0 alone where it has no extent. Raises TypeError
+        or ValueError naming the argument.
         """
     @property
     def centre(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1534,7 +1536,8 @@ class AngleSpectrum:
 
         range: m, velocity: m/s, of the cell, the nearest is taken; None: those of the strongest cell
         ax: Matplotlib axes to draw in, None: new ones; title: what stands above, the cell is added
-        Returns the axes: azimuth in degrees across (left positive); up power in dBm, or elevation in degrees.
+        Returns the axes: azimuth in degrees across (left positive); up power in dBm, or elevation in degrees. Raises TypeError or ValueError
+        naming the argument, and for a map of several cells without range and velocity.
         """
     def to_xarray(self) -> typing.Any:
         """
@@ -1636,7 +1639,8 @@ class RangeAzimuth:
 
         ax: Matplotlib axes to draw in, None: new ones; title: what stands above the map
         vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak
-        Returns the axes: metres to the left across (right negative), metres ahead up, in the radar's frame.
+        Returns the axes: metres to the left across (right negative), metres ahead up, in the radar's frame. Raises
+        TypeError or ValueError naming the argument.
         """
     def to_xarray(self) -> typing.Any:
         """
@@ -1766,7 +1770,7 @@ class Selection:
         """
     def matches(self, paths: Paths) -> numpy.typing.NDArray[numpy.bool]:
         """
-        Bool [P]: which of the paths are selected.
+        Bool [P]: which of the paths are selected. Raises TypeError naming the argument, ValueError for names that no mesh has.
         """
     @property
     def text(self) -> str:
@@ -1819,7 +1823,7 @@ class NumBounces:
         ...
 class Stratum:
     """
-    One launch stratum: directions in a cone, or in a strip along a great circle (half_azimuth > 0), rays evenly over them.
+    One launch stratum: directions in a cone, or in a strip along a great circle (half_azimuth > 0), rays evenly over them. Raises TypeError or ValueError naming the argument.
     """
     __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, arg0: object) -> bool:
@@ -1899,7 +1903,7 @@ class Stratum:
         """
 class TraceStatistics:
     """
-    What a trace did.
+    What a trace did. Raises TypeError or ValueError naming the argument.
     """
     __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, arg0: object) -> bool:
@@ -1962,7 +1966,7 @@ class TraceStatistics:
         """
 class TraceFrame:
     """
-    What amplitudes and lengths of paths are relative to.
+    What amplitudes and lengths of paths are relative to. Raises TypeError or ValueError naming the argument.
     """
     __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
     def __eq__(self, arg0: object) -> bool:
@@ -2083,19 +2087,31 @@ class Paths:
         """
     def amplitudes(self, times: ArrayLike, tx: int = 0, rx: int = 0, replay: Literal['material', 'fermat'] = 'material') -> numpy.typing.NDArray[numpy.complex128]:
         """
-        Complex amplitudes [T, P] in sqrt(W) at `times` [T] in s for the transmitter tx and the receiver rx (indices); replay as in synthesize.
+        Complex amplitudes of the paths over time.
+
+        times: [T] s; tx, rx: indices of the transmitter and the receiver; replay: as in `synthesize`
+        Returns [T, P] in sqrt(W), without the phases of the lengths. Raises TypeError or ValueError naming the argument, also for
+        times outside a motion, and IndexError for antennas that are not there.
         """
     def lengths(self, times: ArrayLike, transmitter: int | ArrayLike = 0, receiver: int | ArrayLike = 0, replay: Literal['material', 'fermat'] = 'material') -> numpy.typing.NDArray[numpy.float64]:
         """
-        Lengths [T, P] in m at `times` [T] in s from transmitter to receiver: indices, or positions [3] in m in the radar's frame; replay as in synthesize.
+        Lengths of the paths over time.
+
+        times: [T] s; transmitter, receiver: indices of antennas, or positions [3] in m in the radar's frame; replay: as in
+        `synthesize`
+        Returns [T, P] in m. Raises TypeError or ValueError naming the argument, also for times outside a motion, and IndexError for
+        antennas that are not there.
         """
     def partition(self, parts: dict[str, Selection | str]) -> dict[str, Paths]:
         """
-        {name: Paths} of disjoint parts {name: selection}: the first that takes a path has it, the rest is "other".
+        The paths of disjoint parts: the first that takes a path has it, the rest is "other".
+
+        parts: {name: selection}
+        Returns {name: Paths}. Raises TypeError or ValueError naming the argument, also for names that are empty, "other" or twice.
         """
     def points(self, time: float) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Hits [H, 3] in m in the world at `time` in s.
+        Hits [H, 3] in m in the world at `time` in s. Raises TypeError or ValueError naming the argument.
         """
     def save(self, path: str | os.PathLike[str], min_power: float = 0.0) -> LeftOut:
         """
@@ -2106,7 +2122,11 @@ class Paths:
         """
     def select(self, selection: Selection | str | ArrayLike) -> Paths:
         """
-        The paths that `selection` takes: a Selection, its text, or a mask bool [P] that is true where a path is taken.
+        The paths that a selection takes, over the same hits.
+
+        selection: a Selection, its text, or a mask bool [P] that is true where a path is taken
+        Returns Paths. Raises TypeError or ValueError naming the argument, for faults of the text with a caret under them, and for
+        names that no mesh has.
         """
     def to_dataframe(self) -> typing.Any:
         """
@@ -2659,6 +2679,7 @@ class Family:
     ghost_type: 0 for real echoes (and the background), 1 for ghosts whose last bounce is on the object, 2 on something else
     order: number of bounces; hits that follow each other on one object are one. 1 for real echoes, 0 for the background
     via: names of what mirrored it, each once, in the order of the first bounce there
+    Raises TypeError or ValueError naming the argument.
     """
     def __eq__(self, arg0: object) -> bool:
         ...
@@ -2735,7 +2756,7 @@ class SignalProbe:
 
     A chirp of the frame, or two of an array's (of each stretch, where it is traced anew), drawn by `seed`: eight samples of each
     as direct sums of all echoes, and moving echoes, the strongest and random ones of all blocks of paths, evaluated exactly
-    there.
+    there. Raises TypeError or ValueError naming the argument.
     """
     def __init__(self, *, seed: int = 1) -> None:
         ...

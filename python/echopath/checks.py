@@ -152,7 +152,7 @@ def is_writable(value: str) -> bool:
 
 
 def path(argument: str, value) -> str:
-    """The name of a file: text or an os.PathLike."""
+    """The name of a file or folder: text or an os.PathLike."""
     try:
         name = os.fspath(value)
     except TypeError:
@@ -161,6 +161,12 @@ def path(argument: str, value) -> str:
         raise refused(TypeError, argument, "the name of a file as text", value)
     if not name or not is_writable(name):
         raise refused(ValueError, argument, "the name of a file, without lone surrogates and NUL", value)
+    return name
+
+
+def file(argument: str, value) -> str:
+    """The name of a file, which is no folder."""
+    name = path(argument, value)
     if os.path.isdir(name):
         raise refused(_core.FileError, argument, "the name of a file, not of a folder", value)
     return name
@@ -304,7 +310,7 @@ def row_of_channel(paths_or_radar, tx: int, rx: int) -> None:
 COMMON: dict[str, Rule] = {
     "radar": an(_core.Radar), "paths": an(_core.Paths), "scene": an(_core.Scene), "spectrum": an(_core.RangeDoppler),
     "cube": array("[T, R, C, S]", kind="complex"), "window": window, "zero_pad": count(1, 64), "progress": progress,
-    "seed": seed, "tx": count(0, LARGEST_COUNT), "rx": count(0, LARGEST_COUNT), "path": path,
+    "seed": seed, "tx": count(0, LARGEST_COUNT), "rx": count(0, LARGEST_COUNT), "path": file,
 }
 
 
@@ -345,5 +351,5 @@ def _spread(argument: str, kind: type, given: dict, known: tuple) -> dict:
 
 
 __all__ = ["ArrayLike", "COMMON", "Progress", "Rule", "Window", "an", "anything", "array", "checked", "choice", "count",
-           "flag", "is_writable", "keywords", "one_of", "optional", "path", "positive", "progress", "real", "refused",
+           "file", "flag", "is_writable", "keywords", "one_of", "optional", "path", "positive", "progress", "real", "refused",
            "row_of_channel", "seed", "shown", "text", "vector", "window"]

@@ -7,8 +7,8 @@ import numpy as np
 
 from . import _core
 
-LARGE = 1000.0     # m, the longest side of an object
-BULKY = 250.0      # m, its shortest side: grounds and cities are long, but not so high
+LARGE = 1000.0     # m, all sides of an object that no scene has
+LONG = 250.0       # m, all sides of a closed body: mountains are as high, but open below
 SMALL = 0.5        # wavelengths, the longest side of an object
 
 
@@ -28,17 +28,20 @@ def warn_of_sizes(scene: _core.Scene, wavelength: float, time: float, stacklevel
 
 
 def _sides(scene, meshes, time: float) -> dict:
-    """{name of an object: lengths [3] of its bounding box in m, ascending}, of the children of the root."""
+    """{name: (shortest, longest side of its bounding box in m, whether its meshes are closed)} of the children of the root."""
     corners: dict = {}
+    is_closed: dict = {}
     for mesh in meshes:
-        vertices = np.asarray(scene.world_vertices(mesh.id, time))
-        corners.setdefault(mesh.name.split("/")[0], []).extend([vertices.min(axis=0), vertices.max(axis=0)])
-    return {name: np.sort(np.ptp(ends, axis=0)) for name, ends in corners.items()}
+        vertices, name = np.asarray(scene.world_vertices(mesh.id, time)), mesh.name.split("/")[0]
+        corners.setdefault(name, []).extend([vertices.min(axis=0), vertices.max(axis=0)])
+        is_closed[name] = is_closed.get(name, True) and mesh.mesh.is_closed
+    sides = {name: np.ptp(ends, axis=0) for name, ends in corners.items()}
+    return {name: (float(side.min()), float(side.max()), is_closed[name]) for name, side in sides.items()}
 
 
 def _remark(sides: dict, wavelength: float) -> str:
-    for name, (shortest, _, longest) in sides.items():
-        if longest > LARGE and shortest > BULKY:
+    for name, (shortest, longest, is_closed) in sides.items():
+        if shortest > LARGE or (longest > LARGE and shortest > LONG and is_closed):
             return (f"scene: '{name}' is {longest:,.0f} m long and {shortest:,.0f} m thick; is it in mm? "
                     "load_mesh(path, unit=0.001) reads such files")
         if longest < SMALL * wavelength:

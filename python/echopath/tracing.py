@@ -128,8 +128,8 @@ def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observati
     and transmit polarization costs a trace of its own. Raises TypeError or ValueError naming the argument, also for a zero
     direction, one along the polarization, an empty scene, and mirrors, which have no cross section. Warns
     (TessellationWarning) of curved meshes that err by more than 0.3 dB, with the edge length in m that would do, and
-    (RuntimeWarning) where max_rays did not do, or, without target_error_db, where the rays do not know cross sections to
-    3 dB; of nulls between lobes they need not.
+    (RuntimeWarning) where max_rays did not do, or, without target_error_db, where the footprints of the rays are too wide to
+    know cross sections to 3 dB; of nulls between lobes they need not.
     """
     warn_of_coarse_meshes(scene, frequency, stacklevel=_CALLER)
     chosen = chosen_model(model, scene, _core.speed_of_light / frequency, argument="model")

@@ -8,8 +8,8 @@ namespace echopath {
 // sample, to a factor of three; 0 where the settings interpolate in time, which is quick.
 double exact_seconds(const Paths& paths, const Radar& radar, const CubeSettings& settings);
 
-// Returns about how many seconds the further traces or renewals of a frame in several stretches take, to a factor of three; 0
-// where there are none, or where `validity` is still to say how many.
+// Returns about how many seconds the further traces or renewals of a frame in several stretches take, to a factor of three;
+// 0 where there are none, or where `validity` is still to say how many.
 double keyframe_seconds(const Paths& paths, const KeyframeSettings& settings);
 
 }  // namespace echopath

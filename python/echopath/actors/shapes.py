@@ -9,24 +9,24 @@ from collections.abc import Sequence
 import numpy as np
 
 from .. import _core
-from ..checks import checked, count, optional, positive, real, refused
+from ..checks import array, checked, count, optional, real
 from . import surfaces
 
 ROUND_PIECES = 12   # default pieces of an icosahedron edge of a sphere, and of a quarter turn of other round bodies
 FACE_EDGE = 1.33    # longest edge, in radii, of an icosahedron face once it is pushed out to the sphere
 MOST_SUBDIVISIONS = 1000
+SHORTEST, LONGEST = 1e-9, 1e9  # m, of bodies whose coordinates double precision holds
 
-_LENGTH = positive("m")
+_LENGTH = real(SHORTEST, LONGEST, unit="m")
 _EDGE = optional(_LENGTH)
 
 
 def _lengths(number: int):
     """The rule of so many lengths in m, or one for all of them."""
+    of_numbers = array("[]", f"[{number}]")
+
     def check(argument: str, value) -> list[float]:
-        values = [value] * number if np.ndim(value) == 0 else list(value)
-        if len(values) != number:
-            raise refused(ValueError, argument, f"one length in m or {number}", value)
-        return [_LENGTH(argument, item) for item in values]
+        return [_LENGTH(argument, item) for item in np.broadcast_to(of_numbers(argument, value), number).tolist()]
 
     return check
 
@@ -92,7 +92,7 @@ def box(size: float | Sequence[float], *, edge: float | None = None) -> _core.Me
     return _mesh(surfaces.joined(*sides))
 
 
-@checked(size=_lengths(2), z=real(unit="m"), edge=_EDGE)
+@checked(size=_lengths(2), z=real(-LONGEST, LONGEST, unit="m"), edge=_EDGE)
 def ground(size: float | Sequence[float], *, z: float = 0.0, edge: float | None = None) -> _core.Mesh:
     """Horizontal rectangle about the z axis at the height `z`, front up.
 

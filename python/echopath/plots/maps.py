@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 
+from ..checks import optional, real
 from ..measures import SMALLEST_POWER, STATIC_SPEED, in_dbm, with_error
 from .style import MAP_COLOURS, axes_or_new, new_figure
 
@@ -14,6 +15,7 @@ NOISE_PEAK_DB = 14.0         # over the median: the highest of 1e7 noise cells i
 RANGE_MARGIN = 0.8           # m, shown around the signal
 VELOCITY_MARGIN = 0.5        # m/s
 MAP_SIZE = 9.0, 4.4          # inches, of one map
+LEVEL = optional(real(-1e4, 1e4, "dBm"))
 RANGE_LABEL, VELOCITY_LABEL = "Range in m", "Radial velocity in m/s (away: +)"
 
 
@@ -29,6 +31,12 @@ def colour_limits(spectrum) -> tuple[float, float]:
     highest = 5.0 * math.ceil(level.max() / 5.0)
     above_noise = 5.0 * math.floor((np.median(level) + MARGIN_OVER_MEDIAN_DB) / 5.0)
     return min(max(highest - DYNAMIC_RANGE_DB, above_noise), highest - 10.0), highest
+
+
+def chosen_limits(limits: tuple[float, float], vmin, vmax) -> tuple[float, float]:
+    """Ends of a colour scale in dBm: those given, and of `limits` those left out (None). Raises naming vmin or vmax."""
+    lowest, highest = LEVEL("vmin", vmin), LEVEL("vmax", vmax)
+    return (limits[0] if lowest is None else lowest), (limits[1] if highest is None else highest)
 
 
 def plot_range_doppler(spectrum, *, title="Received power by range and radial velocity", vmin=None, vmax=None, note=""):
@@ -121,8 +129,7 @@ def part_title(name: str) -> str:
 
 
 def _limits(spectrum, vmin, vmax):
-    lowest, highest = colour_limits(spectrum)
-    return (lowest if vmin is None else vmin), (highest if vmax is None else vmax)
+    return chosen_limits(colour_limits(spectrum), vmin, vmax)
 
 
 def _draw(axes, spectrum, vmin: float, vmax: float):

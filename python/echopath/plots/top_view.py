@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from ..measures import SMALLEST_POWER, in_dbm
-from .maps import DYNAMIC_RANGE_DB, MARGIN_OVER_MEDIAN_DB, NOISE_PEAK_DB
+from .maps import DYNAMIC_RANGE_DB, MARGIN_OVER_MEDIAN_DB, NOISE_PEAK_DB, chosen_limits
 from .style import MAP_COLOURS, axes_or_new, new_figure
 
 FARTHER = 1.1                  # of the farthest signal: what is shown
@@ -30,8 +30,7 @@ def plot_range_azimuth(maps, *, title="Received power from above", vmin=None, vm
     """
     maps = maps if isinstance(maps, dict) else {"": maps}
     first = next(iter(maps.values()))
-    lowest, highest = _colour_limits(first)
-    vmin, vmax = (lowest if vmin is None else vmin), (highest if vmax is None else vmax)
+    vmin, vmax = chosen_limits(_colour_limits(first), vmin, vmax)
     reach = max(_reach(one, vmin) for one in maps.values())
     aspect = _aspect(first)
     columns = min(len(maps), 3 if len(maps) % 2 and aspect < WIDE else 2)
@@ -55,8 +54,7 @@ def plot_range_azimuth(maps, *, title="Received power from above", vmin=None, vm
 
 def draw_range_azimuth(map, *, ax=None, vmin=None, vmax=None, title=""):
     """One map in given axes, or in new ones (None), otherwise as `plot_range_azimuth`; returns the axes."""
-    lowest, highest = _colour_limits(map)
-    vmin, vmax = (lowest if vmin is None else vmin), (highest if vmax is None else vmax)
+    vmin, vmax = chosen_limits(_colour_limits(map), vmin, vmax)
     with axes_or_new(ax, LARGE * _aspect(map) + 1.6, LARGE + 0.8) as ax:
         image = _draw(ax, map, _reach(map, vmin), vmin, vmax)
         ax.set_xlabel(LEFT_LABEL)

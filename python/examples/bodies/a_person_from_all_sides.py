@@ -16,7 +16,7 @@ scene.add(ep.actors.pedestrian(height=1.75), name="person", position=(0, 0, 0))
 
 azimuth = np.radians(np.arange(0, 360, 10))
 directions = np.column_stack([np.cos(azimuth), np.sin(azimuth), np.zeros_like(azimuth)])
-power = ep.rcs(scene, frequency=77e9, incidence=directions, num_rays=4096, components=True)
+power = ep.rcs(scene, frequency=77e9, incidence=directions, num_rays=30_000, components=True)
 total = power["coherent"] + power["diffuse"]
 mean = 10 * np.log10(np.mean(total))
 print(f"mean over azimuth: {mean:.1f} dBsm")

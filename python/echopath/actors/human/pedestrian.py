@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ... import _core
-from ...checks import an, checked, positive, real
+from ...checks import an, checked, positive, real, refused
 from ..actor import Actor, PartArrays
 from ..surfaces import edge_length
 from .anthropometry import Proportions
@@ -12,6 +12,8 @@ from .body import surface
 from .gait import Frames, Gait, relative_speed_limit
 from .rotations import quaternions
 
+LONGEST = 1e9                 # s
+MOST_KEYS = 200_000           # of a part
 HEIGHTS = (0.5, 2.5)          # m
 MIN_SPEED = 0.1               # m/s
 MIN_KEYFRAME_RATE = 60.0      # 1/s: fewer do not follow the landing of a foot
@@ -23,7 +25,7 @@ def material_rule(argument: str, value):
     return an(_core.Material, str, called="a Material or the name of one")(argument, value)
 
 
-@checked(height=real(*HEIGHTS, unit="m"), speed=positive("m/s"), start_time=real(unit="s"), duration=positive("s"),
+@checked(height=real(*HEIGHTS, unit="m"), speed=positive("m/s"), start_time=real(-LONGEST, LONGEST, unit="s"), duration=positive("s"),
          phase=real(unit="cycles"), edge=positive("m"), keyframe_rate=real(MIN_KEYFRAME_RATE, unit="1/s"),
          clothing=material_rule, skin=material_rule)
 def pedestrian(*, height: float = 1.78, speed: float = 1.4, start_time: float = -0.5, duration: float = 2.5,
@@ -50,6 +52,9 @@ def pedestrian(*, height: float = 1.78, speed: float = 1.4, start_time: float = 
 
     Returns an Actor. Raises ValueError for values out of range, TypeError for unknown keywords.
     """
+    if duration * keyframe_rate > MOST_KEYS:
+        raise refused(ValueError, "duration", f"at most {MOST_KEYS / keyframe_rate:g} s at a keyframe_rate of {keyframe_rate:g}",
+                      duration)
     arrays = pedestrian_arrays(height=height, speed=speed, start_time=start_time, duration=duration, phase=phase,
                                edge=edge, keyframe_rate=keyframe_rate, clothing=clothing, skin=skin)
     return Actor([part.build() for part in arrays])

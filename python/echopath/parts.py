@@ -5,7 +5,7 @@ from collections.abc import Hashable, Mapping
 
 from . import _core
 from ._core import Grouping, Selection
-from .checks import Progress, checked, refused, text
+from .checks import Progress, an, checked, optional, refused, text
 from .equality import is_same
 from .families import Families
 from .settings import Evaluate, Method, Replay, Retrace, SignalSettings
@@ -143,7 +143,13 @@ def parts_of_options(texts) -> dict:
     return parts
 
 
-@checked({"settings": SignalSettings}, **RULES, parts=_views_rule)
+def _radar_rule(argument: str, value):
+    """None or a Radar; `annotate` takes the parts in its place."""
+    called = "a Radar (selections are its parts=)" if isinstance(value, _VIEWS) else ""
+    return optional(an(_core.Radar, called=called))(argument, value)
+
+
+@checked({"settings": SignalSettings}, **RULES | {"radar": _radar_rule}, parts=_views_rule)
 def decompose(paths: _core.Paths, radar: _core.Radar | None = None, parts: Views = None, *,
               tolerance: float = SignalSettings.tolerance, method: Method = SignalSettings.method,
               replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,

@@ -25,8 +25,8 @@ def material_rule(argument: str, value):
     return an(_core.Material, str, called="a Material or the name of one")(argument, value)
 
 
-@checked(height=real(*HEIGHTS, unit="m"), speed=positive("m/s"), start_time=real(-LONGEST, LONGEST, unit="s"), duration=positive("s"),
-         phase=real(unit="cycles"), edge=positive("m"), keyframe_rate=real(MIN_KEYFRAME_RATE, unit="1/s"),
+@checked(height=real(*HEIGHTS, unit="m"), speed=positive("m/s"), start_time=real(-LONGEST, LONGEST, unit="s"),
+         duration=positive("s"), phase=real(unit="cycles"), edge=positive("m"), keyframe_rate=real(MIN_KEYFRAME_RATE, unit="1/s"),
          clothing=material_rule, skin=material_rule)
 def pedestrian(*, height: float = 1.78, speed: float = 1.4, start_time: float = -0.5, duration: float = 2.5,
                phase: float = 0.0, edge: float = 0.018, keyframe_rate: float = 120.0,

@@ -63,10 +63,10 @@ def test_what_is_likely_passes_without_a_word():
         warnings.simplefilter("error")
         ep.trace(_scene(), _radar(yaw=-np.pi, position=(-5, 0, 0), speed=30), num_rays=100)
         ep.ChirpSequence(start_frequency=24e9, bandwidth=250e6, chirp_interval=1e-3)
-        mountains = ep.Mesh([[-5e3, -5e3, -400], [5e3, -5e3, -400], [5e3, 5e3, -400], [-5e3, 5e3, -400], [3e3, 0, 900]],
+        mountains = ep.Mesh([[-5e3, -5e3, -100], [5e3, -5e3, -100], [5e3, 5e3, -100], [-5e3, 5e3, -100], [3e3, 0, 800]],
                             [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
         terrain = ep.Scene()
-        terrain.add(mountains, name="terrain", material="concrete")
+        terrain.add(mountains, name="terrain", material=ep.Material(reflectivity=0.1, scattering=1.0))
         ep.trace(terrain, _radar(), num_rays=100)
         ground = ep.Scene()
         ground.add(ep.actors.wall(5000.0, 30.0), name="cliff", material="concrete", position=(100, 0, 0), yaw=np.pi / 2)

@@ -1,6 +1,7 @@
 """glTF files: damaged bytes, and documents in which somebody changes values."""
 from __future__ import annotations
 
+import copy
 import json
 import tempfile
 import warnings
@@ -71,7 +72,7 @@ def _places(value, found: list) -> list:
 
 
 def _changed(document: dict, random: Random) -> dict:
-    document = json.loads(json.dumps(document))
+    document = copy.deepcopy(document)
     for _ in range(random.choice((1, 1, 1, 2, 3))):
         places = _places(document, [])
         if not places:
@@ -79,14 +80,14 @@ def _changed(document: dict, random: Random) -> dict:
         holder, key = random.choice(places)
         kind = random.randrange(8)
         if kind <= 3:
-            holder[key] = random.choice(ODD)
+            holder[key] = copy.deepcopy(random.choice(ODD))
         elif kind == 4 and isinstance(holder, dict):
             del holder[key]
         elif kind == 5:
             other, place = random.choice(places)
-            holder[key] = json.loads(json.dumps(other[place]))
+            holder[key] = copy.deepcopy(other[place])
         elif kind == 6 and isinstance(holder[key], list) and holder[key]:
-            holder[key] = holder[key] * random.choice((0, 2, 50))
+            holder[key] = copy.deepcopy(holder[key]) * random.choice((0, 2, 50))
         elif isinstance(holder[key], int):
             holder[key] += random.choice((-1, 1, 4, 1000))
     return document

@@ -70,6 +70,17 @@ TEST(ChebyshevNodes, KinksAtBreakpointsDoNoHarm) {
   EXPECT_GT(without, 1e-2);  // and without the cut they do
 }
 
+// The value at the breakpoint itself is that behind the jump, so no piece before it may ask for it.
+TEST(ChebyshevNodes, JumpsAtBreakpointsDoNoHarm) {
+  const Radar radar = two_transmitters(64);
+  const double frame = radar.frame_duration(), jump = 0.37 * frame;
+  const auto f = [&](double t) { return (kStart + t >= kStart + jump ? 5.0 : 1.0) + t / frame; };
+  const auto derivative = [&](double) { return 1.0 / frame; };
+  const auto [value, slope] = errors(chebyshev_nodes(radar, kStart, {kStart + jump}, 6), radar, f, derivative);
+  EXPECT_LT(value, kPolynomialTolerance);
+  EXPECT_LT(slope * frame, 1000 * kPolynomialTolerance);  // pieces are shorter than the frame
+}
+
 TEST(ChebyshevNodes, TailShowsWhatThePolynomialLacks) {
   const Radar radar = two_transmitters(16);
   const double frame = radar.frame_duration();

@@ -58,7 +58,7 @@ std::vector<Piece> pieces_of(double begin, double end, const std::vector<double>
 
 // A motion that jumps where the piece ends is beyond the jump there, so the last node lies just before.
 void append_times(const Piece& piece, int order, std::vector<double>& times) {
-  const double last = piece.end;
+  const double last = std::max(piece.begin, std::nextafter(piece.end, piece.begin));
   for (int k = 0; k < order; ++k) {
     times.push_back(std::clamp(piece.middle() + piece.half() * lobatto(k, order), piece.begin, last));
   }

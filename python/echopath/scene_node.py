@@ -104,7 +104,8 @@ class SceneNode:
     @property
     def motion(self):
         """A LinearMotion, KeyframeMotion, CurveMotion, VertexSequence, MorphTargets or Skin, in the axes of the parent about
-        the object's own origin (`Scene.add`); None: at rest. To set a Skin the object must be a part of a mesh, as `Scene.add` makes them."""
+        the object's own origin (`Scene.add`); None: at rest. To set a Skin the object must be a part of a mesh, as
+        `Scene.add` makes them."""
         node = self._node
         return node.deformation or node.motion
 

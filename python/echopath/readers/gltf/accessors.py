@@ -82,8 +82,7 @@ class Accessors:
     def _viewed(self, item: Item, reference: Item, shape: tuple, dtype) -> np.ndarray:
         """Entries of a buffer view, without a copy."""
         view = self._views[reference.index(len(self._views))]
-        buffers = self._document.json["buffers"].objects()
-        content = self._document.buffer(view["buffer"].index(len(buffers)))
+        content = self._document.buffer(view["buffer"].index(len(self._document.buffers)))
         begin, length = view["byteOffset"].whole(0, 2**53, 0), view["byteLength"].whole(1, 2**53)
         if begin + length > len(content):
             view["byteLength"].fail(f"ends at byte {begin + length} of a buffer of {len(content)} bytes")

@@ -18,19 +18,20 @@ MOST_GROWTH = 64
 
 
 class Document:
-    """A glTF file: `json`, an Item, and the bytes of its buffers. What it says of itself is not trusted.
+    """A glTF file: `json`, an Item, its `buffers` and their bytes. What it says of itself is not trusted.
 
-    path: of the file; notes: list of sentences, filled by all who read from it
+    path: of the file; notes: sentences, each once, filled by all who read from it
     """
 
     def __init__(self, path: Path):
         self.path, self.file = path, str(path)
-        self.notes: list[str] = []
+        self.notes: dict[str, None] = {}
         content = _bytes_of(path, self.file)
         self.binary: bytes | None = None
         self.json = Item(self._parsed(content), self.file)
         if not isinstance(self.json.value, dict):
             self.json.must_be("a JSON object")
+        self.buffers = self.json["buffers"].objects()
         self._size = len(content)
         self._spent = 0
         self._buffers: dict[int, bytes] = {}
@@ -44,13 +45,12 @@ class Document:
 
     def note(self, sentence: str) -> None:
         """Adds a sentence to the notes, once."""
-        if sentence not in self.notes:
-            self.notes.append(sentence)
+        self.notes[sentence] = None
 
     def buffer(self, index: int) -> bytes:
         """The bytes of a buffer, as many as it says."""
         if index not in self._buffers:
-            item = self.json["buffers"].objects()[index]
+            item = self.buffers[index]
             length = item["byteLength"].whole(1, 2**53)
             content = self._content_of(item, index, length)
             if len(content) < length:

@@ -10,6 +10,7 @@ from .names import fit_name
 DEEPEST = 512           # levels of a tree; a scene keeps the names of all of them for each node
 ORTHOGONAL = 1e-3       # how far the axes of a matrix may be off a rotation that is animated
 PLACEMENT_BYTES = 1000  # of a node in memory, about
+LEVEL_BYTES = 65        # of its full name, for each level, and of the time to go up its chain
 
 
 class Nodes:
@@ -21,6 +22,7 @@ class Nodes:
     def __init__(self, document: Document, axes: tuple, unit: float):
         self._document, self._axes, self._unit = document, list(axes), unit
         self._items = document.json["nodes"].objects()
+        self._meshes = document.json["meshes"].objects()
         self.parent: dict[int, int] = {}
         self.order: list[int] = []
         self._walk(self._roots())
@@ -61,17 +63,16 @@ class Nodes:
                 reference.fail(f"nodes[{node}] has its place in the tree already")
             if level > DEEPEST:
                 reference.fail(f"lies deeper than {DEEPEST} levels")
-            self._document.spend(PLACEMENT_BYTES, reference)
+            self._document.spend(PLACEMENT_BYTES + LEVEL_BYTES * level, reference)
             self.parent[node] = parent
             self.order.append(node)
             left += [(child, node, level + 1) for child in reversed(self._items[node]["children"].entries())]
 
     def _fit_name(self, node: int) -> str:
         given = self._items[node]["name"].text("")
-        meshes = self._document.json["meshes"].objects()
-        mesh = self._items[node]["mesh"].index(len(meshes), None)
+        mesh = self._items[node]["mesh"].index(len(self._meshes), None)
         if not given and mesh is not None:
-            given = meshes[mesh]["name"].text("")
+            given = self._meshes[mesh]["name"].text("")
         fitted = fit_name(given, f"node_{node}")
         if given and fitted != given:
             self._document.note(f"names that a scene does not take are changed, such as {given[:40]!r} to '{fitted[:40]}'")

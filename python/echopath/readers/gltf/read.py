@@ -39,7 +39,7 @@ def read(path: Path, options: ReadOptions) -> Model:
     surfaces = Surfaces(document, accessors, nodes, motions, Primitives(document, accessors, axes, unit), animation)
     made = _Tree(document, nodes, motions, surfaces, options).nodes()
     if not made:
-        document.json.fail("shows no triangles" + "".join(f"; {note}" for note in document.notes[:3]))
+        document.json.fail("shows no triangles" + "".join(f"; {note}" for note in list(document.notes)[:3]))
     return Model(nodes=made, format="glTF 2.0", unit=unit, up=options.up or UP, animations=names, animation=animation.name,
                  duration=animation.duration, notes=tuple(document.notes))
 

@@ -28,6 +28,17 @@ class Surface:
     regions: tuple = ()
 
 
+@dataclass(frozen=True)
+class Rig:
+    """The joints of a skin. chain: nodes, parents first; place [J]: where each joint of the file stands in it
+    bound: {node: joint_from_skin [4, 4] as the vertices were bound}
+    """
+
+    chain: list
+    place: np.ndarray
+    bound: dict
+
+
 class Surfaces:
     """Makes the surfaces of nodes."""
 
@@ -38,6 +49,7 @@ class Surfaces:
         self._skins = document.json["skins"].objects()
         self._resting = Motions(nodes, Animation())
         self._meshes: dict[int, object] = {}
+        self._rigs: dict[int, Rig] = {}
 
     def is_skinned(self, node: int) -> bool:
         return self._nodes.item(node)["skin"].index(len(self._skins), None) is not None
@@ -120,18 +132,23 @@ class Surfaces:
 
     def _skinned(self, node: int, primitive: Primitive, vertices: np.ndarray, shape) -> Surface | None:
         """All joints of the skin and what is above them, from the root of the scene on."""
-        skin = self._skins[self._nodes.item(node)["skin"].index(len(self._skins))]
+        index = self._nodes.item(node)["skin"].index(len(self._skins))
+        if index not in self._rigs:
+            self._rigs[index] = self._rig(self._skins[index])
+        rig = self._rigs[index]
+        used = primitive.joints[primitive.weights > 0.0]
+        if len(used) and used.max() >= len(rig.place):
+            primitive.item["attributes"].fail(
+                f"must name joints 0 to {len(rig.place) - 1} of {self._skins[index].place}, names {used.max()}")
+        joints = rig.place[np.minimum(primitive.joints, len(rig.place) - 1)]
+        return self._made(primitive, vertices, shape, rig.chain, rig.bound, joints, primitive.weights)
+
+    def _rig(self, skin: Item) -> Rig:
         members = self._members(skin)
         inverse_binds = self._inverse_binds(skin, len(members))
-        used = primitive.joints[primitive.weights > 0.0]
-        if len(used) and used.max() >= len(members):
-            primitive.item["attributes"].fail(f"must name joints 0 to {len(members) - 1} of {skin.place}, names {used.max()}")
         chain = self._all_above(members)
         place = {member: index for index, member in enumerate(chain)}
-        bound = {member: inverse_binds[index] for index, member in enumerate(members)}
-        table = np.array([place[member] for member in members])
-        joints = table[np.minimum(primitive.joints, len(members) - 1)]
-        return self._made(primitive, vertices, shape, chain, bound, joints, primitive.weights)
+        return Rig(chain, np.array([place[member] for member in members]), dict(zip(members, inverse_binds, strict=True)))
 
     def _jointed(self, primitive: Primitive, vertices: np.ndarray, shape, chain: list[int]) -> Surface | None:
         joints = np.full((len(vertices), 1), len(chain) - 1)
@@ -163,20 +180,24 @@ class Surfaces:
         return made
 
     def _members(self, skin: Item) -> list[int]:
-        members = []
+        members: dict[int, None] = {}
         for reference in skin["joints"].entries():
             node = reference.index(len(self._nodes))
             if node not in self._nodes.parent:
                 reference.fail(f"nodes[{node}] is not in the scene")
             if node in members:
                 reference.fail(f"nodes[{node}] is a joint twice")
-            members.append(node)
+            members[node] = None
         if not members:
             skin["joints"].fail("must hold at least one joint")
-        return members
+        return list(members)
 
     def _all_above(self, members: list[int]) -> list[int]:
-        wanted = {above for member in members for above in self._nodes.chain(member)}
+        wanted: set[int] = set()
+        for node in members:
+            while node >= 0 and node not in wanted:
+                wanted.add(node)
+                node = self._nodes.parent[node]
         return [node for node in self._nodes.order if node in wanted]
 
     def _inverse_binds(self, skin: Item, count: int) -> np.ndarray:

@@ -13,7 +13,7 @@ UNIT = real(1e-12, 1e9, "m")
 def load_mesh(path: str | os.PathLike[str], unit: float = 1.0) -> _core.Mesh:
     """All faces of a mesh file as one mesh.
 
-    path: an OBJ or PLY file (ASCII or binary); unit: m per file unit, 1e-12 to 1e9
+    path: an OBJ, PLY (ASCII or binary), STL (text or binary) or OFF file; unit: m per file unit, 1e-12 to 1e9
     Returns a Mesh; its original_triangle counts the faces of the file from 0.
     Raises FileError naming the file, and the line where it is text; TypeError or ValueError naming the argument.
     """
@@ -24,7 +24,8 @@ def load_mesh(path: str | os.PathLike[str], unit: float = 1.0) -> _core.Mesh:
 def load_meshes(path: str | os.PathLike[str], unit: float = 1.0) -> list[tuple[str, _core.Mesh]]:
     """The groups of a mesh file.
 
-    path: an OBJ file, whose groups (or objects, where there is no group) become meshes, or a PLY file
+    path: an OBJ file, whose groups (or objects, where there is no group) become meshes, an STL text, whose solids do, or a
+        PLY, binary STL or OFF file. Groups of several materials stay whole (load_model takes them apart)
     unit: m per file unit, 1e-12 to 1e9
     Returns a list of (name, Mesh); the name is the file's stem where the file gives none. Groups without any area are left
     out. Raises FileError naming the file, and the line where it is text; TypeError or ValueError naming the argument.

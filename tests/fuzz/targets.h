@@ -21,11 +21,8 @@ struct Target {
   std::string_view name;  // of its folder under tests/fuzz/corpus
   void (*feed)(std::string_view bytes);
 };
-constexpr std::array<Target, 5> kTargets = {{{"obj", feed_obj},
-                                             {"ply", feed_ply},
-                                             {"stl", feed_stl},
-                                             {"off", feed_off},
-                                             {"expression", feed_expression}}};
+constexpr std::array<Target, 5> kTargets = {
+    {{"obj", feed_obj}, {"ply", feed_ply}, {"stl", feed_stl}, {"off", feed_off}, {"expression", feed_expression}}};
 
 // Ends the process with a message unless `holds`.
 void demand(bool holds, const std::string& what);

@@ -6,7 +6,7 @@ import pytest
 
 import echopath as ep
 from echopath.actors.human.captured_joints import find_joints, missing_joints, plain
-from echopath.readers.motion_capture import read_capture
+from echopath.actors.human.motion_capture import read_capture
 from fuzz.foreign import bvh_text, walk_frames
 
 CM = 0.01

@@ -186,9 +186,7 @@ TEST(Obj, SurfacesAreGroupsByMaterialAndMeshesAreGroups) {
   EXPECT_EQ(load_meshes(file.path())[1].mesh->triangles().size(), 3u);
 }
 
-TEST(Obj, NamesOfMaterialsAreText) {
-  expect_refused(kSquare + "usemtl \xFF\nf 1 2 3\n", {"line 5", "UTF-8"});
-}
+TEST(Obj, NamesOfMaterialsAreText) { expect_refused(kSquare + "usemtl \xFF\nf 1 2 3\n", {"line 5", "UTF-8"}); }
 
 }  // namespace
 }  // namespace echopath::test_obj

@@ -34,7 +34,8 @@ TEST(Off, ReadsFacesOfAnySizeInTheirOrder) {
 TEST(Off, HeadsOfModelNetCommentsAndColoursAreRead) {
   EXPECT_DOUBLE_EQ(read("OFF4 1 0\n" + kSquare + "4 0 1 2 3\n")->area(), 1.0);
   EXPECT_DOUBLE_EQ(read("# by hand\nOFF 4 1 0\n\n" + kSquare + "4 0 1 2 3 # a square\n")->area(), 1.0);
-  EXPECT_DOUBLE_EQ(read("COFF\r\n3 1 0\r\n0 0 0 255 0 0 1\r\n2 0 0 1 1 1 1\r\n0 1 0 9 9 9 1\r\n3 0 1 2 0.5 0.5 0.5\r\n")->area(), 1.0);
+  EXPECT_DOUBLE_EQ(
+      read("COFF\r\n3 1 0\r\n0 0 0 255 0 0 1\r\n2 0 0 1 1 1 1\r\n0 1 0 9 9 9 1\r\n3 0 1 2 0.5 0.5 0.5\r\n")->area(), 1.0);
 }
 
 TEST(Off, WhatIsMissingOrWrongIsToldByItsLine) {

@@ -92,8 +92,9 @@ TEST(Stl, EachSolidOfATextIsAMeshAndCaseDoesNotCount) {
 }
 
 TEST(Stl, ZerosOfBothSignsAreOneVertex) {
-  const std::string content = "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\n"
-                              "endfacet\nfacet normal 0 0 1\nouter loop\nvertex -0 0 -0\nvertex 1 1 0\nvertex 0 1 0\nendloop\n";
+  const std::string content =
+      "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\n"
+      "endfacet\nfacet normal 0 0 1\nouter loop\nvertex -0 0 -0\nvertex 1 1 0\nvertex 0 1 0\nendloop\n";
   EXPECT_EQ(read(content)[0].mesh->vertices().size(), 4u);
 }
 

@@ -150,9 +150,7 @@ class ObjBuilder {
     builder.soup.material.resize(builder.soup.triangles.size(), builder.material_index());
   }
 
-  static void material(void* self, const char* name, int) {
-    static_cast<ObjBuilder*>(self)->material_ = trimmed(name);
-  }
+  static void material(void* self, const char* name, int) { static_cast<ObjBuilder*>(self)->material_ = trimmed(name); }
 
   static void group(void* self, const char** names, int count) {
     std::string& name = static_cast<ObjBuilder*>(self)->group_;

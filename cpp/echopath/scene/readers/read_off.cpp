@@ -31,8 +31,8 @@ class OffText {
     if (!lines_.next()) lines_.refuse("the file is empty");
     std::string_view rest = lines_.text();
     const size_t keyword = rest.find("OFF");
-    const bool is_known = keyword != std::string_view::npos &&
-                          rest.substr(0, keyword).find_first_not_of("STCN") == std::string_view::npos;
+    const bool is_known =
+        keyword != std::string_view::npos && rest.substr(0, keyword).find_first_not_of("STCN") == std::string_view::npos;
     if (!is_known) lines_.refuse("the file must begin with OFF, in three dimensions");
     rest.remove_prefix(keyword + 3);
     if (is_word(trimmed(rest), "binary")) lines_.refuse("binary OFF files are not read, only text");

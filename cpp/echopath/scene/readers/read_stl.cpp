@@ -16,10 +16,10 @@
 namespace echopath {
 namespace {
 
-constexpr size_t kStlHeader = 80;                          // bytes of any content before the number of triangles
+constexpr size_t kStlHeader = 80;                            // bytes of any content before the number of triangles
 constexpr size_t kStlFirst = kStlHeader + sizeof(uint32_t);  // place of the first triangle
-constexpr size_t kStlRecord = 50;                          // normal and three corners in float, two bytes of anything
-constexpr size_t kStlCorners = 3 * sizeof(float);          // place of the corners in a record
+constexpr size_t kStlRecord = 50;                            // normal and three corners in float, two bytes of anything
+constexpr size_t kStlCorners = 3 * sizeof(float);            // place of the corners in a record
 
 uint32_t little_endian(const char* at) {
   uint32_t value = 0;
@@ -37,7 +37,8 @@ bool is_stl_text(const std::string& bytes) {
 }
 
 Soup read_binary_stl(const std::string& bytes, const std::string& name) {
-  if (bytes.size() < kStlFirst) throw FileError(name + ": the file ends too early, a binary STL file has a head of 84 bytes");
+  if (bytes.size() < kStlFirst)
+    throw FileError(name + ": the file ends too early, a binary STL file has a head of 84 bytes");
   const uint64_t count = little_endian(bytes.data() + kStlHeader);
   const uint64_t held = (bytes.size() - kStlFirst) / kStlRecord;
   if (count > held) {

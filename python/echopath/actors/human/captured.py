@@ -15,6 +15,7 @@ from .anthropometry import ANKLE_HEIGHT, HIP_HEIGHT, Proportions
 from .body import surface
 from .captured_joints import find_joints, missing_joints
 from .gait import Frames
+from .motion_capture import read_capture
 from .pedestrian import HEIGHTS, SKIN_PARTS, material_rule
 from .rotations import about_z, quaternions
 
@@ -56,16 +57,14 @@ def captured_pedestrian(path: str | os.PathLike[str], *, height: float | None = 
 
 def captured_body(path: Path, *, unit: float | None, up: str | None, height: float | None) -> CapturedBody:
     """The body of a BVH file."""
-    from ...readers.motion_capture import read_capture
-    from ...readers.options import AXES
-
     capture = read_capture(path)
     found = find_joints([joint.name for joint in capture.joints])
     if missing_joints(found):
         names = ", ".join(joint.name for joint in capture.joints)
         raise _core.FileError(f"{path}: has no joint for {', '.join(missing_joints(found))}; its joints are {names[:400]}")
     vertical = up or _vertical_axis(capture.positions, found)
-    order = list(AXES[vertical])
+    axis = "xyz".index(vertical)
+    order = [(axis + 1) % 3, (axis + 2) % 3, axis]  # what becomes x, y and z
     positions = capture.positions[:, list(found.values())][..., order]
     rotations = capture.rotations[:, list(found.values())][..., order, :][..., order]
     notes = [] if up or vertical == "y" else [f"its vertical axis is taken to be {vertical}, along which the body is"]

@@ -11,6 +11,7 @@ import numpy as np
 import echopath as ep
 from fuzz.mutate import damaged, mistaken
 
+CORPUS = Path(__file__).parent / "corpus"
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 MITSUBA = ["""<scene version="3.0.0">
 <default name="spp" value="16"/>
@@ -206,7 +207,8 @@ def _seeds() -> dict[str, list[bytes]]:
     return {".xml": [text.encode() for text in MITSUBA], ".usda": [text.encode() for text in USD],
             ".npz": [archive(vertices=moving, triangles=faces, times=[0.0, 0.1, 0.2]),
                      archive(vertices=moving[:1], faces=faces), archive(vertices=moving, triangles=faces, frame_rate=25)],
-            ".bvh": [bvh_text(walk_frames(3)).encode(), bvh_text(walk_frames(1)).encode()]}
+            ".bvh": [bvh_text(walk_frames(3)).encode(), bvh_text(walk_frames(1)).encode()],
+            **{f".{kind}": [file.read_bytes() for file in sorted((CORPUS / kind).iterdir())] for kind in ("obj", "stl", "off")}}
 
 
 def _folder() -> tempfile.TemporaryDirectory:
@@ -224,9 +226,9 @@ def feed_foreign(suffix: str):
     """Cases of one kind of file: a model that a scene takes, or an error that names the file."""
     folder, seeds = _folder(), _seeds()[suffix]
     path = Path(folder.name) / f"scene{suffix}"
-    for seed in seeds[:1]:
+    for seed in seeds:
         path.write_bytes(seed)
-        assert ep.load_model(path).num_triangles > 0
+        read_and_pose(path)
     texts = [seed.decode("latin-1") for seed in seeds]
 
     def case(number: int) -> None:

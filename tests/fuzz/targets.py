@@ -11,4 +11,4 @@ from fuzz.texts import feed_antenna, feed_scene
 
 TARGETS = {"frame_bytes": feed_frame_bytes, "frame_structure": feed_frame_structure, "arrays": feed_arrays,
            "scene": feed_scene, "antenna": feed_antenna, "gltf_bytes": feed_gltf_bytes, "gltf_json": feed_gltf_json,
-           **{name: partial(feed_foreign, f".{name}") for name in ("xml", "usda", "npz", "bvh")}}
+           **{name: partial(feed_foreign, f".{name}") for name in ("xml", "usda", "npz", "bvh", "obj", "stl", "off")}}

@@ -81,6 +81,7 @@ def radar():
     return ep.Radar(waveform, transmitters=[ep.Antenna()], receivers=[ep.Antenna()])
 
 
+@pytest.mark.filterwarnings("ignore::echopath.TessellationWarning")
 def test_one_mesh_gives_the_same_hits_through_every_format(tmp_path, radar):
     """A sharp-edged ball, whose coordinates floats hold, against the Mesh of its own arrays."""
     faces = SPHERE.triangles.astype(np.int64)
@@ -206,6 +207,31 @@ def test_a_usd_skin_moves_as_the_library_of_usd_says(tmp_path):
 def test_stages_that_cannot_be_read_are_refused_by_name(tmp_path, text, message):
     with pytest.raises(ep.FileError, match=f"stage.usda: .*{message}"):
         usd_scene(tmp_path, text)
+
+
+@pytest.mark.parametrize("stage, change, note", [
+    (0, ("int[] protoIndices = [0, 0]", "whole[] protoIndices = [0, 0]"), "point instancer /World/trees is left out"),
+    (0, ("int[] indices = [1]", "whole[] indices = [1]"), "the mesh /World/wall is left out: it has indices of another type"),
+    (0, ("double size = 2", 'text size = "2"'), "the mesh /World/box is left out: it has no number as its size"),
+    (0, ("int[] faceVertexCounts = [4, 3]", "int[] faceVertexCounts = [4, 4]"), "has 7 corners, where its faces ask for 8"),
+    (1, ("float[] primvars:skel:jointWeights = [1, 0,", "float[] primvars:skel:jointWeights = ["),
+     "does not move with its skeleton"),
+    (1, ("((1,0,0,0),(0,1,0,0),(0,0,1,0),(0,0,1,1))]\n        uniform matrix4d[] rest",
+         "((1,0,0,0),(0,1,0,0),(0,0,0,0),(0,0,1,1))]\n        uniform matrix4d[] rest"), "bind transforms that flatten space"),
+])
+def test_prims_that_cannot_be_are_left_out_with_a_note(tmp_path, stage, change, note):
+    """What mutations of these files found."""
+    assert change[0] in USD[stage]
+    model, _ = usd_scene(tmp_path, USD[stage].replace(*change))
+    assert any(note in one for one in model.notes), model.notes
+
+
+def test_times_beyond_all_bounds_and_text_that_is_none_do_no_harm(tmp_path):
+    text = USD[0].replace("24: (0, 90, 0), }", "24: (0, 90, 0), 1e300: (0, 0, 0), 24.000001: (0, 0, 0), }")
+    assert usd_scene(tmp_path, text)[0].duration == pytest.approx(1.0)
+    (tmp_path / "bad.usda").write_bytes(USD[0].encode().replace(b"def Cube", b"d\xffef Cube"))
+    with pytest.raises(ep.FileError, match="bad.usda: is no USD stage that can be read"):
+        ep.load_model(tmp_path / "bad.usda")
 
 
 def test_usd_says_what_to_install_without_its_library(tmp_path, monkeypatch):

@@ -9,7 +9,8 @@ import echopath as ep
 from fuzz import targets, worker
 
 CASES = {"frame_bytes": 40, "frame_structure": 40, "arrays": 150, "scene": 300, "antenna": 300,
-         "gltf_bytes": 300, "gltf_json": 300, "xml": 300, "usda": 200, "npz": 200, "bvh": 40}
+         "gltf_bytes": 300, "gltf_json": 300, "xml": 300, "usda": 200, "npz": 200, "bvh": 40, "obj": 200, "stl": 200,
+         "off": 200}
 
 
 def test_each_target_has_a_short_run():

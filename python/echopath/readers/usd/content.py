@@ -11,7 +11,7 @@ from ..sampled import Clock, deformed, moved_rigidly
 from ..tree import Tree
 from .skeletons import Skeletons
 from .stage import Timeline, is_left_out
-from .surfaces import SOLIDS, BadMesh, Surface, surface_of
+from .surfaces import SOLIDS, BadMesh, Surface, integers, surface_of
 from .transforms import sampled_transforms
 
 MAX_NODES = 2_000_000
@@ -161,7 +161,11 @@ class Content:
         """The instances of a point instancer, each a node with its prototype below it."""
         instancer = self._pxr.UsdGeom.PointInstancer(prim)
         prototypes = [self._stage.GetPrimAtPath(path) for path in instancer.GetPrototypesRel().GetForwardedTargets()]
-        which = np.array(instancer.GetProtoIndicesAttr().Get(self._time) or [], np.int64)
+        try:
+            which = integers(instancer.GetProtoIndicesAttr(), self._time)
+        except BadMesh as error:
+            self._tree.note(f"the point instancer {prim.GetPath()} is left out: it {error}")
+            return
         codes, transforms = self._instance_transforms(instancer, len(which))
         if transforms is None:
             self._tree.note(f"the point instancer {prim.GetPath()} is left out: its arrays do not fit together")

@@ -66,6 +66,8 @@ class Skeletons:
 def _influences(skinning, num_points: int, order: list) -> tuple[np.ndarray, np.ndarray]:
     """(joint indices [V, K] into `order`, weights [V, K]); each row adds up to 1."""
     found = skinning.ComputeVaryingJointInfluences(num_points)
+    if found is None:
+        raise ValueError("it has no weights of joints that fit its points")
     per_point = skinning.GetNumInfluencesPerComponent()
     indices, weights = (np.array(values) for values in found)
     if per_point < 1 or len(indices) != num_points * per_point or len(weights) != len(indices):

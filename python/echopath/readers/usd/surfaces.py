@@ -36,7 +36,8 @@ def surface_of(prim, time, axes: Axes, pxr) -> Surface:
     mesh = pxr.UsdGeom.Mesh(prim)
     points, corners, counts = (_array(attribute.Get(time), shape) for attribute, shape in (
         (mesh.GetPointsAttr(), (-1, 3)), (mesh.GetFaceVertexIndicesAttr(), (-1,)), (mesh.GetFaceVertexCountsAttr(), (-1,))))
-    corners, counts, face = _polygons(points, corners.astype(np.int64), counts.astype(np.int64), _holes(mesh, time))
+    holes = integers(mesh.GetHoleIndicesAttr(), time)
+    corners, counts, face = _polygons(points, corners.astype(np.int64), counts.astype(np.int64), holes)
     triangles, polygon = _core.triangles_of_polygons(points, corners, counts)
     scheme = mesh.GetSubdivisionSchemeAttr()
     surface = Surface(points, smooth=scheme.HasAuthoredValue() and scheme.Get() != "none")
@@ -53,8 +54,12 @@ def _array(value, shape) -> np.ndarray:
     return array
 
 
-def _holes(mesh, time) -> np.ndarray:
-    return np.array(mesh.GetHoleIndicesAttr().Get(time) or [], np.int64)
+def integers(attribute, time) -> np.ndarray:
+    """The whole numbers [N] of an attribute, none for one without a value. Raises BadMesh for another type."""
+    try:
+        return np.array(attribute.Get(time) or [], np.int64)
+    except (TypeError, ValueError):
+        raise BadMesh(f"has {attribute.GetName()} of another type than the schema of USD") from None
 
 
 def _polygons(points, corners, counts, holes):
@@ -75,7 +80,7 @@ def _subsets(prim, time, pxr) -> list:
     if not prim.IsA(pxr.UsdGeom.Mesh):
         return [("", prim, None)]
     subsets = pxr.UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets()
-    found = [(subset.GetPrim().GetName(), subset.GetPrim(), np.array(subset.GetIndicesAttr().Get(time) or [], np.int64))
+    found = [(subset.GetPrim().GetName(), subset.GetPrim(), integers(subset.GetIndicesAttr(), time))
              for subset in subsets]
     return [*found, ("", prim, None)]
 

@@ -124,6 +124,14 @@ def test_groups_of_an_obj_are_taken_apart_by_material(tmp_path):
     assert [name for name, _ in ep.load_meshes(tmp_path / "house.obj")] == ["wall", "door"]
 
 
+@pytest.mark.parametrize("name, content", [("a.obj", b"v 0 0 \xca\n"), ("a.stl", b"solid a\nouter loop\nvertex 0 0 \xca\n"),
+                                           ("a.off", b"OFF\n3 1 0\n0 0 \xca\n")])
+def test_words_that_are_no_text_are_written_out_in_messages(tmp_path, name, content):
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(ep.FileError, match=r"a\..*, line \d: not a number: '.xca'"):
+        ep.load_mesh(tmp_path / name)
+
+
 def usd_scene(tmp_path, text: str, **options) -> tuple:
     (tmp_path / "stage.usda").write_text(text)
     model = ep.load_model(tmp_path / "stage.usda", **options)

@@ -166,7 +166,7 @@ TEST(Obj, RefusesFilesWithoutFaces) {
 TEST(Readers, RefuseWhatIsNoMeshFile) {
   expect_error<FileError>([] { load_mesh(testing::TempDir() + "echopath_missing.obj"); },
                           {"echopath_missing.obj", "opened"});
-  expect_error<FileError>([] { load_mesh("mesh.3ds"); }, {"mesh.3ds", ".obj, .ply"});
+  expect_error<FileError>([] { load_mesh("mesh.dae"); }, {"mesh.dae", ".obj, .ply, .stl, .off"});
   expect_error<std::invalid_argument>([] { load_mesh("mesh.obj", 0.0); }, {"unit", "positive"});
   expect_error<std::invalid_argument>([] { load_mesh("mesh.obj", std::nan("")); }, {"unit"});
 }

@@ -24,6 +24,7 @@ TYPICAL_HEIGHT = 1.75   # m
 JUMP = 0.15             # m between the first two frames, and JUMPS times as far as any later step: a pose of its own
 JUMPS = 4.0
 ON_FLOOR = 0.10         # share of the frames in which the lower foot may be below the floor
+MOST_STRETCH = 10.0     # of a segment over that of a body of the same legs, up or down
 TRAVEL = 0.5            # m from which on the way of the body is its direction
 
 
@@ -134,6 +135,9 @@ class CapturedBody:
                     stretch[key] = float(np.linalg.norm(segment, axis=-1).mean()) / length
             frames[f"leg_{side}/foot"] = self._foot(side, frames[f"leg_{side}/shank"])
             frames[f"arm_{side}/hand"] = self._hand(side, frames[f"arm_{side}/forearm"])
+        for name, times in stretch.items():
+            if not 1.0 / MOST_STRETCH <= times <= MOST_STRETCH:
+                raise _core.FileError(f"{self._path}: its {name} is {times:.3g} times as long as that of a body of such legs")
         return frames, stretch
 
     def _limb(self, begin: str, end: str, left) -> Frames:

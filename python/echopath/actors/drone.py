@@ -82,7 +82,7 @@ def _blade(radius, angle):
 
 def _without_inner_walls(vertices, triangles):
     """Leaves out pairs of triangles that close neighbouring pieces against each other."""
-    keys, index, number = np.unique(np.sort(triangles, axis=1), axis=0, return_inverse=True, return_counts=True)
+    _, index, number = np.unique(np.sort(triangles, axis=1), axis=0, return_inverse=True, return_counts=True)
     return vertices, triangles[number[index.reshape(-1)] == 1]
 
 

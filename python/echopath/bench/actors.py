@@ -52,7 +52,8 @@ SUBJECTS = (
     Subject("child of 1.15 m", lambda: actors.child(), "mean", -14.0, -7.0, f"{MEMORY}; none was found"),
     Subject("dog", lambda: actors.dog(), "mean", -15.0, -5.0, f"{MEMORY}; none was found"),
     Subject("drone", lambda: actors.drone(rotor_rpm=0.0), "mean", -19.1, -5.0, NAKAMURA),
-    Subject("tree", lambda: actors.tree(), "mean", -4.0, 6.0, f"-15 to -8 dB a square metre of crown (19 m^2) at 95 GHz; {MEMORY}"),
+    Subject("tree", lambda: actors.tree(), "mean", -4.0, 6.0,
+            f"-15 to -8 dB a square metre of crown (14 m^2) at 95 GHz; {MEMORY}"),
 )
 
 
@@ -115,11 +116,11 @@ def aspect_of(subject: Subject, *, quick: bool = False) -> Aspect:
 
 def draw(found: list[Aspect], path) -> None:
     """Writes a PNG: cross section over aspect, a panel for each actor, with the published band."""
-    with new_figure(12.0, 9.6) as figure:
+    with new_figure(9.6, 7.9) as figure:
         panels = figure.subplots(3, 4, subplot_kw={"projection": "polar"}).flat
         for axes, one in zip(panels, found):
             _draw_panel(axes, one)
-        figure.suptitle("Cross section in dBsm over aspect at 77 GHz (0 degrees: from ahead). Bands: published", fontsize=13)
+        figure.suptitle("Cross section in dBsm over aspect at 77 GHz (0 degrees: from ahead). Bands: published", fontsize=11)
         save_png(figure, path, seed=FIXED_SEEDS)
 
 
@@ -135,8 +136,8 @@ def _draw_panel(axes, one: Aspect) -> None:
     axes.plot(circle, np.full_like(circle, value), color="#d55e00", linewidth=1.2, linestyle="--")
     axes.set_theta_zero_location("N")
     axes.set_ylim(bottom, max(top, one.subject.high))
-    axes.set_title(f"{one.subject.name}\n{one.subject.statistic} {value:.1f} dBsm (dashed)", fontsize=9)
-    axes.tick_params(labelsize=7)
+    axes.set_title(f"{one.subject.name}\n{one.subject.statistic} {value:.1f} dBsm (dashed)", fontsize=8)
+    axes.tick_params(labelsize=6)
 
 
 def describe(found: list[Aspect]) -> list[str]:

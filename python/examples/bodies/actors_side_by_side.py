@@ -52,6 +52,7 @@ for row, drop in zip(rows, (3.2, 4.8, 5.9, 0.0)):
     for name, actor in row:
         place = draw(axes, name, actor, place, ground)
     ground -= drop
-axes.set(xlim=(-0.8, 23.5), ylim=(-14.6, 2.0), xlabel="Length in m", ylabel="Height in m, row by row", title="Actors, from the side")
+axes.set(xlim=(-0.8, 23.5), ylim=(-14.6, 2.0), xlabel="Length in m", ylabel="Height in m, row by row",
+         title="Actors, from the side")
 axes.set_aspect("equal")
 plt.show()

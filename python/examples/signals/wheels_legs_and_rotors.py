@@ -2,7 +2,8 @@
 Wheels, legs and rotors
 =======================
 
-What moves within a body spreads its echo over velocity: the wheels of a cyclist, the legs of a runner, the rotors of a drone. Each is seen for 26 ms from ahead, 12 m away.
+What moves within a body spreads its echo over velocity: the wheels of a cyclist, the legs of a runner, the rotors of a drone.
+Each is seen for 26 ms from ahead, 12 m away.
 """
 import matplotlib.pyplot as plt
 import numpy as np

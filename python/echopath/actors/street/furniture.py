@@ -34,7 +34,8 @@ RAIL_LINE = ((0.0, 0.86), (0.05, 0.80), (0.12, 0.30), (0.19, 0.02), (0.25, 0.0),
 def pole(*, height: float = 6.0, radius: float = 0.07, end_radius: float = 0.04) -> Actor:
     """A round metal pole that tapers from `radius` at the ground to `end_radius` at `height`, all in m.
 
-    It stands at the origin, its foot 5 cm below the ground z = 0. One part, "tube". Raises TypeError or ValueError naming the argument.
+    It stands at the origin, its foot 5 cm below the ground z = 0. One part, "tube".
+    Raises TypeError or ValueError naming the argument.
     """
     surface = tube((0, 0, -SUNK), (0, 0, height), radius, end_radius, segments=round_segments(radius, 14))
     return Actor([Part("tube", _core.Mesh(*surface), "metal", smooth=True)])

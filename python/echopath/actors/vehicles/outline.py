@@ -24,12 +24,12 @@ class Outline:
     """Published: length, width without mirrors, height, wheelbase, front_overhang, tyre_diameter and tyre_width. Drawn after
     side views: heights of the lines and places of the pillars.
 
-    clearance: of the underside; bonnet, cowl: height of the bonnet's front edge and rear end; deck: (height of the boot lid,
-    share of the length behind the rear axle where the rear window meets it) or None for a body whose roof goes on to the
-    tail; tail_roof: height of the roof's rear end as a share of the height; belt: height of the windows' lower edge in front
-    and behind; screen: length of the windscreen along x; roof_width: of its rails, as a share of the width; pillar: place of
-    the middle pillar as a share of the way from the front to the rear axle; glazed: whether windows go on behind it; levels: subdivisions of the
-    lattice's faces, so that flat triangles follow the surface at 77 GHz.
+    clearance: of the underside; bonnet, cowl: height of the bonnet's front edge and rear end; deck: height of the boot lid, or
+    None for a body whose roof goes on to the tail; tail_roof: height of the roof's rear end as a share of the height;
+    tail_rake: how far the tail leans ahead at its top; belt: height of the windows' lower edge in front and behind; screen:
+    length of the windscreen along x; roof_width: of its rails, as a share of the width; pillar: place of the middle pillar
+    as a share of the way from the front to the rear axle; glazed: whether windows go on behind it; levels: subdivisions of
+    the lattice's faces, so that their triangles follow the surface at 77 GHz.
     """
 
     length: float

@@ -25,7 +25,8 @@ def runner(*, height: float = 1.78, speed: float = 3.0, start_time: float = -0.5
     (running.py); between them the trajectories are sines. A foot that touches the floor z = 0 does not slide.
 
     speed: in m/s, 1.8 to 5 for an adult of 1.78 m, others by the root of their height. phase: of the cycle of two steps at
-    time 0, in cycles; 0 is the strike of the right foot. keyframe_rate: in 1/s, at least 60.
+    time 0, in cycles; 0 is the strike of the right foot. height, start_time, duration, edge, clothing, skin: as of
+    `pedestrian`. keyframe_rate: in 1/s, at least 60.
     Returns an Actor. Raises ValueError for values out of range, TypeError for unknown keywords.
     """
     body = Proportions(height)

@@ -14,7 +14,7 @@ CarKind = Literal["small", "compact", "saloon", "estate", "suv"]
 # up! (2011), Volkswagen Golf VII (2012), Mercedes-Benz C-Class W205 (2014), Volkswagen Passat B8 Variant (2014), Volkswagen
 # Tiguan II (2016). The other lines are drawn to resemble such bodies.
 CARS = {
-    "small": Outline(3.540, 1.641, 1.489, 2.420, 0.57, 0.587, 0.165, 0.17, 0.76, 0.99, (0.93, 0.98), 0.62, 0.66,
+    "small": Outline(3.540, 1.641, 1.489, 2.420, 0.60, 0.587, 0.165, 0.17, 0.76, 0.99, (0.93, 0.98), 0.62, 0.66,
                      tail_roof=0.96, tail_rake=0.14),
     "compact": Outline(4.255, 1.799, 1.452, 2.637, 0.85, 0.632, 0.205, 0.16, 0.77, 0.98, (0.91, 0.97), 0.72, 0.64,
                        tail_roof=0.95, tail_rake=0.24),

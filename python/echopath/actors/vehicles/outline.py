@@ -10,7 +10,7 @@ ARCH_CLEARANCE = 0.055     # m between tyre and wheel arch
 ARCH_INSIDE = 0.10         # m by which an arch is deeper than the tyre is wide
 WHEEL_INSET = 0.065        # m from the widest place of the body to the outer side of the tyre
 SIDE_BOW = 0.040           # by which the sides draw in from the middle to the axles, as seen from above, of the half width
-CORNER = 0.20              # m, least way along x from a wheel arch to the end of the body
+CORNER = 0.10              # m, least way along x from a wheel arch to the end of the body
 COLUMNS = np.array([-1.0, -0.82, -0.58, -0.30, 0.0, 0.30, 0.58, 0.82, 1.0])    # lines across, as shares of the half width
 SILL, LOW, ARCH, SHOULDER, BELT, WINDOW, RAIL = range(7)   # lines of the side, from below; RAIL is under the roof
 ROWS = RAIL
@@ -158,14 +158,15 @@ def _roof_line(o, x):
 def _round_ends(o, points):
     """Bends nose and tail backwards at the sides, as seen from above, and leans them, as seen from the side."""
     across = np.abs(COLUMNS)[:, None]
-    nose = -np.array([0.07, 0.015, 0.0, 0.03, 0.09, 0.115, 0.16])[None, :] - 0.22 * across**2.5 - 0.10 * across**2
+    nose = -np.array([0.045, 0.007, 0.0, 0.022, 0.068, 0.095, 0.135])[None, :] - 0.18 * across**2.5 - 0.10 * across**2
     tail = np.array([0.05, 0.015, 0.0, 0.02, 0.045, 0.065, 0.10])[None, :] + 0.05 * across**2.5 + 0.06 * across**2
     tail = tail + (o.tail_rake * np.array([0, 0, 0.02, 0.09, 0.28, 0.60, 1.0])[None, :] if o.deck is None else 0.0)
     ends = ((AT["nose"], AT["nose_in"], AT["front_arch_3"], nose), (AT["tail"], AT["tail_in"], AT["rear_arch_0"], tail))
     for end, inner, arch, shift in ends:
         forward = np.sign(points[end, 0, 0, 0])
         edge = points[arch, 0, 0, 0]
-        room = np.maximum(forward * (points[end, :, :, 0] + shift - edge), CORNER)
+        room = forward * (points[end, 0, 0, 0] - edge)
+        room = room + forward * shift * min(1.0, (room - CORNER) / np.abs(shift).max())
         points[end, :, :, 0] = edge + forward * room
         points[inner, :, :, 0] = edge + forward * np.minimum(forward * (points[inner, :, :, 0] - edge), 0.6 * room)
 

@@ -1,5 +1,5 @@
 """Names of the panels of cars and vans: what each face of the lattice (outline.py) belongs to."""
-from .outline import ARCH, AT, BELT, COLUMNS, LOW, SHOULDER
+from .outline import ARCH, AT, BELT, COLUMNS, SHOULDER
 
 LAST_COLUMN = len(COLUMNS) - 2
 SIDES = {-1: "right", 1: "left"}
@@ -77,7 +77,7 @@ def _nose(face):
     _, j, k = face.cell
     if k == SHOULDER and (j < 2 or j > LAST_COLUMN - 2):
         return f"lamp/head_{'right' if j < 2 else 'left'}"
-    if LOW <= k <= SHOULDER and 1 < j < LAST_COLUMN - 1:
+    if ARCH <= k <= SHOULDER and 1 < j < LAST_COLUMN - 1:
         return "bumper/grille"
     return "bumper/front"
 

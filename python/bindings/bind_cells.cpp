@@ -84,12 +84,12 @@ py::object region(const LabelRegion& made) {
   return out;
 }
 
-py::list regions_of(const py::object& label, const py::object& power, bool rows_wrap) {
+py::list regions_of(const py::object& label, const py::object& power, int64_t num_labels, bool rows_wrap) {
   const Cells labels = checked_array<int16_t>(label, "label", "[V, R]");
-  const Powers powers = checked_powers(power);
+  const Powers powers = checked_array<double>(power, "power", "[V, R]");
   const MapShape shape{labels.shape(0), labels.shape(1), rows_wrap};
   py::list out;
-  const auto regions = without_gil([&] { return label_regions(view(labels), view(powers), powers.shape(0), shape); });
+  const auto regions = without_gil([&] { return label_regions(view(labels), view(powers), num_labels, shape); });
   for (const LabelRegion& made : regions) out.append(region(made));
   return out;
 }
@@ -132,7 +132,7 @@ void bind_cells(py::module_& m) {
         "(above_noise, labelled), bool [V, R], of powers [V, R].");
   m.def("strongest_part", &strongest_of, py::arg("power"), py::arg("mask"),
         "Index of the largest of [K, V, R], -1 outside.");
-  m.def("label_regions", &regions_of, py::arg("label"), py::arg("power"), py::arg("rows_wrap"),
+  m.def("label_regions", &regions_of, py::arg("label"), py::arg("power"), py::arg("num_labels"), py::arg("rows_wrap"),
         "Cells, peak and box of each label: list of dict or None.");
   m.def("share_errors", &errors_of, py::arg("cross"), py::arg("coherent"), py::arg("diffuse"), py::arg("dominant"),
         "(power, its error, share, its error [K, V, R], certain [V, R]) from sums of batches [K, B, V, R].");

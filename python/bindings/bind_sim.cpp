@@ -10,10 +10,12 @@
 #include "choice.h"
 #include "echopath/sim/decompose.h"
 #include "echopath/sim/replay_cost.h"
+#include "echopath/sim/stream/part_pass.h"
 #include "echopath/sim/synthesize.h"
 #include "grouping.h"
 #include "run_job.h"
 #include "warn.h"
+#include "window_name.h"
 
 namespace echopath::bindings {
 namespace {
@@ -99,9 +101,77 @@ py::list decompose_cubes(const Paths& paths, const Radar* radar, const std::vect
   return out;
 }
 
+std::unique_ptr<PartPass> part_pass(const Paths& paths, const Radar& radar, const py::object& group, uint32_t num_groups,
+                                    double tolerance, const std::string& method, const std::string& replay,
+                                    const std::string& evaluate, double phase_tolerance, SignalProbe* probe) {
+  CubeSettings settings = settings_of(tolerance, method, replay, evaluate, phase_tolerance, "never", 0);
+  set_probe(probe, settings);
+  warn_of_long_work(paths, radar, settings);
+  return std::make_unique<PartPass>(paths, radar, as_vector<uint32_t>(group, "group"), num_groups, settings);
+}
+
+py::list powers_of_pass(PartPass& pass, const PartPass::Sets& sets, const py::object& window,
+                        int zero_pad, const py::object& progress) {
+  const Window taper = as_window(window);
+  py::list out;
+  for (SetPower& of_set :
+       run_job("families", progress, [&](Job& job) { return pass.powers(sets, taper, zero_pad, &job); })) {
+    out.append(py::make_tuple(numpy_take(std::move(of_set.cells)), of_set.mean_square));
+  }
+  return out;
+}
+
+py::list cubes_of_pass(PartPass& pass, const PartPass::Sets& sets, const py::object& progress) {
+  py::list out;
+  for (Cube& cube : run_job("families", progress, [&](Job& job) { return pass.cubes(sets, &job); })) {
+    out.append(cube_array(std::move(cube)));
+  }
+  return out;
+}
+
+py::array bounds_of_pass(PartPass& pass, const std::vector<uint32_t>& groups, const py::object& window, int zero_pad,
+                         const py::object& progress) {
+  const Window taper = as_window(window);
+  std::vector<double> bounds =
+      run_job("families", progress, [&](Job& job) { return pass.bounds(groups, taper, zero_pad, &job); });
+  const auto rows = static_cast<py::ssize_t>(groups.size());
+  const py::ssize_t columns = rows > 0 ? static_cast<py::ssize_t>(bounds.size()) / rows : 0;
+  return numpy_take(std::move(bounds), {rows, columns});
+}
+
+void bind_part_pass(py::module_& m) {
+  py::class_<PartPass>(m, "PartPass", R"(The signals of many groups of paths, some of them at a time.
+
+Each path is replayed when its group is asked for; signals that are asked for while adds_up is set add up to the whole, each
+of which is to be asked for once.)")
+      .def(py::init(&part_pass), py::keep_alive<1, 2>(), py::keep_alive<1, 3>(), py::keep_alive<1, 11>(), py::arg("paths"),
+           py::arg("radar"), py::arg("group"), py::arg("num_groups"), py::kw_only(), py::arg("tolerance"), py::arg("method"),
+           py::arg("replay"), py::arg("evaluate"), py::arg("phase_tolerance"), py::arg("probe") = py::none(),
+           "group: uint32 [P] below num_groups; the other arguments are those of ep.synthesize.")
+      .def("set_adds_up", &PartPass::set_adds_up, py::arg("adds_up"), "Whether signals add to the whole; at first they do.")
+      .def_property_readonly("group_bytes", &PartPass::group_bytes, "memory of one group while its signal is made")
+      .def("whole", [](const PartPass& self) { return cube_array(run_job("families", py::none(), [&](Job& job) { return self.whole(&job); })); },
+           "The sum of the signals that were added, [tx, rx, chirp, sample] in sqrt(W).")
+      .def(
+          "finish_probe",
+          [](PartPass& self) { run_job("families", py::none(), [&](Job& job) { self.finish_probe(&job); }); },
+          "Fills the probe; to be called once, when all groups were added.")
+      .def("powers", &powers_of_pass, py::arg("sets"), py::arg("window"), py::arg("zero_pad"), py::arg("progress"),
+           R"(Powers of sets of groups in the cells of a range-Doppler map.
+
+sets: lists of groups whose fields add up. Returns for each (power [V * R] in W, mean over the channels, mean square of its
+samples in W).)")
+      .def("cubes", &cubes_of_pass, py::arg("sets"), py::arg("progress"), "Signals [tx, rx, chirp, sample] of sets of groups.")
+      .def("bounds", &bounds_of_pass, py::arg("groups"), py::arg("window"), py::arg("zero_pad"), py::arg("progress"),
+           R"(Adds groups to the whole and bounds what each can show, [group, R] in W, at any velocity or azimuth.
+
+cpp/echopath/sim/stream/cell_bounds.h has the rule.)");
+}
+
 }  // namespace
 
 void bind_sim(py::module_& m) {
+  bind_part_pass(m);
   const ReplaySettings aims;
   m.attr("PHASE_TOLERANCE") = aims.phase_tolerance;
   m.attr("AMPLITUDE_TOLERANCE") = aims.amplitude_tolerance;

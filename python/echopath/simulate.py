@@ -13,7 +13,8 @@ from .families import check_objects
 from .families import families as find_families
 from .frame import Frame, with_spectra
 from .guard import check_rays, check_signal, warn_of
-from .labels.annotate import as_label_settings, label_frame, make_request
+from .labels.annotate import as_label_settings, label_frame, make_request, owners_of_cubes
+from .labels.family_pass import FamilyPass
 from .parts import ONLY_PARTITION, as_partitions, check_partitions, decompose
 from .path_subset import part_of_path
 from .settings import (
@@ -54,7 +55,7 @@ def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | 
         in a row have noise of their own, and each the same whether it is simulated alone or not
     angles: keywords of `range_azimuth` for the map of a radar with an array, None: {"combine": "peak"}
     labels: True, LabelSettings or a dict of their keywords (plane, objects, noise, noise_margin_db in dB, dynamic_range_db in
-        dB, errors): the frame carries the labels of its map, from the same pass, with the cubes of all families in memory;
+        dB, errors): the frame carries the labels of its map, from the same pass;
         {}: as True; None or False: none, and nothing is spent on them
     detections: True, or keywords of `detect_frame`: the frame carries the detections in its map, of the objects of its
         labels unless told otherwise; {}: as True; None or False: none
@@ -88,7 +89,7 @@ def _simulated(scene, radar, tracing: TraceSettings, signals: SignalSettings, pa
         settings = signals.of_replay() | {"progress": progress}
         probe = _core.SignalProbe(seed=tracing.seed) if guard else None
         families = find_families(paths, request.objects) if request else None
-        cubes, whole, family_cubes = _cubes(paths, radar, partitions, families, settings | {"probe": probe})
+        cubes, whole, owners = _cubes(paths, radar, partitions, families, request, settings, probe)
     with clock("parts of paths"):
         group_of_path = {partition: part_of_path(paths, group) for partition, group in partitions.items()}
     frame = Frame(scene=scene, radar=radar, paths=paths, cube=whole, parts=cubes, selections=_as_text(partitions),
@@ -105,21 +106,36 @@ def _simulated(scene, radar, tracing: TraceSettings, signals: SignalSettings, pa
     if request:
         with clock("labels of cells"):
             parts_of = cubes or {ONLY_PARTITION: {"other": whole}}
-            frame.labels = label_frame(request, paths, families, parts_of, family_cubes, partitions, settings)
+            frame.labels = label_frame(request, paths, families, parts_of, owners, partitions, settings)
     if detect_keywords is not None:
         with clock("detections"):
             frame.detections = detect_frame(frame, progress=progress, **detect_keywords)
     return frame
 
 
-def _cubes(paths, radar, partitions: dict, families, settings: dict):
-    """{partition: {part: cube}}, the whole, and {Family: cube} ({} without families), from one pass."""
+def _cubes(paths, radar, partitions: dict, families, request, settings: dict, probe):
+    """{partition: {part: cube}}, the whole, and what finds the owners of cells, as `label_frame` takes it.
+
+    families, request: None: no labels, and no owners
+    """
     if not partitions and families is None:
-        return {}, synthesize(paths, radar, **settings), {}
+        return {}, synthesize(paths, radar, **settings, probe=probe), None
+    if families is None or settings["retrace"] != "never":
+        return _decomposed(paths, radar, partitions, families, request, settings | {"probe": probe})
+    if not partitions:
+        signals = FamilyPass(paths, radar, families, request, settings, adds_up=True, probe=probe)
+        return {}, signals.whole(), signals.settle
+    cubes, whole, _ = _decomposed(paths, radar, partitions, None, None, settings | {"probe": probe})
+    return cubes, whole, FamilyPass(paths, radar, families, request, settings, adds_up=False).settle
+
+
+def _decomposed(paths, radar, partitions: dict, families, request, settings: dict):
+    """`_cubes` with the cubes of all parts, and of all families where there are any, from one pass."""
     views = partitions if families is None else {**partitions, _FAMILIES: families}
     cubes = decompose(paths, radar, views, **settings)
     whole = sum(next(iter(cubes.values())).values())
-    return {partition: cubes[partition] for partition in partitions}, whole, cubes.get(_FAMILIES, {})
+    owners = None if families is None else owners_of_cubes(request, cubes[_FAMILIES])
+    return {partition: cubes[partition] for partition in partitions}, whole, owners
 
 
 def _checks(cube, probe, signals: SignalSettings, trace_frame) -> list:

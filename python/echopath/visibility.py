@@ -9,6 +9,7 @@ from .families import Objects, named_globs, objects_rule
 
 
 HIDDEN_SHARE = 0.05  # an object of which no more than this is in sight counts as hidden
+DIRECTIONS_OF_PLACES = 256  # on each object: shares to .004 rms, for the question whether they are above HIDDEN_SHARE
 FRAME_PLACES = (0.0, 1.0, 0.618, 0.236, 0.854)  # shares of a frame: its ends and irrational ones
 
 
@@ -115,7 +116,8 @@ def appearing_in_frame(paths, radar, hidden, objects=None, *, progress=None) -> 
     for share in FRAME_PLACES if moves else ():
         rest = {name: objects[name] if isinstance(objects, dict) else name for name in sorted(hidden - appearing)}
         if rest:
-            seen = visibility(scene, radar, rest, time=paths.frame.start_time + share * radar.frame_duration, progress=progress)
+            seen = visibility(scene, radar, rest, time=paths.frame.start_time + share * radar.frame_duration,
+                              num_directions=DIRECTIONS_OF_PLACES, progress=progress)
             appearing |= {one.name for one in seen if one.visible_share > HIDDEN_SHARE}
     return appearing
 

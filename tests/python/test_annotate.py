@@ -4,7 +4,8 @@ import pytest
 
 import echopath as ep
 from echopath import _core
-from echopath.labels import objects, powers
+from echopath.labels import powers
+from echopath.labels.family_pass import owners_of_views
 from support.labelled import TARGETS, make_radar
 
 # Main lobe of a Blackman-Harris window is 4 cells to each side; an extended body adds some.
@@ -149,8 +150,7 @@ def test_a_way_there_and_back_wins_cells_by_its_common_field(there, back, wins):
     found = powers.ViewPowers(OneCell())
     for _ in range(2):
         found.add(cubes, powers.CubeSet(None, 0.5, {}))
-    cells = np.stack([found.cells[family] for family in families])
-    assert objects._strongest_family(found, families, cells, np.ones((1, 1), bool)).item() == wins
+    assert owners_of_views(found, np.ones((1, 1), bool)).family.item() == wins
     assert found.rivals["a", 2, frozenset({"wall"})] == pytest.approx((there + back) ** 2, abs=10 * ROUNDING)
 
 

@@ -39,6 +39,10 @@ ECHOPATH_INLINE void find_not_finite(const double* values, int64_t count, int64_
   *bad = found;
 }
 
+ECHOPATH_INLINE void add_values(const double* values, int64_t count, double* __restrict sum) {
+  for (int64_t i = 0; i < count; ++i) sum[i] += values[i];
+}
+
 void require_finite(const double* values, size_t count, const char* name) {
   int64_t found = 0;
   run_simd<find_not_finite>(values, static_cast<int64_t>(count), &found);
@@ -173,10 +177,7 @@ int64_t Synthesizer::row_size(bool moving) const {
 }
 
 void Synthesizer::add(int channel, std::span<const Echoes> blocks, Job* job) {
-  if (channel < 0 || channel >= static_cast<int>(channels_.size())) {
-    throw std::out_of_range("channel: must be in [0, " + std::to_string(channels_.size()) + "), got " +
-                            std::to_string(channel));
-  }
+  require_channel(channel);
   parallel_for(static_cast<int64_t>(blocks.size()), [&](int64_t i) { validate(blocks[static_cast<size_t>(i)]); });
   ChannelRows& rows = channels_[channel];
   while (!blocks.empty()) {
@@ -322,10 +323,63 @@ void Synthesizer::add_some(const Echoes& block, int chirp, int64_t begin, int co
   tones_->add(carriers, rows);
 }
 
-std::vector<std::complex<double>> Synthesizer::cube(int group, Job* job) const {
-  if (group < 0 || group >= num_groups_) {
-    throw std::out_of_range("group: must be in [0, " + std::to_string(num_groups_) + "), got " + std::to_string(group));
+void Synthesizer::require_channel(int channel) const {
+  if (channel >= 0 && channel < static_cast<int>(channels_.size())) return;
+  throw std::out_of_range("channel: must be in [0, " + std::to_string(channels_.size()) + "), got " +
+                          std::to_string(channel));
+}
+
+size_t Synthesizer::group_bytes() const {
+  return channels_.size() * static_cast<size_t>(row_size(true) * waveform_.num_chirps) * sizeof(double);
+}
+
+void Synthesizer::require_group(int group) const {
+  if (group >= 0 && group < num_groups_) return;
+  throw std::out_of_range("group: must be in [0, " + std::to_string(num_groups_) + "), got " + std::to_string(group));
+}
+
+void Synthesizer::write_samples(int channel, int group, std::complex<double>* out) const {
+  require_channel(channel);
+  require_group(group);
+  const ChannelRows& rows = channels_[static_cast<size_t>(channel)];
+  const RowMemory* const moving = rows.moving[static_cast<size_t>(group)].get();
+  const std::vector<double>& still = rows.still[static_cast<size_t>(group)];
+  const int64_t num_samples = waveform_.num_samples;
+  std::vector<std::complex<double>> at_rest(static_cast<size_t>(still.empty() ? 0 : num_samples));
+  if (!still.empty()) write_row(still.data(), false, at_rest.data());
+  for (int64_t chirp = 0; chirp < waveform_.num_chirps; ++chirp) {
+    std::complex<double>* samples = out + chirp * num_samples;
+    if (moving) write_row(moving->values.get() + chirp * row_size(true), true, samples);
+    else std::fill_n(samples, num_samples, 0.0);
+    for (size_t n = 0; n < at_rest.size(); ++n) samples[n] += at_rest[n];
   }
+}
+
+void Synthesizer::absorb(const Synthesizer& other) {
+  parallel_for(static_cast<int64_t>(channels_.size()), [&](int64_t channel) {
+    absorb_channel(other.channels_[static_cast<size_t>(channel)], channels_[static_cast<size_t>(channel)]);
+  });
+}
+
+void Synthesizer::absorb_channel(const ChannelRows& from, ChannelRows& to) const {
+  const auto count = static_cast<size_t>(row_size(true) * waveform_.num_chirps);
+  std::unique_ptr<RowMemory>& moving = to.moving.front();
+  for (size_t group = 0; group < from.moving.size(); ++group) {
+    const std::vector<double>& still = from.still[group];
+    if (!still.empty()) to.still.front().resize(still.size());
+    for (size_t i = 0; i < still.size(); ++i) to.still.front()[i] += still[i];
+    if (!from.moving[group]) continue;
+    const bool is_new = !moving;
+    if (is_new) moving = RowMemory::take(count);
+    const double* const values = from.moving[group]->values.get();
+    double* const sum = moving->values.get();
+    if (is_new) std::copy_n(values, count, sum);
+    else run_simd<add_values>(values, static_cast<int64_t>(count), sum);
+  }
+}
+
+std::vector<std::complex<double>> Synthesizer::cube(int group, Job* job) const {
+  require_group(group);
   const size_t channel_size = static_cast<size_t>(waveform_.num_chirps) * static_cast<size_t>(waveform_.num_samples);
   std::vector<std::complex<double>> out(channels_.size() * channel_size);
   for (size_t channel = 0; channel < channels_.size(); ++channel) {

@@ -46,6 +46,7 @@ class Synthesizer {
   ~Synthesizer();
   Synthesizer(Synthesizer&&) noexcept;
 
+  size_t group_bytes() const;  // of a group whose echoes move, in all channels
   Method method() const { return method_; }  // the one chosen, never kAuto
 
   // Adds blocks to a channel; parallel over chirps. It is quicker to add many echoes at once: a NUFFT sorts neighbouring
@@ -55,6 +56,10 @@ class Synthesizer {
   void add(int channel, std::span<const Echoes> blocks, Job* job = nullptr);
   void add(int channel, const Echoes& block, Job* job = nullptr) { add(channel, std::span(&block, 1), job); }
 
+  // Writes the samples of one channel and group so far to `out`, [chirp, sample] in sqrt(W), without a parallel loop.
+  void write_samples(int channel, int group, std::complex<double>* out) const;
+  // Adds the signals of all groups of another, of the same waveform, channels, method and tolerance, to the first group.
+  void absorb(const Synthesizer& other);
   // Returns the samples [channel, chirp, sample] of one group so far, in sqrt(W).
   std::vector<std::complex<double>> cube(int group = 0, Job* job = nullptr) const;
 
@@ -76,10 +81,13 @@ class Synthesizer {
   void add_tiles(const TimeSampling& sampling, Range chirps, const RowsOfGroups& rows, Job* job) const;
   void add_rows(const Echoes& block, Range echoes, Range chirps, const RowsOfGroups& rows, Job* job) const;
   void add_some(const Echoes& block, int chirp, int64_t begin, int count, Rows rows) const;
+  void require_channel(int channel) const;
+  void require_group(int group) const;
   int64_t row_size(bool moving) const;
   double longest_delay() const;
   void write_row(const double* row, bool moving, std::complex<double>* out) const;
   void write_channel(const ChannelRows& rows, size_t group, std::complex<double>* out, Job* job) const;
+  void absorb_channel(const ChannelRows& from, ChannelRows& to) const;
 
   ChirpSequence waveform_;
   int num_groups_;

@@ -15,28 +15,35 @@ namespace {
 
 constexpr int kColumnsPerTask = 8;  // neighbouring range bins share cache lines
 
-struct Taper {
-  std::vector<double> weight;  // already divided by their sum
+using Taper = std::vector<double>;
 
-  Taper(const Window& window, int n, double scale = 1.0) : weight(window_samples(window, n)) {
-    const double sum = std::accumulate(weight.begin(), weight.end(), 0.0);
-    for (double& w : weight) w *= scale / sum;
-  }
-};
+// Returns the samples of a window, divided by their sum.
+Taper make_taper(const Window& window, int n, double scale = 1.0) {
+  Taper taper = window_samples(window, n);
+  const double sum = std::accumulate(taper.begin(), taper.end(), 0.0);
+  for (double& weight : taper) weight *= scale / sum;
+  return taper;
+}
+
+void transform_row(const Fft& fft, const Taper& taper, const std::complex<double>* in, int64_t num_ranges,
+                   FftBuffer& buffer, std::complex<double>* out) {
+  const auto num_samples = static_cast<int64_t>(taper.size());
+  for (int64_t i = 0; i < num_samples; ++i) buffer[i] = taper[static_cast<size_t>(i)] * in[i];
+  std::fill(buffer.data() + num_samples, buffer.data() + buffer.size(), 0.0);
+  fft.transform(buffer);
+  std::copy_n(buffer.data(), num_ranges, out);
+}
 
 // Transforms [rows, samples] to [rows, range].
 std::vector<std::complex<double>> range_transform(const std::complex<double>* cube, int64_t num_rows, const Taper& taper,
                                                   int fft_size, int64_t num_ranges, Job* job) {
   const Fft fft(fft_size, FftDirection::kForward);
-  const int64_t num_samples = static_cast<int64_t>(taper.weight.size());
+  const int64_t num_samples = static_cast<int64_t>(taper.size());
   std::vector<std::complex<double>> profiles(num_rows * num_ranges);
   parallel_for(num_rows, [&](int64_t row) {
     if (job) job->throw_if_cancelled();
     FftBuffer buffer(fft_size);
-    const std::complex<double>* in = cube + row * num_samples;
-    for (int64_t i = 0; i < num_samples; ++i) buffer[i] = taper.weight[i] * in[i];
-    fft.transform(buffer);
-    std::copy_n(buffer.data(), num_ranges, profiles.data() + row * num_ranges);
+    transform_row(fft, taper, cube + row * num_samples, num_ranges, buffer, profiles.data() + row * num_ranges);
   });
   return profiles;
 }
@@ -48,8 +55,8 @@ void transform_strip(const Fft& fft, const Taper& taper, const std::complex<doub
                      int64_t num_columns, std::complex<double>* out) {
   std::vector<FftBuffer> columns;
   for (int64_t k = 0; k < num_columns; ++k) columns.emplace_back(fft.size());
-  for (size_t i = 0; i < taper.weight.size(); ++i, in += num_ranges) {
-    for (int64_t k = 0; k < num_columns; ++k) columns[k][i] = taper.weight[i] * in[k];
+  for (size_t i = 0; i < taper.size(); ++i, in += num_ranges) {
+    for (int64_t k = 0; k < num_columns; ++k) columns[k][i] = taper[i] * in[k];
   }
   for (FftBuffer& column : columns) fft.transform(column);
   // Row v holds frequency v - size / 2.
@@ -64,7 +71,7 @@ void transform_strip(const Fft& fft, const Taper& taper, const std::complex<doub
 std::vector<std::complex<double>> doppler_transform(const std::vector<std::complex<double>>& profiles, int64_t num_maps,
                                                     const Taper& taper, int fft_size, int64_t num_ranges, Job* job) {
   const Fft fft(fft_size, FftDirection::kForward);
-  const int64_t num_chirps = static_cast<int64_t>(taper.weight.size());
+  const int64_t num_chirps = static_cast<int64_t>(taper.size());
   const int64_t num_strips = (num_ranges + kColumnsPerTask - 1) / kColumnsPerTask;
   std::vector<std::complex<double>> values(num_maps * fft_size * num_ranges);
   parallel_for(num_maps * num_strips, [&](int64_t task) {
@@ -96,14 +103,64 @@ std::vector<double> velocity_axis(const ChirpSequence& waveform, int num_slots, 
   return velocity;
 }
 
-RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const Radar& radar, const Window& window,
-                           int zero_pad, Job* job) {
+namespace {
+
+void check_map(const Radar& radar, int zero_pad) {
   radar.validate();
   require(zero_pad >= 1 && zero_pad <= kMaxZeroPad, "zero_pad", "must be in [1, 64]", zero_pad);
-  const ChirpSequence& waveform = radar.waveform;
-  const int64_t longest = int64_t{zero_pad} * std::max(waveform.num_samples, waveform.num_chirps);
+  const int64_t longest = int64_t{zero_pad} * std::max(radar.waveform.num_samples, radar.waveform.num_chirps);
   require(longest <= std::numeric_limits<int>::max(), "zero_pad", "times num_samples and num_chirps must be below 2^31",
           longest);
+}
+
+// A real sample sqrt(2) Re s carries s / sqrt(2) at the positive frequencies.
+Taper range_taper_of(const ChirpSequence& waveform, const Window& window) {
+  return make_taper(window, waveform.num_samples, waveform.real ? std::numbers::sqrt2 : 1.0);
+}
+
+}  // namespace
+
+struct MapTransform::Plan {
+  Taper range_taper, doppler_taper;
+  Fft range_fft, doppler_fft;
+  int64_t num_ranges;
+};
+
+MapTransform::MapTransform(const Radar& radar, const Window& window, int zero_pad) {
+  check_map(radar, zero_pad);
+  const ChirpSequence& waveform = radar.waveform;
+  const int range_size = waveform.num_samples * zero_pad;
+  plan_ = std::make_unique<const Plan>(Plan{range_taper_of(waveform, window), make_taper(window, waveform.num_chirps),
+                                            Fft(range_size, FftDirection::kForward),
+                                            Fft(waveform.num_chirps * zero_pad, FftDirection::kForward),
+                                            static_cast<int64_t>(range_axis(waveform, range_size).size())});
+}
+MapTransform::~MapTransform() = default;
+MapTransform::MapTransform(MapTransform&&) noexcept = default;
+
+int64_t MapTransform::num_velocities() const { return plan_->doppler_fft.size(); }
+int64_t MapTransform::num_ranges() const { return plan_->num_ranges; }
+
+void MapTransform::transform(const std::complex<double>* samples, std::vector<std::complex<double>>& profiles,
+                             std::complex<double>* values) const {
+  const int64_t num_chirps = static_cast<int64_t>(plan_->doppler_taper.size());
+  const int64_t num_samples = static_cast<int64_t>(plan_->range_taper.size()), num_ranges = plan_->num_ranges;
+  profiles.resize(static_cast<size_t>(num_chirps * num_ranges));
+  FftBuffer buffer(plan_->range_fft.size());
+  for (int64_t chirp = 0; chirp < num_chirps; ++chirp) {
+    transform_row(plan_->range_fft, plan_->range_taper, samples + chirp * num_samples, num_ranges, buffer,
+                  profiles.data() + chirp * num_ranges);
+  }
+  for (int64_t first = 0; first < num_ranges; first += kColumnsPerTask) {
+    transform_strip(plan_->doppler_fft, plan_->doppler_taper, profiles.data() + first, num_ranges,
+                    std::min<int64_t>(kColumnsPerTask, num_ranges - first), values + first);
+  }
+}
+
+RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const Radar& radar, const Window& window,
+                           int zero_pad, Job* job) {
+  check_map(radar, zero_pad);
+  const ChirpSequence& waveform = radar.waveform;
   const int64_t num_maps = static_cast<int64_t>(radar.transmitters.size() * radar.receivers.size());
   const int64_t num_rows = num_maps * waveform.num_chirps;
   require(size == num_rows * waveform.num_samples, "cube", "must have transmitters x receivers x chirps x samples values",
@@ -119,9 +176,8 @@ RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const
   map.velocity = velocity_axis(waveform, radar.num_slots(), doppler_size);
 
   const int64_t num_ranges = static_cast<int64_t>(map.range.size());
-  // A real sample sqrt(2) Re s carries s / sqrt(2) at the positive frequencies.
-  const Taper range_taper(window, waveform.num_samples, waveform.real ? std::numbers::sqrt2 : 1.0);
-  const Taper doppler_taper(window, waveform.num_chirps);
+  const Taper range_taper = range_taper_of(waveform, window);
+  const Taper doppler_taper = make_taper(window, waveform.num_chirps);
   const auto profiles = range_transform(cube, num_rows, range_taper, range_size, num_ranges, job);
   map.values = doppler_transform(profiles, num_maps, doppler_taper, doppler_size, num_ranges, job);
   return map;

@@ -2,6 +2,7 @@
 // Computes range-Doppler maps.
 #include <complex>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "echopath/base/job.h"
@@ -37,6 +38,25 @@ RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const
                            int zero_pad = 1, Job* job = nullptr);
 RangeDoppler range_doppler(const std::vector<std::complex<double>>& cube, const Radar& radar, const Window& window = {},
                            int zero_pad = 1, Job* job = nullptr);
+
+// Transforms the samples of one channel after the other, as range_doppler does those of all: with plans and tapers that are
+// made once, and without a parallel loop. Several threads may use it.
+class MapTransform {
+ public:
+  // Raises as range_doppler.
+  MapTransform(const Radar& radar, const Window& window, int zero_pad);
+  ~MapTransform();
+  MapTransform(MapTransform&&) noexcept;
+  int64_t num_velocities() const;
+  int64_t num_ranges() const;
+  // samples [chirp, sample] to values [V, R] in sqrt(W). `profiles` is memory for it.
+  void transform(const std::complex<double>* samples, std::vector<std::complex<double>>& profiles,
+                 std::complex<double>* values) const;
+
+ private:
+  struct Plan;
+  std::unique_ptr<const Plan> plan_;
+};
 
 // Returns the mean of |value|^2 over the channels, [V, R] in W.
 std::vector<double> mean_power(const RangeDoppler& map, Job* job = nullptr);

@@ -2,7 +2,7 @@
 `run_labels(folder)` of parts and path expressions, `hard.run_hard(folder)` of the hard cases, `run_speed(folder)` of
 synthesis, frames and memory, `run_crowd(folder)` of the objects of crowded scenes, `run_certificate(folder)` of what moves,
  `run_published(folder)` of levels beside published ones, `run_actors(folder)` of the actors over aspect,
- `run_worlds(folder)` of cities."""
+ `run_worlds(folder)` of cities and crowds."""
 from .actors import run_actors
 from .certificate import run_certificate
 from .crowd import run_crowd

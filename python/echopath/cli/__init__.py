@@ -104,9 +104,9 @@ def _parser() -> argparse.ArgumentParser:
                             "and coherent sums, each with its bound; speed: synthesis beside FINUFFT, frames, memory; "
                             "crowd: objects of a crowded scene against themselves alone; certificate: objects of random "
                             "moving scenes against traces of every 8th chirp, and what `validity` says of them; targets: a "
-                             "pedestrian, a road and spheres beside published levels; actors: cross sections of vehicles, people "
-                             "and the rest over aspect; worlds: cities of many walls and meshes, their mirror paths against a "
-                             "search over all walls")
+                            "pedestrian, a road and spheres beside published levels; actors: cross sections of vehicles, "
+                            "people and the rest over aspect; worlds: crowds, and cities of many walls and meshes, their "
+                            "mirror paths against a search over all walls")
     bench.add_argument("--out", required=True, metavar="DIR", help="folder of its results")
     bench.add_argument("--quick", action="store_true", help="few shifts and rays, for a look; hard: without the heavy cases")
     bench.add_argument("--rays-max", type=_positive, default=2**16, metavar="N",

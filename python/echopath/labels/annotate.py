@@ -16,8 +16,9 @@ from ..path_subset import part_of_path
 from ..resolution import interval_of, mean_powers
 from ..settings import Evaluate, LabelSettings, Method, Plane, Replay, Retrace, SignalSettings
 from ..visibility import appearing_in_frame, visibility_in_trace
-from .labels import Labels, is_occluded
-from .objects import family_cells, label_ghosts, label_objects
+from .family_pass import FamilyPass, owners_of_views
+from .labels import Labels
+from .objects import family_cells, label_ghosts, label_objects, occluded_objects
 from .planes import make_plane
 from .powers import CubeSet, add_powers, decomposed
 from .standard_errors import require_batches, share_errors
@@ -70,12 +71,41 @@ def annotate(paths: _core.Paths, parts: Mapping | None = None, radar: _core.Rada
     replayed = {"tolerance": tolerance, "method": method, "replay": replay, "evaluate": evaluate,
                 "phase_tolerance": phase_tolerance, "retrace": retrace, "keyframes": keyframes, "progress": progress}
     families = find_families(paths, objects)
-    views = {_FAMILIES: families} if cubes else {_FAMILIES: families, _PARTS: selections}
-    num_parts = len(families) + (0 if cubes else len(selections) + 1)
-    powers = add_powers(decomposed(paths, radar, views, num_parts, request.plane, replayed), request.plane)
+    owners, powers = owners_and_powers(request, paths, families, {} if cubes else {_PARTS: selections}, replayed)
     if cubes:
-        powers |= add_powers([CubeSet(radar, 1.0, {_PARTS: cubes})], request.plane)
-    return label_partitions(request, paths, families, powers.pop(_FAMILIES), powers, {_PARTS: selections}, replayed)[_PARTS]
+        powers = add_powers([CubeSet(radar, 1.0, {_PARTS: cubes})], request.plane)
+    return label_partitions(request, paths, families, owners, powers, {_PARTS: selections}, replayed)[_PARTS]
+
+
+def owners_and_powers(request: Request, paths, families, partitions: dict, settings: dict):
+    """What finds the owners of cells, as `label_partitions` takes it, and {partition: ViewPowers} of partitions.
+
+    partitions: {partition: {name: selection}}; settings: signal settings
+    """
+    radar, plane = request.radar, request.plane
+    if settings.get("retrace", "never") != "never":  # families of later records are not known before
+        views = {_FAMILIES: families, **partitions}
+        num_parts = len(families) + sum(len(group) + 1 for group in partitions.values())
+        powers = add_powers(decomposed(paths, radar, views, num_parts, plane, settings), plane)
+        return owners_of_powers(request, powers.pop(_FAMILIES)), powers
+    is_whole = len(partitions) == 1 and not any(partitions.values())
+    signals = FamilyPass(paths, radar, families, request, settings, adds_up=is_whole)
+    if is_whole:
+        cubes = {partition: {"other": signals.whole()} for partition in partitions}
+        return signals.settle, add_powers([CubeSet(radar, 1.0, cubes)], plane)
+    num_parts = sum(len(group) + 1 for group in partitions.values())
+    cubes = decomposed(paths, radar, partitions, num_parts, plane, settings) if partitions else []
+    return signals.settle, add_powers(cubes, plane)
+
+
+def owners_of_cubes(request: Request, cubes: dict):
+    """What finds the owners of cells from {Family: cube} of all families."""
+    return owners_of_powers(request, add_powers([CubeSet(request.radar, 1.0, {_FAMILIES: cubes})], request.plane)[_FAMILIES])
+
+
+def owners_of_powers(request: Request, powers):
+    """What finds the owners of cells from ViewPowers of all families."""
+    return lambda whole, intervals: owners_of_views(powers, request.masks(whole)[1])
 
 
 @dataclasses.dataclass(frozen=True)
@@ -91,13 +121,18 @@ class Request:
     errors: bool
 
     @property
+    def dynamic_range(self) -> float:
+        """Ratio of powers, 0: no limit."""
+        return 10.0 ** (-self.dynamic_range_db / 10.0)
+
+    @property
     def noise_floor(self) -> float:
         """Power in W that cells above the noise exceed."""
         return self.plane.noise_power * 10.0 ** (self.noise_margin_db / 10.0) if self.noise else 0.0
 
     def masks(self, whole):
         """(above_noise, mask), bool [V, R] of powers of the whole [V, R] in W."""
-        return _core.cell_masks(whole, self.noise_floor, 10.0 ** (-self.dynamic_range_db / 10.0))
+        return _core.cell_masks(whole, self.noise_floor, self.dynamic_range)
 
 
 def as_label_settings(labels: bool | LabelSettings | Mapping | None) -> LabelSettings | None:
@@ -127,11 +162,10 @@ def make_request(radar, num_batches: int, settings: LabelSettings, *, window=Sig
     return Request(radar, settings.objects, made, settings.noise, settings.noise_margin_db, dynamic_range_db, settings.errors)
 
 
-def label_partitions(request: Request, paths, families, family_powers, powers: dict, selections: dict,
-                     settings: dict) -> dict:
-    """{partition: Labels} from ViewPowers of the families and {partition: ViewPowers}; objects and ghosts are the same in
-    all.
+def label_partitions(request: Request, paths, families, owners, powers: dict, selections: dict, settings: dict) -> dict:
+    """{partition: Labels} from {partition: ViewPowers}; objects and ghosts are the same in all.
 
+    owners: callable (power of the whole [V, R] in W, {Family: Interval}) that gives CellOwners of the families
     selections: {partition: {name: selection}}; settings: signal settings
     """
     whole = next(iter(powers.values())).whole
@@ -143,26 +177,27 @@ def label_partitions(request: Request, paths, families, family_powers, powers: d
     mean = mean_powers(paths, families, groups)
     received = {partition: [interval_of(power) for power in found] for partition, found in mean.of_parts.items()}
     intervals = dict(zip(families.families, map(interval_of, mean.of_families)))
-    scene_labels = _label_scene(request, paths, families, family_powers, intervals, whole, settings.get("progress"))
+    scene_labels = _label_scene(request, paths, families, owners(whole, intervals), intervals, whole, settings.get("progress"))
     return {partition: _label_parts(request, paths, of_parts, selections.get(partition, {}), received.get(partition),
                                     scene_labels, settings)
             for partition, of_parts in powers.items()}
 
 
-def _label_scene(request: Request, paths, families, powers, intervals: dict, whole, progress=None) -> dict:
+def _label_scene(request: Request, paths, families, owners, intervals: dict, whole, progress=None) -> dict:
     """The fields of Labels that tell of objects and ghosts.
 
-    powers: ViewPowers of the families; intervals: {Family: Interval}; whole: power [V, R] in W
+    owners: CellOwners; intervals: {Family: Interval}; whole: power [V, R] in W
     progress: callable (stage, fraction), True for bars, or None
     """
-    found = family_cells(powers, request.masks(whole)[1], request.noise_floor, request.plane, intervals)
+    found = family_cells(owners, request.masks(whole)[1], request.noise_floor, request.plane, intervals)
     seen = visibility_in_trace(paths, request.radar, request.objects, progress=progress)
     visibility = {of_object.name: of_object for of_object in seen}
-    appearing = appearing_in_frame(paths, request.radar, [name for name, one in visibility.items() if is_occluded(one)],
-                                   request.objects, progress=progress)
+    hidden = occluded_objects(families.objects, found, visibility, request.plane)
+    appearing = appearing_in_frame(paths, request.radar, hidden, request.objects, progress=progress)
     objects, object_map = label_objects(families.objects, found, visibility, appearing, request.plane, paths)
     ghosts, ghost_map = label_ghosts(found, request.plane)
-    return {"objects": objects, "object_map": object_map, "ghosts": ghosts, "ghost_map": ghost_map}
+    return {"objects": objects, "object_map": object_map, "ghosts": ghosts, "ghost_map": ghost_map,
+            "left_out": owners.left_out}
 
 
 def _label_parts(request: Request, paths, powers, selections: dict, received, scene_labels: dict, settings: dict) -> Labels:
@@ -183,17 +218,13 @@ def _label_parts(request: Request, paths, powers, selections: dict, received, sc
     return _with_errors(labels, request, paths, selections, settings) if request.errors else labels
 
 
-def label_frame(request: Request, paths, families, cubes: dict, family_cubes: dict, selections: dict,
-                settings: dict) -> dict:
-    """{partition: Labels} from {partition: {part: cube}} and {Family: cube}, cubes [tx, rx, chirp, sample] in sqrt(W).
+def label_frame(request: Request, paths, families, cubes: dict, owners, selections: dict, settings: dict) -> dict:
+    """{partition: Labels} from {partition: {part: cube}}, cubes [tx, rx, chirp, sample] in sqrt(W).
 
-    selections: {partition: {name: selection}}; settings: signal settings.
+    owners: as in `label_partitions`; selections: {partition: {name: selection}}; settings: signal settings.
     """
-    def cell_powers_of(view):
-        return add_powers([CubeSet(request.radar, 1.0, {_PARTS: view})], request.plane)[_PARTS]
-
-    powers = {partition: cell_powers_of(view) for partition, view in cubes.items()}
-    return label_partitions(request, paths, families, cell_powers_of(family_cubes), powers, selections, settings)
+    powers = add_powers([CubeSet(request.radar, 1.0, cubes)], request.plane)
+    return label_partitions(request, paths, families, owners, powers, selections, settings)
 
 
 def _with_errors(labels: Labels, request: Request, paths, selections: dict, settings: dict) -> Labels:

@@ -10,6 +10,7 @@ from ..equality import has_same_fields
 from ..resolution import Interval
 from ..visibility import HIDDEN_SHARE
 from .dataset import dataset_of
+from .left_out import LeftOut
 from .report import text_of
 from .table import table_of
 
@@ -155,6 +156,10 @@ class Labels:
     seed: of the rays that were labelled
     part_received: list [K] of Interval, the mean received power of each part in W and whether the rays know it; None: of cubes
         without selections
+    left_out: LeftOut of the families of paths whose signals were not made because none of them can own a cell: how many, their
+        mean power in W together, and what the strongest can show in a cell at most, W. The power of such an object or ghost is
+        the mean over the random phases (`received`); its cells, peak and box are what all signals would give. None: of files
+        and frames with keyframes, which make all signals
     """
 
     plane: str
@@ -182,6 +187,7 @@ class Labels:
     share_error: np.ndarray | None = None
     certain: np.ndarray | None = None
     part_received: list | None = None
+    left_out: LeftOut | None = None
 
     @property
     def shape(self) -> tuple:

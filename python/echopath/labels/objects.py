@@ -8,16 +8,14 @@ import numpy as np
 from .. import _core
 from ..resolution import Interval, unmet_interval
 from .labels import COMES_INTO_VIEW, NONE, GhostLabel, ObjectLabel, is_occluded
-from .powers import parts_by_rival
-
-ALIKE = 10.0 ** -0.01  # ratio of powers: 0.1 dB do not tell one way from the same one back
 
 
 class FamilyCells(NamedTuple):
     """The cells of all families: list of Family; received: power of each, [F] W; regions: of each, dict or None;
 
     strongest: i16 [V, R], index of the family that a cell belongs to, -1: none; is_above_noise: [F] whether the family's
-    own power is above the noise in some cell; intervals: of each, list [F] of Interval in W.
+    own power is above the noise in some cell; intervals: of each, list [F] of Interval in W; of_object: {object: indices of
+    its families}.
     """
 
     families: list
@@ -26,29 +24,24 @@ class FamilyCells(NamedTuple):
     strongest: np.ndarray
     is_above_noise: list
     intervals: list
+    of_object: dict
 
 
-def family_cells(powers, mask, noise_floor: float, plane, intervals: dict) -> FamilyCells:
-    """powers: ViewPowers of the families; mask: bool [V, R]; noise_floor in W; intervals: {family: Interval}."""
-    families = list(powers.cells)
-    cells = np.stack([powers.cells[family] for family in families])
-    strongest = _strongest_family(powers, families, cells, mask)
-    return FamilyCells(families=families, received=[powers.received[family] for family in families],
-                       regions=_core.label_regions(strongest, cells, plane.rows_wrap), strongest=strongest,
-                       is_above_noise=[bool(np.any(power > noise_floor)) for power in cells],
-                       intervals=[intervals.get(family) for family in families])
+def family_cells(owners, mask, noise_floor: float, plane, intervals: dict) -> FamilyCells:
+    """owners: CellOwners; mask: bool [V, R]; noise_floor in W; intervals: {family: Interval}."""
+    families = owners.families
+    strongest, of_object = np.where(mask, owners.family, NONE).astype(np.int16), {}
+    for number, family in enumerate(families):
+        of_object.setdefault(family.object, []).append(number)
+    return FamilyCells(families=families, received=owners.received.tolist(),
+                       regions=_core.label_regions(strongest, owners.own, len(families), plane.rows_wrap),
+                       strongest=strongest, is_above_noise=(owners.peak > noise_floor).tolist(),
+                       intervals=[intervals.get(family) for family in families], of_object=of_object)
 
 
-def _strongest_family(powers, families: list, cells, mask):
-    """i16 [V, R]: of the rival of the largest power the strongest family by itself, the first of those that are alike."""
-    winner = _core.strongest_part(np.stack(list(powers.rivals.values())), mask)
-    index = {family: number for number, family in enumerate(families)}
-    strongest = np.full(winner.shape, NONE, np.int16)
-    for rival, members in enumerate(parts_by_rival(families).values()):
-        numbers, at = np.array([index[family] for family in members], np.int16), winner == rival
-        own = cells[numbers][:, at]
-        strongest[at] = numbers[np.argmax(own >= ALIKE * own.max(axis=0), axis=0)]
-    return strongest
+def occluded_objects(names, found: FamilyCells, visibility: dict, plane) -> list:
+    """Names of the objects of which nothing but what hides them at the time of the trace explains that they have no cells."""
+    return [name for name in names if _status_of(name, found, visibility[name], False, plane) == "occluded"]
 
 
 def label_objects(names, found: FamilyCells, visibility: dict, appearing, plane, paths):
@@ -59,12 +52,17 @@ def label_objects(names, found: FamilyCells, visibility: dict, appearing, plane,
     """
     labels, chosen = [], {}
     for index, name in enumerate(names):
-        mine = [f for f, family in enumerate(found.families) if family.object == name]
-        real = next((f for f in mine if not found.families[f].is_ghost), None)
+        real, _ = _families_of(name, found)
         if real is not None:
             chosen[real] = index
-        labels.append(_object_label(name, real, mine, found, visibility[name], name in appearing, plane, paths))
+        labels.append(_object_label(name, real, found, visibility[name], name in appearing, plane, paths))
     return labels, _map_of(found, chosen)
+
+
+def _families_of(name: str, found: FamilyCells):
+    """(index of the family of direct echoes of an object or None, indices of all its families)."""
+    mine = found.of_object.get(name, [])
+    return next((f for f in mine if not found.families[f].is_ghost), None), mine
 
 
 def label_ghosts(found: FamilyCells, plane):
@@ -79,9 +77,9 @@ def label_ghosts(found: FamilyCells, plane):
     return labels, _map_of(found, {f: index for index, f in enumerate(ghosts)})
 
 
-def _object_label(name, real, mine, found: FamilyCells, seen, appears: bool, plane, paths) -> ObjectLabel:
+def _object_label(name, real, found: FamilyCells, seen, appears: bool, plane, paths) -> ObjectLabel:
     region = None if real is None else found.regions[real]
-    return ObjectLabel(name=name, status=_status(real, mine, found, seen, appears, plane),
+    return ObjectLabel(name=name, status=_status_of(name, found, seen, appears, plane),
                        power=0.0 if real is None else found.received[real], visible_share=seen.visible_share,
                        occluders=dict(seen.occluders), **_cells(region, plane),
                        received=_unmet(paths, seen) if real is None else found.intervals[real])
@@ -92,8 +90,9 @@ def _unmet(paths, seen) -> Interval | None:
     return unmet_interval(paths, seen) if paths.num_paths == paths.frame.statistics.num_paths else None
 
 
-def _status(real, mine, found: FamilyCells, seen, appears: bool, plane) -> str:
+def _status_of(name: str, found: FamilyCells, seen, appears: bool, plane) -> str:
     """Why there are cells of an object, or why there are none; the first that holds (labels.ObjectLabel)."""
+    real, mine = _families_of(name, found)
     is_above_noise = real is not None and found.is_above_noise[real]
     reasons = {"seen": real is not None and found.regions[real] is not None,
                "ghosts only": any(found.regions[f] is not None for f in mine if f != real),

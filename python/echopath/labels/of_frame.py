@@ -9,12 +9,11 @@ from ..families import families as find_families
 from ..frame import Frame
 from ..parts import ONLY_PARTITION, as_partitions, check_partitions
 from ..settings import LabelSettings, Plane
-from .annotate import label_partitions, make_request
+from .annotate import label_partitions, make_request, owners_and_powers
 from .labels import Labels
-from .powers import CubeSet, add_powers, decomposed
+from .powers import CubeSet, add_powers
 
 SIGNAL_SETTINGS = ("replay", "evaluate", "retrace", "keyframes")  # of a frame, as `decompose` takes them
-_FAMILIES = object()  # a view that has the name of no partition
 
 
 @checked({"settings": LabelSettings}, **LabelSettings.RULES, frame=an(Frame), parts=anything)
@@ -41,14 +40,12 @@ def annotate_frame(frame: Frame, parts: Mapping | None = None, *, plane: Plane =
     chosen = _as_new_partitions(parts, frame)
     replayed = {name: getattr(frame, name) for name in SIGNAL_SETTINGS} | {"progress": progress}
     families = find_families(paths, request.objects)
-    views = {_FAMILIES: families, **chosen}
-    num_parts = len(families) + sum(len(group) + 1 for group in chosen.values())
-    powers = add_powers(decomposed(paths, frame.radar, views, num_parts, request.plane, replayed), request.plane)
+    owners, powers = owners_and_powers(request, paths, families, chosen, replayed)
     kept = {partition: cubes for partition, cubes in frame.parts.items() if partition not in chosen}
     powers |= add_powers([CubeSet(frame.radar, 1.0, kept)], request.plane)
-    family_powers, selections = powers.pop(_FAMILIES), frame.selections | chosen
+    selections = frame.selections | chosen
     powers = {partition: powers[partition] for partition in selections}
-    return label_partitions(request, paths, families, family_powers, powers, selections, replayed)
+    return label_partitions(request, paths, families, owners, powers, selections, replayed)
 
 
 def _as_new_partitions(parts, frame) -> dict:

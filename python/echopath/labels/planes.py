@@ -21,7 +21,7 @@ class RangeDopplerPlane:
 
     def __init__(self, radar, window, zero_pad):
         """window, zero_pad: as in `range_doppler`"""
-        self._settings = {"window": window, "zero_pad": zero_pad}
+        self._settings, self.window_and_padding = {"window": window, "zero_pad": zero_pad}, (window, zero_pad)
         with_one = with_receivers(radar, slice(0, 1))
         empty = _core.range_doppler(_no_signal(with_one), with_one, **self._settings)
         self.velocity, self.azimuth, self.range = empty.velocity.copy(), None, empty.range.copy()
@@ -57,7 +57,7 @@ class RangeAzimuthPlane:
         if self._angles.get("method", "bartlett") != "bartlett":
             raise ValueError("angles: method must be 'bartlett' for labels (Capon beams adapt to what they receive: those "
                              f"of a part are not those of the whole), got {self._angles['method']!r}")
-        self._settings = {"window": window, "zero_pad": zero_pad}
+        self._settings, self.window_and_padding = {"window": window, "zero_pad": zero_pad}, (window, zero_pad)
         noise = self._map(_core.add_noise(_no_signal(radar), radar, seed=_NOISE_SEED, start_time=0.0), radar)
         self.velocity, self.azimuth, self.range = None, noise.azimuth.copy(), noise.range.copy()
         self.noise_power = float(np.mean(noise.power))

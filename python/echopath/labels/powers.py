@@ -60,14 +60,14 @@ class ViewPowers:
         powers = {part: self._plane.power(cube, radar) for part, cube in cubes.items()}
         for part, cube in cubes.items():
             self.cells[part] = self.cells.get(part, 0.0) + weight * powers[part]
-            self.received[part] = self.received.get(part, 0.0) + weight * _mean_square(cube)
+            self.received[part] = self.received.get(part, 0.0) + weight * mean_square(cube)
         for rival, parts in parts_by_rival(cubes).items():
             joint = powers[parts[0]] if len(parts) == 1 else self._plane.power(sum(cubes[part] for part in parts), radar)
             self.rivals[rival] = self.rivals.get(rival, 0.0) + weight * joint
         self.whole = self.whole + weight * self._plane.power(sum(cubes.values()), radar)
 
 
-def _mean_square(cube) -> float:
+def mean_square(cube) -> float:
     """Mean of |sample|^2 in W, added in one order."""
     samples = np.ascontiguousarray(cube, np.complex128).ravel().view(np.float64)
     return float(np.einsum("i,i->", samples, samples)) / max(cube.size, 1)

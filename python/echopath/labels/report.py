@@ -12,7 +12,16 @@ def text_of(labels) -> str:
             *(_ghost(ghost) for ghost in _with_cells(labels))]
     hidden = len(labels.ghosts) - len(_with_cells(labels))
     rows += [f"{hidden} more ghosts have no cells"] if hidden else []
+    rows += _left_out(labels.left_out)
     return "\n".join(rows)
+
+
+def _left_out(left_out) -> list[str]:
+    """What was left out of the signals."""
+    if left_out is None or not left_out.families:
+        return []
+    return [f"{left_out.families} families can own no cell and have no signals of their own: {in_dbm(left_out.power):.0f} dBm "
+            f"together, at most {in_dbm(left_out.bound):.0f} dBm in a cell"]
 
 
 def _header(labels) -> str:

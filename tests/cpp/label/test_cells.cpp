@@ -103,7 +103,7 @@ TEST(Cells, OneCellIsABoxOfItsOwn) {
 TEST(Cells, EachLabelHasItsCellsAndThePeakOfItsOwnPower) {
   const MapShape shape{2, 3, true};
   const std::vector<int16_t> label{0, 1, kNoLabel, 1, 0, 0};
-  const std::vector<double> power{1, 90, 90, 90, 5, 5, /**/ 80, 3, 80, 4, 80, 80, /**/ 0, 0, 0, 0, 0, 0};
+  const std::vector<double> power{1, 3, 90, 4, 5, 5};
   const std::vector<LabelRegion> regions = label_regions(label, power, 3, shape);
   EXPECT_EQ(regions[0].num_cells, 3);
   EXPECT_EQ(regions[0].peak_row * 3 + regions[0].peak_column, 4);

@@ -106,7 +106,7 @@ void check_label_map(std::span<const int16_t> label, std::span<const double> pow
                      const MapShape& shape) {
   const std::string cells = "must have one value for each of " + std::to_string(shape.size()) + " cells";
   require(static_cast<int64_t>(label.size()) == shape.size(), "label", cells, label.size());
-  require(static_cast<int64_t>(power.size()) == num_labels * shape.size(), "power", cells + " and label", power.size());
+  require(static_cast<int64_t>(power.size()) == shape.size(), "power", cells, power.size());
   for (const int16_t l : label) require(l >= kNoLabel && l < num_labels, "label", "must be -1 or an index of a label", l);
 }
 
@@ -121,7 +121,7 @@ std::vector<LabelRegion> label_regions(std::span<const int16_t> label, std::span
     if (label[i] == kNoLabel) continue;
     const auto l = static_cast<size_t>(label[i]);
     const int64_t row = i / shape.columns;
-    add_cell(regions[l], row, i % shape.columns, power[l * static_cast<size_t>(shape.size()) + static_cast<size_t>(i)]);
+    add_cell(regions[l], row, i % shape.columns, power[static_cast<size_t>(i)]);
     if (occupied[l].empty() || occupied[l].back() != row) occupied[l].push_back(row);
   }
   for (size_t l = 0; l < regions.size(); ++l) {

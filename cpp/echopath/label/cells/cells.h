@@ -43,7 +43,8 @@ struct LabelRegion {
   int64_t first_row = 0, last_row = 0, first_column = 0, last_column = 0;
 };
 
-// Returns the regions of all labels, [L]. label [N] holds indices of labels or kNoLabel; power [L, N] is that of each label.
+// Returns the regions of all labels, [L]. label [N] holds indices of labels or kNoLabel; power [N] is that of the label that
+// the cell has.
 // Rows that wrap leave out the largest gap between occupied rows; of equal gaps the one over the end of the axis, else the
 // first. Raises invalid_argument when sizes differ or a label is not below num_labels.
 std::vector<LabelRegion> label_regions(std::span<const int16_t> label, std::span<const double> power, int64_t num_labels,

@@ -154,9 +154,20 @@ class ReplayStream::WindowPipeline {
 };
 
 void ReplayStream::run(const Sink& sink) const {
-  WindowPipeline out(*this, sink);
   const PathGrids grids = replayer_.path_grids();
-  std::vector<std::vector<int64_t>> by_grid = PathsByGrid(grids, num_paths_, job_).take();
+  run(grids, PathsByGrid(grids, num_paths_, job_).take(), sink);
+}
+
+void ReplayStream::run(std::span<const int64_t> paths, const Sink& sink) {
+  if (!kept_grids_) kept_grids_.emplace(replayer_.path_grids());
+  kept_chirps_.resize(static_cast<size_t>(num_transmitters_));
+  std::vector<std::vector<int64_t>> by_grid(static_cast<size_t>(kept_grids_->num_grids()));
+  for (const int64_t path : paths) by_grid[static_cast<size_t>(kept_grids_->first(path))].push_back(path);
+  run(*kept_grids_, std::move(by_grid), sink);
+}
+
+void ReplayStream::run(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, const Sink& sink) const {
+  WindowPipeline out(*this, sink);
   add_still(by_grid.front(), out);
   by_grid.front() = {};
   add_moving(grids, std::move(by_grid), out);
@@ -192,11 +203,21 @@ void ReplayStream::add_chirps(const std::vector<std::vector<int64_t>>& by_grid, 
   if (std::all_of(by_grid.begin(), by_grid.end(), is_empty)) return;
   const int num_receivers = num_channels() / num_transmitters_;
   const Extent extent{transmitter * num_receivers, num_receivers, replayer_.num_rows_by_chirp(), true};
-  const PosedGrid chirps = replayer_.pose(replayer_.grids().chirps(transmitter));
+  const std::shared_ptr<const PosedGrid> chirps = posed_chirps(transmitter);
   for (int polynomial = 1; polynomial <= replayer_.grids().num_polynomials(); ++polynomial) {
     run_blocks(by_grid[static_cast<size_t>(polynomial)], extent,
-               [&](auto part, auto joined, auto&) { return replayer_.by_chirp(part, polynomial, chirps, joined); }, out);
+               [&](auto part, auto joined, auto&) { return replayer_.by_chirp(part, polynomial, *chirps, joined); }, out);
   }
+}
+
+std::shared_ptr<const PosedGrid> ReplayStream::posed_chirps(int transmitter) const {
+  const auto pose = [&] {
+    return std::make_shared<const PosedGrid>(replayer_.pose(replayer_.grids().chirps(transmitter)));
+  };
+  if (kept_chirps_.empty()) return pose();
+  std::shared_ptr<const PosedGrid>& kept = kept_chirps_[static_cast<size_t>(transmitter)];
+  if (!kept) kept = pose();
+  return kept;
 }
 
 // Replays the paths that no polynomial follows.

@@ -1,6 +1,7 @@
 #pragma once
 // Sends blocks of paths through replay to synthesis.
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -47,11 +48,16 @@ class ReplayStream {
 
   int num_channels() const { return replayer_.num_channels(); }
   const Replayer& replayer() const { return replayer_; }
+  // Sends the paths to the sink, all of them or some (indices, ascending). A stream that sends some at a time keeps the scene
+  // as posed in each chirp, where paths need it.
   // Memory is bounded by the blocks in flight, 0.2 GiB of delays and amplitudes at 32 nodes a path, whatever the number of
   // paths, chirps and channels; a sink that sorts them needs at most as much again. Beside these each thread works on 320 B
   // for each channel and node of a block (SingleBounceEvaluation), and on what chains of its paths share. `sink` is called
   // from one thread at a time, while the next blocks are replayed. Raises Cancelled.
   void run(const Sink& sink) const;
+  void run(std::span<const int64_t> paths, const Sink& sink);
+  // The job that is told from now on.
+  void set_job(Job* job) { job_ = job; }
 
  private:
   using Replay = std::function<std::vector<Echoes>(std::span<const int64_t> paths, std::span<const uint8_t> joined,
@@ -59,6 +65,8 @@ class ReplayStream {
   struct Block;
   struct Window;
   class WindowPipeline;
+  void run(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, const Sink& sink) const;
+  std::shared_ptr<const PosedGrid> posed_chirps(int transmitter) const;
   void add_still(const std::vector<int64_t>& paths, WindowPipeline& out) const;
   void add_moving(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, WindowPipeline& out) const;
   void add_chirps(const std::vector<std::vector<int64_t>>& by_grid, int transmitter, WindowPipeline& out) const;
@@ -82,6 +90,8 @@ class ReplayStream {
   Job* job_;
   std::optional<JoinRule> join_rule_;
   PathWatcher* watcher_ = nullptr;
+  std::optional<PathGrids> kept_grids_;                              // of runs over some paths
+  mutable std::vector<std::shared_ptr<const PosedGrid>> kept_chirps_;  // by transmitter, likewise
 };
 
 }  // namespace echopath

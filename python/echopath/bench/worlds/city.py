@@ -1,4 +1,4 @@
-"""`echopath bench worlds`: what a city costs, and whether all of its mirror paths are there.
+"""Cities: what they cost, and whether all of its mirror paths are there.
 
 The city is one of houses that stand askew on a grid, each house one mesh of five walls, and the ground. Its truth is a slow
 search: images over every pair of walls that the antennas can light, shadows by a loop over all walls. Beside the seconds of
@@ -7,16 +7,13 @@ a trace stand those of its ray queries alone, and the error stands beside both.
 from __future__ import annotations
 
 import dataclasses
-import json
-from pathlib import Path
 
 import numpy as np
 
 import echopath as ep
 
-from ..files import write_texts
-from .speed_tracer import bare_share
-from .timing import processor_time
+from ..speed_tracer import bare_share
+from ..timing import processor_time
 
 FREQUENCY = 3.5e9                        # Hz
 TRANSMITTER, RECEIVER = (9.3, 8.7, 13.1), (11.2, -29.6, 12.3)   # m
@@ -188,26 +185,15 @@ def _plates(count: int) -> ep.Scene:
     return scene
 
 
-def run_worlds(folder, *, quick: bool = False, progress=None) -> dict:
-    """Measures cities and many meshes, and writes worlds.json to `folder`. progress: callable (stage, fraction), or None."""
-    stages = (lambda: measure_city(mirror=False, quick=quick), lambda: measure_city(mirror=True, quick=quick),
-              lambda: measure_meshes(quick=quick))
-    rows = []
-    for index, stage in enumerate(stages):
-        if progress:
-            progress("worlds", index / len(stages))
-        rows.append(stage())
-    if progress:
-        progress("worlds", 1.0)
-    results = {"rows": rows}
-    write_texts(Path(folder), {"worlds.json": json.dumps(results, indent=1)})
-    return results
+def rows(*, quick: bool = False) -> list[dict]:
+    """A row for each city and for many meshes: what was measured, with its error."""
+    return [measure_city(mirror=False, quick=quick), measure_city(mirror=True, quick=quick), measure_meshes(quick=quick)]
 
 
-def describe(results: dict) -> list[str]:
+def describe(rows: list[dict]) -> list[str]:
     """The rows in words."""
     lines = []
-    for row in results["rows"]:
+    for row in rows:
         if row["name"] == "meshes":
             lines.append(f"{row['meshes']} meshes, {row['rays']} rays: {row['seconds']:.2f} s of the processor, a tenth of the "
                          f"meshes {row['seconds_of_a_tenth']:.2f} s")

@@ -1,0 +1,159 @@
+#include "echopath/sim/stream/part_pass.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "echopath/base/errors.h"
+#include "echopath/base/parallel.h"
+
+namespace echopath {
+namespace {
+
+constexpr uint32_t kNotAsked = std::numeric_limits<uint32_t>::max();
+
+ReplaySettings replay_of(const CubeSettings& settings) {
+  ReplaySettings replay = settings.replay;
+  replay.per_sample = settings.synthesis.per_sample;
+  return replay;
+}
+
+void set_local_groups(std::span<const int64_t> paths, const std::vector<uint32_t>& group, const std::vector<uint32_t>& local,
+                      bool as_one, std::span<Echoes> blocks) {
+  for (Echoes& block : blocks) {
+    const auto count = static_cast<size_t>(block.num_echoes);
+    block.group.clear();
+    for (size_t i = 0; !as_one && i < count; ++i) block.group.push_back(local[group[static_cast<size_t>(paths[i])]]);
+    paths = paths.subspan(count);
+  }
+}
+
+double sum_of_squares(const std::vector<std::complex<double>>& samples) {
+  double sum = 0.0;
+  for (const std::complex<double>& sample : samples) sum += std::norm(sample);
+  return sum;
+}
+
+}  // namespace
+
+// Some sets of groups: the set of each group, and their paths.
+struct PartPass::Sorted {
+  std::vector<uint32_t> local;  // [num_groups], kNotAsked for others
+  std::vector<int64_t> paths;   // ascending
+  int num_sets = 0;
+};
+
+PartPass::PartPass(const Paths& paths, const Radar& radar, std::vector<uint32_t> group, uint32_t num_groups,
+                   CubeSettings settings)
+    : paths_(paths), radar_(radar), group_(std::move(group)), num_groups_(num_groups), settings_(settings),
+      stream_(paths, radar, replay_of(settings), nullptr), whole_(synthesizer(1)) {
+  require(group_.size() == static_cast<size_t>(paths.num_paths()), "group", "must have one entry per path", group_.size());
+  for (const uint32_t one : group_) require(one < num_groups, "group", "must be below num_groups", one);
+  require(settings.keyframes.retrace == Retrace::kNever, "retrace", "must be 'never' for groups some at a time", "another");
+  stream_.join({&group_});
+  if (settings_.probe) probe_.emplace(paths, radar, stream_.replayer(), settings_.synthesis, *settings_.probe);
+}
+PartPass::~PartPass() = default;
+
+void PartPass::finish_probe(Job* job) {
+  if (probe_) probe_->finish(*settings_.probe, job);
+}
+
+Synthesizer PartPass::synthesizer(int num_groups) const {
+  return {radar_.waveform, stream_.num_channels(), num_groups, paths_.num_paths(), settings_.synthesis};
+}
+
+size_t PartPass::group_bytes() const { return whole_.group_bytes(); }
+
+Cube PartPass::whole(Job* job) const {
+  Cube cube = Cube::zeros(radar_);
+  cube.values = whole_.cube(0, job);
+  return cube;
+}
+
+PartPass::Sorted PartPass::sorted(const Sets& sets) const {
+  Sorted sorted{std::vector<uint32_t>(num_groups_, kNotAsked), {}, static_cast<int>(sets.size())};
+  for (size_t set = 0; set < sets.size(); ++set) {
+    for (const uint32_t group : sets[set]) {
+      require(group < num_groups_, "groups", "must be below num_groups", group);
+      sorted.local[group] = static_cast<uint32_t>(set);
+    }
+  }
+  for (size_t path = 0; path < group_.size(); ++path) {
+    if (sorted.local[group_[path]] != kNotAsked) sorted.paths.push_back(static_cast<int64_t>(path));
+  }
+  return sorted;
+}
+
+void PartPass::run(const Sorted& sorted, bool as_one, Synthesizer* out, CellBounds* bounds, Job* job) {
+  stream_.set_job(job);
+  stream_.watch(adds_up_ && probe_ ? &*probe_ : nullptr);
+  if (job) job->start(static_cast<int64_t>(sorted.paths.size()) * stream_.num_channels());
+  stream_.run(sorted.paths, [&](int channel, std::span<Echoes> blocks, const ReplayStream::EchoPaths& of) {
+    if (bounds) bounds->see(blocks, of.first);
+    if (out) {
+      set_local_groups(of.first, group_, sorted.local, as_one, blocks);
+      out->add(channel, blocks, job);
+    }
+    if (job) job->advance(of.count - (out ? static_cast<int64_t>(of.first.size()) : 0));
+  });
+  stream_.set_job(nullptr);
+}
+
+std::vector<double> PartPass::bounds(std::span<const uint32_t> groups, const Window& window, int zero_pad, Job* job) {
+  Sets alone;
+  for (const uint32_t group : groups) alone.push_back({group});
+  const Sorted some = sorted(alone);
+  CellBounds bounds(paths_.num_paths(), radar_, settings_.synthesis.per_sample);
+  run(some, true, adds_up_ ? &whole_ : nullptr, &bounds, job);
+  std::vector<uint32_t> local;
+  for (const uint32_t group : group_) local.push_back(some.local[group]);
+  return bounds.bounds(local, static_cast<uint32_t>(some.num_sets), window, zero_pad);
+}
+
+std::vector<Cube> PartPass::cubes(const Sets& sets, Job* job) {
+  const Sorted some = sorted(sets);
+  Synthesizer signals = synthesizer(std::max(1, some.num_sets));
+  run(some, false, &signals, nullptr, job);
+  std::vector<Cube> cubes;
+  for (int set = 0; set < some.num_sets; ++set) {
+    cubes.push_back(Cube::zeros(radar_));
+    cubes.back().values = signals.cube(set, job);
+  }
+  if (adds_up_) whole_.absorb(signals);
+  return cubes;
+}
+
+std::vector<SetPower> PartPass::powers(const Sets& sets, const Window& window, int zero_pad, Job* job) {
+  const Sorted some = sorted(sets);
+  Synthesizer signals = synthesizer(std::max(1, some.num_sets));
+  run(some, false, &signals, nullptr, job);
+  if (adds_up_) whole_.absorb(signals);
+  const MapTransform map(radar_, window, zero_pad);
+  std::vector<SetPower> powers(sets.size());
+  parallel_for(some.num_sets, [&](int64_t set) {
+    if (job) job->throw_if_cancelled();
+    powers[static_cast<size_t>(set)] = power_of(signals, static_cast<int>(set), map);
+  });
+  return powers;
+}
+
+SetPower PartPass::power_of(const Synthesizer& signals, int set, const MapTransform& map) const {
+  const auto num_cells = static_cast<size_t>(map.num_velocities() * map.num_ranges());
+  const int num_channels = stream_.num_channels();
+  std::vector<std::complex<double>> profiles, values(num_cells);
+  std::vector<std::complex<double>> samples(static_cast<size_t>(radar_.waveform.num_chirps) *
+                                            static_cast<size_t>(radar_.waveform.num_samples));
+  SetPower power{std::vector<double>(num_cells), 0.0};
+  for (int channel = 0; channel < num_channels; ++channel) {
+    signals.write_samples(channel, set, samples.data());
+    power.mean_square += sum_of_squares(samples);
+    map.transform(samples.data(), profiles, values.data());
+    for (size_t cell = 0; cell < num_cells; ++cell) power.cells[cell] += std::norm(values[cell]);
+  }
+  for (double& cell : power.cells) cell /= num_channels;
+  power.mean_square /= static_cast<double>(num_channels) * static_cast<double>(samples.size());
+  return power;
+}
+
+}  // namespace echopath

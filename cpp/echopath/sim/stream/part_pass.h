@@ -1,0 +1,66 @@
+#pragma once
+// Computes the signals of many groups of paths, some groups at a time: memory does not grow with their number.
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "echopath/sim/stream/cell_bounds.h"
+#include "echopath/sim/stream/cube_pass.h"
+#include "echopath/sim/stream/replay_stream.h"
+#include "echopath/spectrum/range_doppler.h"
+
+namespace echopath {
+
+// Holds the power of a signal in the cells of a range-Doppler map, mean over the channels.
+struct SetPower {
+  std::vector<double> cells;  // [V * R] W
+  double mean_square = 0.0;   // W, mean over channels, chirps and samples
+};
+
+// Each path is replayed when its group is asked for. The method of synthesis is that of the whole set, and the signals of all
+// groups add up to the whole to rounding, with the same bits for any number of threads.
+class PartPass {
+ public:
+  // group [P], below num_groups. Paths and radar must outlive it; settings must not ask for keyframes. Raises as CubePass.
+  PartPass(const Paths& paths, const Radar& radar, std::vector<uint32_t> group, uint32_t num_groups, CubeSettings settings);
+  ~PartPass();
+
+  // Signals that are made from now on are added to the whole, or not; at first they are. Each group is to be added once. The
+  // probe of the settings sees paths whose signals are added.
+  void set_adds_up(bool adds_up) { adds_up_ = adds_up; }
+  Cube whole(Job* job) const;
+  // Fills the probe of the settings. To be called once, after all groups were added.
+  void finish_probe(Job* job);
+
+  using Sets = std::vector<std::vector<uint32_t>>;  // groups whose fields add up
+  // Returns the power of the signal of each set. Its memory is group_bytes() for each of them, and a few maps of a channel for
+  // each thread.
+  std::vector<SetPower> powers(const Sets& sets, const Window& window, int zero_pad, Job* job);
+  // Returns the signal of each set.
+  std::vector<Cube> cubes(const Sets& sets, Job* job);
+  // Adds some groups as one to the whole, where that is wanted, and returns bounds of what each can show (CellBounds):
+  // [group, R] in W.
+  std::vector<double> bounds(std::span<const uint32_t> groups, const Window& window, int zero_pad, Job* job);
+  size_t group_bytes() const;
+
+ private:
+  struct Sorted;
+  Sorted sorted(const Sets& sets) const;
+  Synthesizer synthesizer(int num_groups) const;
+  void run(const Sorted& sorted, bool as_one, Synthesizer* out, CellBounds* bounds, Job* job);
+  SetPower power_of(const Synthesizer& signals, int set, const MapTransform& map) const;
+
+  const Paths& paths_;
+  const Radar& radar_;
+  std::vector<uint32_t> group_;
+  uint32_t num_groups_;
+  CubeSettings settings_;
+  ReplayStream stream_;
+  std::optional<PassProbe> probe_;
+  bool adds_up_ = true;
+  Synthesizer whole_;
+};
+
+}  // namespace echopath

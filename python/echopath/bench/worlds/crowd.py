@@ -1,0 +1,81 @@
+"""A crowd of 20 cars and 20 people: labels beside synthesis, their memory, visibility, and a radar that moves."""
+from __future__ import annotations
+
+import multiprocessing
+import resource
+
+import numpy as np
+
+import echopath as ep
+
+from ...families import families
+from ...visibility import visibility_in_trace
+from ..timing import processor_time
+from . import crowd_scene
+
+EACH, QUICK_EACH = 20, 3
+RAYS, QUICK_RAYS = 100_000, 5_000
+MOTION_RAYS, QUICK_MOTION_RAYS = 30_000, 3_000
+GIB = 2.0 ** 30
+LIMITS = {"peak memory, GiB": 1.0, "labels over synthesis": 1.0, "visibility, ms an object": 0.3,
+          "moving radar, ns": 3.5, "moving over resting radar": 1.1, "sum over whole - 1": 1e-12}
+
+
+def rows(*, quick: bool = False) -> list[dict]:
+    """A row for each figure: what, measured, limit and whether it holds; times are of the processor, in one run.
+
+    quick: a small crowd, for a look
+    """
+    found = _in_a_process(QUICK_EACH if quick else EACH, QUICK_RAYS if quick else RAYS)
+    found |= _motion(QUICK_EACH if quick else EACH, QUICK_MOTION_RAYS if quick else MOTION_RAYS)
+    return [{"what": f"crowd: {what}", "measured": value, "limit": LIMITS.get(what),
+             "holds": None if what not in LIMITS else bool(value <= LIMITS[what])} for what, value in found.items()]
+
+
+def describe(rows: list[dict]) -> list[str]:
+    """What, the figure, its limit, and whether it holds."""
+    lines = [f"{'':<44}{'measured':>12}{'limit':>10}"]
+    for row in rows:
+        limit = "" if row["limit"] is None else f"{row['limit']:10.3g}  {'holds' if row['holds'] else 'MISSED'}"
+        lines.append(f"{row['what']:<44}{row['measured']:12.4g}{limit}")
+    return lines
+
+
+def _in_a_process(each: int, rays: int) -> dict:
+    """`_labels` in a process of its own: its peak of memory is that of the crowd alone."""
+    with multiprocessing.get_context("spawn").Pool(1) as pool:
+        return pool.apply(_labels, (each, rays))
+
+
+def _labels(each: int, rays: int) -> dict:
+    scene, radar = crowd_scene.crowd(each), crowd_scene.radar()
+    frame = ep.simulate(scene, radar, num_rays=rays, labels=True, noise_seed=None, guard=False)
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024.0
+    paths, labels = frame.paths, frame.labels["parts"]
+    synthesis, cube = processor_time(lambda: ep.synthesize(paths, radar))
+    annotation, _ = processor_time(lambda: ep.annotate(paths, None, radar))
+    looking, seen = processor_time(lambda: visibility_in_trace(paths, radar))
+    return {"paths": paths.num_paths, "families": len(families(paths)), "families left out": labels.left_out.families,
+            "left out together, dBm": _dbm(labels.left_out.power), "at most in a cell, dBm": _dbm(labels.left_out.bound),
+            "noise of a cell, dBm": _dbm(labels.noise_power), "peak memory, GiB": peak / GIB, "synthesis, s": synthesis,
+            "labels over synthesis": annotation / synthesis - 1.0, "visibility, ms an object": 1e3 * looking / len(seen),
+            "sum over whole - 1": float(np.linalg.norm(frame.cube - cube) / np.linalg.norm(cube))}
+
+
+def _motion(each: int, rays: int) -> dict:
+    """ns a path, chirp and channel of synthesis, with the radar at rest and in motion."""
+    scene = crowd_scene.crowd(each)
+    found = {name: _nanoseconds(scene, crowd_scene.radar(motion), rays)
+             for name, motion in (("resting radar, ns", None), ("moving radar, ns", ep.LinearMotion(velocity=(10.0, 0.0, 0.0))))}
+    return found | {"moving over resting radar": found["moving radar, ns"] / found["resting radar, ns"]}
+
+
+def _nanoseconds(scene, radar, rays: int) -> float:
+    paths = ep.trace(scene, radar, num_rays=rays)
+    seconds = min(processor_time(lambda: ep.synthesize(paths, radar))[0] for _ in range(2))
+    channels = len(radar.transmitters) * len(radar.receivers)
+    return 1e9 * seconds / (paths.num_paths * radar.waveform.num_chirps * channels)
+
+
+def _dbm(power: float) -> float:
+    return float(10.0 * np.log10(max(power, 1e-300) * 1e3))

@@ -1,0 +1,153 @@
+"""Which family of paths owns each cell, without the signals of families that cannot own any.
+
+The families that can are found in rounds. The first takes those that may reach the noise by the amplitudes of their paths; all
+others are added to the whole as one, and what each of them can show at a range is bounded from its echoes
+(cpp/echopath/sim/stream/cell_bounds.h). Once the whole and its mask are known, a family that was left out can own a cell of the
+mask only where its bound is above the strongest rival so far: such families follow, until there are none. So the owners are
+those that all families would give.
+"""
+from __future__ import annotations
+
+import numpy as np
+
+from .. import _core
+from ..settings import SignalSettings
+from .cell_owners import CellOwners
+from .left_out import LeftOut
+from .powers import ViewPowers, mean_square, parts_by_rival
+
+SIGNALS_IN_MEMORY = 128 << 20  # bytes that the signals of families may take at a time, unless one needs more
+STEP = 0.1                     # ratio of powers: how far each round goes below the last
+_OF_PASS = ("tolerance", "method", "replay", "evaluate", "phase_tolerance")
+
+
+class FamilyPass:
+    """Makes the signals of families, some at a time, and keeps of each cell only who owns it.
+
+    families: Families of the paths; request: how cells are labelled; settings: signal settings of `decompose`, retrace "never"
+    adds_up: whether `whole` is wanted; probe: SignalProbe of that whole
+    """
+
+    def __init__(self, paths, radar, families, request, settings: dict, *, adds_up: bool, probe=None):
+        signal = {name: settings.get(name, getattr(SignalSettings, name)) for name in _OF_PASS}
+        self._pass = _core.PartPass(paths, radar, families.family_of_path, len(families), probe=probe, **signal)
+        self._pass.set_adds_up(adds_up)
+        self._radar, self._request, self._progress = radar, request, settings.get("progress")
+        plane = request.plane
+        self._owners = CellOwners((len(plane.rows), len(plane.range)), families.families)
+        self._is_made = np.zeros(len(self._owners.rivals), bool)
+        self._bounds = np.zeros((len(families), len(plane.range)))
+        self._make_likely(paths, families)
+        if adds_up and probe is not None:
+            self._pass.finish_probe()
+
+    def whole(self):
+        """Sum of all signals, [tx, rx, chirp, sample] in sqrt(W)."""
+        return self._pass.whole()
+
+    def settle(self, whole, intervals: dict) -> CellOwners:
+        """Makes the families that may own a cell after all, and gives the cells to their families.
+
+        whole: power [V, R] in W, of the sum of all fields; intervals: {Family: Interval} of mean powers in W
+        """
+        self._pass.set_adds_up(False)
+        owners, mask, level = self._owners, self._request.masks(whole)[1], np.inf
+        while (open_rivals := self._open_rivals(mask)):
+            level = STEP * min(level, max(bound for bound, _ in open_rivals))
+            self._make([rival for bound, rival in open_rivals if bound >= level])
+        self._note_left_out(intervals)
+        shared = owners.give(mask)
+        alone = [[number] for rival in shared for number in owners.rivals[rival]]
+        powers = self._powers(alone)
+        for rival in shared:
+            own, received = zip(*(next(powers) for _ in owners.rivals[rival]))
+            owners.divide(rival, own, received)
+        return owners
+
+    def _make_likely(self, paths, families) -> None:
+        """Makes those that may reach the noise, or the dynamic range below the strongest path, and bounds all others."""
+        floor, rivals = self._request.noise_floor, self._owners.rivals
+        powers, strongest = self._likely_powers(paths, families)
+        mask_floor = max(floor, self._request.dynamic_range * strongest)
+        likely = [rival for rival, power in enumerate(powers)
+                  if power > 0.0 and power >= (floor if self._is_direct(rival) else mask_floor)]
+        rest = np.setdiff1d(np.arange(len(families)), [number for rival in likely for number in rivals[rival]])
+        if len(rest) > 0:
+            self._bounds[rest] = self._pass.bounds(rest, *self._request.plane.window_and_padding, self._progress)
+        self._make(likely)
+
+    def _likely_powers(self, paths, families) -> tuple:
+        """Power [rivals] in W where the paths of a rival in two neighbouring cells of range add up in phase, at the time of the
+        trace and for the first antennas, and the power of the strongest path in W."""
+        amplitude, waveform = np.sqrt(paths.power), self._radar.waveform
+        length = paths.lengths([paths.frame.trace_time], 0, 0)[0]
+        cell = length * (waveform.slope * waveform.num_samples / (waveform.sampling_rate * _core.speed_of_light))
+        rival_of = np.zeros(len(families), np.int64)
+        for rival, members in enumerate(self._owners.rivals):
+            rival_of[members] = rival
+        powers = np.zeros(len(self._owners.rivals))
+        for shift in (0.0, 0.5):
+            pair = np.floor(np.clip(0.5 * cell + shift, 0.0, 2.0 ** 30)).astype(np.int64)
+            places, index = np.unique(rival_of[families.family_of_path] << 32 | pair, return_inverse=True)
+            np.maximum.at(powers, places >> 32, np.bincount(index, amplitude) ** 2 if len(index) else np.zeros(0))
+        return powers, float(amplitude.max(initial=0.0)) ** 2
+
+    def _is_direct(self, rival: int) -> bool:
+        family = self._owners.families[self._owners.rivals[rival][0]]
+        return bool(family.object) and not family.is_ghost
+
+    def _bound(self, rival: int):
+        """[R] W, the most that a rival can show in cells of a range."""
+        return np.sum(np.sqrt(self._bounds[self._owners.rivals[rival]]), axis=0) ** 2
+
+    def _open_rivals(self, mask) -> list:
+        """[(largest bound in W, rival), ...] of those not made that may own a cell, or tell of an object above the noise."""
+        least, found = np.where(mask, self._owners.best, np.inf).min(axis=0), []
+        for rival in np.flatnonzero(~self._is_made).tolist():
+            bound = self._bound(rival)
+            may_own = bool(np.any((bound >= least) & (bound > 0.0)))
+            if may_own or (self._is_direct(rival) and bound.max() > self._request.noise_floor):
+                found.append((float(bound.max()), rival))
+        return found
+
+    def _make(self, rivals: list) -> None:
+        for rival, (power, received) in zip(rivals, self._powers([self._owners.rivals[rival] for rival in rivals])):
+            self._owners.add(rival, power, received)
+            self._is_made[rival] = True
+
+    def _powers(self, sets: list):
+        """(power [V, R], mean square) in W of the signal of each set of families."""
+        plane, shape = self._request.plane, self._owners.best.shape
+        most = max(1, SIGNALS_IN_MEMORY // self._pass.group_bytes)
+        for some in (sets[first:first + most] for first in range(0, len(sets), most)):
+            if plane.takes_receiver_sets:
+                for power, received in self._pass.powers(some, *plane.window_and_padding, self._progress):
+                    yield power.reshape(shape), received
+            else:
+                for cube in self._pass.cubes(some, self._progress):
+                    yield plane.power(cube, self._radar), mean_square(cube)
+
+    def _note_left_out(self, intervals: dict) -> None:
+        """Tells what was left out; powers of families that were not made by themselves are means over the random phases."""
+        owners = self._owners
+        mean = np.array([intervals[family].power for family in owners.families])
+        rest = np.flatnonzero(~self._is_made).tolist()
+        numbers = [number for rival in rest for number in owners.rivals[rival]]
+        owners.left_out = LeftOut(len(numbers), float(mean[numbers].sum()),
+                                  max((float(self._bound(rival).max()) for rival in rest), default=0.0))
+        alone = [members[0] for members, made in zip(owners.rivals, self._is_made) if made and len(members) == 1]
+        mean[alone] = owners.received[alone]
+        owners.received = mean
+
+
+def owners_of_views(powers: ViewPowers, mask) -> CellOwners:
+    """The owners of cells where the powers of all families are known. mask: bool [V, R], what counts"""
+    families = list(powers.cells)
+    owners = CellOwners(np.shape(powers.whole), families)
+    owners.received = np.array([powers.received[family] for family in families])
+    for number, (rival, members) in enumerate(parts_by_rival(families).items()):
+        owners.add(number, powers.rivals[rival], powers.received[members[0]])
+    for rival in owners.give(mask):
+        members = [families[number] for number in owners.rivals[rival]]
+        owners.divide(rival, [powers.cells[family] for family in members], [powers.received[family] for family in members])
+    return owners

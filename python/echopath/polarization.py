@@ -50,6 +50,8 @@ def chosen_model(model: str, scene, wavelength: float, antennas: Iterable = (), 
         raise ValueError(f"{argument}: must be 'auto', 'scalar' or 'jones', got {model!r}")
     if model != AUTO:
         return model
+    if _core.coherent_meshes(scene, wavelength, COHERENT_SHARE):  # their names take longer
+        return FIELD_VECTORS
     return FIELD_VECTORS if need_of_field_vectors(scene, wavelength, antennas) else SCALAR
 
 

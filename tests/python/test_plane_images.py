@@ -90,7 +90,7 @@ def test_a_path_by_image_is_replayed_and_saved(tmp_path):
     frame = tmp_path / "paths.h5"
     paths.save(frame)
     assert np.array_equal(ep.synthesize(ep.Paths.load(frame), paths.radar), cube)
-    assert ep.received_power(paths)["building"].power > 0
+    assert ep.received_power(paths).power > 0
     ep.validity(paths, paths.radar)
 
 

@@ -22,7 +22,7 @@ TEST(PlanarPatches, ABoxHasSixPlanesOfTwoTriangles) {
 TEST(PlanarPatches, JoinTrianglesWithinTheToleranceAndNoOthers) {
   constexpr uint32_t kSide = 12;
   std::mt19937 draw(3);
-  std::uniform_real_distribution<double> noise(-1e-5, 1e-5);
+  std::uniform_real_distribution<double> noise(-5e-6, 5e-6);
   std::vector<Vec3> vertices;
   for (uint32_t row = 0; row <= kSide; ++row) {
     for (uint32_t column = 0; column <= kSide; ++column)

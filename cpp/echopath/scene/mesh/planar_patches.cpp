@@ -39,24 +39,48 @@ class PatchFinder {
     return order;
   }
 
+  // Small triangles tell a plane badly, so it is fitted anew to what has grown, as long as that grows further.
   std::vector<uint32_t> grow(uint32_t seed) {
-    const Plane plane{vertices_[triangles_[seed][0]], area_vector(seed).normalized()};
-    const auto lies_in = [&](uint32_t triangle) {
-      const Triangle& corners = triangles_[triangle];
-      return std::all_of(corners.begin(), corners.end(),
-                         [&](uint32_t corner) { return std::abs(plane.height(vertices_[corner])) <= tolerance_; });
-    };
     std::vector<uint32_t> patch = {seed};
     is_taken_[seed] = true;
-    for (size_t i = 0; i < patch.size(); ++i) {
-      for (const uint32_t next : neighbours_[patch[i]]) {
-        if (next == kNoTriangle || is_taken_[next] || !lies_in(next)) continue;
-        is_taken_[next] = true;
-        patch.push_back(next);
+    Plane plane = fitted_to(patch);
+    for (size_t before = 0; before < patch.size();) {
+      before = patch.size();
+      for (size_t i = 0; i < patch.size(); ++i) {
+        for (const uint32_t next : neighbours_[patch[i]]) {
+          if (next == kNoTriangle || is_taken_[next] || !lies_in(plane, next)) continue;
+          is_taken_[next] = true;
+          patch.push_back(next);
+        }
       }
+      const Plane fitted = fitted_to(patch);
+      const bool holds_all = std::all_of(patch.begin(), patch.end(), [&](uint32_t t) { return lies_in(fitted, t); });
+      if (!holds_all) break;
+      plane = fitted;
     }
     std::sort(patch.begin(), patch.end());
     return patch;
+  }
+
+  bool lies_in(const Plane& plane, uint32_t triangle) const {
+    const Triangle& corners = triangles_[triangle];
+    return std::all_of(corners.begin(), corners.end(),
+                       [&](uint32_t corner) { return std::abs(plane.height(vertices_[corner])) <= tolerance_; });
+  }
+
+  // Returns the mean plane by area, whatever the windings.
+  Plane fitted_to(const std::vector<uint32_t>& patch) const {
+    const Vec3 reference = area_vector(patch.front());
+    Vec3 normal = Vec3::Zero(), middle = Vec3::Zero();
+    double weight = 0.0;
+    for (const uint32_t triangle : patch) {
+      const Vec3 area = area_vector(triangle);
+      const auto& [a, b, c] = triangles_[triangle];
+      normal += area.dot(reference) < 0 ? Vec3(-area) : area;
+      middle += area.norm() / 3.0 * (vertices_[a] + vertices_[b] + vertices_[c]);
+      weight += area.norm();
+    }
+    return {middle / weight, normal.normalized()};
   }
 
   const std::vector<Vec3>& vertices_;

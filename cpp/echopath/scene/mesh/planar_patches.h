@@ -7,7 +7,7 @@
 namespace echopath {
 
 // Returns the triangles of each plane of a mesh, ascending: connected sets whose corners all lie within `tolerance` (m) of
-// the plane of the largest of them. Each triangle belongs to one set; the sets stand in the order of their largest
+// one plane, grown from the largest of them. Each triangle belongs to one set; the sets stand in the order of their largest
 // triangles.
 std::vector<std::vector<uint32_t>> planar_patches(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
                                                   double tolerance);

@@ -15,8 +15,8 @@ import echopath as ep
 from ..speed_tracer import bare_share
 from ..timing import processor_time
 
-FREQUENCY = 3.5e9                        # Hz
-TRANSMITTER, RECEIVER = (9.3, 8.7, 13.1), (11.2, -29.6, 12.3)   # m
+FREQUENCY = 24e9                         # Hz: every wall is larger than its Fresnel zone
+TRANSMITTER, RECEIVER = (9.3, 8.7, 3.1), (10.4, -10.2, 3.0)   # m
 HOUSES, QUICK_HOUSES = 64, 9
 RAYS, QUICK_RAYS = 1_000_000, 50_000
 MESHES, QUICK_MESHES = 100_000, 2_000

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from support.gltf_files import box_file
 from support.odd_values import EXPECTED, ODD, SURROGATE, is_named, make_radar, make_scene
 
 # How many of the arguments tried must be wrong, so that the test cannot run empty.
@@ -30,6 +31,7 @@ def good(tmp_path_factory) -> dict:
     ep.synthesize(paths, probe=probe)
     ep.save_frame(frame, folder / "frame.h5")
     (folder / "mesh.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    (folder / "box.glb").write_bytes(box_file().glb())
     (folder / "antenna.csv").write_text("azimuth_deg,elevation_deg,gain_db\n" + "".join(
         f"{azimuth},{elevation},0\n" for azimuth in (-10, 10) for elevation in (-10, 10)))
     mesh, of_map = {"path": folder / "mesh.obj"}, {"spectrum": spectrum, "radar": radar}
@@ -44,7 +46,7 @@ def good(tmp_path_factory) -> dict:
         "estimate_angles": of_map | {"cells": [[0, 1]]}, "families": {"paths": paths}, "first": {"glob": "plate"},
         "hits": {"glob": "plate"}, "last": {"glob": "plate"}, "load_antenna": {"path": folder / "antenna.csv"},
         "load_frame": {"path": folder / "frame.h5"}, "load_labels": {"path": folder / "frame.h5"}, "load_mesh": mesh,
-        "load_meshes": mesh, "load_model": {"path": folder / "mesh.obj"}, "load_scene": {"path": folder / "scene.toml"},
+        "load_meshes": mesh, "load_model": {"path": folder / "box.glb"}, "load_scene": {"path": folder / "scene.toml"},
         "mesh_from": {"source": SimpleNamespace(vertices=np.eye(3), faces=np.array([[0, 1, 2]]))},
         "mie_rcs": {"radius": 0.1, "frequency": 1e9},
         "num_threads": {}, "path_cells": {"paths": paths, "spectrum": spectrum},

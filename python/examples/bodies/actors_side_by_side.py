@@ -15,10 +15,10 @@ a = ep.actors
 rows = [[("car, small", a.car(kind="small")), ("car, compact", a.car()), ("car, saloon", a.car(kind="saloon")),
          ("car, estate", a.car(kind="estate"))],
         [("car, suv", a.car(kind="suv")), ("van", a.van()), ("motorcycle", a.motorcycle()), ("cyclist", a.cyclist())],
-        [("truck", a.truck())],
+        [("truck", a.truck()), ("tree", a.tree(height=4.5, crown_radius=1.4))],
         [("pedestrian", a.pedestrian()), ("runner", a.runner()), ("standing_person", a.standing_person()),
          ("child", a.child()), ("dog", a.dog()), ("bicycle", a.bicycle()), ("traffic_sign", a.traffic_sign()),
-         ("guard_rail", a.guard_rail(length=4.0)), ("drone", a.drone()), ("tree", a.tree(height=5.0, crown_radius=1.5))]]
+         ("guard_rail", a.guard_rail(length=4.0)), ("drone", a.drone())]]
 
 
 def draw(axes, name, actor, left, ground):
@@ -39,20 +39,20 @@ def draw(axes, name, actor, left, ground):
     axes.add_collection(PolyCollection(faces[order][:, :, [0, 2]] + [shift, ground], facecolors=shades[order],
                                        edgecolors=shades[order], linewidths=0.1))
     right = shift + faces[..., 0].max()
-    axes.text(0.5 * (left + right), ground - 0.15, name, ha="center", va="top", fontsize=8)
-    return max(right + 0.5, left + 2.1)
+    axes.text(0.5 * (left + right), ground - 0.15, name, ha="center", va="top", fontsize=7.5)
+    return max(right + 0.5, left + 2.3)
 
 
 # %%
 # Names of parts are paths: ``"car/wheel/*"`` takes what turns, ``"cyclist/rider/leg_*"`` both legs.
-figure, axes = plt.subplots(figsize=(10, 9), layout="constrained")
+figure, axes = plt.subplots(figsize=(11, 7.5), layout="constrained")
 ground = 0.0
-for row, drop in zip(rows, (3.2, 4.8, 5.9, 0.0)):
+for row, drop in zip(rows, (3.2, 5.3, 4.0, 0.0)):
     place = 0.0
     for name, actor in row:
         place = draw(axes, name, actor, place, ground)
     ground -= drop
-axes.set(xlim=(-0.8, 23.5), ylim=(-14.6, 2.0), xlabel="Length in m", ylabel="Height in m, row by row",
+axes.set(xlim=(-0.9, 23.5), ylim=(-13.1, 1.8), xlabel="Length in m", ylabel="Height in m, row by row",
          title="Actors, from the side")
 axes.set_aspect("equal")
 plt.show()

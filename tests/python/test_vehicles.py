@@ -53,6 +53,30 @@ def test_all_cars_are_fine_enough_at_77_ghz(kind):
     assert coarse_meshes(scene_of(ep.actors.car(kind=kind)), 77e9) == []
 
 
+WHOLE = {"cyclist": ep.actors.cyclist, "motorcycle": ep.actors.motorcycle, "dog": ep.actors.dog, "runner": ep.actors.runner,
+         "bicycle": ep.actors.bicycle, "wheels": lambda: ep.actors.Actor(
+             [part for part in ep.actors.car().parts if part.name.startswith(("wheel", "plate", "body/mirror"))])}
+
+
+@pytest.mark.parametrize("name", WHOLE)
+def test_each_part_of_these_is_closed_with_its_front_outside_and_fine_enough(name):
+    actor = WHOLE[name]()
+    for part in actor.parts:
+        assert boundary_edges(part.mesh.vertices, part.mesh.triangles) == [], part.name
+        assert volume_of(part.mesh.vertices, part.mesh.triangles) > 0.0, part.name
+    scene = scene_of(actor)
+    assert scene.coplanar_overlaps() == []
+    assert [text for _, text in coarse_meshes(scene, 77e9)] == []
+
+
+def test_the_truck_closes():
+    for group, parts in (("cab/", None), ("trailer/", ("front", "side_left", "side_right", "roof", "doors", "floor"))):
+        vertices, triangles = joined_parts(ep.actors.truck(), lambda name, group=group, parts=parts: name.startswith(group) and (
+            parts is None or name.removeprefix(group) in parts))
+        assert boundary_edges(vertices, triangles) == []
+        assert volume_of(vertices, triangles) > 0.0
+
+
 def test_parts_of_a_car_are_named_for_labels():
     names = [part.name for part in ep.actors.car(kind="saloon").parts]
     wanted = {"body/hood", "body/roof", "body/tailgate", "body/door_front_left", "body/door_rear_right", "body/fender_left",

@@ -89,8 +89,8 @@ def _between_sheets(quads, sheets):
 def rounded_box(low, high, radius, pieces, *, bow=0.0):
     """Points [X, Y, Z, 3] of a lattice whose limit surface is a box from `low` to `high` [3] in m with rounded edges.
 
-    radius: m, width of the strip along the edges that is rounded; pieces [3]: of its length between them; bow: m by which the middle of each side
-    stands out. All cells are full.
+    radius: m, width of the strip along the edges that is rounded; pieces [3]: of its length between them; bow: m by which the
+    middle of each side stands out. All cells are full.
     """
     low, high = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
     axes = [np.concatenate([[a, a + 0.5 * radius], np.linspace(a + radius, b - radius, n + 1), [b - 0.5 * radius, b]])

@@ -110,7 +110,8 @@ def _frame(saddle_height):
     top, bottom = _in_plane(HEAD_TOP), _in_plane(HEAD_BOTTOM)
     axle = np.array([REAR_AXLE, 0.0, WHEEL_RADIUS])
     post = seat_point((saddle_height - 0.04 - BRACKET_HEIGHT) / np.sin(SEAT_ANGLE))
-    bars = [_bar(bracket, post), _bar(top, bottom), _bar(seat, _in_plane((0.41, 0.83))), _bar(bracket, _in_plane((0.445, 0.73)))]
+    bars = [_bar(bracket, post), _bar(top, bottom), _bar(seat, _in_plane((0.41, 0.83))),
+            _bar(_in_plane((0.01, BRACKET_HEIGHT + 0.01)), _in_plane((0.445, 0.73)))]
     for sign in (1.0, -1.0):
         side = np.array([0.0, 0.06 * sign, 0.0])
         bars += [tube(bracket + 0.4 * side, axle + side, STAY_TUBE, segments=8),
@@ -130,11 +131,11 @@ def _fork():
 def _handlebar():
     stem, grip = _in_plane((0.392, 0.93)), np.array(GRIP)
     middle = np.array([0.47, 0.0, 1.00])
-    bars = [tube(_in_plane((0.402, 0.85)), stem, 0.014, segments=10), tube(stem, middle, 0.014, segments=10)]
+    bars = [tube(_in_plane((0.402, 0.85)), stem, 0.014, segments=10), tube(stem - [0, 0, 0.004], middle, 0.013, segments=10)]
     for sign in (1.0, -1.0):
         mirrored = grip * [1.0, sign, 1.0]
-        bars += [tube(middle, mirrored - [0, 0.06 * sign, 0], 0.011, segments=8),
-                 tube(mirrored - [0, 0.06 * sign, 0], mirrored + [-0.02, 0.06 * sign, 0], 0.013, segments=8)]
+        bars += [tube(middle + [0, 0.003 * sign, 0], mirrored - [0, 0.06 * sign, 0], 0.011, segments=8),
+                 tube(mirrored - [0, 0.063 * sign, 0], mirrored + [-0.02, 0.06 * sign, 0], 0.013, segments=8)]
     return bars
 
 

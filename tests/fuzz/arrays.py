@@ -64,7 +64,7 @@ def _put(array, random: Random) -> None:
         with np.errstate(all="ignore"):
             target.flat[random.randrange(target.size)] = value
     except (ValueError, OverflowError, TypeError):
-        target.flat[random.randrange(target.size)] = 0
+        target[np.unravel_index(random.randrange(target.size), target.shape)] = np.zeros((), target.dtype)[()]
 
 
 def _use(paths) -> None:

@@ -207,6 +207,8 @@ def test_a_mistyped_option_gets_the_usage_of_its_command_and_the_nearest_one():
     done = call("run", "scene.toml", "--out", "x", "--ray", "100")  # no shortening of --rays
     assert done.returncode == 2 and done.stderr.startswith("usage: echopath run")
     assert "unrecognized arguments: --ray 100 (the nearest option is --rays)" in " ".join(done.stderr.split())
+    for word, told in (("--num-rays=5", "(the nearest option is --rays)"), ("--qqqq", "--qqqq\n")):
+        assert told in call("run", "scene.toml", "--out", "x", word).stderr
 
 
 def test_a_scene_file_in_the_place_of_a_frame_is_told(scene_path, tmp_path):

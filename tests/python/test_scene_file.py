@@ -187,6 +187,7 @@ def test_one_flat_table_of_parts_is_one_partition(write):
 CIRCLE = "".join(f"[[radar.receivers]]\nposition = [0.0, {0.01 * math.cos(0.7 * i)}, {1.0 + 0.01 * math.sin(0.7 * i)}]\n"
                  for i in range(9))
 FAULTS = [
+    (RADAR.replace("bandwidth", "bw"), "radar.waveform.bw: unknown key; did you mean 'bandwidth'?"),
     (RADAR.replace("bandwidth", "bandwith"), "radar.waveform.bandwith: unknown key; did you mean 'bandwidth'?"),
     (RADAR.replace("bandwidth = 1e9", ""), "radar.waveform.bandwidth: is missing"),
     (RADAR.replace("1e9", "'1e9'"), "radar.waveform.bandwidth: must be a number, got '1e9'"),

@@ -49,9 +49,11 @@ class _Command(argparse.ArgumentParser):
     def _nearest_option(self, unknown) -> str:
         from .. import _core
 
-        wrong = next((word for word in unknown if word.startswith("--")), None)
-        known = [option for option in self._option_string_actions if option.startswith("--")]
-        return f" (the nearest option is {_core.nearest_names(wrong.partition('=')[0], known, 1)[0]})" if wrong else ""
+        wrong = next((word for word in unknown if word.startswith("--")), "")
+        known = [option.removeprefix("--").replace("-", "_") for option in self._option_string_actions
+                 if option.startswith("--")]
+        meant = _core.meant_name(wrong.partition("=")[0].removeprefix("--").replace("-", "_"), known) if wrong else ""
+        return f" (the nearest option is --{meant.replace('_', '-')})" if meant else ""
 
 
 def _parser() -> argparse.ArgumentParser:

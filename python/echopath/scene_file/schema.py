@@ -12,12 +12,14 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
+from .. import _core
 from ..checks import Rule, window
 from ..parts import are_tables
 from ..settings import (
     MOST_BATCHES, MOST_BOUNCES, MOST_RAYS, Evaluate, Footprint, LabelSettings, Plane, Polarization, Replay, Retrace, Sampler,
     SignalSettings, TraceSettings,
 )
+from ..shown import writable
 from ..spectra import FALSE_ALARM_RATE, RANK, CfarMethod
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
@@ -32,9 +34,10 @@ Matrix4 = Annotated[list[Quaternion], Field(min_length=4, max_length=4)]
 def nearest_key(key: str, candidates) -> str:
     """What to say about an unknown key: the nearest known one, or all of them when none is near."""
     candidates = list(candidates)
-    near = difflib.get_close_matches(key.lower(), candidates, n=1, cutoff=0.5)
+    near = _core.meant_name(writable(key), candidates) or next(
+        iter(difflib.get_close_matches(key.lower(), candidates, n=1, cutoff=0.5)), "")
     if near:
-        return f"did you mean '{near[0]}'?"
+        return f"did you mean '{near}'?"
     return "known keys: " + ", ".join(candidates)
 
 

@@ -141,6 +141,8 @@ def _advice(paths, families, family, power) -> str:
     planes = [] if power.diffuse > power.coherent else _wide_planes(paths, families, family)
     if planes:
         return f"mirror=True for {', '.join(planes)}"
+    if paths.frame.footprint == "none" and power.bias > power.chance:
+        return "a footprint: without one nothing tells how coarse the rays are"
     times = _times_the_rays(power)
     if times > MOST_TIMES:
         return f"more than {MOST_TIMES:g} times the rays"

@@ -244,7 +244,9 @@ def test_without_a_footprint_nothing_is_claimed_of_coherent_echoes(angle_deg, nu
     radar = build_radar([(0, 0, 0)], [(0, 0, 0)])
     wavelength = ep.speed_of_light / radar.waveform.start_frequency
     section = 4 * np.pi * (side ** 2 * np.cos(angle) / wavelength * np.sinc(2 * side * np.sin(angle) / wavelength)) ** 2
-    found = ep.received_power(ep.trace(scene, radar, num_rays=num_rays, footprint="none", batches=batches))
+    paths = ep.trace(scene, radar, num_rays=num_rays, footprint="none", batches=batches)
+    found = ep.received_power(paths)
+    assert "footprint" in ep.unresolved(paths)[0].advice
     assert found.low <= power_of(section, distance) <= found.high and not found.resolved
 
 

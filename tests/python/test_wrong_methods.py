@@ -8,7 +8,7 @@ import echopath as ep
 from support.odd_values import EXPECTED, ODD, is_named, make_radar, make_scene
 
 SCENE, RADAR = make_scene(), make_radar()
-FEWEST_WRONG = 3500
+FEWEST_WRONG = 1700
 # Arguments that say of others what they lack.
 OTHERS = {("add", "mesh_or_actor"): "material: must be given with a mesh", ("pedestrian", "height"): "speed: must be"}
 FREE = {("plot", "title"), ("plot", "ax")}  # Matplotlib's own
@@ -61,7 +61,7 @@ def test_wrong_arguments_of_methods_and_actors_are_named(calls):
         bad, wrong = faults(name, function, right)
         found, total = found + bad, total + wrong
     assert not found, "\n".join(map(str, found))
-    assert total > FEWEST_WRONG / 2
+    assert total > FEWEST_WRONG
 
 
 @pytest.mark.filterwarnings("ignore")

@@ -110,8 +110,8 @@ std::unique_ptr<PartPass> part_pass(const Paths& paths, const Radar& radar, cons
   return std::make_unique<PartPass>(paths, radar, as_vector<uint32_t>(group, "group"), num_groups, settings);
 }
 
-py::list powers_of_pass(PartPass& pass, const PartPass::Sets& sets, const py::object& window,
-                        int zero_pad, const py::object& progress) {
+py::list powers_of_pass(PartPass& pass, const PartPass::Sets& sets, const py::object& window, int zero_pad,
+                        const py::object& progress) {
   const Window taper = as_window(window);
   py::list out;
   for (SetPower& of_set :
@@ -150,8 +150,12 @@ of which is to be asked for once.)")
            "group: uint32 [P] below num_groups; the other arguments are those of ep.synthesize.")
       .def("set_adds_up", &PartPass::set_adds_up, py::arg("adds_up"), "Whether signals add to the whole; at first they do.")
       .def_property_readonly("group_bytes", &PartPass::group_bytes, "memory of one group while its signal is made")
-      .def("whole", [](const PartPass& self) { return cube_array(run_job("families", py::none(), [&](Job& job) { return self.whole(&job); })); },
-           "The sum of the signals that were added, [tx, rx, chirp, sample] in sqrt(W).")
+      .def(
+          "whole",
+          [](const PartPass& self) {
+            return cube_array(run_job("families", py::none(), [&](Job& job) { return self.whole(&job); }));
+          },
+          "The sum of the signals that were added, [tx, rx, chirp, sample] in sqrt(W).")
       .def(
           "finish_probe",
           [](PartPass& self) { run_job("families", py::none(), [&](Job& job) { self.finish_probe(&job); }); },
@@ -161,7 +165,8 @@ of which is to be asked for once.)")
 
 sets: lists of groups whose fields add up. Returns for each (power [V * R] in W, mean over the channels, mean square of its
 samples in W).)")
-      .def("cubes", &cubes_of_pass, py::arg("sets"), py::arg("progress"), "Signals [tx, rx, chirp, sample] of sets of groups.")
+      .def("cubes", &cubes_of_pass, py::arg("sets"), py::arg("progress"),
+           "Signals [tx, rx, chirp, sample] of sets of groups.")
       .def("bounds", &bounds_of_pass, py::arg("groups"), py::arg("window"), py::arg("zero_pad"), py::arg("progress"),
            R"(Adds groups to the whole and bounds what each can show, [group, R] in W, at any velocity or azimuth.
 

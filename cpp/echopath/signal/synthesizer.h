@@ -46,7 +46,7 @@ class Synthesizer {
   ~Synthesizer();
   Synthesizer(Synthesizer&&) noexcept;
 
-  size_t group_bytes() const;  // of a group whose echoes move, in all channels
+  size_t group_bytes() const;                // of a group whose echoes move, in all channels
   Method method() const { return method_; }  // the one chosen, never kAuto
 
   // Adds blocks to a channel; parallel over chirps. It is quicker to add many echoes at once: a NUFFT sorts neighbouring

@@ -25,8 +25,8 @@ Taper make_taper(const Window& window, int n, double scale = 1.0) {
   return taper;
 }
 
-void transform_row(const Fft& fft, const Taper& taper, const std::complex<double>* in, int64_t num_ranges,
-                   FftBuffer& buffer, std::complex<double>* out) {
+void transform_row(const Fft& fft, const Taper& taper, const std::complex<double>* in, int64_t num_ranges, FftBuffer& buffer,
+                   std::complex<double>* out) {
   const auto num_samples = static_cast<int64_t>(taper.size());
   for (int64_t i = 0; i < num_samples; ++i) buffer[i] = taper[static_cast<size_t>(i)] * in[i];
   std::fill(buffer.data() + num_samples, buffer.data() + buffer.size(), 0.0);

@@ -100,7 +100,7 @@ def _parser() -> argparse.ArgumentParser:
 
     bench = commands.add_parser("bench", help="measure error and speed side by side")
     bench.add_argument("what", choices=["physics", "replay", "labels", "hard", "speed", "crowd", "certificate", "targets",
-                                       "actors", "worlds"],
+                                           "actors", "worlds"],
                        help="physics: levels of canonical targets; replay: one record against tracing every chirp and "
                             "antenna; labels: cost of parts, rate of path expressions; hard: cases that break ray tracers "
                             "and coherent sums, each with its bound; speed: synthesis beside FINUFFT, frames, memory; "

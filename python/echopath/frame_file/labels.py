@@ -7,6 +7,7 @@ import numpy as np
 
 from .. import _core
 from ..labels.labels import AzimuthBox, AzimuthPeak, Box, GhostLabel, Labels, ObjectLabel, Peak
+from ..labels.left_out import LeftOut
 from ..resolution import Interval
 from .h5 import blames_group, read_array, read_attribute, read_group, read_texts, write_array, write_attribute, write_texts
 
@@ -63,6 +64,8 @@ def write_labels(group, labels: Labels) -> None:
             write_array(group, name, getattr(labels, name), unit=unit)
     if labels.part_received is not None:
         _write_received(group, "part_received", labels.part_received)
+    if labels.left_out is not None:
+        write_array(group, "left_out", np.array(labels.left_out, np.float64))
     _write_objects(group.create_group("objects"), labels.objects)
     _write_ghosts(group.create_group("ghosts"), labels.ghosts)
 
@@ -83,7 +86,7 @@ def read_labels(group) -> Labels:
     settings["seed"] = read_attribute(group, "seed", int)
     return Labels(plane=read_attribute(group, "plane", str), **axes, part_names=names, power=power,
                   share=_core.power_shares(power), objects=objects, ghosts=ghosts,
-                  part_received=_read_part_received(group, len(names)), **settings, **cells,
+                  part_received=_read_part_received(group, len(names)), left_out=_read_left_out(group), **settings, **cells,
                   **_read_errors(group, power.shape))
 
 
@@ -178,6 +181,14 @@ def _read_received(group, name: str, count: int) -> list:
 def _read_part_received(group, count: int) -> list | None:
     """None of cubes whose selections nobody knows."""
     return _read_received(group, "part_received", count) if "part_received" in group else None
+
+
+def _read_left_out(group) -> LeftOut | None:
+    """None of frames with keyframes, which leave out nothing."""
+    if "left_out" not in group:
+        return None
+    families, power, bound = read_array(group, "left_out", np.float64, (3,))
+    return LeftOut(int(families), float(power), float(bound))
 
 
 def _write_cells(group, labels: list) -> None:

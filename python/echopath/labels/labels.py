@@ -158,8 +158,8 @@ class Labels:
         without selections
     left_out: LeftOut of the families of paths whose signals were not made because none of them can own a cell: how many, their
         mean power in W together, and what the strongest can show in a cell at most, W. The power of such an object or ghost is
-        the mean over the random phases (`received`); its cells, peak and box are what all signals would give. None: of files
-        and frames with keyframes, which make all signals
+        the mean over the random phases (`received`); its cells, peak and box are what all signals would give. None: of frames
+        with keyframes, which make all signals
     """
 
     plane: str

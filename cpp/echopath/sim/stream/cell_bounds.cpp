@@ -55,7 +55,8 @@ class WindowReach {
     for (int64_t i = 0; i < static_cast<int64_t>(values.size()); ++i) {
       const int64_t centre = i * kFine / zero_pad;
       for (int64_t step = centre - reach * kFine; step <= centre + reach * kFine + 1; ++step) {
-        values[static_cast<size_t>(i)] = std::max(values[static_cast<size_t>(i)], fine[static_cast<size_t>((step + size) % size)]);
+        values[static_cast<size_t>(i)] =
+            std::max(values[static_cast<size_t>(i)], fine[static_cast<size_t>((step + size) % size)]);
       }
     }
     return values;
@@ -68,7 +69,8 @@ class WindowReach {
 // Adds a bin of that amplitude to the bounds of all cells of a circle.
 void add_bin(double amplitude, int64_t first, const std::vector<double>& reach, std::vector<double>& row) {
   const auto size = static_cast<int64_t>(row.size());
-  for (int64_t r = 0; r < first; ++r) row[static_cast<size_t>(r)] += amplitude * reach[static_cast<size_t>(r - first + size)];
+  for (int64_t r = 0; r < first; ++r)
+    row[static_cast<size_t>(r)] += amplitude * reach[static_cast<size_t>(r - first + size)];
   for (int64_t r = first; r < size; ++r) row[static_cast<size_t>(r)] += amplitude * reach[static_cast<size_t>(r - first)];
 }
 
@@ -106,7 +108,8 @@ void CellBounds::see_some(const Echoes& block, int chirp, int64_t begin, int cou
     const double beat = swept + states.rate[i] * (model_.centre_frequency - swept);  // Hz, as in carrier.h
     const auto cell = static_cast<float>(beat * model_.sample_interval * waveform_.num_samples);
     const auto path = static_cast<size_t>(first[i]);
-    amplitude_[path] = std::max(amplitude_[path], static_cast<float>(std::hypot(states.amplitude[2 * i], states.amplitude[2 * i + 1])));
+    const double re = states.amplitude[2 * i], im = states.amplitude[2 * i + 1];
+    amplitude_[path] = std::max(amplitude_[path], static_cast<float>(std::sqrt(re * re + im * im)));
     lowest_[path] = std::min(lowest_[path], cell);
     highest_[path] = std::max(highest_[path], cell);
   }

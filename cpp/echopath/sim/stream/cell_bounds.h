@@ -24,7 +24,7 @@ class CellBounds {
   // Takes the blocks of a channel; `first` tells the path of each echo, or the first of those joined in it. Chirps are looked
   // at in kChirps places; between these amplitudes may be kSpare larger and beats a quarter of a cell off.
   void see(std::span<const Echoes> blocks, std::span<const int64_t> first);
-  static constexpr int kChirps = 16;
+  static constexpr int kChirps = 8;
   static constexpr double kSpare = 1.05;
 
   // Returns bounds of the power, [num_groups, R] in W; group [P], those of num_groups and above are left out.

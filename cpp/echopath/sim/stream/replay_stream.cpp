@@ -211,9 +211,7 @@ void ReplayStream::add_chirps(const std::vector<std::vector<int64_t>>& by_grid, 
 }
 
 std::shared_ptr<const PosedGrid> ReplayStream::posed_chirps(int transmitter) const {
-  const auto pose = [&] {
-    return std::make_shared<const PosedGrid>(replayer_.pose(replayer_.grids().chirps(transmitter)));
-  };
+  const auto pose = [&] { return std::make_shared<const PosedGrid>(replayer_.pose(replayer_.grids().chirps(transmitter))); };
   if (kept_chirps_.empty()) return pose();
   std::shared_ptr<const PosedGrid>& kept = kept_chirps_[static_cast<size_t>(transmitter)];
   if (!kept) kept = pose();

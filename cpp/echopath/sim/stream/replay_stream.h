@@ -90,7 +90,7 @@ class ReplayStream {
   Job* job_;
   std::optional<JoinRule> join_rule_;
   PathWatcher* watcher_ = nullptr;
-  std::optional<PathGrids> kept_grids_;                              // of runs over some paths
+  std::optional<PathGrids> kept_grids_;                                // of runs over some paths
   mutable std::vector<std::shared_ptr<const PosedGrid>> kept_chirps_;  // by transmitter, likewise
 };
 

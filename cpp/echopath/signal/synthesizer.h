@@ -50,9 +50,9 @@ class Synthesizer {
   Method method() const { return method_; }  // the one chosen, never kAuto
 
   // Adds blocks to a channel; parallel over chirps. It is quicker to add many echoes at once: a NUFFT sorts neighbouring
-  // moving blocks of one sampling together, which needs as much memory again as they have. Raises invalid_argument on wrong
-  // shapes, groups out of range, or values that are not finite; nothing is added then. The job's progress advances by the
-  // number of echoes. Raises Cancelled when the job is cancelled; the cubes are void then.
+  // moving blocks of one sampling together, which needs as much memory again as they have. Raises invalid_argument on
+  // wrong shapes, groups out of range, or values that are not finite; nothing is added then. The job's progress advances
+  // by the number of echoes. Raises Cancelled when the job is cancelled; the cubes are void then.
   void add(int channel, std::span<const Echoes> blocks, Job* job = nullptr);
   void add(int channel, const Echoes& block, Job* job = nullptr) { add(channel, std::span(&block, 1), job); }
 

@@ -23,24 +23,24 @@ struct RangeDoppler {
   bool is_tdm_compensated = false;           // whether the phase between TDM slots has been taken out
 };
 
-// Returns the range of each bin for `num_bins` samples after padding, R = c f_b / (2 slope): all bins, or the lower half for
-// real samples.
+// Returns the range of each bin for `num_bins` samples after padding, R = c f_b / (2 slope): all bins, or the lower half
+// for real samples.
 std::vector<double> range_axis(const ChirpSequence& waveform, int num_bins);
 // Returns the velocity of each bin for `num_bins` chirps after padding, v = f_D lambda / 2 at the centre frequency;
 // num_slots transmitters share the time. Bin num_bins / 2 is at rest.
 std::vector<double> velocity_axis(const ChirpSequence& waveform, int num_slots, int num_bins);
 
 // Applies the windowed Fourier transform to the cube [tx, rx, chirp, sample] over samples and chirps, both padded to
-// zero_pad times their number, and divides by the window sums (real samples: times sqrt 2, positive beat frequencies only).
-// The Doppler phase between TDM slots is left in. Runs in parallel over rows; the result does not depend on the threads.
-// Raises invalid_argument on a cube of another size than the radar's, or unless 1 <= zero_pad <= 64.
+// zero_pad times their number, and divides by the window sums (real samples: times sqrt 2, positive beat frequencies
+// only). The Doppler phase between TDM slots is left in. Runs in parallel over rows; the result does not depend on the
+// threads. Raises invalid_argument on a cube of another size than the radar's, or unless 1 <= zero_pad <= 64.
 RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const Radar& radar, const Window& window = {},
                            int zero_pad = 1, Job* job = nullptr);
 RangeDoppler range_doppler(const std::vector<std::complex<double>>& cube, const Radar& radar, const Window& window = {},
                            int zero_pad = 1, Job* job = nullptr);
 
-// Transforms the samples of one channel after the other, as range_doppler does those of all: with plans and tapers that are
-// made once, and without a parallel loop. Several threads may use it.
+// Transforms the samples of one channel after the other, as range_doppler does those of all: with plans and tapers that
+// are made once, and without a parallel loop. Several threads may use it.
 class MapTransform {
  public:
   // Raises as range_doppler.
@@ -62,8 +62,9 @@ class MapTransform {
 std::vector<double> mean_power(const RangeDoppler& map, Job* job = nullptr);
 
 // Returns the mean power of white noise in a cell of a map, W: sample_power ENBW_range ENBW_velocity/(num_samples
-// num_chirps) with the equivalent noise bandwidths of the window (Harris 1978); padding does not change it. sample_power (W)
-// is that of complex samples; give twice that of real ones, because a map holds their positive frequencies times sqrt 2.
+// num_chirps) with the equivalent noise bandwidths of the window (Harris 1978); padding does not change it. sample_power
+// (W) is that of complex samples; give twice that of real ones, because a map holds their positive frequencies times sqrt
+// 2.
 double cell_noise_power(double sample_power, const ChirpSequence& waveform, const Window& window);
 
 }  // namespace echopath

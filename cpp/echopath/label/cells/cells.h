@@ -1,6 +1,6 @@
 #pragma once
-// Labels the cells of a map by the powers of its parts, in pure functions on arrays. A map is [rows, columns], row-major, of
-// N cells: velocities (or azimuths) and ranges. Powers are in W, finite and not negative.
+// Labels the cells of a map by the powers of its parts, in pure functions on arrays. A map is [rows, columns], row-major,
+// of N cells: velocities (or azimuths) and ranges. Powers are in W, finite and not negative.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,8 +9,9 @@ namespace echopath {
 
 inline constexpr int16_t kNoLabel = -1;
 
-// Returns the power of each part over the sum of all parts, [K, N] from [K, N]: it sums to 1 in each cell and is 0 where no
-// part has power. Raises invalid_argument unless num_parts >= 1 divides the number of powers; so do the functions below.
+// Returns the power of each part over the sum of all parts, [K, N] from [K, N]: it sums to 1 in each cell and is 0 where
+// no part has power. Raises invalid_argument unless num_parts >= 1 divides the number of powers; so do the functions
+// below.
 std::vector<double> power_shares(std::span<const double> power, int64_t num_parts);
 
 // Tells which cells have something to label, [N] of 0 or 1.
@@ -43,10 +44,9 @@ struct LabelRegion {
   int64_t first_row = 0, last_row = 0, first_column = 0, last_column = 0;
 };
 
-// Returns the regions of all labels, [L]. label [N] holds indices of labels or kNoLabel; power [N] is that of the label that
-// the cell has.
-// Rows that wrap leave out the largest gap between occupied rows; of equal gaps the one over the end of the axis, else the
-// first. Raises invalid_argument when sizes differ or a label is not below num_labels.
+// Returns the regions of all labels, [L]. label [N] holds indices of labels or kNoLabel; power [N] is that of the label
+// that the cell has. Rows that wrap leave out the largest gap between occupied rows; of equal gaps the one over the end
+// of the axis, else the first. Raises invalid_argument when sizes differ or a label is not below num_labels.
 std::vector<LabelRegion> label_regions(std::span<const int16_t> label, std::span<const double> power, int64_t num_labels,
                                        const MapShape& shape);
 

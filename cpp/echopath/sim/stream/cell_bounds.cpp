@@ -16,8 +16,8 @@ constexpr double kBeatSpare = 0.25;  // cells
 constexpr int kFine = 16;            // steps of a cell in which the response of a window is tabulated
 constexpr double kBetweenSteps = 1.01;
 
-// The largest responses of a window to tones within some cells of a bin, by the distance of a cell from it on the circle of
-// all cells; one table for each of 1, 2, 4, ... cells, the last as wide as the circle.
+// The largest responses of a window to tones within some cells of a bin, by the distance of a cell from it on the circle
+// of all cells; one table for each of 1, 2, 4, ... cells, the last as wide as the circle.
 class WindowReach {
  public:
   WindowReach(const Window& window, int num_cells, int zero_pad) : num_cells_(num_cells) {

@@ -19,24 +19,25 @@ struct SetPower {
   double mean_square = 0.0;   // W, mean over channels, chirps and samples
 };
 
-// Each path is replayed when its group is asked for. The method of synthesis is that of the whole set, and the signals of all
-// groups add up to the whole to rounding, with the same bits for any number of threads.
+// Each path is replayed when its group is asked for. The method of synthesis is that of the whole set, and the signals of
+// all groups add up to the whole to rounding, with the same bits for any number of threads.
 class PartPass {
  public:
-  // group [P], below num_groups. Paths and radar must outlive it; settings must not ask for keyframes. Raises as CubePass.
+  // group [P], below num_groups. Paths and radar must outlive it; settings must not ask for keyframes. Raises as
+  // CubePass.
   PartPass(const Paths& paths, const Radar& radar, std::vector<uint32_t> group, uint32_t num_groups, CubeSettings settings);
   ~PartPass();
 
-  // Signals that are made from now on are added to the whole, or not; at first they are. Each group is to be added once. The
-  // probe of the settings sees paths whose signals are added.
+  // Signals that are made from now on are added to the whole, or not; at first they are. Each group is to be added once.
+  // The probe of the settings sees paths whose signals are added.
   void set_adds_up(bool adds_up) { adds_up_ = adds_up; }
   Cube whole(Job* job) const;
   // Fills the probe of the settings. To be called once, after all groups were added.
   void finish_probe(Job* job);
 
   using Sets = std::vector<std::vector<uint32_t>>;  // groups whose fields add up
-  // Returns the power of the signal of each set. Its memory is group_bytes() for each of them, and a few maps of a channel for
-  // each thread.
+  // Returns the power of the signal of each set. Its memory is group_bytes() for each of them, and a few maps of a
+  // channel for each thread.
   std::vector<SetPower> powers(const Sets& sets, const Window& window, int zero_pad, Job* job);
   // Returns the signal of each set.
   std::vector<Cube> cubes(const Sets& sets, Job* job);

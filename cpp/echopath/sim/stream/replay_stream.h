@@ -40,20 +40,20 @@ class ReplayStream {
       : num_paths_(paths.num_paths()), num_transmitters_(static_cast<int>(radar.transmitters.size())),
         replayer_(paths, radar, settings), job_(job) {}
 
-  // From now on paths over the same hits make one echo where they agree in all of `labels` ([P] each, which must outlive the
-  // stream).
+  // From now on paths over the same hits make one echo where they agree in all of `labels` ([P] each, which must outlive
+  // the stream).
   void join(std::vector<const std::vector<uint32_t>*> labels) { join_rule_.emplace(replayer_.join_rule(std::move(labels))); }
   // The watcher must outlive the stream.
   void watch(PathWatcher* watcher) { watcher_ = watcher; }
 
   int num_channels() const { return replayer_.num_channels(); }
   const Replayer& replayer() const { return replayer_; }
-  // Sends the paths to the sink, all of them or some (indices, ascending). A stream that sends some at a time keeps the scene
-  // as posed in each chirp, where paths need it.
-  // Memory is bounded by the blocks in flight, 0.2 GiB of delays and amplitudes at 32 nodes a path, whatever the number of
-  // paths, chirps and channels; a sink that sorts them needs at most as much again. Beside these each thread works on 320 B
-  // for each channel and node of a block (SingleBounceEvaluation), and on what chains of its paths share. `sink` is called
-  // from one thread at a time, while the next blocks are replayed. Raises Cancelled.
+  // Sends the paths to the sink, all of them or some (indices, ascending). A stream that sends some at a time keeps the
+  // scene as posed in each chirp, where paths need it. Memory is bounded by the blocks in flight, 0.2 GiB of delays and
+  // amplitudes at 32 nodes a path, whatever the number of paths, chirps and channels; a sink that sorts them needs at
+  // most as much again. Beside these each thread works on 320 B for each channel and node of a block
+  // (SingleBounceEvaluation), and on what chains of its paths share. `sink` is called from one thread at a time, while
+  // the next blocks are replayed. Raises Cancelled.
   void run(const Sink& sink) const;
   void run(std::span<const int64_t> paths, const Sink& sink);
   // The job that is told from now on.
@@ -71,7 +71,8 @@ class ReplayStream {
   void add_moving(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, WindowPipeline& out) const;
   void add_chirps(const std::vector<std::vector<int64_t>>& by_grid, int transmitter, WindowPipeline& out) const;
   void add_samples(const std::vector<int64_t>& paths, int transmitter, WindowPipeline& out) const;
-  // Describes the channels that `replay` makes echoes of, the number of rows, and whether it joins paths itself on request.
+  // Describes the channels that `replay` makes echoes of, the number of rows, and whether it joins paths itself on
+  // request.
   struct Extent {
     int first_channel, num_channels;
     int64_t num_rows;

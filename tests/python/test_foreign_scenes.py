@@ -11,7 +11,7 @@ import echopath as ep
 from echopath.cli import main
 from echopath.readers.material_names import material_of, note_of_unknown
 from echopath.readers.sizes import unit_doubt
-from fuzz.foreign import SQUARE
+from fuzz.foreign import SQUARE, bvh_text, walk_frames
 
 ROUNDING = 1e-12
 
@@ -231,6 +231,18 @@ position = [5, 0, 0]
         (tmp_path / "bad.toml").write_text(good.replace('model = "wall.obj"', wrong))
         with pytest.raises((ValueError, ep.FileError)):
             ep.load_scene(tmp_path / "bad.toml")
+
+
+def test_a_scene_file_names_a_motion_capture_as_model_and_as_actor(tmp_path):
+    (tmp_path / "walk.bvh").write_text(bvh_text(walk_frames(8)))
+    assert main(["scene", str(tmp_path / "walk.bvh"), "--out", str(tmp_path / "walk.toml")]) == 0
+    text = (tmp_path / "walk.toml").read_text()
+    (tmp_path / "actor.toml").write_text(text.replace('model = "walk.bvh"', 'actor = "captured_pedestrian"\n'
+                                                      'parameters = {path = "walk.bvh"}'))
+    model, actor = (ep.load_scene(tmp_path / name).scene for name in ("walk.toml", "actor.toml"))
+    assert [mesh.name for mesh in model.meshes] == [mesh.name for mesh in actor.meshes]
+    for index in range(len(model.meshes)):
+        assert np.allclose(model.world_vertices(index, 0.1), actor.world_vertices(index, 0.1), atol=ROUNDING)
 
 
 def test_info_tells_content_size_axes_unit_and_materials(town, capsys):

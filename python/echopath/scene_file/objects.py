@@ -69,6 +69,8 @@ def _shape(table: ObjectTable, folder: Path, key: str, material, meshes_of_file)
     factory = _actor_factory(table.actor, f"{key}.actor")
     model = _parameter_table(table.actor, factory)
     parameters = validated(model, table.parameters, (*_as_location(key), "parameters")).model_dump(exclude_unset=True)
+    if "path" in parameters:
+        parameters["path"] = folder / parameters["path"]  # of a motion capture, relative to the scene file
     if material is not None and "material" in _parameters(factory):
         parameters["material"], material = material, None
     with blamed(f"{key}.parameters"):

@@ -148,7 +148,7 @@ def SkelRoot "person"
             elementSize = 2
             interpolation = "vertex"
         )
-        matrix4d primvars:skel:geomBindTransform = ((1,0,0,0),(0,1,0,0),(0,0,1,0),(0,0,0,1))
+        matrix4d primvars:skel:geomBindTransform = ((1,0,0,0),(0,1,0,0),(0,0,1,0),(0,0,0.5,1))
         rel skel:skeleton = </person/bones>
     }
 }

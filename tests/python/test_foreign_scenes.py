@@ -252,6 +252,12 @@ def test_info_tells_content_size_axes_unit_and_materials(town, capsys):
         assert words in said, words
 
 
+def test_a_file_without_surfaces_says_so(tmp_path, capsys):
+    (tmp_path / "empty.xml").write_text('<scene version="3.0.0"><integrator type="path"/></scene>')
+    assert main(["info", str(tmp_path / "empty.xml")]) == 0
+    assert "the file holds no surface" in capsys.readouterr().out
+
+
 @pytest.mark.parametrize("extent, unit, names, words", [
     (180.0, 1.0, ["walking_man"], "a person of 180 m is hardly right; with unit=0.01 [(]cm[)]"),
     (0.004, 0.001, ["Car.obj"], "a vehicle of 4 mm is hardly right; with unit=1 [(]m[)]"),
@@ -285,8 +291,9 @@ def test_other_kinds_of_files_and_arguments_are_refused_by_name(tmp_path):
         ep.load_model(tmp_path / "a.obj", up="w")
     with pytest.raises(ValueError, match="materials.'a'.: unknown material 'steal'"):
         ep.load_model(tmp_path / "a.obj", materials={"a": "steal"})
+    os.mkfifo(tmp_path / "pipe.obj")  # which has no end
     with pytest.raises(ep.FileError, match="is no regular file"):
-        ep.load_model(_device(tmp_path))
+        ep.load_model(tmp_path / "pipe.obj")
 
 
 def _device(tmp_path):

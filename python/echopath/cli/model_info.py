@@ -30,7 +30,7 @@ def describe_model(path: Path, model: ep.Model) -> list[str]:
     top = [node.name for node in model.nodes if node.parent < 0]
     doubt = unit_doubt(float(size.max(initial=0.0)), model.unit, [path.stem, *top[:report.MAX_LISTED]])
     lines += [report.line("unit?", doubt)] if doubt else []
-    return lines + _tree(model) + _materials(meshes) + _animations(model) + _notes(model)
+    return lines + (_tree(model) + _materials(meshes) if meshes else []) + _animations(model) + _notes(model)
 
 
 def _point(point) -> str:

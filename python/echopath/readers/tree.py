@@ -54,6 +54,8 @@ class Tree:
         """The Model; its notes are those of this tree."""
         counted = [f"{what} ({count} times)" if count > 1 else what for what, count in self._counted.items()]
         notes = (*self._notes, *counted, *note_of_unknown(self._unknown))
+        if not any(node.mesh is not None for node in self.nodes):
+            notes += ("the file holds no surface",)
         return Model(tuple(_with_meshes(self.nodes)), notes=notes, **fields)
 
     def _free(self, name: str, parent: int) -> str:

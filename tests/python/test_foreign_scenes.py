@@ -294,11 +294,3 @@ def test_other_kinds_of_files_and_arguments_are_refused_by_name(tmp_path):
     os.mkfifo(tmp_path / "pipe.obj")  # which has no end
     with pytest.raises(ep.FileError, match="is no regular file"):
         ep.load_model(tmp_path / "pipe.obj")
-
-
-def _device(tmp_path):
-    """A pipe with the name of a mesh file, which has no end."""
-
-
-    os.mkfifo(tmp_path / "pipe.obj")
-    return tmp_path / "pipe.obj"

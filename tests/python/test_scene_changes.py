@@ -498,7 +498,7 @@ def test_a_mesh_is_measured_once_and_forgotten_with_its_scene():
     gc.collect()
     before = len(tessellation._known)
     scene = scene_with(ep.actors.sphere(radius=1.0, subdivisions=3), position=(9, 0, 0), material="metal")
-    with mock.patch.object(tessellation, "tessellation", wraps=tessellation.tessellation) as measure:
+    with mock.patch.object(tessellation, "_tessellation_of", wraps=tessellation._tessellation_of) as measure:
         for _ in range(3):
             with pytest.warns(ep.TessellationWarning):
                 ep.trace(scene, build_radar(), num_rays=256)

@@ -28,10 +28,10 @@ struct TraceSettings {
 };
 
 // Shoots the rays from the mean transmitter position at mid-frame and connects hits to the mean receiver position.
-// Deterministic: the same input gives the same bits for any number of threads. Raises invalid_argument for bad settings, a
-// radar without antennas, a smooth mirror that is not flat, or a motion that does not cover the frame; raises DeviceError; raises
-// Cancelled. With `kept`, the trace uses the geometry of the trace before where it can, and leaves its own for the next: the
-// record is the same and comes sooner, but the memory stays in use.
+// Deterministic: the same input gives the same bits for any number of threads. Raises invalid_argument for bad settings,
+// a radar without antennas, a smooth mirror that is not flat, or a motion that does not cover the frame; raises
+// DeviceError; raises Cancelled. With `kept`, the trace uses the geometry of the trace before where it can, and leaves
+// its own for the next: the record is the same and comes sooner, but the memory stays in use.
 Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr,
             KeptGeometry* kept = nullptr);
 

@@ -11,8 +11,8 @@ namespace echopath {
 class PlaneMesh {
  public:
   PlaneMesh() = default;
-  // `triangles` [F] are IDs, ascending; `corners` [F] are those of the triangles, in m; `normal` is the unit normal of the plane. Triangles of no area hold no
-  // point.
+  // `triangles` [F] are IDs, ascending; `corners` [F] are those of the triangles, in m; `normal` is the unit normal of
+  // the plane. Triangles of no area hold no point.
   PlaneMesh(uint32_t mesh_id, const std::vector<uint32_t>& triangles, const std::vector<std::array<Vec3, 3>>& corners,
             const Vec3& normal);
   // Returns the hit in the first triangle that holds the point (m, in the plane), with 1 nm around it; returns nothing

@@ -15,12 +15,13 @@ namespace echopath {
 
 // Has one stratum that fits each object as seen from `transmitter` (fit_stratum.h), one that fits each of its images over
 // mirrors, and last the antenna's field of view. Objects are the children of the scene's root, without their mirrors.
-// Objects that surround the transmitter belong to the field of view, as do images without a stratum and the diffuse echoes
-// of mirrors. Each stratum counts the echoes that it owns (ray_owners.h). By default objects that move get at least half of
-// the rays that are aimed; otherwise objects and images over one mirror share alike, and images over two get a quarter of
-// that. The field of view gets 15 % where it owns anything. A stratum that would get fewer than kFewestRays is left out: the
-// field of view then owns its echoes, as it does where the objects are so many that none would get as many. A guide may set foci into the strata (launch_focus.h), which stand between the images
-// and the field of view.
+// Objects that surround the transmitter belong to the field of view, as do images without a stratum and the diffuse
+// echoes of mirrors. Each stratum counts the echoes that it owns (ray_owners.h). By default objects that move get at
+// least half of the rays that are aimed; otherwise objects and images over one mirror share alike, and images over two
+// get a quarter of that. The field of view gets 15 % where it owns anything. A stratum that would get fewer than
+// kFewestRays is left out: the field of view then owns its echoes, as it does where the objects are so many that none
+// would get as many. A guide may set foci into the strata (launch_focus.h), which stand between the images and the field
+// of view.
 struct LaunchPlan {
   static constexpr int64_t kFewestRays = 4;
 

@@ -24,8 +24,9 @@ struct Mirror : Plane {
 // Returns the corners of the convex hull of points of a mirror's plane, in order around it (Andrew 1979).
 std::vector<Vec3> outline_of(const Mirror& mirror, const std::vector<Vec3>& points);
 
-// Returns the planes of all flagged meshes of the scene: one of a mesh that is flat (to 0.1 mm plus 1e-6 of its size), else
-// those that its triangles make (scene/mesh/planar_patches.h). Raises invalid_argument naming a smooth mesh that is not flat.
+// Returns the planes of all flagged meshes of the scene: one of a mesh that is flat (to 0.1 mm plus 1e-6 of its size),
+// else those that its triangles make (scene/mesh/planar_patches.h). Raises invalid_argument naming a smooth mesh that is
+// not flat.
 std::vector<Mirror> find_mirrors(const Scene& scene, const EmbreeScene& geometry);
 
 // Returns the name of the mirror's mesh, with the number of its face where the mesh has several.

@@ -17,7 +17,7 @@ import numpy.typing
 import os
 import typing
 bench: types.ModuleType
-__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Curve', 'CurveMotion', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'LinearMotion', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'MorphTargets', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'Paths', 'Power', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'load_mesh', 'load_meshes', 'load_surfaces', 'looks_for_signals', 'mean_power', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'renew', 'set_num_threads', 'share_errors', 'speed_of_light', 'strongest_part', 'synthesize', 'synthesize_echoes', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'window']
+__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Curve', 'CurveMotion', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'LinearMotion', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'MorphTargets', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'PartPass', 'Paths', 'Power', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'coherent_meshes', 'coherent_share', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'load_mesh', 'load_meshes', 'load_surfaces', 'looks_for_signals', 'mean_power', 'meant_name', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'renew', 'set_num_threads', 'share_errors', 'speed_of_light', 'strongest_part', 'synthesize', 'synthesize_echoes', 'tessellation', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'warn_of_turns', 'window']
 class Motion:
     """
     Time -> rigid transform, in the axes of the node's parent about the node's own origin.
@@ -31,7 +31,7 @@ class Motion:
         Bound in rad/s of how fast what it does comes and goes between `begin` and `end` (s).
 
         That of its angular speed or, where it goes to and fro between samples, pi by the shortest time from one turning point to the
-        next: the larger. 0: it goes straight on.
+        next: the larger. 0: it goes straight on. Raises TypeError or ValueError naming the argument.
         """
     @property
     def breakpoints(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -146,7 +146,7 @@ class Deformation:
         Bound in rad/s of how fast what it does comes and goes between `begin` and `end` (s).
 
         That of its angular speed or, where it goes to and fro between samples, pi by the shortest time from one turning point to the
-        next: the larger. 0: it goes straight on.
+        next: the larger. 0: it goes straight on. Raises TypeError or ValueError naming the argument.
         """
     @property
     def breakpoints(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -395,13 +395,14 @@ class Material:
     roughness_height: rms height in m (Ament), or scattering: S in [0, 1], S^2 is the diffuse share of power
     cross_polarization: K in [0, 0.5], share of diffuse power that leaves in the cross polarisation (polarised traces); 0.5 is
     full depolarisation, the most a reciprocal surface without a preferred axis does
-    mirror: True for a plane larger than its Fresnel zone, which is treated by images
+    mirror: True for planes larger than their Fresnel zone, which are treated by images whatever they meet; of a mesh that is no
+        plane each of its planes
     Raises TypeError or ValueError naming the field, the rule and the value.
     """
     @staticmethod
     def metal(mirror: bool = False) -> Material:
         """
-        A perfect conductor; mirror: a plane larger than its Fresnel zone.
+        A perfect conductor; mirror: a plane larger than its Fresnel zone. Raises TypeError naming the argument.
         """
     def __eq__(self, other: object) -> bool:
         """
@@ -644,7 +645,11 @@ class SceneMesh:
     """
     A mesh of a scene with its mesh ID.
     """
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
     def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
     @property
     def id(self) -> int:
@@ -685,7 +690,14 @@ class CoplanarOverlap:
     """
     Where two meshes, or a mesh and itself, lie on each other.
     """
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
+    def __eq__(self, arg0: object) -> bool:
+        ...
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
     def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
     @property
     def area(self) -> float:
@@ -952,7 +964,8 @@ class ChirpSequence:
     num_chirps: per transmitter
     chirp_interval: s between neighbouring slots, at least num_samples / sampling_rate
     real: real IF samples instead of complex ones
-    Raises TypeError or ValueError naming the argument.
+    Raises TypeError or ValueError naming the argument, for a start_frequency below 1 MHz, too. Warns (RuntimeWarning) of a
+    bandwidth above start_frequency or below 1 kHz and of a chirp_interval above 1 s, which look like other units.
     """
     def __eq__(self, other: object) -> bool:
         """
@@ -1135,7 +1148,7 @@ class Antenna:
     pattern: Isotropic(gain), CosinePower(exponent, peak_gain), GainTable(...) or load_antenna(path); None is Isotropic(1)
     polarization: [3] unit vector in the antenna's frame
     Antennas of equal arguments are equal, and pickle.
-    Raises ValueError or TypeError naming the argument.
+    Raises ValueError or TypeError naming the argument. Warns (RuntimeWarning) of a yaw beyond a turn, which looks like degrees.
     """
     def __eq__(self, other: object) -> bool:
         """
@@ -1207,7 +1220,8 @@ class Radar:
     noise_figure_db: dB, single sideband
     multiplexing: "tdm": transmitters take turns, one slot each
     Angles that are estimated count in the radar's axes. Radars of equal arguments are equal, and pickle.
-    Raises ValueError or TypeError naming the argument.
+    Raises ValueError or TypeError naming the argument, for a speed of light or more, too. Warns (RuntimeWarning) of a yaw beyond
+    a turn, which looks like degrees.
     """
     def __eq__(self, other: object) -> bool:
         """
@@ -1374,7 +1388,14 @@ class VirtualArray:
     Elements are ordered by row and column of their grid. A grid's rows count up and its columns count up to the left, as far
     as the array's plane allows.
     """
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
+    def __eq__(self, arg0: object) -> bool:
+        ...
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
     def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
     def default_angles(self, largest_step: float = 0.017453292519943295) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """
@@ -2837,12 +2858,57 @@ class SignalProbe:
         """
         [N, 8] in sqrt(W), what the samples should be
         """
+class PartPass:
+    """
+    The signals of many groups of paths, some of them at a time.
+
+    Each path is replayed when its group is asked for; signals that are asked for while adds_up is set add up to the whole, each
+    of which is to be asked for once.
+    """
+    def __init__(self, paths: Paths, radar: Radar, group: typing.Any, num_groups: int, *, tolerance: float, method: str, replay: str, evaluate: str, phase_tolerance: float, probe: SignalProbe | None = None) -> None:
+        """
+        group: uint32 [P] below num_groups; the other arguments are those of ep.synthesize.
+        """
+    def bounds(self, groups: collections.abc.Sequence[int], window: typing.Any, zero_pad: int, progress: typing.Any) -> numpy.ndarray[typing.Any, typing.Any]:
+        """
+        Adds groups to the whole and bounds what each can show, [group, R] in W, at any velocity or azimuth.
+
+        cpp/echopath/sim/stream/cell_bounds.h has the rule.
+        """
+    def cubes(self, sets: collections.abc.Sequence[collections.abc.Sequence[int]], progress: typing.Any) -> list[typing.Any]:
+        """
+        Signals [tx, rx, chirp, sample] of sets of groups.
+        """
+    def finish_probe(self) -> None:
+        """
+        Fills the probe; to be called once, when all groups were added.
+        """
+    def powers(self, sets: collections.abc.Sequence[collections.abc.Sequence[int]], window: typing.Any, zero_pad: int, progress: typing.Any) -> list[typing.Any]:
+        """
+        Powers of sets of groups in the cells of a range-Doppler map.
+
+        sets: lists of groups whose fields add up. Returns for each (power [V * R] in W, mean over the channels, mean square of its
+        samples in W).
+        """
+    def set_adds_up(self, adds_up: bool) -> None:
+        """
+        Whether signals add to the whole; at first they do.
+        """
+    def whole(self) -> numpy.ndarray[typing.Any, typing.Any]:
+        """
+        The sum of the signals that were added, [tx, rx, chirp, sample] in sqrt(W).
+        """
+    @property
+    def group_bytes(self) -> int:
+        """
+        memory of one group while its signal is made
+        """
 def CosinePower(exponent: float, peak_gain: float | None = None) -> AntennaPattern:
     """
     Gain peak_gain cos^exponent of the angle from the boresight, nothing behind.
 
     exponent: 0 or more
-    peak_gain: linear, None for that of a lossless antenna, 2 (exponent + 1)
+    peak_gain: linear, None for that of a lossless antenna, 2 (exponent + 1), which is the most
     Raises ValueError naming the argument.
     """
 def GainTable(*, azimuth: ArrayLike, elevation: ArrayLike, gain: ArrayLike, phase: ArrayLike | None = None, normalize: bool = False) -> AntennaPattern:
@@ -2863,7 +2929,10 @@ def GainTable(*, azimuth: ArrayLike, elevation: ArrayLike, gain: ArrayLike, phas
     """
 def Isotropic(gain: float = 1.0) -> AntennaPattern:
     """
-    The same linear power gain in every direction. Raises ValueError for a gain that is not positive.
+    The same linear power gain in every direction.
+
+    gain: linear, at most 1 (1.02 for rounding): without a direction to prefer it is the efficiency of the antenna
+    Raises TypeError or ValueError naming the argument.
     """
 def _wait(seconds: float, progress: typing.Any = None) -> None:
     ...
@@ -2902,6 +2971,14 @@ def check_objects(scene: Scene, objects: collections.abc.Sequence[tuple[str, col
 def check_part_names(parts: collections.abc.Sequence[tuple[str, Selection]]) -> None:
     """
     Raises ValueError where a name of [(name, selection), ...] is empty, "other" or given twice.
+    """
+def coherent_meshes(scene: Scene, wavelength: float, least_share: float, without_planes: bool = False) -> list[int]:
+    """
+    IDs of the meshes that reflect this share of the power in phase at a wavelength in m, mirrors left out.
+    """
+def coherent_share(material: Material, wavelength: float) -> float:
+    """
+    What echopath.polarization.coherent_share calls.
     """
 def compensate_tdm(spectrum: RangeDoppler, radar: Radar, fold: int = 0) -> RangeDoppler:
     """
@@ -2951,7 +3028,7 @@ def instruction_set() -> str:
     """
     That of the inner loops: baseline, avx2 or avx512; the environment variable ECHOPATH_INSTRUCTION_SET forces one.
     """
-def label_regions(label: typing.Any, power: typing.Any, rows_wrap: bool) -> list[typing.Any]:
+def label_regions(label: typing.Any, power: typing.Any, num_labels: int, rows_wrap: bool) -> list[typing.Any]:
     """
     Cells, peak and box of each label: list of dict or None.
     """
@@ -2978,6 +3055,10 @@ def looks_for_signals() -> bool:
 def mean_power(spectrum: RangeDoppler) -> numpy.ndarray[typing.Any, typing.Any]:
     """
     Mean over the channels of |value|^2, [V, R] in W.
+    """
+def meant_name(word: str, known: collections.abc.Sequence[str]) -> str:
+    """
+    The name among `known` that was most likely meant by `word`, "" where none is alike.
     """
 def mie_rcs(radius: float, frequency: float, bistatic_angle: float = 0.0, plane: str = 'H') -> float:
     """
@@ -3066,6 +3147,10 @@ def synthesize_echoes(waveform: ChirpSequence, delays: typing.Any, amplitudes: t
     num_slots: transmitters that take turns; rows are num_slots * chirp_interval apart
     Returns [chirp, sample], complex128 in sqrt(W). Raises ValueError naming the argument.
     """
+def tessellation(mesh: Mesh) -> typing.Annotated[list[float], "FixedSize(4)"] | None:
+    """
+    What echopath.tessellation.tessellation calls.
+    """
 def trace(scene: Scene, radar: Radar, *, num_rays: int | None = None, max_bounces: int = 4, seed: int = 1, start_time: float = 0.0, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', batches: int | None = None, target_error_db: float | None = None, max_rays: int = 16777216, progress: typing.Any = None, kept: KeptGeometry | None = None) -> Paths:
     """
     What ep.trace calls. kept: KeptGeometry of the scene, or None.
@@ -3092,6 +3177,10 @@ def visibility(scene: Scene, radar: Radar, objects: collections.abc.Sequence[tup
 def visibility_in_trace(paths: Paths, radar: Radar, objects: collections.abc.Sequence[tuple[str, collections.abc.Sequence[str]]] | None, progress: typing.Any) -> list[typing.Any]:
     """
     As visibility, at the time of a trace and of the objects that find_families has for it.
+    """
+def warn_of_turns(yaw: float) -> None:
+    """
+    Warns of a yaw (rad) beyond a turn, which looks like degrees.
     """
 def window(name: str, n: int, sidelobe_db: float = 80.0) -> numpy.typing.NDArray[numpy.float64]:
     """

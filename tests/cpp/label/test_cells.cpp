@@ -119,7 +119,7 @@ TEST(Cells, RegionsRefuseLabelsThatNameNothing) {
   EXPECT_THROW(label_regions(std::vector<int16_t>{0, 1}, std::vector<double>{1, 1}, 1, shape), std::invalid_argument);
   EXPECT_THROW(label_regions(std::vector<int16_t>{0}, std::vector<double>{1, 1}, 1, shape), std::invalid_argument);
   EXPECT_THROW(label_regions(std::vector<int16_t>{0, 0}, std::vector<double>{1}, 1, shape), std::invalid_argument);
-  EXPECT_TRUE(label_regions(std::vector<int16_t>{-1, -1}, {}, 0, shape).empty());
+  EXPECT_TRUE(label_regions(std::vector<int16_t>{-1, -1}, std::vector<double>{1, 1}, 0, shape).empty());
 }
 
 TEST(Cells, TheNumberOfThreadsChangesNoBit) {

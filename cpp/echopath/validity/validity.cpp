@@ -314,8 +314,9 @@ class ValidityCheck {
     int last = -1;
     for (int k = 0; k < count && last < 0; ++k) {
       const int hit = is_reversed ? k : count - 1 - k;
-      const bool is_image = (paths.stratum[path] == kNoStratum || paths_.scene->node_of(hits[hit].mesh_id).material->mirror) &&
-                            !(paths.diffuse[path] >> hit & 1);
+      const bool is_image =
+          (paths.stratum[path] == kNoStratum || paths_.scene->node_of(hits[hit].mesh_id).material->mirror) &&
+          !(paths.diffuse[path] >> hit & 1);
       if (!is_image) last = hit;
     }
     const Hit& end = hits[last >= 0 ? last : is_reversed ? count - 1 : 0];

@@ -22,7 +22,7 @@ class EmbreeMeshes {
   // Returns the unit normals of the vertices; they are empty where the mesh is not smooth.
   const std::vector<Vec3>& normals(uint32_t mesh_id) const { return meshes_[mesh_id].normals; }
   const Eigen::AlignedBox3d& box(uint32_t mesh_id) const { return meshes_[mesh_id].box; }  // m
-  double largest_coordinate() const;  // m, of all vertices by magnitude
+  double largest_coordinate() const;                                                       // m, of all vertices by magnitude
   // Returns the mean number of bounding boxes of meshes in which a point of the scene's bounding box lies.
   double mean_cover() const;
 

@@ -31,9 +31,9 @@ class MeshLocator final : public PointLocator {
 // Describes a path over planes alone: its hits, the points where it meets the planes, and its weight.
 struct ImagePath {
   std::vector<Hit> hits;
-  std::vector<Vec3> points;         // m
-  std::complex<double> weight;      // without the coefficients where polarised
-  JonesMatrix jones;                // where polarised
+  std::vector<Vec3> points;     // m
+  std::complex<double> weight;  // without the coefficients where polarised
+  JonesMatrix jones;            // where polarised
 };
 
 // All must outlive it.

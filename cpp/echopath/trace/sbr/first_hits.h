@@ -28,8 +28,8 @@ struct FirstHits {
   LaneValues sign;                                          // of the field that comes back (connector.cpp)
   LaneValues specular_probability, diffuse_probability;     // of going on that way, if it does
   LaneValues receiver_reach;  // m^2: positive where the reflected ray meets the sphere around the receiver (plane_images.h)
-  LaneVectors out;                                          // the direction in which it goes on
-  std::array<bool, kPacketSize> goes_on;                    // whether the ray goes on at all
+  LaneVectors out;            // the direction in which it goes on
+  std::array<bool, kPacketSize> goes_on;  // whether the ray goes on at all
 
   void set_response(int lane, const SurfaceResponse& response, const LobeProbabilities& lobes) {
     gamma_re[lane] = response.gamma.real();

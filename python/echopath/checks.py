@@ -155,7 +155,7 @@ def path(argument: str, value) -> str:
     """The name of a file or folder: text or an os.PathLike."""
     try:
         name = os.fspath(value)
-    except TypeError:
+    except Exception:  # an object may raise anything when it is asked for its name
         raise refused(TypeError, argument, "the name of a file", value) from None
     if not isinstance(name, str):
         raise refused(TypeError, argument, "the name of a file as text", value)

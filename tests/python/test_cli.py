@@ -179,7 +179,7 @@ BAD = {
     "missing scene": (("run", "nowhere.toml", "--out", "out"), "nowhere.toml: cannot be read"),
     "missing frame": (("info", "nowhere.h5"), "nowhere.h5: no such file"),
     "missing mesh": (("info", "nowhere.obj"), "nowhere.obj"),
-    "unknown kind of file": (("info", "notes.txt"), "must be a .toml or .h5 file, or one of .obj, .ply, .stl"),
+    "unknown kind of file": (("info", "notes.txt"), "must be a .toml or .h5 file, or one of .glb, .gltf, .obj, .ply, .stl"),
     "selection of a mesh": (("info", "a.obj", "--select", "T . R"), "a.obj: must be a frame file (.h5) for --select"),
     "no rays": (("demo", "--rays", "0"), "must be a whole number of at least 1, got '0'"),
     "rays in words": (("demo", "--rays", "many"), "must be a whole number of at least 1, got 'many'"),

@@ -328,5 +328,5 @@ def test_arguments_are_checked_by_name(tmp_path):
         ep.load_model(tmp_path / "model.doc")
     with pytest.raises(TypeError, match="materials: must be a mapping"):
         ep.load_model(path, materials=["metal"])
-    with pytest.raises(ep.FileError, match="no such file"):
+    with pytest.raises(ep.FileError, match="cannot be opened"):
         ep.load_model(tmp_path / "none.glb")

@@ -521,14 +521,14 @@ def test_a_table_of_meshes_forgets_those_that_are_gone():
 
 
 def test_the_keywords_of_an_actor_are_looked_up_once(tmp_path):
-    from echopath.scene_file import load
+    from echopath.scene_file import objects
 
-    load._parameter_table.cache_clear()
+    objects._parameter_table.cache_clear()
     path = tmp_path / "scene.toml"
     path.write_text(RADAR_FILE + "".join(
         f'[[objects]]\nname = "box{number}"\nactor = "box"\nparameters = {{size = [1, 1, 1]}}\nmaterial = "metal"\n'
         for number in range(30)))
-    with mock.patch.object(load, "create_model", wraps=load.create_model) as made:
+    with mock.patch.object(objects, "create_model", wraps=objects.create_model) as made:
         assert len(ep.load_scene(path).scene) == 30
     assert made.call_count == 1
 

@@ -69,7 +69,7 @@ def good(tmp_path_factory) -> dict:
 # Classes whose constructors are held to the same.
 CLASSES = ["TraceSettings", "SignalSettings", "LabelSettings"]
 # Of the extension, which checks their arguments itself; and what reads foreign files, whose readers have tests of their own.
-APART = {"CosinePower", "GainTable", "Isotropic", "load_model"}
+APART = {"CosinePower", "GainTable", "Isotropic"}
 FUNCTIONS = sorted(name for name in ep.__all__ if inspect.isroutine(getattr(ep, name)) and name not in APART)
 # Arguments that nothing is wrong for: whatever is passed on as it is.
 FREE = {("plot_rays", "cmap"), ("plot_rays", "plotter")}

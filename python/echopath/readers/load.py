@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from .. import _core
-from ..checks import checked, choice, flag, optional, real, refused, text
+from ..checks import checked, choice, flag, optional, path as file_or_folder, real, refused, text
 from ..meshes import UNIT
 from .material_names import Meaning, checked_materials
 from .model import Model
@@ -20,8 +20,8 @@ READERS: dict[str, str] = {
 }
 
 
-@checked(unit=optional(UNIT), up=optional(choice("x", "y", "z")), materials=checked_materials, animation=optional(text),
-         loop=flag, offset=real(unit="s"))
+@checked(path=file_or_folder, unit=optional(UNIT), up=optional(choice("x", "y", "z")), materials=checked_materials,
+         animation=optional(text), loop=flag, offset=real(unit="s"))
 def load_model(path: str | os.PathLike[str], *, unit: float | None = None, up: str | None = None,
                materials: Mapping[str, Meaning] | None = None, animation: str | None = None, loop: bool = False,
                offset: float = 0.0) -> Model:

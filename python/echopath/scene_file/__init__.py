@@ -5,10 +5,11 @@ import os
 from pathlib import Path
 
 from ..checks import checked
+from ..checks import path as file_or_folder
 from .scene_file import SceneFile
 
 
-@checked()
+@checked(path=file_or_folder)
 def load_scene(path: str | os.PathLike[str]) -> SceneFile:
     """Reads a scene file (keys and units: data/README.md), or what load_model reads as the content of a scene.
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/parallel.h"
@@ -42,6 +43,11 @@ class RayLocator final : public PointLocator {
 bool reaches_plane(const Eigen::AlignedBox3d& box, const Plane& plane, double tolerance) {
   return !box.isEmpty() &&
          std::abs(plane.height(box.center())) <= 0.5 * plane.normal.cwiseAbs().dot(box.sizes()) + tolerance;
+}
+
+std::vector<int> sorted(std::vector<int> planes) {
+  std::sort(planes.begin(), planes.end());
+  return planes;
 }
 
 bool is_near(const std::vector<Vec3>& points, const std::vector<Vec3>& others) {
@@ -151,7 +157,7 @@ PathBlock PlaneImages::find(const Job* job) {
     const std::vector<int> planes = joined(sequence);
     if (!sequences_.insert(planes).second) continue;
     add_path(*path, settings_.is_polarized, block);
-    add_orders(planes, path->points);
+    leave_out(planes, path->points);
   }
   find_triangles();
   return block;
@@ -159,24 +165,25 @@ PathBlock PlaneImages::find(const Job* job) {
 
 // Leaves out the sequence, and its other orders of bounces that lie about a corner: what rays send over those by physical
 // optics is the part of the same field beyond the corner's edge.
-void PlaneImages::add_orders(const std::vector<int>& planes, const std::vector<Vec3>& points) {
-  std::vector<std::vector<int>> orders = {planes};
+void PlaneImages::leave_out(const std::vector<int>& planes, const std::vector<Vec3>& points) {
+  OrdersAboutCorners orders{planes, {}};
   for (size_t begin = 0, end; begin < planes.size(); begin = end) {
     for (end = begin + 1; end < planes.size() && end - begin < kMostAtCorner; ++end) {
       const double before = (points[end] - settings_.transmitter).norm(), behind = (points[end] - settings_.receiver).norm();
       const double half_zone = std::sqrt(wavelength_ * before * behind / (before + behind));
       if ((points[end] - points[end - 1]).norm() > kAboutCorner * half_zone) break;
     }
-    const size_t count = orders.size();
-    for (size_t i = 0; i < count; ++i) {
-      std::vector<int> order = orders[i];
-      const auto first = order.begin() + static_cast<int64_t>(begin), last = order.begin() + static_cast<int64_t>(end);
-      std::sort(first, last);
-      do orders.push_back(order);
-      while (std::next_permutation(first, last));
-    }
+    orders.ends.push_back(static_cast<int64_t>(end));
   }
-  left_out_.insert(orders.begin(), orders.end());
+  left_out_[sorted(planes)].push_back(std::move(orders));
+}
+
+bool PlaneImages::OrdersAboutCorners::contain(const std::vector<int>& sequence) const {
+  int64_t begin = 0;
+  return std::all_of(ends.begin(), ends.end(), [&](int64_t end) {
+    const int64_t first = std::exchange(begin, end);
+    return std::is_permutation(sequence.begin() + first, sequence.begin() + end, planes.begin() + first);
+  });
 }
 
 // Finds the triangles of the joined planes.
@@ -212,7 +219,9 @@ bool PlaneImages::is_double(const Paths& paths, size_t path) const {
     if (plane < 0) return false;
     sequence.push_back(plane);
   }
-  return left_out_.contains(sequence);
+  const auto orders = left_out_.find(sorted(sequence));
+  return orders != left_out_.end() && std::any_of(orders->second.begin(), orders->second.end(),
+                                                  [&](const OrdersAboutCorners& one) { return one.contain(sequence); });
 }
 
 void PlaneImages::leave_out_doubles(Paths& paths, Job* job) const {

@@ -31,13 +31,20 @@ class PlaneImages {
   void leave_out_doubles(Paths& paths, Job* job) const;
 
  private:
+  // Holds a sequence of planes, and with it all in which the bounces of a stretch come in another order.
+  struct OrdersAboutCorners {
+    std::vector<int> planes;
+    std::vector<int64_t> ends;  // of the stretches, ascending
+
+    bool contain(const std::vector<int>& sequence) const;  // of the same planes
+  };
   using Chain = std::vector<std::pair<uint32_t, uint32_t>>;  // mesh and triangle of each hit
   std::vector<int> planes_of(const Chain& chain);
   bool is_known(const Chain& chain, const std::vector<Vec3>& points);
   bool holds_zones(const ImagePath& path, int64_t& num_queries) const;
   std::vector<int> joined(const std::vector<int>& sequence);
   bool is_same_plane(const Mirror& plane, const Mirror& other) const;
-  void add_orders(const std::vector<int>& planes, const std::vector<Vec3>& points);
+  void leave_out(const std::vector<int>& planes, const std::vector<Vec3>& points);
   void find_triangles();
   bool is_double(const Paths& paths, size_t path) const;
 
@@ -51,7 +58,8 @@ class PlaneImages {
   std::map<std::vector<uint32_t>, std::vector<std::vector<Vec3>>> tried_;  // points of the sequences tried, by their meshes
   std::vector<Mirror> joined_;                                             // planes of the paths found
   std::set<std::vector<int>> sequences_;                                   // the paths found, by joined planes
-  std::set<std::vector<int>> left_out_;              // orders of planes whose echoes by rays are left out
+  // Sequences whose echoes by rays are left out, by their planes in ascending order.
+  std::map<std::vector<int>, std::vector<OrdersAboutCorners>> left_out_;
   std::vector<std::vector<int>> plane_of_triangle_;  // by mesh ID; empty: none
 };
 

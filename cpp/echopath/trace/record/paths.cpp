@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
@@ -79,10 +81,16 @@ void validate_foci(const std::vector<Stratum>& strata) {
 
 void Paths::validate() const {
   const size_t size = offsets.size();
-  require(num_bounces.size() == size && diffuse.size() == size && weight.size() == size && stratum.size() == size &&
-              batch.size() == size && flags.size() == size && (curved_cell.empty() || curved_cell.size() == size) &&
-              (jones.empty() || jones.size() == size),
-          "paths", "all arrays must have one entry per path, paths", size);
+  const std::pair<const char*, size_t> lengths[] = {{"num_bounces", num_bounces.size()},
+                                                    {"diffuse", diffuse.size()},
+                                                    {"weight", weight.size()},
+                                                    {"stratum", stratum.size()},
+                                                    {"batch", batch.size()},
+                                                    {"flags", flags.size()},
+                                                    {"curved_cell", curved_cell.empty() ? size : curved_cell.size()},
+                                                    {"jones", jones.empty() ? size : jones.size()}};
+  for (const auto& [name, length] : lengths)
+    require(length == size, name, "must have one entry per path, as many as offsets: " + std::to_string(size), length);
   require(frame.num_batches >= 1 && frame.num_batches <= 64, "num_batches", "must lie in [1, 64]", frame.num_batches);
   require(size == 0 || !jones.empty() == (frame.polarization == PolarizationModel::kJones), "jones",
           "must be given for a frame that follows field vectors, and for no other, matrices", jones.size());

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..material_names import material_of
+from ..material_names import material_of, note_of_unknown
 from ..model import Model, ModelNode
 from ..options import ReadOptions
 from .accessors import Accessors
@@ -37,11 +37,12 @@ def read(path: Path, options: ReadOptions) -> Model:
     nodes = Nodes(document, axes, unit)
     motions = Motions(nodes, animation)
     surfaces = Surfaces(document, accessors, nodes, motions, Primitives(document, accessors, axes, unit), animation)
-    made = _Tree(document, nodes, motions, surfaces, options).nodes()
+    tree = _Tree(document, nodes, motions, surfaces, options)
+    made = tree.nodes()
     if not made:
         document.json.fail("shows no triangles" + "".join(f"; {note}" for note in list(document.notes)[:3]))
     return Model(nodes=made, format="glTF 2.0", unit=unit, up=options.up or UP, animations=names, animation=animation.name,
-                 duration=animation.duration, notes=tuple(document.notes))
+                 duration=animation.duration, notes=(*document.notes, *note_of_unknown(tree.unknown_materials)))
 
 
 def _check_version(document: Document) -> None:
@@ -58,6 +59,7 @@ class _Tree:
     def __init__(self, document: Document, nodes: Nodes, motions: Motions, surfaces: Surfaces, options: ReadOptions):
         self._document, self._nodes, self._motions = document, nodes, motions
         self._surfaces, self._materials = surfaces, options.materials
+        self.unknown_materials: list[str] = []           # of each surface whose material nothing took
         self._made: list[ModelNode] = []
         self._level: list[int] = []                      # of each node of the model
         self._place: dict[int, int] = {ROOT: ROOT}       # node of the file -> node of the model
@@ -151,6 +153,6 @@ class _Tree:
         primitive = surface.primitive
         material, note = material_of(primitive.material, self._materials)
         if note:
-            self._document.note(note)
+            self.unknown_materials.append(primitive.material)
         return {"deformation": surface.deformation, "material": material, "foreign_material": primitive.material,
                 "smooth": primitive.smooth}

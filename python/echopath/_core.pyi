@@ -244,7 +244,7 @@ class Curve:
         Raises TypeError or ValueError as the constructor does.
         """
     @property
-    def in_tangents(self) -> typing.Any:
+    def in_tangents(self) -> numpy.typing.NDArray[numpy.float64] | None:
         """
         [T, C] per s, or None
         """
@@ -254,7 +254,7 @@ class Curve:
         "step", "linear" or "hermite"
         """
     @property
-    def out_tangents(self) -> typing.Any:
+    def out_tangents(self) -> numpy.typing.NDArray[numpy.float64] | None:
         """
         [T, C] per s, or None
         """
@@ -306,7 +306,7 @@ class CurveMotion(Motion):
         s, time of its curves at time 0
         """
     @property
-    def period(self) -> typing.Any:
+    def period(self) -> float | None:
         """
         s, or None where it is no loop
         """
@@ -363,7 +363,7 @@ class MorphTargets(Deformation):
         s, time of its curves at time 0
         """
     @property
-    def period(self) -> typing.Any:
+    def period(self) -> float | None:
         """
         s, or None where it is no loop
         """

@@ -84,7 +84,7 @@ def test_a_frame_in_the_place_of_what_it_holds(frame):
         ep.range_doppler(frame, RADAR)
 
 
-@pytest.mark.parametrize("load", [ep.load_frame, ep.Paths.load, ep.load_mesh, ep.load_meshes, ep.load_scene, ep.load_antenna,
+@pytest.mark.parametrize("load", [ep.load_frame, ep.Paths.load, ep.load_mesh, ep.load_meshes, ep.load_antenna,
                                   ep.load_labels])
 def test_folders_are_no_files(load, tmp_path):
     with pytest.raises(ep.FileError, match="path: must be the name of a file, not of a folder"):

@@ -64,8 +64,8 @@ def amplitude_sum(paths):
     return np.abs(paths.amplitudes([paths.frame.trace_time])[0]).sum()
 
 
-def test_most_hits_send_two_paths_back(paths):
-    assert shares_hits(paths).mean() > 0.4
+def test_many_hits_send_two_paths_back(paths):
+    assert shares_hits(paths).mean() > 0.25  # where planes image themselves, rays send back one
 
 
 @pytest.mark.parametrize("settings, tolerance", [({"evaluate": "chirps"}, EXACT), ({}, INTERPOLATED)],

@@ -13,7 +13,8 @@ LONG = {"num_chirps": 4096, "num_samples": 8192, "chirp_interval": 5e-4}
 @pytest.fixture(scope="module")
 def paths():
     scene = ep.Scene()
-    scene.add(plate((9, 0, 0), (-1, 0, 0), 1.0), name="near", material=METAL, motion=ep.LinearMotion(velocity=(1, 0, 0)))
+    rough = ep.Material(reflectivity=0.5, scattering=1.0)  # a mirror would be one path
+    scene.add(plate((9, 0, 0), (-1, 0, 0), 1.0), name="near", material=rough, motion=ep.LinearMotion(velocity=(1, 0, 0)))
     return ep.trace(scene, build_radar(num_chirps=8), num_rays=1000)
 
 

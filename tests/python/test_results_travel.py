@@ -102,7 +102,7 @@ def test_polarised_paths_and_selections_travel(radar):
 
 @pytest.mark.parametrize("name, value, error", [
     ("offsets", lambda paths: paths.offsets + paths.num_hits, "offsets"), ("num_bounces", lambda paths: None, "num_bounces"),
-    ("weight", lambda paths: "text", "weight"), ("flags", lambda paths: paths.flags[1:], "all arrays must have one entry")])
+    ("weight", lambda paths: "text", "weight"), ("flags", lambda paths: paths.flags[1:], "must have one entry per path")])
 def test_a_damaged_state_is_refused_by_name(paths, name, value, error):
     state = paths.__getstate__() | {name: value(paths)}
     with pytest.raises((ValueError, TypeError), match=error):

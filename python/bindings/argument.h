@@ -31,6 +31,7 @@
 
 #include "array.h"
 #include "choice.h"
+#include "leaving.h"
 #include "shown.h"
 
 namespace echopath::bindings {
@@ -217,6 +218,7 @@ struct type_caster<echopath::bindings::Arg<kName, Kind>> {
 
   // Raises what the caller is to read. pybind11's own way, to answer false, would end in a list of signatures.
   bool load(handle value, bool) {
+    const echopath::bindings::InCall in_call;
     argument_ = Argument(Kind::from(value, Argument::name()));
     return true;
   }

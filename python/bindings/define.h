@@ -1,6 +1,7 @@
 #pragma once
 // Binds functions and constructors whose arguments are of argument.h, so that every call that does not fit is refused by
-// name: an unknown keyword (with the nearest right one), a missing argument, one given twice, too many.
+// name: an unknown keyword (with the nearest right one), a missing argument, one given twice, too many. When Python ends,
+// calls of them are waited for (leaving.h).
 #include <pybind11/pybind11.h>
 
 #include <string>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "argument.h"
+#include "leaving.h"
 
 namespace echopath::bindings {
 
@@ -86,7 +88,7 @@ Scope& define(Scope& scope, const char* name, Function&& function, const Extra&.
   constexpr bool is_method = !std::is_same_v<Scope, py::module_>;
   using Signature = py::detail::function_signature_t<Function>;
   static_assert(detail::all_checked<is_method ? 1 : 0>(static_cast<Signature*>(nullptr)), "arguments must be Arg<...>");
-  scope.def(name, std::forward<Function>(function), extra...);
+  scope.def(name, std::forward<Function>(function), py::call_guard<InCall>(), extra...);
   constexpr bool takes_keywords = detail::takes_keywords(static_cast<Signature*>(nullptr));
   detail::define_refusal({scope, name, is_method ? detail::Bound::kMethod : detail::Bound::kFunction, takes_keywords},
                          detail::Parameters(extra...));
@@ -97,7 +99,7 @@ template <class Class, class Function, class... Extra>
 Class& define_static(Class& type, const char* name, Function&& function, const Extra&... extra) {
   using Signature = py::detail::function_signature_t<Function>;
   static_assert(detail::all_checked<0>(static_cast<Signature*>(nullptr)), "arguments must be Arg<...>");
-  type.def_static(name, std::forward<Function>(function), extra...);
+  type.def_static(name, std::forward<Function>(function), py::call_guard<InCall>(), extra...);
   detail::define_refusal({type, name, detail::Bound::kStatic}, detail::Parameters(extra...));
   return type;
 }
@@ -107,7 +109,7 @@ template <class Class, class Make, class... Extra>
 Class& define_init(Class& type, Make make, const Extra&... extra) {
   using Signature = py::detail::function_signature_t<Make>;
   static_assert(detail::all_checked<0>(static_cast<Signature*>(nullptr)), "arguments must be Arg<...>");
-  type.def(py::init(make), extra...);
+  type.def(py::init(make), py::call_guard<InCall>(), extra...);
   detail::define_refusal({type, "__init__", detail::Bound::kMethod}, detail::Parameters(extra...));
   return type;
 }

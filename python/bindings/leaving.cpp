@@ -14,41 +14,45 @@ namespace py = pybind11;
 constexpr std::chrono::seconds kPatience{10};
 
 // All of these are guarded by the GIL.
-std::multiset<Job*> under_way;  // null for work that is over soon
+size_t num_calls = 0;
+std::set<Job*> under_way;
 std::optional<std::thread::id> leaving;
 
-bool is_work_left() {
+bool is_call_left() {
   const py::gil_scoped_release release;
   std::this_thread::sleep_for(std::chrono::milliseconds(2));
   const py::gil_scoped_acquire acquire;
-  return !under_way.empty();
+  return num_calls > 0;
 }
 
-void wait_for_work() {
+void wait_for_calls() {
   leaving = std::this_thread::get_id();
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
-  if (under_way.empty()) return;
+  if (num_calls == 0) return;
   do {
-    for (Job* job : under_way) {
-      if (job) job->cancel();
-    }
-  } while (is_work_left() && std::chrono::steady_clock::now() < deadline);
+    for (Job* job : under_way) job->cancel();
+  } while (is_call_left() && std::chrono::steady_clock::now() < deadline);
 }
 
 }  // namespace
 
-bool is_left_behind() { return leaving && *leaving != std::this_thread::get_id(); }
-
-InCore::InCore(Job* job) : job_(job) {
-  if (is_left_behind()) {
-    PyErr_SetNone(PyExc_SystemExit);
-    throw py::error_already_set();
-  }
-  under_way.insert(job);
+void end_if_left_behind() {
+  if (!leaving || *leaving == std::this_thread::get_id()) return;
+  PyErr_SetNone(PyExc_SystemExit);
+  throw py::error_already_set();
 }
 
-InCore::~InCore() { under_way.erase(under_way.find(job_)); }
+InCall::InCall() {
+  end_if_left_behind();
+  ++num_calls;
+}
 
-void register_leaving() { py::module_::import("atexit").attr("register")(py::cpp_function(&wait_for_work)); }
+InCall::~InCall() { --num_calls; }
+
+JobUnderWay::JobUnderWay(Job& job) : job_(&job) { under_way.insert(job_); }
+
+JobUnderWay::~JobUnderWay() { under_way.erase(job_); }
+
+void register_leaving() { py::module_::import("atexit").attr("register")(py::cpp_function(&wait_for_calls)); }
 
 }  // namespace echopath::bindings

@@ -1,6 +1,6 @@
 #pragma once
-// The end of Python. A thread that waits for the GIL is torn away when Python ends; in the midst of C++ this ends the
-// process.
+// The end of Python. A thread that waits for the GIL is torn away when Python ends. In the midst of C++ this ends the
+// process: what the stack holds lets go of Python objects without the GIL.
 #include <pybind11/pybind11.h>
 
 #include <optional>
@@ -9,17 +9,27 @@
 
 namespace echopath::bindings {
 
-// Marks the time that a Python thread spends in work that gives the GIL away. Made and destroyed with the GIL. When Python
-// ends, all jobs under way are cancelled and their threads waited for; a thread other than the one that ends Python is ended
-// (SystemExit) where it begins such work after that.
-class InCore {
+// Marks the time that a thread spends in a function of the extension, where Python code that it calls, and NumPy, may give
+// the GIL away. Made and destroyed with the GIL. Before Python ends, all such calls are waited for; a thread other than the
+// one that ends Python is ended (SystemExit) where it begins one after that. `define` (define.h) marks what it binds.
+class InCall {
  public:
-  explicit InCore(Job* job = nullptr);
-  ~InCore();
-  InCore(const InCore&) = delete;
-  InCore& operator=(const InCore&) = delete;
+  InCall();
+  ~InCall();
+  InCall(const InCall&) = delete;
+  InCall& operator=(const InCall&) = delete;
+};
+
+// Marks a job as under way, to be cancelled and waited for when Python ends. Made and destroyed with the GIL.
+class JobUnderWay {
+ public:
+  explicit JobUnderWay(Job& job);
+  ~JobUnderWay();
+  JobUnderWay(const JobUnderWay&) = delete;
+  JobUnderWay& operator=(const JobUnderWay&) = delete;
 
  private:
+  InCall in_call_;
   Job* job_;
 };
 
@@ -30,12 +40,12 @@ class WithoutGil {
   WithoutGil() { release_.emplace(); }
 
  private:
-  InCore in_core_;
+  InCall in_call_;
   std::optional<pybind11::gil_scoped_release> release_;  // last: the GIL comes back first
 };
 
-// Whether this thread was asked to end because Python does.
-bool is_left_behind();
+// Raises SystemExit in a thread that is still there when Python ends.
+void end_if_left_behind();
 
 // Has Python call, before it ends, what waits for the other threads.
 void register_leaving();

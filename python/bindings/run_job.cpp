@@ -105,7 +105,7 @@ bool looks_for_signals() { return is_looking; }
 void run_beside(const std::string& stage, const py::object& progress, const std::function<void(Job&)>& work) {
   const Listener listener(progress);
   Job job;
-  const InCore in_core(&job);
+  const JobUnderWay under_way(job);
   Worker worker(work, job);
   std::exception_ptr interruption;
   while (!interruption && !worker.wait_a_little()) {
@@ -117,10 +117,7 @@ void run_beside(const std::string& stage, const py::object& progress, const std:
     }
   }
   const std::exception_ptr failure = worker.join();
-  if (is_left_behind()) {
-    PyErr_SetNone(PyExc_SystemExit);
-    throw py::error_already_set();
-  }
+  end_if_left_behind();
   if (interruption) std::rethrow_exception(interruption);
   if (failure) std::rethrow_exception(failure);
   poll(stage, listener.callable(), 1.0);

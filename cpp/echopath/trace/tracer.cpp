@@ -61,8 +61,8 @@ Tracer::Tracer(const Scene& scene, const Radar& radar, const TraceSettings& sett
       pose_(*empty_.scene, empty_.frame.trace_time), world_from_radar_(radar.world_from_radar(empty_.frame.trace_time)),
       origin_(EmbreeScene::origin_near(*empty_.scene, pose_, empty_.frame.transmitter, radar.motion != nullptr)),
       loan_(kept, *empty_.scene, pose_, origin_, job), geometry_(*loan_), mirrors_(find_mirrors(*empty_.scene, geometry_)),
-      plan_(plan_rays(settings)), sbr_(settings_of_rays(settings)),
-      shooter_(*empty_.scene, geometry_, mirrors_, plan_, sbr_) {
+      sbr_(settings_of_rays(settings)), frusta_(find_antenna_frusta(*empty_.scene, geometry_, mirrors_, sbr_, job)),
+      plan_(plan_rays(settings)), shooter_(*empty_.scene, geometry_, mirrors_, plan_, sbr_, frusta_) {
   empty_.frame.strata = plan_.strata;
   empty_.frame.statistics.num_rays = num_rays();
   empty_.frame.statistics.num_unaimed = plan_.num_unaimed;
@@ -75,7 +75,7 @@ LaunchPlan Tracer::plan_rays(const TraceSettings& settings) {
   launch.sampler = settings.sampler;
   launch.batches = settings.batches;
   launch.guide = settings.guide;
-  launch.max_image_mirrors = std::min(kMaxLegMirrors, settings.max_bounces - 1);
+  launch.frusta = with_at_most(frusta_.transmitter, most_leg_mirrors(sbr_));
   launch.transmitter = empty_.frame.transmitter - origin_;
   set_field_of_view(empty_.radar, world_from_radar_, launch);
   return plan_launch(*empty_.scene, geometry_, mirrors_, launch);
@@ -143,8 +143,8 @@ void Tracer::require_memory(const std::vector<PathBlock>& ahead) const {
 Paths Tracer::run(Job* job) const {
   Paths paths = empty_;
   RecordWriter record(paths);
-  paths.frame.statistics.num_unfollowed_beams = shooter_.num_unfollowed_beams();
-  const std::vector<PathBlock> over_mirrors = find_mirror_paths(geometry_, mirrors_, sbr_, job);
+  paths.frame.statistics.num_unfollowed_beams = frusta_.num_unfollowed();
+  const std::vector<PathBlock> over_mirrors = find_mirror_paths(geometry_, mirrors_, sbr_, frusta_, job);
   std::vector<const PathBlock*> all_over_mirrors;
   for (const PathBlock& block : over_mirrors) all_over_mirrors.push_back(&block);
   record.append(all_over_mirrors, job);

@@ -37,8 +37,9 @@ class Tracer {
   GeometryLoan loan_;
   EmbreeScene& geometry_;
   std::vector<Mirror> mirrors_;
-  LaunchPlan plan_;
   SbrSettings sbr_;
+  AntennaFrusta frusta_;
+  LaunchPlan plan_;
   RayShooter shooter_;
 };
 

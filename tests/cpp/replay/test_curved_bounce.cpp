@@ -69,7 +69,8 @@ DoubleBounces double_bounces(const Scenery& scenery, const EmbreeScene& geometry
   settings.max_bounces = 2;
   settings.is_polarized = is_polarized;
   const std::vector<Mirror> no_mirrors;
-  const RayShooter shooter(*paths.scene, geometry, no_mirrors, scenery.plan, settings);
+  const AntennaFrusta no_frusta;
+  const RayShooter shooter(*paths.scene, geometry, no_mirrors, scenery.plan, settings, no_frusta);
   PathBlock block;
   shooter.shoot(0, scenery.plan.first_ray.back(), block);
   RecordWriter record(paths);

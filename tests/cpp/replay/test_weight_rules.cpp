@@ -110,7 +110,8 @@ Paths trace_with_odds(const Scene& scene, double specular_probability, uint64_t 
   odds.max_bounces = 2;
   odds.seed = seed;
   odds.specular_probability = specular_probability;
-  const RayShooter shooter(scene, geometry, no_mirrors, plan, odds);
+  const AntennaFrusta no_frusta;
+  const RayShooter shooter(scene, geometry, no_mirrors, plan, odds, no_frusta);
   PathBlock block;
   shooter.shoot(0, plan.first_ray.back(), block);
   RecordWriter record(paths);

@@ -73,7 +73,10 @@ TEST(Batches, EachCoversItsStratum) {
   LaunchSettings settings;
   settings.num_rays = 100000;
   settings.batches = kBatches;
-  const LaunchPlan plan = plan_launch(scene, geometry, find_mirrors(scene, geometry), settings);
+  const std::vector<Mirror> mirrors = find_mirrors(scene, geometry);
+  const MirrorFrusta frusta = FrustumFinder(mirrors, &geometry).find(settings.transmitter, {});
+  settings.frusta = frusta.frusta;
+  const LaunchPlan plan = plan_launch(scene, geometry, mirrors, settings);
   ASSERT_EQ(plan.first_ray.back(), settings.num_rays);
   std::vector<std::vector<double>> rays(plan.strata.size(), std::vector<double>(kBatches));
   for (int64_t ray = 0; ray < settings.num_rays; ++ray) {

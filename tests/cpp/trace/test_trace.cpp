@@ -207,7 +207,10 @@ TEST(Launch, OwnersCoverEachSurfaceOnce) {
   const EmbreeScene geometry(scene, PosedScene(scene, 0.0), Vec3::Zero());
   LaunchSettings settings;
   settings.num_rays = 200000;
-  const LaunchPlan plan = plan_launch(scene, geometry, find_mirrors(scene, geometry), settings);
+  const std::vector<Mirror> mirrors = find_mirrors(scene, geometry);
+  const MirrorFrusta frusta = FrustumFinder(mirrors, &geometry).find(settings.transmitter, {});
+  settings.frusta = frusta.frusta;
+  const LaunchPlan plan = plan_launch(scene, geometry, mirrors, settings);
   ASSERT_EQ(plan.first_ray.back(), settings.num_rays);
   ASSERT_GE(plan.strata.size(), 4u);  // ball, plate, an image, the field of view
   const LaunchDirections directions(plan.strata);

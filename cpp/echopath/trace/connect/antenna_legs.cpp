@@ -5,14 +5,19 @@
 namespace echopath {
 namespace {
 
-int most_mirrors(const RayContext& context) { return std::min(kMaxLegMirrors, context.settings.max_bounces - 1); }
+AntennaView view_for_legs(const Vec3& antenna, const MirrorFrusta& found, const RayContext& context, bool serve_legs) {
+  if (!serve_legs) return {antenna, {}, {}};
+  return view_of(antenna, with_at_most(found, most_leg_mirrors(context.settings)));
+}
 
 }  // namespace
 
-AntennaLegs::AntennaLegs(const RayContext& context)
+AntennaLegs::AntennaLegs(const RayContext& context, const AntennaFrusta& frusta)
     : finder_(context.geometry, context.mirrors, context.settings.frequency, context.settings.polarization),
-      transmitter_(finder_.view_of(context.settings.transmitter, most_mirrors(context))),
-      receiver_(finder_.view_of(context.settings.receiver, most_mirrors(context))) {}
+      transmitter_(view_for_legs(context.settings.transmitter, frusta.transmitter, context, frusta.serve_legs)),
+      receiver_(view_for_legs(context.settings.receiver, frusta.receiver, context, frusta.serve_legs)),
+      are_straight_(with_at_most(frusta.transmitter, most_leg_mirrors(context.settings)).empty() &&
+                    with_at_most(frusta.receiver, most_leg_mirrors(context.settings)).empty()) {}
 
 void AntennaLegs::find_receive(const SurfaceHit& surface, int max_mirrors, HitLegs& legs) const {
   const RayHit& point = surface.point;

@@ -1,5 +1,6 @@
 #pragma once
 // Finds the legs between the hit of a ray and both antennas.
+#include "echopath/trace/mirrors/antenna_frusta.h"
 #include "echopath/trace/sbr/ray.h"
 #include "echopath/trace/sbr/ray_context.h"
 
@@ -14,11 +15,10 @@ struct HitLegs {
 
 class AntennaLegs {
  public:
-  explicit AntennaLegs(const RayContext& context);
+  // Both must outlive it.
+  AntennaLegs(const RayContext& context, const AntennaFrusta& frusta);
   // Returns whether no flagged mirror gives either antenna an image: then all legs are straight.
-  bool are_straight() const { return transmitter_.frusta.empty() && receiver_.frusta.empty(); }
-  // Returns the number of the antennas' frusta over mirrors whose further mirrors were not looked for (kMaxFrusta).
-  int64_t num_unfollowed_beams() const { return transmitter_.num_unfollowed + receiver_.num_unfollowed; }
+  bool are_straight() const { return are_straight_; }
   // Finds the visible receive legs of a hit.
   void find_receive(const SurfaceHit& surface, int max_mirrors, HitLegs& legs) const;
   // Finds the visible transmit legs of a hit over which rays can come, except the one over `skip`.
@@ -27,6 +27,7 @@ class AntennaLegs {
  private:
   LegFinder finder_;
   AntennaView transmitter_, receiver_;
+  bool are_straight_;
 };
 
 // Returns the leg over a sequence of mirrors, or null where there is none.

@@ -2,6 +2,7 @@
 // Plans where rays start: strata of directions and the low-discrepancy set inside each.
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "echopath/trace/geometry/packet.h"
@@ -56,8 +57,8 @@ struct LaunchSettings {
   int64_t num_rays = 0;
   uint64_t seed = 0;
   Sampler sampler = Sampler::kLattice;
-  int batches = 1;                         // independent shifts of the set of each stratum, which share its rays
-  int max_image_mirrors = kMaxLegMirrors;  // images over more get no stratum
+  int batches = 1;                        // independent shifts of the set of each stratum, which share its rays
+  std::span<const MirrorFrustum> frusta;  // of the transmitter; images over these get strata
   Vec3 transmitter = Vec3::Zero();
   Vec3 boresight = Vec3::UnitX();
   double field_versine = 2.0;  // 1 - cosine of the field of view's half angle

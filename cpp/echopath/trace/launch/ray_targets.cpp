@@ -36,11 +36,8 @@ bool is_same(const Stratum& a, const Stratum& b) {
 
 class RayTargetFinder {
  public:
-  RayTargetFinder(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
-                  const RayTargetSettings& settings)
-      : scene_(scene), mirrors_(mirrors), settings_(settings),
-        frusta_(FrustumFinder(mirrors, &geometry).find(settings.transmitter, {.max_mirrors = settings.max_mirrors}).frusta) {
-  }
+  RayTargetFinder(const Scene& scene, const std::vector<Mirror>& mirrors, const RayTargetSettings& settings)
+      : scene_(scene), mirrors_(mirrors), settings_(settings) {}
 
   std::optional<RayTarget> at_object(const Target& target) const {
     return target_at(target, target.vertices, target.name, 0);
@@ -50,7 +47,7 @@ class RayTargetFinder {
   std::vector<RayTarget> at_images(const Target& target) const {
     std::vector<RayTarget> images;
     std::vector<Vec3> vertices(target.vertices.size());
-    for (const MirrorFrustum& frustum : frusta_) {
+    for (const MirrorFrustum& frustum : settings_.frusta) {
       if (!frustum.reaches(target.sphere.centre, target.sphere.radius)) continue;
       std::transform(target.vertices.begin(), target.vertices.end(), vertices.begin(),
                      [&](const Vec3& vertex) { return image_of(vertex, mirrors_, frustum.mirrors); });
@@ -88,7 +85,6 @@ class RayTargetFinder {
   const Scene& scene_;
   const std::vector<Mirror>& mirrors_;
   const RayTargetSettings& settings_;
-  std::vector<MirrorFrustum> frusta_;
 };
 
 Target target_of(const Scene& scene, const EmbreeScene& geometry, const SceneObject& object, int index) {
@@ -135,7 +131,7 @@ RayTargets find_ray_targets(const Scene& scene, const EmbreeScene& geometry, con
   out.object_of_mesh.assign(scene.meshes().size(), -1);
   out.any_unaimed = out.num_objects > settings.most_objects;
   if (out.any_unaimed || scene_objects.empty()) return out;
-  const RayTargetFinder finder(scene, geometry, mirrors, settings);
+  const RayTargetFinder finder(scene, mirrors, settings);
   std::vector<RayTarget> objects, images;
   for (int index = 0; index < out.num_objects; ++index) {
     const SceneObject& object = scene_objects[static_cast<size_t>(index)];

@@ -2,6 +2,7 @@
 // Finds the objects of a scene and their images over mirrors, as targets of rays.
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "echopath/trace/launch/stratum.h"
@@ -22,8 +23,8 @@ double weight_of_target(int num_mirrors);
 
 struct RayTargetSettings {
   Vec3 transmitter;
-  int max_mirrors = 0;
-  double largest_solid_angle = 0.0;  // sr: larger objects are left to the field of view
+  std::span<const MirrorFrustum> frusta;  // of the transmitter
+  double largest_solid_angle = 0.0;       // sr: larger objects are left to the field of view
   bool may_use_strips = true;
   int64_t most_objects = std::numeric_limits<int64_t>::max();  // nothing is aimed at where there are more
 };

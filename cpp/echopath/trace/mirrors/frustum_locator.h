@@ -12,7 +12,7 @@ class FrustumLocator {
  public:
   FrustumLocator() = default;
   // `radius` is in m, as in MirrorFrustum::reaches.
-  FrustumLocator(const std::vector<MirrorFrustum>& frusta, double radius);
+  FrustumLocator(std::span<const MirrorFrustum> frusta, double radius);
   // Returns the indices of all frusta into which a ball about the point reaches, and of some others; ascending.
   std::span<const int> near(const Vec3& point) const;
 
@@ -23,8 +23,19 @@ class FrustumLocator {
     int second = 0;             // the half above; the one below follows this cell
     size_t begin = 0, end = 0;  // in entries_
   };
-  using Regions = std::vector<std::vector<HalfSpace>>;  // of the frusta
-  int grow(const Regions& regions, const Eigen::AlignedBox3d& box, std::vector<int> reaching, int depth, int num_vain);
+  struct Regions {  // of the frusta, side by side
+    std::vector<HalfSpace> halves;
+    std::vector<size_t> begin;  // [frusta + 1] into halves
+
+    std::span<const HalfSpace> of(int frustum) const {
+      const auto k = static_cast<size_t>(frustum);
+      return {halves.data() + begin[k], begin[k + 1] - begin[k]};
+    }
+  };
+  struct Growth;
+  static Growth half_of(const Regions& regions, const Growth& whole, const Eigen::AlignedBox3d& box);
+  void end_with(const Growth& cell, size_t index);
+  int grow(const Regions& regions, Growth cell);
 
   Eigen::AlignedBox3d box_;  // of all cells
   std::vector<int> all_;     // frusta that may reach a point outside of the box

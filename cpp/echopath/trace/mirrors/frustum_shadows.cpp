@@ -33,8 +33,9 @@ void cut_out(std::vector<Vec3> polygon, const Vec3& apex, const std::vector<Vec3
 
 }  // namespace
 
-std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, const Vec3& normal, double offset) {
-  std::vector<Vec3> inside;
+void clip(std::vector<Vec3>& polygon, const Vec3& normal, double offset, std::vector<Vec3>& spare) {
+  std::vector<Vec3>& inside = spare;
+  inside.clear();
   const auto add = [&](const Vec3& corner) {
     if (inside.empty() || (corner - inside.back()).norm() > kSameCorner) inside.push_back(corner);
   };
@@ -45,7 +46,14 @@ std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, const Vec3& normal, 
     if ((before < 0) != (behind < 0)) add(from + before / (before - behind) * (to - from));
   }
   if (inside.size() > 1 && (inside.front() - inside.back()).norm() <= kSameCorner) inside.pop_back();
-  return inside.size() < 3 ? std::vector<Vec3>() : inside;
+  if (inside.size() < 3) inside.clear();
+  std::swap(polygon, spare);
+}
+
+std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, const Vec3& normal, double offset) {
+  std::vector<Vec3> inside = polygon, spare;
+  clip(inside, normal, offset, spare);
+  return inside;
 }
 
 std::vector<Vec3> rims_of(const std::vector<Vec3>& polygon, const Vec3& apex) {

@@ -10,6 +10,8 @@ namespace echopath {
 // Returns the part of a convex polygon where normal.dot(p) >= offset (Sutherland, Hodgman 1974); it is empty where it is a
 // mere line.
 std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, const Vec3& normal, double offset);
+// Clips `polygon` itself; `spare` is kept from call to call for its memory.
+void clip(std::vector<Vec3>& polygon, const Vec3& normal, double offset, std::vector<Vec3>& spare);
 
 // Returns the inward unit normals of the planes through `apex` and each edge of a convex polygon.
 std::vector<Vec3> rims_of(const std::vector<Vec3>& polygon, const Vec3& apex);

@@ -13,14 +13,12 @@ constexpr double kRim = 1e-3;          // m: single precision of the mirrors in 
 
 LegFinder::LegFinder(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, double frequency,
                      const Vec3& polarization)
-    : geometry_(geometry), mirrors_(mirrors), finder_(mirrors, &geometry), polarization_(polarization) {
+    : geometry_(geometry), mirrors_(mirrors), polarization_(polarization) {
   for (const Mirror& mirror : mirrors) models_.emplace_back(*mirror.material, frequency);
 }
 
-AntennaView LegFinder::view_of(const Vec3& antenna, int max_mirrors) const {
-  MirrorFrusta found = finder_.find(antenna, {.max_mirrors = max_mirrors});
-  FrustumLocator locator(found.frusta, kRim);
-  return {antenna, std::move(found.frusta), std::move(locator), found.num_unfollowed};
+AntennaView view_of(const Vec3& antenna, std::span<const MirrorFrustum> frusta) {
+  return {antenna, frusta, FrustumLocator(frusta, kRim)};
 }
 
 void LegFinder::find(const LegQuery& query, const AntennaView& antenna, std::vector<Leg>& legs, LegSearch& search) const {

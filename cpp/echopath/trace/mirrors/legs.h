@@ -2,6 +2,7 @@
 // Finds the legs between a surface point and an antenna: direct and over flagged mirrors.
 #include <array>
 #include <complex>
+#include <span>
 
 #include "echopath/em/surface_response.h"
 #include "echopath/trace/geometry/embree_scene.h"
@@ -33,9 +34,8 @@ struct Leg {
 
 struct AntennaView {
   Vec3 position;  // relative to the trace origin
-  std::vector<MirrorFrustum> frusta;
-  FrustumLocator locator;      // of the frusta
-  int64_t num_unfollowed = 0;  // MirrorFrusta::num_unfollowed
+  std::span<const MirrorFrustum> frusta;
+  FrustumLocator locator;  // of the frusta
 };
 
 enum class ShadowState : uint8_t { kUnknown, kOpen, kBlocked };
@@ -55,12 +55,12 @@ struct LegSearch {
   int64_t num_queries = 0;  // of all searches
 };
 
+// Returns the view of an antenna by its frusta over at most kMaxLegMirrors mirrors each, which must outlive it.
+AntennaView view_of(const Vec3& antenna, std::span<const MirrorFrustum> frusta);
+
 class LegFinder {
  public:
   LegFinder(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, double frequency, const Vec3& polarization);
-
-  // `max_mirrors` limits the mirrors of a leg; it is at most kMaxLegMirrors.
-  AntennaView view_of(const Vec3& antenna, int max_mirrors) const;
   // Finds all visible legs between a point and `antenna`, the direct one first, then in the order of the frusta. The images
   // alone tell where a leg meets its mirrors; shadow queries, in packets, tell whether its way is free.
   void find(const LegQuery& query, const AntennaView& antenna, std::vector<Leg>& legs, LegSearch& search) const;
@@ -77,7 +77,6 @@ class LegFinder {
 
   const EmbreeScene& geometry_;
   const std::vector<Mirror>& mirrors_;
-  FrustumFinder finder_;
   std::vector<SurfaceModel> models_;  // of the mirrors
   Vec3 polarization_;
 };

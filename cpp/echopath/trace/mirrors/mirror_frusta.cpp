@@ -52,10 +52,11 @@ bool FrustumFinder::reflect(const MirrorFrustum* frustum, const Vec3& source, in
   if (std::abs(side) < kNoImageWithin) return false;
   std::vector<Vec3> window = mirror.outline;
   if (frustum) {
-    window = clipped(window, frustum->lit_normal, frustum->offset - slack);
+    thread_local std::vector<Vec3> spare;
+    clip(window, frustum->lit_normal, frustum->offset - slack, spare);
     for (const Vec3& rim : frustum->rims) {
       if (window.empty()) return false;
-      window = clipped(window, rim, rim.dot(source) - slack);
+      clip(window, rim, rim.dot(source) - slack, spare);
     }
   }
   if (shadows_ && !window.empty()) {
@@ -63,11 +64,15 @@ bool FrustumFinder::reflect(const MirrorFrustum* frustum, const Vec3& source, in
     shadows_->shrink(from, mirror, window);
   }
   if (window.empty()) return false;
-  out = frustum ? *frustum : MirrorFrustum();
+  if (frustum) {
+    out.mirrors = frustum->mirrors;
+    out.images = frustum->images;
+  }
   out.window = std::move(window);
   out.mirrors.push_back(index);
   const bool is_long = out.mirrors.size() > kMaxLegMirrors;
-  out.sequence = is_long ? kLongSequence : extended(out.sequence, index, mirrors_.size());
+  const MirrorSequence before = frustum ? frustum->sequence : kNoMirrors;
+  out.sequence = is_long ? kLongSequence : extended(before, index, mirrors_.size());
   out.images.push_back(mirror.image(source));
   out.lit_normal = side > 0 ? mirror.normal : Vec3(-mirror.normal);
   out.offset = out.lit_normal.dot(mirror.point);
@@ -80,9 +85,9 @@ void FrustumFinder::extend(const MirrorFrustum* frustum, const Vec3& source, dou
                            std::vector<MirrorFrustum>& out) const {
   std::vector<int> lit;
   boxes_.find(frustum ? frustum->region(slack) : std::vector<HalfSpace>(), lit);
-  MirrorFrustum next;
   for (const int index : lit) {
     if (frustum && frustum->mirrors.back() == index) continue;
+    MirrorFrustum next;
     if (reflect(frustum, source, index, slack, next)) out.push_back(std::move(next));
   }
 }

@@ -90,17 +90,11 @@ class HalfwayMeeting {
 class MirrorPathSearch {
  public:
   MirrorPathSearch(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const SbrSettings& settings,
-                   const Job* job)
-      : geometry_(geometry), mirrors_(mirrors), settings_(settings), job_(job) {
-    const FrustumFinder finder(mirrors, &geometry);
-    const int half = settings.max_bounces / 2;
-    transmit_ = finder.find(settings.transmitter, {.max_mirrors = settings.max_bounces - half, .slack = kAtEdge}, job);
-    receive_ = finder.find(settings.receiver, {.max_mirrors = half, .slack = kAtEdge}, job);
-  }
+                   const AntennaFrusta& frusta, const Job* job)
+      : geometry_(geometry), mirrors_(mirrors), settings_(settings), frusta_(frusta), job_(job) {}
 
   std::vector<PathBlock> run() {
     std::vector<PathBlock> blocks(1);
-    blocks[0].statistics.num_unfollowed_beams = transmit_.num_unfollowed + receive_.num_unfollowed;
     add_single(blocks[0]);
     for (int count = 2; count <= settings_.max_bounces; ++count) add_longer(static_cast<size_t>(count), blocks);
     return blocks;
@@ -110,15 +104,15 @@ class MirrorPathSearch {
   // Adds the paths over one mirror, whose frusta show the receiver itself.
   void add_single(PathBlock& block) const {
     SequenceTrier images(geometry_, mirrors_, settings_, block);
-    const auto [begin, end] = with_mirrors(transmit_.frusta, 1);
+    const auto [begin, end] = with_mirrors(frusta_.transmitter.frusta, 1);
     for (const MirrorFrustum* frustum = begin; frustum != end; ++frustum) {
       if (frustum->reaches(settings_.receiver, kAtEdge)) images.try_sequence(frustum->mirrors);
     }
   }
 
   void add_longer(size_t count, std::vector<PathBlock>& blocks) const {
-    const HalfwayMeeting meeting(with_mirrors(transmit_.frusta, count - count / 2),
-                                 with_mirrors(receive_.frusta, count / 2));
+    const HalfwayMeeting meeting(with_mirrors(frusta_.transmitter.frusta, count - count / 2),
+                                 with_mirrors(frusta_.receiver.frusta, count / 2));
     const size_t first = blocks.size();
     blocks.resize(first + (meeting.size() + kFrustaPerBlock - 1) / kFrustaPerBlock);
     Job own(job_);
@@ -134,15 +128,15 @@ class MirrorPathSearch {
   const EmbreeScene& geometry_;
   const std::vector<Mirror>& mirrors_;
   const SbrSettings& settings_;
+  const AntennaFrusta& frusta_;
   const Job* job_;
-  MirrorFrusta transmit_, receive_;
 };
 
 }  // namespace
 
 std::vector<PathBlock> find_mirror_paths(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
-                                         const SbrSettings& settings, const Job* job) {
-  return MirrorPathSearch(geometry, mirrors, settings, job).run();
+                                         const SbrSettings& settings, const AntennaFrusta& frusta, const Job* job) {
+  return MirrorPathSearch(geometry, mirrors, settings, frusta, job).run();
 }
 
 }  // namespace echopath

@@ -19,7 +19,6 @@ void add_statistics(TraceStatistics& total, const TraceStatistics& part) {
   total.num_grazing += part.num_grazing;
   total.num_small_mirrors += part.num_small_mirrors;
   total.num_false_hits += part.num_false_hits;
-  total.num_unfollowed_beams += part.num_unfollowed_beams;
 }
 
 // Holds where each block begins in the record, and where the last one ends.

@@ -6,15 +6,17 @@ namespace echopath {
 
 struct RayShooter::Parts {
   RayContext context;
-  AntennaLegs legs{context};
+  const AntennaFrusta& frusta;
+  AntennaLegs legs{context, frusta};
   PacketFront front{context};
   RayWalk<ScalarWeight> scalar{context, legs, front};
   RayWalk<JonesWeight> jones{context, legs, front};
 };
 
 RayShooter::RayShooter(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
-                       const LaunchPlan& plan, const SbrSettings& settings)
-    : parts_(new Parts{{geometry, mirrors, plan, settings, SurfaceTable(scene, geometry, mirrors, settings.frequency)}}) {}
+                       const LaunchPlan& plan, const SbrSettings& settings, const AntennaFrusta& frusta)
+    : parts_(new Parts{{geometry, mirrors, plan, settings, SurfaceTable(scene, geometry, mirrors, settings.frequency)},
+                       frusta}) {}
 
 RayShooter::~RayShooter() = default;
 
@@ -22,7 +24,5 @@ void RayShooter::shoot(int64_t begin, int64_t end, PathBlock& block) const {
   if (parts_->context.settings.is_polarized) return parts_->jones.shoot(begin, end, block);
   parts_->scalar.shoot(begin, end, block);
 }
-
-int64_t RayShooter::num_unfollowed_beams() const { return parts_->legs.num_unfollowed_beams(); }
 
 }  // namespace echopath

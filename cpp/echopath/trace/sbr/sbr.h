@@ -12,6 +12,7 @@
 #include <memory>
 
 #include "echopath/trace/launch/launch.h"
+#include "echopath/trace/mirrors/antenna_frusta.h"
 #include "echopath/trace/record/path_block.h"
 #include "echopath/trace/sbr/sbr_settings.h"
 
@@ -21,12 +22,10 @@ class RayShooter {
  public:
   // All but the settings must outlive the shooter.
   RayShooter(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const LaunchPlan& plan,
-             const SbrSettings& settings);
+             const SbrSettings& settings, const AntennaFrusta& frusta);
   ~RayShooter();
   // Traces the rays [begin, end) of the plan and appends their paths. Thread-safe for different blocks.
   void shoot(int64_t begin, int64_t end, PathBlock& block) const;
-  // Returns the number of the antennas' frusta over mirrors whose further mirrors were not looked for (kMaxFrusta).
-  int64_t num_unfollowed_beams() const;
 
  private:
   struct Parts;

@@ -27,16 +27,16 @@ class Plates {
     geometry_ = std::make_unique<EmbreeScene>(scene_, PosedScene(scene_, 0.0), Vec3::Zero());
     ASSERT_EQ(geometry_->intersect(Vec3(x, y, 5), -Vec3::UnitZ(), hit_), EmbreeScene::Verdict::kHit);
   }
-  SurfaceEnd end(const Vec3& along) { return find_surface_end(*geometry_, hit_, along, kReach, kGap, num_queries_); }
-  bool reaches(const Vec3& along, double distance) {
-    return surface_reaches(*geometry_, hit_, along, distance, kGap, num_queries_);
-  }
+  SurfaceEnd end(const Vec3& along) { return around().find_end(along, kReach); }
+  bool reaches(const Vec3& along, double distance) { return around().reaches(along, distance); }
   ZoneCover cover(double before, double behind) {
     const MirrorView view{hit_, -Vec3::UnitZ(), before, behind};
     return cover_of_zone(*geometry_, view, nullptr, kWavelength, num_queries_);
   }
 
  private:
+  SurfaceAround around() { return SurfaceAround(*geometry_, hit_, kGap, num_queries_); }
+
   Scene scene_;
   std::unique_ptr<EmbreeScene> geometry_;
   RayHit hit_;

@@ -12,8 +12,10 @@ constexpr int kBoxesOfLeaf = 4;
 
 bool reaches_into(const Eigen::AlignedBox3d& box, const std::vector<HalfSpace>& region) {
   for (const HalfSpace& half : region) {
-    const Vec3 farthest = (half.normal.array() > 0).select(box.max(), box.min());
-    if (half.normal.dot(farthest) < half.offset) return false;
+    double farthest = 0.0;
+    for (int axis = 0; axis < 3; ++axis)
+      farthest += std::max(half.normal[axis] * box.min()[axis], half.normal[axis] * box.max()[axis]);
+    if (farthest < half.offset) return false;
   }
   return true;
 }

@@ -9,20 +9,48 @@ struct SurfaceEnd {
   bool is_wall = false;   // something rises from it there (the inside of a corner): it ends, but has no edge
 };
 
+// Knows the edges of a triangle.
+class TriangleRim {
+ public:
+  TriangleRim(const EmbreeScene& geometry, const Hit& hit);
+  // Returns the distance in m from a point of the triangle along the unit tangent to the rim.
+  double distance(const Vec3& from, const Vec3& along) const;
+
+ private:
+  std::array<Vec3, 3> corners_, outward_;
+};
+
 // A surface goes on over triangles that lie on each other's rims within `gap` (m) and turn away by at most 30 degrees from
 // the point's normal; it may overlook a hole between the point and the place that is looked at. `along` is a unit tangent.
-// Both functions add their rays to num_queries.
+// Its rays are added to num_queries. All must outlive it.
+class SurfaceAround {
+ public:
+  SurfaceAround(const EmbreeScene& geometry, const RayHit& point, double gap, int64_t& num_queries)
+      : geometry_(geometry), point_(point), rim_(geometry, point.hit), gap_(gap), num_queries_(num_queries) {}
 
-// Returns whether it goes on for `distance` (m). This costs a ray, or none where the point's own triangle reaches as far.
-bool surface_reaches(const EmbreeScene& geometry, const RayHit& point, const Vec3& along, double distance, double gap,
-                     int64_t& num_queries);
+  // Returns how far the point's own triangle goes on.
+  double distance_to_rim(const Vec3& along) const { return rim_.distance(point_.position, along); }
+  // Returns whether it is there at `distance` (m); this costs a ray.
+  bool is_at(const Vec3& along, double distance) const { return end_of_triangle_at(along, distance) >= 0; }
+  // Returns the same, without a ray where the point's own triangle reaches as far.
+  bool reaches(const Vec3& along, double distance) const {
+    return distance_to_rim(along) >= distance || is_at(along, distance);
+  }
+  // Finds its end where it does not reach as far as `reach` (m). An edge lies where the last triangle ends, so that the
+  // distance does not depend on how the surface is cut into triangles and meshes. This costs some ten rays.
+  SurfaceEnd find_end(const Vec3& along, double reach) const;
 
-// Finds its end where it does not reach as far as `reach` (m). An edge lies where the last triangle ends, so that the
-// distance does not depend on how the surface is cut into triangles and meshes. This costs some ten rays.
-SurfaceEnd find_surface_end(const EmbreeScene& geometry, const RayHit& point, const Vec3& along, double reach, double gap,
-                            int64_t& num_queries);
+ private:
+  double distance_to_wall(const Vec3& along, double reach) const;
+  double end_of_triangle_at(const Vec3& along, double distance) const;
+  // Returns the place from which one looks down on the surface.
+  Vec3 above(const Vec3& along, double distance) const { return point_.position + distance * along + gap_ * point_.normal; }
 
-// Returns the distance in m from a point of the triangle that was hit along the unit tangent to the triangle's rim.
-double distance_to_rim(const EmbreeScene& geometry, const Hit& hit, const Vec3& from, const Vec3& along);
+  const EmbreeScene& geometry_;
+  const RayHit& point_;
+  TriangleRim rim_;
+  double gap_;
+  int64_t& num_queries_;
+};
 
 }  // namespace echopath

@@ -77,8 +77,15 @@ PlanePoints outer_points(const PlanePoints& points) {
   for (int k = 0; k < kOutwardDirections; ++k) {
     const double angle = kTwoPi * k / kOutwardDirections;
     const Eigen::Vector2d outward(std::cos(angle), std::sin(angle));
-    outermost[static_cast<size_t>(k)] = *std::max_element(
-        points.begin(), points.end(), [&](const auto& a, const auto& b) { return outward.dot(a) < outward.dot(b); });
+    double farthest = outward.dot(points.front());
+    size_t best = 0;
+    for (size_t i = 1; i < points.size(); ++i) {
+      const double distance = outward.dot(points[i]);
+      if (distance <= farthest) continue;
+      farthest = distance;
+      best = i;
+    }
+    outermost[static_cast<size_t>(k)] = points[best];
   }
   const auto is_inside = [&](const Eigen::Vector2d& point) {
     for (size_t k = 0; k < kOutwardDirections; ++k) {

@@ -9,7 +9,6 @@ namespace {
 constexpr double kSameCorner = 1e-6;  // m: the edge between corners this near has no direction
 constexpr double kOffPlane = 1e-6;    // m: occluders lie this far before the mirror's plane and behind that of the last one
 constexpr double kBefore = 1e-3;      // m: a surface this near to the mirror does not hide it
-constexpr double kFarAway = 1e12;     // m
 constexpr int kMaxSurfaceSearches = 24;  // rays for one window; parts that they do not look at count as seen
 constexpr size_t kMaxPieces = 24;        // parts into which shadows cut one window; further shadows are not cut out
 
@@ -21,12 +20,34 @@ Vec3 centre_of(const std::vector<Vec3>& polygon) {
   return centre;
 }
 
+bool is_same_corner(const Vec3& a, const Vec3& b) { return (a - b).squaredNorm() <= kSameCorner * kSameCorner; }
+
+// Appends a corner, unless it coincides with the one before.
+void add_corner(const Vec3& corner, std::vector<Vec3>& polygon) {
+  if (polygon.empty() || !is_same_corner(corner, polygon.back())) polygon.push_back(corner);
+}
+
+// Ends a polygon of such corners; a mere line is left empty.
+void close(std::vector<Vec3>& polygon) {
+  if (polygon.size() > 1 && is_same_corner(polygon.front(), polygon.back())) polygon.pop_back();
+  if (polygon.size() < 3) polygon.clear();
+}
+
+// Returns the polygon without corners that coincide.
+std::vector<Vec3> without_twins(const std::vector<Vec3>& polygon) {
+  std::vector<Vec3> out;
+  for (const Vec3& corner : polygon) add_corner(corner, out);
+  close(out);
+  return out;
+}
+
 // Cuts a shadow, the cone from `apex` whose inward normals are `rims`, out of a polygon; appends the parts outside.
 void cut_out(std::vector<Vec3> polygon, const Vec3& apex, const std::vector<Vec3>& rims, Polygons& outside) {
+  thread_local std::vector<Vec3> spare;
   for (const Vec3& rim : rims) {
     std::vector<Vec3> beside = clipped(polygon, -rim, -rim.dot(apex));
     if (!beside.empty()) outside.push_back(std::move(beside));
-    polygon = clipped(polygon, rim, rim.dot(apex));
+    clip(polygon, rim, rim.dot(apex), spare);
     if (polygon.empty()) return;
   }
 }
@@ -34,19 +55,21 @@ void cut_out(std::vector<Vec3> polygon, const Vec3& apex, const std::vector<Vec3
 }  // namespace
 
 void clip(std::vector<Vec3>& polygon, const Vec3& normal, double offset, std::vector<Vec3>& spare) {
+  const auto is_inside = [&](const Vec3& corner) { return normal.dot(corner) >= offset; };
+  const auto num_inside = std::count_if(polygon.begin(), polygon.end(), is_inside);
+  if (num_inside == 0 || polygon.size() < 3) return polygon.clear();
+  if (num_inside == std::ssize(polygon)) return;
   std::vector<Vec3>& inside = spare;
   inside.clear();
-  const auto add = [&](const Vec3& corner) {
-    if (inside.empty() || (corner - inside.back()).norm() > kSameCorner) inside.push_back(corner);
-  };
+  double before = normal.dot(polygon.front()) - offset;
   for (size_t i = 0; i < polygon.size(); ++i) {
-    const Vec3 &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
-    const double before = normal.dot(from) - offset, behind = normal.dot(to) - offset;
-    if (before >= 0) add(from);
-    if ((before < 0) != (behind < 0)) add(from + before / (before - behind) * (to - from));
+    const Vec3 &from = polygon[i], &to = polygon[i + 1 < polygon.size() ? i + 1 : 0];
+    const double behind = normal.dot(to) - offset;
+    if (before >= 0) add_corner(from, inside);
+    if ((before < 0) != (behind < 0)) add_corner(from + before / (before - behind) * (to - from), inside);
+    before = behind;
   }
-  if (inside.size() > 1 && (inside.front() - inside.back()).norm() <= kSameCorner) inside.pop_back();
-  if (inside.size() < 3) inside.clear();
+  close(inside);
   std::swap(polygon, spare);
 }
 
@@ -59,8 +82,9 @@ std::vector<Vec3> clipped(const std::vector<Vec3>& polygon, const Vec3& normal, 
 std::vector<Vec3> rims_of(const std::vector<Vec3>& polygon, const Vec3& apex) {
   const Vec3 centre = centre_of(polygon);
   std::vector<Vec3> rims;
+  rims.reserve(polygon.size());
   for (size_t i = 0; i < polygon.size(); ++i) {
-    const Vec3 rim = (polygon[i] - apex).cross(polygon[(i + 1) % polygon.size()] - apex);
+    const Vec3 rim = (polygon[i] - apex).cross(polygon[i + 1 < polygon.size() ? i + 1 : 0] - apex);
     rims.push_back((rim.dot(centre - apex) < 0 ? -1.0 : 1.0) * rim.normalized());
   }
   return rims;
@@ -104,11 +128,13 @@ bool FrustumShadows::look(const FrustumSource& source, const Mirror& target, con
 }
 
 void FrustumShadows::shrink(const FrustumSource& source, const Mirror& target, std::vector<Vec3>& window) const {
-  Polygons unseen = {window}, seen, left;
   std::vector<Vec3> occluder;
-  bool is_whole = true;
-  for (int looks = 0; !unseen.empty() && looks < kMaxSurfaceSearches && unseen.size() < kMaxPieces; ++looks) {
-    if (!look(source, target, centre_of(unseen.back()), occluder) || occluder.empty()) {
+  const auto is_hidden = [&](const Vec3& point) { return look(source, target, point, occluder) && !occluder.empty(); };
+  if (!is_hidden(centre_of(window))) return;
+  Polygons unseen, seen, left;
+  cut_out(window, source.apex, rims_of(occluder, source.apex), unseen);
+  for (int looks = 1; !unseen.empty() && looks < kMaxSurfaceSearches && unseen.size() < kMaxPieces; ++looks) {
+    if (!is_hidden(centre_of(unseen.back()))) {
       seen.push_back(std::move(unseen.back()));
       unseen.pop_back();
       continue;
@@ -117,9 +143,7 @@ void FrustumShadows::shrink(const FrustumSource& source, const Mirror& target, s
     left.clear();
     for (std::vector<Vec3>& piece : unseen) cut_out(std::move(piece), source.apex, rims, left);
     std::swap(unseen, left);
-    is_whole = false;
   }
-  if (is_whole) return;
   seen.insert(seen.end(), unseen.begin(), unseen.end());
   if (seen.empty()) {
     window.clear();
@@ -127,8 +151,7 @@ void FrustumShadows::shrink(const FrustumSource& source, const Mirror& target, s
   }
   std::vector<Vec3> corners;
   for (const std::vector<Vec3>& piece : seen) corners.insert(corners.end(), piece.begin(), piece.end());
-  // Clipping by a plane far away drops corners that coincide.
-  window = seen.size() == 1 ? seen.front() : clipped(outline_of(target, corners), target.normal, -kFarAway);
+  window = seen.size() == 1 ? seen.front() : without_twins(outline_of(target, corners));
 }
 
 }  // namespace echopath

@@ -34,7 +34,9 @@ bool MirrorFrustum::reaches(const Vec3& point, double radius) const {
 }
 
 std::vector<HalfSpace> MirrorFrustum::region(double radius) const {
-  std::vector<HalfSpace> region = {{lit_normal, offset - radius}};
+  std::vector<HalfSpace> region;
+  region.reserve(rims.size() + 1);
+  region.push_back({lit_normal, offset - radius});
   for (const Vec3& rim : rims) region.push_back({rim, rim.dot(image()) - radius});
   return region;
 }
@@ -50,9 +52,9 @@ bool FrustumFinder::reflect(const MirrorFrustum* frustum, const Vec3& source, in
   const Mirror& mirror = mirrors_[static_cast<size_t>(index)];
   const double side = mirror.height(source);
   if (std::abs(side) < kNoImageWithin) return false;
-  std::vector<Vec3> window = mirror.outline;
+  thread_local std::vector<Vec3> window, spare;
+  window = mirror.outline;
   if (frustum) {
-    thread_local std::vector<Vec3> spare;
     clip(window, frustum->lit_normal, frustum->offset - slack, spare);
     for (const Vec3& rim : frustum->rims) {
       if (window.empty()) return false;
@@ -68,7 +70,7 @@ bool FrustumFinder::reflect(const MirrorFrustum* frustum, const Vec3& source, in
     out.mirrors = frustum->mirrors;
     out.images = frustum->images;
   }
-  out.window = std::move(window);
+  out.window = window;
   out.mirrors.push_back(index);
   const bool is_long = out.mirrors.size() > kMaxLegMirrors;
   const MirrorSequence before = frustum ? frustum->sequence : kNoMirrors;

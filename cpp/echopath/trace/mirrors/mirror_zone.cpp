@@ -19,12 +19,29 @@ Vec3 shift_on_target(const MirrorView& view, const Vec3& along, const ZoneTarget
   return (view.before + view.behind) / view.before * across;
 }
 
+// Holds the surface that the wave lights, if fields are followed.
+struct LitSurface {
+  const EmbreeScene& geometry;
+  const MirrorView& view;
+  const ZoneTarget* target;
+  double gap;
+  int64_t& num_queries;
+
+  // Returns whether it reaches as far as the lit point moves when the mirror's point moves by `distance`.
+  bool goes_on(const Vec3& way, double distance) const {
+    if (target->point.is_smooth) return false;
+    const Vec3 shift = shift_on_target(view, way, *target);
+    const double length = shift.norm();
+    return length == 0 ||
+           SurfaceAround(geometry, target->point, gap, num_queries).reaches(shift / length, distance * length);
+  }
+};
+
 class AxisCover {
  public:
-  AxisCover(const EmbreeScene& geometry, const MirrorView& view, const ZoneAxis& axis, const ZoneTarget* target,
-            double wavelength, int64_t& num_queries)
-      : geometry_(geometry), view_(view), axis_(axis), target_(target),
-        gap_(std::max(kGap * wavelength, 4.0 * geometry.lift())), num_queries_(num_queries) {}
+  // All must outlive it.
+  AxisCover(const SurfaceAround& mirror, const ZoneAxis& axis, const LitSurface& lit)
+      : mirror_(mirror), axis_(axis), lit_(lit) {}
 
   ZoneCover look() {
     ZoneCover cover;
@@ -34,12 +51,12 @@ class AxisCover {
     if (is_ample(ample, ways)) return cover;
     double width = 0.0;
     for (size_t k = 0; k < 2; ++k) {
-      ends[k] = find_surface_end(geometry_, view_.point, ways[k], ample, gap_, num_queries_);
+      ends[k] = mirror_.find_end(ways[k], ample);
       width += ends[k].distance;
     }
     if (width >= ample) return cover;
     cover.share = std::min(1.0, 0.5 * (half_covered(ends[0]) + half_covered(ends[1])) / axis_.half);
-    if (!target_) return cover;
+    if (!lit_.target) return cover;
     const double narrowness = std::min(1.0, (2.0 * axis_.half / width - 1.0 / kAmple) / (1.0 - 1.0 / kAmple));
     const std::complex<double> left = field_at(ends[0], ways[0]) + field_at(ends[1], ways[1]) - 1.0;
     cover.field = 1.0 - narrowness * (1.0 - left);
@@ -50,12 +67,8 @@ class AxisCover {
   // Returns whether the surface is wider than `ample`, as far as a few rays can tell.
   bool is_ample(double ample, const std::array<Vec3, 2>& ways) {
     double width = 0.0;
-    for (const Vec3& way : ways) width += distance_to_rim(geometry_, view_.point.hit, view_.point.position, way);
-    if (width >= ample) return true;
-    const auto reaches = [&](const Vec3& way) {
-      return surface_reaches(geometry_, view_.point, way, ample, gap_, num_queries_);
-    };
-    return reaches(ways[0]) || reaches(ways[1]);
+    for (const Vec3& way : ways) width += mirror_.distance_to_rim(way);
+    return width >= ample || mirror_.is_at(ways[0], ample) || mirror_.is_at(ways[1], ample);
   }
 
   double half_covered(const SurfaceEnd& end) const {
@@ -63,25 +76,13 @@ class AxisCover {
   }
 
   std::complex<double> field_at(const SurfaceEnd& end, const Vec3& way) {
-    if (end.is_wall || target_goes_on(2.0 * end.distance, way)) return 1.0;
+    if (end.is_wall || lit_.goes_on(way, 2.0 * end.distance)) return 1.0;
     return field_beside_edge(end.distance / axis_.half);
   }
 
-  // Returns whether the target reaches as far as the lit point moves when the mirror's point moves by `distance`.
-  bool target_goes_on(double distance, const Vec3& way) {
-    if (target_->point.is_smooth) return false;
-    const Vec3 shift = shift_on_target(view_, way, *target_);
-    const double length = shift.norm(), reach = distance * length;
-    if (length == 0) return true;
-    return surface_reaches(geometry_, target_->point, shift / length, reach, gap_, num_queries_);
-  }
-
-  const EmbreeScene& geometry_;
-  const MirrorView& view_;
+  const SurfaceAround& mirror_;
   const ZoneAxis& axis_;
-  const ZoneTarget* target_;
-  double gap_;
-  int64_t& num_queries_;
+  const LitSurface& lit_;
 };
 
 }  // namespace
@@ -107,9 +108,12 @@ std::array<ZoneAxis, 2> zone_axes(const MirrorView& view, double wavelength) {
 
 ZoneCover cover_of_zone(const EmbreeScene& geometry, const MirrorView& view, const ZoneTarget* target, double wavelength,
                         int64_t& num_queries) {
+  const double gap = std::max(kGap * wavelength, 4.0 * geometry.lift());
+  const SurfaceAround mirror(geometry, view.point, gap, num_queries);
+  const LitSurface lit{geometry, view, target, gap, num_queries};
   ZoneCover cover;
   for (const ZoneAxis& axis : zone_axes(view, wavelength)) {
-    const ZoneCover along = AxisCover(geometry, view, axis, target, wavelength, num_queries).look();
+    const ZoneCover along = AxisCover(mirror, axis, lit).look();
     cover.share *= along.share;
     cover.field *= along.field;
   }

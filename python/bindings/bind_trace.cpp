@@ -32,7 +32,7 @@ Effort effort_of(std::optional<int64_t> num_rays, int batches, std::optional<dou
 PathsPtr trace_paths(Scene scene, const Radar& radar, std::optional<int64_t> num_rays, int max_bounces, uint64_t seed,
                      double start_time, const std::string& polarization, const std::string& footprint,
                      const std::string& sampler, std::optional<int> batches, std::optional<double> target_error_db,
-                     int64_t max_rays, const py::object& progress, KeptGeometry* kept) {
+                     int64_t max_rays, const std::string& scatterers, const py::object& progress, KeptGeometry* kept) {
   const Effort effort = effort_of(num_rays, batches.value_or(1), target_error_db, max_rays);
   TraceSettings settings;
   settings.num_rays = effort.num_rays;
@@ -43,6 +43,7 @@ PathsPtr trace_paths(Scene scene, const Radar& radar, std::optional<int64_t> num
   settings.footprint = kFootprint.value_of(footprint);
   settings.batches = effort.batches;
   settings.sampler = kSampler.value_of(sampler);
+  settings.scatterers = kScatterers.value_of(scatterers);
   auto paths = std::make_shared<Paths>(run_job("trace", progress, [&](Job& job) {
     return effort.target ? trace_to_error(scene, radar, settings, *effort.target, &job, kept)
                          : trace_by_need(scene, radar, settings, &job, kept);
@@ -64,8 +65,9 @@ void bind_trace(py::module_& m) {
   m.def("trace", &trace_paths, py::arg("scene"), py::arg("radar"), py::kw_only(), py::arg("num_rays") = py::none(),
         py::arg("max_bounces") = 4, py::arg("seed") = 1, py::arg("start_time") = 0.0, py::arg("polarization") = "scalar",
         py::arg("footprint") = "second_order", py::arg("sampler") = "lattice", py::arg("batches") = py::none(),
-        py::arg("target_error_db") = py::none(), py::arg("max_rays") = kMaxRays, py::arg("progress") = py::none(),
-        py::arg("kept") = py::none(), "What ep.trace calls. kept: KeptGeometry of the scene, or None.");
+        py::arg("target_error_db") = py::none(), py::arg("max_rays") = kMaxRays, py::arg("scatterers") = "rays",
+        py::arg("progress") = py::none(), py::arg("kept") = py::none(),
+        "What ep.trace calls. kept: KeptGeometry of the scene, or None.");
   m.attr("DEFAULT_MAX_RAYS") = kMaxRays;
   m.attr("MOST_RAYS") = kMostRays;
 }

@@ -12,6 +12,7 @@
 #include "echopath/replay/posed/specular_slide.h"
 #include "echopath/signal/synthesizer.h"
 #include "echopath/trace/launch/sampler.h"
+#include "echopath/trace/scatter/scatterers.h"
 
 namespace echopath::bindings {
 
@@ -51,6 +52,7 @@ inline constexpr auto kFootprint = choice<Footprint>("footprint", "none", "first
 inline constexpr auto kMethod = choice<Method>("method", "auto", "direct", "recurrence", "nufft");
 inline constexpr auto kPolarization = choice<PolarizationModel>("polarization", "scalar", "jones");
 inline constexpr auto kSpecularPoints = choice<SpecularPoints>("replay", "material", "fermat");
+inline constexpr auto kScatterers = choice<Scatterers>("scatterers", "rays", "surface");
 inline constexpr auto kSampler = choice<Sampler>("sampler", "lattice", "fibonacci", "r2", "random");
 
 }  // namespace echopath::bindings

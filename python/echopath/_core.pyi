@@ -1994,7 +1994,7 @@ class TraceFrame:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
         ...
-    def __init__(self, *, start_time: float, trace_time: float, transmitter: ArrayLike, receiver: ArrayLike, strata: typing.Sequence[Stratum], seed: int, max_bounces: int, polarization: str, footprint: str, statistics: TraceStatistics, num_batches: int = 1, target_error_db: float = 0.0, error_db: float = 0.0, sampler: str = 'lattice') -> None:
+    def __init__(self, *, start_time: float, trace_time: float, transmitter: ArrayLike, receiver: ArrayLike, strata: typing.Sequence[Stratum], seed: int, max_bounces: int, polarization: str, footprint: str, statistics: TraceStatistics, num_batches: int = 1, target_error_db: float = 0.0, error_db: float = 0.0, sampler: str = 'lattice', scatterers: str = 'rays') -> None:
         ...
     def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
@@ -2032,6 +2032,11 @@ class TraceFrame:
     def sampler(self) -> str:
         """
         "lattice", "fibonacci", "r2" or "random"
+        """
+    @property
+    def scatterers(self) -> str:
+        """
+        "rays" or "surface": what the scatterers of rough surfaces are
         """
     @property
     def seed(self) -> int:
@@ -3151,7 +3156,7 @@ def tessellation(mesh: Mesh) -> typing.Annotated[list[float], "FixedSize(4)"] | 
     """
     What echopath.tessellation.tessellation calls.
     """
-def trace(scene: Scene, radar: Radar, *, num_rays: int | None = None, max_bounces: int = 4, seed: int = 1, start_time: float = 0.0, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', batches: int | None = None, target_error_db: float | None = None, max_rays: int = 16777216, progress: typing.Any = None, kept: KeptGeometry | None = None) -> Paths:
+def trace(scene: Scene, radar: Radar, *, num_rays: int | None = None, max_bounces: int = 4, seed: int = 1, start_time: float = 0.0, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', batches: int | None = None, target_error_db: float | None = None, max_rays: int = 16777216, scatterers: str = 'rays', progress: typing.Any = None, kept: KeptGeometry | None = None) -> Paths:
     """
     What ep.trace calls. kept: KeptGeometry of the scene, or None.
     """

@@ -21,6 +21,7 @@ from .keywords import known_keywords, refuse_unknown
 Polarization = Literal["auto", "scalar", "jones"]
 Footprint = Literal["none", "first_order", "second_order", "edges"]
 Sampler = Literal["lattice", "fibonacci", "r2", "random"]
+Scatterers = Literal["rays", "surface"]
 Method = Literal["auto", "direct", "recurrence", "nufft"]
 Replay = Literal["material", "fermat"]
 Evaluate = Literal["interpolated", "chirps", "samples"]
@@ -67,6 +68,7 @@ class TraceSettings(Settings):
     seed: of the directions and random phases, 0 or more; start_time: s, first sample of the frame
     polarization, footprint, sampler: words; batches: 1 to 64 independent parts of the rays, None: 1
     target_error_db: dB, error of each echo until which rays are added, at most max_rays
+    scatterers: of rough surfaces, a word
     Raises TypeError or ValueError naming the keyword. Values are frozen; two with equal values are equal.
     """
 
@@ -80,12 +82,14 @@ class TraceSettings(Settings):
     batches: int | None = None
     target_error_db: float | None = None
     max_rays: int | float = _core.DEFAULT_MAX_RAYS
+    scatterers: Scatterers = "rays"
 
     RULES: ClassVar[Mapping[str, Rule]] = {
         "num_rays": optional(count(1, MOST_RAYS)), "max_bounces": count(1, MOST_BOUNCES), "seed": seed_rule,
         "start_time": real(unit="s"), "polarization": one_of(Polarization), "footprint": one_of(Footprint),
         "sampler": one_of(Sampler), "batches": optional(count(1, MOST_BATCHES)),
-        "target_error_db": optional(positive("dB")), "max_rays": count(1, MOST_RAYS)}
+        "target_error_db": optional(positive("dB")), "max_rays": count(1, MOST_RAYS),
+        "scatterers": one_of(Scatterers)}
 
 
 @_settings

@@ -18,7 +18,8 @@ from .labels.family_pass import FamilyPass
 from .parts import ONLY_PARTITION, as_partitions, check_partitions, decompose
 from .path_subset import part_of_path
 from .settings import (
-    Evaluate, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, SignalSettings, TraceSettings,
+    Evaluate, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings,
+    TraceSettings,
 )
 from .signals import synthesize
 from .stages import StageClock
@@ -34,7 +35,8 @@ def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | 
              start_time: float = TraceSettings.start_time, polarization: Polarization = TraceSettings.polarization,
              footprint: Footprint = TraceSettings.footprint, sampler: Sampler = TraceSettings.sampler,
              batches: int | None = TraceSettings.batches, target_error_db: float | None = TraceSettings.target_error_db,
-             max_rays: int | float = TraceSettings.max_rays, parts: Mapping[str, Any] | None = None,
+             max_rays: int | float = TraceSettings.max_rays, scatterers: Scatterers = TraceSettings.scatterers,
+             parts: Mapping[str, Any] | None = None,
              tolerance: float = SignalSettings.tolerance, method: Method = SignalSettings.method,
              replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,
              phase_tolerance: float = SignalSettings.phase_tolerance, retrace: Retrace = SignalSettings.retrace,
@@ -47,7 +49,7 @@ def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | 
 
     scene: what is traced; radar: that looks at it
     num_rays, max_bounces, seed, start_time (s), polarization, footprint, sampler, batches, target_error_db (dB),
-        max_rays: as in `trace`
+        max_rays, scatterers: as in `trace`
     parts: {name: selection} for one partition (called "parts"), {partition: {name: selection}} for several, or None
     tolerance, method, replay, evaluate, phase_tolerance (rad), retrace, keyframes: as in `synthesize`; window, zero_pad: as
         in `range_doppler`
@@ -68,7 +70,7 @@ def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | 
     """
     tracing = TraceSettings(num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
                             polarization=polarization, footprint=footprint, sampler=sampler, batches=batches,
-                            target_error_db=target_error_db, max_rays=max_rays)
+                            target_error_db=target_error_db, max_rays=max_rays, scatterers=scatterers)
     signals = SignalSettings(tolerance=tolerance, method=method, replay=replay, evaluate=evaluate,
                              phase_tolerance=phase_tolerance, retrace=retrace, keyframes=keyframes, noise_seed=noise_seed,
                              window=window, zero_pad=zero_pad)

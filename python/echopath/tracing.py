@@ -11,7 +11,7 @@ from . import _core
 from .checks import ArrayLike, Progress, array, checked, flag, one_of, optional, positive, real, shown
 from .lost_rays import warn_of_lost_rays, warn_of_unaimed, warn_of_unfollowed_beams
 from .polarization import FIELD_VECTORS, SCALAR, antennas_of, chosen_model
-from .settings import Footprint, Polarization, Sampler, TraceSettings
+from .settings import Footprint, Polarization, Sampler, Scatterers, TraceSettings
 from .sizes import warn_of_sizes
 from .tessellation import warn_of_coarse_meshes
 
@@ -28,8 +28,8 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
           start_time: float = TraceSettings.start_time, polarization: Polarization = TraceSettings.polarization,
           footprint: Footprint = TraceSettings.footprint, sampler: Sampler = TraceSettings.sampler,
           batches: int | None = TraceSettings.batches, target_error_db: float | None = TraceSettings.target_error_db,
-          max_rays: int | float = TraceSettings.max_rays, settings: TraceSettings | None = None,
-          progress: Progress = None) -> _core.Paths:
+          max_rays: int | float = TraceSettings.max_rays, scatterers: Scatterers = TraceSettings.scatterers,
+          settings: TraceSettings | None = None, progress: Progress = None) -> _core.Paths:
     """Shoots rays from the radar through the scene at mid-frame and records what they hit.
 
     scene: what is traced; radar: that looks at it
@@ -54,6 +54,11 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
     target_error_db: dB; adds rays where they are missing, from num_rays (16 384 unless given) to at most max_rays, until the
         echo of each object and image, down to 60 dB below the strongest, is known that well: half its 95 % interval
         (`received_power`). A RuntimeWarning and `paths.frame.error_db` tell where max_rays did not do
+    scatterers: of rough surfaces: "rays", the points that rays happen to meet, other ones in each trace; or "surface", points
+        of the surfaces, the same in all traces of a scene with one seed, so that the speckle of what moves goes on from frame
+        to frame. Those are less even: the mean power of a body of 5000 points errs by 0.5 % where that of as many rays errs
+        by 0.1 %. What rays meet straight from the transmitter persists so; second and further diffuse hits are drawn from
+        there, and echoes over flagged mirrors persist in part
     settings: TraceSettings that give the keywords which the call leaves out, or None
     progress: callable (stage, fraction), True for bars, or None
     From a scene's second trace on, what has not moved since is not built again, for about 200 bytes a triangle while the
@@ -71,7 +76,8 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
     model = chosen_model(polarization, scene, wavelength, antennas_of(radar), argument="polarization")
     paths = _core.trace(scene, radar, num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
                         polarization=model, footprint=footprint, sampler=sampler, batches=batches,
-                        target_error_db=target_error_db, max_rays=max_rays, progress=progress, kept=_geometry_of(scene))
+                        target_error_db=target_error_db, max_rays=max_rays, scatterers=scatterers, progress=progress,
+                        kept=_geometry_of(scene))
     for warn in (warn_of_lost_rays, warn_of_unfollowed_beams, warn_of_unaimed):
         warn(paths.frame.statistics, stacklevel=_CALLER)
     return paths

@@ -19,6 +19,7 @@ enum class Stream : uint32_t {
   kScatterShift = 7,
   kScatterPoint = 8,
   kProbe = 9,
+  kSurfacePoint = 10,
   kTraining = 16
 };
 

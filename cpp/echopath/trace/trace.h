@@ -23,6 +23,7 @@ struct TraceSettings {
   int batches = 1;
   Sampler sampler = Sampler::kLattice;  // of the launch directions
   LaunchGuide guide;                    // by default the rule of launch.h
+  Scatterers scatterers = Scatterers::kRays;
 
   void validate() const;  // raises invalid_argument naming the field, the rule and the value
 };

@@ -4,6 +4,7 @@
 
 #include "echopath/base/machine_memory.h"
 #include "echopath/base/parallel.h"
+#include "echopath/trace/launch/aimed_points.h"
 #include "echopath/trace/mirrors/mirror_paths.h"
 #include "echopath/trace/mirrors/plane_images.h"
 #include "echopath/trace/record/record_writer.h"
@@ -12,6 +13,7 @@ namespace echopath {
 namespace {
 
 constexpr int64_t kRaysPerBlock = 256;
+static_assert(kRaysPerBlock % kPacketSize == 0, "a packet has rays of one kind (LaunchPlan::first_point)");
 // These blocks are shot before they become part of the record: few enough for the caches, and many for each thread.
 constexpr int64_t kBlocksPerWave = 24, kBlocksPerThread = 12;
 constexpr int64_t kBlocksAhead = 64;  // they tell how large a record of several waves will be
@@ -40,6 +42,7 @@ TraceFrame make_frame(const Radar& radar, const TraceSettings& settings) {
   frame.sampler = settings.sampler;
   frame.num_batches = settings.batches;
   frame.polarization = settings.polarization;
+  frame.scatterers = settings.scatterers;
   return frame;
 }
 
@@ -63,6 +66,7 @@ Tracer::Tracer(const Scene& scene, const Radar& radar, const TraceSettings& sett
       loan_(kept, *empty_.scene, pose_, origin_, job), geometry_(*loan_), mirrors_(find_mirrors(*empty_.scene, geometry_)),
       sbr_(settings_of_rays(settings)), frusta_(find_antenna_frusta(*empty_.scene, geometry_, mirrors_, sbr_, job)),
       plan_(plan_rays(settings)), shooter_(*empty_.scene, geometry_, mirrors_, plan_, sbr_, frusta_) {
+  aim_at_points(settings, job);
   empty_.frame.strata = plan_.strata;
   empty_.frame.statistics.num_rays = num_rays();
   empty_.frame.statistics.num_unaimed = plan_.num_unaimed;
@@ -94,10 +98,22 @@ SbrSettings Tracer::settings_of_rays(const TraceSettings& settings) const {
   return sbr;
 }
 
-int64_t Tracer::num_blocks() const { return (num_rays() + kRaysPerBlock - 1) / kRaysPerBlock; }
+void Tracer::aim_at_points(const TraceSettings& settings, Job* job) {
+  if (settings.scatterers != Scatterers::kSurface) return;
+  plan_.first_point = num_lattice_blocks() * kRaysPerBlock;
+  plan_.aimed_points =
+      find_aimed_points(*empty_.scene, geometry_, plan_, {settings.seed, sbr_.frequency, sbr_.transmitter}, job);
+}
+
+int64_t Tracer::num_lattice_blocks() const { return (num_rays() + kRaysPerBlock - 1) / kRaysPerBlock; }
+
+int64_t Tracer::num_blocks() const {
+  return num_lattice_blocks() + (std::ssize(plan_.aimed_points) + kRaysPerBlock - 1) / kRaysPerBlock;
+}
 
 void Tracer::shoot_block(int64_t index, PathBlock& block) const {
-  shooter_.shoot(index * kRaysPerBlock, std::min(num_rays(), (index + 1) * kRaysPerBlock), block);
+  const int64_t end = index < num_lattice_blocks() ? num_rays() : plan_.first_point + std::ssize(plan_.aimed_points);
+  shooter_.shoot(index * kRaysPerBlock, std::min(end, (index + 1) * kRaysPerBlock), block);
 }
 
 // Shoots every `step`-th block.

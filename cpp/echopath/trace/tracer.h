@@ -28,6 +28,8 @@ class Tracer {
   void require_memory(const std::vector<PathBlock>& ahead) const;
   LaunchPlan plan_rays(const TraceSettings& settings);
   SbrSettings settings_of_rays(const TraceSettings& settings) const;
+  void aim_at_points(const TraceSettings& settings, Job* job);
+  int64_t num_lattice_blocks() const;
 
   Paths empty_;  // scene, radar and frame of the record
   int64_t num_rays_to_come_;

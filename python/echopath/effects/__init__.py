@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from .. import _core
 from ..checks import checked
-from ..settings import Evaluate, Footprint, Polarization, Replay, Retrace, Sampler, SignalSettings, TraceSettings
+from ..settings import Evaluate, Footprint, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings, TraceSettings
 from . import surfaces, motion, radar, sampling  # each adds its rules, in this order
 from .rules import RULES, Case, Effect, Settings
 
@@ -30,19 +30,20 @@ class Effects(list):
 def effects(scene: _core.Scene, radar: _core.Radar, *, max_bounces: int = TraceSettings.max_bounces,  # noqa: F811
             footprint: Footprint = TraceSettings.footprint, polarization: Polarization = TraceSettings.polarization,
             sampler: Sampler = TraceSettings.sampler, batches: int | None = TraceSettings.batches,
-            target_error_db: float | None = TraceSettings.target_error_db, replay: Replay = SignalSettings.replay,
+            target_error_db: float | None = TraceSettings.target_error_db,
+            scatterers: Scatterers = TraceSettings.scatterers, replay: Replay = SignalSettings.replay,
             evaluate: Evaluate = SignalSettings.evaluate, retrace: Retrace = SignalSettings.retrace,
             noise_seed: int | None = None) -> Effects:
     """Which effects a run of `scene` with `radar` models, and why.
 
-    max_bounces, footprint, polarization, sampler, batches, target_error_db (dB): as in `trace`; replay, evaluate,
+    max_bounces, footprint, polarization, sampler, batches, target_error_db (dB), scatterers: as in `trace`; replay, evaluate,
     retrace: as in `synthesize`; noise_seed: as in `simulate`. Returns a list [E] of Effect, modelled ones first. Effects
     that nothing can ask for stand last, under reasons that begin with "out of scope" or "not modelled". Raises TypeError or
     ValueError naming the argument.
     """
     batches = batches or 1
     return _of_case(Case(scene, radar, Settings(max_bounces, footprint, polarization, sampler, batches, target_error_db,
-                                                replay, evaluate, retrace, noise_seed)))
+                                                scatterers, replay, evaluate, retrace, noise_seed)))
 
 
 def of_paths(paths, *, replay: str = "material", evaluate: str = "interpolated", retrace: str = "never",
@@ -51,7 +52,7 @@ def of_paths(paths, *, replay: str = "material", evaluate: str = "interpolated",
     retrace, noise_seed: of later stages."""
     frame = paths.frame
     settings = Settings(frame.max_bounces, frame.footprint, frame.polarization, frame.sampler, frame.num_batches,
-                        frame.target_error_db or None, replay, evaluate, retrace, noise_seed)
+                        frame.target_error_db or None, frame.scatterers, replay, evaluate, retrace, noise_seed)
     return _of_case(Case(paths.scene, paths.radar, settings, frame.statistics))
 
 

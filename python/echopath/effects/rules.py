@@ -29,6 +29,7 @@ class Settings:
     sampler: str
     batches: int
     target_error_db: float | None
+    scatterers: str
     replay: str
     evaluate: str
     retrace: str

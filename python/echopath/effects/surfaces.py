@@ -99,6 +99,13 @@ def _diffuse(case: Case):
     return meshes_or(case.diffuse, "no material scatters diffusely")
 
 
+@rule("speckle that goes on from frame to frame", "trace.scatterers")
+def _scatterers(case: Case):
+    if not case.diffuse:
+        return False, "no material scatters diffusely"
+    return case.settings.scatterers == "surface", f'scatterers = "{case.settings.scatterers}"'
+
+
 @rule("loss by roughness height", "Material.roughness_height")
 def _roughness(case: Case):
     return meshes_or([mesh for mesh in case.meshes if mesh.material.roughness_height > 0.0],

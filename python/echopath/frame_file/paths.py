@@ -14,8 +14,8 @@ PATH_FIELDS = {"offsets": np.int64, "num_bounces": np.uint8, "diffuse": np.uint6
 # Columns that are there only where the scene asks for them: dtype and shape of an entry.
 OPTIONAL_FIELDS = {"curved_cell": (np.float32, (7,)), "jones": (np.complex64, (2, 2))}
 _NOISE_LIKE = ("u", "v", "weight")  # compression does not pay
-FRAME_VALUES = ("start_time", "trace_time", "seed", "max_bounces", "polarization", "footprint", "sampler", "num_batches",
-                "target_error_db", "error_db")
+FRAME_VALUES = ("start_time", "trace_time", "seed", "max_bounces", "polarization", "footprint", "sampler", "scatterers",
+                "num_batches", "target_error_db", "error_db")
 HIT = np.dtype(list(HIT_FIELDS.items()))
 STATISTICS = ("num_rays", "num_queries", "num_hits", "num_paths", "num_near_antenna", "num_grazing", "num_small_mirrors",
               "num_false_hits", "num_unaimed", "num_unfollowed_beams")
@@ -131,6 +131,7 @@ def _read_frame(group):
         seed=read_attribute(group, "seed", int), max_bounces=read_attribute(group, "max_bounces", int),
         polarization=read_attribute(group, "polarization", str), footprint=read_attribute(group, "footprint", str),
         sampler=read_attribute(group, "sampler", str),
+        scatterers=read_attribute(group, "scatterers", str) if "scatterers" in group.attrs else "rays",
         statistics=statistics,
         num_batches=read_attribute(group, "num_batches", int),
         target_error_db=read_attribute(group, "target_error_db", float),

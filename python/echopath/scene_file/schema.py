@@ -17,7 +17,7 @@ from ..checks import Rule, window
 from ..parts import are_tables
 from ..settings import (
     MOST_BATCHES, MOST_BOUNCES, MOST_RAYS, Evaluate, Footprint, LabelSettings, Plane, Polarization, Replay, Retrace, Sampler,
-    SignalSettings, TraceSettings,
+    Scatterers, SignalSettings, TraceSettings,
 )
 from ..shown import writable
 from ..spectra import FALSE_ALARM_RATE, RANK, CfarMethod
@@ -275,6 +275,8 @@ class TraceTable(Table):
     target_error_db: Positive | None = Field(
         TraceSettings.target_error_db, description="dB, error of each echo until which rays are added, from num_rays on")
     max_rays: int = Field(TraceSettings.max_rays, ge=1, le=MOST_RAYS, description="at most, with target_error_db")
+    scatterers: Scatterers = Field(TraceSettings.scatterers, description="of rough surfaces: where rays meet them, or points "
+                                                                         "that are the same in every frame")
 
 
 class ReplayTable(Table):

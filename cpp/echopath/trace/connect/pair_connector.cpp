@@ -8,11 +8,19 @@ template <class Weight>
 void PairConnector<Weight>::connect(Connection& at) const {
   const std::vector<Leg>& receive = at.legs.receive;
   legs_.find_transmit(at.surface, context_.settings.max_bounces - 1, at.ray.sequence, at.legs);
+  if (is_left_to_points(at)) return;
   const std::complex<double> weight = std::sqrt(material_area(at)) * at.surface.samples.phase;
   if (!at.legs.transmit.empty() || receive.size() > 1 || receive[0].num_bounces > 0) return write_fan(at, weight);
   const std::complex<double> own =
       weight * weight_.held(diffuse_coefficient(at.surface.response)) * weight_.held(at.ray.coefficient);
   writer_.write(at, receive[0], last_bit(at.ray), own, OrderShares{});
+}
+
+// Returns whether rays that are aimed at points make all pairs of this place, because they see it. Places that only mirrors
+// show are left to the other rays.
+template <class Weight>
+bool PairConnector<Weight>::is_left_to_points(const Connection& at) const {
+  return context_.plan.has_aimed_points() && at.ray.sequence != kNoMirrors && leg_over(at.legs.transmit, kNoMirrors);
 }
 
 // Returns the balance weight: one over the number of hits per m^2 that all visible transmit legs together make here,
@@ -22,6 +30,8 @@ double PairConnector<Weight>::material_area(const Connection& at) const {
   const Ray& ray = at.ray;
   const SurfaceHit& surface = at.surface;
   double hits_per_area = ray.launch_density * ray.chain_share * surface.cos_incidence / (ray.leg_length * ray.leg_length);
+  const bool is_aimed_at_point = context_.plan.has_aimed_points() && ray.sequence == kNoMirrors;
+  if (is_aimed_at_point) return ray.stands_for / hits_per_area;
   for (const Leg& leg : at.legs.transmit) {
     hits_per_area += density_over(context_.plan, surface.point.hit.mesh_id, leg) * surface.point.normal.dot(leg.to_antenna) /
                      (leg.length * leg.length);

@@ -5,7 +5,8 @@
 namespace echopath {
 
 // The ray came directly or over at most kMaxLegMirrors flagged mirrors. Rays could have found the hit over each of its
-// transmit legs, so all pairs have the same balance weight over these ways (Veach 1997).
+// transmit legs, so all pairs have the same balance weight over these ways (Veach 1997). Where rays are aimed at points of
+// rough surfaces, these alone make all pairs of a hit that they see.
 template <class Weight>
 class PairConnector {
  public:
@@ -15,6 +16,7 @@ class PairConnector {
   void connect(Connection& at) const;
 
  private:
+  bool is_left_to_points(const Connection& at) const;
   double material_area(const Connection& at) const;
   void write_fan(Connection& at, std::complex<double> weight) const;
 

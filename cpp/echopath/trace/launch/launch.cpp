@@ -119,6 +119,19 @@ std::vector<int64_t> whole_rays(const std::vector<double>& shares, int64_t num_r
   return rays;
 }
 
+// Returns the rays per sr of each stratum by the default rule; foci, which stand between the targets and the field of view,
+// have none.
+std::vector<double> default_densities(const RayTargets& found, bool has_mirrors, const LaunchPlan& plan, int64_t num_rays) {
+  const std::vector<double> shares = default_shares(found.targets, found.any_unaimed || has_mirrors);
+  std::vector<double> densities(plan.strata.size(), 0.0);
+  const auto set = [&](size_t stratum, double share) {
+    densities[stratum] = share * static_cast<double>(num_rays) / plan.strata[stratum].solid_angle();
+  };
+  for (size_t k = 0; k < found.targets.size(); ++k) set(k, shares[k]);
+  set(plan.strata.size() - 1, shares.back());
+  return densities;
+}
+
 Stratum field_of_view(const LaunchSettings& settings) {
   Stratum field;
   field.axis = settings.boresight;
@@ -168,6 +181,7 @@ LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const st
   }
   add_stratum(plan, field, rays.back(), settings.sampler);
   plan.foci = LaunchFoci(plan.strata);
+  plan.default_density = default_densities(found, !mirrors.empty(), plan, settings.num_rays);
   return plan;
 }
 

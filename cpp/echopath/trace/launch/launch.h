@@ -11,6 +11,7 @@
 #include "echopath/trace/launch/sampler.h"
 #include "echopath/trace/launch/stratum.h"
 #include "echopath/trace/mirrors/mirror_frusta.h"
+#include "echopath/trace/scatter/surface_points.h"
 
 namespace echopath {
 
@@ -40,6 +41,15 @@ struct LaunchPlan {
   uint64_t seed = 0;
   int batches = 1;
   int64_t num_unaimed = 0;  // objects and images that have no stratum of their own because there are too many of them
+  std::vector<double> default_density;  // [strata] rays per sr by the default rule, whatever the guide says
+  // Where rough surfaces have scatterers of their own (TraceSettings::scatterers), rays are aimed at these, too. They then
+  // make all diffuse echoes of first hits straight from the transmitter, and the rays above make all other echoes. The ray
+  // of the first of these points has this index, behind those of the strata and a multiple of kPacketSize.
+  int64_t first_point = 0;
+  std::vector<SurfacePoint> aimed_points;
+
+  bool has_aimed_points() const { return !aimed_points.empty(); }
+  bool is_aimed_at_point(int64_t ray) const { return has_aimed_points() && ray >= first_point; }
 
   int stratum_of(int64_t ray) const;
   int batch_of(int stratum, int64_t ray) const;

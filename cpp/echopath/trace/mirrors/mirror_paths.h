@@ -13,8 +13,8 @@ namespace echopath {
 // each other; its weight is the product of Gamma s, its stratum kNoStratum. A path through an edge is the limit of those on
 // both sides of it: the sequences of either side share its field in halves (the two orders of a corner; a seam between two
 // mirrors; the rim of one). The search begins at both ends: frusta of the transmitter over the first half of the mirrors
-// meet frusta of the receiver over the others. The blocks follow each other by number of mirrors and then by mirrors in travel order. Raises Cancelled
-// when the job is cancelled.
+// meet frusta of the receiver over the others. The blocks follow each other by number of mirrors and then by mirrors in
+// travel order. Raises Cancelled when the job is cancelled.
 std::vector<PathBlock> find_mirror_paths(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                                          const SbrSettings& settings, const AntennaFrusta& frusta, const Job* job = nullptr);
 

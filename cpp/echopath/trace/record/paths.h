@@ -15,6 +15,7 @@
 #include "echopath/scene/scene.h"
 #include "echopath/trace/launch/sampler.h"
 #include "echopath/trace/launch/stratum.h"
+#include "echopath/trace/scatter/scatterers.h"
 
 namespace echopath {
 
@@ -77,6 +78,7 @@ struct TraceFrame {
   int num_batches = 1;           // independent lattices of launch directions, which share the rays of each stratum
   double target_error_db = 0.0;  // dB, the error of the received power that was asked for; 0: none
   double error_db = 0.0;         // dB, the one that was reached (sim/rays/trace_to_error.h); 0: not looked at
+  Scatterers scatterers = Scatterers::kRays;
 
   // Returns the rays per sr of one batch of a stratum, from which its launch cells are made. Filters for the cells of all
   // batches together would leave each batch its aliases, which do not cancel, because the lattices are independent of each

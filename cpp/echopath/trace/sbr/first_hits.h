@@ -6,7 +6,8 @@
 namespace echopath {
 
 struct FirstHits {
-  int64_t begin = 0;  // index of the first ray
+  int64_t begin = 0;                     // index of the first ray
+  const SurfacePoint* points = nullptr;  // [count] at which the rays are aimed; null for rays of a lattice
   int count = 0;
   LaunchPlan::Places places;
   LaneVectors directions;
@@ -31,6 +32,8 @@ struct FirstHits {
   LaneVectors out;            // the direction in which it goes on
   std::array<bool, kPacketSize> goes_on;  // whether the ray goes on at all
 
+  // Returns the index of a lane's ray in the random numbers of its further hits.
+  int64_t index(int lane) const { return points ? points[lane].key : begin + lane; }
   void set_response(int lane, const SurfaceResponse& response, const LobeProbabilities& lobes) {
     gamma_re[lane] = response.gamma.real();
     gamma_im[lane] = response.gamma.imag();

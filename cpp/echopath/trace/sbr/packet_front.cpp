@@ -45,7 +45,9 @@ ECHOPATH_INLINE void leave_lanes(FirstHits* first, VectorOf<double> receiver) {
 void PacketFront::trace(int64_t begin, int count, FirstHits& first, TraceStatistics& statistics) const {
   first.begin = begin;
   first.count = count;
-  launch(first);
+  first.points = nullptr;
+  if (context_.plan.is_aimed_at_point(begin)) launch_at_points(first);
+  else launch(first);
   context_.geometry.intersect(context_.settings.transmitter, first.directions, count, first.hits);
   statistics.num_queries += count;
   arrive(first, statistics);
@@ -70,6 +72,22 @@ void PacketFront::launch(FirstHits& first) const {
   first.samples.draw(context_.settings.seed, first.begin, first.count, places.batches.data());
 }
 
+void PacketFront::launch_at_points(FirstHits& first) const {
+  const LaunchPlan& plan = context_.plan;
+  first.points = plan.aimed_points.data() + (first.begin - plan.first_point);
+  std::array<int64_t, kPacketSize> keys;
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    const SurfacePoint& point = first.points[std::min(lane, first.count - 1)];
+    const auto k = static_cast<size_t>(lane);
+    keys[k] = point.key;
+    first.places.strata[k] = point.stratum;
+    first.places.batches[k] = static_cast<int>(point.key % plan.batches);
+    first.directions.set(lane, unpacked((point.position - context_.settings.transmitter).normalized()));
+    first.densities[lane] = plan.default_density[static_cast<size_t>(point.stratum)];
+  }
+  first.samples.draw_by_keys(context_.settings.seed, keys.data(), first.count);
+}
+
 void PacketFront::arrive(FirstHits& first, TraceStatistics& statistics) const {
   const Antennas antennas{unpacked(context_.settings.transmitter), unpacked(context_.settings.receiver)};
   run_simd<&see_lanes>(&first, antennas, context_.geometry.lift());
@@ -89,10 +107,29 @@ void PacketFront::arrive(FirstHits& first, TraceStatistics& statistics) const {
 // Returns whether the stratum of the ray owns its hit, or the ray passes over a mirror.
 bool PacketFront::counts(FirstHits& first, int lane) const {
   const auto k = static_cast<size_t>(lane);
+  if (first.points) return first.is_owned[k] = meets_point(first, lane);
   const uint32_t mesh = first.hits.met[k].mesh_id;
   const bool passes_on = context_.is_passed(first.places.strata[k], mesh);
   first.is_owned[k] = !passes_on && context_.is_owner(first.places.strata[k], mesh, kNoMirrors);
   return (first.is_owned[k] || passes_on) && std::isfinite(first.densities[lane]);  // else foci have it all
+}
+
+// Returns whether the ray of a lane meets the point at which it is aimed, on its triangle or on its edge.
+bool PacketFront::meets_point(const FirstHits& first, int lane) const {
+  const SurfacePoint& point = first.points[lane];
+  const Hit& met = first.hits.met[static_cast<size_t>(lane)];
+  if (met.mesh_id != point.on.mesh_id) return false;
+  return met.triangle_id == point.on.triangle_id ||
+         (first.hits[lane].position - point.position).norm() <= context_.geometry.lift();
+}
+
+// Leaves the ray its part of the echo and of the ways on.
+void PacketFront::share_out(FirstHits& first, int lane) const {
+  const auto k = static_cast<size_t>(lane);
+  if (!context_.plan.has_aimed_points() || !first.is_owned[k]) return;
+  (first.points ? first.coherent : first.diffuse)[lane] = 0.0;
+  const bool is_specular = first.samples.lobe_sample[lane] < first.specular_probability[lane];
+  first.goes_on[k] = first.goes_on[k] && is_specular != (first.points != nullptr);
 }
 
 void PacketFront::find_response(FirstHits& first, int lane) const {
@@ -105,6 +142,7 @@ void PacketFront::find_response(FirstHits& first, int lane) const {
   const SurfaceResponse response = model.respond(first.cos_incidence[lane], first.modes[k]);
   first.set_response(lane, response, first.is_owned[k] ? context_.probabilities(model, response) : kPassingOn);
   first.goes_on[k] = context_.settings.max_bounces > 1 && response.gamma != 0.0;
+  share_out(first, lane);
 }
 
 // Asks for the shadows of all first hits together, because these lie beside each other. The paths of a mirror's hit need
@@ -125,13 +163,13 @@ void PacketFront::start(const FirstHits& first, int lane, Ray& ray, SurfaceHit& 
   const auto k = static_cast<size_t>(lane);
   std::construct_at(&ray);
   std::construct_at(&surface);
-  ray.index = first.begin + lane;
+  ray.index = first.index(lane);
   ray.stratum = first.places.strata[k];
   ray.direction = first.directions[lane];
   ray.launch_direction = first.directions[lane];  // a copy of the other one would wait for its parts to be stored
   ray.is_owned = first.is_owned[k];
-  ray.launch_density = context_.plan.density(context_.plan.foci.owner(ray.stratum));
   ray.leg_density = first.densities[lane];
+  ray.launch_density = first.points ? ray.leg_density : context_.plan.density(context_.plan.foci.owner(ray.stratum));
   ray.stands_for = ray.launch_density / ray.leg_density;
   if (context_.surfaces.has_smooth()) ray.differential = RayDifferential::from_point(ray.direction);
   surface.point = first.hits[lane];

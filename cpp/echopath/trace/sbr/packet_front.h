@@ -6,7 +6,9 @@
 namespace echopath {
 
 // A ray counts what its stratum owns (ray_owners.h): one that was aimed at an object goes over flagged mirrors as they
-// reflect, without chance, and ends at whatever else it meets first.
+// reflect, without chance, and ends at whatever else it meets first. A ray that is aimed at a point of a rough surface ends
+// where something else is in its way. Where there are such rays, they have the diffuse echo of the first hit and what it
+// scatters diffusely, and rays of the lattices have its field and what it reflects.
 class PacketFront {
  public:
   explicit PacketFront(const RayContext& context) : context_(context), directions_(context.plan.strata) {}
@@ -17,8 +19,11 @@ class PacketFront {
 
  private:
   void launch(FirstHits& first) const;
+  void launch_at_points(FirstHits& first) const;
   void arrive(FirstHits& first, TraceStatistics& statistics) const;
   bool counts(FirstHits& first, int lane) const;
+  bool meets_point(const FirstHits& first, int lane) const;
+  void share_out(FirstHits& first, int lane) const;
   void find_response(FirstHits& first, int lane) const;
   void see_receiver(FirstHits& first, TraceStatistics& statistics) const;
 

@@ -38,7 +38,7 @@ void RayWalk<Weight>::shoot_lane(int lane, Scratch& scratch, PathBlock& block) c
   const auto k = static_cast<size_t>(lane);
   const FirstHits& first = scratch.first;
   block.current_batch = static_cast<uint8_t>(first.places.batches[k]);
-  block.current_half = half_of_ray(first.begin + lane);
+  block.current_half = half_of_ray(first.index(lane));
   RayHit met;
   const bool goes_on = first.goes_on[k] && meets(first.lifted[lane], first.out[lane], met, block);
   const bool has_plain_hit = has_straight_legs_ && is_plain(first, lane);

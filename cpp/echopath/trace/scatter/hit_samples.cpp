@@ -95,4 +95,17 @@ void PacketSamples::draw(uint64_t seed, int64_t first, int count, const int* bat
   run_simd<&draw_lobes>(seed, index, &lobe);
 }
 
+void PacketSamples::draw_by_keys(uint64_t seed, const int64_t* keys, int count) {
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    const int64_t key = keys[std::min(lane, count - 1)];  // the lanes behind hold finite numbers, too
+    const HitSamples drawn = hit_samples(seed, key, 1);
+    phase_re[lane] = drawn.phase.real();
+    phase_im[lane] = drawn.phase.imag();
+    axis_sample[lane] = drawn.axis_sample;
+    lobe_sample[lane] = drawn.lobe_sample;
+    survival_sample[lane] = drawn.survival_sample;
+    lobe.set(lane, unpacked(cosine_lobe(uniform2(seed, Stream::kScatterPoint, static_cast<uint64_t>(key), 0))));
+  }
+}
+
 }  // namespace echopath

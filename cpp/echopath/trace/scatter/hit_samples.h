@@ -29,6 +29,8 @@ struct PacketSamples {
 
   // Draws the samples of the rays [first, first + count); `batches` is [count].
   void draw(uint64_t seed, int64_t first, int count, const int* batches);
+  // Draws the samples of rays [count] that are aimed at points, by the keys of these (surface_points.h).
+  void draw_by_keys(uint64_t seed, const int64_t* keys, int count);
   HitSamples hit(int lane) const {
     return {{phase_re[lane], phase_im[lane]}, axis_sample[lane], lobe_sample[lane], survival_sample[lane]};
   }

@@ -28,6 +28,7 @@ TraceSettings settings_like(const TraceFrame& frame) {
   settings.footprint = frame.footprint;
   settings.batches = frame.num_batches;
   settings.sampler = frame.sampler;
+  settings.scatterers = frame.scatterers;
   return settings;
 }
 

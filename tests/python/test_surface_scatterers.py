@@ -1,0 +1,131 @@
+"""scatterers="surface": points of rough surfaces that are the same in every trace."""
+import numpy as np
+import pytest
+
+import echopath as ep
+
+CHIRPS = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=128, sampling_rate=20e6, num_chirps=128,
+                          chirp_interval=1e-4)
+FRAME = 127 * 1e-4  # s: the first chirp of the next frame is the last one of this
+RAYS = 20_000
+FEW_RAYS = 8_000  # all launched alike, whatever they find
+NUM_SEEDS = 12
+
+
+def radar(**place) -> ep.Radar:
+    return ep.Radar(CHIRPS, transmitters=[ep.Antenna((0, 0, 1))], receivers=[ep.Antenna((0, 0.01, 1))], **place)
+
+
+def walker_by_a_wall() -> ep.Scene:
+    scene = ep.Scene()
+    scene.add(ep.actors.pedestrian(height=1.78, speed=1.4), name="walker", position=(10, 0, 0), yaw=np.pi)
+    scene.add(ep.actors.wall(40, 6), name="wall", material=ep.materials["concrete"].replace(scattering=0.5, mirror=True),
+              position=(15, 3, 0))
+    return scene
+
+
+def diffuse(paths, expression: str):
+    chosen = paths.select(expression)
+    return chosen.select(chosen.diffuse > 0)
+
+
+def coherence(one: np.ndarray, other: np.ndarray) -> float:
+    return abs(np.vdot(one, other)) / np.linalg.norm(one) / np.linalg.norm(other)
+
+
+def over_edges(scene, moving_radar, expression: str, scatterers: str, frames: int = 4) -> list[float]:
+    """Coherence of the last chirp of each frame and the first one of the next, which are at the same time."""
+    cubes = []
+    for frame in range(frames):
+        paths = ep.trace(scene, moving_radar, num_rays=RAYS, start_time=frame * FRAME, scatterers=scatterers)
+        cubes.append(ep.synthesize(diffuse(paths, expression), moving_radar)[0, 0])
+    return [coherence(before[-1], after[0]) for before, after in zip(cubes, cubes[1:])]
+
+
+def test_the_speckle_of_a_walking_body_goes_on_over_the_edges_of_frames():
+    assert min(over_edges(walker_by_a_wall(), radar(), "T 'walker' R", "surface")) > 0.95
+    assert max(over_edges(walker_by_a_wall(), radar(), "T 'walker' R", "rays")) < 0.8
+
+
+def test_the_speckle_of_its_ghost_goes_on_too():
+    """But for the places that only the wall shows, which rays find anew."""
+    assert np.mean(over_edges(walker_by_a_wall(), radar(), "T 'walker' 'wall' R", "surface")) > 0.9
+    assert np.mean(over_edges(walker_by_a_wall(), radar(), "T 'walker' 'wall' R", "rays")) < 0.75
+
+
+def test_the_speckle_of_a_road_goes_on_for_a_radar_that_drives():
+    scene = ep.Scene()
+    road = ep.Mesh([[5, -10, 0], [60, -10, 0], [60, 10, 0], [5, 10, 0]], [[0, 1, 2], [0, 2, 3]])
+    scene.add(road, name="road", material=ep.materials["asphalt"].replace(scattering=0.6))
+    assert min(over_edges(scene, radar(speed=10), "T 'road' R", "surface")) > 0.95
+    assert max(over_edges(scene, radar(speed=10), "T 'road' R", "rays")) < 0.8
+
+
+@pytest.mark.parametrize("expression", ["T 'walker' R", "T 'wall' R", "T 'walker' 'wall' R", "T 'walker' 'walker' R"])
+def test_mean_powers_are_those_of_rays(expression):
+    scene = walker_by_a_wall()
+    powers = {scatterers: [ep.received_power(diffuse(ep.trace(scene, radar(), num_rays=RAYS, seed=seed,
+                                                              scatterers=scatterers), expression)).diffuse
+                           for seed in range(1, NUM_SEEDS + 1)] for scatterers in ("rays", "surface")}
+    means = {name: np.mean(found) for name, found in powers.items()}
+    error = np.sqrt(sum(np.var(found, ddof=1) / NUM_SEEDS for found in powers.values()))
+    assert means["rays"] > 0
+    assert abs(means["surface"] - means["rays"]) < 3.5 * error
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_fields_are_those_of_rays():
+    fields = []
+    for scatterers in ("rays", "surface"):
+        paths = ep.trace(walker_by_a_wall(), radar(), num_rays=FEW_RAYS, scatterers=scatterers)
+        chosen = paths.select("T 'walker' R")
+        fields.append(ep.synthesize(chosen.select(chosen.diffuse == 0), radar()))
+    assert np.array_equal(*fields)
+
+
+def test_nothing_that_stands_still_changes():
+    scene = ep.Scene()
+    scene.add(ep.actors.wall(4, 3), name="wall", material=ep.materials["concrete"].replace(scattering=0.7),
+              position=(8, 1, 0))
+    cubes = [ep.synthesize(ep.trace(scene, radar(), num_rays=RAYS, start_time=time, scatterers="surface"), radar())
+             for time in (0.0, 3.0)]
+    assert np.allclose(*cubes, rtol=0, atol=1e-9 * np.abs(cubes[0]).max())
+
+
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_points_stay_when_something_else_comes_and_goes():
+    """A second body takes rays from the first one; the points that are left are among those that were there."""
+    def hits(with_other: bool) -> set:
+        scene = walker_by_a_wall()
+        if with_other:
+            scene.add(ep.actors.pedestrian(speed=1.0), name="other", position=(14, -2, 0))
+        chosen = diffuse(ep.trace(scene, radar(), num_rays=RAYS, scatterers="surface"), "T 'walker' R")
+        found = chosen.hits[chosen.offsets]
+        return {(int(hit["mesh_id"]), int(hit["triangle_id"]), round(float(hit["u"]), 5)) for hit in found}
+
+    alone, beside = hits(False), hits(True)
+    assert 0.2 * len(alone) < len(beside) < len(alone)
+    assert len(beside - alone) < 0.02 * len(beside)  # those next to an edge, which count for either triangle
+
+
+def test_same_bits_for_any_number_of_threads():
+    records = []
+    try:
+        for threads in (1, 3):
+            ep.set_num_threads(threads)
+            records.append(ep.trace(walker_by_a_wall(), radar(), num_rays=RAYS, scatterers="surface", batches=4))
+    finally:
+        ep.set_num_threads(0)
+    one, other = records
+    for column in ("hits", "offsets", "num_bounces", "diffuse", "weight", "batch", "flags"):
+        assert np.array_equal(getattr(one, column), getattr(other, column))
+
+
+def test_the_record_knows_its_scatterers(tmp_path):
+    paths = ep.trace(walker_by_a_wall(), radar(), num_rays=2000, scatterers="surface")
+    assert paths.frame.scatterers == "surface"
+    paths.save(tmp_path / "paths.h5")
+    assert ep.Paths.load(tmp_path / "paths.h5").frame == paths.frame
+    assert ep.trace(walker_by_a_wall(), radar(), num_rays=2000).frame.scatterers == "rays"
+    with pytest.raises(ValueError, match="scatterers: must be 'rays' or 'surface', got 'points'"):
+        ep.trace(walker_by_a_wall(), radar(), num_rays=2000, scatterers="points")

@@ -14,8 +14,8 @@ enum class Retrace {
   kNever,  // one record serves the frame
   // Hits stay, shadow rays and points of reflection are renewed (validity/renewal.h), and new surface gets paths.
   kInvalid,
-  // The scene is traced anew with the same rays. Phases of rough surfaces then belong to rays and not to the surface, so
-  // that their echoes have wrong Doppler: a reference for coherent echoes.
+  // The scene is traced anew with the same rays. Unless scatterers are those of the surface (trace/scatter/scatterers.h),
+  // phases of rough surfaces then belong to rays, so that their echoes have wrong Doppler: a reference for coherent echoes.
   kAlways,
 };
 

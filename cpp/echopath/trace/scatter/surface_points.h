@@ -3,9 +3,10 @@
 //
 // Rays meet a surface wherever they are launched to, so that two traces give it two sets of scatterers and two speckle
 // patterns. Here every triangle has one endless set of points of its own, in an order in which each first part of it is
-// even over the triangle. A trace takes as many of them as its rays would meet: point number i where (i + shift)/area is below the
-// density that is asked for there. From one time to the next, points come and go at the end of the order alone, and all
-// others stay where they are on the surface, with their random numbers.
+// even over the triangle. A trace takes as many of them as its rays would meet: point number i where (i + shift)/area is
+// below the density that is asked for there. From one time to the next, points come and go at the end of the order alone,
+// and all others stay where they are on the surface, with their random numbers. Source: the order is that of Basu and Owen
+// 2015, a van der Corput sequence over a triangle, with places and digits drawn at random.
 #include <array>
 #include <cstdint>
 #include <vector>

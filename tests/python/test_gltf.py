@@ -320,7 +320,7 @@ def test_deep_trees_are_refused_and_broad_ones_read(tmp_path):
 def test_arguments_are_checked_by_name(tmp_path):
     path = tmp_path / "model.glb"
     path.write_bytes(box_file().glb())
-    with pytest.raises(ValueError, match="animation: .* has no 'walk', it has none"):
+    with pytest.raises(ValueError, match="animation: must be none, the file has no animation, got 'walk'"):
         ep.load_model(path, animation="walk")
     with pytest.raises(ValueError, match="up: must be 'x', 'y' or 'z', got 'w'"):
         ep.load_model(path, up="w")

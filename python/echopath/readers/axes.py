@@ -33,6 +33,6 @@ class Axes:
         moved[..., 3, :] = 0.0, 0.0, 0.0, 1.0  # to the last bit, which inverses of others miss
         return moved
 
-    @property
-    def is_identity(self) -> bool:
-        return self.unit == 1.0 and self.up == "z"
+    def quaternions(self, xyzw) -> np.ndarray:
+        """Unit quaternions [..., 4] (x, y, z, w) in the axes of the file -> (w, x, y, z) in those of a scene."""
+        return np.asarray(xyzw, np.float64)[..., [3, *self._order]]

@@ -4,8 +4,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-import numpy as np
-
 # vertical axis of a file -> the axes of the file that become x (forward), y (left) and z (up): always a rotation, so that
 # what faces +z in glTF, whose y is up, faces +x in a scene
 AXES = {"z": (0, 1, 2), "y": (2, 0, 1), "x": (1, 2, 0)}
@@ -27,14 +25,3 @@ class ReadOptions:
     animation: str | None = None
     loop: bool = False
     offset: float = 0.0
-
-    def axes_of(self, up: str) -> tuple[int, int, int]:
-        """Which axes of a file whose vertical axis is `up` become x, y and z, unless the caller knows better."""
-        return AXES[self.up or up]
-
-    def scene_from_file(self, unit: float, up: str) -> np.ndarray:
-        """[4, 4] that takes a file's coordinates to x forward, y left, z up in m; unit, up: as the file says."""
-        matrix = np.zeros((4, 4))
-        matrix[range(3), self.axes_of(up)] = unit if self.unit is None else self.unit
-        matrix[3, 3] = 1.0
-        return matrix

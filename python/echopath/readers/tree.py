@@ -1,7 +1,6 @@
 """Builds the tree of a Model: names that a scene takes, materials by their foreign names, notes that count."""
 from __future__ import annotations
 
-import re
 from collections import Counter
 from dataclasses import replace
 
@@ -9,15 +8,8 @@ import numpy as np
 
 from .material_names import material_of, note_of_unknown
 from .model import Model, ModelNode
+from .names import fit_name, unique
 from .options import ReadOptions
-
-MAX_NAME = 120  # letters of a node's name
-
-
-def fit_name(text: str, instead: str = "node") -> str:
-    """A name that a scene takes: without '/', '*', '?', quotes, signs that cannot be seen and spaces at its ends."""
-    text = re.sub(r"[/*?'\"\x00-\x1f\x7f\ud800-\udfff]+", "_", str(text))[:MAX_NAME].strip()
-    return text or instead
 
 
 class Tree:
@@ -26,8 +18,7 @@ class Tree:
     def __init__(self, options: ReadOptions):
         self.options = options
         self.nodes: list[ModelNode] = []
-        self._taken: set[tuple[int, str]] = set()
-        self._next: Counter[tuple[int, str]] = Counter()
+        self._taken: dict[int, dict[str, int]] = {}  # node -> names of its children
         self._meaning: dict[str, tuple] = {}
         self._unknown: list[str] = []
         self._notes: dict[str, None] = {}
@@ -39,12 +30,18 @@ class Tree:
             fields["material"] = self._material(fields.get("foreign_material", ""))
         if fields.get("placement") is not None and np.array_equal(fields["placement"], np.eye(4)):
             fields["placement"] = None
-        self.nodes.append(ModelNode(self._free(fit_name(name), parent), parent, **fields))
+        own_name = unique(fit_name(name), self._taken.setdefault(parent, {}))
+        self.nodes.append(ModelNode(own_name, parent, **fields))
         return len(self.nodes) - 1
 
     def note(self, sentence: str) -> None:
         """Adds a sentence, once."""
         self._notes[sentence] = None
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """The sentences so far."""
+        return tuple(self._notes)
 
     def count(self, what: str) -> None:
         """Counts something that was left out or mended, told as "3 x what"."""
@@ -57,14 +54,6 @@ class Tree:
         if not any(node.mesh is not None for node in self.nodes):
             notes += ("the file holds no surface",)
         return Model(tuple(_with_meshes(self.nodes)), notes=notes, **fields)
-
-    def _free(self, name: str, parent: int) -> str:
-        free = name
-        while (parent, free) in self._taken:
-            self._next[parent, name] += 1
-            free = f"{name}_{self._next[parent, name] + 1}"
-        self._taken.add((parent, free))
-        return free
 
     def _material(self, name: str):
         if name not in self._meaning:

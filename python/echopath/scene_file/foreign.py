@@ -4,7 +4,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..readers import load_model
-from ..readers.tree import fit_name
+from ..readers.names import fit_name
 from ..scene import Scene
 
 

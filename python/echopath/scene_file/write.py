@@ -8,7 +8,7 @@ from pathlib import Path
 from .. import _core
 from ..files import written_whole
 from ..readers import Model, load_model
-from ..readers.tree import fit_name
+from ..readers.names import fit_name
 from ..scene import Scene
 from .vantage import vantage
 

@@ -6,11 +6,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ... import _core
+from ..names import fit_name, unique
 from ..options import ReadOptions
+from ..sampled import chosen_animation
 from .accessors import FLOAT, Accessors
 from .document import Document
 from .item import Item
-from .names import fit_name, unique
 
 PATHS = {"translation": "VEC3", "rotation": "VEC4", "scale": "VEC3", "weights": "SCALAR"}
 INTERPOLATIONS = {"LINEAR": "linear", "STEP": "step", "CUBICSPLINE": "hermite"}
@@ -40,19 +41,15 @@ def animation_names(document: Document) -> tuple[str, ...]:
                  for index, item in enumerate(document.json["animations"].objects()))
 
 
-def chosen_animation(document: Document, accessors: Accessors, names: tuple, options: ReadOptions) -> Animation:
+def read_animation(document: Document, accessors: Accessors, names: tuple, options: ReadOptions) -> Animation:
     """The animation that the caller asks for. Raises ValueError for a name that is not there."""
-    if options.animation == "" or (options.animation is None and not names):
+    name = chosen_animation(options, names)
+    if name is None:
         return Animation()
-    if options.animation is not None and options.animation not in names:
-        there = "'" + "', '".join(names) + "'" if names else "none"
-        raise ValueError(f"animation: {document.file} has no '{options.animation}', it has {there}")
-    index = 0 if options.animation is None else names.index(options.animation)
-    item = document.json["animations"].objects()[index]
-    curves = _Channels(document, accessors, item).curves()
+    curves = _Channels(document, accessors, document.json["animations"].objects()[names.index(name)]).curves()
     duration = max((curve.times[-1] for curve in curves.values()), default=0.0)
     looped = options.loop and duration >= SHORTEST_LOOP
-    return Animation(names[index], curves, duration, duration if looped else None, options.offset)
+    return Animation(name, curves, duration, duration if looped else None, options.offset)
 
 
 class _Channels:

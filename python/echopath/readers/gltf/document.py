@@ -5,6 +5,7 @@ import base64
 import binascii
 import json
 import urllib.parse
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -20,12 +21,11 @@ MOST_GROWTH = 64
 class Document:
     """A glTF file: `json`, an Item, its `buffers` and their bytes. What it says of itself is not trusted.
 
-    path: of the file; notes: sentences, each once, filled by all who read from it
+    path: of the file; note: takes a sentence about what was left out or mended
     """
 
-    def __init__(self, path: Path):
-        self.path, self.file = path, str(path)
-        self.notes: dict[str, None] = {}
+    def __init__(self, path: Path, note: Callable[[str], None]):
+        self.path, self.file, self.note = path, str(path), note
         content = _bytes_of(path, self.file)
         self.binary: bytes | None = None
         self.json = Item(self._parsed(content), self.file)
@@ -42,10 +42,6 @@ class Document:
         most = MOST_BYTES + MOST_GROWTH * self._size
         if self._spent > most:
             item.fail(f"needs more than {most >> 20} MiB of memory, too much for a file of {self._size} bytes")
-
-    def note(self, sentence: str) -> None:
-        """Adds a sentence to the notes, once."""
-        self.notes[sentence] = None
 
     def buffer(self, index: int) -> bytes:
         """The bytes of a buffer, as many as it says."""

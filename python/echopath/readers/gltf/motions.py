@@ -90,7 +90,8 @@ class Motions:
         curve = self._curves.get((node, path))
         if curve is None:
             return None
-        convert = {"translation": self._nodes.points, "rotation": self._nodes.quaternions, "scale": self._nodes.scales}[path]
+        axes = self._nodes.axes
+        convert = {"translation": axes.points, "rotation": axes.quaternions, "scale": axes.turned}[path]
         if path == "rotation" and curve.interpolation != "hermite":
             lengths = np.linalg.norm(curve.values, axis=1)[:, None]
             curve = curve.replace(values=curve.values / np.where(lengths > 0.0, lengths, 1.0))

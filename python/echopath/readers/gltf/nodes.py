@@ -3,9 +3,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..axes import Axes
+from ..names import fit_name
 from .document import Document
 from .item import Item
-from .names import fit_name
 
 DEEPEST = 512           # levels of a tree; a scene keeps the names of all of them for each node
 ORTHOGONAL = 1e-3       # how far the axes of a matrix may be off a rotation that is animated
@@ -16,11 +17,11 @@ LEVEL_BYTES = 65        # of its full name, for each level, and of the time to g
 class Nodes:
     """The nodes of the scene that a document shows, in an order with parents first.
 
-    order: [N] indices of nodes; parent: {node: parent or -1}; name: {node: own name, fit for a scene}
+    order: [N] indices of nodes; parent: {node: parent or -1}; name: {node: own name, fit for a scene}; axes: of the file
     """
 
-    def __init__(self, document: Document, axes: tuple, unit: float):
-        self._document, self._axes, self._unit = document, list(axes), unit
+    def __init__(self, document: Document, axes: Axes):
+        self._document, self.axes = document, axes
         self._items = document.json["nodes"].objects()
         self._meshes = document.json["meshes"].objects()
         self.parent: dict[int, int] = {}
@@ -90,18 +91,12 @@ class Nodes:
             matrix = item["matrix"].numbers(16).reshape(4, 4).T
             if np.abs(matrix[3] - (0.0, 0.0, 0.0, 1.0)).max() > 1e-6:
                 item["matrix"].fail("must end its columns with 0, 0, 0 and 1")
-            return self._converted(matrix)
+            return self.axes.matrices(matrix)
         translation, rotation, scale = self.parts(node)
         made = np.eye(4)
         made[:3, :3] = matrix_of(rotation) * scale
         made[:3, 3] = translation
         return made
-
-    def _converted(self, matrix: np.ndarray) -> np.ndarray:
-        made = np.eye(4)
-        made[:3, :3] = matrix[:3, :3][np.ix_(self._axes, self._axes)]
-        made[:3, 3] = self._unit * matrix[:3, 3][self._axes]
-        return made + 0.0
 
     def parts(self, node: int) -> tuple:
         """(translation [3] in m, rotation [4] (w, x, y, z), scale [3]) at rest, in axes of a scene."""
@@ -118,11 +113,11 @@ class Nodes:
         length = np.linalg.norm(rotation)
         if not 0.5 < length < 2.0:
             item["rotation"].must_be("a unit quaternion (x, y, z, w)")
-        return self._unit * translation[self._axes] + 0.0, self.quaternions(rotation / length), scale[self._axes]
+        return self.axes.points(translation), self.axes.quaternions(rotation / length), self.axes.turned(scale)
 
     def _taken_apart(self, item: Item) -> tuple:
         """The parts of a matrix; needed only where some of them are animated."""
-        matrix = self._converted(item.numbers(16).reshape(4, 4).T)
+        matrix = self.axes.matrices(item.numbers(16).reshape(4, 4).T)
         scale = np.linalg.norm(matrix[:3, :3], axis=0)
         if np.linalg.det(matrix[:3, :3]) < 0.0:
             scale[0] = -scale[0]
@@ -131,23 +126,12 @@ class Nodes:
             item.fail("must be a translation, a rotation and a scale, as the node is animated")
         return matrix[:3, 3], quaternion_of(axes), scale
 
-    def quaternions(self, xyzw: np.ndarray) -> np.ndarray:
-        """[..., 4] (x, y, z, w) of the file as (w, x, y, z) in axes of a scene."""
-        return xyzw[..., [3, *self._axes]] + 0.0
-
-    def points(self, values: np.ndarray) -> np.ndarray:
-        """[..., 3] of the file in axes of a scene and m."""
-        return self._unit * values[..., self._axes] + 0.0
-
-    def scales(self, values: np.ndarray) -> np.ndarray:
-        return values[..., self._axes]
-
     def inverse_bind(self, columns: np.ndarray, item: Item) -> np.ndarray:
         """[J, 4, 4] of matrices [J, 16] of the file."""
         matrices = columns.reshape(-1, 4, 4).transpose(0, 2, 1)
         if np.abs(matrices[:, 3] - (0.0, 0.0, 0.0, 1.0)).max() > 1e-4:
             item.fail("must hold matrices whose columns end with 0, 0, 0 and 1")
-        return np.stack([self._converted(matrix) for matrix in matrices])
+        return self.axes.matrices(matrices)
 
 
 def matrix_of(q: np.ndarray) -> np.ndarray:

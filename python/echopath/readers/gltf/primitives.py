@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..axes import Axes
 from .accessors import FLOAT, UNSIGNED, Accessors
 from .document import Document
 from .item import Item
@@ -37,9 +38,9 @@ class Primitive:
 class Primitives:
     """Reads the primitives of a document, each once."""
 
-    def __init__(self, document: Document, accessors: Accessors, axes: tuple, unit: float):
+    def __init__(self, document: Document, accessors: Accessors, axes: Axes):
         self._document, self._accessors = document, accessors
-        self._axes, self._unit = list(axes), unit
+        self._axes = axes
         self._meshes = document.json["meshes"].objects()
         self._materials = document.json["materials"].objects()
         self._read: dict[int, list[Primitive]] = {}
@@ -93,7 +94,7 @@ class Primitives:
 
     def _points(self, reference: Item) -> np.ndarray:
         """[V, 3] in m."""
-        return self._unit * self._accessors.numbers(reference, "VEC3")[:, self._axes] + 0.0
+        return self._axes.points(self._accessors.numbers(reference, "VEC3"))
 
     def _triangles(self, item: Item, mode: int, num_vertices: int) -> np.ndarray:
         """[F, 3] whatever the mode."""
@@ -116,7 +117,7 @@ class Primitives:
     def _normals(self, reference: Item, num_vertices: int) -> np.ndarray | None:
         if not reference.is_given:
             return None
-        normals = self._accessors.numbers(reference, "VEC3")[:, self._axes]
+        normals = self._axes.turned(self._accessors.numbers(reference, "VEC3"))
         self._require_rows(reference, normals, num_vertices)
         return normals
 

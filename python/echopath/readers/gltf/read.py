@@ -5,20 +5,21 @@ from pathlib import Path
 
 import numpy as np
 
-from ..material_names import material_of, note_of_unknown
-from ..model import Model, ModelNode
+from ..axes import Axes
+from ..model import Model
+from ..names import fit_name
 from ..options import ReadOptions
+from ..tree import Tree
 from .accessors import Accessors
-from .animations import animation_names, chosen_animation
+from .animations import animation_names, read_animation
 from .document import Document
 from .extensions import check_extensions
 from .motions import Motions
-from .names import fit_name, unique
 from .nodes import Nodes
 from .primitives import Primitives
 from .surfaces import Surface, Surfaces
 
-UNIT, UP = 1.0, "y"
+UP = "y"
 ROOT = -1
 NAME_BYTES = 65      # of a level in the full name of a node
 NODE_BYTES = 2000    # of a node of a scene, about
@@ -27,22 +28,21 @@ NODE_BYTES = 2000    # of a node of a scene, about
 def read(path: Path, options: ReadOptions) -> Model:
     """The scene that a .gltf or .glb file shows. Raises FileError naming the file and the place; ValueError for a name of an
     animation that is not there."""
-    document = Document(path)
+    tree, axes = Tree(options), Axes(options, up=UP)
+    document = Document(path, tree.note)
     _check_version(document)
     check_extensions(document)
     accessors = Accessors(document)
     names = animation_names(document)
-    animation = chosen_animation(document, accessors, names, options)
-    axes, unit = options.axes_of(UP), UNIT if options.unit is None else options.unit
-    nodes = Nodes(document, axes, unit)
+    animation = read_animation(document, accessors, names, options)
+    nodes = Nodes(document, axes)
     motions = Motions(nodes, animation)
-    surfaces = Surfaces(document, accessors, nodes, motions, Primitives(document, accessors, axes, unit), animation)
-    tree = _Tree(document, nodes, motions, surfaces, options)
-    made = tree.nodes()
-    if not made:
-        document.json.fail("shows no triangles" + "".join(f"; {note}" for note in list(document.notes)[:3]))
-    return Model(nodes=made, format="glTF 2.0", unit=unit, up=options.up or UP, animations=names, animation=animation.name,
-                 duration=animation.duration, notes=(*document.notes, *note_of_unknown(tree.unknown_materials)))
+    surfaces = Surfaces(document, accessors, nodes, motions, Primitives(document, accessors, axes), animation)
+    _Content(document, nodes, motions, surfaces, tree).add_all()
+    if not tree.nodes:
+        document.json.fail("shows no triangles" + "".join(f"; {note}" for note in tree.notes[:3]))
+    return tree.model(format="glTF 2.0", unit=axes.unit, up=axes.up, animations=names, animation=animation.name,
+                      duration=animation.duration)
 
 
 def _check_version(document: Document) -> None:
@@ -53,19 +53,16 @@ def _check_version(document: Document) -> None:
             asset[key].fail(f"must be 2.0, is {version!r}"[:100] + "; only glTF 2.0 is read")
 
 
-class _Tree:
-    """Makes the nodes of a model: those of the file that have surfaces, and those above them."""
+class _Content:
+    """Puts into a tree the nodes of the file that have surfaces, and those above them."""
 
-    def __init__(self, document: Document, nodes: Nodes, motions: Motions, surfaces: Surfaces, options: ReadOptions):
+    def __init__(self, document: Document, nodes: Nodes, motions: Motions, surfaces: Surfaces, tree: Tree):
         self._document, self._nodes, self._motions = document, nodes, motions
-        self._surfaces, self._materials = surfaces, options.materials
-        self.unknown_materials: list[str] = []           # of each surface whose material nothing took
-        self._made: list[ModelNode] = []
-        self._level: list[int] = []                      # of each node of the model
-        self._place: dict[int, int] = {ROOT: ROOT}       # node of the file -> node of the model
-        self._taken: dict[int, dict] = {}                # node of the model -> names of its children
+        self._surfaces, self._tree = surfaces, tree
+        self._level: list[int] = []                      # of each node of the tree
+        self._place: dict[int, int] = {ROOT: ROOT}       # node of the file -> node of the tree
 
-    def nodes(self) -> tuple[ModelNode, ...]:
+    def add_all(self) -> None:
         plain, moved = self._with_surfaces()
         needed = {above for node in plain for above in self._nodes.chain(node)}
         needed |= {above for _, carrier in moved for above in self._nodes.chain(carrier)}
@@ -76,7 +73,6 @@ class _Tree:
         for (node, carrier), found in moved.items():
             world = self._still_world(carrier)
             self._add_with(node, carrier, np.linalg.inv(world) if carrier != ROOT else np.eye(4), None, found)
-        return tuple(self._made)
 
     def _with_surfaces(self) -> tuple[dict, dict]:
         """{node: surfaces that its place and motion move}, {(node, carrier): surfaces that joints move}.
@@ -145,14 +141,8 @@ class _Tree:
     def _add(self, name: str, parent: int, placement, motion, mesh=None, surface: Surface | None = None) -> int:
         self._level.append(1 if parent < 0 else self._level[parent] + 1)
         self._document.spend(NODE_BYTES + NAME_BYTES * self._level[-1], self._document.json["nodes"])
-        fields = {} if surface is None else self._fields_of(surface)
-        self._made.append(ModelNode(unique(name, self._taken.setdefault(parent, {})), parent, placement, motion, mesh, **fields))
-        return len(self._made) - 1
-
-    def _fields_of(self, surface: Surface) -> dict:
-        primitive = surface.primitive
-        material, note = material_of(primitive.material, self._materials)
-        if note:
-            self.unknown_materials.append(primitive.material)
-        return {"deformation": surface.deformation, "material": material, "foreign_material": primitive.material,
-                "smooth": primitive.smooth}
+        fields = {}
+        if surface is not None:
+            fields = {"mesh": mesh, "deformation": surface.deformation, "foreign_material": surface.primitive.material,
+                      "smooth": surface.primitive.smooth}
+        return self._tree.add(name, parent, placement=placement, motion=motion, **fields)

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from ... import _core
+from ..names import unique
 from .accessors import FLOAT, Accessors
 from .animations import Animation
 from .document import Document
 from .item import Item
 from .motions import Motions
-from .names import unique
 from .nodes import Nodes
 from .primitives import Primitive, Primitives
 

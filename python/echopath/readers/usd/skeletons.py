@@ -6,7 +6,8 @@ import numpy as np
 from ... import _core
 from ..axes import Axes
 from ..sampled import Clock, moved_rigidly
-from ..tree import Tree, fit_name
+from ..names import fit_name, unique
+from ..tree import Tree
 from .stage import Timeline, matrix
 
 
@@ -114,11 +115,5 @@ def _local_transforms(query, animated: bool, timeline: Timeline) -> tuple[list, 
 
 def _names(order) -> list[str]:
     """The last words of the joints' paths, each once."""
-    names: list[str] = []
-    for path in order:
-        name = fit_name(str(path).rsplit("/", 1)[-1], "joint")
-        free = name
-        while free in names:
-            free += "_"
-        names.append(free)
-    return names
+    taken: dict[str, int] = {}
+    return [unique(fit_name(str(path).rsplit("/", 1)[-1], "joint"), taken) for path in order]

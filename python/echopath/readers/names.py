@@ -1,0 +1,22 @@
+"""Names of files made fit for a scene."""
+from __future__ import annotations
+
+import re
+
+MAX_NAME = 64  # letters of a node's own name; a scene keeps those of all nodes above it, too
+_UNFIT = re.compile(r"[/*?'\"\x00-\x1f\x7f\ud800-\udfff]+")
+
+
+def fit_name(text: str, instead: str = "node") -> str:
+    """A name that a scene takes: signs that it refuses become '_', long ones are cut; `instead` where nothing is left."""
+    return _UNFIT.sub("_", str(text)[:MAX_NAME]).strip() or instead
+
+
+def unique(name: str, taken: dict[str, int]) -> str:
+    """The name, with a number where it is taken; takes it."""
+    free = name
+    while free in taken:
+        taken[name] += 1
+        free = f"{name}_{taken[name]}"
+    taken[free] = 1
+    return free

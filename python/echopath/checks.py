@@ -29,6 +29,7 @@ WindowName = Literal["rect", "hann", "hamming", "blackman_harris"]
 Window = WindowName | tuple[Literal["chebyshev"], float]           # a name, or with its sidelobe level in dB
 
 LARGEST_SEED = 2**64 - 1
+LONGEST_NAME, LONGEST_PATH = 255, 4096  # bytes of the name of a file and of all folders with it
 LARGEST_COUNT = 2**31 - 1  # of what the core keeps in an int
 KINDS = {"real": "iuf", "complex": "iufc", "whole": "iu"}
 
@@ -161,6 +162,8 @@ def path(argument: str, value) -> str:
         raise refused(TypeError, argument, "the name of a file as text", value)
     if not name or not is_writable(name):
         raise refused(ValueError, argument, "the name of a file, without lone surrogates and NUL", value)
+    if len(os.fsencode(name)) >= LONGEST_PATH or max(map(len, os.fsencode(name).split(b"/"))) > LONGEST_NAME:
+        raise refused(_core.FileError, argument, "the name of a file that can be", value)
     return name
 
 

@@ -70,14 +70,15 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
     another unit.
     """
     wavelength = _core.speed_of_light / radar.waveform.start_frequency
-    if not getattr(scene, "_was_traced", False):
+    is_first, geometry = _remembered(scene)
+    if is_first:
         warn_of_sizes(scene, wavelength, start_time, stacklevel=_CALLER)
     warn_of_coarse_meshes(scene, radar.waveform.start_frequency, stacklevel=_CALLER)
     model = chosen_model(polarization, scene, wavelength, antennas_of(radar), argument="polarization")
     paths = _core.trace(scene, radar, num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
                         polarization=model, footprint=footprint, sampler=sampler, batches=batches,
                         target_error_db=target_error_db, max_rays=max_rays, scatterers=scatterers, progress=progress,
-                        kept=_geometry_of(scene))
+                        kept=geometry)
     for warn in (warn_of_lost_rays, warn_of_unfollowed_beams, warn_of_unaimed):
         warn(paths.frame.statistics, stacklevel=_CALLER)
     return paths
@@ -164,12 +165,14 @@ def mie_rcs(radius: float, frequency: float, bistatic_angle: float = 0.0, plane:
     return _core.mie_rcs(radius, frequency, bistatic_angle, plane)
 
 
-def _geometry_of(scene: _core.Scene) -> _core.KeptGeometry | None:
-    """Where the geometry of a scene's traces is kept; None for its first trace: one that is traced once keeps nothing."""
-    state = getattr(scene, "__dict__", None)  # plain scenes of the core have none
-    if state is None:
-        return None
-    if not state.setdefault("_was_traced", False):
-        state["_was_traced"] = True
-        return None
-    return state.setdefault("_geometry", _core.KeptGeometry())
+def _remembered(scene: _core.Scene) -> tuple[bool, _core.KeptGeometry | None]:
+    """(whether this is a scene's first trace, where its geometry is kept for the next).
+
+    A scene that is traced once keeps nothing. Plain scenes of the core never do: each of their traces is a first one.
+    """
+    memory = getattr(scene, "__dict__", None)
+    if memory is None or "_was_traced" not in memory:
+        if memory is not None:
+            memory["_was_traced"] = True
+        return True, None
+    return False, memory.setdefault("_geometry", _core.KeptGeometry())

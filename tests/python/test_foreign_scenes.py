@@ -12,6 +12,7 @@ from echopath.cli import main
 from echopath.readers.material_names import material_of, note_of_unknown
 from echopath.readers.sizes import unit_doubt
 from fuzz.foreign import SQUARE, bvh_text, walk_frames
+from support.scene_text import WAVEFORM
 
 ROUNDING = 1e-12
 
@@ -203,26 +204,19 @@ def test_load_scene_takes_a_foreign_file_by_its_suffix(town):
 
 def test_a_scene_file_names_a_model_with_its_settings(tmp_path):
     (tmp_path / "wall.obj").write_text(SQUARE + "usemtl pane\nf 1 2 3 4\n")
-    text = """[radar.waveform]
-start_frequency = 77e9
-bandwidth = 1e9
-num_samples = 64
-sampling_rate = 1e7
-num_chirps = 8
-chirp_interval = 6e-5
+    (tmp_path / "scene.toml").write_text(WAVEFORM + """
 [[radar.transmitters]]
-position = [0, 0, 0]
+position = [0.0, 0.0, 0.0]
 [[radar.receivers]]
-position = [0, 0, 0]
+position = [0.0, 0.0, 0.0]
 [[objects]]
 name = "wall"
 model = "wall.obj"
 unit = 2.0
 up = "y"
 materials = {"pane*" = {base = "glass", mirror = true}}
-position = [5, 0, 0]
-"""
-    (tmp_path / "scene.toml").write_text(text.replace("[0, 0, 0]", "[0.0, 0.0, 0.0]").replace("[5, 0, 0]", "[5.0, 0.0, 0.0]"))
+position = [5.0, 0.0, 0.0]
+""")
     scene = ep.load_scene(tmp_path / "scene.toml").scene
     assert scene.meshes[0].material == ep.materials["glass"].replace(mirror=True)
     assert np.allclose(scene.world_vertices(0, 0.0).max(axis=0), [5, 2, 2])

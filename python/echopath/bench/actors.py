@@ -5,7 +5,6 @@ median says more of a usual aspect; both are given.
 """
 from __future__ import annotations
 
-import csv
 import dataclasses
 from collections.abc import Callable
 from pathlib import Path
@@ -15,8 +14,10 @@ import numpy as np
 import echopath as ep
 
 from .. import actors
+from ..files import write_texts
 from ..origin import FIXED_SEEDS
 from ..plots.style import new_figure, save_png
+from .steps import csv_text, told
 
 FREQUENCY = 77e9                     # Hz
 AZIMUTH_STEP, QUICK_AZIMUTH_STEP = 5.0, 30.0   # deg
@@ -86,21 +87,12 @@ def run_actors(folder, *, quick: bool = False, progress=None) -> list[Aspect]:
 
     quick: few azimuths and rays; progress: callable (stage, fraction) or None
     """
-    found = []
-    for index, subject in enumerate(SUBJECTS):
-        if progress:
-            progress("actors", index / len(SUBJECTS))
-        found.append(aspect_of(subject, quick=quick))
-    if progress:
-        progress("actors", 1.0)
-    folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    with open(folder / "actors.csv", "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(["actor", "mean_dbsm", "median_dbsm", "published", "low", "high", "within", "source"])
-        writer.writerows([one.subject.name, f"{one.mean:.1f}", f"{one.median:.1f}", one.subject.statistic, one.subject.low,
-                          one.subject.high, one.is_within, one.subject.source] for one in found)
-    draw(found, folder / "actors.png")
+    found = [aspect_of(subject, quick=quick) for subject in told(SUBJECTS, "actors", progress)]
+    rows = [{"actor": one.subject.name, "mean_dbsm": f"{one.mean:.1f}", "median_dbsm": f"{one.median:.1f}",
+             "published": one.subject.statistic, "low": one.subject.low, "high": one.subject.high, "within": one.is_within,
+             "source": one.subject.source} for one in found]
+    write_texts(folder, {"actors.csv": csv_text(rows)})
+    draw(found, Path(folder) / "actors.png")
     return found
 
 

@@ -13,6 +13,7 @@ import echopath as ep
 from ..files import write_texts
 from .certificate_scenes import KINDS, random_scene
 from .machine import machine
+from .steps import told
 
 SCENES, QUICK_SCENES = 40, 8
 RAYS = 12_000
@@ -67,12 +68,10 @@ def run_certificate(folder, *, scenes: int | None = None, quick: bool = False, p
     count = scenes or (QUICK_SCENES if quick else SCENES)
     began = time.perf_counter()
     verdicts, check_s = [], 0.0
-    for seed in range(count):
+    for seed in told(range(count), "certificate", progress):
         found, seconds = judge_scene(seed)
         verdicts += found
         check_s += seconds
-        if progress:
-            progress("certificate", (seed + 1) / count)
     results = {"machine": machine(), "scenes": count, "rays": RAYS, "kinds": {kind: _row(kind, verdicts) for kind in KINDS},
                "all": _row(None, verdicts), "check_s": check_s, "seconds": time.perf_counter() - began,
                "uncertified": [_entry(v) for v in verdicts if v.is_wrong and v.certified],

@@ -14,6 +14,7 @@ from ..files import write_texts
 from . import crowd_scenes as scenes
 from .crowd_coverage import measure_coverage
 from .machine import machine
+from .steps import told
 from .speed_tracer import bare_share
 from .timing import processor_time
 
@@ -43,11 +44,7 @@ def run_crowd(folder, *, quick: bool = False, progress=None) -> dict:
              "ground": lambda: measure_ground(quick=quick), "person": lambda: measure_person(quick=quick),
              "mirrors": lambda: measure_mirrors(quick=quick),
              "coverage": lambda: measure_coverage(quick=quick)}
-    results = {"machine": machine(), "quick": quick}
-    for index, (name, work) in enumerate(works.items()):
-        results[name] = work()
-        if progress:
-            progress("crowd", (index + 1) / len(works))
+    results = {"machine": machine(), "quick": quick} | {name: works[name]() for name in told(list(works), "crowd", progress)}
     results["must_reach"] = verdicts(results)
     results["seconds"] = time.perf_counter() - began
     folder = Path(folder)

@@ -5,10 +5,8 @@ polarisations of a road. Spheres between two antennas are held against Mie.
 """
 from __future__ import annotations
 
-import csv
 import dataclasses
 import math
-from pathlib import Path
 
 import numpy as np
 
@@ -16,6 +14,8 @@ import echopath as ep
 
 from ..actors import shapes
 from ..effects.surfaces import bistatic_limit_deg
+from ..files import write_texts
+from .steps import csv_text, told
 
 FREQUENCY = 77e9                     # Hz
 AZIMUTH_STEP, QUICK_AZIMUTH_STEP = 5.0, 15.0   # deg
@@ -75,21 +75,12 @@ def run_published(folder, *, quick: bool = False, progress=None) -> list[Compari
     quick: few azimuths; progress: callable (stage, fraction) or None
     """
     works = [lambda: pedestrian(QUICK_AZIMUTH_STEP if quick else AZIMUTH_STEP), road, spheres]
-    rows = []
-    for index, work in enumerate(works):
-        if progress:
-            progress("targets", index / len(works))
-        rows += work()
-    if progress:
-        progress("targets", 1.0)
-    folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
-    with open(folder / "targets.csv", "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(["target", "unit", "model", "published_low", "published_high", "deviation", "within", "source"])
-        writer.writerows([row.name, row.unit, f"{row.model:.3f}", row.low, row.high, f"{row.deviation:.3f}", row.is_within,
-                          row.source] for row in rows)
-    return rows
+    found = [comparison for work in told(works, "targets", progress) for comparison in work()]
+    rows = [{"target": one.name, "unit": one.unit, "model": f"{one.model:.3f}", "published_low": one.low,
+             "published_high": one.high, "deviation": f"{one.deviation:.3f}", "within": one.is_within, "source": one.source}
+            for one in found]
+    write_texts(folder, {"targets.csv": csv_text(rows)})
+    return found
 
 
 def describe(rows: list[Comparison]) -> list[str]:

@@ -1,12 +1,11 @@
 """The benchmark in words and numbers."""
 from __future__ import annotations
 
-import csv
-import io
 import json
 from pathlib import Path
 
 from ..files import write_texts
+from .steps import csv_text
 
 MUST_REACH = (  # target, rays, dB
     ("sphere_161", 2 ** 13, 0.1), ("sphere_3228", 2 ** 13, 0.1), ("ellipsoid", 2 ** 14, 0.1))
@@ -41,16 +40,8 @@ def write_results(results: dict, folder: Path) -> None:
     """Writes physics.json, physics.csv (a row for each target, variant and number of rays) and costs.csv."""
     points = [{"target": name, "variant": label, **{column: point[column] for column in POINT_COLUMNS}}
               for name, target in results["targets"].items() for label, curve in target["curves"].items() for point in curve]
-    write_texts(folder, {"physics.json": json.dumps(results, indent=1) + "\n", "physics.csv": _csv(points),
-                         "costs.csv": _csv(results["costs"])})
-
-
-def _csv(rows: list[dict]) -> str:
-    stream = io.StringIO()
-    writer = csv.DictWriter(stream, fieldnames=list(rows[0]), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    return stream.getvalue()
+    write_texts(folder, {"physics.json": json.dumps(results, indent=1) + "\n", "physics.csv": csv_text(points),
+                         "costs.csv": csv_text(results["costs"])})
 
 
 def describe(results: dict) -> list[str]:

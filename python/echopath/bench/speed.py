@@ -2,8 +2,6 @@
 frame beside its floor."""
 from __future__ import annotations
 
-import csv
-import io
 import json
 import time
 from pathlib import Path
@@ -15,6 +13,7 @@ import echopath as ep
 from ..files import write_texts
 from . import replay_cases, speed_frames, speed_guard, speed_retrace, speed_synthesis, speed_tracer
 from .machine import machine
+from .steps import csv_text
 from .timing import processor_time
 
 REPLAY_RAYS, QUICK_REPLAY_RAYS = 50_000, 1_000
@@ -52,7 +51,7 @@ def run_speed(folder, *, quick: bool = False, progress=None) -> dict:
     results["seconds"] = time.perf_counter() - began
     folder = Path(folder)
     write_texts(folder, {"speed.json": json.dumps(results, indent=1) + "\n",
-                         "speed.csv": _csv(results["synthesis"]["rows"])})
+                         "speed.csv": csv_text(results["synthesis"]["rows"], COLUMNS)})
     draw_synthesis(results, folder / "speed_synthesis.png")
     draw_frames(results, folder / "speed_frames.png")
     return results
@@ -70,14 +69,6 @@ def _counter(progress, quick: bool):
             progress("speed", min(1.0, done / steps))
 
     return tell
-
-
-def _csv(rows: list[dict]) -> str:
-    stream = io.StringIO()
-    writer = csv.DictWriter(stream, fieldnames=COLUMNS, restval="", extrasaction="ignore", lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    return stream.getvalue()
 
 
 def _replay(case, quick: bool) -> dict:

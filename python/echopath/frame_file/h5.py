@@ -5,7 +5,6 @@ have a CRC-32 here. Texts have a fixed length: the library runs in circles in da
 """
 from __future__ import annotations
 
-import errno
 import functools
 import math
 import os
@@ -17,7 +16,6 @@ import numpy as np
 
 from .. import _core
 from ..interrupts import heed, interrupts_are_kept
-from ..shown import shown
 
 BLOCK_BYTES = 1 << 23   # written or read at a time: between two blocks Ctrl-C is answered
 CHUNK_BYTES = 1 << 20   # of compression
@@ -259,8 +257,6 @@ def reading(path):
     except FileNotFoundError:
         raise _core.FileError(f"{path}: no such file") from None
     except _FAULTS as error:
-        if isinstance(error, OSError) and error.errno == errno.ENAMETOOLONG:
-            raise _core.FileError(f"path: must be the name of a file that can be, got {shown(str(path))}") from None
         if Path(path).suffix.lower() == ".toml":
             raise _core.FileError(f"{path}: a scene file, where a frame file (.h5) is asked for; `echopath run {path} --out "
                                   "DIR` makes DIR/frame.h5 of it") from None

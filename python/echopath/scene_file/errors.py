@@ -5,7 +5,7 @@ from contextlib import contextmanager
 
 from pydantic import BaseModel, ValidationError
 
-MAX_VALUE_LENGTH = 60  # characters of a value that a message repeats
+from ..shown import shown
 
 _RULES = {
     "missing": "is missing",
@@ -38,12 +38,6 @@ def dotted(location) -> str:
         elif not item.startswith("<"):
             text += f".{item}" if text else item
     return text
-
-
-def shown(value) -> str:
-    """The value as a message repeats it."""
-    text = repr(value)
-    return text if len(text) <= MAX_VALUE_LENGTH else text[: MAX_VALUE_LENGTH - 3] + "..."
 
 
 def one_line(error: dict, prefix: tuple = ()) -> str:

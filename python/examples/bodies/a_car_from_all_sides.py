@@ -4,6 +4,10 @@ A car from all sides
 
 The radar cross section of a compact car at 77 GHz over aspect. Its panels are curved and smooth: each aspect has its own few
 points that mirror the radar, and where a panel is square to it, abeam and behind, the echo flashes.
+
+At 77 GHz a panel of a metre is 250 wavelengths wide, and an echo to the side of its flash is what is left of a sum that nearly
+cancels. No affordable number of rays knows each of 72 aspects to 3 dB (131 072 leave 56 of them), of which `ep.rcs` warns. The
+picture is of the course over aspect, whose median a tenth of these rays finds to 1 dB, so the warning is silenced.
 """
 import warnings
 
@@ -12,12 +16,12 @@ import numpy as np
 
 import echopath as ep
 
-warnings.filterwarnings("ignore", "rcs: .* not known to 3 dB")  # single aspects of 4096 rays; the picture is of their course
+warnings.filterwarnings("ignore", "rcs: .* not known to 3 dB")
 scene = ep.Scene()
 scene.add(ep.actors.car(), name="car")
 azimuth = np.radians(np.arange(0.0, 360.0, 5.0))
 directions = np.column_stack([np.cos(azimuth), np.sin(azimuth), 0.0 * azimuth])
-power = ep.rcs(scene, frequency=77e9, incidence=directions, num_rays=4096, components=True)
+power = ep.rcs(scene, frequency=77e9, incidence=directions, num_rays=30_000, components=True)
 total = power["coherent"] + power["diffuse"]
 print(f"mean {10 * np.log10(np.mean(total)):.1f} dBsm, median {10 * np.log10(np.median(total)):.1f} dBsm")
 

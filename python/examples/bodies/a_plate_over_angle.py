@@ -3,7 +3,8 @@ A plate over angle
 ==================
 
 The radar cross section of a square metal plate, against physical optics in closed form: (4 pi A^2 / wavelength^2) cos^2
-sinc^2. Far side lobes are made by the edges alone; they need more rays than the main lobe does.
+sinc^2. Far side lobes are made by the edges alone; they need more rays than the main lobe does. 256 rays are too few on
+purpose, to show what that looks like; `ep.rcs` warns of them, and the warning is silenced here.
 """
 import warnings
 
@@ -21,7 +22,7 @@ scene.add(ep.actors.plate(side, side), name="plate", material="metal")
 # Directions point from the target towards the antennas: the plate's front looks along -x.
 angle = np.radians(np.linspace(0, 25, 151))
 toward_radar = np.column_stack([-np.cos(angle), np.sin(angle), np.zeros_like(angle)])
-warnings.filterwarnings("ignore", "rcs: .* not known to 3 dB")  # of 256 rays, which the picture is to show
+warnings.filterwarnings("ignore", "rcs: .* not known to 3 dB")
 traced = {num_rays: ep.rcs(scene, frequency=frequency, incidence=toward_radar, num_rays=num_rays) for num_rays in (256, 4096)}
 
 phase = 2 * side * np.sin(angle) / wavelength

@@ -4,6 +4,7 @@ Error against rays
 
 How many rays does a coherent echo need? A metal sphere of 0.1 m at 77 GHz has a closed form, pi a^2. Each ray stands for a
 patch of the surface, its footprint; how the phase over that patch is taken into account decides by how much the sum errs.
+The picture is of numbers of rays that are too small, too; `ep.rcs` warns of those, and the warning is silenced here.
 """
 import warnings
 
@@ -16,7 +17,7 @@ radius = 0.1
 scene = ep.Scene()
 scene.add(ep.actors.sphere(radius, subdivisions=24), name="sphere", material="metal", smooth=True)
 numbers = 2 ** np.arange(8, 15)
-warnings.filterwarnings("ignore", "rcs: .* not known to 3 dB")  # how far off they are, the picture is to show
+warnings.filterwarnings("ignore", "rcs: .* not known to 3 dB")
 
 
 def error_db(num_rays, footprint):

@@ -3,10 +3,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "echopath/base/errors.h"
-#include "echopath/scene/readers/readers.h"
-#include "support/expect_error.h"
-#include "temporary_file.h"
+#include "mesh_files.h"
 
 namespace echopath::test_obj {
 namespace {
@@ -19,14 +16,11 @@ constexpr double kRounding = 1e-12;
 const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 std::vector<NamedMesh> read(const std::string& content, double unit = 1.0) {
-  const TemporaryFile file("mesh.obj", content);
-  return load_meshes(file.path(), unit);
+  return test::read_meshes("mesh.obj", content, unit);
 }
 
 void expect_refused(const std::string& content, std::initializer_list<std::string> pieces) {
-  const TemporaryFile file("broken.obj", content);
-  expect_error<FileError>([&] { load_meshes(file.path()); }, {"echopath_broken.obj"});
-  expect_error<FileError>([&] { load_mesh(file.path()); }, pieces);
+  test::expect_refused("broken.obj", content, pieces);
 }
 
 TEST(Obj, ReadsTheFileWithoutGroupsUnderItsStem) {

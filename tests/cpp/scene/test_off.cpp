@@ -1,27 +1,17 @@
 #include <gtest/gtest.h>
 
-#include "echopath/base/errors.h"
-#include "echopath/scene/readers/readers.h"
-#include "support/expect_error.h"
-#include "temporary_file.h"
+#include "mesh_files.h"
 
 namespace echopath::test_off {
 namespace {
 
-using test::expect_error;
-using test::TemporaryFile;
-
 const std::string kSquare = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
 
-MeshPtr read(const std::string& content) {
-  const TemporaryFile file("mesh.off", content);
-  return load_mesh(file.path());
-}
+MeshPtr read(const std::string& content) { return test::read_meshes("mesh.off", content).at(0).mesh; }
 
 void expect_refused(const std::string& content, std::initializer_list<std::string> pieces) {
-  const TemporaryFile file("broken.off", content);
-  expect_error<FileError>([&] { load_mesh(file.path()); }, {"echopath_broken.off, line"});
-  expect_error<FileError>([&] { load_mesh(file.path()); }, pieces);
+  test::expect_refused("broken.off", content, {"echopath_broken.off, line"});
+  test::expect_refused("broken.off", content, pieces);
 }
 
 TEST(Off, ReadsFacesOfAnySizeInTheirOrder) {

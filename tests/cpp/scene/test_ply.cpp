@@ -5,15 +5,11 @@
 #include <cmath>
 #include <cstring>
 
-#include "echopath/base/errors.h"
-#include "echopath/scene/readers/readers.h"
-#include "support/expect_error.h"
-#include "temporary_file.h"
+#include "mesh_files.h"
 
 namespace echopath::test_ply {
 namespace {
 
-using test::expect_error;
 using test::TemporaryFile;
 
 enum class Format { kAscii, kLittle, kBig };
@@ -54,10 +50,7 @@ std::string first_lines(Format format) {
   return std::string("ply\nformat ") + names[static_cast<int>(format)] + " 1.0\ncomment made by a test\n";
 }
 
-MeshPtr read(const std::string& content) {
-  const TemporaryFile file("mesh.ply", content);
-  return load_mesh(file.path());
-}
+MeshPtr read(const std::string& content) { return test::read_meshes("mesh.ply", content).at(0).mesh; }
 
 std::string two_triangles(Format format) {
   Body body(format);
@@ -113,9 +106,7 @@ TEST(Ply, IsNamedByItsStemAndScaledByTheUnit) {
 }
 
 void expect_refused(const std::string& content, std::initializer_list<std::string> pieces) {
-  const TemporaryFile file("broken.ply", content);
-  expect_error<FileError>([&] { load_mesh(file.path()); }, {"echopath_broken.ply"});
-  expect_error<FileError>([&] { load_mesh(file.path()); }, pieces);
+  test::expect_refused("broken.ply", content, pieces);
 }
 
 // Wherever a file is cut there is an error, and never a mesh. ASCII may lose its last line break.

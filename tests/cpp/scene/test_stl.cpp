@@ -3,16 +3,10 @@
 #include <bit>
 #include <cstring>
 
-#include "echopath/base/errors.h"
-#include "echopath/scene/readers/readers.h"
-#include "support/expect_error.h"
-#include "temporary_file.h"
+#include "mesh_files.h"
 
 namespace echopath::test_stl {
 namespace {
-
-using test::expect_error;
-using test::TemporaryFile;
 
 using Facet = std::array<Vec3, 3>;
 
@@ -49,15 +43,10 @@ std::string text(const std::vector<Facet>& facets, const std::string& name) {
   return lines + "endsolid " + name + "\n";
 }
 
-std::vector<NamedMesh> read(const std::string& content) {
-  const TemporaryFile file("mesh.stl", content);
-  return load_meshes(file.path());
-}
+std::vector<NamedMesh> read(const std::string& content) { return test::read_meshes("mesh.stl", content); }
 
 void expect_refused(const std::string& content, std::initializer_list<std::string> pieces) {
-  const TemporaryFile file("broken.stl", content);
-  expect_error<FileError>([&] { load_meshes(file.path()); }, {"echopath_broken.stl"});
-  expect_error<FileError>([&] { load_meshes(file.path()); }, pieces);
+  test::expect_refused("broken.stl", content, pieces);
 }
 
 void expect_square(const Mesh& mesh) {

@@ -7,6 +7,7 @@ import time
 
 from ...files import write_texts
 from ..machine import machine
+from ..steps import told
 from . import faults, geometry, heavy, motions, oracle, places, repeat, scenes, signals
 from .case import Case
 from .page import page
@@ -48,18 +49,12 @@ def run_hard(folder, *, quick: bool = False, progress=None) -> list[Result]:
 
     quick: without the heavy cases; progress: callable (stage, fraction) or None
     """
-    cases, results = all_cases(with_heavy=not quick), []
-    for index, case in enumerate(cases):
-        if progress:
-            progress("hard", index / len(cases))
-        results.append(measure(case))
+    results = [measure(case) for case in told(all_cases(with_heavy=not quick), "hard", progress)]
     rows = [{"group": one.case.group, "case": one.case.name, "bound": one.case.bound_text, "value": one.value,
              "holds": one.holds, "seen_to_fail": one.case.broken, "seconds": one.seconds, "error": one.error}
             for one in results]
     write_texts(folder, {"hard.md": page(results, described(machine())),
                          "hard.json": json.dumps({"machine": machine(), "cases": rows}, indent=1)})
-    if progress:
-        progress("hard", 1.0)
     return results
 
 

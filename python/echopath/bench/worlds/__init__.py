@@ -6,6 +6,7 @@ from pathlib import Path
 
 from ...files import write_texts
 from ..machine import machine
+from ..steps import told
 from . import city, crowd
 
 PARTS = {"crowd": crowd, "city": city}
@@ -16,11 +17,7 @@ def run_worlds(folder, *, quick: bool = False, progress=None) -> dict:
 
     quick: small scenes, for a look; progress: callable (stage, fraction) or None
     """
-    found = {}
-    for index, (name, part) in enumerate(PARTS.items()):
-        found[name] = part.rows(quick=quick)
-        if progress:
-            progress("worlds", (index + 1) / len(PARTS))
+    found = {name: PARTS[name].rows(quick=quick) for name in told(list(PARTS), "worlds", progress)}
     results = {"machine": machine(), "quick": quick, "rows": found}
     write_texts(Path(folder), {"worlds.json": json.dumps(results, indent=1) + "\n"})
     return results

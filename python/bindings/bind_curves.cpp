@@ -13,6 +13,7 @@
 #include "echopath/motion/curve_motion.h"
 #include "echopath/motion/morph_targets.h"
 #include "leaving.h"
+#include "playback.h"
 #include "value.h"
 
 namespace echopath::bindings {
@@ -42,17 +43,6 @@ Curve curve(Arg<"times", VectorOf<double>> times, Arg<"values", Rows> values,
   made.validate_times("times");
   made.validate("values", static_cast<size_t>(values->shape(1)));
   return made;
-}
-
-Playback playback_of(const std::optional<double>& period, double offset) {
-  const Playback playback{offset, period.value_or(0.0)};
-  require(!period || *period > 0.0, "period", "must be 1e-6 to 1e9 s, or None", period.value_or(0.0));
-  playback.validate();
-  return playback;
-}
-
-py::object period_of(const Playback& playback) {
-  return playback.period > 0.0 ? py::object(py::float_(playback.period)) : py::object(py::none());
 }
 
 py::array_t<double> rows_of(const Curve& self, std::vector<double> numbers) {

@@ -10,9 +10,10 @@
 #include "argument.h"
 #include "define.h"
 #include "echopath/base/errors.h"
-#include "echopath/motion/deformation.h"
+#include "echopath/motion/looped_sequence.h"
 #include "leaving.h"
 #include "plausible.h"
+#include "playback.h"
 #include "value.h"
 
 namespace echopath::bindings {
@@ -53,9 +54,18 @@ std::shared_ptr<KeyframeMotion> keyframe_motion(Arg<"times", VectorOf<double>> t
 }
 
 std::shared_ptr<VertexSequence> vertex_sequence(Arg<"times", VectorOf<double>> times, Arg<"vertices", Frames> vertices,
-                                                Arg<"interpolation", OneOf<kInterpolation>> interpolation) {
+                                                Arg<"interpolation", OneOf<kInterpolation>> interpolation,
+                                                Arg<"period", Optional<Real>> period, Arg<"offset", Real> offset) {
+  const Playback playback = playback_of(*period, *offset);
+  require(*period || playback.offset == 0.0, "offset", "must be 0 s without a period", playback.offset);
   const WithoutGil released;
+  if (*period) return std::make_shared<LoopedSequence>(*times, *vertices, *interpolation, playback);
   return std::make_shared<VertexSequence>(*times, *vertices, *interpolation);
+}
+
+Playback loop_of(const VertexSequence& self) {
+  const auto* looped = dynamic_cast<const LoopedSequence*>(&self);
+  return looped ? looped->playback() : Playback{};
 }
 
 py::dict keywords_of(const LinearMotion& self) {
@@ -75,8 +85,10 @@ py::dict keywords_of(const KeyframeMotion& self) {
 }
 
 py::dict keywords_of(const VertexSequence& self) {
+  const Playback playback = loop_of(self);
   return py::dict(py::arg("times") = to_numpy(self.times()), py::arg("vertices") = to_numpy(self.vertices()),
-                  py::arg("interpolation") = kInterpolation.name_of(self.interpolation()));
+                  py::arg("interpolation") = kInterpolation.name_of(self.interpolation()),
+                  py::arg("period") = period_of(playback), py::arg("offset") = playback.offset);
 }
 
 constexpr const char* kTurnRateDoc = R"(Bound in rad/s of how fast what it does comes and goes between `begin` and `end` (s).
@@ -183,8 +195,12 @@ void bind_sequence(py::module_& m) {
 times: [T] in s, ascending, T >= 2
 vertices: [T, V, 3] in m, in the node's frame and in the order of the vertices the mesh was made from
 interpolation: "cubic" (C2 splines) or "linear" (each inner time is a breakpoint)
+period: s; what the sequence does from 0 s to this time, which `times` must hold, is repeated without end. Frames before and
+    behind shape the splines: a loop whose outer frames repeat its inner ones goes on smoothly. None: it is defined on `span`
+offset: s, the time of a loop at time 0
 Raises TypeError or ValueError naming the argument. Cubic sequences take twice the memory of their vertices.)");
-  define_init(type, &vertex_sequence, py::arg("times"), py::arg("vertices"), py::arg("interpolation") = "cubic")
+  define_init(type, &vertex_sequence, py::arg("times"), py::arg("vertices"), py::arg("interpolation") = "cubic",
+              py::kw_only(), py::arg("period") = py::none(), py::arg("offset") = 0.0)
       .def_property_readonly(
           "times", [](const VertexSequence& self) { return to_numpy(self.times()); }, "[T] in s")
       .def_property_readonly(
@@ -192,6 +208,11 @@ Raises TypeError or ValueError naming the argument. Cubic sequences take twice t
       .def_property_readonly(
           "interpolation", [](const VertexSequence& self) { return kInterpolation.name_of(self.interpolation()); },
           "\"cubic\" or \"linear\"")
+      .def_property_readonly(
+          "period", [](const VertexSequence& self) { return period_of(loop_of(self)); },
+          "s, or None where it is no loop")
+      .def_property_readonly(
+          "offset", [](const VertexSequence& self) { return loop_of(self).offset; }, "s, time of the loop at time 0")
       .def("__repr__", [](const VertexSequence& self) {
         const std::string kind = "VertexSequence(" + std::to_string(self.num_vertices()) + " vertices, ";
         return kind + description("", self.span(), self.times().size(), self.interpolation()).substr(1);

@@ -170,6 +170,9 @@ class VertexSequence(Deformation):
     times: [T] in s, ascending, T >= 2
     vertices: [T, V, 3] in m, in the node's frame and in the order of the vertices the mesh was made from
     interpolation: "cubic" (C2 splines) or "linear" (each inner time is a breakpoint)
+    period: s; what the sequence does from 0 s to this time, which `times` must hold, is repeated without end. Frames before and
+        behind shape the splines: a loop whose outer frames repeat its inner ones goes on smoothly. None: it is defined on `span`
+    offset: s, the time of a loop at time 0
     Raises TypeError or ValueError naming the argument. Cubic sequences take twice the memory of their vertices.
     """
     def __eq__(self, other: object) -> bool:
@@ -180,13 +183,13 @@ class VertexSequence(Deformation):
         ...
     def __hash__(self) -> int:
         ...
-    def __init__(self, times: ArrayLike, vertices: ArrayLike, interpolation: Literal['cubic', 'linear'] = 'cubic') -> None:
+    def __init__(self, times: ArrayLike, vertices: ArrayLike, interpolation: Literal['cubic', 'linear'] = 'cubic', *, period: float | None = None, offset: float = 0.0) -> None:
         ...
     def __repr__(self) -> str:
         ...
     def __setstate__(self, arg0: typing.Any) -> None:
         ...
-    def replace(self, *, times: ArrayLike = ..., vertices: ArrayLike = ..., interpolation: Literal['cubic', 'linear'] = ...) -> VertexSequence:
+    def replace(self, *, times: ArrayLike = ..., vertices: ArrayLike = ..., interpolation: Literal['cubic', 'linear'] = ..., period: float | None = ..., offset: float = ...) -> VertexSequence:
         """
         A copy with other values of some arguments.
 
@@ -197,6 +200,16 @@ class VertexSequence(Deformation):
     def interpolation(self) -> str:
         """
         "cubic" or "linear"
+        """
+    @property
+    def offset(self) -> float:
+        """
+        s, time of the loop at time 0
+        """
+    @property
+    def period(self) -> typing.Any:
+        """
+        s, or None where it is no loop
         """
     @property
     def times(self) -> numpy.typing.NDArray[numpy.float64]:

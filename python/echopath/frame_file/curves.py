@@ -11,7 +11,7 @@ CURVES = ("translation", "rotation", "scale")
 
 def write_curve_motion(group, motion) -> None:
     """Writes the curves that a CurveMotion has."""
-    _write_playback(group, motion)
+    write_playback(group, motion)
     for name in CURVES:
         if getattr(motion, name) is not None:
             _write_curve(group.create_group(name), getattr(motion, name))
@@ -20,12 +20,12 @@ def write_curve_motion(group, motion) -> None:
 def read_curve_motion(group):
     """The CurveMotion of a group."""
     curves = {name: _read_curve(read_group(group, name)) for name in CURVES if name in group}
-    return _core.CurveMotion(**curves, **_read_playback(group))
+    return _core.CurveMotion(**curves, **read_playback(group))
 
 
 def write_morph_targets(group, morph) -> None:
     """Writes MorphTargets."""
-    _write_playback(group, morph)
+    write_playback(group, morph)
     write_array(group, "vertices", morph.vertices, unit="m", compress=True)
     write_array(group, "targets", morph.targets, unit="m", compress=True)
     _write_curve(group.create_group("weights"), morph.weights)
@@ -35,16 +35,18 @@ def read_morph_targets(group):
     """The MorphTargets of a group."""
     vertices = read_array(group, "vertices", np.float64, (None, 3))
     targets = read_array(group, "targets", np.float64, (None, len(vertices), 3))
-    return _core.MorphTargets(vertices, targets, _read_curve(read_group(group, "weights")), **_read_playback(group))
+    return _core.MorphTargets(vertices, targets, _read_curve(read_group(group, "weights")), **read_playback(group))
 
 
-def _write_playback(group, moving) -> None:
+def write_playback(group, moving) -> None:
+    """Writes the period of a loop, if there is one, and the time of what is played at time 0."""
     write_attribute(group, "offset", moving.offset)
     if moving.period is not None:
         write_attribute(group, "period", moving.period)
 
 
-def _read_playback(group) -> dict:
+def read_playback(group) -> dict:
+    """The arguments `period` and `offset` of what is played."""
     period = read_attribute(group, "period", float) if "period" in group.attrs else None
     return {"period": period, "offset": read_attribute(group, "offset", float)}
 

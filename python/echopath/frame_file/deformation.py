@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from .curves import read_morph_targets, write_morph_targets
+from .curves import read_morph_targets, read_playback, write_morph_targets, write_playback
 from .h5 import blames_group, read_array, read_attribute, read_group, read_texts, write_array, write_attribute, write_texts
 from .motion import read_motion, write_motion
 
@@ -23,6 +23,8 @@ def write_deformation(group, deformation) -> None:
         raise ValueError(f"motion: must be a VertexSequence, Skin or MorphTargets to deform a mesh, got {deformation!r}")
     write_attribute(group, "kind", "vertices")
     write_attribute(group, "interpolation", deformation.interpolation)
+    if deformation.period is not None:
+        write_playback(group, deformation)
     write_array(group, "times", deformation.times, unit="s")
     write_array(group, "vertices", deformation.vertices, unit="m")
 
@@ -38,8 +40,9 @@ def read_deformation(group):
     if kind != "vertices":
         raise _core.FileError(f"{group.name}: unknown kind of deformation '{kind}'")
     times = read_array(group, "times", np.float64, (None,))
-    return _core.VertexSequence(times=times, vertices=read_array(group, "vertices", np.float64, (len(times), None, 3)),
-                                interpolation=read_attribute(group, "interpolation", str))
+    playback = read_playback(group) if "period" in group.attrs else {}
+    return _core.VertexSequence(times, read_array(group, "vertices", np.float64, (len(times), None, 3)),
+                                read_attribute(group, "interpolation", str), **playback)
 
 
 def _write_skin(group, skin) -> None:

@@ -14,7 +14,7 @@ from .. import _core
 from .axes import Axes
 from .model import Model
 from .options import ReadOptions
-from .sampled import Clock, chosen_animation
+from .sampled import Clock, chosen_animation, repeated
 from .tree import Tree
 
 FRAME_RATE = 30.0            # 1/s, of a folder that does not say it
@@ -28,7 +28,7 @@ def read(path: Path, options: ReadOptions) -> Model:
 
     path: of a folder of .obj files, which are frames in the order of the numbers in their names, and may have a file
     frame_rate.txt with a number in 1/s; or of a .npz file with vertices [T, V, 3], triangles [F, 3], and times [T] in s or
-    frame_rate in 1/s. The sequence ends with its last frame, unless it is repeated.
+    frame_rate in 1/s. The sequence ends with its last frame, unless it is repeated, and then goes on without end.
     """
     axes, tree = Axes(options), Tree(options)
     if path.is_dir():
@@ -39,7 +39,7 @@ def read(path: Path, options: ReadOptions) -> Model:
     animation = chosen_animation(options, names)
     clock = Clock(options, float(times[0]), float(times[-1]))
     for name, material, triangles, vertices in surfaces:
-        deformation = _sequence(path, times, vertices, clock, options) if animation else None
+        deformation = _sequence(path, times, vertices, clock, tree) if animation else None
         tree.add(name, mesh=_mesh(path, vertices[0], triangles), deformation=deformation, foreign_material=material, smooth=True)
     return tree.model(format="OBJ frames" if path.is_dir() else "NPZ frames", unit=axes.unit, up=axes.up, animations=names,
                       animation=animation, duration=float(times[-1] - times[0]) if animation else 0.0)
@@ -52,15 +52,14 @@ def _mesh(path: Path, vertices, triangles) -> _core.Mesh:
         raise _core.FileError(f"{path}: {error}") from None
 
 
-def _sequence(path: Path, times, vertices, clock: Clock, options: ReadOptions) -> _core.VertexSequence:
+def _sequence(path: Path, times, vertices, clock: Clock, tree: Tree) -> _core.VertexSequence:
     try:
-        if options.loop:
-            times, vertices = clock.spread(times, vertices)
-        else:
-            times = times - options.offset
-        return _core.VertexSequence(times=times, vertices=vertices)
+        sequence, jump = repeated(times, vertices, clock)
     except (ValueError, TypeError) as error:
         raise _core.FileError(f"{path}: {error}") from None
+    if jump:
+        tree.note(f"the last frame is not the first: vertices jump by up to {jump:.2g} m wherever the loop begins anew")
+    return sequence
 
 
 # --- folders ---

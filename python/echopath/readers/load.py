@@ -35,7 +35,8 @@ def load_model(path: str | os.PathLike[str], *, unit: float | None = None, up: s
     materials: {pattern of names in the file: Material or a name in ep.materials}, before `ep.foreign_materials`; what is not
         known there either gets a default, which the notes tell
     animation: name of one of the file's; None: its first one, if there is any; "": at rest
-    loop: True: the animation begins anew at its end; False: its last pose is held
+    loop: True: the animation begins anew at its end, without end; False: its last pose is held, but frames and motion captures
+        end with it
     offset: s, the time of the animation at time 0 of the scene
     Returns a Model, whose `notes` say what was left out, guessed or mended. Raises ep.FileError naming the file and the
     place in it; ValueError or TypeError naming the argument; ModuleNotFoundError saying what to install.

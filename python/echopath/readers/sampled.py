@@ -1,4 +1,4 @@
-"""Transforms and vertices sampled over time as motions of a scene: held beyond their ends, or repeated."""
+"""Transforms and vertices sampled over time as motions of a scene: held beyond their ends, or repeated without end."""
 from __future__ import annotations
 
 import numpy as np
@@ -8,10 +8,11 @@ from ..actors.human.rotations import quaternions
 from ..checks import refused
 from .options import ReadOptions
 
-HOLD = 1e5             # s for which the poses of the ends are held, from them and from time 0 of the scene
-REPEATED = 60.0        # s after time 0 that a repeated animation lasts at least
-MOST_SAMPLES = 20_000  # of a repeated animation
-RIGID = 1e-6           # by which a turn may differ from one
+HOLD = 1e5            # s for which vertices of the ends are held, from them and from time 0 of the scene
+SHORTEST_LOOP = 1e-6  # s, as of ep.CurveMotion
+RIGID = 1e-6          # by which a turn may differ from one, and the ends of a closed loop, as a share of its size
+ROUNDING = 1e-13
+SEAM_FRAMES = 16      # of its other end that a closed loop has beyond each end: splines forget them by 0.27 a frame
 
 
 def chosen_animation(options: ReadOptions, names: tuple[str, ...]) -> str | None:
@@ -25,37 +26,34 @@ def chosen_animation(options: ReadOptions, names: tuple[str, ...]) -> str | None
 
 
 class Clock:
-    """Takes samples of an animation to times of the scene.
+    """Takes times of a file to those of the curves of a scene, which begin with the animation.
 
-    begin, end: of the animation in s; it is at `options.offset` at time 0. With `options.loop` it is repeated from 1 s
-    before time 0 until REPEATED, as far as MOST_SAMPLES allow; else the poses of its ends are held.
+    begin, end: of the animation in s, which is at `options.offset` at time 0 of the scene
+    period: s after which it begins anew, None: its ends are held; offset: s, the time of the curves at time 0 of the scene
     """
 
     def __init__(self, options: ReadOptions, begin: float, end: float):
-        self._begin, self._end, self._loop, self._offset = begin, end, options.loop and end > begin, options.offset
+        self._begin = begin
+        self.period = period_of(options, end - begin)
+        self.offset = options.offset - begin
 
-    def spread(self, times, *samples):
-        """(times [T'], samples [T', ...] of each) in scene time of samples [T, ...] at `times` [T] s, ascending."""
-        times = np.asarray(times, float)
-        if self._loop:
-            return self._repeated(times, samples)
-        ends = (min(times[0], self._offset) - HOLD, max(times[-1], self._offset) + HOLD)
-        held = [np.concatenate([one[:1], one, one[-1:]]) for one in map(np.asarray, samples)]
-        return np.concatenate([ends[:1], times, ends[1:]]) - self._offset, *held
+    @property
+    def playback(self) -> dict:
+        """The arguments of what is played by curves."""
+        return {"period": self.period, "offset": self.offset}
 
-    def _repeated(self, times, samples):
-        period = self._end - self._begin
-        first = int(np.floor((self._offset - 1.0 - self._begin) / period))
-        last = int(np.ceil((self._offset + REPEATED - self._begin) / period))
-        last = max(first + 2, min(last, first + max(1, MOST_SAMPLES // len(times))))
-        inner = times < self._end - 1e-9 * period if times[-1] >= self._end - 1e-9 * period and len(times) > 1 else times < np.inf
-        turns = np.arange(first, last)
-        spread = (times[inner][None, :] + period * turns[:, None]).ravel() - self._offset
-        return spread, *(np.concatenate([np.asarray(one)[inner]] * len(turns)) for one in samples)
+    def times(self, seconds) -> np.ndarray:
+        """Times [T] of curves in s of times of the file."""
+        return np.asarray(seconds, float) - self._begin
+
+
+def period_of(options: ReadOptions, duration: float) -> float | None:
+    """The period in s of an animation of that duration, None where it is not to be repeated."""
+    return duration if options.loop and duration >= SHORTEST_LOOP else None
 
 
 def moved_rigidly(times, matrices, clock: Clock):
-    """(placement [4, 4], KeyframeMotion or None, whether it was rigid) of transforms [T, 4, 4] at `times` [T] s.
+    """(placement [4, 4], CurveMotion or None, whether it was rigid) of transforms [T, 4, 4] at `times` [T] s.
 
     The placement holds the scale and the turn at first, the motion everything after it, linear between the samples. A scale
     that changes stays as it is at first.
@@ -67,9 +65,9 @@ def moved_rigidly(times, matrices, clock: Clock):
     rotations = _nearest_rotations(turns)
     placement = matrices[0].copy()
     placement[:3, 3] = 0.0
-    spread, translations, turned = clock.spread(times, matrices[:, :3, 3], rotations)
-    motion = _core.KeyframeMotion(times=spread, translations=translations, rotations=quaternions(turned),
-                                  interpolation="linear")
+    keys = clock.times(times)
+    turning = _core.Curve(keys, quaternions(rotations)) if np.abs(turns - np.eye(3)).max() > ROUNDING else None
+    motion = _core.CurveMotion(_core.Curve(keys, matrices[:, :3, 3]), turning, **clock.playback)
     return placement, motion, bool(np.abs(turns - rotations).max() < RIGID)
 
 
@@ -82,6 +80,39 @@ def _nearest_rotations(turns: np.ndarray) -> np.ndarray:
 
 
 def deformed(times, vertices, clock: Clock) -> _core.VertexSequence:
-    """A VertexSequence of vertices [T, V, 3] in m at `times` [T] s, linear between them."""
-    spread, moved = clock.spread(times, vertices)
-    return _core.VertexSequence(times=spread, vertices=moved, interpolation="linear")
+    """A VertexSequence of vertices [T, V, 3] in m at `times` [T] s, linear between them and held beyond."""
+    keys, vertices = clock.times(times), np.asarray(vertices)
+    if clock.period is None:
+        keys = keys - clock.offset
+        ends = (min(keys[0], 0.0) - HOLD, max(keys[-1], 0.0) + HOLD)
+    else:
+        ends = (-1.0, clock.period + 1.0)
+    held = np.concatenate([vertices[:1], vertices, vertices[-1:]])
+    return _core.VertexSequence(np.concatenate([ends[:1], keys, ends[1:]]), held, "linear", **_loop_of(clock))
+
+
+def repeated(times, vertices, clock: Clock) -> tuple[_core.VertexSequence, float]:
+    """(VertexSequence, jump at its seam in m) of frames [T, V, 3] in m at `times` [T] s, cubic between them.
+
+    A loop whose last frame is the first goes on through its seam as smoothly as elsewhere.
+    """
+    keys, jump = clock.times(times), 0.0
+    if clock.period is None:
+        keys = keys - clock.offset
+    else:
+        jump = float(np.abs(vertices[-1] - vertices[0]).max())
+        if jump <= RIGID * float(np.ptp(vertices[0], axis=0).max()):
+            keys, vertices, jump = *_with_seam(keys, vertices, clock.period), 0.0
+    return _core.VertexSequence(keys, vertices, **_loop_of(clock)), jump
+
+
+def _with_seam(keys, vertices, period: float) -> tuple[np.ndarray, np.ndarray]:
+    """The frames of a closed loop with some of the runs before and after it."""
+    count = min(SEAM_FRAMES, len(keys) - 1)
+    before, after = slice(len(keys) - 1 - count, len(keys) - 1), slice(1, 1 + count)
+    return (np.concatenate([keys[before] - period, keys, keys[after] + period]),
+            np.concatenate([vertices[before], vertices, vertices[after]]))
+
+
+def _loop_of(clock: Clock) -> dict:
+    return {} if clock.period is None else clock.playback

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "echopath/motion/looped_sequence.h"
 #include "echopath/motion/skin.h"
 
 namespace echopath {
@@ -18,11 +19,12 @@ void append_knots(const Motion* motion, std::vector<double>& all) {
   if (const auto* keyframes = dynamic_cast<const KeyframeMotion*>(motion)) append(keyframes->times(), all);
 }
 
-void append_knots(const Deformation* deformation, std::vector<double>& all) {
-  if (const auto* sequence = dynamic_cast<const VertexSequence*>(deformation)) append(sequence->times(), all);
+void append_knots(const Deformation* deformation, const TimeSpan& during, std::vector<double>& all) {
+  if (const auto* looped = dynamic_cast<const LoopedSequence*>(deformation)) append(looped->knots(during), all);
+  else if (const auto* sequence = dynamic_cast<const VertexSequence*>(deformation)) append(sequence->times(), all);
   if (const auto* skin = dynamic_cast<const Skin*>(deformation)) {
     for (const Joint& joint : skin->joints()) append_knots(joint.motion.get(), all);
-    append_knots(skin->shape().get(), all);
+    append_knots(skin->shape().get(), during, all);
   }
 }
 
@@ -47,7 +49,7 @@ std::vector<double> motion_knots(const Scene& scene, const Radar& radar, const T
     const Node& node = scene.nodes()[static_cast<size_t>(index)];
     if (!scene.takes_part(index)) continue;
     append_knots(node.motion.get(), times);
-    append_knots(node.deformation.get(), times);
+    append_knots(node.deformation.get(), during, times);
   }
   return ascending(std::move(times));
 }

@@ -8,14 +8,13 @@ import numpy as np
 from ... import _core
 from ..names import fit_name, unique
 from ..options import ReadOptions
-from ..sampled import chosen_animation
+from ..sampled import chosen_animation, period_of
 from .accessors import FLOAT, Accessors
 from .document import Document
 from .item import Item
 
 PATHS = {"translation": "VEC3", "rotation": "VEC4", "scale": "VEC3", "weights": "SCALAR"}
 INTERPOLATIONS = {"LINEAR": "linear", "STEP": "step", "CUBICSPLINE": "hermite"}
-SHORTEST_LOOP = 1e-6  # s, as of ep.CurveMotion
 SIGNED_OR_UNSIGNED = (5120, 5121, 5122, 5123)
 
 
@@ -48,8 +47,7 @@ def read_animation(document: Document, accessors: Accessors, names: tuple, optio
         return Animation()
     curves = _Channels(document, accessors, document.json["animations"].objects()[names.index(name)]).curves()
     duration = max((curve.times[-1] for curve in curves.values()), default=0.0)
-    looped = options.loop and duration >= SHORTEST_LOOP
-    return Animation(name, curves, duration, duration if looped else None, options.offset)
+    return Animation(name, curves, duration, period_of(options, duration), options.offset)
 
 
 class _Channels:

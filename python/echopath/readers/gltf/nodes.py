@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...actors.human.rotations import quaternions
 from ..axes import Axes
 from ..names import fit_name
 from .document import Document
@@ -124,7 +125,7 @@ class Nodes:
         axes = matrix[:3, :3] / np.where(scale == 0.0, 1.0, scale)
         if np.abs(axes.T @ axes - np.eye(3)).max() > ORTHOGONAL:
             item.fail("must be a translation, a rotation and a scale, as the node is animated")
-        return matrix[:3, 3], quaternion_of(axes), scale
+        return matrix[:3, 3], quaternions(axes[None])[0], scale
 
     def inverse_bind(self, columns: np.ndarray, item: Item) -> np.ndarray:
         """[J, 4, 4] of matrices [J, 16] of the file."""
@@ -140,14 +141,3 @@ def matrix_of(q: np.ndarray) -> np.ndarray:
     return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
                      [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
                      [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
-
-
-def quaternion_of(matrix: np.ndarray) -> np.ndarray:
-    """(w, x, y, z) of a rotation: the eigenvector of the largest eigenvalue (Bar-Itzhack 2000)."""
-    m = matrix
-    k = np.array([[m[0, 0] - m[1, 1] - m[2, 2], 0, 0, 0],
-                  [m[0, 1] + m[1, 0], m[1, 1] - m[0, 0] - m[2, 2], 0, 0],
-                  [m[0, 2] + m[2, 0], m[1, 2] + m[2, 1], m[2, 2] - m[0, 0] - m[1, 1], 0],
-                  [m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1], m[0, 0] + m[1, 1] + m[2, 2]]]) / 3.0
-    x, y, z, w = np.linalg.eigh(k)[1][:, -1]
-    return np.array([w, x, y, z]) * (-1.0 if w < 0.0 else 1.0)

@@ -132,12 +132,12 @@ class Content:
         return self._surfaces[own.GetPath()]
 
     def _deformation(self, prim, surface: Surface):
-        """A VertexSequence of points that change over time, None for others."""
+        """A VertexSequence of points that change over time, or MorphTargets; None for others."""
         attribute = self._pxr.UsdGeom.Mesh(prim).GetPointsAttr() if prim.IsA(self._pxr.UsdGeom.Mesh) else None
         codes = attribute.GetTimeSamples() if attribute and self._clock is not None else []
         codes = self._timeline.usable(codes)
         if len(codes) < 2:
-            return None
+            return self._shapes(prim, surface)
         if len(codes) * surface.points.size > MAX_VALUES:
             raise _core.FileError(f"{self._path}: the points of {prim.GetPath()} have more than {MAX_VALUES} values over time")
         frames = [np.array(attribute.Get(code), float) for code in codes]
@@ -145,6 +145,14 @@ class Content:
             self._tree.count("a mesh whose number of points changes over time stays as it is at first")
             return None
         return deformed(self._timeline.seconds(codes), self._axes.points(np.stack(frames)), self._clock)
+
+    def _shapes(self, prim, surface: Surface):
+        """The MorphTargets of a mesh; None, noted, for blend shapes that do not fit it."""
+        try:
+            return self._skeletons.shapes_of(prim, surface.points, self._axes, self._timeline, self._clock)
+        except ValueError as error:
+            self._tree.note(f"the mesh {prim.GetPath()} keeps its shape: {error}")
+            return None
 
     def _add_skinned(self, prim, surface: Surface, parent: int) -> None:
         """A mesh below its skeleton, whose frame its points are in once they are bound."""

@@ -1,20 +1,22 @@
-"""Skeletons of a USD stage: which meshes they move, as Skins."""
+"""Skeletons of a USD stage: which meshes they move, as Skins, and whose blend shapes their animations move."""
 from __future__ import annotations
 
 import numpy as np
 
 from ... import _core
 from ..axes import Axes
-from ..sampled import Clock, moved_rigidly
 from ..names import fit_name, unique
+from ..sampled import Clock, moved_rigidly
 from ..tree import Tree
+from .blend_shapes import blend_shapes_of
 from .stage import Timeline, matrix
 
 
 class Skeletons:
-    """The skinned meshes of a stage: path of the mesh -> (path of the skeleton, queries)."""
+    """The meshes of a stage that are bound to skeletons: path of the mesh -> queries of both."""
 
     def __init__(self, stage, pxr):
+        self._pxr = pxr
         self._bound: dict = {}
         self._joints: dict = {}
         cache = pxr.UsdSkel.Cache()
@@ -26,18 +28,25 @@ class Skeletons:
                 for binding in cache.ComputeSkelBindings(root, predicate):
                     query = cache.GetSkelQuery(binding.GetSkeleton())
                     for skinning in binding.GetSkinningTargets():
-                        if query and skinning.HasJointInfluences():
+                        if query and (skinning.HasJointInfluences() or skinning.HasBlendShapes()):
                             self._bound[skinning.GetPrim().GetPath()] = (query, skinning)
 
     def skeleton_of(self, prim):
         """The prim of the skeleton that moves a mesh, None for any other mesh."""
-        bound = self._bound.get(prim.GetPath())
-        return bound[0].GetPrim() if bound else None
+        query, skinning = self._bound.get(prim.GetPath(), (None, None))
+        return query.GetPrim() if query and skinning.HasJointInfluences() else None
 
     def time_codes(self) -> list[float]:
-        """Of all samples of all joints."""
-        queries = [query.GetAnimQuery() for query, _ in self._bound.values()]
-        return [code for query in queries if query for code in query.GetJointTransformTimeSamples()]
+        """Of all samples of all joints and blend shapes."""
+        queries = filter(None, (query.GetAnimQuery() for query, _ in self._bound.values()))
+        return [code for query in queries for code in (*query.GetJointTransformTimeSamples(),
+                                                       *query.GetBlendShapeWeightTimeSamples())]
+
+    def shapes_of(self, prim, points, axes: Axes, timeline: Timeline, clock: Clock | None):
+        """The MorphTargets of a mesh, None for one whose blend shapes nothing moves; points, raises: as of skin_of."""
+        if prim.GetPath() not in self._bound:
+            return None
+        return blend_shapes_of(*self._bound[prim.GetPath()], points, axes, timeline, clock, self._pxr)
 
     def skin_of(self, prim, points, axes: Axes, timeline: Timeline, clock: Clock | None, tree: Tree) -> _core.Skin:
         """The Skin of a mesh in the frame of its skeleton; points [V, 3] in units of the file.
@@ -45,8 +54,6 @@ class Skeletons:
         Raises ValueError where what the file says of it does not fit together.
         """
         query, skinning = self._bound[prim.GetPath()]
-        if skinning.HasBlendShapes():
-            tree.count("the blend shapes of a mesh are left out")
         indices, weights = _influences(skinning, len(points), list(query.GetJointOrder()))
         bind = np.array(query.GetJointWorldBindTransforms(), float).transpose(0, 2, 1)
         if not np.isfinite(bind).all() or (np.abs(np.linalg.det(bind)) < 1e-60).any():
@@ -54,7 +61,8 @@ class Skeletons:
         inverse_bind = axes.matrices(np.linalg.inv(bind) @ matrix(skinning.GetGeomBindTransform()))
         joints = self._moved_joints(query, axes, timeline, clock, tree)
         bound = [joint.replace(inverse_bind=one) for joint, one in zip(joints, inverse_bind)]
-        return _core.Skin(axes.points(points), bound, weights, joint_indices=indices)
+        return _core.Skin(axes.points(points), bound, weights, joint_indices=indices,
+                          shape=self.shapes_of(prim, points, axes, timeline, clock))
 
     def _moved_joints(self, query, axes, timeline, clock, tree) -> list:
         """The joints of a skeleton with their motions, made once."""

@@ -1,7 +1,6 @@
 """Foreign files as models: the same mesh through every format gives the same hits; motions and materials of USD and frames."""
 from __future__ import annotations
 
-import struct
 import sys
 
 import numpy as np
@@ -9,59 +8,12 @@ import pytest
 
 import echopath as ep
 from fuzz.foreign import USD, archive
+from support.mesh_texts import npz, obj, off, ply, stl, stl_text, usda
 
 SPHERE = ep.actors.sphere(0.5, subdivisions=4)
 VERTICES = SPHERE.vertices.astype(np.float32).astype(float)  # what every format can hold
 ROUNDING = 1e-12
 SINGLE = 1e-6  # m, of coordinates of a few metres that USD keeps in float
-
-
-def obj(vertices, faces) -> bytes:
-    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()]
-    return "\n".join(lines + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces.tolist()]).encode()
-
-
-def ply(vertices, faces) -> bytes:
-    head = (f"ply\nformat binary_little_endian 1.0\nelement vertex {len(vertices)}\nproperty float x\nproperty float y\n"
-            f"property float z\nelement face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n")
-    return head.encode() + vertices.astype("<f4").tobytes() + b"".join(struct.pack("<B3i", 3, *face) for face in faces.tolist())
-
-
-def stl(vertices, faces) -> bytes:
-    facets = (struct.pack("<12fH", 0, 0, 0, *vertices[face].ravel(), 0) for face in faces)
-    return b" " * 80 + struct.pack("<I", len(faces)) + b"".join(facets)
-
-
-def stl_text(vertices, faces) -> bytes:
-    corner = "vertex {!r} {!r} {!r}\n"
-    facets = ("facet normal 0 0 0\nouter loop\n" + "".join(corner.format(*point) for point in vertices[face].tolist()) +
-              "endloop\nendfacet\n" for face in faces)
-    return f"solid\n{''.join(facets)}endsolid\n".encode()
-
-
-def off(vertices, faces) -> bytes:
-    lines = ["OFF", f"{len(vertices)} {len(faces)} 0"] + [f"{x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()]
-    return "\n".join(lines + [f"3 {a} {b} {c}" for a, b, c in faces.tolist()]).encode()
-
-
-def usda(vertices, faces) -> bytes:
-    points = ", ".join(f"({x!r}, {y!r}, {z!r})" for x, y, z in vertices.tolist())
-    return f"""#usda 1.0
-(
-    metersPerUnit = 1
-    upAxis = "Z"
-)
-def Mesh "ball"
-{{
-    int[] faceVertexCounts = [{', '.join(['3'] * len(faces))}]
-    int[] faceVertexIndices = [{', '.join(map(str, faces.ravel().tolist()))}]
-    point3f[] points = [{points}]
-}}
-""".encode()
-
-
-def npz(vertices, faces) -> bytes:
-    return archive(vertices=vertices[None], triangles=faces)
 
 
 WRITERS = {".obj": obj, ".ply": ply, ".stl": stl, "_text.stl": stl_text, ".off": off, ".usda": usda, ".npz": npz}

@@ -9,6 +9,7 @@
 
 #include "argument.h"
 #include "define.h"
+#include "deformation_type.h"
 #include "echopath/base/errors.h"
 #include "echopath/motion/curve_motion.h"
 #include "echopath/motion/morph_targets.h"

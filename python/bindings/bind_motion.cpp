@@ -9,6 +9,7 @@
 
 #include "argument.h"
 #include "define.h"
+#include "deformation_type.h"
 #include "echopath/base/errors.h"
 #include "echopath/motion/looped_sequence.h"
 #include "leaving.h"
@@ -209,8 +210,7 @@ Raises TypeError or ValueError naming the argument. Cubic sequences take twice t
           "interpolation", [](const VertexSequence& self) { return kInterpolation.name_of(self.interpolation()); },
           "\"cubic\" or \"linear\"")
       .def_property_readonly(
-          "period", [](const VertexSequence& self) { return period_of(loop_of(self)); },
-          "s, or None where it is no loop")
+          "period", [](const VertexSequence& self) { return period_of(loop_of(self)); }, "s, or None where it is no loop")
       .def_property_readonly(
           "offset", [](const VertexSequence& self) { return loop_of(self).offset; }, "s, time of the loop at time 0")
       .def("__repr__", [](const VertexSequence& self) {

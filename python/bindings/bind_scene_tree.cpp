@@ -12,6 +12,7 @@
 #include "argument.h"
 #include "array.h"
 #include "define.h"
+#include "deformation_type.h"
 #include "echopath/base/errors.h"
 #include "echopath/scene/coherent_meshes.h"
 #include "echopath/scene/overlap/coplanar.h"

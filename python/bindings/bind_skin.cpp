@@ -12,6 +12,7 @@
 
 #include "argument.h"
 #include "define.h"
+#include "deformation_type.h"
 #include "echopath/base/errors.h"
 #include "echopath/scene/readers/skin_parts.h"
 #include "leaving.h"

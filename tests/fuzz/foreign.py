@@ -152,6 +152,48 @@ def SkelRoot "person"
         rel skel:skeleton = </person/bones>
     }
 }
+''', '''#usda 1.0
+(
+    metersPerUnit = 1
+    upAxis = "Z"
+    timeCodesPerSecond = 10
+)
+def SkelRoot "face"
+{
+    def Skeleton "bones" ( prepend apiSchemas = ["SkelBindingAPI"] )
+    {
+        uniform token[] joints = ["hip"]
+        uniform matrix4d[] bindTransforms = [((1,0,0,0),(0,1,0,0),(0,0,1,0),(0,0,0,1))]
+        uniform matrix4d[] restTransforms = [((1,0,0,0),(0,1,0,0),(0,0,1,0),(0,0,0,1))]
+        rel skel:animationSource = </face/talk>
+    }
+    def SkelAnimation "talk"
+    {
+        uniform token[] blendShapes = ["smile", "open"]
+        float[] blendShapeWeights.timeSamples = { 0: [0, 0], 10: [1, 0.5] }
+    }
+    def Mesh "skin" ( prepend apiSchemas = ["SkelBindingAPI"] )
+    {
+        int[] faceVertexCounts = [3, 3]
+        int[] faceVertexIndices = [0, 1, 2, 1, 3, 2]
+        point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 0, 1), (1, 0, 1)]
+        uniform token[] skel:blendShapes = ["open", "smile"]
+        rel skel:blendShapeTargets = [</face/skin/open>, </face/skin/smile>]
+        rel skel:skeleton = </face/bones>
+        def BlendShape "open"
+        {
+            uniform vector3f[] offsets = [(0, 0, -1), (0, 0, -1)]
+            uniform int[] pointIndices = [0, 1]
+        }
+        def BlendShape "smile"
+        {
+            uniform vector3f[] offsets = [(0, 1, 0), (0, 1, 0), (0, 1, 0), (0, 1, 0)]
+            uniform vector3f[] inbetweens:half = [(0, 0.2, 0), (0, 0.2, 0), (0, 0.2, 0), (0, 0.2, 0)] (
+                weight = 0.5
+            )
+        }
+    }
+}
 ''']
 BVH = """HIERARCHY
 ROOT Hips
@@ -238,16 +280,16 @@ def feed_foreign(suffix: str):
             path.write_bytes(mistaken(texts[seed], texts, random).encode("utf-8", "surrogatepass"))
         else:
             path.write_bytes(damaged(seeds[seed], random))
-        read_and_pose(path)
+        read_and_pose(path, random.random() < 0.5)
 
     case.folder = folder
     return case
 
 
-def read_and_pose(path: Path) -> None:
-    """Reads a file and poses what it holds, unless it is refused by name."""
+def read_and_pose(path: Path, loop: bool = False) -> None:
+    """Reads a file and poses what it holds, unless it is refused by name; a loop goes on for ever."""
     try:
-        model = ep.load_model(path)
+        model = ep.load_model(path, loop=loop)
     except ep.FileError as error:
         assert str(path.parent) in str(error), f"names no file: {error}"
         return
@@ -255,4 +297,5 @@ def read_and_pose(path: Path) -> None:
     scene.add(model, name="model")
     if model.num_triangles < 1_000_000 and len(model.nodes) < 10_000:
         for mesh in scene.meshes:
-            assert np.isfinite(scene.world_vertices(mesh.id, 0.0)).all(), "vertices are finite"
+            for time in (0.0, 1234.5) if loop and path.suffix != ".bvh" else (0.0,):
+                assert np.isfinite(scene.world_vertices(mesh.id, time)).all(), "vertices are finite"

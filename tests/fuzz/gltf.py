@@ -13,6 +13,7 @@ import numpy as np
 import echopath as ep
 from fuzz.mutate import damaged
 from support.gltf_files import BOX, GltfFile, box_file, rig_file
+from support.packed_gltf import draco_tube, meshopt_tube
 
 ODD = [0, -1, 1, 2, 7, 255, 256, 65535, 2**31 - 1, 2**31, 2**53, 2**63, -2**63, 10**400, 0.5, -0.1, 1e-320, 1e30, 1e300, 1e308,
        True, False, None, "", "x", "/", "a/b*", "\ud83d", "\x00", "VEC3", "SCALAR", "MAT4", "STEP", "CUBICSPLINE", "weights",
@@ -42,7 +43,7 @@ def seeds() -> list[GltfFile]:
     morph.animation((0, "weights", [0, 1], rows, "CUBICSPLINE"), (1, "rotation", [0, 1, 2], np.eye(4)[[3, 2, 1]], "LINEAR"))
     fan = GltfFile(nodes=[{"mesh": 0}], scene=0, scenes=[{"nodes": [0]}])
     fan.mesh([[0, 0, 0], [0, 0, 1], [1, 0, 1], [2, 0, 0]], mode=6)
-    return [box_file(), rig, morph, fan]
+    return [box_file(), rig, morph, fan, draco_tube(), meshopt_tube()]
 
 
 def _check(path: Path, random: Random) -> None:

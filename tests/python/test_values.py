@@ -70,7 +70,11 @@ def keyframes(draw):
 @st.composite
 def sequences(draw):
     shape = draw(st.integers(2, 5)), draw(st.integers(1, 4)), 3
-    return ep.VertexSequence(draw(times(shape[0])), draw(arrays(np.float64, shape, elements=numbers)), draw(interpolations))
+    frames, keys = draw(arrays(np.float64, shape, elements=numbers)), draw(times(shape[0]))
+    if draw(st.booleans()):
+        return ep.VertexSequence(keys, frames, draw(interpolations))
+    keys = np.asarray(keys) - keys[0]
+    return ep.VertexSequence(keys, frames, draw(interpolations), period=keys[-1], offset=draw(st.floats(-10, 10)))
 
 
 @st.composite

@@ -12,11 +12,15 @@ TYPES = {(): "SCALAR", (2,): "VEC2", (3,): "VEC3", (4,): "VEC4", (16,): "MAT4"}
 
 
 class GltfFile:
-    """A glTF document that grows: `accessor(array)` returns its index, the rest is in `json`."""
+    """A glTF document that grows: `accessor(array)` returns its index, the rest is in `json`.
+
+    other_buffers: what it says of buffers besides its own
+    """
 
     def __init__(self, **json_parts):
         self.json = {"asset": {"version": "2.0"}, "accessors": [], "bufferViews": [], "buffers": [{}]} | json_parts
         self.bytes = b""
+        self.other_buffers: list[dict] = []
 
     def accessor(self, values, dtype: str = "f4", *, normalized: bool = False, stride: int = 0, **more) -> int:
         """Adds an array [N] or [N, columns], its rows `stride` bytes apart."""
@@ -60,7 +64,7 @@ class GltfFile:
     def glb(self) -> bytes:
         """As one binary file."""
         content = self.bytes + b"\0" * (-len(self.bytes) % 4)
-        text = json.dumps(self.json | {"buffers": [{"byteLength": max(1, len(content))}]}).encode()
+        text = json.dumps(self.json | {"buffers": [{"byteLength": max(1, len(content))}, *self.other_buffers]}).encode()
         text += b" " * (-len(text) % 4)
         body = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(content), b"BIN\0") + content
         return struct.pack("<4sII", b"glTF", 2, 12 + len(body)) + body
@@ -68,7 +72,7 @@ class GltfFile:
     def gltf(self, uri: str | None = None) -> str:
         """As text with its bytes in it, or in a file beside it."""
         inside = "data:application/octet-stream;base64," + base64.b64encode(self.bytes).decode()
-        buffers = [{"byteLength": max(1, len(self.bytes)), "uri": uri or inside}]
+        buffers = [{"byteLength": max(1, len(self.bytes)), "uri": uri or inside}, *self.other_buffers]
         return json.dumps(self.json | {"buffers": buffers}, indent=1)
 
 

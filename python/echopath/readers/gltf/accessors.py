@@ -5,6 +5,7 @@ import numpy as np
 
 from .document import Document
 from .item import Item
+from .packed import MESHOPT, meshopt_view
 
 # componentType -> (type, what a normalised number is divided by)
 COMPONENTS = {5120: ("<i1", 127.0), 5121: ("<u1", 255.0), 5122: ("<i2", 32767.0), 5123: ("<u2", 65535.0),
@@ -22,6 +23,7 @@ class Accessors:
         self._items = document.json["accessors"].objects()
         self._views = document.json["bufferViews"].objects()
         self._read: dict[int, np.ndarray] = {}
+        self._unpacked: dict[int, bytes] = {}
 
     def numbers(self, reference: Item, kind: str, components=ANY) -> np.ndarray:
         """Numbers [N] or [N, columns] in double precision of the accessor that `reference` names; normalised where it says so.
@@ -79,21 +81,51 @@ class Accessors:
             self._read[index] = self._with_exceptions(item["sparse"], values) if item["sparse"].is_given else values
         return self._read[index]
 
+    def put(self, reference: Item, rows: np.ndarray) -> None:
+        """Gives the accessor that `reference` names, which has no bytes, its entries [N] or [N, columns]."""
+        index = reference.index(len(self._items))
+        item = self._items[index]
+        kind, component = item["type"].text(), item["componentType"].whole(0, 2**16)
+        if kind not in WIDTHS or component not in COMPONENTS:
+            item.fail("must have a type and componentType of glTF 2.0")
+        shape = (item["count"].whole(1, 2**31),) + ((WIDTHS[kind],) if WIDTHS[kind] > 1 else ())
+        if rows.size != np.prod(shape) or len(rows) != shape[0]:
+            item["count"].fail(f"is {shape[0]} of {kind}, where {reference.place} has entries {list(rows.shape)}")
+        self._document.spend(rows.nbytes, reference)
+        self._read[index] = rows.reshape(shape).astype(COMPONENTS[component][0])
+
+    def bytes_of(self, reference: Item) -> memoryview:
+        """The bytes of the buffer view that `reference` names."""
+        index = reference.index(len(self._views))
+        view = self._views[index]
+        if MESHOPT not in view["extensions"]:
+            return self._part_of_buffer(view)
+        if index not in self._unpacked:
+            packed = view["extensions"][MESHOPT]
+            self._document.spend(packed["count"].whole(1, 2**31) * packed["byteStride"].whole(1, 256), packed)
+            self._unpacked[index] = meshopt_view(bytes(self._part_of_buffer(packed)), packed)
+        return memoryview(self._unpacked[index])
+
+    def _part_of_buffer(self, item: Item) -> memoryview:
+        """What byteOffset and byteLength of an item cut out of its buffer."""
+        content = self._document.buffer(item["buffer"].index(len(self._document.buffers)))
+        begin, length = item["byteOffset"].whole(0, 2**53, 0), item["byteLength"].whole(1, 2**53)
+        if begin + length > len(content):
+            item["byteLength"].fail(f"ends at byte {begin + length} of a buffer of {len(content)} bytes")
+        return memoryview(content)[begin:begin + length]
+
     def _viewed(self, item: Item, reference: Item, shape: tuple, dtype) -> np.ndarray:
         """Entries of a buffer view, without a copy."""
+        content = self.bytes_of(reference)
         view = self._views[reference.index(len(self._views))]
-        content = self._document.buffer(view["buffer"].index(len(self._document.buffers)))
-        begin, length = view["byteOffset"].whole(0, 2**53, 0), view["byteLength"].whole(1, 2**53)
-        if begin + length > len(content):
-            view["byteLength"].fail(f"ends at byte {begin + length} of a buffer of {len(content)} bytes")
         row = dtype.itemsize * (shape[1] if len(shape) > 1 else 1)
         stride = view["byteStride"].whole(1, 252, row)
         offset = item["byteOffset"].whole(0, 2**53, 0)
         end = offset + stride * (shape[0] - 1) + row
-        if end > length:
-            item.fail(f"ends at byte {end} of {view.place}, which has {length} bytes")
+        if end > len(content):
+            item.fail(f"ends at byte {end} of {view.place}, which has {len(content)} bytes")
         strides = (stride, dtype.itemsize) if len(shape) > 1 else (stride,)
-        return np.ndarray(shape, dtype, content, begin + offset, strides)
+        return np.ndarray(shape, dtype, content, offset, strides)
 
     def _with_exceptions(self, sparse: Item, values: np.ndarray) -> np.ndarray:
         """A copy of the values with those put in that the accessor names one by one."""

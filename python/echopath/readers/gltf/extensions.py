@@ -2,8 +2,9 @@
 from __future__ import annotations
 
 from .document import Document
+from .packed import DRACO, MESHOPT
 
-READ = ("KHR_mesh_quantization", "KHR_node_visibility")
+READ = ("KHR_mesh_quantization", "KHR_node_visibility", DRACO, MESHOPT)
 WITHOUT_SHAPE = ("KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_", "MSFT_packing_", "EXT_materials_",
                  "ADOBE_materials_", "KHR_lights_", "EXT_lights_", "KHR_xmp", "KHR_audio", "EXT_mesh_features",
                  "EXT_structural_metadata", "KHR_node_selectability", "KHR_node_hoverability", "KHR_animation_pointer",

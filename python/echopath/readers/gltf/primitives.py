@@ -9,6 +9,7 @@ from ..axes import Axes
 from .accessors import FLOAT, UNSIGNED, Accessors
 from .document import Document
 from .item import Item
+from .packed import DRACO, draco_mesh
 from .welding import as_smooth, welded
 
 TRIANGLES, STRIP, FAN = 4, 5, 6
@@ -70,7 +71,7 @@ class Primitives:
         if not position.is_given:
             self._document.note(f"{item.place} has no positions and is left out")
             return None
-        self._refuse_packed(item, position)
+        self._unpack(item, mode, position)
         vertices = self._points(position)
         triangles = self._triangles(item, mode, len(vertices))
         if not len(triangles):
@@ -86,11 +87,22 @@ class Primitives:
                          None if joints is None else joints[kept], None if weights is None else weights[kept],
                          smooth, self._material(item["material"]), item)
 
-    def _refuse_packed(self, item: Item, position: Item) -> None:
-        """Without its decoder a compressed primitive would be all zeros."""
+    def _unpack(self, item: Item, mode: int, position: Item) -> None:
+        """Gives the accessors of a packed primitive their entries, unless the file has them unpacked, too."""
         for name in item["extensions"].keys():
-            if "compression" in name and not self._accessors.is_stored(position):
-                item.fail(f"is packed by {name}, which is not read")
+            if "compression" not in name or self._accessors.is_stored(position):
+                continue
+            if name != DRACO or mode != TRIANGLES:  # without its decoder it would be all zeros
+                item.fail(f"is packed by {name}, which is not read" + (" but for triangles" if name == DRACO else ""))
+            packed = item["extensions"][name]
+            corners, attributes = draco_mesh(bytes(self._accessors.bytes_of(packed["bufferView"])), packed)
+            self._accessors.put(item["indices"], corners)
+            for attribute in packed["attributes"].keys():
+                number = packed["attributes"][attribute].whole(0, 2**32)
+                if number not in attributes:
+                    packed["attributes"][attribute].fail(f"names the attribute {number}, which the Draco mesh has not")
+                if item["attributes"][attribute].is_given:
+                    self._accessors.put(item["attributes"][attribute], attributes[number])
 
     def _points(self, reference: Item) -> np.ndarray:
         """[V, 3] in m."""

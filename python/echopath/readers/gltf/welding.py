@@ -14,7 +14,10 @@ def as_smooth(vertices: np.ndarray, triangles: np.ndarray, normals: np.ndarray) 
     lengths = np.linalg.norm(normals, axis=1)
     units = normals / np.where(lengths > 0.0, lengths, 1.0)[:, None]
     a, b, c = (units[triangles[:, corner]] for corner in range(3))
-    turns = np.minimum(np.minimum((a * b).sum(1), (b * c).sum(1)), (c * a).sum(1)) < FLAT_COSINE
+    cosines = [np.einsum("ij,ij->i", first, second) for first, second in ((a, b), (b, c), (c, a))]
+    turns = np.minimum(np.minimum(*cosines[:2]), cosines[2]) < FLAT_COSINE
+    if not turns.any():
+        return False
     p, q, r = (vertices[triangles[:, corner]] for corner in range(3))
     with np.errstate(all="ignore"):
         areas = np.linalg.norm(np.cross(q - p, r - p), axis=1)
@@ -28,10 +31,9 @@ def welded(vertices: np.ndarray, triangles: np.ndarray, moved_by: list, normals:
     moved_by: arrays [V, ...] that must be equal, too; normals: where they are given, those of one place must also be alike,
     so that the surface stays cut where the file has an edge
     """
-    _, place = _equal_rows(np.concatenate([vertices, *(rows.reshape(len(vertices), -1) for rows in moved_by)], axis=1))
+    first, number = _equal_rows(np.concatenate([vertices, *(rows.reshape(len(vertices), -1) for rows in moved_by)], axis=1))
     if normals is not None:
-        place = _split_by_normals(place, normals)
-    first, number = np.unique(place, return_index=True, return_inverse=True)[1:]
+        first, number = np.unique(_split_by_normals(number, normals), return_index=True, return_inverse=True)[1:]
     order = np.argsort(first, kind="stable")       # vertices stay in the order of the file
     rank = np.empty_like(order)
     rank[order] = np.arange(len(order))

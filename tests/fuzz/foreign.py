@@ -9,6 +9,7 @@ from random import Random
 import numpy as np
 
 import echopath as ep
+from fuzz.folder import memory_folder
 from fuzz.mutate import damaged, mistaken
 
 CORPUS = Path(__file__).parent / "corpus"
@@ -254,7 +255,7 @@ def _seeds() -> dict[str, list[bytes]]:
 
 
 def _folder() -> tempfile.TemporaryDirectory:
-    folder = tempfile.TemporaryDirectory(prefix="fuzz-")
+    folder = memory_folder()
     base = Path(folder.name)
     (base / "wall.obj").write_text(SQUARE + "usemtl brick\nf 1 2 3\nusemtl glass\nf 1 3 4\n")
     (base / "wall.ply").write_text("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"

@@ -1,7 +1,6 @@
 """Frame files: damaged bytes, and changes of their structure."""
 from __future__ import annotations
 
-import tempfile
 from pathlib import Path
 from random import Random
 
@@ -9,11 +8,11 @@ import h5py
 import numpy as np
 
 import echopath as ep
+from fuzz.folder import memory_folder
 from fuzz.mutate import damaged
 from fuzz.seeds import frames
 from support.frame_edits import seal_all
 
-MEMORY_FOLDER = "/dev/shm" if Path("/dev/shm").is_dir() else None  # files are flushed to the disk, which takes long
 ODD_VALUES = [0, -1, 1, 2**31, 2**63 - 1, -2**63, 255, 65535, 0.0, -0.1, float("nan"), float("inf"), 1e308, 1e19, 1 + 2j, True,
               "", "x", "linear", "T . R", "{}", "[]",
               "null", '{"zero_pad": 1000000}', '{"window": "hann", "zero_pad": 1}', "a" * 70000]
@@ -27,7 +26,7 @@ class _Seeds:
     """The files of the seeds, their bytes and what a file holds that is written from each frame once it was read."""
 
     def __init__(self):
-        self._folder = tempfile.TemporaryDirectory(prefix="fuzz-", dir=MEMORY_FOLDER)
+        self._folder = memory_folder()
         self.folder = Path(self._folder.name)
         self.contents, self.expected = [], []
         for index, frame in enumerate(frames()):

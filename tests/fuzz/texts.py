@@ -1,12 +1,12 @@
 """Scene files and antenna files."""
 from __future__ import annotations
 
-import tempfile
 import warnings
 from pathlib import Path
 from random import Random
 
 import echopath as ep
+from fuzz.folder import memory_folder
 from fuzz.mutate import damaged, mistaken
 
 DATA = Path(__file__).parents[2] / "data"
@@ -129,7 +129,7 @@ def _accepts(load, path: Path, errors: tuple) -> bool:
 
 def feed_scene():
     """Cases of scene files: they load, or are refused by an error that names the file."""
-    folder = tempfile.TemporaryDirectory(prefix="fuzz-")
+    folder = memory_folder()
     base = Path(folder.name)
     (base / "wall.obj").write_text("v 0 0 0\nv 1000 0 0\nv 1000 1000 0\nv 0 1000 0\ng left\nf 1 2 3 4\n")
     (base / "antenna.csv").write_text(ANTENNA)
@@ -146,7 +146,7 @@ def feed_scene():
 
 def feed_antenna():
     """Cases of antenna files: they load, or are refused by ep.FileError."""
-    folder = tempfile.TemporaryDirectory(prefix="fuzz-")
+    folder = memory_folder()
     texts = [ANTENNA, ANTENNA.replace(",phase_deg", "").replace(",0\n", "\n").removesuffix(",0"),
              "\n".join((DATA / "antennas" / "patch_77ghz.csv").read_text().split("\n")[:60])]
 

@@ -285,6 +285,9 @@ def test_other_kinds_of_files_and_arguments_are_refused_by_name(tmp_path):
         ep.load_model(tmp_path / "a.obj", up="w")
     with pytest.raises(ValueError, match="materials.'a'.: unknown material 'steal'"):
         ep.load_model(tmp_path / "a.obj", materials={"a": "steal"})
+    for path in (tmp_path / ("a" * 300 + ".obj"), tmp_path / "/".join(["abc"] * 1500)):
+        with pytest.raises(ep.FileError, match="path: must be the name of a file that can be, got '/"):
+            ep.load_model(path)
     os.mkfifo(tmp_path / "pipe.obj")  # which has no end
     with pytest.raises(ep.FileError, match="is no regular file"):
         ep.load_model(tmp_path / "pipe.obj")

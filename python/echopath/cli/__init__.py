@@ -263,28 +263,14 @@ def _bench(options) -> None:
                          run_crowd, run_labels, run_physics, run_published, run_replay, run_speed, run_worlds, speed, worlds)
     from ..progress import progress_bars
 
+    works = {"physics": (run_physics, report.describe), "labels": (run_labels, labels.describe),
+             "hard": (hard.run_hard, hard.describe), "certificate": (run_certificate, certificate.describe),
+             "crowd": (run_crowd, crowd.describe), "speed": (run_speed, speed.describe),
+             "actors": (run_actors, actors.describe), "worlds": (run_worlds, worlds.describe),
+             "targets": (run_published, published.describe), "replay": (run_replay, replay.describe)}
+    more = {"physics": {"rays_max": options.rays_max}, "certificate": {"scenes": options.scenes}}
     require_writable(options.out, "--out")
+    run, describe = works[options.what]
     with progress_bars() as progress:
-        if options.what == "physics":
-            lines = report.describe(run_physics(options.out, rays_max=options.rays_max, quick=options.quick,
-                                                progress=progress))
-        elif options.what == "labels":
-            lines = labels.describe(run_labels(options.out, quick=options.quick, progress=progress))
-        elif options.what == "hard":
-            lines = hard.describe(hard.run_hard(options.out, quick=options.quick, progress=progress))
-        elif options.what == "certificate":
-            lines = certificate.describe(run_certificate(options.out, scenes=options.scenes, quick=options.quick,
-                                                         progress=progress))
-        elif options.what == "crowd":
-            lines = crowd.describe(run_crowd(options.out, quick=options.quick, progress=progress))
-        elif options.what == "speed":
-            lines = speed.describe(run_speed(options.out, quick=options.quick, progress=progress))
-        elif options.what == "actors":
-            lines = actors.describe(run_actors(options.out, quick=options.quick, progress=progress))
-        elif options.what == "worlds":
-            lines = worlds.describe(run_worlds(options.out, quick=options.quick, progress=progress))
-        elif options.what == "targets":
-            lines = published.describe(run_published(options.out, quick=options.quick, progress=progress))
-        else:
-            lines = replay.describe(run_replay(options.out, quick=options.quick, progress=progress))
+        lines = describe(run(options.out, quick=options.quick, progress=progress, **more.get(options.what, {})))
     print("\n".join(lines))

@@ -26,6 +26,7 @@ RETURNS = {
     ("AntennaPattern", "table_gain"): f"{REAL} | None", ("AntennaPattern", "table_phase"): f"{REAL} | None",
     ("Curve", "in_tangents"): f"{REAL} | None", ("Curve", "out_tangents"): f"{REAL} | None",
     ("CurveMotion", "period"): "float | None", ("MorphTargets", "period"): "float | None",
+    ("VertexSequence", "period"): "float | None",
     ("Radar", "motion"): "Motion | None", ("Radar", "_repr_html_"): "str",
     ("RangeDoppler", "values"): COMPLEX, ("RangeDoppler", "window"): WINDOW, ("RangeDoppler", "_repr_html_"): "str",
     ("VirtualArray", "default_angles"): f"tuple[{REAL}, {REAL}]", ("VirtualArray", "positions"): REAL,

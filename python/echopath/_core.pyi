@@ -207,7 +207,7 @@ class VertexSequence(Deformation):
         s, time of the loop at time 0
         """
     @property
-    def period(self) -> typing.Any:
+    def period(self) -> float | None:
         """
         s, or None where it is no loop
         """

@@ -163,7 +163,7 @@ def path(argument: str, value) -> str:
     if not name or not is_writable(name):
         raise refused(ValueError, argument, "the name of a file, without lone surrogates and NUL", value)
     if len(os.fsencode(name)) >= LONGEST_PATH or max(map(len, os.fsencode(name).split(b"/"))) > LONGEST_NAME:
-        raise refused(_core.FileError, argument, "the name of a file that can be", value)
+        raise refused(_core.FileError, argument, "the name of a file that can be", name)
     return name
 
 

@@ -5,9 +5,9 @@
 
 namespace echopath {
 
-// Plays the part [0, period) of its own times over and over, as `playback` shows it, and so is defined at every time. Frames
-// before 0 and behind the period shape the ends of that part: with those of the runs around it a closed loop goes on smoothly.
-// Breakpoints are those of the sequence and the ends of runs. Immutable.
+// Plays the part [0, period) of its own times over and over, as `playback` shows it, and so is defined at every time.
+// Frames before 0 and behind the period shape the ends of that part: with those of the runs around it a closed loop goes on
+// smoothly. Breakpoints are those of the sequence and the ends of runs. Immutable.
 class LoopedSequence : public VertexSequence {
  public:
   // Raises invalid_argument naming the argument: playback must have a period, and `times` must reach from 0 s to it.

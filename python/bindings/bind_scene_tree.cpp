@@ -14,7 +14,6 @@
 #include "define.h"
 #include "deformation_type.h"
 #include "echopath/base/errors.h"
-#include "echopath/scene/coherent_meshes.h"
 #include "echopath/scene/overlap/coplanar.h"
 #include "echopath/scene/scene.h"
 #include "run_job.h"
@@ -343,9 +342,6 @@ void bind_scene_tree(py::module_& m) {
   bind_nodes(m);
   bind_overlaps(m);
   bind_tree(m);
-  m.def("coherent_meshes", &coherent_meshes, py::arg("scene"), py::arg("wavelength"), py::arg("least_share"),
-        py::arg("without_planes") = false,
-        "IDs of the meshes that reflect this share of the power in phase at a wavelength in m, mirrors left out.");
 }
 
 }  // namespace echopath::bindings

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "array.h"
 #include "choice.h"
@@ -44,9 +45,10 @@ PathsPtr trace_paths(Scene scene, const Radar& radar, std::optional<int64_t> num
   settings.batches = effort.batches;
   settings.sampler = kSampler.value_of(sampler);
   settings.scatterers = kScatterers.value_of(scatterers);
+  const SceneSnapshot snapshot(std::move(scene));
   auto paths = std::make_shared<Paths>(run_job("trace", progress, [&](Job& job) {
-    return effort.target ? trace_to_error(scene, radar, settings, *effort.target, &job, kept)
-                         : trace_by_need(scene, radar, settings, &job, kept);
+    return effort.target ? trace_to_error(snapshot, radar, settings, *effort.target, &job, kept)
+                         : trace_by_need(snapshot, radar, settings, &job, kept);
   }));
   const TraceFrame& frame = paths->frame;
   if (target_error_db && frame.error_db > frame.target_error_db) {

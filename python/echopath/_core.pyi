@@ -17,7 +17,7 @@ import numpy.typing
 import os
 import typing
 bench: types.ModuleType
-__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Curve', 'CurveMotion', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'LinearMotion', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'MorphTargets', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'PartPass', 'Paths', 'Power', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'coherent_meshes', 'coherent_share', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'load_mesh', 'load_meshes', 'load_surfaces', 'looks_for_signals', 'mean_power', 'meant_name', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'renew', 'set_num_threads', 'share_errors', 'speed_of_light', 'strongest_part', 'synthesize', 'synthesize_echoes', 'tessellation', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'warn_of_turns', 'window']
+__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Curve', 'CurveMotion', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'LinearMotion', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'MorphTargets', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'PartPass', 'Paths', 'Power', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'coherent_meshes', 'coherent_share', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'load_mesh', 'load_meshes', 'load_surfaces', 'looks_for_signals', 'mean_power', 'meant_name', 'mesh_names', 'mesh_traits', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'object_sizes', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'renew', 'set_num_threads', 'share_errors', 'speed_of_light', 'strongest_part', 'synthesize', 'synthesize_echoes', 'tessellation', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'warn_of_turns', 'window']
 class Motion:
     """
     Time -> rigid transform, in the axes of the node's parent about the node's own origin.
@@ -3078,6 +3078,14 @@ def meant_name(word: str, known: collections.abc.Sequence[str]) -> str:
     """
     The name among `known` that was most likely meant by `word`, "" where none is alike.
     """
+def mesh_names(scene: Scene, mesh_ids: collections.abc.Sequence[int]) -> list[str]:
+    """
+    Full names by mesh IDs.
+    """
+def mesh_traits(scene: Scene) -> tuple[typing.Any, ...]:
+    """
+    Of all meshes: (materials, each once; index of each mesh's [M]; whether it is smooth [M], moves [M], deforms [M]).
+    """
 def mie_rcs(radius: float, frequency: float, bistatic_angle: float = 0.0, plane: str = 'H') -> float:
     """
     What ep.mie_rcs calls.
@@ -3097,6 +3105,10 @@ def noise_power_in_cell(radar: Radar) -> float:
 def num_threads() -> int:
     """
     Number of threads of the parallel loops.
+    """
+def object_sizes(scene: Scene, time: float) -> tuple[typing.Any, ...]:
+    """
+    Of the children of the root: (node [N], sides [N, 2] in m, shortest and longest, closed [N]).
     """
 def partition_groups(paths: typing.Any, parts: collections.abc.Sequence[tuple[str, Selection]]) -> tuple[typing.Any, ...]:
     """

@@ -1,12 +1,12 @@
 """Names in sentences."""
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 
 MOST_NAMES = 3
 
 
-def first_names(names: Iterable[str]) -> str:
-    """The first of some names, each once, with dots where there are more."""
-    each = list(dict.fromkeys(names))
-    return ", ".join(each[:MOST_NAMES]) + (", ..." if len(each) > MOST_NAMES else "")
+def first_names(names: Sequence[str], count: int | None = None) -> str:
+    """The first of some names, and how many more there are of `count` in all; None: `names` are all."""
+    more = (len(names) if count is None else count) - min(MOST_NAMES, len(names))
+    return ", ".join(names[:MOST_NAMES]) + (f" and {more} more" if more > 0 else "")

@@ -31,14 +31,17 @@ def need_of_field_vectors(scene, wavelength: float, antennas: Iterable = ()) -> 
     """
     coherent = _core.coherent_meshes(scene, wavelength, COHERENT_SHARE)
     if coherent:
-        meshes = scene.meshes
-        names = [meshes[index].name for index in coherent[:MOST_NAMES + 1]]
-        return "coherent surfaces that are no flagged mirrors: " + first_names(names)
-    turning = [mesh.name for mesh in scene.meshes
-               if mesh.material.cross_polarization > 0.0 and coherent_share(mesh.material, wavelength) < 1.0]
-    if turning:
-        return "rough surfaces that turn the polarisation: " + first_names(turning)
+        return "coherent surfaces that are no flagged mirrors: " + _named(scene, coherent)
+    materials, of_mesh, *_ = _core.mesh_traits(scene)
+    turns = [material.cross_polarization > 0.0 and coherent_share(material, wavelength) < 1.0 for material in materials]
+    turning = np.flatnonzero(np.array(turns, bool)[of_mesh])
+    if len(turning):
+        return "rough surfaces that turn the polarisation: " + _named(scene, turning)
     return "antennas of other polarisation" if are_crossed(antennas) else ""
+
+
+def _named(scene, mesh_ids) -> str:
+    return first_names(_core.mesh_names(scene, mesh_ids[:MOST_NAMES]), len(mesh_ids))
 
 
 def chosen_model(model: str, scene, wavelength: float, antennas: Iterable = (), *, argument: str) -> str:

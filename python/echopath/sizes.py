@@ -17,34 +17,31 @@ def warn_of_sizes(scene: _core.Scene, wavelength: float, time: float, stacklevel
 
     wavelength: m; time: s, at which the scene is looked at; one outside of its motions is not for this to tell of
     """
-    meshes = scene.meshes
     try:
-        sides = _sides(scene, meshes, time)
+        nodes, sides, closed = _core.object_sizes(scene, time)
     except ValueError:
         return
-    remark = _remark(sides, wavelength) if meshes else "scene: has no mesh that takes part: no ray hits"
+    remark = _remark(scene, nodes, sides, closed, wavelength)
     if remark:
         warnings.warn(remark, RuntimeWarning, stacklevel=stacklevel + 1)
 
 
-def _sides(scene, meshes, time: float) -> dict:
-    """{name: (shortest, longest side of its bounding box in m, whether its meshes are closed)} of the children of the root."""
-    corners: dict = {}
-    is_closed: dict = {}
-    for mesh in meshes:
-        vertices, name = np.asarray(scene.world_vertices(mesh.id, time)), mesh.name.split("/")[0]
-        corners.setdefault(name, []).extend([vertices.min(axis=0), vertices.max(axis=0)])
-        is_closed[name] = is_closed.get(name, True) and mesh.mesh.is_closed
-    sides = {name: np.ptp(ends, axis=0) for name, ends in corners.items()}
-    return {name: (float(side.min()), float(side.max()), is_closed[name]) for name, side in sides.items()}
+def _remark(scene, nodes, sides, closed, wavelength: float) -> str:
+    """About the first object whose size is strange, "" for none.
 
-
-def _remark(sides: dict, wavelength: float) -> str:
-    for name, (shortest, longest, is_closed) in sides.items():
-        if shortest > LARGE or (longest > LARGE and shortest > LONG and is_closed):
-            return (f"scene: '{name}' is {longest:,.0f} m long and {shortest:,.0f} m thick; is it in mm? "
-                    "load_mesh(path, unit=0.001) reads such files")
-        if longest < SMALL * wavelength:
-            return (f"scene: '{name}' is {longest:.3g} m large, less than half a wavelength ({wavelength:.3g} m), where ray "
-                    "optics ends; is it in m?")
-    return ""
+    nodes [N]; sides [N, 2] in m, shortest and longest; closed [N]; wavelength: m
+    """
+    if len(nodes) == 0:
+        return "scene: has no mesh that takes part: no ray hits"
+    shortest, longest = sides.T
+    large = (shortest > LARGE) | ((longest > LARGE) & (shortest > LONG) & closed)
+    strange = np.flatnonzero(large | (longest < SMALL * wavelength))
+    if len(strange) == 0:
+        return ""
+    first = strange[0]
+    name = scene._node(nodes[first]).name
+    if large[first]:
+        return (f"scene: '{name}' is {longest[first]:,.0f} m long and {shortest[first]:,.0f} m thick; is it in mm? "
+                "load_mesh(path, unit=0.001) reads such files")
+    return (f"scene: '{name}' is {longest[first]:.3g} m large, less than half a wavelength ({wavelength:.3g} m), where ray "
+            "optics ends; is it in m?")

@@ -71,6 +71,7 @@ CASES = {
     "diffuse lobe, random phase": (dict(scene=make_scene(ROUGH)), "plate", {}),
     "loss by roughness height": (dict(scene=make_scene(ep.Material(permittivity=4.0, roughness_height=3e-4))), "plate", {}),
     "mirrors by images": (dict(scene=make_scene(MIRROR)), "plate", {}),
+    "large planes by images": ({}, "a trace tells which", dict(scene=make_scene(ROUGH))),
     "legs over images": (dict(scene=beside_mirror()), "two mirrors", dict(scene=make_scene(MIRROR))),
     "multiple bounces": (dict(max_bounces=2), "= 2", dict(max_bounces=1)),
     "Russian roulette behind bounce 3": (dict(max_bounces=4), "= 4", dict(max_bounces=3)),
@@ -167,9 +168,15 @@ def test_what_is_never_modelled_is_said():
     assert len(never) >= 4 and not any(effect.modelled for effect in never)
 
 
+def without_planes(effects) -> list:
+    """All but the planes that image themselves, of which only a trace can tell."""
+    return [effect for effect in effects if effect.name != "large planes by images"]
+
+
 def test_the_record_knows_its_effects_and_writes_them(tmp_path):
     paths = ep.trace(make_scene(), make_radar(), num_rays=100, max_bounces=1, footprint="first_order")
-    assert paths.effects == ep.effects(make_scene(), make_radar(), max_bounces=1, footprint="first_order")
+    asked = ep.effects(make_scene(), make_radar(), max_bounces=1, footprint="first_order")
+    assert without_planes(paths.effects) == without_planes(asked)
     paths.save(tmp_path / "paths.h5")
     assert ep.Paths.load(tmp_path / "paths.h5").effects == paths.effects
     with h5py.File(tmp_path / "paths.h5") as file:
@@ -213,3 +220,30 @@ def test_objects_that_no_rays_aim_at_are_said():
     assert effect.modelled and "12 objects and images have no rays of their own" in effect.reason
     with pytest.warns(RuntimeWarning, match="12 objects and images"):
         warn_of_unaimed(statistics)
+
+
+def effect_of_planes(scene):
+    waveform, antenna = ep.ChirpSequence(start_frequency=24e9, num_chirps=2), ep.Antenna((3.0, 0.0, 0.0))
+    radar = ep.Radar(waveform, transmitters=[antenna], receivers=[antenna])
+    paths = ep.trace(scene, radar, num_rays=20_000, max_bounces=2, seed=1)
+    return next(effect for effect in paths.effects if effect.name == "large planes by images")
+
+
+def test_planes_that_image_themselves_are_counted_and_named():
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.1, 0.1), name="small", material=SPECULAR, position=(8, 0, 0))
+    assert effect_of_planes(scene) == rules.Effect("large planes by images", False,
+                                                   "no plane covers its Fresnel zone where it would mirror")
+    square = np.array([[-20, -20, 0], [20, -20, 0], [20, 20, 0], [-20, 20, 0.0]])
+    for name, corners in (("floor", square + [0, 0, -2]), ("wall", square[:, [0, 2, 1]] + [0, 5, 0])):
+        scene.add(ep.Mesh(corners, [[0, 1, 2], [0, 2, 3]]), name=name, material=SPECULAR)
+    effect = effect_of_planes(scene)
+    assert effect.modelled and effect.reason == "2 planes of 2 meshes: floor, wall; their Fresnel zones are covered"
+
+
+def test_of_a_town_the_first_names_stand_for_all():
+    scene = ep.Scene()
+    plate = ep.actors.plate(1.0, 1.0)
+    for index in range(1000):
+        scene.add(plate, name=f"house_{index}", material=SPECULAR, position=(5.0, 2.0 * index, 0.0))
+    assert found(scene)["perfect conductors"].reason == "1000 meshes: house_0, house_1, house_2 and 997 more"

@@ -45,14 +45,22 @@ PosedScene::PosedScene(const Scene& scene, const Radar& radar, const std::vector
 
 void PosedScene::place_meshes() {
   require_time(time_, "time");
-  for (const Transform& world_from_mesh : world_from_meshes(*scene_, time_)) {
+  const std::vector<Transform> world_from_node = world_from_nodes(*scene_, time_);
+  const size_t count = scene_->meshes().size();
+  linear_.reserve(count);
+  normal_matrix_.reserve(count);
+  world_translation_.reserve(count);
+  for (const SceneMesh& mesh : scene_->meshes()) {
+    const Transform& world_from_mesh = world_from_node[static_cast<size_t>(mesh.node)];
     const std::string& name = scene_->node_of(num_meshes()).name;
     if (!world_from_mesh.linear().allFinite()) {
       std::ostringstream value;
       value << "one that is not finite at " << time_ << " s";
       require(false, "scene", "the motions of mesh '" + name + "' must turn it by finite angles", value.str());
     }
-    require_in_range(world_from_mesh.translation(), "scene", "the place of mesh '" + name + "'");
+    if (!is_in_range(world_from_mesh.translation())) {
+      require_in_range(world_from_mesh.translation(), "scene", "the place of mesh '" + name + "'");
+    }
     linear_.push_back(world_from_mesh.linear());
     normal_matrix_.push_back(cofactor_matrix(world_from_mesh.linear()));
     world_translation_.push_back(world_from_mesh.translation());

@@ -93,7 +93,7 @@ std::vector<std::string> names_with_ancestors(const std::vector<std::string>& me
 // Returns the vertices [V] of one mesh in world coordinates and poses nothing else.
 std::vector<Vec3> world_vertices(const Scene& scene, uint32_t mesh_id, double time);
 
-// Returns world_from_mesh of each mesh, by mesh ID.
-std::vector<Transform> world_from_meshes(const Scene& scene, double time);
+// Returns world_from_node of each node, by index. The motions of what does not take part are not asked for anything.
+std::vector<Transform> world_from_nodes(const Scene& scene, double time);
 
 }  // namespace echopath

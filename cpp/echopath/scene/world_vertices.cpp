@@ -5,8 +5,14 @@
 namespace echopath {
 namespace {
 
-// Parents come before their children, so one pass in order is enough. The motion of what does not take part may not be
-// defined at the time.
+std::vector<Vec3> transformed(const Transform& transform, std::vector<Vec3> points) {
+  for (Vec3& point : points) point = transform * point;
+  return points;
+}
+
+}  // namespace
+
+// Parents come before their children, so one pass in order is enough.
 std::vector<Transform> world_from_nodes(const Scene& scene, double time) {
   std::vector<Transform> result;
   result.reserve(scene.nodes().size());
@@ -16,21 +22,6 @@ std::vector<Transform> world_from_nodes(const Scene& scene, double time) {
     const Transform local = moved(node.placement, motion, time);
     result.push_back(node.parent < 0 ? local : result[static_cast<size_t>(node.parent)] * local);
   }
-  return result;
-}
-
-std::vector<Vec3> transformed(const Transform& transform, std::vector<Vec3> points) {
-  for (Vec3& point : points) point = transform * point;
-  return points;
-}
-
-}  // namespace
-
-std::vector<Transform> world_from_meshes(const Scene& scene, double time) {
-  const std::vector<Transform> world_from_node = world_from_nodes(scene, time);
-  std::vector<Transform> result;
-  result.reserve(scene.meshes().size());
-  for (const SceneMesh& mesh : scene.meshes()) result.push_back(world_from_node[static_cast<size_t>(mesh.node)]);
   return result;
 }
 

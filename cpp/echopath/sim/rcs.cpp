@@ -124,7 +124,7 @@ TraceSettings tracing_of(const RcsSettings& settings) {
   return tracing;
 }
 
-Paths shoot(const Scene& scene, const Radar& radar, const RcsSettings& settings, Job* job, KeptGeometry* kept) {
+Paths shoot(const SceneSnapshot& scene, const Radar& radar, const RcsSettings& settings, Job* job, KeptGeometry* kept) {
   const TraceSettings tracing = tracing_of(settings);
   return settings.target ? trace_to_error(scene, radar, tracing, *settings.target, job, kept)
                          : trace(scene, radar, tracing, job, kept);
@@ -167,6 +167,7 @@ std::vector<RadarCrossSection> rcs(const Scene& scene, std::span<const RcsDirect
                                    const RcsSettings& settings, Job* job) {
   settings.validate();
   const Target target = target_of(scene);
+  const SceneSnapshot snapshot(scene);
   const double wavenumber = kTwoPi * settings.frequency / kSpeedOfLight;
   const double distance = far_distance(target, wavenumber);
   // The scale is (4 pi)^3 R^4 / lambda^2 for Q^2 = 1 W.
@@ -182,7 +183,7 @@ std::vector<RadarCrossSection> rcs(const Scene& scene, std::span<const RcsDirect
   KeptGeometry kept;
   for (const Shot& shot : shots) {
     Job part(job);
-    const Paths paths = shoot(scene, shot.radar, settings, is_one && job ? job : &part, &kept);
+    const Paths paths = shoot(snapshot, shot.radar, settings, is_one && job ? job : &part, &kept);
     for (size_t i = 0; i < shot.channels.size(); ++i) {
       out[shot.channels[i]] = cross_section(paths, static_cast<int>(i), scale, &part);
     }

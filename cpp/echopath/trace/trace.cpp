@@ -13,7 +13,7 @@ void TraceSettings::validate() const {
   guide.validate();
 }
 
-Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job, KeptGeometry* kept) {
+Paths trace(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job, KeptGeometry* kept) {
   return Tracer(scene, radar, settings, job, kept).run(job);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // Traces a scene: rays that see scene and radar at mid-frame make the paths of the record.
 #include "echopath/base/job.h"
+#include "echopath/scene/scene_snapshot.h"
 #include "echopath/trace/launch/launch_focus.h"
 #include "echopath/trace/record/paths.h"
 
@@ -33,7 +34,7 @@ struct TraceSettings {
 // a radar without antennas, a smooth mirror that is not flat, or a motion that does not cover the frame; raises
 // DeviceError; raises Cancelled. With `kept`, the trace uses the geometry of the trace before where it can, and leaves
 // its own for the next: the record is the same and comes sooner, but the memory stays in use.
-Paths trace(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr,
+Paths trace(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr,
             KeptGeometry* kept = nullptr);
 
 }  // namespace echopath

@@ -46,12 +46,12 @@ TraceFrame make_frame(const Radar& radar, const TraceSettings& settings) {
   return frame;
 }
 
-Paths empty_record(const Scene& scene, const Radar& radar, const TraceSettings& settings) {
+Paths empty_record(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings) {
   settings.validate();
   radar.validate();
-  scene.require_times(settings.start_time, settings.start_time + radar.frame_duration());
+  scene->require_times(settings.start_time, settings.start_time + radar.frame_duration());
   Paths paths;
-  paths.scene = std::make_shared<const Scene>(scene);
+  paths.scene = scene.shared();
   paths.radar = radar;
   paths.frame = make_frame(radar, settings);
   return paths;
@@ -59,7 +59,7 @@ Paths empty_record(const Scene& scene, const Radar& radar, const TraceSettings& 
 
 }  // namespace
 
-Tracer::Tracer(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job, KeptGeometry* kept)
+Tracer::Tracer(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job, KeptGeometry* kept)
     : empty_(empty_record(scene, radar, settings)), num_rays_to_come_(settings.num_rays_to_come),
       pose_(*empty_.scene, empty_.frame.trace_time), world_from_radar_(radar.world_from_radar(empty_.frame.trace_time)),
       origin_(EmbreeScene::origin_near(*empty_.scene, pose_, empty_.frame.transmitter, radar.motion != nullptr)),

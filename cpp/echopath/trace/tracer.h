@@ -10,7 +10,8 @@ namespace echopath {
 class Tracer {
  public:
   // Raises what `trace` raises.
-  Tracer(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job, KeptGeometry* kept = nullptr);
+  Tracer(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job,
+         KeptGeometry* kept = nullptr);
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
   // Shoots all rays; it returns the same record each time.

@@ -53,7 +53,7 @@ def of_paths(paths, *, replay: str = "material", evaluate: str = "interpolated",
     frame = paths.frame
     settings = Settings(frame.max_bounces, frame.footprint, frame.polarization, frame.sampler, frame.num_batches,
                         frame.target_error_db or None, frame.scatterers, replay, evaluate, retrace, noise_seed)
-    return _of_case(Case(paths.scene, paths.radar, settings, frame.statistics))
+    return _of_case(Case(paths.scene, paths.radar, settings, paths=paths))
 
 
 def _of_case(case: Case) -> Effects:

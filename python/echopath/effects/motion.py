@@ -1,16 +1,16 @@
 """Effects of motion during a frame."""
 from __future__ import annotations
 
-from .rules import Case, meshes_or, named, rule
+from .rules import Case, rule
 
 
 def _moves(case: Case) -> bool:
-    return bool(case.moving) or case.radar.motion is not None
+    return len(case.moving) > 0 or case.radar.motion is not None
 
 
 @rule("motion over chirps", "Node.motion", "Radar.motion")
 def _over_chirps(case: Case):
-    reasons = ["the radar moves"] * (case.radar.motion is not None) + [named(case.moving)] * bool(case.moving)
+    reasons = ["the radar moves"] * (case.radar.motion is not None) + [case.named(case.moving)] * (len(case.moving) > 0)
     return _moves(case), "; ".join(reasons) or "nothing moves"
 
 
@@ -38,13 +38,12 @@ def _renewed(case: Case):
 
 @rule("deforming meshes", "Node.deformation")
 def _deforming(case: Case):
-    return meshes_or([mesh for mesh in case.moving if case.nodes[mesh.node].deformation is not None],
-                     "no mesh has a vertex sequence or a skin")
+    return case.meshes_or(case.deforming, "no mesh has a vertex sequence or a skin")
 
 
 @rule("paths at rest evaluated once")
 def _bypass(case: Case):
     if case.radar.motion is not None:
         return False, "the radar moves"
-    still = len(case.meshes) - len(case.moving)
-    return still > 0, f"{still} of {len(case.meshes)} meshes and the radar stand still" if still else "all meshes move"
+    still = case.num_meshes - len(case.moving)
+    return still > 0, f"{still} of {case.num_meshes} meshes and the radar stand still" if still else "all meshes move"

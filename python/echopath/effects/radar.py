@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from ..polarization import FIELD_VECTORS, antennas_of, are_crossed, need_of_field_vectors
-from .rules import Case, meshes_or, rule
+from .rules import Case, rule
 
 
 @rule("antenna patterns", "Antenna.pattern", "Antenna.orientation", "Antenna.yaw", "Antenna.pitch", "AntennaPattern.kind",
@@ -55,8 +55,8 @@ def _polarization(case: Case):
 def _depolarisation(case: Case):
     if case.model != FIELD_VECTORS:
         return False, "traced with one coefficient a hit"
-    return meshes_or([mesh for mesh in case.diffuse if mesh.material.cross_polarization > 0.0],
-                     "no rough material has a cross_polarization")
+    turning = case.of_material(lambda material: case.share(material) < 1.0 and material.cross_polarization > 0.0)
+    return case.meshes_or(turning, "no rough material has a cross_polarization")
 
 
 @rule("residual video phase", "ChirpSequence.bandwidth")

@@ -5,8 +5,11 @@ import dataclasses
 from collections.abc import Callable
 from functools import cached_property
 
+import numpy as np
+from numpy.typing import NDArray
+
 from .. import _core
-from ..names import first_names
+from ..names import MOST_NAMES, first_names
 from ..polarization import COHERENT_SHARE, antennas_of, chosen_model, coherent_share
 
 
@@ -37,13 +40,16 @@ class Settings:
 
 
 class Case:
-    """A scene, a radar and settings, and the meshes that several rules ask for; statistics: of the trace that was made,
-    None: none yet."""
+    """A scene, a radar and settings, and the IDs [N] of the meshes that several rules ask for, ascending.
 
-    def __init__(self, scene, radar, settings: Settings, statistics=None):
-        self.scene, self.radar, self.settings, self.statistics = scene, radar, settings, statistics
+    paths: the trace that was made, None: none yet; statistics: its own, unless given
+    """
+
+    def __init__(self, scene, radar, settings: Settings, statistics=None, *, paths=None):
+        self.scene, self.radar, self.settings, self.paths = scene, radar, settings, paths
+        self.statistics = statistics or (paths.frame.statistics if paths else None)
         self.wavelength = _core.speed_of_light / radar.waveform.start_frequency
-        self.meshes, self.nodes = list(scene.meshes), scene.nodes
+        self.materials, self._of_mesh, self._smooth, self._moving, self._deforming = _core.mesh_traits(scene)
 
     @cached_property
     def model(self) -> str:
@@ -51,34 +57,60 @@ class Case:
         return chosen_model(self.settings.polarization, self.scene, self.wavelength, antennas_of(self.radar),
                             argument="polarization")
 
-    @cached_property
-    def mirrors(self) -> list:
-        return [mesh for mesh in self.meshes if mesh.material.mirror]
+    @property
+    def num_meshes(self) -> int:
+        return len(self._of_mesh)
+
+    def of_material(self, takes: Callable) -> NDArray[np.intp]:
+        """Meshes whose material `takes` is true of."""
+        return np.flatnonzero(np.array([bool(takes(material)) for material in self.materials], bool)[self._of_mesh])
 
     @cached_property
-    def objects(self) -> list:
-        return [mesh for mesh in self.meshes if not mesh.material.mirror]
+    def mirrors(self) -> NDArray[np.intp]:
+        return self.of_material(lambda material: material.mirror)
 
     @cached_property
-    def coherent(self) -> list:
+    def objects(self) -> NDArray[np.intp]:
+        return self.of_material(lambda material: not material.mirror)
+
+    @cached_property
+    def coherent(self) -> NDArray[np.intp]:
         """Radiate by physical optics: mirrors do not."""
-        return [mesh for mesh in self.objects if self.share(mesh) >= COHERENT_SHARE]
+        return self.of_material(lambda material: not material.mirror and self.share(material) >= COHERENT_SHARE)
 
     @cached_property
-    def diffuse(self) -> list:
-        return [mesh for mesh in self.meshes if self.share(mesh) < 1.0]
+    def diffuse(self) -> NDArray[np.intp]:
+        return self.of_material(lambda material: self.share(material) < 1.0)
 
     @cached_property
-    def smooth(self) -> list:
-        return [mesh for mesh in self.meshes if self.nodes[mesh.node].smooth]
+    def smooth(self) -> NDArray[np.intp]:
+        return np.flatnonzero(self._smooth)
 
     @cached_property
-    def moving(self) -> list:
-        return [mesh for mesh in self.meshes if self.scene.is_moving(mesh.id)]
+    def curved(self) -> NDArray[np.intp]:
+        """Smooth ones that radiate by physical optics."""
+        return self.coherent[self._smooth[self.coherent]]
 
-    def share(self, mesh) -> float:
+    @cached_property
+    def moving(self) -> NDArray[np.intp]:
+        return np.flatnonzero(self._moving)
+
+    @cached_property
+    def deforming(self) -> NDArray[np.intp]:
+        return np.flatnonzero(self._deforming)
+
+    def share(self, material) -> float:
         """Of the reflected power that keeps its phase."""
-        return coherent_share(mesh.material, self.wavelength)
+        return coherent_share(material, self.wavelength)
+
+    def meshes_or(self, meshes, otherwise: str) -> tuple[bool, str]:
+        """(some there?, their count and first names, or `otherwise`)."""
+        return len(meshes) > 0, self.named(meshes) if len(meshes) else otherwise
+
+    def named(self, meshes) -> str:
+        """Count of meshes and the first of their names."""
+        names = first_names(_core.mesh_names(self.scene, meshes[:MOST_NAMES]), len(meshes))
+        return f"{len(meshes)} mesh{'es' * (len(meshes) > 1)}: {names}"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -118,13 +150,3 @@ def rule(name: str, *answers_for: str):
         return decide
 
     return register
-
-
-def meshes_or(meshes, otherwise: str):
-    """(some there?, their count and first names, or `otherwise`)."""
-    return bool(meshes), named(meshes) if meshes else otherwise
-
-
-def named(meshes) -> str:
-    """Count of meshes and the first of their names."""
-    return f"{len(meshes)} mesh{'es' * (len(meshes) > 1)}: {first_names(mesh.name for mesh in meshes)}"

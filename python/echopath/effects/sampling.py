@@ -12,9 +12,9 @@ def _sampler(case: Case):
 
 @rule("rays aimed at objects")
 def _aimed(case: Case):
-    if not case.objects:
+    if len(case.objects) == 0:
         return False, "nothing but mirrors: all rays fill the field of view"
-    images = " and at their images" if case.mirrors and case.settings.max_bounces > 1 else ""
+    images = " and at their images" if len(case.mirrors) and case.settings.max_bounces > 1 else ""
     missing = f"; {unaimed(case.statistics)}" if case.statistics and case.statistics.num_unaimed else ""
     return True, f"a cone or strip that fits each object{images}; the rest of the rays fills the field of view{missing}"
 

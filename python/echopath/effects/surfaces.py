@@ -6,7 +6,8 @@ import math
 from .._core import speed_of_light
 from ..lost_rays import unfollowed_beams
 from ..tessellation import coarse_meshes
-from .rules import Case, meshes_or, named, rule
+from .planes import imaged_planes
+from .rules import Case, rule
 
 VALID_FOCK = 2.0     # cosine at the point that mirrors over the width of the shadow's edge
 ROULETTE_BOUNCE = 3  # from which on rays end by chance (trace/scatter/lobe_probabilities.h)
@@ -14,7 +15,7 @@ ROULETTE_BOUNCE = 3  # from which on rays end by chance (trace/scatter/lobe_prob
 
 @rule("coherent physical optics", "Material.scattering")
 def _coherent(case: Case):
-    return meshes_or(case.coherent, "no mesh but mirrors has a specular share")
+    return case.meshes_or(case.coherent, "no mesh but mirrors has a specular share")
 
 
 @rule("footprint filter", "trace.footprint")
@@ -22,7 +23,7 @@ def _footprint(case: Case):
     order = case.settings.footprint
     if order == "none":
         return False, 'footprint = "none"'
-    if not case.coherent:
+    if len(case.coherent) == 0:
         return False, "no coherent echoes to filter"
     kind = {"first_order": "phases linear across a ray's footprint",
             "edges": "quadratic phases on curved surfaces, kept at their edges, flat-top on flat ones",
@@ -32,15 +33,14 @@ def _footprint(case: Case):
 
 @rule("smooth surfaces", "Node.smooth")
 def _smooth(case: Case):
-    return meshes_or(case.smooth, "no mesh is marked smooth")
+    return case.meshes_or(case.smooth, "no mesh is marked smooth")
 
 
 @rule("tubes behind curved bounces")
 def _curved_bounces(case: Case):
     if case.settings.max_bounces == 1:
         return False, "max_bounces = 1"
-    curved = [mesh for mesh in case.coherent if mesh in case.smooth]
-    return meshes_or(curved, "no smooth mesh has a specular share")
+    return case.meshes_or(case.curved, "no smooth mesh has a specular share")
 
 
 @rule("caustics")
@@ -51,8 +51,7 @@ def _caustics(case: Case):
 
 @rule("shadow's edge of curved surfaces")
 def _shadow_edge(case: Case):
-    curved = [mesh for mesh in case.coherent if mesh in case.smooth]
-    if not curved:
+    if len(case.curved) == 0:
         return False, "no smooth mesh has a specular share"
     if case.settings.footprint not in ("second_order", "edges"):
         return False, f'footprint = "{case.settings.footprint}" leaves the edge wave of physical optics'
@@ -71,32 +70,32 @@ def bistatic_limit_deg(radius: float, frequency: float) -> float:
 
 @rule("check of the tessellation")
 def _tessellation(case: Case):
-    if not case.coherent:
+    if len(case.coherent) == 0:
         return False, "no coherent echoes"
-    coarse = [case.meshes[one.mesh_id] for one in coarse_meshes(case.scene, case.radar.waveform.start_frequency)]
-    return True, f"too coarse: {named(coarse)}" if coarse else "errs by 0.3 dB at most"
+    coarse = [one.mesh_id for one in coarse_meshes(case.scene, case.radar.waveform.start_frequency)]
+    return True, f"too coarse: {case.named(coarse)}" if coarse else "errs by 0.3 dB at most"
 
 
 @rule("perfect conductors", "Material.conductor")
 def _conductors(case: Case):
-    return meshes_or([mesh for mesh in case.meshes if mesh.material.conductor], "no material is a conductor")
+    return case.meshes_or(case.of_material(lambda material: material.conductor), "no material is a conductor")
 
 
 @rule("Fresnel coefficients", "Material.permittivity", "Material.conductivity")
 def _fresnel(case: Case):
-    return meshes_or([mesh for mesh in case.meshes if mesh.material.permittivity is not None],
-                     "no material has a permittivity")
+    dielectric = case.of_material(lambda material: material.permittivity is not None)
+    return case.meshes_or(dielectric, "no material has a permittivity")
 
 
 @rule("constant reflectivity", "Material.reflectivity")
 def _reflectivity(case: Case):
-    return meshes_or([mesh for mesh in case.meshes if mesh.material.reflectivity is not None],
-                     "no material has a reflectivity")
+    constant = case.of_material(lambda material: material.reflectivity is not None)
+    return case.meshes_or(constant, "no material has a reflectivity")
 
 
 @rule("diffuse lobe, random phase", "Material.scattering")
 def _diffuse(case: Case):
-    return meshes_or(case.diffuse, "no material scatters diffusely")
+    return case.meshes_or(case.diffuse, "no material scatters diffusely")
 
 
 @rule("speckle that goes on from frame to frame", "trace.scatterers")
@@ -108,23 +107,35 @@ def _scatterers(case: Case):
 
 @rule("loss by roughness height", "Material.roughness_height")
 def _roughness(case: Case):
-    return meshes_or([mesh for mesh in case.meshes if mesh.material.roughness_height > 0.0],
-                     "no material has a roughness height")
+    rough = case.of_material(lambda material: material.roughness_height > 0.0)
+    return case.meshes_or(rough, "no material has a roughness height")
 
 
 @rule("mirrors by images", "Material.mirror")
 def _mirrors(case: Case):
-    modelled, reason = meshes_or(case.mirrors, "no mesh is marked mirror")
+    modelled, reason = case.meshes_or(case.mirrors, "no mesh is marked mirror")
     missing = unfollowed_beams(case.statistics) if case.statistics else ""
     return modelled, f"{reason}; {missing}" if missing else reason
+
+
+@rule("large planes by images")
+def _planes(case: Case):
+    if len(case.coherent) == 0:
+        return False, "no coherent echoes"
+    if case.paths is None:
+        return True, "planes that cover their Fresnel zones where they mirror, for all rays over them; a trace tells which"
+    count, meshes = imaged_planes(case.paths)
+    if count == 0:
+        return False, "no plane covers its Fresnel zone where it would mirror"
+    return True, f"{count} plane{'s' * (count > 1)} of {case.named(meshes)}; their Fresnel zones are covered"
 
 
 @rule("legs over images")
 def _image_legs(case: Case):
     if case.settings.max_bounces == 1:
         return False, "max_bounces = 1"
-    if not (case.mirrors and case.objects):
-        return False, "no mesh is marked mirror" if not case.mirrors else "nothing but mirrors"
+    if len(case.mirrors) == 0 or len(case.objects) == 0:
+        return False, "no mesh is marked mirror" if len(case.mirrors) == 0 else "nothing but mirrors"
     return True, "to and from each object and each rough mirror, over up to two mirrors"
 
 
@@ -143,11 +154,11 @@ def _orders(case: Case):
     if case.settings.max_bounces == 1:
         return False, "max_bounces = 1"
     reason = "edges of surfaces below their Fresnel zone, the better of two orders"
-    return bool(case.coherent), reason if case.coherent else "no coherent echoes"
+    return len(case.coherent) > 0, reason if len(case.coherent) else "no coherent echoes"
 
 
 @rule("both orders of diffuse chains")
 def _pairs(case: Case):
     if case.settings.max_bounces == 1:
         return False, "max_bounces = 1"
-    return bool(case.diffuse), "two or more diffuse hits share their phases" if case.diffuse else "nothing is rough"
+    return len(case.diffuse) > 0, "two or more diffuse hits share their phases" if len(case.diffuse) else "nothing is rough"

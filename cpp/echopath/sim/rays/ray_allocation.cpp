@@ -148,7 +148,8 @@ LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_ra
   return guide;
 }
 
-Paths trace_by_need(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job, KeptGeometry* kept) {
+Paths trace_by_need(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job,
+                    KeptGeometry* kept) {
   TraceSettings launch = settings;
   settings.validate();
   launch.num_rays = settings.num_rays / kPilotDivisor;

@@ -52,7 +52,7 @@ LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_ra
 // Traces with rays shared out by what each stratum above the noise needs for kResolvedDb (power/received_power.h). A pilot
 // trace of an eighth of settings.num_rays tells the needs and is thrown away. Where settings.guide gives the shares, or rays
 // are few, there is no pilot, and rays are shared as in `trace`. Raises as `trace`.
-Paths trace_by_need(const Scene& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr,
+Paths trace_by_need(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr,
                     KeptGeometry* kept = nullptr);
 
 }  // namespace echopath

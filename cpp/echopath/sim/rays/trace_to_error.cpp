@@ -12,8 +12,8 @@ void ErrorTarget::validate() const {
   require(max_rays >= 1 && max_rays <= kMostRays, "max_rays", "must lie in [1, 10000000000]", max_rays);
 }
 
-Paths trace_to_error(const Scene& scene, const Radar& radar, const TraceSettings& settings, const ErrorTarget& target,
-                     Job* job, KeptGeometry* kept) {
+Paths trace_to_error(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings,
+                     const ErrorTarget& target, Job* job, KeptGeometry* kept) {
   target.validate();
   settings.validate();
   require(settings.num_rays <= target.max_rays, "num_rays", "must not exceed max_rays", settings.num_rays);

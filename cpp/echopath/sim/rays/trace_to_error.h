@@ -25,7 +25,7 @@ struct ErrorTarget {
 // one: a finer lattice errs nearly like 1/rays, while more batches of the same lattice would win the square root only; all
 // traces together cost less than twice the last. frame.target_error_db and frame.error_db tell the outcome. It stops at once
 // where no ray meets anything. Raises as `trace`. All traces share one geometry: `kept`, as in `trace`, or their own.
-Paths trace_to_error(const Scene& scene, const Radar& radar, const TraceSettings& settings, const ErrorTarget& target,
-                     Job* job = nullptr, KeptGeometry* kept = nullptr);
+Paths trace_to_error(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings,
+                     const ErrorTarget& target, Job* job = nullptr, KeptGeometry* kept = nullptr);
 
 }  // namespace echopath

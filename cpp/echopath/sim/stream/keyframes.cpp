@@ -88,7 +88,7 @@ std::vector<Paths> StretchRecords::of(const Stretch& stretch) {
     TraceSettings settings = settings_like(paths_.frame);
     settings.start_time = stretch.start_time;
     settings.guide = guide_like(paths_.frame.strata);
-    return {trace(*paths_.scene, stretch.radar, settings, job_, &kept_)};
+    return {trace(paths_.scene, stretch.radar, settings, job_, &kept_)};
   }
   std::vector<Paths> records;
   const auto add = [&](const Paths& paths) {

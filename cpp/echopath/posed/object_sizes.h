@@ -1,0 +1,21 @@
+#pragma once
+// Measures how large the objects of a scene are.
+#include <cstdint>
+#include <vector>
+
+#include "echopath/scene/scene.h"
+
+namespace echopath {
+
+// Describes the bounding box, along the world's axes, of a child of the scene's root with all that is below it.
+struct ObjectSize {
+  int node = 0;                          // index into Scene::nodes()
+  double shortest = 0.0, longest = 0.0;  // sides, m
+  bool is_closed = true;                 // all its meshes are (Mesh::is_closed)
+};
+
+// Returns the sizes at `time` (s) of all objects that take part and have meshes, in the order of their first meshes. Raises
+// invalid_argument where a motion is not defined then.
+std::vector<ObjectSize> object_sizes(const Scene& scene, double time);
+
+}  // namespace echopath

@@ -184,5 +184,22 @@ TEST(PathBlock, ClearedBlockIsEmpty) {
   EXPECT_EQ(record_of({block}).num_paths(), 0);
 }
 
+TEST(PathBlock, ChainsOfOneRayShareItsHits) {
+  const std::vector<Hit> first = {{0, 1, 0.f, 0.f}, {1, 2, 0.f, 0.f}, {2, 3, 0.f, 0.f}}, second = {{3, 4, 0.f, 0.f}};
+  PathBlock block;
+  block.add_chain(1);
+  block.add_chain(2);
+  block.end_ray(first.data());
+  block.end_ray(first.data());
+  block.add_chain(1);
+  block.end_ray(second.data());
+  ASSERT_EQ(block.chains.size(), 3u);
+  EXPECT_EQ(block.chain_hits.size(), 3u);
+  EXPECT_EQ(block.chains[1].first, block.chains[0].first);
+  EXPECT_EQ(block.chains[1].count, 2u);
+  EXPECT_EQ(block.chain_hits[block.chains[2].first].triangle_id, 4u);
+  EXPECT_EQ(block.num_hits(), 0u);
+}
+
 }  // namespace
 }  // namespace echopath::test_path_block

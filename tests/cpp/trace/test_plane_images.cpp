@@ -1,6 +1,8 @@
 // Images on planes that nobody flagged, against loops over all sequences and the closed form of an endless plane.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <map>
 #include <set>
 
 #include "echopath/base/parallel.h"
@@ -124,6 +126,44 @@ TEST(PlaneImages, AWallLargerThanItsZoneIsOnePathAndASmallerOneIsNone) {
   const Paths plate = before_a_square(0.2);
   EXPECT_GT(coherent_paths(plate).size(), 100u);
   for (const size_t path : coherent_paths(plate)) EXPECT_NE(plate.stratum[path], kNoStratum);
+}
+
+// Bytes of memory that the process had in use at most, so far.
+int64_t peak_memory() {
+  rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  return int64_t{usage.ru_maxrss} * 1024;
+}
+
+constexpr int64_t kMiB = 1 << 20;
+
+// Between two endless plates there are two paths of every number of bounces: one begins at either plate.
+TEST(PlaneImages, TwoLongPlatesHaveTwoPathsOfEveryNumberOfBounces) {
+  Scene scene;
+  for (const double y : {-1.5, 1.5})
+    testing::add_rectangle(scene, y < 0 ? "right" : "left", {-50, y, -20}, {100, 0, 0}, {0, 0, 40}, metal(false));
+  const int64_t before = peak_memory();
+  const Paths paths = traced(scene, short_waves({0, 0.1, 0}, {1, -0.1, 0.2}), 20'000, 64);
+  std::map<int, int> found;
+  for (size_t i = 0; i < static_cast<size_t>(paths.num_paths()); ++i) {
+    if (paths.stratum[i] == kNoStratum) ++found[paths.num_bounces[i]];
+  }
+  ASSERT_EQ(found.size(), 64u);
+  for (const auto& [bounces, count] : found) EXPECT_EQ(count, 2) << bounces;
+  EXPECT_LT(peak_memory() - before, test::kIsSanitized ? 2000 * kMiB : 200 * kMiB);
+}
+
+// In a closed room every ray goes by near the receiver after every bounce, once its neighbours are far enough apart.
+TEST(PlaneImages, ManyBouncesInARoomTakeMemoryLikeTheRecord) {
+  Scene scene;
+  const MirrorRectangle walls[] = {{{0, 0, 0}, {5, 0, 0}, {0, 4.3, 0}},   {{0, 0, 3.1}, {5, 0, 0}, {0, 4.3, 0}},
+                                   {{0, 0, 0}, {0, 4.3, 0}, {0, 0, 3.1}}, {{5, 0, 0}, {0, 4.3, 0}, {0, 0, 3.1}},
+                                   {{0, 0, 0}, {5, 0, 0}, {0, 0, 3.1}},   {{0, 4.3, 0}, {5, 0, 0}, {0, 0, 3.1}}};
+  add_house(scene, "room", walls, 6, metal(false));
+  const int64_t before = peak_memory();
+  const Paths paths = traced(scene, testing::plain_radar({1.3, 0.7, 1.9}, {4.1, 2.6, 0.6}), 2'000, 64);
+  EXPECT_GT(paths.num_paths(), 50'000);
+  EXPECT_LT(peak_memory() - before, test::kIsSanitized ? 2000 * kMiB : 70 * kMiB);
 }
 
 TEST(PlaneImages, AreTheSameForAnyNumberOfThreads) {

@@ -80,7 +80,7 @@ void Connector<Weight>::show_image(Connection& at) const {
   const RayHit& point = at.surface.point;
   const Vec3 direction = mirrored(ray.direction, point.normal), to_receiver = context_.settings.receiver - point.position;
   if (reach_of(unpacked(to_receiver), unpacked(direction), ray.leg_length, ray.leg_density) > 0)
-    at.block.add_chain(ray.hits.data(), ray.depth);
+    at.block.add_chain(ray.depth);
 }
 
 template <class Weight>

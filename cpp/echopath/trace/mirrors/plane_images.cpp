@@ -11,11 +11,13 @@
 namespace echopath {
 namespace {
 
-constexpr double kSamePoint = 1e-3;        // m: paths whose points lie so near to each other are one
-constexpr double kFlatPhase = 1.0 / 16.0;  // wavelengths by which a surface may stray from a plane of which it is a part
-constexpr double kAboutCorner = 4.0;       // half Fresnel zones between bounces at the same corner
-constexpr size_t kMostAtCorner = 4;        // bounces
-constexpr double kZoneShare = 1.0 - 1e-9;  // of the Fresnel zone that each surface must cover
+constexpr double kSamePoint = 1e-3;           // m: paths whose points lie so near to each other are one
+constexpr double kFlatPhase = 1.0 / 16.0;     // wavelengths by which a surface may stray from a plane of which it is a part
+constexpr double kAboutCorner = 4.0;          // half Fresnel zones between bounces at the same corner
+constexpr size_t kMostAtCorner = 4;           // bounces
+constexpr size_t kMostTriedPoints = 1 << 20;  // 24 MiB
+const Vec3 kLine = Vec3(0.5127, 0.6271, 0.5864).normalized();  // along no wall
+constexpr double kZoneShare = 1.0 - 1e-9;                      // of the Fresnel zone that each surface must cover
 
 // Shoots a ray at the point.
 class RayLocator final : public PointLocator {
@@ -62,21 +64,26 @@ PlaneImages::PlaneImages(const Scene& scene, const EmbreeScene& geometry, const 
       tolerance_(std::max(kFlatPhase * wavelength_, 4.0 * geometry.lift())) {}
 
 void PlaneImages::add_chains(const PathBlock& block) {
-  size_t first = 0;
-  for (const uint8_t count : block.chain_sizes) {
-    Chain chain;
-    for (size_t k = 0; k < count; ++k) {
-      const Hit& hit = block.chain_hits[first + k];
-      chain.emplace_back(hit.mesh_id, hit.triangle_id);
-    }
-    first += count;
-    chains_.insert(std::move(chain));
-  }
+  const size_t first = facets_.size();
+  for (const Hit& hit : block.chain_hits) facets_.push_back({hit.mesh_id, hit.triangle_id});
+  for (const PathBlock::Chain& chain : block.chains) chains_.push_back({first + chain.first, chain.count});
+}
+
+// Sorts the chains by their facets, so that they do not hang on the order of the rays, and keeps each once.
+void PlaneImages::sort_chains() {
+  const auto compare = [&](const RayChain& a, const RayChain& b) {
+    const Chain one = facets_of(a), other = facets_of(b);
+    return std::lexicographical_compare_three_way(one.begin(), one.end(), other.begin(), other.end());
+  };
+  std::sort(chains_.begin(), chains_.end(), [&](const auto& a, const auto& b) { return compare(a, b) < 0; });
+  const auto end =
+      std::unique(chains_.begin(), chains_.end(), [&](const auto& a, const auto& b) { return compare(a, b) == 0; });
+  chains_.erase(end, chains_.end());
 }
 
 // Sets planes_ to the planes of the chain, and returns their indices in travel order; returns none where a surface has no
 // plane that lasts.
-std::vector<int> PlaneImages::planes_of(const Chain& chain) {
+std::vector<int> PlaneImages::planes_of(Chain chain) {
   planes_.clear();
   std::vector<int> sequence;
   for (const auto& [mesh_id, triangle_id] : chain) {
@@ -95,14 +102,19 @@ std::vector<int> PlaneImages::planes_of(const Chain& chain) {
   return sequence;
 }
 
-// Returns whether a path through these points was tried before.
-bool PlaneImages::is_known(const Chain& chain, const std::vector<Vec3>& points) {
+// Returns whether a path through these points was tried before, as far as there is room to remember it.
+bool PlaneImages::is_known(Chain chain, const std::vector<Vec3>& points) {
   std::vector<uint32_t> meshes;
-  for (const auto& [mesh_id, triangle_id] : chain) meshes.push_back(mesh_id);
-  std::vector<std::vector<Vec3>>& tried = tried_[meshes];
-  const bool is_old = std::any_of(tried.begin(), tried.end(), [&](const auto& old) { return is_near(points, old); });
-  if (!is_old) tried.push_back(points);
-  return is_old;
+  for (const Facet& facet : chain) meshes.push_back(facet.mesh_id);
+  const double place = kLine.dot(points.front());  // points lie no nearer to each other than their places
+  if (const auto tried = tried_.find(meshes); tried != tried_.end()) {
+    const auto begin = tried->second.lower_bound(place - kSamePoint), end = tried->second.upper_bound(place + kSamePoint);
+    if (std::any_of(begin, end, [&](const auto& old) { return is_near(points, old.second); })) return true;
+  }
+  if (num_tried_points_ > kMostTriedPoints) return false;
+  num_tried_points_ += points.size();
+  tried_[meshes].emplace(place, points);
+  return false;
 }
 
 // Returns whether each surface of the path covers its Fresnel zone.
@@ -145,8 +157,10 @@ PathBlock PlaneImages::find(const Job* job) {
   PathBlock block;
   const RayLocator locator(geometry_, tolerance_);
   std::vector<Vec3> points;
-  for (const Chain& chain : chains_) {
+  sort_chains();
+  for (const RayChain& of_ray : chains_) {
     if (job) job->throw_if_cancelled();
+    const Chain chain = facets_of(of_ray);
     const std::vector<int> sequence = planes_of(chain);
     if (sequence.empty()) continue;
     ImageMethod images(geometry_, planes_, locator, settings_);

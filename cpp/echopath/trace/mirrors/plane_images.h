@@ -8,9 +8,11 @@
 // that rays send over the same planes in the same order are left out, because they add up to the same field. Everything
 // else stays with the rays: smaller surfaces, planes without a point of reflection, diffuse echoes, paths that meet anything
 // else. Source: Schaubach, Davis, Rappaport 1992 (sphere around the receiver).
+#include <compare>
 #include <cstdint>
 #include <map>
 #include <set>
+#include <span>
 #include <vector>
 
 #include "echopath/base/job.h"
@@ -38,9 +40,19 @@ class PlaneImages {
 
     bool contain(const std::vector<int>& sequence) const;  // of the same planes
   };
-  using Chain = std::vector<std::pair<uint32_t, uint32_t>>;  // mesh and triangle of each hit
-  std::vector<int> planes_of(const Chain& chain);
-  bool is_known(const Chain& chain, const std::vector<Vec3>& points);
+  struct Facet {
+    uint32_t mesh_id, triangle_id;
+    auto operator<=>(const Facet&) const = default;
+  };
+  struct RayChain {
+    size_t first;  // in facets_
+    uint32_t count;
+  };
+  using Chain = std::span<const Facet>;  // the surfaces of each hit
+  Chain facets_of(const RayChain& chain) const { return {facets_.data() + chain.first, chain.count}; }
+  void sort_chains();
+  std::vector<int> planes_of(Chain chain);
+  bool is_known(Chain chain, const std::vector<Vec3>& points);
   bool holds_zones(const ImagePath& path, int64_t& num_queries) const;
   std::vector<int> joined(const std::vector<int>& sequence);
   bool is_same_plane(const Mirror& plane, const Mirror& other) const;
@@ -51,13 +63,16 @@ class PlaneImages {
   const Scene& scene_;
   const EmbreeScene& geometry_;
   const SbrSettings& settings_;
-  double wavelength_;  // m
-  double tolerance_;   // m: surfaces that stray no farther from a plane are parts of it
-  std::set<Chain> chains_;
-  std::vector<Mirror> planes_;                                             // of the chain at hand
-  std::map<std::vector<uint32_t>, std::vector<std::vector<Vec3>>> tried_;  // points of the sequences tried, by their meshes
-  std::vector<Mirror> joined_;                                             // planes of the paths found
-  std::set<std::vector<int>> sequences_;                                   // the paths found, by joined planes
+  double wavelength_;          // m
+  double tolerance_;           // m: surfaces that stray no farther from a plane are parts of it
+  std::vector<Facet> facets_;  // of all rays with chains, which the chains of a ray share
+  std::vector<RayChain> chains_;
+  std::vector<Mirror> planes_;  // of the chain at hand
+  // Points of the sequences tried, by their meshes and by where the first of them lies along a line.
+  std::map<std::vector<uint32_t>, std::multimap<double, std::vector<Vec3>>> tried_;
+  size_t num_tried_points_ = 0;
+  std::vector<Mirror> joined_;            // planes of the paths found
+  std::set<std::vector<int>> sequences_;  // the paths found, by joined planes
   // Sequences whose echoes by rays are left out, by their planes in ascending order.
   std::map<std::vector<int>, std::vector<OrdersAboutCorners>> left_out_;
   std::vector<std::vector<int>> plane_of_triangle_;  // by mesh ID; empty: none

@@ -55,6 +55,18 @@ void PathBlock::end_fan() {
   FanPairs(fan, legs, fan_hits.data()).count(num_fan_paths_, num_fan_hits_);
 }
 
+// Stores the hits of the current ray as far as its chains go.
+void PathBlock::end_chains(const Hit* ray_hits) {
+  const auto first = static_cast<uint32_t>(chain_hits.size());
+  uint32_t longest = 0;
+  for (size_t i = first_chain_of_ray_; i < chains.size(); ++i) {
+    chains[i].first = first;
+    longest = std::max(longest, chains[i].count);
+  }
+  chain_hits.insert(chain_hits.end(), ray_hits, ray_hits + longest);
+  first_chain_of_ray_ = chains.size();
+}
+
 void PathBlock::clear() {
   hits.clear();
   rows.clear();
@@ -65,10 +77,10 @@ void PathBlock::clear() {
   fan_legs.clear();
   fan_hits.clear();
   chain_hits.clear();
-  chain_sizes.clear();
+  chains.clear();
   statistics = TraceStatistics();
   num_fan_paths_ = num_fan_hits_ = 0;
-  first_of_ray_ = 0;
+  first_of_ray_ = first_chain_of_ray_ = 0;
   used_depth_ = 0;
   current_batch = kNoBatch;
   current_half = 0;

@@ -21,10 +21,13 @@ class PathBlock {
   std::vector<PathFan> fans;
   std::vector<FanLeg> fan_legs;  // of each fan in turn
   std::vector<Hit> fan_hits;     // of their mirrors
-  // Hits of rays that go by so near to the receiver that images are looked for on their planes (mirrors/plane_images.h), and
-  // how many each of them has.
+  // The first hits of a ray that goes by so near to the receiver that images are looked for on their planes
+  // (mirrors/plane_images.h). The chains of one ray share their hits.
+  struct Chain {
+    uint32_t first = 0, count = 0;  // in chain_hits
+  };
   std::vector<Hit> chain_hits;
-  std::vector<uint8_t> chain_sizes;
+  std::vector<Chain> chains;
 
   // Adds a path with hits of its own.
   void add(const Hit* first, int count, uint64_t diffuse_bits, std::complex<float> path_weight, int path_stratum);
@@ -48,10 +51,8 @@ class PathBlock {
   }
   // Adds the next hit of the leg added last, in order of travel.
   void add_leg_hit(const Hit& hit);
-  void add_chain(const Hit* first, int count) {
-    chain_hits.insert(chain_hits.end(), first, first + count);
-    chain_sizes.push_back(static_cast<uint8_t>(count));
-  }
+  // Adds a chain of the first `count` hits of the current ray.
+  void add_chain(int count) { chains.push_back({0, static_cast<uint32_t>(count)}); }
   // Adds the matrix of the next pair of a polarised fan, by way in and then by way out.
   void add_pair_jones(const JonesMatrix& matrix) { fan_jones.push_back(matrix); }
   void end_fan();
@@ -67,6 +68,7 @@ class PathBlock {
     }
     first_of_ray_ = rows.size();
     used_depth_ = 0;
+    if (first_chain_of_ray_ < chains.size()) end_chains(ray_hits);
   }
   // Return the size of the record that this block becomes.
   size_t num_paths() const { return rows.size() + num_fan_paths_; }
@@ -78,6 +80,7 @@ class PathBlock {
 
  private:
   void add_leg(std::complex<double> factor);
+  void end_chains(const Hit* ray_hits);
   void write_own(size_t begin, size_t end, int64_t first_hit, size_t row, PathRows& to, Paths& paths) const;
   static constexpr int64_t kOfRay = -1;
   void add_record(int64_t offset, int count, uint64_t diffuse_bits, std::complex<float> path_weight, int path_stratum) {
@@ -85,8 +88,9 @@ class PathBlock {
               static_cast<uint8_t>(count), current_batch});
   }
 
-  size_t first_of_ray_ = 0;  // first path of the current ray
-  int used_depth_ = 0;       // hits of the ray that such paths use; the offset of these paths is kOfRay until the ray ends
+  size_t first_of_ray_ = 0;        // first path of the current ray
+  size_t first_chain_of_ray_ = 0;  // likewise
+  int used_depth_ = 0;  // hits of the ray that such paths use; the offset of these paths is kOfRay until the ray ends
   size_t num_fan_paths_ = 0, num_fan_hits_ = 0;
 };
 

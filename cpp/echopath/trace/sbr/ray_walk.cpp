@@ -56,7 +56,7 @@ void RayWalk<Weight>::add_plain_echoes(int lane, const Scratch& scratch, PathBlo
   const auto k = static_cast<size_t>(lane);
   scratch.echoes.add(first, lane, block);
   const bool shows_image = first.receiver_reach[lane] > 0 && first.coherent[lane] > 0;
-  if (shows_image && first.receiver[k] == ShadowState::kOpen) block.add_chain(&first.hits.met[k], 1);
+  if (shows_image && first.receiver[k] == ShadowState::kOpen) block.add_chain(1);
 }
 
 template <class Weight>

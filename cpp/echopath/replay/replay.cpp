@@ -8,7 +8,6 @@
 #include "echopath/base/errors.h"
 #include "echopath/base/kept_memory.h"
 #include "echopath/base/parallel.h"
-#include "echopath/replay/evaluate/path_evaluator.h"
 #include "echopath/replay/spare_echoes.h"
 #include "echopath/replay/time/chirp_derivatives.h"
 #include "echopath/replay/time/node_tails.h"
@@ -23,6 +22,10 @@ constexpr size_t kPlannedTogether = 2000;
 // the next order to try.
 constexpr double kFirstPhase = 100.0;    // rad
 constexpr double kFirstAmplitude = 1.0;  // relative to the largest
+
+// A path whose launch cell filters its amplitude down to this share of the tolerance, of what it would be without the
+// filter, needs no polynomial that follows it.
+constexpr double kDarkShare = 1e-3;
 
 // Returns the order at which a tail found at `order` would be within its tolerance.
 double order_for(double tolerance, double tail, double first, int order) {
@@ -67,8 +70,7 @@ struct Replayer::Target {
   const PosedNodes& posed;
   size_t first_channel;  // of those that are posed
   std::vector<ChannelNodes> nodes;
-  uint8_t* turned = nullptr;    // [P], or null: SharedLegEvaluation::mark_turned
-  bool with_amplitudes = true;  // else only lengths are evaluated
+  Wanted wanted = {};  // of all paths
   CellView cells = {};
 
   ChannelSpan channels() const { return {first_channel, nodes}; }
@@ -114,13 +116,13 @@ std::vector<Echoes> Replayer::joined(std::vector<Echoes> of_paths, std::span<con
 }
 
 // Evaluates all channels of the grid's transmitters.
-std::vector<Echoes> Replayer::at_nodes(std::span<const int64_t> paths, const PosedGrid& grid, uint8_t* turned) const {
+std::vector<Echoes> Replayer::at_nodes(std::span<const int64_t> paths, const PosedGrid& grid, const Wanted& wanted) const {
   const size_t num_channels = grid.posed.at(0).transmitters.size() * num_receivers();
   std::vector<Echoes> echoes = take_echoes(paths.size(), num_channels, grid.posed.size());
   for (size_t channel = 0; channel < num_channels; ++channel) {
     echoes[channel].sampling = grid.nodes.sampling[channel / num_receivers()];
   }
-  Target target{grid.posed, 0, rows_of(echoes), turned};
+  Target target{grid.posed, 0, rows_of(echoes), wanted};
   evaluate_at(paths, {&target, 1});
   return echoes;
 }
@@ -138,19 +140,23 @@ void Replayer::evaluate_at(std::span<const int64_t> paths, std::span<Target> tar
     evaluator->plan(paths.subspan(begin, std::min(kPlannedTogether, paths.size() - begin)));
     for (Target& target : targets) {
       for (ChannelNodes& channel : target.nodes) channel.first_path = begin;
-      uint8_t* const turned = target.turned ? target.turned + begin : nullptr;
-      evaluator->evaluate(target.posed, radio_of(target), target.channels(), {turned, target.with_amplitudes});
+      Wanted wanted = target.wanted;
+      if (wanted.turned) wanted.turned += begin;
+      if (wanted.unfiltered) wanted.unfiltered += begin;
+      evaluator->evaluate(target.posed, radio_of(target), target.channels(), wanted);
     }
   }
   KeptMemory::of_process().leave(std::move(evaluator));
 }
 
-std::vector<Echoes> Replayer::still(std::span<const int64_t> indices) const { return at_nodes(indices, posed_.at_trace()); }
+std::vector<Echoes> Replayer::still(std::span<const int64_t> indices) const {
+  return at_nodes(indices, posed_.at_trace(), {});
+}
 
 std::vector<Echoes> Replayer::exact(std::span<const int64_t> indices, const PosedGrid& samples) const {
   require(samples.nodes.sampling.size() == 1, "samples", "must be posed at a SampleGrid, transmitters",
           samples.nodes.sampling.size());
-  return at_nodes(indices, samples);
+  return at_nodes(indices, samples, {});
 }
 
 std::vector<Echoes> Replayer::by_chirp(std::span<const int64_t> indices, int index, const PosedGrid& chirps,
@@ -165,7 +171,7 @@ std::vector<Echoes> Replayer::by_chirp(std::span<const int64_t> indices, int ind
   std::vector<Echoes> echoes = take_echoes(num_echoes, num_receivers(), static_cast<size_t>(sampling.num_rows));
   Target targets[] = {{polynomial.posed, transmitter * num_receivers(), rows_of(lengths)},
                       {chirps.posed, 0, rows_of(echoes, static_cast<size_t>(sampling.order))}};
-  targets[0].with_amplitudes = false;
+  targets[0].wanted.with_amplitudes = false;
   for (Echoes& channel : echoes) std::fill(channel.amplitude.begin(), channel.amplitude.end(), 0.0);
   for (Target& target : targets) {
     for (ChannelNodes& nodes : target.nodes) nodes.echo_of = joined.empty() ? nullptr : echo_of.data();
@@ -187,9 +193,10 @@ std::vector<Echoes> Replayer::interpolated(std::span<const int64_t> indices, int
                                            std::vector<UnfollowedPath>& unfollowed) const {
   const PosedGrid& polynomial = posed_.polynomial(index);
   std::vector<uint8_t> turned(indices.size());
-  std::vector<Echoes> echoes = at_nodes(indices, polynomial, turned.data());
+  std::vector<double> unfiltered(indices.size());
+  std::vector<Echoes> echoes = at_nodes(indices, polynomial, {turned.data(), unfiltered.data()});
   std::vector<UnfollowedPath> needed(indices.size());
-  for (const Echoes& channel : echoes) raise_orders(polynomial.nodes, channel, needed);
+  for (const Echoes& channel : echoes) raise_orders(polynomial.nodes, channel, unfiltered, needed);
   std::vector<size_t> followed;
   for (size_t p = 0; p < indices.size(); ++p) {
     if (needed[p].order_for_length == 0.0 && needed[p].order_for_amplitude == 0.0) {
@@ -206,7 +213,8 @@ std::vector<Echoes> Replayer::interpolated(std::span<const int64_t> indices, int
 }
 
 // Raises the orders that paths need whose length or amplitude in one channel the polynomial does not follow.
-void Replayer::raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::vector<UnfollowedPath>& needed) const {
+void Replayer::raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::span<const double> unfiltered,
+                            std::vector<UnfollowedPath>& needed) const {
   const NodeTails tails = node_tails(nodes, echoes);
   const auto raise = [&](double tolerance, double tail, double first, double& order) {
     if (tail > tolerance) order = std::max(order, order_for(tolerance, tail, first, nodes.order));
@@ -214,6 +222,9 @@ void Replayer::raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::
   for (size_t p = 0; p < needed.size(); ++p) {
     raise(settings_.phase_tolerance, radio_.wavenumber * kSpeedOfLight * tails.delay[p], kFirstPhase,
           needed[p].order_for_length);
+    if (tails.amplitude[p] <= settings_.amplitude_tolerance) continue;
+    const double dark = settings_.amplitude_tolerance * kDarkShare * unfiltered[p];
+    if (is_dark(nodes, echoes, p, dark)) continue;
     raise(settings_.amplitude_tolerance, tails.amplitude[p], kFirstAmplitude, needed[p].order_for_amplitude);
   }
 }

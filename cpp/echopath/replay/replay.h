@@ -6,6 +6,7 @@
 // with the point of reflection by one Newton step (specular_slide.h).
 #include <span>
 
+#include "echopath/replay/evaluate/path_evaluator.h"
 #include "echopath/replay/evaluate/radio_constants.h"
 #include "echopath/replay/joined_echoes.h"
 #include "echopath/replay/time/path_grids.h"
@@ -65,10 +66,12 @@ class Replayer {
   struct Target;
   size_t num_receivers() const { return radar_.receivers.size(); }
   std::vector<Echoes> take_echoes(size_t num_echoes, size_t num_channels, size_t num_nodes) const;
-  std::vector<Echoes> at_nodes(std::span<const int64_t> paths, const PosedGrid& grid, uint8_t* turned = nullptr) const;
+  using Wanted = PathEvaluator::Wanted;
+  std::vector<Echoes> at_nodes(std::span<const int64_t> paths, const PosedGrid& grid, const Wanted& wanted) const;
   RadioConstants radio_of(const Target& target) const;
   void evaluate_at(std::span<const int64_t> paths, std::span<Target> targets) const;
-  void raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::vector<UnfollowedPath>& needed) const;
+  void raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::span<const double> unfiltered,
+                    std::vector<UnfollowedPath>& needed) const;
 
   const Paths& paths_;
   const Radar& radar_;

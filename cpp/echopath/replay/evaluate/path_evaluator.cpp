@@ -12,6 +12,7 @@ void PathEvaluator::evaluate(const PosedNodes& nodes, const RadioConstants& radi
   shared_legs_(*plan_, *preparer_, nodes, radio, channels);
   single_bounces_(*plan_, *preparer_, nodes, radio, channels, wanted);
   if (wanted.turned) shared_legs_.mark_turned(*plan_, wanted.turned);
+  if (wanted.unfiltered) shared_legs_.mark_unfiltered(*plan_, radio, wanted.unfiltered);
 }
 
 }  // namespace echopath

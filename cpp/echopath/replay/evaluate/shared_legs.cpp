@@ -199,6 +199,38 @@ void SharedLegEvaluation::mark_turned(const SharedLegPlan& plan, uint8_t* turned
   for (const SharedLegPlan::Chain& chain : plan.chains) turned[chain.place] = turns(chain.start) || turns(chain.end);
 }
 
+double SharedLegEvaluation::size_of_weight(const SharedLegPlan::Chain& chain) const {
+  const ComplexOf<double> weight = scaled_weight(chain, 1.0);
+  const double size = std::hypot(weight.re, weight.im);
+  if (!tables_.has_polarizations) return size;
+  double largest = 0.0;
+  for (const auto& entry : paths_->jones[static_cast<size_t>(chain.path)]) {
+    largest = std::max(largest, static_cast<double>(std::abs(entry)));
+  }
+  return size * largest;
+}
+
+// Takes the cosine of the arrival for that of the departure, and no curvature of the surfaces before. A cell that is wider
+// than a Fresnel zone returns no more than a mirror in its place.
+double SharedLegEvaluation::unfiltered(const SharedLegPlan::Chain& chain, const RadioConstants& radio) const {
+  const size_t stride = values_.stride();
+  const double *const start = start_of(chain, 0).rows(), *const end = end_of(chain, 0).rows();
+  const double* const inner = inner_of(chain, 0);
+  const auto value = [&](const double* rows, int row) { return rows[static_cast<size_t>(row) * stride]; };
+  const double out = value(end, LegToMeasure::kLength), in = value(start, LegToMeasure::kLength) + (inner ? *inner : 0.0);
+  const double gain = value(end, LegToMeasure::kGain), factor = value(end, LegToMeasure::kFactor);
+  if (!(gain > 0.0)) return 0.0;
+  const double root_cosine = factor * out / gain, gains = value(start, LegToMeasure::kGain) * gain;
+  const double of_cell = radio.coherent_scale() * size_of_weight(chain) * root_cosine * root_cosine / (in * out);
+  return gains * std::min(of_cell, radio.mirror_scale() / (in + out));
+}
+
+void SharedLegEvaluation::mark_unfiltered(const SharedLegPlan& plan, const RadioConstants& radio, double* unfiltered) const {
+  for (const SharedLegPlan::Chain& chain : plan.chains) {
+    if (chain.is_coherent) unfiltered[chain.place] = this->unfiltered(chain, radio);
+  }
+}
+
 // Writes the values of some paths to their places, node by node, because neighbours share the lines of the cache.
 template <class Path>
 void SharedLegEvaluation::put(std::span<const Path> paths, const ChannelNodes& to) const {

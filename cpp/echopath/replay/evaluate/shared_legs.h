@@ -43,6 +43,10 @@ class SharedLegEvaluation {
   // other side to the first antenna there between the first and the last node, so that the amplitude of the path passes
   // through zero.
   void mark_turned(const SharedLegPlan& plan, uint8_t* turned) const;
+  // Reads the same: sets unfiltered[place] to about the amplitude (sqrt(W)) that a coherent path between the first antennas
+  // would have at the first node without the filter of its launch cell, at most that of a mirror. Others keep what they
+  // have.
+  void mark_unfiltered(const SharedLegPlan& plan, const RadioConstants& radio, double* unfiltered) const;
   size_t num_bytes() const { return tables_.num_bytes() + values_.num_bytes(); }  // of its memory, nearly all
 
  private:
@@ -77,6 +81,8 @@ class SharedLegEvaluation {
   void evaluate_mirrors(const SharedLegPlan::MirrorPath& path, const PosedNodes& nodes, const ChannelSpan& channels,
                         double scale);
   bool turns(uint32_t leg) const;
+  double size_of_weight(const SharedLegPlan::Chain& chain) const;
+  double unfiltered(const SharedLegPlan::Chain& chain, const RadioConstants& radio) const;
 
   SharedLegTables tables_;
   NodeRows values_;                                            // [slot], PathToCombine::Row

@@ -12,8 +12,9 @@ namespace echopath {
 class SingleBounceEvaluation {
  public:
   struct Wanted {
-    uint8_t* turned = nullptr;    // [P] or null, see SharedLegEvaluation::mark_turned
-    bool with_amplitudes = true;  // else they are not evaluated
+    uint8_t* turned = nullptr;     // [P] or null, see SharedLegEvaluation::mark_turned
+    double* unfiltered = nullptr;  // [P] or null, likewise mark_unfiltered
+    bool with_amplitudes = true;   // else they are not evaluated
   };
   // Writes the direct paths of the plan, for antennas that can_evaluate_single_bounces.
   void operator()(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes,
@@ -33,6 +34,8 @@ class SingleBounceEvaluation {
   void put(Points points, const ChannelNodes& to, const double* values) const;
   void put_joined(Points points, const ChannelNodes& to, const double* values) const;
   void mark_turned(Points points, uint8_t* turned) const;
+  double size_of_weight(size_t slot) const;
+  void mark_unfiltered(Points points, double mirror_scale, double* unfiltered) const;
 
   std::vector<const SharedLegPlan::Direct*> sorted_;  // by mesh, each in the order of the plan
   std::vector<size_t> first_of_mesh_;
@@ -43,7 +46,7 @@ class SingleBounceEvaluation {
   SingleBounceSlots slots_;
   SingleBouncesToEvaluate work_;
   std::vector<double> legs_, out_;
-  double turned_[SingleBounceSlots::kSlots];
+  SingleBounceSlots::Row turned_, unfiltered_[SingleBouncesToEvaluate::kNumUnfilteredRows];
 };
 
 // Returns whether the gains of all antennas are whole powers of cosines.

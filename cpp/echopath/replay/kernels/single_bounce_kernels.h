@@ -71,6 +71,10 @@ struct SingleBouncesToEvaluate {
   double* legs;        // room for [kNodesTogether, end, antenna, kNumLegRows, slot]
   double* out;         // [channel, node, kNumRows, slot]
   double* turned;      // [slot] 1 where the point turns its other side to the first antenna of an end on the way
+  // [UnfilteredRow, slot], of the first antennas at the first node: the coherent factor without the filter of the cell, and
+  // that of a mirror in its place without the scale of mirrors.
+  enum UnfilteredRow { kOfCell, kOfMirror, kNumUnfilteredRows };
+  double* unfiltered;
 };
 
 struct SingleBounceKernels {

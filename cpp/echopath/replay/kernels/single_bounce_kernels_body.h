@@ -265,6 +265,15 @@ ECHOPATH_INLINE void see_sides(const SingleBouncesToEvaluate& paths, size_t node
   store(paths.turned + slot, turned ? all(1.0) : Vec{});
 }
 
+ECHOPATH_INLINE void store_unfiltered(const SingleBouncesToEvaluate& paths, size_t slot) {
+  using D = SingleBouncesToEvaluate;
+  const LegLanes in{leg_of(paths, 0, 0, 0, slot)}, out{leg_of(paths, 0, 1, 0, slot)};
+  const Vec gains = in(D::kGain) * out(D::kGain), spreading = in(D::kInverse) * out(D::kInverse);
+  const auto row = [&](int of) { return paths.unfiltered + static_cast<size_t>(of) * SingleBounceSlots::kSlots + slot; };
+  store(row(D::kOfCell), gains * LaneMath::magnitude(in(D::kCosine)) * spreading);
+  store(row(D::kOfMirror), gains / (in(D::kLegLength) + out(D::kLegLength)));
+}
+
 template <bool kIsPolarized>
 ECHOPATH_INLINE void measure_legs(const SingleBouncesToEvaluate& paths, size_t node, size_t slot) {
   const PointLanes at = points_at(*paths.slots, slot);
@@ -297,7 +306,10 @@ void evaluate_all(const SingleBouncesToEvaluate& paths) {
     for (size_t first = 0; first < paths.num_nodes; first += kTogether) {
       const size_t end = first + kTogether < paths.num_nodes ? first + kTogether : paths.num_nodes;
       for (size_t node = first; node < end; ++node) measure_legs<kIsPolarized>(paths, node, slot);
-      if (first == 0) see_sides(paths, 0, slot, sides);
+      if (first == 0) {
+        see_sides(paths, 0, slot, sides);
+        store_unfiltered(paths, slot);
+      }
       if (end == paths.num_nodes) see_sides(paths, end - 1, slot, sides);
       for (size_t node = first; node < end; ++node) combine_node<kIsPolarized>(paths, node, slot);
     }

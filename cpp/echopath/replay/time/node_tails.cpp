@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "echopath/base/simd.h"
 
@@ -98,6 +99,40 @@ NodeTails node_tails(const FrameNodes& nodes, const Echoes& echoes) {
     run_simd<divide_by_roots>(largest.data(), count, tails.amplitude.data() + begin);
   }
   return tails;
+}
+
+namespace {
+
+constexpr double kBendMargin = 2.0;  // by how much the parabola may bend more than the nodes tell
+
+// Returns a bound of a function over a piece from its values [order] at `times`.
+double bound_of_parabolas(const double* times, const double* values, size_t order) {
+  double bend = 0.0, widest = 0.0;
+  for (size_t k = 1; k < order; ++k) {
+    const double step = times[k] - times[k - 1];
+    widest = std::max(widest, std::abs(step));
+    if (k + 1 == order) continue;
+    const double next = times[k + 1] - times[k],
+                 rise = (values[k + 1] - values[k]) / next - (values[k] - values[k - 1]) / step;
+    bend = std::max(bend, std::abs(2.0 * rise / (step + next)));
+  }
+  return *std::max_element(values, values + order) + kBendMargin * bend * widest * widest / 8.0;
+}
+
+}  // namespace
+
+bool is_dark(const FrameNodes& nodes, const Echoes& echoes, size_t echo, double limit) {
+  const auto order = static_cast<size_t>(nodes.order), count = static_cast<size_t>(echoes.num_echoes);
+  std::vector<double> logarithms(nodes.times.size());
+  for (size_t node = 0; node < nodes.times.size(); ++node) {
+    const double size = std::abs(echoes.amplitude[node * count + echo]);
+    if (size >= limit) return false;
+    logarithms[node] = std::log(std::max(size, std::numeric_limits<double>::min()));
+  }
+  for (size_t first = 0; first + order <= nodes.times.size(); first += order) {
+    if (bound_of_parabolas(&nodes.times[first], &logarithms[first], order) >= std::log(limit)) return false;
+  }
+  return true;
 }
 
 double tail_of(const FrameNodes& nodes, const std::vector<double>& values) {

@@ -1,4 +1,4 @@
-"""A crowd of 20 cars and 20 people: labels beside synthesis, their memory, visibility, and a radar that moves."""
+"""A crowd of 20 cars and 20 people: labels beside synthesis, their memory, and visibility."""
 from __future__ import annotations
 
 import multiprocessing
@@ -15,10 +15,9 @@ from . import crowd_scene
 
 EACH, QUICK_EACH = 20, 3
 RAYS, QUICK_RAYS = 100_000, 5_000
-MOTION_RAYS, QUICK_MOTION_RAYS = 30_000, 3_000
 GIB = 2.0 ** 30
 LIMITS = {"peak memory, GiB": 1.0, "labels over synthesis": 1.0, "visibility, ms an object": 0.3,
-          "moving radar, ns": 3.5, "moving over resting radar": 1.1, "sum over whole - 1": 1e-12}
+          "sum over whole - 1": 1e-12}
 
 
 def rows(*, quick: bool = False) -> list[dict]:
@@ -27,7 +26,6 @@ def rows(*, quick: bool = False) -> list[dict]:
     quick: a small crowd, for a look
     """
     found = _in_a_process(QUICK_EACH if quick else EACH, QUICK_RAYS if quick else RAYS)
-    found |= _motion(QUICK_EACH if quick else EACH, QUICK_MOTION_RAYS if quick else MOTION_RAYS)
     return [{"what": f"crowd: {what}", "measured": value, "limit": LIMITS.get(what),
              "holds": None if what not in LIMITS else bool(value <= LIMITS[what])} for what, value in found.items()]
 
@@ -60,21 +58,6 @@ def _labels(each: int, rays: int) -> dict:
             "noise of a cell, dBm": _dbm(labels.noise_power), "peak memory, GiB": peak / GIB, "synthesis, s": synthesis,
             "labels over synthesis": annotation / synthesis - 1.0, "visibility, ms an object": 1e3 * looking / len(seen),
             "sum over whole - 1": float(np.linalg.norm(frame.cube - cube) / np.linalg.norm(cube))}
-
-
-def _motion(each: int, rays: int) -> dict:
-    """ns a path, chirp and channel of synthesis, with the radar at rest and in motion."""
-    scene = crowd_scene.crowd(each)
-    found = {name: _nanoseconds(scene, crowd_scene.radar(motion), rays)
-             for name, motion in (("resting radar, ns", None), ("moving radar, ns", ep.LinearMotion(velocity=(10.0, 0.0, 0.0))))}
-    return found | {"moving over resting radar": found["moving radar, ns"] / found["resting radar, ns"]}
-
-
-def _nanoseconds(scene, radar, rays: int) -> float:
-    paths = ep.trace(scene, radar, num_rays=rays)
-    seconds = min(processor_time(lambda: ep.synthesize(paths, radar))[0] for _ in range(2))
-    channels = len(radar.transmitters) * len(radar.receivers)
-    return 1e9 * seconds / (paths.num_paths * radar.waveform.num_chirps * channels)
 
 
 def _dbm(power: float) -> float:

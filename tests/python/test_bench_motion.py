@@ -1,0 +1,22 @@
+"""`echopath bench worlds`, its street before a radar that moves."""
+import numpy as np
+
+import echopath as ep
+from echopath.bench.worlds import crowd_scene, motion
+
+RAYS = 200
+
+
+def test_street_that_moves_past_has_the_lengths_of_a_radar_that_drives():
+    """Both are the same motion, seen from the radar: the paths have the same lengths."""
+    forward, back = ep.LinearMotion(velocity=(motion.SPEED, 0.0, 0.0)), ep.LinearMotion(velocity=(-motion.SPEED, 0.0, 0.0))
+    driving = ep.trace(motion.street(), crowd_scene.radar(forward), num_rays=RAYS)
+    passing = ep.trace(motion.street(back), crowd_scene.radar(), num_rays=RAYS)
+    times = [driving.frame.start_time, driving.frame.trace_time]
+    np.testing.assert_allclose(np.sort(driving.lengths(times, 0, 0)), np.sort(passing.lengths(times, 0, 0)), rtol=1e-9)
+
+
+def test_rows_name_what_misses_its_limit():
+    row = {"name": "radar drives", "paths": 1, "ns": 2.0 * motion.LIMIT_NS, "over_reference": 1.0, "error": 0.0}
+    lines = motion.describe([row, row | {"ns": 0.0}])
+    assert lines[1].endswith("MISSED ns") and lines[2].endswith("holds")

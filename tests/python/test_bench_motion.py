@@ -3,17 +3,25 @@ import numpy as np
 
 import echopath as ep
 from echopath.bench.worlds import crowd_scene, motion
+from echopath.bench.worlds.city import NO_STRATUM
 
 RAYS = 200
 
 
+def image_lengths(paths):
+    """Lengths in m of the paths over mirrors alone at the start and in the middle of the frame, ascending."""
+    times = [paths.frame.start_time, paths.frame.trace_time]
+    return np.sort(np.asarray(paths.lengths(times, 0, 0))[:, np.asarray(paths.stratum) == NO_STRATUM])
+
+
 def test_street_that_moves_past_has_the_lengths_of_a_radar_that_drives():
-    """Both are the same motion, seen from the radar: the paths have the same lengths."""
+    """Both are the same motion, seen from the radar."""
     forward, back = ep.LinearMotion(velocity=(motion.SPEED, 0.0, 0.0)), ep.LinearMotion(velocity=(-motion.SPEED, 0.0, 0.0))
     driving = ep.trace(motion.street(), crowd_scene.radar(forward), num_rays=RAYS)
     passing = ep.trace(motion.street(back), crowd_scene.radar(), num_rays=RAYS)
-    times = [driving.frame.start_time, driving.frame.trace_time]
-    np.testing.assert_allclose(np.sort(driving.lengths(times, 0, 0)), np.sort(passing.lengths(times, 0, 0)), rtol=1e-9)
+    lengths = image_lengths(driving)
+    assert lengths.shape[1] > 3
+    np.testing.assert_allclose(lengths, image_lengths(passing), rtol=1e-12)
 
 
 def test_rows_name_what_misses_its_limit():

@@ -16,8 +16,8 @@ struct NodeTails {
 NodeTails node_tails(const FrameNodes& nodes, const Echoes& echoes);
 
 // Returns whether the amplitude of an echo stays below `limit` (sqrt(W)) at its nodes and between them. It takes the
-// logarithm of the amplitude for a parabola between neighbouring nodes, as the filter of a launch cell makes it: an echo that
-// would flare up between two nodes is not dark, however little it has at the nodes.
+// logarithm of the amplitude for a parabola between neighbouring nodes, as the filter of a launch cell makes it: an echo
+// that would flare up between two nodes is not dark, however little it has at the nodes.
 bool is_dark(const FrameNodes& nodes, const Echoes& echoes, size_t echo, double limit);
 
 // Returns the tail of one sequence of values, [num_nodes].

@@ -5,7 +5,6 @@ import dataclasses
 import json
 import os
 from collections.abc import Mapping
-from contextlib import contextmanager
 from typing import get_args
 
 import numpy as np
@@ -13,24 +12,20 @@ import numpy as np
 from .. import _core
 from ..azimuth_map import checked_settings
 from ..checks import an, anything, checked, real, refused, text
-from ..files import written_whole
 from ..frame import Frame, with_spectra
 from ..guard import Check
 from ..interrupts import interrupts_are_kept
 from ..labels.labels import Labels
 from ..settings import Evaluate, Replay, Retrace
+from .container import new_file, our_file
 from .detections import read_detections, write_detections
-from .h5 import (blames_group, blaming, length_of, read_array, read_attribute, read_group, read_texts, reading, write_array,
-                 write_attribute, write_stack, write_texts, writing)
+from .h5 import (blames_group, blaming, length_of, read_array, read_attribute, read_group, read_texts, write_array,
+                 write_attribute, write_stack, write_texts)
 from .labels import read_all_labels, write_all_labels
 from .paths import read_paths, write_paths
 from .radar import read_radar, write_radar
 from .scene import read_scene, write_scene
 
-FORMAT = "echopath frame"
-FOREIGN = "is an HDF5 file, but no frame file of echopath"
-SCHEMA_VERSION = 4  # grows when a reader of the old layout would misread the new one
-OLD_LAYOUT = "; files before version 4 have no check sums on texts, settings and small arrays: simulate again"
 CHECK_NUMBERS = {"error": np.float64, "promise": np.float64, "count": np.int64}
 # Settings of a signal and the values that each may have.
 SIGNAL_SETTINGS = {"replay": get_args(Replay), "evaluate": get_args(Evaluate), "retrace": get_args(Retrace)}
@@ -63,7 +58,7 @@ def save_paths(paths, path, min_power: float = 0.0) -> LeftOut:
     path: of the file, written whole or not at all; min_power: in W at the trace time for the first antennas, paths
     below it are left out and counted. Returns what was left out. Raises ep.FileError when the file cannot be written.
     """
-    with _new_file(path) as file:
+    with new_file(path) as file:
         return _write_record(file, paths, paths.effects, min_power)[0]
 
 
@@ -71,7 +66,7 @@ def save_paths(paths, path, min_power: float = 0.0) -> LeftOut:
 @interrupts_are_kept()
 def load_paths(path):
     """Reads the paths of a frame file at `path`: the same bits that were written. Raises ep.FileError."""
-    with _our_file(path) as file:
+    with our_file(path) as file:
         return _read_record(file)
 
 
@@ -85,7 +80,7 @@ def save_frame(frame: Frame, path: str | os.PathLike[str], min_power: float = 0.
     """
     if frame.cube is None:
         raise refused(ValueError, "frame", "a frame with its signals (frame.paths.save writes the record alone)", frame)
-    with _new_file(path) as file:
+    with new_file(path) as file:
         missing, is_kept = _write_record(file, frame.paths, frame.effects, min_power, frame.path_power)
         _write_signal(file, frame)
         _write_checks(file, frame.checks)
@@ -106,7 +101,7 @@ def load_frame(path: str | os.PathLike[str]) -> Frame:
 
     A file of `Paths.save` gives a frame whose cube and spectrum are None.
     """
-    with _our_file(path) as file:
+    with our_file(path) as file:
         paths = _read_record(file)
         frame = Frame(scene=paths.scene, radar=paths.radar, paths=paths, cube=None, parts={}, selections={},
                       part_of_path={}, noise_seed=None, spectrum_settings={})
@@ -131,7 +126,7 @@ def save_labels(labels: Mapping[str, Labels], path: str | os.PathLike[str]) -> N
 
     labels: {partition: Labels}, of maps [V, R]; path: of the file, written whole or not at all. Raises ep.FileError.
     """
-    with _new_file(path) as file:
+    with new_file(path) as file:
         write_all_labels(file.create_group("labels"), labels)
 
 
@@ -139,40 +134,15 @@ def save_labels(labels: Mapping[str, Labels], path: str | os.PathLike[str]) -> N
 @interrupts_are_kept()
 def load_labels(path: str | os.PathLike[str]) -> dict[str, Labels]:
     """{partition: Labels} of a file of `save_labels` or of a frame file at `path`: the same bits. Raises ep.FileError."""
-    with _our_file(path) as file:
+    with our_file(path) as file:
         return read_all_labels(read_group(file, "labels"))
 
 
 @interrupts_are_kept()
 def left_out(path) -> LeftOut:
     """What a frame file does not hold. Raises ep.FileError."""
-    with _our_file(path) as file:
+    with our_file(path) as file:
         return _left_out(read_group(file, "record"))
-
-
-@contextmanager
-def _new_file(path):
-    """A new HDF5 file of ours that takes its place when the block ends well."""
-    with written_whole(path) as temporary, writing(temporary) as file:
-        write_attribute(file, "format", FORMAT)
-        write_attribute(file, "schema_version", SCHEMA_VERSION)
-        write_attribute(file, "software_version", _core.__version__)
-        yield file
-
-
-@contextmanager
-def _our_file(path):
-    """A frame file open for reading, its format and version checked."""
-    with reading(path) as file:
-        if "format" not in file.attrs or "schema_version" not in file.attrs:
-            raise _core.FileError(FOREIGN)
-        version = read_attribute(file, "schema_version", int)
-        if version != SCHEMA_VERSION:
-            raise _core.FileError(f"has schema version {version}, this program reads {SCHEMA_VERSION}"
-                                  f"{OLD_LAYOUT if version < SCHEMA_VERSION else ''}")
-        if read_attribute(file, "format", str) != FORMAT:
-            raise _core.FileError(FOREIGN)
-        yield file
 
 
 def _write_record(file, paths, effects, min_power: float, power=None):

@@ -1,0 +1,37 @@
+"""HDF5 files of ours: written whole or not at all, with a format and a version that are checked when they are read."""
+from __future__ import annotations
+
+from contextlib import contextmanager
+
+from .. import _core
+from ..files import written_whole
+from .h5 import read_attribute, reading, write_attribute, writing
+
+SCHEMA_VERSION = 4  # grows when a reader of the old layout would misread the new one
+OLD_LAYOUT = "; files before version 4 have no check sums on texts, settings and small arrays: simulate again"
+
+
+@contextmanager
+def new_file(path, kind: str = "frame"):
+    """A new HDF5 file of ours that takes its place when the block ends well. kind: "frame" or "sequence" """
+    with written_whole(path) as temporary, writing(temporary) as file:
+        write_attribute(file, "format", f"echopath {kind}")
+        write_attribute(file, "schema_version", SCHEMA_VERSION)
+        write_attribute(file, "software_version", _core.__version__)
+        yield file
+
+
+@contextmanager
+def our_file(path, kind: str = "frame"):
+    """A file of a kind open for reading, its format and version checked."""
+    foreign = f"is an HDF5 file, but no {kind} file of echopath"
+    with reading(path) as file:
+        if "format" not in file.attrs or "schema_version" not in file.attrs:
+            raise _core.FileError(foreign)
+        version = read_attribute(file, "schema_version", int)
+        if version != SCHEMA_VERSION:
+            raise _core.FileError(f"has schema version {version}, this program reads {SCHEMA_VERSION}"
+                                  f"{OLD_LAYOUT if version < SCHEMA_VERSION else ''}")
+        if read_attribute(file, "format", str) != f"echopath {kind}":
+            raise _core.FileError(foreign)
+        yield file

@@ -1,0 +1,132 @@
+"""From the record of a frame to the frame: take the signal apart, add noise, transform, label, detect."""
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from . import _core
+from .azimuth_map import checked_settings, sees_azimuth
+from .checks import refused
+from .detections.checks import checked_keywords
+from .detections.of_frame import detect_frame
+from .families import check_objects
+from .families import families as find_families
+from .frame import Frame, with_spectra
+from .guard import check_rays, check_signal
+from .labels.annotate import as_label_settings, label_frame, make_request, owners_of_cubes
+from .labels.family_pass import FamilyPass
+from .parts import ONLY_PARTITION, as_partitions, check_partitions, decompose
+from .path_subset import part_of_path
+from .settings import LabelSettings, SignalSettings, TraceSettings
+from .signals import synthesize
+from .stages import StageClock
+
+_FAMILIES = object()  # a view that has the name of no partition
+
+
+class FrameRun:
+    """How frames of a radar in a scene are made of their records, checked before the long work.
+
+    scene, radar: of the frames; trace, signal: TraceSettings and SignalSettings; parts, angles, labels, detections, guard: as
+    in `simulate`. Raises TypeError or ValueError naming the argument.
+    """
+
+    def __init__(self, scene, radar, trace: TraceSettings, signal: SignalSettings, parts, angles, labels, detections,
+                 guard: bool):
+        self.scene, self.radar, self.trace, self.signal, self.guard = scene, radar, trace, signal, guard
+        self.partitions, self.angle_settings = as_partitions(parts), checked_settings(radar, angles)
+        check_partitions(self.partitions, scene)
+        self._of_map = {"window": signal.window, "zero_pad": signal.zero_pad}
+        self.label_settings = as_label_settings(labels)
+        self._request = _label_request(scene, radar, self.label_settings, trace.batches or 1, self._of_map,
+                                       self.angle_settings)
+        self.detect_keywords = _detect_keywords(scene, radar, detections, self._request, self._of_map)
+
+    def frame_of(self, record: Callable[[], _core.Paths], progress=None) -> Frame:
+        """The frame of what `record()` returns, Paths of the scene and the radar; progress: as in `simulate`."""
+        clock = StageClock()
+        with clock("trace"):
+            paths = record()
+        with clock("synthesis"):
+            settings = self.signal.of_replay() | {"progress": progress}
+            probe = _core.SignalProbe(seed=self.trace.seed) if self.guard else None
+            families = find_families(paths, self._request.objects) if self._request else None
+            cubes, whole, owners = _cubes(paths, self.radar, self.partitions, families, self._request, settings, probe)
+        with clock("parts of paths"):
+            groups = {partition: part_of_path(paths, group) for partition, group in self.partitions.items()}
+        frame = self._bare_frame(paths, whole, cubes, groups, probe, clock.stages)
+        with clock("spectra"):
+            with_spectra(frame)
+        if sees_azimuth(self.radar):
+            with clock("angles"):
+                frame.range_azimuth = frame.range_azimuth_of(frame.spectrum, progress)
+        if self._request:
+            with clock("labels of cells"):
+                parts_of = cubes or {ONLY_PARTITION: {"other": whole}}
+                frame.labels = label_frame(self._request, paths, families, parts_of, owners, self.partitions, settings)
+        if self.detect_keywords is not None:
+            with clock("detections"):
+                frame.detections = detect_frame(frame, progress=progress, **self.detect_keywords)
+        return frame
+
+    def _bare_frame(self, paths, whole, cubes: dict, groups: dict, probe, stages: list) -> Frame:
+        """A frame without maps and what is made of them."""
+        signal = self.signal
+        return Frame(scene=self.scene, radar=self.radar, paths=paths, cube=whole, parts=cubes, selections=self.selections,
+                     part_of_path=groups, noise_seed=signal.noise_seed, spectrum_settings=self._of_map,
+                     angle_settings=self.angle_settings, replay=signal.replay, evaluate=signal.evaluate,
+                     retrace=signal.retrace, keyframes=signal.keyframes,
+                     checks=_checks(whole, probe, signal, paths.frame) if self.guard else [], stages=stages)
+
+    @property
+    def selections(self) -> dict:
+        """{partition: {part: selection as text}}"""
+        return {partition: {name: str(selection) for name, selection in group.items()}
+                for partition, group in self.partitions.items()}
+
+
+def _cubes(paths, radar, partitions: dict, families, request, settings: dict, probe):
+    """{partition: {part: cube}}, the whole, and what finds the owners of cells, as `label_frame` takes it.
+
+    families, request: None: no labels, and no owners
+    """
+    if not partitions and families is None:
+        return {}, synthesize(paths, radar, **settings, probe=probe), None
+    if families is None or settings["retrace"] != "never":
+        return _decomposed(paths, radar, partitions, families, request, settings | {"probe": probe})
+    if not partitions:
+        signals = FamilyPass(paths, radar, families, request, settings, adds_up=True, probe=probe)
+        return {}, signals.whole(), signals.settle
+    cubes, whole, _ = _decomposed(paths, radar, partitions, None, None, settings | {"probe": probe})
+    return cubes, whole, FamilyPass(paths, radar, families, request, settings, adds_up=False).settle
+
+
+def _decomposed(paths, radar, partitions: dict, families, request, settings: dict):
+    """`_cubes` with the cubes of all parts, and of all families where there are any, from one pass."""
+    views = partitions if families is None else {**partitions, _FAMILIES: families}
+    cubes = decompose(paths, radar, views, **settings)
+    whole = sum(next(iter(cubes.values())).values())
+    owners = None if families is None else owners_of_cubes(request, cubes[_FAMILIES])
+    return {partition: cubes[partition] for partition in partitions}, whole, owners
+
+
+def _checks(cube, probe, signals: SignalSettings, trace_frame) -> list:
+    found = check_signal(cube, probe, tolerance=signals.tolerance, phase_tolerance=signals.phase_tolerance)
+    return found + check_rays(probe, trace_frame)
+
+
+def _label_request(scene, radar, settings: LabelSettings | None, num_batches: int, of_map: dict, angles: dict):
+    """How to label, checked; None: not at all."""
+    if settings is None:
+        return None
+    check_objects(scene, settings.objects)
+    return make_request(radar, num_batches, settings, **of_map, angles=angles if settings.plane == "range_azimuth" else None)
+
+
+def _detect_keywords(scene, radar, detections, request, of_map: dict):
+    """Keywords of `detect_frame`, checked before the long work; None: no detections."""
+    if detections is None or detections is False:
+        return None
+    if not (detections is True or isinstance(detections, Mapping)):
+        raise refused(TypeError, "detections", "True, False or a dict of keywords of detect_frame", detections)
+    keywords = {} if detections is True else dict(detections)
+    return checked_keywords(scene, radar, of_map, ({"objects": request.objects} if request else {}) | keywords)

@@ -327,15 +327,16 @@ def checked(settings: Mapping[str, type] | None = None, **rules: Rule) -> Callab
     """
     def decorate(function: Callable[Parameters, Result]) -> Callable[Parameters, Result]:
         signature = inspect.signature(function)
+        callee = function.__qualname__.removesuffix(".__init__").rpartition(".")[2]
         order = tuple(signature.parameters)
         ruled = {name: rules[name] if name in rules else COMMON[name] for name in order if name not in (settings or {})}
 
         @functools.wraps(function)
         def call(*values: Any, **given: Any) -> Result:
-            refuse_unknown(function.__name__, given, order)
+            refuse_unknown(callee, given, order)
             for argument, kind in (settings or {}).items():
                 given = _spread(argument, kind, given, order)
-            refuse_misplaced(function.__name__, signature, values, given)
+            refuse_misplaced(callee, signature, values, given)
             passed = [ruled[name](name, value) for name, value in zip(order, values)]
             return function(*passed, **{name: ruled[name](name, value) for name, value in given.items()})
 

@@ -105,6 +105,14 @@ def frame_html(frame) -> str:
     return told + (_table("Stages", ("stage", "seconds", "peak memory in MiB"), stages, len(stages)) if stages else "")
 
 
+def sequence_html(row, kind: str, facts: dict) -> str:
+    """How many frames there are, and when; facts: further {name: value}."""
+    times, ends = row.times, "none"
+    if len(times):
+        ends = f"{times[0]:.6g} to {times[-1]:.6g} s, every {row.interval:.6g} s"
+    return _pairs(kind, {"frames": len(times), "starts": ends, "objects": len(row.scene)} | facts)
+
+
 def validity_html(report) -> str:
     """Whether one trace serves, what does not hold, and the objects."""
     rows = [(name, "yes" if one.ok else "no", f"{one.new_surface:.1%}", f"{one.disappears:.1%}", f"{one.error_db:+.2f}")

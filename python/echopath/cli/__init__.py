@@ -74,10 +74,12 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--out", required=True, metavar="DIR", help="folder of the results")
     _add_trace_options(run, default_rays=None)
     _add_part_option(run)
+    _add_sequence_options(run)
     run.set_defaults(command=_run)
 
     view = commands.add_parser("view", help="see which rays made which cell of a frame")
-    view.add_argument("frame", metavar="FRAME.h5", nargs="?", help="frame file (default: an empty window)")
+    view.add_argument("frame", metavar="FRAME.h5", nargs="?",
+                      help="frame file, or a folder of frames, whose first is shown (default: an empty window)")
     view.add_argument("--state", metavar="VIEW.json", help="show it as a saved view says")
     view.add_argument("--picture", metavar="OUT.png", help="write a picture of the window and close it")
     view.set_defaults(command=_view)
@@ -150,6 +152,17 @@ def _add_trace_options(parser, default_rays) -> None:
                              "those of the one realisation that the maps show (default: that of the scene file)")
 
 
+def _add_sequence_options(parser) -> None:
+    parser.add_argument("--frames", type=_positive, default=None, metavar="N",
+                        help="so many frames in time, a file each; the same command goes on where it was stopped (default: "
+                             "that of the scene file, or one frame with pictures)")
+    parser.add_argument("--interval", type=_seconds, default=None, metavar="S",
+                        help="s from the start of a frame to that of the next (default: that of the scene file)")
+    parser.add_argument("--keep", choices=["all", "maps", "labels"], default=None,
+                        help="what the file of each frame keeps: all, maps with labels and detections, or labels and "
+                             "detections alone (default: that of the scene file, or all)")
+
+
 def _add_part_option(parser) -> None:
     parser.add_argument("--part", action="append", default=[], metavar="NAME=SELECTION",
                         help="a part of a partition \"choice\" of its own, as in ghosts=\"T .* 'wall*' .* R\"; may be "
@@ -163,6 +176,15 @@ def _positive(text: str) -> int:
 
 def _natural(text: str) -> int:
     return _whole_number(text, 0)
+
+
+def _seconds(text: str) -> float:
+    try:
+        if 0.0 < float(text) < float("inf"):
+            return float(text)
+    except ValueError:
+        pass
+    raise argparse.ArgumentTypeError(f"must be a finite number above 0 s, got '{text}'")
 
 
 def _whole_number(text: str, least: int) -> int:
@@ -195,15 +217,22 @@ def _demo(options) -> None:
 def _view(options) -> None:
     import echopath as ep
 
+    from .run_sequence import first_frame
+
     if options.picture is not None:
         require_writable(Path(options.picture).parent, "--picture")
-    ep.view(*([options.frame] if options.frame else []), state=options.state, picture=options.picture)
+    frame = options.frame
+    if frame and Path(frame).is_dir():
+        frame, said = first_frame(frame)
+        print(said)
+    ep.view(*([frame] if frame else []), state=options.state, picture=options.picture)
 
 
 def _run(options) -> None:
     from . import report
     from ..progress import progress_bars
     from .run import certify, chosen_partition, simulate_file, write_outputs
+    from .run_sequence import is_sequence, run_sequence
     from ..scene_file import load_scene
 
     require_writable(options.out, "--out")
@@ -212,6 +241,10 @@ def _run(options) -> None:
         raise ValueError(f"{options.scene}: has no radar; 'echopath scene {options.scene} --out SCENE.toml' writes a scene file "
                          "with one, where [[objects]] names it as model")
     chosen = chosen_partition(options.part, scene_file.partitions())
+    if is_sequence(scene_file, options):
+        for line in run_sequence(scene_file, options, chosen):
+            print(line, flush=True)
+        return
     with progress_bars() as progress:
         frame = simulate_file(scene_file, num_rays=options.rays, seed=options.seed,
                               batches=options.batches, extra_parts=chosen, progress=progress)

@@ -9,18 +9,14 @@ import echopath as ep
 
 from .. import plots
 from ..frame import Frame
-from ..frame_file import LeftOut, save_frame
+from ..frame_file import LeftOut, min_power_of_budget, save_frame
 from ..measures import with_error
 from ..parts import parts_of_options
-from ..path_subset import power_of_strongest
 from ..plots.frames import noise_words, title_of
 from ..scene_file import SceneFile
 from ..simulate import simulate
 from ..stages import StageClock
 from .label_outputs import write_labels
-
-RECORD_BYTES = 250e6  # of paths and hits in a frame file, at most
-PATH_BYTES, HIT_BYTES, JONES_BYTES, CURVED_CELL_BYTES = 31, 16, 32, 28
 
 
 @dataclasses.dataclass(frozen=True)
@@ -39,13 +35,18 @@ def simulate_file(scene_file: SceneFile, *, num_rays=None, seed=None, batches=No
     num_rays, seed, batches, labels: instead of those of the file; labels as in `ep.simulate`
     extra_parts: {partition: {part: selection}} beside those of the file.
     """
+    keywords = keywords_of(scene_file, num_rays=num_rays, seed=seed, batches=batches, extra_parts=extra_parts)
+    return simulate(scene_file.scene, scene_file.radar, **keywords | ({} if labels is None else {"labels": labels}),
+                    progress=progress)
+
+
+def keywords_of(scene_file: SceneFile, *, num_rays=None, seed=None, batches=None, extra_parts=None) -> dict:
+    """Keywords of `ep.simulate` and `ep.Sequence`; arguments as in `simulate_file`."""
     instead = {"num_rays": num_rays, "seed": seed, "batches": batches}
-    instead = {name: value for name, value in instead.items() if value is not None}
-    parts = scene_file.partitions() | (extra_parts or {})
-    return simulate(scene_file.scene, scene_file.radar, trace=scene_file.trace, signal=scene_file.signal, **instead,
-                    parts=parts, angles=scene_file.angle_settings(),
-                    labels=scene_file.labels if labels is None else labels,
-                    detections=scene_file.detection_settings(), guard=scene_file.guard, progress=progress)
+    return {name: value for name, value in instead.items() if value is not None} | {
+        "trace": scene_file.trace, "signal": scene_file.signal, "parts": scene_file.partitions() | (extra_parts or {}),
+        "angles": scene_file.angle_settings(), "labels": scene_file.labels, "detections": scene_file.detection_settings(),
+        "guard": scene_file.guard}
 
 
 def chosen_partition(texts, taken) -> dict:
@@ -88,16 +89,6 @@ def write_outputs(frame: Frame, folder, partitions) -> Written:
             pictures += write_labels(frame, folder, {name: frame.selections[name] for name in partitions})
     frame.stages += clock.stages
     return Written(frame_path, left_out, pictures)
-
-
-def min_power_of_budget(frame: Frame, record_bytes: float = RECORD_BYTES) -> float:
-    """Power in W that a path must have so that the strongest paths that fit into `record_bytes` are kept."""
-    if frame.paths.num_paths == 0:
-        return 0.0
-    paths = frame.paths
-    columns = JONES_BYTES * (len(paths.jones) > 0) + CURVED_CELL_BYTES * (len(paths.curved_cell) > 0)
-    bytes_per_path = PATH_BYTES + columns + HIT_BYTES * float(paths.num_bounces.mean())
-    return power_of_strongest(frame.path_power, int(record_bytes / bytes_per_path))
 
 
 def _write_pictures(frame: Frame, folder: Path, partitions) -> list:

@@ -13,12 +13,17 @@ OLD_LAYOUT = "; files before version 4 have no check sums on texts, settings and
 
 @contextmanager
 def new_file(path, kind: str = "frame"):
-    """A new HDF5 file of ours that takes its place when the block ends well. kind: "frame" or "sequence" """
+    """A new HDF5 file of ours that takes its place when the block ends well; kind: "frame" or "sequence"."""
     with written_whole(path) as temporary, writing(temporary) as file:
-        write_attribute(file, "format", f"echopath {kind}")
-        write_attribute(file, "schema_version", SCHEMA_VERSION)
-        write_attribute(file, "software_version", _core.__version__)
+        write_head(file, kind)
         yield file
+
+
+def write_head(file, kind: str) -> None:
+    """Writes what tells our files apart: their kind, version and program."""
+    write_attribute(file, "format", f"echopath {kind}")
+    write_attribute(file, "schema_version", SCHEMA_VERSION)
+    write_attribute(file, "software_version", _core.__version__)
 
 
 @contextmanager

@@ -29,14 +29,14 @@ def write_detections(group, detections: Detections) -> None:
 
 
 @blames_group
-def read_detections(group, paths, spectrum, noise_seed) -> Detections:
-    """The detections of a group; paths, spectrum, noise_seed: of the frame, whose paths are behind them."""
+def read_detections(group, shape: tuple, *, seed, noise_seed, echoes: EchoFields | None = None) -> Detections:
+    """The detections of a group; shape: (V, R) of the map; seed, noise_seed: of the frame; echoes: None without its paths."""
     cells = read_array(group, "cells", np.int64, (None, 2))
     count = len(cells)
     columns = {name: read_array(group, name, dtype, (count,)) for name, (dtype, _) in NUMBERS.items()}
     columns |= {name: read_array(group, name, np.uint8, (count,)).astype(bool) for name in FLAGS}
     columns |= {name: np.array(read_texts(group, name, count), dtype=str) for name in TEXTS}
-    if count and (cells.min() < 0 or np.any(cells >= spectrum.values.shape[2:])):
-        raise _core.FileError(f"{group.name}/cells: must lie within the {spectrum.values.shape[2:]} cells of the map")
-    return Detections(cells=cells, centre=read_array(group, "centre", np.float64, (3,)),
-                      echoes=EchoFields(paths, spectrum), seed=paths.frame.seed, noise_seed=noise_seed, **columns)
+    if count and (cells.min() < 0 or np.any(cells >= shape)):
+        raise _core.FileError(f"{group.name}/cells: must lie within the {shape} cells of the map")
+    return Detections(cells=cells, centre=read_array(group, "centre", np.float64, (3,)), echoes=echoes, seed=seed,
+                      noise_seed=noise_seed, **columns)

@@ -12,6 +12,7 @@ import numpy as np
 from .. import _core
 from ..azimuth_map import checked_settings
 from ..checks import an, anything, checked, real, refused, text
+from ..detections.echo_fields import EchoFields
 from ..frame import Frame, with_spectra
 from ..guard import Check
 from ..interrupts import interrupts_are_kept
@@ -115,7 +116,9 @@ def load_frame(path: str | os.PathLike[str]) -> Frame:
         if "labels" in file:
             frame.labels = read_all_labels(read_group(file, "labels"))
         if "detections" in file:
-            frame.detections = read_detections(read_group(file, "detections"), paths, frame.spectrum, frame.noise_seed)
+            frame.detections = read_detections(read_group(file, "detections"), frame.spectrum.values.shape[2:],
+                                               seed=paths.frame.seed, noise_seed=frame.noise_seed,
+                                               echoes=EchoFields(paths, frame.spectrum))
     return frame
 
 

@@ -151,9 +151,9 @@ def blaming(item):
 def blames_group(function):
     """For functions whose first argument is the group that they read."""
     @functools.wraps(function)
-    def read(group, *arguments):
+    def read(group, *arguments, **keywords):
         with blaming(group):
-            return function(group, *arguments)
+            return function(group, *arguments, **keywords)
     return read
 
 
@@ -214,6 +214,18 @@ def _values(dataset):
     if check_sum != read_attribute(dataset, CHECK_SUM, int):
         raise _core.FileError(f"{dataset.name}: damaged, its values do not have its check sum")
     return values
+
+
+def check_sums(group) -> None:
+    """Raises ep.FileError for the first dataset below a group whose values do not have its check sum."""
+    import h5py
+
+    for item in group.values():
+        with blaming(item):
+            if isinstance(item, h5py.Group):
+                check_sums(item)
+            else:
+                _values(item)
 
 
 def read_attribute(item, name: str, kind):

@@ -30,12 +30,12 @@ PART_FIELDS = {"mean_power": "W", "mean_share": "", "power_error": "W", "share_e
 NOTHING = np.nan  # in the peak and box of what has no cells, and in an interval that is not known
 
 
-def write_all_labels(group, labels: dict) -> None:
-    """Writes {partition: Labels}, a group for each."""
+def write_all_labels(group, labels: dict, compress: bool = False) -> None:
+    """Writes {partition: Labels}, a group for each; compress: powers too, which pays where most of them are 0."""
     for index, (partition, one) in enumerate(labels.items()):
         target = group.create_group(str(index))
         write_attribute(target, "partition", partition)
-        write_labels(target, one)
+        write_labels(target, one, compress)
 
 
 @blames_group
@@ -45,8 +45,8 @@ def read_all_labels(group) -> dict:
     return {read_attribute(folder, "partition", str): read_labels(folder) for folder in folders}
 
 
-def write_labels(group, labels: Labels) -> None:
-    """Writes the labels of one partition."""
+def write_labels(group, labels: Labels, compress: bool = False) -> None:
+    """Writes the labels of one partition; compress: powers too."""
     plane = PLANES[labels.plane]
     write_attribute(group, "plane", labels.plane)
     for name in SETTINGS:
@@ -55,13 +55,14 @@ def write_labels(group, labels: Labels) -> None:
     write_array(group, plane.rows, getattr(labels, plane.rows), unit=plane.unit)
     write_array(group, "range", labels.range, unit="m")
     write_texts(group, "part", labels.part_names)
-    write_array(group, "power", labels.power, unit="W")
+    write_array(group, "power", labels.power, unit="W", compress=compress)
     for name, (dtype, unit) in CELL_FIELDS.items():
-        write_array(group, name, np.asarray(getattr(labels, name), dtype), unit=unit, compress=dtype is not np.float64)
+        write_array(group, name, np.asarray(getattr(labels, name), dtype), unit=unit,
+                    compress=compress or dtype is not np.float64)
     if labels.certain is not None:
         write_array(group, "certain", np.asarray(labels.certain, np.uint8), compress=True)
         for name, unit in PART_FIELDS.items():
-            write_array(group, name, getattr(labels, name), unit=unit)
+            write_array(group, name, getattr(labels, name), unit=unit, compress=compress)
     if labels.part_received is not None:
         _write_received(group, "part_received", labels.part_received)
     if labels.left_out is not None:

@@ -29,7 +29,8 @@ def read_scene(path: Path) -> SceneFile:
         scene_file = SceneFile(path=path, title=settings.title, scene=build_scene(settings, path.parent),
                                radar=_build_radar(settings.radar, path.parent), trace=_trace(settings),
                                signal=_signal(settings), angle=settings.angle, parts=dict(settings.parts),
-                               labels=_labels(settings), detections=settings.detections, guard=settings.guard)
+                               labels=_labels(settings), detections=settings.detections, guard=settings.guard,
+                               sequence=settings.sequence)
         with blamed("angle"):
             checked_settings(scene_file.radar, scene_file.angle_settings())
         check_partitions(scene_file.partitions(), scene_file.scene)

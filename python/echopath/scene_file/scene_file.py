@@ -12,7 +12,7 @@ from ..parts import as_partitions
 from ..settings import LabelSettings, SignalSettings, TraceSettings
 
 if TYPE_CHECKING:
-    from .schema import AngleTable, DetectionsTable
+    from .schema import AngleTable, DetectionsTable, SequenceTable
 
 
 @dataclasses.dataclass(frozen=True)
@@ -22,7 +22,8 @@ class SceneFile:
     path: of the file; title: one line; scene, radar: ready to trace, radar None of a foreign scene, which has none; parts:
     {name: expression} (one partition), {name: {name: expression}} (several) or {}; trace: TraceSettings, signal:
     SignalSettings, labels: LabelSettings or None: none are asked for; angle, detections: tables of the file, as keywords by
-    `angle_settings()` and `detection_settings()`; guard: of `ep.simulate`.
+    `angle_settings()` and `detection_settings()`; guard: of `ep.simulate`; sequence: table of the file (frames, interval in s,
+    keep), None: one frame.
     """
 
     path: Path
@@ -36,6 +37,7 @@ class SceneFile:
     labels: LabelSettings | None = None
     detections: DetectionsTable | None = None
     guard: bool = True
+    sequence: SequenceTable | None = None
 
     def angle_settings(self) -> dict:
         """Keywords of `ep.range_azimuth`, angles in rad; those without a value are left out."""

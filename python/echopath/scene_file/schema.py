@@ -366,6 +366,12 @@ class DetectionsTable(Table):
     max_peaks: int = Field(1, ge=1, description="directions of a cell at most")
 
 
+class SequenceTable(Table):
+    frames: int = Field(ge=1, description="number of frames")
+    interval: Annotated[float, Field(gt=0, allow_inf_nan=False)] = Field(description="s, from start to start")
+    keep: Literal["all", "maps", "labels"] = Field("all", description="what the file of each frame keeps")
+
+
 PartsValue = Annotated[
     Annotated[dict[Name, str], Tag("<partition>")] | Annotated[str, Tag("<expression>")],
     Discriminator(lambda value: "<partition>" if isinstance(value, dict) else "<expression>")]
@@ -390,4 +396,5 @@ class SceneTable(Table):
         {}, description="name = path expression: one partition; tables of these: several")
     labels: LabelsTable | None = Field(None, description="labels of the map; none: they are not made")
     detections: DetectionsTable | None = Field(None, description="detections in the map; none: they are not made")
+    sequence: SequenceTable | None = Field(None, description="frames in time; none: one frame")
 

@@ -1,0 +1,81 @@
+"""Frames in time of a scene file, on the command line."""
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from .. import FileError
+from ..checks import refused
+from ..progress import progress_bars
+from ..scene_file import SceneFile
+from ..sequence import Sequence, load_sequence
+from .run import keywords_of
+
+
+def is_sequence(scene_file: SceneFile, options) -> bool:
+    """Whether a run makes frames in time. Raises ValueError for options of them without their number."""
+    if options.frames is not None or scene_file.sequence is not None:
+        return True
+    for option in ("interval", "keep"):
+        if getattr(options, option) is not None:
+            raise ValueError(f"--{option}: belongs to frames in time, give --frames too, got {getattr(options, option)}")
+    return False
+
+
+def run_sequence(scene_file: SceneFile, options, extra_parts: dict) -> Iterator[str]:
+    """Makes the frames that are missing in the folder of the options; yields a line for each.
+
+    extra_parts: as in `simulate_file`
+    """
+    frames, interval, keep = (_chosen(scene_file, options, name) for name in ("frames", "interval", "keep"))
+    if interval is None:
+        raise ValueError("--interval: must be given with --frames, in s from the start of a frame to that of the next")
+    keywords = keywords_of(scene_file, num_rays=options.rays, seed=options.seed, batches=options.batches,
+                           extra_parts=extra_parts)
+    if keep == "labels" and keywords["labels"] is None:
+        keywords["labels"] = True
+    sequence = Sequence(scene_file.scene, scene_file.radar, frames=frames, interval=interval, **keywords)
+    yield f"{scene_file.title or scene_file.path}: {frames} frames every {interval:g} s"
+    try:
+        with progress_bars() as progress:
+            for saved in sequence.save_frames(options.out, keep=keep or "all", progress=progress):
+                yield _line(saved, frames)
+    except KeyboardInterrupt:
+        print(f"\nthe same command goes on in {options.out}", file=sys.stderr)
+        raise
+    yield f"wrote {load_sequence(options.out)}"
+
+
+def first_frame(folder) -> tuple[Path, str]:
+    """The first frame of a folder that is there, and what else there is. Raises ep.FileError where none can be viewed."""
+    stored = load_sequence(folder)
+    if stored.keep != "all":
+        raise refused(FileError, "frame", f"a folder of frames with their paths, where these keep {stored.keep} alone", folder)
+    places = stored.is_done.nonzero()[0]
+    if len(places) == 0:
+        raise refused(FileError, "frame", "a folder with a frame that is done", folder)
+    path = stored.paths_of_files[places[0]]
+    return path, f"{folder}: {len(places)} frames; this is {path.name} of {stored.times[places[0]]:.6g} s"
+
+
+def _chosen(scene_file: SceneFile, options, name: str):
+    """An option, or what the scene file has; None: neither."""
+    value = getattr(options, name)
+    return getattr(scene_file.sequence, name, None) if value is None else value
+
+
+def _line(saved, frames: int) -> str:
+    text = f"frame {saved.place + 1} of {frames} at {saved.start_time:.6g} s: "
+    text += "is there" if saved.seconds is None else f"{saved.seconds:.1f} s"
+    if saved.seconds_left:
+        text += f", {_duration(saved.seconds_left)} left"
+    return text
+
+
+def _duration(seconds: float) -> str:
+    """In words that a person reads at a glance: 40 s, 12 min, 3 h 05 min."""
+    if seconds < 99.5:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60.0)
+    return f"{minutes} min" if minutes < 100 else f"{minutes // 60} h {minutes % 60:02d} min"

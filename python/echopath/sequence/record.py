@@ -1,0 +1,21 @@
+"""Where the record of a frame of a sequence comes from."""
+from __future__ import annotations
+
+from .. import _core
+from ..settings import TraceSettings
+from ..tracing import trace
+
+
+def start_time_of(first: float, interval: float, number: int) -> float:
+    """Start in s of frame `number`; first: start of frame 0 in s; interval: s from start to start."""
+    return first + number * interval
+
+
+def record_of(scene: _core.Scene, radar: _core.Radar, settings: TraceSettings, *, interval: float, number: int,
+              progress=None) -> _core.Paths:
+    """The record of frame `number` of a sequence: the same bits whichever frames were recorded before.
+
+    settings: of the rays, with the start of frame 0; interval: s from start to start; progress: as in `trace`
+    """
+    start_time = start_time_of(settings.start_time, interval, number)
+    return trace(scene, radar, settings=settings.replace(start_time=start_time), progress=progress)

@@ -1,0 +1,158 @@
+"""Frames in time, simulated when they are asked for."""
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from .. import _core
+from ..checks import LARGEST_COUNT, Progress, Window, anything, checked, count, flag, one_of, real, refused
+from ..checks import path as folder_rule
+from ..frame import Frame
+from ..frame_run import FrameRun
+from ..guard import warn_of
+from ..progress import automatic_bars
+from ..scene import Scene
+from ..settings import (
+    Evaluate, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, SignalSettings, TraceSettings,
+)
+from .contents import Contents
+from .keep import Keep
+from .record import record_of, start_time_of
+from .row import Row
+from .saving import SavedFrame, saved_frames
+from .stored import StoredSequence
+
+_ROUNDING = 1e-9  # relative, of an interval that is the duration of a frame by another sum
+
+
+class Sequence(Row[Frame]):
+    """Frames of a radar in a scene, one after the other: `for frame in sequence`, `sequence[k]`, `len(sequence)`.
+
+    A frame is simulated when it is asked for, and kept by nobody. Frame k starts at start_time + k interval; all motions, that
+    of the radar too, go on between the frames. It has the same bits alone, in order and in reverse. A slice is a Sequence of
+    frames of the same bits, `sequence[-1]` the last frame. Objects keep their mesh IDs; noise is that of the start time.
+    scene: what is traced, as it is now: later changes of it do not matter; radar: that looks at it
+    frames: number of frames K, at least 1; interval: s, from start to start, at least the duration of a frame
+    start_time: s, of frame 0
+    num_rays, max_bounces, seed, polarization, footprint, sampler, batches, target_error_db (dB), max_rays: as in `trace`; the
+        seed serves all frames
+    parts, tolerance, method, replay, evaluate, phase_tolerance (rad), retrace, keyframes, noise_seed, window, zero_pad, angles,
+        labels, detections, guard, trace, signal: as in `simulate`
+    times: starts of the frames, [K] in s
+    Raises TypeError or ValueError naming the argument, also where a motion does not cover all frames. A frame raises and warns
+    as that of `simulate` does.
+    """
+
+    @checked({"trace": TraceSettings, "signal": SignalSettings}, **TraceSettings.RULES, **SignalSettings.RULES,
+             self=anything, frames=count(1, LARGEST_COUNT), interval=real(unit="s"), parts=anything, angles=anything,
+             labels=anything, detections=anything, guard=flag)
+    def __init__(self, scene: _core.Scene, radar: _core.Radar, *, frames: int, interval: float,
+                 start_time: float = TraceSettings.start_time, num_rays: int | float | None = TraceSettings.num_rays,
+                 max_bounces: int = TraceSettings.max_bounces, seed: int = TraceSettings.seed,
+                 polarization: Polarization = TraceSettings.polarization, footprint: Footprint = TraceSettings.footprint,
+                 sampler: Sampler = TraceSettings.sampler, batches: int | None = TraceSettings.batches,
+                 target_error_db: float | None = TraceSettings.target_error_db,
+                 max_rays: int | float = TraceSettings.max_rays, parts: Mapping[str, Any] | None = None,
+                 tolerance: float = SignalSettings.tolerance, method: Method = SignalSettings.method,
+                 replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,
+                 phase_tolerance: float = SignalSettings.phase_tolerance, retrace: Retrace = SignalSettings.retrace,
+                 keyframes: int = SignalSettings.keyframes, noise_seed: int | None = SignalSettings.noise_seed,
+                 window: Window = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad,
+                 angles: Mapping[str, Any] | None = None, labels: bool | LabelSettings | Mapping[str, Any] | None = None,
+                 detections: bool | Mapping[str, Any] | None = None, guard: bool = True, trace: TraceSettings | None = None,
+                 signal: SignalSettings | None = None):
+        tracing = TraceSettings(num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
+                                polarization=polarization, footprint=footprint, sampler=sampler, batches=batches,
+                                target_error_db=target_error_db, max_rays=max_rays)
+        signals = SignalSettings(tolerance=tolerance, method=method, replay=replay, evaluate=evaluate,
+                                 phase_tolerance=phase_tolerance, retrace=retrace, keyframes=keyframes, noise_seed=noise_seed,
+                                 window=window, zero_pad=zero_pad)
+        _check_times(scene, radar, start_time, frames, interval)
+        self._run = FrameRun(Scene(scene), radar, tracing, signals, parts, angles, labels, detections, guard)
+        self._numbers, self._start_time, self._interval = range(frames), start_time, interval
+
+    @property
+    def scene(self) -> Scene:
+        """A copy of the scene that is simulated."""
+        return self._run.scene.copy()
+
+    @property
+    def radar(self) -> _core.Radar:
+        """The radar that looks at it."""
+        return self._run.radar
+
+    def _item(self, place: int, stacklevel: int, progress=None) -> Frame:
+        """The frame at a place; progress: as in `simulate`."""
+        run, number = self._run, self._numbers[place]
+        frame = run.frame_of(lambda: record_of(run.scene, run.radar, run.trace, interval=self._interval, number=number,
+                                               progress=progress), progress)
+        warn_of(frame.checks, stacklevel=stacklevel + 1)
+        return frame
+
+    @checked(self=anything, folder=folder_rule, keep=one_of(Keep))
+    def save(self, folder: str | os.PathLike[str], *, keep: Keep = "all", progress: Progress = None) -> StoredSequence:
+        """Simulates all frames and writes each to a file of a folder, frame_0000.h5 and so on; sequence.h5 says of what.
+
+        Each file is written whole or not at all. Where the run was ended (Ctrl-C, kill, a power cut), the same call goes on:
+        frames that are there and whole are not simulated again, and all have the same bits as without the break. So a
+        folder grows, too, with a sequence of more frames. One process at a time may write to a folder.
+        folder: new, or of this sequence; keep: "all": frame files as of `save_frame`; "maps": range-Doppler map, labels and
+            detections; "labels": labels and detections alone; see FrameMaps
+        progress: callable (stage, fraction of the frames), True for bars with the time left, or None
+        Returns the StoredSequence of `load_sequence`. Raises ValueError naming the folder where it holds another sequence, and
+        naming `keep` where the sequence has no labels to be kept; ep.FileError when files cannot be written.
+        """
+        bars = automatic_bars() if progress is True else progress
+        for one in self.save_frames(folder, keep=keep):
+            if callable(bars):
+                bars("frames", (one.place + 1) / len(self))
+        return StoredSequence(Path(folder))
+
+    @checked(self=anything, folder=folder_rule, keep=one_of(Keep))
+    def save_frames(self, folder: str | os.PathLike[str], *, keep: Keep = "all", progress: Progress = None
+                    ) -> Iterator[SavedFrame]:
+        """`save` frame by frame: yields a SavedFrame as soon as its file is there; what stops taking them stops the work.
+
+        folder, keep: as in `save`; progress: of the stages of each frame, callable (stage, fraction), True for bars, or None
+        Raises what `save` raises, with the first frame.
+        """
+        if keep == "labels" and self._run.label_settings is None:
+            raise refused(ValueError, "keep", "'all' or 'maps' for a sequence without labels", keep)
+        if len(self) == 0:
+            raise refused(ValueError, "frames", "at least 1 to be saved", 0)
+        return saved_frames(self.times, folder, keep, lambda place: self._item(place, 4, progress),
+                            Contents(self._run.scene, self._run.radar, self._settings() | {"keep": keep}))
+
+    def _settings(self) -> dict[str, Any]:
+        """{keyword: value} of what makes the frames, and which of them are taken."""
+        run, labels = self._run, self._run.label_settings
+        return {"frames": len(self), "interval": self._interval, "first_number": self._numbers.start,
+                "number_step": self._numbers.step} | run.trace.keywords() | run.signal.keywords() | {
+                    "parts": run.selections, "angles": run.angle_settings, "guard": run.guard,
+                    "labels": None if labels is None else labels.keywords(), "detections": run.detect_keywords}
+
+    def __repr__(self) -> str:
+        return f"Sequence({len(self)} frames {self._span()}, every {self.interval:.6g} s)"
+
+    def _repr_html_(self) -> str:
+        from ..notebook import sequence_html
+
+        return sequence_html(self, "Sequence", {})
+
+
+def _check_times(scene, radar, start_time: float, frames: int, interval: float) -> None:
+    """Raises ValueError naming the argument where frames overlap or leave the motions: before the long work."""
+    if interval < radar.frame_duration * (1.0 - _ROUNDING):
+        raise refused(ValueError, "interval", f"at least {radar.frame_duration:.9g} s, the duration of a frame", interval)
+    end = start_time_of(start_time, interval, frames - 1) + radar.frame_duration
+    if not math.isfinite(end):
+        raise refused(ValueError, "interval", f"a number of s that gives {frames} frames finite times", interval)
+    try:
+        scene.require_times(start_time, end)
+        for time in (start_time, end):
+            radar.world_from_radar(time)
+    except ValueError as error:
+        raise ValueError(f"frames: must all lie within the motions, got {frames} frames every {interval:g} s: {error}") from None

@@ -1,0 +1,111 @@
+"""Frames in time, read from a folder when they are asked for."""
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from ..checks import checked
+from ..checks import path as folder_rule
+from ..frame import Frame
+from ..frame_maps import FrameMaps
+from ..scene import Scene
+from .arrays import dataset_of
+from .contents import NAME, frame_path, read_contents
+from .keep import Keep, read_frame
+from .row import Row
+
+
+class StoredSequence(Row[Frame | FrameMaps]):
+    """The frames of a folder of `Sequence.save`, read when they are asked for and kept by nobody; made by `load_sequence`.
+
+    `for frame in stored`, `stored[k]`, `len(stored)`; a slice is a StoredSequence. A frame is a Frame where the files keep all,
+    else FrameMaps. One that has not been simulated yet raises ep.FileError.
+    folder: Path; keep: "all", "maps" or "labels", what the files keep; scene, radar: what was simulated
+    settings: {keyword: value} of `Sequence`, with those that it was not given
+    times: starts of the frames, [K] in s; interval: s, from start to start
+    """
+
+    def __init__(self, folder: Path):
+        contents = read_contents(folder)
+        self.folder, self.radar, self.settings = folder, contents.radar, contents.settings
+        self._scene = contents.scene
+        self._take(self.settings)
+
+    def _take(self, settings: dict[str, Any]) -> None:
+        """Times and kind of the files; raises ep.FileError for settings that are none."""
+        try:
+            self.keep: Keep = settings["keep"]
+            count, first, step = (int(settings[name]) for name in ("frames", "first_number", "number_step"))
+            self._start_time, self._interval = float(settings["start_time"]), float(settings["interval"])
+            self._of_place = range(first, first + step * count, step)
+            if self.keep not in get_args(Keep):
+                raise ValueError(f"keep {self.keep!r}")
+        except (KeyError, TypeError, ValueError) as error:
+            raise _core.FileError(f"{self.folder / NAME}: damaged settings ({error})") from None
+        self._numbers = range(len(self._of_place))
+
+    def _time_of(self, number: int) -> float:
+        return super()._time_of(self._of_place[number])
+
+    @property
+    def interval(self) -> float:
+        """From the start of one frame to that of the next in s; negative for a slice in reverse."""
+        return super().interval * self._of_place.step
+
+    @property
+    def scene(self) -> Scene:
+        """A copy of the scene that was simulated."""
+        return Scene(self._scene)
+
+    @property
+    def paths_of_files(self) -> list[Path]:
+        """The files of the frames, [K], whether they are there or not."""
+        return [frame_path(self.folder, number) for number in self._numbers]
+
+    @property
+    def is_done(self) -> NDArray[np.bool_]:
+        """Whether the file of each frame is there, [K]."""
+        return np.array([path.exists() for path in self.paths_of_files], bool)
+
+    def _item(self, place: int, stacklevel: int) -> Frame | FrameMaps:
+        path = frame_path(self.folder, self._numbers[place])
+        if not path.exists():
+            raise _core.FileError(f"{path}: has not been simulated yet; the run that made {self.folder} goes on when it is "
+                                  "called again")
+        return read_frame(path, self.keep)
+
+    def to_xarray(self):
+        """The maps of all frames that are there as an xarray.Dataset, with names and units on every axis.
+
+        power: f32 [time, range, velocity] in dBm, mean over channels, with noise; not of files of keep="labels"
+        dominant, or dominant_NAME for each of several partitions: i16, index of the part; object, ghost: i16, indices into
+            `attrs["names"]`, the same in all frames; mask: bool; all [time, range, velocity] (or azimuth), -1: none; where there
+            are labels
+        Times are the starts of the frames in s. Memory: 11 bytes for each cell of each frame. Needs xarray, raises
+        ModuleNotFoundError without it, ep.FileError for a damaged file, ValueError where no frame is there.
+        """
+        return dataset_of(self)
+
+    def __repr__(self) -> str:
+        return (f"StoredSequence('{self.folder}', {len(self)} frames {self._span()}, {int(self.is_done.sum())} done, "
+                f"keep='{self.keep}')")
+
+    def _repr_html_(self) -> str:
+        from ..notebook import sequence_html
+
+        facts = {"folder": self.folder, "kept": self.keep, "done": int(self.is_done.sum())}
+        return sequence_html(self, "StoredSequence", facts)
+
+
+@checked(folder=folder_rule)
+def load_sequence(folder: str | os.PathLike[str]) -> StoredSequence:
+    """The frames that `Sequence.save` or `echopath run --frames` wrote to a folder, or has written so far.
+
+    Returns a StoredSequence. Raises ep.FileError where the folder has no sequence.h5, or a damaged one.
+    """
+    return StoredSequence(Path(folder))

@@ -30,6 +30,8 @@ def good(tmp_path_factory) -> dict:
     paths, cube, spectrum, probe = frame.paths, frame.cube, frame.spectrum, ep.SignalProbe()
     ep.synthesize(paths, probe=probe)
     ep.save_frame(frame, folder / "frame.h5")
+    in_time = {"scene": scene, "radar": radar, "frames": 2, "interval": 0.1}
+    ep.Sequence(**in_time, num_rays=200, guard=False).save(folder / "frames")
     (folder / "mesh.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     (folder / "box.glb").write_bytes(box_file().glb())
     (folder / "antenna.csv").write_text("azimuth_deg,elevation_deg,gain_db\n" + "".join(
@@ -47,6 +49,7 @@ def good(tmp_path_factory) -> dict:
         "hits": {"glob": "plate"}, "last": {"glob": "plate"}, "load_antenna": {"path": folder / "antenna.csv"},
         "load_frame": {"path": folder / "frame.h5"}, "load_labels": {"path": folder / "frame.h5"}, "load_mesh": mesh,
         "load_meshes": mesh, "load_model": {"path": folder / "box.glb"}, "load_scene": {"path": folder / "scene.toml"},
+        "load_sequence": {"folder": folder / "frames"},
         "mesh_from": {"source": SimpleNamespace(vertices=np.eye(3), faces=np.array([[0, 1, 2]]))},
         "mie_rcs": {"radius": 0.1, "frequency": 1e9},
         "num_threads": {}, "path_cells": {"paths": paths, "spectrum": spectrum},
@@ -62,12 +65,12 @@ def good(tmp_path_factory) -> dict:
         "trace": {"scene": scene, "radar": radar, "num_rays": 200},
         "unresolved": {"paths": paths}, "validity": {"paths": paths}, "view": {"what": scene, "paths": paths},
         "virtual_array": {"radar": radar}, "visibility": {"scene": scene, "radar": radar, "num_directions": 16},
-        "TraceSettings": {}, "SignalSettings": {}, "LabelSettings": {},
+        "TraceSettings": {}, "SignalSettings": {}, "LabelSettings": {}, "Sequence": in_time,
     }
 
 
 # Classes whose constructors are held to the same.
-CLASSES = ["TraceSettings", "SignalSettings", "LabelSettings"]
+CLASSES = ["TraceSettings", "SignalSettings", "LabelSettings", "Sequence"]
 # Of the extension, which checks their arguments itself; and what reads foreign files, whose readers have tests of their own.
 APART = {"CosinePower", "GainTable", "Isotropic"}
 FUNCTIONS = sorted(name for name in ep.__all__ if inspect.isroutine(getattr(ep, name)) and name not in APART)

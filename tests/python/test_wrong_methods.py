@@ -15,8 +15,9 @@ FREE = {("plot", "title"), ("plot", "ax")}  # Matplotlib's own
 
 
 @pytest.fixture(scope="module")
-def calls():
+def calls(tmp_path_factory):
     """{name: (callable, arguments that it takes)}"""
+    in_time = ep.Sequence(SCENE, RADAR, frames=1, interval=0.1, num_rays=200, guard=False)
     frame = ep.simulate(SCENE, RADAR, num_rays=300, guard=False)
     families, cells = ep.families(frame.paths), ep.path_cells(frame.paths, frame.spectrum)
     actors = {"pedestrian": {"height": 1.7}, "plate": {"width": 1, "height": 1}, "box": {"size": 1}, "ground": {"size": 1},
@@ -27,7 +28,8 @@ def calls():
         "paths_of": (families.paths_of, {"family": families.families[0]}),
         "range_azimuth_of": (frame.range_azimuth_of, {"spectrum": frame.spectrum}),
         "coplanar_overlaps": (SCENE.coplanar_overlaps, {}), "world_vertices": (SCENE.world_vertices, {"mesh_id": 0}),
-        "plot": (frame.plot, {}), "add": (_add, {"mesh_or_actor": ep.actors.plate(1, 1), "name": "x", "material": "metal"})}
+        "plot": (frame.plot, {}), "save": (in_time.save, {"folder": tmp_path_factory.mktemp("frames"), "keep": "maps"}),
+        "add": (_add, {"mesh_or_actor": ep.actors.plate(1, 1), "name": "x", "material": "metal"})}
 
 
 def _add(**arguments):
@@ -55,7 +57,8 @@ def faults(name: str, function, right: dict) -> tuple[list, int]:
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_wrong_arguments_of_methods_and_actors_are_named(calls):
+def test_wrong_arguments_of_methods_and_actors_are_named(calls, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     found, total = [], 0
     for name, (function, right) in calls.items():
         bad, wrong = faults(name, function, right)

@@ -1,0 +1,81 @@
+"""Frames in time that are read from a folder: the same bits as those that were simulated."""
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from support.frames_in_time import DISTANCE, INTERVAL, SPEED, make_radar, make_sequence
+
+
+@pytest.fixture(scope="module")
+def folders(tmp_path_factory) -> dict[str, Path]:
+    """{keep: folder}"""
+    made = {keep: tmp_path_factory.mktemp(keep) for keep in ("all", "maps", "labels")}
+    for keep, folder in made.items():
+        make_sequence().save(folder, keep=keep)
+    return made
+
+
+def test_files_hold_what_was_simulated(folders):
+    stored = ep.load_sequence(folders["all"])
+    for made, read in zip(make_sequence(), stored):
+        assert np.array_equal(made.noisy_cube, read.noisy_cube) and made.labels == read.labels
+        assert made.detections == read.detections
+    assert stored.times.tolist() == make_sequence().times.tolist() and stored.interval == INTERVAL
+    assert len(stored) == 4 and stored.is_done.all() and stored.keep == "all"
+    assert [mesh.name for mesh in stored.scene.meshes] == ["plate"] and stored.radar == make_radar()
+    assert stored.settings["num_rays"] == 500 and stored.settings["parts"] == {"parts": {"plate": "T 'plate' R"}}
+
+
+def test_stored_frames_are_found_as_in_any_sequence(folders):
+    stored = ep.load_sequence(folders["maps"])
+    part = stored[::-1][1:]
+    assert part.times.tolist() == stored.times[2::-1].tolist() and part.interval == -INTERVAL
+    assert part[0] == stored[2] == stored[-2] and [frame.start_time for frame in part] == part.times.tolist()
+    assert repr(part).endswith("3 frames from 0.2 to 0 s, 3 done, keep='maps')") and "maps" in part._repr_html_()
+    with pytest.raises(IndexError, match="^frame: must be from -4 to 3"):
+        stored[4]
+
+
+@pytest.mark.parametrize("keep", ["maps", "labels"])
+def test_small_files_keep_labels_and_maps(folders, keep):
+    for made, kept in zip(make_sequence(), ep.load_sequence(folders[keep])):
+        whole, labels = made.labels["parts"], kept.labels["parts"]
+        for name in ("mask", "dominant", "object_map", "ghost_map", "above_noise"):
+            assert np.array_equal(getattr(whole, name), getattr(labels, name)), name
+        assert labels.objects == whole.objects and labels.ghosts == whole.ghosts
+        assert np.array_equal(labels.power, np.where(whole.mask, whole.power, 0.0))
+        assert np.array_equal(labels.share, np.where(whole.mask, whole.share, 0.0))
+        assert np.array_equal(kept.detections.range, made.detections.range) and kept.detections.echoes is None
+        power = np.abs(made.spectrum.values[0, 0]) ** 2
+        assert kept.power is None if keep == "labels" else np.allclose(kept.power, power, rtol=1e-6, atol=0.0)
+
+
+def test_frames_that_are_not_done_say_so(tmp_path):
+    next(iter(make_sequence().save_frames(tmp_path)))
+    stored = ep.load_sequence(tmp_path)
+    assert stored.is_done.tolist() == [True, False, False, False]
+    with pytest.raises(ep.FileError, match="frame_0002.h5: has not been simulated yet"):
+        stored[2]
+    assert stored.to_xarray().sizes["time"] == 1
+
+
+@pytest.mark.parametrize("keep", ["all", "maps"])
+def test_the_maps_of_all_frames_are_one_dataset(folders, keep):
+    pytest.importorskip("xarray")
+    stored = ep.load_sequence(folders[keep])
+    maps = stored.to_xarray()
+    assert maps.power.dims == ("time", "range", "velocity") and maps.power.attrs["units"] == "dBm"
+    assert maps.time.values.tolist() == stored.times.tolist() and maps.range.attrs["units"] == "m"
+    for place, frame in enumerate(make_sequence()):
+        power = np.mean(np.abs(frame.spectrum.values) ** 2, axis=(0, 1))
+        assert np.allclose(maps.power[place].T, 10.0 * np.log10(power / 1e-3), rtol=0.0, atol=1e-3)
+        labels = frame.labels["parts"]
+        assert np.array_equal(maps.mask[place].T, labels.mask) and np.array_equal(maps.dominant[place].T, labels.dominant)
+        assert np.array_equal(maps.object[place].T, labels.object_map)
+    assert maps.object.attrs["names"] == ["plate"] and maps.dominant.attrs["names"] == ["plate", "other"]
+    moved = maps.range.values[maps.power.max("velocity").argmax("range")]
+    assert np.allclose(moved, DISTANCE + SPEED * stored.times, atol=0.3)  # a cell

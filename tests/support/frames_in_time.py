@@ -1,0 +1,24 @@
+"""A small scene in which something moves, and sequences of it."""
+from __future__ import annotations
+
+import echopath as ep
+
+SPEED, INTERVAL, DISTANCE = 3.0, 0.1, 9.0  # m/s away from the radar, s, m at time 0
+SETTINGS = {"num_rays": 500, "guard": False, "labels": True, "detections": True, "parts": {"plate": "T 'plate' R"}}
+
+
+def make_radar(**keywords) -> ep.Radar:
+    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=0.5e9, num_samples=64, sampling_rate=10e6, num_chirps=32,
+                                chirp_interval=50e-6)
+    return ep.Radar(waveform, transmitters=[ep.Antenna()], receivers=[ep.Antenna()], **keywords)
+
+
+def make_scene(speed: float = SPEED) -> ep.Scene:
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.5, 0.5), name="plate", material="metal", position=(DISTANCE, 0.0, 0.0),
+              motion=ep.LinearMotion((speed, 0.0, 0.0)))
+    return scene
+
+
+def make_sequence(frames: int = 4, **keywords) -> ep.Sequence:
+    return ep.Sequence(make_scene(), make_radar(), **{"frames": frames, "interval": INTERVAL} | SETTINGS | keywords)

@@ -1,0 +1,130 @@
+"""Frames in time on the command line: lines, resumption, Ctrl-C, the keys of a scene file."""
+from __future__ import annotations
+
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import echopath as ep
+from echopath.cli import main
+from support.scene_text import WAVEFORM
+
+WAIT = 60.0  # s, for a process on a busy machine
+SCENE = """
+title = "a plate"
+guard = false
+""" + WAVEFORM + """\
+[[radar.transmitters]]
+position = [0.0, 0.0, 0.0]
+[[radar.receivers]]
+position = [0.0, 0.01, 0.0]
+[[objects]]
+name = "plate"
+actor = "plate"
+parameters = {width = 1.0, height = 1.0}
+material = "metal"
+position = [5.0, 0.0, 0.0]
+speed = 2.0
+[trace]
+num_rays = 500
+"""
+IN_TIME = '[sequence]\nframes = 2\ninterval = 0.1\nkeep = "maps"\n'
+
+
+@pytest.fixture
+def scene_path(tmp_path) -> Path:
+    path = tmp_path / "plate.toml"
+    path.write_text(SCENE)
+    return path
+
+
+def run(scene: Path, out: Path, *options) -> int:
+    return main(["run", str(scene), "--out", str(out), *map(str, options)])
+
+
+def test_a_run_tells_of_each_frame_and_goes_on(scene_path, tmp_path, capsys):
+    out = tmp_path / "out"
+    assert run(scene_path, out, "--frames", 2, "--interval", 0.1) == 0
+    assert run(scene_path, out, "--frames", 4, "--interval", 0.1) == 0
+    lines = [re.sub(r"\d+\.\d s", "# s", line) for line in capsys.readouterr().out.splitlines()]
+    assert lines[1].startswith("frame 1 of 2 at 0 s: ") and lines[1].endswith(" left")
+    assert lines[5] == "frame 1 of 4 at 0 s: is there" and lines[6] == "frame 2 of 4 at # s: is there"
+    assert lines[8] == "frame 4 of 4 at # s: # s"
+    assert lines[9].startswith("wrote StoredSequence(") and "4 done" in lines[9]
+    scene_file = ep.load_scene(scene_path)
+    alone = ep.simulate(scene_file.scene, scene_file.radar, trace=scene_file.trace.replace(start_time=3 * 0.1), guard=False)
+    assert (ep.load_sequence(out)[3].noisy_cube == alone.noisy_cube).all()
+
+
+def test_a_scene_file_may_ask_for_frames_in_time(scene_path, tmp_path, capsys):
+    scene_path.write_text(SCENE + IN_TIME)
+    table = ep.load_scene(scene_path).sequence
+    assert (table.frames, table.interval, table.keep) == (2, 0.1, "maps")
+    assert run(scene_path, tmp_path / "a") == 0
+    assert run(scene_path, tmp_path / "b", "--frames", 3, "--keep", "labels") == 0
+    a, b = ep.load_sequence(tmp_path / "a"), ep.load_sequence(tmp_path / "b")
+    assert (len(a), a.keep, len(b), b.keep) == (2, "maps", 3, "labels")
+    assert b[0].labels["parts"].objects[0].status == "seen"  # asked for by what is kept
+
+
+FAULTS = {"sequence.frames: must be at least 1, got 0": "[sequence]\nframes = 0\ninterval = 0.1\n",
+          "sequence.interval: must be greater than 0, got 0": "[sequence]\nframes = 2\ninterval = 0.0\n",
+          "sequence.interval: is missing": "[sequence]\nframes = 2\n",
+          "sequence.keep: must be": "[sequence]\nframes = 2\ninterval = 0.1\nkeep = \"some\"\n",
+          "sequence.frame: unknown key": "[sequence]\nframe = 2\ninterval = 0.1\n"}
+
+
+@pytest.mark.parametrize("told, table", FAULTS.items())
+def test_faults_of_the_table_are_told_by_their_place(scene_path, told, table):
+    scene_path.write_text(SCENE + table)
+    with pytest.raises(ValueError, match=re.escape(told)):
+        ep.load_scene(scene_path)
+
+
+@pytest.mark.parametrize("options, told", [(("--interval", 0.1), "--interval: belongs to frames in time"),
+                                           (("--keep", "maps"), "--keep: belongs to frames in time"),
+                                           (("--frames", 2), "--interval: must be given"),
+                                           (("--frames", 2, "--interval", 1e-6), "interval: must be at least")])
+def test_wrong_options_are_named(scene_path, tmp_path, capsys, options, told):
+    assert run(scene_path, tmp_path / "out", *options) == 2
+    assert capsys.readouterr().err.startswith(f"echopath: {told}")
+
+
+def test_another_scene_is_refused_by_the_folder(scene_path, tmp_path, capsys):
+    out = tmp_path / "out"
+    assert run(scene_path, out, "--frames", 1, "--interval", 0.1) == 0
+    scene_path.write_text(SCENE.replace("speed = 2.0", "speed = 3.0"))
+    assert run(scene_path, out, "--frames", 1, "--interval", 0.1) == 2
+    assert capsys.readouterr().err.startswith("echopath: folder: must be new, or of this sequence (scene/motions/0")
+
+
+def test_ctrl_c_leaves_a_folder_that_goes_on(scene_path, tmp_path):
+    out = tmp_path / "out"
+    command = [sys.executable, "-m", "echopath", "run", scene_path, "--out", out, "--interval", "0.1", "--frames"]
+    process = subprocess.Popen([*command, "2000"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    deadline = time.monotonic() + WAIT
+    while not (out / "frame_0001.h5").exists() and time.monotonic() < deadline and process.poll() is None:
+        time.sleep(0.005)
+    process.send_signal(signal.SIGINT)
+    told, said = process.communicate(timeout=WAIT)
+    assert process.returncode == 130 and f"the same command goes on in {out}" in said
+    assert "no file was left half written" in said and "Traceback" not in said
+    assert not list(out.glob(".*")) and told.splitlines()[1].startswith("frame 1 of 2000 at 0 s: ")
+    assert ep.load_sequence(out)[1].cube is not None
+
+
+def test_the_viewer_opens_the_first_frame_of_a_folder(scene_path, tmp_path, monkeypatch, capsys):
+    opened = []
+    monkeypatch.setattr("echopath.view", lambda *what, **keywords: opened.append(what))
+    out, small = tmp_path / "out", tmp_path / "small"
+    for folder, keep in ((out, "all"), (small, "maps")):
+        run(scene_path, folder, "--frames", 2, "--interval", 0.1, "--keep", keep)
+    assert main(["view", str(out)]) == 0 and opened == [(out / "frame_0000.h5",)]
+    assert capsys.readouterr().out.splitlines()[-1] == f"{out}: 2 frames; this is frame_0000.h5 of 0 s"
+    assert main(["view", str(small)]) == 2 and "these keep maps alone" in capsys.readouterr().err
+    assert main(["view", str(tmp_path)]) == 2 and "sequence.h5: no such file" in capsys.readouterr().err

@@ -18,8 +18,8 @@ NO_QUANTITY = {
     "seed",
     "selection", "selections", "skin", "smooth", "spectrum", "tags", "text", "title", "trace", "transmitters", "waveform",
     "window", "zero_pad",
-    "batches", "evaluate", "keyframes", "num_batches", "frame", "replay", "retrace", "modelled", "reason", "subdivisions",
-    "material", "motion", "unknown", "visible", "block", "picture", "state", "what", "source",
+    "batches", "evaluate", "folder", "keep", "keyframes", "num_batches", "frame", "replay", "retrace", "modelled", "reason",
+    "subdivisions", "material", "motion", "unknown", "visible", "block", "picture", "state", "what", "source",
 }
 UNITS = r"(m|s|Hz|W|K|rad|sr|dB|dBm|m/s|rad/s|m/s\^2|Hz/s|S/m|1/s|m\^2|J/K|sqrt\(W\)|degrees|cycles|[Ll]inear|metres)"
 QUANTITY = re.compile(rf"\[[\w, *]+\]|(?<![\w/]){UNITS}(?![\w/])")

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Iterator
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, SupportsIndex, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,6 +50,12 @@ class Row(Generic[Item]):
 
     def __len__(self) -> int:
         return len(self._numbers)
+
+    @overload
+    def __getitem__(self, place: SupportsIndex) -> Item: ...
+
+    @overload
+    def __getitem__(self: Self, place: slice) -> Self: ...
 
     def __getitem__(self, place):
         """The frame at a place, from the end for a negative one; a slice gives the sequence of its frames."""

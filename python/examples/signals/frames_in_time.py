@@ -34,10 +34,10 @@ for axes, (title, power), own in zip(plots, maps.items(), (0, 5)):
     level = power.max("velocity")
     floor = float(level.median())  # the noise
     image = axes.pcolormesh(level.range, level.time, level, cmap="inferno", vmin=floor, vmax=floor + 45, shading="nearest")
-    for place, speed, colour in ((6, 8, "cyan"), (24, 0, "lime")):
+    for car, place, speed, colour in (("driving", 6, 8, "cyan"), ("parked", 24, 0, "lime")):
         side = 0.6 if speed else 1.6  # m, from the radar's way to the near edge of the car
         ahead = place + (speed - own) * level.time
-        axes.plot(np.hypot(ahead, side), level.time, ":", color=colour, label="back of the driving car" if speed else "back of the parked car")
+        axes.plot(np.hypot(ahead, side), level.time, ":", color=colour, label=f"back of the {car} car")
     axes.set(xlabel="Range in m", xlim=(0, 36), title=title)
 plots[0].set(ylabel="Start of the frame in s")
 plots[0].legend(loc="upper left", facecolor="0.2", labelcolor="white")

@@ -128,3 +128,17 @@ def test_the_viewer_opens_the_first_frame_of_a_folder(scene_path, tmp_path, monk
     assert capsys.readouterr().out.splitlines()[-1] == f"{out}: 2 frames; this is frame_0000.h5 of 0 s"
     assert main(["view", str(small)]) == 2 and "these keep maps alone" in capsys.readouterr().err
     assert main(["view", str(tmp_path)]) == 2 and "sequence.h5: no such file" in capsys.readouterr().err
+
+
+def test_info_tells_of_a_folder_and_small_files_say_what_they_lack(scene_path, tmp_path, capsys):
+    out = tmp_path / "out"
+    run(scene_path, out, "--frames", 3, "--interval", 0.1, "--keep", "maps")
+    (out / "frame_0002.h5").unlink()
+    for what in (out, out / "sequence.h5"):
+        capsys.readouterr()
+        assert main(["info", str(what)]) == 0
+        told = " ".join(capsys.readouterr().out.split())
+        assert "frames 3, 2 done" in told and "starts 0 to 0.2 s, every 0.1 s" in told and "kept maps" in told
+    for command in ("info", "view"):
+        assert main([command, str(out / "frame_0001.h5")]) == 2
+        assert "frame_0001.h5: holds no paths, only maps or labels of a frame" in capsys.readouterr().err

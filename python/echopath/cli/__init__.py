@@ -84,7 +84,7 @@ def _parser() -> argparse.ArgumentParser:
     view.add_argument("--picture", metavar="OUT.png", help="write a picture of the window and close it")
     view.set_defaults(command=_view)
 
-    info = commands.add_parser("info", help="say what is in a scene, frame, mesh or foreign file")
+    info = commands.add_parser("info", help="say what is in a scene, frame, mesh or foreign file, or a folder of frames")
     info.add_argument("file", metavar="FILE", help=".toml, .h5, or a file or folder that load_model reads (.usd, .xml, .obj ...)")
     info.add_argument("--select", action="append", default=[], metavar="SELECTION",
                       help="also say which paths of a frame it takes, as in \"T .* 'wall*' .* R & power > 1e-17\"; may be "

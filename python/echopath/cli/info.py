@@ -10,6 +10,7 @@ import echopath as ep
 from ..frame_file import left_out, load_frame
 from ..readers.load import READERS, is_foreign
 from ..scene_file import load_scene
+from ..sequence.contents import NAME as SEQUENCE_FILE
 from ..measures import in_dbm, with_error
 from . import report
 from .model_info import describe_model
@@ -19,7 +20,8 @@ MESH_SUFFIXES = (".obj", ".ply", ".stl", ".off")
 
 
 def describe_file(path, selections=()) -> list[str]:
-    """Lines that say what is in a scene file (TOML), a frame file (HDF5), a mesh file or a foreign scene (load_model).
+    """Lines that say what is in a scene file (TOML), a frame file (HDF5), a mesh file or a foreign scene (load_model), and in
+    a folder of frames in time.
 
     selections: of paths, also to be told of; of frame files
     Raises ValueError for another kind of file and for bad selections, ep.FileError when it cannot be read.
@@ -31,6 +33,8 @@ def describe_file(path, selections=()) -> list[str]:
         raise ValueError(f"{path}: must be a frame file (.h5) for --select, which asks for its paths")
     if suffix == ".toml":
         return _describe_scene_file(load_scene(path))
+    if path.name == SEQUENCE_FILE or (path / SEQUENCE_FILE).exists():
+        return _describe_sequence(ep.load_sequence(path if path.is_dir() else path.parent))
     if suffix in FRAME_SUFFIXES:
         return _describe_frame(path, selections)
     if suffix in MESH_SUFFIXES:
@@ -38,6 +42,13 @@ def describe_file(path, selections=()) -> list[str]:
     if is_foreign(path):
         return describe_model(path, ep.load_model(path))
     raise ValueError(f"{path}: must be a .toml or .h5 file, or one of {', '.join(READERS)}")
+
+
+def _describe_sequence(stored) -> list[str]:
+    lines = [str(stored.folder), "frames in time", report.line("frames", f"{len(stored)}, {int(stored.is_done.sum())} done"),
+             report.line("starts", f"{stored.times[0]:.6g} to {stored.times[-1]:.6g} s, every {stored.interval:.6g} s"),
+             report.line("kept", stored.keep)]
+    return [*lines, *_describe_scene(stored.scene, float(stored.times[0])), *_describe_radar(stored.radar)]
 
 
 def _rays_of(trace) -> str:

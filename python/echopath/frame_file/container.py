@@ -40,3 +40,13 @@ def our_file(path, kind: str = "frame"):
         if read_attribute(file, "format", str) != f"echopath {kind}":
             raise _core.FileError(foreign)
         yield file
+
+
+@contextmanager
+def file_with_paths(path):
+    """A frame file open for reading that holds the paths of its frame, as small files of a sequence do not."""
+    with our_file(path) as file:
+        if "record" not in file and not file.keys().isdisjoint(("maps", "labels")):
+            raise _core.FileError("holds no paths, only maps or labels of a frame: ep.load_labels reads its labels, "
+                                  "ep.load_sequence a folder of such files")
+        yield file

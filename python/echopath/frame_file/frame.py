@@ -18,7 +18,7 @@ from ..guard import Check
 from ..interrupts import interrupts_are_kept
 from ..labels.labels import Labels
 from ..settings import Evaluate, Replay, Retrace
-from .container import new_file, our_file
+from .container import file_with_paths, new_file, our_file
 from .detections import read_detections, write_detections
 from .h5 import (blames_group, blaming, length_of, read_array, read_attribute, read_group, read_texts, write_array,
                  write_attribute, write_stack, write_texts)
@@ -67,7 +67,7 @@ def save_paths(paths, path, min_power: float = 0.0) -> LeftOut:
 @interrupts_are_kept()
 def load_paths(path):
     """Reads the paths of a frame file at `path`: the same bits that were written. Raises ep.FileError."""
-    with our_file(path) as file:
+    with file_with_paths(path) as file:
         return _read_record(file)
 
 
@@ -102,7 +102,7 @@ def load_frame(path: str | os.PathLike[str]) -> Frame:
 
     A file of `Paths.save` gives a frame whose cube and spectrum are None.
     """
-    with our_file(path) as file:
+    with file_with_paths(path) as file:
         paths = _read_record(file)
         frame = Frame(scene=paths.scene, radar=paths.radar, paths=paths, cube=None, parts={}, selections={},
                       part_of_path={}, noise_seed=None, spectrum_settings={})
@@ -144,7 +144,7 @@ def load_labels(path: str | os.PathLike[str]) -> dict[str, Labels]:
 @interrupts_are_kept()
 def left_out(path) -> LeftOut:
     """What a frame file does not hold. Raises ep.FileError."""
-    with our_file(path) as file:
+    with file_with_paths(path) as file:
         return _left_out(read_group(file, "record"))
 
 

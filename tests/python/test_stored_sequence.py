@@ -1,8 +1,10 @@
 """Frames in time that are read from a folder: the same bits as those that were simulated."""
 from __future__ import annotations
 
+import pickle
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 
@@ -52,6 +54,23 @@ def test_small_files_keep_labels_and_maps(folders, keep):
         assert np.array_equal(kept.detections.range, made.detections.range) and kept.detections.echoes is None
         power = np.abs(made.spectrum.values[0, 0]) ** 2
         assert kept.power is None if keep == "labels" else np.allclose(kept.power, power, rtol=1e-6, atol=0.0)
+
+
+def test_what_is_stored_travels(folders):
+    stored = pickle.loads(pickle.dumps(ep.load_sequence(folders["maps"])[1:]))
+    assert len(stored) == 3 and stored[0] == pickle.loads(pickle.dumps(ep.load_sequence(folders["maps"])[1]))
+
+
+def test_damaged_settings_are_told_by_their_file(folders, tmp_path):
+    path = tmp_path / "sequence.h5"
+    path.write_bytes((folders["maps"] / "sequence.h5").read_bytes())
+    with h5py.File(path, "r+") as file:
+        file["settings"].attrs["keep"] = np.bytes_('"some"')
+    with pytest.raises(ep.FileError, match=r"sequence.h5: damaged settings \(keep 'some'\)"):
+        ep.load_sequence(tmp_path)
+    path.write_bytes((folders["maps"] / "frame_0000.h5").read_bytes())
+    with pytest.raises(ep.FileError, match="sequence.h5: is an HDF5 file, but no sequence file of echopath"):
+        ep.load_sequence(tmp_path)
 
 
 def test_frames_that_are_not_done_say_so(tmp_path):

@@ -9,6 +9,7 @@ from pathlib import Path
 from .. import DeviceError
 from .._startup import EXIT_INTERRUPTED, STOPPED, loading_is_over
 from ..files import require_writable
+from .numbers import natural, positive, seconds
 
 EXIT_BAD_INPUT = 2
 
@@ -113,9 +114,9 @@ def _parser() -> argparse.ArgumentParser:
                             "mirror paths against a search over all walls")
     bench.add_argument("--out", required=True, metavar="DIR", help="folder of its results")
     bench.add_argument("--quick", action="store_true", help="few shifts and rays, for a look; hard: without the heavy cases")
-    bench.add_argument("--rays-max", type=_positive, default=2**16, metavar="N",
+    bench.add_argument("--rays-max", type=positive, default=2**16, metavar="N",
                        help="physics: most rays of a trace (default: %(default)s)")
-    bench.add_argument("--scenes", type=_positive, default=None, metavar="N", help="certificate: how many (default: a few dozen)")
+    bench.add_argument("--scenes", type=positive, default=None, metavar="N", help="certificate: how many (default: a few dozen)")
     bench.set_defaults(command=_bench)
     return parser
 
@@ -143,20 +144,20 @@ def _add_labels(commands) -> None:
 
 def _add_trace_options(parser, default_rays) -> None:
     default = "%(default)s" if default_rays else "that of the scene file"
-    parser.add_argument("--rays", type=_positive, default=default_rays, metavar="N",
+    parser.add_argument("--rays", type=positive, default=default_rays, metavar="N",
                         help=f"number of rays (default: {default})")
-    parser.add_argument("--seed", type=_natural, default=None, metavar="N",
+    parser.add_argument("--seed", type=natural, default=None, metavar="N",
                         help="of the rays (default: that of the scene file)")
-    parser.add_argument("--batches", type=_positive, default=None, metavar="N",
+    parser.add_argument("--batches", type=positive, default=None, metavar="N",
                         help="parts of the rays, which give mean powers over the random phases with standard errors, beside "
                              "those of the one realisation that the maps show (default: that of the scene file)")
 
 
 def _add_sequence_options(parser) -> None:
-    parser.add_argument("--frames", type=_positive, default=None, metavar="N",
+    parser.add_argument("--frames", type=positive, default=None, metavar="N",
                         help="so many frames in time, a file each; the same command goes on where it was stopped (default: "
                              "that of the scene file, or one frame with pictures)")
-    parser.add_argument("--interval", type=_seconds, default=None, metavar="S",
+    parser.add_argument("--interval", type=seconds, default=None, metavar="S",
                         help="s from the start of a frame to that of the next (default: that of the scene file)")
     parser.add_argument("--keep", choices=["all", "maps", "labels"], default=None,
                         help="what the file of each frame keeps: all, maps with labels and detections, or labels and "
@@ -167,34 +168,6 @@ def _add_part_option(parser) -> None:
     parser.add_argument("--part", action="append", default=[], metavar="NAME=SELECTION",
                         help="a part of a partition \"choice\" of its own, as in ghosts=\"T .* 'wall*' .* R\"; may be "
                              "repeated, the first that takes a path has it")
-
-
-def _positive(text: str) -> int:
-    """A number of rays; 2e6 and 2_000_000 will do too."""
-    return _whole_number(text, 1)
-
-
-def _natural(text: str) -> int:
-    return _whole_number(text, 0)
-
-
-def _seconds(text: str) -> float:
-    try:
-        if 0.0 < float(text) < float("inf"):
-            return float(text)
-    except ValueError:
-        pass
-    raise argparse.ArgumentTypeError(f"must be a finite number above 0 s, got '{text}'")
-
-
-def _whole_number(text: str, least: int) -> int:
-    try:
-        value = float(text)
-        if value >= least and value == int(value):
-            return int(value)
-    except (ValueError, OverflowError):
-        pass
-    raise argparse.ArgumentTypeError(f"must be a whole number of at least {least}, got '{text}'")
 
 
 def _demo(options) -> None:

@@ -42,8 +42,7 @@ def saved_frames(times, folder, keep: Keep, frame_at, contents: Contents) -> Ite
     folder.mkdir(parents=True, exist_ok=True)
     with _alone_in(folder):
         write_contents(folder, contents)
-        for leftover in folder.glob(".frame_*-*.h5"):  # of a process that was killed
-            leftover.unlink(missing_ok=True)
+        _remove_leftovers(folder)
         missing = sum(not frame_path(folder, place).exists() for place in range(len(times)))
         spent, made = 0.0, 0
         for place, start_time in enumerate(times):
@@ -54,7 +53,14 @@ def saved_frames(times, folder, keep: Keep, frame_at, contents: Contents) -> Ite
                 write_frame(frame_at(place), path, keep)
                 spent, made = spent + time.perf_counter() - begin, made + 1
             yield SavedFrame(place, float(start_time), path, None if was_there else time.perf_counter() - begin,
-                        missing * spent / made if made else None)
+                             missing * spent / made if made else None)
+
+
+def _remove_leftovers(folder: Path) -> None:
+    """Removes the temporary files of a process that was killed."""
+    for name in (".frame_*-*.h5", ".sequence-*.h5"):
+        for leftover in folder.glob(name):
+            leftover.unlink(missing_ok=True)
 
 
 def _is_done(path: Path, start_time: float) -> bool:
@@ -70,9 +76,10 @@ def _alone_in(folder: Path):
     """Keeps other processes from writing to a folder; the system ends that when this one ends, however it does."""
     handle = os.open(folder, os.O_RDONLY)
     try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise refused(ValueError, "folder", "one that no other run is writing to", str(folder)) from None
         yield
-    except BlockingIOError:
-        raise refused(ValueError, "folder", "one that no other run is writing to", str(folder)) from None
     finally:
         os.close(handle)

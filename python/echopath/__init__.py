@@ -31,6 +31,9 @@ from .frame_file import load_frame, load_labels, save_frame, save_labels
 from .frame_maps import FrameMaps
 from .frame_validity import renew, validity
 from .guard import Check, GuardWarning, check_rays, check_signal
+from .in_time import (
+    AngleTime, RangeTime, Spectrogram, SpectrogramLabels, angle_time, range_time, spectrogram, spectrogram_labels,
+)
 from .labels import GhostLabel, Labels, ObjectLabel, annotate, annotate_frame, save_label_images
 from .materials import materials
 from .measures import power_by_chirp
@@ -56,22 +59,24 @@ from .viewing import plot_rays, view
 from .visibility import ObjectVisibility, Sight, visibility
 
 __all__ = [
-    "Actor", "AngleEstimates", "AngleSpectrum", "Antenna", "AntennaPattern", "BeamPower", "CfarResult", "Check",
-    "ChirpSequence", "CoplanarOverlap", "CosinePower", "Curve", "CurveMotion", "Deformation", "Detections", "DeviceError",
-    "Effect", "Families", "Family", "FileError", "Frame", "FrameMaps", "GainTable", "GhostLabel", "GuardWarning",
-    "Interval", "Isotropic", "Joint", "KeyframeMotion", "LabelSettings", "Labels", "LinearMotion", "Material", "Mesh",
-    "Model", "ModelNode", "MorphTargets", "Motion", "ObjectLabel", "ObjectValidity", "ObjectVisibility", "Part", "Parts",
-    "PathCells", "Paths", "Radar", "RangeAzimuth", "RangeDoppler", "ReceivedPower", "Renewal", "SavedFrame", "Scene",
-    "SceneFile", "SceneNode", "Selection", "Sequence", "Sight", "SignalProbe", "SignalSettings", "Skin", "StoredSequence",
-    "Stratum", "TessellationWarning", "TraceFrame", "TraceSettings", "TraceStatistics", "Unresolved", "Validity",
-    "ValidityShares", "VertexSequence", "VirtualArray", "actors", "add_noise", "angle_fft", "annotate", "annotate_frame",
-    "beamform", "boltzmann", "cfar", "check_rays", "check_signal", "compensate_tdm", "decompose", "detect", "detect_frame",
-    "effects", "estimate_angles", "families", "first", "foreign_materials", "hits", "last", "load_antenna", "load_frame",
-    "load_labels", "load_mesh", "load_meshes", "load_model", "load_scene", "load_sequence", "materials", "mesh_from",
-    "mie_rcs", "num_bounces", "num_threads", "path_cells", "plot_rays", "plots", "power", "power_by_chirp", "range_azimuth",
-    "range_doppler", "rcs", "received_power", "received_powers", "renew", "save_frame", "save_label_images", "save_labels",
-    "set_num_threads", "simulate", "speed_of_light", "synthesize", "trace", "unresolved", "validity", "view",
-    "virtual_array", "visibility",
+    "Actor", "AngleEstimates", "AngleSpectrum", "AngleTime", "Antenna", "AntennaPattern", "BeamPower", "CfarResult",
+    "Check", "ChirpSequence", "CoplanarOverlap", "CosinePower", "Curve", "CurveMotion", "Deformation", "Detections",
+    "DeviceError", "Effect", "Families", "Family", "FileError", "Frame", "FrameMaps", "GainTable", "GhostLabel",
+    "GuardWarning", "Interval", "Isotropic", "Joint", "KeyframeMotion", "LabelSettings", "Labels", "LinearMotion",
+    "Material", "Mesh", "Model", "ModelNode", "MorphTargets", "Motion", "ObjectLabel", "ObjectValidity",
+    "ObjectVisibility", "Part", "Parts", "PathCells", "Paths", "Radar", "RangeAzimuth", "RangeDoppler", "RangeTime",
+    "ReceivedPower", "Renewal", "SavedFrame", "Scene", "SceneFile", "SceneNode", "Selection", "Sequence", "Sight",
+    "SignalProbe", "SignalSettings", "Skin", "Spectrogram", "SpectrogramLabels", "StoredSequence", "Stratum",
+    "TessellationWarning", "TraceFrame", "TraceSettings", "TraceStatistics", "Unresolved", "Validity", "ValidityShares",
+    "VertexSequence", "VirtualArray", "actors", "add_noise", "angle_fft", "angle_time", "annotate", "annotate_frame",
+    "beamform", "boltzmann", "cfar", "check_rays", "check_signal", "compensate_tdm", "decompose", "detect",
+    "detect_frame", "effects", "estimate_angles", "families", "first", "foreign_materials", "hits", "last",
+    "load_antenna", "load_frame", "load_labels", "load_mesh", "load_meshes", "load_model", "load_scene", "load_sequence",
+    "materials", "mesh_from", "mie_rcs", "num_bounces", "num_threads", "path_cells", "plot_rays", "plots", "power",
+    "power_by_chirp", "range_azimuth", "range_doppler", "range_time", "rcs", "received_power", "received_powers",
+    "renew", "save_frame", "save_label_images", "save_labels", "set_num_threads", "simulate", "spectrogram",
+    "spectrogram_labels", "speed_of_light", "synthesize", "trace", "unresolved", "validity", "view", "virtual_array",
+    "visibility",
 ]
 
 

@@ -6,6 +6,7 @@ import numpy as np
 from .optional import needed_module
 
 AXES = {
+    "time": {"units": "s", "long_name": "time, middle of the window"},
     "velocity": {"units": "m/s", "long_name": "radial velocity, receding positive"},
     "range": {"units": "m", "long_name": "range"},
     "azimuth": {"units": "rad", "long_name": "azimuth, left positive"},
@@ -43,6 +44,24 @@ def angle_spectrum_array(map):
     """An AngleSpectrum as a DataArray; see AngleSpectrum.to_xarray."""
     dims = ("sin_elevation", "sin_azimuth", "velocity", "range")
     return _array(map, "angle_spectrum", map.values, dims, {"units": "sqrt(W)", "long_name": "received signal"})
+
+
+def time_map_array(map):
+    """A Spectrogram, RangeTime or AngleTime as a DataArray; see their to_xarray."""
+    coords = {"time": axis("time", map.times), map.AXIS: axis(map.AXIS, map.axis)}
+    attrs = {"units": "W", "long_name": "received power", "noise_power": map.noise_power}
+    return xarray_module().DataArray(map.power, dims=("time", map.AXIS), name=type(map).__name__, coords=coords, attrs=attrs)
+
+
+def spectrogram_labels_dataset(labels):
+    """SpectrogramLabels as a Dataset; see SpectrogramLabels.to_xarray."""
+    cells = {"whole": {"units": "W"}, "mask": {}, "above_noise": {}, "dominant": {"names": labels.part_names}}
+    variables = {name: (("time", "velocity"), getattr(labels, name), attrs) for name, attrs in cells.items()}
+    for name, unit in (("power", "W"), ("share", "1")):
+        variables[name] = ("part", "time", "velocity"), getattr(labels, name), {"units": unit}
+    coords = {"part": labels.part_names, "time": axis("time", labels.times), "velocity": axis("velocity", labels.velocity)}
+    attrs = {name: getattr(labels, name) for name in ("noise_power", "noise_margin_db", "dynamic_range_db")}
+    return xarray_module().Dataset(variables, coords=coords, attrs=attrs)
 
 
 def paths_dataset(paths):

@@ -27,7 +27,11 @@ def power_dbm(spectrum):
 
 def colour_limits(spectrum) -> tuple[float, float]:
     """(lowest, highest) level in dBm of the colour scale of a map, multiples of 5."""
-    level = power_dbm(spectrum)
+    return limits_of_level(power_dbm(spectrum))
+
+
+def limits_of_level(level) -> tuple[float, float]:
+    """The same of levels in dBm, an array of any shape."""
     highest = 5.0 * math.ceil(level.max() / 5.0)
     above_noise = 5.0 * math.floor((np.median(level) + MARGIN_OVER_MEDIAN_DB) / 5.0)
     return min(max(highest - DYNAMIC_RANGE_DB, above_noise), highest - 10.0), highest

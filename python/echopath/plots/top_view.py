@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from ..measures import SMALLEST_POWER, in_dbm
-from .maps import DYNAMIC_RANGE_DB, MARGIN_OVER_MEDIAN_DB, NOISE_PEAK_DB, chosen_limits
+from .maps import NOISE_PEAK_DB, chosen_limits, limits_of_level
 from .style import MAP_COLOURS, axes_or_new, new_figure
 
 FARTHER = 1.1                  # of the farthest signal: what is shown
@@ -74,10 +74,7 @@ def _in_dbm(power):
 
 def _colour_limits(one) -> tuple[float, float]:
     """(lowest, highest) level in dBm, multiples of 5."""
-    level = _in_dbm(one.power)
-    highest = 5.0 * math.ceil(level.max() / 5.0)
-    above_noise = 5.0 * math.floor((np.median(level) + MARGIN_OVER_MEDIAN_DB) / 5.0)
-    return min(max(highest - DYNAMIC_RANGE_DB, above_noise), highest - 10.0), highest
+    return limits_of_level(_in_dbm(one.power))
 
 
 def _reach(one, floor: float) -> float:

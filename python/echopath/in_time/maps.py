@@ -1,0 +1,161 @@
+"""Maps over time: power by time and radial velocity, range or azimuth."""
+from __future__ import annotations
+
+import dataclasses
+from typing import ClassVar
+
+import numpy as np
+
+from ..checks import refused
+from ..equality import has_same_fields
+from ..xarray_maps import time_map_array
+
+
+class TimeMap:
+    """What the maps over time have in common: arrays times [T] and power [T, X] over an axis whose name is AXIS."""
+
+    AXIS: ClassVar[str] = ""
+    TITLE: ClassVar[str] = ""
+
+    def plot(self, *, ax=None, vmin: float | None = None, vmax: float | None = None, title: str | None = None):
+        """Draws the map: time in s across, its other axis up, colours in dBm.
+
+        ax: Matplotlib axes to draw in, None: new ones; title: above the map, None: what it shows
+        vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak
+        Returns the axes: velocities in m/s (receding positive), ranges in m or azimuths in degrees up. Raises TypeError or
+        ValueError naming the argument.
+        """
+        from ..plots import draw_time_map
+
+        return draw_time_map(self, ax=ax, vmin=vmin, vmax=vmax, title=self.TITLE if title is None else title)
+
+    def to_xarray(self):
+        """The map as an xarray.DataArray, without a copy: W over time (s) and velocity (m/s), range (m) or azimuth (rad).
+
+        Units stand in `attrs["units"]`. Needs xarray, raises ModuleNotFoundError without it.
+        """
+        return time_map_array(self)
+
+    @property
+    def axis(self) -> np.ndarray:
+        """The axis beside time, [X]: velocity, range or azimuth."""
+        return getattr(self, self.AXIS)
+
+    @property
+    def ridge(self) -> np.ndarray:
+        """Where the strongest cell of each time is on the axis, [T]; NaN at times without power."""
+        strongest = self.axis[np.argmax(self.power, axis=1)]
+        return np.where(self.power.max(axis=1, initial=0.0) > 0.0, strongest, np.nan)
+
+    def __eq__(self, other) -> bool:
+        return has_same_fields(self, other) if type(other) is type(self) else NotImplemented
+
+    __hash__ = None
+
+    def __repr__(self) -> str:
+        span = f"{self.times[0]:.3f} to {self.times[-1]:.3f} s" if len(self.times) else "no times"
+        return f"{type(self).__name__}({list(self.power.shape)}, {span}{self._more()})"
+
+    def _more(self) -> str:
+        return ""
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Spectrogram(TimeMap):
+    """Received power by time and radial velocity; made by `spectrogram`.
+
+    times: [T] s, middles of the windows; velocity: [V] m/s, ascending, receding positive
+    power: [T, V] W, mean over the channels, summed over the ranges of the gate so that a point in it gives its received power
+    noise_power: W, mean of the receiver's noise in a cell, whether the map has noise or not
+    train: i32 [T], the train of chirps that each window lies in; trains: [N, 2] s, first and last end of each train: chirps
+        that follow each other evenly, also from frame to frame. No window spans the gap between two trains
+    window_length, hop: chirps of one transmitter; window, zero_pad: as in `range_doppler`, padding of the velocities
+    range_gate: (nearest, farthest) range that is summed, m
+    part: what was asked for, as text, None: the whole; channel: (tx, rx), None: all
+    """
+
+    times: np.ndarray
+    velocity: np.ndarray
+    power: np.ndarray
+    noise_power: float
+    train: np.ndarray
+    trains: np.ndarray
+    window_length: int
+    hop: int
+    window: str | tuple
+    zero_pad: int
+    range_gate: tuple
+    part: str | None = None
+    channel: tuple | None = None
+
+    AXIS, TITLE = "velocity", "Received power by time and radial velocity"
+
+    def extent(self, below_peak_db: float = 30.0) -> tuple:
+        """How far the velocities of each time reach: those within so many dB of its strongest cell.
+
+        below_peak_db: dB, 0 or more
+        Returns (lowest, highest), [T] each in m/s, NaN at times without power. Raises ValueError.
+        """
+        if not (np.isreal(below_peak_db) and 0.0 <= below_peak_db < np.inf):
+            raise refused(ValueError, "below_peak_db", "a finite number of at least 0 dB", below_peak_db)
+        peak = self.power.max(axis=1, keepdims=True)
+        is_inside = self.power >= peak * 10.0 ** (-below_peak_db / 10.0)
+        last = len(self.velocity) - 1
+        lowest, highest = self.velocity[is_inside.argmax(axis=1)], self.velocity[last - is_inside[:, ::-1].argmax(axis=1)]
+        is_empty = peak[:, 0] <= 0.0
+        return np.where(is_empty, np.nan, lowest), np.where(is_empty, np.nan, highest)
+
+    def _more(self) -> str:
+        count = len(self.trains)
+        gaps = "one train of chirps" if count == 1 else f"{count} trains of chirps: no window spans a gap between them"
+        return f", {self.velocity[0]:.2f} to {self.velocity[-1]:.2f} m/s, {gaps}"
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class RangeTime(TimeMap):
+    """Received power by time and range; made by `range_time`.
+
+    times: [T] s, middles of the frames or windows; range: [R] m
+    power: [T, R] W, mean over the channels; of all velocities the sum or the peak. A point gives its received power
+    noise_power: W, mean of the receiver's noise in a cell; combine: "sum" or "peak"
+    window, zero_pad: as in `range_doppler`
+    velocity_gate: (lowest, highest) velocity that is taken, m/s
+    part: what was asked for, as text, None: the whole; channel: (tx, rx), None: all
+    """
+
+    times: np.ndarray
+    range: np.ndarray
+    power: np.ndarray
+    noise_power: float
+    combine: str
+    window: str | tuple
+    zero_pad: int
+    velocity_gate: tuple
+    part: str | None = None
+    channel: tuple | None = None
+
+    AXIS, TITLE = "range", "Received power by time and range"
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class AngleTime(TimeMap):
+    """Received power by time and azimuth; made by `angle_time`.
+
+    times: [T] s, middles of the frames or windows; azimuth: [A] rad in the radar's frame, left positive
+    power: [T, A] W; of all ranges of the gate the sum or the peak. A point gives its received power
+    noise_power: W, mean of the receiver's noise in a cell, measured in one drawn map; combine: "sum" or "peak"
+    window, zero_pad: as in `range_doppler`; range_gate: (nearest, farthest) range that is taken, m
+    part: what was asked for, as text, None: the whole
+    """
+
+    times: np.ndarray
+    azimuth: np.ndarray
+    power: np.ndarray
+    noise_power: float
+    combine: str
+    window: str | tuple
+    zero_pad: int
+    range_gate: tuple
+    part: str | None = None
+
+    AXIS, TITLE = "azimuth", "Received power by time and azimuth"

@@ -1,0 +1,67 @@
+"""Short Fourier transforms over the chirps of range profiles."""
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .. import _core
+
+_VALUES_AT_A_TIME = 1 << 22  # complex, of the transforms of some windows: 64 MiB
+
+
+class Axes(NamedTuple):
+    """velocity: [V] m/s; range: [R] m, of a map of `range_doppler` of some chirps."""
+
+    velocity: np.ndarray
+    range: np.ndarray
+
+
+def with_chirps(radar, num_chirps: int):
+    """The radar with frames of so many chirps."""
+    return radar.replace(waveform=radar.waveform.replace(num_chirps=num_chirps))
+
+
+def axes_of(radar, num_chirps: int, zero_pad: int = 1) -> Axes:
+    """Axes of the maps of `num_chirps` chirps: velocities padded to `zero_pad` times as many, ranges not padded."""
+    one = with_chirps(radar, num_chirps).replace(receivers=radar.receivers[:1])
+    shape = (len(radar.transmitters), 1, num_chirps, radar.waveform.num_samples)
+    velocity = _core.range_doppler(np.zeros(shape), one, "rect", zero_pad).velocity
+    return Axes(velocity.copy(), _core.range_doppler(np.zeros(shape), one, "rect", 1).range.copy())
+
+
+def taper(window, count: int):
+    """Samples [count] of a window as `range_doppler` takes it."""
+    return _core.window(window, count) if isinstance(window, str) else _core.window(window[0], count, window[1])
+
+
+def noise_bandwidth(window, count: int) -> float:
+    """Equivalent noise bandwidth of a window in cells (Harris 1978, eq. 11): a point's power over all cells by its peak."""
+    weights = taper(window, count)
+    return count * float(np.sum(weights**2)) / float(np.sum(weights)) ** 2
+
+
+def range_profiles(cube, radar, window, inside):
+    """The range stage of `range_doppler`, [tx, rx, chirp, N] complex in sqrt(W), of the ranges that `inside` [R] takes."""
+    weights = taper(window, cube.shape[-1])
+    bins = np.fft.fft(cube * weights, axis=-1)[..., :len(inside)][..., inside]
+    return bins * ((np.sqrt(2.0) if radar.waveform.real else 1.0) / np.sum(weights))
+
+
+def velocity_powers(profiles, starts, window_length: int, window, zero_pad: int):
+    """Powers [T, V] in W over the chirps of profiles [tx, rx, chirp, N]: mean over channels, summed over the N ranges.
+
+    starts: [T] indices of the first chirps of the windows
+    """
+    weights, size = taper(window, window_length), window_length * zero_pad
+    weights = weights / np.sum(weights)
+    channels = profiles.reshape(-1, *profiles.shape[2:])
+    power = np.zeros((len(starts), size))
+    at_a_time = max(1, _VALUES_AT_A_TIME // max(size * channels.shape[-1], 1))
+    for channel in channels:
+        windows = np.lib.stride_tricks.sliding_window_view(channel, window_length, axis=0)  # [chirp, N, window_length]
+        for first in range(0, len(starts), at_a_time):
+            some = windows[starts[first:first + at_a_time]] * weights
+            bins = np.fft.fft(some, size, axis=-1)
+            power[first:first + at_a_time] += np.sum(bins.real**2 + bins.imag**2, axis=1)
+    return np.fft.fftshift(power, axes=1) / len(channels)

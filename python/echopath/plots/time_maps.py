@@ -1,0 +1,91 @@
+"""Maps over time: spectrograms, their labels, range and azimuth over time."""
+from __future__ import annotations
+
+import numpy as np
+
+from ..labels.images import colours_of
+from ..measures import SMALLEST_POWER, in_dbm
+from .maps import NOISE_PEAK_DB, RANGE_LABEL, VELOCITY_LABEL, VELOCITY_MARGIN, chosen_limits, limits_of_level
+from .style import MAP_COLOURS, axes_or_new
+
+TIME_LABEL = "Time in s"
+AXIS_LABELS = {"velocity": VELOCITY_LABEL, "range": RANGE_LABEL, "azimuth": "Azimuth in degrees (left: +)"}
+SIZE = 9.0, 4.4         # inches
+LABEL_FILL = 0.6        # opacity of a label over the map
+LEGEND_COLUMNS = 4
+
+
+def draw_time_map(map, *, ax=None, vmin=None, vmax=None, title=""):
+    """A Spectrogram, RangeTime or AngleTime in given axes, or in new ones (None): gaps between trains of chirps stay blank.
+
+    vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak
+    Returns the axes: time in s across; radial velocity in m/s, range in m or azimuth in degrees up. Raises TypeError or
+    ValueError naming the argument.
+    """
+    level = in_dbm(map.power, SMALLEST_POWER)
+    vmin, vmax = chosen_limits(limits_of_level(level), vmin, vmax)
+    values = np.degrees(map.axis) if map.AXIS == "azimuth" else map.axis
+    with axes_or_new(ax, *SIZE) as ax:
+        step = np.diff(map.times).min(initial=1.0)
+        for times, columns in _trains(map.times, getattr(map, "train", None)):
+            image = _image(ax, times, values, level[columns], step, cmap=MAP_COLOURS, vmin=vmin, vmax=vmax)
+        if map.AXIS == "velocity":
+            _crop(ax, values, level, vmin)
+        ax.set(xlabel=TIME_LABEL, ylabel=AXIS_LABELS[map.AXIS], title=title)
+        ax.figure.colorbar(image, ax=ax, label="Received power in dBm", extend="both", pad=0.02, aspect=30)
+    return ax
+
+
+def draw_spectrogram_labels(labels, *, ax=None, title=""):
+    """The whole in grey under the cells of the mask, coloured by the part that dominates, in given axes or new ones (None).
+
+    labels: SpectrogramLabels. Returns the axes: time in s across, radial velocity in m/s up. Raises TypeError naming `ax`.
+    """
+    from matplotlib.colors import ListedColormap
+
+    level = in_dbm(labels.whole, SMALLEST_POWER)
+    vmin, vmax = limits_of_level(level)
+    names = labels.part_names
+    colours = [tuple(channel / 255.0 for channel in colour) for colour in colours_of(names)]
+    with axes_or_new(ax, *SIZE) as ax:
+        grey = _image(ax, labels.times, labels.velocity, level, 1.0, cmap="gray", vmin=vmin, vmax=vmax)
+        owner = np.ma.masked_less(labels.dominant, 0)
+        _image(ax, labels.times, labels.velocity, owner, 1.0, cmap=ListedColormap(colours), vmin=-0.5,
+               vmax=len(names) - 0.5, alpha=LABEL_FILL)
+        for number, name in enumerate(names):
+            if np.any(labels.dominant == number):
+                ax.fill_between([], [], color=colours[number], label=name)
+        _crop(ax, labels.velocity, level, vmin)
+        ax.set(xlabel=TIME_LABEL, ylabel=VELOCITY_LABEL)
+        ax.set_title(title, pad=24.0)
+        if ax.get_legend_handles_labels()[1]:
+            ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=LEGEND_COLUMNS, frameon=False, borderaxespad=0.2)
+        ax.figure.colorbar(grey, ax=ax, label="Received power in dBm", extend="both", pad=0.02, aspect=30)
+    return ax
+
+
+def _trains(times, train):
+    """(times, indices) of each stretch whose columns touch each other."""
+    if train is None:
+        return [(times, slice(None))]
+    return [(times[train == number], train == number) for number in np.unique(train)]
+
+
+def _image(ax, times, values, level, step: float, **look):
+    """The cells [T, X] as an image; step: s, width of a column that has no neighbour."""
+    return ax.pcolormesh(_edges(times, step), _edges(values), np.transpose(level), shading="flat", rasterized=True, **look)
+
+
+def _edges(centres, step: float = 1.0):
+    """[N + 1] half-way between the centres [N], and as far beyond the outermost; one centre has the width `step`."""
+    if len(centres) == 1:
+        return np.array([centres[0] - 0.5 * step, centres[0] + 0.5 * step])
+    middle = 0.5 * (centres[1:] + centres[:-1])
+    return np.concatenate([[2.0 * centres[0] - middle[0]], middle, [2.0 * centres[-1] - middle[-1]]])
+
+
+def _crop(ax, velocity, level, floor: float) -> None:
+    """To the velocities at which some cell stands out of the noise and of the floor of the colour scale."""
+    shown = velocity[(level > max(floor + 3.0, np.median(level) + NOISE_PEAK_DB)).any(axis=0)]
+    if len(shown):
+        ax.set_ylim(max(shown.min() - VELOCITY_MARGIN, velocity[0]), min(shown.max() + VELOCITY_MARGIN, velocity[-1]))

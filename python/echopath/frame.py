@@ -128,6 +128,13 @@ class Frame:
                              least_power=_core.noise_power_in_cell(self.radar))
 
     @cached_property
+    def truth(self):
+        """ep.Truth of the objects in the middle of the frame: places in m, velocities in m/s, boxes, cross sections in m^2."""
+        from .truth import truth_of_frame
+
+        return truth_of_frame(self)
+
+    @cached_property
     def _families(self):
         return find_families(self.paths)
 

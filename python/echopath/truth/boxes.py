@@ -1,0 +1,122 @@
+"""Oriented boxes about objects of a scene at a time, and how they move."""
+from __future__ import annotations
+
+import posixpath
+from typing import NamedTuple
+
+import numpy as np
+
+from .. import _core
+
+STEP = 5e-5  # s, of differences over time; their error for a point 0.3 m from an axis of 50 turns/s is below 1e-5 m/s
+
+
+class Boxes(NamedTuple):
+    """The boxes of N objects, in world axes.
+
+    centre: [N, 3] m; size: [N, 3] m along the box's own axes; rotation: [N, 3, 3], world_from_box
+    velocity: [N, 3] m/s; angular_velocity: [N, 3] rad/s; origin: [N, 3] m, the objects' own origins
+    """
+
+    centre: np.ndarray
+    size: np.ndarray
+    rotation: np.ndarray
+    velocity: np.ndarray
+    angular_velocity: np.ndarray
+    origin: np.ndarray
+
+
+def boxes_at(scene, globs_of_objects, time: float, duration: float) -> Boxes:
+    """The Boxes of objects at `time` in s.
+
+    globs_of_objects: list [N] of lists of globs; duration: s, of the frame about that time, which differences stay within
+    """
+    step = min(STEP, 0.25 * duration) if duration > 0.0 else STEP
+    rows = [_Body(scene, globs).box(time, step) for globs in globs_of_objects]
+    columns = zip(*rows) if rows else [[]] * len(Boxes._fields)
+    shapes = {"rotation": (-1, 3, 3)}
+    return Boxes(*(np.array(column, float).reshape(shapes.get(name, (-1, 3))) for name, column in zip(Boxes._fields, columns)))
+
+
+def rate_of(value, time: float, step: float):
+    """Derivative at `time` in s of value(time), an array, by differences of fourth order; 0 of what stays."""
+    near, far = (value(time + reach) - value(time - reach) for reach in (step, 2.0 * step))
+    return (8.0 * near - far) / (12.0 * step)
+
+
+class _Body:
+    """The meshes of one object and the node whose axes its box has."""
+
+    def __init__(self, scene, globs):
+        self._scene, self._nodes = scene, scene.nodes
+        self._meshes = [mesh for mesh in scene.meshes if any(_core.glob_takes(glob, mesh.name) for glob in globs)]
+        self._node = _common_node(self._nodes, globs, self._meshes)
+
+    def box(self, time: float, step: float) -> tuple:
+        """One row of Boxes."""
+        frame = self._frame(time)
+        rotation, origin = frame[:3, :3], frame[:3, 3]
+        own = (np.concatenate([self._scene.world_vertices(mesh.id, time) for mesh in self._meshes]) - origin) @ rotation
+        low, high = own.min(axis=0), own.max(axis=0)
+        centre = 0.5 * (low + high)
+        rate = rate_of(self._frame, time, step)
+        velocity = rate[:3, 3] + rate[:3, :3] @ centre
+        if not self._is_rigid():
+            velocity = velocity + rotation @ rate_of(self._own_centroid, time, step)
+        turning = rate[:3, :3] @ rotation.T
+        spin = 0.5 * np.array([turning[2, 1] - turning[1, 2], turning[0, 2] - turning[2, 0], turning[1, 0] - turning[0, 1]])
+        return origin + rotation @ centre, high - low, rotation, velocity, spin, origin
+
+    def _frame(self, time: float):
+        """World from the object's node [4, 4] without its scale; the world itself for objects that share no node."""
+        transform = np.eye(4)
+        index = self._node
+        while index >= 0:
+            node = self._nodes[index]
+            transform = _placed(node, time) @ transform
+            index = node.parent
+        left, _, right = np.linalg.svd(transform[:3, :3])
+        rotation = left @ right
+        transform[:3, :3] = rotation if np.linalg.det(rotation) > 0.0 else left @ np.diag([1.0, 1.0, -1.0]) @ right
+        return transform
+
+    def _own_centroid(self, time: float):
+        """Centroid of the surface, [3] in m, in the axes of the box."""
+        total, moment = 0.0, np.zeros(3)
+        for mesh in self._meshes:
+            corners = self._scene.world_vertices(mesh.id, time)[mesh.triangles]
+            area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+            total, moment = total + area.sum(), moment + area @ corners.mean(axis=1)
+        frame = self._frame(time)
+        return (moment / total - frame[:3, 3]) @ frame[:3, :3]
+
+    def _is_rigid(self) -> bool:
+        """Whether nothing between its node and its meshes moves or deforms by itself."""
+        for mesh in self._meshes:
+            index = mesh.node
+            if self._nodes[index].deformation is not None:
+                return False
+            while index not in (self._node, -1):
+                if self._nodes[index].motion is not None:
+                    return False
+                index = self._nodes[index].parent
+        return True
+
+
+def _placed(node, time: float):
+    """parent_from_node [4, 4]: what a motion does to a placement, as `Scene.add` says."""
+    if node.motion is None:
+        return node.placement
+    step, placed = node.motion.at(time), np.eye(4)
+    placed[:3, :3] = step[:3, :3] @ node.placement[:3, :3]
+    placed[:3, 3] = node.placement[:3, 3] + step[:3, 3]
+    return placed
+
+
+def _common_node(nodes, globs, meshes) -> int:
+    """Index of the node that a single name means, or the lowest that all meshes are at or below; -1: none."""
+    index_of = {node.name: index for index, node in enumerate(nodes)}
+    if len(globs) == 1 and globs[0] in index_of:
+        return index_of[globs[0]]
+    name = posixpath.commonpath([mesh.name for mesh in meshes]) if meshes else ""
+    return index_of.get(name, -1)

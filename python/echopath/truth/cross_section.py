@@ -1,0 +1,37 @@
+"""The radar equation: received power of a target of 1 m^2."""
+from __future__ import annotations
+
+import numpy as np
+
+from .. import _core
+
+
+def isotropic_power(radar, points, time: float):
+    """Power in W that the first receiver would have from the first transmitter over a target of 1 m^2 at points [N, 3] in m.
+
+    P = Pt Gt Gr lambda^2 / ((4 pi)^3 Rt^2 Rr^2) at the start frequency, to which the amplitudes of paths belong; gains are
+    those of the antennas' patterns, polarisation is left out. points: in world axes at `time` in s. Returns [N].
+    """
+    world = radar.world_from_radar(time)
+    own = (points - world[:3, 3]) @ world[:3, :3]
+    gain_out, distance_out = _leg(radar.transmitters[0], own)
+    gain_in, distance_in = _leg(radar.receivers[0], own)
+    wavelength = _core.speed_of_light / radar.waveform.start_frequency
+    spread = (4.0 * np.pi) ** 3 * distance_out**2 * distance_in**2
+    return radar.transmit_power * gain_out * gain_in * wavelength**2 / spread
+
+
+def _leg(antenna, points) -> tuple:
+    """(power gain, distance in m) [N] each, of an antenna toward points in the radar's frame."""
+    ways = points - antenna.position
+    distance = np.linalg.norm(ways, axis=1)
+    directions = ways / distance[:, None] @ _matrix(antenna.orientation)  # in the antenna's frame
+    return (np.abs(antenna.pattern.field(directions)) ** 2 if len(points) else np.zeros(0)), distance
+
+
+def _matrix(quaternion):
+    """Rotation [3, 3] of a unit quaternion (w, x, y, z)."""
+    w, x, y, z = quaternion
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])

@@ -1,0 +1,185 @@
+"""Truth as a value: a row for each object and frame."""
+from __future__ import annotations
+
+import csv
+import dataclasses
+
+import numpy as np
+
+from ..checks import refused
+from ..equality import has_same_fields
+from ..files import written_whole
+from ..tables import make_table
+
+_XYZ = ("x", "y", "z")
+_SIGNS = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+# Field of Truth: names of its columns in a table, unit.
+_COLUMNS = {
+    "frame": (("frame",), ""), "time": (("time",), "s"), "name": (("name",), ""),
+    "position": (_XYZ, "m"), "velocity": (("vx", "vy", "vz"), "m/s"), "heading": (("heading",), "rad"),
+    "size": (("length", "width", "height"), "m"), "yaw": (("yaw",), "rad"),
+    "angular_velocity": (("angular_velocity_x", "angular_velocity_y", "angular_velocity_z"), "rad/s"),
+    "origin": (("origin_x", "origin_y", "origin_z"), "m"),
+    "position_in_radar": (("radar_x", "radar_y", "radar_z"), "m"),
+    "velocity_in_radar": (("radar_vx", "radar_vy", "radar_vz"), "m/s"), "yaw_in_radar": (("radar_yaw",), "rad"),
+    "range": (("range",), "m"), "azimuth": (("azimuth",), "rad"), "elevation": (("elevation",), "rad"),
+    "radial_velocity": (("radial_velocity",), "m/s"), "visible_share": (("visible_share",), ""),
+    "received": (("received",), "W"), "rcs": (("rcs",), "m^2"), "rcs_low": (("rcs_low",), "m^2"),
+    "rcs_high": (("rcs_high",), "m^2"), "rotation": (tuple(f"rotation_{row}{column}" for row in _XYZ for column in _XYZ), "")}
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Truth:
+    """What is true of objects in the middle of frames, N rows of an object and a frame; made by `truth`.
+
+    frame: i32 [N], index of the frame; time: [N] s, middle of the frame; name: [N] text, of the object
+    position: [N, 3] m, world: the centre of the box; origin: [N, 3] m, world: the object's own origin, as its node is placed
+        and moved
+    velocity: [N, 3] m/s, world: of the box's centre as part of the object's own axes, which node and motion carry; of
+        bodies that deform, or whose parts move by themselves, plus the velocity of the centroid of the surface in these axes:
+        a box whose faces go from limb to limb has no steady velocity of its own
+    heading: [N] rad, horizontal direction of the velocity, left positive from the world's x; NaN below 0.1 mm/s
+    size: [N, 3] m, of the smallest box about all vertices along the object's own axes; rotation: [N, 3, 3], world_from_box:
+        those axes, of the node that bears its name, or of the lowest node above all its meshes
+    yaw: [N] rad, where the box's own +x points; angular_velocity: [N, 3] rad/s, of these axes, in world axes
+    position_in_radar: [N, 3] m; velocity_in_radar: [N, 3] m/s, its rate as it is seen from a radar that moves and turns;
+        yaw_in_radar: [N] rad, of the box's +x in the radar's axes
+    range, azimuth, elevation: [N] m, rad, rad, of the box's centre from the point between transmitters and receivers that
+        detections count from (`Detections.centre`); radial_velocity: [N] m/s, rate of that range, receding positive
+    visible_share: [N], of the solid angle in which the radar would see the object alone, what nothing hides, 0 to 1
+    received: [N] W, mean received power of the object's direct echoes (all its paths that touch nothing else, of any number
+        of bounces on itself), over random phases, between the first antennas
+    rcs: [N] m^2, radar cross section as seen: `received` by the radar equation for the box's centre, at the start frequency,
+        by the gains of the first antennas there (polarisation left out): shadowed parts count as missing. NaN where an
+        antenna has no gain; rcs_low, rcs_high: [N] m^2, of the 95 % interval of the received power
+    """
+
+    frame: np.ndarray
+    time: np.ndarray
+    name: np.ndarray
+    position: np.ndarray
+    velocity: np.ndarray
+    heading: np.ndarray
+    size: np.ndarray
+    rotation: np.ndarray
+    yaw: np.ndarray
+    angular_velocity: np.ndarray
+    origin: np.ndarray
+    position_in_radar: np.ndarray
+    velocity_in_radar: np.ndarray
+    yaw_in_radar: np.ndarray
+    range: np.ndarray
+    azimuth: np.ndarray
+    elevation: np.ndarray
+    radial_velocity: np.ndarray
+    visible_share: np.ndarray
+    received: np.ndarray
+    rcs: np.ndarray
+    rcs_low: np.ndarray
+    rcs_high: np.ndarray
+
+    @property
+    def corners(self) -> np.ndarray:
+        """Corners of the boxes, [N, 8, 3] m in world axes: the last axis of the box runs fastest."""
+        return self.position[:, None] + np.einsum("nij,nkj->nki", self.rotation, _SIGNS * self.size[:, None])
+
+    @property
+    def rcs_dbsm(self) -> np.ndarray:
+        """Radar cross section as seen, [N] in dB re 1 m^2; -inf for none."""
+        with np.errstate(divide="ignore"):
+            return 10.0 * np.log10(self.rcs)
+
+    def of_object(self, name: str) -> Truth:
+        """The rows of one object, in the order of the frames.
+
+        name: as in the rows. Raises KeyError.
+        """
+        if not np.any(self.name == name):
+            raise KeyError(f"name: must be one of {', '.join(dict.fromkeys(self.name.tolist()))}, got {name!r}")
+        return self._where(self.name == name)
+
+    def of_frame(self, frame: int) -> Truth:
+        """The rows of the frame with that index; none where it has no objects. Raises TypeError for what is no index."""
+        if not hasattr(frame, "__index__"):
+            raise refused(TypeError, "frame", "the index of a frame, a whole number", frame)
+        return self._where(self.frame == frame)
+
+    def to_dataframe(self):
+        """A pandas.DataFrame with a row for each object and frame.
+
+        Columns: frame, time, name; x, y, z, vx, vy, vz, heading, length, width, height, yaw and the like in world axes,
+        radar_x and the like in those of the radar, range, azimuth, elevation, radial_velocity, visible_share, received (W),
+        rcs (m^2) with its interval, rotation row by row; units in `attrs["units"]`. Needs pandas, raises ModuleNotFoundError
+        without it.
+        """
+        units = {column: unit for columns, unit in _COLUMNS.values() for column in columns if unit}
+        return make_table(self._columns(), units)
+
+    def to_csv(self, path) -> None:
+        """Writes the same table, whole or not at all.
+
+        path: of the file; unknown numbers are left empty. Raises ep.FileError.
+        """
+        columns = self._columns()
+        with written_whole(path) as temporary, open(temporary, "w", encoding="utf-8", newline="") as stream:
+            writer = csv.writer(stream, lineterminator="\n")
+            writer.writerow(columns)
+            writer.writerows([_as_text(value) for value in row] for row in zip(*columns.values()))
+
+    def to_records(self) -> np.ndarray:
+        """The rows as a structured array [N] whose fields are those of this class, names as UTF-8 of a fixed number of bytes:
+        what HDF5 and .npy files hold. `from_records` reads it."""
+        encoded = np.char.encode(self.name.astype(str), "utf-8") if len(self.name) else np.zeros(0, "S1")
+        values = {field: encoded if field == "name" else getattr(self, field) for field in _fields()}
+        records = np.zeros(len(self), [(field, array.dtype, array.shape[1:]) for field, array in values.items()])
+        for field, array in values.items():
+            records[field] = array
+        return records
+
+    @classmethod
+    def from_records(cls, records: np.ndarray) -> Truth:
+        """The Truth of what `to_records` gave.
+
+        records: structured array [N]. Raises ValueError for other fields.
+        """
+        names = getattr(getattr(records, "dtype", None), "names", None)
+        if names is None or set(names) != set(_fields()):
+            raise refused(ValueError, "records", "a structured array as Truth.to_records makes it", records)
+        columns = {field: np.array(records[field]) for field in _fields()}
+        columns["name"] = np.array([name.decode("utf-8") for name in columns["name"].tolist()], dtype=str)
+        return cls(**columns)
+
+    def _where(self, chosen) -> Truth:
+        return Truth(**{field: getattr(self, field)[chosen] for field in _fields()})
+
+    def _columns(self) -> dict:
+        """{column: values [N]} of the table."""
+        found = {}
+        for field, (columns, _) in _COLUMNS.items():
+            values = getattr(self, field)
+            flat = values.reshape(len(self), len(columns)) if len(columns) > 1 else values[:, None]
+            found |= {column: flat[:, index] for index, column in enumerate(columns)}
+        return found
+
+    def __eq__(self, other) -> bool:
+        return has_same_fields(self, other) if isinstance(other, Truth) else NotImplemented
+
+    __hash__ = None
+
+    def __len__(self) -> int:
+        return len(self.name)
+
+    def __repr__(self) -> str:
+        names = list(dict.fromkeys(self.name.tolist()))
+        shown = ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
+        return f"Truth({len(self)} rows, {len(np.unique(self.frame))} frames, {len(names)} objects: {shown})"
+
+
+def _fields() -> list[str]:
+    return [field.name for field in dataclasses.fields(Truth)]
+
+
+def _as_text(value) -> str:
+    if isinstance(value, (float, np.floating)):
+        return "" if np.isnan(value) else repr(float(value))
+    return str(value)

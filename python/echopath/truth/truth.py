@@ -1,0 +1,109 @@
+"""Where the objects of frames are, how they move, and how much of them the radar sees."""
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from .. import _core
+from ..checks import checked, refused
+from ..detections.detections import centre_of
+from ..families import Objects, families, named_globs, objects_rule
+from ..frame import Frame
+from ..visibility import visibility_in_trace
+from .boxes import STEP, boxes_at, rate_of
+from .cross_section import isotropic_power
+from .record import Truth
+
+_SLOWEST = 1e-4  # m/s, below which there is no heading
+_RULE = "a Frame, Paths, or some of either"
+
+
+def _frames_rule(argument: str, value) -> list:
+    """A list of Frames or Paths."""
+    if isinstance(value, (Frame, _core.Paths)):
+        return [value]
+    if isinstance(value, (str, bytes, Mapping)) or not isinstance(value, Iterable) or isinstance(value, type):
+        raise refused(TypeError, argument, _RULE, value)
+    return value
+
+
+@checked(frame=_frames_rule, objects=objects_rule)
+def truth(frame: Frame | _core.Paths | Iterable[Frame], objects: Objects = None) -> Truth:
+    """Where each object is in the middle of a frame, how it moves, its box, how much of it the radar sees, and how strongly.
+
+    The box is the smallest about all vertices of the object at that time along the object's own axes; velocities are
+    differences of fourth order over 0.1 ms either side of it (less in shorter frames) of the node's motion, and of bodies that
+    deform of the surface's centroid. The radar cross section is that which the radar equation needs for the power that the
+    rays brought by direct echoes.
+    frame: a Frame or its Paths, or frames one after the other, used one at a time
+    objects: as in `families`, {name: globs} or globs, which are then the names; None: the objects that labels tell of
+    Returns a Truth, a row for each object of each frame, in SI units. Raises TypeError or ValueError naming the argument, also
+    for globs that take no mesh.
+    """
+    rows = []
+    for number, one in enumerate(frame):
+        if not isinstance(one, (Frame, _core.Paths)):
+            raise refused(TypeError, "frame", _RULE, one)
+        rows.append(truth_of_frame(one, objects, number))
+    if not rows:
+        raise ValueError("frame: must be one at least, got none")
+    return rows[0] if len(rows) == 1 else _joined(rows)
+
+
+def truth_of_frame(frame, objects=None, number: int = 0) -> Truth:
+    """The Truth of one Frame or of its Paths. objects: as in `families`; number: index of the frame"""
+    paths = getattr(frame, "paths", frame)
+    radar = getattr(frame, "radar", paths.radar)
+    found, time = families(paths, objects), paths.frame.trace_time
+    globs = dict(named_globs(objects) or [(name, [name]) for name in found.objects])
+    boxes = boxes_at(paths.scene, [globs[name] for name in found.objects], time, radar.frame_duration)
+    count = len(found.objects)
+    seen = {one.name: one.visible_share for one in visibility_in_trace(paths, radar, objects)} if count else {}
+    return Truth(frame=np.full(count, number, np.int32), time=np.full(count, time), name=np.array(found.objects, dtype=str),
+                 position=boxes.centre, velocity=boxes.velocity, heading=_heading(boxes.velocity), size=boxes.size,
+                 rotation=boxes.rotation, yaw=_yaw(boxes.rotation), angular_velocity=boxes.angular_velocity,
+                 origin=boxes.origin, **_in_radar(boxes, radar, time),
+                 visible_share=np.array([seen[name] for name in found.objects], float),
+                 **_cross_sections(paths, radar, found, boxes.centre, time))
+
+
+def _in_radar(boxes, radar, time: float) -> dict:
+    """The fields of Truth in the axes of the radar."""
+    step = min(STEP, 0.25 * radar.frame_duration) if radar.frame_duration > 0.0 else STEP
+    world, rate = radar.world_from_radar(time), rate_of(radar.world_from_radar, time, step)
+    way = boxes.centre - world[:3, 3]
+    position = way @ world[:3, :3]
+    velocity = (boxes.velocity - rate[:3, 3]) @ world[:3, :3] + way @ rate[:3, :3]
+    sight = position - centre_of(radar)
+    distance = np.linalg.norm(sight, axis=1)
+    return {"position_in_radar": position, "velocity_in_radar": velocity,
+            "yaw_in_radar": _yaw(np.einsum("ji,njk->nik", world[:3, :3], boxes.rotation)), "range": distance,
+            "azimuth": np.arctan2(sight[:, 1], sight[:, 0]),
+            "elevation": np.arctan2(sight[:, 2], np.hypot(sight[:, 0], sight[:, 1])),
+            "radial_velocity": np.sum(sight * velocity, axis=1) / np.maximum(distance, np.finfo(float).tiny)}
+
+
+def _cross_sections(paths, radar, found, centres, time: float) -> dict:
+    """Received power of the direct echoes and the cross section that it means."""
+    count = len(found.objects)
+    index = {name: number for number, name in enumerate(found.objects)}
+    group = np.array([count if family.ghost_type else index.get(family.object, count) for family in found], np.uint32)
+    powers = _core.received_powers(paths, group[found.family_of_path], count + 1)[:count]
+    unit = isotropic_power(radar, centres, time)
+    unit = np.where(unit > 0.0, unit, np.nan)
+    received, low, high = (np.array([getattr(one, name) for one in powers], float) for name in ("power", "low", "high"))
+    return {"received": received, "rcs": received / unit, "rcs_low": low / unit, "rcs_high": high / unit}
+
+
+def _heading(velocity):
+    is_moving = np.hypot(velocity[:, 0], velocity[:, 1]) >= _SLOWEST
+    return np.where(is_moving, np.arctan2(velocity[:, 1], velocity[:, 0]), np.nan)
+
+
+def _yaw(rotation):
+    return np.arctan2(rotation[:, 1, 0], rotation[:, 0, 0])
+
+
+def _joined(rows: list) -> Truth:
+    return Truth(**{field: np.concatenate([getattr(one, field) for one in rows]) for field in Truth.__dataclass_fields__})

@@ -1,0 +1,228 @@
+"""Truth of objects against closed forms: boxes of all vertices, motions, cross sections of spheres, axes of radars."""
+import copy
+import csv
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from support.radars import build_radar
+
+ROOT = Path(__file__).parents[2]
+TOUCH = 1e-9         # m, of vertices and faces of a box: rounding
+RATE_ERROR = 1e-6    # m/s, of differences over 0.1 ms
+SPHERE_ERROR_DB = 0.1
+
+
+def trace(scene, radar=None, start_time=0.0, num_rays=2000):
+    return ep.trace(scene, radar or build_radar(num_chirps=16), num_rays=num_rays, start_time=start_time, polarization="scalar")
+
+
+def box_scene(**placing):
+    scene = ep.Scene()
+    scene.add(ep.actors.box((4.0, 2.0, 1.5)), name="car", material="metal", **placing)
+    return scene
+
+
+# --- boxes ---
+
+@pytest.mark.parametrize("name", ["roundabout", "street"])
+def test_boxes_hold_all_vertices_and_touch_them(name):
+    file = ep.load_scene(ROOT / "data" / "scenes" / f"{name}.toml")
+    paths = trace(file.scene, file.radar, start_time=0.05)
+    found = ep.truth(paths)
+    assert len(found) == len(ep.families(paths).objects) >= 1
+    for row in range(len(found)):
+        below = found.name[row] + "/"
+        vertices = np.concatenate([paths.scene.world_vertices(mesh.id, paths.frame.trace_time) for mesh in paths.scene.meshes
+                                   if mesh.name.startswith(below) or mesh.name == found.name[row]])
+        axes = found.rotation[row]
+        assert axes.T @ axes == pytest.approx(np.eye(3), abs=1e-12) and np.linalg.det(axes) > 0
+        own = (vertices - found.position[row]) @ axes
+        half = 0.5 * found.size[row]
+        assert np.all(np.abs(own) <= half + TOUCH)
+        assert np.abs(own.max(axis=0) - half).max() < TOUCH and np.abs(own.min(axis=0) + half).max() < TOUCH
+        assert np.abs(found.corners[row].mean(axis=0) - found.position[row]).max() < TOUCH
+
+
+def test_a_box_stands_as_its_object():
+    found = ep.truth(trace(box_scene(position=(12, 3, 0), yaw=0.4)))
+    assert found.size[0] == pytest.approx([4.0, 2.0, 1.5]) and found.yaw[0] == pytest.approx(0.4)
+    assert found.origin[0] == pytest.approx([12, 3, 0])
+    corner = found.position[0] + np.array([2 * np.cos(0.4) - np.sin(0.4), 2 * np.sin(0.4) + np.cos(0.4), 0.75])
+    assert np.abs(found.corners[0] - corner).sum(axis=1).min() < 1e-9
+    assert np.isnan(found.heading[0]) and np.all(found.velocity == 0.0)
+
+
+def test_scale_of_a_placement_is_in_the_size():
+    transform = np.eye(4)
+    transform[:3, :3] = 2.0 * np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]])
+    transform[:3, 3] = 15, 0, 0
+    found = ep.truth(trace(box_scene(transform=transform)))
+    assert found.size[0] == pytest.approx([8.0, 4.0, 3.0]) and found.yaw[0] == pytest.approx(np.pi / 2)
+
+
+def test_objects_of_several_nodes_stand_in_the_axes_above_them():
+    scene = ep.Scene()
+    scene.add(name="group", position=(10, 0, 0), yaw=0.3)
+    for name, side in (("left", 2.0), ("right", -2.0)):
+        scene.add(ep.actors.box(1.0), name=name, material="metal", parent="group", position=(0, side, 0), yaw=0.5)
+    scene.add(ep.actors.box(1.0), name="third", material="metal", position=(14, 5, 0))
+    both = ep.truth(trace(scene), {"both": ["group/left", "group/right"], "all": ["*"]})
+    assert both.name.tolist() == ["both", "all"]
+    assert both.yaw == pytest.approx([0.3, 0.0])
+    assert both.size[0, 1] == pytest.approx(4.0 + np.cos(0.5) + np.sin(0.5))
+
+
+# --- motions ---
+
+def test_velocity_of_what_goes_straight():
+    velocity = np.array([-7.0, 2.0, 0.5])
+    found = ep.truth(trace(box_scene(position=(20, 1, 0), yaw=0.2, motion=ep.LinearMotion(velocity=velocity)), start_time=0.3))
+    assert found.velocity[0] == pytest.approx(velocity, abs=RATE_ERROR)
+    assert found.origin[0] == pytest.approx(np.array([20, 1, 0]) + velocity * found.time[0])
+    assert found.heading[0] == pytest.approx(np.arctan2(2.0, -7.0))
+    assert np.abs(found.angular_velocity).max() < 1e-6
+
+
+def test_velocity_of_what_goes_round():
+    """A box 3 m from an axis that turns: v = omega x r, of the box's centre."""
+    spin, radius, scene = 6.0, 3.0, ep.Scene()
+    scene.add(name="axis", position=(12, 0, 0), motion=ep.LinearMotion(angular_velocity=(0, 0, spin)))
+    scene.add(ep.actors.box(1.0), name="gondola", material="metal", parent="axis", position=(radius, 0, 0))
+    found = ep.truth(trace(scene, start_time=0.2), ["axis/gondola"])
+    angle = spin * found.time[0]
+    assert found.position[0, :2] == pytest.approx([12 + radius * np.cos(angle), radius * np.sin(angle)])
+    assert found.velocity[0] == pytest.approx(spin * radius * np.array([-np.sin(angle), np.cos(angle), 0]), abs=RATE_ERROR)
+    assert found.angular_velocity[0] == pytest.approx([0, 0, spin], abs=1e-6)
+    assert found.size[0] == pytest.approx([1, 1, 1])
+
+
+def test_velocity_of_a_body_that_deforms():
+    """A tetrahedron that goes along y while it grows about its centroid: the centroid has the speed, whatever the box does."""
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
+    mesh = ep.Mesh(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    faces = corners[mesh.triangles]
+    areas = np.linalg.norm(np.cross(faces[:, 1] - faces[:, 0], faces[:, 2] - faces[:, 0]), axis=1)
+    centroid = areas @ faces.mean(axis=1) / areas.sum()
+    times = np.linspace(0.0, 1.0, 51)
+    frames = np.array([centroid + (1 + 0.5 * t) * (corners - centroid) + np.array([0, 3.0 * t, 0]) for t in times])
+    scene = ep.Scene()
+    scene.add(mesh, name="cloth", material="metal", position=(8, 0, 0), yaw=np.pi / 2,
+              motion=ep.VertexSequence(times=times, vertices=frames))
+    found = ep.truth(trace(scene, start_time=0.5))
+    assert found.velocity[0] == pytest.approx([-3.0, 0.0, 0.0], abs=RATE_ERROR)  # its own y is the world's -x
+    assert found.size[0] == pytest.approx(np.full(3, 1 + 0.5 * found.time[0]))
+
+
+def test_a_walking_person_goes_at_their_speed_in_the_mean():
+    scene = ep.Scene()
+    scene.add(ep.actors.pedestrian(speed=1.4, duration=3.0), name="walker", position=(8, 0, 0), yaw=np.pi)
+    radar = build_radar(num_chirps=8)
+    found = ep.truth([trace(scene, radar, start_time=start, num_rays=200) for start in np.arange(0.5, 1.5, 0.125)])
+    assert len(found) == 8 and found.frame.tolist() == list(range(8))
+    assert found.velocity[:, 0].mean() == pytest.approx(-1.4, abs=0.1)
+    assert np.gradient(found.position[:, 0], found.time).mean() == pytest.approx(found.velocity[:, 0].mean(), abs=0.1)
+    assert len(found.of_object("walker")) == 8 and len(found.of_frame(3)) == 1
+    with pytest.raises(KeyError, match="must be one of walker, got 'runner'"):
+        found.of_object("runner")
+
+
+# --- what the radar sees ---
+
+@pytest.mark.parametrize("radius", [0.1, 0.4])
+def test_cross_section_of_a_sphere(radius):
+    """pi a^2, whatever the distance, the antennas' gains and where they look."""
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(radius), name="ball", material=ep.Material.metal(), position=(9, 2, 0), smooth=True)
+    antenna = ep.Antenna(pattern=ep.CosinePower(4.0), yaw=-0.2)
+    radar = build_radar((antenna,), (antenna,), num_chirps=4, position=(1, -1, 0), yaw=0.3, transmit_power=0.5)
+    found = ep.truth(trace(scene, radar, num_rays=20000))
+    # Geometrical optics: P ~ (a / (2 (R - a) R))^2, where the radar equation for the centre has (a / (2 R^2))^2.
+    near = 20 * np.log10((found.range[0] - radius) / found.range[0])
+    assert found.rcs_dbsm[0] + near == pytest.approx(10 * np.log10(np.pi * radius**2), abs=SPHERE_ERROR_DB)
+    assert found.rcs_low[0] <= found.rcs[0] <= found.rcs_high[0] and found.visible_share[0] == 1.0
+
+
+def test_what_no_antenna_sees_has_no_cross_section():
+    scene = box_scene(position=(-8, 0, 0))
+    found = ep.truth(trace(scene, build_radar((ep.Antenna(pattern=ep.CosinePower(2.0)),), num_chirps=4)))
+    assert np.isnan(found.rcs[0]) and found.received[0] == 0.0
+
+
+def test_a_plate_in_front_of_half_of_another_leaves_half_of_it():
+    scene = ep.Scene()
+    for name, x, y, width in (("far", 10.0, 0.0, 2.0), ("near", 5.0, 1.0, 2.0)):
+        scene.add(ep.actors.plate(width, 4.0), name=name, material="metal", position=(x, y, 0))
+    found = ep.truth(trace(scene))
+    assert dict(zip(found.name, found.visible_share)) == {"far": pytest.approx(0.5, abs=0.01), "near": 1.0}
+
+
+# --- axes of the radar ---
+
+def test_axes_of_a_radar_that_drives_and_turns():
+    """Rates of coordinates against differences of them, worked out by hand from the radar's place and turn."""
+    spin, ahead = 0.8, np.array([9.0, 0.0, 0.0])
+    radar = build_radar(num_chirps=64, position=(1, 2, 0.5), yaw=0.2,
+                        motion=ep.LinearMotion(velocity=ahead, angular_velocity=(0, 0, spin)))
+    velocity = np.array([-5.0, 1.0, 0.0])
+    scene = box_scene(position=(25, 4, 0), motion=ep.LinearMotion(velocity=velocity))
+    found = ep.truth(trace(scene, radar))
+
+    def own(time):
+        angle = 0.2 + spin * time
+        turn = np.array([[np.cos(angle), np.sin(angle), 0], [-np.sin(angle), np.cos(angle), 0], [0, 0, 1]])
+        at = found.position[0] + velocity * (time - found.time[0])
+        return turn @ (at - np.array([1, 2, 0.5]) - ahead * time)
+
+    now, step = found.time[0], 1e-5
+    rate = (own(now + step) - own(now - step)) / (2 * step)
+    assert found.position_in_radar[0] == pytest.approx(own(now))
+    assert found.velocity_in_radar[0] == pytest.approx(rate, abs=1e-6)
+    assert found.radial_velocity[0] == pytest.approx(own(now) @ rate / np.linalg.norm(own(now)), abs=1e-6)
+    assert found.azimuth[0] == pytest.approx(np.arctan2(own(now)[1], own(now)[0]))
+    assert found.yaw_in_radar[0] == pytest.approx(-0.2 - spin * now)
+
+
+# --- as tables and rows ---
+
+@pytest.fixture(scope="module")
+def frame():
+    return ep.simulate(box_scene(position=(12, 3, 0), yaw=0.4), build_radar(num_chirps=16), num_rays=500, guard=False)
+
+
+def test_rows_travel(frame, tmp_path):
+    import h5py
+
+    found = frame.truth
+    assert found == ep.truth(frame) == pickle.loads(pickle.dumps(found)) == copy.deepcopy(found)
+    with h5py.File(tmp_path / "truth.h5", "w") as file:
+        file["truth"] = found.to_records()
+        assert ep.Truth.from_records(file["truth"][()]) == found
+    np.save(tmp_path / "truth.npy", found.to_records())
+    assert ep.Truth.from_records(np.load(tmp_path / "truth.npy")) == found
+    empty = found.of_frame(5)
+    assert len(empty) == 0 and ep.Truth.from_records(empty.to_records()) == empty and len(empty.corners) == 0
+    with pytest.raises(ValueError, match="records: must be a structured array as Truth.to_records"):
+        ep.Truth.from_records(np.zeros(3))
+    assert "1 rows, 1 frames, 1 objects: car" in repr(found)
+
+
+def test_tables_have_names_and_units(frame, tmp_path):
+    pytest.importorskip("pandas")
+    table = frame.truth.to_dataframe()
+    assert table.loc[0, "name"] == "car" and table.loc[0, "length"] == pytest.approx(4.0)
+    assert table.attrs["units"]["rcs"] == "m^2" and table.attrs["units"]["vx"] == "m/s"
+    frame.truth.to_csv(tmp_path / "truth.csv")
+    rows = list(csv.DictReader((tmp_path / "truth.csv").open(encoding="utf-8")))
+    assert list(rows[0]) == list(table.columns) and float(rows[0]["yaw"]) == frame.truth.yaw[0] and rows[0]["heading"] == ""
+
+
+def test_a_scene_without_objects_has_no_rows():
+    scene = ep.Scene()
+    scene.add(ep.actors.ground(50.0), name="ground", material=ep.materials["concrete"].replace(mirror=True), position=(0, 0, -1))
+    assert len(ep.truth(trace(scene))) == 0
+    with pytest.raises(TypeError, match="frame: must be a Frame, Paths, or some of either, got 3"):
+        ep.truth(3)

@@ -55,6 +55,7 @@ from .spectra import cfar, range_doppler
 from .tessellation import TessellationWarning
 from .threads import num_threads, set_num_threads
 from .tracing import mie_rcs, rcs, trace
+from .tracks import Tracks, track
 from .truth import Truth, truth
 from .viewing import plot_rays, view
 from .visibility import ObjectVisibility, Sight, visibility
@@ -68,7 +69,7 @@ __all__ = [
     "ObjectVisibility", "Part", "Parts", "PathCells", "Paths", "Radar", "RangeAzimuth", "RangeDoppler", "RangeTime",
     "ReceivedPower", "Renewal", "SavedFrame", "Scene", "SceneFile", "SceneNode", "Selection", "Sequence", "Sight",
     "SignalProbe", "SignalSettings", "Skin", "Spectrogram", "SpectrogramLabels", "StoredSequence", "Stratum",
-    "TessellationWarning", "TraceFrame", "TraceSettings", "TraceStatistics", "Truth", "Unresolved", "Validity",
+    "TessellationWarning", "TraceFrame", "TraceSettings", "TraceStatistics", "Tracks", "Truth", "Unresolved", "Validity",
     "ValidityShares", "VertexSequence", "VirtualArray", "actors", "add_noise", "angle_fft", "angle_time", "annotate",
     "annotate_frame", "beamform", "boltzmann", "cfar", "check_rays", "check_signal", "compensate_tdm", "decompose",
     "detect", "detect_frame", "effects", "estimate_angles", "families", "first", "foreign_materials", "hits", "last",
@@ -76,7 +77,7 @@ __all__ = [
     "materials", "mesh_from", "mie_rcs", "num_bounces", "num_threads", "path_cells", "plot_rays", "plots", "power",
     "power_by_chirp", "range_azimuth", "range_doppler", "range_time", "rcs", "received_power", "received_powers",
     "renew", "save_frame", "save_label_images", "save_labels", "set_num_threads", "simulate", "spectrogram",
-    "spectrogram_labels", "speed_of_light", "synthesize", "trace", "truth", "unresolved", "validity", "view",
+    "spectrogram_labels", "speed_of_light", "synthesize", "trace", "track", "truth", "unresolved", "validity", "view",
     "virtual_array", "visibility",
 ]
 

@@ -1,9 +1,12 @@
 """Results as tables: what their methods `to_dataframe` do. Units stand in `table.attrs["units"]`, {column: unit}."""
 from __future__ import annotations
 
+import csv
+
 import numpy as np
 
 from .families import families
+from .files import written_whole
 from .optional import needed_module
 
 _REVERSED = 1         # bit of Paths.flags
@@ -17,6 +20,20 @@ def make_table(columns: dict, units: dict):
     table = needed_module("pandas", "to_dataframe").DataFrame(columns)
     table.attrs["units"] = {name: unit for name, unit in units.items() if name in columns}
     return table
+
+
+def write_csv(path, columns: dict) -> None:
+    """Writes {name: values [N]} as a table with a header, whole or not at all; NaN as nothing. Raises ep.FileError."""
+    with written_whole(path) as temporary, open(temporary, "w", encoding="utf-8", newline="") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(columns)
+        writer.writerows([_as_text(value) for value in row] for row in zip(*columns.values()))
+
+
+def _as_text(value) -> str:
+    if isinstance(value, (float, np.floating)):
+        return "" if np.isnan(value) else repr(float(value))
+    return str(value)
 
 
 def paths_table(paths):

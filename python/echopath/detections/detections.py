@@ -1,15 +1,13 @@
 """A labelled point cloud."""
 from __future__ import annotations
 
-import csv
 import dataclasses
 
 import numpy as np
 
 from ..checks import refused
 from ..equality import has_same_fields
-from ..files import written_whole
-from ..tables import make_table
+from ..tables import make_table, write_csv
 from .directions import toward
 from .echo_fields import EchoFields
 
@@ -98,12 +96,9 @@ class Detections:
         unknown numbers are left empty. Raises ep.FileError.
         """
         flags = [self.is_noise.astype(int), self.is_resolved.astype(int)]
-        columns = [*(getattr(self, name) for name in _FIELDS), *flags, *self.cells.T]
-        seeds = ["" if seed is None else str(seed) for seed in (self.seed, self.noise_seed)]
-        with written_whole(path) as temporary, open(temporary, "w", encoding="utf-8", newline="") as stream:
-            writer = csv.writer(stream, lineterminator="\n")
-            writer.writerow(COLUMNS)
-            writer.writerows([*map(_as_text, row), *seeds] for row in zip(*columns))
+        seeds = [["" if seed is None else str(seed)] * len(self) for seed in (self.seed, self.noise_seed)]
+        columns = [*(getattr(self, name) for name in _FIELDS), *flags, *self.cells.T, *seeds]
+        write_csv(path, dict(zip(COLUMNS, columns)))
 
     def to_dataframe(self):
         """A pandas.DataFrame with a row for each detection.
@@ -151,12 +146,6 @@ class Detections:
         of_parts += f", {self.is_noise.sum()} of noise alone" if self.is_noise.any() else ""
         return (f"Detections({len(self)}: {self.range.min():.2f} to {self.range.max():.2f} m, {self.velocity.min():.2f} to "
                 f"{self.velocity.max():.2f} m/s{of_parts})")
-
-
-def _as_text(value) -> str:
-    if isinstance(value, (float, np.floating)):
-        return "" if np.isnan(value) else repr(float(value))
-    return str(value)
 
 
 def centre_of(radar):

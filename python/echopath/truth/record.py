@@ -1,15 +1,13 @@
 """Truth as a value: a row for each object and frame."""
 from __future__ import annotations
 
-import csv
 import dataclasses
 
 import numpy as np
 
 from ..checks import refused
 from ..equality import has_same_fields
-from ..files import written_whole
-from ..tables import make_table
+from ..tables import make_table, write_csv
 
 _XYZ = ("x", "y", "z")
 _SIGNS = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
@@ -120,11 +118,7 @@ class Truth:
 
         path: of the file; unknown numbers are left empty. Raises ep.FileError.
         """
-        columns = self._columns()
-        with written_whole(path) as temporary, open(temporary, "w", encoding="utf-8", newline="") as stream:
-            writer = csv.writer(stream, lineterminator="\n")
-            writer.writerow(columns)
-            writer.writerows([_as_text(value) for value in row] for row in zip(*columns.values()))
+        write_csv(path, self._columns())
 
     def to_records(self) -> np.ndarray:
         """The rows as a structured array [N] whose fields are those of this class, names as UTF-8 of a fixed number of bytes:
@@ -177,9 +171,3 @@ class Truth:
 
 def _fields() -> list[str]:
     return [field.name for field in dataclasses.fields(Truth)]
-
-
-def _as_text(value) -> str:
-    if isinstance(value, (float, np.floating)):
-        return "" if np.isnan(value) else repr(float(value))
-    return str(value)

@@ -1,0 +1,97 @@
+"""Tracks as a value: a row for each track and frame."""
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from ..checks import refused
+from ..equality import has_same_fields
+from ..tables import make_table, write_csv
+
+_UNITS = {"time": "s", "x": "m", "y": "m", "vx": "m/s", "vy": "m/s"}
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class Tracks:
+    """Where tracked objects were, N rows of a track and a frame, by track and time; made by `track`.
+
+    track: i32 [N], number of the track from 0 on, by its first detection; frame: i32 [N], index; time: [N] s
+    state: [N, 4], x, y in m, vx, vy in m/s, in the axes of the radar or, with a radar given, of the world
+    covariance: [N, 4, 4] of the state, m^2, m^2/s, m^2/s^2
+    is_detected: bool [N], whether a detection of that frame belongs to the track, which goes straight on otherwise
+    object: [N] text, of the truth that it follows in that frame, "" for none, or where no truth was given
+    """
+
+    track: np.ndarray
+    frame: np.ndarray
+    time: np.ndarray
+    state: np.ndarray
+    covariance: np.ndarray
+    is_detected: np.ndarray
+    object: np.ndarray
+
+    @property
+    def num_tracks(self) -> int:
+        """How many tracks there are."""
+        return len(np.unique(self.track))
+
+    @property
+    def num_switches(self) -> int:
+        """How often an object of the truth goes on in another track than that which followed it before."""
+        count = 0
+        for name in np.unique(self.object[self.object != ""]):
+            rows = np.flatnonzero(self.object == name)
+            followed = self.track[rows[np.argsort(self.time[rows], kind="stable")]]
+            count += int(np.count_nonzero(followed[1:] != followed[:-1]))
+        return count
+
+    def of_track(self, number: int) -> Tracks:
+        """The rows of one track.
+
+        number: of the track. Raises TypeError for what is no number, KeyError for one that is not there.
+        """
+        if not hasattr(number, "__index__"):
+            raise refused(TypeError, "number", "the number of a track, a whole number", number)
+        chosen = self.track == number
+        if not chosen.any():
+            raise KeyError(f"number: must be that of one of {self.num_tracks} tracks, got {number}")
+        return Tracks(**{field.name: getattr(self, field.name)[chosen] for field in dataclasses.fields(self)})
+
+    def to_dataframe(self):
+        """A pandas.DataFrame with a row for each track and frame.
+
+        Columns: track, frame, time (s), x, y (m), vx, vy (m/s), is_detected, object; units in `attrs["units"]`. Needs pandas,
+        raises ModuleNotFoundError without it.
+        """
+        return make_table(self._columns(), _UNITS)
+
+    def to_csv(self, path) -> None:
+        """Writes the same table, whole or not at all. path: of the file. Raises ep.FileError."""
+        write_csv(path, self._columns() | {"is_detected": self.is_detected.astype(int)})
+
+    def plot(self, *, ax=None, title: str = "Tracks from above"):
+        """Draws each track as a line from above, with its number and the object that it follows most.
+
+        ax: Matplotlib axes to draw in, None: new ones; title: above it
+        Returns the axes: metres to the left across, metres ahead up. Raises TypeError.
+        """
+        from ..plots import draw_tracks
+
+        return draw_tracks(self, ax=ax, title=title)
+
+    def _columns(self) -> dict:
+        states = dict(zip(("x", "y", "vx", "vy"), self.state.T))
+        return {"track": self.track, "frame": self.frame, "time": self.time, **states, "is_detected": self.is_detected,
+                "object": self.object}
+
+    def __eq__(self, other) -> bool:
+        return has_same_fields(self, other) if isinstance(other, Tracks) else NotImplemented
+
+    __hash__ = None
+
+    def __len__(self) -> int:
+        return len(self.track)
+
+    def __repr__(self) -> str:
+        return f"Tracks({self.num_tracks} tracks, {len(self)} rows)"

@@ -1,0 +1,148 @@
+"""Tracks: a Kalman filter for each object that detections show, and whose it is by the truth."""
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+
+from .. import _core
+from ..checks import ArrayLike, an, array, checked, count, optional, positive, real
+from ..detections import Detections
+from ..truth import Truth
+from .assignment import assigned
+from .kalman import Filter
+from .points import detections_rule, points_of
+from .record import Tracks
+
+_DISTANCE = real(0.0, unit="m")
+
+
+@checked(detections=detections_rule, times=array("[F]", finite=True), truth=optional(an(Truth)), radar=optional(an(_core.Radar)),
+         range_std=positive("m"), azimuth_std=positive("rad"), acceleration_std=positive("m/s^2"), speed_std=positive("m/s"),
+         merge_distance=_DISTANCE, gate_probability=real(0.5, 1.0 - 1e-12), min_hits=count(1, 1000),
+         max_misses=count(0, 1000), truth_distance=_DISTANCE)
+def track(detections: Iterable[Detections] | Iterable[ArrayLike], times: ArrayLike, *, truth: Truth | None = None,
+          radar: _core.Radar | None = None, range_std: float = 0.2, azimuth_std: float = 0.02, acceleration_std: float = 2.0,
+          speed_std: float = 10.0, merge_distance: float = 1.0, gate_probability: float = 0.99, min_hits: int = 3,
+          max_misses: int = 3, truth_distance: float = 2.0) -> Tracks:
+    """Tracks of detections from frame to frame, for comparison with the truth.
+
+    Model: points in the plane that go straight but for random accelerations, a Kalman filter for each; detections within the
+    gate of a track are assigned so that the sum of their log likelihoods is largest. Radial velocities are not used. Heights
+    are left out.
+    detections: of each frame, in the order of time: Detections with azimuths, or points [D, 2] or [D, 3] in m in the radar's
+        axes
+    times: [F] s, ascending, of the frames: their middles, as `Truth` has them
+    truth: of the same frames, names the object of each track; None: no names
+    radar: whose motion carries the points into the axes of the world; None: tracks are in the axes of the radar
+    range_std, azimuth_std: m and rad, standard errors of a detection along and across the line of sight
+    acceleration_std: m/s^2, of each coordinate from frame to frame; speed_std: m/s, of the speeds with which tracks begin
+    merge_distance: m, detections of a frame nearer to each other are one, in their mean weighted by power; 0: none are
+    gate_probability: with which a detection of an object is within its gate, 0.5 to 1
+    min_hits: detections that a track needs to count, within max_misses frames in a row without one; then it ends
+    truth_distance: m, from the outline of an object's box at most, for a track to be its
+    Returns Tracks, empty without any. Raises TypeError or ValueError naming the argument.
+    """
+    _check_times(times, detections)
+    settings = {"range_std": range_std, "azimuth_std": azimuth_std, "merge_distance": merge_distance}
+    gate = -2.0 * math.log1p(-gate_probability)  # of chi-square with two degrees of freedom
+    tracker = _Tracker(acceleration_std, speed_std, gate, min_hits, max_misses)
+    for number, (found, time) in enumerate(zip(detections, times)):
+        world = None if radar is None else radar.world_from_radar(float(time))
+        tracker.take(number, float(time), points_of(found, world, **settings))
+    rows = tracker.rows()
+    return _as_tracks(rows, _objects_of(rows, truth, radar is not None, truth_distance))
+
+
+def _check_times(times, detections) -> None:
+    if len(times) != len(detections):
+        raise ValueError(f"times: must have one for each of {len(detections)} frames, got {len(times)}")
+    if np.any(np.diff(times) <= 0.0):
+        raise ValueError(f"times: must ascend, got {times}")
+
+
+class _Track:
+    """One filter and the rows (frame, time, state, covariance, is_detected) that it has given."""
+
+    def __init__(self, filter: Filter):
+        self.filter, self.rows, self.hits, self.misses = filter, [], 0, 0
+
+    def note(self, frame: int, time: float, is_detected: bool) -> None:
+        self.hits, self.misses = self.hits + is_detected, 0 if is_detected else self.misses + 1
+        self.rows.append((frame, time, self.filter.state, self.filter.covariance, is_detected))
+
+
+class _Tracker:
+    def __init__(self, acceleration_std, speed_std, gate, min_hits, max_misses):
+        self._acceleration_std, self._speed_std, self._gate = acceleration_std, speed_std, gate
+        self._min_hits, self._max_misses = min_hits, max_misses
+        self._live, self._ended, self._time = [], [], None
+
+    def take(self, frame: int, time: float, found) -> None:
+        """Brings all tracks to the points of a frame; what belongs to none begins a track."""
+        for one in self._live:
+            one.filter.predict(time - self._time, self._acceleration_std)
+        pairs = dict(self._pairs(found))
+        for index, one in enumerate(self._live):
+            if index in pairs:
+                one.filter.update(found.points[pairs[index]], found.covariances[pairs[index]])
+            one.note(frame, time, index in pairs)
+        for point in sorted(set(range(len(found.points))) - set(pairs.values())):
+            begun = _Track(Filter(found.points[point], found.covariances[point], self._speed_std))
+            begun.note(frame, time, True)
+            self._live.append(begun)
+        self._ended += [one for one in self._live if one.misses > self._max_misses]
+        self._live = [one for one in self._live if one.misses <= self._max_misses]
+        self._time = time
+
+    def rows(self) -> list:
+        """[(number of the track, frame, time, state, covariance, is_detected)] of all that count, up to their last detection."""
+        counted = [one for one in self._ended + self._live if one.hits >= self._min_hits]
+        counted.sort(key=lambda one: one.rows[0][0])
+        return [(number, *row) for number, one in enumerate(counted) for row in one.rows[:len(one.rows) - one.misses]]
+
+    def _pairs(self, found) -> list:
+        if not self._live or not len(found.points):
+            return []
+        squared, spread = zip(*(one.filter.distances(*found) for one in self._live))
+        squared, spread = np.array(squared), np.array(spread)
+        # A pair's log likelihood, shifted so that the cost at the rim of the gate is below that of no pair.
+        cost = np.where(squared <= self._gate, squared + spread, np.inf)
+        return assigned(cost, self._gate + float(spread.max()) + 1.0)
+
+
+def _objects_of(rows, truth, in_world: bool, truth_distance: float) -> list:
+    """The name of the object that each row follows, "" for none, frame by frame, each object in one track at most.
+
+    A track keeps its object while it is near it; the rest go together so that their distances are least (the rule of CLEAR
+    MOT: Bernardin and Stiefelhagen 2008).
+    """
+    names, kept = [""] * len(rows), {}
+    for frame in sorted({row[1] for row in rows}) if truth is not None else []:
+        there, here = truth.of_frame(frame), [index for index, row in enumerate(rows) if row[1] == frame]
+        places = (there.position, there.yaw) if in_world else (there.position_in_radar, there.yaw_in_radar)
+        distance = _outline_distances(np.array([rows[index][3][:2] for index in here]), *places, there.size)
+        is_kept = np.array([there.name == kept.get(rows[index][0], "") for index in here])
+        cost = np.where(is_kept & (distance <= truth_distance), -len(here) * (truth_distance + 1.0), distance)
+        pairs = assigned(np.where(distance <= truth_distance, cost, np.inf), truth_distance + 1.0)
+        kept |= {rows[here[row]][0]: str(there.name[found]) for row, found in pairs}
+        for row, found in pairs:
+            names[here[row]] = str(there.name[found])
+    return names
+
+
+def _outline_distances(points, positions, yaws, sizes):
+    """m, [M, N]: from points [M, 2] to the boxes from above, with a little of the distance to their centres within them."""
+    way = points[:, None] - positions[None, :, :2]
+    along = way[..., 0] * np.cos(yaws) + way[..., 1] * np.sin(yaws)
+    across = way[..., 1] * np.cos(yaws) - way[..., 0] * np.sin(yaws)
+    beyond = np.maximum(np.abs(np.stack([along, across], axis=-1)) - 0.5 * sizes[:, :2], 0.0)
+    return np.linalg.norm(beyond, axis=-1) + 1e-12 * np.linalg.norm(way, axis=-1)
+
+
+def _as_tracks(rows: list, names: list) -> Tracks:
+    columns = list(zip(*rows)) or [[]] * 6
+    return Tracks(track=np.array(columns[0], np.int32), frame=np.array(columns[1], np.int32), time=np.array(columns[2], float),
+                  state=np.array(columns[3], float).reshape(-1, 4), covariance=np.array(columns[4], float).reshape(-1, 4, 4),
+                  is_detected=np.array(columns[5], bool), object=np.array(names, dtype=str))

@@ -1,0 +1,187 @@
+"""Tracks against motions that are known: crossing points keep their tracks, and their errors are as large as they claim."""
+import csv
+import pickle
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath.tracks.assignment import assigned, hungarian
+from support.radars import build_radar
+
+STEP, FRAMES = 0.1, 40
+TIMES = STEP * np.arange(FRAMES)
+
+
+def truth_of(positions, names):
+    """Truth of boxes of 1 m at positions [F, N, 2] in m."""
+    frames, count = positions.shape[:2]
+    rows, empty = frames * count, np.zeros
+    flat = np.concatenate([positions.reshape(rows, 2), empty((rows, 1))], axis=1)
+    columns = {field: empty(rows) for field in ep.Truth.__dataclass_fields__}
+    vectors = ("velocity", "angular_velocity", "origin", "velocity_in_radar")
+    return ep.Truth(**columns | {name: empty((rows, 3)) for name in vectors} | {
+        "position": flat, "position_in_radar": flat, "size": np.ones((rows, 3)), "rotation": np.tile(np.eye(3), (rows, 1, 1)),
+        "frame": np.repeat(np.arange(frames, dtype=np.int32), count), "time": np.repeat(TIMES[:frames], count),
+        "name": np.array(names * frames)})
+
+
+def noisy(points, generator, range_std, azimuth_std):
+    """Points [N, 2] with errors along and across the line of sight."""
+    distance = np.hypot(*points.T) + generator.normal(0, range_std, len(points))
+    azimuth = np.arctan2(points[:, 1], points[:, 0]) + generator.normal(0, azimuth_std, len(points))
+    return np.stack([distance * np.cos(azimuth), distance * np.sin(azimuth)], axis=1)
+
+
+def crossing():
+    """[F, 2, 2] m: two points that cross at 20 m, at right angles and at the same time."""
+    there = TIMES - 2.0
+    return np.stack([np.stack([20 + 4 * there, 4 * there], axis=1), np.stack([20 + 4 * there, -4 * there], axis=1)], axis=1)
+
+
+# --- identity ---
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("merge_distance", [0.0, 1.0])
+def test_crossing_points_keep_their_tracks(seed, merge_distance):
+    generator, positions = np.random.default_rng(seed), crossing()
+    found = [generator.permutation(noisy(points, generator, 0.1, 0.005)) for points in positions]
+    tracks = ep.track(found, TIMES, truth=truth_of(positions, ["up", "down"]), range_std=0.1, azimuth_std=0.005,
+                      acceleration_std=0.5, merge_distance=merge_distance)
+    assert tracks.num_tracks == 2 and tracks.num_switches == 0
+    for number in (0, 1):
+        one = tracks.of_track(number)
+        assert len(one) == FRAMES and one.object[0] == one.object[-1] != ""
+        assert one.state[-1, 2:] == pytest.approx([4.0, 4.0 if one.object[0] == "up" else -4.0], abs=0.5)
+
+
+def test_a_track_goes_on_through_gaps_and_ends_behind_long_ones():
+    points = np.stack([10 + 2 * TIMES, 0 * TIMES], axis=1)[:, None]
+    found = [points[number] if number not in (10, 11, 12) else [] for number in range(FRAMES)]
+    through = ep.track(found, TIMES, range_std=0.05, azimuth_std=0.005, max_misses=3)
+    assert through.num_tracks == 1 and len(through) == FRAMES
+    assert np.flatnonzero(~through.is_detected).tolist() == [10, 11, 12]
+    assert through.state[:, 0] == pytest.approx(points[:, 0, 0], abs=0.1)
+    apart = ep.track(found, TIMES, range_std=0.05, azimuth_std=0.005, max_misses=2)
+    assert apart.num_tracks == 2 and [len(apart.of_track(number)) for number in (0, 1)] == [10, 27]
+
+
+def test_false_alarms_make_no_tracks():
+    generator = np.random.default_rng(7)
+    found = [np.concatenate([[[10 + 2 * time, 0.0]], generator.uniform([30, -30], [90, 30], (1, 2))]) for time in TIMES]
+    tracks = ep.track(found, TIMES, range_std=0.05, azimuth_std=0.002, max_misses=1, speed_std=5.0)
+    assert tracks.num_tracks == 1
+    assert len(ep.track([[]] * 3, [0.0, 1.0, 2.0])) == 0
+
+
+def test_detections_near_each_other_are_one():
+    found = [np.array([[10.0 + t, -0.4], [10.0 + t, 0.4], [10.0 + t, 1.2], [10.0 + t, 5.0]]) for t in TIMES]
+    tracks = ep.track(found, TIMES, merge_distance=1.0)
+    assert tracks.num_tracks == 2
+    assert sorted(tracks.of_track(number).state[-1, 1] for number in (0, 1)) == pytest.approx([0.4, 5.0], abs=1e-6)
+
+
+# --- errors ---
+
+def test_errors_are_as_large_as_the_covariance_says():
+    """NEES of many runs of the very model; bounds: 99.9 % of chi-square / N (Bar-Shalom 2001, section 5.4)."""
+    chi2 = pytest.importorskip("scipy.stats").chi2
+    generator, runs, errors = np.random.default_rng(3), 50, []
+    settings = {"range_std": 0.15, "azimuth_std": 0.01, "acceleration_std": 3.0, "speed_std": 6.0}
+    for _ in range(runs):
+        state, states, found = np.array([30.0, -5.0, *generator.normal(0, 6.0, 2)]), [], []
+        for _ in range(15):
+            states.append(state)
+            found.append(noisy(state[None, :2], generator, 0.15, 0.01))
+            push = generator.normal(0, 3.0, 2)
+            state = np.concatenate([state[:2] + STEP * state[2:] + 0.5 * STEP**2 * push, state[2:] + STEP * push])
+        tracks = ep.track(found, TIMES[:15], gate_probability=1 - 1e-9, **settings)
+        assert tracks.num_tracks == 1
+        error = tracks.state - states
+        errors.append(np.einsum("ni,nij,nj->n", error, np.linalg.inv(tracks.covariance), error))
+    low, high = chi2.ppf([0.0005, 0.9995], 4 * runs) / runs
+    mean = np.mean(errors, axis=0)
+    assert np.all(mean[1:] > low) and np.all(mean[1:] < high)
+
+
+# --- assignment ---
+
+def test_the_assignment_is_the_best_one():
+    solve = pytest.importorskip("scipy.optimize").linear_sum_assignment
+    generator = np.random.default_rng(1)
+    for rows, columns in [(1, 1), (3, 3), (5, 9), (20, 20), (20, 31)] * 5:
+        cost = generator.normal(size=(rows, columns))
+        assert cost[np.arange(rows), hungarian(cost)].sum() == pytest.approx(cost[solve(cost)].sum())
+
+
+def test_pairs_beyond_the_limit_are_left_alone():
+    cost = np.array([[1.0, 9.0], [2.0, np.inf]])
+    assert assigned(cost, 5.0) == [(0, 0)] and assigned(cost, 10.0) == [(0, 1), (1, 0)]
+    assert assigned(np.zeros((0, 3)), 1.0) == [] == assigned(np.zeros((3, 0)), 1.0)
+
+
+# --- of a simulated scene ---
+
+@pytest.fixture(scope="module")
+def frames():
+    """Two balls that pass each other, before an array that drives towards them."""
+    scene = ep.Scene()
+    for name, place, speed in (("left", (16, 4, 0), -6.0), ("right", (18, -4, 0), 5.0)):
+        scene.add(ep.actors.sphere(0.3), name=name, material="metal", position=place, smooth=True,
+                  motion=ep.LinearMotion(velocity=(0, speed, 0)))
+    wavelength = ep.speed_of_light / 77e9
+    radar = build_radar(receivers=tuple((0, 0.5 * wavelength * n, 0) for n in range(12)), num_samples=128, num_chirps=32,
+                        bandwidth=0.5e9, transmit_power=10.0, speed=5.0)
+    return [ep.simulate(scene, radar, num_rays=800, start_time=0.1 * number, guard=False, detections=True)
+            for number in range(13)]
+
+
+def test_detected_balls_are_tracked_in_the_world(frames):
+    truth, radar = ep.truth(frames), frames[0].radar
+    times = truth.of_object("left").time
+    tracks = ep.track([frame.detections for frame in frames], times, truth=truth, radar=radar, range_std=0.3, azimuth_std=0.02)
+    following = {name: tracks.object == name for name in ("left", "right")}
+    for name, speed in (("left", -6.0), ("right", 5.0)):
+        rows = following[name]
+        assert len(np.unique(tracks.track[rows])) == 1 and rows.sum() >= 11
+        place = truth.of_object(name).position[tracks.frame[rows], :2]
+        assert np.abs(tracks.state[rows, :2] - place).max() < 1.0
+        assert tracks.state[rows][-1, 2:] == pytest.approx([0.0, speed], abs=1.0)
+    assert tracks.num_switches == 0
+
+
+# --- as values ---
+
+def test_tracks_travel_and_are_drawn(tmp_path):
+    import matplotlib
+
+    matplotlib.use("agg")
+    from matplotlib import pyplot
+
+    positions = crossing()
+    tracks = ep.track(list(positions), TIMES, truth=truth_of(positions, ["up", "down"]), merge_distance=0.0)
+    assert pickle.loads(pickle.dumps(tracks)) == tracks and "2 tracks" in repr(tracks)
+    tracks.to_csv(tmp_path / "tracks.csv")
+    rows = list(csv.DictReader((tmp_path / "tracks.csv").open(encoding="utf-8")))
+    assert len(rows) == 2 * FRAMES and float(rows[5]["x"]) == tracks.state[5, 0] and rows[0]["object"] in ("up", "down")
+    ax = tracks.plot(title="Mine")
+    assert ax.get_title() == "Mine" and len(ax.get_legend().get_texts()) == 2
+    pyplot.close(ax.figure)
+    with pytest.raises(KeyError, match="number: must be that of one of 2 tracks, got 7"):
+        tracks.of_track(7)
+
+
+def test_tracks_become_a_table():
+    pytest.importorskip("pandas")
+    table = ep.track(list(crossing()), TIMES).to_dataframe()
+    assert list(table.columns) == ["track", "frame", "time", "x", "y", "vx", "vy", "is_detected", "object"]
+    assert table.attrs["units"]["vx"] == "m/s"
+
+
+@pytest.mark.parametrize("arguments, told", [
+    ({"times": [0.0]}, "times: must have one for each of 2 frames, got 1"), ({"times": [1.0, 1.0]}, "times: must ascend"),
+    ({"detections": [np.zeros((1, 4)), []]}, "detections: must be an array"), ({"range_std": 0.0}, "range_std: must be"),
+    ({"truth": 3}, "truth: must be a Truth")])
+def test_wrong_arguments_are_named(arguments, told):
+    with pytest.raises((ValueError, TypeError), match=told):
+        ep.track(**{"detections": [np.zeros((1, 2)), []], "times": [0.0, 1.0]} | arguments)

@@ -84,7 +84,7 @@ def test_no_window_spans_a_gap():
     period = radar.waveform.chirp_interval
     cubes = [random_cube(radar, seed) for seed in range(4)]
     starts = np.array([0, 32, 64, 100]) * period  # the last one after a gap of four chirps
-    found = ep.spectrogram(cubes, radar, window_length=16, hop=8, start_times=starts)
+    found = ep.spectrogram(cubes, radar, window_length=16, hop=8, start_times=starts, span_frames=True)
     long = radar.replace(waveform=radar.waveform.replace(num_chirps=96))
     joined = ep.spectrogram(np.concatenate(cubes[:3], axis=2), long, window_length=16, hop=8)
     alone = ep.spectrogram(cubes[3], radar, window_length=16, hop=8)
@@ -93,7 +93,7 @@ def test_no_window_spans_a_gap():
     assert found.power == pytest.approx(np.concatenate([joined.power, alone.power]))
     assert found.times == pytest.approx(np.concatenate([joined.times, alone.times + 100 * period]))
     assert "no window spans a gap" in repr(found) and "one train" in repr(joined)
-    apart = ep.spectrogram(cubes, radar, window_length=16, hop=8, start_times=starts, span_frames=False)
+    apart = ep.spectrogram(cubes, radar, window_length=16, hop=8, start_times=starts)
     assert len(apart.trains) == 4 and len(apart.times) == 12
 
 
@@ -103,7 +103,9 @@ def test_what_cannot_follow_is_refused():
     with pytest.raises(ValueError, match="frames: must come one after the other, got one that starts at 0.001 s"):
         ep.spectrogram(cubes, radar, start_times=[0.0, 0.001])
     with pytest.raises(ValueError, match="window_length: must be at most 64, the chirps of the longest train, got 65"):
-        ep.spectrogram(cubes, radar, window_length=65)
+        ep.spectrogram(cubes, radar, window_length=65, span_frames=True)
+    with pytest.raises(ValueError, match="at most 32, the chirps of the longest train; span_frames=True joins frames"):
+        ep.spectrogram(cubes, radar, window_length=64)
     with pytest.raises(ValueError, match="radar: must be that of the cubes"):
         ep.spectrogram(cubes)
     with pytest.raises(ValueError, match="frames: must have one frame"):
@@ -159,7 +161,7 @@ def pendulum_velocity(times):
 
 
 def test_the_ridge_of_a_pendulum_follows_its_velocity(pendulum):
-    found = ep.spectrogram(pendulum, window_length=128, hop=32, range_gate=(5.0, 6.5))
+    found = ep.spectrogram(pendulum, window_length=128, hop=32, range_gate=(5.0, 6.5), span_frames=True)
     assert len(found.trains) == 1 and found.trains[0] == pytest.approx([0.0, 0.4096])
     expected = pendulum_velocity(found.times)
     cell = found.velocity[1] - found.velocity[0]
@@ -208,7 +210,7 @@ def test_the_tips_of_a_simulated_rotor_reach_their_speed():
     length = radar.waveform.num_chirps * radar.waveform.chirp_interval
     frames = [ep.simulate(scene, radar, num_rays=1000, start_time=number * length, guard=False) for number in range(20)]
     for name, side in (("left", arm), ("right", -arm)):
-        found = ep.spectrogram(frames, part=f"rotor/{name}", window_length=64, span_frames=False, zero_pad=4)
+        found = ep.spectrogram(frames, part=f"rotor/{name}", window_length=64, zero_pad=4)
         phase = 2.0 * np.pi * turns * found.times
         at = np.array([distance - side * np.sin(phase), side * np.cos(phase)])
         rate = 2.0 * np.pi * turns * side * np.array([-np.cos(phase), -np.sin(phase)])

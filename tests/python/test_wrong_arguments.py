@@ -39,6 +39,9 @@ def good(tmp_path_factory) -> dict:
     mesh, of_map = {"path": folder / "mesh.obj"}, {"spectrum": spectrum, "radar": radar}
     labels = next(iter(frame.labels.values()))
     return {
+        "angle_time": {"frames": frame}, "range_time": {"frames": frame}, "spectrogram": {"frames": frame},
+        "spectrogram_labels": {"parts": {"plate": ep.spectrogram(frame)}}, "truth": {"frame": frame},
+        "track": {"detections": [np.zeros((1, 2)), []], "times": [0.0, 1.0]},
         "add_noise": {"cube": cube, "radar": radar, "seed": 1}, "angle_fft": of_map, "beamform": of_map,
         "annotate": {"paths": paths, "parts": {"plate": "T 'plate' R"}},
         "annotate_frame": {"frame": frame, "parts": {"again": {"plate": "T 'plate' R"}}},

@@ -1,7 +1,7 @@
 """What maps over time are made of: the cubes of frames in a row, each with its start time."""
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator, Mapping
+from collections.abc import Hashable, Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -10,6 +10,7 @@ from .. import _core
 from .._core import Selection
 from ..checks import ArrayLike, array, refused, row_of_channel, shown
 from ..frame import Frame
+from ..iterables import iterable
 from ..parts import decompose, selection_rule
 from ..same_radar import WAVEFORM_KINDS
 
@@ -55,13 +56,7 @@ def frames_rule(argument: str, value):
         return [value]
     if isinstance(value, np.ndarray) and value.ndim == 4:
         return [_CUBE(argument, value)]
-    if isinstance(value, (str, bytes, Mapping, set, frozenset, memoryview, type)):
-        raise refused(TypeError, argument, _RULE, value)
-    try:
-        iter(value)
-    except TypeError:
-        raise refused(TypeError, argument, _RULE, value) from None
-    return value
+    return iterable(argument, value, _RULE)
 
 
 def channel_rule(argument: str, value) -> Channel:

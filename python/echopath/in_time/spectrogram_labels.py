@@ -13,14 +13,14 @@ from ..settings import LabelSettings
 from ..xarray_maps import spectrogram_labels_dataset
 from .maps import Spectrogram
 
-_SAME = ("times", "velocity", "window_length", "hop", "window", "zero_pad", "range_gate", "channel")
+_SAME = ("times", "velocity", "trains", "window_length", "hop", "window", "zero_pad", "range_gate", "channel")
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class SpectrogramLabels:
     """Labels of all cells of a spectrogram [T, V]; made by `spectrogram_labels`.
 
-    times: [T] s, velocity: [V] m/s, receding positive; part_names: [K]
+    times: [T] s, velocity: [V] m/s, receding positive; train: i32 [T], trains: [N, 2] s, as in Spectrogram; part_names: [K]
     power: [K, T, V] W of each part; whole: [T, V] W
     share: [K, T, V], powers of the parts over their sum: they add up to 1, or are 0 where there is no power
     dominant: i16 [T, V], the part of the largest share (the first of equal ones), -1 outside the mask
@@ -31,6 +31,8 @@ class SpectrogramLabels:
 
     times: np.ndarray
     velocity: np.ndarray
+    train: np.ndarray
+    trains: np.ndarray
     part_names: list
     power: np.ndarray
     whole: np.ndarray
@@ -99,8 +101,9 @@ def spectrogram_labels(parts: Mapping[str, Spectrogram], whole: Spectrogram | No
     range_db = np.inf if dynamic_range_db is None else dynamic_range_db
     floor = first.noise_power * 10.0 ** (0.1 * noise_margin_db)
     above_noise, mask = _core.cell_masks(total, floor, 10.0 ** (-0.1 * range_db))
-    return SpectrogramLabels(first.times, first.velocity, list(parts), power, total, _core.power_shares(power),
-                             _core.strongest_part(power, mask), first.noise_power, noise_margin_db, range_db, above_noise, mask)
+    return SpectrogramLabels(first.times, first.velocity, first.train, first.trains, list(parts), power, total,
+                             _core.power_shares(power), _core.strongest_part(power, mask), first.noise_power, noise_margin_db,
+                             range_db, above_noise, mask)
 
 
 def _require_same(name: str, one: Spectrogram, first: Spectrogram) -> None:

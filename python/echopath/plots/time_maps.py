@@ -26,9 +26,8 @@ def draw_time_map(map, *, ax=None, vmin=None, vmax=None, title=""):
     vmin, vmax = chosen_limits(limits_of_level(level), vmin, vmax)
     values = np.degrees(map.axis) if map.AXIS == "azimuth" else map.axis
     with axes_or_new(ax, *SIZE) as ax:
-        step = np.diff(map.times).min(initial=1.0)
-        for times, columns in _trains(map.times, getattr(map, "train", None)):
-            image = _image(ax, times, values, level[columns], step, cmap=MAP_COLOURS, vmin=vmin, vmax=vmax)
+        for columns, ends in _trains(map):
+            image = _image(ax, map.times[columns], values, level[columns], ends, cmap=MAP_COLOURS, vmin=vmin, vmax=vmax)
         if map.AXIS == "velocity":
             _crop(ax, values, level, vmin)
         ax.set(xlabel=TIME_LABEL, ylabel=AXIS_LABELS[map.AXIS], title=title)
@@ -48,10 +47,11 @@ def draw_spectrogram_labels(labels, *, ax=None, title=""):
     names = labels.part_names
     colours = [tuple(channel / 255.0 for channel in colour) for colour in colours_of(names)]
     with axes_or_new(ax, *SIZE) as ax:
-        grey = _image(ax, labels.times, labels.velocity, level, 1.0, cmap="gray", vmin=vmin, vmax=vmax)
         owner = np.ma.masked_less(labels.dominant, 0)
-        _image(ax, labels.times, labels.velocity, owner, 1.0, cmap=ListedColormap(colours), vmin=-0.5,
-               vmax=len(names) - 0.5, alpha=LABEL_FILL)
+        for columns, ends in _trains(labels):
+            grey = _image(ax, labels.times[columns], labels.velocity, level[columns], ends, cmap="gray", vmin=vmin, vmax=vmax)
+            _image(ax, labels.times[columns], labels.velocity, owner[columns], ends, cmap=ListedColormap(colours), vmin=-0.5,
+                   vmax=len(names) - 0.5, alpha=LABEL_FILL)
         for number, name in enumerate(names):
             if np.any(labels.dominant == number):
                 ax.fill_between([], [], color=colours[number], label=name)
@@ -64,22 +64,25 @@ def draw_spectrogram_labels(labels, *, ax=None, title=""):
     return ax
 
 
-def _trains(times, train):
-    """(times, indices) of each stretch whose columns touch each other."""
-    if train is None:
-        return [(times, slice(None))]
-    return [(times[train == number], train == number) for number in np.unique(train)]
+def _trains(map) -> list:
+    """(indices of times, (begin, end) in s) of each stretch whose columns touch each other, its windows' ends included."""
+    if not hasattr(map, "train"):
+        return [(slice(None), None)]
+    return [(map.train == number, map.trains[number]) for number in np.unique(map.train)]
 
 
-def _image(ax, times, values, level, step: float, **look):
-    """The cells [T, X] as an image; step: s, width of a column that has no neighbour."""
-    return ax.pcolormesh(_edges(times, step), _edges(values), np.transpose(level), shading="flat", rasterized=True, **look)
+def _image(ax, times, values, level, ends=None, **look):
+    """The cells [T, X] as an image; ends: (begin, end) in s of the outermost columns, None: as wide as the others."""
+    edges = _edges(times)
+    if ends is not None:
+        edges[[0, -1]] = ends
+    return ax.pcolormesh(edges, _edges(values), np.transpose(level), shading="flat", rasterized=True, **look)
 
 
-def _edges(centres, step: float = 1.0):
-    """[N + 1] half-way between the centres [N], and as far beyond the outermost; one centre has the width `step`."""
+def _edges(centres):
+    """[N + 1] half-way between the centres [N], and as far beyond the outermost."""
     if len(centres) == 1:
-        return np.array([centres[0] - 0.5 * step, centres[0] + 0.5 * step])
+        return np.array([centres[0] - 0.5, centres[0] + 0.5])
     middle = 0.5 * (centres[1:] + centres[:-1])
     return np.concatenate([[2.0 * centres[0] - middle[0]], middle, [2.0 * centres[-1] - middle[-1]]])
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..checks import array, refused
 from ..detections import Detections
+from ..iterables import iterable
 
 _POINTS = array("[D, 2]", "[D, 3]", finite=True)
 
@@ -81,9 +82,4 @@ def detections_rule(argument: str, value) -> list:
     rule = "a list with the Detections or points [D, 2] of each frame"
     if isinstance(value, Detections):
         raise refused(TypeError, argument, f"{rule}, not those of one", value)
-    if isinstance(value, (str, bytes, dict, set, frozenset, type)):
-        raise refused(TypeError, argument, rule, value)
-    try:
-        return list(value)
-    except TypeError:
-        raise refused(TypeError, argument, rule, value) from None
+    return list(iterable(argument, value, rule))

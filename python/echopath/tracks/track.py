@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from .. import _core
-from ..checks import ArrayLike, an, array, checked, count, optional, positive, real
+from ..checks import ArrayLike, an, array, checked, count, optional, real
 from ..detections import Detections
 from ..truth import Truth
 from .assignment import assigned
@@ -18,8 +18,12 @@ from .record import Tracks
 _DISTANCE = real(0.0, unit="m")
 
 
+def _std(unit: str):
+    return real(above=0.0, high=1e6, unit=unit)
+
+
 @checked(detections=detections_rule, times=array("[F]", finite=True), truth=optional(an(Truth)), radar=optional(an(_core.Radar)),
-         range_std=positive("m"), azimuth_std=positive("rad"), acceleration_std=positive("m/s^2"), speed_std=positive("m/s"),
+         range_std=_std("m"), azimuth_std=_std("rad"), acceleration_std=_std("m/s^2"), speed_std=_std("m/s"),
          merge_distance=_DISTANCE, gate_probability=real(0.5, 1.0 - 1e-12), min_hits=count(1, 1000),
          max_misses=count(0, 1000), truth_distance=_DISTANCE)
 def track(detections: Iterable[Detections] | Iterable[ArrayLike], times: ArrayLike, *, truth: Truth | None = None,
@@ -57,7 +61,7 @@ def track(detections: Iterable[Detections] | Iterable[ArrayLike], times: ArrayLi
 
 def _check_times(times, detections) -> None:
     if len(times) != len(detections):
-        raise ValueError(f"times: must have one for each of {len(detections)} frames, got {len(times)}")
+        raise ValueError(f"times: must have one for each of the {len(detections)} frames of detections, got {len(times)}")
     if np.any(np.diff(times) <= 0.0):
         raise ValueError(f"times: must ascend, got {times}")
 

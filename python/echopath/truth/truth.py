@@ -1,7 +1,7 @@
 """Where the objects of frames are, how they move, and how much of them the radar sees."""
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from ..checks import checked, refused
 from ..detections.detections import centre_of
 from ..families import Objects, families, named_globs, objects_rule
 from ..frame import Frame
+from ..iterables import iterable
 from ..visibility import visibility_in_trace
 from .boxes import STEP, boxes_at, rate_of
 from .cross_section import isotropic_power
@@ -19,13 +20,11 @@ _SLOWEST = 1e-4  # m/s, below which there is no heading
 _RULE = "a Frame, Paths, or some of either"
 
 
-def _frames_rule(argument: str, value) -> list:
-    """A list of Frames or Paths."""
+def _frames_rule(argument: str, value):
+    """What can be iterated for Frames or Paths; a single one becomes a list of it."""
     if isinstance(value, (Frame, _core.Paths)):
         return [value]
-    if isinstance(value, (str, bytes, Mapping)) or not isinstance(value, Iterable) or isinstance(value, type):
-        raise refused(TypeError, argument, _RULE, value)
-    return value
+    return iterable(argument, value, _RULE)
 
 
 @checked(frame=_frames_rule, objects=objects_rule)

@@ -87,7 +87,8 @@ class _Stft:
         if not self._times:
             longest = max(round((end - begin) / self._period) for begin, end in self._trains)
             hint = "; span_frames=True joins frames without gaps" if len(self._trains) > 1 and not self._span_frames else ""
-            raise ValueError(f"window_length: must be at most {longest}, the chirps of the longest train{hint}, got {self._length}")
+            raise ValueError(f"window_length: must be at most {longest}, the chirps of the longest train{hint}, got "
+                             f"{self._length}")
         ranges = self._axes.range[self._inside]
         return Spectrogram(np.concatenate(self._times), self._axes.velocity, np.concatenate(self._powers),
                            self._noise_power(), np.concatenate(self._train), np.array(self._trains), self._length, self._hop,

@@ -87,13 +87,13 @@ def test_errors_are_as_large_as_the_covariance_says():
     """NEES of many runs of the very model; bounds: 99.9 % of chi-square / N (Bar-Shalom 2001, section 5.4)."""
     chi2 = pytest.importorskip("scipy.stats").chi2
     generator, runs, errors = np.random.default_rng(3), 50, []
-    settings = {"range_std": 0.15, "azimuth_std": 0.01, "acceleration_std": 3.0, "speed_std": 6.0}
+    settings = {"range_std": 0.15, "azimuth_std": 0.01, "acceleration_std": 20.0, "speed_std": 6.0}
     for _ in range(runs):
         state, states, found = np.array([30.0, -5.0, *generator.normal(0, 6.0, 2)]), [], []
         for _ in range(15):
             states.append(state)
             found.append(noisy(state[None, :2], generator, 0.15, 0.01))
-            push = generator.normal(0, 3.0, 2)
+            push = generator.normal(0, 20.0, 2)
             state = np.concatenate([state[:2] + STEP * state[2:] + 0.5 * STEP**2 * push, state[2:] + STEP * push])
         tracks = ep.track(found, TIMES[:15], gate_probability=1 - 1e-9, **settings)
         assert tracks.num_tracks == 1

@@ -87,12 +87,13 @@ def test_velocity_of_what_goes_straight():
     assert np.abs(found.angular_velocity).max() < 1e-6
 
 
-def test_velocity_of_what_goes_round():
-    """A box 3 m from an axis that turns: v = omega x r, of the box's centre."""
+@pytest.mark.parametrize("name", ["axis", "axis/gondola"])
+def test_velocity_of_what_goes_round(name):
+    """A box 3 m from an axis that turns: v = omega x r, of the box's centre, wherever the object's own origin is."""
     spin, radius, scene = 6.0, 3.0, ep.Scene()
     scene.add(name="axis", position=(12, 0, 0), motion=ep.LinearMotion(angular_velocity=(0, 0, spin)))
     scene.add(ep.actors.box(1.0), name="gondola", material="metal", parent="axis", position=(radius, 0, 0))
-    found = ep.truth(trace(scene, start_time=0.2), ["axis/gondola"])
+    found = ep.truth(trace(scene, start_time=0.2), [name])
     angle = spin * found.time[0]
     assert found.position[0, :2] == pytest.approx([12 + radius * np.cos(angle), radius * np.sin(angle)])
     assert found.velocity[0] == pytest.approx(spin * radius * np.array([-np.sin(angle), np.cos(angle), 0]), abs=RATE_ERROR)
@@ -143,6 +144,19 @@ def test_cross_section_of_a_sphere(radius):
     near = 20 * np.log10((found.range[0] - radius) / found.range[0])
     assert found.rcs_dbsm[0] + near == pytest.approx(10 * np.log10(np.pi * radius**2), abs=SPHERE_ERROR_DB)
     assert found.rcs_low[0] <= found.rcs[0] <= found.rcs_high[0] and found.visible_share[0] == 1.0
+
+
+def test_ghosts_are_no_part_of_a_cross_section():
+    """A ball beside a mirror: what comes by way of the mirror is left out of its power."""
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.3), name="ball", material="metal", position=(8, 0, 0), smooth=True)
+    scene.add(ep.actors.plate(40.0, 20.0), name="wall", material=ep.Material.metal(mirror=True), position=(8, -1.5, 0),
+              yaw=np.pi / 2)
+    paths = trace(scene, num_rays=20000)
+    found = ep.truth(paths, ["ball"])
+    alone = ep.received_power(paths.select("T 'ball'+ R")).power
+    assert found.received[0] == pytest.approx(alone)
+    assert ep.received_power(paths.select(ep.hits("ball"))).power != pytest.approx(alone, rel=0.1)
 
 
 def test_what_no_antenna_sees_has_no_cross_section():

@@ -4,15 +4,15 @@ from __future__ import annotations
 import numpy as np
 
 from .style import CURVE_COLOURS, axes_or_new
-from .top_view import AHEAD_LABEL, LEFT_LABEL
 
 SIZE = 6.0, 5.2  # inches
+X_LABEL, Y_LABEL = "x in m (ahead)", "y in m (left: +)"
 
 
 def draw_tracks(tracks, *, ax=None, title=""):
     """Tracks as lines from above, crosses where they went on without a detection, in given axes or new ones (None).
 
-    tracks: Tracks. Returns the axes: metres to the left across, metres ahead up. Raises TypeError naming `ax`.
+    tracks: Tracks. Returns the axes: y in m across, left positive, x in m up. Raises TypeError naming `ax`.
     """
     with axes_or_new(ax, *SIZE) as ax:
         for number in np.unique(tracks.track):
@@ -21,7 +21,7 @@ def draw_tracks(tracks, *, ax=None, title=""):
             ax.plot(y, x, color=colour, marker=".", markersize=3, label=_name(one, number))
             ax.plot(y[~one.is_detected], x[~one.is_detected], "x", color=colour, markersize=5)
             ax.annotate(str(number), (y[-1], x[-1]), xytext=(4, 4), textcoords="offset points", color=colour)
-        ax.set(xlabel=LEFT_LABEL, ylabel=AHEAD_LABEL, title=title, aspect="equal")
+        ax.set(xlabel=Y_LABEL, ylabel=X_LABEL, title=title, aspect="equal")
         ax.set_xlim(*sorted(ax.get_xlim(), reverse=True))
         if tracks.num_tracks:
             ax.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)

@@ -74,7 +74,7 @@ class Tracks:
         """Draws each track as a line from above, with its number and the object that it follows most.
 
         ax: Matplotlib axes to draw in, None: new ones; title: above it
-        Returns the axes: metres to the left across, metres ahead up. Raises TypeError.
+        Returns the axes: y in m across, left positive, x in m up. Raises TypeError.
         """
         from ..plots import draw_tracks
 

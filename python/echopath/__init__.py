@@ -57,6 +57,7 @@ from .threads import num_threads, set_num_threads
 from .tracing import mie_rcs, rcs, trace
 from .tracks import Tracks, track
 from .truth import Truth, truth
+from .trajectories import Lane, Trajectory
 from .viewing import plot_rays, view
 from .visibility import ObjectVisibility, Sight, visibility
 

@@ -57,7 +57,8 @@ class Scene(_core.Scene):
             becomes a node with a child for each joint that dominates any of its triangles, named after the joint
             (Skin.parts); one that is itself part of a mesh (Mesh.part) is not taken apart. The velocities, translations
             and turns of a motion are in the axes of the parent (of the world, for an object without one) and about the
-            object's own origin, whatever its yaw: velocity (15, 0, 0) goes along the parent's +x. Only the parts of an
+            object's own origin, whatever its yaw: velocity (15, 0, 0) goes along the parent's +x. A Trajectory is a motion, too;
+            an actor that was made with one brings it. Only the parts of an
             object have its axes for their parent's, so a pedestrian of `actors` walks where its yaw points
         speed: m/s, instead of motion: straight ahead, along the object's own +x as yaw or transform turn it; what parts of
             an actor do by themselves, such as walking, adds to it
@@ -72,6 +73,7 @@ class Scene(_core.Scene):
         """
         _core.warn_of_turns(yaw)
         place = placement(position, yaw, transform)
+        _refuse_two_motions(mesh_or_actor, motion, speed)
         if speed is not None:
             if motion is not None:
                 raise refused(ValueError, "speed", "given without motion", speed)
@@ -178,6 +180,14 @@ class _Batch:
                                      smooth=(self._smooth or smooth) and mesh is not None,
                                      visible=self._visible or len(self.nodes) > 0))
         return self._first + len(self.nodes) - 1
+
+
+def _refuse_two_motions(content, motion, speed) -> None:
+    """Raises ValueError for a motion beside that of an actor which follows a trajectory."""
+    if isinstance(content, Actor) and content.motion is not None:
+        for argument, value in (("motion", motion), ("speed", speed)):
+            if value is not None:
+                raise refused(ValueError, argument, "left out for an actor that follows a trajectory", value)
 
 
 def _parts_of(content, material) -> list:

@@ -28,9 +28,11 @@ class Actor:
 
     The actor's frame has x forward, y left, z up and the floor at z = 0.
     parts: list of Part, whose names differ.
+    motion: of the whole, such as the Trajectory that it follows; None: Scene.add says.
     """
 
     parts: list = field(default_factory=list)
+    motion: Any = None
 
     def __post_init__(self):
         names = [part.name for part in self.parts]
@@ -54,7 +56,8 @@ class PartArrays:
     """A part as plain arrays.
 
     vertices [V, 3] in m, triangles [F, 3]; keyframes times [T] in s, translations [T, 3] in m and rotations [T, 4]
-    (unit quaternions w, x, y, z) of the part relative to the actor's root. times None: the part rests. smooth: as of Part.
+    (unit quaternions w, x, y, z) of the part relative to the actor's root. times None: the part rests. rates: those of both per
+    s, ([T, 3], [T, 4]), for a CurveMotion through them, which holds its ends; None: a KeyframeMotion. smooth: as of Part.
     """
 
     name: str
@@ -65,12 +68,17 @@ class PartArrays:
     translations: Any = None
     rotations: Any = None
     smooth: bool = False
+    rates: Any = None
 
     def build(self):
-        """The Part with its Mesh and KeyframeMotion."""
+        """The Part with its Mesh and motion."""
         from echopath import _core
 
         motion = None
-        if self.times is not None:
+        if self.rates is not None:
+            curves = [_core.Curve(self.times, values, "hermite", in_tangents=rates, out_tangents=rates)
+                      for values, rates in zip((self.translations, self.rotations), self.rates)]
+            motion = _core.CurveMotion(*curves)
+        elif self.times is not None:
             motion = _core.KeyframeMotion(times=self.times, translations=self.translations, rotations=self.rotations)
         return Part(self.name, _core.Mesh(self.vertices, self.triangles), self.material, motion, smooth=self.smooth)

@@ -5,11 +5,14 @@ import numpy as np
 
 from ... import _core
 from ...checks import an, checked, positive, real, refused
+from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
+from ..following import key_times, refuse_beside_trajectory, trajectory_rule, with_rates
 from ..surfaces import edge_length
 from .anthropometry import Proportions
 from .body import surface
 from .gait import Frames, Gait, relative_speed_limit
+from .gait_along import GaitAlong, usual_speed
 from .rotations import quaternions
 
 LONGEST = 1e9                 # s
@@ -27,10 +30,11 @@ def material_rule(argument: str, value):
 
 @checked(height=real(*HEIGHTS, unit="m"), speed=positive("m/s"), start_time=real(-LONGEST, LONGEST, unit="s"),
          duration=positive("s"), phase=real(unit="cycles"), edge=positive("m"), keyframe_rate=real(MIN_KEYFRAME_RATE, unit="1/s"),
-         clothing=material_rule, skin=material_rule)
+         clothing=material_rule, skin=material_rule, trajectory=trajectory_rule)
 def pedestrian(*, height: float = 1.78, speed: float = 1.4, start_time: float = -0.5, duration: float = 2.5,
                phase: float = 0.0, edge: float = 0.018, keyframe_rate: float = 120.0,
-               clothing: str | _core.Material = "clothing", skin: str | _core.Material = "skin") -> Actor:
+               clothing: str | _core.Material = "clothing", skin: str | _core.Material = "skin",
+               trajectory: Trajectory | None = None) -> Actor:
     """A person who walks along +x, 16 closed smooth meshes that move by keyframes.
 
     Proportions after Drillis and Contini (anthropometry.py), motion after Boulic, Thalmann and Thalmann (boulic.py)
@@ -49,9 +53,17 @@ def pedestrian(*, height: float = 1.78, speed: float = 1.4, start_time: float = 
     edge: length in m of the triangles' sides; about 18 000 triangles in all by default.
     keyframe_rate: in 1/s, at least 60.
     clothing, skin: materials, names in echopath.materials or objects; skin are head, neck and hands.
+    trajectory: a Trajectory of the origin that is followed instead of speed, start_time, duration and phase; the steps go with
+    its distance, a sole that touches the floor does not slide, and at its stops both feet are down.
 
     Returns an Actor. Raises ValueError for values out of range, TypeError for unknown keywords.
     """
+    refuse_beside_trajectory(trajectory, speed=(speed, 1.4), start_time=(start_time, -0.5), duration=(duration, 2.5),
+                             phase=(phase, 0.0))
+    if trajectory is not None:
+        body, most = Proportions(height), relative_speed_limit(Proportions(height))
+        return walk_along(body, lambda speed: Gait(body, speed), (MIN_SPEED, most), trajectory, edge=edge,
+                          keyframe_rate=keyframe_rate, clothing=clothing, skin=skin)
     if duration * keyframe_rate > MOST_KEYS:
         raise refused(ValueError, "duration", f"at most {MOST_KEYS / keyframe_rate:g} s at a keyframe_rate of {keyframe_rate:g}",
                       duration)
@@ -77,6 +89,22 @@ def walker_arrays(body, gait, *, start_time, duration, phase, edge, keyframe_rat
     start = np.array([phase * gait.cycle.length, 0.0, 0.0])
     moved = {name: Frames(frame.origin - start, frame.rotation) for name, frame in frames.items()}
     return body_arrays(body, moved, times, edge=edge, clothing=clothing, skin=skin)
+
+
+def walk_along(body, gait_at, speeds, trajectory, *, edge, keyframe_rate, clothing, skin):
+    """The Actor of a body that follows a trajectory by a gait.
+
+    gait_at: usual speed in m/s -> Gait; speeds: least and greatest in m/s of the gait
+    """
+    edge = edge_length(edge, 3.0 * body.height)
+    real(0.0, 0.05 * body.height, "m")("edge", edge)
+    speed = usual_speed(trajectory._track)
+    if speed > speeds[1]:
+        raise refused(ValueError, "trajectory", f"one of at most {speeds[1]:.3g} m/s for a person of {body.height:g} m", trajectory)
+    gait = GaitAlong(gait_at(max(speed, speeds[0])), trajectory._track)
+    times = key_times(trajectory, keyframe_rate)
+    arrays = body_arrays(body, gait.frames(times), times, edge=edge, clothing=clothing, skin=skin)
+    return Actor([part.build() for part in with_rates(arrays, gait.frames, times)], trajectory)
 
 
 def body_arrays(body, frames, times, *, edge, clothing, skin):

@@ -3,10 +3,13 @@ from __future__ import annotations
 
 from ... import _core
 from ...checks import checked, optional, positive, real
+from ...trajectories.trajectory import Trajectory
 from ..actor import Actor
+from ..following import refuse_beside_trajectory, trajectory_rule
 from ..surfaces import edge_length
 from .anthropometry import Proportions
-from .pedestrian import HEIGHTS, MIN_KEYFRAME_RATE, body_arrays, material_rule, pedestrian, walker_arrays
+from .gait_along import usual_speed
+from .pedestrian import HEIGHTS, MIN_KEYFRAME_RATE, body_arrays, material_rule, pedestrian, walk_along, walker_arrays
 from .posture import standing
 from .running import RunningGait, running_speeds
 
@@ -15,10 +18,10 @@ CHILD_HEIGHTS = (0.8, 1.5)   # m, of children of about 1 to 12 years
 
 @checked(height=real(*HEIGHTS, unit="m"), speed=positive("m/s"), start_time=real(unit="s"), duration=positive("s"),
          phase=real(unit="cycles"), edge=positive("m"), keyframe_rate=real(MIN_KEYFRAME_RATE, unit="1/s"),
-         clothing=material_rule, skin=material_rule)
+         clothing=material_rule, skin=material_rule, trajectory=trajectory_rule)
 def runner(*, height: float = 1.78, speed: float = 3.0, start_time: float = -0.5, duration: float = 2.5, phase: float = 0.0,
            edge: float = 0.018, keyframe_rate: float = 240.0, clothing: str | _core.Material = "clothing",
-           skin: str | _core.Material = "skin") -> Actor:
+           skin: str | _core.Material = "skin", trajectory: Trajectory | None = None) -> Actor:
     """A person who runs along +x: as `pedestrian`, whose parts and arguments it shares, with a flight between the steps.
 
     Step frequency, share of stance and joint angles at characteristic instants follow what is published of adults
@@ -26,10 +29,15 @@ def runner(*, height: float = 1.78, speed: float = 3.0, start_time: float = -0.5
 
     speed: in m/s, 1.8 to 5 for an adult of 1.78 m, others by the root of their height. phase: of the cycle of two steps at
     time 0, in cycles; 0 is the strike of the right foot. height, start_time, duration, edge, clothing, skin: as of
-    `pedestrian`. keyframe_rate: in 1/s, at least 60.
+    `pedestrian`. keyframe_rate: in 1/s, at least 60. trajectory: as of `pedestrian`; at its stops one foot is down.
     Returns an Actor. Raises ValueError for values out of range, TypeError for unknown keywords.
     """
+    refuse_beside_trajectory(trajectory, speed=(speed, 3.0), start_time=(start_time, -0.5), duration=(duration, 2.5),
+                             phase=(phase, 0.0))
     body = Proportions(height)
+    if trajectory is not None:
+        return walk_along(body, lambda speed: RunningGait(body, speed), running_speeds(body), trajectory, edge=edge,
+                          keyframe_rate=keyframe_rate, clothing=clothing, skin=skin)
     real(*running_speeds(body), "m/s")("speed", speed)
     edge = edge_length(edge, 3.0 * body.height)
     arrays = walker_arrays(body, RunningGait(body, speed), start_time=start_time, duration=duration, phase=phase, edge=edge,
@@ -52,21 +60,26 @@ def standing_person(*, height: float = 1.78, edge: float = 0.018, clothing: str 
 
 
 @checked(height=real(*CHILD_HEIGHTS, unit="m"), speed=optional(real(0.0, unit="m/s")), start_time=real(unit="s"),
-         duration=positive("s"), phase=real(unit="cycles"), edge=positive("m"))
+         duration=positive("s"), phase=real(unit="cycles"), edge=positive("m"), trajectory=trajectory_rule)
 def child(*, height: float = 1.15, speed: float | None = None, start_time: float = -0.5, duration: float = 2.5,
-          phase: float = 0.0, edge: float = 0.014) -> Actor:
+          phase: float = 0.0, edge: float = 0.014, trajectory: Trajectory | None = None) -> Actor:
     """A child who walks, runs or stands: `pedestrian`, `runner` or `standing_person` of a child's height.
 
     The proportions are those of an adult, so that the head, which is larger in children, is up to a third too small.
     height: in m, 0.8 to 1.5 (about 1 to 12 years). speed: m/s along +x: 0 stands, below twice the hip height a second it
     walks, above it runs; unless given it walks at 1.4 m/s times the root of its height over an adult's. start_time, duration,
-    phase, edge: as of `pedestrian`.
+    phase, edge: as of `pedestrian`. trajectory: as of `pedestrian`, by the speed that is usual on it.
     Returns an Actor. Raises ValueError for values out of range, TypeError for unknown keywords.
     """
     body = Proportions(height)
+    refuse_beside_trajectory(trajectory, speed=(speed, None))
+    walks_below = max(2.0 * body.hip_height, running_speeds(body)[0])
+    if trajectory is not None:
+        make = pedestrian if usual_speed(trajectory._track) < walks_below else runner
+        return make(height=height, start_time=start_time, duration=duration, phase=phase, edge=edge, trajectory=trajectory)
     if speed is None:
         speed = 1.4 * (height / 1.78) ** 0.5
     if speed == 0.0:
         return standing_person(height=height, edge=edge)
-    make = pedestrian if speed < max(2.0 * body.hip_height, running_speeds(body)[0]) else runner
+    make = pedestrian if speed < walks_below else runner
     return make(height=height, speed=speed, start_time=start_time, duration=duration, phase=phase, edge=edge)

@@ -10,12 +10,13 @@ import numpy as np
 
 from ... import _core
 from ...checks import checked, flag, positive, real
+from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, Part
+from ..following import rolling_along, trajectory_rule
 from ..shapes import ellipsoid
 from ..solids import block, ring, tube
 from ..surfaces import joined
-from .road_vehicle import carried
-from .wheel import rolling
+from .driving import Driving
 
 WHEEL_RADIUS = 0.343          # of tyres 32-622
 TYRE_RADIUS = 0.016
@@ -35,14 +36,18 @@ FRAME_TUBE, STAY_TUBE = 0.016, 0.008      # radii
 
 @dataclass(frozen=True)
 class Ride:
-    """speed in m/s; cadence: turns of the crank in rad/s; phase: rad of the left crank past its top at time 0."""
+    """speed in m/s; cadence: turns of the crank in rad/s; phase: rad of the left crank past its top at time 0, or where the
+    trajectory begins that it follows instead."""
 
     speed: float = 0.0
     cadence: float = 0.0
     phase: float = 0.5 * np.pi
+    trajectory: Trajectory | None = None
 
     def crank_angle(self, times):
         """Angle [T] in rad of the left crank past its top, ahead positive."""
+        if self.trajectory is not None:
+            return self.phase + 2.0 * np.pi / DEVELOPMENT * self.trajectory._track.rolled().at(times)[0]
         return self.phase + self.cadence * np.asarray(times, dtype=float)
 
     def pedal(self, times, sign):
@@ -51,21 +56,23 @@ class Ride:
         return np.stack([CRANK * np.sin(angle), np.full_like(angle, sign * PEDAL_Y), BRACKET_HEIGHT + CRANK * np.cos(angle)], -1)
 
 
-@checked(speed=real(unit="m/s"), saddle_height=positive("m"), drives=flag)
-def bicycle(*, speed: float = 0.0, saddle_height: float = 0.95, drives: bool = True) -> Actor:
+@checked(speed=real(unit="m/s"), saddle_height=positive("m"), drives=flag, trajectory=trajectory_rule)
+def bicycle(*, speed: float = 0.0, saddle_height: float = 0.95, drives: bool = True,
+            trajectory: Trajectory | None = None) -> Actor:
     """A trekking bicycle with wheels of 28 inches that rolls along +x, without a rider; the crank stands still.
 
     Parts: frame, fork, handlebar, saddle, crank, pedal_left, pedal_right, and wheel_front/tyre, wheel_front/rim,
     wheel_front/spokes, likewise wheel_rear. The bottom bracket is above the origin, the road at z = 0.
     speed: m/s; the wheels roll. saddle_height: m, of its upper side above the road. drives: False turns the wheels alone.
+    trajectory: a Trajectory of the origin that it follows instead, upright; the wheels roll its way.
     Returns an Actor. Raises TypeError or ValueError naming the argument.
     """
-    return Actor(bicycle_parts(Ride(speed), saddle_height, drives=drives))
+    return Actor(bicycle_parts(Ride(speed), saddle_height, Driving(speed, drives, trajectory)), trajectory)
 
 
-def bicycle_parts(ride, saddle_height, *, drives=True, pedals=True):
-    """Parts of a bicycle on a Ride; pedals: whether they, at rest relative to the frame, are among them."""
-    ahead = ride.speed if drives else 0.0
+def bicycle_parts(ride, saddle_height, driving, *, pedals=True):
+    """Parts of a bicycle on a Ride that drives (driving.Driving); pedals: whether they, at rest relative to the frame, are
+    among them."""
     still = [Part("frame", _mesh(*_frame(saddle_height)), "metal", smooth=True),
              Part("fork", _mesh(*_fork()), "metal", smooth=True),
              Part("handlebar", _mesh(*_handlebar()), "metal", smooth=True),
@@ -73,10 +80,10 @@ def bicycle_parts(ride, saddle_height, *, drives=True, pedals=True):
     if pedals:
         still += [Part(f"pedal_{side}", _mesh(block(*pedal_corners())), "plastic", None, tuple(ride.pedal([0.0], sign)[0]))
                   for side, sign in (("left", 1.0), ("right", -1.0))]
-    parts = carried(still, ahead) + [_crank(ride, ahead)]
+    parts = driving.carried(still) + [_crank(ride, driving.ahead)]
     for end, x in (("front", FRONT_AXLE), ("rear", REAR_AXLE)):
         parts += [replace(part, name=f"wheel_{end}/{part.name}", position=(x, 0.0, WHEEL_RADIUS),
-                          motion=rolling(ride.speed, WHEEL_RADIUS, drives)) for part in _wheel()]
+                          motion=driving.wheel(WHEEL_RADIUS)) for part in _wheel()]
     return parts
 
 
@@ -153,7 +160,9 @@ def _crank(ride, ahead):
         pieces += [tube((0, 0.075 * sign, 0), end + [0, 0.078 * sign, 0], 0.012, 0.009, segments=6),
                    tube(end + [0, 0.07 * sign, 0], end + [0, (PEDAL_Y - 0.2 * PEDAL[1]) * sign, 0], 0.007, segments=6)]
     motion = None
-    if ahead or ride.cadence:
+    if ride.trajectory is not None:
+        motion = rolling_along(ride.trajectory, DEVELOPMENT / (2.0 * np.pi))
+    elif ahead or ride.cadence:
         motion = _core.LinearMotion(velocity=(ahead, 0.0, 0.0), angular_velocity=(0.0, ride.cadence, 0.0))
     return Part("crank", _mesh(*pieces), "metal", motion, (0.0, 0.0, BRACKET_HEIGHT), smooth=True)
 

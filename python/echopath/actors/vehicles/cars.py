@@ -4,7 +4,10 @@ from __future__ import annotations
 from typing import Literal
 
 from ...checks import checked, flag, one_of, real
+from ...trajectories.trajectory import Trajectory
 from ..actor import Actor
+from ..following import trajectory_rule
+from .driving import Driving
 from .outline import Outline
 from .road_vehicle import drive
 
@@ -27,8 +30,9 @@ CARS = {
 }
 
 
-@checked(kind=one_of(CarKind), speed=real(unit="m/s"), drives=flag)
-def car(*, kind: CarKind = "compact", speed: float = 0.0, drives: bool = True) -> Actor:
+@checked(kind=one_of(CarKind), speed=real(unit="m/s"), drives=flag, trajectory=trajectory_rule)
+def car(*, kind: CarKind = "compact", speed: float = 0.0, drives: bool = True,
+        trajectory: Trajectory | None = None) -> Actor:
     """A passenger car of smooth metal panels on four turning wheels.
 
     Length, width, height, wheelbase and tyres are those of production cars (CARS in vehicles/cars.py); the panels are a
@@ -44,7 +48,8 @@ def car(*, kind: CarKind = "compact", speed: float = 0.0, drives: bool = True) -
 
     kind: "small" 3.54 m long, "compact" 4.26 m, "saloon" 4.69 m, "estate" 4.77 m or "suv" 4.49 m.
     speed: m/s ahead along +x; the wheels roll. drives: False turns the wheels at `speed` alone, for a car that a motion of
-    its node carries.
+    its node carries. trajectory: a Trajectory of the origin that it follows instead; the wheels roll its way, those in
+    front steer.
     Returns an Actor. Raises TypeError or ValueError naming the argument.
     """
-    return drive(CARS[kind], speed, drives)
+    return drive(CARS[kind], Driving(speed, drives, trajectory))

@@ -7,16 +7,19 @@ import numpy as np
 
 from ... import _core
 from ...checks import checked, positive, real
+from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
+from ..following import key_times, refuse_beside_trajectory, trajectory_rule, with_rates
 from ..human.anthropometry import Proportions
 from ..human.foot import Sole
 from ..human.gait import Frames
 from ..human.pedestrian import MIN_KEYFRAME_RATE, body_arrays, keyframe_times, material_rule
 from ..human.posture import leg, reaching_arm, trunk
-from ..human.rotations import about_y
+from ..human.rotations import about_y, quaternions
 from ..solids import block
 from ..surfaces import edge_length
 from .bicycle import CRANK, DEVELOPMENT, GRIP, PEDAL, Ride, bicycle_parts, pedal_corners, seat_point
+from .driving import Driving
 
 RIDER_HEIGHTS = (1.45, 2.0)              # m, of riders whom the frame fits
 PELVIS_LEAN, TORSO_LEAN = np.radians(18.0), np.radians(38.0)
@@ -27,10 +30,10 @@ SEAT_DEPTH = 0.052                       # of the saddle below the hip joints, i
 
 @checked(height=real(*RIDER_HEIGHTS, unit="m"), speed=positive("m/s"), start_time=real(unit="s"), duration=positive("s"),
          phase=real(unit="cycles"), edge=positive("m"), keyframe_rate=real(MIN_KEYFRAME_RATE, unit="1/s"), clothing=material_rule,
-         skin=material_rule)
+         skin=material_rule, trajectory=trajectory_rule)
 def cyclist(*, height: float = 1.78, speed: float = 5.0, start_time: float = -0.5, duration: float = 2.5, phase: float = 0.25,
             edge: float = 0.02, keyframe_rate: float = 120.0, clothing: str | _core.Material = "clothing",
-            skin: str | _core.Material = "skin") -> Actor:
+            skin: str | _core.Material = "skin", trajectory: Trajectory | None = None) -> Actor:
     """A person who rides a bicycle along +x and pedals; the wheels roll.
 
     Thighs and shanks follow the pedals: hip and ankle are given, the knee is where both segments meet. One turn of the
@@ -39,18 +42,34 @@ def cyclist(*, height: float = 1.78, speed: float = 5.0, start_time: float = -0.
     above the origin; the road is at z = 0.
     height: of the rider in m, 1.45 to 2. speed: m/s. start_time, duration: of the motion in s; a scene can be posed at no
     other time. phase: of the left crank past its top at time 0, in turns. edge: m, of the body's triangles. keyframe_rate:
-    1/s, at least 60. clothing, skin: materials.
+    1/s, at least 60. clothing, skin: materials. trajectory: a Trajectory of the origin that is followed instead of speed,
+    start_time and duration, upright; wheels and crank turn with its distance, so that the rider pedals as fast as it goes and
+    stops with it; phase: of the crank where it begins.
     Returns an Actor. Raises TypeError or ValueError naming the argument.
     """
+    refuse_beside_trajectory(trajectory, speed=(speed, 5.0), start_time=(start_time, -0.5), duration=(duration, 2.5))
     body = Proportions(height)
-    ride = Ride(speed, 2.0 * np.pi * speed / DEVELOPMENT, 2.0 * np.pi * phase)
-    times = keyframe_times(start_time, duration, keyframe_rate)
-    frames = {f"rider/{name}": frame for name, frame in rider_frames(body, ride, times).items()}
-    person = body_arrays(body, frames, times, edge=edge_length(edge, 3.0 * height), clothing=clothing, skin=skin)
-    hip = saddle_hip(body)
-    parts = bicycle_parts(ride, hip[2] - body.of(SEAT_DEPTH), pedals=False)
-    parts += [_pedal(ride, times, side, sign) for side, sign in (("left", 1.0), ("right", -1.0))]
-    return Actor([replace(part, name=f"bicycle/{part.name}") for part in parts] + [part.build() for part in person])
+    if trajectory is None:
+        ride = Ride(speed, 2.0 * np.pi * speed / DEVELOPMENT, 2.0 * np.pi * phase)
+        times = keyframe_times(start_time, duration, keyframe_rate)
+    else:
+        ride = Ride(phase=2.0 * np.pi * phase, trajectory=trajectory)
+        times = key_times(trajectory, keyframe_rate)
+    arrays = body_arrays(body, _ridden(body, ride, times), times, edge=edge_length(edge, 3.0 * height), clothing=clothing,
+                         skin=skin)
+    arrays += [_pedal(ride, times, side) for side in ("left", "right")]
+    if trajectory is not None:
+        arrays = with_rates(arrays, lambda at: _ridden(body, ride, at) | _pedal_frames(ride, at), times)
+    seat = saddle_hip(body)[2] - body.of(SEAT_DEPTH)
+    parts = bicycle_parts(ride, seat, Driving(ride.speed, trajectory=trajectory), pedals=False)
+    parts = [replace(part, name=f"bicycle/{part.name}") for part in parts]
+    pedals, person = [part.build() for part in arrays[-2:]], [part.build() for part in arrays[:-2]]
+    return Actor(parts + pedals + person, trajectory)
+
+
+def _ridden(body, ride, times):
+    """Frames of the rider's parts under their names in the actor."""
+    return {f"rider/{name}": frame for name, frame in rider_frames(body, ride, times).items()}
 
 
 def rider_frames(body, ride, times):
@@ -90,8 +109,15 @@ def saddle_hip(body):
     return seat_point(float(np.interp(reach, farthest, distances)))
 
 
-def _pedal(ride, times, side, sign):
-    """A pedal that stays level as it goes round."""
-    place = ride.pedal(times, sign) + np.outer(ride.speed * times, [1.0, 0.0, 0.0])
-    level = np.tile([1.0, 0.0, 0.0, 0.0], (len(times), 1))
-    return PartArrays(f"pedal_{side}", *block(*pedal_corners()), "plastic", times, place, level).build()
+def _pedal_frames(ride, times):
+    """Frames of the pedals, which stay level as they go round."""
+    way = np.outer(ride.speed * np.asarray(times), [1.0, 0.0, 0.0])
+    return {f"bicycle/pedal_{side}": Frames(ride.pedal(times, sign) + way, about_y(np.zeros(len(way))))
+            for side, sign in (("left", 1.0), ("right", -1.0))}
+
+
+def _pedal(ride, times, side):
+    """A pedal as PartArrays."""
+    name = f"bicycle/pedal_{side}"
+    frame = _pedal_frames(ride, times)[name]
+    return PartArrays(name, *block(*pedal_corners()), "plastic", times, frame.origin, quaternions(frame.rotation))

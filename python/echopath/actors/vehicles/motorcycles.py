@@ -7,7 +7,9 @@ import numpy as np
 
 from ... import _core
 from ...checks import checked, flag, real
+from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, Part
+from ..following import trajectory_rule
 from ..human.anthropometry import Proportions
 from ..human.gait import Frames
 from ..human.pedestrian import body_arrays
@@ -17,9 +19,9 @@ from ..lattice import rounded_box, rounded_parts
 from ..shapes import ellipsoid
 from ..solids import tube
 from ..surfaces import joined
+from .driving import Driving
 from .fittings import leaning_plate
 from .materials import LAMP, UNDERSIDE
-from .road_vehicle import carried
 from .wheel import Wheel, wheel_parts
 
 # Wheelbase, tyres, seat height and overall width of a naked motorcycle of the middle class (Yamaha MT-07, 2014: 2085 mm x
@@ -34,8 +36,9 @@ FOOT_REST = np.array([-0.16, 0.22, 0.36])
 HIP_ABOVE_SEAT = 0.055                   # in body heights
 
 
-@checked(speed=real(unit="m/s"), rider=flag, height=real(1.45, 2.0, unit="m"), drives=flag)
-def motorcycle(*, speed: float = 0.0, rider: bool = True, height: float = 1.78, drives: bool = True) -> Actor:
+@checked(speed=real(unit="m/s"), rider=flag, height=real(1.45, 2.0, unit="m"), drives=flag, trajectory=trajectory_rule)
+def motorcycle(*, speed: float = 0.0, rider: bool = True, height: float = 1.78, drives: bool = True,
+               trajectory: Trajectory | None = None) -> Actor:
     """A naked motorcycle, 2.1 m long, with or without its rider.
 
     Frame: x forward, y left, z up, the road at z = 0, the origin between the wheels.
@@ -43,14 +46,16 @@ def motorcycle(*, speed: float = 0.0, rider: bool = True, height: float = 1.78, 
     lamp/tail, plate/rear, wheel/front/tyre, wheel/front/rim, wheel/rear/tyre, wheel/rear/rim, and the body parts of
     `pedestrian` under rider/, whose head wears no helmet of its own.
     speed: m/s ahead along +x; the wheels roll. rider: False leaves it out; height: of the rider in m, 1.45 to 2.
-    drives: False turns the wheels at `speed` alone.
+    drives: False turns the wheels at `speed` alone. trajectory: a Trajectory of the origin that it follows instead, upright;
+    the wheels roll its way.
     Returns an Actor. Raises TypeError or ValueError naming the argument.
     """
     still = _body() + _tubes() + (_rider(Proportions(height)) if rider else [])
-    parts = carried(still, speed if drives else 0.0)
+    driving = Driving(speed, drives, trajectory)
+    parts = driving.carried(still)
     for end, x, wheel in (("front", FRONT_AXLE, FRONT_WHEEL), ("rear", REAR_AXLE, REAR_WHEEL)):
-        parts += wheel_parts(wheel, f"wheel/{end}", (x, 0.0, wheel.radius), speed, drives=drives)
-    return Actor(parts)
+        parts += wheel_parts(wheel, f"wheel/{end}", (x, 0.0, wheel.radius), driving)
+    return Actor(parts, trajectory)
 
 
 def _body():

@@ -3,7 +3,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from ... import _core
 from ..actor import Actor
 from ..lattice import cage_of, parts_of, refined
 from .fittings import mirrors, plates
@@ -12,11 +11,11 @@ from .outline import full_cells, lattice_points
 from .panels import label_of
 from .wheel import Wheel, wheel_parts
 
-def drive(outline, speed, drives):
-    """The Actor of an outline whose wheels roll at `speed` m/s and which, where it `drives`, goes ahead as fast."""
+def drive(outline, driving):
+    """The Actor of an outline whose wheels roll as it drives (driving.Driving)."""
     parts, cage = body_parts(outline)
     parts += plates(cage) + mirrors(outline)
-    return Actor(carried(parts, speed if drives else 0.0) + four_wheels(outline, speed, drives))
+    return Actor(driving.carried(parts) + four_wheels(outline, driving), driving.trajectory)
 
 
 def body_parts(outline):
@@ -26,22 +25,14 @@ def body_parts(outline):
     return parts_of(cage, BODY_MATERIALS, flat_sheets=("underside",)), cage
 
 
-def carried(parts, speed):
-    """Parts that move along +x at `speed` m/s."""
-    if speed == 0.0:
-        return parts
-    motion = _core.LinearMotion(velocity=(speed, 0.0, 0.0))
-    return [replace(part, motion=motion) for part in parts]
-
-
-def four_wheels(outline, speed, drives):
+def four_wheels(outline, driving):
     """Parts wheel/front_left/tyre and so on."""
     wheel = Wheel(outline.tyre_diameter, outline.tyre_width, 0.66 * outline.tyre_diameter)
     parts = []
     for axle, x in (("front", outline.front_axle), ("rear", outline.rear_axle)):
         for side, sign in (("left", 1.0), ("right", -1.0)):
-            parts += wheel_parts(wheel, f"wheel/{axle}_{side}", (x, sign * outline.wheel_y, wheel.radius), speed,
-                                 outer=sign, drives=drives)
+            parts += wheel_parts(wheel, f"wheel/{axle}_{side}", (x, sign * outline.wheel_y, wheel.radius), driving, outer=sign,
+                                 wheelbase=outline.wheelbase if axle == "front" else None)
     return parts
 
 

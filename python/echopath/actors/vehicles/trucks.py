@@ -7,14 +7,16 @@ import numpy as np
 
 from ... import _core
 from ...checks import checked, flag, real
+from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, Part
+from ..following import trajectory_rule
 from ..lattice import rounded_box, rounded_parts
 from ..shapes import ellipsoid
 from ..solids import block, tube
 from ..surfaces import joined
+from .driving import Driving
 from .fittings import PLATE, leaning_plate
 from .materials import BUMPER, GRILLE, LAMP, UNDERSIDE
-from .road_vehicle import carried
 from .wheel import Wheel, wheel_parts
 
 # Largest length, width and height of articulated vehicles (Council Directive 96/53/EC), and a common 4 x 2 tractor.
@@ -28,8 +30,8 @@ CURTAIN = _core.Material(reflectivity=0.4, scattering=0.5)   # plastic sheet ove
 FRONT = LENGTH / 2
 
 
-@checked(speed=real(unit="m/s"), drives=flag)
-def truck(*, speed: float = 0.0, drives: bool = True) -> Actor:
+@checked(speed=real(unit="m/s"), drives=flag, trajectory=trajectory_rule)
+def truck(*, speed: float = 0.0, drives: bool = True, trajectory: Trajectory | None = None) -> Actor:
     """An articulated truck: a cab-over tractor with a box semitrailer, 16.5 m long, 2.55 m wide and 4 m high.
 
     The sides of the box bulge by centimetres, as those of real ones do; a flat side would flash by tens of dB. Frame: x
@@ -38,10 +40,12 @@ def truck(*, speed: float = 0.0, drives: bool = True) -> Actor:
     trailer/front, trailer/side_left and _right, trailer/roof, trailer/doors, trailer/floor, trailer/chassis,
     trailer/underrun, plate/rear, and wheels: wheel/front_left/tyre and /rim, wheel/drive_*, wheel/trailer_1_* to _3_*.
     speed: m/s ahead along +x; the wheels roll. drives: False turns the wheels at `speed` alone.
+    trajectory: a Trajectory of the origin that it follows instead; the wheels roll its way. Tractor and trailer stay in line.
     Returns an Actor. Raises TypeError or ValueError naming the argument.
     """
     still = _cab() + _fittings() + _trailer() + _frames()
-    return Actor(carried(still, speed if drives else 0.0) + _wheels(speed, drives))
+    driving = Driving(speed, drives, trajectory)
+    return Actor(driving.carried(still) + _wheels(driving), trajectory)
 
 
 def _cab():
@@ -104,7 +108,7 @@ def _frames():
             Part("trailer/underrun", _core.Mesh(*bar), "metal")]
 
 
-def _wheels(speed, drives):
+def _wheels(driving):
     front, rear = FRONT - FRONT_OVERHANG, FRONT - FRONT_OVERHANG - TRACTOR_WHEELBASE
     twin = replace(TYRE, width=2 * TYRE.width)   # a pair of tyres side by side
     axles = [("front", front, TYRE), ("drive", rear, twin)]
@@ -113,5 +117,5 @@ def _wheels(speed, drives):
     for name, x, wheel in axles:
         for side, sign in (("left", 1.0), ("right", -1.0)):
             y = sign * (WIDTH / 2 - 0.02 - wheel.width / 2)
-            parts += wheel_parts(wheel, f"wheel/{name}_{side}", (x, y, wheel.radius), speed, outer=sign, drives=drives)
+            parts += wheel_parts(wheel, f"wheel/{name}_{side}", (x, y, wheel.radius), driving, outer=sign)
     return parts

@@ -4,7 +4,10 @@ from __future__ import annotations
 from typing import Literal
 
 from ...checks import checked, flag, one_of, real
+from ...trajectories.trajectory import Trajectory
 from ..actor import Actor
+from ..following import trajectory_rule
+from .driving import Driving
 from .outline import Outline
 from .road_vehicle import drive
 
@@ -20,14 +23,16 @@ VANS = {
 }
 
 
-@checked(kind=one_of(VanKind), speed=real(unit="m/s"), drives=flag)
-def van(*, kind: VanKind = "large", speed: float = 0.0, drives: bool = True) -> Actor:
+@checked(kind=one_of(VanKind), speed=real(unit="m/s"), drives=flag, trajectory=trajectory_rule)
+def van(*, kind: VanKind = "large", speed: float = 0.0, drives: bool = True,
+        trajectory: Trajectory | None = None) -> Actor:
     """A panel van of smooth metal panels on four turning wheels, without windows behind the front doors.
 
     Made as `car` is, whose frame, parts and arguments it shares; body/panel_left and body/panel_right are the walls behind
     the doors. About 23 000 triangles.
     kind: "small" 4.90 m long and 1.99 m high, or "large" 5.91 m and 2.44 m.
     speed: m/s ahead along +x; the wheels roll. drives: False turns the wheels at `speed` alone.
+    trajectory: a Trajectory of the origin that it follows instead; the wheels roll its way, those in front steer.
     Returns an Actor. Raises TypeError or ValueError naming the argument.
     """
-    return drive(VANS[kind], speed, drives)
+    return drive(VANS[kind], Driving(speed, drives, trajectory))

@@ -28,23 +28,16 @@ class Wheel:
         return self.diameter / 2
 
 
-def wheel_parts(wheel, name, center, speed, *, outer=1.0, drives=True):
-    """Parts name/tyre and name/rim of a wheel at `center` [3] that rolls ahead at `speed` m/s.
+def wheel_parts(wheel, name, center, driving, *, outer=1.0, wheelbase=None):
+    """Parts name/tyre and name/rim of a wheel at `center` [3] that rolls as its vehicle drives (driving.Driving).
 
-    outer: 1 where its outer side faces left, -1 right. drives: whether its parts also move ahead, or turn only.
+    outer: 1 where its outer side faces left, -1 right. wheelbase: m, of a wheel that steers along a trajectory.
     """
     tyre, rim = _meshes(wheel, outer)
-    motion = rolling(speed, wheel.radius, drives)
+    motion = driving.wheel(wheel.radius, y=center[1], wheelbase=wheelbase)
     place = tuple(float(value) for value in center)
     return [Part(f"{name}/tyre", _core.Mesh(*tyre), "rubber", motion, place, smooth=True),
             Part(f"{name}/rim", _core.Mesh(*rim), "metal", motion, place, smooth=True)]
-
-
-def rolling(speed, radius, drives=True):
-    """The LinearMotion of a wheel that rolls along +x without slipping; None at rest."""
-    if speed == 0.0:
-        return None
-    return _core.LinearMotion(velocity=(speed if drives else 0.0, 0.0, 0.0), angular_velocity=(0.0, speed / radius, 0.0))
 
 
 def _meshes(wheel, outer):

@@ -1,0 +1,3 @@
+"""Trajectories of whatever moves, lanes that they follow, and what files tell of them."""
+from .lane import Lane
+from .trajectory import Trajectory

@@ -1,0 +1,162 @@
+"""Lanes: ways beside a centre line, and from one to the next."""
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..checks import anything, array, checked, choice, flag, optional, positive, real, refused, text
+from .arguments import checked_path, checked_points
+from .path import Path
+from .track import Track
+from .trajectory import ACCELERATION, DECELERATION, Trajectory, profile_along
+
+STEP = 1e-5            # m, of differences that give the second derivative
+
+
+class Offsets:
+    """The way to the left of a centre line over the distance along it, by quintics between constant values.
+
+    first: m; changes [N, 3]: distance at which each begins, its length and the offset behind it, in m
+    """
+
+    def __init__(self, first: float, changes: np.ndarray):
+        self._begins, self._lengths = changes[:, 0], changes[:, 1]
+        self._after = changes[:, 2]
+        self._before = np.concatenate([[first], changes[:-1, 2]])
+        self._first = first
+        self.knots = np.concatenate([self._begins, self._begins + self._lengths])
+
+    def at(self, distances):
+        """(offset in m, its change in m/m), each [N]."""
+        offset, slope = np.full(len(distances), self._first), np.zeros(len(distances))
+        for begin, length, before, after in zip(self._begins, self._lengths, self._before, self._after):
+            s = np.clip((distances - begin) / length, 0.0, 1.0)
+            offset += (after - before) * s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
+            slope += (after - before) * 30.0 * s**2 * (1.0 - s) ** 2 / length
+        return offset, slope
+
+
+class OffsetPath(Path):
+    """A path beside another one; u is the distance along that one."""
+
+    def __init__(self, center: Path, offsets: Offsets):
+        self._center, self._offsets = center, offsets
+        knots = np.concatenate([center.junctions, offsets.knots[(offsets.knots > 0.0) & (offsets.knots < center.length)]])
+        self.knots = np.unique(knots)
+        super().__init__(self.knots)
+        sideways = np.sum(self.jets(self._u)[1] * center.at(self._u)[1], axis=-1)
+        if np.any(sideways <= 0.0):
+            place = float(self._u[int(np.argmin(sideways))])
+            raise ValueError(f"offset: must be less than the radius of the curve at {place:g} m, got "
+                             f"{float(offsets.at(np.array([place]))[0][0]):g} m")
+
+    def jets(self, u):
+        k = np.clip(np.searchsorted(self.knots, u, side="right") - 1, 0, len(self.knots) - 2)
+        low, high = np.maximum(u - STEP, self.knots[k]), np.minimum(u + STEP, self.knots[k + 1])
+        point, first = self._jet(u)
+        second = (self._jet(high)[1] - self._jet(low)[1]) / (high - low)[:, None]
+        return point, first, second
+
+    def _jet(self, u):
+        point, tangent, _ = self._center.at(u)
+        _, turn = self._center.bearings(u)
+        offset, slope = (values[:, None] for values in self._offsets.at(u))
+        level = tangent * [1.0, 1.0, 0.0]
+        level /= np.linalg.norm(level, axis=-1, keepdims=True)
+        left = np.stack([-level[:, 1], level[:, 0], np.zeros(len(u))], axis=-1)
+        return point + offset * left, tangent + slope * left - offset * turn[:, None] * level
+
+
+class Lane:
+    """A lane of a road: a centre line and a width. Whatever drives in it, or beside it, follows `trajectory`.
+
+    points: [P, 2] or [P, 3] in m along the centre line; width: m; turn_radius: m, arcs between straight lines; None: a C2 spline
+    Raises TypeError or ValueError naming the argument.
+    """
+
+    @checked(self=anything, points=checked_points, width=positive("m"), turn_radius=optional(positive("m")))
+    def __init__(self, points: ArrayLike, *, width: float = 3.5, turn_radius: float | None = None):
+        self._points, self._width, self._turn_radius = np.asarray(points, float), width, turn_radius
+        self._path = checked_path(checked_points("points", points), turn_radius)
+
+    @property
+    def points(self) -> np.ndarray:
+        """[P, 3] in m."""
+        return self._points.copy()
+
+    @property
+    def width(self) -> float:
+        """m"""
+        return self._width
+
+    @property
+    def length(self) -> float:
+        """m, of the centre line."""
+        return self._path.length
+
+    @checked(self=anything, distance=array("[]", "[N]", finite=True), offset=array("[]", "[N]", finite=True))
+    def position(self, distance: ArrayLike, offset: ArrayLike = 0.0) -> np.ndarray:
+        """Points of the road, [3] or [N, 3] in m.
+
+        distance: m along the centre line, or [N]; offset: m to the left of it, or [N]
+        Raises TypeError or ValueError naming the argument.
+        """
+        distances, offsets = np.broadcast_arrays(np.asarray(distance, float), np.asarray(offset, float))
+        point, tangent, _ = self._path.at(np.atleast_1d(distances))
+        left = np.stack([-tangent[:, 1], tangent[:, 0], np.zeros(len(tangent))], axis=-1)
+        left /= np.linalg.norm(left, axis=-1, keepdims=True)
+        found = point + np.atleast_1d(offsets)[:, None] * left
+        return found if distances.ndim else found[0]
+
+    @checked(self=anything, speed=anything, offset=real(unit="m"), changes=anything, reverse=flag, stops=anything,
+             acceleration=positive("m/s^2"), deceleration=positive("m/s^2"), lateral_acceleration=optional(positive("m/s^2")),
+             speed_over=choice("distance", "time"), start_time=real(-1e9, 1e9, "s"), goes_on=real(0.0, 1e5, "s"), pitch=flag,
+             kind=text)
+    def trajectory(self, *, speed: ArrayLike, offset: float = 0.0, changes: ArrayLike = (), reverse: bool = False,
+                   stops: ArrayLike = (), acceleration: float = ACCELERATION, deceleration: float = DECELERATION,
+                   lateral_acceleration: float | None = None, speed_over: Literal["distance", "time"] = "distance",
+                   start_time: float = 0.0, goes_on: float = 0.0, pitch: bool = False, kind: str = "") -> Trajectory:
+        """Drives along the lane, or so far beside it: a Trajectory.
+
+        offset: m to the left of the centre line as its points go; `lane.width` is the middle of the next lane on the left
+        changes: [N, 3]: distance at which a change of lanes begins, its length along the centre line, and the offset behind it,
+            in m; a quintic, which begins and ends without sideways speed and acceleration
+        reverse: whether it drives against the points; then distances count from the last one
+        speed, stops, acceleration, deceleration, lateral_acceleration, speed_over, start_time, goes_on, pitch, kind: as of
+            Trajectory; distances of `speed` and `stops` are those that it travels
+        Returns a Trajectory. Raises TypeError or ValueError naming the argument.
+        """
+        arguments = {name: value for name, value in locals().items() if name != "self"}
+        rows, sign = _checked_changes(changes), -1.0 if reverse else 1.0
+        center = checked_path(self._points[::-1], self._turn_radius) if reverse else self._path
+        path = center
+        if offset != 0.0 or len(rows):
+            path = OffsetPath(center, Offsets(sign * offset, rows * [1.0, 1.0, sign]))
+        profile = profile_along(path, speed, stops, acceleration, deceleration, lateral_acceleration, speed_over, start_time)
+        trajectory = Trajectory.__new__(Trajectory)
+        trajectory._follow(Track(path, profile), goes_on=goes_on, pitch=pitch, kind=kind, made=(self.trajectory, arguments))
+        return trajectory
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Lane) and np.array_equal(self._points, other._points) and \
+            (self._width, self._turn_radius) == (other._width, other._turn_radius)
+
+    def __hash__(self) -> int:
+        return hash((self._points.tobytes(), self._width, self._turn_radius))
+
+    def __repr__(self) -> str:
+        return f"Lane({self.length:.6g} m long, {self.width:g} m wide)"
+
+
+def _checked_changes(value) -> np.ndarray:
+    """Changes of lanes [N, 3], one after the other."""
+    if isinstance(value, (tuple, list)) and len(value) == 0:
+        return np.zeros((0, 3))
+    rows = np.array(array("[N, 3]", finite=True)("changes", value), float)
+    ends = rows[:, 0] + rows[:, 1]
+    if np.any(rows[:, 1] <= 0.0) or np.any(rows[:, 0] < 0.0) or np.any(ends[:-1] > rows[1:, 0] + 1e-9):
+        raise refused(ValueError, "changes", "rows of a distance of at least 0 m, a length above 0 m and an offset, each behind "
+                      "the one before", value)
+    return rows

@@ -1,0 +1,92 @@
+"""Tracks: a path that is travelled by a profile, with the direction in which the traveller looks."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .path import Path
+from .profile import Profile, hermite_coefficients
+
+ROLL_STEP = 2.0**-7    # s, between samples of the way that a vehicle rolls which looks elsewhere than it goes
+
+
+@dataclass(frozen=True)
+class Track:
+    """What a Trajectory is made of. headings: yaw in rad over time as a Profile, None: along the path."""
+
+    path: Path
+    profile: Profile
+    headings: Profile | None = None
+
+    def places(self, times):
+        """(points [N, 3] in m, velocities [N, 3] in m/s)."""
+        distance, speed, _ = self.profile.at(times)
+        point, tangent, _ = self.path.at(distance)
+        return point, speed[:, None] * tangent
+
+    def accelerations(self, times):
+        """[N, 3] in m/s^2."""
+        distance, speed, rate = self.profile.at(times)
+        _, tangent, bend = self.path.at(distance)
+        return rate[:, None] * tangent + speed[:, None] ** 2 * bend
+
+    def yaws(self, times):
+        """(yaw in rad without jumps, its rate in rad/s), each [N]."""
+        if self.headings is not None:
+            return self.headings.at(times)[:2]
+        distance, speed, _ = self.profile.at(times)
+        yaw, turn = self.path.bearings(distance)
+        return yaw, turn * speed
+
+    def pitches(self, times):
+        """(angle of the path above the plane in rad, its rate in rad/s), each [N]."""
+        distance, speed, _ = self.profile.at(times)
+        pitch, turn = self.path.slopes(distance)
+        return pitch, turn * speed
+
+    def rotations(self, times, has_pitch: bool):
+        """(unit quaternions [N, 4] (w, x, y, z), their rates [N, 4] per s): about z by the yaw, then nose up by the pitch."""
+        yaw, yaw_rate = self.yaws(times)
+        pitch, pitch_rate = self.pitches(times) if has_pitch else (np.zeros_like(yaw), np.zeros_like(yaw))
+        c, s, n, m = np.cos(0.5 * yaw), np.sin(0.5 * yaw), np.cos(0.5 * pitch), np.sin(0.5 * pitch)
+        values = np.stack([c * n, s * m, -c * m, s * n], axis=-1)
+        by_yaw = np.stack([-s * n, c * m, s * m, c * n], axis=-1)
+        by_pitch = np.stack([-c * m, s * n, -c * n, -s * m], axis=-1)
+        return values, 0.5 * (by_yaw * yaw_rate[:, None] + by_pitch * pitch_rate[:, None])
+
+    def junctions(self):
+        """Times in s at which it may not be smooth: those of the profile, and when it passes those of the path."""
+        knots, at_knots = self.profile.times, self.profile.at(self.profile.times)[0]
+        passed = self.path.junctions[(self.path.junctions > at_knots[0]) & (self.path.junctions < at_knots[-1])]
+        times = [knots, self.time_at(passed)]
+        return np.unique(np.concatenate(times if self.headings is None else [*times, self.headings.times]))
+
+    def time_at(self, distances):
+        """First times [N] in s at which distances [N] are reached, to a nanosecond or so, by bisection."""
+        knots = self.profile.times
+        at_knots = self.profile.at(knots)[0]
+        k = np.clip(np.searchsorted(at_knots, distances, side="left"), 1, len(knots) - 1)
+        low, high = knots[k - 1].copy(), knots[k].copy()
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            is_before = self.profile.at(middle)[0] < distances
+            low, high = np.where(is_before, middle, low), np.where(is_before, high, middle)
+        return high
+
+    def rolled(self) -> Profile:
+        """The way ahead in m over time, as wheels roll it: backwards where it goes against the direction it looks in."""
+        if self.headings is None:
+            return self.profile
+        begin, end = self.profile.begin, self.profile.end
+        times = np.unique(np.concatenate([np.linspace(begin, end, int((end - begin) / ROLL_STEP) + 2), self.profile.times]))
+        middles = 0.5 * (times[:-1] + times[1:])
+        ahead = [self._speed_ahead(at) for at in (times, middles)]
+        steps = np.diff(times)
+        ways = steps / 6.0 * (ahead[0][:-1] + 4.0 * ahead[1] + ahead[0][1:])
+        ways = np.concatenate([[0.0], np.cumsum(ways)])
+        return Profile(times, hermite_coefficients(steps, ways, ahead[0]))
+
+    def _speed_ahead(self, times):
+        distance, speed, _ = self.profile.at(times)
+        return speed * np.cos(self.yaws(times)[0] - self.path.bearings(distance)[0])

@@ -1,0 +1,232 @@
+"""Trajectories: where something is over time, made of a path and of the speed along it."""
+from __future__ import annotations
+
+import math
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .. import _core
+from ..checks import anything, array, checked, choice, flag, optional, positive, real, refused, text
+from .arguments import checked_headings, checked_path, checked_points, checked_speed, checked_stops, checked_times
+from .knots import curve_through
+from .limits import Limits, over_distance
+from .path import Path
+from .profile import over_time, through
+from .track import Track
+
+TOLERANCE = 2e-6          # m, of positions at the places where curves are held against the trajectory
+ROTATION_TOLERANCE = 1e-6  # of quaternions: a point 2.5 m from the origin errs by no more than 5 micrometres
+ACCELERATION, DECELERATION = 2.0, 3.0   # m/s^2, of cars in traffic
+
+
+class Trajectory(_core.CurveMotion):
+    """Where something is over time: a path through points that is travelled at some speed; a Motion of objects and radars.
+
+    `scene.add(..., motion=trajectory)`, `ep.Radar(motion=trajectory)`; actors with wheels and legs take it themselves
+    (`ep.actors.car(trajectory=trajectory)`). It places an object in the axes of its parent, turned by the yaw; the position
+    [0, 0, 0] of that object belongs to the points as they are. Before its begin and after its end it stands where it is
+    then; `goes_on` lets it go straight on, `Traffic.show` hides what is not there.
+
+    points: [P, 2] or [P, 3] in m, P >= 2; those of two columns are at z = 0
+    speed: m/s, constant; or [N, 2]: distances in m and speeds in m/s, between which the acceleration is constant; of `times`
+        [P] m/s at the points, None: as the points say
+    times: [P] in s, ascending: when it is at the points, which then may repeat where it stands. None: by `speed`
+    yaw: [P] in rad, with `times`: where it looks. None: along the path
+    turn_radius: m; straight lines between the points, joined by arcs. None: a C2 spline over the chord lengths
+    stops: [N, 2]: distances in m (math.inf: the end) and waiting times in s; one at 0 lets it start from rest. Needs no times
+    acceleration, deceleration: m/s^2, by which it leaves and reaches its stops
+    lateral_acceleration: m/s^2, the most that it takes in curves, before which it slows down; None: it does not
+    speed_over: "distance", or "time": the first column of `speed` is the time in s since its begin, the speed linear between
+    start_time: s, when it is at its first point; of `times`, their own
+    goes_on: s, so long it goes straight on at its first and last speed before its begin and after its end
+    pitch: whether its nose follows the slope of the path; else it stays level
+    kind: what moves, as files tell ("passenger")
+
+    What the core follows are cubics through positions and velocities (`translation`, `rotation`) at times at which they err by
+    less than 10 micrometres, and the rotation by less than 4 microradians. Raises TypeError or ValueError naming the argument.
+    """
+
+    @checked(self=anything, points=checked_points, speed=anything, times=optional(checked_times),
+             yaw=optional(array("[P]", finite=True)), turn_radius=optional(positive("m")), stops=checked_stops,
+             acceleration=positive("m/s^2"), deceleration=positive("m/s^2"), lateral_acceleration=optional(positive("m/s^2")),
+             speed_over=choice("distance", "time"), start_time=real(-1e9, 1e9, "s"), goes_on=real(0.0, 1e5, "s"), pitch=flag,
+             kind=text)
+    def __init__(self, points: ArrayLike, *, speed: ArrayLike | None = None, times: ArrayLike | None = None,
+                 yaw: ArrayLike | None = None, turn_radius: float | None = None, stops: ArrayLike = (),
+                 acceleration: float = ACCELERATION, deceleration: float = DECELERATION,
+                 lateral_acceleration: float | None = None, speed_over: Literal["distance", "time"] = "distance",
+                 start_time: float = 0.0, goes_on: float = 0.0, pitch: bool = False, kind: str = ""):
+        arguments = {name: value for name, value in locals().items() if name not in ("self", "__class__")}
+        if times is None:
+            if yaw is not None:
+                raise refused(ValueError, "yaw", "given with times", yaw)
+            path = checked_path(points, turn_radius)
+            track = Track(path, profile_along(path, speed, stops, acceleration, deceleration, lateral_acceleration, speed_over,
+                                              start_time))
+        else:
+            track = _timed(arguments)
+        self._follow(track, goes_on=goes_on, pitch=pitch, kind=kind, made=(Trajectory, arguments))
+
+    def _follow(self, track: Track, *, goes_on: float, pitch: bool, kind: str, made: tuple) -> None:
+        """Becomes the motion of a track. made: (what makes it, its keywords), for copies."""
+        self._track = Track(track.path, track.profile.going_on(goes_on), track.headings)
+        self._has_pitch, self._kind, self._made = pitch, kind, made
+        junctions = self._track.junctions()
+        translation = curve_through(self._track.places, junctions, TOLERANCE)
+        rotation = curve_through(lambda t: self._track.rotations(t, pitch), junctions, ROTATION_TOLERANCE)
+        super().__init__(translation, rotation)
+
+    @property
+    def begin(self) -> float:
+        """s, from which on it moves."""
+        return self._track.profile.begin
+
+    @property
+    def end(self) -> float:
+        """s, until which it moves."""
+        return self._track.profile.end
+
+    @property
+    def length(self) -> float:
+        """m, of its path."""
+        return self._track.path.length
+
+    @property
+    def kind(self) -> str:
+        """What moves, "" where nothing is known."""
+        return self._kind
+
+    def position(self, time: ArrayLike) -> np.ndarray:
+        """Position [3] or [T, 3] in m at a time or times [T] in s. Raises TypeError or ValueError naming `time`."""
+        return _each(time, lambda at: self._track.places(at)[0])
+
+    def velocity(self, time: ArrayLike) -> np.ndarray:
+        """Velocity [3] or [T, 3] in m/s at a time or times [T] in s. Raises TypeError or ValueError naming `time`."""
+        return _each(time, lambda at: self._track.places(at)[1])
+
+    def acceleration(self, time: ArrayLike) -> np.ndarray:
+        """Acceleration [3] or [T, 3] in m/s^2 at a time or times [T] in s. Raises TypeError or ValueError naming `time`."""
+        return _each(time, self._track.accelerations)
+
+    def speed(self, time: ArrayLike) -> np.ndarray:
+        """Speed or [T] in m/s at a time or times [T] in s. Raises TypeError or ValueError naming `time`."""
+        return _each(time, lambda at: self._track.profile.at(at)[1])
+
+    def distance(self, time: ArrayLike) -> np.ndarray:
+        """Distance travelled since the first point, or [T], in m, at a time or times [T] in s; below 0 before it with `goes_on`.
+        Raises TypeError or ValueError naming `time`."""
+        return _each(time, lambda at: self._track.profile.at(at)[0])
+
+    def yaw(self, time: ArrayLike) -> np.ndarray:
+        """Direction that it looks in, or [T], in rad from +x to the left, without jumps, so that it may be beyond a turn; at a
+        time or times [T] in s. Raises TypeError or ValueError naming `time`."""
+        return _each(time, lambda at: self._track.yaws(at)[0])
+
+    def yaw_rate(self, time: ArrayLike) -> np.ndarray:
+        """Change of the yaw, or [T], in rad/s at a time or times [T] in s. Raises TypeError or ValueError naming `time`."""
+        return _each(time, lambda at: self._track.yaws(at)[1])
+
+    def time_at(self, distance: ArrayLike) -> np.ndarray:
+        """First time, or [N], in s at which it has travelled a distance, or distances [N], in m, from 0 to its length.
+        Raises TypeError or ValueError naming `distance`."""
+        def found(distances):
+            reached = self._track.profile.at(np.array([self.begin, self.end]))[0]
+            if np.any(distances < reached[0]) or np.any(distances > reached[1] + 1e-9):
+                raise refused(ValueError, "distance", f"from {reached[0]:g} to {reached[1]:g} m", distance)
+            return self._track.time_at(np.minimum(distances, reached[1]))
+        return _each(distance, found, "distance")
+
+    def shifted(self, seconds: float) -> Trajectory:
+        """The same, so many s later.
+
+        seconds: s. Raises TypeError or ValueError naming it.
+        """
+        seconds = real(-1e9, 1e9, "s")("seconds", seconds)
+        maker, arguments = self._made
+        if arguments.get("times") is not None:
+            return self.replace(times=np.asarray(arguments["times"], float) + seconds)
+        return self.replace(start_time=arguments["start_time"] + seconds)
+
+    def replace(self, **changes: Any) -> Trajectory:
+        """A copy with other values of some arguments.
+
+        changes: arguments of the constructor, or of `Lane.trajectory` where that made it, by name
+        Raises TypeError or ValueError as these do.
+        """
+        maker, arguments = self._made
+        return maker(**arguments | changes)
+
+    def __reduce__(self):
+        return _remade, self._made
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Trajectory) and self.kind == other.kind and super().__eq__(other)
+
+    def __hash__(self) -> int:
+        return super().__hash__()
+
+    def __repr__(self) -> str:
+        kind = f"'{self.kind}', " if self.kind else ""
+        return f"Trajectory({kind}{self.length:.6g} m from {self.begin:g} to {self.end:g} s)"
+
+
+def profile_along(path: Path, speed, stops, acceleration, deceleration, lateral_acceleration, speed_over, start_time):
+    """The Profile of a path, by the arguments of Trajectory."""
+    table, stops = checked_speed(speed, speed_over), checked_stops("stops", stops)
+    places = np.minimum(stops[:, 0], path.length)
+    if np.any(places < stops[:, 0]) and np.any(np.isfinite(stops[places < stops[:, 0], 0])):
+        raise refused(ValueError, "stops", f"at distances from 0 to {path.length:g} m, or math.inf", stops.tolist())
+    stops = np.stack([places, stops[:, 1]], axis=-1)
+    if np.any(np.diff(places) <= 0.0):
+        raise refused(ValueError, "stops", "at ascending distances", stops.tolist())
+    limits = Limits(stops, acceleration, deceleration, lateral_acceleration)
+    if speed_over == "distance":
+        return over_distance(start_time, table, path, limits)
+    if limits.are_any:
+        raise refused(ValueError, "speed_over", "'distance', with stops and lateral_acceleration", speed_over)
+    return over_time(start_time, table, path.length)
+
+
+def _timed(arguments: dict) -> Track:
+    """The Track through points at times."""
+    points, times = arguments["points"], arguments["times"]
+    for name, at_rest in (("stops", ()), ("lateral_acceleration", None), ("start_time", 0.0)):
+        if len(arguments[name]) if name == "stops" else arguments[name] != at_rest:
+            raise refused(ValueError, name, "given without times", arguments[name])
+    if len(times) != len(points):
+        raise refused(ValueError, "times", f"as many as the {len(points)} points", times)
+    headings = checked_headings(arguments["yaw"], times)
+    towards = 0.0 if headings is None else float(headings.at(times[:1])[0][0])
+    path, places = _path_of_places(points, arguments["turn_radius"], towards)
+    speeds = arguments["speed"]
+    if speeds is not None:
+        speeds = np.asarray(array("[P]", finite=True)("speed", speeds), float)
+        if len(speeds) != len(points) or np.any(speeds < 0.0):
+            raise refused(ValueError, "speed", f"{len(points)} numbers of at least 0 m/s, one for each of the times", speeds)
+    return Track(path, through(times, places, speeds), headings)
+
+
+def _path_of_places(points, turn_radius, towards: float):
+    """(the Path through points [P, 3] which may repeat, their distances [P] along it)."""
+    moved = np.linalg.norm(np.diff(points, axis=0), axis=-1) > 1e-3
+    index = np.concatenate([[0], np.cumsum(moved)])
+    own = points[np.concatenate([[True], moved])]
+    if len(own) == 1:
+        own = np.concatenate([own, own + [[math.cos(towards), math.sin(towards), 0.0]]])
+    if turn_radius is not None:
+        raise refused(ValueError, "turn_radius", "given without times", turn_radius)
+    path = checked_path(own, None)
+    return path, path.junctions[index]
+
+
+def _each(values: ArrayLike, function, argument: str = "time"):
+    """function [N] -> [N, ...] of a number or numbers [N]."""
+    given = np.asarray(array("[]", "[T]", finite=True)(argument, values), float)
+    found = function(np.atleast_1d(given))
+    return found if given.ndim else found[0]
+
+
+def _remade(maker, arguments: dict):
+    return maker(**arguments)

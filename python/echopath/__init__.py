@@ -58,6 +58,7 @@ from .tracing import mie_rcs, rcs, trace
 from .tracks import Tracks, track
 from .truth import Truth, truth
 from .trajectories import Lane, Trajectory
+from .trajectories import Lane, Traffic, Trajectory, add_traffic, read_trajectories
 from .viewing import plot_rays, view
 from .visibility import ObjectVisibility, Sight, visibility
 
@@ -65,21 +66,22 @@ __all__ = [
     "Actor", "AngleEstimates", "AngleSpectrum", "AngleTime", "Antenna", "AntennaPattern", "BeamPower", "CfarResult",
     "Check", "ChirpSequence", "CoplanarOverlap", "CosinePower", "Curve", "CurveMotion", "Deformation", "Detections",
     "DeviceError", "Effect", "Families", "Family", "FileError", "Frame", "FrameMaps", "GainTable", "GhostLabel",
-    "GuardWarning", "Interval", "Isotropic", "Joint", "KeyframeMotion", "LabelSettings", "Labels", "LinearMotion",
-    "Material", "Mesh", "Model", "ModelNode", "MorphTargets", "Motion", "ObjectLabel", "ObjectValidity",
+    "GuardWarning", "Interval", "Isotropic", "Joint", "KeyframeMotion", "LabelSettings", "Labels", "Lane",
+    "LinearMotion", "Material", "Mesh", "Model", "ModelNode", "MorphTargets", "Motion", "ObjectLabel", "ObjectValidity",
     "ObjectVisibility", "Part", "Parts", "PathCells", "Paths", "Radar", "RangeAzimuth", "RangeDoppler", "RangeTime",
     "ReceivedPower", "Renewal", "SavedFrame", "Scene", "SceneFile", "SceneNode", "Selection", "Sequence", "Sight",
     "SignalProbe", "SignalSettings", "Skin", "Spectrogram", "SpectrogramLabels", "StoredSequence", "Stratum",
-    "TessellationWarning", "TraceFrame", "TraceSettings", "TraceStatistics", "Tracks", "Truth", "Unresolved", "Validity",
-    "ValidityShares", "VertexSequence", "VirtualArray", "actors", "add_noise", "angle_fft", "angle_time", "annotate",
-    "annotate_frame", "beamform", "boltzmann", "cfar", "check_rays", "check_signal", "compensate_tdm", "decompose",
-    "detect", "detect_frame", "effects", "estimate_angles", "families", "first", "foreign_materials", "hits", "last",
-    "load_antenna", "load_frame", "load_labels", "load_mesh", "load_meshes", "load_model", "load_scene", "load_sequence",
-    "materials", "mesh_from", "mie_rcs", "num_bounces", "num_threads", "path_cells", "plot_rays", "plots", "power",
-    "power_by_chirp", "range_azimuth", "range_doppler", "range_time", "rcs", "received_power", "received_powers",
-    "renew", "save_frame", "save_label_images", "save_labels", "set_num_threads", "simulate", "spectrogram",
-    "spectrogram_labels", "speed_of_light", "synthesize", "trace", "track", "truth", "unresolved", "validity", "view",
-    "virtual_array", "visibility",
+    "TessellationWarning", "TraceFrame", "TraceSettings", "TraceStatistics", "Tracks", "Traffic", "Trajectory", "Truth",
+    "Unresolved", "Validity", "ValidityShares", "VertexSequence", "VirtualArray", "actors", "add_noise", "add_traffic",
+    "angle_fft", "angle_time", "annotate", "annotate_frame", "beamform", "boltzmann", "cfar", "check_rays",
+    "check_signal", "compensate_tdm", "decompose", "detect", "detect_frame", "effects", "estimate_angles", "families",
+    "first", "foreign_materials", "hits", "last", "load_antenna", "load_frame", "load_labels", "load_mesh",
+    "load_meshes", "load_model", "load_scene", "load_sequence", "materials", "mesh_from", "mie_rcs", "num_bounces",
+    "num_threads", "path_cells", "plot_rays", "plots", "power", "power_by_chirp", "range_azimuth", "range_doppler",
+    "range_time", "rcs", "read_trajectories", "received_power", "received_powers", "renew", "save_frame",
+    "save_label_images", "save_labels", "set_num_threads", "simulate", "spectrogram", "spectrogram_labels",
+    "speed_of_light", "synthesize", "trace", "track", "truth", "unresolved", "validity", "view", "virtual_array",
+    "visibility",
 ]
 
 

@@ -13,7 +13,8 @@ from .gait import MIN_KNEE, Frames, bend_leg
 from .rotations import about_y, about_z
 
 STEP = 2.0**-8          # s, of the table of ways
-SLOWEST = 0.3           # of the speed that the gait is made for: slower steps are not much shorter
+SLOWEST = 0.2           # of the speed that the gait is made for: slower steps are not much shorter
+END_WAY = 0.01          # m, over which the length of a step is taken at the ends
 LEAST_ROOM = 0.3        # m, of a leg under a hip
 
 
@@ -67,11 +68,14 @@ class GaitAlong:
         return np.interp(way, way[stops], at_stops)
 
     def _distance_of(self, line):
-        """Distances [...] along the path of places on the line; beyond its ends as if it went on evenly."""
+        """Distances [...] along the path of places on the line; beyond its ends with steps as long as they are there."""
         places, distances = self._sources
-        share = (distances[-1] - distances[0]) / (places[-1] - places[0])
+        near = int(np.searchsorted(distances, min(distances[0] + END_WAY, distances[-1])))
+        far = int(np.searchsorted(distances, max(distances[-1] - END_WAY, distances[0]), side="right")) - 1
+        first = (distances[near] - distances[0]) / (places[near] - places[0])
+        last = (distances[-1] - distances[far]) / (places[-1] - places[far])
         inside = np.clip(line, places[0], places[-1])
-        return np.interp(inside, places, distances) + share * (line - inside)
+        return np.interp(inside, places, distances) + np.where(line < inside, first, last) * (line - inside)
 
     def _pelvis(self, phase):
         pelvis = self._gait._pelvis(phase, self._pelvis_height)

@@ -1,0 +1,143 @@
+"""Positions over time in XML: floating car data of SUMO, and tracks of GPS receivers (GPX)."""
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from xml.parsers import expat
+
+from .. import _core
+from .samples import MAX_BYTES, MOST_SAMPLES, Samples, instant, number, refuse
+
+MAX_DEPTH = 64          # of nested elements
+
+
+def read_fcd(path: Path, length_of: Callable[[str], float]) -> dict[str, Samples]:
+    """{name: Samples} of a file of SUMO's --fcd-output; length_of: m, of a vehicle of a type. Raises FileError.
+
+    x and y are the middle of the front bumper, the angle is in degrees from north (+y) clockwise. Persons are where they are.
+    """
+    tracks: dict[str, Samples] = {}
+    state = {"time": math.nan, "root": "", "count": 0}
+
+    def begin(tag: str, attributes: Mapping[str, str], line: int) -> None:
+        if not state["root"]:
+            state["root"] = tag
+            if tag != "fcd-export":
+                refuse(path, line, f"must begin with <fcd-export>, got <{tag[:60]}>")
+        if tag == "timestep":
+            state["time"] = number(path, line, "time", _attribute(path, line, tag, attributes, "time"), 1e9)
+        elif tag in ("vehicle", "person"):
+            state["count"] += 1
+            if state["count"] > MOST_SAMPLES or math.isnan(state["time"]):
+                refuse(path, line, f"<{tag}>: must stand in a <timestep>, at most {MOST_SAMPLES} in all")
+            _add_vehicle(path, line, tag, attributes, state["time"], tracks, length_of)
+
+    _parse(path, begin)
+    return tracks
+
+
+def _attribute(path: Path, line: int, tag: str, attributes: Mapping[str, str], name: str) -> str:
+    if name not in attributes:
+        refuse(path, line, f"<{tag}>: {name} is missing")
+    return attributes[name]
+
+
+def _add_vehicle(path, line, tag, attributes, time, tracks, length_of) -> None:
+    """Adds the middle of a vehicle, or a person."""
+    def of(name: str, most: float) -> float:
+        return number(path, line, name, _attribute(path, line, tag, attributes, name), most)
+
+    x, y, yaw = of("x", 1e7), of("y", 1e7), math.radians(90.0 - of("angle", 1e6))
+    z = of("z", 1e7) if "z" in attributes else 0.0
+    kind = attributes.get("type", "") or ("pedestrian" if tag == "person" else "")
+    back = 0.5 * length_of(kind) if tag == "vehicle" else 0.0
+    samples = tracks.setdefault(_attribute(path, line, tag, attributes, "id"), Samples(kind=kind))
+    samples.lines.append(line)
+    samples.times.append(time)
+    samples.places.append((x - back * math.cos(yaw), y - back * math.sin(yaw), z))
+    samples.yaws.append(yaw)
+
+
+def read_gpx(path: Path) -> dict[str, Samples]:
+    """{name: Samples} of the tracks of a GPX file, whose places are latitudes, longitudes and heights. Raises FileError."""
+    reader = _Gpx(path)
+    _parse(path, reader.begin, reader.end, reader.text)
+    return reader.tracks
+
+
+class _Gpx:
+    """Gathers the track points of a GPX file."""
+
+    def __init__(self, path: Path):
+        self.tracks: dict[str, Samples] = {}
+        self._path, self._texts, self._name, self._count = path, {}, path.stem, 0
+        self._point: tuple[int, float, float] | None = None
+        self._inside: list[str] = []
+
+    def begin(self, tag: str, attributes: Mapping[str, str], line: int) -> None:
+        self._inside.append(tag)
+        if tag == "trk":
+            self._count += 1
+            self._name = self._path.stem if self._count == 1 else f"{self._path.stem}_{self._count}"
+        if tag == "trkpt":
+            latitude, longitude = (number(self._path, line, name, _attribute(self._path, line, tag, attributes, name), most)
+                                   for name, most in (("lat", 90.0), ("lon", 360.0)))
+            self._point, self._texts = (line, latitude, longitude), {}
+
+    def text(self, words: str) -> None:
+        if self._inside:
+            self._texts[self._inside[-1]] = self._texts.get(self._inside[-1], "")[:1000] + words[:1000]
+
+    def end(self, tag: str, line: int) -> None:
+        self._inside.pop()
+        if tag == "name" and self._inside[-1:] == ["trk"] and self._texts.get("name", "").strip():
+            self._name = self._texts["name"].strip()
+        if tag == "trkpt" and self._point is not None:
+            begin, latitude, longitude = self._point
+            if "time" not in self._texts:
+                refuse(self._path, begin, "<trkpt>: time is missing")
+            samples = self.tracks.setdefault(self._name, Samples())
+            samples.lines.append(begin)
+            samples.times.append(instant(self._path, begin, "time", self._texts["time"]))
+            height = number(self._path, begin, "ele", self._texts["ele"], 1e5) if "ele" in self._texts else 0.0
+            samples.places.append((latitude, longitude, height))
+
+
+def _parse(path: Path, begin, end=None, text=None) -> None:
+    """Calls begin(tag, attributes, line), end(tag, line) and text(words) for the content of an XML file without entities."""
+    parser = expat.ParserCreate()
+    depth = [0]
+
+    def on_begin(tag, attributes):
+        depth[0] += 1
+        if depth[0] > MAX_DEPTH:
+            refuse(path, parser.CurrentLineNumber, f"more than {MAX_DEPTH} elements within each other")
+        begin(tag, attributes, parser.CurrentLineNumber)
+
+    def on_end(tag):
+        depth[0] -= 1
+        if end:
+            end(tag, parser.CurrentLineNumber)
+
+    def refuse_types(*_):
+        refuse(path, parser.CurrentLineNumber, "a document type, which may expand without end, is refused")
+
+    parser.StartElementHandler, parser.EndElementHandler = on_begin, on_end
+    parser.StartDoctypeDeclHandler = refuse_types
+    if text:
+        parser.CharacterDataHandler = text
+    try:
+        if path.stat().st_size > MAX_BYTES:
+            raise _core.FileError(f"{path}: is larger than {MAX_BYTES} bytes")
+        with open(path, "rb") as file:
+            parser.ParseFile(file)
+    except expat.ExpatError as error:
+        reason = expat.errors.messages[error.code] if error.code in expat.errors.messages else str(error)
+        raise _core.FileError(f"{path}, line {error.lineno}: is no XML ({reason})") from None
+    except OSError as error:
+        if isinstance(error, _core.FileError):
+            raise
+        raise _core.FileError(f"{path}: cannot be read ({error.strerror})") from None
+    except (LookupError, ValueError) as error:  # an encoding that is not known
+        raise _core.FileError(f"{path}: is no XML ({error})") from None

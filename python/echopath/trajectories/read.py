@@ -1,0 +1,116 @@
+"""Trajectories of files."""
+from __future__ import annotations
+
+import os
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .. import _core
+from ..checks import array, checked, real, refused
+from ..checks import file as file_rule
+from .geodesy import east_north_up
+from .markup import read_fcd, read_gpx
+from .samples import Samples, refuse
+from .smoothing import smoothed
+from .table import read_table
+from .trajectory import Trajectory
+
+SUMO_LENGTH = 5.0      # m, of a passenger car of SUMO whose type names no other
+SUFFIXES = (".csv", ".txt", ".tsv", ".xml", ".gpx")
+
+
+def _origin_rule(argument: str, value):
+    if value is None:
+        return None
+    origin = np.asarray(array("[2]", "[3]", finite=True)(argument, value), float)
+    if abs(origin[0]) > 90.0 or abs(origin[1]) > 360.0:
+        raise refused(ValueError, argument, "latitude and longitude in degrees, and a height in m", value)
+    return np.append(origin, np.zeros(3 - len(origin)))
+
+
+def _length_rule(argument: str, value):
+    rule = real(0.0, 100.0, "m")
+    if isinstance(value, Mapping):
+        return {str(kind): rule(f"{argument}['{kind}']" if isinstance(kind, str) else argument, one) for kind, one in value.items()}
+    return rule(argument, value)
+
+
+@checked(path=file_rule, origin=_origin_rule, smoothing=real(0.0, unit="m"), vehicle_length=_length_rule)
+def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None = None, smoothing: float = 0.0,
+                      vehicle_length: float | Mapping[str, float] = SUMO_LENGTH) -> dict[str, Trajectory]:
+    """Reads where objects were over time, by the suffix of the file:
+
+    .csv, .txt, .tsv: a line of names of columns, then a row for each position: time (s, or ISO 8601), x and y (m), or lat and lon
+        (degrees), and, where it has them, z or ele (m), id or name, type, yaw (rad, from x to y) or yaw_deg, speed (m/s). Names
+        may be written in other usual ways ("Timestamp [s]", "track_id"); other columns are left out. Commas, semicolons or tabs
+    .xml: floating car data of SUMO (--fcd-output); vehicles and persons. Speeds are those of the positions
+    .gpx: tracks of a GPS receiver
+
+    origin: (latitude, longitude) in degrees, or with a height in m, about which positions of .gpx and of tables with lat and lon
+        are made metres east (x), north (y) and up (z), on the WGS 84 ellipsoid; None: the first position of the file
+    smoothing: m, root mean square by which the positions of an object may be moved to make them smooth; 0: not at all
+    vehicle_length: m, or {type: m}, by whose half the middle of a vehicle of SUMO lies behind the front bumper, of which its
+        files tell; types that are not among them have 5 m, those of SUMO's cars
+    Returns {name: Trajectory}, in the order of the file, each with the kind that the file tells. Between positions it goes along
+    a C2 spline, by distances that are monotone cubics over time, so that what stands stays. Times are those of the file; ISO 8601
+    counts from the first of the file. Warns (RuntimeWarning) of objects with a single position, which are left out.
+    Raises FileError naming the file, the line, the rule and the value, TypeError or ValueError naming the argument.
+    """
+    path = Path(path)
+    suffix = path.suffix.lower()
+    if suffix == ".xml":
+        tracks, is_geographic = read_fcd(path, _length_of(vehicle_length)), False
+    elif suffix == ".gpx":
+        tracks, is_geographic = read_gpx(path), True
+    elif suffix in SUFFIXES:
+        tracks, is_geographic = read_table(path)
+    else:
+        raise _core.FileError(f"{path}: must end in {', '.join(SUFFIXES)}")
+    if not tracks:
+        raise _core.FileError(f"{path}: holds no positions")
+    earliest = min(min(samples.times) for samples in tracks.values())
+    for samples in tracks.values():
+        _check_order(path, samples)
+        if earliest > 1e8:      # seconds since 1970
+            samples.times = [time - earliest for time in samples.times]
+    if is_geographic:
+        origin = next(iter(tracks.values())).places[0] if origin is None else origin
+    return _trajectories(path, tracks, origin if is_geographic else None, smoothing)
+
+
+def _length_of(vehicle_length):
+    """type -> m"""
+    if isinstance(vehicle_length, Mapping):
+        return lambda kind: vehicle_length.get(kind, SUMO_LENGTH)
+    return lambda kind: vehicle_length
+
+
+def _check_order(path: Path, samples: Samples) -> None:
+    """Raises FileError where the times of an object do not ascend."""
+    for before, after, line in zip(samples.times, samples.times[1:], samples.lines[1:]):
+        if after - before < 1e-6:
+            refuse(path, line, f"time: must be later than the {before:.12g} s of the row before of the same object, got {after:.12g}")
+
+
+def _trajectories(path: Path, tracks: dict[str, Samples], origin, smoothing: float) -> dict[str, Trajectory]:
+    single = [name for name, samples in tracks.items() if len(samples.times) < 2]
+    if single:
+        warnings.warn(f"{path}: {len(single)} objects have a single position and are left out, such as '{single[0][:60]}'",
+                      RuntimeWarning, stacklevel=4)
+    found = {}
+    for name, samples in tracks.items():
+        if len(samples.times) < 2:
+            continue
+        places = np.array(samples.places)
+        if origin is not None:
+            places = east_north_up(places[:, 0], places[:, 1], places[:, 2], origin)
+        try:
+            found[name] = Trajectory(smoothed(np.array(samples.times), places, smoothing), times=samples.times,
+                                     yaw=samples.yaws or None, speed=samples.speeds or None, kind=samples.kind)
+        except ValueError as error:
+            refuse(path, samples.lines[0], f"'{name[:60]}': {error}")
+    return found

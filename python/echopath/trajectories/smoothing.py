@@ -1,0 +1,76 @@
+"""Smoothing of sampled positions, by no more than asked for.
+
+The smoothed positions z make |y - z|^2 + w |z''|^2 least (E. T. Whittaker, "On a new method of graduation", Proc. Edinburgh
+Math. Soc. 41 (1923) 63-75), z'' being second divided differences in time; the weight w is the one that moves the positions by
+the root mean square that is asked for.
+"""
+import numpy as np
+
+ROUNDS = 40                # of the search for the weight
+
+
+def smoothed(times, positions, distance: float):
+    """Positions [N, D] in m at times [N] in s, moved by `distance` m in the root mean square at most."""
+    if distance <= 0.0 or len(times) < 3:
+        return positions
+    step = np.mean(np.diff(times))
+    low, high = -6.0, 10.0            # powers of ten of the weight, in steps
+    found = positions
+    if _shift(_solved(times, positions, step, 10.0**high), positions) <= distance:
+        return _solved(times, positions, step, 10.0**high)
+    for _ in range(ROUNDS):
+        middle = 0.5 * (low + high)
+        tried = _solved(times, positions, step, 10.0**middle)
+        if _shift(tried, positions) <= distance:
+            low, found = middle, tried
+        else:
+            high = middle
+    return found
+
+
+def _shift(tried, positions):
+    return np.sqrt(np.mean(np.sum((tried - positions) ** 2, axis=1)))
+
+
+def _solved(times, positions, step, weight):
+    """The least of |y - z|^2 + weight |z''|^2."""
+    h = np.diff(times) / step
+    rows = np.stack([1.0 / h[:-1], -1.0 / h[:-1] - 1.0 / h[1:], 1.0 / h[1:]]) * (2.0 / (h[:-1] + h[1:]))
+    banded = _normal(rows, weight, len(times))
+    return _by_cholesky(banded, positions)
+
+
+def _normal(rows, weight, count):
+    """The diagonal and the two above it [3, N] of 1 + weight D^T D, with second differences D of `rows` [3, N-2]."""
+    bands = np.zeros((3, count))
+    bands[0] = 1.0
+    for i in range(3):
+        for j in range(i, 3):
+            bands[j - i, i:i + count - 2] += weight * rows[i] * rows[j]
+    return bands
+
+
+def _by_cholesky(bands, right):
+    """The solution [N, D] of a symmetric system of two diagonals beside the main one [3, N]."""
+    d, e, f = (band.tolist() for band in bands)
+    z = [list(row) for row in np.asarray(right, float)]
+    columns, count = range(len(z[0])), len(d)
+    lower, lowest = [0.0] * count, [0.0] * count     # of the factor L D L^T, beside its diagonal
+    for k in range(count):
+        if k >= 2:
+            lowest[k] = f[k - 2] / d[k - 2]
+        if k >= 1:
+            lower[k] = (e[k - 1] - (lowest[k] * d[k - 2] * lower[k - 1] if k >= 2 else 0.0)) / d[k - 1]
+            d[k] -= lower[k] ** 2 * d[k - 1] + (lowest[k] ** 2 * d[k - 2] if k >= 2 else 0.0)
+        for c in columns:
+            z[k][c] -= (lower[k] * z[k - 1][c] if k >= 1 else 0.0) + (lowest[k] * z[k - 2][c] if k >= 2 else 0.0)
+    for k in range(count - 1, -1, -1):
+        for c in columns:
+            z[k][c] /= d[k]
+    for k in range(count - 1, -1, -1):
+        for c in columns:
+            if k + 1 < count:
+                z[k][c] -= lower[k + 1] * z[k + 1][c]
+            if k + 2 < count:
+                z[k][c] -= lowest[k + 2] * z[k + 2][c]
+    return np.array(z)

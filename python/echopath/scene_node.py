@@ -6,6 +6,7 @@ import numpy as np
 from . import _core, placements
 from .checks import flag, real, refused, vector
 from .materials import known_material
+from .trajectories.trajectory import Trajectory
 
 ANGLE = real(unit="rad")
 
@@ -178,6 +179,8 @@ class SceneNode:
 
 def split_motion(motion, mesh, name: str) -> tuple:
     """What moves an object as the core has it: (Motion or None, Deformation or None), one of them at most."""
+    if isinstance(motion, Trajectory):
+        motion = motion.motion()
     deformation = motion if isinstance(motion, _core.Deformation) else None
     if deformation is not None and mesh is None:
         raise ValueError(f"motion: a {type(motion).__name__} needs a mesh, and '{name}' has none of its own")

@@ -17,6 +17,7 @@ from .foreign import foreign_scene
 from .objects import build_scene, motion_of
 from .scene_file import SceneFile
 from .schema import AngleTable, RadarTable, SceneTable
+from .trajectories import Trajectories
 
 
 def read_scene(path: Path) -> SceneFile:
@@ -26,8 +27,9 @@ def read_scene(path: Path) -> SceneFile:
     table = _parse(path)
     try:
         settings = validated(SceneTable, table)
-        scene_file = SceneFile(path=path, title=settings.title, scene=build_scene(settings, path.parent),
-                               radar=_build_radar(settings.radar, path.parent), trace=_trace(settings),
+        trajectories = Trajectories(path.parent)
+        scene_file = SceneFile(path=path, title=settings.title, scene=build_scene(settings, path.parent, trajectories),
+                               radar=_build_radar(settings.radar, path.parent, trajectories), trace=_trace(settings),
                                signal=_signal(settings), angle=settings.angle, parts=dict(settings.parts),
                                labels=_labels(settings), detections=settings.detections, guard=settings.guard,
                                sequence=settings.sequence)
@@ -90,7 +92,7 @@ def _parse(path: Path) -> dict:
         raise ValueError(f"{path}: {error}") from None
 
 
-def _build_radar(table: RadarTable, folder: Path):
+def _build_radar(table: RadarTable, folder: Path, trajectories: Trajectories):
     with blamed("radar.waveform"):
         waveform = _core.ChirpSequence(**table.waveform.model_dump())
     antennas = {}
@@ -104,7 +106,8 @@ def _build_radar(table: RadarTable, folder: Path):
                            noise_figure_db=table.noise_figure_db, multiplexing=table.multiplexing,
                            position=tuple(table.position), yaw=math.radians(table.yaw_deg),
                            pitch=math.radians(table.pitch_deg),
-                           motion=motion_of(table.motion, "radar.motion"), speed=table.speed)
+                           motion=motion_of(table.motion, "radar.motion") or trajectories.of(table, "radar"),
+                           speed=table.speed)
 
 
 def _antenna(antenna, radar: RadarTable, folder: Path):

@@ -15,6 +15,7 @@ from ..readers import load_model
 from ..scene import Scene
 from .errors import blamed, validated
 from .schema import MODEL_KEYS, ObjectTable, SceneTable, Table, nearest_key
+from .trajectories import Trajectories
 
 
 def motion_of(table, key: str):
@@ -42,7 +43,7 @@ def _material(value, key: str):
         return materials[base].replace(**given) if base is not None else _core.Material(**given)
 
 
-def build_scene(settings: SceneTable, folder: Path):
+def build_scene(settings: SceneTable, folder: Path, trajectories: Trajectories):
     scene = Scene()
     meshes_of_file = functools.cache(_core.load_meshes)  # objects that name one file share its meshes
     for index, table in enumerate(settings.objects):
@@ -50,15 +51,18 @@ def build_scene(settings: SceneTable, folder: Path):
         placement = {"transform": table.transform} if table.transform is not None else {
             "position": tuple(table.position or (0.0, 0.0, 0.0)), "yaw": math.radians(table.yaw_deg or 0.0)}
         material = _material(table.material, f"{key}.material")
-        shape, material = _shape(table, folder, key, material, meshes_of_file)
+        trajectory = trajectories.of(table, key)
+        shape, material = _shape(table, folder, key, material, meshes_of_file, trajectory)
         motion = motion_of(table.motion, f"{key}.motion")
+        if trajectory is not None and getattr(shape, "motion", None) is None:
+            motion = trajectory
         with blamed(key):
             scene.add(shape, name=table.name, material=material, motion=motion, speed=table.speed, parent=table.parent,
                       smooth=table.smooth, visible=table.visible, **placement)
     return scene
 
 
-def _shape(table: ObjectTable, folder: Path, key: str, material, meshes_of_file):
+def _shape(table: ObjectTable, folder: Path, key: str, material, meshes_of_file, trajectory):
     """The object's mesh, group of meshes, model or actor, and the material still to be given to it."""
     if table.mesh is not None:
         with blamed(f"{key}.mesh"):
@@ -73,6 +77,8 @@ def _shape(table: ObjectTable, folder: Path, key: str, material, meshes_of_file)
         parameters["path"] = folder / parameters["path"]  # of a motion capture, relative to the scene file
     if material is not None and "material" in _parameters(factory):
         parameters["material"], material = material, None
+    if trajectory is not None and "trajectory" in _parameters(factory):
+        parameters["trajectory"] = trajectory
     with blamed(f"{key}.parameters"):
         return factory(**parameters), material
 
@@ -111,5 +117,5 @@ def _parameters(factory) -> dict:
 def _parameter_table(name: str, factory) -> type[Table]:
     """The keywords of an actor as a table: its signature is their only home, their values it checks itself."""
     fields = {parameter.name: (typing.Any, ... if parameter.default is parameter.empty else parameter.default)
-              for parameter in _parameters(factory).values() if parameter.name != "material"}
+              for parameter in _parameters(factory).values() if parameter.name not in ("material", "trajectory")}
     return create_model(f"{name}_parameters", __base__=Table, **fields)

@@ -21,6 +21,8 @@ from ..settings import (
 )
 from ..shown import writable
 from ..spectra import FALSE_ALARM_RATE, RANK, CfarMethod
+from ..trajectories.arguments import checked_points, checked_stops, checked_times
+from ..trajectories.trajectory import ACCELERATION, DECELERATION
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
@@ -173,6 +175,37 @@ MotionTable = Annotated[
     Discriminator(by_kind("kind"))]
 
 
+class TrajectoryTable(Table):
+    points: Annotated[Any, by_check(checked_points)] = Field(description="m, an array of [x, y] or [x, y, z]")
+    speed: Any = Field(None, description="m/s, or an array of [m or s, m/s]; with times: m/s, one per time")
+    times: Annotated[Any, by_check(checked_times)] | None = Field(None, description="s, one per point, ascending")
+    yaw_deg: list[Number] | None = Field(None, description="degrees, one per time; none: along the path")
+    turn_radius: Positive | None = Field(None, description="m, straight lines joined by arcs; none: a spline")
+    stops: Annotated[Any, by_check(checked_stops)] = Field((), description="an array of [m, waiting time in s]")
+    acceleration: Positive = Field(ACCELERATION, description="m/s^2, by which it leaves its stops")
+    deceleration: Positive = Field(DECELERATION, description="m/s^2, by which it reaches them")
+    lateral_acceleration: Positive | None = Field(None, description="m/s^2, at most, in curves; none: any")
+    speed_over: Literal["distance", "time"] = Field("distance", description="what the first column of speed counts")
+    start_time: Number = Field(0.0, description="s, at the first point")
+    goes_on: NotNegative = Field(0.0, description="s, straight on before its begin and after its end")
+    pitch: bool = Field(False, description="its nose follows the slope of the path")
+
+
+TrajectoryValue = Annotated[
+    Annotated[str, Tag("<file>")] | Annotated[TrajectoryTable, Tag("<table>")],
+    Discriminator(lambda value: "<file>" if isinstance(value, str) else "<table>")]
+
+
+def one_motion(table):
+    """Raises where a table has several motions, or an id without a file to look it up in."""
+    given = [key for key in ("motion", "speed", "trajectory") if getattr(table, key) is not None]
+    if len(given) > 1:
+        raise broken_rule(given[1], f"must not stand beside {given[0]}", getattr(table, given[1]))
+    if table.id is not None and not isinstance(table.trajectory, str):
+        raise broken_rule("id", "needs a trajectory that is a file", table.id)
+    return table
+
+
 class RadarTable(Table):
     waveform: WaveformTable
     transmitters: list[AntennaTable] = Field(min_length=1, description="at least one")
@@ -187,6 +220,10 @@ class RadarTable(Table):
     pitch_deg: Pitch = Field(0.0, description="degrees, up positive")
     motion: MotionTable | None = Field(None, description="of the placed radar, in world axes; none: it stands still")
     speed: Number | None = Field(None, description="m/s, level and ahead as yaw_deg turns it, instead of motion")
+    trajectory: TrajectoryValue | None = Field(None, description="a table or a file, instead of motion")
+    id: str | None = Field(None, description="of the object of the file; none: its only one")
+
+    _one_motion = model_validator(mode="after")(one_motion)
 
 
 class MaterialTable(Table):
@@ -230,6 +267,8 @@ class ObjectTable(Table):
     transform: Matrix4 | None = Field(None, description="4 x 4, instead of position and yaw_deg")
     motion: MotionTable | None = Field(None, description="in the axes of the parent; none: it stands still")
     speed: Number | None = Field(None, description="m/s straight ahead, along its own +x, instead of motion")
+    trajectory: TrajectoryValue | None = Field(None, description="a table or a file, instead of motion")
+    id: str | None = Field(None, description="of the object of the file; none: its only one")
     parent: str | None = Field(None, description="full name of the node that carries it; none: the scene")
     smooth: bool = Field(False, description="the mesh stands for a curved surface")
     visible: bool = Field(True, description="false: it takes no part in anything until it is shown")
@@ -253,11 +292,7 @@ class ObjectTable(Table):
             raise broken_rule("transform", "must not stand beside position or yaw_deg", self.transform)
         return self
 
-    @model_validator(mode="after")
-    def _one_motion(self):
-        if self.speed is not None and self.motion is not None:
-            raise broken_rule("speed", "must not stand beside motion", self.speed)
-        return self
+    _one_motion = model_validator(mode="after")(one_motion)
 
 
 class TraceTable(Table):

@@ -10,6 +10,7 @@ from .profile import Profile, hermite_coefficients, slopes_of
 MOST_POINTS = 1_000_000
 FARTHEST = 1e7          # m, beyond which positions in double precision are no longer those of radar
 FASTEST = 1e4           # m/s
+LATEST = 1e7            # s, beyond which a time in double precision is no longer known to nanoseconds
 NEAREST = 1e-3          # m, of points that follow each other
 
 
@@ -36,8 +37,8 @@ def checked_path(points: np.ndarray, turn_radius: float | None) -> Path:
 def checked_times(argument: str, value) -> np.ndarray:
     """Times [P] in s, ascending."""
     times = np.array(array("[P]", finite=True)(argument, value), float)
-    if len(times) < 2 or np.any(np.diff(times) < 1e-6) or np.abs(times).max() > 1e9:
-        raise refused(ValueError, argument, "at least 2 numbers, ascending by 1e-6 s or more, up to 1e9 s", value)
+    if len(times) < 2 or np.any(np.diff(times) < 1e-6) or np.abs(times).max() > LATEST:
+        raise refused(ValueError, argument, f"at least 2 numbers, ascending by 1e-6 s or more, up to {LATEST:g} s", value)
     return times
 
 

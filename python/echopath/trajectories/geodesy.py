@@ -24,4 +24,5 @@ def _earth_centred(latitude, longitude, height):
     phi, lam = np.radians(latitude), np.radians(longitude)
     across = SEMI_MAJOR_AXIS / np.sqrt(1.0 - SQUARED_ECCENTRICITY * np.sin(phi) ** 2)
     level = (across + height) * np.cos(phi)
-    return np.stack([level * np.cos(lam), level * np.sin(lam), (across * (1.0 - SQUARED_ECCENTRICITY) + height) * np.sin(phi)], -1)
+    along = (across * (1.0 - SQUARED_ECCENTRICITY) + height) * np.sin(phi)
+    return np.stack([level * np.cos(lam), level * np.sin(lam), along], axis=-1)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..checks import anything, array, checked, choice, flag, optional, positive, real, refused, text
-from .arguments import checked_path, checked_points
+from .arguments import LATEST, checked_path, checked_points
 from .path import Path
 from .track import Track
 from .trajectory import ACCELERATION, DECELERATION, Trajectory, profile_along
@@ -112,7 +112,7 @@ class Lane:
 
     @checked(self=anything, speed=anything, offset=real(unit="m"), changes=anything, reverse=flag, stops=anything,
              acceleration=positive("m/s^2"), deceleration=positive("m/s^2"), lateral_acceleration=optional(positive("m/s^2")),
-             speed_over=choice("distance", "time"), start_time=real(-1e9, 1e9, "s"), goes_on=real(0.0, 1e5, "s"), pitch=flag,
+             speed_over=choice("distance", "time"), start_time=real(-LATEST, LATEST, "s"), goes_on=real(0.0, 1e5, "s"), pitch=flag,
              kind=text)
     def trajectory(self, *, speed: ArrayLike, offset: float = 0.0, changes: ArrayLike = (), reverse: bool = False,
                    stops: ArrayLike = (), acceleration: float = ACCELERATION, deceleration: float = DECELERATION,

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _core
-from ..checks import array, checked, real, refused
+from ..checks import array, checked, is_writable, real, refused
 from ..checks import file as file_rule
 from .geodesy import east_north_up
 from .markup import read_fcd, read_gpx
@@ -20,6 +20,7 @@ from .table import read_table
 from .trajectory import Trajectory
 
 SUMO_LENGTH = 5.0      # m, of a passenger car of SUMO whose type names no other
+MOST_SECONDS = 1e6     # from which on times are taken to count from some day long ago
 SUFFIXES = (".csv", ".txt", ".tsv", ".xml", ".gpx")
 
 
@@ -35,7 +36,9 @@ def _origin_rule(argument: str, value):
 def _length_rule(argument: str, value):
     rule = real(0.0, 100.0, "m")
     if isinstance(value, Mapping):
-        return {str(kind): rule(f"{argument}['{kind}']" if isinstance(kind, str) else argument, one) for kind, one in value.items()}
+        if not all(isinstance(kind, str) and is_writable(kind) for kind in value):
+            raise refused(TypeError, argument, "a number in m, or a dict of them by types of vehicles", value)
+        return {kind: rule(f"{argument}['{kind}']", one) for kind, one in value.items()}
     return rule(argument, value)
 
 
@@ -57,7 +60,7 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
         files tell; types that are not among them have 5 m, those of SUMO's cars
     Returns {name: Trajectory}, in the order of the file, each with the kind that the file tells. Between positions it goes along
     a C2 spline, by distances that are monotone cubics over time, so that what stands stays. Times are those of the file; ISO 8601
-    counts from the first of the file. Warns (RuntimeWarning) of objects with a single position, which are left out.
+    and times beyond 1e6 s, such as those since 1970, count from the first of the file. Warns (RuntimeWarning) of objects with a single position, which are left out.
     Raises FileError naming the file, the line, the rule and the value, TypeError or ValueError naming the argument.
     """
     path = Path(path)
@@ -75,7 +78,7 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
     earliest = min(min(samples.times) for samples in tracks.values())
     for samples in tracks.values():
         _check_order(path, samples)
-        if earliest > 1e8:      # seconds since 1970
+        if earliest > MOST_SECONDS:
             samples.times = [time - earliest for time in samples.times]
     if is_geographic:
         origin = next(iter(tracks.values())).places[0] if origin is None else origin
@@ -93,7 +96,8 @@ def _check_order(path: Path, samples: Samples) -> None:
     """Raises FileError where the times of an object do not ascend."""
     for before, after, line in zip(samples.times, samples.times[1:], samples.lines[1:]):
         if after - before < 1e-6:
-            refuse(path, line, f"time: must be later than the {before:.12g} s of the row before of the same object, got {after:.12g}")
+            refuse(path, line, f"time: must be later than the {before:.12g} s of the row before of the same object, got "
+                   f"{after:.12g}")
 
 
 def _trajectories(path: Path, tracks: dict[str, Samples], origin, smoothing: float) -> dict[str, Trajectory]:

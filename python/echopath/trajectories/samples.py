@@ -54,7 +54,8 @@ def instant(path: Path, line: int, name: str, text: str) -> float:
     try:
         moment = datetime.datetime.fromisoformat(text.strip())
     except ValueError:
-        refuse(path, line, f"{name}: must be a number of seconds or a time such as 2026-05-01T12:00:00Z, got '{text.strip()[:60]}'")
+        refuse(path, line, f"{name}: must be a number of seconds or a time such as 2026-05-01T12:00:00Z, got "
+               f"'{text.strip()[:60]}'")
     if moment.tzinfo is None:
         moment = moment.replace(tzinfo=datetime.UTC)
     return moment.timestamp()

@@ -9,7 +9,8 @@ from ..checks import anything, checked, optional, real, refused, text
 from .trajectory import Trajectory
 
 # Words of a kind -> name of an actor and its keywords; the first that is in the kind is taken.
-KINDS = (("truck", "truck", {}), ("trailer", "truck", {}), ("bus", "van", {"kind": "large"}), ("delivery", "van", {"kind": "large"}),
+KINDS = (("truck", "truck", {}), ("trailer", "truck", {}), ("bus", "van", {"kind": "large"}),
+         ("delivery", "van", {"kind": "large"}),
          ("van", "van", {"kind": "small"}), ("motorcycle", "motorcycle", {}), ("moped", "motorcycle", {}),
          ("bicycle", "cyclist", {}), ("bike", "cyclist", {}), ("cyclist", "cyclist", {}), ("ped", "pedestrian", {}),
          ("person", "pedestrian", {}), ("walk", "pedestrian", {}))

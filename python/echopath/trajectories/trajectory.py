@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from .. import _core
 from ..checks import anything, array, checked, choice, flag, optional, positive, real, refused, text
-from .arguments import checked_headings, checked_path, checked_points, checked_speed, checked_stops, checked_times
+from .arguments import LATEST, checked_headings, checked_path, checked_points, checked_speed, checked_stops, checked_times
 from .knots import curve_through
 from .limits import Limits, over_distance
 from .path import Path
@@ -51,7 +51,7 @@ class Trajectory(_core.CurveMotion):
     @checked(self=anything, points=checked_points, speed=anything, times=optional(checked_times),
              yaw=optional(array("[P]", finite=True)), turn_radius=optional(positive("m")), stops=checked_stops,
              acceleration=positive("m/s^2"), deceleration=positive("m/s^2"), lateral_acceleration=optional(positive("m/s^2")),
-             speed_over=choice("distance", "time"), start_time=real(-1e9, 1e9, "s"), goes_on=real(0.0, 1e5, "s"), pitch=flag,
+             speed_over=choice("distance", "time"), start_time=real(-LATEST, LATEST, "s"), goes_on=real(0.0, 1e5, "s"), pitch=flag,
              kind=text)
     def __init__(self, points: ArrayLike, *, speed: ArrayLike | None = None, times: ArrayLike | None = None,
                  yaw: ArrayLike | None = None, turn_radius: float | None = None, stops: ArrayLike = (),
@@ -98,6 +98,10 @@ class Trajectory(_core.CurveMotion):
         """What moves, "" where nothing is known."""
         return self._kind
 
+    def motion(self) -> _core.CurveMotion:
+        """The CurveMotion that the core follows; scenes keep it in the place of the trajectory."""
+        return _core.CurveMotion(self.translation, self.rotation)
+
     def position(self, time: ArrayLike) -> np.ndarray:
         """Position [3] or [T, 3] in m at a time or times [T] in s. Raises TypeError or ValueError naming `time`."""
         return _each(time, lambda at: self._track.places(at)[0])
@@ -143,8 +147,8 @@ class Trajectory(_core.CurveMotion):
 
         seconds: s. Raises TypeError or ValueError naming it.
         """
-        seconds = real(-1e9, 1e9, "s")("seconds", seconds)
-        maker, arguments = self._made
+        seconds = real(-LATEST, LATEST, "s")("seconds", seconds)
+        arguments = self._made[1]
         if arguments.get("times") is not None:
             return self.replace(times=np.asarray(arguments["times"], float) + seconds)
         return self.replace(start_time=arguments["start_time"] + seconds)
@@ -162,7 +166,7 @@ class Trajectory(_core.CurveMotion):
         return _remade, self._made
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Trajectory) and self.kind == other.kind and super().__eq__(other)
+        return super().__eq__(other) and (not isinstance(other, Trajectory) or self.kind == other.kind)
 
     def __hash__(self) -> int:
         return super().__hash__()

@@ -100,7 +100,8 @@ def walk_along(body, gait_at, speeds, trajectory, *, edge, keyframe_rate, clothi
     real(0.0, 0.05 * body.height, "m")("edge", edge)
     speed = usual_speed(trajectory._track)
     if speed > speeds[1]:
-        raise refused(ValueError, "trajectory", f"one of at most {speeds[1]:.3g} m/s for a person of {body.height:g} m", trajectory)
+        rule = f"one of at most {speeds[1]:.3g} m/s for a person of {body.height:g} m, as most of its way is"
+        raise refused(ValueError, "trajectory", rule, f"{speed:.3g} m/s")
     gait = GaitAlong(gait_at(max(speed, speeds[0])), trajectory._track)
     times = key_times(trajectory, keyframe_rate)
     arrays = body_arrays(body, gait.frames(times), times, edge=edge, clothing=clothing, skin=skin)

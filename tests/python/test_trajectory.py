@@ -1,0 +1,260 @@
+"""Trajectories: paths, speeds, stops and lanes against closed forms, and the curves that the core follows."""
+import inspect
+import math
+import pickle
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from support.odd_values import EXPECTED, ODD, is_named
+
+MICROMETRES = 10e-6      # m, what positions may err by, as the docstring says
+ROUNDING = 1e-9
+RADIUS = 12.0            # m
+
+
+def circle(radius=RADIUS, points=181, turn=2.0 * np.pi):
+    angle = np.linspace(0.0, turn, points)
+    return radius * np.stack([np.sin(angle), 1.0 - np.cos(angle)], axis=-1)
+
+
+def corner(**keywords):
+    """40 m along x, then 40 m along y, by an arc of RADIUS."""
+    return ep.Trajectory([(0, 0), (40, 0), (40, 40)], turn_radius=RADIUS, **keywords)
+
+
+def test_a_straight_line_is_travelled_evenly():
+    line = ep.Trajectory([(1, 2, 3), (7, 10, 3)], speed=2.5, start_time=4.0)
+    assert (line.begin, line.end, line.length) == pytest.approx((4.0, 8.0, 10.0), abs=ROUNDING)
+    np.testing.assert_allclose(line.position([4.0, 6.0, 8.0]), [[1, 2, 3], [4, 6, 3], [7, 10, 3]], atol=ROUNDING)
+    np.testing.assert_allclose(line.velocity(5.0), [1.5, 2.0, 0.0], atol=ROUNDING)
+    assert line.yaw(5.0) == pytest.approx(math.atan2(8, 6))
+
+
+def test_a_turn_has_the_length_and_the_rates_of_its_arc():
+    turn, speed = corner(speed=6.0), 6.0
+    assert turn.length == pytest.approx(2 * (40 - RADIUS) + RADIUS * np.pi / 2, abs=ROUNDING)
+    middle = turn.time_at(0.5 * turn.length)
+    assert turn.yaw_rate(middle) == pytest.approx(speed / RADIUS, rel=1e-9)
+    assert turn.yaw(middle) == pytest.approx(np.pi / 4)
+    center = np.array([40 - RADIUS, RADIUS, 0.0])
+    inward = (center - turn.position(middle)) / RADIUS
+    np.testing.assert_allclose(turn.acceleration(middle), speed**2 / RADIUS * inward, atol=1e-9)
+    np.testing.assert_allclose(turn.position(middle), center + RADIUS * np.array([1, -1, 0]) / np.sqrt(2), atol=ROUNDING)
+    assert turn.yaw_rate(1.0) == 0.0
+
+
+def test_a_spline_through_a_circle_is_one():
+    """Cubics through points d apart on a circle are off by about d^4 / (384 R^3): 5e-6 m here, more at the ends."""
+    ring, speed = ep.Trajectory(circle(), speed=10.0), 10.0
+    times = np.linspace(0.1 * ring.end, 0.9 * ring.end, 500)
+    assert ring.length == pytest.approx(2.0 * np.pi * RADIUS, rel=1e-6)
+    assert np.abs(np.linalg.norm(ring.position(times)[:, :2] - [0, RADIUS], axis=1) - RADIUS).max() < MICROMETRES
+    np.testing.assert_allclose(ring.yaw(times), speed * times / RADIUS, atol=1e-5)      # goes on beyond half a turn
+    np.testing.assert_allclose(ring.yaw_rate(times), speed / RADIUS, rtol=1e-3)
+    np.testing.assert_allclose(np.linalg.norm(ring.acceleration(times), axis=1), speed**2 / RADIUS, rtol=1e-3)
+
+
+def test_distance_is_the_integral_of_the_speed():
+    """The trapezoidal rule over a fine grid, of every kind of profile."""
+    kinds = [corner(speed=[(0, 3), (20, 9), (50, 4)]), corner(speed=[(0, 2), (3, 10), (4, 10), (9, 0.5)], speed_over="time"),
+             corner(speed=12.0, stops=[(0, 1.0), (30, 2.0), (math.inf, 0.0)], lateral_acceleration=2.0),
+             ep.Trajectory([(0, 0), (3, 0), (3, 0), (9, 4)], times=[0, 2, 3, 6])]
+    for one in kinds:
+        times = np.linspace(one.begin, one.end, 200_001)
+        speeds = one.speed(times)
+        summed = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(times) * (speeds[1:] + speeds[:-1]))])
+        np.testing.assert_allclose(one.distance(times), summed, atol=1e-5)
+        assert one.distance(one.end) == pytest.approx(one.length, abs=1e-6)
+
+
+def test_a_stop_takes_the_way_and_the_time_of_its_brakes():
+    speed, brakes, drive, wait = 10.0, 4.0, 2.5, 3.0
+    one = ep.Trajectory([(0, 0), (100, 0)], speed=speed, stops=[(60, wait)], deceleration=brakes, acceleration=drive)
+    braking, starting = speed**2 / (2 * brakes), speed**2 / (2 * drive)
+    cruise = (100 - braking - starting) / speed
+    assert one.end == pytest.approx(cruise + speed / brakes + wait + speed / drive, abs=ROUNDING)
+    stopped = (60 - braking) / speed + speed / brakes
+    assert one.time_at(60.0) == pytest.approx(stopped, abs=1e-6)
+    np.testing.assert_allclose(one.position([stopped, stopped + wait]), [[60, 0, 0], [60, 0, 0]], atol=ROUNDING)
+    assert one.speed(stopped + 0.5 * wait) == 0.0
+    assert one.distance(stopped - 1.0) == pytest.approx(60 - brakes / 2, abs=1e-6)
+    assert one.acceleration(stopped + wait + 0.1)[0] == pytest.approx(drive)
+
+
+def test_near_stops_are_reached_by_full_throttle_and_brakes():
+    """Between stops d apart the peak is sqrt(2 d a b / (a + b))."""
+    one = ep.Trajectory([(0, 0), (20, 0)], speed=50.0, stops=[(0, 0), (10, 0), (20, 0)], acceleration=2, deceleration=3)
+    times = np.linspace(one.begin, one.end, 100_001)
+    assert one.speed(times).max() == pytest.approx(np.sqrt(2 * 10 * 2 * 3 / 5), rel=1e-6)
+
+
+def test_curves_slow_down_to_the_lateral_acceleration():
+    one = corner(speed=15.0, lateral_acceleration=3.0)
+    times = np.linspace(one.begin, one.end, 2001)
+    across = np.abs(np.cross(one.velocity(times), one.acceleration(times))[:, 2]) / one.speed(times)
+    along = np.sum(one.velocity(times) * one.acceleration(times), axis=1) / one.speed(times)
+    assert across.max() == pytest.approx(3.0, rel=1e-6)
+    assert -3.0 - 1e-6 < along.min() and along.max() < 2.0 + 1e-6       # what it brakes and drives by unless told
+    assert one.speed(one.time_at(one.length / 2)) == pytest.approx(np.sqrt(3.0 * RADIUS))
+
+
+def test_given_times_and_speeds_are_met():
+    points, times = [(0, 0), (4, 1), (8, 0), (8, 0), (12, -1)], [0.0, 1.0, 2.0, 5.0, 6.0]
+    one = ep.Trajectory(points, times=times)
+    np.testing.assert_allclose(one.position(times)[:, :2], points, atol=ROUNDING)
+    assert np.all(one.speed(np.linspace(2.0, 5.0, 50)) == 0.0)
+    assert np.all(one.speed(np.linspace(0.0, 6.0, 1000)) >= 0.0)
+    told = ep.Trajectory([(0, 0), (4, 0), (8, 0)], times=[0, 1, 2], speed=[3.0, 5.0, 3.0])
+    np.testing.assert_allclose(told.speed([0, 1, 2]), [3.0, 5.0, 3.0])
+
+
+def test_yaw_that_is_given_goes_on_over_a_turn():
+    one = ep.Trajectory([(0, 0), (1, 0), (2, 0)], times=[0, 1, 2], yaw=[3.0, -3.0, -2.8])     # over pi, to the left
+    np.testing.assert_allclose(one.yaw([0.0, 1.0, 2.0]), [3.0, 2 * np.pi - 3.0, 2 * np.pi - 2.8])
+    assert np.all(one.yaw_rate(np.linspace(0, 2, 20)) > 0.0)
+
+
+MOVES = {"turn": corner(speed=8.0, stops=[(0, 1), (20, 2)]), "ring": ep.Trajectory(circle(3.0, 20), speed=9.0),
+         "times": ep.Trajectory([(0, 0), (4, 1), (8, 0), (8, 0), (12, -1)], times=[0, 1, 2, 5, 6], yaw=[0, 1, 4, 4, 2]),
+         "climb": ep.Trajectory([(0, 0, 0), (20, 0, 1), (40, 5, 8), (60, 5, 8)], speed=20.0, pitch=True, goes_on=0.5),
+         "lane": ep.Lane([(0, 0), (40, 0), (40, 40)], turn_radius=RADIUS).trajectory(speed=14, offset=3.5, changes=[(5, 20, 0)])}
+
+
+@pytest.mark.parametrize("name", MOVES)
+def test_the_core_follows_to_micrometres(name):
+    one = MOVES[name]
+    times = np.linspace(one.begin - 0.2, one.end + 0.2, 4001)
+    poses = np.array([one.at(time) for time in times])
+    assert np.abs(poses[:, :3, 3] - one.position(times)).max() < MICROMETRES
+    ahead = np.stack([np.cos(one.yaw(times)), np.sin(one.yaw(times))], axis=-1)
+    found = poses[:, :2, 0] / np.linalg.norm(poses[:, :2, 0], axis=1, keepdims=True)
+    assert np.abs(found - ahead).max() < 4e-6
+    assert len(one.translation.times) < 60 * (one.end - one.begin) + 10
+
+
+def test_a_nose_follows_the_slope_where_it_is_asked_to():
+    hill = [(0, 0, 0), (30, 0, 10), (60, 0, 20)]
+    assert np.allclose(ep.Trajectory(hill, speed=1.0).at(3.0)[:3, 0], [1, 0, 0])
+    np.testing.assert_allclose(ep.Trajectory(hill, speed=1.0, pitch=True).at(3.0)[:3, 0], np.array([3, 0, 1]) / np.sqrt(10),
+                               atol=1e-6)
+
+
+def test_it_stands_beyond_its_ends_or_goes_on():
+    stands, on = corner(speed=5.0), corner(speed=5.0, goes_on=2.0)
+    np.testing.assert_allclose(stands.position([-5.0, stands.end + 9.0]), [[0, 0, 0], [40, 40, 0]], atol=ROUNDING)
+    assert np.all(stands.speed([-0.1, stands.end + 0.1]) == 0.0)
+    np.testing.assert_allclose(on.position([-1.0, stands.end + 1.0]), [[-5, 0, 0], [40, 45, 0]], atol=ROUNDING)
+    assert (on.begin, on.end) == pytest.approx((-2.0, stands.end + 2.0))
+
+
+def test_lanes_lie_beside_each_other():
+    """A concentric arc at an offset d to the left has the radius R - d."""
+    lane = ep.Lane([(0, 0), (40, 0), (40, 40)], width=3.0, turn_radius=RADIUS)
+    left, right = lane.trajectory(speed=5.0, offset=lane.width), lane.trajectory(speed=5.0, offset=-lane.width)
+    assert (left.length, right.length) == pytest.approx(
+        (2 * (40 - RADIUS) + (RADIUS - 3) * np.pi / 2, 2 * (40 - RADIUS) + (RADIUS + 3) * np.pi / 2))
+    assert left.yaw_rate(left.time_at(left.length / 2)) == pytest.approx(5.0 / (RADIUS - 3), rel=1e-6)
+    back = lane.trajectory(speed=5.0, offset=-lane.width, reverse=True)
+    np.testing.assert_allclose(back.position([back.begin, back.end]), right.position([right.end, right.begin]), atol=1e-9)
+    np.testing.assert_allclose(lane.position([5.0, lane.length - 5.0], 1.0), [[5, 1, 0], [39, 35, 0]], atol=ROUNDING)
+
+
+def test_a_change_of_lanes_is_a_quintic():
+    """Its largest sideways acceleration is 10 / sqrt(3) times offset (speed / length)^2."""
+    speed, length, offset = 20.0, 60.0, 3.5
+    one = ep.Lane([(0, 0), (200, 0)]).trajectory(speed=speed, changes=[(50, length, offset)])
+    times = np.linspace(one.begin, one.end, 5001)
+    across = one.position(times)[:, 1]
+    assert across[0] == 0.0 and across[-1] == pytest.approx(offset)
+    assert np.interp(80.0, one.position(times)[:, 0], across) == pytest.approx(0.5 * offset, abs=1e-4)
+    assert np.abs(one.acceleration(times)[:, 1]).max() == pytest.approx(10 / np.sqrt(3) * offset * (speed / length) ** 2, rel=0.02)
+
+
+def test_copies_are_equal_and_change():
+    for one in MOVES.values():
+        assert pickle.loads(pickle.dumps(one)) == one
+        later = one.shifted(3.0)
+        assert later.begin == pytest.approx(one.begin + 3.0)
+        np.testing.assert_allclose(later.position(later.end), one.position(one.end))
+    assert corner(speed=5.0) == corner(speed=5.0) != corner(speed=6.0)
+    assert corner(speed=5.0).replace(speed=6.0) == corner(speed=6.0)
+
+
+def test_a_scene_and_a_radar_take_it():
+    one, scene = corner(speed=5.0), ep.Scene()
+    scene.add(ep.actors.plate(1, 1), name="plate", material="metal", motion=one, position=(0, 1, 0))
+    place = scene.world_vertices(0, 3.0).mean(axis=0)
+    np.testing.assert_allclose(place, [15, 1, 0], atol=MICROMETRES)
+    assert scene["plate"].motion == one
+    scene["plate"].motion = one.shifted(1.0)
+    np.testing.assert_allclose(scene.world_vertices(0, 4.0).mean(axis=0), place, atol=MICROMETRES)
+    radar = ep.Radar(ep.ChirpSequence(), transmitters=[ep.Antenna()], receivers=[ep.Antenna()], motion=one)
+    np.testing.assert_allclose(radar.world_from_radar(one.end)[:3, 3], [40, 40, 0], atol=MICROMETRES)
+    np.testing.assert_allclose(radar.world_from_radar(one.end)[:3, 0], [0, 1, 0], atol=1e-5)
+
+
+@pytest.mark.parametrize("frame", [0, 1])
+def test_a_reflector_on_a_circle_has_the_doppler_of_the_closed_form(frame):
+    """Two frames 0.4 s apart: range and range rate of a small ball that runs around a centre 20 m ahead of the radar."""
+    radius, speed, start = 5.0, 8.0, 0.3 + 0.4 * frame
+    arc = ep.Trajectory(circle(radius, 200) + [20.0, -radius], speed=speed)
+    chirps = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=256, sampling_rate=10e6, num_chirps=128,
+                              chirp_interval=60e-6)
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.1), name="ball", material="metal", motion=arc, smooth=True)
+    radar = ep.Radar(chirps, transmitters=[ep.Antenna()], receivers=[ep.Antenna()], transmit_power=1.0)
+    spectrum = ep.simulate(scene, radar, start_time=start, num_rays=1000, guard=False).spectrum
+    power = np.abs(spectrum.values[0, 0]) ** 2
+    v, r = np.unravel_index(np.argmax(power), power.shape)
+    angle = speed * (start + 0.5 * radar.frame_duration) / radius
+    place = np.array([20 + radius * np.sin(angle), -radius * np.cos(angle)])
+    rate = speed * np.array([np.cos(angle), np.sin(angle)]) @ place / np.linalg.norm(place)
+    assert spectrum.velocity[v] == pytest.approx(rate, abs=1.1 * chirps.velocity_resolution(1))
+    assert spectrum.range[r] == pytest.approx(np.linalg.norm(place) - 0.1, abs=0.25)
+
+
+CALLS = {"Trajectory": (ep.Trajectory, {"points": [(0, 0), (9, 0)], "speed": 3.0}),
+         "of times": (ep.Trajectory, {"points": [(0, 0), (9, 0)], "times": [0.0, 1.0], "speed": None, "yaw": [0.0, 1.0]}),
+         "Lane": (ep.Lane, {"points": [(0, 0), (9, 0)], "width": 3.0}),
+         "trajectory": (ep.Lane([(0, 0), (9, 0)]).trajectory, {"speed": 3.0}),
+         **{name: (getattr(MOVES["turn"], name), {"time": 1.0}) for name in ("position", "velocity", "acceleration", "speed",
+                                                                             "distance", "yaw", "yaw_rate")},
+         "time_at": (MOVES["turn"].time_at, {"distance": 1.0}), "shifted": (MOVES["turn"].shifted, {"seconds": 1.0})}
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_wrong_arguments_are_named(name):
+    function, right = CALLS[name]
+    found, wrong = [], 0
+    for argument in inspect.signature(function).parameters:
+        for odd, make in ODD.items():
+            value = make()
+            try:
+                function(**right | {argument: value})
+            except EXPECTED as error:
+                wrong += 1
+                found += [] if is_named(argument, value, error) else [(argument, odd, repr(error))]
+    assert not found, "\n".join(map(str, found))
+    assert wrong > 25
+
+
+@pytest.mark.parametrize("wrong, words", [
+    ({"speed": 0.0}, "speed: must be above 0"), ({"speed": [(0, 0), (5, 0), (9, 3)]}, "speed: must be above 0"),
+    ({"speed": [(5, 1), (0, 2)]}, "speed: .*ascending"), ({"stops": [(50, 1)]}, "stops: must be at distances from 0 to 9"),
+    ({"stops": [(5, 1), (5, 1)]}, "stops: must be at ascending"), ({"stops": [(1, -1)]}, "stops: "),
+    ({"points": [(0, 0), (0, 0)]}, "points: must be at least"), ({"points": [(0, 0, 0), (0, 0, 5)]}, "points: .*straight above"),
+    ({"yaw": [0, 1]}, "yaw: must be given with times"), ({"speed_over": "time", "stops": [(1, 1)]}, "speed_over"),
+    ({"points": [(0, 0), (9, 0), (9, 9)], "turn_radius": 20.0}, "turn_radius: .*9 m is the largest"),
+    ({"speed": None}, "speed: must be given"), ({"times": [0, 1], "speed": None, "stops": [(1, 1)]}, "stops: .*without times"),
+    ({"times": [0, 1, 2], "speed": None}, "times: must be as many as the 2 points"),
+    ({"times": [0, 1], "speed": [1, -1]}, "speed: ")])
+def test_what_makes_no_sense_is_refused(wrong, words):
+    with pytest.raises(ValueError, match=words):
+        ep.Trajectory(**{"points": [(0, 0), (9, 0)], "speed": 3.0} | wrong)
+
+
+def test_offsets_beyond_the_middle_of_a_curve_are_refused():
+    with pytest.raises(ValueError, match="offset: .*radius"):
+        ep.Lane([(0, 0), (40, 0), (40, 40)], turn_radius=5.0).trajectory(speed=5.0, offset=6.0)

@@ -13,6 +13,12 @@ def smoothed(times, positions, distance: float):
     """Positions [N, D] in m at times [N] in s, moved by `distance` m in the root mean square at most."""
     if distance <= 0.0 or len(times) < 3:
         return positions
+    shares = np.stack([np.ones(len(times)), (times - times[0]) / (times[-1] - times[0])], axis=-1)
+    line = shares @ np.linalg.lstsq(shares, positions, rcond=None)[0]      # is smooth, and only costs digits
+    return line + _smoothed(times, positions - line, distance)
+
+
+def _smoothed(times, positions, distance: float):
     step = np.mean(np.diff(times))
     low, high = -6.0, 10.0            # powers of ten of the weight, in steps
     found = positions

@@ -1,0 +1,233 @@
+"""Trajectories of files: tables, SUMO's floating car data, GPX, scene files; what is wrong is refused by file and line."""
+import math
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath.trajectories.geodesy import east_north_up
+from echopath.trajectories.smoothing import smoothed
+
+# Written by hand after the description of the format (sumo.dlr.de, "FCDOutput"): positions are those of the middle of the front
+# bumper, angles go clockwise from north.
+FCD = """<?xml version="1.0" encoding="UTF-8"?>
+<fcd-export xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xsi:noNamespaceSchemaLocation="http://sumo.dlr.de/xsd/fcd_file.xsd">
+    <timestep time="0.00">
+        <vehicle id="flow/0" x="10.00" y="0.00" angle="90.00" type="passenger" speed="10.00" pos="5" lane="a_0" slope="0.00"/>
+        <person id="walker" x="3.00" y="4.00" angle="0.00" speed="1.00" pos="1.00" edge="a" slope="0.00"/>
+    </timestep>
+    <timestep time="1.00">
+        <vehicle id="flow/0" x="20.00" y="0.00" angle="90.00" type="passenger" speed="10.00" pos="15" lane="a_0" slope="0.00"/>
+        <vehicle id="south" x="50.00" y="40.00" angle="180.00" type="truck" speed="8.00" pos="5.10" lane="b_0" slope="0.00"/>
+        <person id="walker" x="3.00" y="5.00" angle="0.00" speed="1.00" pos="2.00" edge="a" slope="0.00"/>
+    </timestep>
+    <timestep time="2.00">
+        <vehicle id="flow/0" x="30.00" y="0.00" angle="90.00" type="passenger" speed="10.00" pos="25" lane="a_0" slope="0.00"/>
+        <vehicle id="south" x="50.00" y="32.00" angle="180.00" type="truck" speed="8.00" pos="13.10" lane="b_0" slope="0.00"/>
+        <vehicle id="once" x="0.00" y="0.00" angle="0.00" type="passenger" speed="8.00" pos="1.00" lane="c_0" slope="0.00"/>
+    </timestep>
+</fcd-export>
+"""
+GPX = """<?xml version="1.0"?><gpx version="1.1"><metadata><name>all</name></metadata><trk><name>ride</name><trkseg>
+<trkpt lat="46.017" lon="7.750"><ele>1673</ele><time>2026-05-01T12:00:00Z</time></trkpt>
+<trkpt lat="46.0171" lon="7.750"><ele>1673</ele><time>2026-05-01T14:00:05+02:00</time></trkpt></trkseg></trk></gpx>
+"""
+
+
+def write(folder, name, text):
+    path = folder / name
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+@pytest.mark.filterwarnings("ignore:.*single position")
+def test_vehicles_of_sumo_are_half_their_length_behind_their_bumpers(tmp_path):
+    found = ep.read_trajectories(write(tmp_path, "fcd.xml", FCD), vehicle_length={"truck": 16.5})
+    assert {name: one.kind for name, one in found.items()} == {"flow/0": "passenger", "walker": "pedestrian", "south": "truck"}
+    np.testing.assert_allclose(found["flow/0"].position([0.0, 1.5]), [[7.5, 0, 0], [22.5, 0, 0]], atol=1e-9)
+    np.testing.assert_allclose(found["south"].position(2.0), [50, 32 + 8.25, 0], atol=1e-9)
+    np.testing.assert_allclose(found["walker"].position(1.0), [3, 5, 0], atol=1e-9)
+    assert [one.yaw(1.0) for one in found.values()] == pytest.approx([0.0, np.pi / 2, -np.pi / 2])
+    assert (found["south"].begin, found["south"].end, float(found["south"].speed(1.5))) == pytest.approx((1.0, 2.0, 8.0))
+
+
+def test_objects_with_a_single_position_are_left_out_with_a_word(tmp_path):
+    with pytest.warns(RuntimeWarning, match="1 objects have a single position .* 'once'"):
+        ep.read_trajectories(write(tmp_path, "fcd.xml", FCD))
+
+
+def test_a_table_gives_back_what_was_written(tmp_path):
+    times, rng = np.arange(12) * 0.1, np.random.default_rng(1)
+    rows = [(name, float(time), *map(float, place)) for name in ("a", "b") for time, place in
+            zip(times, np.cumsum(rng.uniform(0.5, 1.0, (12, 3)), axis=0))]
+    text = "frame,Timestamp [s],Track_ID,X (m),Y (m),z,type\n" + "".join(
+        f"9,{time!r},{name},{x!r},{y!r},{z!r},car\n" for name, time, x, y, z in rows)
+    found = ep.read_trajectories(write(tmp_path, "drive.csv", text))
+    for name, time, *place in rows:
+        np.testing.assert_allclose(found[name].position(time), place, atol=1e-12)
+    assert list(found) == ["a", "b"] and found["b"].kind == "car"
+
+
+def test_yaw_and_speed_of_a_table_are_kept(tmp_path):
+    text = "# made by hand\nt;x;y;yaw_deg;speed\n\n0;0;0;10;3\n1;4;0;20;5\n2;8;0;30;3\n"
+    (one,) = ep.read_trajectories(write(tmp_path, "drive.csv", text)).values()
+    np.testing.assert_allclose(np.degrees(one.yaw([0, 1, 2])), [10, 20, 30])
+    np.testing.assert_allclose(one.speed([0, 1, 2]), [3, 5, 3])
+
+
+def test_east_north_up_is_that_of_published_examples():
+    """MathWorks, documentation of geodetic2enu (the Matterhorn from Zermatt); Octave Forge, the same function."""
+    matterhorn = east_north_up(np.array([45.976]), np.array([7.658]), np.array([4531.0]), (46.017, 7.750, 1673.0))
+    np.testing.assert_allclose(matterhorn, [[-7134.8, -4556.3, 2852.4]], atol=0.05)
+    near = east_north_up(np.array([42.002]), np.array([-81.998]), np.array([1000.0]), (42.0, -82.0, 200.0))
+    np.testing.assert_allclose(near, [[165.72, 222.18, 799.99]], atol=0.005)
+
+
+def test_places_on_the_earth_become_metres(tmp_path):
+    """A ten-thousandth of a degree of latitude at 46 degrees is 11.1144 m (meridian arc), and 1673 m up a little more."""
+    (one,) = ep.read_trajectories(write(tmp_path, "ride.gpx", GPX)).values()
+    assert (one.begin, one.end) == (0.0, 5.0)
+    np.testing.assert_allclose(one.position(5.0), [0.0, 11.1144 * (1 + 1673 / 6.368e6), 0.0], atol=0.002)
+    table = write(tmp_path, "ride.csv", "time,lat,lon,ele\n0,46.017,7.75,1673\n5,46.0171,7.75,1673\n")
+    np.testing.assert_allclose(ep.read_trajectories(table)["ride"].position(5.0), one.position(5.0))
+    moved = ep.read_trajectories(table, origin=(46.0171, 7.75, 1673.0))["ride"]
+    np.testing.assert_allclose(moved.position(5.0), 0.0, atol=1e-6)
+
+
+def test_positions_are_moved_by_no_more_than_asked_for():
+    rng = np.random.default_rng(2)
+    times = np.cumsum(rng.uniform(0.2, 0.4, 200))
+    true = np.stack([1.3 * times, 5 * np.sin(times / 10), 0 * times], axis=-1)
+    noisy = true + rng.normal(0.0, 0.3, true.shape)
+    assert smoothed(times, noisy, 0.0) is noisy
+    for distance in (0.05, 0.3, 0.5):
+        found = smoothed(times, noisy, distance)
+        assert np.sqrt(np.mean(np.sum((found - noisy) ** 2, axis=1))) == pytest.approx(distance, rel=1e-3)
+    assert np.sum((found - true) ** 2) < 0.3 * np.sum((noisy - true) ** 2)
+    np.testing.assert_allclose(smoothed(times, true[:, :1], 1.0), true[:, :1], atol=1e-6)      # a straight line is smooth
+
+
+def test_the_smoothest_is_that_of_the_dense_equations():
+    times, values = np.array([0.0, 1.0, 2.5, 3.0, 4.2]), np.array([[0.0], [1.0], [0.5], [2.0], [1.0]])
+    found = smoothed(times, values, 0.2)
+    step, rows = np.mean(np.diff(times)), np.zeros((3, 5))
+    for k in range(3):
+        h0, h1 = np.diff(times)[k:k + 2] / step
+        rows[k, k:k + 3] = 2 / (h0 + h1) * np.array([1 / h0, -1 / h0 - 1 / h1, 1 / h1])
+    force, residual = rows.T @ rows @ found, values - found
+    weight = (force.T @ residual / (force.T @ force)).item()
+    np.testing.assert_allclose(residual, weight * force, atol=1e-9)
+
+
+WRONG = {
+    "a.csv": [("", "must name columns"), ("a,b\n1,2\n", "line 1: must name columns"), ("t,x,y\n", "holds no positions"),
+              ("t,x,y\n0,0,0\n1,nan,0\n", "line 3: x: must be a number"), ("t,x,y\n0,0,0\n1,5\n", "line 3: must have at least 3"),
+              ("t,x,y\n0,0,0\n0,5,0\n", "line 3: time: must be later"), ("t,x,y,heading\n0,0,0,1\n", "line 1: column 'heading'"),
+              ("t,x,y,t\n", "line 1: column 't'"), ("t,x,y\n0,0,0\n1,1e9,0\n", "line 3: x: .*1e\\+07.* got '1e9'"),
+              ("t,lat,lon\n0,91,0\n", "line 2: latitude"), ("t,x,y,speed\n0,0,0,-3\n", "line 2: speed: must be at least 0"),
+              ("t,x,y\nnoon,0,0\n", "line 2: time: must be"), ("t,x,y\n2026-13-01T00:00:00Z,0,0\n", "line 2: time: must be")],
+    "a.xml": [("", "is no XML"), ("<net/>", "must begin with <fcd-export>"), ("<fcd-export/>", "holds no positions"),
+              ('<!DOCTYPE a [<!ENTITY b "c">]><fcd-export>&b;</fcd-export>', "document type, which may expand"),
+              (FCD.replace('x="20.00" ', ""), "line 8: <vehicle>: x is missing"), ("<fcd-export>" * 80, "elements within each other"),
+              (FCD.replace('x="20.00"', 'x="far"'), "line 8: x: must be a number .*'far'"),
+              (FCD.replace('time="1.00"', 'time="0.00"'), "line 8: time: must be later"),
+              ('<fcd-export><vehicle id="a" x="0" y="0" angle="0"/></fcd-export>', "must stand in a <timestep>")],
+    "a.gpx": [("<gpx/>", "holds no positions"), (GPX.replace("<time>2026-05-01T12:00:00Z</time>", ""), "line 2: <trkpt>: time is"),
+              (GPX.replace("46.0171", "x"), "line 3: lat: must be a number")], "a.json": [("{}", "must end in .csv")]}
+
+
+@pytest.mark.parametrize("name, text, words", [(name, *one) for name, cases in WRONG.items() for one in cases])
+def test_what_is_wrong_is_refused_by_file_and_line(tmp_path, name, text, words):
+    with pytest.raises(ep.FileError, match=f"(?s){name}.*{words}"):
+        ep.read_trajectories(write(tmp_path, name, text))
+
+
+def box_of(name, trajectory):
+    return ep.Actor([ep.Part("body", ep.actors.box((1, 1, 1)), "metal")])
+
+
+@pytest.mark.filterwarnings("ignore:.*single position")
+def test_traffic_is_in_the_scene_while_it_is_on_its_way(tmp_path):
+    scene = ep.Scene()
+    traffic = ep.add_traffic(scene, ep.read_trajectories(write(tmp_path, "fcd.xml", FCD)), actor_of=box_of, time=0.5)
+    assert list(traffic) == ["flow_0", "walker", "south"] == [node.name for node in scene.nodes if node.parent < 0]
+    assert not scene["south"].visible and scene["walker"].visible
+    assert traffic.show(1.4, 1.6) == ["flow_0", "south"] and not scene["walker"].visible
+    mesh = scene["south"].meshes[0].id
+    np.testing.assert_allclose(scene.world_vertices(mesh, 1.5).mean(axis=0)[:2], traffic["south"].position(1.5)[:2], atol=1e-5)
+    assert traffic.present(0.0, 9.0) == list(traffic) and traffic.present(-1.0) == []
+    more = ep.add_traffic(scene, {"walker": traffic["walker"], "none": traffic["walker"]},
+                          actor_of=lambda name, one: None if name == "none" else box_of(name, one))
+    assert list(more) == ["walker_2"]
+
+
+@pytest.mark.filterwarnings("ignore:.*single position")
+def test_kinds_become_actors(tmp_path):
+    from echopath.trajectories.traffic import usual_actor
+
+    found = ep.read_trajectories(write(tmp_path, "fcd.xml", FCD))
+    parts = {name: {part.name for part in usual_actor(name, one).parts} for name, one in found.items()}
+    assert "trailer/doors" in parts["south"] and "wheel/front_left/tyre" in parts["flow/0"] and "leg_left/foot" in parts["walker"]
+
+
+@pytest.mark.parametrize("argument, value", [("actor_of", 5), ("actor_of", ep.Actor), ("trajectories", [1]), ("parent", 5),
+                                             ("trajectories", {"a": 1}), ("scene", None), ("time", math.nan)])
+def test_wrong_arguments_of_traffic_are_named(argument, value):
+    right = {"scene": ep.Scene(), "trajectories": {}}
+    with pytest.raises((TypeError, ValueError), match=f"^{argument}: must be"):
+        ep.add_traffic(**right | {argument: value})
+
+
+SCENE = """
+[radar]
+trajectory = {points = [[0, 0, 1], [30, 0, 1]], speed = 5}
+[radar.waveform]
+start_frequency = 77e9
+bandwidth = 1e9
+num_samples = 64
+sampling_rate = 20e6
+num_chirps = 16
+chirp_interval = 60e-6
+[[radar.transmitters]]
+position = [0, 0, 0]
+[[radar.receivers]]
+position = [0, 0, 0]
+[[objects]]
+name = "box"
+actor = "box"
+parameters = {size = [1, 1, 1]}
+material = "metal"
+trajectory = {points = [[20, 0], [30, 0], [30, 10]], turn_radius = 4, speed = 2, stops = [[5, 1.0], [inf, 0]]}
+[[objects]]
+name = "bicycle"
+actor = "bicycle"
+trajectory = "drive.csv"
+id = "b"
+"""
+
+
+@pytest.fixture
+def scene_file(tmp_path):
+    write(tmp_path, "drive.csv", "t,id,x,y\n0,a,0,5\n9,a,9,5\n0,b,0,7\n9,b,18,7\n")
+    return lambda text: ep.load_scene(write(tmp_path, "scene.toml", text))
+
+
+def test_scene_files_take_trajectories(scene_file):
+    loaded = scene_file(SCENE)
+    np.testing.assert_allclose(loaded.radar.world_from_radar(2.0)[:3, 3], [10, 0, 1], atol=1e-5)
+    box = loaded.scene["box"].motion
+    assert box == ep.Trajectory([(20, 0), (30, 0), (30, 10)], turn_radius=4, speed=2, stops=[(5, 1), (math.inf, 0)])
+    np.testing.assert_allclose(loaded.scene["bicycle"].motion.at(4.5)[:3, 3], [9, 7, 0], atol=1e-5)
+    wheel = loaded.scene["bicycle/wheel_front/tyre"].motion.at(1.0)
+    np.testing.assert_allclose(wheel[:3, 0], [math.cos(2 / 0.343), 0, -math.sin(2 / 0.343)], atol=1e-4)
+
+
+@pytest.mark.parametrize("right, wrong, words", [
+    ('id = "b"', 'id = "c"', r"objects\[1\].id: there is no 'c'; the file has a, b"), ('id = "b"', "", r"objects\[1\].id: is missing"),
+    ('"drive.csv"', '{speed = 2}', r"objects\[1\].trajectory.points: is missing"), ("speed = 2,", "speed = -2,", "trajectory: speed: "),
+    ("speed = 2,", "sped = 2,", "did you mean 'speed'"), ('id = "b"', 'id = "b"\nspeed = 3', "must not stand beside speed"),
+    ("turn_radius = 4", "turn_radius = 40", r"objects\[0\].trajectory: turn_radius: must fit"),
+    ('name = "box"', 'name = "box"\nid = "b"', r"objects\[0\].id: needs a trajectory that is a file")])
+def test_wrong_trajectories_of_scene_files_are_named(scene_file, right, wrong, words):
+    with pytest.raises(ValueError, match=words):
+        scene_file(SCENE.replace(right, wrong))

@@ -152,7 +152,8 @@ def test_at_stops_both_feet_are_down_and_the_body_is_where_it_should_be():
     scene.add(ep.actors.pedestrian(trajectory=WALK, edge=0.04), name="walker")
     meshes = {mesh.name: mesh.id for mesh in scene.meshes}
     for time in (0.2, float(WALK.time_at(5.0)) + 0.3, float(WALK.end), float(WALK.end) + 3.0):
-        assert all(scene.world_vertices(meshes[f"walker/leg_{side}/foot"], time)[:, 2].min() < 0.003 for side in ("left", "right"))
+        feet = [scene.world_vertices(meshes[f"walker/leg_{side}/foot"], time) for side in ("left", "right")]
+        assert all(foot[:, 2].min() < 0.003 for foot in feet)
         pelvis = scene.world_vertices(meshes["walker/pelvis"], time).mean(axis=0)
         assert np.linalg.norm((pelvis - WALK.position(time))[:2]) < 0.06
 

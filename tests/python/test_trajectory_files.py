@@ -128,11 +128,13 @@ WRONG = {
               ("t,x,y\nnoon,0,0\n", "line 2: time: must be"), ("t,x,y\n2026-13-01T00:00:00Z,0,0\n", "line 2: time: must be")],
     "a.xml": [("", "is no XML"), ("<net/>", "must begin with <fcd-export>"), ("<fcd-export/>", "holds no positions"),
               ('<!DOCTYPE a [<!ENTITY b "c">]><fcd-export>&b;</fcd-export>', "document type, which may expand"),
-              (FCD.replace('x="20.00" ', ""), "line 8: <vehicle>: x is missing"), ("<fcd-export>" * 80, "elements within each other"),
+              (FCD.replace('x="20.00" ', ""), "line 8: <vehicle>: x is missing"),
+              ("<fcd-export>" * 80, "elements within each other"),
               (FCD.replace('x="20.00"', 'x="far"'), "line 8: x: must be a number .*'far'"),
               (FCD.replace('time="1.00"', 'time="0.00"'), "line 8: time: must be later"),
               ('<fcd-export><vehicle id="a" x="0" y="0" angle="0"/></fcd-export>', "must stand in a <timestep>")],
-    "a.gpx": [("<gpx/>", "holds no positions"), (GPX.replace("<time>2026-05-01T12:00:00Z</time>", ""), "line 2: <trkpt>: time is"),
+    "a.gpx": [("<gpx/>", "holds no positions"),
+              (GPX.replace("<time>2026-05-01T12:00:00Z</time>", ""), "line 2: <trkpt>: time is"),
               (GPX.replace("46.0171", "x"), "line 3: lat: must be a number")], "a.json": [("{}", "must end in .csv")]}
 
 
@@ -223,8 +225,10 @@ def test_scene_files_take_trajectories(scene_file):
 
 
 @pytest.mark.parametrize("right, wrong, words", [
-    ('id = "b"', 'id = "c"', r"objects\[1\].id: there is no 'c'; the file has a, b"), ('id = "b"', "", r"objects\[1\].id: is missing"),
-    ('"drive.csv"', '{speed = 2}', r"objects\[1\].trajectory.points: is missing"), ("speed = 2,", "speed = -2,", "trajectory: speed: "),
+    ('id = "b"', 'id = "c"', r"objects\[1\].id: there is no 'c'; the file has a, b"),
+    ('id = "b"', "", r"objects\[1\].id: is missing"),
+    ('"drive.csv"', '{speed = 2}', r"objects\[1\].trajectory.points: is missing"),
+    ("speed = 2,", "speed = -2,", "trajectory: speed: "),
     ("speed = 2,", "sped = 2,", "did you mean 'speed'"), ('id = "b"', 'id = "b"\nspeed = 3', "must not stand beside speed"),
     ("turn_radius = 4", "turn_radius = 40", r"objects\[0\].trajectory: turn_radius: must fit"),
     ('name = "box"', 'name = "box"\nid = "b"', r"objects\[0\].id: needs a trajectory that is a file")])

@@ -36,13 +36,15 @@ def good(tmp_path_factory) -> dict:
     (folder / "box.glb").write_bytes(box_file().glb())
     (folder / "antenna.csv").write_text("azimuth_deg,elevation_deg,gain_db\n" + "".join(
         f"{azimuth},{elevation},0\n" for azimuth in (-10, 10) for elevation in (-10, 10)))
+    (folder / "drive.csv").write_text("t,x,y\n0,0,0\n1,1,0\n")
     mesh, of_map = {"path": folder / "mesh.obj"}, {"spectrum": spectrum, "radar": radar}
     labels = next(iter(frame.labels.values()))
     return {
         "angle_time": {"frames": frame}, "range_time": {"frames": frame}, "spectrogram": {"frames": frame},
         "spectrogram_labels": {"parts": {"plate": ep.spectrogram(frame)}}, "truth": {"frame": frame},
         "track": {"detections": [np.zeros((1, 2)), []], "times": [0.0, 1.0]},
-        "add_noise": {"cube": cube, "radar": radar, "seed": 1}, "angle_fft": of_map, "beamform": of_map,
+        "add_noise": {"cube": cube, "radar": radar, "seed": 1}, "add_traffic": {"scene": ep.Scene(), "trajectories": {}},
+        "angle_fft": of_map, "beamform": of_map, "read_trajectories": {"path": folder / "drive.csv"},
         "annotate": {"paths": paths, "parts": {"plate": "T 'plate' R"}},
         "annotate_frame": {"frame": frame, "parts": {"again": {"plate": "T 'plate' R"}}},
         "cfar": of_map, "check_rays": {"probe": probe, "frame": paths.frame}, "check_signal": {"cube": cube, "probe": probe},

@@ -8,11 +8,12 @@ from numpy.typing import ArrayLike
 
 from ..checks import anything, array, checked, choice, flag, optional, positive, real, refused, text
 from .arguments import LATEST, checked_path, checked_points
-from .path import Path
+from .path import Path, turn_of
 from .track import Track
 from .trajectory import ACCELERATION, DECELERATION, Trajectory, profile_along
 
-STEP = 1e-5            # m, of differences that give the second derivative
+WIDEST = 1e4          # m
+STEP = 1e-4            # m, of differences that give the second derivative
 
 
 class Offsets:
@@ -59,9 +60,12 @@ class OffsetPath(Path):
         second = (self._jet(high)[1] - self._jet(low)[1]) / (high - low)[:, None]
         return point, first, second
 
+    def slopes_at(self, u):
+        return self._jet(u)[1]
+
     def _jet(self, u):
-        point, tangent, _ = self._center.at(u)
-        _, turn = self._center.bearings(u)
+        point, tangent, bend = self._center.at(u)
+        turn = turn_of(tangent, bend)
         offset, slope = (values[:, None] for values in self._offsets.at(u))
         level = tangent * [1.0, 1.0, 0.0]
         level /= np.linalg.norm(level, axis=-1, keepdims=True)
@@ -110,10 +114,10 @@ class Lane:
         found = point + np.atleast_1d(offsets)[:, None] * left
         return found if distances.ndim else found[0]
 
-    @checked(self=anything, speed=anything, offset=real(unit="m"), changes=anything, reverse=flag, stops=anything,
+    @checked(self=anything, speed=anything, offset=real(-WIDEST, WIDEST, "m"), changes=anything, reverse=flag, stops=anything,
              acceleration=positive("m/s^2"), deceleration=positive("m/s^2"), lateral_acceleration=optional(positive("m/s^2")),
-             speed_over=choice("distance", "time"), start_time=real(-LATEST, LATEST, "s"), goes_on=real(0.0, 1e5, "s"), pitch=flag,
-             kind=text)
+             speed_over=choice("distance", "time"), start_time=real(-LATEST, LATEST, "s"), goes_on=real(0.0, 1e5, "s"),
+             pitch=flag, kind=text)
     def trajectory(self, *, speed: ArrayLike, offset: float = 0.0, changes: ArrayLike = (), reverse: bool = False,
                    stops: ArrayLike = (), acceleration: float = ACCELERATION, deceleration: float = DECELERATION,
                    lateral_acceleration: float | None = None, speed_over: Literal["distance", "time"] = "distance",
@@ -156,7 +160,8 @@ def _checked_changes(value) -> np.ndarray:
         return np.zeros((0, 3))
     rows = np.array(array("[N, 3]", finite=True)("changes", value), float)
     ends = rows[:, 0] + rows[:, 1]
-    if np.any(rows[:, 1] <= 0.0) or np.any(rows[:, 0] < 0.0) or np.any(ends[:-1] > rows[1:, 0] + 1e-9):
+    is_out_of_range = np.any(rows[:, 1] <= 0.0) or np.any(rows[:, 0] < 0.0) or np.any(np.abs(rows) > WIDEST)
+    if is_out_of_range or np.any(ends[:-1] > rows[1:, 0] + 1e-9):
         raise refused(ValueError, "changes", "rows of a distance of at least 0 m, a length above 0 m and an offset, each behind "
                       "the one before", value)
     return rows

@@ -21,13 +21,17 @@ class Path:
         self._u = np.append((self.knots[:-1, None] + np.diff(self.knots)[:, None] * parts).ravel(), self.knots[-1])
         self._s = np.concatenate([[0.0], np.cumsum(self._integral(self._u[:-1], self._u[1:]))])
         self.length = float(self._s[-1])
-        bearing = self._bearing(self._tangents(self._u))
+        bearing = self._bearing(self.slopes_at(self._u))
         self._turned = np.unwrap(bearing)
         self.junctions = self.distances(self.knots)
 
     def jets(self, u):
         """p, p' and p'' by u, each [N, 3], at parameters [N] within the knots."""
         raise NotImplementedError
+
+    def slopes_at(self, u):
+        """p' [N, 3] alone."""
+        return self.jets(u)[1]
 
     def distances(self, u):
         """Distances [N] in m of parameters [N]."""
@@ -53,9 +57,7 @@ class Path:
         _, tangent, bend = self.at(distances)
         bearing = self._bearing(tangent)
         nearby = np.interp(distances, self._s, self._turned)
-        level = tangent[:, 0] ** 2 + tangent[:, 1] ** 2
-        turn = (tangent[:, 0] * bend[:, 1] - tangent[:, 1] * bend[:, 0]) / level
-        return bearing + 2.0 * np.pi * np.round((nearby - bearing) / (2.0 * np.pi)), turn
+        return bearing + 2.0 * np.pi * np.round((nearby - bearing) / (2.0 * np.pi)), turn_of(tangent, bend)
 
     def slopes(self, distances):
         """(angle above the plane in rad, its change in rad/m), each [N]."""
@@ -70,23 +72,28 @@ class Path:
         wanted = distances - self._s[k]
         u = low + (high - low) * wanted / (self._s[k + 1] - self._s[k])
         for _ in range(NEWTON_STEPS):
-            speed = np.linalg.norm(self.jets(u)[1], axis=-1)
-            u = np.clip(u - (self._integral(low, u) - wanted) / speed, low, high)
+            step = (self._integral(low, u) - wanted) / np.linalg.norm(self.slopes_at(u), axis=-1)
+            u = np.clip(u - step, low, high)
+            if np.abs(step).max(initial=0.0) < 1e-14 * self._u[-1]:
+                break
         return u
 
     def _integral(self, begin, end):
         """Lengths [N] in m from parameters `begin` to `end` [N], which lie in one piece each."""
         half = 0.5 * (end - begin)
         u = begin[:, None] + half[:, None] * (1.0 + NODES)
-        speeds = np.linalg.norm(self.jets(u.ravel())[1], axis=-1).reshape(u.shape)
+        speeds = np.linalg.norm(self.slopes_at(u.ravel()), axis=-1).reshape(u.shape)
         return half * (speeds @ WEIGHTS)
-
-    def _tangents(self, u):
-        return self.jets(u)[1]
 
     @staticmethod
     def _bearing(tangent):
         return np.arctan2(tangent[:, 1], tangent[:, 0])
+
+
+def turn_of(tangent, bend):
+    """Change [N] in rad/m of the direction in the plane, of tangents [N, 3] and curvature vectors [N, 3] in 1/m."""
+    level = tangent[:, 0] ** 2 + tangent[:, 1] ** 2
+    return (tangent[:, 0] * bend[:, 1] - tangent[:, 1] * bend[:, 0]) / level
 
 
 class SplinePath(Path):

@@ -59,8 +59,9 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
     vehicle_length: m, or {type: m}, by whose half the middle of a vehicle of SUMO lies behind the front bumper, of which its
         files tell; types that are not among them have 5 m, those of SUMO's cars
     Returns {name: Trajectory}, in the order of the file, each with the kind that the file tells. Between positions it goes along
-    a C2 spline, by distances that are monotone cubics over time, so that what stands stays. Times are those of the file; ISO 8601
-    and times beyond 1e6 s, such as those since 1970, count from the first of the file. Warns (RuntimeWarning) of objects with a single position, which are left out.
+    a C2 spline, by distances that are monotone cubics over time, so that what stands stays. Times are those of the file; those of
+    ISO 8601 and beyond 1e6 s, such as those since 1970, count from the first of the file. Warns (RuntimeWarning) of objects
+    with a single position, which are left out.
     Raises FileError naming the file, the line, the rule and the value, TypeError or ValueError naming the argument.
     """
     path = Path(path)

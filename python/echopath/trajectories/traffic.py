@@ -18,7 +18,7 @@ ActorOf = Callable[[str, Trajectory], Any]
 
 
 class Traffic(Mapping[str, Trajectory]):
-    """The objects that `add_traffic` has put into a scene: {full name in the scene: Trajectory}."""
+    """The objects that `add_traffic` has put into a scene: {full name in the scene: Trajectory}. Raises KeyError for others."""
 
     def __init__(self, scene, trajectories: dict[str, Trajectory]):
         self._scene, self._trajectories = scene, trajectories

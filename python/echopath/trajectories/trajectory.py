@@ -51,8 +51,8 @@ class Trajectory(_core.CurveMotion):
     @checked(self=anything, points=checked_points, speed=anything, times=optional(checked_times),
              yaw=optional(array("[P]", finite=True)), turn_radius=optional(positive("m")), stops=checked_stops,
              acceleration=positive("m/s^2"), deceleration=positive("m/s^2"), lateral_acceleration=optional(positive("m/s^2")),
-             speed_over=choice("distance", "time"), start_time=real(-LATEST, LATEST, "s"), goes_on=real(0.0, 1e5, "s"), pitch=flag,
-             kind=text)
+             speed_over=choice("distance", "time"), start_time=real(-LATEST, LATEST, "s"), goes_on=real(0.0, 1e5, "s"),
+             pitch=flag, kind=text)
     def __init__(self, points: ArrayLike, *, speed: ArrayLike | None = None, times: ArrayLike | None = None,
                  yaw: ArrayLike | None = None, turn_radius: float | None = None, stops: ArrayLike = (),
                  acceleration: float = ACCELERATION, deceleration: float = DECELERATION,
@@ -206,8 +206,8 @@ def _timed(arguments: dict) -> Track:
     path, places = _path_of_places(points, arguments["turn_radius"], towards)
     speeds = arguments["speed"]
     if speeds is not None:
-        speeds = np.asarray(array("[P]", finite=True)("speed", speeds), float)
-        if len(speeds) != len(points) or np.any(speeds < 0.0):
+        speeds = np.asarray(array("[P]", "[]", "[N, 2]", finite=True)("speed", speeds), float)
+        if speeds.shape != (len(points),) or np.any(speeds < 0.0):
             raise refused(ValueError, "speed", f"{len(points)} numbers of at least 0 m/s, one for each of the times", speeds)
     return Track(path, through(times, places, speeds), headings)
 

@@ -47,7 +47,7 @@ class Tracks:
         return count
 
     def of_track(self, number: int) -> Tracks:
-        """The rows of one track.
+        """The rows of one track, ascending in time (s).
 
         number: of the track. Raises TypeError for what is no number, KeyError for one that is not there.
         """

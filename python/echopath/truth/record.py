@@ -130,8 +130,8 @@ class Truth:
             records[field] = array
         return records
 
-    @classmethod
-    def from_records(cls, records: np.ndarray) -> Truth:
+    @staticmethod
+    def from_records(records: np.ndarray) -> Truth:
         """The Truth of what `to_records` gave.
 
         records: structured array [N]. Raises ValueError for other fields.
@@ -141,7 +141,7 @@ class Truth:
             raise refused(ValueError, "records", "a structured array as Truth.to_records makes it", records)
         columns = {field: np.array(records[field]) for field in _fields()}
         columns["name"] = np.array([name.decode("utf-8") for name in columns["name"].tolist()], dtype=str)
-        return cls(**columns)
+        return Truth(**columns)
 
     def _where(self, chosen) -> Truth:
         return Truth(**{field: getattr(self, field)[chosen] for field in _fields()})

@@ -2,6 +2,7 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
 #include <optional>
@@ -11,10 +12,12 @@
 #include "argument.h"
 #include "array.h"
 #include "define.h"
+#include "echopath/label/objects/appearing.h"
 #include "echopath/label/objects/families.h"
 #include "echopath/label/objects/visibility.h"
 #include "named_selections.h"
 #include "run_job.h"
+#include "scene_geometry.h"
 
 namespace echopath::bindings {
 namespace {
@@ -120,8 +123,31 @@ std::vector<ObjectVisibility> visibility_in_trace(const Paths& paths, const Rada
   const SurfaceMap surfaces = surfaces_of(*paths.scene, objects, paths.frame.trace_time, paths.frame.transmitter);
   VisibilitySettings settings;
   settings.time = paths.frame.trace_time;
+  const std::shared_ptr<KeptGeometry> kept = geometry_of(paths.scene);
   return run_job("visibility", progress,
-                 [&](Job& job) { return visibility(*paths.scene, radar, surfaces, settings, &job); });
+                 [&](Job& job) { return visibility(*paths.scene, radar, surfaces, settings, &job, kept.get()); });
+}
+
+// Of the objects named, those that may_appear at shares of the frame.
+std::vector<std::string> may_appear_in_frame(const Paths& paths, const Radar& radar, const std::optional<Objects>& objects,
+                                             const std::vector<std::string>& hidden, const std::vector<double>& shares,
+                                             double hidden_share) {
+  const SurfaceMap surfaces = surfaces_of(*paths.scene, objects, paths.frame.trace_time, paths.frame.transmitter);
+  AppearingSettings settings;
+  settings.time = paths.frame.trace_time;
+  settings.hidden_share = hidden_share;
+  for (const double share : shares) settings.others.push_back(paths.frame.start_time + share * radar.frame_duration());
+  std::vector<uint32_t> asked;
+  for (uint32_t i = 0; i < surfaces.num_objects; ++i) {
+    if (std::find(hidden.begin(), hidden.end(), surfaces.names[i]) != hidden.end()) asked.push_back(i);
+  }
+  const std::shared_ptr<KeptGeometry> kept = geometry_of(paths.scene);
+  const auto found = run_job("visibility", py::none(), [&](Job& job) {
+    return may_appear(*paths.scene, radar, surfaces, asked, settings, &job, kept.get());
+  });
+  std::vector<std::string> names;
+  for (const uint32_t object : found) names.push_back(surfaces.names[object]);
+  return names;
 }
 
 py::tuple sight_tuple(const Sight& sight) {
@@ -149,6 +175,9 @@ void bind_visibility(py::module_& m) {
       },
       py::arg("paths"), py::arg("radar"), py::arg("objects"), py::arg("progress"),
       "As visibility, at the time of a trace and of the objects that find_families has for it.");
+  m.def("may_appear_in_frame", &may_appear_in_frame, py::arg("paths"), py::arg("radar"), py::arg("objects"),
+        py::arg("hidden"), py::arg("shares"), py::arg("hidden_share"),
+        "Of the objects named in hidden, those that may be in sight at shares of the frame: the others are not.");
   m.def(
       "visibility",
       [](const Scene& scene, const Radar& radar, const std::optional<Objects>& objects, std::optional<double> time,

@@ -14,6 +14,7 @@
 #include "echopath/trace/trace.h"
 #include "error_target.h"
 #include "run_job.h"
+#include "scene_geometry.h"
 
 namespace echopath::bindings {
 namespace {
@@ -33,7 +34,8 @@ Effort effort_of(std::optional<int64_t> num_rays, int batches, std::optional<dou
 PathsPtr trace_paths(Scene scene, const Radar& radar, std::optional<int64_t> num_rays, int max_bounces, uint64_t seed,
                      double start_time, const std::string& polarization, const std::string& footprint,
                      const std::string& sampler, std::optional<int> batches, std::optional<double> target_error_db,
-                     int64_t max_rays, const std::string& scatterers, const py::object& progress, KeptGeometry* kept) {
+                     int64_t max_rays, const std::string& scatterers, const py::object& progress,
+                     const std::shared_ptr<KeptGeometry>& kept) {
   const Effort effort = effort_of(num_rays, batches.value_or(1), target_error_db, max_rays);
   TraceSettings settings;
   settings.num_rays = effort.num_rays;
@@ -47,9 +49,10 @@ PathsPtr trace_paths(Scene scene, const Radar& radar, std::optional<int64_t> num
   settings.scatterers = kScatterers.value_of(scatterers);
   const SceneSnapshot snapshot(std::move(scene));
   auto paths = std::make_shared<Paths>(run_job("trace", progress, [&](Job& job) {
-    return effort.target ? trace_to_error(snapshot, radar, settings, *effort.target, &job, kept)
-                         : trace_by_need(snapshot, radar, settings, &job, kept);
+    return effort.target ? trace_to_error(snapshot, radar, settings, *effort.target, &job, kept.get())
+                         : trace_by_need(snapshot, radar, settings, &job, kept.get());
   }));
+  if (kept) remember_geometry(paths->scene, kept);
   const TraceFrame& frame = paths->frame;
   if (target_error_db && frame.error_db > frame.target_error_db) {
     warn_of_missed_target("trace: max_rays", frame.error_db, frame.target_error_db);

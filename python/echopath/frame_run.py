@@ -19,6 +19,7 @@ from .path_subset import part_of_path
 from .settings import LabelSettings, SignalSettings, TraceSettings
 from .signals import synthesize
 from .stages import StageClock
+from .tracing import keep_geometry
 
 _FAMILIES = object()  # a view that has the name of no partition
 
@@ -45,6 +46,8 @@ class FrameRun:
         """The frame of what `record()` returns, Paths of the scene and the radar; progress: as in `simulate`."""
         clock = StageClock()
         with clock("trace"):
+            if self._request:
+                keep_geometry(self.scene)
             paths = record()
         with clock("synthesis"):
             settings = self.signal.of_replay() | {"progress": progress}

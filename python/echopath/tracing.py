@@ -61,8 +61,8 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
         there, and echoes over flagged mirrors persist in part
     settings: TraceSettings that give the keywords which the call leaves out, or None
     progress: callable (stage, fraction), True for bars, or None
-    From a scene's second trace on, what has not moved since is not built again, for about 200 bytes a triangle while the
-    scene lives.
+    From a scene's second trace on, and from the first of `simulate(labels=True)`, what has not moved since is not built again,
+    for about 200 bytes a triangle while the scene lives.
     Returns Paths. Raises TypeError or ValueError naming the argument, also for smooth mirrors that are not flat and motions
     that do not cover the frame. Warns (TessellationWarning, once) of curved meshes that err by more than 0.3 dB, with the
     edge length in m that would do, and (RuntimeWarning) where over 1 % of the rays are lost to a surface that the radar
@@ -166,13 +166,23 @@ def mie_rcs(radius: float, frequency: float, bistatic_angle: float = 0.0, plane:
 
 
 def _remembered(scene: _core.Scene) -> tuple[bool, _core.KeptGeometry | None]:
-    """(whether this is a scene's first trace, where its geometry is kept for the next).
+    """(whether this is a scene's first trace, where its geometry is kept).
 
-    A scene that is traced once keeps nothing. Plain scenes of the core never do: each of their traces is a first one.
+    A scene that is traced once keeps nothing, unless `keep_geometry` was asked for. Plain scenes of the core never do: each of
+    their traces is a first one.
     """
     memory = getattr(scene, "__dict__", None)
-    if memory is None or "_was_traced" not in memory:
-        if memory is not None:
-            memory["_was_traced"] = True
+    if memory is None:
         return True, None
-    return False, memory.setdefault("_geometry", _core.KeptGeometry())
+    is_first = "_was_traced" not in memory
+    if not is_first:
+        keep_geometry(scene)
+    memory["_was_traced"] = True
+    return is_first, memory.get("_geometry")
+
+
+def keep_geometry(scene: _core.Scene) -> None:
+    """Has the next trace of a scene keep its geometry: for later ones, or for who looks at the scene again afterwards."""
+    memory = getattr(scene, "__dict__", None)
+    if memory is not None:
+        memory.setdefault("_geometry", _core.KeptGeometry())

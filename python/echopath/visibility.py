@@ -112,8 +112,11 @@ def appearing_in_frame(paths, radar, hidden, objects=None, *, progress=None) -> 
     """
     scene = paths.scene
     moves = radar.motion is not None or any(scene.is_moving(mesh.id) for mesh in scene.meshes)
-    appearing, hidden = set(), set(hidden)
-    for share in FRAME_PLACES if moves else ():
+    if not (moves and hidden):
+        return set()
+    appearing = set()
+    hidden = set(_core.may_appear_in_frame(paths, radar, named_globs(objects), sorted(hidden), FRAME_PLACES, HIDDEN_SHARE))
+    for share in FRAME_PLACES:
         rest = {name: objects[name] if isinstance(objects, dict) else name for name in sorted(hidden - appearing)}
         if rest:
             seen = visibility(scene, radar, rest, time=paths.frame.start_time + share * radar.frame_duration,

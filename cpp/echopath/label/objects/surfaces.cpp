@@ -12,6 +12,7 @@ namespace echopath {
 namespace {
 
 constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
+constexpr double kSureOutside = 1.001;
 
 // Fills in the surfaces of meshes that belong to no object.
 class SurfaceFinder {
@@ -86,6 +87,29 @@ bool take_meshes(const std::string& glob, uint32_t object, const std::vector<std
   return takes_hidden;
 }
 
+// Returns a box that holds a mesh, a little larger than needed: that of the corners of its box in its own frame.
+Eigen::AlignedBox3d box_around(const PosedScene& pose, uint32_t mesh) {
+  Eigen::AlignedBox3d local, world;
+  for (const Vec3& vertex : pose.local_vertices(mesh)) local.extend(vertex);
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 corner = local.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
+    world.extend(pose.linear(mesh) * corner + pose.world_translation(mesh));
+  }
+  return world;
+}
+
+// Returns whether the bounding sphere of an object holds a point (world). Its radius is no more than half a diagonal of any
+// box that holds the object, and its centre lies in that box.
+bool surrounds(const Scene& scene, const PosedScene& pose, const SceneObject& object, const Vec3& point) {
+  Eigen::AlignedBox3d box;
+  for (const uint32_t mesh : object.mesh_ids) box.extend(box_around(pose, mesh));
+  if (box.exteriorDistance(point) > kSureOutside * 0.5 * box.diagonal().norm()) return false;
+  std::vector<std::vector<Vec3>> vertices(scene.meshes().size());
+  for (const uint32_t mesh : object.mesh_ids) vertices[mesh] = pose.world_vertices(mesh);
+  const VerticesOf vertices_of = [&](uint32_t mesh) -> const std::vector<Vec3>& { return vertices[mesh]; };
+  return bounding_sphere(vertices_of, object.mesh_ids).holds(point);
+}
+
 }  // namespace
 
 std::vector<uint32_t> SurfaceMap::meshes_of(uint32_t surface) const {
@@ -121,10 +145,7 @@ SurfaceMap map_surfaces(const Scene& scene, double time, const Vec3& antenna) {
   map.of_mesh.assign(scene.meshes().size(), kNone);
   const PosedScene pose(scene, time);
   for (const SceneObject& object : objects_of(scene)) {
-    std::vector<std::vector<Vec3>> vertices(scene.meshes().size());
-    for (const uint32_t mesh : object.mesh_ids) vertices[mesh] = pose.world_vertices(mesh);
-    const VerticesOf vertices_of = [&](uint32_t mesh) -> const std::vector<Vec3>& { return vertices[mesh]; };
-    if (bounding_sphere(vertices_of, object.mesh_ids).holds(antenna)) continue;
+    if (surrounds(scene, pose, object, antenna)) continue;
     for (const uint32_t mesh : object.mesh_ids) map.of_mesh[mesh] = map.num_objects;
     map.names.push_back(scene.nodes()[static_cast<size_t>(object.node)].name);
     ++map.num_objects;

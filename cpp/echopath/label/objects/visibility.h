@@ -10,6 +10,8 @@
 
 namespace echopath {
 
+class KeptGeometry;  // trace/geometry/kept_geometry.h
+
 // Describes an object as one end of the radar sees it, from the mean position of its antennas.
 struct Sight {
   double solid_angle = 0.0;    // sr that the object would fill alone; 0: no ray found it (edge-on)
@@ -29,16 +31,17 @@ struct ObjectVisibility {
 
 struct VisibilitySettings {
   double time = 0.0;  // s
-  // The approximate number of directions on each object: a lattice over the cone that holds it, refined (at most
-  // kFinestLattice times) where the object fills little of the cone. The error of a share is 4e-4 rms for half hidden plates
-  // and 4096 directions, and falls with the power -0.8.
+  // The approximate number of directions on each object, as if all were looked at: a grid over the stratum that holds it
+  // (sight_grid.h), of up to 16 times as many cells where the object fills little of the stratum.
+  // ACCURACY
   int num_directions = 4096;
 };
-inline constexpr int kFinestLattice = 16;
 
-// Computes the visibility of the objects of `surfaces`, in order, with the same bits for any number of threads. Raises
-// invalid_argument for num_directions below 1, a bad radar or motions that do not cover the time; raises Cancelled.
+// Computes the visibility of the objects of `surfaces`, in order, with the same bits for any number of threads. With `kept`,
+// it uses the geometry that a trace of the scene left there, and leaves its own. Raises invalid_argument for num_directions
+// below 1, a bad radar or motions that do not cover the time; raises Cancelled.
 std::vector<ObjectVisibility> visibility(const Scene& scene, const Radar& radar, const SurfaceMap& surfaces,
-                                         const VisibilitySettings& settings = {}, Job* job = nullptr);
+                                         const VisibilitySettings& settings = {}, Job* job = nullptr,
+                                         KeptGeometry* kept = nullptr);
 
 }  // namespace echopath

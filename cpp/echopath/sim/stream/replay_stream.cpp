@@ -30,6 +30,17 @@ int64_t block_size(int64_t num_channels, int64_t num_rows) {
   return std::min(most, std::max(kMinBlock, kValuesInFlight / (kBlocksInFlight * num_channels * num_rows)));
 }
 
+// Returns what one node takes at most: matrices and places of the meshes in PosedScene, their rows in PosedNodes, and the
+// vertices and normals of meshes that deform.
+int64_t bytes_of_pose(const Scene& scene) {
+  size_t bytes = 0;
+  for (uint32_t mesh = 0; mesh < scene.meshes().size(); ++mesh) {
+    bytes += 2 * sizeof(Mat3) + sizeof(Vec3) + PointToPose::kNumMeshRows * sizeof(double);
+    if (scene.node_of(mesh).deformation) bytes += 2 * sizeof(Vec3) * scene.node_of(mesh).mesh->vertices().size();
+  }
+  return static_cast<int64_t>(bytes);
+}
+
 constexpr int64_t kPathsOfTask = 1 << 13;  // paths whose grids one task finds
 
 // Sorts the indices of the paths by the grid that they begin with (PathGrids), in their order.
@@ -161,6 +172,8 @@ void ReplayStream::run(const Sink& sink) const {
 void ReplayStream::run(std::span<const int64_t> paths, const Sink& sink) {
   if (!kept_grids_) kept_grids_.emplace(replayer_.path_grids());
   kept_chirps_.resize(static_cast<size_t>(num_transmitters_));
+  const int64_t num_nodes = num_transmitters_ * replayer_.grids().num_sample_nodes();
+  if (num_nodes * bytes_of_pose(scene_) <= kKeptSamples) kept_samples_.resize(static_cast<size_t>(num_transmitters_));
   std::vector<std::vector<int64_t>> by_grid(static_cast<size_t>(kept_grids_->num_grids()));
   for (const int64_t path : paths) by_grid[static_cast<size_t>(kept_grids_->first(path))].push_back(path);
   run(*kept_grids_, std::move(by_grid), sink);
@@ -203,28 +216,28 @@ void ReplayStream::add_chirps(const std::vector<std::vector<int64_t>>& by_grid, 
   if (std::all_of(by_grid.begin(), by_grid.end(), is_empty)) return;
   const int num_receivers = num_channels() / num_transmitters_;
   const Extent extent{transmitter * num_receivers, num_receivers, replayer_.num_rows_by_chirp(), true};
-  const std::shared_ptr<const PosedGrid> chirps = posed_chirps(transmitter);
+  const std::shared_ptr<const PosedGrid> chirps = posed(replayer_.grids().chirps(transmitter), transmitter, kept_chirps_);
   for (int polynomial = 1; polynomial <= replayer_.grids().num_polynomials(); ++polynomial) {
     run_blocks(by_grid[static_cast<size_t>(polynomial)], extent,
                [&](auto part, auto joined, auto&) { return replayer_.by_chirp(part, polynomial, *chirps, joined); }, out);
   }
 }
 
-std::shared_ptr<const PosedGrid> ReplayStream::posed_chirps(int transmitter) const {
-  const auto pose = [&] { return std::make_shared<const PosedGrid>(replayer_.pose(replayer_.grids().chirps(transmitter))); };
-  if (kept_chirps_.empty()) return pose();
-  std::shared_ptr<const PosedGrid>& kept = kept_chirps_[static_cast<size_t>(transmitter)];
-  if (!kept) kept = pose();
-  return kept;
+std::shared_ptr<const PosedGrid> ReplayStream::posed(const TimeGrid& grid, int transmitter, KeptPoses& kept) const {
+  const auto pose = [&] { return std::make_shared<const PosedGrid>(replayer_.pose(grid)); };
+  if (kept.empty()) return pose();
+  std::shared_ptr<const PosedGrid>& of_transmitter = kept[static_cast<size_t>(transmitter)];
+  if (!of_transmitter) of_transmitter = pose();
+  return of_transmitter;
 }
 
 // Replays the paths that no polynomial follows.
 void ReplayStream::add_samples(const std::vector<int64_t>& paths, int transmitter, WindowPipeline& out) const {
   if (paths.empty()) return;
   const int num_receivers = num_channels() / num_transmitters_;
-  const PosedGrid samples = replayer_.pose(replayer_.grids().samples(transmitter));
+  const auto samples = posed(replayer_.grids().samples(transmitter), transmitter, kept_samples_);
   run_blocks(paths, {transmitter * num_receivers, num_receivers, replayer_.grids().num_sample_nodes()},
-             [&](auto part, auto, auto&) { return replayer_.exact(part, samples); }, out);
+             [&](auto part, auto, auto&) { return replayer_.exact(part, *samples); }, out);
 }
 
 // Replays blocks in parallel, a fixed number at a time. Returns the paths that `replay` left.

@@ -37,7 +37,7 @@ class ReplayStream {
 
   // `paths` and `radar` must outlive the stream. Raises as Replayer.
   ReplayStream(const Paths& paths, const Radar& radar, const ReplaySettings& settings, Job* job)
-      : num_paths_(paths.num_paths()), num_transmitters_(static_cast<int>(radar.transmitters.size())),
+      : num_paths_(paths.num_paths()), scene_(*paths.scene), num_transmitters_(static_cast<int>(radar.transmitters.size())),
         replayer_(paths, radar, settings), job_(job) {}
 
   // From now on paths over the same hits make one echo where they agree in all of `labels` ([P] each, which must outlive
@@ -46,10 +46,12 @@ class ReplayStream {
   // The watcher must outlive the stream.
   void watch(PathWatcher* watcher) { watcher_ = watcher; }
 
+  static constexpr int64_t kKeptSamples = 256 << 20;  // bytes
   int num_channels() const { return replayer_.num_channels(); }
   const Replayer& replayer() const { return replayer_; }
   // Sends the paths to the sink, all of them or some (indices, ascending). A stream that sends some at a time keeps the
-  // scene as posed in each chirp, where paths need it. Memory is bounded by the blocks in flight, 0.2 GiB of delays and
+  // scene as posed in each chirp, where paths need it, and at the samples of all chirps where that is no more than
+  // kKeptSamples. Memory is bounded by the blocks in flight, 0.2 GiB of delays and
   // amplitudes at 32 nodes a path, whatever the number of paths, chirps and channels; a sink that sorts them needs at
   // most as much again. Beside these each thread works on 320 B for each channel and node of a block
   // (SingleBounceEvaluation), and on what chains of its paths share. `sink` is called from one thread at a time, while
@@ -66,7 +68,8 @@ class ReplayStream {
   struct Window;
   class WindowPipeline;
   void run(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, const Sink& sink) const;
-  std::shared_ptr<const PosedGrid> posed_chirps(int transmitter) const;
+  using KeptPoses = std::vector<std::shared_ptr<const PosedGrid>>;  // by transmitter; empty where none are kept
+  std::shared_ptr<const PosedGrid> posed(const TimeGrid& grid, int transmitter, KeptPoses& kept) const;
   void add_still(const std::vector<int64_t>& paths, WindowPipeline& out) const;
   void add_moving(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, WindowPipeline& out) const;
   void add_chirps(const std::vector<std::vector<int64_t>>& by_grid, int transmitter, WindowPipeline& out) const;
@@ -86,13 +89,15 @@ class ReplayStream {
   Block run_block(std::span<const int64_t> paths, size_t index, const Extent& extent, const Replay& replay) const;
 
   int64_t num_paths_;
+  const Scene& scene_;
   int num_transmitters_;
   Replayer replayer_;
   Job* job_;
   std::optional<JoinRule> join_rule_;
   PathWatcher* watcher_ = nullptr;
-  std::optional<PathGrids> kept_grids_;                                // of runs over some paths
-  mutable std::vector<std::shared_ptr<const PosedGrid>> kept_chirps_;  // by transmitter, likewise
+  // Of runs over some paths.
+  std::optional<PathGrids> kept_grids_;
+  mutable KeptPoses kept_chirps_, kept_samples_;
 };
 
 }  // namespace echopath

@@ -52,7 +52,7 @@ void EmbreeScene::Device::start_scene(size_t num_meshes, bool tree_per_mesh) {
 }
 
 void EmbreeScene::Device::set_mesh(unsigned mesh_id, const std::vector<Vec3>& vertices,
-                                   const std::vector<Triangle>& triangles) {
+                                   const std::vector<Triangle>& triangles, unsigned mask) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* points = static_cast<float*>(
       rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices.size()));
@@ -67,6 +67,7 @@ void EmbreeScene::Device::set_mesh(unsigned mesh_id, const std::vector<Vec3>& ve
   }
   for (size_t i = 0; i < triangles.size(); ++i) std::copy(triangles[i].begin(), triangles[i].end(), indices + 3 * i);
   rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_MEDIUM);
+  rtcSetGeometryMask(geometry, mask);
   rtcCommitGeometry(geometry);
   if (has_mesh[mesh_id]) rtcDetachGeometry(scene, mesh_id);
   rtcAttachGeometryByID(scene, geometry, mesh_id);

@@ -9,13 +9,14 @@ namespace echopath {
 
 bool EmbreeMeshes::Source::is_same(const Source& other) const {
   return mesh == other.mesh && deformation == other.deformation && time == other.time && smooth == other.smooth &&
-         linear == other.linear && translation == other.translation;
+         object == other.object && linear == other.linear && translation == other.translation;
 }
 
 EmbreeMeshes::Source EmbreeMeshes::source_of(const Scene& scene, const PosedScene& pose, uint32_t mesh_id) {
   const Node& node = scene.node_of(mesh_id);
   const double time = node.deformation ? pose.time() : 0.0;
-  return {node.mesh, node.deformation, time, pose.linear(mesh_id), pose.world_translation(mesh_id), node.smooth};
+  return {node.mesh, node.deformation, time, pose.linear(mesh_id), pose.world_translation(mesh_id), node.smooth,
+          scene.meshes()[mesh_id].object};
 }
 
 void EmbreeMeshes::place(Posed& posed, const PosedScene& pose, uint32_t mesh_id, const std::string& name) const {
@@ -46,6 +47,20 @@ std::vector<uint32_t> EmbreeMeshes::update(const Scene& scene, const PosedScene&
   return changed;
 }
 
+bool EmbreeMeshes::is_current(const Scene& scene, const PosedScene& pose) const {
+  if (meshes_.size() != scene.meshes().size()) return false;
+  for (uint32_t mesh_id = 0; mesh_id < size(); ++mesh_id) {
+    if (!source_of(scene, pose, mesh_id).is_same(meshes_[mesh_id].source)) return false;
+  }
+  return true;
+}
+
+Eigen::AlignedBox3d EmbreeMeshes::box() const {
+  Eigen::AlignedBox3d whole;
+  for (const Posed& posed : meshes_) whole.extend(posed.box);
+  return whole;
+}
+
 double EmbreeMeshes::largest_coordinate() const {
   double largest = 0.0;
   for (const Posed& posed : meshes_) {
@@ -56,13 +71,11 @@ double EmbreeMeshes::largest_coordinate() const {
 }
 
 double EmbreeMeshes::mean_cover() const {
-  Eigen::AlignedBox3d whole;
   double volumes = 0.0;
   for (const Posed& posed : meshes_) {
-    whole.extend(posed.box);
     if (!posed.box.isEmpty()) volumes += posed.box.volume();
   }
-  return volumes > 0.0 ? volumes / whole.volume() : 0.0;
+  return volumes > 0.0 ? volumes / box().volume() : 0.0;
 }
 
 }  // namespace echopath

@@ -16,6 +16,10 @@ class EmbreeMeshes {
   // the range of coordinates (base/range_of_coordinates.h) about the origin; after that it may only be destroyed.
   std::vector<uint32_t> update(const Scene& scene, const PosedScene& pose, const Vec3& origin);
 
+  // Returns whether an update with the same origin would find that no mesh differs.
+  bool is_current(const Scene& scene, const PosedScene& pose) const;
+
+  const Vec3& origin() const { return origin_; }  // m, world
   uint32_t size() const { return static_cast<uint32_t>(meshes_.size()); }
   const std::vector<Triangle>& triangles(uint32_t mesh_id) const { return meshes_[mesh_id].source.mesh->triangles(); }
   const std::vector<Vec3>& vertices(uint32_t mesh_id) const { return meshes_[mesh_id].vertices; }  // m
@@ -23,6 +27,8 @@ class EmbreeMeshes {
   const std::vector<Vec3>& normals(uint32_t mesh_id) const { return meshes_[mesh_id].normals; }
   const Eigen::AlignedBox3d& box(uint32_t mesh_id) const { return meshes_[mesh_id].box; }  // m
   double largest_coordinate() const;                                                       // m, of all vertices by magnitude
+  int object(uint32_t mesh_id) const { return meshes_[mesh_id].source.object; }  // SceneMesh::object
+  Eigen::AlignedBox3d box() const;                                                // m, of all meshes
   // Returns the mean number of bounding boxes of meshes in which a point of the scene's bounding box lies.
   double mean_cover() const;
 
@@ -35,6 +41,7 @@ class EmbreeMeshes {
     Mat3 linear = Mat3::Identity();   // of the pose
     Vec3 translation = Vec3::Zero();  // m, world
     bool smooth = false;
+    int object = -1;  // SceneMesh::object
     bool is_same(const Source& other) const;
   };
   struct Posed {

@@ -68,6 +68,19 @@ ECHOPATH_INLINE void round_lanes(const RayLanes* rays, RTCRay16* out, ValidLanes
   for (int lane = 0; lane < kPacketSize; ++lane) valid->lanes[lane] = rays->far[lane] > 0 ? -1 : 0;
 }
 
+ECHOPATH_INLINE void look_lanes(VectorOf<double> from, const LaneVectors* directions, double reach,
+                                const EmbreeScene::Stretches* stretches, RayLanes* rays, LaneValues* moved) {
+  ECHOPATH_SIDE_BY_SIDE
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    const VectorOf<double> direction = directions->at(lane);
+    const double up = way_up(from, direction, reach), end = stretches->end[lane];
+    rays->from.set(lane, from + up * direction);
+    rays->direction.set(lane, direction);
+    rays->far[lane] = end > stretches->begin[lane] ? end - up : -1.0;
+    (*moved)[lane] = up;
+  }
+}
+
 bool is_met(const Hit& hit) { return hit.mesh_id != RTC_INVALID_GEOMETRY_ID; }
 
 void take(const RTCHit16& found, std::array<Hit, kPacketSize>& out) {
@@ -124,6 +137,27 @@ void EmbreeScene::intersect(const Vec3& from, const LaneVectors& directions, int
     hit.hit = out.met[k];
     out.verdicts[k] = confirm(from, directions[lane], hit);
     if (out.verdicts[k] == Verdict::kHit) out.set(lane, hit);
+  }
+}
+
+void EmbreeScene::look(const Vec3& from, const LaneVectors& directions, const Stretches& stretches, uint32_t mask,
+                       Looks& out) const {
+  alignas(64) RTCRayHit16 queries;
+  ValidLanes valid;
+  RayLanes rays;
+  LaneValues moved;
+  run_simd<&look_lanes>(unpacked(from), &directions, reach_, &stretches, &rays, &moved);
+  run_simd<&round_lanes>(&rays, &queries.ray, &valid);
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    queries.ray.tnear[lane] = static_cast<float>(std::max(0.0, stretches.begin[lane] - moved[lane]));
+    queries.ray.mask[lane] = mask;
+  }
+  forget_hits(queries.hit);
+  queries_->intersect(valid, queries);
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    const auto k = static_cast<size_t>(lane);
+    out.mesh_id[k] = valid.lanes[lane] ? queries.hit.geomID[lane] : kNothing;
+    out.distance[lane] = double{queries.ray.tfar[lane]} + moved[lane];
   }
 }
 

@@ -2,6 +2,7 @@
 // Holds the posed triangles of a scene and finds what rays meet of them.
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -69,6 +70,19 @@ class EmbreeScene {
   // Finds the closest hits of the first `count` rays of a packet, from one point; it is 4 times as fast where they are
   // nearly parallel. The lanes behind them must hold finite numbers too, and meet nothing.
   void intersect(const Vec3& from, const LaneVectors& directions, int count, PacketHits& out) const;
+  // Finds what the rays of a packet from one point meet first in their stretches, in single precision and without the hits
+  // themselves. Of all meshes, those that share a bit with `mask` are looked at.
+  struct Stretches {
+    LaneValues begin, end;  // m, along the rays; a ray whose stretch is empty is not asked about
+  };
+  struct Looks {
+    std::array<uint32_t, kPacketSize> mesh_id;  // kNothing where there is none
+    LaneValues distance;                        // m
+  };
+  static constexpr uint32_t kNothing = std::numeric_limits<uint32_t>::max();
+  void look(const Vec3& from, const LaneVectors& directions, const Stretches& stretches, uint32_t mask, Looks& out) const;
+  // Returns the bit of a mesh: the same for all below one child of the scene's root, and one of 32.
+  uint32_t mask_of(uint32_t mesh_id) const { return uint32_t{1} << (static_cast<unsigned>(meshes_.object(mesh_id)) % 32u); }
   // Returns whether something lies on the open segment between the two points. Points on surfaces must be lifted first.
   bool occluded(const Vec3& from, const Vec3& to) const;
   // Answers this for `count` segments; it is 4 times as fast, in whatever order they come.
@@ -91,6 +105,9 @@ class EmbreeScene {
   // something or `near` moves, it is rounded to a grid, by no more than 1/16 of the scene's length in each axis: then it is
   // the same at most times, and meshes at rest need not be built again.
   static Vec3 origin_near(const Scene& scene, const PosedScene& pose, const Vec3& near, bool near_moves = false);
+  // Returns the same for the next update; where it would build nothing, without a look at the vertices.
+  Vec3 next_origin(const Scene& scene, const PosedScene& pose, const Vec3& near, bool near_moves) const;
+  const Vec3& origin() const { return meshes_.origin(); }
 
   std::array<Vec3, 3> corners(uint32_t mesh_id, uint32_t triangle_id) const {
     const Surface& surface = surfaces_[mesh_id];

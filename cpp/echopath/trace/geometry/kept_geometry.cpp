@@ -10,6 +10,17 @@ GeometryLoan::GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedSc
   else geometry_ = std::make_unique<EmbreeScene>(scene, pose, origin, job);
 }
 
+GeometryLoan::GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedScene& pose, const Vec3& near,
+                           bool near_moves, Job* job)
+    : kept_(kept), geometry_(kept ? kept->take() : nullptr) {
+  if (geometry_) {
+    geometry_->update(scene, pose, geometry_->next_origin(scene, pose, near, near_moves), job);
+  } else {
+    const Vec3 origin = EmbreeScene::origin_near(scene, pose, near, near_moves);
+    geometry_ = std::make_unique<EmbreeScene>(scene, pose, origin, job);
+  }
+}
+
 GeometryLoan::~GeometryLoan() {
   if (kept_) kept_->put_back(std::move(geometry_));
 }

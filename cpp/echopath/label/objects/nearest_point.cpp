@@ -1,0 +1,82 @@
+#include "echopath/label/objects/nearest_point.h"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace echopath {
+namespace {
+
+double distance_to_triangle(const Vec3& point, const std::array<Vec3, 3>& corners) {
+  const auto& [a, b, c] = corners;
+  const Vec3 normal = (b - a).cross(c - a).normalized();
+  bool is_above = true;  // the foot of the perpendicular lies on the inner side of all three edges
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+    is_above = is_above && normal.cross(to - from).dot(point - from) >= 0.0;
+    least = std::min(least, distance_to_segment(point, from, to));
+  }
+  return is_above ? std::abs(normal.dot(point - a)) : least;
+}
+
+double longest_edge(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+  double longest = 0.0;
+  for (const auto& [a, b, c] : triangles) {
+    longest = std::max({longest, (vertices[a] - vertices[b]).squaredNorm(), (vertices[b] - vertices[c]).squaredNorm(),
+                        (vertices[c] - vertices[a]).squaredNorm()});
+  }
+  return std::sqrt(longest);
+}
+
+double largest_stretch(const Mat3& linear) { return Eigen::JacobiSVD<Mat3>(linear).singularValues()[0]; }
+
+}  // namespace
+
+NearestPoints::NearestPoints(const Scene& scene, const PosedScene& pose, const EmbreeScene& geometry,
+                             std::span<const uint32_t> mesh_ids)
+    : scene_(scene), geometry_(geometry), longest_edge_(scene.meshes().size()) {
+  std::map<const Mesh*, double> known;  // of meshes that several nodes share
+  for (const uint32_t id : mesh_ids) {
+    const Node& node = scene.node_of(id);
+    if (node.deformation) {
+      longest_edge_[id] = longest_edge(geometry.vertices(id), node.mesh->triangles());
+      continue;
+    }
+    const auto [entry, is_new] = known.try_emplace(node.mesh.get());
+    if (is_new) entry->second = longest_edge(node.mesh->vertices(), node.mesh->triangles());
+    longest_edge_[id] = entry->second * largest_stretch(pose.linear(id));
+  }
+}
+
+double NearestPoints::distance(const Vec3& point, std::span<const uint32_t> mesh_ids) const {
+  std::vector<std::pair<double, uint32_t>> by_box;
+  for (const uint32_t id : mesh_ids) by_box.emplace_back(geometry_.box(id).exteriorDistance(point), id);
+  std::sort(by_box.begin(), by_box.end());
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& [distance, id] : by_box) {
+    if (distance < least) least = distance_to_mesh(point, id, least);
+  }
+  return least;
+}
+
+// No point of a triangle is farther from its next corner than its longest edge over the root of 3.
+double NearestPoints::distance_to_mesh(const Vec3& point, uint32_t mesh, double least) const {
+  const std::vector<Vec3>& vertices = geometry_.vertices(mesh);
+  std::vector<double> squares;
+  squares.reserve(vertices.size());
+  for (const Vec3& vertex : vertices) squares.push_back((vertex - point).squaredNorm());
+  least = std::min(least, std::sqrt(*std::min_element(squares.begin(), squares.end())));
+  const double reach = least + longest_edge_[mesh] / std::numbers::sqrt3, limit = reach * reach * (1.0 + 1e-9);
+  const std::vector<Triangle>& triangles = scene_.node_of(mesh).mesh->triangles();
+  for (uint32_t i = 0; i < triangles.size(); ++i) {
+    const auto& [a, b, c] = triangles[i];
+    if (std::min({squares[a], squares[b], squares[c]}) > limit) continue;
+    least = std::min(least, distance_to_triangle(point, geometry_.corners(mesh, i)));
+  }
+  return least;
+}
+
+}  // namespace echopath

@@ -1,0 +1,146 @@
+#include "echopath/label/objects/sight_grid.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace echopath {
+namespace {
+
+constexpr int kCells = SightGrid::kSide * SightGrid::kSide;  // of a block; as many as a packet has lanes
+static_assert(kCells == kPacketSize);
+constexpr int kFirstCell = 5;  // the cell of a block that is looked at first
+// Two numbers whose multiples are even in both axes together (Roberts 2018, of the plastic number).
+constexpr double kAlong = 0.7548776662466927, kAcross = 0.5698402909980532;
+
+double fraction(double value) { return value - std::floor(value); }
+
+}  // namespace
+
+SightGrid::SightGrid(const Stratum& stratum, int64_t num_cells) : directions_({stratum}) {
+  const LaunchDomain domain = domain_of(stratum);
+  is_disc_ = domain.is_disc();
+  half_ = is_disc_ ? Eigen::Vector2d(1.0, 1.0) : domain.half;
+  const double num_blocks = std::max(1.0, static_cast<double>(num_cells) / kCells);
+  num_columns_ = static_cast<int>(std::clamp(std::round(std::sqrt(num_blocks * half_[0] / half_[1])), 1.0, num_blocks));
+  num_rows_ = static_cast<int>(std::max(1.0, std::round(num_blocks / num_columns_)));
+  const double square = is_disc_ ? 4.0 / std::numbers::pi : 1.0;  // of the disc's own area
+  cell_angle_ = stratum.solid_angle() * square / static_cast<double>(kCells * this->num_blocks());
+  const auto size = static_cast<size_t>(this->num_blocks());
+  first_met_.assign(size, kNothing);
+  state_.assign(size, State::kUnseen);
+  met_.resize(size * kCells);
+}
+
+// Sets the place of a cell's direction in the domain.
+void SightGrid::direct(int64_t block, int cell, LaneValues& x, LaneValues& y, int lane) const {
+  const auto column = static_cast<double>(block % num_columns_ * kSide + cell % kSide);
+  const auto row = static_cast<double>(block / num_columns_ * kSide + cell / kSide);
+  const double along = column + fraction(kAlong * row + 0.5), across = row + fraction(kAcross * column + 0.5);
+  x[lane] = half_[0] * (2.0 * along / (kSide * num_columns_) - 1.0);
+  y[lane] = half_[1] * (2.0 * across / (kSide * num_rows_) - 1.0);
+}
+
+// Places outside of a disc meet nothing.
+void SightGrid::look_at(const LaneValues& x, const LaneValues& y, int count, const Look& look, uint32_t* met) const {
+  LaneVectors directions;
+  directions_.launch(0, x, y, {0, kPacketSize}, directions);
+  look(directions, count, met);
+  for (int lane = 0; is_disc_ && lane < count; ++lane) {
+    if (x[lane] * x[lane] + y[lane] * y[lane] > 1.0) met[lane] = kNothing;
+  }
+}
+
+double SightGrid::start(const Look& look) {
+  if (num_blocks() <= kFewBlocks) finish_everywhere(look);
+  for (int64_t begin = 0; num_blocks() > kFewBlocks && begin < num_blocks(); begin += kPacketSize) {
+    const int count = static_cast<int>(std::min<int64_t>(kPacketSize, num_blocks() - begin));
+    LaneValues x, y;
+    for (int lane = 0; lane < kPacketSize; ++lane) direct(begin + std::min(lane, count - 1), kFirstCell, x, y, lane);
+    look_at(x, y, count, look, first_met_.data() + begin);
+  }
+  const auto& all = num_blocks() > kFewBlocks ? first_met_ : met_;
+  const auto num_found = std::ssize(all) - std::count(all.begin(), all.end(), kNothing);
+  return static_cast<double>(num_found) / static_cast<double>(all.size());
+}
+
+void SightGrid::finish(const Look& look) {
+  queue_changes();
+  while (!queue_.empty()) {
+    const int64_t block = queue_.back();
+    queue_.pop_back();
+    see(block, look);
+    queue_neighbours(block);
+  }
+}
+
+void SightGrid::finish_everywhere(const Look& look) {
+  for (int64_t block = 0; block < num_blocks(); ++block) see(block, look);
+}
+
+void SightGrid::see(int64_t block, const Look& look) {
+  const auto at = static_cast<size_t>(block);
+  if (state_[at] == State::kSeen) return;
+  LaneValues x, y;
+  for (int cell = 0; cell < kCells; ++cell) direct(block, cell, x, y, cell);
+  look_at(x, y, kCells, look, met_.data() + at * kCells);
+  state_[at] = State::kSeen;
+}
+
+void SightGrid::queue(int64_t block) {
+  State& state = state_[static_cast<size_t>(block)];
+  if (state != State::kUnseen) return;
+  state = State::kQueued;
+  queue_.push_back(block);
+}
+
+// Queues neighbours, corner to corner too, whose directions met different things. Around the domain nothing is met.
+void SightGrid::queue_changes() {
+  const auto met = [&](int64_t block) { return first_met_[static_cast<size_t>(block)]; };
+  for (int64_t block = 0; block < num_blocks(); ++block) {
+    const int64_t column = block % num_columns_;
+    const bool has_right = column + 1 < num_columns_, has_below = block + num_columns_ < num_blocks();
+    const bool is_at_rim = column == 0 || !has_right || block < num_columns_ || !has_below;
+    if (is_at_rim && met(block) != kNothing) queue(block);
+    const auto compare = [&](bool is_there, int64_t other) {
+      if (!is_there || met(block) == met(other)) return;
+      queue(block);
+      queue(other);
+    };
+    compare(has_right, block + 1);
+    compare(has_below, block + num_columns_);
+    compare(has_below && has_right, block + num_columns_ + 1);
+    compare(has_below && column > 0, block + num_columns_ - 1);
+  }
+}
+
+// Queues the neighbours of a block that was seen where cells at their border met something else than they did.
+void SightGrid::queue_neighbours(int64_t block) {
+  const uint32_t* const cells = met_.data() + block * kCells;
+  const int64_t column = block % num_columns_;
+  const auto compare = [&](bool is_there, int64_t other, int first, int step) {
+    if (!is_there || state_[static_cast<size_t>(other)] != State::kUnseen) return;
+    const uint32_t met = first_met_[static_cast<size_t>(other)];
+    for (int k = 0; k < kSide; ++k) {
+      if (cells[first + k * step] != met) return queue(other);
+    }
+  };
+  compare(column > 0, block - 1, 0, kSide);
+  compare(column + 1 < num_columns_, block + 1, kSide - 1, kSide);
+  compare(block >= num_columns_, block - num_columns_, 0, 1);
+  compare(block + num_columns_ < num_blocks(), block + num_columns_, kCells - kSide, 1);
+}
+
+std::vector<int64_t> SightGrid::counts(size_t num_kinds) const {
+  std::vector<int64_t> counts(num_kinds);
+  const auto add = [&](uint32_t met, int64_t count) {
+    if (met != kNothing) counts[met] += count;
+  };
+  for (size_t block = 0; block < state_.size(); ++block) {
+    if (state_[block] != State::kSeen) add(first_met_[block], kCells);
+    else for (int cell = 0; cell < kCells; ++cell) add(met_[block * kCells + static_cast<size_t>(cell)], 1);
+  }
+  return counts;
+}
+
+}  // namespace echopath

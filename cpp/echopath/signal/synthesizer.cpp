@@ -338,6 +338,18 @@ void Synthesizer::require_group(int group) const {
   throw std::out_of_range("group: must be in [0, " + std::to_string(num_groups_) + "), got " + std::to_string(group));
 }
 
+bool Synthesizer::has_echoes(int channel, int group) const {
+  require_channel(channel);
+  require_group(group);
+  return !is_still(channel, group) || !channels_[static_cast<size_t>(channel)].still[static_cast<size_t>(group)].empty();
+}
+
+bool Synthesizer::is_still(int channel, int group) const {
+  require_channel(channel);
+  require_group(group);
+  return !channels_[static_cast<size_t>(channel)].moving[static_cast<size_t>(group)];
+}
+
 void Synthesizer::write_samples(int channel, int group, std::complex<double>* out) const {
   require_channel(channel);
   require_group(group);

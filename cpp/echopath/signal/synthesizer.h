@@ -56,6 +56,9 @@ class Synthesizer {
   void add(int channel, std::span<const Echoes> blocks, Job* job = nullptr);
   void add(int channel, const Echoes& block, Job* job = nullptr) { add(channel, std::span(&block, 1), job); }
 
+  // Whether a channel and group has echoes so far, and whether none of them moves: then all chirps are the same.
+  bool has_echoes(int channel, int group) const;
+  bool is_still(int channel, int group) const;
   // Writes the samples of one channel and group so far to `out`, [chirp, sample] in sqrt(W), without a parallel loop.
   void write_samples(int channel, int group, std::complex<double>* out) const;
   // Adds the signals of all groups of another, of the same waveform, channels, method and tolerance, to the first group.

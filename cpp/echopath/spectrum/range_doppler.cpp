@@ -4,6 +4,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
@@ -124,16 +125,23 @@ struct MapTransform::Plan {
   Taper range_taper, doppler_taper;
   Fft range_fft, doppler_fft;
   int64_t num_ranges;
+  std::vector<std::complex<double>> at_rest;  // [V], of chirps that are all 1
 };
 
 MapTransform::MapTransform(const Radar& radar, const Window& window, int zero_pad) {
   check_map(radar, zero_pad);
   const ChirpSequence& waveform = radar.waveform;
   const int range_size = waveform.num_samples * zero_pad;
-  plan_ = std::make_unique<const Plan>(Plan{range_taper_of(waveform, window), make_taper(window, waveform.num_chirps),
-                                            Fft(range_size, FftDirection::kForward),
-                                            Fft(waveform.num_chirps * zero_pad, FftDirection::kForward),
-                                            static_cast<int64_t>(range_axis(waveform, range_size).size())});
+  Plan plan{range_taper_of(waveform, window),
+            make_taper(window, waveform.num_chirps),
+            Fft(range_size, FftDirection::kForward),
+            Fft(waveform.num_chirps * zero_pad, FftDirection::kForward),
+            static_cast<int64_t>(range_axis(waveform, range_size).size()),
+            {}};
+  const std::vector<std::complex<double>> ones(static_cast<size_t>(waveform.num_chirps), 1.0);
+  plan.at_rest.resize(static_cast<size_t>(plan.doppler_fft.size()));
+  transform_strip(plan.doppler_fft, plan.doppler_taper, ones.data(), 1, 1, plan.at_rest.data());
+  plan_ = std::make_unique<const Plan>(std::move(plan));
 }
 MapTransform::~MapTransform() = default;
 MapTransform::MapTransform(MapTransform&&) noexcept = default;
@@ -154,6 +162,17 @@ void MapTransform::transform(const std::complex<double>* samples, std::vector<st
   for (int64_t first = 0; first < num_ranges; first += kColumnsPerTask) {
     transform_strip(plan_->doppler_fft, plan_->doppler_taper, profiles.data() + first, num_ranges,
                     std::min<int64_t>(kColumnsPerTask, num_ranges - first), values + first);
+  }
+}
+
+void MapTransform::transform_still(const std::complex<double>* samples, std::vector<std::complex<double>>& profiles,
+                                   std::complex<double>* values) const {
+  const int64_t num_ranges = plan_->num_ranges;
+  profiles.resize(static_cast<size_t>(num_ranges));
+  FftBuffer buffer(plan_->range_fft.size());
+  transform_row(plan_->range_fft, plan_->range_taper, samples, num_ranges, buffer, profiles.data());
+  for (const std::complex<double>& response : plan_->at_rest) {
+    for (int64_t r = 0; r < num_ranges; ++r) *values++ = response * profiles[static_cast<size_t>(r)];
   }
 }
 

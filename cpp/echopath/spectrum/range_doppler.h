@@ -52,6 +52,9 @@ class MapTransform {
   // samples [chirp, sample] to values [V, R] in sqrt(W). `profiles` is memory for it.
   void transform(const std::complex<double>* samples, std::vector<std::complex<double>>& profiles,
                  std::complex<double>* values) const;
+  // The same where all chirps are alike, by the first of them: nearly no work.
+  void transform_still(const std::complex<double>* samples, std::vector<std::complex<double>>& profiles,
+                       std::complex<double>* values) const;
 
  private:
   struct Plan;

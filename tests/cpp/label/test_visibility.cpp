@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "echopath/base/parallel.h"
+#include "echopath/label/objects/appearing.h"
 #include "echopath/label/objects/visibility.h"
+#include "echopath/trace/geometry/kept_geometry.h"
 #include "support/scenes.h"
 
 namespace echopath::test_visibility {
@@ -204,6 +206,65 @@ TEST(Visibility, NumberOfThreadsDoesNotMatter) {
   EXPECT_EQ(sights[0].visible_share, sights[1].visible_share);
   EXPECT_EQ(sights[0].occluders, sights[1].occluders);
   EXPECT_EQ(sights[0].distance, sights[1].distance);
+}
+
+TEST(Visibility, LabelsInThePlaneOfAPlateDoNotHideIt) {
+  Scene scene;
+  add_facing(scene, "plate", 10, -1, 1, -1, 1);
+  add_facing(scene, "label", 10, -0.5, 0.5, -0.5, 0.5);
+  const std::vector<ObjectVisibility> seen = seen_in(scene, {"plate", "label"});
+  EXPECT_EQ(seen[0].transmitter.visible_share, 1.0);
+  EXPECT_EQ(seen[1].transmitter.visible_share, 1.0);
+}
+
+// Queries tell 32 children of the root apart; the screen is the 33rd.
+TEST(Visibility, AnyNumberOfObjectsHideEachOther) {
+  Scene scene;
+  add_facing(scene, "plate", 10, -1, 1, -1, 1);
+  for (int k = 1; k < 32; ++k) add_facing(scene, "behind " + std::to_string(k), 11 + 0.1 * k, -1, 1, -1, 1);
+  add_facing(scene, "screen", 5, -2, 0, -2, 2);
+  const Sight sight = seen_in(scene, {"plate"}).front().transmitter;
+  EXPECT_NEAR(sight.visible_share, 0.5, kShareError);
+  EXPECT_NEAR(occluded_by(sight, "screen"), 0.5, kShareError);
+}
+
+TEST(Visibility, KeptGeometryGivesTheSame) {
+  Scene scene;
+  add_disc(scene, "far", 10, 1);
+  add_facing(scene, "screen", 5, -2, 0.13, -2, 2);
+  const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
+  const SurfaceMap surfaces = map_surfaces(scene, {{"far", {"far"}}});
+  const Sight fresh = visibility(scene, radar, surfaces).front().transmitter;
+  KeptGeometry kept;
+  for (int turn = 0; turn < 2; ++turn) {
+    const Sight again = visibility(scene, radar, surfaces, {}, nullptr, &kept).front().transmitter;
+    EXPECT_EQ(again.visible_share, fresh.visible_share);
+    EXPECT_EQ(again.solid_angle, fresh.solid_angle);
+    EXPECT_EQ(again.distance, fresh.distance);
+  }
+}
+
+// A plate at 10 m behind two screens at 5 m, where its shadow reaches from y = -0.5 to 0.5 m. One hides half of it for good;
+// the edge of the other is at y = 10 t - 0.6 m.
+TEST(Visibility, WhatAMovingScreenUncoversMayAppear) {
+  Scene scene;
+  add_facing(scene, "plate", 10, -1, 1, -1, 1);
+  add_facing(scene, "screen", 5, 0, 6, -2, 2);
+  Node screen = scene.nodes().back();
+  screen.name = "moving";
+  screen.placement = Transform(Eigen::Translation3d(0.0, -0.6, 0.0));
+  screen.motion = std::make_shared<LinearMotion>(Vec3(0.0, 10.0, 0.0));
+  scene.add(std::move(screen));
+  add_facing(scene, "beside", 10, 5, 6, -1, 1);
+  const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
+  const SurfaceMap surfaces = map_surfaces(scene, {{"plate", {"plate"}}, {"beside", {"beside"}}});
+  const auto is_found = [&](double other) {
+    const std::vector<uint32_t> asked{0};
+    return !may_appear(scene, radar, surfaces, asked, {0.0, {0.0, other}, 0.05}).empty();
+  };
+  EXPECT_FALSE(is_found(0.01));  // edge at -0.5 m
+  EXPECT_FALSE(is_found(0.013));  // 3 % in sight
+  EXPECT_TRUE(is_found(0.018));   // 8 %
 }
 
 TEST(Visibility, CancelledJobStops) {

@@ -13,8 +13,8 @@
 namespace echopath {
 namespace {
 
-constexpr double kDoubt = 0.5;         // of the share that counts
-constexpr double kBeforeSelf = 1e-4;   // relative to the distance: nearer to a point than this it is its own surface that hides it
+constexpr double kBeforeSelf =
+    1e-4;  // relative to the distance: nearer to a point than this it is its own surface that hides it
 constexpr int64_t kMostDirections = 16;  // for each one on the object
 
 Transform place_of(const PosedScene& pose, uint32_t mesh) {
@@ -28,7 +28,7 @@ Transform place_of(const PosedScene& pose, uint32_t mesh) {
 struct SeenPoints {
   struct Point {
     uint32_t mesh;
-    Vec3 position;  // in the frame of its mesh
+    Vec3 position;    // in the frame of its mesh
     uint32_t hiding;  // mesh, or kNothing
   };
   std::vector<Point> points;
@@ -47,8 +47,8 @@ class Watch {
     const std::array<SeenPoints, 2> seen = {points_from(object, radar_.transmitters), points_from(object, radar_.receivers)};
     if (!std::all_of(seen.begin(), seen.end(), [this](const SeenPoints& one) { return can_be_followed(one); })) return true;
     return std::any_of(others_.begin(), others_.end(), [&](const PosedScene& other) {
-      const double limit = kDoubt * settings_.hidden_share;
-      return share_in_sight(seen[0], radar_.transmitters, other) > limit && share_in_sight(seen[1], radar_.receivers, other) > limit;
+      return share_in_sight(seen[0], radar_.transmitters, other) > settings_.hidden_share &&
+             share_in_sight(seen[1], radar_.receivers, other) > settings_.hidden_share;
     });
   }
 
@@ -68,7 +68,8 @@ class Watch {
     const Stratum stratum = view.stratum(false);
     SeenPoints seen = points_in(view, stratum, settings_.num_directions);
     const int64_t found = std::ssize(seen.points), asked = settings_.num_directions;
-    if (2 * found < asked) seen = points_in(view, stratum, asked * std::min(kMostDirections, asked / std::max<int64_t>(1, found)));
+    if (2 * found < asked)
+      seen = points_in(view, stratum, asked * std::min(kMostDirections, asked / std::max<int64_t>(1, found)));
     return seen;
   }
 
@@ -149,9 +150,8 @@ std::vector<uint32_t> may_appear(const Scene& scene, const Radar& radar, const S
   const GeometryLoan geometry(kept, scene, pose, near, radar.motion != nullptr, job);
   const Watch watch(scene, radar, surfaces, settings, pose, *geometry);
   std::vector<uint8_t> appears(objects.size());
-  parallel_for(std::ssize(objects), [&](int64_t i) {
-    appears[static_cast<size_t>(i)] = watch.may_appear(objects[static_cast<size_t>(i)]);
-  }, job);
+  parallel_for(std::ssize(objects),
+               [&](int64_t i) { appears[static_cast<size_t>(i)] = watch.may_appear(objects[static_cast<size_t>(i)]); }, job);
   std::vector<uint32_t> found;
   for (size_t i = 0; i < objects.size(); ++i) {
     if (appears[i]) found.push_back(objects[i]);

@@ -8,9 +8,9 @@
 namespace echopath {
 namespace {
 
-constexpr double kBoxMargin = 16.0;    // lifts of the geometry: the rounding of vertices and rays in single precision
-constexpr double kEndMargin = 1e-6;    // relative to a distance, likewise
-constexpr size_t kFewVertices = 512;   // are as good as the corners of boxes
+constexpr double kBoxMargin = 16.0;   // lifts of the geometry: the rounding of vertices and rays in single precision
+constexpr double kEndMargin = 1e-6;   // relative to a distance, likewise
+constexpr size_t kFewVertices = 512;  // are as good as the corners of boxes
 
 bool is_any(const EmbreeScene::Stretches& stretches) {
   for (int lane = 0; lane < kPacketSize; ++lane) {
@@ -20,7 +20,8 @@ bool is_any(const EmbreeScene::Stretches& stretches) {
 }
 
 void add_corners(const Eigen::AlignedBox3d& box, std::vector<Vec3>& corners) {
-  for (int corner = 0; corner < 8; ++corner) corners.push_back(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)));
+  for (int corner = 0; corner < 8; ++corner)
+    corners.push_back(box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)));
 }
 
 }  // namespace

@@ -18,9 +18,9 @@ class ObjectView {
   static constexpr double kSameDepth = 1e-5;
   static constexpr double kAfter = 1.0 + 1e-7;  // times a distance: one step of single precision
   struct Seen {
-    std::array<uint32_t, kPacketSize> surface;        // the object where nothing hides it, else what does; kNothing: not there
-    std::array<uint32_t, kPacketSize> mesh, hiding;   // meshes of the object and of what hides it, or kNothing
-    LaneValues distance;                              // m, to the object
+    std::array<uint32_t, kPacketSize> surface;  // the object where nothing hides it, else what does; kNothing: not there
+    std::array<uint32_t, kPacketSize> mesh, hiding;  // meshes of the object and of what hides it, or kNothing
+    LaneValues distance;                             // m, to the object
   };
 
   // The geometry and the surfaces must outlive it. `apex` (m) is relative to the geometry's origin.

@@ -138,7 +138,8 @@ std::vector<int64_t> SightGrid::counts(size_t num_kinds) const {
   };
   for (size_t block = 0; block < state_.size(); ++block) {
     if (state_[block] != State::kSeen) add(first_met_[block], kCells);
-    else for (int cell = 0; cell < kCells; ++cell) add(met_[block * kCells + static_cast<size_t>(cell)], 1);
+    else
+      for (int cell = 0; cell < kCells; ++cell) add(met_[block * kCells + static_cast<size_t>(cell)], 1);
   }
   return counts;
 }

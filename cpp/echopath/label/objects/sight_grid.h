@@ -18,8 +18,8 @@ class SightGrid {
  public:
   // Writes what the first `count` directions of a packet meet.
   using Look = std::function<void(const LaneVectors& directions, int count, uint32_t* met)>;
-  static constexpr int kSide = 4;          // cells of a block
-  static constexpr int kFewBlocks = 64;    // as many are looked at wholly
+  static constexpr int kSide = 4;        // cells of a block
+  static constexpr int kFewBlocks = 64;  // as many are looked at wholly
   static constexpr uint32_t kNothing = std::numeric_limits<uint32_t>::max();
 
   // `num_cells` is approximate.
@@ -45,7 +45,7 @@ class SightGrid {
   void queue_neighbours(int64_t block);
 
   LaunchDirections directions_;
-  Eigen::Vector2d half_;       // half lengths of the domain
+  Eigen::Vector2d half_;  // half lengths of the domain
   bool is_disc_;
   int num_columns_, num_rows_;  // of blocks
   double cell_angle_;

@@ -39,7 +39,7 @@ double sum_of_squares(const std::vector<std::complex<double>>& samples) {
 // Some sets of groups: the set of each group, and their paths.
 struct PartPass::Sorted {
   std::vector<uint32_t> local;  // [num_groups], kNotAsked for others
-  std::vector<int64_t> paths;   // ascending
+  std::vector<int64_t> paths;   // set by set, ascending in each
   int num_sets = 0;
 };
 
@@ -79,9 +79,12 @@ PartPass::Sorted PartPass::sorted(const Sets& sets) const {
       sorted.local[group] = static_cast<uint32_t>(set);
     }
   }
+  std::vector<std::vector<int64_t>> of_set(sets.size());
   for (size_t path = 0; path < group_.size(); ++path) {
-    if (sorted.local[group_[path]] != kNotAsked) sorted.paths.push_back(static_cast<int64_t>(path));
+    const uint32_t set = sorted.local[group_[path]];
+    if (set != kNotAsked) of_set[set].push_back(static_cast<int64_t>(path));
   }
+  for (const std::vector<int64_t>& some : of_set) sorted.paths.insert(sorted.paths.end(), some.begin(), some.end());
   return sorted;
 }
 
@@ -103,7 +106,9 @@ void PartPass::run(const Sorted& sorted, bool as_one, Synthesizer* out, CellBoun
 std::vector<double> PartPass::bounds(std::span<const uint32_t> groups, const Window& window, int zero_pad, Job* job) {
   Sets alone;
   for (const uint32_t group : groups) alone.push_back({group});
-  const Sorted some = sorted(alone);
+  Sorted some = sorted(alone);
+  std::sort(some.paths.begin(),
+            some.paths.end());  // they go into one signal, for which neighbours among the rays are better
   CellBounds bounds(paths_.num_paths(), radar_, settings_.synthesis.per_sample);
   run(some, true, adds_up_ ? &whole_ : nullptr, &bounds, job);
   std::vector<uint32_t> local;
@@ -146,9 +151,11 @@ SetPower PartPass::power_of(const Synthesizer& signals, int set, const MapTransf
                                             static_cast<size_t>(radar_.waveform.num_samples));
   SetPower power{std::vector<double>(num_cells), 0.0};
   for (int channel = 0; channel < num_channels; ++channel) {
+    if (!signals.has_echoes(channel, set)) continue;
     signals.write_samples(channel, set, samples.data());
     power.mean_square += sum_of_squares(samples);
-    map.transform(samples.data(), profiles, values.data());
+    if (signals.is_still(channel, set)) map.transform_still(samples.data(), profiles, values.data());
+    else map.transform(samples.data(), profiles, values.data());
     for (size_t cell = 0; cell < num_cells; ++cell) power.cells[cell] += std::norm(values[cell]);
   }
   for (double& cell : power.cells) cell /= num_channels;

@@ -49,7 +49,8 @@ class ReplayStream {
   static constexpr int64_t kKeptSamples = 256 << 20;  // bytes
   int num_channels() const { return replayer_.num_channels(); }
   const Replayer& replayer() const { return replayer_; }
-  // Sends the paths to the sink, all of them or some (indices, ascending). A stream that sends some at a time keeps the
+  // Sends the paths to the sink, all of them or some (indices, of which those that are to be
+  // joined follow each other). A stream that sends some at a time keeps the
   // scene as posed in each chirp, where paths need it, and at the samples of all chirps where that is no more than
   // kKeptSamples. Memory is bounded by the blocks in flight, 0.2 GiB of delays and
   // amplitudes at 32 nodes a path, whatever the number of paths, chirps and channels; a sink that sorts them needs at

@@ -97,8 +97,7 @@ struct EmbreeScene::Device final : EmbreeScene::Queries {
   // mesh that moves costs a new tree of its own and the upper one. Both depend on the triangles alone, however often they
   // were built before.
   void start_scene(size_t num_meshes, bool tree_per_mesh);
-  void set_mesh(unsigned mesh_id, const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
-                unsigned mask);
+  void set_mesh(unsigned mesh_id, const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles, unsigned mask);
   void build(Job* job);
 
   void intersect(RTCRayHit& query) const override;

@@ -15,7 +15,12 @@ bool EmbreeMeshes::Source::is_same(const Source& other) const {
 EmbreeMeshes::Source EmbreeMeshes::source_of(const Scene& scene, const PosedScene& pose, uint32_t mesh_id) {
   const Node& node = scene.node_of(mesh_id);
   const double time = node.deformation ? pose.time() : 0.0;
-  return {node.mesh, node.deformation, time, pose.linear(mesh_id), pose.world_translation(mesh_id), node.smooth,
+  return {node.mesh,
+          node.deformation,
+          time,
+          pose.linear(mesh_id),
+          pose.world_translation(mesh_id),
+          node.smooth,
           scene.meshes()[mesh_id].object};
 }
 

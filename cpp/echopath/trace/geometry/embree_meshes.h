@@ -27,8 +27,8 @@ class EmbreeMeshes {
   const std::vector<Vec3>& normals(uint32_t mesh_id) const { return meshes_[mesh_id].normals; }
   const Eigen::AlignedBox3d& box(uint32_t mesh_id) const { return meshes_[mesh_id].box; }  // m
   double largest_coordinate() const;                                                       // m, of all vertices by magnitude
-  int object(uint32_t mesh_id) const { return meshes_[mesh_id].source.object; }  // SceneMesh::object
-  Eigen::AlignedBox3d box() const;                                                // m, of all meshes
+  int object(uint32_t mesh_id) const { return meshes_[mesh_id].source.object; }            // SceneMesh::object
+  Eigen::AlignedBox3d box() const;                                                         // m, of all meshes
   // Returns the mean number of bounding boxes of meshes in which a point of the scene's bounding box lies.
   double mean_cover() const;
 

@@ -10,8 +10,8 @@ GeometryLoan::GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedSc
   else geometry_ = std::make_unique<EmbreeScene>(scene, pose, origin, job);
 }
 
-GeometryLoan::GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedScene& pose, const Vec3& near,
-                           bool near_moves, Job* job)
+GeometryLoan::GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedScene& pose, const Vec3& near, bool near_moves,
+                           Job* job)
     : kept_(kept), geometry_(kept ? kept->take() : nullptr) {
   if (geometry_) {
     geometry_->update(scene, pose, geometry_->next_origin(scene, pose, near, near_moves), job);

@@ -262,7 +262,7 @@ TEST(Visibility, WhatAMovingScreenUncoversMayAppear) {
     const std::vector<uint32_t> asked{0};
     return !may_appear(scene, radar, surfaces, asked, {0.0, {0.0, other}, 0.05}).empty();
   };
-  EXPECT_FALSE(is_found(0.01));  // edge at -0.5 m
+  EXPECT_FALSE(is_found(0.01));   // edge at -0.5 m
   EXPECT_FALSE(is_found(0.013));  // 3 % in sight
   EXPECT_TRUE(is_found(0.018));   // 8 %
 }

@@ -13,8 +13,7 @@ namespace echopath {
 class ObjectView {
  public:
   static constexpr uint32_t kNothing = EmbreeScene::kNothing;
-  // What directions meet, lane by lane. Surfaces this near behind each other, relative to the distance, are one: a label on a
-  // box does not hide it.
+  // Surfaces this near behind each other, relative to the distance, are one: a label on a box does not hide it.
   static constexpr double kSameDepth = 1e-5;
   static constexpr double kAfter = 1.0 + 1e-7;  // times a distance: one step of single precision
   struct Seen {

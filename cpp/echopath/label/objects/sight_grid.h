@@ -1,12 +1,13 @@
 #pragma once
 // Finds shares of a stratum by what directions in it meet: many directions where that changes, few elsewhere.
 //
-// The stratum's plane is cut into cells with a direction in each, and these into blocks of 4 x 4. One direction is looked at in
-// each block, then all of the blocks whose neighbours met something else, and on from there along the border that these
+// The stratum's plane is cut into cells with a direction in each, and these into blocks of 4 x 4. One direction is looked at
+// in each block, then all of the blocks whose neighbours met something else, and on from there along the border that these
 // find. The other blocks count as what their one direction met. Directions lie at the places of a lattice in their cells
 // (the row moves them along, the column across), so that no edge along the rows or columns runs through all of them at once.
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
 #include "echopath/trace/geometry/packet.h"

@@ -33,7 +33,8 @@ struct VisibilitySettings {
   double time = 0.0;  // s
   // The approximate number of directions on each object, as if all were looked at: a grid over the stratum that holds it
   // (sight_grid.h), of up to 16 times as many cells where the object fills little of the stratum.
-  // ACCURACY
+  // The error of a share is 4e-4 rms for half hidden plates and 4096 directions, and falls with the power -0.75. What hides
+  // less than a block of the grid, 1/500 of the stratum, and nothing beside it, may be missed.
   int num_directions = 4096;
 };
 

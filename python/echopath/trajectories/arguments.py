@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..checks import array, refused
+from ..checks import array, real, refused
 from .path import Path, SplinePath, turned_path
 from .profile import Profile, hermite_coefficients, slopes_of
 
@@ -11,6 +11,7 @@ MOST_POINTS = 1_000_000
 FARTHEST = 1e7          # m, beyond which positions in double precision are no longer those of radar
 FASTEST = 1e4           # m/s
 LATEST = 1e7            # s, beyond which a time in double precision is no longer known to nanoseconds
+RATE = real(high=1e6, unit="m/s^2", above=0.0)    # of accelerations
 NEAREST = 1e-3          # m, of points that follow each other
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..checks import anything, array, checked, choice, flag, optional, positive, real, refused, text
-from .arguments import LATEST, checked_path, checked_points
+from .arguments import LATEST, RATE, checked_path, checked_points
 from .path import Path, turn_of
 from .track import Track
 from .trajectory import ACCELERATION, DECELERATION, Trajectory, profile_along
@@ -115,7 +115,7 @@ class Lane:
         return found if distances.ndim else found[0]
 
     @checked(self=anything, speed=anything, offset=real(-WIDEST, WIDEST, "m"), changes=anything, reverse=flag, stops=anything,
-             acceleration=positive("m/s^2"), deceleration=positive("m/s^2"), lateral_acceleration=optional(positive("m/s^2")),
+             acceleration=RATE, deceleration=RATE, lateral_acceleration=optional(RATE),
              speed_over=choice("distance", "time"), start_time=real(-LATEST, LATEST, "s"), goes_on=real(0.0, 1e5, "s"),
              pitch=flag, kind=text)
     def trajectory(self, *, speed: ArrayLike, offset: float = 0.0, changes: ArrayLike = (), reverse: bool = False,

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from .. import _core
 from ..checks import anything, array, checked, choice, flag, optional, positive, real, refused, text
-from .arguments import LATEST, checked_headings, checked_path, checked_points, checked_speed, checked_stops, checked_times
+from .arguments import LATEST, RATE, checked_headings, checked_path, checked_points, checked_speed, checked_stops, checked_times
 from .knots import curve_through
 from .limits import Limits, over_distance
 from .path import Path
@@ -50,7 +50,7 @@ class Trajectory(_core.CurveMotion):
 
     @checked(self=anything, points=checked_points, speed=anything, times=optional(checked_times),
              yaw=optional(array("[P]", finite=True)), turn_radius=optional(positive("m")), stops=checked_stops,
-             acceleration=positive("m/s^2"), deceleration=positive("m/s^2"), lateral_acceleration=optional(positive("m/s^2")),
+             acceleration=RATE, deceleration=RATE, lateral_acceleration=optional(RATE),
              speed_over=choice("distance", "time"), start_time=real(-LATEST, LATEST, "s"), goes_on=real(0.0, 1e5, "s"),
              pitch=flag, kind=text)
     def __init__(self, points: ArrayLike, *, speed: ArrayLike | None = None, times: ArrayLike | None = None,

@@ -59,6 +59,8 @@ from .tracks import Tracks, track
 from .truth import Truth, truth
 from .trajectories import Lane, Trajectory
 from .trajectories import Lane, Traffic, Trajectory, add_traffic, read_trajectories
+from .traffic import Traffic, add_traffic
+from .trajectories import Lane, Trajectory, read_trajectories
 from .viewing import plot_rays, view
 from .visibility import ObjectVisibility, Sight, visibility
 

@@ -126,6 +126,11 @@ def test_soles_that_are_flat_do_not_move(side):
     assert len(stances) >= 5
     assert max(np.linalg.norm(stance - stance[0], axis=-1).max() for stance in stances) < 1e-6
     assert soles[..., 2].min() > -0.005
+    for stance in stances:      # toes point along the path and a little outwards, as the model opens the feet
+        along = stance[0, 0] - stance[0, 1]
+        bearing = WALK.yaw(times)[np.argmin(np.linalg.norm(WALK.position(times)[:, :2] - stance[0].mean(axis=0), axis=1))]
+        opening = math.remainder(math.atan2(along[1], along[0]) - bearing, 2 * np.pi)
+        assert 0.0 < opening * (1 if side == "left" else -1) < 0.25
 
 
 def test_the_soles_of_a_pedestrian_slip_less_than_a_centimetre():

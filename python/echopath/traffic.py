@@ -4,9 +4,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from .. import _core
-from ..checks import anything, checked, optional, real, refused, text
-from .trajectory import Trajectory
+from . import actors
+from .actors.human.gait_along import usual_speed
+from .checks import an, anything, checked, optional, real, refused, text
+from .readers.tree import fit_name
+from .scene import Scene
+from .trajectories.trajectory import Trajectory
 
 # Words of a kind -> name of an actor and its keywords; the first that is in the kind is taken.
 KINDS = (("truck", "truck", {}), ("trailer", "truck", {}), ("bus", "van", {"kind": "large"}),
@@ -73,16 +76,8 @@ def _maker_rule(argument: str, value):
     return value
 
 
-def _scene_rule(argument: str, value):
-    from ..scene import Scene
-
-    if not isinstance(value, Scene):
-        raise refused(TypeError, argument, "a Scene", value)
-    return value
-
-
-@checked(scene=_scene_rule, trajectories=_trajectories_rule, actor_of=_maker_rule, parent=optional(text), time=optional(anything))
-def add_traffic(scene: _core.Scene, trajectories: Mapping[str, Trajectory], *, actor_of: ActorOf | None = None,
+@checked(scene=an(Scene), trajectories=_trajectories_rule, actor_of=_maker_rule, parent=optional(text), time=optional(anything))
+def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_of: ActorOf | None = None,
                 parent: str | None = None, time: float | None = None) -> Traffic:
     """Puts an object for each trajectory into a scene, under its name; what a name of the scene must not hold becomes '_'.
 
@@ -94,8 +89,6 @@ def add_traffic(scene: _core.Scene, trajectories: Mapping[str, Trajectory], *, a
     time: s; what is not there at that time is not visible; None: everything is, at any time. `Traffic.show` changes it
     Returns the Traffic. Raises TypeError or ValueError naming the argument.
     """
-    from ..readers.tree import fit_name
-
     time = None if time is None else real(unit="s")("time", time)
     added = {}
     for name, trajectory in trajectories.items():
@@ -114,9 +107,6 @@ def add_traffic(scene: _core.Scene, trajectories: Mapping[str, Trajectory], *, a
 
 def usual_actor(name: str, trajectory: Trajectory):
     """The actor that is usual for the kind of a trajectory, which follows it."""
-    from .. import actors
-    from ..actors.human.gait_along import usual_speed
-
     kind = trajectory.kind.lower()
     actor, keywords = next(((actor, keywords) for word, actor, keywords in KINDS if word in kind), ("car", {}))
     if actor == "pedestrian" and usual_speed(trajectory._track) > 2.0:

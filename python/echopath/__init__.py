@@ -56,11 +56,9 @@ from .tessellation import TessellationWarning
 from .threads import num_threads, set_num_threads
 from .tracing import mie_rcs, rcs, trace
 from .tracks import Tracks, track
-from .truth import Truth, truth
-from .trajectories import Lane, Trajectory
-from .trajectories import Lane, Traffic, Trajectory, add_traffic, read_trajectories
 from .traffic import Traffic, add_traffic
 from .trajectories import Lane, Trajectory, read_trajectories
+from .truth import Truth, truth
 from .viewing import plot_rays, view
 from .visibility import ObjectVisibility, Sight, visibility
 

@@ -21,7 +21,7 @@ from .keywords import known_keywords, refuse_unknown
 Polarization = Literal["auto", "scalar", "jones"]
 Footprint = Literal["none", "first_order", "second_order", "edges"]
 Sampler = Literal["lattice", "fibonacci", "r2", "random"]
-Scatterers = Literal["rays", "surface"]
+Scatterers = Literal["auto", "rays", "surface"]
 Method = Literal["auto", "direct", "recurrence", "nufft"]
 Replay = Literal["material", "fermat"]
 Evaluate = Literal["interpolated", "chirps", "samples"]
@@ -82,7 +82,7 @@ class TraceSettings(Settings):
     batches: int | None = None
     target_error_db: float | None = None
     max_rays: int | float = _core.DEFAULT_MAX_RAYS
-    scatterers: Scatterers = "rays"
+    scatterers: Scatterers = "auto"
 
     RULES: ClassVar[Mapping[str, Rule]] = {
         "num_rays": optional(count(1, MOST_RAYS)), "max_bounces": count(1, MOST_BOUNCES), "seed": seed_rule,

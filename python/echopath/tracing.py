@@ -54,11 +54,11 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
     target_error_db: dB; adds rays where they are missing, from num_rays (16 384 unless given) to at most max_rays, until the
         echo of each object and image, down to 60 dB below the strongest, is known that well: half its 95 % interval
         (`received_power`). A RuntimeWarning and `paths.frame.error_db` tell where max_rays did not do
-    scatterers: of rough surfaces: "rays", the points that rays happen to meet, other ones in each trace; or "surface", points
-        of the surfaces, the same in all traces of a scene with one seed, so that the speckle of what moves goes on from frame
-        to frame. Those are less even: the mean power of a body of 5000 points errs by 0.5 % where that of as many rays errs
-        by 0.1 %. What rays meet straight from the transmitter persists so; second and further diffuse hits are drawn from
-        there, and echoes over flagged mirrors persist in part
+    scatterers: of rough surfaces: "rays", the points that rays happen to meet, other ones in each trace; "surface", points of
+        the surfaces, the same in all traces of a scene with one seed, so that the speckle of what moves goes on from frame
+        to frame; or "auto": "surface" in a `Sequence`, else "rays". Points of surfaces are less even: 5000 of them tell the
+        mean power of a body to 0.5 %, as many rays to 0.1 %. What rays meet straight from the transmitter persists; second
+        and further diffuse hits are drawn from there, and places that only flagged mirrors show are left to rays
     settings: TraceSettings that give the keywords which the call leaves out, or None
     progress: callable (stage, fraction), True for bars, or None
     From a scene's second trace on, and from the first of `simulate(labels=True)`, what has not moved since is not built again,
@@ -77,8 +77,8 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
     model = chosen_model(polarization, scene, wavelength, antennas_of(radar), argument="polarization")
     paths = _core.trace(scene, radar, num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
                         polarization=model, footprint=footprint, sampler=sampler, batches=batches,
-                        target_error_db=target_error_db, max_rays=max_rays, scatterers=scatterers, progress=progress,
-                        kept=geometry)
+                        target_error_db=target_error_db, max_rays=max_rays,
+                        scatterers="rays" if scatterers == "auto" else scatterers, progress=progress, kept=geometry)
     for warn in (warn_of_lost_rays, warn_of_unfollowed_beams, warn_of_unaimed):
         warn(paths.frame.statistics, stacklevel=_CALLER)
     return paths

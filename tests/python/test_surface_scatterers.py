@@ -127,5 +127,5 @@ def test_the_record_knows_its_scatterers(tmp_path):
     paths.save(tmp_path / "paths.h5")
     assert ep.Paths.load(tmp_path / "paths.h5").frame == paths.frame
     assert ep.trace(walker_by_a_wall(), radar(), num_rays=2000).frame.scatterers == "rays"
-    with pytest.raises(ValueError, match="scatterers: must be 'rays' or 'surface', got 'points'"):
+    with pytest.raises(ValueError, match="scatterers: must be 'auto', 'rays' or 'surface', got 'points'"):
         ep.trace(walker_by_a_wall(), radar(), num_rays=2000, scatterers="points")

@@ -39,8 +39,8 @@ def spectrogram(frames: Frames, radar: _core.Radar | None = None, *, window_leng
     Each chirp is transformed over its samples first, as in `range_doppler`, then each window over its chirps. Windows slide
     over trains of chirps that go on evenly, and none spans a gap between trains. A train is one frame, or with `span_frames`
     all frames that follow each other without a gap, each starting one chirp period after the last chirp of the one before.
-    Echoes of rough surfaces have other random phases in a frame that was traced anew. That spreads them over velocity in
-    windows that span frames: a walking person's to -24 dB of the whole, where windows within frames show -48 dB.
+    Echoes of rough surfaces have other random phases in each frame of `simulate`, unless `scatterers="surface"`, as `Sequence`
+    has it. That spreads them over velocity in windows that span frames.
     frames: a Frame or frames in the order of time, used one after the other (with their noise, unless a part is asked for);
         or a cube [tx, rx, chirp, sample] in sqrt(W) or several, of `radar`
     radar: that of the cubes, None: frames bring theirs

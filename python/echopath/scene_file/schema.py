@@ -310,8 +310,9 @@ class TraceTable(Table):
     target_error_db: Positive | None = Field(
         TraceSettings.target_error_db, description="dB, error of each echo until which rays are added, from num_rays on")
     max_rays: int = Field(TraceSettings.max_rays, ge=1, le=MOST_RAYS, description="at most, with target_error_db")
-    scatterers: Scatterers = Field(TraceSettings.scatterers, description="of rough surfaces: where rays meet them, or points "
-                                                                         "that are the same in every frame")
+    scatterers: Scatterers = Field(
+        TraceSettings.scatterers, description="of rough surfaces: where rays meet them, points that are the same in every frame, "
+                                              "or these for frames in a row alone")
 
 
 class ReplayTable(Table):

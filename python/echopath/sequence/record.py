@@ -15,7 +15,10 @@ def record_of(scene: _core.Scene, radar: _core.Radar, settings: TraceSettings, *
               progress=None) -> _core.Paths:
     """The record of frame `number` of a sequence: the same bits whichever frames were recorded before.
 
+    The scene is traced anew. Unless the settings say otherwise, rough surfaces scatter from points of their own, which are the
+    same in all frames.
     settings: of the rays, with the start of frame 0; interval: s from start to start; progress: as in `trace`
     """
     start_time = start_time_of(settings.start_time, interval, number)
-    return trace(scene, radar, settings=settings.replace(start_time=start_time), progress=progress)
+    scatterers = "surface" if settings.scatterers == "auto" else settings.scatterers
+    return trace(scene, radar, settings=settings.replace(start_time=start_time, scatterers=scatterers), progress=progress)

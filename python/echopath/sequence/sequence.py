@@ -16,7 +16,8 @@ from ..guard import warn_of
 from ..progress import automatic_bars
 from ..scene import Scene
 from ..settings import (
-    Evaluate, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, SignalSettings, TraceSettings,
+    Evaluate, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings,
+    TraceSettings,
 )
 from .contents import Contents
 from .keep import Keep
@@ -37,8 +38,9 @@ class Sequence(Row[Frame]):
     scene: what is traced, as it is now: later changes of it do not matter; radar: that looks at it
     frames: number of frames K, at least 1; interval: s, from start to start, at least the duration of a frame
     start_time: s, of frame 0
-    num_rays, max_bounces, seed, polarization, footprint, sampler, batches, target_error_db (dB), max_rays: as in `trace`; the
-        seed serves all frames
+    num_rays, max_bounces, seed, polarization, footprint, sampler, batches, target_error_db (dB), max_rays, scatterers: as in
+        `trace`; the seed serves all frames, and "auto" scatterers are those of the surfaces, so that speckle goes on from
+        frame to frame
     parts, tolerance, method, replay, evaluate, phase_tolerance (rad), retrace, keyframes, noise_seed, window, zero_pad, angles,
         labels, detections, guard, trace, signal: as in `simulate`
     times: starts of the frames, [K] in s
@@ -55,7 +57,8 @@ class Sequence(Row[Frame]):
                  polarization: Polarization = TraceSettings.polarization, footprint: Footprint = TraceSettings.footprint,
                  sampler: Sampler = TraceSettings.sampler, batches: int | None = TraceSettings.batches,
                  target_error_db: float | None = TraceSettings.target_error_db,
-                 max_rays: int | float = TraceSettings.max_rays, parts: Mapping[str, Any] | None = None,
+                 max_rays: int | float = TraceSettings.max_rays, scatterers: Scatterers = TraceSettings.scatterers,
+                 parts: Mapping[str, Any] | None = None,
                  tolerance: float = SignalSettings.tolerance, method: Method = SignalSettings.method,
                  replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,
                  phase_tolerance: float = SignalSettings.phase_tolerance, retrace: Retrace = SignalSettings.retrace,
@@ -66,7 +69,7 @@ class Sequence(Row[Frame]):
                  signal: SignalSettings | None = None):
         tracing = TraceSettings(num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
                                 polarization=polarization, footprint=footprint, sampler=sampler, batches=batches,
-                                target_error_db=target_error_db, max_rays=max_rays)
+                                target_error_db=target_error_db, max_rays=max_rays, scatterers=scatterers)
         signals = SignalSettings(tolerance=tolerance, method=method, replay=replay, evaluate=evaluate,
                                  phase_tolerance=phase_tolerance, retrace=retrace, keyframes=keyframes, noise_seed=noise_seed,
                                  window=window, zero_pad=zero_pad)

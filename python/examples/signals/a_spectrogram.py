@@ -19,14 +19,14 @@ length = chirps.num_chirps * chirps.chirp_interval
 limbs = {"arms": "T 'walker/arm_*'+ R", "legs": "T 'walker/leg_*'+ R", "torso and head": "T 'walker'+ R"}
 
 # %%
-# Frames are traced one after the other and forgotten; windows of 128 chirps slide over each.
+# Frames are made one after the other and forgotten. Rough surfaces keep their scatterers from frame to frame, so that windows of
+# 128 chirps may slide over the edges.
 whole, parts = [], {name: [] for name in limbs}
-for start in np.arange(50) * length:
-    frame = ep.simulate(scene, radar, num_rays=5000, start_time=start, parts=limbs, tolerance=1e-4, guard=False)
+for frame in ep.Sequence(scene, radar, frames=50, interval=length, num_rays=5000, parts=limbs, tolerance=1e-4, guard=False):
     whole.append(frame.noisy_cube)
     for name in limbs:
         parts[name].append(frame.parts["parts"][name])
-settings = {"window_length": 128, "hop": 32}
+settings = {"window_length": 128, "hop": 32, "span_frames": True}
 spectrogram = ep.spectrogram(whole, radar, **settings)
 labels = ep.spectrogram_labels({name: ep.spectrogram(cubes, radar, **settings) for name, cubes in parts.items()}, spectrogram)
 print(spectrogram, labels, sep="\n")

@@ -129,3 +129,14 @@ def test_the_record_knows_its_scatterers(tmp_path):
     assert ep.trace(walker_by_a_wall(), radar(), num_rays=2000).frame.scatterers == "rays"
     with pytest.raises(ValueError, match="scatterers: must be 'auto', 'rays' or 'surface', got 'points'"):
         ep.trace(walker_by_a_wall(), radar(), num_rays=2000, scatterers="points")
+
+
+@pytest.mark.parametrize("scatterers, goes_on", [("auto", True), ("rays", False)])
+def test_the_frames_of_a_sequence_keep_their_scatterers(scatterers, goes_on):
+    scene = ep.Scene()
+    scene.add(ep.actors.pedestrian(speed=1.4), name="walker", position=(10, 0, 0), yaw=np.pi)
+    moving = radar()
+    short = moving.replace(waveform=CHIRPS.replace(num_chirps=127))
+    before, after = (ep.synthesize(diffuse(frame.paths, "T 'walker' R"), moving)[0, 0] for frame in
+                     ep.Sequence(scene, short, frames=2, interval=FRAME, num_rays=RAYS, scatterers=scatterers, guard=False))
+    assert (coherence(before[-1], after[0]) > 0.95) == goes_on

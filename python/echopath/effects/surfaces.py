@@ -100,7 +100,7 @@ def _diffuse(case: Case):
 
 @rule("speckle that goes on from frame to frame", "trace.scatterers")
 def _scatterers(case: Case):
-    if not case.diffuse:
+    if len(case.diffuse) == 0:
         return False, "no material scatters diffusely"
     return case.settings.scatterers == "surface", f'scatterers = "{case.settings.scatterers}"'
 

@@ -88,6 +88,8 @@ install_project() {
   hash=$(cat setup.py pyproject.toml | sha256sum | cut -c1-12)
   compgen -G ".venv/installed-$hash-$extras*" >/dev/null && return
   say "installing echopath into .venv"
+  # The library that unpacks meshopt's files has to be compiled, and asks for NumPy before.
+  [[ $extras == *test* ]] && pip_install numpy
   pip_install --no-build-isolation -e ".${extras:+[$extras]}"
   # On the path itself, too: in the folder above, the project's own folder would else be taken for the package.
   local packages_folder

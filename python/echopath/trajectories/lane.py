@@ -92,7 +92,7 @@ class Lane:
 
     @property
     def width(self) -> float:
-        """m"""
+        """Width of the lane in m."""
         return self._width
 
     @property

@@ -45,8 +45,9 @@ def _length_rule(argument: str, value):
 @checked(path=file_rule, origin=_origin_rule, smoothing=real(0.0, unit="m"), vehicle_length=_length_rule)
 def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None = None, smoothing: float = 0.0,
                       vehicle_length: float | Mapping[str, float] = SUMO_LENGTH) -> dict[str, Trajectory]:
-    """Reads where objects were over time, by the suffix of the file:
+    """Reads where objects were over time, by the suffix of the file.
 
+    path: of the file, one of
     .csv, .txt, .tsv: a line of names of columns, then a row for each position: time (s, or ISO 8601), x and y (m), or lat and lon
         (degrees), and, where it has them, z or ele (m), id or name, type, yaw (rad, from x to y) or yaw_deg, speed (m/s). Names
         may be written in other usual ways ("Timestamp [s]", "track_id"); other columns are left out. Commas, semicolons or tabs

@@ -156,7 +156,7 @@ class Trajectory(_core.CurveMotion):
     def replace(self, **changes: Any) -> Trajectory:
         """A copy with other values of some arguments.
 
-        changes: arguments of the constructor, or of `Lane.trajectory` where that made it, by name
+        changes: arguments of the constructor, or of `Lane.trajectory` where that made it, by name (m, s, m/s)
         Raises TypeError or ValueError as these do.
         """
         maker, arguments = self._made

@@ -103,10 +103,16 @@ def test_another_scene_is_refused_by_the_folder(scene_path, tmp_path, capsys):
     assert capsys.readouterr().err.startswith("echopath: folder: must be new, or of this sequence (scene/motions/0")
 
 
+def heed_ctrl_c():
+    """Processes in the background of a shell are deaf to Ctrl-C, and so are those that they start."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
 def test_ctrl_c_leaves_a_folder_that_goes_on(scene_path, tmp_path):
     out = tmp_path / "out"
     command = [sys.executable, "-m", "echopath", "run", scene_path, "--out", out, "--interval", "0.1", "--frames"]
-    process = subprocess.Popen([*command, "2000"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen([*command, "2000"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                               preexec_fn=heed_ctrl_c)
     deadline = time.monotonic() + WAIT
     while not (out / "frame_0001.h5").exists() and time.monotonic() < deadline and process.poll() is None:
         time.sleep(0.005)

@@ -13,6 +13,7 @@ import echopath as ep
 from echopath.cli import main
 from echopath.files import require_writable
 from echopath.scene_file import load_scene
+from support.background import heed_ctrl_c
 from support.scene_text import WAVEFORM
 
 STOP_SECONDS = 2.0  # half a second is promised; the rest is for a machine with other work
@@ -237,11 +238,6 @@ def test_ctrl_c_stops_soon_and_leaves_nothing_half_written(scene_path, tmp_path,
     assert os.read(leader, 65536).decode().strip().endswith("echopath: stopped; no file was left half written")
     os.close(leader)
     assert not (tmp_path / "out").exists() or list((tmp_path / "out").iterdir()) == []
-
-
-def heed_ctrl_c() -> None:
-    """Programs started in the background, as tests often are, inherit that Ctrl-C is ignored."""
-    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def test_no_bar_is_drawn_without_a_terminal(scene_path, tmp_path):

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from support.background import heed_ctrl_c
 from support.radars import build_radar
 from support.shapes import lambert
 
@@ -103,10 +104,6 @@ def test_ctrl_c_stops_work_on_a_large_record(ctrl_c_is_heard, paths, tmp_path_fa
         delays.append(seconds_to_stop(lambda: WORK[name](paths, folder)))
     assert min(delays) < PATIENCE, delays
     assert not list(folder.glob(".paths*")) and not (folder / "paths.h5").exists()
-
-
-def heed_ctrl_c() -> None:
-    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.mark.hard

@@ -12,6 +12,7 @@ import pytest
 
 import echopath as ep
 from echopath.cli import main
+from support.background import heed_ctrl_c
 from support.scene_text import WAVEFORM
 
 WAIT = 60.0  # s, for a process on a busy machine
@@ -101,11 +102,6 @@ def test_another_scene_is_refused_by_the_folder(scene_path, tmp_path, capsys):
     scene_path.write_text(SCENE.replace("speed = 2.0", "speed = 3.0"))
     assert run(scene_path, out, "--frames", 1, "--interval", 0.1) == 2
     assert capsys.readouterr().err.startswith("echopath: folder: must be new, or of this sequence (scene/motions/0")
-
-
-def heed_ctrl_c():
-    """Processes in the background of a shell are deaf to Ctrl-C, and so are those that they start."""
-    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def test_ctrl_c_leaves_a_folder_that_goes_on(scene_path, tmp_path):

@@ -1,6 +1,7 @@
 """Fixtures of several tests."""
 import signal
 
+import numpy as np
 import pytest
 
 import echopath as ep
@@ -26,3 +27,19 @@ def labels(plates_and_wall):
     """Labels of `plates_and_wall` on a map whose cells are half as wide."""
     paths, parts, _ = plates_and_wall
     return ep.annotate(paths, parts, window="blackman_harris", zero_pad=2, dynamic_range_db=80.0)
+
+
+SMALL = 1e-5  # an expected value below this is compared by its ratio alone
+_approx = pytest.approx
+
+
+def approx_by_ratio(expected, rel=None, abs=None, nan_ok=False):
+    """pytest.approx, but for powers in W: its absolute tolerance of 1e-12 would take any of them for right."""
+    if abs is None and isinstance(expected, (float, complex, np.ndarray)):
+        largest = np.max(np.abs(expected), initial=0.0)
+        if 0.0 < largest < SMALL:
+            return _approx(expected, rel=1e-6 if rel is None else rel, abs=0.0, nan_ok=nan_ok)
+    return _approx(expected, rel=rel, abs=abs, nan_ok=nan_ok)
+
+
+pytest.approx = approx_by_ratio

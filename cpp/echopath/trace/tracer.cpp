@@ -6,7 +6,6 @@
 #include "echopath/base/parallel.h"
 #include "echopath/trace/launch/aimed_points.h"
 #include "echopath/trace/mirrors/mirror_paths.h"
-#include "echopath/trace/mirrors/plane_images.h"
 #include "echopath/trace/record/record_writer.h"
 
 namespace echopath {
@@ -70,6 +69,7 @@ Tracer::Tracer(const SceneSnapshot& scene, const Radar& radar, const TraceSettin
   empty_.frame.strata = plan_.strata;
   empty_.frame.statistics.num_rays = num_rays();
   empty_.frame.statistics.num_unaimed = plan_.num_unaimed;
+  empty_.frame.statistics.num_unfollowed_beams = frusta_.num_unfollowed();
 }
 
 LaunchPlan Tracer::plan_rays(const TraceSettings& settings) {
@@ -113,7 +113,11 @@ int64_t Tracer::num_blocks() const {
 
 void Tracer::shoot_block(int64_t index, PathBlock& block) const {
   const int64_t end = index < num_lattice_blocks() ? num_rays() : plan_.first_point + std::ssize(plan_.aimed_points);
-  shooter_.shoot(index * kRaysPerBlock, std::min(end, (index + 1) * kRaysPerBlock), block);
+  shoot(index * kRaysPerBlock, std::min(end, (index + 1) * kRaysPerBlock), block);
+}
+
+std::vector<PathBlock> Tracer::find_paths_over_mirrors(Job* job) const {
+  return find_mirror_paths(geometry_, mirrors_, sbr_, frusta_, job);
 }
 
 // Shoots every `step`-th block.
@@ -159,8 +163,7 @@ void Tracer::require_memory(const std::vector<PathBlock>& ahead) const {
 Paths Tracer::run(Job* job) const {
   Paths paths = empty_;
   RecordWriter record(paths);
-  paths.frame.statistics.num_unfollowed_beams = frusta_.num_unfollowed();
-  const std::vector<PathBlock> over_mirrors = find_mirror_paths(geometry_, mirrors_, sbr_, frusta_, job);
+  const std::vector<PathBlock> over_mirrors = find_paths_over_mirrors(job);
   std::vector<const PathBlock*> all_over_mirrors;
   for (const PathBlock& block : over_mirrors) all_over_mirrors.push_back(&block);
   record.append(all_over_mirrors, job);
@@ -170,7 +173,7 @@ Paths Tracer::run(Job* job) const {
   if (num_blocks() > std::ssize(wave)) ahead = shoot_ahead(step, job);
   require_memory(ahead);
   record.expect(ahead, num_blocks());
-  PlaneImages images(*empty_.scene, geometry_, sbr_);
+  PlaneImages images = plane_images();
   for (int64_t begin = 0; begin < num_blocks(); begin += std::ssize(wave)) {
     const std::vector<const PathBlock*> blocks = shoot_wave(begin, ahead, step, wave, job);
     for (const PathBlock* block : blocks) images.add_chains(*block);
@@ -179,7 +182,7 @@ Paths Tracer::run(Job* job) const {
   const PathBlock over_planes = images.find(job);
   record.append({&over_planes}, job);
   record.finish();
-  images.leave_out_doubles(paths, job);
+  images.doubles().leave_out(paths, job);
   return paths;
 }
 

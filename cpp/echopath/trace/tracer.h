@@ -2,6 +2,7 @@
 // Carries out the steps of a trace: it makes once what all rays share, and shoots the rays in blocks. Internal to the
 // module.
 #include "echopath/trace/geometry/kept_geometry.h"
+#include "echopath/trace/mirrors/plane_images.h"
 #include "echopath/trace/sbr/sbr.h"
 #include "echopath/trace/trace.h"
 
@@ -19,8 +20,19 @@ class Tracer {
   int64_t num_rays() const { return plan_.first_ray.back(); }
   int64_t num_blocks() const;
   void shoot_block(int64_t index, PathBlock& block) const;
+  // Shoots the rays [begin, end) of the plan, of which `begin` is a multiple of kPacketSize, and appends their paths.
+  void shoot(int64_t begin, int64_t end, PathBlock& block) const { shooter_.shoot(begin, end, block); }
   EmbreeScene& geometry() { return geometry_; }
   const EmbreeScene& geometry() const { return geometry_; }
+  // Return what all rays share. The record has no paths yet.
+  const Paths& without_paths() const { return empty_; }
+  const LaunchPlan& plan() const { return plan_; }
+  const SbrSettings& sbr() const { return sbr_; }
+  const AntennaFrusta& frusta() const { return frusta_; }
+  // Returns the paths over flagged mirrors alone.
+  std::vector<PathBlock> find_paths_over_mirrors(Job* job) const;
+  // Returns what finds the paths over other planes, from the blocks that it is given.
+  PlaneImages plane_images() const { return {*empty_.scene, geometry_, sbr_}; }
 
  private:
   std::vector<PathBlock> shoot_ahead(int64_t step, Job* job) const;

@@ -99,7 +99,8 @@ class EmbreeScene {
   // Returns the point moved off its surface by a few units of single precision, so that a ray from there does not meet the
   // surface again.
   Vec3 lifted(const Vec3& point, const Vec3& normal) const { return point + lift_ * normal; }
-  double lift() const { return lift_; }  // m
+  double lift() const { return lift_; }    // m
+  double reach() const { return reach_; }  // m, farther than from any point of the scene to any other
 
   // Returns the point of the scene's bounding box next to `near` (world), the best origin for rays from there. Where
   // something or `near` moves, it is rounded to a grid, by no more than 1/16 of the scene's length in each axis: then it is

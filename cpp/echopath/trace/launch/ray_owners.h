@@ -29,6 +29,7 @@ class RayOwners {
                                   : owner_over_mirrors(static_cast<size_t>(object), sequence);
   }
   int field_of_view() const { return field_of_view_; }
+  bool operator==(const RayOwners&) const = default;
 
  private:
   int owner_over_mirrors(size_t object, MirrorSequence sequence) const;

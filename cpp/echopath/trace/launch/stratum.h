@@ -28,6 +28,7 @@ struct Stratum {
   bool is_focus() const { return focus_of >= 0; }
   double solid_angle() const;                  // sr
   bool contains(const Vec3& direction) const;  // unit direction
+  bool operator==(const Stratum&) const = default;
 };
 
 // Convert the half angle of a cone in rad to 1 - cos and back, without cancellation for narrow cones.

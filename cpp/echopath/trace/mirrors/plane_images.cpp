@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "echopath/base/constants.h"
-#include "echopath/base/parallel.h"
 #include "echopath/trace/mirrors/mirror_zone.h"
 
 namespace echopath {
@@ -45,11 +44,6 @@ class RayLocator final : public PointLocator {
 bool reaches_plane(const Eigen::AlignedBox3d& box, const Plane& plane, double tolerance) {
   return !box.isEmpty() &&
          std::abs(plane.height(box.center())) <= 0.5 * plane.normal.cwiseAbs().dot(box.sizes()) + tolerance;
-}
-
-std::vector<int> sorted(std::vector<int> planes) {
-  std::sort(planes.begin(), planes.end());
-  return planes;
 }
 
 bool is_near(const std::vector<Vec3>& points, const std::vector<Vec3>& others) {
@@ -189,25 +183,17 @@ void PlaneImages::leave_out(const std::vector<int>& planes, const std::vector<Ve
     }
     orders.ends.push_back(static_cast<int64_t>(end));
   }
-  left_out_[sorted(planes)].push_back(std::move(orders));
-}
-
-bool PlaneImages::OrdersAboutCorners::contain(const std::vector<int>& sequence) const {
-  int64_t begin = 0;
-  return std::all_of(ends.begin(), ends.end(), [&](int64_t end) {
-    const int64_t first = std::exchange(begin, end);
-    return std::is_permutation(sequence.begin() + first, sequence.begin() + end, planes.begin() + first);
-  });
+  doubles_.add(std::move(orders));
 }
 
 // Finds the triangles of the joined planes.
 void PlaneImages::find_triangles() {
-  plane_of_triangle_.resize(scene_.meshes().size());
+  doubles_.plane_of_triangle.resize(scene_.meshes().size());
   for (uint32_t mesh_id = 0; !joined_.empty() && mesh_id < scene_.meshes().size(); ++mesh_id) {
     const Node& node = scene_.node_of(mesh_id);
     if (node.material->mirror || node.deformation) continue;
     const auto num_triangles = static_cast<uint32_t>(node.mesh->triangles().size());
-    std::vector<int>& of_triangle = plane_of_triangle_[mesh_id];
+    std::vector<int>& of_triangle = doubles_.plane_of_triangle[mesh_id];
     for (size_t plane = 0; plane < joined_.size(); ++plane) {
       if (!reaches_plane(geometry_.box(mesh_id), joined_[plane], tolerance_)) continue;
       for (uint32_t triangle = 0; triangle < num_triangles; ++triangle) {
@@ -221,33 +207,6 @@ void PlaneImages::find_triangles() {
       }
     }
   }
-}
-
-bool PlaneImages::is_double(const Paths& paths, size_t path) const {
-  if (paths.diffuse[path] != 0 || paths.stratum[path] == kNoStratum) return false;
-  const Hit* hits = paths.hits_of(static_cast<int64_t>(path));
-  std::vector<int> sequence;
-  for (int k = 0; k < paths.num_bounces[path]; ++k) {
-    const std::vector<int>& of_triangle = plane_of_triangle_[hits[k].mesh_id];
-    const int plane = of_triangle.empty() ? -1 : of_triangle[hits[k].triangle_id];
-    if (plane < 0) return false;
-    sequence.push_back(plane);
-  }
-  const auto orders = left_out_.find(sorted(sequence));
-  return orders != left_out_.end() && std::any_of(orders->second.begin(), orders->second.end(),
-                                                  [&](const OrdersAboutCorners& one) { return one.contain(sequence); });
-}
-
-void PlaneImages::leave_out_doubles(Paths& paths, Job* job) const {
-  if (sequences_.empty()) return;
-  constexpr int64_t kTogether = 1 << 14;
-  std::vector<uint8_t> keep(static_cast<size_t>(paths.num_paths()));
-  Job own(job);
-  parallel_for((paths.num_paths() + kTogether - 1) / kTogether, [&](int64_t task) {
-    const size_t end = std::min(keep.size(), static_cast<size_t>((task + 1) * kTogether));
-    for (size_t path = static_cast<size_t>(task * kTogether); path < end; ++path) keep[path] = !is_double(paths, path);
-  }, &own);
-  paths = paths.select(keep, &own);
 }
 
 }  // namespace echopath

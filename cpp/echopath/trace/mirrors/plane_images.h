@@ -17,7 +17,8 @@
 
 #include "echopath/base/job.h"
 #include "echopath/trace/mirrors/image_method.h"
-#include "echopath/trace/record/paths.h"
+#include "echopath/trace/mirrors/plane_doubles.h"
+#include "echopath/trace/record/path_block.h"
 
 namespace echopath {
 
@@ -29,17 +30,10 @@ class PlaneImages {
   void add_chains(const PathBlock& block);
   // Finds the paths over these chains, each once, and writes them to a block. Raises Cancelled when the job is cancelled.
   PathBlock find(const Job* job);
-  // Leaves out the rays' paths that the images stand for. Raises Cancelled.
-  void leave_out_doubles(Paths& paths, Job* job) const;
+  // Returns which of the rays' paths the images stand for.
+  const PlaneDoubles& doubles() const { return doubles_; }
 
  private:
-  // Holds a sequence of planes, and with it all in which the bounces of a stretch come in another order.
-  struct OrdersAboutCorners {
-    std::vector<int> planes;
-    std::vector<int64_t> ends;  // of the stretches, ascending
-
-    bool contain(const std::vector<int>& sequence) const;  // of the same planes
-  };
   struct Facet {
     uint32_t mesh_id, triangle_id;
     auto operator<=>(const Facet&) const = default;
@@ -58,7 +52,6 @@ class PlaneImages {
   bool is_same_plane(const Mirror& plane, const Mirror& other) const;
   void leave_out(const std::vector<int>& planes, const std::vector<Vec3>& points);
   void find_triangles();
-  bool is_double(const Paths& paths, size_t path) const;
 
   const Scene& scene_;
   const EmbreeScene& geometry_;
@@ -73,9 +66,7 @@ class PlaneImages {
   size_t num_tried_points_ = 0;
   std::vector<Mirror> joined_;            // planes of the paths found
   std::set<std::vector<int>> sequences_;  // the paths found, by joined planes
-  // Sequences whose echoes by rays are left out, by their planes in ascending order.
-  std::map<std::vector<int>, std::vector<OrdersAboutCorners>> left_out_;
-  std::vector<std::vector<int>> plane_of_triangle_;  // by mesh ID; empty: none
+  PlaneDoubles doubles_;
 };
 
 }  // namespace echopath

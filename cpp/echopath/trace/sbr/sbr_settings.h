@@ -17,6 +17,7 @@ struct SbrSettings {
   // Probability of going on specularly where a surface does both. 0 stands for its specular share; any other value leaves
   // the expected echo as it is.
   double specular_probability = 0.0;
+  bool operator==(const SbrSettings&) const = default;
 };
 
 }  // namespace echopath

@@ -18,6 +18,7 @@ namespace echopath {
 // Names a triangle among all of a scene.
 struct TriangleName {
   uint32_t mesh_id, triangle_id;
+  bool operator==(const TriangleName&) const = default;
 };
 
 struct SurfacePoint {
@@ -25,6 +26,7 @@ struct SurfacePoint {
   TriangleName on{};
   int64_t key = 0;  // of its random numbers: 63 random bits, which no two points of a scene share but by chance
   int stratum = 0;  // whose rays it takes the place of
+  bool operator==(const SurfacePoint&) const = default;
 };
 
 // Says how many points there are to be about a viewer: as many as a lattice of rays from there would meet, `ray_density`

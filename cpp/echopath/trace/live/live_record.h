@@ -1,0 +1,62 @@
+#pragma once
+// Holds the record of a live trace in blocks of rays, each with the space that its queries went through. Internal to the
+// module.
+#include <memory>
+#include <vector>
+
+#include "echopath/trace/live/queried_space.h"
+#include "echopath/trace/live/scene_changes.h"
+#include "echopath/trace/mirrors/plane_images.h"
+#include "echopath/trace/tracer.h"
+
+namespace echopath {
+
+inline constexpr int64_t kRaysPerLiveBlock = 64;  // few, so that a change touches few others beside the rays that it must
+static_assert(kRaysPerLiveBlock % kPacketSize == 0, "a packet has rays of one kind (LaunchPlan::first_point)");
+
+// Holds the paths of some rays in a row.
+struct LiveBlock {
+  int64_t begin = 0, end = 0;  // indices of its rays
+  PathBlock paths;
+  QueriedSpace space;
+};
+using LiveBlockPtr = std::shared_ptr<const LiveBlock>;
+
+// Holds what all rays of a trace share, beside the scene.
+struct SharedByRays {
+  explicit SharedByRays(const Tracer& tracer, const TraceSettings& settings);
+
+  // Returns whether rays of both traces can have the same paths.
+  bool is_same(const SharedByRays& other) const;
+  // Returns whether the rays [begin, end) are launched alike in both.
+  bool launches_alike(const SharedByRays& other, int64_t begin, int64_t end) const;
+
+  TraceSettings settings;
+  SbrSettings sbr;
+  Vec3 origin;
+  double lift, reach;  // m
+  std::vector<Stratum> strata;
+  std::vector<int64_t> first_ray;
+  RayOwners owners;
+  int64_t first_point;
+  std::vector<SurfacePoint> aimed_points;
+  std::vector<std::vector<int>> sequences;  // of mirrors, over which the antennas' frusta go
+};
+
+class LiveRecord {
+ public:
+  LiveRecord(const Tracer& tracer, const TraceSettings& settings);
+
+  Paths empty;  // scene, radar and frame of the record
+  SharedByRays shared;
+  std::vector<Eigen::AlignedBox3d> boxes;  // of the meshes
+  std::vector<LiveBlockPtr> blocks;
+  std::vector<PathBlock> over_mirrors;
+  PathBlock over_planes;
+  PlaneDoubles doubles;
+
+  // Returns the record of the paths over mirrors and planes and of these blocks.
+  Paths paths_of(const std::vector<LiveBlockPtr>& some, Job* job) const;
+};
+
+}  // namespace echopath

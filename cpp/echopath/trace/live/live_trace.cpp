@@ -1,0 +1,145 @@
+#include "echopath/trace/live/live_trace.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "echopath/base/parallel.h"
+#include "echopath/trace/live/live_record.h"
+#include "echopath/trace/live/path_difference.h"
+
+namespace echopath {
+namespace {
+
+bool is_any_mirror(const Scene& scene, const ChangedMeshes& changed) {
+  for (uint32_t id = 0; id < changed.size(); ++id) {
+    if (changed[id] && scene.node_of(id).material->mirror) return true;
+  }
+  return false;
+}
+
+// Returns where the changed meshes were and are.
+std::vector<FloatBox> changed_boxes(const LiveRecord& before, const LiveRecord& after, const ChangedMeshes& changed) {
+  std::vector<FloatBox> boxes;
+  for (size_t id = 0; id < changed.size(); ++id) {
+    for (const LiveRecord* record : {&before, &after}) {
+      if (changed[id] && !record->boxes[id].isEmpty()) boxes.push_back(record->boxes[id].cast<float>());
+    }
+  }
+  return boxes;
+}
+
+// Compares two records whose blocks are rays with the same indices.
+class Comparison {
+ public:
+  // `before` may be null; then nothing is the same.
+  Comparison(const LiveRecord* before, const LiveRecord& after) : before_(before), after_(after) {
+    if (!before || !before->shared.is_same(after.shared) || !has_same_tree(*before->empty.scene, *after.empty.scene)) return;
+    const bool time_moved = before->empty.frame.trace_time != after.empty.frame.trace_time;
+    changed_ = changed_meshes(*before->empty.scene, *after.empty.scene, time_moved);
+    shares_blocks_ = !is_any_mirror(*before->empty.scene, changed_) && !is_any_mirror(*after.empty.scene, changed_);
+    if (shares_blocks_) boxes_ = changed_boxes(*before, after, changed_);
+  }
+
+  const ChangedMeshes& changed() const { return changed_; }
+  bool shares_blocks() const { return shares_blocks_; }
+  // Returns the block of the record before where its rays have the same paths now; else null.
+  LiveBlockPtr kept(size_t index, int64_t begin, int64_t end) const {
+    if (!shares_blocks_ || index >= before_->blocks.size()) return nullptr;
+    const LiveBlockPtr& block = before_->blocks[index];
+    const bool is_kept = block->begin == begin && block->end == end &&
+                         after_.shared.launches_alike(before_->shared, begin, end) && !block->space.meets(boxes_);
+    return is_kept ? block : nullptr;
+  }
+
+ private:
+  const LiveRecord* before_;
+  const LiveRecord& after_;
+  bool shares_blocks_ = false;
+  ChangedMeshes changed_;
+  std::vector<FloatBox> boxes_;
+};
+
+// Returns the bounds of the blocks of all rays, and of those that are aimed at points of surfaces.
+std::vector<std::pair<int64_t, int64_t>> block_bounds(const LaunchPlan& plan) {
+  std::vector<std::pair<int64_t, int64_t>> bounds;
+  const auto add = [&](int64_t begin, int64_t end) {
+    for (; begin < end; begin += kRaysPerLiveBlock) bounds.emplace_back(begin, std::min(end, begin + kRaysPerLiveBlock));
+  };
+  add(0, plan.first_ray.back());
+  add(plan.first_point, plan.first_point + std::ssize(plan.aimed_points));
+  return bounds;
+}
+
+LiveBlockPtr shot(const Tracer& tracer, int64_t begin, int64_t end) {
+  auto block = std::make_shared<LiveBlock>();
+  block->begin = begin;
+  block->end = end;
+  const QueryWatch::OfThread watching(block->space);
+  tracer.shoot(begin, end, block->paths);
+  return block;
+}
+
+// Fills the blocks, those that are kept and those that are shot; it returns the number of rays shot.
+int64_t fill(Tracer& tracer, const Comparison& comparison, std::vector<LiveBlockPtr>& blocks, Job* job) {
+  const auto bounds = block_bounds(tracer.plan());
+  blocks.resize(bounds.size());
+  std::vector<int64_t> rays(bounds.size(), 0);
+  const QueryWatch watch(tracer.geometry());
+  parallel_for(std::ssize(bounds), [&](int64_t index) {
+    const auto i = static_cast<size_t>(index);
+    const auto [begin, end] = bounds[i];
+    blocks[i] = comparison.kept(i, begin, end);
+    if (blocks[i]) return;
+    blocks[i] = shot(tracer, begin, end);
+    rays[i] = end - begin;
+  }, job);
+  int64_t sum = 0;
+  for (const int64_t one : rays) sum += one;
+  return sum;
+}
+
+// Returns the blocks of `of` that are no blocks of `others`, which may have fewer.
+std::vector<LiveBlockPtr> blocks_of_its_own(const LiveRecord& of, const LiveRecord& others) {
+  std::vector<LiveBlockPtr> own;
+  for (size_t i = 0; i < of.blocks.size(); ++i) {
+    if (i >= others.blocks.size() || of.blocks[i] != others.blocks[i]) own.push_back(of.blocks[i]);
+  }
+  return own;
+}
+
+}  // namespace
+
+LiveTrace::LiveTrace() = default;
+LiveTrace::~LiveTrace() = default;
+
+LiveTrace::Change LiveTrace::update(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job) {
+  Tracer tracer(scene, radar, settings, job, &kept_);
+  const auto next = std::make_shared<LiveRecord>(tracer, settings);
+  const Comparison comparison(record_.get(), *next);
+  Change change;
+  if (job) job->start(std::ssize(block_bounds(tracer.plan())));
+  change.num_rays_shot = fill(tracer, comparison, next->blocks, job);
+  next->over_mirrors = tracer.find_paths_over_mirrors(job);
+  PlaneImages images = tracer.plane_images();
+  for (const LiveBlockPtr& block : next->blocks) images.add_chains(block->paths);
+  next->over_planes = images.find(job);
+  next->doubles = images.doubles();
+  change.is_whole = !comparison.shares_blocks() || !(record_->doubles == next->doubles);
+  if (change.is_whole) {
+    change.added = next->paths_of(next->blocks, job);
+    change.removed = next->empty;
+  } else {
+    change.removed = record_->paths_of(blocks_of_its_own(*record_, *next), job);
+    change.added = next->paths_of(blocks_of_its_own(*next, *record_), job);
+    leave_out_common(change.removed, change.added, comparison.changed(), job);
+  }
+  record_ = next;
+  return change;
+}
+
+Paths LiveTrace::paths(Job* job) const {
+  require(record_ != nullptr, "live", "must have been updated before it has paths", 0);
+  return record_->paths_of(record_->blocks, job);
+}
+
+}  // namespace echopath

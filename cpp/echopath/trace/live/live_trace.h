@@ -1,0 +1,43 @@
+#pragma once
+// Keeps the record of a scene that is changed again and again: after a change it shoots only those rays again that the
+// change may touch.
+//
+// A ray's paths hang on its plan, on the answers of its queries and on the surfaces that it meets. All queries of some rays
+// in a row are remembered as stretches of space (queried_space.h). A changed mesh was in one box before and is in another
+// one now; rays of which no stretch meets either box have the same paths as before. Where a change reaches what all rays
+// share (antennas, mirrors, the number of objects, the settings), all are shot again.
+#include <memory>
+#include <vector>
+
+#include "echopath/trace/geometry/kept_geometry.h"
+#include "echopath/trace/trace.h"
+
+namespace echopath {
+
+class LiveRecord;  // live_record.h
+
+class LiveTrace {
+ public:
+  // Tells how the record differs from the one before.
+  struct Change {
+    bool is_whole = false;  // nothing is as before: `removed` is empty and `added` is all
+    // Paths that are gone, in the scene before, and paths that are new, in the scene now. The signal of the record is that
+    // of the record before without the former and with the latter. They are whole (not selections) only where is_whole.
+    Paths removed, added;
+    int64_t num_rays_shot = 0;
+  };
+
+  LiveTrace();
+  ~LiveTrace();
+  // Brings the record to the scene, radar and settings given. Raises as `trace`; the record then is the one before.
+  Change update(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr);
+  // Returns the record as `trace` gives it for the last update, but for the numbers of queries in its statistics. Raises
+  // invalid_argument before the first update; raises Cancelled.
+  Paths paths(Job* job = nullptr) const;
+
+ private:
+  KeptGeometry kept_;
+  std::shared_ptr<const LiveRecord> record_;
+};
+
+}  // namespace echopath

@@ -1,0 +1,113 @@
+#include "echopath/trace/live/path_difference.h"
+
+#include <algorithm>
+#include <cstring>
+#include <span>
+
+#include "echopath/base/parallel.h"
+
+namespace echopath {
+namespace {
+
+constexpr int64_t kTogether = 1 << 12;
+constexpr uint64_t kUnlike = 0;  // of paths that are like no other
+
+// Mixes bits into a sum that hangs on all of them and on their order. Source: the finaliser is that of Steele, Lea, Flood
+// 2014 (SplitMix).
+class Mixer {
+ public:
+  template <class Value>
+  void add(const Value& value) {
+    static_assert(std::is_trivially_copyable_v<Value>);
+    constexpr size_t kWords = (sizeof(Value) + 7) / 8;
+    uint64_t words[kWords] = {};
+    std::memcpy(words, static_cast<const void*>(&value), sizeof(Value));
+    for (const uint64_t word : words) add_word(word);
+  }
+  uint64_t sum() const { return std::max<uint64_t>(sum_, kUnlike + 1); }
+
+ private:
+  void add_word(uint64_t word) {
+    sum_ = (sum_ ^ word) + 0x9E3779B97F4A7C15u;
+    sum_ = (sum_ ^ (sum_ >> 30)) * 0xBF58476D1CE4E5B9u;
+    sum_ = (sum_ ^ (sum_ >> 27)) * 0x94D049BB133111EBu;
+    sum_ ^= sum_ >> 31;
+  }
+  uint64_t sum_ = 0;
+};
+
+// Tells which strata of two records are the same, by index.
+std::vector<bool> same_strata(const TraceFrame& before, const TraceFrame& after) {
+  std::vector<bool> same(std::max(before.strata.size(), after.strata.size()));
+  for (size_t k = 0; k < std::min(before.strata.size(), after.strata.size()); ++k)
+    same[k] = before.strata[k] == after.strata[k];
+  return same;
+}
+
+class PathSums {
+ public:
+  PathSums(const Paths& paths, const ChangedMeshes& changed, const std::vector<bool>& same_strata)
+      : paths_(paths), changed_(changed), same_strata_(same_strata) {}
+
+  std::vector<uint64_t> all(Job* job) const {
+    std::vector<uint64_t> sums(static_cast<size_t>(paths_.num_paths()));
+    Job own(job);
+    parallel_for((paths_.num_paths() + kTogether - 1) / kTogether, [&](int64_t task) {
+      const size_t end = std::min(sums.size(), static_cast<size_t>((task + 1) * kTogether));
+      for (auto path = static_cast<size_t>(task * kTogether); path < end; ++path) sums[path] = sum_of(path);
+    }, &own);
+    return sums;
+  }
+
+ private:
+  uint64_t sum_of(size_t path) const {
+    const uint16_t stratum = paths_.stratum[path];
+    if (stratum != kNoStratum && !same_strata_[stratum]) return kUnlike;
+    Mixer mixer;
+    const Hit* hits = paths_.hits_of(static_cast<int64_t>(path));
+    for (int k = 0; k < paths_.num_bounces[path]; ++k) {
+      if (changed_[hits[k].mesh_id]) return kUnlike;
+      mixer.add(hits[k]);
+    }
+    mixer.add(paths_.diffuse[path]);
+    mixer.add(paths_.weight[path]);
+    mixer.add(uint64_t{paths_.flags[path]} << 32 | uint64_t{stratum} << 16 | uint64_t{paths_.num_bounces[path]} << 8 |
+              paths_.batch[path]);
+    if (!paths_.curved_cell.empty()) mixer.add(paths_.curved_cell[path]);
+    if (!paths_.jones.empty()) mixer.add(paths_.jones[path]);
+    return mixer.sum();
+  }
+
+  const Paths& paths_;
+  const ChangedMeshes& changed_;
+  const std::vector<bool>& same_strata_;
+};
+
+std::vector<size_t> sorted_by(const std::vector<uint64_t>& sums) {
+  std::vector<size_t> order;
+  for (size_t i = 0; i < sums.size(); ++i) {
+    if (sums[i] != kUnlike) order.push_back(i);
+  }
+  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return std::pair(sums[a], a) < std::pair(sums[b], b); });
+  return order;
+}
+
+}  // namespace
+
+void leave_out_common(Paths& before, Paths& after, const ChangedMeshes& changed, Job* job) {
+  const std::vector<bool> same = same_strata(before.frame, after.frame);
+  const std::vector<uint64_t> old_sums = PathSums(before, changed, same).all(job),
+                              new_sums = PathSums(after, changed, same).all(job);
+  const std::vector<size_t> old_order = sorted_by(old_sums), new_order = sorted_by(new_sums);
+  std::vector<uint8_t> keep_old(old_sums.size(), 1), keep_new(new_sums.size(), 1);
+  for (size_t i = 0, k = 0; i < old_order.size() && k < new_order.size();) {
+    const uint64_t a = old_sums[old_order[i]], b = new_sums[new_order[k]];
+    if (a == b) keep_old[old_order[i]] = keep_new[new_order[k]] = 0;
+    if (a <= b) ++i;
+    if (b <= a) ++k;
+  }
+  before = before.select(keep_old, job);
+  after = after.select(keep_new, job);
+}
+
+}  // namespace echopath

@@ -1,0 +1,58 @@
+#include "echopath/trace/mirrors/plane_doubles.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "echopath/base/parallel.h"
+
+namespace echopath {
+namespace {
+
+std::vector<int> sorted(std::vector<int> planes) {
+  std::sort(planes.begin(), planes.end());
+  return planes;
+}
+
+}  // namespace
+
+bool OrdersAboutCorners::contain(const std::vector<int>& sequence) const {
+  int64_t begin = 0;
+  return std::all_of(ends.begin(), ends.end(), [&](int64_t end) {
+    const int64_t first = std::exchange(begin, end);
+    return std::is_permutation(sequence.begin() + first, sequence.begin() + end, planes.begin() + first);
+  });
+}
+
+void PlaneDoubles::add(OrdersAboutCorners orders) {
+  std::vector<int> planes = sorted(orders.planes);
+  left_out_[std::move(planes)].push_back(std::move(orders));
+}
+
+bool PlaneDoubles::is_double(const Paths& paths, size_t path) const {
+  if (paths.diffuse[path] != 0 || paths.stratum[path] == kNoStratum) return false;
+  const Hit* hits = paths.hits_of(static_cast<int64_t>(path));
+  std::vector<int> sequence;
+  for (int k = 0; k < paths.num_bounces[path]; ++k) {
+    const std::vector<int>& of_triangle = plane_of_triangle[hits[k].mesh_id];
+    const int plane = of_triangle.empty() ? -1 : of_triangle[hits[k].triangle_id];
+    if (plane < 0) return false;
+    sequence.push_back(plane);
+  }
+  const auto orders = left_out_.find(sorted(sequence));
+  return orders != left_out_.end() && std::any_of(orders->second.begin(), orders->second.end(),
+                                                  [&](const OrdersAboutCorners& one) { return one.contain(sequence); });
+}
+
+void PlaneDoubles::leave_out(Paths& paths, Job* job) const {
+  if (!any()) return;
+  constexpr int64_t kTogether = 1 << 14;
+  std::vector<uint8_t> keep(static_cast<size_t>(paths.num_paths()));
+  Job own(job);
+  parallel_for((paths.num_paths() + kTogether - 1) / kTogether, [&](int64_t task) {
+    const size_t end = std::min(keep.size(), static_cast<size_t>((task + 1) * kTogether));
+    for (size_t path = static_cast<size_t>(task * kTogether); path < end; ++path) keep[path] = !is_double(paths, path);
+  }, &own);
+  paths = paths.select(keep, &own);
+}
+
+}  // namespace echopath

@@ -101,6 +101,18 @@ void Scene::remove(int index) {
   number_all();
 }
 
+void Scene::keep_meshes(const std::vector<bool>& kept) {
+  std::vector<bool> keeps(nodes_.size());
+  for (size_t id = 0; id < meshes_.size(); ++id) keeps[static_cast<size_t>(meshes_[id].node)] = kept[id];
+  for (size_t i = 0; i < nodes_.size(); ++i) {
+    if (keeps[i]) continue;
+    nodes_[i].mesh = nullptr;
+    nodes_[i].deformation = nullptr;
+    nodes_[i].material = nullptr;
+  }
+  number_all();
+}
+
 void Scene::require_node(int index) const {
   require(index >= 0 && index < static_cast<int>(nodes_.size()), "index", "must be that of a node", index);
 }

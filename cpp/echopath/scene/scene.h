@@ -49,6 +49,8 @@ class Scene {
   void change(int index, Node node);
   // Removes a node with all that is below it. The nodes behind them move up.
   void remove(int index);
+  // Takes the meshes away from all nodes but those of `kept` [mesh ID]. The nodes stay, with their motions.
+  void keep_meshes(const std::vector<bool>& kept);
 
   const std::vector<Node>& nodes() const { return nodes_; }
   // Returns whether a node and all above it are visible. What does not take part has no mesh ID, and its motions are not

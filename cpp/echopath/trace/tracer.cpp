@@ -58,13 +58,14 @@ Paths empty_record(const SceneSnapshot& scene, const Radar& radar, const TraceSe
 
 }  // namespace
 
-Tracer::Tracer(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job, KeptGeometry* kept)
+Tracer::Tracer(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job, KeptGeometry* kept,
+               FittedStrata* fitted)
     : empty_(empty_record(scene, radar, settings)), num_rays_to_come_(settings.num_rays_to_come),
       pose_(*empty_.scene, empty_.frame.trace_time), world_from_radar_(radar.world_from_radar(empty_.frame.trace_time)),
       origin_(EmbreeScene::origin_near(*empty_.scene, pose_, empty_.frame.transmitter, radar.motion != nullptr)),
       loan_(kept, *empty_.scene, pose_, origin_, job), geometry_(*loan_), mirrors_(find_mirrors(*empty_.scene, geometry_)),
       sbr_(settings_of_rays(settings)), frusta_(find_antenna_frusta(*empty_.scene, geometry_, mirrors_, sbr_, job)),
-      plan_(plan_rays(settings)), shooter_(*empty_.scene, geometry_, mirrors_, plan_, sbr_, frusta_) {
+      plan_(plan_rays(settings, fitted)), shooter_(*empty_.scene, geometry_, mirrors_, plan_, sbr_, frusta_) {
   aim_at_points(settings, job);
   empty_.frame.strata = plan_.strata;
   empty_.frame.statistics.num_rays = num_rays();
@@ -72,13 +73,14 @@ Tracer::Tracer(const SceneSnapshot& scene, const Radar& radar, const TraceSettin
   empty_.frame.statistics.num_unfollowed_beams = frusta_.num_unfollowed();
 }
 
-LaunchPlan Tracer::plan_rays(const TraceSettings& settings) {
+LaunchPlan Tracer::plan_rays(const TraceSettings& settings, FittedStrata* fitted) {
   LaunchSettings launch;
   launch.num_rays = settings.num_rays;
   launch.seed = settings.seed;
   launch.sampler = settings.sampler;
   launch.batches = settings.batches;
   launch.guide = settings.guide;
+  launch.fitted = fitted;
   launch.frusta = with_at_most(frusta_.transmitter, most_leg_mirrors(sbr_));
   launch.transmitter = empty_.frame.transmitter - origin_;
   set_field_of_view(empty_.radar, world_from_radar_, launch);

@@ -10,9 +10,9 @@ namespace echopath {
 
 class Tracer {
  public:
-  // Raises what `trace` raises.
+  // Raises what `trace` raises. What is kept, and the strata that were fitted before, may be null.
   Tracer(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job,
-         KeptGeometry* kept = nullptr);
+         KeptGeometry* kept = nullptr, FittedStrata* fitted = nullptr);
   Tracer(const Tracer&) = delete;
   Tracer& operator=(const Tracer&) = delete;
   // Shoots all rays; it returns the same record each time.
@@ -39,7 +39,7 @@ class Tracer {
   std::vector<const PathBlock*> shoot_wave(int64_t begin, const std::vector<PathBlock>& ahead, int64_t step,
                                            std::vector<PathBlock>& wave, Job* job) const;
   void require_memory(const std::vector<PathBlock>& ahead) const;
-  LaunchPlan plan_rays(const TraceSettings& settings);
+  LaunchPlan plan_rays(const TraceSettings& settings, FittedStrata* fitted);
   SbrSettings settings_of_rays(const TraceSettings& settings) const;
   void aim_at_points(const TraceSettings& settings, Job* job);
   int64_t num_lattice_blocks() const;

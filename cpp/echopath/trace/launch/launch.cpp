@@ -146,7 +146,8 @@ LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const st
                        const LaunchSettings& settings) {
   const Stratum field = field_of_view(settings);
   const RayTargetSettings aims{settings.transmitter, settings.frusta, 0.5 * field.solid_angle(),
-                               settings.sampler == Sampler::kLattice, settings.num_rays / (LaunchPlan::kFewestRays - 1)};
+                               settings.sampler == Sampler::kLattice, settings.num_rays / (LaunchPlan::kFewestRays - 1),
+                               settings.fitted};
   RayTargets found = find_ray_targets(scene, geometry, mirrors, aims);
   const bool is_guided = !settings.guide.shares.empty();
   std::vector<Focus> foci;

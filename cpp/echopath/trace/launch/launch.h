@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "echopath/trace/geometry/packet.h"
+#include "echopath/trace/launch/fitted_strata.h"
 #include "echopath/trace/launch/launch_focus.h"
 #include "echopath/trace/launch/ray_owners.h"
 #include "echopath/trace/launch/sampler.h"
@@ -73,6 +74,7 @@ struct LaunchSettings {
   Vec3 boresight = Vec3::UnitX();
   double field_versine = 2.0;  // 1 - cosine of the field of view's half angle
   LaunchGuide guide;           // by default the rule above, without foci
+  FittedStrata* fitted = nullptr;  // RayTargetSettings::fitted
 };
 
 LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,

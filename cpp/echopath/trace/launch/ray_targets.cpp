@@ -65,7 +65,9 @@ class RayTargetFinder {
  private:
   std::optional<RayTarget> target_at(const Target& target, const std::vector<Vec3>& vertices, std::string name,
                                      int num_mirrors) const {
-    std::optional<Stratum> stratum = fit_stratum(vertices, settings_.transmitter, std::move(name), settings_.may_use_strips);
+    std::optional<Stratum> stratum =
+        settings_.fitted ? settings_.fitted->fit(vertices, settings_.transmitter, std::move(name), settings_.may_use_strips)
+                         : fit_stratum(vertices, settings_.transmitter, std::move(name), settings_.may_use_strips);
     if (!stratum || stratum->solid_angle() > settings_.largest_solid_angle) return std::nullopt;
     stratum->object = target.node;
     stratum->num_mirrors = num_mirrors;
@@ -126,6 +128,7 @@ double weight_of_target(int num_mirrors) { return num_mirrors < 2 ? 1.0 : std::p
 RayTargets find_ray_targets(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                             const RayTargetSettings& settings) {
   RayTargets out;
+  if (settings.fitted) settings.fitted->begin_plan();
   const std::vector<SceneObject> scene_objects = objects_of(scene);
   out.num_objects = static_cast<int>(scene_objects.size());
   out.object_of_mesh.assign(scene.meshes().size(), -1);

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "echopath/trace/launch/stratum.h"
+#include "echopath/trace/launch/fitted_strata.h"
 #include "echopath/trace/mirrors/mirror_frusta.h"
 
 namespace echopath {
@@ -27,6 +27,7 @@ struct RayTargetSettings {
   double largest_solid_angle = 0.0;       // sr: larger objects are left to the field of view
   bool may_use_strips = true;
   int64_t most_objects = std::numeric_limits<int64_t>::max();  // nothing is aimed at where there are more
+  FittedStrata* fitted = nullptr;                              // the strata of plans before; may be null
 };
 
 struct RayTargets {

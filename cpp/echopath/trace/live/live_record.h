@@ -11,7 +11,7 @@
 
 namespace echopath {
 
-inline constexpr int64_t kRaysPerLiveBlock = 64;  // few, so that a change touches few others beside the rays that it must
+inline constexpr int64_t kRaysPerLiveBlock = 16;  // few, so that a change touches few others beside the rays that it must
 static_assert(kRaysPerLiveBlock % kPacketSize == 0, "a packet has rays of one kind (LaunchPlan::first_point)");
 
 // Holds the paths of some rays in a row.

@@ -113,7 +113,7 @@ LiveTrace::LiveTrace() = default;
 LiveTrace::~LiveTrace() = default;
 
 LiveTrace::Change LiveTrace::update(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job) {
-  Tracer tracer(scene, radar, settings, job, &kept_);
+  Tracer tracer(scene, radar, settings, job, &kept_, &fitted_);
   const auto next = std::make_shared<LiveRecord>(tracer, settings);
   const Comparison comparison(record_.get(), *next);
   Change change;
@@ -132,6 +132,8 @@ LiveTrace::Change LiveTrace::update(const SceneSnapshot& scene, const Radar& rad
     change.removed = record_->paths_of(blocks_of_its_own(*record_, *next), job);
     change.added = next->paths_of(blocks_of_its_own(*next, *record_), job);
     leave_out_common(change.removed, change.added, comparison.changed(), job);
+    change.removed = with_own_meshes(change.removed, job);
+    change.added = with_own_meshes(change.added, job);
   }
   record_ = next;
   return change;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "echopath/trace/geometry/kept_geometry.h"
+#include "echopath/trace/launch/fitted_strata.h"
 #include "echopath/trace/trace.h"
 
 namespace echopath {
@@ -22,7 +23,8 @@ class LiveTrace {
   struct Change {
     bool is_whole = false;  // nothing is as before: `removed` is empty and `added` is all
     // Paths that are gone, in the scene before, and paths that are new, in the scene now. The signal of the record is that
-    // of the record before without the former and with the latter. They are whole (not selections) only where is_whole.
+    // of the record before without the former and with the latter. Unless is_whole, their scenes have only the meshes that
+    // they meet, with mesh IDs of their own.
     Paths removed, added;
     int64_t num_rays_shot = 0;
   };
@@ -37,6 +39,7 @@ class LiveTrace {
 
  private:
   KeptGeometry kept_;
+  FittedStrata fitted_;
   std::shared_ptr<const LiveRecord> record_;
 };
 

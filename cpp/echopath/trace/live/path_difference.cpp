@@ -1,9 +1,11 @@
 #include "echopath/trace/live/path_difference.h"
 
 #include <algorithm>
-#include <cstring>
-#include <span>
+#include <cstdint>
+#include <memory>
+#include <utility>
 
+#include "echopath/base/bit_sum.h"
 #include "echopath/base/parallel.h"
 
 namespace echopath {
@@ -11,30 +13,6 @@ namespace {
 
 constexpr int64_t kTogether = 1 << 12;
 constexpr uint64_t kUnlike = 0;  // of paths that are like no other
-
-// Mixes bits into a sum that hangs on all of them and on their order. Source: the finaliser is that of Steele, Lea, Flood
-// 2014 (SplitMix).
-class Mixer {
- public:
-  template <class Value>
-  void add(const Value& value) {
-    static_assert(std::is_trivially_copyable_v<Value>);
-    constexpr size_t kWords = (sizeof(Value) + 7) / 8;
-    uint64_t words[kWords] = {};
-    std::memcpy(words, static_cast<const void*>(&value), sizeof(Value));
-    for (const uint64_t word : words) add_word(word);
-  }
-  uint64_t sum() const { return std::max<uint64_t>(sum_, kUnlike + 1); }
-
- private:
-  void add_word(uint64_t word) {
-    sum_ = (sum_ ^ word) + 0x9E3779B97F4A7C15u;
-    sum_ = (sum_ ^ (sum_ >> 30)) * 0xBF58476D1CE4E5B9u;
-    sum_ = (sum_ ^ (sum_ >> 27)) * 0x94D049BB133111EBu;
-    sum_ ^= sum_ >> 31;
-  }
-  uint64_t sum_ = 0;
-};
 
 // Tells which strata of two records are the same, by index.
 std::vector<bool> same_strata(const TraceFrame& before, const TraceFrame& after) {
@@ -63,19 +41,19 @@ class PathSums {
   uint64_t sum_of(size_t path) const {
     const uint16_t stratum = paths_.stratum[path];
     if (stratum != kNoStratum && !same_strata_[stratum]) return kUnlike;
-    Mixer mixer;
+    BitSum bits;
     const Hit* hits = paths_.hits_of(static_cast<int64_t>(path));
     for (int k = 0; k < paths_.num_bounces[path]; ++k) {
       if (changed_[hits[k].mesh_id]) return kUnlike;
-      mixer.add(hits[k]);
+      bits.add(hits[k]);
     }
-    mixer.add(paths_.diffuse[path]);
-    mixer.add(paths_.weight[path]);
-    mixer.add(uint64_t{paths_.flags[path]} << 32 | uint64_t{stratum} << 16 | uint64_t{paths_.num_bounces[path]} << 8 |
+    bits.add(paths_.diffuse[path]);
+    bits.add(paths_.weight[path]);
+    bits.add(uint64_t{paths_.flags[path]} << 32 | uint64_t{stratum} << 16 | uint64_t{paths_.num_bounces[path]} << 8 |
               paths_.batch[path]);
-    if (!paths_.curved_cell.empty()) mixer.add(paths_.curved_cell[path]);
-    if (!paths_.jones.empty()) mixer.add(paths_.jones[path]);
-    return mixer.sum();
+    if (!paths_.curved_cell.empty()) bits.add(paths_.curved_cell[path]);
+    if (!paths_.jones.empty()) bits.add(paths_.jones[path]);
+    return std::max(bits.value(), kUnlike + 1);
   }
 
   const Paths& paths_;
@@ -108,6 +86,21 @@ void leave_out_common(Paths& before, Paths& after, const ChangedMeshes& changed,
   }
   before = before.select(keep_old, job);
   after = after.select(keep_new, job);
+}
+
+Paths with_own_meshes(const Paths& paths, Job* job) {
+  Paths out = paths.with_own_hits(job);
+  std::vector<bool> is_met(paths.scene->meshes().size());
+  for (const Hit& hit : *out.hits) is_met[hit.mesh_id] = true;
+  std::vector<uint32_t> place(is_met.size());
+  for (size_t id = 0, count = 0; id < is_met.size(); ++id) place[id] = static_cast<uint32_t>(is_met[id] ? count++ : count);
+  auto hits = std::make_shared<std::vector<Hit>>(*out.hits);
+  for (Hit& hit : *hits) hit.mesh_id = place[hit.mesh_id];
+  out.hits = std::move(hits);
+  auto scene = std::make_shared<Scene>(*paths.scene);
+  scene->keep_meshes(is_met);
+  out.scene = std::move(scene);
+  return out;
 }
 
 }  // namespace echopath

@@ -1,5 +1,5 @@
 #pragma once
-// Leaves out of two records the paths that both have.
+// Leaves out of two records the paths that both have, and out of a record what its paths do not need.
 #include "echopath/trace/live/scene_changes.h"
 
 namespace echopath {
@@ -8,5 +8,9 @@ namespace echopath {
 // same, which meet no changed mesh, and whose stratum has not changed. Paths are compared by 64 bits that hang on all of
 // these. Raises Cancelled.
 void leave_out_common(Paths& before, Paths& after, const ChangedMeshes& changed, Job* job = nullptr);
+
+// Returns the same paths with the hits that they use, in a scene with the meshes that they meet. Their echoes are the same, but
+// mesh IDs are not: posing a few meshes costs less than posing a city.
+Paths with_own_meshes(const Paths& paths, Job* job = nullptr);
 
 }  // namespace echopath

@@ -35,6 +35,7 @@ from .in_time import (
     AngleTime, RangeTime, Spectrogram, SpectrogramLabels, angle_time, range_time, spectrogram, spectrogram_labels,
 )
 from .labels import GhostLabel, Labels, ObjectLabel, annotate, annotate_frame, save_label_images
+from .live import Live, LiveView, Watch
 from .materials import materials
 from .measures import power_by_chirp
 from .meshes import load_mesh, load_meshes
@@ -67,12 +68,12 @@ __all__ = [
     "Check", "ChirpSequence", "CoplanarOverlap", "CosinePower", "Curve", "CurveMotion", "Deformation", "Detections",
     "DeviceError", "Effect", "Families", "Family", "FileError", "Frame", "FrameMaps", "GainTable", "GhostLabel",
     "GuardWarning", "Interval", "Isotropic", "Joint", "KeyframeMotion", "LabelSettings", "Labels", "Lane",
-    "LinearMotion", "Material", "Mesh", "Model", "ModelNode", "MorphTargets", "Motion", "ObjectLabel", "ObjectValidity",
+    "LinearMotion", "Live", "LiveView", "Material", "Mesh", "Model", "ModelNode", "MorphTargets", "Motion", "ObjectLabel", "ObjectValidity",
     "ObjectVisibility", "Part", "Parts", "PathCells", "Paths", "Radar", "RangeAzimuth", "RangeDoppler", "RangeTime",
     "ReceivedPower", "Renewal", "SavedFrame", "Scene", "SceneFile", "SceneNode", "Selection", "Sequence", "Sight",
     "SignalProbe", "SignalSettings", "Skin", "Spectrogram", "SpectrogramLabels", "StoredSequence", "Stratum",
     "TessellationWarning", "TraceFrame", "TraceSettings", "TraceStatistics", "Tracks", "Traffic", "Trajectory", "Truth",
-    "Unresolved", "Validity", "ValidityShares", "VertexSequence", "VirtualArray", "actors", "add_noise", "add_traffic",
+    "Unresolved", "Validity", "ValidityShares", "VertexSequence", "VirtualArray", "Watch", "actors", "add_noise", "add_traffic",
     "angle_fft", "angle_time", "annotate", "annotate_frame", "beamform", "boltzmann", "cfar", "check_rays",
     "check_signal", "compensate_tdm", "decompose", "detect", "detect_frame", "effects", "estimate_angles", "families",
     "first", "foreign_materials", "hits", "last", "load_antenna", "load_frame", "load_labels", "load_mesh",

@@ -1,10 +1,9 @@
 #pragma once
 // Remembers the strata that were fitted to surfaces, from one plan of rays to the next.
 #include <cstdint>
+#include <functional>
 #include <optional>
-#include <string>
 #include <unordered_map>
-#include <vector>
 
 #include "echopath/trace/launch/stratum.h"
 
@@ -13,14 +12,15 @@ namespace echopath {
 // Not thread-safe. What one plan has asked for is known to the next one alone.
 class FittedStrata {
  public:
-  // Returns what fit_stratum (fit_stratum.h) returns.
-  std::optional<Stratum> fit(const std::vector<Vec3>& vertices, const Vec3& apex, std::string name, bool may_be_strip);
+  using Fitted = std::optional<Stratum>;
   // Begins a plan.
   void begin_plan();
+  // Returns what was fitted to the same input before, else what `fit` returns. `input` is the sum of the bits of all that
+  // the stratum hangs on (base/bit_sum.h).
+  Fitted find(uint64_t input, const std::function<Fitted()>& fit);
 
  private:
-  using ByInput = std::unordered_map<uint64_t, std::optional<Stratum>>;  // by the sum of the bits of all arguments
-  ByInput before_, now_;
+  std::unordered_map<uint64_t, Fitted> before_, now_;  // by input
 };
 
 }  // namespace echopath

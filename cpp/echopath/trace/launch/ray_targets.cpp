@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "echopath/base/bit_sum.h"
 #include "echopath/trace/launch/fit_stratum.h"
 #include "echopath/trace/launch/scene_objects.h"
 
@@ -18,6 +19,7 @@ struct Target {
   int object = 0, node = 0;
   std::string name;
   std::vector<Vec3> vertices;
+  uint64_t bits = 0;  // sum of those of the vertices
   Sphere sphere;
   bool moves = false;
 };
@@ -40,7 +42,8 @@ class RayTargetFinder {
       : scene_(scene), mirrors_(mirrors), settings_(settings) {}
 
   std::optional<RayTarget> at_object(const Target& target) const {
-    return target_at(target, target.vertices, target.name, 0);
+    return target_at(target, input_of(target, {}), target.name, 0,
+                     [&]() -> const std::vector<Vec3>& { return target.vertices; });
   }
 
   // RayTargets at each image that a frustum may show.
@@ -49,10 +52,14 @@ class RayTargetFinder {
     std::vector<Vec3> vertices(target.vertices.size());
     for (const MirrorFrustum& frustum : settings_.frusta) {
       if (!frustum.reaches(target.sphere.centre, target.sphere.radius)) continue;
-      std::transform(target.vertices.begin(), target.vertices.end(), vertices.begin(),
-                     [&](const Vec3& vertex) { return image_of(vertex, mirrors_, frustum.mirrors); });
       const int num_mirrors = static_cast<int>(frustum.mirrors.size());
-      std::optional<RayTarget> made = target_at(target, vertices, name_over(target, frustum), num_mirrors);
+      const auto images_of_vertices = [&]() -> const std::vector<Vec3>& {
+        std::transform(target.vertices.begin(), target.vertices.end(), vertices.begin(),
+                       [&](const Vec3& vertex) { return image_of(vertex, mirrors_, frustum.mirrors); });
+        return vertices;
+      };
+      std::optional<RayTarget> made = target_at(target, input_of(target, frustum.mirrors), name_over(target, frustum),
+                                                num_mirrors, images_of_vertices);
       if (!made) continue;
       const auto same = std::find_if(images.begin(), images.end(),
                                      [&](const RayTarget& other) { return is_same(made->stratum, other.stratum); });
@@ -63,11 +70,31 @@ class RayTargetFinder {
   }
 
  private:
-  std::optional<RayTarget> target_at(const Target& target, const std::vector<Vec3>& vertices, std::string name,
-                                     int num_mirrors) const {
-    std::optional<Stratum> stratum =
-        settings_.fitted ? settings_.fitted->fit(vertices, settings_.transmitter, std::move(name), settings_.may_use_strips)
-                         : fit_stratum(vertices, settings_.transmitter, std::move(name), settings_.may_use_strips);
+  // Returns the sum of the bits of all that a stratum hangs on.
+  uint64_t input_of(const Target& target, const std::vector<int>& sequence) const {
+    if (!settings_.fitted) return 0;
+    BitSum bits;
+    bits.add(target.bits);
+    bits.add_bytes(target.name.data(), target.name.size());
+    bits.add_bytes(settings_.transmitter.data(), sizeof(Vec3));
+    bits.add(settings_.may_use_strips);
+    for (const int index : sequence) {
+      const Mirror& mirror = mirrors_[static_cast<size_t>(index)];
+      bits.add_bytes(mirror.point.data(), sizeof(Vec3));
+      bits.add_bytes(mirror.normal.data(), sizeof(Vec3));
+      bits.add(mirror.mesh_id);
+      bits.add(mirror.face);
+    }
+    return bits.value();
+  }
+
+  template <class Vertices>
+  std::optional<RayTarget> target_at(const Target& target, uint64_t input, std::string name, int num_mirrors,
+                                     const Vertices& vertices) const {
+    const auto fit = [&] {
+      return fit_stratum(vertices(), settings_.transmitter, std::move(name), settings_.may_use_strips);
+    };
+    std::optional<Stratum> stratum = settings_.fitted ? settings_.fitted->find(input, fit) : fit();
     if (!stratum || stratum->solid_angle() > settings_.largest_solid_angle) return std::nullopt;
     stratum->object = target.node;
     stratum->num_mirrors = num_mirrors;
@@ -101,6 +128,9 @@ Target target_of(const Scene& scene, const EmbreeScene& geometry, const SceneObj
     target.vertices.insert(target.vertices.end(), vertices.begin(), vertices.end());
     target.moves = target.moves || scene.is_moving(id);
   }
+  BitSum bits;
+  bits.add_bytes(target.vertices.data(), target.vertices.size() * sizeof(Vec3));
+  target.bits = bits.value();
   return target;
 }
 

@@ -10,6 +10,9 @@
 namespace echopath {
 namespace {
 
+// Share of the rays from which on it costs more to tell what differs, and to take it away and add it, than to begin anew.
+constexpr double kMostRaysOfDifference = 0.4;
+
 bool is_any_mirror(const Scene& scene, const ChangedMeshes& changed) {
   for (uint32_t id = 0; id < changed.size(); ++id) {
     if (changed[id] && scene.node_of(id).material->mirror) return true;
@@ -124,7 +127,8 @@ LiveTrace::Change LiveTrace::update(const SceneSnapshot& scene, const Radar& rad
   for (const LiveBlockPtr& block : next->blocks) images.add_chains(block->paths);
   next->over_planes = images.find(job);
   next->doubles = images.doubles();
-  change.is_whole = !comparison.shares_blocks() || !(record_->doubles == next->doubles);
+  change.is_whole = !comparison.shares_blocks() || !(record_->doubles == next->doubles) ||
+                    static_cast<double>(change.num_rays_shot) > kMostRaysOfDifference * static_cast<double>(tracer.num_rays());
   if (change.is_whole) {
     change.added = next->paths_of(next->blocks, job);
     change.removed = next->empty;

@@ -21,7 +21,7 @@ class LiveTrace {
  public:
   // Tells how the record differs from the one before.
   struct Change {
-    bool is_whole = false;  // nothing is as before: `removed` is empty and `added` is all
+    bool is_whole = false;  // little or nothing is as before: `removed` is empty and `added` is all
     // Paths that are gone, in the scene before, and paths that are new, in the scene now. The signal of the record is that
     // of the record before without the former and with the latter. Unless is_whole, their scenes have only the meshes that
     // they meet, with mesh IDs of their own.

@@ -1,0 +1,98 @@
+"""The record and the signal of a scene, brought up to date by what differs."""
+from __future__ import annotations
+
+import dataclasses
+import time
+from typing import Any
+
+import numpy as np
+
+from .. import _core
+from ..polarization import antennas_of, chosen_model
+
+# Signals are added and taken away so often before all is summed anew; each time rounds to some 1e-16 of the largest sample.
+MOST_DIFFERENCES = 256
+
+
+@dataclasses.dataclass(frozen=True)
+class Update:
+    """What an update did. num_rays_shot, num_paths_changed: counts; trace, signal: s that they took"""
+
+    num_rays_shot: int
+    num_paths_changed: int
+    trace: float
+    signal: float
+
+
+class KeptSignal:
+    """The record and the cube of the scene of the last update. An update that was ended is made up for by the next one.
+
+    trace, signal: {keyword: value} of `_core.LiveTrace.update` without the number of rays, and of `_core.synthesize`
+    """
+
+    def __init__(self, num_rays: int, trace: dict[str, Any], signal: dict[str, Any]):
+        self.num_rays = num_rays
+        self._trace_keywords, self._signal_keywords = trace, signal
+        self._record = _core.LiveTrace()
+        self._radar: _core.Radar | None = None  # that of the cube
+        self._cube: np.ndarray | None = None
+        self._whole: _core.Paths | None = None  # of which the cube is to be made anew
+        self._pending: list[tuple[float, _core.Paths]] = []  # what is still to be added to the cube, and its sign
+        self._num_differences = 0
+
+    @property
+    def cube(self) -> np.ndarray:
+        """[tx, rx, chirp, sample] in sqrt(W), read-only."""
+        assert self._cube is not None, "an update comes first"
+        return self._cube
+
+    def update(self, scene: _core.Scene, radar: _core.Radar, progress=None) -> Update:
+        """Brings record and cube to this scene and radar. progress: callable (stage, fraction), True for bars, or None"""
+        begin = time.perf_counter()
+        keywords = self._trace_keywords | {"polarization": self._model(scene, radar)}
+        change = self._record.update(scene, radar, num_rays=self.num_rays, progress=progress, **keywords)
+        self._note(change)
+        if self._whole is None and (radar != self._radar or self._num_differences >= MOST_DIFFERENCES):
+            self._whole = self._record.paths(progress)
+        middle = time.perf_counter()
+        num_changed = self._bring_up(radar, progress)
+        return Update(change["num_rays_shot"], num_changed, middle - begin, time.perf_counter() - middle)
+
+    def _note(self, change: dict) -> None:
+        """Notes what the cube lacks of the record."""
+        if change["is_whole"] or self._cube is None:
+            self._whole, self._pending = change["added"] if change["is_whole"] else self._record.paths(), []
+        elif self._whole is not None:
+            self._whole = self._record.paths()
+        else:
+            self._pending += [(sign, paths) for sign, paths in ((1.0, change["added"]), (-1.0, change["removed"]))
+                              if paths.num_paths]
+
+    def _bring_up(self, radar: _core.Radar, progress) -> int:
+        """Brings the cube to the record; returns the number of paths that this took."""
+        num_paths = 0
+        if self._whole is not None:
+            num_paths = self._whole.num_paths
+            self._set_cube(_core.synthesize(self._whole, radar, progress=progress, **self._signal_keywords))
+            self._radar, self._whole, self._pending, self._num_differences = radar, None, [], 0
+        while self._pending:
+            sign, paths = self._pending[-1]
+            num_paths += paths.num_paths
+            part = _core.synthesize(paths, radar, progress=progress, **self._signal_keywords)
+            self._set_cube(self.cube + part if sign > 0.0 else self.cube - part)
+            self._pending.pop()
+            self._num_differences += 1
+        return num_paths
+
+    def _set_cube(self, cube: np.ndarray) -> None:
+        cube.flags.writeable = False
+        self._cube = cube
+
+    def paths(self, progress=None) -> _core.Paths:
+        """The whole record, Paths."""
+        return self._record.paths(progress)
+
+    def _model(self, scene: _core.Scene, radar: _core.Radar) -> str:
+        wavelength = _core.speed_of_light / radar.waveform.start_frequency
+        return chosen_model(self._trace_keywords["polarization"], scene, wavelength, antennas_of(radar),
+                            argument="polarization")

@@ -1,0 +1,165 @@
+"""Scenes that are changed while their map is watched."""
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from .. import _core
+from ..checks import Progress, Window, an, anything, checked, count, positive, refused
+from ..scene import Scene
+from ..settings import (
+    MOST_RAYS, Evaluate, Footprint, Method, Polarization, Replay, Sampler, Scatterers, SignalSettings, TraceSettings,
+)
+from ..tessellation import warn_of_coarse_meshes
+from .changes import Changes
+from .kept_signal import KeptSignal
+from .view import LiveView
+from .watch import Watch
+
+DEFAULT_RAYS = 100_000
+_RULES = TraceSettings.RULES | SignalSettings.RULES
+
+
+class Live:
+    """A scene whose map follows its changes: `live.scene["car"].position += (0.1, 0, 0)`, then `view = live.update()`.
+
+    It keeps the record, the signal and the map. After a change of an object (place, motion, material, shape) only those rays
+    are shot again that the change may touch: rays remember through which space their queries went. Only the paths that
+    differ are taken from the signal and added to it. A change of the waveform, the window or the antennas' patterns shoots
+    no ray that sees the scene as before. Where a change concerns all rays (the radar's place, a flagged mirror, an object
+    that comes, goes, hides or appears, because objects share the rays), all are shot again. Either way the view is that of a
+    new Live of the changed scene, to 1e-12 of the largest sample.
+    scene: is copied; radar: that looks at it, which may be set to another one at any time
+    num_rays: 1 to 1e10, shared evenly among objects, their images and the field of view, half of them at least to what moves:
+        the shares do not go by errors as those of `trace` do, because these change with every change of the scene
+    max_bounces, seed, start_time (s), polarization, footprint, sampler: as in `trace`
+    scatterers: "rays" (also for "auto"), or "surface" as in `trace`, so that the speckle of what is moved goes on; most rays
+        are then shot again
+    tolerance, replay, evaluate, phase_tolerance (rad): as in `synthesize`; method: likewise, where "auto" is "nufft" whatever
+        the number of paths
+    window, zero_pad: as in `range_doppler`
+    Raises TypeError or ValueError naming the argument.
+    """
+
+    @checked(**_RULES | {"self": anything, "num_rays": count(1, MOST_RAYS)})
+    def __init__(self, scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float = DEFAULT_RAYS,
+                 max_bounces: int = TraceSettings.max_bounces, seed: int = TraceSettings.seed,
+                 start_time: float = TraceSettings.start_time, polarization: Polarization = TraceSettings.polarization,
+                 footprint: Footprint = TraceSettings.footprint, sampler: Sampler = TraceSettings.sampler,
+                 scatterers: Scatterers = TraceSettings.scatterers, tolerance: float = SignalSettings.tolerance,
+                 method: Method = SignalSettings.method, replay: Replay = SignalSettings.replay,
+                 evaluate: Evaluate = SignalSettings.evaluate, phase_tolerance: float = SignalSettings.phase_tolerance,
+                 window: Window = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad):
+        self._trace = {"max_bounces": max_bounces, "seed": seed, "start_time": start_time, "polarization": polarization,
+                       "footprint": footprint, "sampler": sampler,
+                       "scatterers": "rays" if scatterers == "auto" else scatterers}
+        self._signal = {"tolerance": tolerance, "method": "nufft" if method == "auto" else method, "replay": replay,
+                        "evaluate": evaluate, "phase_tolerance": phase_tolerance}
+        self._window, self._zero_pad = window, zero_pad
+        self._scene, self._radar, self._changes = Scene(scene), radar, Changes()
+        self._busy = threading.Lock()  # held while a signal is brought up to date
+        self._full = KeptSignal(num_rays, self._trace, self._signal)
+        self._quick: KeptSignal | None = None
+
+    @property
+    def scene(self) -> Scene:
+        """The scene, to be read and changed. Threads beside each other change it in `change` or `changing`."""
+        return self._scene
+
+    @property
+    def radar(self) -> _core.Radar:
+        """The radar that looks at it; set it to change it."""
+        return self._radar
+
+    @radar.setter
+    def radar(self, radar: _core.Radar) -> None:
+        with self.changing():
+            self._radar = an(_core.Radar)("radar", radar)
+
+    @property
+    def num_rays(self) -> int:
+        """Rays of the record."""
+        return self._full.num_rays
+
+    @property
+    def number(self) -> int:
+        """How many changes were made by `change`, `changing` and `set_map`."""
+        return self._changes.number
+
+    @contextmanager
+    def changing(self) -> Iterator[Scene]:
+        """`with live.changing() as scene:` changes the scene as one change, whatever other threads do meanwhile."""
+        with self._changes.one():
+            yield self._scene
+
+    @checked(self=anything, function=anything)
+    def change(self, function: Callable[[Scene], object]) -> None:
+        """Calls function(scene) as one change; a Watch begins to show it at once. Raises what the function raises."""
+        if not callable(function):
+            raise refused(TypeError, "function", "callable with a Scene", function)
+        with self.changing() as scene:
+            function(scene)
+
+    @checked(self=anything, window=_RULES["window"], zero_pad=_RULES["zero_pad"])
+    def set_map(self, *, window: Window = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad) -> None:
+        """Has the next views use this window and zero_pad, as in `range_doppler`; neither rays nor signals change."""
+        with self.changing():
+            self._window, self._zero_pad = window, zero_pad
+
+    @checked(self=anything)
+    def update(self, *, progress: Progress = None) -> LiveView:
+        """The view of the scene as it is now.
+
+        progress: callable (stage, fraction), True for bars, or None; what it raises ends the update and is raised here
+        Raises ValueError as `trace` does. Nothing is lost then: the next update shows what the scene is by then.
+        """
+        return self._view_of(self._full, is_preview=False, progress=progress)
+
+    @checked(self=anything, num_rays=count(1, MOST_RAYS))
+    def preview(self, *, num_rays: int | float, progress: Progress = None) -> LiveView:
+        """The view with fewer rays, which are kept beside the others. Raises as `update`.
+
+        num_rays: 1 to 1e10; as long as it stays the same, a preview after a change shoots only what that touches
+        progress: as in `update`
+        """
+        if self._quick is None or self._quick.num_rays != num_rays:
+            self._quick = KeptSignal(int(num_rays), self._trace, self._signal)
+        return self._view_of(self._quick, is_preview=True, progress=progress)
+
+    @checked(self=anything)
+    def paths(self, *, progress: Progress = None) -> _core.Paths:
+        """The record of the last update, Paths as of `trace`: for labels, parts, selections, files.
+
+        progress: as in `update`. Raises ValueError before the first update.
+        """
+        with self._busy:
+            return self._full.paths(progress)
+
+    @checked(self=anything, show=anything, budget=positive("s"))
+    def watch(self, show: Callable[[LiveView], object], *, budget: float = 0.05) -> Watch:
+        """Shows the scene, and each change from now on, from a thread of its own until the Watch is stopped.
+
+        show: callable (LiveView), called in that thread; budget: s, that a preview may take. Raises TypeError unless show can
+        be called.
+        """
+        if not callable(show):
+            raise refused(TypeError, "show", "callable with a LiveView", show)
+        return Watch(self, self._changes, show, budget)
+
+    def _view_of(self, kept: KeptSignal, *, is_preview: bool, progress) -> LiveView:
+        with self._busy:
+            with self._changes.still():
+                scene, radar, number = _core.Scene(self._scene), self._radar, self.number
+                window, zero_pad = self._window, self._zero_pad
+            warn_of_coarse_meshes(scene, radar.waveform.start_frequency, stacklevel=4)
+            done = kept.update(scene, radar, progress)
+            begin = time.perf_counter()
+            spectrum = _core.range_doppler(kept.cube, radar, window, zero_pad)
+            stages = {"trace": done.trace, "signal": done.signal, "map": time.perf_counter() - begin}
+            return LiveView(number, kept.cube, spectrum, kept.num_rays, done.num_rays_shot, done.num_paths_changed,
+                            is_preview, stages)
+
+    def __repr__(self) -> str:
+        return f"Live({len(self._scene)} objects, {self.num_rays} rays, change {self.number})"

@@ -1,0 +1,108 @@
+"""A thread that shows the changes of a live scene, the latest first."""
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from ..checks import anything, checked, optional, positive
+from .changes import Changes
+from .view import LiveView
+
+if TYPE_CHECKING:
+    from .live import Live
+
+FIRST_PREVIEW_RAYS, FEWEST_PREVIEW_RAYS = 4096, 512
+LONGEST_WAIT = 0.1  # s, until a thread that waits for changes looks whether it is to end
+_QUICK_SHARE = 0.25  # of the budget; a preview of all rays that takes less gets twice as many
+
+
+class _Superseded(Exception):
+    """Another change came while a view was made."""
+
+
+class Watch:
+    """Shows the views of a Live from a thread of its own: `with live.watch(show) as watch: live.change(...); watch.wait()`.
+
+    After a change comes a preview with as many rays as the budget allows, unless the last full view took no longer than
+    that, and then the full view. A change that comes meanwhile ends a full view, so that the latest change is shown first;
+    changes in between may not be shown at all.
+    What a view or `show` raises ends the watch and is raised by `wait` and `stop`. Made by `Live.watch`.
+    """
+
+    def __init__(self, live: Live, changes: Changes, show: Callable[[LiveView], object], budget: float):
+        self._live, self._changes, self._show, self._budget = live, changes, show, budget
+        self._preview_rays, self._full_seconds = FIRST_PREVIEW_RAYS, 0.0
+        self._shown, self._error = -1, None  # number of the change whose full view was shown
+        self._stopping, self._shown_one = False, threading.Condition()
+        self._thread = threading.Thread(target=self._run, name="echopath.Watch", daemon=True)
+        self._thread.start()
+
+    def __enter__(self) -> Watch:
+        return self
+
+    def __exit__(self, kind, error, trace) -> None:
+        self.stop()
+
+    @checked(self=anything, timeout=optional(positive("s")))
+    def wait(self, timeout: float | None = None) -> bool:
+        """Waits until the full view of the latest change was shown. timeout: s, None: for ever. Returns whether it was.
+
+        Raises what ended the watch.
+        """
+        with self._shown_one:
+            done = self._shown_one.wait_for(
+                lambda: self._error is not None or self._stopping or self._shown == self._changes.number, timeout)
+        if self._error is not None:
+            raise self._error
+        return done and self._shown == self._changes.number
+
+    def stop(self) -> None:
+        """Ends the thread, and the view that it makes. Raises what had ended the watch before."""
+        self._stopping = True
+        with self._shown_one:
+            self._shown_one.notify_all()
+        if threading.current_thread() is not self._thread:
+            self._thread.join()
+        if self._error is not None:
+            raise self._error
+
+    def _run(self) -> None:
+        try:
+            while not self._stopping:
+                self._try_to_show_change()
+                while not self._stopping and not self._changes.wait_for_other(self._shown, LONGEST_WAIT):
+                    pass
+        except Exception as error:
+            self._error = error
+        with self._shown_one:
+            self._shown_one.notify_all()
+
+    def _try_to_show_change(self) -> None:
+        try:
+            self._show_change()
+        except _Superseded:
+            pass
+
+    def _show_change(self) -> None:
+        if self._full_seconds > self._budget:
+            self._show_preview()
+        number = self._changes.number
+        view = self._live.update(progress=lambda stage, fraction: self._go_on(number))
+        self._full_seconds = view.seconds
+        self._show(view)
+        with self._shown_one:
+            self._shown = view.number
+            self._shown_one.notify_all()
+
+    def _show_preview(self) -> None:
+        view = self._live.preview(num_rays=self._preview_rays, progress=lambda stage, fraction: self._go_on(None))
+        self._show(view)
+        if view.seconds > self._budget:
+            self._preview_rays = max(self._preview_rays // 2, FEWEST_PREVIEW_RAYS)
+        elif view.num_rays_shot == view.num_rays and view.seconds < _QUICK_SHARE * self._budget:
+            self._preview_rays = min(2 * self._preview_rays, self._live.num_rays)
+
+    def _go_on(self, number: int | None) -> None:
+        if self._stopping or (number is not None and number != self._changes.number):
+            raise _Superseded

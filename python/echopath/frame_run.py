@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import NamedTuple
 
 from . import _core
 from .azimuth_map import checked_settings, sees_azimuth
@@ -24,6 +25,13 @@ from .tracing import keep_geometry
 _FAMILIES = object()  # a view that has the name of no partition
 
 
+class Recorded(NamedTuple):
+    """The record of a frame, and the clock of its stages."""
+
+    paths: _core.Paths
+    clock: StageClock
+
+
 class FrameRun:
     """How frames of a radar in a scene are made of their records, checked before the long work.
 
@@ -44,11 +52,19 @@ class FrameRun:
 
     def frame_of(self, record: Callable[[], _core.Paths], progress=None) -> Frame:
         """The frame of what `record()` returns, Paths of the scene and the radar; progress: as in `simulate`."""
+        return self.frame_of_record(self.recorded(record), progress)
+
+    def recorded(self, record: Callable[[], _core.Paths]) -> Recorded:
+        """What `record()` returns, and how long it took."""
         clock = StageClock()
         with clock("trace"):
             if self._request:
                 keep_geometry(self.scene)
-            paths = record()
+            return Recorded(record(), clock)
+
+    def frame_of_record(self, recorded: Recorded, progress=None) -> Frame:
+        """The rest of the work on a frame; progress: as in `simulate`."""
+        paths, clock = recorded
         with clock("synthesis"):
             settings = self.signal.of_replay() | {"progress": progress}
             probe = _core.SignalProbe(seed=self.trace.seed) if self.guard else None

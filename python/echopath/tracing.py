@@ -181,8 +181,11 @@ def _remembered(scene: _core.Scene) -> tuple[bool, _core.KeptGeometry | None]:
     return is_first, memory.get("_geometry")
 
 
-def keep_geometry(scene: _core.Scene) -> None:
-    """Has the next trace of a scene keep its geometry: for later ones, or for who looks at the scene again afterwards."""
+def keep_geometry(scene: _core.Scene, kept: _core.KeptGeometry | None = None) -> None:
+    """Has the next trace of a scene keep its geometry: for later ones, or for who looks at the scene again afterwards.
+
+    kept: where; None: where the last trace kept it, or a new place
+    """
     memory = getattr(scene, "__dict__", None)
-    if memory is not None:
-        memory.setdefault("_geometry", _core.KeptGeometry())
+    if memory is not None and (kept is not None or "_geometry" not in memory):
+        memory["_geometry"] = kept or _core.KeptGeometry()

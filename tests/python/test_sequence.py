@@ -8,20 +8,12 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support.frames_in_time import DISTANCE, INTERVAL, SETTINGS, SPEED, make_radar, make_scene, make_sequence
+from support.frames_in_time import DISTANCE, INTERVAL, SETTINGS, SPEED, make_radar, make_scene, make_sequence, signal_of
 
 # m: a fortieth of a cell of 0.3 m, to which the parabola through the peak of a Hann window is exact.
 RANGE_TOLERANCE = 0.008
 # Of the correlation of N independent circular Gaussian samples, whose rms is 1 / sqrt(N).
 MOST_CORRELATION = 5.0 / np.sqrt(64 * 32)
-
-
-def signal_of(frame: ep.Frame) -> bytes:
-    """All bits of the noisy signal, the map, the labels and the hits of a frame."""
-    labels = frame.labels["parts"]
-    arrays = (frame.noisy_cube, frame.spectrum.values, labels.power, labels.dominant, labels.object_map, frame.paths.u,
-              frame.paths.weight, frame.detections.power)
-    return b"".join(np.ascontiguousarray(array).tobytes() for array in arrays)
 
 
 @pytest.fixture(scope="module")

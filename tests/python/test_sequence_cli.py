@@ -144,3 +144,23 @@ def test_info_tells_of_a_folder_and_small_files_say_what_they_lack(scene_path, t
     for command in ("info", "view"):
         assert main([command, str(out / "frame_0001.h5")]) == 2
         assert "frame_0001.h5: holds no paths, only maps or labels of a frame" in capsys.readouterr().err
+
+
+def test_a_shard_of_the_frames_says_which_it_made(scene_path, tmp_path, capsys):
+    out = tmp_path / "out"
+    assert run(scene_path, out, "--frames", 4, "--interval", 0.1, "--shard", "2/2") == 0
+    told = capsys.readouterr().out.splitlines()
+    assert [line[:12] for line in told if line.startswith("frame")] == ["frame 2 of 4", "frame 4 of 4"]
+    assert "2 done" in told[-1]
+
+
+@pytest.mark.parametrize("shard", ["0/2", "3/2", "1", "a/b", "1/2/3", "-1/2", ""])
+def test_wrong_shards_are_refused_on_the_command_line(scene_path, tmp_path, capsys, shard):
+    with pytest.raises(SystemExit):
+        run(scene_path, tmp_path / "out", "--frames", 4, "--interval", 0.1, f"--shard={shard}")
+    assert "must be K/N, the K-th of N shards, K from 1 to N" in capsys.readouterr().err
+
+
+def test_a_shard_belongs_to_frames_in_time(scene_path, tmp_path, capsys):
+    assert run(scene_path, tmp_path / "out", "--shard", "1/2") == 2
+    assert "--shard: belongs to frames in time, give --frames too, got 1/2" in capsys.readouterr().err

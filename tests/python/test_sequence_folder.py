@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import echopath as ep
+from echopath.sequence import folder_lock
 from support.frames_in_time import INTERVAL, make_radar, make_scene, make_sequence
 
 KEEPS = ["all", "maps", "labels"]
@@ -150,3 +151,58 @@ def test_progress_is_the_share_of_the_frames(tmp_path):
     told = []
     make_sequence().save(tmp_path, progress=lambda stage, fraction: told.append((stage, fraction)))
     assert told == [("frames", 0.25), ("frames", 0.5), ("frames", 0.75), ("frames", 1.0)]
+
+
+def shard_process(folder: Path, shard) -> subprocess.Popen:
+    script = ("from support.frames_in_time import make_sequence\n"
+              f"make_sequence(frames={MANY}).save({str(folder)!r}, shard={shard})\n")
+    return subprocess.Popen([sys.executable, "-c", script], cwd=TESTS, stderr=subprocess.PIPE, text=True)
+
+
+def test_processes_that_share_a_folder_by_shards_make_the_frames_of_one(tmp_path):
+    shared, alone = tmp_path / "shared", tmp_path / "alone"
+    processes = [shard_process(shared, (k, 2)) for k in (1, 2)]
+    assert [(process.communicate(timeout=WAIT)[1], process.returncode) for process in processes] == [("", 0)] * 2
+    make_sequence(frames=MANY).save(alone)
+    assert contents_of(shared) == contents_of(alone)
+
+
+def test_a_shard_makes_every_nth_frame_and_tells_of_these_alone(tmp_path, unbroken):
+    shares = []
+    stored = make_sequence().save(tmp_path, shard=(2, 3), progress=lambda stage, fraction: shares.append(fraction))
+    assert stored.is_done.tolist() == [False, True, False, False] and shares == [1.0]
+    assert [one.place for one in make_sequence().save_frames(tmp_path, shard=(1, 3))] == [0, 3]
+    assert list(make_sequence().save_frames(tmp_path, shard=(9, 9))) == []
+    make_sequence().save(tmp_path)
+    assert contents_of(tmp_path) == contents_of(unbroken["all"])
+
+
+def test_shards_do_not_wait_for_each_other_and_refuse_who_wants_the_folder_alone(tmp_path):
+    first = make_sequence().save_frames(tmp_path, shard=(1, 2))
+    next(first)
+    leftover = tmp_path / ".frame_0000-abcdefgh.h5"
+    leftover.write_bytes(b"of the first, which is writing it")
+    assert make_sequence().save(tmp_path, shard=(2, 2)).is_done.tolist() == [True, True, False, True]
+    assert leftover.exists()
+    with pytest.raises(ValueError, match="^folder: must be one that no other run is writing to, or all by shards"):
+        make_sequence().save(tmp_path)
+    with pytest.raises(ValueError, match="^folder: must be new, or of this sequence"):
+        make_sequence(seed=9).save(tmp_path, shard=(2, 2))
+    first.close()
+    make_sequence().save(tmp_path)
+    assert not leftover.exists()
+
+
+def test_a_shard_does_not_enter_where_one_run_wants_to_be_alone(tmp_path, monkeypatch):
+    monkeypatch.setattr(folder_lock, "PATIENCE", 0.1)
+    first = make_sequence().save_frames(tmp_path)
+    next(first)
+    with pytest.raises(ValueError, match="^folder: must be one that no other run is writing to"):
+        make_sequence().save(tmp_path, shard=(2, 2))
+
+
+@pytest.mark.parametrize("shard, error", [((0, 2), ValueError), ((3, 2), ValueError), ((1, 2, 3), ValueError),
+                                          ((0.5, 2), TypeError), ("1/2", TypeError), (2, ValueError)])
+def test_wrong_shards_are_refused_by_name(tmp_path, shard, error):
+    with pytest.raises(error, match="^shard: must be"):
+        make_sequence().save(tmp_path, shard=shard)

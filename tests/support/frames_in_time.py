@@ -1,6 +1,8 @@
 """A small scene in which something moves, and sequences of it."""
 from __future__ import annotations
 
+import numpy as np
+
 import echopath as ep
 
 SPEED, INTERVAL, DISTANCE = 3.0, 0.1, 9.0  # m/s away from the radar, s, m at time 0
@@ -22,3 +24,11 @@ def make_scene(speed: float = SPEED) -> ep.Scene:
 
 def make_sequence(frames: int = 4, **keywords) -> ep.Sequence:
     return ep.Sequence(make_scene(), make_radar(), **{"frames": frames, "interval": INTERVAL} | SETTINGS | keywords)
+
+
+def signal_of(frame: ep.Frame) -> bytes:
+    """All bits of the noisy signal, the map, the labels and the hits of a frame."""
+    labels = frame.labels["parts"]
+    arrays = (frame.noisy_cube, frame.spectrum.values, labels.power, labels.dominant, labels.object_map, frame.paths.u,
+              frame.paths.weight, frame.detections.power)
+    return b"".join(np.ascontiguousarray(array).tobytes() for array in arrays)

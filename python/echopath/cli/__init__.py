@@ -9,7 +9,7 @@ from pathlib import Path
 from .. import DeviceError
 from .._startup import EXIT_INTERRUPTED, STOPPED, loading_is_over
 from ..files import require_writable
-from .numbers import natural, positive, seconds
+from .numbers import natural, positive, seconds, shard
 
 EXIT_BAD_INPUT = 2
 
@@ -159,6 +159,9 @@ def _add_sequence_options(parser) -> None:
                              "that of the scene file, or one frame with pictures)")
     parser.add_argument("--interval", type=seconds, default=None, metavar="S",
                         help="s from the start of a frame to that of the next (default: that of the scene file)")
+    parser.add_argument("--shard", type=shard, default=None, metavar="K/N",
+                        help="every N-th frame alone, from the K-th on, while other processes write the other shards to the "
+                             "same folder")
     parser.add_argument("--keep", choices=["all", "maps", "labels"], default=None,
                         help="what the file of each frame keeps: all, maps with labels and detections, or labels and "
                              "detections alone (default: that of the scene file, or all)")

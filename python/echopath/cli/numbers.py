@@ -3,6 +3,8 @@ from __future__ import annotations
 
 import argparse
 
+from ..checks import LARGEST_COUNT
+
 
 def positive(text: str) -> int:
     """A number of rays; 2e6 and 2_000_000 will do too."""
@@ -22,6 +24,14 @@ def seconds(text: str) -> float:
     except ValueError:
         pass
     raise argparse.ArgumentTypeError(f"must be a finite number above 0 s, got '{text}'")
+
+
+def shard(text: str) -> tuple[int, int]:
+    """The k-th of n shards: 1/4."""
+    k, slash, n = text.partition("/")
+    if slash and k.isdecimal() and n.isdecimal() and 1 <= int(k) <= int(n) <= LARGEST_COUNT:
+        return int(k), int(n)
+    raise argparse.ArgumentTypeError(f"must be K/N, the K-th of N shards, K from 1 to N, got '{text}'")
 
 
 def _whole_number(text: str, least: int) -> int:

@@ -17,9 +17,11 @@ def is_sequence(scene_file: SceneFile, options) -> bool:
     """Whether a run makes frames in time. Raises ValueError for options of them without their number."""
     if options.frames is not None or scene_file.sequence is not None:
         return True
-    for option in ("interval", "keep"):
-        if getattr(options, option) is not None:
-            raise ValueError(f"--{option}: belongs to frames in time, give --frames too, got {getattr(options, option)}")
+    for option in ("interval", "keep", "shard"):
+        value = getattr(options, option)
+        if value is not None:
+            text = "/".join(map(str, value)) if option == "shard" else value
+            raise ValueError(f"--{option}: belongs to frames in time, give --frames too, got {text}")
     return False
 
 
@@ -39,7 +41,7 @@ def run_sequence(scene_file: SceneFile, options, extra_parts: dict) -> Iterator[
     yield f"{scene_file.title or scene_file.path}: {frames} frames every {interval:g} s"
     try:
         with progress_bars() as progress:
-            for saved in sequence.save_frames(options.out, keep=keep or "all", progress=progress):
+            for saved in sequence.save_frames(options.out, keep=keep or "all", shard=options.shard, progress=progress):
                 yield _line(saved, frames)
     except KeyboardInterrupt:
         print(f"\nthe same command goes on in {options.out}", file=sys.stderr)

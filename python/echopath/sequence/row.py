@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import operator
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Any, Generic, SupportsIndex, TypeVar, overload
 
 import numpy as np
@@ -64,11 +64,14 @@ class Row(Generic[Item]):
         return self._item(_place_in(place, len(self)), stacklevel=2)
 
     def __iter__(self) -> Iterator[Item]:
-        for place in range(len(self)):
-            yield self._item(place, stacklevel=2)
+        return self._items(range(len(self)))
 
     def __reversed__(self) -> Iterator[Item]:
-        for place in reversed(range(len(self))):
+        return self._items(reversed(range(len(self))))
+
+    def _items(self, places: Iterable[int]) -> Iterator[Item]:
+        """What stands at some places, one after the other; warnings name the line that takes it."""
+        for place in places:
             yield self._item(place, stacklevel=2)
 
     def _span(self) -> str:

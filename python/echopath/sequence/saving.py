@@ -1,20 +1,23 @@
 """Frames of a sequence into a folder, one file each, so that a run that was ended goes on where it was."""
 from __future__ import annotations
 
-import fcntl
-import os
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import closing
 from pathlib import Path
 from typing import NamedTuple
 
 from .. import _core
-from ..checks import refused
+from ..checks import array, refused
 from ..files import require_writable
+from ..frame import Frame
 from ..frame_file.maps import start_time_in
 from .contents import Contents, frame_path, write_contents
+from .folder_lock import writing_to
 from .keep import Keep, write_frame
+
+Shard = tuple[int, int]  # (k, n): the frames at places k - 1, k - 1 + n and so on
 
 
 class SavedFrame(NamedTuple):
@@ -31,29 +34,86 @@ class SavedFrame(NamedTuple):
     seconds_left: float | None
 
 
-def saved_frames(times, folder, keep: Keep, frame_at, contents: Contents) -> Iterator[SavedFrame]:
+def shard_rule(argument: str, value) -> Shard | None:
+    """None, or (k, n): the k-th of n shards, k from 1 to n."""
+    if value is None:
+        return None
+    k, n = array("[2]", kind="whole")(argument, value).tolist()
+    if not 1 <= k <= n:
+        raise refused(ValueError, argument, "(k, n), the k-th of n shards, k from 1 to n", value)
+    return k, n
+
+
+def saved_frames(times, folder, keep: Keep, frames_at: Callable[[Iterable[int]], Iterator[Frame]], contents: Contents,
+                 shard: Shard | None = None) -> Iterator[SavedFrame]:
     """Makes the missing files of a folder, in order, and tells of each frame.
 
-    times: starts of the frames [K] in s; frame_at: callable (place) that gives a Frame; contents: of sequence.h5
+    times: starts of the frames [K] in s; frames_at: callable (places) that gives their Frames, one after the other; contents:
+    of sequence.h5; shard: which frames this process makes while others write to the folder, None: all of them, alone
     Raises ValueError naming the folder where it holds another sequence or another process writes to it, ep.FileError.
     """
     require_writable(folder, "folder")
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    with _alone_in(folder):
+
+    def prepare(is_alone: bool) -> None:
         write_contents(folder, contents)
-        _remove_leftovers(folder)
-        missing = sum(not frame_path(folder, place).exists() for place in range(len(times)))
-        spent, made = 0.0, 0
-        for place, start_time in enumerate(times):
+        if is_alone:
+            _remove_leftovers(folder)
+
+    with writing_to(folder, shard is not None, prepare):
+        yield from _made(times, folder, keep, frames_at, places_of(shard, len(times)))
+
+
+def places_of(shard: Shard | None, count: int) -> range:
+    """The places of the frames of a shard, of `count` frames."""
+    k, n = shard or (1, 1)
+    return range(k - 1, count, n)
+
+
+def _made(times, folder: Path, keep: Keep, frames_at, places: range) -> Iterator[SavedFrame]:
+    todo = _Todo(times, folder, places)
+    missing = sum(not frame_path(folder, place).exists() for place in places)
+    spent, made = 0.0, 0
+    with closing(frames_at(todo.missing())) as frames:
+        for place in places:
             path, begin = frame_path(folder, place), time.perf_counter()
             missing -= not path.exists()
-            was_there = _is_done(path, start_time)
+            was_there = todo.is_done(place)
             if not was_there:
-                write_frame(frame_at(place), path, keep)
+                write_frame(next(frames), path, keep)
                 spent, made = spent + time.perf_counter() - begin, made + 1
-            yield SavedFrame(place, float(start_time), path, None if was_there else time.perf_counter() - begin,
+            yield SavedFrame(place, float(times[place]), path, None if was_there else time.perf_counter() - begin,
                              missing * spent / made if made else None)
+
+
+class _Todo:
+    """Which frames are there: each is looked at once, in order, by who asks for one of its kind first."""
+
+    def __init__(self, times, folder: Path, places: range):
+        self._times, self._folder, self._unseen = times, folder, deque(places)
+        self._is_done: dict[int, bool] = {}  # of places that nobody has asked for yet
+        self._missing: deque[int] = deque()
+
+    def is_done(self, place: int) -> bool:
+        """Whether the frame at a place was there; to be asked in order."""
+        while place not in self._is_done:
+            self._look()
+        return self._is_done.pop(place)
+
+    def missing(self) -> Iterator[int]:
+        """The places of those that were not."""
+        while self._missing or self._unseen:
+            if self._missing:
+                yield self._missing.popleft()
+            else:
+                self._look()
+
+    def _look(self) -> None:
+        place = self._unseen.popleft()
+        self._is_done[place] = _is_done(frame_path(self._folder, place), self._times[place])
+        if not self._is_done[place]:
+            self._missing.append(place)
 
 
 def _remove_leftovers(folder: Path) -> None:
@@ -69,17 +129,3 @@ def _is_done(path: Path, start_time: float) -> bool:
         return path.exists() and start_time_in(path) == start_time
     except _core.FileError:
         return False
-
-
-@contextmanager
-def _alone_in(folder: Path):
-    """Keeps other processes from writing to a folder; the system ends that when this one ends, however it does."""
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise refused(ValueError, "folder", "one that no other run is writing to", str(folder)) from None
-        yield
-    finally:
-        os.close(handle)

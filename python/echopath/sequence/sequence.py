@@ -1,9 +1,11 @@
 """Frames in time, simulated when they are asked for."""
 from __future__ import annotations
 
+import functools
+import itertools
 import math
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +13,7 @@ from .. import _core
 from ..checks import LARGEST_COUNT, Progress, Window, anything, checked, count, flag, one_of, real, refused
 from ..checks import path as folder_rule
 from ..frame import Frame
-from ..frame_run import FrameRun
+from ..frame_run import FrameRun, Recorded
 from ..guard import warn_of
 from ..progress import automatic_bars
 from ..scene import Scene
@@ -19,11 +21,13 @@ from ..settings import (
     Evaluate, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings,
     TraceSettings,
 )
+from ..tracing import keep_geometry
+from .ahead import one_ahead
 from .contents import Contents
 from .keep import Keep
 from .record import record_of, start_time_of
 from .row import Row
-from .saving import SavedFrame, saved_frames
+from .saving import SavedFrame, Shard, places_of, saved_frames, shard_rule
 from .stored import StoredSequence
 
 _ROUNDING = 1e-9  # relative, of an interval that is the duration of a frame by another sum
@@ -33,7 +37,8 @@ class Sequence(Row[Frame]):
     """Frames of a radar in a scene, one after the other: `for frame in sequence`, `sequence[k]`, `len(sequence)`.
 
     A frame is simulated when it is asked for, and kept by nobody. Frame k starts at start_time + k interval; all motions, that
-    of the radar too, go on between the frames. It has the same bits alone, in order and in reverse. A slice is a Sequence of
+    of the radar too, go on between the frames. It has the same bits alone, in order and in reverse. While the signal of one is
+    made in a loop over frames, a thread traces the next, unless ep.set_num_threads(1) was called. A slice is a Sequence of
     frames of the same bits, `sequence[-1]` the last frame. Objects keep their mesh IDs; noise is that of the start time.
     scene: what is traced, as it is now: later changes of it do not matter; radar: that looks at it
     frames: number of frames K, at least 1; interval: s, from start to start, at least the duration of a frame
@@ -88,15 +93,33 @@ class Sequence(Row[Frame]):
         return self._run.radar
 
     def _item(self, place: int, stacklevel: int, progress=None) -> Frame:
-        """The frame at a place; progress: as in `simulate`."""
-        run, number = self._run, self._numbers[place]
-        frame = run.frame_of(lambda: record_of(run.scene, run.radar, run.trace, interval=self._interval, number=number,
-                                               progress=progress), progress)
+        """As Row has it; progress: as in `simulate`."""
+        frame = self._run.frame_of_record(self._recorded(place, progress), progress)
         warn_of(frame.checks, stacklevel=stacklevel + 1)
         return frame
 
-    @checked(self=anything, folder=folder_rule, keep=one_of(Keep))
-    def save(self, folder: str | os.PathLike[str], *, keep: Keep = "all", progress: Progress = None) -> StoredSequence:
+    def _items(self, places: Iterable[int], stacklevel: int = 2, progress=None) -> Iterator[Frame]:
+        """As Row has it; the record of the next frame is made while this one is used."""
+        # The geometry of a frame is looked at when its objects are labelled, while that of the next is traced.
+        geometries = itertools.cycle((_core.KeptGeometry(), _core.KeptGeometry()))
+        works = (functools.partial(self._recorded, place, geometry=geometry) for place, geometry in zip(places, geometries))
+        for recorded in one_ahead(works, progress):
+            frame = self._run.frame_of_record(recorded, progress)
+            warn_of(frame.checks, stacklevel=stacklevel)
+            yield frame
+            del recorded, frame  # of which none is kept while the next is made
+
+    def _recorded(self, place: int, progress=None, geometry=None) -> Recorded:
+        """The record of the frame at a place; geometry: KeptGeometry where that of the scene is kept, None: as before."""
+        run, number = self._run, self._numbers[place]
+        if geometry is not None:
+            keep_geometry(run.scene, geometry)
+        return run.recorded(lambda: record_of(run.scene, run.radar, run.trace, interval=self._interval, number=number,
+                                              progress=progress))
+
+    @checked(self=anything, folder=folder_rule, keep=one_of(Keep), shard=shard_rule)
+    def save(self, folder: str | os.PathLike[str], *, keep: Keep = "all", shard: Shard | None = None,
+             progress: Progress = None) -> StoredSequence:
         """Simulates all frames and writes each to a file of a folder, frame_0000.h5 and so on; sequence.h5 says of what.
 
         Each file is written whole or not at all. Where the run was ended (Ctrl-C, kill, a power cut), the same call goes on:
@@ -109,25 +132,26 @@ class Sequence(Row[Frame]):
         naming `keep` where the sequence has no labels to be kept; ep.FileError when files cannot be written.
         """
         bars = automatic_bars() if progress is True else progress
-        for one in self.save_frames(folder, keep=keep):
+        count = len(places_of(shard, len(self)))
+        for done, _ in enumerate(self.save_frames(folder, keep=keep, shard=shard), 1):
             if callable(bars):
-                bars("frames", (one.place + 1) / len(self))
+                bars("frames", done / count)
         return StoredSequence(Path(folder))
 
-    @checked(self=anything, folder=folder_rule, keep=one_of(Keep))
-    def save_frames(self, folder: str | os.PathLike[str], *, keep: Keep = "all", progress: Progress = None
-                    ) -> Iterator[SavedFrame]:
+    @checked(self=anything, folder=folder_rule, keep=one_of(Keep), shard=shard_rule)
+    def save_frames(self, folder: str | os.PathLike[str], *, keep: Keep = "all", shard: Shard | None = None,
+                    progress: Progress = None) -> Iterator[SavedFrame]:
         """`save` frame by frame: yields a SavedFrame as soon as its file is there; what stops taking them stops the work.
 
-        folder, keep: as in `save`; progress: of the stages of each frame, callable (stage, fraction), True for bars, or None
+        folder, keep, shard: as in `save`; progress: of the stages of each frame, callable (stage, fraction), True for bars, or None
         Raises what `save` raises, with the first frame.
         """
         if keep == "labels" and self._run.label_settings is None:
             raise refused(ValueError, "keep", "'all' or 'maps' for a sequence without labels", keep)
         if len(self) == 0:
             raise refused(ValueError, "frames", "at least 1 to be saved", 0)
-        return saved_frames(self.times, folder, keep, lambda place: self._item(place, 4, progress),
-                            Contents(self._run.scene, self._run.radar, self._settings() | {"keep": keep}))
+        contents = Contents(self._run.scene, self._run.radar, self._settings() | {"keep": keep})
+        return saved_frames(self.times, folder, keep, lambda places: self._items(places, 3, progress), contents, shard)
 
     def _settings(self) -> dict[str, Any]:
         """{keyword: value} of what makes the frames, and which of them are taken."""

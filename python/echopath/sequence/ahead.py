@@ -1,0 +1,93 @@
+"""Work on the next of some things while the caller uses the one before."""
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, Generic, TypeVar
+
+from ..threads import num_threads
+
+Result = TypeVar("Result")
+Work = Callable[[Any], Result]  # of a progress callable (stage, fraction), or None
+
+POLL = 0.05  # s between looks for Ctrl-C and calls of a progress callable
+
+
+def one_ahead(works: Iterable[Work[Result]], progress=None) -> Iterator[Result]:
+    """What `work(progress)` of each returns, in order; while the caller uses one result, a thread works on the next.
+
+    A work is taken from `works` when the one before has ended, so there is one result at most that nobody has asked for.
+    What a work raises is raised in its turn. Who leaves early stops the thread, which waits for its end. With one thread for
+    all loops (ep.set_num_threads) nothing is done ahead.
+    progress: callable (stage, fraction) or None; it is called in the thread of the caller, while that waits
+    """
+    if num_threads() == 1:
+        yield from (work(progress) for work in works)
+        return
+    waiting = iter(works)
+    ahead = _next_of(waiting)
+    try:
+        while ahead is not None:
+            result = ahead.result(progress)
+            ahead = None
+            ahead = _next_of(waiting)
+            yield result
+            del result  # it is not to live as long as the next one is waited for
+    finally:
+        if ahead is not None:
+            ahead.stop()
+
+
+def _next_of(works: Iterator[Work[Result]]) -> _Ahead[Result] | None:
+    for work in works:
+        return _Ahead(work)
+    return None
+
+
+class _Stopped(BaseException):
+    """Raised by the progress callable of a work that nobody waits for any more."""
+
+
+class _Ahead(Generic[Result]):
+    """A work in a thread of its own, which ends with the program."""
+
+    def __init__(self, work: Work[Result]):
+        self._result: list[Result] = []
+        self._failure: BaseException | None = None
+        self._told, self._is_stopped, self._has_ended = None, False, threading.Event()
+        self._thread = threading.Thread(target=self._run, args=(work,), daemon=True, name="echopath-ahead")
+        self._thread.start()
+
+    def result(self, progress) -> Result:
+        """Waits for the end; returns or raises what the work did. To be called once."""
+        while not self._has_ended.wait(POLL):
+            self._tell(progress)
+        self._tell(progress)
+        if self._failure is not None:
+            try:
+                raise self._failure
+            finally:
+                self._failure = None  # an exception that holds its own traceback lives on
+        return self._result.pop()
+
+    def stop(self) -> None:
+        """Has the work end early and waits for it."""
+        self._is_stopped = True
+        self._thread.join()
+
+    def _run(self, work: Work[Result]) -> None:
+        try:
+            self._result.append(work(self._hear))
+        except BaseException as failure:
+            self._failure = failure
+        finally:
+            self._has_ended.set()
+
+    def _hear(self, stage: str, fraction: float) -> None:
+        if self._is_stopped:
+            raise _Stopped
+        self._told = stage, fraction
+
+    def _tell(self, progress) -> None:
+        if progress is not None and self._told is not None:
+            progress(*self._told)

@@ -1,4 +1,4 @@
-"""Wall time and peak memory of the stages of a run."""
+"""Time and peak memory of the stages of a run."""
 from __future__ import annotations
 
 import dataclasses
@@ -10,11 +10,13 @@ from contextlib import contextmanager
 
 @dataclasses.dataclass(frozen=True)
 class Stage:
-    """One stage: name, seconds of wall time, peak_memory of the process during it in bytes."""
+    """One stage: name, seconds of wall time, peak_memory of the process during it in bytes, processor_seconds of all threads of
+    the process, whatever they worked on."""
 
     name: str
     seconds: float
     peak_memory: int
+    processor_seconds: float
 
 
 class StageClock:
@@ -26,9 +28,9 @@ class StageClock:
     @contextmanager
     def __call__(self, name: str):
         _forget_peak_memory()
-        begin = time.perf_counter()
+        begin, processor = time.perf_counter(), time.process_time()
         yield
-        self.stages.append(Stage(name, time.perf_counter() - begin, peak_memory()))
+        self.stages.append(Stage(name, time.perf_counter() - begin, peak_memory(), time.process_time() - processor))
 
 
 def peak_memory() -> int:

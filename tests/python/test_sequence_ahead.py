@@ -40,7 +40,8 @@ def street_of_movers() -> ep.Sequence:
 
 def everything_of(frame) -> tuple:
     labels = frame.labels["parts"]
-    return signal_of(frame), [repr(one) for one in labels.objects], [repr(one) for one in labels.ghosts], frame.truth.to_records().tobytes()
+    return (signal_of(frame), [repr(one) for one in labels.objects], [repr(one) for one in labels.ghosts],
+            frame.truth.to_records().tobytes())
 
 
 def test_frames_of_what_moves_are_the_same_alone_in_order_and_in_reverse():
@@ -153,10 +154,11 @@ def test_leaving_a_loop_stops_the_trace_of_the_next_frame(monkeypatch):
         return real(scene, radar, settings.replace(num_rays=10 ** 9) if number else settings, number=number, **keywords)
 
     monkeypatch.setattr(sequence, "record_of", record_of)
-    for frame in make_sequence(frames=2):
-        began = time.monotonic()
-        break
-    assert frame.paths.num_paths > 0 and time.monotonic() - began < WAIT and ahead_threads() == []
+    made = iter(make_sequence(frames=2))
+    assert next(made).paths.num_paths > 0 and len(ahead_threads()) == 1
+    began = time.monotonic()
+    made.close()
+    assert time.monotonic() - began < WAIT and ahead_threads() == []
 
 
 SCRIPT = """

@@ -143,7 +143,8 @@ class Sequence(Row[Frame]):
                     progress: Progress = None) -> Iterator[SavedFrame]:
         """`save` frame by frame: yields a SavedFrame as soon as its file is there; what stops taking them stops the work.
 
-        folder, keep, shard: as in `save`; progress: of the stages of each frame, callable (stage, fraction), True for bars, or None
+        folder, keep, shard: as in `save`
+        progress: of the stages of each frame, callable (stage, fraction), True for bars, or None
         Raises what `save` raises, with the first frame.
         """
         if keep == "labels" and self._run.label_settings is None:
@@ -151,7 +152,7 @@ class Sequence(Row[Frame]):
         if len(self) == 0:
             raise refused(ValueError, "frames", "at least 1 to be saved", 0)
         contents = Contents(self._run.scene, self._run.radar, self._settings() | {"keep": keep})
-        return saved_frames(self.times, folder, keep, lambda places: self._items(places, 3, progress), contents, shard)
+        return saved_frames(self.times, folder, keep, lambda places: self._items(places, 4, progress), contents, shard)
 
     def _settings(self) -> dict[str, Any]:
         """{keyword: value} of what makes the frames, and which of them are taken."""

@@ -107,19 +107,24 @@ py::array_t<double> at(const Moving& self, Arg<"time", Real> time) {
   return to_numpy(self.at(*time));
 }
 
+// What motions and deformations have in common; at_doc: of their values at a time.
+template <class Timed>
+void define_in_time(py::class_<Timed, std::shared_ptr<Timed>>& type, const char* at_doc) {
+  define(type, "at", &at<Timed>, py::arg("time"), at_doc);
+  define(type, "turn_rate", &turn_rate_of<Timed>, py::arg("begin"), py::arg("end"), kTurnRateDoc);
+  type.def_property_readonly(
+          "breakpoints", [](const Timed& self) { return to_numpy(self.breakpoints()); },
+          "Times [N] in s, ascending, where it is not smooth; of a loop those of one run.")
+      .def_property_readonly(
+          "span", [](const Timed& self) { return as_tuple(self.span()); },
+          "(begin, end) in s of the times it is defined on; infinite where unlimited.");
+}
+
 void bind_motions(py::module_& m) {
   py::class_<Motion, std::shared_ptr<Motion>> type(
       m, "Motion", "Time -> rigid transform, in the axes of the node's parent about the node's own origin.");
   define_no_init(type, "LinearMotion and KeyframeMotion");
-  define(type, "at", &at<Motion>, py::arg("time"),
-         "Transform [4, 4] (translation in m) at `time` in s. Raises ValueError outside `span`.");
-  define(type, "turn_rate", &turn_rate_of<Motion>, py::arg("begin"), py::arg("end"), kTurnRateDoc);
-  type.def_property_readonly(
-          "breakpoints", [](const Motion& self) { return to_numpy(self.breakpoints()); },
-          "Times [N] in s, ascending, where the motion is not smooth; of a loop those of one run.")
-      .def_property_readonly(
-          "span", [](const Motion& self) { return as_tuple(self.span()); },
-          "(begin, end) in s of the times it is defined on; infinite where unlimited.");
+  define_in_time(type, "Transform [4, 4] (translation in m) at `time` in s. Raises ValueError outside `span`.");
 }
 
 void bind_linear(py::module_& m) {
@@ -177,16 +182,8 @@ void bind_deformation(py::module_& m) {
   py::class_<Deformation, std::shared_ptr<Deformation>> type(
       m, "Deformation", "Time -> vertices, which replace those of a mesh, in the node's own frame.");
   define_no_init(type, "VertexSequence and Skin");
-  define(type, "at", &at<Deformation>, py::arg("time"),
-         "Vertices [V, 3] in m at `time` in s. Raises ValueError outside `span`.");
-  define(type, "turn_rate", &turn_rate_of<Deformation>, py::arg("begin"), py::arg("end"), kTurnRateDoc);
-  type.def_property_readonly("num_vertices", &Deformation::num_vertices, "V, of each instant")
-      .def_property_readonly(
-          "breakpoints", [](const Deformation& self) { return to_numpy(self.breakpoints()); },
-          "Times [N] in s, ascending, where it is not smooth; of a loop those of one run.")
-      .def_property_readonly(
-          "span", [](const Deformation& self) { return as_tuple(self.span()); },
-          "(begin, end) in s of the times it is defined on; infinite where unlimited.");
+  define_in_time(type, "Vertices [V, 3] in m at `time` in s. Raises ValueError outside `span`.");
+  type.def_property_readonly("num_vertices", &Deformation::num_vertices, "V, of each instant");
 }
 
 void bind_sequence(py::module_& m) {

@@ -36,7 +36,7 @@ class Motion:
     @property
     def breakpoints(self) -> numpy.typing.NDArray[numpy.float64]:
         """
-        Times [N] in s, ascending, where the motion is not smooth; of a loop those of one run.
+        Times [N] in s, ascending, where it is not smooth; of a loop those of one run.
         """
     @property
     def span(self) -> tuple[float, float]:

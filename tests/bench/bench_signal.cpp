@@ -10,6 +10,7 @@
 #include "echopath/signal/kernels/kernels.h"
 #include "echopath/signal/kernels/nufft_kernel.h"
 #include "echopath/signal/methods/method.h"
+#include "support/waveforms.h"
 
 namespace {
 
@@ -67,13 +68,8 @@ struct Trial {
 }  // namespace
 
 int main() {
-  const ChirpSequence waveform{.start_frequency = 77e9,
-                               .bandwidth = 1e9,
-                               .num_samples = 512,
-                               .sampling_rate = 20e6,
-                               .num_chirps = 128,
-                               .chirp_interval = 60e-6,
-                               .real = false};
+  ChirpSequence waveform = testing::reference_waveform();
+  waveform.chirp_interval = 60e-6;
   const CarrierModel model(waveform, waveform.num_samples / 2);
   std::vector<double> rows(2 * kRow * kChirps);
   std::printf("%s: states, phases and spreading of a tile, ns per echo and chirp\n", name_of(instruction_set()));

@@ -4,6 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 import echopath as ep
+from support.shapes import curved_scene, quad
 
 TIMES = [-1.0, 0.0, 1.0, 2.0]
 
@@ -16,12 +17,8 @@ def _radar(**more):
     return ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 0))], receivers=receivers, **more)
 
 
-def _plate(*corners):
-    return ep.Mesh(np.array(corners, float), [[0, 1, 2], [0, 2, 3]])
-
-
 def _wall():
-    return _plate((-5, 3, -5), (20, 3, -5), (20, 3, 6), (-5, 3, 6))
+    return quad((-5, 3, -5), (20, 3, -5), (20, 3, 6), (-5, 3, 6))
 
 
 def _arm():
@@ -41,22 +38,15 @@ def _moving_scene():
     scene = ep.Scene()
     rough = ep.Material(permittivity=5 - 0.3j, scattering=0.3, cross_polarization=0.2, mirror=True)
     scene.add(_wall(), name="wall", material=rough)
-    sheet = _plate((6, -1, -1), (6, 1, -1), (6, 1, 1), (6, -1, 1))
+    sheet = quad((6, -1, -1), (6, 1, -1), (6, 1, 1), (6, -1, 1))
     frames = np.stack([sheet.vertices * [1, 1 + 0.1 * i, 1] for i in range(4)])
     scene.add(sheet, name="sheet", material="concrete",
               motion=ep.VertexSequence(times=TIMES, vertices=frames, interpolation="linear"))
     scene.add(None, name="carrier", position=(8, 1, 0), yaw=0.3,
               motion=ep.LinearMotion(velocity=(-1, 0, 0), angular_velocity=(0, 0, 0.5)))
-    scene.add(_plate((0, -1, -1), (0, 1, -1), (0, 1, 1), (0, -1, 1)), name="plate", material="metal", parent="carrier")
+    scene.add(quad((0, -1, -1), (0, 1, -1), (0, 1, 1), (0, -1, 1)), name="plate", material="metal", parent="carrier")
     mesh, skin = _arm()
     scene.add(mesh, name="arm", material="metal", motion=skin)
-    return scene
-
-
-def _curved_scene():
-    scene = ep.Scene()
-    scene.add(ep.actors.sphere(0.3), name="ball", material="metal", position=(5, 0, 0), smooth=True)
-    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material="metal", position=(4.5, 1.2, 0), yaw=1.0)
     return scene
 
 
@@ -66,5 +56,5 @@ def frames() -> list:
     moving = ep.simulate(_moving_scene(), _radar(motion=ep.LinearMotion(velocity=(1, 0, 0))), num_rays=600, batches=2, seed=7,
                          parts=parts, noise_seed=3, labels={"errors": True}, window=("chebyshev", 60),
                          detections={"false_alarm_rate": 0.1}, angles={"azimuth": [-0.1, 0.0, 0.15]})
-    curved = ep.simulate(_curved_scene(), _radar(), num_rays=3000, max_bounces=2, polarization="jones", noise_seed=None)
+    curved = ep.simulate(curved_scene(), _radar(), num_rays=3000, max_bounces=2, polarization="jones", noise_seed=None)
     return [moving, curved]

@@ -14,17 +14,13 @@ from echopath.cli import main
 from echopath.files import require_writable
 from echopath.scene_file import load_scene
 from support.background import heed_ctrl_c
-from support.scene_text import WAVEFORM
+from support.scene_text import ANTENNAS, WAVEFORM
 
 STOP_SECONDS = 2.0  # half a second is promised; the rest is for a machine with other work
 MANY_RAYS = "50_000_000"  # more than a machine traces while the test waits
 SCENE = """
 title = "a plate"
-""" + WAVEFORM + """\
-[[radar.transmitters]]
-position = [0.0, 0.0, 0.0]
-[[radar.receivers]]
-position = [0.0, 0.01, 0.0]
+""" + WAVEFORM + ANTENNAS + """\
 [[objects]]
 name = "plate"
 mesh = "plate.obj"

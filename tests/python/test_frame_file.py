@@ -12,7 +12,7 @@ from echopath.frame_file import h5, paths as frame_paths
 from echopath.path_subset import power_of_strongest, strongest, subset
 from support.frame_edits import edited
 from support.radars import build_radar
-from support.shapes import lambert, quad
+from support.shapes import curved_scene, lambert, quad
 
 SUM_TOLERANCE = 1e-12  # sums of doubles in another order
 PATH_COLUMNS = ("offsets", "num_bounces", "diffuse", "weight", "stratum", "batch", "flags")
@@ -44,14 +44,6 @@ def make_scene():
     for index in range(2):
         scene.add(plate, name=f"plate{index}", material=ep.Material.metal(), motion=spin, parent="carrier",
                   position=(0, 0, index))
-    return scene
-
-
-def curved_scene():
-    """A smooth ball that throws light on a rough one: all optional columns are there."""
-    scene = ep.Scene()
-    scene.add(ep.actors.sphere(0.3), name="ball", material="metal", position=(5, 0, 0), smooth=True)
-    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material="metal", position=(4.5, 1.2, 0), yaw=1.0)
     return scene
 
 

@@ -16,7 +16,7 @@ from echopath.cli import main
 from echopath.labels.images import colours_of
 from echopath.plots import plot_ghosts, plot_labels
 from support.frame_edits import edited
-from support.scene_text import WAVEFORM
+from support.scene_text import WAVEFORM, moving_plate
 
 SAME_SHARES = 1e-9  # of doubles summed by other groups; of the strongest cell
 SCENE = """
@@ -30,22 +30,7 @@ position = [0.0, 0.0, 1.0]
 position = [0.0, 0.01, 1.0]
 [[radar.receivers]]
 position = [0.0, 0.012, 1.0]
-[[objects]]
-name = "van"
-actor = "plate"
-parameters = {width = 2.0, height = 2.0}
-position = [6.0, 0.0, 1.0]
-yaw_deg = 180.0
-material = {reflectivity = 0.27, scattering = 1.0}
-motion = {kind = "linear", velocity = [-2.0, 0.0, 0.0]}
-[[objects]]
-name = "person"
-actor = "plate"
-parameters = {width = 0.3, height = 1.0}
-position = [8.0, 0.0, 1.0]
-yaw_deg = 180.0
-material = {reflectivity = 0.27, scattering = 1.0}
-motion = {kind = "linear", velocity = [-1.0, 0.0, 0.0]}
+""" + moving_plate("van", 2.0, 2.0, 6.0, -2.0) + moving_plate("person", 0.3, 1.0, 8.0, -1.0) + """
 [[objects]]
 name = "wall"
 actor = "wall"

@@ -13,17 +13,13 @@ import pytest
 import echopath as ep
 from echopath.cli import main
 from support.background import heed_ctrl_c
-from support.scene_text import WAVEFORM
+from support.scene_text import ANTENNAS, WAVEFORM
 
 WAIT = 60.0  # s, for a process on a busy machine
 SCENE = """
 title = "a plate"
 guard = false
-""" + WAVEFORM + """\
-[[radar.transmitters]]
-position = [0.0, 0.0, 0.0]
-[[radar.receivers]]
-position = [0.0, 0.01, 0.0]
+""" + WAVEFORM + ANTENNAS + """\
 [[objects]]
 name = "plate"
 actor = "plate"

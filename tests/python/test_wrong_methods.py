@@ -5,7 +5,7 @@ import matplotlib.pyplot as plt
 import pytest
 
 import echopath as ep
-from support.odd_values import EXPECTED, ODD, is_named, make_radar, make_scene
+from support.odd_values import EXPECTED, ODD, is_named, make_radar, make_scene, refusals
 
 SCENE, RADAR = make_scene(), make_radar()
 FEWEST_WRONG = 1700
@@ -36,24 +36,28 @@ def _add(**arguments):
     ep.Scene(SCENE).add(**arguments)
 
 
+def _closing(function):
+    """The function, which leaves no picture open."""
+    def called(**arguments):
+        try:
+            function(**arguments)
+        finally:
+            plt.close("all")
+
+    return called
+
+
 def _is_told(name: str, argument: str, value, error: Exception) -> bool:
     return is_named(argument, value, error) or OTHERS.get((name, argument), "\0") in str(error)
 
 
 def faults(name: str, function, right: dict) -> tuple[list, int]:
     """(argument, odd value, error) of those that do not name the argument; and how many were refused."""
-    found, wrong = [], 0
     owner = ep.Scene.add if name == "add" else function
-    for argument in [one for one in inspect.signature(owner).parameters if one != "self" and (name, one) not in FREE]:
-        for odd, make in ODD.items():
-            value = make()
-            try:
-                function(**right | {argument: value})
-            except EXPECTED as error:
-                wrong += 1
-                found += [] if _is_told(name, argument, value, error) else [(name, argument, odd, repr(error))]
-            plt.close("all")
-    return found, wrong
+    arguments = [one for one in inspect.signature(owner).parameters if one != "self" and (name, one) not in FREE]
+    found = [(not _is_told(name, argument, value, error), (name, argument, odd, repr(error)))
+             for argument, odd, value, error in refusals(_closing(function), right, arguments)]
+    return [fault for is_fault, fault in found if is_fault], len(found)
 
 
 @pytest.mark.filterwarnings("ignore")

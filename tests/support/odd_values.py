@@ -60,3 +60,17 @@ def is_named(argument: str, value, error: Exception) -> bool:
     """Whether an error names an argument, or of what is wrong with a file, the file; in text that can be printed."""
     message = str(error).encode("utf-8").decode("utf-8")
     return argument in message or (isinstance(error, ep.FileError) and str(value) in message)
+
+
+def refusals(function, right: dict, arguments):
+    """(argument, name in ODD, value, error) of each odd value that a function refuses in the place of one of its arguments.
+
+    right: {argument: value} that it takes. Errors that are not EXPECTED go on to the caller.
+    """
+    for argument in arguments:
+        for odd, make in ODD.items():
+            value = make()
+            try:
+                function(**right | {argument: value})
+            except EXPECTED as error:
+                yield argument, odd, value, error

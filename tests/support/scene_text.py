@@ -8,3 +8,23 @@ sampling_rate = 20e6
 num_chirps = 8
 chirp_interval = 100e-6
 """
+ANTENNAS = """
+[[radar.transmitters]]
+position = [0.0, 0.0, 0.0]
+[[radar.receivers]]
+position = [0.0, 0.01, 0.0]
+"""
+
+
+def moving_plate(name: str, width: float, height: float, x: float, velocity: float) -> str:
+    """The table of a diffuse plate at (x, 0, 1) in m that looks back along x; width, height: m; velocity: m/s along x"""
+    return f"""
+[[objects]]
+name = "{name}"
+actor = "plate"
+parameters = {{width = {width}, height = {height}}}
+position = [{x}, 0.0, 1.0]
+yaw_deg = 180.0
+material = {{reflectivity = 0.27, scattering = 1.0}}
+motion = {{kind = "linear", velocity = [{velocity}, 0.0, 0.0]}}
+"""

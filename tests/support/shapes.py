@@ -70,6 +70,14 @@ def scene_of(**objects):
     return scene
 
 
+def curved_scene():
+    """A smooth ball that throws light on a plate: its paths have all optional columns."""
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.3), name="ball", material="metal", position=(5, 0, 0), smooth=True)
+    scene.add(ep.actors.plate(1.0, 1.0), name="plate", material="metal", position=(4.5, 1.2, 0), yaw=1.0)
+    return scene
+
+
 def make_radar(transmitter, receiver=None, polarization=(0.0, 0.0, 1.0), frequency=FREQUENCY):
     """1 W, isotropic antennas, one chirp."""
     places = (transmitter, transmitter if receiver is None else receiver)

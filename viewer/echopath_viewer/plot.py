@@ -21,17 +21,8 @@ RENDERERS = (("libGL.so.1", "libEGL.so.1"), ("libOSMesa.so.8",))  # either draws
 def plot_rays(scene, paths, *, selection="", num_rays=NUM_RAYS, color_by="bounces", cmap=None, clim=None, chirp=None,
               tx=0, rx=0, view="fit", show_hits=False, show_legend=True, hidden=(), plotter=None, off_screen=None,
               screenshot=None, window_size=(1200, 800), return_plotter=False):
-    """Draws a scene with its strongest rays.
+    """Draws a scene with its strongest rays: what `echopath.plot_rays` does, which says what its arguments mean.
 
-    scene: that of the paths, or None; paths: of `trace`
-    selection: path expression or Selection of the rays that are drawn, "": all; num_rays: at most, the strongest
-    color_by: "bounces", "mesh", "power", "range" or "speed"; cmap, clim: colour map and (low, high) of the last three, in
-        dBm, m or m/s
-    chirp: index of the one at whose middle scene and rays are shown, None: that of the middle of the frame
-    tx, rx: indices of the channel's antennas; hidden: globs of meshes that are not drawn
-    view: "fit", "radar", "top" or "side"; show_hits: with a dot at each hit
-    plotter: a pyvista.Plotter to draw into, which is then not shown; window_size: (width, height) in pixels
-    off_screen: True: without a screen; screenshot: PNG file to be written; return_plotter: instead of None
     Raises ValueError naming the argument.
     """
     _check_numbers(paths.radar, tx, rx, num_rays, chirp)

@@ -6,39 +6,30 @@ import numpy as np
 from .. import _core
 from .curves import read_morph_targets, read_playback, write_morph_targets, write_playback
 from .h5 import blames_group, read_array, read_attribute, read_group, read_texts, write_array, write_attribute, write_texts
+from .kinds import Kind, read_kind, write_kind
 from .motion import read_motion, write_motion
 
 
 def write_deformation(group, deformation) -> None:
     """Writes a vertex sequence, a skin or morph targets."""
-    if isinstance(deformation, _core.Skin):
-        write_attribute(group, "kind", "skin")
-        _write_skin(group, deformation)
-        return
-    if isinstance(deformation, _core.MorphTargets):
-        write_attribute(group, "kind", "morph")
-        write_morph_targets(group, deformation)
-        return
-    if not isinstance(deformation, _core.VertexSequence):
-        raise ValueError(f"motion: must be a VertexSequence, Skin or MorphTargets to deform a mesh, got {deformation!r}")
-    write_attribute(group, "kind", "vertices")
-    write_attribute(group, "interpolation", deformation.interpolation)
-    if deformation.period is not None:
-        write_playback(group, deformation)
-    write_array(group, "times", deformation.times, unit="s")
-    write_array(group, "vertices", deformation.vertices, unit="m")
+    write_kind(group, deformation, _KINDS, "a VertexSequence, Skin or MorphTargets to deform a mesh")
 
 
 @blames_group
 def read_deformation(group):
     """The vertex sequence, skin or morph targets of a group."""
-    kind = read_attribute(group, "kind", str)
-    if kind == "skin":
-        return _read_skin(group)
-    if kind == "morph":
-        return read_morph_targets(group)
-    if kind != "vertices":
-        raise _core.FileError(f"{group.name}: unknown kind of deformation '{kind}'")
+    return read_kind(group, _KINDS, "deformation")
+
+
+def _write_sequence(group, sequence) -> None:
+    write_attribute(group, "interpolation", sequence.interpolation)
+    if sequence.period is not None:
+        write_playback(group, sequence)
+    write_array(group, "times", sequence.times, unit="s")
+    write_array(group, "vertices", sequence.vertices, unit="m")
+
+
+def _read_sequence(group):
     times = read_array(group, "times", np.float64, (None,))
     playback = read_playback(group) if "period" in group.attrs else {}
     return _core.VertexSequence(times, read_array(group, "vertices", np.float64, (len(times), None, 3)),
@@ -93,3 +84,8 @@ def _read_shape(group):
     if read_attribute(shape, "kind", str) == "skin":  # skins in skins may be nested without end
         raise _core.FileError(f"{shape.name}: must not be a skin")
     return read_deformation(shape)
+
+
+_KINDS = {"skin": Kind(_core.Skin, _write_skin, _read_skin),
+          "morph": Kind(_core.MorphTargets, write_morph_targets, read_morph_targets),
+          "vertices": Kind(_core.VertexSequence, _write_sequence, _read_sequence)}

@@ -76,6 +76,11 @@ def part_rule(argument: str, value):
     return value
 
 
+def text_of_part(part: Part) -> str | None:
+    """What a map says of the part that was asked for."""
+    return None if part is None else str(part)
+
+
 def bursts(frames, radar, *, part: Part = None, channel: Channel = None, start_times=None) -> Iterator[Burst]:
     """The frames or cubes one after the other, as `spectrogram` takes them; raises ValueError where time runs back.
 

@@ -11,7 +11,7 @@ from ..angles import Combine, range_azimuth
 from ..azimuth_map import checked_settings, sees_azimuth
 from ..checks import ArrayLike, Window, anything, checked, one_of
 from ..settings import SignalSettings
-from .bursts import Burst, Channel, Frames, Part, bursts, chirp_period
+from .bursts import Burst, Channel, Frames, Part, bursts, chirp_period, text_of_part
 from .maps import AngleTime, RangeTime
 from .spectrogram import IN_TIME_RULES, gate_rule, in_gate
 from .stft import noise_bandwidth, with_chirps
@@ -46,8 +46,9 @@ def range_time(frames: Frames, radar: _core.Radar | None = None, *, combine: Com
 
     power = columns.mapped(lambda cube, one: column(_core.range_doppler(cube, one, window, zero_pad)))
     velocities = empty.velocity[inside]
-    return RangeTime(columns.times, empty.range.copy(), power, columns.noise(column, window, zero_pad), combine, window, zero_pad,
-                     (float(velocities[0]), float(velocities[-1])), None if part is None else str(part), channel)
+    return RangeTime(times=columns.times, range=empty.range.copy(), power=power, combine=combine, window=window,
+                     noise_power=columns.noise(column, window, zero_pad), zero_pad=zero_pad, part=text_of_part(part),
+                     velocity_gate=(float(velocities[0]), float(velocities[-1])), channel=channel)
 
 
 @checked(**_RULES, range_gate=gate_rule, angles=anything)
@@ -82,8 +83,9 @@ def angle_time(frames: Frames, radar: _core.Radar | None = None, *, combine: Com
 
     power = columns.mapped(lambda cube, one: column(_core.range_doppler(cube, one, window, zero_pad), one))
     ranges = empty.range[inside]
-    return AngleTime(columns.times, empty.azimuth.copy(), power, columns.noise(column, window, zero_pad), combine, window,
-                     zero_pad, (float(ranges[0]), float(ranges[-1])), None if part is None else str(part))
+    return AngleTime(times=columns.times, azimuth=empty.azimuth.copy(), power=power, combine=combine, window=window,
+                     noise_power=columns.noise(column, window, zero_pad), zero_pad=zero_pad, part=text_of_part(part),
+                     range_gate=(float(ranges[0]), float(ranges[-1])))
 
 
 class _Columns:

@@ -11,8 +11,16 @@ from ..equality import has_same_fields
 from ..xarray_maps import time_map_array
 
 
+@dataclasses.dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class TimeMap:
     """What the maps over time have in common: arrays times [T] and power [T, X] over an axis whose name is AXIS."""
+
+    times: np.ndarray
+    power: np.ndarray
+    noise_power: float
+    window: str | tuple
+    zero_pad: int
+    part: str | None = None
 
     AXIS: ClassVar[str] = ""
     TITLE: ClassVar[str] = ""
@@ -60,7 +68,7 @@ class TimeMap:
         return ""
 
 
-@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+@dataclasses.dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Spectrogram(TimeMap):
     """Received power by time and radial velocity; made by `spectrogram`.
 
@@ -74,18 +82,12 @@ class Spectrogram(TimeMap):
     part: what was asked for, as text, None: the whole; channel: (tx, rx), None: all
     """
 
-    times: np.ndarray
     velocity: np.ndarray
-    power: np.ndarray
-    noise_power: float
     train: np.ndarray
     trains: np.ndarray
     window_length: int
     hop: int
-    window: str | tuple
-    zero_pad: int
     range_gate: tuple
-    part: str | None = None
     channel: tuple | None = None
 
     AXIS, TITLE = "velocity", "Received power by time and radial velocity"
@@ -111,7 +113,7 @@ class Spectrogram(TimeMap):
         return f", {self.velocity[0]:.2f} to {self.velocity[-1]:.2f} m/s, {gaps}"
 
 
-@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+@dataclasses.dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class RangeTime(TimeMap):
     """Received power by time and range; made by `range_time`.
 
@@ -123,21 +125,15 @@ class RangeTime(TimeMap):
     part: what was asked for, as text, None: the whole; channel: (tx, rx), None: all
     """
 
-    times: np.ndarray
     range: np.ndarray
-    power: np.ndarray
-    noise_power: float
     combine: str
-    window: str | tuple
-    zero_pad: int
     velocity_gate: tuple
-    part: str | None = None
     channel: tuple | None = None
 
     AXIS, TITLE = "range", "Received power by time and range"
 
 
-@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+@dataclasses.dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class AngleTime(TimeMap):
     """Received power by time and azimuth; made by `angle_time`.
 
@@ -148,14 +144,8 @@ class AngleTime(TimeMap):
     part: what was asked for, as text, None: the whole
     """
 
-    times: np.ndarray
     azimuth: np.ndarray
-    power: np.ndarray
-    noise_power: float
     combine: str
-    window: str | tuple
-    zero_pad: int
     range_gate: tuple
-    part: str | None = None
 
     AXIS, TITLE = "azimuth", "Received power by time and azimuth"

@@ -6,7 +6,7 @@ import numpy as np
 from .. import _core
 from ..checks import ArrayLike, Window, an, array, checked, count, flag, optional, refused
 from ..settings import SignalSettings
-from .bursts import Channel, Frames, Part, bursts, channel_rule, chirp_period, frames_rule, part_rule
+from .bursts import Channel, Frames, Part, bursts, channel_rule, chirp_period, frames_rule, part_rule, text_of_part
 from .maps import Spectrogram
 from .stft import axes_of, noise_bandwidth, range_profiles, velocity_powers, with_chirps
 
@@ -90,10 +90,10 @@ class _Stft:
             raise ValueError(f"window_length: must be at most {longest}, the chirps of the longest train{hint}, got "
                              f"{self._length}")
         ranges = self._axes.range[self._inside]
-        return Spectrogram(np.concatenate(self._times), self._axes.velocity, np.concatenate(self._powers),
-                           self._noise_power(), np.concatenate(self._train), np.array(self._trains), self._length, self._hop,
-                           self._window, self._zero_pad, (float(ranges[0]), float(ranges[-1])),
-                           None if part is None else str(part), self._channel)
+        return Spectrogram(times=np.concatenate(self._times), velocity=self._axes.velocity, power=np.concatenate(self._powers),
+                           noise_power=self._noise_power(), train=np.concatenate(self._train), trains=np.array(self._trains),
+                           window_length=self._length, hop=self._hop, window=self._window, zero_pad=self._zero_pad,
+                           range_gate=(float(ranges[0]), float(ranges[-1])), part=text_of_part(part), channel=self._channel)
 
     def _prepare(self, burst) -> None:
         self._radar, self._period = burst.radar, chirp_period(burst.radar)

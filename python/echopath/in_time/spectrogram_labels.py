@@ -9,6 +9,7 @@ import numpy as np
 from .. import _core
 from ..checks import an, checked, optional, refused
 from ..equality import has_same_fields, is_same
+from ..labels.part_cells import PartCells
 from ..settings import LabelSettings
 from ..xarray_maps import spectrogram_labels_dataset
 from .maps import Spectrogram
@@ -16,8 +17,8 @@ from .maps import Spectrogram
 _SAME = ("times", "velocity", "trains", "window_length", "hop", "window", "zero_pad", "range_gate", "channel")
 
 
-@dataclasses.dataclass(frozen=True, eq=False, repr=False)
-class SpectrogramLabels:
+@dataclasses.dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class SpectrogramLabels(PartCells):
     """Labels of all cells of a spectrogram [T, V]; made by `spectrogram_labels`.
 
     times: [T] s, velocity: [V] m/s, receding positive; train: i32 [T], trains: [N, 2] s, as in Spectrogram; part_names: [K]
@@ -33,16 +34,6 @@ class SpectrogramLabels:
     velocity: np.ndarray
     train: np.ndarray
     trains: np.ndarray
-    part_names: list
-    power: np.ndarray
-    whole: np.ndarray
-    share: np.ndarray
-    dominant: np.ndarray
-    noise_power: float
-    noise_margin_db: float
-    dynamic_range_db: float
-    above_noise: np.ndarray
-    mask: np.ndarray
 
     def to_xarray(self):
         """The maps as an xarray.Dataset, without a copy: power (W) and share by part, time (s) and velocity (m/s); whole (W),
@@ -101,9 +92,10 @@ def spectrogram_labels(parts: Mapping[str, Spectrogram], whole: Spectrogram | No
     range_db = np.inf if dynamic_range_db is None else dynamic_range_db
     floor = first.noise_power * 10.0 ** (0.1 * noise_margin_db)
     above_noise, mask = _core.cell_masks(total, floor, 10.0 ** (-0.1 * range_db))
-    return SpectrogramLabels(first.times, first.velocity, first.train, first.trains, list(parts), power, total,
-                             _core.power_shares(power), _core.strongest_part(power, mask), first.noise_power, noise_margin_db,
-                             range_db, above_noise, mask)
+    return SpectrogramLabels(
+        times=first.times, velocity=first.velocity, train=first.train, trains=first.trains, part_names=list(parts), power=power,
+        whole=total, share=_core.power_shares(power), dominant=_core.strongest_part(power, mask), noise_power=first.noise_power,
+        noise_margin_db=noise_margin_db, dynamic_range_db=range_db, above_noise=above_noise, mask=mask)
 
 
 def _require_same(name: str, one: Spectrogram, first: Spectrogram) -> None:

@@ -11,6 +11,7 @@ from ..resolution import Interval
 from ..visibility import HIDDEN_SHARE
 from .dataset import dataset_of
 from .left_out import LeftOut
+from .part_cells import PartCells
 from .report import text_of
 from .table import table_of
 
@@ -130,8 +131,8 @@ class GhostLabel:
     received: Interval | None
 
 
-@dataclasses.dataclass(frozen=True, eq=False, repr=False)
-class Labels:
+@dataclasses.dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Labels(PartCells):
     """Labels of all cells of a map [V, R]; of a range-azimuth map [A, R] wherever V is written.
 
     plane: "range_doppler" or "range_azimuth"
@@ -166,16 +167,6 @@ class Labels:
     velocity: np.ndarray | None
     azimuth: np.ndarray | None
     range: np.ndarray
-    part_names: list
-    power: np.ndarray
-    whole: np.ndarray
-    share: np.ndarray
-    dominant: np.ndarray
-    noise_power: float
-    noise_margin_db: float
-    dynamic_range_db: float
-    above_noise: np.ndarray
-    mask: np.ndarray
     objects: list
     object_map: np.ndarray
     ghosts: list

@@ -6,35 +6,39 @@
 #include <numbers>
 
 #include "echopath/radar/radar.h"
+#include "support/waveforms.h"
 
 namespace echopath::test_radar {
 namespace {
+
+using testing::reference_waveform;
 
 constexpr double kRounding = 1e-12;      // relative, a handful of double operations
 constexpr double kLastDigit = 1e-3;      // of figures printed with five digits
 constexpr double kTimeRounding = 1e-18;  // s, of some milliseconds
 
-ChirpSequence reference() {
-  return {.start_frequency = 77e9,
-          .bandwidth = 1e9,
-          .num_samples = 512,
-          .sampling_rate = 20e6,
-          .num_chirps = 128,
-          .chirp_interval = 30e-6,
-          .real = false};
-}
-
 Radar one_by_one() {
   Radar radar;
-  radar.waveform = reference();
+  radar.waveform = reference_waveform();
   radar.transmitters.resize(1);
   radar.receivers.resize(1);
   return radar;
 }
 
+// A value is invalid, and the error begins with the field at fault.
+template <class Value>
+void expect_refused(const Value& value, const std::string& field) {
+  try {
+    value.validate();
+    ADD_FAILURE() << field << " was accepted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_EQ(std::string(error.what()).rfind(field + ": ", 0), 0u) << error.what();
+  }
+}
+
 // Published axes of the reference radar, to their printed digits.
 TEST(ChirpSequence, DerivedAxesOfTheReferenceRadar) {
-  const ChirpSequence w = reference();
+  const ChirpSequence w = reference_waveform();
   EXPECT_NEAR(w.range_resolution(), 0.14990, 0.01 * kLastDigit);
   EXPECT_NEAR(w.max_range(), 76.747, kLastDigit);
   EXPECT_NEAR(w.velocity_resolution(1), 0.5037, 0.1 * kLastDigit);
@@ -46,13 +50,13 @@ TEST(ChirpSequence, DerivedAxesOfTheReferenceRadar) {
 }
 
 TEST(ChirpSequence, RealSamplesHalveTheRange) {
-  ChirpSequence w = reference();
+  ChirpSequence w = reference_waveform();
   w.real = true;
-  EXPECT_NEAR(w.max_range(), 0.5 * reference().max_range(), kRounding);
+  EXPECT_NEAR(w.max_range(), 0.5 * reference_waveform().max_range(), kRounding);
 }
 
 TEST(ChirpSequence, AChirpMayFillItsSlot) {
-  ChirpSequence w = reference();
+  ChirpSequence w = reference_waveform();
   w.chirp_interval = w.chirp_duration();
   EXPECT_NO_THROW(w.validate());
 }
@@ -71,14 +75,9 @@ TEST(ChirpSequence, EachBadFieldIsNamed) {
       {"chirp_interval", [](auto& w) { w.chirp_interval = 25e-6; }},  // shorter than 512 samples at 20 MHz
   };
   for (const auto& [field, spoil] : cases) {
-    ChirpSequence w = reference();
+    ChirpSequence w = reference_waveform();
     spoil(w);
-    try {
-      w.validate();
-      ADD_FAILURE() << field << " was accepted";
-    } catch (const std::invalid_argument& error) {
-      EXPECT_EQ(std::string(error.what()).rfind(field + ": ", 0), 0u) << error.what();
-    }
+    expect_refused(w, field);
   }
 }
 
@@ -136,12 +135,7 @@ TEST(Radar, EachBadFieldIsNamed) {
   for (const auto& [field, spoil] : cases) {
     Radar radar = one_by_one();
     spoil(radar);
-    try {
-      radar.validate();
-      ADD_FAILURE() << field << " was accepted";
-    } catch (const std::invalid_argument& error) {
-      EXPECT_EQ(std::string(error.what()).rfind(field + ": ", 0), 0u) << error.what();
-    }
+    expect_refused(radar, field);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "cpp/scene/small_nodes.h"
 #include "echopath/base/constants.h"
 #include "echopath/scene/scene.h"
 #include "support/expect_error.h"
@@ -11,25 +12,8 @@ namespace echopath::test_scene {
 namespace {
 
 using test::expect_error;
+using namespace testing;
 using Invalid = std::invalid_argument;
-
-MeshPtr triangle() {
-  return std::make_shared<const Mesh>(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, std::vector<Triangle>{{0, 1, 2}});
-}
-
-Node named(const std::string& name, int parent = -1) {
-  Node node;
-  node.name = name;
-  node.parent = parent;
-  return node;
-}
-
-Node with_mesh(const std::string& name, int parent = -1, MeshPtr mesh = triangle()) {
-  Node node = named(name, parent);
-  node.mesh = std::move(mesh);
-  node.material = std::make_shared<const Material>(Material::metal());
-  return node;
-}
 
 TEST(Glob, StarsCrossSlashesAndQuestionMarksAreOneCharacter) {
   EXPECT_TRUE(glob_takes("wall", "wall"));
@@ -81,9 +65,9 @@ TEST(Glob, AgreesWithItsDefinitionOnAllShortWords) {
 
 TEST(Scene, NumbersMeshesAndJoinsNames) {
   Scene scene;
-  EXPECT_EQ(scene.add(named("street")), 0);
+  EXPECT_EQ(scene.add(group("street")), 0);
   EXPECT_EQ(scene.add(with_mesh("wall", 0)), 1);
-  EXPECT_EQ(scene.add(named("group", 0)), 2);
+  EXPECT_EQ(scene.add(group("group", 0)), 2);
   EXPECT_EQ(scene.add(with_mesh("arm", 2)), 3);
   EXPECT_EQ(scene.add(with_mesh("plate")), 4);
   EXPECT_EQ(scene.mesh_names(), (std::vector<std::string>{"street/wall", "street/group/arm", "plate"}));
@@ -100,16 +84,16 @@ TEST(Scene, RefusesBadNodesByNameAndStaysAsItWas) {
   Scene scene;
   scene.add(with_mesh("wall"));
   for (const std::string name : {"a/b", "a*", "a?", "it's", "\"a\""}) {
-    expect_error<Invalid>([&] { scene.add(named(name)); }, {"name", "free of", name});
+    expect_error<Invalid>([&] { scene.add(group(name)); }, {"name", "free of", name});
   }
-  expect_error<Invalid>([&] { scene.add(named("a\x1e")); }, {"name", "free of", "'a\\x1e'"});
-  expect_error<Invalid>([&] { scene.add(named("\x1fz")); }, {"name", "free of", "'\\x1fz'"});
-  for (const std::string name : {" a", "a\t", "\n"}) expect_error<Invalid>([&] { scene.add(named(name)); }, {"white space"});
-  expect_error<Invalid>([&] { scene.add(named("")); }, {"name", "empty"});
-  expect_error<Invalid>([&] { scene.add(named("wall")); }, {"name", "unique", "wall"});
-  expect_error<Invalid>([&] { scene.add(named("x", 7)); }, {"parent", "got 7"});
-  expect_error<Invalid>([&] { scene.add(named("x", -2)); }, {"parent", "got -2"});
-  Node no_material = with_mesh("x"), no_mesh = named("x"), flat = named("x"), unsound = with_mesh("x");
+  expect_error<Invalid>([&] { scene.add(group("a\x1e")); }, {"name", "free of", "'a\\x1e'"});
+  expect_error<Invalid>([&] { scene.add(group("\x1fz")); }, {"name", "free of", "'\\x1fz'"});
+  for (const std::string name : {" a", "a\t", "\n"}) expect_error<Invalid>([&] { scene.add(group(name)); }, {"white space"});
+  expect_error<Invalid>([&] { scene.add(group("")); }, {"name", "empty"});
+  expect_error<Invalid>([&] { scene.add(group("wall")); }, {"name", "unique", "wall"});
+  expect_error<Invalid>([&] { scene.add(group("x", 7)); }, {"parent", "got 7"});
+  expect_error<Invalid>([&] { scene.add(group("x", -2)); }, {"parent", "got -2"});
+  Node no_material = with_mesh("x"), no_mesh = group("x"), flat = group("x"), unsound = with_mesh("x");
   no_material.material = nullptr;
   no_mesh.material = std::make_shared<const Material>(Material::metal());
   flat.placement.linear().col(2).setZero();
@@ -121,7 +105,7 @@ TEST(Scene, RefusesBadNodesByNameAndStaysAsItWas) {
   flat.placement.translation().x() = std::numeric_limits<double>::quiet_NaN();
   expect_error<Invalid>([&] { scene.add(flat); }, {"placement", "finite"});
   EXPECT_EQ(scene.nodes().size(), 1u);
-  EXPECT_EQ(scene.add(named("x")), 1);
+  EXPECT_EQ(scene.add(group("x")), 1);
 }
 
 TEST(Scene, ASequenceNeedsTheVerticesTheMeshWasMadeFrom) {
@@ -144,7 +128,7 @@ TEST(Scene, ASequenceNeedsTheVerticesTheMeshWasMadeFrom) {
   node.deformation =
       std::make_shared<const VertexSequence>(std::vector<double>{0, 1}, std::vector<std::vector<Vec3>>{five, five});
   expect_error<Invalid>([&] { scene.add(node); }, {"deformation", "6 vertices", "got 5"});
-  node = named("bare");
+  node = group("bare");
   node.deformation =
       std::make_shared<const VertexSequence>(std::vector<double>{0, 1}, std::vector<std::vector<Vec3>>{five, five});
   expect_error<Invalid>([&] { scene.add(node); }, {"deformation", "without a mesh"});
@@ -152,7 +136,7 @@ TEST(Scene, ASequenceNeedsTheVerticesTheMeshWasMadeFrom) {
 
 TEST(Scene, KnowsWhatMoves) {
   Scene scene;
-  Node car = named("car");
+  Node car = group("car");
   car.motion = std::make_shared<const LinearMotion>(Vec3(1, 0, 0));
   scene.add(car);
   scene.add(with_mesh("wheel", 0));
@@ -168,7 +152,7 @@ std::shared_ptr<const Motion> keyframes(const std::vector<double>& times) {
 
 TEST(Scene, JoinsBreakpointsAndNamesTheMotionThatIsTooShort) {
   Scene scene;
-  Node one = named("one"), two = named("two");
+  Node one = group("one"), two = group("two");
   one.motion = keyframes({0, 0.5, 0.75, 1}), two.motion = keyframes({-1, 0.25, 0.5, 3});
   scene.add(one), scene.add(two);
   EXPECT_EQ(scene.breakpoints(), (std::vector<double>{0.25, 0.5, 0.75}));

@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include "cpp/scene/small_nodes.h"
 #include "echopath/scene/scene.h"
 #include "support/expect_error.h"
 
@@ -10,26 +11,9 @@ namespace echopath::test_scene_changes {
 namespace {
 
 using test::expect_error;
+using namespace testing;
 using Invalid = std::invalid_argument;
 using Names = std::vector<std::string>;
-
-MeshPtr triangle() {
-  return std::make_shared<const Mesh>(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, std::vector<Triangle>{{0, 1, 2}});
-}
-
-Node group(const std::string& name, int parent = -1) {
-  Node node;
-  node.name = name;
-  node.parent = parent;
-  return node;
-}
-
-Node with_mesh(const std::string& name, int parent = -1) {
-  Node node = group(name, parent);
-  node.mesh = triangle();
-  node.material = std::make_shared<const Material>(Material::metal());
-  return node;
-}
 
 Transform at(double x) {
   Transform placement = Transform::Identity();

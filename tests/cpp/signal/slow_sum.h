@@ -7,20 +7,11 @@
 
 #include "echopath/radar/radar.h"
 #include "echopath/signal/synthesizer.h"
+#include "support/waveforms.h"
 
 namespace echopath::testing {
 
 using Complex = std::complex<double>;
-
-inline ChirpSequence reference_waveform() {
-  return {.start_frequency = 77e9,
-          .bandwidth = 1e9,
-          .num_samples = 512,
-          .sampling_rate = 20e6,
-          .num_chirps = 128,
-          .chirp_interval = 30e-6,
-          .real = false};
-}
 
 // One chirp [num_samples] of moving points: tau + taudot (t - t_m), phases in long double.
 inline std::vector<Complex> slow_chirp(const ChirpSequence& w, const std::vector<double>& tau,

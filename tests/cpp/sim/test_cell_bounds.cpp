@@ -5,6 +5,7 @@
 #include "cpp/sim/slow_map.h"
 #include "echopath/sim/stream/cell_bounds.h"
 #include "support/scenes.h"
+#include "support/waveforms.h"
 
 namespace echopath::test_cell_bounds {
 namespace {
@@ -18,13 +19,8 @@ constexpr double kLoose = 1.25;
 
 Radar radar_of(bool real = false) {
   Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
-  radar.waveform = {.start_frequency = 77e9,
-                    .bandwidth = 5e8,
-                    .num_samples = 32,
-                    .sampling_rate = 10e6,
-                    .num_chirps = 16,
-                    .chirp_interval = 30e-6,
-                    .real = real};
+  radar.waveform = small_waveform(5e8, 10e6, 32, 16);
+  radar.waveform.real = real;
   return radar;
 }
 

@@ -7,6 +7,7 @@
 #include "echopath/trace/trace.h"
 #include "support/path_by_path.h"
 #include "support/scenes.h"
+#include "support/waveforms.h"
 
 namespace echopath::test_part_pass {
 namespace {
@@ -19,13 +20,7 @@ constexpr double kMoment = 1e-7;  // s, over which lengths are taken as linear
 
 Radar radar_of() {
   Radar radar = plain_radar(Vec3::Zero(), {0, 0.02, 0});
-  radar.waveform = {.start_frequency = 77e9,
-                    .bandwidth = 5e8,
-                    .num_samples = 16,
-                    .sampling_rate = 5e6,
-                    .num_chirps = 8,
-                    .chirp_interval = 30e-6,
-                    .real = false};
+  radar.waveform = small_waveform(5e8, 5e6, 16, 8);
   radar.receivers.push_back(antenna_at({0, 0.04, 0}));
   return radar;
 }

@@ -5,6 +5,7 @@
 
 #include "echopath/base/parallel.h"
 #include "echopath/spectrum/range_doppler.h"
+#include "support/waveforms.h"
 
 namespace echopath::test_range_doppler {
 namespace {
@@ -15,13 +16,7 @@ constexpr double kAxisRounding = 1e-12;  // m and m/s
 
 Radar small_radar(int num_tx = 1, int num_rx = 1) {
   Radar radar;
-  radar.waveform = {.start_frequency = 77e9,
-                    .bandwidth = 1e9,
-                    .num_samples = 32,
-                    .sampling_rate = 20e6,
-                    .num_chirps = 16,
-                    .chirp_interval = 30e-6,
-                    .real = false};
+  radar.waveform = testing::small_waveform(1e9, 20e6, 32, 16);
   radar.transmitters.resize(num_tx);
   radar.receivers.resize(num_rx);
   return radar;

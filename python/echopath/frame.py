@@ -33,6 +33,7 @@ class Frame:
     labels: {partition: Labels} of the cells of its map, of "parts" with the part "other" without partitions; {} when
         not asked for
     detections: Detections in its map, None when not asked for
+    kept_truth: Truth of the objects that files of the frame keep, None when not asked for: `truth` then follows from the paths
     checks: list [C] of Check, what the guard of the run compared; [] when it was off
     stages: time and peak memory of each stage
     """
@@ -55,6 +56,7 @@ class Frame:
     keyframes: int = 0
     labels: dict = dataclasses.field(default_factory=dict)
     detections: object = None
+    kept_truth: object = None
     checks: list = dataclasses.field(default_factory=list)
     stages: list[Stage] = dataclasses.field(default_factory=list)
 
@@ -130,9 +132,9 @@ class Frame:
     @cached_property
     def truth(self):
         """ep.Truth of the objects in the middle of the frame: places in m, velocities in m/s, boxes, cross sections in m^2."""
-        from .truth import truth_of_frame
+        from .truth import truth
 
-        return truth_of_frame(self)
+        return truth(self)
 
     @cached_property
     def _families(self):

@@ -2,12 +2,16 @@
 from __future__ import annotations
 
 import dataclasses
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .detections.detections import Detections
 from .equality import has_same_fields
 from .frame import Frame
+
+if TYPE_CHECKING:
+    from .truth import Truth
 
 # Fields of Labels that small files keep for cells of the mask alone.
 _OF_THE_MASK = ("power", "whole", "mean_power", "mean_share", "power_error", "share_error")
@@ -24,6 +28,7 @@ class FrameMaps:
     power: f32 [V, R] W of that map with its noise, mean over channels; None in files of keep="labels"
     azimuth: [A] rad, left positive; azimuth_power: f32 [A, R] W of the range-azimuth map; None where the radar sees no azimuth
         and in files of keep="labels"
+    kept_truth: Truth of the objects in the middle of the frame, None: not asked for
     """
 
     start_time: float
@@ -36,6 +41,7 @@ class FrameMaps:
     power: np.ndarray | None = None
     azimuth: np.ndarray | None = None
     azimuth_power: np.ndarray | None = None
+    kept_truth: Truth | None = None
 
     def __eq__(self, other) -> bool:
         return has_same_fields(self, other) if isinstance(other, FrameMaps) else NotImplemented
@@ -55,7 +61,7 @@ def maps_of(frame: Frame, with_power: bool) -> FrameMaps:
         labels={partition: _within_mask(labels) for partition, labels in frame.labels.items()},
         detections=None if frame.detections is None else dataclasses.replace(frame.detections, echoes=None),
         velocity=np.asarray(frame.spectrum.velocity), range=np.asarray(frame.spectrum.range),
-        power=mean_power(frame.spectrum.values) if with_power else None,
+        power=mean_power(frame.spectrum.values) if with_power else None, kept_truth=frame.kept_truth,
         azimuth=None if azimuth_map is None else np.asarray(azimuth_map.azimuth),
         azimuth_power=None if azimuth_map is None else azimuth_map.power.astype(np.float32))
 

@@ -21,6 +21,8 @@ from .settings import LabelSettings, SignalSettings, TraceSettings
 from .signals import synthesize
 from .stages import StageClock
 from .tracing import keep_geometry
+from .truth import truth_of_frame
+from .truth.asked import truth_keywords
 
 _FAMILIES = object()  # a view that has the name of no partition
 
@@ -35,12 +37,12 @@ class Recorded(NamedTuple):
 class FrameRun:
     """How frames of a radar in a scene are made of their records, checked before the long work.
 
-    scene, radar: of the frames; trace, signal: TraceSettings and SignalSettings; parts, angles, labels, detections, guard: as
-    in `simulate`. Raises TypeError or ValueError naming the argument.
+    scene, radar: of the frames; trace, signal: TraceSettings and SignalSettings; parts, angles, labels, detections, truth,
+    guard: as in `simulate`. Raises TypeError or ValueError naming the argument.
     """
 
     def __init__(self, scene, radar, trace: TraceSettings, signal: SignalSettings, parts, angles, labels, detections,
-                 guard: bool):
+                 truth, guard: bool):
         self.scene, self.radar, self.trace, self.signal, self.guard = scene, radar, trace, signal, guard
         self.partitions, self.angle_settings = as_partitions(parts), checked_settings(radar, angles)
         check_partitions(self.partitions, scene)
@@ -49,6 +51,7 @@ class FrameRun:
         self._request = _label_request(scene, radar, self.label_settings, trace.batches or 1, self._of_map,
                                        self.angle_settings)
         self.detect_keywords = _detect_keywords(scene, radar, detections, self._request, self._of_map)
+        self.truth_keywords = truth_keywords(scene, truth, self._request.objects if self._request else None)
 
     def frame_of(self, record: Callable[[], _core.Paths], progress=None) -> Frame:
         """The frame of what `record()` returns, Paths of the scene and the radar; progress: as in `simulate`."""
@@ -58,7 +61,7 @@ class FrameRun:
         """What `record()` returns, and how long it took."""
         clock = StageClock()
         with clock("trace"):
-            if self._request:
+            if self._request or self.truth_keywords:
                 keep_geometry(self.scene)
             return Recorded(record(), clock)
 
@@ -85,6 +88,9 @@ class FrameRun:
         if self.detect_keywords is not None:
             with clock("detections"):
                 frame.detections = detect_frame(frame, progress=progress, **self.detect_keywords)
+        if self.truth_keywords is not None:
+            with clock("truth"):
+                frame.kept_truth = truth_of_frame(frame, **self.truth_keywords)
         return frame
 
     def _bare_frame(self, paths, whole, cubes: dict, groups: dict, probe, stages: list) -> Frame:

@@ -17,7 +17,7 @@ from .tracing import trace as trace_scene
 
 
 @checked({"trace": TraceSettings, "signal": SignalSettings}, **TraceSettings.RULES, **SignalSettings.RULES, parts=anything,
-         angles=anything, labels=anything, detections=anything, guard=flag)
+         angles=anything, labels=anything, detections=anything, truth=anything, guard=flag)
 def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | None = TraceSettings.num_rays,
              max_bounces: int = TraceSettings.max_bounces, seed: int = TraceSettings.seed,
              start_time: float = TraceSettings.start_time, polarization: Polarization = TraceSettings.polarization,
@@ -31,8 +31,9 @@ def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | 
              keyframes: int = SignalSettings.keyframes, noise_seed: int | None = SignalSettings.noise_seed,
              window: Window = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad,
              angles: Mapping[str, Any] | None = None, labels: bool | LabelSettings | Mapping[str, Any] | None = None,
-             detections: bool | Mapping[str, Any] | None = None, guard: bool = True, trace: TraceSettings | None = None,
-             signal: SignalSettings | None = None, progress: Progress = None) -> Frame:
+             detections: bool | Mapping[str, Any] | None = None, truth: bool | Mapping[str, Any] | None = None,
+             guard: bool = True, trace: TraceSettings | None = None, signal: SignalSettings | None = None,
+             progress: Progress = None) -> Frame:
     """Simulates one frame of a radar in a scene.
 
     scene: what is traced; radar: that looks at it
@@ -49,6 +50,8 @@ def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | 
         {}: as True; None or False: none, and nothing is spent on them
     detections: True, or keywords of `detect_frame`: the frame carries the detections in its map, of the objects of its
         labels unless told otherwise; {}: as True; None or False: none
+    truth: True, or keywords of `truth` (objects): the frame and its files carry the Truth of its objects, those of its labels
+        unless told otherwise; {}: as True; None or False: not made here, and `Frame.truth` makes it when it is asked for
     guard: whether the signal is held against slower ways at a few places, and halves and batches of the rays against each
         other: see `Frame.checks`
     trace, signal: TraceSettings and SignalSettings that give the keywords which the call leaves out, or None
@@ -62,7 +65,7 @@ def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | 
     signals = SignalSettings(tolerance=tolerance, method=method, replay=replay, evaluate=evaluate,
                              phase_tolerance=phase_tolerance, retrace=retrace, keyframes=keyframes, noise_seed=noise_seed,
                              window=window, zero_pad=zero_pad)
-    run = FrameRun(scene, radar, tracing, signals, parts, angles, labels, detections, guard)
+    run = FrameRun(scene, radar, tracing, signals, parts, angles, labels, detections, truth, guard)
     frame = run.frame_of(lambda: trace_scene(scene, radar, settings=tracing, progress=progress), progress)
     warn_of(frame.checks, stacklevel=3)  # past what checks the arguments of this function
     return frame

@@ -54,7 +54,7 @@ def frames() -> list:
     """Frames of ep.simulate: one with everything that moves, parts, labels and detections; one curved and polarised."""
     parts = {"route": {"direct": "T . R", "wall": "T .* 'wall' .* R"}, "body": {"plate": "T .* 'carrier/*' .* R"}}
     moving = ep.simulate(_moving_scene(), _radar(motion=ep.LinearMotion(velocity=(1, 0, 0))), num_rays=600, batches=2, seed=7,
-                         parts=parts, noise_seed=3, labels={"errors": True}, window=("chebyshev", 60),
+                         parts=parts, noise_seed=3, labels={"errors": True}, window=("chebyshev", 60), truth=True,
                          detections={"false_alarm_rate": 0.1}, angles={"azimuth": [-0.1, 0.0, 0.15]})
     curved = ep.simulate(curved_scene(), _radar(), num_rays=3000, max_bounces=2, polarization="jones", noise_seed=None)
     return [moving, curved]

@@ -75,6 +75,9 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--out", required=True, metavar="DIR", help="folder of the results")
     _add_trace_options(run, default_rays=None)
     _add_part_option(run)
+    run.add_argument("--truth", action="store_true",
+                     help="also place, motion, box, visible share and cross section of each object, in frame.h5 and truth.csv "
+                          "(default: as [truth] of the scene file says)")
     _add_sequence_options(run)
     run.set_defaults(command=_run)
 
@@ -224,15 +227,15 @@ def _run(options) -> None:
         return
     with progress_bars() as progress:
         frame = simulate_file(scene_file, num_rays=options.rays, seed=options.seed,
-                              batches=options.batches, extra_parts=chosen, progress=progress)
+                              batches=options.batches, extra_parts=chosen, truth=options.truth or None, progress=progress)
         certificate = certify(frame, progress=progress)
         written = write_outputs(frame, options.out, partitions=frame.parts)
     for text in [scene_file.title or options.scene, *report.counts(frame.paths),
                  *report.overlaps(frame.scene, frame.paths.frame.trace_time), *report.effects(frame.effects),
                  *report.stages(frame.stages), *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
                  *report.labels(frame.labels), *report.detections(frame.detections),
-                 *report.checks(frame.checks), *report.validity(certificate), *report.files(written),
-                 *report.unresolved(frame.unresolved)]:
+                 *report.truth(frame.kept_truth), *report.checks(frame.checks), *report.validity(certificate),
+                 *report.files(written), *report.unresolved(frame.unresolved)]:
         print(text)
 
 

@@ -47,7 +47,7 @@ def describe_file(path, selections=()) -> list[str]:
 def _describe_sequence(stored) -> list[str]:
     lines = [str(stored.folder), "frames in time", report.line("frames", f"{len(stored)}, {int(stored.is_done.sum())} done"),
              report.line("starts", f"{stored.times[0]:.6g} to {stored.times[-1]:.6g} s, every {stored.interval:.6g} s"),
-             report.line("kept", stored.keep)]
+             report.line("kept", stored.keep + (", truth" if stored.settings.get("truth") is not None else ""))]
     return [*lines, *_describe_scene(stored.scene, float(stored.times[0])), *_describe_radar(stored.radar)]
 
 
@@ -140,7 +140,7 @@ def _describe_frame(path: Path, selections) -> list[str]:
     if frame.cube is not None:
         shape = report.line("shape [tx, rx, chirp, sample]", str(list(frame.cube.shape)))
         lines += ["cube", shape, *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
-                  *report.checks(frame.checks), *report.unresolved(frame.unresolved, missing)]
+                  *report.truth(frame.kept_truth), *report.checks(frame.checks), *report.unresolved(frame.unresolved, missing)]
     return lines + chosen
 
 

@@ -145,6 +145,18 @@ def detections(found) -> list[str]:
             line("noise alone", f"{int(found.is_noise.sum()):8,}")]
 
 
+def truth(found) -> list[str]:
+    """Where each object is and how strongly the radar sees it; nothing where that was not asked for."""
+    if found is None:
+        return []
+    rows = [("truth", "range", "azimuth", "radial", "in sight", "cross section")]
+    for name, distance, azimuth, velocity, share, rcs in zip(found.name, found.range, np.degrees(found.azimuth),
+                                                             found.radial_velocity, found.visible_share, found.rcs_dbsm):
+        rows.append((f"  {name}", f"{distance:.2f} m", f"{azimuth:+.1f} deg", f"{velocity:+.2f} m/s", f"{share:.0%}",
+                     f"{rcs:.1f} dBsm" if np.isfinite(rcs) else "none"))
+    return _table(rows, right=(1, 2, 3, 4, 5))
+
+
 def _objects(of_cells) -> list[str]:
     if not of_cells.objects:
         return ["no objects"]

@@ -18,6 +18,8 @@ from ..simulate import simulate
 from ..stages import StageClock
 from .label_outputs import write_labels
 
+TRUTH_NAME = "truth.csv"
+
 
 @dataclasses.dataclass(frozen=True)
 class Written:
@@ -29,24 +31,24 @@ class Written:
 
 
 def simulate_file(scene_file: SceneFile, *, num_rays=None, seed=None, batches=None, extra_parts=None,
-                  labels=None, progress=None) -> Frame:
+                  labels=None, truth=None, progress=None) -> Frame:
     """The frame that a scene file describes.
 
-    num_rays, seed, batches, labels: instead of those of the file; labels as in `ep.simulate`
+    num_rays, seed, batches, labels, truth: instead of those of the file; labels, truth as in `ep.simulate`
     extra_parts: {partition: {part: selection}} beside those of the file.
     """
-    keywords = keywords_of(scene_file, num_rays=num_rays, seed=seed, batches=batches, extra_parts=extra_parts)
+    keywords = keywords_of(scene_file, num_rays=num_rays, seed=seed, batches=batches, truth=truth, extra_parts=extra_parts)
     return simulate(scene_file.scene, scene_file.radar, **keywords | ({} if labels is None else {"labels": labels}),
                     progress=progress)
 
 
-def keywords_of(scene_file: SceneFile, *, num_rays=None, seed=None, batches=None, extra_parts=None) -> dict:
+def keywords_of(scene_file: SceneFile, *, num_rays=None, seed=None, batches=None, truth=None, extra_parts=None) -> dict:
     """Keywords of `ep.simulate` and `ep.Sequence`; arguments as in `simulate_file`."""
     instead = {"num_rays": num_rays, "seed": seed, "batches": batches}
     return {name: value for name, value in instead.items() if value is not None} | {
         "trace": scene_file.trace, "signal": scene_file.signal, "parts": scene_file.partitions() | (extra_parts or {}),
         "angles": scene_file.angle_settings(), "labels": scene_file.labels, "detections": scene_file.detection_settings(),
-        "guard": scene_file.guard}
+        "truth": scene_file.truth_settings() if truth is None else truth, "guard": scene_file.guard}
 
 
 def chosen_partition(texts, taken) -> dict:
@@ -70,7 +72,7 @@ def certify(frame: Frame, *, progress=None):
 
 
 def write_outputs(frame: Frame, folder, partitions) -> Written:
-    """Writes frame.h5, detections.csv where there are some and pictures; adds its stages to those of the frame.
+    """Writes frame.h5, detections.csv and truth.csv where they were asked for, and pictures; adds its stages to the frame's.
 
     The pictures: scene.png, map.png, a PNG for each of `partitions`, overview.png (map and first partition) and, where
     the radar tells azimuths apart, range_azimuth.png (the whole and the first partition from above); with labels also
@@ -83,6 +85,8 @@ def write_outputs(frame: Frame, folder, partitions) -> Written:
         left_out = save_frame(frame, frame_path, min_power=min_power_of_budget(frame))
         if frame.detections is not None:
             frame.detections.to_csv(folder / "detections.csv")
+        if frame.kept_truth is not None:
+            frame.kept_truth.to_csv(folder / TRUTH_NAME)
     with clock("pictures"):
         pictures = _write_pictures(frame, folder, partitions)
         if frame.labels:

@@ -10,7 +10,7 @@ from ..checks import refused
 from ..progress import progress_bars
 from ..scene_file import SceneFile
 from ..sequence import Sequence, load_sequence
-from .run import keywords_of
+from .run import TRUTH_NAME, keywords_of
 
 
 def is_sequence(scene_file: SceneFile, options) -> bool:
@@ -34,7 +34,7 @@ def run_sequence(scene_file: SceneFile, options, extra_parts: dict) -> Iterator[
     if interval is None:
         raise ValueError("--interval: must be given with --frames, in s from the start of a frame to that of the next")
     keywords = keywords_of(scene_file, num_rays=options.rays, seed=options.seed, batches=options.batches,
-                           extra_parts=extra_parts)
+                           truth=options.truth or None, extra_parts=extra_parts)
     if keep == "labels" and keywords["labels"] is None:
         keywords["labels"] = True
     sequence = Sequence(scene_file.scene, scene_file.radar, frames=frames, interval=interval, **keywords)
@@ -46,7 +46,11 @@ def run_sequence(scene_file: SceneFile, options, extra_parts: dict) -> Iterator[
     except KeyboardInterrupt:
         print(f"\nthe same command goes on in {options.out}", file=sys.stderr)
         raise
-    yield f"wrote {load_sequence(options.out)}"
+    stored = load_sequence(options.out)
+    yield f"wrote {stored}"
+    if keywords["truth"] is not None:
+        stored.truth.to_csv(stored.folder / TRUTH_NAME)
+        yield f"wrote {stored.folder / TRUTH_NAME}"
 
 
 def first_frame(folder) -> tuple[Path, str]:

@@ -14,10 +14,10 @@ from ..azimuth_map import checked_settings
 from ..checks import an, anything, checked, real, refused, text
 from ..detections.echo_fields import EchoFields
 from ..frame import Frame, with_spectra
-from ..guard import Check
 from ..interrupts import interrupts_are_kept
 from ..labels.labels import Labels
 from ..settings import Evaluate, Replay, Retrace
+from .checks import read_checks, write_checks
 from .container import file_with_paths, new_file, our_file
 from .detections import read_detections, write_detections
 from .h5 import (blames_group, blaming, length_of, read_array, read_attribute, read_group, read_texts, write_array,
@@ -26,8 +26,8 @@ from .labels import read_all_labels, write_all_labels
 from .paths import read_paths, write_paths
 from .radar import read_radar, write_radar
 from .scene import read_scene, write_scene
+from .truth import truth_in, write_truth
 
-CHECK_NUMBERS = {"error": np.float64, "promise": np.float64, "count": np.int64}
 # Settings of a signal and the values that each may have.
 SIGNAL_SETTINGS = {"replay": get_args(Replay), "evaluate": get_args(Evaluate), "retrace": get_args(Retrace)}
 SPECTRUM_KEYS = ("window", "zero_pad")
@@ -84,7 +84,7 @@ def save_frame(frame: Frame, path: str | os.PathLike[str], min_power: float = 0.
     with new_file(path) as file:
         missing, is_kept = _write_record(file, frame.paths, frame.effects, min_power, frame.path_power)
         _write_signal(file, frame)
-        _write_checks(file, frame.checks)
+        write_checks(file.create_group("checks"), frame.checks)
         _write_spectra(file, frame)
         _write_range_azimuth(file, frame)
         _write_partitions(file, frame, is_kept)
@@ -92,6 +92,8 @@ def save_frame(frame: Frame, path: str | os.PathLike[str], min_power: float = 0.
             write_all_labels(file.create_group("labels"), frame.labels)
         if frame.detections is not None:
             write_detections(file.create_group("detections"), frame.detections)
+        if frame.kept_truth is not None:
+            write_truth(file.create_group("truth"), frame.kept_truth)
     return missing
 
 
@@ -109,12 +111,13 @@ def load_frame(path: str | os.PathLike[str]) -> Frame:
         if "signal" not in file:
             return frame
         _read_signal(file, frame)
-        frame.checks = _read_checks(file)
+        frame.checks = read_checks(read_group(file, "checks"))
         _read_partitions(file, frame)
         with blaming(read_group(file, "spectra")):
             with_spectra(frame)
         if "labels" in file:
             frame.labels = read_all_labels(read_group(file, "labels"))
+        frame.kept_truth = truth_in(file)
         if "detections" in file:
             frame.detections = read_detections(read_group(file, "detections"), frame.spectrum.values.shape[2:],
                                                seed=paths.frame.seed, noise_seed=frame.noise_seed,
@@ -185,22 +188,6 @@ def _write_signal(file, frame: Frame) -> None:
     write_attribute(group, "keyframes", frame.keyframes)
     if frame.noise_seed is not None:
         write_attribute(group, "noise_seed", np.uint64(frame.noise_seed))
-
-
-def _write_checks(file, checks) -> None:
-    group = file.create_group("checks")
-    for field in ("name", "unit"):
-        write_texts(group, field, [getattr(check, field) for check in checks])
-    for field, dtype in CHECK_NUMBERS.items():
-        write_array(group, field, np.array([getattr(check, field) for check in checks], dtype))
-
-
-def _read_checks(file) -> list:
-    group = read_group(file, "checks")
-    names = read_texts(group, "name")
-    columns = {"name": names, "unit": read_texts(group, "unit", len(names))}
-    columns |= {field: read_array(group, field, dtype, (len(names),)).tolist() for field, dtype in CHECK_NUMBERS.items()}
-    return [Check(**dict(zip(columns, row))) for row in zip(*columns.values())]
 
 
 def _write_spectra(file, frame: Frame) -> None:

@@ -8,6 +8,7 @@ from .container import new_file, our_file
 from .detections import read_detections, write_detections
 from .h5 import check_sums, read_array, read_attribute, read_group, write_array, write_attribute
 from .labels import read_all_labels, write_all_labels
+from .truth import truth_in, write_truth
 
 
 def save_maps(maps: FrameMaps, path) -> None:
@@ -29,6 +30,8 @@ def save_maps(maps: FrameMaps, path) -> None:
             write_all_labels(file.create_group("labels"), maps.labels, compress=True)
         if maps.detections is not None:
             write_detections(file.create_group("detections"), maps.detections)
+        if maps.kept_truth is not None:
+            write_truth(file.create_group("truth"), maps.kept_truth)
 
 
 def load_maps(path) -> FrameMaps:
@@ -44,7 +47,7 @@ def load_maps(path) -> FrameMaps:
         return FrameMaps(start_time=read_attribute(group, "start_time", float), **seeds, labels=labels,
                          detections=detections, **axes,
                          power=read_array(group, "power", np.float32, shape) if "power" in group else None,
-                         **_read_azimuth(group, shape[1]))
+                         kept_truth=truth_in(file), **_read_azimuth(group, shape[1]))
 
 
 def _read_azimuth(group, num_ranges: int) -> dict:

@@ -32,11 +32,11 @@ def read_scene(path: Path) -> SceneFile:
                                radar=_build_radar(settings.radar, path.parent, trajectories), trace=_trace(settings),
                                signal=_signal(settings), angle=settings.angle, parts=dict(settings.parts),
                                labels=_labels(settings), detections=settings.detections, guard=settings.guard,
-                               sequence=settings.sequence)
+                               sequence=settings.sequence, truth=settings.truth)
         with blamed("angle"):
             checked_settings(scene_file.radar, scene_file.angle_settings())
         check_partitions(scene_file.partitions(), scene_file.scene)
-        _check_labels(scene_file)
+        _check_objects(scene_file)
         return scene_file
     except ValueError as error:
         raise ValueError("\n".join(_with_file(path, line) for line in str(error).splitlines())) from None
@@ -66,12 +66,13 @@ def _labels(settings: SceneTable) -> LabelSettings | None:
         return None if settings.labels is None else LabelSettings(**settings.labels.model_dump())
 
 
-def _check_labels(scene_file: SceneFile) -> None:
+def _check_objects(scene_file: SceneFile) -> None:
     """Raises ValueError for objects that are not in the scene: before a long trace."""
-    with blamed("labels.objects"):
-        for _, globs in named_globs(scene_file.labels and scene_file.labels.objects) or []:
-            for glob in globs:
-                _core.hits(glob).check(scene_file.scene)
+    for key, table in (("labels", scene_file.labels), ("truth", scene_file.truth)):
+        with blamed(f"{key}.objects"):
+            for _, globs in named_globs(table and table.objects) or []:
+                for glob in globs:
+                    _core.hits(glob).check(scene_file.scene)
 
 
 def _with_file(path: Path, line: str) -> str:

@@ -12,7 +12,7 @@ from ..parts import as_partitions
 from ..settings import LabelSettings, SignalSettings, TraceSettings
 
 if TYPE_CHECKING:
-    from .schema import AngleTable, DetectionsTable, SequenceTable
+    from .schema import AngleTable, DetectionsTable, SequenceTable, TruthTable
 
 
 @dataclasses.dataclass(frozen=True)
@@ -21,9 +21,9 @@ class SceneFile:
 
     path: of the file; title: one line; scene, radar: ready to trace, radar None of a foreign scene, which has none; parts:
     {name: expression} (one partition), {name: {name: expression}} (several) or {}; trace: TraceSettings, signal:
-    SignalSettings, labels: LabelSettings or None: none are asked for; angle, detections: tables of the file, as keywords by
-    `angle_settings()` and `detection_settings()`; guard: of `ep.simulate`; sequence: table of the file (frames, interval in s,
-    keep), None: one frame.
+    SignalSettings, labels: LabelSettings or None: none are asked for; angle, detections, truth: tables of the file, as keywords
+    by `angle_settings()`, `detection_settings()` and `truth_settings()`; guard: of `ep.simulate`; sequence: table of the file
+    (frames, interval in s, keep), None: one frame.
     """
 
     path: Path
@@ -38,6 +38,7 @@ class SceneFile:
     detections: DetectionsTable | None = None
     guard: bool = True
     sequence: SequenceTable | None = None
+    truth: TruthTable | None = None
 
     def angle_settings(self) -> dict:
         """Keywords of `ep.range_azimuth`, angles in rad; those without a value are left out."""
@@ -54,6 +55,10 @@ class SceneFile:
             return None
         objects = None if self.labels is None else self.labels.objects
         return self.detections.model_dump() | {"objects": objects}
+
+    def truth_settings(self) -> dict | None:
+        """`truth` of `ep.simulate`: keywords of `ep.truth`, None: not asked for."""
+        return None if self.truth is None else self.truth.model_dump(exclude_none=True)
 
     def partitions(self) -> dict:
         """`parts` as {partition: {name: expression}}."""

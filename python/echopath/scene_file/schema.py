@@ -402,6 +402,11 @@ class DetectionsTable(Table):
     max_peaks: int = Field(1, ge=1, description="directions of a cell at most")
 
 
+class TruthTable(Table):
+    objects: Annotated[Any, AfterValidator(_label_objects)] | None = Field(
+        None, description="globs, or name = glob or globs; none: those of [labels]")
+
+
 class SequenceTable(Table):
     frames: int = Field(ge=1, description="number of frames")
     interval: Annotated[float, Field(gt=0, allow_inf_nan=False)] = Field(description="s, from start to start")
@@ -432,5 +437,6 @@ class SceneTable(Table):
         {}, description="name = path expression: one partition; tables of these: several")
     labels: LabelsTable | None = Field(None, description="labels of the map; none: they are not made")
     detections: DetectionsTable | None = Field(None, description="detections in the map; none: they are not made")
+    truth: TruthTable | None = Field(None, description="place, motion and box of each object; none: not kept")
     sequence: SequenceTable | None = Field(None, description="frames in time; none: one frame")
 

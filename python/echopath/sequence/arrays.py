@@ -1,17 +1,23 @@
 """The maps of a sequence as one xarray.Dataset: what StoredSequence.to_xarray does."""
 from __future__ import annotations
 
+import dataclasses
 from pathlib import Path
 
 import numpy as np
 
+from .. import _core
 from ..frame_file.container import our_file
 from ..frame_file.h5 import read_array, read_group
 from ..frame_file.labels import read_all_labels
+from ..frame_file.truth import truth_in
 from ..frame_maps import mean_power
 from ..labels.ghost_names import ghost_name
 from ..labels.labels import NONE
 from ..measures import SMALLEST_POWER, in_dbm
+from ..truth import Truth, joined
+from ..truth.arrays import coordinates
+from ..truth.arrays import variables as truth_variables
 from ..xarray_maps import axis, xarray_module
 
 _INDICES = {"dominant": "dominant", "object": "object_map", "ghost": "ghost_map"}  # variable: field of Labels
@@ -31,7 +37,35 @@ def dataset_of(stored):
     for name, (dims, _, attrs) in list(frames[0][0].items()):  # popped, so that nothing is held twice
         attrs = attrs | ({"names": names[name]} if name in names else {})
         variables[name] = ("time", *dims), np.stack([found.pop(name)[1] for found, _ in frames]), attrs
+    if stored.settings.get("truth") is not None:
+        truth, places = _truth_of([path for _, path in files], range(len(files)))
+        variables |= truth_variables(truth, places, len(files), prefix="truth_")
+        coords |= coordinates(truth, prefix="truth_")
     return xarray.Dataset(variables, coords=coords, attrs={"folder": str(stored.folder), "keep": stored.keep})
+
+
+def truth_of_files(stored) -> Truth:
+    """The Truth of the frames of a StoredSequence that are there; see StoredSequence.truth."""
+    files = [(place, path) for place, path in enumerate(stored.paths_of_files) if path.exists()]
+    if stored.settings.get("truth") is None:
+        raise ValueError(f"{stored.folder}: must be of a run with truth=True, keeps no truth; ep.truth finds that of frames with "
+                         "their paths")
+    if not files:
+        raise ValueError(f"{stored.folder}: must have frames, has none that is done")
+    places, paths = zip(*files)
+    return _truth_of(paths, places)[0]
+
+
+def _truth_of(paths, places) -> tuple:
+    """The Truth of files, and the index of the file of each row [N]; places: of the files, which become numbers of frames."""
+    rows = []
+    for path, place in zip(paths, places):
+        with our_file(path) as file:
+            found = truth_in(file)
+            if found is None:
+                raise _core.FileError("holds no truth, which the run was asked for")
+        rows.append(dataclasses.replace(found, frame=np.full(len(found), place, np.int32)))
+    return joined(rows), np.repeat(np.arange(len(rows)), [len(one) for one in rows])
 
 
 def _variables(path: Path, names: dict) -> tuple[dict, dict]:

@@ -47,7 +47,7 @@ class Sequence(Row[Frame]):
         `trace`; the seed serves all frames, and "auto" scatterers are those of the surfaces, so that speckle goes on from
         frame to frame
     parts, tolerance, method, replay, evaluate, phase_tolerance (rad), retrace, keyframes, noise_seed, window, zero_pad, angles,
-        labels, detections, guard, trace, signal: as in `simulate`
+        labels, detections, truth, guard, trace, signal: as in `simulate`
     times: starts of the frames, [K] in s
     Raises TypeError or ValueError naming the argument, also where a motion does not cover all frames. A frame raises and warns
     as that of `simulate` does.
@@ -55,7 +55,7 @@ class Sequence(Row[Frame]):
 
     @checked({"trace": TraceSettings, "signal": SignalSettings}, **TraceSettings.RULES, **SignalSettings.RULES,
              self=anything, frames=count(1, LARGEST_COUNT), interval=real(unit="s"), parts=anything, angles=anything,
-             labels=anything, detections=anything, guard=flag)
+             labels=anything, detections=anything, truth=anything, guard=flag)
     def __init__(self, scene: _core.Scene, radar: _core.Radar, *, frames: int, interval: float,
                  start_time: float = TraceSettings.start_time, num_rays: int | float | None = TraceSettings.num_rays,
                  max_bounces: int = TraceSettings.max_bounces, seed: int = TraceSettings.seed,
@@ -70,8 +70,8 @@ class Sequence(Row[Frame]):
                  keyframes: int = SignalSettings.keyframes, noise_seed: int | None = SignalSettings.noise_seed,
                  window: Window = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad,
                  angles: Mapping[str, Any] | None = None, labels: bool | LabelSettings | Mapping[str, Any] | None = None,
-                 detections: bool | Mapping[str, Any] | None = None, guard: bool = True, trace: TraceSettings | None = None,
-                 signal: SignalSettings | None = None):
+                 detections: bool | Mapping[str, Any] | None = None, truth: bool | Mapping[str, Any] | None = None,
+                 guard: bool = True, trace: TraceSettings | None = None, signal: SignalSettings | None = None):
         tracing = TraceSettings(num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
                                 polarization=polarization, footprint=footprint, sampler=sampler, batches=batches,
                                 target_error_db=target_error_db, max_rays=max_rays, scatterers=scatterers)
@@ -79,7 +79,7 @@ class Sequence(Row[Frame]):
                                  phase_tolerance=phase_tolerance, retrace=retrace, keyframes=keyframes, noise_seed=noise_seed,
                                  window=window, zero_pad=zero_pad)
         _check_times(scene, radar, start_time, frames, interval)
-        self._run = FrameRun(Scene(scene), radar, tracing, signals, parts, angles, labels, detections, guard)
+        self._run = FrameRun(Scene(scene), radar, tracing, signals, parts, angles, labels, detections, truth, guard)
         self._numbers, self._start_time, self._interval = range(frames), start_time, interval
 
     @property
@@ -126,7 +126,7 @@ class Sequence(Row[Frame]):
         frames that are there and whole are not simulated again, and all have the same bits as without the break. So a
         folder grows, too, with a sequence of more frames. One process at a time may write to a folder.
         folder: new, or of this sequence; keep: "all": frame files as of `save_frame`; "maps": range-Doppler map, labels and
-            detections; "labels": labels and detections alone; see FrameMaps
+            detections; "labels": labels and detections alone; see FrameMaps; each with its truth where the frames have it
         progress: callable (stage, fraction of the frames), True for bars with the time left, or None
         Returns the StoredSequence of `load_sequence`. Raises ValueError naming the folder where it holds another sequence, and
         naming `keep` where the sequence has no labels to be kept; ep.FileError when files cannot be written.
@@ -160,7 +160,8 @@ class Sequence(Row[Frame]):
         return {"frames": len(self), "interval": self._interval, "first_number": self._numbers.start,
                 "number_step": self._numbers.step} | run.trace.keywords() | run.signal.keywords() | {
                     "parts": run.selections, "angles": run.angle_settings, "guard": run.guard,
-                    "labels": None if labels is None else labels.keywords(), "detections": run.detect_keywords}
+                    "labels": None if labels is None else labels.keywords(), "detections": run.detect_keywords,
+                    "truth": run.truth_keywords}
 
     def __repr__(self) -> str:
         return f"Sequence({len(self)} frames {self._span()}, every {self.interval:.6g} s)"

@@ -14,7 +14,8 @@ from ..checks import path as folder_rule
 from ..frame import Frame
 from ..frame_maps import FrameMaps
 from ..scene import Scene
-from .arrays import dataset_of
+from ..truth import Truth
+from .arrays import dataset_of, truth_of_files
 from .contents import NAME, frame_path, read_contents
 from .keep import Keep, read_frame
 from .row import Row
@@ -79,6 +80,14 @@ class StoredSequence(Row[Frame | FrameMaps]):
                                   "called again")
         return read_frame(path, self.keep)
 
+    @property
+    def truth(self) -> Truth:
+        """ep.Truth of all frames that are there, `frame` their places: read from the files, without their paths and signals.
+
+        Raises ValueError where they keep none (`truth=True` of `Sequence` asks for it), ep.FileError for a damaged file.
+        """
+        return truth_of_files(self)
+
     def to_xarray(self):
         """The maps of all frames that are there as an xarray.Dataset, with names and units on every axis.
 
@@ -86,6 +95,7 @@ class StoredSequence(Row[Frame | FrameMaps]):
         dominant, or dominant_NAME for each of several partitions: i16, index of the part; object, ghost: i16, indices into
             `attrs["names"]`, the same in all frames; mask: bool; all [time, range, velocity] (or azimuth), -1: none; where there
             are labels
+        truth_position [time, truth_object, truth_axis] and so on: the fields of Truth, where the files keep it
         Times are the starts of the frames in s. Memory: 11 bytes for each cell of each frame. Needs xarray, raises
         ModuleNotFoundError without it, ep.FileError for a damaged file, ValueError where no frame is there.
         """

@@ -120,9 +120,20 @@ class Truth:
         """
         write_csv(path, self._columns())
 
+    def to_xarray(self):
+        """The same as an xarray.Dataset over time (middle of each frame, s), object and, of vectors, axis (x, y, z) or side of
+        the box (length, width, height); NaN where a frame does not have an object.
+
+        Variables are the fields of this class, `frame` a coordinate beside time; units stand in `attrs["units"]`. Needs xarray,
+        raises ModuleNotFoundError without it.
+        """
+        from .arrays import truth_dataset
+
+        return truth_dataset(self)
+
     def to_records(self) -> np.ndarray:
         """The rows as a structured array [N] whose fields are those of this class, names as UTF-8 of a fixed number of bytes:
-        what HDF5 and .npy files hold. `from_records` reads it."""
+        what .npy files and tables of HDF5 hold. `from_records` reads it."""
         encoded = np.char.encode(self.name.astype(str), "utf-8") if len(self.name) else np.zeros(0, "S1")
         values = {field: encoded if field == "name" else getattr(self, field) for field in _fields()}
         records = np.zeros(len(self), [(field, array.dtype, array.shape[1:]) for field, array in values.items()])

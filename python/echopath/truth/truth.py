@@ -1,6 +1,7 @@
 """Where the objects of frames are, how they move, and how much of them the radar sees."""
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterable
 
 import numpy as np
@@ -10,6 +11,7 @@ from ..checks import checked, refused
 from ..detections.detections import centre_of
 from ..families import Objects, families, named_globs, objects_rule
 from ..frame import Frame
+from ..frame_maps import FrameMaps
 from ..iterables import iterable
 from ..visibility import visibility_in_trace
 from .boxes import STEP, boxes_at, rate_of
@@ -18,36 +20,51 @@ from .record import Truth
 
 _SLOWEST = 1e-4  # m/s, below which there is no heading
 _RULE = "a Frame, Paths, or some of either"
+Described = Frame | FrameMaps | _core.Paths
 
 
 def _frames_rule(argument: str, value):
     """What can be iterated for Frames or Paths; a single one becomes a list of it."""
-    if isinstance(value, (Frame, _core.Paths)):
+    if isinstance(value, Described):
         return [value]
     return iterable(argument, value, _RULE)
 
 
 @checked(frame=_frames_rule, objects=objects_rule)
-def truth(frame: Frame | _core.Paths | Iterable[Frame], objects: Objects = None) -> Truth:
+def truth(frame: Described | Iterable[Frame] | Iterable[FrameMaps] | Iterable[Frame | FrameMaps],
+          objects: Objects = None) -> Truth:
     """Where each object is in the middle of a frame, how it moves, its box, how much of it the radar sees, and how strongly.
 
     The box is the smallest about all vertices of the object at that time along the object's own axes; velocities are
     differences of fourth order over 0.1 ms either side of it (less in shorter frames) of the node's motion, and of bodies that
     deform of the surface's centroid. The radar cross section is that which the radar equation needs for the power that the
     rays brought by direct echoes.
-    frame: a Frame or its Paths, or frames one after the other, used one at a time
-    objects: as in `families`, {name: globs} or globs, which are then the names; None: the objects that labels tell of
+    frame: a Frame or its Paths, or frames one after the other, used one at a time; FrameMaps of small files have a truth where
+        the run was asked for one (`truth=` of `simulate` and `Sequence`)
+    objects: as in `families`, {name: globs} or globs, which are then the names; None: those that the run was asked for, or the
+        objects that labels tell of
     Returns a Truth, a row for each object of each frame, in SI units. Raises TypeError or ValueError naming the argument, also
     for globs that take no mesh.
     """
     rows = []
     for number, one in enumerate(frame):
-        if not isinstance(one, (Frame, _core.Paths)):
+        if not isinstance(one, Described):
             raise refused(TypeError, "frame", _RULE, one)
-        rows.append(truth_of_frame(one, objects, number))
+        rows.append(_truth_of(one, objects, number))
     if not rows:
         raise ValueError("frame: must be one at least, got none")
-    return rows[0] if len(rows) == 1 else _joined(rows)
+    return joined(rows)
+
+
+def _truth_of(frame, objects, number: int) -> Truth:
+    """What a frame keeps, or what follows from its paths."""
+    kept = None if isinstance(frame, _core.Paths) else frame.kept_truth
+    if kept is not None and objects is None:
+        return dataclasses.replace(kept, frame=np.full(len(kept), number, np.int32))
+    if isinstance(frame, FrameMaps):
+        rule = "of a run with truth=True" if kept is None else "a Frame for objects of a call, which need its paths"
+        raise refused(ValueError, "frame", rule, frame)
+    return truth_of_frame(frame, objects, number)
 
 
 def truth_of_frame(frame, objects=None, number: int = 0) -> Truth:
@@ -104,5 +121,8 @@ def _yaw(rotation):
     return np.arctan2(rotation[:, 1, 0], rotation[:, 0, 0])
 
 
-def _joined(rows: list) -> Truth:
+def joined(rows: list) -> Truth:
+    """The rows of several Truths, one after the other."""
+    if len(rows) == 1:
+        return rows[0]
     return Truth(**{field: np.concatenate([getattr(one, field) for one in rows]) for field in Truth.__dataclass_fields__})

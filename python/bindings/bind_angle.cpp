@@ -94,10 +94,10 @@ void warn_of_blindness(const Radar& radar) {
 
 RangeAzimuth range_azimuth_map(const RangeDoppler& map, const Radar& radar, const AngleGrid& angles,
                                const BeamformOptions& beams, const py::object& progress, std::optional<double> velocity,
-                               std::string combine) {
+                               std::string combine, std::optional<std::array<double, 2>> gate) {
   require(combine == "sum" || combine == "peak", "combine", "must be 'sum' or 'peak'", "'" + combine + "'");
   warn_of_blindness(radar);
-  const VelocityChoice choice{velocity, combine == "sum" ? Combine::kSum : Combine::kPeak};
+  const VelocityChoice choice{velocity, combine == "sum" ? Combine::kSum : Combine::kPeak, gate};
   return run_job("range_azimuth", progress,
                  [&](Job& job) { return range_azimuth(map, radar, angles, choice, beams, &job); });
 }
@@ -130,7 +130,7 @@ void bind_angle(py::module_& m) {
         py::arg("progress") = py::none(), "What ep.angle_fft calls.");
   def_beams(m, "beamform", py::float_(0.0), kPictureStep, &beam_power, py::arg("cells") = py::none());
   def_beams(m, "range_azimuth", py::float_(0.0), kPictureStep, &range_azimuth_map, py::arg("velocity") = py::none(),
-            py::arg("combine") = "sum");
+            py::arg("combine") = "sum", py::arg("velocity_gate") = py::none());
   const EstimateOptions standard;
   def_beams(m, "estimate_angles", py::none(), kSearchStep, &estimates, py::arg("cells"),
             py::arg("max_peaks") = standard.max_peaks, py::arg("peak_range_db") = standard.peak_range_db,

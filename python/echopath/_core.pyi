@@ -3140,7 +3140,7 @@ def power_shares(power: typing.Any) -> numpy.ndarray[typing.Any, typing.Any]:
     """
     Shares of the powers [K, V, R] in their sums.
     """
-def range_azimuth(spectrum: RangeDoppler, radar: Radar, azimuth: typing.Any = None, elevation: typing.Any = 0.0, *, velocity: float | None = None, combine: str = 'sum', method: str = 'bartlett', window: typing.Any = 'rect', overlaps: str = 'average', compensate: bool = True, diagonal_loading: float = 0.01, velocity_neighbours: int = 1, range_neighbours: int = 2, forward_backward: bool = False, progress: typing.Any = None) -> RangeAzimuth:
+def range_azimuth(spectrum: RangeDoppler, radar: Radar, azimuth: typing.Any = None, elevation: typing.Any = 0.0, *, velocity: float | None = None, combine: str = 'sum', velocity_gate: typing.Annotated[collections.abc.Sequence[float], "FixedSize(2)"] | None = None, method: str = 'bartlett', window: typing.Any = 'rect', overlaps: str = 'average', compensate: bool = True, diagonal_loading: float = 0.01, velocity_neighbours: int = 1, range_neighbours: int = 2, forward_backward: bool = False, progress: typing.Any = None) -> RangeAzimuth:
     """
     What the function of that name in ep calls.
     """

@@ -5,6 +5,7 @@ from typing import Literal
 
 from . import _core
 from .checks import LARGEST_COUNT, ArrayLike, Progress, Window, array, checked, count, flag, one_of, optional, real
+from .gates import gate
 
 BeamMethod = Literal["bartlett", "capon"]
 Overlaps = Literal["average", "first"]
@@ -100,12 +101,12 @@ def beamform(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLik
                           range_neighbours=range_neighbours, forward_backward=forward_backward, progress=progress)
 
 
-@checked(**_BEAM_RULES, velocity=optional(real(unit="m/s")), combine=one_of(Combine))
+@checked(**_BEAM_RULES, velocity=optional(real(unit="m/s")), combine=one_of(Combine), velocity_gate=gate)
 def range_azimuth(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLike | None = None,
                   elevation: ArrayLike | None = 0.0, *, velocity: float | None = None, combine: Combine = "sum",
-                  method: BeamMethod = "bartlett", window: Window = "rect", overlaps: Overlaps = "average",
-                  compensate: bool = True, diagonal_loading: float = 0.01, velocity_neighbours: int = 1,
-                  range_neighbours: int = 2, forward_backward: bool = False,
+                  velocity_gate: ArrayLike | None = None, method: BeamMethod = "bartlett", window: Window = "rect",
+                  overlaps: Overlaps = "average", compensate: bool = True, diagonal_loading: float = 0.01,
+                  velocity_neighbours: int = 1, range_neighbours: int = 2, forward_backward: bool = False,
                   progress: Progress = None) -> _core.RangeAzimuth:
     """Received power by range and azimuth.
 
@@ -117,14 +118,16 @@ def range_azimuth(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: Arr
     combine: of all velocities, their "sum", or "peak", the largest of them. A point gives its received power in W in every
         case, points of several velocities the sum or the largest. Noise of the sum is that of one chirp, noise of the peak
         about ln(num_chirps) times that of a cell.
+    velocity_gate: (lowest, highest) in m/s of "all velocities", as the map has them; None: those of the map
     method, window, overlaps, compensate, diagonal_loading, velocity_neighbours, range_neighbours, forward_backward: of the
         beams, as in `beamform`
     progress: callable (stage, fraction), True for bars, or None
     Returns a RangeAzimuth with power [azimuth, range] in W. Raises TypeError or ValueError naming the argument. Warns
     (RuntimeWarning) where the antennas tell no azimuths apart.
     """
-    return _core.range_azimuth(spectrum, radar, azimuth, elevation, velocity=velocity, combine=combine, method=method,
-                               window=window, overlaps=overlaps, compensate=compensate, diagonal_loading=diagonal_loading,
+    return _core.range_azimuth(spectrum, radar, azimuth, elevation, velocity=velocity, combine=combine,
+                               velocity_gate=velocity_gate, method=method, window=window, overlaps=overlaps,
+                               compensate=compensate, diagonal_loading=diagonal_loading,
                                velocity_neighbours=velocity_neighbours, range_neighbours=range_neighbours,
                                forward_backward=forward_backward, progress=progress)
 

@@ -7,7 +7,8 @@ import numpy as np
 
 from . import _core
 from .angles import range_azimuth
-from .checks import keywords, optional, real
+from .checks import keywords, optional, real, refused
+from .gates import gate
 from .keywords import parameters_of
 
 DEFAULTS = {"combine": "peak"}  # noise as low as in the cells of the range-Doppler map
@@ -21,9 +22,18 @@ def sees_azimuth(radar) -> bool:
     return len(azimuth) > 1
 
 
-def checked_settings(radar, settings) -> dict:
-    """Keywords of `ep.range_azimuth` for a radar, DEFAULTS for None; raises what it would raise, before a long trace."""
-    settings = dict(DEFAULTS) if settings is None else _KEYWORDS("angles", settings)
+def checked_settings(radar, settings, velocity_gate=None) -> dict:
+    """Keywords of `ep.range_azimuth` for a radar, DEFAULTS for None; raises what it would raise, before a long trace.
+
+    velocity_gate: (lowest, highest) in m/s beside the settings, or None
+    """
+    settings = dict(DEFAULTS) if settings is None else dict(_KEYWORDS("angles", settings))
+    if velocity_gate is not None:
+        if settings.get("velocity_gate") is not None:
+            raise refused(ValueError, "velocity_gate", "None where angles has one", velocity_gate)
+        settings["velocity_gate"] = velocity_gate
+    if gate("velocity_gate", settings.get("velocity_gate")) and settings.get("velocity") is not None:
+        raise refused(ValueError, "velocity_gate", "None where a velocity is chosen", settings["velocity_gate"])
     velocity = optional(real(unit="m/s"))("velocity", settings.get("velocity"))
     limit = radar.waveform.max_velocity(len(radar.transmitters))
     if velocity is not None and abs(velocity) > limit:
@@ -32,7 +42,7 @@ def checked_settings(radar, settings) -> dict:
     cube = np.zeros((len(radar.transmitters), len(radar.receivers), 1, 1))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # a radar that sees no azimuth gets no map: `sees_azimuth`
-        range_azimuth(_core.range_doppler(cube, small), small, **settings | {"velocity": None})
+        range_azimuth(_core.range_doppler(cube, small), small, **settings | {"velocity": None, "velocity_gate": None})
     return settings
 
 

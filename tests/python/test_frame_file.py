@@ -67,6 +67,17 @@ def saved(frame, tmp_path):
     return path
 
 
+def test_every_keyword_of_a_map_from_above_is_read_again(tmp_path):
+    wave = ep.speed_of_light / 77e9
+    radar = build_radar(receivers=tuple((0, 0.5 * wave * n, 0) for n in range(4)), num_chirps=16)
+    angles = {"overlaps": "first", "compensate": False, "velocity_gate": (-2.0, 2.0), "combine": "sum", "velocity_neighbours": 2}
+    made = ep.simulate(curved_scene(), radar, num_rays=300, angles=angles, guard=False)
+    ep.save_frame(made, tmp_path / "frame.h5")
+    found = ep.load_frame(tmp_path / "frame.h5")
+    assert found.angle_settings | {"velocity_gate": (-2.0, 2.0)} == angles
+    assert_same_bits(found.range_azimuth.power, made.range_azimuth.power)
+
+
 def assert_same_bits(one, other):
     one, other = np.asarray(one), np.asarray(other)
     assert one.dtype == other.dtype and one.shape == other.shape and one.tobytes() == other.tobytes()

@@ -180,6 +180,12 @@ velocity = 1.5
     assert (settings["window"], settings["combine"], settings["velocity"]) == (("chebyshev", 40), "sum", 1.5)
 
 
+def test_a_map_from_above_may_have_a_velocity_gate(write):
+    assert ep.load_scene(write("[angle]\nvelocity_gate = [-3, 3.5]\n")).angle_settings()["velocity_gate"] == (-3.0, 3.5)
+    with pytest.raises(ValueError, match="angle.velocity_gate: must be a pair .low, high."):
+        ep.load_scene(write("[angle]\nvelocity_gate = [3, -3.5]\n"))
+
+
 def test_one_flat_table_of_parts_is_one_partition(write):
     assert ep.load_scene(write('[parts]\ndirect = "T . R"\n')).partitions() == {"parts": {"direct": "T . R"}}
 

@@ -251,6 +251,34 @@ def test_range_and_azimuth_over_time_follow_a_ball(passing, combine):
         assert 0.0 < found.noise_power < 1e-3 * found.power.max()
 
 
+def test_a_velocity_gate_leaves_out_what_stands_still():
+    """A strong point at rest and a weak one that recedes, at other azimuths: each alone in the gate of its velocity."""
+    radar = array_radar(num_chirps=32)
+    rate = radar.waveform.velocity_resolution()
+    distance = 20.0 * radar.waveform.range_resolution
+    elements = np.arange(8)[:, None, None]
+    cube = sum(tone(radar, distance, velocity, power) * np.exp(-1j * np.pi * elements * np.sin(azimuth))
+               for velocity, azimuth, power in ((0.0, -0.3, 1e-9), (8.0 * rate, 0.4, 1e-12)))
+    frames = [cube, cube]
+    for gate, azimuth, power in ((None, -0.3, 1e-9), ((4.0 * rate, 12.0 * rate), 0.4, 1e-12),
+                                 ((-3.0 * rate, 3.0 * rate), -0.3, 1e-9)):
+        for combine in ("sum", "peak"):
+            found = ep.angle_time(frames, radar, velocity_gate=gate, combine=combine)
+            assert found.ridge == pytest.approx([azimuth] * 2, abs=0.03)  # of a beam of 0.25 rad
+            assert found.power.max() / power == pytest.approx(1.0, rel=0.03)
+            assert found.velocity_gate == gate
+    still, goes = (ep.angle_time(frames, radar, velocity_gate=gate, angles={"combine": "sum"}).noise_power
+                   for gate in (None, (0.0, 16.0 * rate)))
+    assert goes / still == pytest.approx(0.5, rel=0.3)  # of a sum over half of the velocities
+    assert pickle.loads(pickle.dumps(found)) == found
+    for wrong, words in (({"velocity_gate": (3.0, 1.0)}, "velocity_gate: must be a pair"),
+                         ({"velocity_gate": (900.0, 901.0)}, "velocity_gate: must hold a cell"),
+                         ({"velocity_gate": (0, 1), "angles": {"velocity": 0.0}}, "velocity_gate: must be None"),
+                         ({"angles": 3}, "angles: must be")):
+        with pytest.raises((TypeError, ValueError), match=words):
+            ep.angle_time(frames, radar, **wrong)
+
+
 def test_windows_of_a_long_frame_are_columns(passing):
     found = ep.range_time(passing, window_length=8)
     assert found.power.shape[0] == 6 * 4 and np.all(np.diff(found.times) > 0)

@@ -10,11 +10,13 @@ from typing import get_args
 import numpy as np
 
 from .. import _core
+from ..angles import range_azimuth
 from ..azimuth_map import checked_settings
 from ..checks import an, anything, checked, real, refused, text
 from ..detections.echo_fields import EchoFields
 from ..frame import Frame, with_spectra
 from ..interrupts import interrupts_are_kept
+from ..keywords import parameters_of
 from ..labels.labels import Labels
 from ..settings import Evaluate, Replay, Retrace
 from .checks import read_checks, write_checks
@@ -31,8 +33,7 @@ from .truth import truth_in, write_truth
 # Settings of a signal and the values that each may have.
 SIGNAL_SETTINGS = {"replay": get_args(Replay), "evaluate": get_args(Evaluate), "retrace": get_args(Retrace)}
 SPECTRUM_KEYS = ("window", "zero_pad")
-ANGLE_KEYS = ("method", "azimuth", "elevation", "velocity", "combine", "window", "diagonal_loading", "range_neighbours",
-              "forward_backward")
+ANGLE_KEYS = parameters_of(range_azimuth)[2:-1]  # all but spectrum, radar and progress
 
 
 def _labels(argument: str, value) -> dict:

@@ -10,17 +10,18 @@ from .. import _core
 from ..angles import Combine, range_azimuth
 from ..azimuth_map import checked_settings, sees_azimuth
 from ..checks import ArrayLike, Window, anything, checked, one_of
+from ..gates import gate, in_gate
 from ..settings import SignalSettings
 from .bursts import Burst, Channel, Frames, Part, bursts, chirp_period, text_of_part
 from .maps import AngleTime, RangeTime
-from .spectrogram import IN_TIME_RULES, gate_rule, in_gate
+from .spectrogram import IN_TIME_RULES
 from .stft import noise_bandwidth, with_chirps
 
 _NOISE_SEED = 1  # of the noise whose mean in a map is measured
 _RULES = IN_TIME_RULES | {"combine": one_of(Combine)}
 
 
-@checked(**_RULES, velocity_gate=gate_rule)
+@checked(**_RULES, velocity_gate=gate)
 def range_time(frames: Frames, radar: _core.Radar | None = None, *, combine: Combine = "sum",
                velocity_gate: ArrayLike | None = None, window_length: int | None = None, hop: int | None = None,
                window: Window = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad, part: Part = None,
@@ -51,16 +52,19 @@ def range_time(frames: Frames, radar: _core.Radar | None = None, *, combine: Com
                      velocity_gate=(float(velocities[0]), float(velocities[-1])), channel=channel)
 
 
-@checked(**_RULES, range_gate=gate_rule, angles=anything)
+@checked(**_RULES, range_gate=gate, velocity_gate=gate, angles=anything)
 def angle_time(frames: Frames, radar: _core.Radar | None = None, *, combine: Combine = "sum",
-               range_gate: ArrayLike | None = None, angles: dict[str, Any] | None = None, window_length: int | None = None,
-               hop: int | None = None, window: Window = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad,
+               range_gate: ArrayLike | None = None, velocity_gate: ArrayLike | None = None,
+               angles: dict[str, Any] | None = None, window_length: int | None = None, hop: int | None = None,
+               window: Window = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad,
                part: Part = None, start_times: ArrayLike | None = None) -> AngleTime:
     """Received power by time and azimuth: of each frame's range-azimuth map, all ranges as one.
 
     frames, radar, part, start_times: as in `spectrogram`; combine, window_length, hop, window, zero_pad: as in `range_time`,
         of the ranges in the gate
     range_gate: (nearest, farthest) in m of the ranges that count, None: all
+    velocity_gate: (lowest, highest) in m/s of the velocities that count, as the range-Doppler map has them; None: all. What
+        stands still, for example, is left out by one that does not hold 0
     angles: keywords of `range_azimuth` for the maps, None: {"combine": "peak"}, as the maps of frames
     Returns an AngleTime with power [times, azimuth] in W. Raises TypeError or ValueError naming the argument, also for radars
     that see no azimuth.
@@ -68,7 +72,7 @@ def angle_time(frames: Frames, radar: _core.Radar | None = None, *, combine: Com
     columns = _Columns(bursts(frames, radar, part=part, start_times=start_times), window_length, hop)
     if not sees_azimuth(columns.radar):
         raise ValueError("frames: angle_time needs antennas side by side, got a radar that sees no azimuth")
-    settings = checked_settings(columns.radar, angles)
+    settings = checked_settings(columns.radar, angles, velocity_gate)
     spread = noise_bandwidth(window, columns.radar.waveform.num_samples) * zero_pad
 
     def map_of(spectrum, one):
@@ -85,7 +89,7 @@ def angle_time(frames: Frames, radar: _core.Radar | None = None, *, combine: Com
     ranges = empty.range[inside]
     return AngleTime(times=columns.times, azimuth=empty.azimuth.copy(), power=power, combine=combine, window=window,
                      noise_power=columns.noise(column, window, zero_pad), zero_pad=zero_pad, part=text_of_part(part),
-                     range_gate=(float(ranges[0]), float(ranges[-1])))
+                     range_gate=(float(ranges[0]), float(ranges[-1])), velocity_gate=velocity_gate)
 
 
 class _Columns:

@@ -141,11 +141,13 @@ class AngleTime(TimeMap):
     power: [T, A] W; of all ranges of the gate the sum or the peak. A point gives its received power
     noise_power: W, mean of the receiver's noise in a cell, measured in one drawn map; combine: "sum" or "peak"
     window, zero_pad: as in `range_doppler`; range_gate: (nearest, farthest) range that is taken, m
+    velocity_gate: (lowest, highest) velocity that was asked for, m/s, None: all
     part: what was asked for, as text, None: the whole
     """
 
     azimuth: np.ndarray
     combine: str
     range_gate: tuple
+    velocity_gate: tuple | None = None
 
     AXIS, TITLE = "azimuth", "Received power by time and azimuth"

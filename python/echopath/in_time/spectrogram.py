@@ -4,7 +4,8 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..checks import ArrayLike, Window, an, array, checked, count, flag, optional, refused
+from ..checks import ArrayLike, Window, an, array, checked, count, flag, optional
+from ..gates import gate, in_gate
 from ..settings import SignalSettings
 from .bursts import Channel, Frames, Part, bursts, channel_rule, chirp_period, frames_rule, part_rule, text_of_part
 from .maps import Spectrogram
@@ -19,17 +20,7 @@ IN_TIME_RULES = {
     "window_length": optional(count(1, MOST_CHIRPS)), "hop": optional(count(1, MOST_CHIRPS))}
 
 
-def gate_rule(argument: str, value):
-    """None, or (low, high)."""
-    if value is None:
-        return None
-    low, high = array("[2]", finite=True)(argument, value)
-    if not low <= high:
-        raise refused(ValueError, argument, "a pair (low, high), the lower first", value)
-    return float(low), float(high)
-
-
-@checked(**IN_TIME_RULES, range_gate=gate_rule, span_frames=flag)
+@checked(**IN_TIME_RULES, range_gate=gate, span_frames=flag)
 def spectrogram(frames: Frames, radar: _core.Radar | None = None, *, window_length: int | None = None, hop: int | None = None,
                 window: Window = SignalSettings.window, range_gate: ArrayLike | None = None, part: Part = None,
                 channel: Channel = None, zero_pad: int = SignalSettings.zero_pad, span_frames: bool = False,
@@ -118,14 +109,3 @@ class _Stft:
     def _noise_power(self) -> float:
         of_cell = _core.cell_noise_power(with_chirps(self._radar, self._length), self._window)
         return of_cell * np.count_nonzero(self._inside) / self._spread
-
-
-def in_gate(argument: str, axis, gate, unit: str):
-    """Which entries of an axis a gate takes, bool [X]; all for None. Raises ValueError where there are none."""
-    if gate is None:
-        return np.ones(len(axis), bool)
-    inside = (axis >= gate[0]) & (axis <= gate[1])
-    if not inside.any():
-        raise ValueError(f"{argument}: must hold a cell of the axis from {axis[0]:.4g} to {axis[-1]:.4g} {unit} in steps of "
-                         f"{(axis[-1] - axis[0]) / max(len(axis) - 1, 1):.3g} {unit}, got {gate[0]:g} to {gate[1]:g}")
-    return inside

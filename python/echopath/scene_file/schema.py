@@ -14,6 +14,7 @@ from pydantic_core import PydanticCustomError
 
 from .. import _core
 from ..checks import Rule, window
+from ..gates import gate
 from ..parts import are_tables
 from ..settings import (
     MOST_BATCHES, MOST_BOUNCES, MOST_RAYS, Evaluate, Footprint, LabelSettings, Plane, Polarization, Replay, Retrace, Sampler,
@@ -353,6 +354,7 @@ class AngleTable(Table):
     elevation_deg: Annotated[Any, AfterValidator(_elevations)] = Field(
         0.0, description="degrees, or a list: the largest power over them")
     velocity: Number | None = Field(None, description="m/s, of the cells shown; none: all")
+    velocity_gate: Annotated[Any, by_check(gate)] | None = Field(None, description="m/s, [lowest, highest] of all velocities")
     combine: Literal["sum", "peak"] = Field("peak", description="of all velocities: the largest, or their sum")
     window: Window = Field("rect", description="over the array, of bartlett; others than rect for grids of equal steps")
     diagonal_loading: Annotated[float, Field(ge=1e-9, le=1e3)] = Field(

@@ -66,6 +66,32 @@ TEST(RangeAzimuth, PointsOfSeveralVelocitiesAddTheirPowersOrGiveTheLargest) {
   EXPECT_NEAR(range_azimuth(map, radar, kGrid, {map.velocity[3]}).power[2 * kSamples + 7], 1.0, kPower);
 }
 
+TEST(RangeAzimuth, AGateTakesPointsOfItsVelocitiesAlone) {
+  const Radar radar = testing::line_radar(6, kChirps, kSamples);
+  std::vector<Complex> cube(6 * kChirps * kSamples);
+  add_tone(cube, radar, 7.0, 2.0, kLeft, 3.0);
+  add_tone(cube, radar, 7.0, -5.0, kLeft, 1.0);
+  const RangeDoppler map = range_doppler(cube, radar, {WindowKind::kHann});
+  const auto velocity = [&](int bin) { return map.velocity[kChirps / 2 + bin]; };
+  BeamformOptions capon;
+  capon.method = BeamMethod::kCapon;
+  for (const Combine combine : {Combine::kSum, Combine::kPeak}) {
+    for (const BeamformOptions& options : {BeamformOptions{}, capon}) {
+      const auto power = [&](int low, int high) {
+        const VelocityChoice choice{{}, combine, std::array{velocity(low), velocity(high)}};
+        return range_azimuth(map, radar, kGrid, choice, options).power[2 * kSamples + 7];
+      };
+      EXPECT_NEAR(power(0, 4), 9.0, kPower);  // the main lobe of a Hann window is four cells
+      EXPECT_NEAR(power(-7, -3), 1.0, kPower);
+      EXPECT_NEAR(power(-1, 0), 0.0, kPower) << "between them";
+    }
+  }
+  const VelocityChoice nothing{{}, Combine::kSum, std::array{velocity(1) + 1e-6, velocity(2) - 1e-6}};
+  EXPECT_THROW(range_azimuth(map, radar, kGrid, nothing), std::invalid_argument);
+  const VelocityChoice both{velocity(1), Combine::kSum, std::array{velocity(0), velocity(2)}};
+  EXPECT_THROW(range_azimuth(map, radar, kGrid, both), std::invalid_argument);
+}
+
 TEST(RangeAzimuth, BothMethodsGiveTheMeanOverChirps) {
   // Without a window the sum over velocities is the mean power over chirps (Parseval), whatever the chirps hold.
   const Radar radar = testing::line_radar(4, kChirps, kSamples);

@@ -72,15 +72,15 @@ CellBeam BeamSource::cell(int64_t velocity, int64_t range, int fold) const {
   return {covariance(neighbourhood(velocity, range, fold)), own, options_.diagonal_loading};
 }
 
-CellBeam BeamSource::all_velocities(int64_t range) const {
-  const int64_t num_velocities = reader_.num_velocities();
+CellBeam BeamSource::velocities(int64_t begin, int64_t end, int64_t range) const {
+  const int64_t num_velocities = end - begin;
   const bool is_capon = options_.method == BeamMethod::kCapon;
   const int64_t reach = is_capon ? options_.range_neighbours : 0;
   const int64_t first = std::max<int64_t>(0, range - reach), last = std::min(reader_.num_ranges() - 1, range + reach);
   const int64_t count = last - first + 1;
   MatrixXcd own(reader_.num_elements(), num_velocities), all(reader_.num_elements(), num_velocities * count);
   for (int64_t v = 0; v < num_velocities; ++v) {
-    reader_.read(v, first, count, all.middleCols(v * count, count));
+    reader_.read(begin + v, first, count, all.middleCols(v * count, count));
     own.col(v) = all.col(v * count + range - first);
   }
   if (!is_capon) return {weights_, own};

@@ -32,12 +32,11 @@ class BeamSource {
   BeamSource(const BeamSource&) = delete;
 
   const VirtualArray& array() const { return array_; }
-  int64_t num_velocities() const { return reader_.num_velocities(); }
 
   // Returns the beam of one cell; `fold` as in ElementReader::read.
   CellBeam cell(int64_t velocity, int64_t range, int fold = 0) const;
-  // Returns the beam of one range over all its velocities.
-  CellBeam all_velocities(int64_t range) const;
+  // Returns the beam of one range over its velocities [begin, end).
+  CellBeam velocities(int64_t begin, int64_t end, int64_t range) const;
   // Returns for Bartlett the snapshots of ranges [first, first + count) of one velocity times the weights, [elements,
   // count].
   Eigen::MatrixXcd weighted(int64_t velocity, int64_t first, int64_t count) const;

@@ -28,18 +28,42 @@ int64_t nearest_velocity(const RangeDoppler& map, double velocity) {
   return nearest - map.velocity.begin();
 }
 
+// Velocities [begin, end) of a map.
+struct VelocityRows {
+  int64_t begin, end;
+};
+
+VelocityRows rows_in(const RangeDoppler& map, const std::array<double, 2>& gate) {
+  const auto& axis = map.velocity;
+  const VelocityRows rows{std::lower_bound(axis.begin(), axis.end(), gate[0]) - axis.begin(),
+                          std::upper_bound(axis.begin(), axis.end(), gate[1]) - axis.begin()};
+  require(rows.begin < rows.end, "velocity_gate",
+          "must hold a cell of the axis (" + std::to_string(axis.front()) + " to " + std::to_string(axis.back()) + " m/s)",
+          std::to_string(gate[0]) + " to " + std::to_string(gate[1]));
+  return rows;
+}
+
+VelocityRows chosen_rows(const RangeDoppler& map, const VelocityChoice& choice) {
+  if (choice.velocity) {
+    require(!choice.gate, "velocity_gate", "must not stand beside velocity", *choice.velocity);
+    const int64_t row = nearest_velocity(map, *choice.velocity);
+    return {row, row + 1};
+  }
+  return choice.gate ? rows_in(map, *choice.gate) : VelocityRows{0, static_cast<int64_t>(map.velocity.size())};
+}
+
 // Computes the map of one choice of velocities, by strips of ranges.
 struct Picture {
   const BeamSource& source;
   const BeamKernel& beams;
-  std::optional<int64_t> velocity;
+  VelocityRows rows;
+  bool is_one_cell;  // not all velocities, but those of a cell
   Combine combine;
   const Job* job;
 
   BeamKernel::Powers bartlett(int64_t first, int64_t count) const {
     BeamKernel::Powers power(beams.num_directions() * BeamKernel::kColumns);
-    const int64_t begin = velocity.value_or(0), end = velocity ? begin + 1 : source.num_velocities();
-    for (int64_t v = begin; v < end; ++v) {
+    for (int64_t v = rows.begin; v < rows.end; ++v) {
       if (job) job->throw_if_cancelled();
       beams.add_squares(source.weighted(v, first, count), combine, power);
     }
@@ -49,7 +73,8 @@ struct Picture {
   BeamKernel::Powers capon(int64_t first, int64_t count) const {
     BeamKernel::Powers power(beams.num_directions() * BeamKernel::kColumns);
     for (int64_t i = 0; i < count; ++i) {
-      const CellBeam beam = velocity ? source.cell(*velocity, first + i) : source.all_velocities(first + i);
+      const CellBeam beam =
+          is_one_cell ? source.cell(rows.begin, first + i) : source.velocities(rows.begin, rows.end, first + i);
       const Eigen::VectorXd values = beam.power(beams, combine, job);
       for (int64_t d = 0; d < values.size(); ++d) power[d * BeamKernel::kColumns + i] = values[d];
     }
@@ -64,15 +89,12 @@ RangeAzimuth range_azimuth(const RangeDoppler& map, const Radar& radar, const An
   angles.validate();
   const BeamSource source(map, radar, options);
   RangeAzimuth result{angles.azimuth, map.range, angles.elevation, {}, {}};
-  std::optional<int64_t> row;
-  if (choice.velocity) {
-    row = nearest_velocity(map, *choice.velocity);
-    result.velocity = map.velocity[*row];
-  }
-  const bool is_sum = !row && choice.combine == Combine::kSum;
+  const VelocityRows rows = chosen_rows(map, choice);
+  if (choice.velocity) result.velocity = map.velocity[rows.begin];
+  const bool is_sum = !choice.velocity && choice.combine == Combine::kSum;
   const double scale = is_sum ? share_of_sum(map, radar.waveform.num_chirps) : 1.0;
   const BeamKernel beams(steering_vectors(source.array(), angles.directions()));
-  const Picture picture{source, beams, row, choice.combine, job};
+  const Picture picture{source, beams, rows, choice.velocity.has_value(), choice.combine, job};
   const int64_t num_ranges = static_cast<int64_t>(map.range.size());
   const int64_t num_azimuths = static_cast<int64_t>(angles.azimuth.size());
   result.power.assign(num_azimuths * num_ranges, 0.0);

@@ -1,5 +1,6 @@
 #pragma once
 // Computes range-azimuth maps: received power by range and direction.
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -13,8 +14,9 @@ namespace echopath {
 
 // Selects the velocities that a range-azimuth map shows.
 struct VelocityChoice {
-  std::optional<double> velocity;   // m/s, of the cells taken; none: all velocities
-  Combine combine = Combine::kSum;  // for all velocities: their sum, or the largest of them
+  std::optional<double> velocity;             // m/s, of the cells taken; none: all velocities
+  Combine combine = Combine::kSum;            // for all velocities: their sum, or the largest of them
+  std::optional<std::array<double, 2>> gate = {};  // m/s, lowest and highest of "all velocities"; none: those of the map
 };
 
 struct RangeAzimuth {
@@ -33,9 +35,10 @@ struct RangeAzimuth {
 //   With kSum, it divides the sum of all velocities by their number and by the window's noise bandwidth over the number of
 //     chirps: the mean over chirps, weighted by the squared window. Points of several velocities add up. Noise of power P
 //     in one sample of a range profile gives P / N for N elements (Bartlett without a window): chirps give no gain.
-// With all velocities Capon's covariance is that of a range and its neighbours, over all velocities.
+// With all velocities Capon's covariance is that of a range and its neighbours, over all velocities. A gate leaves out the
+// other velocities; noise of the sum falls by the share of the velocities that it takes.
 // Runs in parallel over ranges; the result does not depend on the threads. Raises as `beamform`, and invalid_argument unless
-// |velocity| is within half a cell of the map's axis.
+// |velocity| is within half a cell of the map's axis, and for gates without a velocity of it or beside `velocity`.
 RangeAzimuth range_azimuth(const RangeDoppler& map, const Radar& radar, const AngleGrid& angles,
                            const VelocityChoice& choice = {}, const BeamformOptions& options = {}, Job* job = nullptr);
 

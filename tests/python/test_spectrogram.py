@@ -93,8 +93,58 @@ def test_no_window_spans_a_gap():
     assert found.power == pytest.approx(np.concatenate([joined.power, alone.power]))
     assert found.times == pytest.approx(np.concatenate([joined.times, alone.times + 100 * period]))
     assert "no window spans a gap" in repr(found) and "one train" in repr(joined)
-    apart = ep.spectrogram(cubes, radar, window_length=16, hop=8, start_times=starts)
-    assert len(apart.trains) == 4 and len(apart.times) == 12
+    assert ep.spectrogram(cubes, radar, window_length=16, hop=8, start_times=starts) == found  # they are told to go on
+    for told in ({"start_times": starts, "span_frames": False}, {}):
+        apart = ep.spectrogram(cubes, radar, window_length=16, hop=8, **told)
+        assert len(apart.trains) == 4 and len(apart.times) == 12
+
+
+LEAKED = 0.01  # share of the power beyond the main lobe, of a plate whose points differ by 1 % in radial velocity
+
+
+def rough_plate(scatterers, smooth=False):
+    """Three frames without gaps of a plate that recedes at 3 m/s, with a share of power beyond the main lobe of its velocity."""
+    scene = ep.Scene()
+    material = "metal" if smooth else ep.Material(reflectivity=0.3, scattering=1.0)
+    scene.add(ep.actors.plate(0.5, 0.5), name="plate", material=material, position=(6, 0, 0),
+              motion=ep.LinearMotion(velocity=(3, 0, 0)))
+    radar = build_radar(num_chirps=64, chirp_interval=100e-6, transmit_power=10.0)
+    return ep.Sequence(scene, radar, frames=3, interval=64 * 100e-6, num_rays=3000, scatterers=scatterers, noise_seed=None,
+                       guard=False)
+
+
+def leaked(found):
+    cell = found.velocity[1] - found.velocity[0]
+    return 1.0 - found.power[:, np.abs(found.velocity - 3.0) < 2.5 * cell].sum() / found.power.sum()
+
+
+def test_windows_go_on_over_frames_whose_scatterers_persist():
+    """Of a plate that goes straight on, all windows of frames in a row have the power at its velocity."""
+    frames = list(rough_plate("auto"))
+    found = ep.spectrogram(frames, window_length=64, hop=16)
+    assert len(found.trains) == 1 and len(found.times) == 9
+    assert leaked(found) < LEAKED
+    assert len(ep.spectrogram(frames, window_length=64, hop=16, span_frames=False).trains) == 3
+    gap = ep.spectrogram([frames[0], frames[2]], window_length=64)
+    assert len(gap.trains) == 2  # the chirps do not go on
+
+
+def test_windows_stay_within_frames_whose_scatterers_are_their_own():
+    frames = rough_plate("rays")
+    for scatterers in ("rays", "surface"):
+        own = [ep.simulate(frames.scene, frames.radar, num_rays=3000, seed=seed, start_time=start, guard=False, noise_seed=None,
+                           scatterers=scatterers) for seed, start in enumerate(frames.times)]
+        found = ep.spectrogram(own, window_length=64, hop=16)
+        assert len(found.trains) == 3 and leaked(found) < LEAKED
+        assert leaked(ep.spectrogram(own, window_length=64, hop=16, span_frames=True)) > 3 * LEAKED  # what is kept out
+    assert len(ep.spectrogram(frames, window_length=64).trains) == 3
+
+
+def test_windows_go_on_over_frames_without_speckle(pendulum):
+    assert len(ep.spectrogram(pendulum).trains) == 1  # a smooth ball
+    assert len(ep.spectrogram(list(rough_plate("rays", smooth=True)), window_length=64).trains) == 1
+    with pytest.raises(TypeError, match="span_frames: must be True, False or 'auto', got 'always'"):
+        ep.spectrogram(pendulum, span_frames="always")
 
 
 def test_what_cannot_follow_is_refused():

@@ -18,6 +18,8 @@ Frames = Frame | ArrayLike | Iterable[Frame] | Iterable[ArrayLike]
 Part = str | Hashable | Selection | None
 Channel = tuple[int, int] | None
 
+ANY = "any"
+
 _CUBE = array("[T, R, C, S]", kind="complex")
 _RULE = "a Frame, a cube [tx, rx, chirp, sample], or some of either"
 
@@ -27,17 +29,26 @@ class Burst(NamedTuple):
 
     start_time: s; cube: [tx, rx, chirp, sample] in sqrt(W), of all channels of the radar or of one
     radar: that of the frame; transmitters: indices of those that the cube has
+    speckle: what tells apart the scatterers of rough surfaces: equal ones go on from burst to burst; ANY where none are known
+        to be others, None where they are this burst's own
     """
 
     start_time: float
     cube: np.ndarray
     radar: object
     transmitters: tuple = ()
+    speckle: Hashable = None
 
     @property
     def end_time(self) -> float:
         """s, when the next chirp would begin."""
         return self.start_time + self.cube.shape[2] * chirp_period(self.radar)
+
+    def goes_on_from(self, before: Burst) -> bool:
+        """Whether the scatterers of a burst before are known to go on in this one."""
+        if self.speckle is None or before.speckle is None:
+            return False
+        return ANY in (self.speckle, before.speckle) or self.speckle == before.speckle
 
     def middle(self, begin: int, count: int) -> float:
         """s, of `count` chirps from chirp `begin` on, mean over the transmitters."""
@@ -92,7 +103,8 @@ def bursts(frames, radar, *, part: Part = None, channel: Channel = None, start_t
             burst = _of_frame(one, radar, part, start_times)
         else:
             start = _start_of(number, before, start_times)
-            burst = Burst(start, _CUBE("frames", one), _radar_of_cubes(radar, part))
+            burst = Burst(start, _CUBE("frames", one), _radar_of_cubes(radar, part),
+                          speckle=None if start_times is None else ANY)
         yield _followed(before, _of_channel(burst, channel))
         before = burst
     if before is None:
@@ -107,7 +119,13 @@ def _of_frame(frame, radar, part, start_times) -> Burst:
     if frame.cube is None:
         raise ValueError("frames: must have signals, got a record of paths alone")
     cube = frame.noisy_cube if part is None else part_cube(frame, part)
-    return Burst(frame.paths.frame.start_time, cube, frame.radar)
+    return Burst(frame.paths.frame.start_time, cube, frame.radar, speckle=_speckle_of(frame.paths))
+
+
+def _speckle_of(paths) -> Hashable:
+    if not np.any(paths.diffuse):
+        return ANY
+    return ("surface", paths.frame.seed) if paths.frame.scatterers == "surface" else None
 
 
 def _start_of(number: int, before: Burst | None, start_times) -> float:

@@ -14,7 +14,8 @@ from .. import _core
 
 LONGEST = 1.0          # s between keys
 SHORTEST = 2.0**-14    # s: a function that asks for more is not smooth
-CHECKS = np.array([0.23, 0.5, 0.77])   # of the way between keys, where the cubic is held against the function
+CHECKS = 0.5, 0.23, 0.77               # of the way between keys, where the cubic is held against the function
+INSIDE = 1e-6          # of the way between keys: where rates are those of this side of a key
 MOST_KEYS = 2_000_000
 
 Function = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
@@ -29,8 +30,7 @@ def curve_through(function: Function, junctions, tolerance: float) -> _core.Curv
     begins, ends = _intervals(np.unique(np.asarray(junctions, float)))
     done: list[np.ndarray] = []
     while len(begins):
-        is_good = _errors(function, begins, ends) < tolerance
-        is_good |= ends - begins < SHORTEST
+        is_good = _are_good(function, begins, ends, tolerance) | (ends - begins < SHORTEST)
         done.append(np.stack([begins[is_good], ends[is_good]]))
         begins, ends = begins[~is_good], ends[~is_good]
         cuts = _cuts(begins, ends)
@@ -60,27 +60,29 @@ def _cuts(begins, ends):
     return (np.floor(begins / steps) + 1.0) * steps
 
 
-def _errors(function: Function, begins, ends):
-    values, leaving, arriving = _ends(function, begins, ends)
+def _are_good(function: Function, begins, ends, tolerance: float):
+    """Whether the cubic of each interval is within the tolerance at all CHECKS; those that fail one are not asked again."""
+    values, rates = _inner_ends(function, begins, ends)
     span = (ends - begins)[:, None]
-    worst = np.zeros(len(begins))
+    values = values[0] - INSIDE * span * rates[0], values[1] + INSIDE * span * rates[1]
+    left = np.arange(len(begins))
     for s in CHECKS:
-        cubic = ((1 + 2 * s) * (1 - s) ** 2 * values[0] + s * (1 - s) ** 2 * span * leaving
-                 + s**2 * (3 - 2 * s) * values[1] + s**2 * (s - 1) * span * arriving)
-        exact = function(begins + s * (ends - begins))[0]
-        worst = np.maximum(worst, np.max(np.abs(cubic - exact), axis=1))
-    return worst
+        (y0, y1), (m0, m1), h = ([one[left] for one in values], [one[left] for one in rates], span[left])
+        cubic = ((1 + 2 * s) * (1 - s) ** 2 * y0 + s * (1 - s) ** 2 * h * m0 + s**2 * (3 - 2 * s) * y1 + s**2 * (s - 1) * h * m1)
+        exact = function(begins[left] + s * h[:, 0])[0]
+        left = left[np.max(np.abs(cubic - exact), axis=1) < tolerance]
+    return np.isin(np.arange(len(begins)), left)
 
 
-def _ends(function: Function, begins, ends):
-    """Values at both ends of intervals, rates behind the first and before the second."""
-    inside = 1e-6 * (ends - begins)
-    values = function(begins)[0], function(ends)[0]
-    return values, function(begins + inside)[1], function(ends - inside)[1]
+def _inner_ends(function: Function, begins, ends):
+    """(values, rates), each of both ends of intervals, just within these."""
+    inside = INSIDE * (ends - begins)
+    return zip(function(begins + inside), function(ends - inside))
 
 
 def _curve(function: Function, begins, ends) -> _core.Curve:
-    (first, last), leaving, arriving = _ends(function, begins, ends)
+    first, last = function(begins)[0], function(ends)[0]
+    _, (leaving, arriving) = _inner_ends(function, begins, ends)
     still = np.zeros((1, first.shape[1]))
     return _core.Curve(np.append(begins, ends[-1]), np.concatenate([first, last[-1:]]), "hermite",
                        in_tangents=np.concatenate([still, arriving]), out_tangents=np.concatenate([leaving, still]))

@@ -80,6 +80,82 @@ def test_motorcycles_trucks_vans_and_bicycles_roll_too():
         assert_same_angle(angle_about_y(motion_of(actor, wheel).at(0.7)[:3, :3]), 4.2 / (diameter / 2))
 
 
+# --- trailers ---
+
+CURVE, SPEED = 15.0, 6.0                         # m, m/s
+DRIVE_AXLE, HITCH, AXLES = 3.15, 3.70, -5.29     # m along the truck: rear axle of the tractor, kingpin, middle of the trailer's
+
+
+@pytest.fixture(scope="module")
+def circling():
+    """(trajectory, truck) on a straight line and two laps of a circle: a hexagon whose corners are all arc."""
+    side = 2.0 * CURVE * math.tan(math.pi / 6)
+    points = np.cumsum([(0.0, 0.0), (40.0 + 0.5 * side, 0.0),
+                        *((side * math.cos(k * math.pi / 3), side * math.sin(k * math.pi / 3)) for k in range(1, 13))], axis=0)
+    trajectory = ep.Trajectory(points, turn_radius=CURVE, speed=SPEED)
+    return trajectory, ep.actors.truck(trajectory=trajectory)
+
+
+def world_of(trajectory, motion, points, time):
+    """Points [3] of the vehicle, m, which a motion moves, in the world."""
+    own, yaw = motion.at(time), float(trajectory.yaw(time))
+    turn = np.array([[math.cos(yaw), -math.sin(yaw), 0.0], [math.sin(yaw), math.cos(yaw), 0.0], [0.0, 0.0, 1.0]])
+    return trajectory.position(time) + turn @ (own[:3, :3] @ points + own[:3, 3])
+
+
+def yaw_of(motion, time):
+    return math.atan2(*motion.at(time)[[1, 0], 0])
+
+
+def test_a_trailer_comes_to_the_angle_of_its_circle(circling):
+    """asin(L / R_hitch) - atan(a / R), and its wheels to the speed of their own circle: R_trailer^2 = R_hitch^2 - L^2."""
+    trajectory, truck = circling
+    ahead, behind = motion_of(truck, "tractor/chassis"), motion_of(truck, "trailer/chassis")
+    a, length = HITCH - DRIVE_AXLE, HITCH - AXLES
+    lag = math.asin(length / math.hypot(CURVE, a)) - math.atan(a / CURVE)
+    time = float(trajectory.end) - 3.0
+    assert yaw_of(ahead, time) - yaw_of(behind, time) == pytest.approx(lag, abs=1e-4)
+    assert yaw_of(behind, 2.0) == pytest.approx(0.0, abs=1e-6)          # still on the line
+    wheel = next(part for part in truck.parts if part.name == "wheel/trailer_2_left/rim")
+    radius = math.sqrt(CURVE**2 + a**2 - length**2)
+    rolled = []
+    for at in (time, time + 0.01):                                      # about its own axle
+        own, turn = wheel.motion.at(at)[:3, :3], yaw_of(behind, at)
+        about_z = np.array([[math.cos(turn), -math.sin(turn), 0], [math.sin(turn), math.cos(turn), 0], [0, 0, 1]])
+        rolled.append(angle_about_y(about_z.T @ own))
+    rate = np.angle(np.exp(1j * (rolled[1] - rolled[0]))) / 0.01
+    assert rate == pytest.approx(SPEED / CURVE * (radius - wheel.position[1]) / (1.01 / 2), rel=2e-3)
+
+
+def test_a_trailer_hangs_on_its_hitch_and_does_not_slip_sideways(circling):
+    """At any time, also where the curve begins: both ends of the hitch are one, the trailer's axles go where it points."""
+    trajectory, truck = circling
+    ahead, behind = motion_of(truck, "cab/body"), motion_of(truck, "trailer/side_left")
+    for time in np.linspace(0.5, trajectory.end - 0.5, 40):
+        ends = [world_of(trajectory, one, np.array([HITCH, 0.0, 1.1]), time) for one in (ahead, behind)]
+        assert np.linalg.norm(ends[0] - ends[1]) < 1e-4
+        before, after = (world_of(trajectory, behind, np.array([AXLES, 0.0, 0.0]), time + step) for step in (-1e-3, 1e-3))
+        velocity = (after - before) / 2e-3
+        yaw = yaw_of(behind, time) + float(trajectory.yaw(time))
+        assert abs(velocity[1] * math.cos(yaw) - velocity[0] * math.sin(yaw)) < 5e-3
+        axle = world_of(trajectory, ahead, np.array([DRIVE_AXLE, 0.0, 0.0]), time)
+        if time + DRIVE_AXLE / SPEED < trajectory.end:
+            assert np.linalg.norm(axle - trajectory.position(time + DRIVE_AXLE / SPEED)) < 1e-4  # on the path
+
+
+def test_a_trailer_follows_a_tractor_whose_yaw_is_given():
+    """A table with places and yaws of a circle, as traffic simulations write them."""
+    times = np.linspace(0.0, 20.0, 401)
+    angle = SPEED / CURVE * times
+    points = CURVE * np.stack([np.sin(angle), 1.0 - np.cos(angle)], axis=-1)
+    trajectory = ep.Trajectory(points, times=times, yaw=angle)
+    truck = ep.actors.truck(trajectory=trajectory)
+    hitch = math.hypot(CURVE, HITCH)
+    lag = math.asin((HITCH - AXLES) / hitch) - math.atan(HITCH / CURVE)
+    assert yaw_of(motion_of(truck, "cab/body"), 18.0) == pytest.approx(0.0, abs=1e-6)
+    assert -yaw_of(motion_of(truck, "trailer/roof"), 18.0) == pytest.approx(lag, abs=1e-3)
+
+
 def test_a_cyclist_pedals_with_the_distance():
     """One turn of the crank of 0.17 m for each 4.2 m; the pedals stay level, and the shoes over them."""
     rider = ep.actors.cyclist(trajectory=DRIVE, phase=0.0, edge=0.05)

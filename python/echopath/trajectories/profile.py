@@ -104,7 +104,12 @@ def slopes_of(knots, values):
 
 
 def hermite_coefficients(steps, values, slopes):
-    """[N-1, 4] of the powers within each step."""
+    """[N-1, 4] of the powers within each step, through values [N] with slopes [N]."""
+    return hermite_pieces(steps, values, slopes[:-1], slopes[1:])
+
+
+def hermite_pieces(steps, values, leaving, arriving):
+    """[N-1, 4] of the powers within each step, whose slopes [N-1] at its begin and at its end are its own."""
     rise = np.diff(values) / steps
-    square = (3.0 * rise - 2.0 * slopes[:-1] - slopes[1:]) / steps
-    return np.stack([values[:-1], slopes[:-1], square, (slopes[:-1] + slopes[1:] - 2.0 * rise) / steps**2], axis=-1)
+    square = (3.0 * rise - 2.0 * leaving - arriving) / steps
+    return np.stack([values[:-1], leaving, square, (leaving + arriving - 2.0 * rise) / steps**2], axis=-1)

@@ -32,13 +32,13 @@ class Driving:
         motion = _core.LinearMotion(velocity=(self.ahead, 0.0, 0.0))
         return [replace(part, motion=motion) for part in parts]
 
-    def wheel(self, radius, *, y=0.0, wheelbase=None):
-        """The motion of a wheel of a radius in m, y m left of the middle, that rolls without slipping; None at rest.
+    def wheel(self, radius, *, center=(0.0, 0.0, 0.0), wheelbase=None):
+        """The motion of a wheel of a radius in m at `center` [3] m that rolls without slipping; None at rest.
 
         wheelbase: m, of a wheel that steers along a trajectory, or None
         """
         if self.trajectory is not None:
-            return rolling_along(self.trajectory, radius, y=float(y), wheelbase=wheelbase)
+            return rolling_along(self.trajectory, radius, y=float(center[1]), wheelbase=wheelbase)
         if self.speed == 0.0:
             return None
         return _core.LinearMotion(velocity=(self.ahead, 0.0, 0.0), angular_velocity=(0.0, self.speed / radius, 0.0))

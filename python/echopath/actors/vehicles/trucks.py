@@ -14,6 +14,7 @@ from ..lattice import rounded_box, rounded_parts
 from ..shapes import ellipsoid
 from ..solids import block, tube
 from ..surfaces import joined
+from .articulated import Coupling, Towing
 from .driving import Driving
 from .fittings import PLATE, leaning_plate
 from .materials import BUMPER, GRILLE, LAMP, UNDERSIDE
@@ -28,6 +29,9 @@ TRAILER_AXLES = (-6.60, -5.29, -3.98)           # m from the middle of the truck
 TYRE = Wheel(1.01, 0.315, 0.57, num_spokes=8, spoke_width=0.11, segments=36)    # 315/70 R 22.5
 CURTAIN = _core.Material(reflectivity=0.4, scattering=0.5)   # plastic sheet over slats and pallets, effective
 FRONT = LENGTH / 2
+DRIVE_AXLE = FRONT - FRONT_OVERHANG - TRACTOR_WHEELBASE
+KINGPIN = 1.65          # m behind the front of the trailer
+HITCH = -LENGTH / 2 + TRAILER_LENGTH - KINGPIN
 
 
 @checked(speed=real(unit="m/s"), drives=flag, trajectory=trajectory_rule)
@@ -40,12 +44,24 @@ def truck(*, speed: float = 0.0, drives: bool = True, trajectory: Trajectory | N
     trailer/front, trailer/side_left and _right, trailer/roof, trailer/doors, trailer/floor, trailer/chassis,
     trailer/underrun, plate/rear, and wheels: wheel/front_left/tyre and /rim, wheel/drive_*, wheel/trailer_1_* to _3_*.
     speed: m/s ahead along +x; the wheels roll. drives: False turns the wheels at `speed` alone.
-    trajectory: a Trajectory of the origin that it follows instead; the wheels roll its way. Tractor and trailer stay in line.
+    trajectory: a Trajectory that it follows instead: the tractor's rear axle, 3.15 m ahead of the origin, stays on its path (one
+    with a yaw of its own carries the tractor as it says); the trailer follows its hitch without slipping sideways, in line at
+    the begin, and cuts corners as trailers do. All wheels roll their way, those in front steer.
     Returns an Actor. Raises TypeError or ValueError naming the argument.
     """
-    still = _cab() + _fittings() + _trailer() + _frames()
     driving = Driving(speed, drives, trajectory)
-    return Actor(driving.carried(still) + _wheels(driving), trajectory)
+    tractor = trailer = driving
+    if trajectory is not None:
+        towing = Towing(trajectory, Coupling(DRIVE_AXLE, HITCH, float(np.mean(TRAILER_AXLES))))
+        tractor, trailer = towing.tractor, towing.trailer
+    ahead, behind = _sorted(_cab() + _fittings() + _trailer() + _frames())
+    return Actor(tractor.carried(ahead) + trailer.carried(behind) + _wheels(tractor, trailer), trajectory)
+
+
+def _sorted(parts):
+    """(parts of the tractor, parts of the trailer)."""
+    behind = [part for part in parts if part.name.startswith(("trailer/", "plate/"))]
+    return [part for part in parts if part not in behind], behind
 
 
 def _cab():
@@ -93,9 +109,8 @@ def _trailer():
 
 def _frames():
     """Beams under tractor and trailer, and the bar behind the trailer's wheels."""
-    tractor_x = FRONT - FRONT_OVERHANG - TRACTOR_WHEELBASE
-    beams = [block((tractor_x - 0.8, 0.38 * sign - 0.05, 0.70), (FRONT - 0.6, 0.38 * sign + 0.05, 0.96)) for sign in (1, -1)]
-    axle = tube((tractor_x, -0.75, TYRE.radius), (tractor_x, 0.75, TYRE.radius), 0.09, segments=10)
+    beams = [block((DRIVE_AXLE - 0.8, 0.38 * sign - 0.05, 0.70), (FRONT - 0.6, 0.38 * sign + 0.05, 0.96)) for sign in (1, -1)]
+    axle = tube((DRIVE_AXLE, -0.75, TYRE.radius), (DRIVE_AXLE, 0.75, TYRE.radius), 0.09, segments=10)
     long = [block((-LENGTH / 2 + 0.15, 0.50 * sign - 0.06, 0.98), (-LENGTH / 2 + TRAILER_LENGTH - 2.4, 0.50 * sign + 0.06, 1.13))
             for sign in (1, -1)]
     legs = [block((1.35, 0.85 * sign - 0.06, 0.45), (1.47, 0.85 * sign + 0.06, 1.14)) for sign in (1, -1)]
@@ -108,14 +123,14 @@ def _frames():
             Part("trailer/underrun", _core.Mesh(*bar), "metal")]
 
 
-def _wheels(driving):
-    front, rear = FRONT - FRONT_OVERHANG, FRONT - FRONT_OVERHANG - TRACTOR_WHEELBASE
+def _wheels(tractor, trailer):
     twin = replace(TYRE, width=2 * TYRE.width)   # a pair of tyres side by side
-    axles = [("front", front, TYRE), ("drive", rear, twin)]
-    axles += [(f"trailer_{n}", x, replace(TYRE, width=0.385)) for n, x in enumerate(reversed(TRAILER_AXLES), 1)]
+    axles = [("front", DRIVE_AXLE + TRACTOR_WHEELBASE, TYRE, tractor), ("drive", DRIVE_AXLE, twin, tractor)]
+    axles += [(f"trailer_{n}", x, replace(TYRE, width=0.385), trailer) for n, x in enumerate(reversed(TRAILER_AXLES), 1)]
     parts = []
-    for name, x, wheel in axles:
+    for name, x, wheel, driving in axles:
         for side, sign in (("left", 1.0), ("right", -1.0)):
             y = sign * (WIDTH / 2 - 0.02 - wheel.width / 2)
-            parts += wheel_parts(wheel, f"wheel/{name}_{side}", (x, y, wheel.radius), driving, outer=sign)
+            parts += wheel_parts(wheel, f"wheel/{name}_{side}", (x, y, wheel.radius), driving, outer=sign,
+                                 wheelbase=TRACTOR_WHEELBASE if name == "front" else None)
     return parts

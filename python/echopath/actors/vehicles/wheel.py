@@ -34,7 +34,7 @@ def wheel_parts(wheel, name, center, driving, *, outer=1.0, wheelbase=None):
     outer: 1 where its outer side faces left, -1 right. wheelbase: m, of a wheel that steers along a trajectory.
     """
     tyre, rim = _meshes(wheel, outer)
-    motion = driving.wheel(wheel.radius, y=center[1], wheelbase=wheelbase)
+    motion = driving.wheel(wheel.radius, center=center, wheelbase=wheelbase)
     place = tuple(float(value) for value in center)
     return [Part(f"{name}/tyre", _core.Mesh(*tyre), "rubber", motion, place, smooth=True),
             Part(f"{name}/rim", _core.Mesh(*rim), "metal", motion, place, smooth=True)]

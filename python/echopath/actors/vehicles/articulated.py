@@ -1,0 +1,180 @@
+"""How a tractor and its semitrailer follow a trajectory: the tractor's rear axle is on the path, the trailer follows its hitch.
+
+A trailer whose wheels do not slip sideways turns by n . v / L, where v is the velocity of the hitch, n the left normal of the
+trailer and L its length from the hitch to the middle of its axles. On a circle it comes to a constant angle: with the tractor's
+rear axle R from the centre and the hitch a ahead of it, the trailer lags by asin(L / sqrt(R^2 + a^2)) - atan(a / R).
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ... import _core
+from ...trajectories.knots import curve_through
+from ...trajectories.profile import Profile, hermite_pieces
+from ...trajectories.trajectory import TOLERANCE
+from ..following import WHEEL_TOLERANCE, Rolling, roll, turned
+
+STEP = 2.0**-6         # s, of the trailer's angle
+SIDE = 1e-6            # of a step: rates on this side of its ends
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """Along x of the vehicle that is in line, in m: drive_axle, hitch, trailer_axle (the middle of its axles)."""
+
+    drive_axle: float
+    hitch: float
+    trailer_axle: float
+
+
+class Towing:
+    """Where tractor and trailer of a vehicle are that follows a Trajectory, relative to that."""
+
+    def __init__(self, trajectory, coupling: Coupling):
+        self.trajectory, self.coupling, self._track = trajectory, coupling, trajectory._track
+        self.tractor, self.trailer = (Unit(self, moved) for moved in (self._tractor, self._trailer))
+
+    @cached_property
+    def junctions(self):
+        """Times in s at which the units may not move smoothly: those of the path, under the origin and under the axle."""
+        track, drive = self._track, self.coupling.drive_axle
+        ends = track.profile.at(np.array([track.profile.begin, track.profile.end]))[0]
+        axle = track.path.junctions - drive
+        passed = track.time_at(axle[(axle > ends[0]) & (axle < ends[1])])
+        return np.unique(np.concatenate([track.junctions(), passed]))
+
+    def _tractor(self, times):
+        """(place [N, 3] of the vehicle's origin as a point of the tractor, its velocity, yaw [N], its rate)."""
+        track, drive = self._track, self.coupling.drive_axle
+        if track.headings is not None:
+            return *track.places(times), *track.yaws(times)
+        distance, speed, _ = track.profile.at(times)
+        axle, tangent, _ = track.path.at(distance + drive)
+        yaw, turn = track.path.bearings(distance + drive)
+        return *_shifted(axle, speed[:, None] * tangent, yaw, turn * speed, -drive), yaw, turn * speed
+
+    def _trailer(self, times):
+        """The same of the trailer."""
+        hitch, velocity = self._hitch(times)
+        yaw, rate, _ = self._angle.at(times)
+        return *_shifted(hitch, velocity, yaw, rate, -self.coupling.hitch), yaw, rate
+
+    def _hitch(self, times):
+        """(place [N, 3], velocity [N, 3]) of the hitch."""
+        return _shifted(*self._tractor(times), self.coupling.hitch)
+
+    @cached_property
+    def _angle(self) -> Profile:
+        """The trailer's yaw in rad over time, by the classical Runge-Kutta method; at the begin it is in line."""
+        begin, end = self._track.profile.begin, self._track.profile.end
+        times = np.unique(np.concatenate([np.linspace(begin, end, int((end - begin) / STEP) + 2), self.junctions]))
+        steps = np.diff(times)
+        rows = [self._hitch(at)[1][:, :2].tolist() for at in
+                (times[:-1] + SIDE * steps, times[:-1] + 0.5 * steps, times[1:] - SIDE * steps)]
+        length = self.coupling.hitch - self.coupling.trailer_axle
+        yaws, leaving, arriving = [float(self._tractor(times[:1])[2][0])], [], []
+        for first, middle, last, step in zip(*rows, steps.tolist()):
+            yaw = yaws[-1]
+            slopes = [_turning(first, yaw, length)]
+            for way, at in ((0.5, middle), (0.5, middle), (1.0, last)):
+                slopes.append(_turning(at, yaw + way * step * slopes[-1], length))
+            yaws.append(yaw + step / 6.0 * (slopes[0] + 2.0 * slopes[1] + 2.0 * slopes[2] + slopes[3]))
+            leaving.append(slopes[0])
+            arriving.append(_turning(last, yaws[-1], length))
+        return Profile(times, hermite_pieces(steps, np.array(yaws), np.array(leaving), np.array(arriving)))
+
+
+class Unit:
+    """One of the two: what moves with it. moved: times [N] in s -> as of Towing._tractor; a Driving of its parts."""
+
+    def __init__(self, towing: Towing, moved):
+        self._towing, self._moved = towing, moved
+
+    def carried(self, parts: list) -> list:
+        """Parts at rest in the vehicle, with their motions."""
+        return [replace(part, motion=self._motion(tuple(part.position))) for part in parts]
+
+    def wheel(self, radius: float, *, center, wheelbase: float | None = None) -> Any:
+        """The motion of a wheel of a `radius` at `center` [3] in m; wheelbase: m, of one that steers, or None."""
+        _, turn = self._relative()
+        ahead = self._towing.coupling.drive_axle
+        rolling = Rolling(self._rolled, lambda times: self._moved(times)[2:], turn, ahead)
+        return _core.CurveMotion(self._translation(center), roll(self._towing.trajectory, rolling, radius, y=float(center[1]),
+                                                                 wheelbase=wheelbase, junctions=self._towing.junctions))
+
+    @cached_property
+    def _rolled(self) -> Profile:
+        """The way in m that its wheels roll: that of the point of its middle between axles that do not slip."""
+        begin, end = self._towing._track.profile.begin, self._towing._track.profile.end
+        times = np.unique(np.concatenate([np.linspace(begin, end, int((end - begin) / STEP) + 2), self._towing.junctions]))
+        steps = np.diff(times)
+        first, middle, last = (self._speed(at) for at in
+                               (times[:-1] + SIDE * steps, times[:-1] + 0.5 * steps, times[1:] - SIDE * steps))
+        ways = np.concatenate([[0.0], np.cumsum(steps / 6.0 * (first + 4.0 * middle + last))])
+        return Profile(times, hermite_pieces(steps, ways, first, last))
+
+    def _speed(self, times):
+        """m/s ahead [N]: the same for all points along the middle."""
+        _, velocity, yaw, _ = self._moved(times)
+        return velocity[:, 0] * np.cos(yaw) + velocity[:, 1] * np.sin(yaw)
+
+    def _motion(self, position: tuple):
+        motions = self.__dict__.setdefault("_motions", {})
+        if position not in motions:
+            _, turn = self._relative()
+            rotation = curve_through(lambda times: turned(*turn(times)), self._towing.junctions, WHEEL_TOLERANCE)
+            motions[position] = _core.CurveMotion(self._translation(position), rotation)
+        return motions[position]
+
+    def _translation(self, position):
+        """The Curve by which a part at `position` [3] m is elsewhere than there, in the axes of the trajectory."""
+        place, turn = self._relative()
+        p = np.asarray(position, float)
+
+        def moved(times):
+            (shift, velocity), (angle, rate) = place(times), turn(times)
+            offset, swing = _level(p, angle), _level(p, angle + 0.5 * np.pi)
+            return shift + offset + [0.0, 0.0, p[2]] - p, velocity + rate[:, None] * swing
+        return curve_through(moved, self._towing.junctions, TOLERANCE)
+
+    def _relative(self):
+        """(times -> (place [N, 3] of the vehicle's origin, velocity), times -> (turn [N], rate)) in the trajectory's axes."""
+        track = self._towing._track
+
+        def place(times):
+            (own, own_velocity), (yaw, yaw_rate) = track.places(times), track.yaws(times)
+            found, velocity, _, _ = self._moved(times)
+            away, speed = found - own, velocity - own_velocity
+            c, s, w = np.cos(yaw), np.sin(yaw), yaw_rate
+            x, y = c * away[:, 0] + s * away[:, 1], c * away[:, 1] - s * away[:, 0]
+            vx, vy = c * speed[:, 0] + s * speed[:, 1], c * speed[:, 1] - s * speed[:, 0]
+            level = 0.0 if self._towing.trajectory._has_pitch else 1.0
+            return (np.stack([x, y, level * away[:, 2]], axis=-1),
+                    np.stack([vx + w * y, vy - w * x, level * speed[:, 2]], axis=-1))
+
+        def turn(times):
+            (yaw, rate), (own, own_rate) = self._moved(times)[2:], track.yaws(times)
+            return yaw - own, rate - own_rate
+        return place, turn
+
+
+def _turning(velocity, yaw: float, length: float) -> float:
+    """rad/s, of a trailer whose hitch has a velocity (x, y) in m/s."""
+    return (velocity[1] * np.cos(yaw) - velocity[0] * np.sin(yaw)) / length
+
+
+def _shifted(place, velocity, yaw, rate, ahead: float):
+    """(place [N, 3], velocity) of the point that is so many m ahead of a place, as the body turns."""
+    c, s, zero = np.cos(yaw), np.sin(yaw), 0.0 * yaw
+    return (place + ahead * np.stack([c, s, zero], axis=-1),
+            velocity + ahead * rate[:, None] * np.stack([-s, c, zero], axis=-1))
+
+
+def _level(point, angle):
+    """The level part of a point [3], turned by angles [N] about z: [N, 3]."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.stack([c * point[0] - s * point[1], s * point[0] + c * point[1], 0.0 * angle], axis=-1)

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from . import actors
-from .actors.human.gait_along import usual_speed
+from .actors.laid_line import usual_speed
 from .checks import an, anything, checked, optional, real, refused, text
 from .readers.tree import fit_name
 from .scene import Scene
@@ -16,7 +16,7 @@ KINDS = (("truck", "truck", {}), ("trailer", "truck", {}), ("bus", "van", {"kind
          ("delivery", "van", {"kind": "large"}),
          ("van", "van", {"kind": "small"}), ("motorcycle", "motorcycle", {}), ("moped", "motorcycle", {}),
          ("bicycle", "cyclist", {}), ("bike", "cyclist", {}), ("cyclist", "cyclist", {}), ("ped", "pedestrian", {}),
-         ("person", "pedestrian", {}), ("walk", "pedestrian", {}))
+         ("person", "pedestrian", {}), ("walk", "pedestrian", {}), ("dog", "dog", {}))
 ActorOf = Callable[[str, Trajectory], Any]
 
 
@@ -84,7 +84,7 @@ def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_o
     trajectories: {name: Trajectory}, such as read_trajectories returns
     actor_of: (name, trajectory) -> what Scene.add takes, such as `ep.actors.car(kind="suv", trajectory=trajectory)`; what does
         not follow the trajectory by itself is moved by it as a whole; None back: no object. None: by the words of
-        `trajectory.kind`: truck, bus, van, motorcycle, bicycle, pedestrian, else a compact car
+        `trajectory.kind`: truck, bus, van, motorcycle, bicycle, pedestrian, dog, else a compact car
     parent: full name of the object whose axes the trajectories are in; None: the world
     time: s; what is not there at that time is not visible; None: everything is, at any time. `Traffic.show` changes it
     Returns the Traffic. Raises TypeError or ValueError naming the argument.

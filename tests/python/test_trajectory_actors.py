@@ -80,6 +80,48 @@ def test_motorcycles_trucks_vans_and_bicycles_roll_too():
         assert_same_angle(angle_about_y(motion_of(actor, wheel).at(0.7)[:3, :3]), 4.2 / (diameter / 2))
 
 
+# --- dogs ---
+
+STROLL = ep.Trajectory([(0, 0), (5, 0), (5, 6)], turn_radius=2.0, speed=2.0, stops=[(0, 0.4), (6, 0.7), (math.inf, 0)])
+LEGS = ("fore_left", "hind_right", "fore_right", "hind_left")
+SOLE = 0.04 * 0.57   # m, radius of a paw
+
+
+def paws_of(dog, trajectory, leg, times):
+    """The centre of the paw [T, 3] in the world: the lower end of the lower bar, of .34 or .36 withers' heights."""
+    motion, half = motion_of(dog, f"leg_{leg}/lower"), 0.5 * 0.57 * (0.34 if leg.startswith("fore") else 0.36)
+    return np.array([world_of(trajectory, motion, np.array([0.0, 0.0, -half]), time) for time in times])
+
+
+def test_paws_of_a_dog_stand_still_in_curves_and_at_stops():
+    dog = ep.actors.dog(trajectory=STROLL)
+    assert dog.motion is STROLL
+    times = np.arange(STROLL.begin + 0.5, STROLL.end - 0.3, 0.004)
+    down = np.zeros(len(times))
+    for leg in LEGS:
+        paws = paws_of(dog, STROLL, leg, times)
+        stands = np.abs(paws[:, 2] - SOLE) < 5e-4
+        assert paws[:, 2].min() > SOLE - 2e-3
+        both = stands[1:] & stands[:-1]
+        slip = np.linalg.norm(np.diff(paws[:, :2], axis=0), axis=1)[both] / 0.004
+        assert both.mean() > 0.4 and np.quantile(slip, 0.9) < 0.05   # m/s, of a body at 2 m/s
+        waits = (STROLL.speed(times) == 0.0)
+        assert waits.sum() > 100 and np.abs(paws[waits, 2] - SOLE).max() < 3e-3
+        down += stands
+    assert set(np.unique(down)) <= {0, 1, 2, 3, 4}
+
+
+def test_a_dog_steps_as_long_as_its_trot_does():
+    straight = ep.Trajectory([(0, 0), (12, 0)], speed=2.2)
+    paws = paws_of(ep.actors.dog(trajectory=straight), straight, "fore_left", np.arange(1.0, 4.5, 0.002))
+    stands = np.abs(paws[:, 2] - SOLE) < 2e-4
+    places = np.unique(np.round(paws[stands, 0], 1))
+    strides = np.diff(places[np.concatenate([[True], np.diff(places) > 0.3])])
+    assert strides == pytest.approx(2.2 / (1.35 + 0.33 * 2.2), rel=0.12)   # m, by the stride frequency of the model
+    with pytest.raises(ValueError, match="trajectory: must be one of at most 4 m/s for a dog"):
+        ep.actors.dog(trajectory=straight.replace(speed=5.0))
+
+
 # --- trailers ---
 
 CURVE, SPEED = 15.0, 6.0                         # m, m/s
@@ -254,7 +296,8 @@ def test_children_walk_or_run_by_their_speed():
     assert walk.motion is slow and len(walk.parts) == len(run.parts) == 16
 
 
-@pytest.mark.parametrize("make", ["car", "van", "truck", "motorcycle", "bicycle", "cyclist", "pedestrian", "runner", "child"])
+@pytest.mark.parametrize("make", ["car", "van", "truck", "motorcycle", "bicycle", "cyclist", "pedestrian", "runner", "child",
+                                  "dog"])
 def test_what_a_trajectory_replaces_is_refused_beside_it(make):
     with pytest.raises(ValueError, match="^speed: must be left out beside trajectory, got 2.5"):
         getattr(ep.actors, make)(trajectory=WALK, speed=2.5)

@@ -3,10 +3,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...checks import checked, positive, real
 from ... import _core
+from ...checks import checked, positive, real, refused
+from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
+from ..following import key_times, refuse_beside_trajectory, trajectory_rule, with_rates
+from ..human.gait import Frames
 from ..human.pedestrian import keyframe_times
+from ..human.rotations import about_y, about_z, quaternions
+from ..laid_line import LaidLine, usual_speed
 from ..shapes import capsule, ellipsoid
 
 # Proportions of a Labrador retriever in heights of its withers (0.57 m by the breed's standard), drawn after photographs.
@@ -25,33 +30,107 @@ LIFT = 0.14                       # of a swinging paw, in heights of the withers
 BOUNCE = 0.012                    # amplitude of the trunk, likewise, twice a cycle
 LEGS = (("fore_left", "fore", 1.0, 0.0), ("hind_right", "hind", -1.0, 0.0), ("fore_right", "fore", -1.0, 0.5),
         ("hind_left", "hind", 1.0, 0.5))   # the diagonal pairs of a trot step together
+# Part: semi-axes, edge of its triangles and place in heights of the withers, pitch in degrees.
+TRUNK = {"trunk": ((0.62, 0.19, 0.22), 0.05, (-0.03, 0.0, 0.77), 2.0),
+         "neck": ((0.25, 0.11, 0.13), 0.04, (0.58, 0.0, 0.98), -42.0),
+         "head": ((0.17, 0.13, 0.13), 0.04, (0.75, 0.0, 1.14), 0.0),
+         "snout": ((0.15, 0.07, 0.07), 0.03, (0.91, 0.0, 1.09), 8.0),
+         "tail": ((0.30, 0.035, 0.035), 0.02, (-0.84, 0.0, 0.80), -22.0)}
+SPEEDS = (0.3, 4.0)               # m/s, least and greatest of a trot
+KEYFRAME_RATE = 240.0             # 1/s
 
 
-@checked(height=positive("m"), speed=real(0.0, 4.0, unit="m/s"), start_time=real(unit="s"), duration=positive("s"),
-         phase=real(unit="cycles"))
+@checked(height=positive("m"), speed=real(0.0, SPEEDS[1], unit="m/s"), start_time=real(unit="s"), duration=positive("s"),
+         phase=real(unit="cycles"), trajectory=trajectory_rule)
 def dog(*, height: float = 0.57, speed: float = 2.2, start_time: float = -0.5, duration: float = 2.5,
-        phase: float = 0.0) -> Actor:
+        phase: float = 0.0, trajectory: Trajectory | None = None) -> Actor:
     """A dog that trots along +x, or stands at speed 0: smooth ellipsoids and capsules, proportions of a Labrador.
 
     Paws on the ground z = 0 do not slide. Parts: trunk, neck, head, snout, tail, leg_fore_left/upper, leg_fore_left/lower, and
     likewise fore_right, hind_left, hind_right.
     height: m, of the withers. speed: m/s, at most 4. start_time, duration: of the motion in s; a scene can be posed at no
     other time. phase: of the cycle at time 0, in cycles.
+    trajectory: a Trajectory of the origin that is followed instead of speed, start_time, duration and phase; the steps go with
+    its distance, paws on the ground do not slide, and at its stops all are down.
     Returns an Actor. Raises TypeError or ValueError naming the argument.
     """
-    times = keyframe_times(start_time, duration, 240.0)
-    frequency = (STRIDE_FREQUENCY[0] + STRIDE_FREQUENCY[1] * speed) * np.sqrt(0.57 / height) if speed else 0.0
+    refuse_beside_trajectory(trajectory, speed=(speed, 2.2), start_time=(start_time, -0.5), duration=(duration, 2.5),
+                             phase=(phase, 0.0))
+    if trajectory is not None:
+        return _along(height, trajectory)
+    times = keyframe_times(start_time, duration, KEYFRAME_RATE)
+    frequency = stride_frequency(height, speed) if speed else 0.0
     cycles = phase + frequency * times
-    way = np.stack([speed * times, 0 * times, 0 * times], axis=-1)
-    bounce = height * BOUNCE * np.cos(4.0 * np.pi * (cycles - 0.5 * SUPPORT)) * -1.0 if speed else 0.0 * times
-    body = way + np.stack([0 * times, 0 * times, bounce], axis=-1)
-    parts = _trunk(height, body, times)
+    ahead = np.array([1.0, 0.0, 0.0])
+    body = np.outer(speed * times, ahead) + (_bounce(height, cycles) if speed else 0.0)
+    feet = {}
     for name, kind, side, lag in LEGS:
-        step = speed / frequency / height if speed else 0.0
-        paw = _paw(cycles - lag, step) if speed else np.zeros((len(times), 2))
-        parts += _leg(f"leg_{name}", kind, side, height, body, way, paw, times)
-    moves = speed > 0.0
-    return Actor([(part if moves else _at_rest(part)).build() for part in parts])
+        paw = _paw(cycles - lag, speed / frequency / height) if speed else np.zeros((len(times), 2))
+        feet[name] = _under(height, kind, side) + np.outer(speed * times + height * paw[:, 0], ahead)
+        feet[name][:, 2] += height * paw[:, 1]
+    arrays = _arrays(height, _frames(height, body, feet), times)
+    return Actor([(part if speed > 0.0 else _at_rest(part)).build() for part in arrays])
+
+
+def stride_frequency(height: float, speed: float) -> float:
+    """1/s, of a trot at a speed in m/s."""
+    return (STRIDE_FREQUENCY[0] + STRIDE_FREQUENCY[1] * speed) * np.sqrt(0.57 / height)
+
+
+def _along(height: float, trajectory: Trajectory) -> Actor:
+    speed = usual_speed(trajectory._track)
+    if speed > SPEEDS[1]:
+        rule = f"one of at most {SPEEDS[1]:g} m/s for a dog, as most of its way is"
+        raise refused(ValueError, "trajectory", rule, f"{speed:.3g} m/s")
+    trot = TrotAlong(height, max(speed, SPEEDS[0]), trajectory._track)
+    times = key_times(trajectory, KEYFRAME_RATE)
+    arrays = _arrays(height, trot.frames(times), times)
+    return Actor([part.build() for part in with_rates(arrays, trot.frames, times)], trajectory)
+
+
+class TrotAlong:
+    """The trot that is usual at a speed in m/s, along a Track (trajectories/track.py)."""
+
+    def __init__(self, height: float, speed: float, track):
+        self._height, self._track = height, track
+        self._length = speed / stride_frequency(height, speed)
+        between = 0.5 * (SUPPORT + 0.5)     # one pair has just left the ground, the other is about to meet it
+        self._laid = LaidLine(track, speed, 0.5 * self._length, between * self._length)
+
+    def frames(self, times):
+        """Frames of every part, by name, at times [T], relative to the place and yaw of the track."""
+        cycles = self._laid.line.at(times)[0] / self._length
+        feet = {name: self._foot(times, cycles - lag, lag, _under(self._height, kind, side)) for name, kind, side, lag in LEGS}
+        return _frames(self._height, _bounce(self._height, cycles), feet)
+
+    def _foot(self, times, own, lag: float, under):
+        """A foot [T, 3] in m: it stands where it is under its joint in the middle of a stance."""
+        cycle = np.floor(own)
+        s = np.clip((own - cycle - SUPPORT) / (1.0 - SUPPORT), 0.0, 1.0)
+        share = (s**3 * (10.0 - 15.0 * s + 6.0 * s**2))[:, None]
+        middle = (cycle + lag + 0.5 * SUPPORT) * self._length
+        (place, yaw), (next_place, next_yaw) = (self._laid.footprints(line) for line in (middle, middle + self._length))
+        place, next_place = place + about_z(yaw) @ under, next_place + about_z(next_yaw) @ under
+        away = place + share * (next_place - place) - self._track.places(times)[0]
+        away[:, 2] += self._height * LIFT * (4.0 * s * (1.0 - s)) ** 3
+        return np.einsum("tji,tj->ti", about_z(self._track.yaws(times)[0]), away)
+
+
+def _bounce(height: float, cycles):
+    """[T, 3] in m, of the trunk."""
+    rise = -height * BOUNCE * np.cos(4.0 * np.pi * (cycles - 0.5 * SUPPORT))
+    return np.outer(rise, [0.0, 0.0, 1.0])
+
+
+def _joint(height: float, kind: str, side: float):
+    """[3] in m, of the upper end of a leg at rest."""
+    x, z = SHOULDER if kind == "fore" else HIP
+    return height * np.array([x, side * HALF_TRACK, z])
+
+
+def _under(height: float, kind: str, side: float):
+    """[3] in m, of the lower end of a leg on the ground below its joint."""
+    return _joint(height, kind, side) * [1.0, 1.0, 0.0] + [0.0, 0.0, RADII["lower"] * height]
 
 
 def _paw(cycles, step):
@@ -69,45 +148,46 @@ def _paw(cycles, step):
     return np.stack([np.where(part < SUPPORT, stance, swing), np.where(part < SUPPORT, 0.0, lift)], axis=-1)
 
 
-def _trunk(height, body, times):
-    shapes = [("trunk", ellipsoid((0.62 * height, 0.19 * height, 0.22 * height), edge=0.05 * height), (-0.03, 0.0, 0.77), 2.0),
-              ("neck", ellipsoid((0.25 * height, 0.11 * height, 0.13 * height), edge=0.04 * height), (0.58, 0.0, 0.98), -42.0),
-              ("head", ellipsoid((0.17 * height, 0.13 * height, 0.13 * height), edge=0.04 * height), (0.75, 0.0, 1.14), 0.0),
-              ("snout", ellipsoid((0.15 * height, 0.07 * height, 0.07 * height), edge=0.03 * height), (0.91, 0.0, 1.09), 8.0),
-              ("tail", ellipsoid((0.30 * height, 0.035 * height, 0.035 * height), edge=0.02 * height), (-0.84, 0.0, 0.80), -22.0)]
-    return [PartArrays(name, mesh.vertices, mesh.triangles, FUR, times, height * np.array(place) + body,
-                       _about_y(np.full(len(times), np.radians(pitch))), smooth=True)
-            for name, mesh, place, pitch in shapes]
+def _frames(height: float, body, feet: dict) -> dict:
+    """{part: Frames} of a body at [T, 3] in m whose legs end at feet {leg: [T, 3]}."""
+    found = {name: Frames(height * np.array(place) + body, about_y(np.full(len(body), np.radians(pitch))))
+             for name, (_, _, place, pitch) in TRUNK.items()}
+    for name, kind, side, _ in LEGS:
+        joint, foot = _joint(height, kind, side) + body, feet[name]
+        knee = _knee(kind, joint, foot, *(height * length for length in SEGMENTS[kind]))
+        found |= {f"leg_{name}/upper": _between(joint, knee), f"leg_{name}/lower": _between(knee, foot)}
+    return found
 
 
-def _leg(name, kind, side, height, body, way, paw, times):
-    """Upper and lower part of a leg whose paw is given: two bars that meet in elbow or knee."""
-    upper, lower = (height * length for length in SEGMENTS[kind])
-    x, z = SHOULDER if kind == "fore" else HIP
-    joint = np.stack([body[:, 0] + height * x, np.full(len(times), side * HALF_TRACK * height), height * z + body[:, 2]], -1)
-    sole = RADII["lower"] * height
-    foot = np.stack([way[:, 0] + height * (x + paw[:, 0]), joint[:, 1], sole + height * paw[:, 1]], axis=-1)
+def _knee(kind: str, joint, foot, upper: float, lower: float):
+    """Elbow or knee [T, 3] between a joint and a foot [T, 3], above and below which the leg has these lengths in m."""
     between = joint - foot
-    distance = np.minimum(np.linalg.norm(between, axis=-1, keepdims=True), 0.999 * (upper + lower))
-    along = between / np.linalg.norm(between, axis=-1, keepdims=True)
+    length = np.linalg.norm(between, axis=-1, keepdims=True)
+    distance, along = np.minimum(length, 0.999 * (upper + lower)), between / length
     below = (distance**2 + lower**2 - upper**2) / (2.0 * distance)
-    across = np.stack([along[:, 2], 0 * times, -along[:, 0]], axis=-1)
-    knee = foot + below * along + KNEE_SIDE[kind] * np.sqrt(np.maximum(lower**2 - below**2, 0.0)) * across
-    return [_bar(f"{name}/upper", joint, knee, RADII["upper"] * height, upper, times),
-            _bar(f"{name}/lower", knee, foot, RADII["lower"] * height, lower, times)]
+    across = np.array([1.0, 0.0, 0.0]) - along[:, :1] * along
+    across /= np.linalg.norm(across, axis=-1, keepdims=True)
+    return foot + below * along + KNEE_SIDE[kind] * np.sqrt(np.maximum(lower**2 - below**2, 0.0)) * across
 
 
-def _bar(name, start, end, radius, length, times):
-    """A capsule whose half spheres are about `start` and `end` [T, 3], which lie in a plane of constant y."""
-    mesh = capsule(radius, length + 2.0 * radius, edge=0.5 * radius)
-    up = start - end
-    angle = np.arctan2(up[:, 0], up[:, 2])
-    return PartArrays(name, mesh.vertices, mesh.triangles, FUR, times, 0.5 * (start + end), _about_y(angle), smooth=True)
+def _between(start, end) -> Frames:
+    """The middle of a bar from `end` up to `start` [T, 3], whose axis is z."""
+    up = (start - end) / np.linalg.norm(start - end, axis=-1, keepdims=True)
+    left = np.cross(up, [1.0, 0.0, 0.0])
+    left /= np.linalg.norm(left, axis=-1, keepdims=True)
+    return Frames(0.5 * (start + end), np.stack([np.cross(left, up), left, up], axis=-1))
 
 
-def _about_y(angle):
-    """Unit quaternions [T, 4]."""
-    return np.stack([np.cos(0.5 * angle), 0 * angle, np.sin(0.5 * angle), 0 * angle], axis=-1)
+def _arrays(height: float, frames: dict, times) -> list:
+    """The parts with their motions over times [T], as plain arrays."""
+    meshes = {name: ellipsoid(tuple(height * axis for axis in axes), edge=edge * height)
+              for name, (axes, edge, _, _) in TRUNK.items()}
+    for name, kind, _, _ in LEGS:
+        for part, length in zip(("upper", "lower"), SEGMENTS[kind]):
+            radius = RADII[part] * height
+            meshes[f"leg_{name}/{part}"] = capsule(radius, height * length + 2.0 * radius, edge=0.5 * radius)
+    return [PartArrays(name, mesh.vertices, mesh.triangles, FUR, times, frames[name].origin, quaternions(frames[name].rotation),
+                       smooth=True) for name, mesh in meshes.items()]
 
 
 def _at_rest(part):

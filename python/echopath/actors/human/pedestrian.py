@@ -8,11 +8,12 @@ from ...checks import an, checked, positive, real, refused
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
 from ..following import key_times, refuse_beside_trajectory, trajectory_rule, with_rates
+from ..laid_line import usual_speed
 from ..surfaces import edge_length
 from .anthropometry import Proportions
 from .body import surface
 from .gait import Frames, Gait, relative_speed_limit
-from .gait_along import GaitAlong, usual_speed
+from .gait_along import GaitAlong
 from .rotations import quaternions
 
 LONGEST = 1e9                 # s

@@ -8,7 +8,7 @@ from ..actor import Actor
 from ..following import refuse_beside_trajectory, trajectory_rule
 from ..surfaces import edge_length
 from .anthropometry import Proportions
-from .gait_along import usual_speed
+from ..laid_line import usual_speed
 from .pedestrian import HEIGHTS, MIN_KEYFRAME_RATE, body_arrays, material_rule, pedestrian, walk_along, walker_arrays
 from .posture import standing
 from .running import RunningGait, running_speeds

@@ -29,7 +29,9 @@ py::dict update_live(LiveTrace& live, Scene scene, const Radar& radar, int64_t n
   settings.sampler = kSampler.value_of(sampler);
   settings.scatterers = kScatterers.value_of(scatterers);
   const SceneSnapshot snapshot(std::move(scene));
-  LiveTrace::Change change = run_job("trace", progress, [&](Job& job) { return live.update(snapshot, radar, settings, &job); });
+  // What ends the job as it ends, such as an exception of `progress`, must leave the record that Python knows of.
+  LiveTrace::Next next = run_job("trace", progress, [&](Job& job) { return live.prepare(snapshot, radar, settings, &job); });
+  LiveTrace::Change change = live.accept(std::move(next));
   py::dict out;
   out["is_whole"] = change.is_whole;
   out["num_rays_shot"] = change.num_rays_shot;

@@ -115,7 +115,7 @@ std::vector<LiveBlockPtr> blocks_of_its_own(const LiveRecord& of, const LiveReco
 LiveTrace::LiveTrace() = default;
 LiveTrace::~LiveTrace() = default;
 
-LiveTrace::Change LiveTrace::update(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job) {
+LiveTrace::Next LiveTrace::prepare(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job) {
   Tracer tracer(scene, radar, settings, job, &kept_, &fitted_);
   const auto next = std::make_shared<LiveRecord>(tracer, settings);
   const Comparison comparison(record_.get(), *next);
@@ -139,8 +139,12 @@ LiveTrace::Change LiveTrace::update(const SceneSnapshot& scene, const Radar& rad
     change.removed = with_own_meshes(change.removed, job);
     change.added = with_own_meshes(change.added, job);
   }
-  record_ = next;
-  return change;
+  return {std::move(change), next};
+}
+
+LiveTrace::Change LiveTrace::accept(Next&& next) {
+  record_ = std::move(next.record);
+  return std::move(next.change);
 }
 
 Paths LiveTrace::paths(Job* job) const {

@@ -29,10 +29,23 @@ class LiveTrace {
     int64_t num_rays_shot = 0;
   };
 
+  // Holds a record that may take the place of the present one.
+  struct Next {
+    Change change;
+    std::shared_ptr<const LiveRecord> record;
+  };
+
   LiveTrace();
   ~LiveTrace();
-  // Brings the record to the scene, radar and settings given. Raises as `trace`; the record then is the one before.
-  Change update(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr);
+  // Makes the record of the scene, radar and settings given, which `accept` puts in the place of the present one. Raises as
+  // `trace`.
+  Next prepare(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr);
+  // Returns how the record differs from the one before. `next` must have been prepared since that came.
+  Change accept(Next&& next);
+  // Does both. Where it raises, the record is the one before.
+  Change update(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr) {
+    return accept(prepare(scene, radar, settings, job));
+  }
   // Returns the record as `trace` gives it for the last update, but for the numbers of queries in its statistics. Raises
   // invalid_argument before the first update; raises Cancelled.
   Paths paths(Job* job = nullptr) const;

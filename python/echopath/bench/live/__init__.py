@@ -1,4 +1,4 @@
-"""`echopath bench live`: figures of scenes that go on in time beside what they must reach, in one run."""
+"""`echopath bench live`: figures of scenes that change and go on in time beside what they must reach, in one run."""
 from __future__ import annotations
 
 import json
@@ -7,9 +7,9 @@ from pathlib import Path
 from ...files import write_texts
 from ..machine import machine
 from ..steps import told
-from . import drive
+from . import drive, edits
 
-PARTS = {"drive": drive}
+PARTS = {"edits": edits, "drive": drive}
 
 
 def run_live(folder, *, quick: bool = False, progress=None) -> dict:

@@ -1,0 +1,162 @@
+"""A scene that is changed while its map is watched: what a moved object costs, how near the view is to a fresh one, memory.
+
+An update is one object moved by 10 cm and the new range-Doppler map. Beside it stands a fresh Live of the same scene in the
+same run. Times are by the clock, medians: what a hand on a mouse feels.
+"""
+from __future__ import annotations
+
+import multiprocessing
+import statistics
+
+import numpy as np
+
+import echopath as ep
+
+from ..crowd_scenes import flat_city, radar, rounded_car, street
+from ..timing import wall_time
+from .drive import MIB, resident_memory
+
+RAYS, QUICK_RAYS, FEW_RAYS = 100_000, 2_000, 20_000
+UPDATES, QUICK_UPDATES = 15, 2
+EDITS, QUICK_EDITS = 1000, 5
+SOAK_UPDATES, QUICK_SOAK = 2000, 5
+SOAK_FROM = 0.1                    # of the updates, after which memory is to be flat
+STEP = (0.1, 0.0, 0.0)             # m
+LIMITS = {"pedestrian of the demo street": 0.05, "sign of a street of 20 objects": 0.05, "car in a city of 2400 meshes": 0.1}
+MOST_SECONDS_OF_FEW = 0.05         # 20 updates a second
+MOST_ERROR, MOST_GROWTH = 1e-12, 1.1
+
+
+def rows(*, quick: bool = False) -> list[dict]:
+    """A row for each figure: what, measured, limit and whether it holds. quick: few rays and updates, for a look"""
+    with multiprocessing.get_context("spawn").Pool(1) as pool:  # its memory is that of the live scene alone
+        return pool.apply(_rows, (quick,))
+
+
+def describe(rows: list[dict]) -> list[str]:
+    """What, the figure, its limit, and whether it holds."""
+    lines = [f"{'edits':<72}{'measured':>10}{'limit':>9}"]
+    for row in rows:
+        limit = "" if row["limit"] is None else f"{row['limit']:9.3g}  {'holds' if row['holds'] else 'MISSED'}"
+        lines.append(f"{row['what']:<72}{row['measured']:10.3g}{limit}")
+    return lines
+
+
+def demo_street() -> tuple[ep.Scene, ep.Radar, str]:
+    """(scene, radar, name of what is moved): the pedestrian, at whom or at whose images nearly all rays go."""
+    from importlib.resources import as_file
+
+    from ...materials import data_folder
+    with as_file(data_folder("scenes") / "street.toml") as path:
+        file = ep.load_scene(path)
+    return file.scene, _with_128_chirps(file.radar), "pedestrian"
+
+
+def crowded_street() -> tuple[ep.Scene, ep.Radar, str]:
+    """A street of twenty objects between flagged mirrors."""
+    return street(mirrors=True), _with_128_chirps(radar()), "sign_30"
+
+
+def city() -> tuple[ep.Scene, ep.Radar, str]:
+    """A car before a person among 2400 buildings."""
+    scene, of_scene = flat_city()
+    scene.add(rounded_car(), name="car", position=(20.0, 3.0, 0.0), material=ep.Material.metal(), smooth=True)
+    return scene, _with_128_chirps(of_scene), "car"
+
+
+SCENES = dict(zip(LIMITS, (demo_street, crowded_street, city)))
+
+
+def edit_at_random(live: ep.Live, draw: np.random.Generator, names: list[str], window: list) -> None:
+    """Changes one thing: a place, a turn, a motion, a material, what is visible, the array, the waveform, or the window."""
+    node = live.scene[names[draw.integers(len(names))]]
+    kind = draw.integers(12)
+    if kind < 5:
+        node.position += draw.normal(0.0, 0.2, 3) * (1, 1, 0)
+    elif kind < 7:
+        node.yaw += draw.normal(0.0, 0.3)
+    elif kind == 7:
+        node.motion = None if draw.integers(2) else ep.LinearMotion(velocity=(draw.normal(0.0, 5.0), 0.0, 0.0))
+    elif kind == 8:
+        node.visible = not node.visible
+    elif kind == 9:
+        _set_material(node, ep.Material.metal() if draw.integers(2) else ep.materials["concrete"])
+    elif kind == 10:
+        live.radar = live.radar.replace(transmit_power=float(draw.uniform(0.005, 0.02)))
+    else:
+        window[0] = "hann" if window[0] == "hamming" else "hamming"
+        live.set_map(window=window[0])
+
+
+def _set_material(node, material) -> None:
+    if node.children:
+        for child in node.children:
+            _set_material(child, material)
+    elif node.mesh is not None:
+        node.material = material
+
+
+def _with_128_chirps(of: ep.Radar) -> ep.Radar:
+    return of.replace(waveform=of.waveform.replace(num_chirps=128))
+
+
+def _rows(quick: bool) -> list[dict]:
+    found = []
+    for name, made in SCENES.items():
+        found += _moved(name, *made(), QUICK_RAYS if quick else RAYS, LIMITS[name], QUICK_UPDATES if quick else UPDATES)
+    for name, made in list(SCENES.items())[1:]:
+        found += _moved(name, *made(), QUICK_RAYS if quick else FEW_RAYS, MOST_SECONDS_OF_FEW,
+                        QUICK_UPDATES if quick else UPDATES)
+    found.append(_row("1000 random edits of the street of 20 objects: error", _error_of_edits(QUICK_EDITS if quick else EDITS),
+                      MOST_ERROR))
+    found.append(_row("2000 updates: memory over that after 200", _growth(QUICK_SOAK if quick else SOAK_UPDATES), MOST_GROWTH))
+    return found
+
+
+def _row(what: str, measured: float, limit: float | None) -> dict:
+    return {"what": what, "measured": measured, "limit": limit, "holds": None if limit is None else bool(measured <= limit)}
+
+
+def _moved(name: str, scene: ep.Scene, of_scene: ep.Radar, moved: str, num_rays: int, limit: float, updates: int
+           ) -> list[dict]:
+    what = f"{name}, {num_rays} rays"
+    live = ep.Live(scene, of_scene, num_rays=num_rays)
+    live.update()
+    views = []
+    for _ in range(updates + 1):
+        live.scene[moved].position += STEP
+        views.append(wall_time(live.update))
+    views = views[1:]  # the first one brings memory
+    seconds = statistics.median(took for took, _ in views)
+    fresh_seconds, fresh = wall_time(ep.Live(live.scene, of_scene, num_rays=num_rays).update)
+    stages = {stage: statistics.median(view.stages[stage] for _, view in views) for stage in views[0][1].stages}
+    error = float(np.abs(views[-1][1].cube - fresh.cube).max() / np.abs(fresh.cube).max())
+    return [_row(f"{what}: moved, s", seconds, limit), _row(f"{what}: moved over fresh", seconds / fresh_seconds, None),
+            *(_row(f"{what}: of it {stage}, s", value, None) for stage, value in stages.items()),
+            _row(f"{what}: share of rays shot", views[-1][1].num_rays_shot / num_rays, None),
+            _row(f"{what}: error", error, MOST_ERROR)]
+
+
+def _error_of_edits(count: int) -> float:
+    """Largest difference of a sample over the largest sample, from a fresh Live after all edits and at ten places before."""
+    scene, of_scene, _ = crowded_street()
+    draw, live, window = np.random.default_rng(3), ep.Live(scene, of_scene, num_rays=QUICK_RAYS), ["hann"]
+    names = [name for name in scene if "/" not in name and name not in ("ground", "wall_left", "wall_right")]
+    worst = 0.0
+    for number in range(count):
+        edit_at_random(live, draw, names, window)
+        view = live.update()
+        if number % max(1, count // 10) == 0 or number == count - 1:
+            fresh = ep.Live(live.scene, live.radar, num_rays=QUICK_RAYS).update()
+            worst = max(worst, float(np.abs(view.cube - fresh.cube).max() / np.abs(fresh.cube).max()))
+    return worst
+
+
+def _growth(count: int) -> float:
+    scene, of_scene, moved = crowded_street()
+    live, memory = ep.Live(scene, of_scene, num_rays=QUICK_RAYS), []
+    for number in range(count):
+        live.scene[moved].position += STEP if number % 2 else (-0.1, 0.0, 0.0)
+        live.update()
+        memory.append(resident_memory() / MIB)
+    return max(memory[int(SOAK_FROM * count):]) / memory[int(SOAK_FROM * count)]

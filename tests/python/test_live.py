@@ -1,0 +1,246 @@
+"""Live scenes: the view after any change is that of a fresh one, and only what a change touches is done again."""
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath.bench.live.edits import crowded_street, edit_at_random
+
+ROUNDING = 1e-12   # of the largest sample: signals are added and taken away
+RAYS = 2000
+LONG = 60.0        # s, that a thread may take on a busy machine
+
+
+def make_live(**keywords) -> ep.Live:
+    scene, radar, _ = crowded_street()
+    return ep.Live(scene, radar.replace(waveform=radar.waveform.replace(num_chirps=8)), **{"num_rays": RAYS} | keywords)
+
+
+def difference(view: ep.LiveView, fresh: ep.LiveView) -> float:
+    return float(np.abs(view.cube - fresh.cube).max() / np.abs(fresh.cube).max())
+
+
+def fresh_view(live: ep.Live, **keywords) -> ep.LiveView:
+    return ep.Live(live.scene, live.radar, **{"num_rays": live.num_rays} | keywords).update()
+
+
+@pytest.fixture
+def live() -> ep.Live:
+    made = make_live()
+    made.update()
+    return made
+
+
+def test_a_moved_object_shoots_few_rays_and_gives_the_view_of_a_fresh_scene(live):
+    for _ in range(3):
+        live.scene["sign_30"].position += (0.1, 0.0, 0.0)
+        view = live.update()
+        assert 0 < view.num_rays_shot < 0.3 * RAYS
+        assert difference(view, fresh_view(live)) < ROUNDING
+    assert not np.array_equal(view.cube, make_live().update().cube)
+
+
+def test_the_record_is_that_of_a_fresh_scene(live):
+    live.scene["sign_30"].position += (0.1, 0.0, 0.0)
+    live.update()
+    other = make_live()
+    other.scene["sign_30"].position += (0.1, 0.0, 0.0)
+    other.update()
+    mine, fresh = live.paths(), other.paths()
+    for column in ("mesh_id", "triangle_id", "u", "v", "offsets", "num_bounces", "diffuse", "weight", "stratum", "flags"):
+        assert np.array_equal(getattr(mine, column), getattr(fresh, column)), column
+
+
+def test_random_edits_end_in_the_view_of_a_fresh_scene(live):
+    draw, window = np.random.default_rng(5), ["hann"]
+    names = ["sign_30", "car_smooth_15", "pole_20", "pedestrian_10", "car_facets_40"]
+    for _ in range(25):
+        edit_at_random(live, draw, names, window)
+        view = live.update()
+        fresh = ep.Live(live.scene, live.radar, num_rays=RAYS, window=window[0]).update()
+        assert difference(view, fresh) < ROUNDING
+        assert np.allclose(view.map.values, fresh.map.values, rtol=0.0, atol=ROUNDING * np.abs(fresh.map.values).max())
+
+
+@pytest.mark.parametrize("change", [
+    lambda live: live.scene.remove("sign_30"),
+    lambda live: live.scene.add(ep.actors.pedestrian(), name="guest", position=(9.0, 1.0, 0.0)),
+    lambda live: setattr(live.scene["ground"], "position", (0.0, 0.0, -0.1)),
+    lambda live: setattr(live, "radar", live.radar.replace(position=(0.5, 0.0, 0.1)))])
+def test_what_concerns_all_rays_shoots_all(live, change):
+    change(live)
+    view = live.update()
+    assert view.num_rays_shot == RAYS
+    assert difference(view, fresh_view(live)) == 0.0
+
+
+def test_what_rays_do_not_see_shoots_none(live):
+    before = live.update()
+    live.radar = live.radar.replace(transmit_power=2.0 * live.radar.transmit_power)
+    louder = live.update()
+    assert louder.num_rays_shot == 0
+    assert np.allclose(louder.cube, np.sqrt(2.0) * before.cube, rtol=0.0, atol=ROUNDING * np.abs(louder.cube).max())
+    live.set_map(window="hamming", zero_pad=2)
+    padded = live.update()
+    assert padded.num_rays_shot == 0 and padded.num_paths_changed == 0 and padded.cube is louder.cube
+    assert padded.map.values.shape[-1] == 2 * louder.map.values.shape[-1]
+
+
+def test_another_array_of_the_same_middle_shoots_none_and_is_right(live):
+    receiver = live.radar.receivers[0]
+    pair = [receiver.replace(position=np.add(receiver.position, (0.0, y, 0.0))) for y in (-0.001, 0.001)]
+    live.radar = live.radar.replace(receivers=pair)
+    view = live.update()
+    assert view.cube.shape[1] == 2
+    assert difference(view, fresh_view(live)) < ROUNDING
+
+
+@pytest.mark.parametrize("keywords", [{"scatterers": "surface"}, {"polarization": "jones"}, {"method": "recurrence"}])
+def test_settings_are_kept_through_changes(keywords):
+    live = make_live(**keywords)
+    live.update()
+    live.scene["car_smooth_15"].position += (0.1, 0.05, 0.0)
+    assert difference(live.update(), fresh_view(live, **keywords)) < ROUNDING
+
+
+def test_a_scene_in_motion_is_followed(live):
+    live.scene["car_smooth_15"].motion = ep.LinearMotion(velocity=(12.0, 0.0, 0.0))
+    view = live.update()
+    assert difference(view, fresh_view(live)) < ROUNDING
+    at_rest = make_live().update()
+    assert difference(view, at_rest) > 1e-3
+
+
+def test_the_scene_that_was_given_stays_as_it_was():
+    scene, radar, _ = crowded_street()
+    live = ep.Live(scene, radar, num_rays=RAYS)
+    live.scene["sign_30"].position = (1.0, 2.0, 3.0)
+    assert not np.allclose(scene["sign_30"].position, (1.0, 2.0, 3.0))
+
+
+def test_views_cannot_be_written_to_and_stay_what_they_were(live):
+    view = live.update()
+    kept = view.cube.copy()
+    with pytest.raises(ValueError):
+        view.cube[0] = 0.0
+    live.scene["sign_30"].position += (0.3, 0.0, 0.0)
+    live.update()
+    assert np.array_equal(view.cube, kept)
+
+
+class Stop(Exception):
+    pass
+
+
+@pytest.mark.parametrize("stage", ["trace", "synthesize"])
+def test_an_ended_update_is_made_up_for(live, stage):
+    def end(now, fraction):
+        if now == stage:
+            raise Stop
+
+    live.scene["sign_30"].position += (0.1, 0.0, 0.0)
+    with pytest.raises(Stop):
+        live.update(progress=end)
+    live.scene["pole_20"].position += (0.1, 0.0, 0.0)
+    assert difference(live.update(), fresh_view(live)) < ROUNDING
+
+
+def test_a_bad_change_is_refused_and_nothing_is_lost(live):
+    where = np.array(live.scene["sign_30"].position)
+    live.scene["sign_30"].position = (1e30, 0.0, 0.0)
+    with pytest.raises(ValueError, match="sign_30"):
+        live.update()
+    live.scene["sign_30"].position = where
+    assert difference(live.update(), make_live().update()) < ROUNDING
+
+
+def test_a_preview_has_fewer_rays_and_is_that_of_a_fresh_scene(live):
+    live.scene["sign_30"].position += (0.1, 0.0, 0.0)
+    preview = live.preview(num_rays=500)
+    assert preview.is_preview and preview.num_rays == 500
+    assert difference(preview, fresh_view(live, num_rays=500)) == 0.0
+    assert not live.update().is_preview
+
+
+class Shown(list):
+    """Views in the order in which they were shown."""
+
+    def __call__(self, view: ep.LiveView) -> None:
+        self.append(view)
+
+
+def test_a_watch_shows_the_latest_change_last(live):
+    shown = Shown()
+    with live.watch(shown) as watch:
+        assert watch.wait(LONG)
+        for _ in range(20):
+            live.change(lambda scene: setattr(scene["sign_30"], "position", scene["sign_30"].position + (0.02, 0.0, 0.0)))
+        assert watch.wait(LONG)
+    assert [view.number for view in shown] == sorted(view.number for view in shown)
+    assert shown[-1].number == 20 and not shown[-1].is_preview
+    assert difference(shown[-1], fresh_view(live)) < ROUNDING
+
+
+def test_a_watch_shows_a_preview_first_where_a_view_takes_longer_than_its_budget():
+    live, shown = make_live(num_rays=20_000), Shown()
+    with live.watch(shown, budget=1e-4) as watch:
+        watch.wait(LONG)
+        live.change(lambda scene: scene.remove("sign_30"))
+        watch.wait(LONG)
+    assert [view.is_preview for view in shown] == [False, True, False]
+    assert shown[1].num_rays < shown[2].num_rays == 20_000
+
+
+def test_threads_that_change_beside_each_other_lose_no_change(live):
+    def push():
+        for _ in range(25):
+            live.change(lambda scene: setattr(scene["sign_30"], "position", scene["sign_30"].position + (0.001, 0.0, 0.0)))
+
+    start = live.scene["sign_30"].position[0]
+    with live.watch(Shown()) as watch:
+        threads = [threading.Thread(target=push) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        assert watch.wait(LONG)
+    assert live.number == 100
+    assert live.scene["sign_30"].position[0] == pytest.approx(start + 0.1, abs=1e-12)
+    assert difference(live.update(), fresh_view(live)) < ROUNDING
+
+
+def test_what_a_watch_cannot_show_is_raised_by_wait_and_stop(live):
+    watch = live.watch(Shown())
+    watch.wait(LONG)
+    live.change(lambda scene: setattr(scene["sign_30"], "position", (1e30, 0.0, 0.0)))
+    with pytest.raises(ValueError, match="sign_30"):
+        watch.wait(LONG)
+    with pytest.raises(ValueError, match="sign_30"):
+        watch.stop()
+
+
+def test_a_stopped_watch_ends_soon():
+    live = make_live(num_rays=1_000_000)
+    watch = live.watch(Shown())
+    time.sleep(0.3)
+    watch.stop()
+    assert not watch.wait(0.1)
+
+
+@pytest.mark.parametrize("call, named", [
+    (lambda live: ep.Live(live.scene, live.radar, num_rays=0), "num_rays"),
+    (lambda live: ep.Live(live.scene, "radar"), "radar"),
+    (lambda live: ep.Live(live.scene, live.radar, window="square"), "window"),
+    (lambda live: live.change(3), "function"), (lambda live: live.watch(None), "show"),
+    (lambda live: live.watch(print, budget=0.0), "budget"), (lambda live: live.preview(num_rays=-1), "num_rays"),
+    (lambda live: setattr(live, "radar", None), "radar"), (lambda live: live.set_map(zero_pad=0), "zero_pad")])
+def test_wrong_arguments_are_named(live, call, named):
+    with pytest.raises((TypeError, ValueError), match=named):
+        call(live)
+
+
+def test_paths_come_after_the_first_update():
+    with pytest.raises(ValueError, match="updated"):
+        make_live().paths()

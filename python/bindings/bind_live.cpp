@@ -43,15 +43,19 @@ py::dict update_live(LiveTrace& live, Scene scene, const Radar& radar, int64_t n
 }  // namespace
 
 void bind_live(py::module_& m) {
-  py::class_<LiveTrace>(m, "LiveTrace", "The record of a scene that is changed again and again, no part of the public interface.")
+  py::class_<LiveTrace>(m, "LiveTrace",
+                        "The record of a scene that is changed again and again, no part of the public interface.")
       .def(py::init<>())
       .def("update", &update_live, py::arg("scene"), py::arg("radar"), py::kw_only(), py::arg("num_rays"),
            py::arg("max_bounces"), py::arg("seed"), py::arg("start_time"), py::arg("polarization"), py::arg("footprint"),
            py::arg("sampler"), py::arg("scatterers"), py::arg("progress") = py::none(),
            "What ep.Live calls. Returns is_whole, num_rays_shot, and the Paths removed and added.")
-      .def("paths", [](const LiveTrace& live, const py::object& progress) {
-        return run_job("trace", progress, [&](Job& job) { return kept(live.paths(&job)); });
-      }, py::arg("progress") = py::none(), "The whole record, Paths.");
+      .def(
+          "paths",
+          [](const LiveTrace& live, const py::object& progress) {
+            return run_job("trace", progress, [&](Job& job) { return kept(live.paths(&job)); });
+          },
+          py::arg("progress") = py::none(), "The whole record, Paths.");
 }
 
 }  // namespace echopath::bindings

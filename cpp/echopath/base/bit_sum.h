@@ -16,7 +16,8 @@ class BitSum {
     static_assert(std::is_trivially_copyable_v<Value>);
     for (size_t done = 0; done < sizeof(Value); done += sizeof(uint64_t)) {
       uint64_t word = 0;
-      std::memcpy(&word, reinterpret_cast<const unsigned char*>(&value) + done, std::min(sizeof(Value) - done, sizeof(word)));
+      std::memcpy(&word, reinterpret_cast<const unsigned char*>(&value) + done,
+                  std::min(sizeof(Value) - done, sizeof(word)));
       sum_ = mixed(sum_ ^ word);
     }
   }

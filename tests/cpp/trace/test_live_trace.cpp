@@ -63,8 +63,13 @@ using Row = std::vector<uint64_t>;
 
 // Everything about a path, with names for its meshes, which have IDs of their own in each scene.
 Row row_of(const Paths& paths, size_t path, bool by_name) {
-  Row row{paths.num_bounces[path], paths.diffuse[path], paths.stratum[path], paths.batch[path], paths.flags[path],
-          std::bit_cast<uint32_t>(paths.weight[path].real()), std::bit_cast<uint32_t>(paths.weight[path].imag())};
+  Row row{paths.num_bounces[path],
+          paths.diffuse[path],
+          paths.stratum[path],
+          paths.batch[path],
+          paths.flags[path],
+          std::bit_cast<uint32_t>(paths.weight[path].real()),
+          std::bit_cast<uint32_t>(paths.weight[path].imag())};
   const Hit* hits = paths.hits_of(static_cast<int64_t>(path));
   for (int k = 0; k < paths.num_bounces[path]; ++k) {
     const uint64_t mesh = by_name ? std::hash<std::string>()(paths.scene->node_of(hits[k].mesh_id).name) : hits[k].mesh_id;

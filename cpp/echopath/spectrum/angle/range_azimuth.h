@@ -14,8 +14,8 @@ namespace echopath {
 
 // Selects the velocities that a range-azimuth map shows.
 struct VelocityChoice {
-  std::optional<double> velocity;             // m/s, of the cells taken; none: all velocities
-  Combine combine = Combine::kSum;            // for all velocities: their sum, or the largest of them
+  std::optional<double> velocity;                  // m/s, of the cells taken; none: all velocities
+  Combine combine = Combine::kSum;                 // for all velocities: their sum, or the largest of them
   std::optional<std::array<double, 2>> gate = {};  // m/s, lowest and highest of "all velocities"; none: those of the map
 };
 

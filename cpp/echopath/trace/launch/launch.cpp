@@ -145,8 +145,11 @@ Stratum field_of_view(const LaunchSettings& settings) {
 LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                        const LaunchSettings& settings) {
   const Stratum field = field_of_view(settings);
-  const RayTargetSettings aims{settings.transmitter, settings.frusta, 0.5 * field.solid_angle(),
-                               settings.sampler == Sampler::kLattice, settings.num_rays / (LaunchPlan::kFewestRays - 1),
+  const RayTargetSettings aims{settings.transmitter,
+                               settings.frusta,
+                               0.5 * field.solid_angle(),
+                               settings.sampler == Sampler::kLattice,
+                               settings.num_rays / (LaunchPlan::kFewestRays - 1),
                                settings.fitted};
   RayTargets found = find_ray_targets(scene, geometry, mirrors, aims);
   const bool is_guided = !settings.guide.shares.empty();

@@ -72,8 +72,8 @@ struct LaunchSettings {
   std::span<const MirrorFrustum> frusta;  // of the transmitter; images over these get strata
   Vec3 transmitter = Vec3::Zero();
   Vec3 boresight = Vec3::UnitX();
-  double field_versine = 2.0;  // 1 - cosine of the field of view's half angle
-  LaunchGuide guide;           // by default the rule above, without foci
+  double field_versine = 2.0;      // 1 - cosine of the field of view's half angle
+  LaunchGuide guide;               // by default the rule above, without foci
   FittedStrata* fitted = nullptr;  // RayTargetSettings::fitted
 };
 

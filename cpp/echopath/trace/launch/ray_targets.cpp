@@ -58,8 +58,8 @@ class RayTargetFinder {
                        [&](const Vec3& vertex) { return image_of(vertex, mirrors_, frustum.mirrors); });
         return vertices;
       };
-      std::optional<RayTarget> made = target_at(target, input_of(target, frustum.mirrors), name_over(target, frustum),
-                                                num_mirrors, images_of_vertices);
+      std::optional<RayTarget> made =
+          target_at(target, input_of(target, frustum.mirrors), name_over(target, frustum), num_mirrors, images_of_vertices);
       if (!made) continue;
       const auto same = std::find_if(images.begin(), images.end(),
                                      [&](const RayTarget& other) { return is_same(made->stratum, other.stratum); });

@@ -127,8 +127,9 @@ LiveTrace::Next LiveTrace::prepare(const SceneSnapshot& scene, const Radar& rada
   for (const LiveBlockPtr& block : next->blocks) images.add_chains(block->paths);
   next->over_planes = images.find(job);
   next->doubles = images.doubles();
-  change.is_whole = !comparison.shares_blocks() || !(record_->doubles == next->doubles) ||
-                    static_cast<double>(change.num_rays_shot) > kMostRaysOfDifference * static_cast<double>(tracer.num_rays());
+  change.is_whole =
+      !comparison.shares_blocks() || !(record_->doubles == next->doubles) ||
+      static_cast<double>(change.num_rays_shot) > kMostRaysOfDifference * static_cast<double>(tracer.num_rays());
   if (change.is_whole) {
     change.added = next->paths_of(next->blocks, job);
     change.removed = next->empty;

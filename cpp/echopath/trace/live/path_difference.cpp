@@ -50,7 +50,7 @@ class PathSums {
     bits.add(paths_.diffuse[path]);
     bits.add(paths_.weight[path]);
     bits.add(uint64_t{paths_.flags[path]} << 32 | uint64_t{stratum} << 16 | uint64_t{paths_.num_bounces[path]} << 8 |
-              paths_.batch[path]);
+             paths_.batch[path]);
     if (!paths_.curved_cell.empty()) bits.add(paths_.curved_cell[path]);
     if (!paths_.jones.empty()) bits.add(paths_.jones[path]);
     return std::max(bits.value(), kUnlike + 1);

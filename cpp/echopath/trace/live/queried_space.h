@@ -30,7 +30,7 @@ class QueriedSpace {
   };
   bool meets(const Pack& pack, const FloatBox& box) const;
 
-  std::vector<Pack> packs_;     // the lanes of the last one that are not in use hold its first stretch
+  std::vector<Pack> packs_;      // the lanes of the last one that are not in use hold its first stretch
   std::vector<FloatBox> boxes_;  // of each pack
   int num_in_last_ = kPacketSize;
 };

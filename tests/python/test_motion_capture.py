@@ -165,3 +165,69 @@ def test_faults_are_told_by_name(walk, change, message):
         ep.load_model(walk)
     with pytest.raises(ep.FileError):
         ep.actors.captured_pedestrian(walk)
+
+
+# --- along a trajectory ---
+
+def along(path, **settings) -> tuple:
+    """(trajectory of 6 m straight ahead, {part: motion} of the captured person on it)"""
+    trajectory = ep.Trajectory([(0, 0), (6, 0)], **{"speed": 1.3} | settings)
+    person = ep.actors.captured_pedestrian(path, trajectory=trajectory)
+    assert person.motion is trajectory
+    return trajectory, {part.name: part.motion for part in person.parts}
+
+
+def ahead_of(trajectory, motion, time: float) -> np.ndarray:
+    """Where the origin of a part is in the world."""
+    return trajectory.position(time) + motion.at(time)[:3, 3]
+
+
+@pytest.fixture
+def strides(tmp_path):
+    """A second and a half of the walk: its cycle of one second closes within."""
+    (tmp_path / "strides.bvh").write_text(bvh_text(walk_frames(46)))
+    return tmp_path / "strides.bvh"
+
+
+def test_a_captured_walk_goes_on_along_a_trajectory_as_it_was_captured(strides):
+    """At the captured speed every joint goes as in the capture from some frame on, wherever the cycle begins."""
+    trajectory, moved = along(strides)
+    captured = {part.name: part.motion for part in ep.actors.captured_pedestrian(strides).parts}
+    times = np.linspace(0.05, 0.45, 9)
+    errors = []
+    for begin in np.arange(16) / 30.0:
+        apart = []
+        for name in ("leg_left/foot", "leg_right/shank", "arm_left/hand", "head"):
+            found = np.array([ahead_of(trajectory, moved[name], time) for time in times])
+            expected = np.array([captured[name].at(time + begin)[:3, 3] for time in times])
+            expected[:, 0] -= 1.3 * begin
+            apart.append(np.abs(found - expected).max())
+        errors.append(max(apart))
+    assert min(errors) < 2e-3
+
+
+def test_a_captured_walk_is_as_fast_as_its_way(strides):
+    moved, moved_faster = along(strides)[1], along(strides, speed=2.6)[1]
+    for time in (0.2, 0.9, 1.7):
+        for name in ("leg_left/foot", "arm_right/forearm"):
+            assert moved_faster[name].at(0.5 * time) == pytest.approx(moved[name].at(time), abs=1e-4)
+            assert moved[name].at(time + 1.0) == pytest.approx(moved[name].at(time), abs=1e-4)  # a cycle takes a second
+    stopping, moved = along(strides, stops=[(3.0, 0.8)])
+    waits = float(stopping.time_at(3.0))
+    foot = moved["leg_left/foot"]
+    assert foot.at(waits + 0.1) == pytest.approx(foot.at(waits + 0.7), abs=1e-6)
+
+
+def test_captures_that_do_not_go_along_are_told(tmp_path, strides):
+    still = walk_frames(46)
+    still[:, 2] = 0.0
+    (tmp_path / "still.bvh").write_text(bvh_text(still))
+    with pytest.raises(ep.FileError, match="still.bvh: goes less than 0.5 m"):
+        along(tmp_path / "still.bvh")
+    wild = walk_frames(46)
+    wild[:, 6:] += 40.0 * np.random.default_rng(3).normal(size=wild[:, 6:].shape)
+    (tmp_path / "wild.bvh").write_text(bvh_text(wild))
+    with pytest.raises(ep.FileError, match="wild.bvh: has no cycle of steps"):
+        along(tmp_path / "wild.bvh")
+    with pytest.raises(ValueError, match="offset: must be left out beside trajectory"):
+        ep.actors.captured_pedestrian(strides, offset=0.2, trajectory=ep.Trajectory([(0, 0), (6, 0)], speed=1.0))

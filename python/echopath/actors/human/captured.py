@@ -9,10 +9,13 @@ import numpy as np
 from ... import _core
 from ...checks import checked, choice, optional, positive, real
 from ...meshes import UNIT
+from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
+from ..following import key_times, refuse_beside_trajectory, trajectory_rule, with_rates
 from ..surfaces import edge_length
 from .anthropometry import ANKLE_HEIGHT, HIP_HEIGHT, Proportions
 from .body import surface
+from .captured_along import CaptureAlong, cycle_of
 from .captured_joints import find_joints, missing_joints
 from .gait import Frames
 from .motion_capture import read_capture
@@ -26,13 +29,15 @@ JUMPS = 4.0
 ON_FLOOR = 0.10         # share of the frames in which the lower foot may be below the floor
 MOST_STRETCH = 10.0     # of a segment over that of a body of the same legs, up or down
 TRAVEL = 0.5            # m from which on the way of the body is its direction
+KEYFRAME_RATE = 120.0   # 1/s, along a trajectory
 
 
 @checked(height=optional(real(*HEIGHTS, unit="m")), unit=optional(UNIT), up=optional(choice("x", "y", "z")),
-         offset=real(unit="s"), edge=positive("m"), clothing=material_rule, skin=material_rule)
+         offset=real(unit="s"), edge=positive("m"), clothing=material_rule, skin=material_rule, trajectory=trajectory_rule)
 def captured_pedestrian(path: str | os.PathLike[str], *, height: float | None = None, unit: float | None = None,
                         up: str | None = None, offset: float = 0.0, edge: float = 0.018,
-                        clothing: str | _core.Material = "clothing", skin: str | _core.Material = "skin") -> Actor:
+                        clothing: str | _core.Material = "clothing", skin: str | _core.Material = "skin",
+                        trajectory: Trajectory | None = None) -> Actor:
     """A person who moves as a motion capture says, with the parts, names and materials of `pedestrian`.
 
     Each part sits at its captured joint and points along its captured segment, whose length it takes, so joints move exactly
@@ -49,10 +54,16 @@ def captured_pedestrian(path: str | os.PathLike[str], *, height: float | None = 
     up: vertical axis of the file, "x", "y" or "z"; None: y, unless the body is along another one most of the time
     offset: s, time of the capture at time 0. It lasts as long as the capture; a scene can be posed at no other time
     edge, clothing, skin: as of `pedestrian`
+    trajectory: a Trajectory of the origin that is followed, instead of offset: the captured cycle of steps that closes best, of
+        half a metre at least, is repeated, so fast that feet which stand in the capture stand on a straight way; in curves they
+        turn with the body, at stops the pose stays
     Returns an Actor. Raises ep.FileError naming the file and what is wrong with it, ValueError or TypeError naming the
     argument.
     """
+    refuse_beside_trajectory(trajectory, offset=(offset, 0.0))
     body = captured_body(Path(path), unit=unit, up=up, height=height)
+    if trajectory is not None:
+        return Actor([part.build() for part in body.parts_along(trajectory, edge, clothing, skin)], trajectory)
     return Actor([part.build() for part in body.parts(offset, edge, clothing, skin)])
 
 
@@ -95,15 +106,26 @@ class CapturedBody:
 
     def parts(self, offset: float, edge: float, clothing, skin) -> list[PartArrays]:
         """PartArrays of the actor; arguments as of captured_pedestrian."""
+        frames, surfaces = self._surfaced(offset, edge)
+        return _arrays(frames, surfaces, self.times - offset, clothing, skin)
+
+    def parts_along(self, trajectory: Trajectory, edge: float, clothing, skin) -> list[PartArrays]:
+        """PartArrays of the actor along a trajectory; arguments as of captured_pedestrian."""
+        frames, surfaces = self._surfaced(float(self.times[0]), edge)
+        along = CaptureAlong(cycle_of(frames, self.times, self._path), trajectory._track)
+        times = key_times(trajectory, KEYFRAME_RATE)
+        return with_rates(_arrays(along.frames(times), surfaces, times, clothing, skin), along.frames, times)
+
+    def _surfaced(self, offset: float, edge: float) -> tuple[dict[str, Frames], dict]:
+        """Frames of every part as they stand in the actor, and (vertices, triangles) of its surface."""
         edge = edge_length(edge, 3.0 * self.body.height)
         frames, stretch = self._frames()
         kinds = {name: name.rsplit("/")[-1] for name in frames}
         of_kind = {kind: surface(kind, self.body, edge) for kind in dict.fromkeys(kinds.values())}
         surfaces = {name: of_kind[kind] for name, kind in kinds.items()}
         self._place(frames, surfaces, offset)
-        return [PartArrays(name, surfaces[name][0] * [1.0, 1.0, stretch.get(name, 1.0)], surfaces[name][1],
-                           skin if kinds[name] in SKIN_PARTS else clothing, self.times - offset, frame.origin,
-                           quaternions(frame.rotation), smooth=True) for name, frame in frames.items()]
+        return frames, {name: (vertices * [1.0, 1.0, stretch.get(name, 1.0)], triangles)
+                        for name, (vertices, triangles) in surfaces.items()}
 
     def _length(self, *names: str) -> float:
         """Mean length of a chain of joints, over both sides and time."""
@@ -188,6 +210,11 @@ class CapturedBody:
         lowest = [(frames[name].rotation[:, 2] @ surfaces[name][0].T).min(axis=1) + frames[name].origin[:, 2]
                   for name in ("leg_left/foot", "leg_right/foot")]
         return float(np.quantile(np.minimum(*lowest), ON_FLOOR))
+
+
+def _arrays(frames: dict[str, Frames], surfaces: dict, times, clothing, skin) -> list[PartArrays]:
+    return [PartArrays(name, *surfaces[name], skin if name.rsplit("/")[-1] in SKIN_PARTS else clothing, times, frame.origin,
+                       quaternions(frame.rotation), smooth=True) for name, frame in frames.items()]
 
 
 def _axes(up, left) -> np.ndarray:

@@ -150,7 +150,7 @@ class _Batch:
                            part_smooth)
 
     def _add_model(self, model: Model, name, material, motion, place) -> None:
-        indices = {-1: self._add(name, self._parent, place, motion, None, None)}
+        indices = {-1: self._add(name, self._parent, place, model.motion if motion is None else motion, None, None)}
         for index, node in enumerate(model.nodes):
             own_material = material if material is not None and node.mesh is not None else node.material
             moved = node.motion if node.deformation is None else node.deformation
@@ -183,11 +183,11 @@ class _Batch:
 
 
 def _refuse_two_motions(content, motion, speed) -> None:
-    """Raises ValueError for a motion beside that of an actor which follows a trajectory."""
-    if isinstance(content, Actor) and content.motion is not None:
+    """Raises ValueError for a motion beside that of an actor or a model which follows a trajectory."""
+    if isinstance(content, (Actor, Model)) and content.motion is not None:
         for argument, value in (("motion", motion), ("speed", speed)):
             if value is not None:
-                raise refused(ValueError, argument, "left out for an actor that follows a trajectory", value)
+                raise refused(ValueError, argument, "left out for an actor or model that follows a trajectory", value)
 
 
 def _parts_of(content, material) -> list:

@@ -308,7 +308,7 @@ def test_what_a_trajectory_replaces_is_refused_beside_it(make):
 def test_other_refusals():
     with pytest.raises(ValueError, match="^trajectory: must be one of at most 2.83 m/s"):
         ep.actors.pedestrian(trajectory=DRIVE)
-    with pytest.raises(ValueError, match="^speed: must be left out for an actor that follows"):
+    with pytest.raises(ValueError, match="^speed: must be left out for an actor or model that follows"):
         ep.Scene().add(ep.actors.bicycle(trajectory=WALK), name="a", speed=1.0)
-    with pytest.raises(ValueError, match="^motion: must be left out for an actor that follows"):
+    with pytest.raises(ValueError, match="^motion: must be left out for an actor or model that follows"):
         ep.Scene().add(ep.actors.bicycle(trajectory=WALK), name="a", motion=WALK)

@@ -2,7 +2,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ..trajectories import Trajectory
 
 
 @dataclass(frozen=True)
@@ -38,6 +41,7 @@ class Model:
     animations: names of all animations of the file; animation: the one that the motions follow, None: at rest
     duration: of that animation in s, 0 at rest
     notes: sentences that say what of the file was left out, guessed or mended
+    motion: of the whole, such as the Trajectory that it goes along; None: Scene.add says
     """
 
     nodes: tuple[ModelNode, ...]
@@ -48,6 +52,24 @@ class Model:
     animation: str | None = None
     duration: float = 0.0
     notes: tuple[str, ...] = field(default=())
+    motion: Any = None
+
+    def along(self, trajectory: Trajectory, *, way: float | None = None) -> Model:
+        """The model as it goes along a trajectory: its looped animation is played by the distance, and stops with it.
+
+        Of glTF and USD files, loaded with loop=True; nodes, skins and morph targets move as animated, whatever the offset: the
+        first pose is that at the begin of the trajectory. A way that the animation makes by itself is taken out of it.
+        trajectory: of the model's origin; way: m of one loop. None: as far as the animation goes ahead, or, of those that stay in
+            place, as far as points on the ground are pushed back: feet that stand then stand on a straight way. In curves they
+            turn with the body
+        Returns a Model that `Scene.add` puts on its trajectory. Raises TypeError or ValueError naming the argument, also where
+        the animation is not looped, or nothing tells the way.
+        """
+        from ..checks import an, optional, positive
+        from ..trajectories import Trajectory
+        from .along import model_along
+
+        return model_along(self, an(Trajectory)("trajectory", trajectory), optional(positive("m"))("way", way))
 
     @property
     def num_triangles(self) -> int:

@@ -6,6 +6,7 @@ import pytest
 
 import echopath as ep
 from support.gltf_files import BOX, BOX_SIDES, GltfFile, rig_file
+from support.scene_text import ANTENNAS, WAVEFORM
 
 STEP = 0.6           # m, that a foot is pushed back while it stands, half a loop of 1 s
 WAY = 2 * STEP       # of a loop
@@ -108,3 +109,27 @@ def test_what_cannot_go_along_is_refused(tmp_path):
     np.savez(tmp_path / "frames.npz", vertices=vertices, triangles=BOX_SIDES, frame_rate=10.0)
     with pytest.raises(ValueError, match="model: must be animated by curves"):
         ep.load_model(tmp_path / "frames.npz", loop=True).along(AHEAD)
+
+
+def test_a_scene_file_lets_a_model_go_along(tmp_path):
+    (tmp_path / "walker.glb").write_bytes(two_feet().glb())
+    text = WAVEFORM + ANTENNAS + """
+[[objects]]
+name = "walker"
+model = "walker.glb"
+loop = true
+way = {way}
+trajectory = {{points = [[3, 0], [9, 0]], speed = 1.5}}
+"""
+    for way, feet in (('"auto"', 1.2), ("1.5", 1.5)):
+        (tmp_path / "scene.toml").write_text(text.format(way=way))
+        scene = ep.load_scene(tmp_path / "scene.toml").scene
+        motions = [node.motion.translation.times for node in scene.nodes if node.name.endswith("left")]
+        assert np.min(np.abs(motions[0] - 2 * feet / 1.5)) < 1e-6  # a key where the second loop ends
+    for way, words in (("-1.0", "objects.0..way: must be a finite number above 0"), ("true", "objects.0..way: must be")):
+        (tmp_path / "scene.toml").write_text(text.format(way=way))
+        with pytest.raises(ValueError, match=words):
+            ep.load_scene(tmp_path / "scene.toml")
+    (tmp_path / "scene.toml").write_text(text.format(way="1.0").replace("loop = true\n", ""))
+    with pytest.raises(ValueError, match="objects.0..way: model: must have a looped animation"):
+        ep.load_scene(tmp_path / "scene.toml")

@@ -69,7 +69,7 @@ def _shape(table: ObjectTable, folder: Path, key: str, material, meshes_of_file,
             meshes = meshes_of_file(str(folder / table.mesh), unit=table.unit or 1.0)
         return (meshes[0][1] if len(meshes) == 1 else meshes), material
     if table.model is not None:
-        return _model(table, folder, key), material
+        return _model(table, folder, key, trajectory), material
     factory = _actor_factory(table.actor, f"{key}.actor")
     model = _parameter_table(table.actor, factory)
     parameters = validated(model, table.parameters, (*_as_location(key), "parameters")).model_dump(exclude_unset=True)
@@ -83,12 +83,16 @@ def _shape(table: ObjectTable, folder: Path, key: str, material, meshes_of_file,
         return factory(**parameters), material
 
 
-def _model(table: ObjectTable, folder: Path, key: str):
-    """The content of a foreign file."""
+def _model(table: ObjectTable, folder: Path, key: str, trajectory):
+    """The content of a foreign file; with a way, as it goes along its trajectory."""
     settings = {name: getattr(table, name) for name in MODEL_KEYS if getattr(table, name) is not None}
     settings["materials"] = {name: _material(value, f"{key}.materials.{name}") for name, value in table.materials.items()}
     with blamed(f"{key}.model"):
-        return load_model(folder / table.model, **settings)
+        model = load_model(folder / table.model, **settings)
+    if table.way is None:
+        return model
+    with blamed(f"{key}.way"):
+        return model.along(trajectory, way=None if table.way == "auto" else table.way)
 
 
 def _as_location(key: str) -> tuple:

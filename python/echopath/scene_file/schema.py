@@ -13,7 +13,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field
 from pydantic_core import PydanticCustomError
 
 from .. import _core
-from ..checks import Rule, window
+from ..checks import Rule, positive, window
 from ..gates import gate
 from ..parts import are_tables
 from ..settings import (
@@ -250,6 +250,10 @@ MaterialValue = Annotated[
 MODEL_KEYS = ("unit", "up", "animation", "loop", "offset")  # arguments of load_model that are keys of an object
 
 
+def _way(argument: str, value):
+    return value if value == "auto" else positive("m, or \"auto\"")(argument, value)
+
+
 class ObjectTable(Table):
     name: Name = Field(description="its name in path expressions")
     mesh: str | None = Field(None, description="OBJ, PLY, STL or OFF file, relative to the scene file")
@@ -260,6 +264,8 @@ class ObjectTable(Table):
     animation: str | None = Field(None, description="of the model, by its name; none: the first, \"\": at rest")
     loop: bool | None = Field(None, description="whether the animation begins anew at its end; none: it does not")
     offset: Number | None = Field(None, description="s, time of the animation at time 0 of the scene; none: 0")
+    way: Annotated[Any, by_check(_way)] | None = Field(
+        None, description="m of the trajectory in which a looped animation is played once, \"auto\": as its feet or itself say")
     actor: str | None = Field(None, description="a ready-made object: a function of echopath.actors")
     parameters: dict = Field({}, description="keywords of the actor")
     material: MaterialValue | None = Field(None, description="a known name or a table")
@@ -278,6 +284,8 @@ class ObjectTable(Table):
     def _one_shape(self):
         if [self.mesh, self.model, self.actor].count(None) != 2:
             raise broken_rule("mesh", "exactly one of mesh, model and actor must be given", self.mesh)
+        if self.way is not None and (self.model is None or self.trajectory is None):
+            raise broken_rule("way", "needs a model with a trajectory", self.way)
         if self.unit is not None and self.mesh is None and self.model is None:
             raise broken_rule("unit", "needs a mesh or a model", self.unit)
         for key in ("up", "materials", "animation", "loop", "offset"):

@@ -110,12 +110,12 @@ std::unique_ptr<PartPass> part_pass(const Paths& paths, const Radar& radar, cons
   return std::make_unique<PartPass>(paths, radar, as_vector<uint32_t>(group, "group"), num_groups, settings);
 }
 
-py::list powers_of_pass(PartPass& pass, const PartPass::Sets& sets, const py::object& window, int zero_pad,
+py::list powers_of_pass(PartPass& pass, const PartPass::Sets& sets, const py::object& window, int zero_pad, double least,
                         const py::object& progress) {
   const Window taper = as_window(window);
   py::list out;
   for (SetPower& of_set :
-       run_job("families", progress, [&](Job& job) { return pass.powers(sets, taper, zero_pad, &job); })) {
+       run_job("families", progress, [&](Job& job) { return pass.powers(sets, taper, zero_pad, least, &job); })) {
     out.append(py::make_tuple(numpy_take(std::move(of_set.cells)), of_set.mean_square));
   }
   return out;
@@ -160,10 +160,12 @@ of which is to be asked for once.)")
           "finish_probe",
           [](PartPass& self) { run_job("families", py::none(), [&](Job& job) { self.finish_probe(&job); }); },
           "Fills the probe; to be called once, when all groups were added.")
-      .def("powers", &powers_of_pass, py::arg("sets"), py::arg("window"), py::arg("zero_pad"), py::arg("progress"),
+      .def("powers", &powers_of_pass, py::arg("sets"), py::arg("window"), py::arg("zero_pad"), py::arg("least"),
+           py::arg("progress"),
            R"(Powers of sets of groups in the cells of a range-Doppler map.
 
-sets: lists of groups whose fields add up. Returns for each (power [V * R] in W, mean over the channels, mean square of its
+sets: lists of groups whose fields add up; least: cells at ranges where one can show no more than that, in W, may be 0.
+Returns for each (power [V * R] in W, mean over the channels, mean square of its
 samples in W).)")
       .def("cubes", &cubes_of_pass, py::arg("sets"), py::arg("progress"),
            "Signals [tx, rx, chirp, sample] of sets of groups.")

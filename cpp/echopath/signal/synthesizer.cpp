@@ -367,6 +367,14 @@ void Synthesizer::write_samples(int channel, int group, std::complex<double>* ou
   }
 }
 
+const double* Synthesizer::spread_rows(int channel, int group) const {
+  require_channel(channel);
+  require_group(group);
+  const ChannelRows& rows = channels_[static_cast<size_t>(channel)];
+  const RowMemory* const moving = rows.moving[static_cast<size_t>(group)].get();
+  return spread_ && moving && rows.still[static_cast<size_t>(group)].empty() ? moving->values.get() : nullptr;
+}
+
 void Synthesizer::absorb(const Synthesizer& other) {
   parallel_for(static_cast<int64_t>(channels_.size()), [&](int64_t channel) {
     absorb_channel(other.channels_[static_cast<size_t>(channel)], channels_[static_cast<size_t>(channel)]);

@@ -61,6 +61,10 @@ class Synthesizer {
   bool is_still(int channel, int group) const;
   // Writes the samples of one channel and group so far to `out`, [chirp, sample] in sqrt(W), without a parallel loop.
   void write_samples(int channel, int group, std::complex<double>* out) const;
+  // The method that spreads all echoes on grids, null where another one is at work; it lives as long as this.
+  const SpreadMethod* spread() const { return spread_; }
+  // The rows of `spread` of one channel and group, [chirp, re/im, row length]; null where it has echoes at rest, or none.
+  const double* spread_rows(int channel, int group) const;
   // Adds the signals of all groups of another, of the same waveform, channels, method and tolerance, to the first group.
   void absorb(const Synthesizer& other);
   // Returns the samples [channel, chirp, sample] of one group so far, in sqrt(W).

@@ -18,6 +18,7 @@ from .powers import ViewPowers, mean_square, parts_by_rival
 
 SIGNALS_IN_MEMORY = 128 << 20  # bytes that the signals of families may take at a time, unless one needs more
 STEP = 0.1                     # ratio of powers: how far each round goes below the last
+SHOWN = 1e-3                   # of the noise floor: ranges where a family can show less are left out of its map at first
 _OF_PASS = ("tolerance", "method", "replay", "evaluate", "phase_tolerance")
 
 
@@ -37,6 +38,7 @@ class FamilyPass:
         self._owners = CellOwners((len(plane.rows), len(plane.range)), families.families)
         self._is_made = np.zeros(len(self._owners.rivals), bool)
         self._bounds = np.zeros((len(families), len(plane.range)))
+        self._least = SHOWN * request.noise_floor
         self._make_likely(paths, families)
         if adds_up and probe is not None:
             self._pass.finish_probe()
@@ -51,14 +53,16 @@ class FamilyPass:
         whole: power [V, R] in W, of the sum of all fields; intervals: {Family: Interval} of mean powers in W
         """
         self._pass.set_adds_up(False)
-        owners, mask, level = self._owners, self._request.masks(whole)[1], np.inf
-        while (open_rivals := self._open_rivals(mask)):
-            level = STEP * min(level, max(bound for bound, _ in open_rivals))
-            self._make([rival for bound, rival in open_rivals if bound >= level])
+        owners, mask = self._owners, self._request.masks(whole)[1]
+        self._make_open(mask)
+        if self._least > 0.0 and np.any(mask & (owners.best <= self._least)):  # where no map shows anything, one may have left out the owner
+            self._least = 0.0
+            self._make(np.flatnonzero(self._is_made).tolist())
+            self._make_open(mask)
         self._note_left_out(intervals)
         shared = owners.give(mask)
         alone = [[number] for rival in shared for number in owners.rivals[rival]]
-        powers = self._powers(alone)
+        powers = self._powers(alone, 0.0)
         for rival in shared:
             own, received = zip(*(next(powers) for _ in owners.rivals[rival]))
             owners.divide(rival, own, received)
@@ -102,7 +106,7 @@ class FamilyPass:
 
     def _open_rivals(self, mask) -> list:
         """[(largest bound in W, rival), ...] of those not made that may own a cell, or tell of an object above the noise."""
-        least, found = np.where(mask, self._owners.best, np.inf).min(axis=0), []
+        least, found = np.where(mask, np.maximum(self._owners.best, self._least), np.inf).min(axis=0), []
         for rival in np.flatnonzero(~self._is_made).tolist():
             bound = self._bound(rival)
             may_own = bool(np.any((bound >= least) & (bound > 0.0)))
@@ -110,18 +114,29 @@ class FamilyPass:
                 found.append((float(bound.max()), rival))
         return found
 
+    def _make_open(self, mask) -> None:
+        """Makes those that may own a cell, strongest first, until there are none."""
+        level = np.inf
+        while (open_rivals := self._open_rivals(mask)):
+            level = STEP * min(level, max(bound for bound, _ in open_rivals))
+            self._make([rival for bound, rival in open_rivals if bound >= level])
+
     def _make(self, rivals: list) -> None:
-        for rival, (power, received) in zip(rivals, self._powers([self._owners.rivals[rival] for rival in rivals])):
+        sets = [self._owners.rivals[rival] for rival in rivals]
+        for rival, (power, received) in zip(rivals, self._powers(sets, self._least)):
             self._owners.add(rival, power, received)
             self._is_made[rival] = True
 
-    def _powers(self, sets: list):
-        """(power [V, R], mean square) in W of the signal of each set of families."""
+    def _powers(self, sets: list, least: float):
+        """(power [V, R], mean square) in W of the signal of each set of families.
+
+        least: W; cells at ranges where a set can show no more may be 0
+        """
         plane, shape = self._request.plane, self._owners.best.shape
         most = max(1, SIGNALS_IN_MEMORY // self._pass.group_bytes)
         for some in (sets[first:first + most] for first in range(0, len(sets), most)):
             if plane.takes_receiver_sets:
-                for power, received in self._pass.powers(some, *plane.window_and_padding, self._progress):
+                for power, received in self._pass.powers(some, *plane.window_and_padding, least, self._progress):
                     yield power.reshape(shape), received
             else:
                 for cube in self._pass.cubes(some, self._progress):

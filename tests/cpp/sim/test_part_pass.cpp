@@ -72,7 +72,7 @@ TEST(PartPass, PowersOfSetsAreThoseOfTheSlowSums) {
   ASSERT_GT(paths.num_paths(), 100);
   PartPass pass(paths, radar, group, 3, {});
   const PartPass::Sets sets = {{2}, {0, 1}};
-  const std::vector<SetPower> powers = pass.powers(sets, Window{}, 1, nullptr);
+  const std::vector<SetPower> powers = pass.powers(sets, Window{}, 1, 0.0, nullptr);
   ASSERT_EQ(powers.size(), sets.size());
   for (size_t set = 0; set < sets.size(); ++set) {
     std::vector<double> expected;
@@ -97,7 +97,7 @@ TEST(PartPass, EveryGroupMadeOnceAddsUpToTheWhole) {
   const Paths paths = paths_of(radar);
   PartPass pass(paths, radar, every_third(paths), 3, {});
   const std::vector<Cube> some = pass.cubes({{1}}, nullptr);
-  pass.powers({{0}}, Window{}, 1, nullptr);
+  pass.powers({{0}}, Window{}, 1, 0.0, nullptr);
   const std::vector<uint32_t> left{2};
   pass.bounds(left, Window{}, 1, nullptr);
   pass.set_adds_up(false);
@@ -133,7 +133,7 @@ TEST(PartPass, BoundsHoldForThePowers) {
   const std::vector<uint32_t> groups{0, 1, 2};
   const std::vector<double> bounds = pass.bounds(groups, Window{}, 1, nullptr);
   pass.set_adds_up(false);
-  const std::vector<SetPower> powers = pass.powers({{0}, {1}, {2}}, Window{}, 1, nullptr);
+  const std::vector<SetPower> powers = pass.powers({{0}, {1}, {2}}, Window{}, 1, 0.0, nullptr);
   const auto num_ranges = bounds.size() / 3;
   for (size_t g = 0; g < 3; ++g) {
     for (size_t i = 0; i < powers[g].cells.size(); ++i)
@@ -148,7 +148,7 @@ TEST(PartPass, NumberOfThreadsDoesNotMatter) {
   for (const int threads : {1, 4}) {
     set_num_threads(threads);
     PartPass pass(paths, radar, every_third(paths), 3, {});
-    cells.push_back(pass.powers({{1}, {0}}, Window{}, 1, nullptr).front().cells);
+    cells.push_back(pass.powers({{1}, {0}}, Window{}, 1, 0.0, nullptr).front().cells);
   }
   set_num_threads(0);
   EXPECT_EQ(cells[0], cells[1]);
@@ -158,9 +158,9 @@ TEST(PartPass, NoPathsAndBadGroups) {
   const Radar radar = radar_of();
   const Paths none = trace(Scene(), radar, {});
   PartPass pass(none, radar, {}, 1, {});
-  const std::vector<SetPower> silent = pass.powers({{0}}, Window{}, 1, nullptr);
+  const std::vector<SetPower> silent = pass.powers({{0}}, Window{}, 1, 0.0, nullptr);
   for (const double cell : silent.front().cells) EXPECT_EQ(cell, 0.0);
-  EXPECT_THROW(pass.powers({{1}}, Window{}, 1, nullptr), std::invalid_argument);
+  EXPECT_THROW(pass.powers({{1}}, Window{}, 1, 0.0, nullptr), std::invalid_argument);
   EXPECT_THROW(PartPass(none, radar, {0}, 1, {}), std::invalid_argument);
 }
 

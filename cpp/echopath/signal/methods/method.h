@@ -5,6 +5,7 @@
 #include <complex>
 #include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "echopath/signal/kernels/kernels.h"
 
@@ -28,10 +29,18 @@ class ToneMethod {
   int reference_sample_;
 };
 
+// The grid that rows are: sample n is correction_n sum_i g_i e^{j 2 pi i (n - reference_sample) / size} of the cells g_i of
+// a row, the first of which is cell `first`.
+struct SpreadGrid {
+  int64_t size, first;
+  const std::vector<double>& correction;  // [num_samples]
+};
+
 // Adds by spreading on a grid, for which there are quicker loops over echoes in tiles.
 class SpreadMethod : public ToneMethod {
  public:
   using ToneMethod::ToneMethod;
+  virtual SpreadGrid grid() const = 0;      // valid while the method lives
   virtual Spreading spreading() const = 0;  // valid while the method lives
 };
 

@@ -66,6 +66,8 @@ class Nufft : public SpreadMethod {
 
   void add(const Carriers& carriers, Rows rows) const override { signal_kernels().spread(spreading(), carriers, rows); }
 
+  SpreadGrid grid() const override { return {grid_size_, 1 - kernel_.width, correction_}; }
+
   Spreading spreading() const override {
     return {kernel_.width, kernel_.coefficients.data(), static_cast<double>(grid_size_), row_length()};
   }

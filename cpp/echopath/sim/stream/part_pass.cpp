@@ -129,16 +129,19 @@ std::vector<Cube> PartPass::cubes(const Sets& sets, Job* job) {
   return cubes;
 }
 
-std::vector<SetPower> PartPass::powers(const Sets& sets, const Window& window, int zero_pad, Job* job) {
+std::vector<SetPower> PartPass::powers(const Sets& sets, const Window& window, int zero_pad, double least, Job* job) {
   const Sorted some = sorted(sets);
   Synthesizer signals = synthesizer(std::max(1, some.num_sets));
   run(some, false, &signals, nullptr, job);
   if (adds_up_) whole_.absorb(signals);
   const MapTransform map(radar_, window, zero_pad);
+  const BandMap band(radar_, window, zero_pad, least > 0.0 ? signals.spread() : nullptr);
   std::vector<SetPower> powers(sets.size());
   parallel_for(some.num_sets, [&](int64_t set) {
     if (job) job->throw_if_cancelled();
-    powers[static_cast<size_t>(set)] = power_of(signals, static_cast<int>(set), map);
+    SetPower& power = powers[static_cast<size_t>(set)];
+    if (band.power(signals, stream_.num_channels(), static_cast<int>(set), least, power)) return;
+    power = power_of(signals, static_cast<int>(set), map);
   });
   return powers;
 }

@@ -6,18 +6,13 @@
 #include <span>
 #include <vector>
 
+#include "echopath/sim/stream/band_map.h"
 #include "echopath/sim/stream/cell_bounds.h"
 #include "echopath/sim/stream/cube_pass.h"
 #include "echopath/sim/stream/replay_stream.h"
 #include "echopath/spectrum/range_doppler.h"
 
 namespace echopath {
-
-// Holds the power of a signal in the cells of a range-Doppler map, mean over the channels.
-struct SetPower {
-  std::vector<double> cells;  // [V * R] W
-  double mean_square = 0.0;   // W, mean over channels, chirps and samples
-};
 
 // Each path is replayed when its group is asked for. The method of synthesis is that of the whole set, and the signals of
 // all groups add up to the whole to rounding, with the same bits for any number of threads.
@@ -36,9 +31,9 @@ class PartPass {
   void finish_probe(Job* job);
 
   using Sets = std::vector<std::vector<uint32_t>>;  // groups whose fields add up
-  // Returns the power of the signal of each set. Its memory is group_bytes() for each of them, and a few maps of a
-  // channel for each thread.
-  std::vector<SetPower> powers(const Sets& sets, const Window& window, int zero_pad, Job* job);
+  // Returns the power of the signal of each set. Cells at ranges where a set can show no more than `least` W may be 0.
+  // Its memory is group_bytes() for each of them, and a few maps of a channel for each thread.
+  std::vector<SetPower> powers(const Sets& sets, const Window& window, int zero_pad, double least, Job* job);
   // Returns the signal of each set.
   std::vector<Cube> cubes(const Sets& sets, Job* job);
   // Adds some groups as one to the whole, where that is wanted, and returns bounds of what each can show (CellBounds):

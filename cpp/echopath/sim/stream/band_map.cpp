@@ -1,0 +1,218 @@
+#include "echopath/sim/stream/band_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include "echopath/base/simd.h"
+#include "echopath/spectrum/range_doppler.h"
+
+namespace echopath {
+namespace {
+
+constexpr int64_t kLanes = 32;              // chirps side by side
+constexpr int64_t kLongestTable = 1 << 16;  // of responses
+constexpr int64_t kMostProducts = 60000;    // of cells and columns, above which the samples are quicker
+
+std::vector<double> unit_taper(const Window& window, int count) {
+  std::vector<double> taper = window_samples(window, count);
+  const double sum = std::accumulate(taper.begin(), taper.end(), 0.0);
+  for (double& weight : taper) weight /= sum;
+  return taper;
+}
+
+// Returns sum_n factor_n e^{j 2 pi k (n - reference) / size} for k = 0 ... size - 1.
+std::vector<std::complex<double>> tones_sum(const std::vector<double>& factor, int64_t reference, int64_t size) {
+  FftBuffer buffer(size);
+  for (int64_t n = 0; n < static_cast<int64_t>(factor.size()); ++n) {
+    buffer[((n - reference) % size + size) % size] += factor[static_cast<size_t>(n)];
+  }
+  Fft(static_cast<int>(size), FftDirection::kBackward).transform(buffer);
+  return {buffer.data(), buffer.data() + size};
+}
+
+ECHOPATH_INLINE void find_largest_squares(const double* re, const double* im, int64_t count, double* __restrict largest) {
+  for (int64_t i = 0; i < count; ++i) {
+    const double square = re[i] * re[i] + im[i] * im[i];
+    largest[i] = square > largest[i] ? square : largest[i];
+  }
+}
+
+// Adds up the cells of a band, each times a complex factor: lanes [count, re/im, num_lanes] to out [re/im, num_lanes].
+ECHOPATH_INLINE void combine_cells(const double* lanes, int64_t num_lanes, int64_t count, const double* factor,
+                                   double* __restrict out) {
+  for (int64_t first = 0; first < num_lanes; first += kLanes) {
+    double re[kLanes] = {}, im[kLanes] = {};
+    for (int64_t i = 0; i < count; ++i) {
+      const double* const cell_re = lanes + 2 * i * num_lanes + first;
+      const double* const cell_im = cell_re + num_lanes;
+      const double factor_re = factor[2 * i], factor_im = factor[2 * i + 1];
+      for (int64_t c = 0; c < kLanes; ++c) {
+        re[c] += factor_re * cell_re[c] - factor_im * cell_im[c];
+        im[c] += factor_re * cell_im[c] + factor_im * cell_re[c];
+      }
+    }
+    for (int64_t c = 0; c < kLanes; ++c) {
+      out[first + c] = re[c];
+      out[num_lanes + first + c] = im[c];
+    }
+  }
+}
+
+// Adds to out [2] the sum over lanes and cells i of g_{i + distance} conj(g_i).
+ECHOPATH_INLINE void correlate_cells(const double* lanes, int64_t num_lanes, int64_t count, int64_t distance,
+                                     double* __restrict out) {
+  double re[kLanes] = {}, im[kLanes] = {};
+  for (int64_t i = 0; i + distance < count; ++i) {
+    const double* const near = lanes + 2 * i * num_lanes;
+    const double* const far = near + 2 * distance * num_lanes;
+    for (int64_t first = 0; first < num_lanes; first += kLanes) {
+      for (int64_t c = first; c < first + kLanes; ++c) {
+        re[c - first] += far[c] * near[c] + far[num_lanes + c] * near[num_lanes + c];
+        im[c - first] += far[num_lanes + c] * near[c] - far[c] * near[num_lanes + c];
+      }
+    }
+  }
+  for (int64_t c = 0; c < kLanes; ++c) {
+    out[0] += re[c];
+    out[1] += im[c];
+  }
+}
+
+}  // namespace
+
+BandMap::BandMap(const Radar& radar, const Window& window, int zero_pad, const SpreadMethod* spread)
+    : spread_(spread), num_chirps_(radar.waveform.num_chirps), num_lanes_((num_chirps_ + kLanes - 1) / kLanes * kLanes),
+      num_ranges_(static_cast<int64_t>(range_axis(radar.waveform, radar.waveform.num_samples * zero_pad).size())),
+      num_bins_(int64_t{zero_pad} * radar.waveform.num_samples),
+      doppler_taper_(unit_taper(window, radar.waveform.num_chirps)),
+      doppler_fft_(radar.waveform.num_chirps * zero_pad, FftDirection::kForward) {
+  if (!spread || radar.waveform.real) return;  // a real sample is not linear in the grid
+  const SpreadGrid grid = spread->grid();
+  const int64_t size = std::lcm(grid.size, num_bins_);
+  if (size > kLongestTable) return;
+  std::vector<double> factor = unit_taper(window, radar.waveform.num_samples), square = grid.correction;
+  for (size_t n = 0; n < factor.size(); ++n) {
+    factor[n] *= grid.correction[n];
+    square[n] *= grid.correction[n];
+  }
+  first_cell_ = grid.first;
+  response_ = tones_sum(factor, spread->reference_sample(), size);
+  overlap_ = tones_sum(square, spread->reference_sample(), grid.size);
+}
+
+std::complex<double> BandMap::response(int64_t cell, int64_t column) const {
+  const auto size = static_cast<int64_t>(response_.size());
+  const int64_t grid_size = static_cast<int64_t>(overlap_.size());
+  const int64_t step = (cell + first_cell_) * (size / grid_size) - column * (size / num_bins_);
+  return response_[static_cast<size_t>((step % size + size) % size)];
+}
+
+bool BandMap::power(const Synthesizer& signals, int num_channels, int group, double least, SetPower& out) const {
+  if (response_.empty()) return false;
+  std::vector<const double*> rows;
+  for (int channel = 0; channel < num_channels; ++channel) {
+    if (!signals.has_echoes(channel, group)) continue;
+    rows.push_back(signals.spread_rows(channel, group));
+    if (!rows.back()) return false;
+  }
+  const Band band = band_of(rows);
+  const std::vector<int64_t> columns = columns_of(band, least);
+  if (band.count * (static_cast<int64_t>(columns.size()) + band.count / 2) > kMostProducts) return false;
+  out = {std::vector<double>(static_cast<size_t>(doppler_fft_.size() * num_ranges_)), 0.0};
+  std::vector<double> lanes;
+  for (const double* const of_channel : rows) {
+    gather(of_channel, band, lanes);
+    add_columns(lanes, band, columns, out.cells);
+    out.mean_square += sum_of_squares(lanes, band.count);
+  }
+  for (double& cell : out.cells) cell /= num_channels;
+  const auto num_samples = static_cast<double>(spread_->grid().correction.size());
+  out.mean_square /= static_cast<double>(num_channels * num_chirps_) * num_samples;
+  return true;
+}
+
+BandMap::Band BandMap::band_of(const std::vector<const double*>& rows) const {
+  const int64_t length = spread_->row_length();
+  std::vector<double> largest(static_cast<size_t>(length));
+  for (const double* const of_channel : rows) {
+    for (int64_t chirp = 0; chirp < num_chirps_; ++chirp) {
+      const double* const re = of_channel + 2 * chirp * length;
+      run_simd<find_largest_squares>(re, re + length, length, largest.data());
+    }
+  }
+  Band band;
+  while (band.first < length && largest[static_cast<size_t>(band.first)] == 0.0) ++band.first;
+  for (int64_t i = band.first; i < length; ++i) {
+    if (largest[static_cast<size_t>(i)] > 0.0) band.count = i + 1 - band.first;
+  }
+  for (int64_t i = 0; i < band.count; ++i) {
+    band.magnitude.push_back(std::sqrt(largest[static_cast<size_t>(band.first + i)]));
+  }
+  return band;
+}
+
+std::vector<int64_t> BandMap::columns_of(const Band& band, double least) const {
+  std::vector<int64_t> columns;
+  for (int64_t column = 0; column < num_ranges_; ++column) {
+    double most = 0.0;
+    for (int64_t i = 0; i < band.count; ++i) {
+      most += band.magnitude[static_cast<size_t>(i)] * std::abs(response(band.first + i, column));
+    }
+    if (most * most > least) columns.push_back(column);
+  }
+  return columns;
+}
+
+// Sorts the cells of the band of all chirps to [cell, re/im, chirp].
+void BandMap::gather(const double* rows, const Band& band, std::vector<double>& lanes) const {
+  const int64_t length = spread_->row_length();
+  lanes.assign(static_cast<size_t>(2 * band.count * num_lanes_), 0.0);
+  for (int64_t chirp = 0; chirp < num_chirps_; ++chirp) {
+    const double* const row = rows + 2 * chirp * length + band.first;
+    double* lane = lanes.data() + chirp;
+    for (int64_t i = 0; i < band.count; ++i, lane += 2 * num_lanes_) {
+      lane[0] = row[i];
+      lane[num_lanes_] = row[length + i];
+    }
+  }
+}
+
+void BandMap::add_columns(const std::vector<double>& lanes, const Band& band, const std::vector<int64_t>& columns,
+                          std::vector<double>& cells) const {
+  std::vector<std::complex<double>> factor(static_cast<size_t>(band.count));
+  std::vector<double> profile(static_cast<size_t>(2 * num_lanes_));
+  FftBuffer buffer(doppler_fft_.size());
+  const int64_t size = buffer.size(), first = size - size / 2;  // row v holds frequency v - size / 2
+  for (const int64_t column : columns) {
+    for (int64_t i = 0; i < band.count; ++i) factor[static_cast<size_t>(i)] = response(band.first + i, column);
+    run_simd<combine_cells>(lanes.data(), num_lanes_, band.count, reinterpret_cast<const double*>(factor.data()),
+                            profile.data());
+    for (int64_t chirp = 0; chirp < num_chirps_; ++chirp) {
+      buffer[chirp] =
+          doppler_taper_[static_cast<size_t>(chirp)] *
+          std::complex<double>(profile[static_cast<size_t>(chirp)], profile[static_cast<size_t>(num_lanes_ + chirp)]);
+    }
+    std::fill(buffer.data() + num_chirps_, buffer.data() + size, 0.0);
+    doppler_fft_.transform(buffer);
+    for (int64_t v = 0; v < size; ++v) {
+      cells[static_cast<size_t>(v * num_ranges_ + column)] += std::norm(buffer[(first + v) % size]);
+    }
+  }
+}
+
+// Returns the sum over chirps and samples of |sample|^2.
+double BandMap::sum_of_squares(const std::vector<double>& lanes, int64_t count) const {
+  double sum = 0.0;
+  for (int64_t distance = 0; distance < count; ++distance) {
+    std::complex<double> found = 0.0;
+    run_simd<correlate_cells>(lanes.data(), num_lanes_, count, distance, reinterpret_cast<double*>(&found));
+    const std::complex<double> overlap = overlap_[static_cast<size_t>(distance) % overlap_.size()];
+    sum += (distance > 0 ? 2.0 : 1.0) * (found * overlap).real();
+  }
+  return sum;
+}
+
+}  // namespace echopath

@@ -1,0 +1,58 @@
+#pragma once
+// Takes the signal of echoes at neighbouring ranges straight from the grid of its NUFFT to the columns of a range-Doppler
+// map that it can show anything in: without its samples, and without the other columns.
+//
+// Grid cell i holds g_i, and sample n is c_n sum_i g_i e^{j 2 pi i (n - n0) / G} (signal/methods/nufft.cpp). The windowed
+// Fourier transform at range bin r of B is linear in them,
+//   p_r = sum_i g_i m(i / G - r / B),  m(x) = sum_n w_n c_n e^{j 2 pi x (n - n0)},
+// up to a phase of the bin, which is the same in all chirps and does not matter for powers. With the maxima over chirps
+// and channels of |g_i|, sum_i |g_i| |m(i / G - r / B)| bounds every cell of column r, as windows divide by their sum.
+#include <complex>
+#include <cstdint>
+#include <vector>
+
+#include "echopath/fft/fft.h"
+#include "echopath/radar/radar.h"
+#include "echopath/signal/methods/method.h"
+#include "echopath/signal/synthesizer.h"
+#include "echopath/spectrum/window.h"
+
+namespace echopath {
+
+// Holds the power of a signal in the cells of a range-Doppler map, mean over the channels.
+struct SetPower {
+  std::vector<double> cells;  // [V * R] W
+  double mean_square = 0.0;   // W, mean over channels, chirps and samples
+};
+
+class BandMap {
+ public:
+  // Raises as MapTransform. `spread` must outlive it; null: no signal is a band.
+  BandMap(const Radar& radar, const Window& window, int zero_pad, const SpreadMethod* spread);
+
+  // Writes the power of a group, and returns true, where its rows set so few cells that this is quicker than their
+  // samples. Cells of columns that can show no more than `least` W are 0. No parallel loop; several threads may use it.
+  bool power(const Synthesizer& signals, int num_channels, int group, double least, SetPower& out) const;
+
+ private:
+  struct Band {
+    int64_t first = 0, count = 0;   // cells of a row
+    std::vector<double> magnitude;  // [count], the largest over chirps and channels
+  };
+  Band band_of(const std::vector<const double*>& rows) const;
+  std::vector<int64_t> columns_of(const Band& band, double least) const;
+  std::complex<double> response(int64_t cell, int64_t column) const;
+  void gather(const double* rows, const Band& band, std::vector<double>& lanes) const;
+  void add_columns(const std::vector<double>& lanes, const Band& band, const std::vector<int64_t>& columns,
+                   std::vector<double>& cells) const;
+  double sum_of_squares(const std::vector<double>& lanes, int64_t count) const;
+
+  const SpreadMethod* spread_;
+  int64_t num_chirps_, num_lanes_, num_ranges_, num_bins_, first_cell_ = 0;
+  std::vector<double> doppler_taper_;  // [chirp]
+  Fft doppler_fft_;
+  std::vector<std::complex<double>> response_;  // m at multiples of 1 / size, empty where there is no band
+  std::vector<std::complex<double>> overlap_;   // sum_n c_n^2 e^{j 2 pi d (n - n0) / G} by d
+};
+
+}  // namespace echopath

@@ -1,0 +1,81 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "echopath/sim/stream/part_pass.h"
+#include "echopath/trace/trace.h"
+#include "support/scenes.h"
+
+namespace echopath::test_band_map {
+namespace {
+
+using namespace testing;
+
+constexpr double kRounding = 1e-12;  // of the largest cell: both ways are sums of a few hundred terms
+constexpr double kLeast = 1e-9;      // of the largest cell
+
+struct Case {
+  int num_samples, num_chirps, zero_pad;
+  WindowKind window;
+  bool real;
+  bool leaves_out;  // whether the plates are far from the end of the map, and the samples complex
+};
+
+Radar radar_of(const Case& one) {
+  Radar radar = plain_radar(Vec3::Zero(), {0, 0.02, 0});
+  radar.waveform = {.start_frequency = 77e9,
+                    .bandwidth = 5e8,
+                    .num_samples = one.num_samples,
+                    .sampling_rate = 5e6,
+                    .num_chirps = one.num_chirps,
+                    .chirp_interval = 120e-6,
+                    .real = one.real};
+  radar.receivers.push_back(antenna_at({0, 0.04, 0}));
+  return radar;
+}
+
+// Paths over two plates that move, a few metres apart, and none at rest.
+Paths paths_of(const Radar& radar) {
+  Scene still, moving;
+  add_rectangle(still, "near", {4, -0.5, -0.5}, {0, 1, 0}, {0, 0, 1}, lambert(0.5));
+  add_rectangle(still, "far", {7, 1.6, -0.5}, {0, 1, 0}, {0, 0, 1}, lambert(0.5));
+  for (Node plate : still.nodes()) {
+    plate.motion = std::make_shared<LinearMotion>(Vec3(-20.0, 0.0, 0.0));
+    moving.add(plate);
+  }
+  TraceSettings settings;
+  settings.num_rays = 300;
+  return trace(moving, radar, settings);
+}
+
+class BandMaps : public ::testing::TestWithParam<Case> {};
+
+// The samples and their Fourier transform are the truth.
+TEST_P(BandMaps, ShownCellsAreThoseOfTheSamplesAndOthersAreWeak) {
+  const Case& one = GetParam();
+  const Radar radar = radar_of(one);
+  const Paths paths = paths_of(radar);
+  ASSERT_GT(paths.num_paths(), 50);
+  PartPass pass(paths, radar, std::vector<uint32_t>(paths.num_paths()), 1, {});
+  const Window window{one.window};
+  const SetPower whole = pass.powers({{0}}, window, one.zero_pad, 0.0, nullptr).front();
+  const double largest = *std::max_element(whole.cells.begin(), whole.cells.end());
+  const SetPower band = pass.powers({{0}}, window, one.zero_pad, kLeast * largest, nullptr).front();
+  ASSERT_EQ(band.cells.size(), whole.cells.size());
+  for (size_t i = 0; i < whole.cells.size(); ++i) {
+    if (band.cells[i] == 0.0) ASSERT_LE(whole.cells[i], kLeast * largest) << i;
+    else ASSERT_NEAR(band.cells[i], whole.cells[i], kRounding * largest) << i;
+  }
+  EXPECT_NEAR(band.mean_square, whole.mean_square, kRounding * whole.mean_square);
+  EXPECT_EQ(std::count(band.cells.begin(), band.cells.end(), 0.0) > 0, one.leaves_out);
+}
+
+INSTANTIATE_TEST_SUITE_P(Waveforms, BandMaps,
+                         ::testing::Values(Case{256, 128, 1, WindowKind::kHann, false, true},
+                                           Case{256, 40, 2, WindowKind::kHann, false, true},
+                                           Case{500, 33, 1, WindowKind::kBlackmanHarris, false, true},
+                                           Case{64, 5, 3, WindowKind::kRect, false, false},
+                                           Case{256, 16, 1, WindowKind::kHann, true, false}));
+
+}  // namespace
+}  // namespace echopath::test_band_map

@@ -2915,11 +2915,12 @@ class PartPass:
         """
         Fills the probe; to be called once, when all groups were added.
         """
-    def powers(self, sets: collections.abc.Sequence[collections.abc.Sequence[int]], window: typing.Any, zero_pad: int, progress: typing.Any) -> list[typing.Any]:
+    def powers(self, sets: collections.abc.Sequence[collections.abc.Sequence[int]], window: typing.Any, zero_pad: int, least: float, progress: typing.Any) -> list[typing.Any]:
         """
         Powers of sets of groups in the cells of a range-Doppler map.
 
-        sets: lists of groups whose fields add up. Returns for each (power [V * R] in W, mean over the channels, mean square of its
+        sets: lists of groups whose fields add up; least: cells at ranges where one can show no more than that, in W, may be 0.
+        Returns for each (power [V * R] in W, mean over the channels, mean square of its
         samples in W).
         """
     def set_adds_up(self, adds_up: bool) -> None:

@@ -11,7 +11,7 @@ import pytest
 import echopath as ep
 
 # Parameters that are objects, names or counts: they have neither a unit nor a shape.
-NO_QUANTITY = {
+NO_QUANTITY = {"function", "shard", "show", 
     "actor", "args", "arguments", "clothing", "exponent", "footprint", "glob", "interpolation", "keywords", "kwargs", "max",
     "max_bounces", "mesh", "method", "min", "mirror", "mesh_or_actor", "multiplexing", "name", "noise_seed", "num_rays",
     "num_slots", "num_threads", "parent", "parts", "path", "paths", "pattern", "progress", "radar", "receivers", "scene",

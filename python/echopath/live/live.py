@@ -96,7 +96,10 @@ class Live:
 
     @checked(self=anything, function=anything)
     def change(self, function: Callable[[Scene], object]) -> None:
-        """Calls function(scene) as one change; a Watch begins to show it at once. Raises what the function raises."""
+        """Calls a function with the scene as one change; a Watch begins to show it at once.
+
+        function: callable (Scene). Raises TypeError unless it can be called, and what it raises.
+        """
         if not callable(function):
             raise refused(TypeError, "function", "callable with a Scene", function)
         with self.changing() as scene:
@@ -104,7 +107,10 @@ class Live:
 
     @checked(self=anything, window=_RULES["window"], zero_pad=_RULES["zero_pad"])
     def set_map(self, *, window: Window = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad) -> None:
-        """Has the next views use this window and zero_pad, as in `range_doppler`; neither rays nor signals change."""
+        """Has the next views use this window and zero_pad, as in `range_doppler`; neither rays nor signals change.
+
+        Raises TypeError or ValueError naming the argument.
+        """
         with self.changing():
             self._window, self._zero_pad = window, zero_pad
 

@@ -124,10 +124,12 @@ class Sequence(Row[Frame]):
 
         Each file is written whole or not at all. Where the run was ended (Ctrl-C, kill, a power cut), the same call goes on:
         frames that are there and whole are not simulated again, and all have the same bits as without the break. So a
-        folder grows, too, with a sequence of more frames. One process at a time may write to a folder.
+        folder grows, too, with a sequence of more frames. Processes that write to one folder take shards of it.
         folder: new, or of this sequence; keep: "all": frame files as of `save_frame`; "maps": range-Doppler map, labels and
             detections; "labels": labels and detections alone; see FrameMaps; each with its truth where the frames have it
-        progress: callable (stage, fraction of the frames), True for bars with the time left, or None
+        shard: (k, n), whole numbers 0 to n - 1 and 1 or more: of n processes, this one makes frames k, k + n, k + 2 n and so on;
+            None: all
+        progress: callable (stage, fraction of the frames), True for bars with the time left in s, or None
         Returns the StoredSequence of `load_sequence`. Raises ValueError naming the folder where it holds another sequence, and
         naming `keep` where the sequence has no labels to be kept; ep.FileError when files cannot be written.
         """
@@ -143,7 +145,7 @@ class Sequence(Row[Frame]):
                     progress: Progress = None) -> Iterator[SavedFrame]:
         """`save` frame by frame: yields a SavedFrame as soon as its file is there; what stops taking them stops the work.
 
-        folder, keep, shard: as in `save`
+        folder, keep, shard (pair of whole numbers): as in `save`
         progress: of the stages of each frame, callable (stage, fraction), True for bars, or None
         Raises what `save` raises, with the first frame.
         """

@@ -1,5 +1,5 @@
-// What the queries of rays went through: a stretch meets a box where one of its points lies in it, and space is remembered up
-// to what a query met.
+// What the queries of rays went through: a stretch meets a box where one of its points lies in it, and space is remembered
+// up to what a query met.
 #include <gtest/gtest.h>
 
 #include <random>

@@ -11,7 +11,7 @@
 namespace echopath {
 namespace {
 
-constexpr int64_t kTogether = 1 << 12;
+constexpr int64_t kSumsTogether = 1 << 12;
 constexpr uint64_t kUnlike = 0;  // of paths that are like no other
 
 // Tells which strata of two records are the same, by index.
@@ -30,9 +30,9 @@ class PathSums {
   std::vector<uint64_t> all(Job* job) const {
     std::vector<uint64_t> sums(static_cast<size_t>(paths_.num_paths()));
     Job own(job);
-    parallel_for((paths_.num_paths() + kTogether - 1) / kTogether, [&](int64_t task) {
-      const size_t end = std::min(sums.size(), static_cast<size_t>((task + 1) * kTogether));
-      for (auto path = static_cast<size_t>(task * kTogether); path < end; ++path) sums[path] = sum_of(path);
+    parallel_for((paths_.num_paths() + kSumsTogether - 1) / kSumsTogether, [&](int64_t task) {
+      const size_t end = std::min(sums.size(), static_cast<size_t>((task + 1) * kSumsTogether));
+      for (auto path = static_cast<size_t>(task * kSumsTogether); path < end; ++path) sums[path] = sum_of(path);
     }, &own);
     return sums;
   }

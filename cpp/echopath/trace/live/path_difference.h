@@ -4,13 +4,13 @@
 
 namespace echopath {
 
-// Leaves out of `before` and `after` the paths that have the same echoes in both scenes: those whose hits and columns are the
-// same, which meet no changed mesh, and whose stratum has not changed. Paths are compared by 64 bits that hang on all of
+// Leaves out of `before` and `after` the paths that have the same echoes in both scenes: those whose hits and columns are
+// the same, which meet no changed mesh, and whose stratum has not changed. Paths are compared by 64 bits that hang on all of
 // these. Raises Cancelled.
 void leave_out_common(Paths& before, Paths& after, const ChangedMeshes& changed, Job* job = nullptr);
 
-// Returns the same paths with the hits that they use, in a scene with the meshes that they meet. Their echoes are the same, but
-// mesh IDs are not: posing a few meshes costs less than posing a city.
+// Returns the same paths with the hits that they use, in a scene with the meshes that they meet. Their echoes are the same,
+// but mesh IDs are not: posing a few meshes costs less than posing a city.
 Paths with_own_meshes(const Paths& paths, Job* job = nullptr);
 
 }  // namespace echopath

@@ -11,11 +11,11 @@ import pytest
 import echopath as ep
 
 # Parameters that are objects, names or counts: they have neither a unit nor a shape.
-NO_QUANTITY = {"function", "shard", "show", 
-    "actor", "args", "arguments", "clothing", "exponent", "footprint", "glob", "interpolation", "keywords", "kwargs", "max",
+NO_QUANTITY = {
+    "actor", "args", "arguments", "clothing", "exponent", "footprint", "function", "glob", "interpolation", "keywords", "kwargs", "max",
     "max_bounces", "mesh", "method", "min", "mirror", "mesh_or_actor", "multiplexing", "name", "noise_seed", "num_rays",
     "num_slots", "num_threads", "parent", "parts", "path", "paths", "pattern", "progress", "radar", "receivers", "scene",
-    "seed",
+    "seed", "shard", "show",
     "selection", "selections", "skin", "smooth", "spectrum", "tags", "text", "title", "trace", "transmitters", "waveform",
     "window", "zero_pad",
     "batches", "evaluate", "folder", "keep", "keyframes", "num_batches", "frame", "replay", "retrace", "modelled", "reason",

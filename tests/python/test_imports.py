@@ -13,7 +13,8 @@ CLOSING = {
     ("echopath.scene", "echopath_viewer"): "Scene.to_pyvista makes blocks with what draws scenes in the viewer",
     ("echopath.labels.labels", "echopath.plots"): "Labels.plot draws with plots, which take the colours of labels",
     ("echopath.frame", "echopath.plots"): "Frame.plot draws with plots, which take the colours of labels of frames",
-    ("echopath.frame", "echopath.truth.truth"): "Frame.truth asks for the truth, which also takes rows of frames",
+    ("echopath.frame", "echopath.truth"): "Frame.truth asks for the truth, which also takes rows of frames",
+    ("echopath.frame", "echopath.truth.truth"): "likewise: the function has the name of its module",
     ("echopath.cli", "echopath_viewer"): "`echopath view` starts the viewer, whose demo is that of the command line",
 }
 

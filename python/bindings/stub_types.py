@@ -11,7 +11,8 @@ PAIR = "tuple[float, float]"
 PATH = "str | os.PathLike[str]"
 REPLAY = "Literal['material', 'fermat']"
 INTERPOLATION = "Literal['cubic', 'linear']"
-LEVELS = {"vmin": "float | None", "vmax": "float | None"}
+AXES = {"ax": "Axes | None"}
+LEVELS = AXES | {"vmin": "float | None", "vmax": "float | None"}
 
 # (class, member) -> what it returns
 RETURNS = {
@@ -42,9 +43,13 @@ RETURNS = {
     ("Paths", "power"): REAL,
     ("Validity", "_repr_html_"): "str", ("Validity", "objects"): "dict[str, ObjectValidity]",
     ("Family", "via"): "tuple[str, ...]",
+    **{(map, "plot"): "Axes" for map in ("RangeDoppler", "RangeAzimuth", "AngleSpectrum")},
+    **{(map, "to_xarray"): "DataArray" for map in ("RangeDoppler", "RangeAzimuth", "AngleSpectrum")},
+    ("Paths", "to_xarray"): "Dataset", ("Paths", "to_dataframe"): "DataFrame",
     ("SignalProbe", "share_field"): COMPLEX, ("SignalProbe", "share_power"): REAL,
 }
-IMPORTS = "from echopath.effects.rules import Effect\nfrom echopath.frame_file.frame import LeftOut\nfrom typing import Literal\n"
+IMPORTS = ("from echopath.effects.rules import Effect\nfrom echopath.foreign_types import Axes, DataArray, DataFrame, Dataset\n"
+           "from echopath.frame_file.frame import LeftOut\nfrom typing import Literal\n")
 
 # (class, member) -> {argument: what it takes}
 TAKES = {
@@ -56,7 +61,7 @@ TAKES = {
     ("KeyframeMotion", "__init__"): {"interpolation": INTERPOLATION},
     ("VertexSequence", "__init__"): {"interpolation": INTERPOLATION}, ("Radar", "__init__"): {"multiplexing": "Literal['tdm']"},
     ("RangeDoppler", "plot"): LEVELS, ("RangeAzimuth", "plot"): LEVELS,
-    ("AngleSpectrum", "plot"): {"range": "float | None", "velocity": "float | None"},
+    ("AngleSpectrum", "plot"): AXES | {"range": "float | None", "velocity": "float | None"},
 }
 _CLASS = re.compile(r"^class (\w+)(\(\w+\))?:")
 _FUNCTION = re.compile(r"^(    def (\w+)\(.*\) -> )(.*)(:(?:  # .*)?)$")

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from numpy.typing import ArrayLike
 import types
 from echopath.effects.rules import Effect
+from echopath.foreign_types import Axes, DataArray, DataFrame, Dataset
 from echopath.frame_file.frame import LeftOut
 from typing import Literal
 import collections.abc
@@ -1347,7 +1348,7 @@ class RangeDoppler:
         """
         A table for notebooks.
         """
-    def plot(self, *, ax: typing.Any = None, vmin: float | None = None, vmax: float | None = None, title: str = 'Received power by range and radial velocity') -> typing.Any:
+    def plot(self, *, ax: Axes | None = None, vmin: float | None = None, vmax: float | None = None, title: str = 'Received power by range and radial velocity') -> Axes:
         """
         Draws the map, the mean over the channels, cropped to where there is signal.
 
@@ -1356,7 +1357,7 @@ class RangeDoppler:
         Returns the axes: range in m across, radial velocity in m/s up (receding positive). Raises TypeError or
         ValueError naming the argument.
         """
-    def to_xarray(self) -> typing.Any:
+    def to_xarray(self) -> DataArray:
         """
         The map as an xarray.DataArray, without a copy: complex values in sqrt(W).
 
@@ -1564,7 +1565,7 @@ class AngleSpectrum:
         ...
     def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
-    def plot(self, range: float | None = None, velocity: float | None = None, *, ax: typing.Any = None, title: str = 'Received power by direction') -> typing.Any:
+    def plot(self, range: float | None = None, velocity: float | None = None, *, ax: Axes | None = None, title: str = 'Received power by direction') -> Axes:
         """
         Draws the power by direction in one cell of the map: a curve, or a map where the array is a plane.
 
@@ -1573,7 +1574,7 @@ class AngleSpectrum:
         Returns the axes: azimuth in degrees across (left positive); up power in dBm, or elevation in degrees. Raises TypeError or ValueError
         naming the argument, and for a map of several cells without range and velocity.
         """
-    def to_xarray(self) -> typing.Any:
+    def to_xarray(self) -> DataArray:
         """
         The spectra as an xarray.DataArray, without a copy: complex values in sqrt(W).
 
@@ -1667,7 +1668,7 @@ class RangeAzimuth:
         ...
     def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
-    def plot(self, *, ax: typing.Any = None, vmin: float | None = None, vmax: float | None = None, title: str = 'Received power from above') -> typing.Any:
+    def plot(self, *, ax: Axes | None = None, vmin: float | None = None, vmax: float | None = None, title: str = 'Received power from above') -> Axes:
         """
         Draws the map as a sector seen from above, the radar below, cropped to where there is signal.
 
@@ -1676,7 +1677,7 @@ class RangeAzimuth:
         Returns the axes: metres to the left across (right negative), metres ahead up, in the radar's frame. Raises
         TypeError or ValueError naming the argument.
         """
-    def to_xarray(self) -> typing.Any:
+    def to_xarray(self) -> DataArray:
         """
         The map as an xarray.DataArray, without a copy: power in W.
 
@@ -2167,7 +2168,7 @@ class Paths:
         Returns Paths. Raises TypeError or ValueError naming the argument, for faults of the text with a caret under them, and for
         names that no mesh has.
         """
-    def to_dataframe(self) -> typing.Any:
+    def to_dataframe(self) -> DataFrame:
         """
         A table with a row for each path, as a pandas.DataFrame.
 
@@ -2177,7 +2178,7 @@ class Paths:
         at, "" for paths by images), batch (255: of all batches) and is_reversed; units in `attrs["units"]`.
         Needs pandas, raises ModuleNotFoundError without it.
         """
-    def to_xarray(self) -> typing.Any:
+    def to_xarray(self) -> Dataset:
         """
         The record as an xarray.Dataset, without a copy of its arrays.
 

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+from typing import TYPE_CHECKING
 from functools import cached_property
 
 import numpy as np
@@ -13,6 +14,9 @@ from .effects import of_paths
 from .families import families as find_families
 from .resolution import mean_powers, unresolved_of
 from .stages import Stage
+
+if TYPE_CHECKING:
+    from .foreign_types import Axes
 
 _WHOLE = object()  # a partition of one part, beside those that have names
 
@@ -70,7 +74,8 @@ class Frame:
             return self.cube
         return _core.add_noise(self.cube, self.radar, seed=self.noise_seed, start_time=self.paths.frame.start_time)
 
-    def plot(self, *, ax=None, vmin=None, vmax=None, title=None):
+    def plot(self, *, ax: Axes | None = None, vmin: float | None = None, vmax: float | None = None,
+             title: str | None = None) -> Axes:
         """Draws the range-Doppler map with its noise, and the detections in it, where there are some, as points.
 
         ax: Matplotlib axes to draw in, None: new ones; vmin, vmax: ends of the colour scale in dBm
@@ -132,9 +137,9 @@ class Frame:
     @cached_property
     def truth(self):
         """ep.Truth of the objects in the middle of the frame: places in m, velocities in m/s, boxes, cross sections in m^2."""
-        from .truth import truth
+        from .truth import truth_of_frame
 
-        return truth(self)
+        return truth_of_frame(self) if self.kept_truth is None else self.kept_truth
 
     @cached_property
     def _families(self):

@@ -46,5 +46,18 @@ moving = np.abs(spectrum.velocity) > 1.0
 row, column = np.unravel_index(int(np.where(moving[:, None], power, 0.0).argmax()), power.shape)
 seen_at: tuple[float, float] = float(spectrum.range[column]), float(spectrum.velocity[row])
 found = ep.detect(spectrum, radar, paths=paths, parts=parts)
+
+
+def show(frames: list[ep.Frame]) -> None:
+    """Draws the frames, and their film beside it."""
+    axes = frames[0].plot(vmin=-120.0)
+    axes.set_title(f"{len(frames)} frames")
+    film = ep.spectrogram(frames, window_length=32)
+    film.plot(ax=axes).set_xlim(0.0, 0.5)
+    level: float = float(film.to_xarray().max())
+    ep.truth(frames).to_dataframe().to_csv("truth.csv")
+    print(f"{10.0 * math.log10(level) + 30.0:.0f} dBm, {list(ep.truth(frames).to_xarray().data_vars)}")
+
+
 if __name__ == "__main__":
     print(f"{seen_at[0]:.2f} m {seen_at[1]:+.2f} m/s, {len(found.range)} detections, {found.object[0]}")

@@ -2,6 +2,8 @@
 from __future__ import annotations
 
 import dataclasses
+import os
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -11,6 +13,10 @@ from ..tables import make_table, write_csv
 from .directions import toward
 from .echo_fields import EchoFields
 
+if TYPE_CHECKING:
+    from ..foreign_types import Axes, DataFrame
+
+DetectionsView = Literal["range_doppler", "above"]
 NOISE = "noise"  # part of a detection that no echo made
 COLUMNS = ("range", "velocity", "azimuth", "elevation", "power", "snr_db", "part", "object", "ghost_type", "order",
            "class_code", "share", "is_noise", "is_resolved", "velocity_index", "range_index", "seed", "noise_seed")
@@ -89,7 +95,7 @@ class Detections:
             return np.zeros(0, np.int64), np.zeros(0)
         return self.echoes.paths(self.cells[i])
 
-    def to_csv(self, path) -> None:
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
         """Writes a table with a row for each detection, whole or not at all.
 
         path: of the file. Columns in m, m/s, rad, W and dB as the fields, then the indices of the cell and the seeds;
@@ -100,7 +106,7 @@ class Detections:
         columns = [*(getattr(self, name) for name in _FIELDS), *flags, *self.cells.T, *seeds]
         write_csv(path, dict(zip(COLUMNS, columns)))
 
-    def to_dataframe(self):
+    def to_dataframe(self) -> DataFrame:
         """A pandas.DataFrame with a row for each detection.
 
         Columns as in `to_csv`, in m, m/s, rad, W and dB, without the seeds, which stand in `attrs["seed"]` and
@@ -112,7 +118,7 @@ class Detections:
         table.attrs |= {"seed": self.seed, "noise_seed": self.noise_seed}
         return table
 
-    def plot(self, view="range_doppler", *, ax=None, title=""):
+    def plot(self, view: DetectionsView = "range_doppler", *, ax: Axes | None = None, title: str = "") -> Axes:
         """Draws a point for each detection, coloured by the object whose echo it is, larger where it is stronger; rings are
         ghosts.
 

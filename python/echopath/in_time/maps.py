@@ -2,13 +2,16 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from ..checks import refused
 from ..equality import has_same_fields
 from ..xarray_maps import time_map_array
+
+if TYPE_CHECKING:
+    from ..foreign_types import Axes, DataArray
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -25,7 +28,8 @@ class TimeMap:
     AXIS: ClassVar[str] = ""
     TITLE: ClassVar[str] = ""
 
-    def plot(self, *, ax=None, vmin: float | None = None, vmax: float | None = None, title: str | None = None):
+    def plot(self, *, ax: Axes | None = None, vmin: float | None = None, vmax: float | None = None,
+             title: str | None = None) -> Axes:
         """Draws the map: time in s across, its other axis up, colours in dBm.
 
         ax: Matplotlib axes to draw in, None: new ones; title: above the map, None: what it shows
@@ -37,7 +41,7 @@ class TimeMap:
 
         return draw_time_map(self, ax=ax, vmin=vmin, vmax=vmax, title=self.TITLE if title is None else title)
 
-    def to_xarray(self):
+    def to_xarray(self) -> DataArray:
         """The map as an xarray.DataArray, without a copy: W over time (s) and velocity (m/s), range (m) or azimuth (rad).
 
         Units stand in `attrs["units"]`. Needs xarray, raises ModuleNotFoundError without it.

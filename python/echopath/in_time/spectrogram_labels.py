@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from ..labels.part_cells import PartCells
 from ..settings import LabelSettings
 from ..xarray_maps import spectrogram_labels_dataset
 from .maps import Spectrogram
+
+if TYPE_CHECKING:
+    from ..foreign_types import Axes, Dataset
 
 _SAME = ("times", "velocity", "trains", "window_length", "hop", "window", "zero_pad", "range_gate", "channel")
 
@@ -35,14 +39,14 @@ class SpectrogramLabels(PartCells):
     train: np.ndarray
     trains: np.ndarray
 
-    def to_xarray(self):
+    def to_xarray(self) -> Dataset:
         """The maps as an xarray.Dataset, without a copy: power (W) and share by part, time (s) and velocity (m/s); whole (W),
         mask, above_noise and dominant, an index of `attrs["names"]`, -1: none. Needs xarray, raises ModuleNotFoundError
         without it.
         """
         return spectrogram_labels_dataset(self)
 
-    def plot(self, *, ax=None, title: str = "Which part made each cell"):
+    def plot(self, *, ax: Axes | None = None, title: str = "Which part made each cell") -> Axes:
         """Draws the power of the whole in grey under the cells that have a label, coloured by the part that dominates.
 
         ax: Matplotlib axes to draw in, None: new ones; title: above the map

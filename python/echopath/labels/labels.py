@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from .left_out import LeftOut
 from .part_cells import PartCells
 from .report import text_of
 from .table import table_of
+
+if TYPE_CHECKING:
+    from ..foreign_types import Axes, DataFrame, Dataset
 
 NONE = -1  # in a map of indices: no label
 COMES_INTO_VIEW = "comes into view"
@@ -185,14 +188,14 @@ class Labels(PartCells):
         """(V, R), number of cells along velocity or azimuth, and along range."""
         return self.whole.shape
 
-    def to_xarray(self):
+    def to_xarray(self) -> Dataset:
         """The maps as an xarray.Dataset, without a copy: power (W) and share by part, velocity (m/s) or azimuth (rad), and
         range (m); whole (W), mask, dominant, object and ghost by cell, the last three indices of `attrs["names"]`, -1: none;
         errors where they are known. Needs xarray, raises ModuleNotFoundError without it.
         """
         return dataset_of(self)
 
-    def to_dataframe(self):
+    def to_dataframe(self) -> DataFrame:
         """The objects and their ghosts as a pandas.DataFrame, a row for each, objects first.
 
         Columns: kind ("object" or "ghost"), name of the object, status (objects), via (names of what mirrored it, joined by
@@ -203,7 +206,7 @@ class Labels(PartCells):
         """
         return table_of(self)
 
-    def plot(self, what="parts", *, ax=None, title=None):
+    def plot(self, what: Literal["parts", "objects"] = "parts", *, ax: Axes | None = None, title: str | None = None) -> Axes:
         """Draws the power of the whole in grey under the cells that have a label, with the names of the objects.
 
         what: "parts", cells by the part that dominates, or "objects", cells of the objects and of their ghosts by type

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Any, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,9 @@ from .arrays import dataset_of, truth_of_files
 from .contents import NAME, frame_path, read_contents
 from .keep import Keep, read_frame
 from .row import Row
+
+if TYPE_CHECKING:
+    from ..foreign_types import Dataset
 
 
 class StoredSequence(Row[Frame | FrameMaps]):
@@ -88,7 +91,7 @@ class StoredSequence(Row[Frame | FrameMaps]):
         """
         return truth_of_files(self)
 
-    def to_xarray(self):
+    def to_xarray(self) -> Dataset:
         """The maps of all frames that are there as an xarray.Dataset, with names and units on every axis.
 
         power: f32 [time, range, velocity] in dBm, mean over channels, with noise; not of files of keep="labels"

@@ -2,12 +2,17 @@
 from __future__ import annotations
 
 import dataclasses
+import os
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..checks import refused
 from ..equality import has_same_fields
 from ..tables import make_table, write_csv
+
+if TYPE_CHECKING:
+    from ..foreign_types import Axes, DataFrame
 
 _UNITS = {"time": "s", "x": "m", "y": "m", "vx": "m/s", "vy": "m/s"}
 
@@ -58,7 +63,7 @@ class Tracks:
             raise KeyError(f"number: must be that of one of {self.num_tracks} tracks, got {number}")
         return Tracks(**{field.name: getattr(self, field.name)[chosen] for field in dataclasses.fields(self)})
 
-    def to_dataframe(self):
+    def to_dataframe(self) -> DataFrame:
         """A pandas.DataFrame with a row for each track and frame.
 
         Columns: track, frame, time (s), x, y (m), vx, vy (m/s), is_detected, object; units in `attrs["units"]`. Needs pandas,
@@ -66,11 +71,11 @@ class Tracks:
         """
         return make_table(self._columns(), _UNITS)
 
-    def to_csv(self, path) -> None:
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
         """Writes the same table, whole or not at all. path: of the file. Raises ep.FileError."""
         write_csv(path, self._columns() | {"is_detected": self.is_detected.astype(int)})
 
-    def plot(self, *, ax=None, title: str = "Tracks from above"):
+    def plot(self, *, ax: Axes | None = None, title: str = "Tracks from above") -> Axes:
         """Draws each track as a line from above, with its number and the object that it follows most.
 
         ax: Matplotlib axes to draw in, None: new ones; title: above it

@@ -2,12 +2,17 @@
 from __future__ import annotations
 
 import dataclasses
+import os
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ..checks import refused
 from ..equality import has_same_fields
 from ..tables import make_table, write_csv
+
+if TYPE_CHECKING:
+    from ..foreign_types import DataFrame, Dataset
 
 _XYZ = ("x", "y", "z")
 _SIGNS = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
@@ -102,7 +107,7 @@ class Truth:
             raise refused(TypeError, "frame", "the index of a frame, a whole number", frame)
         return self._where(self.frame == frame)
 
-    def to_dataframe(self):
+    def to_dataframe(self) -> DataFrame:
         """A pandas.DataFrame with a row for each object and frame.
 
         Columns: frame, time, name; x, y, z, vx, vy, vz, heading, length, width, height, yaw and the like in world axes,
@@ -113,14 +118,14 @@ class Truth:
         units = {column: unit for columns, unit in _COLUMNS.values() for column in columns if unit}
         return make_table(self._columns(), units)
 
-    def to_csv(self, path) -> None:
+    def to_csv(self, path: str | os.PathLike[str]) -> None:
         """Writes the same table, whole or not at all.
 
         path: of the file; unknown numbers are left empty. Raises ep.FileError.
         """
         write_csv(path, self._columns())
 
-    def to_xarray(self):
+    def to_xarray(self) -> Dataset:
         """The same as an xarray.Dataset over time (middle of each frame, s), object and, of vectors, axis (x, y, z) or side of
         the box (length, width, height); NaN where a frame does not have an object.
 

@@ -2,6 +2,7 @@
 
 #include "echopath/base/errors.h"
 #include "echopath/base/range_of_coordinates.h"
+#include "echopath/scene/mesh/kept_normals.h"
 #include "echopath/scene/mesh/smooth.h"
 
 namespace echopath {
@@ -87,7 +88,7 @@ std::vector<Vec3> PosedScene::world_vertices(uint32_t mesh_id) const {
 
 std::vector<Vec3> PosedScene::world_normals(uint32_t mesh_id) const {
   const Node& node = scene_->node_of(mesh_id);
-  std::vector<Vec3> normals = node.deformation ? whole_deformed_normals(node, time_) : vertex_normals(*node.mesh);
+  std::vector<Vec3> normals = node.deformation ? whole_deformed_normals(node, time_) : *kept_vertex_normals(node.mesh);
   for (Vec3& normal : normals) normal = (normal_matrix_[mesh_id] * normal).stableNormalized();
   return normals;
 }

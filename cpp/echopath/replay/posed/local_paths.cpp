@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "echopath/replay/kernels/cell_formula.h"
+#include "echopath/scene/mesh/kept_normals.h"
 #include "echopath/scene/mesh/smooth.h"
 
 namespace echopath {
@@ -44,7 +45,7 @@ double PathPreparer::facet_area_at_trace(uint32_t mesh_id) const {
 std::vector<Vec3> PathPreparer::normals_at_trace(uint32_t mesh_id) const {
   const Node& node = paths_.scene->node_of(mesh_id);
   if (!node.smooth) return {};
-  if (!node.deformation) return vertex_normals(*node.mesh);
+  if (!node.deformation) return *kept_vertex_normals(node.mesh);
   std::vector<Vec3> normals;
   for (const uint32_t place : patches_[mesh_id].place) {
     const bool is_posed = place != SurfacePatch::kAbsent;

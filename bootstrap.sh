@@ -12,12 +12,9 @@ fuzz_packages=(clang libclang-rt-14-dev)
 viewer_packages=(libgl1 libegl1 libdbus-1-3 libfontconfig1 libglib2.0-0 libxkbcommon-x11-0 libxcb-cursor0
   libxcb-icccm4 libxcb-keysyms1 libxcb-shape0)
 build_dir=$PWD/build/default
-sanitized_dir=$PWD/build/asan
 tidy_dir=$PWD/build/tidy
 fuzz_dir=$PWD/build/fuzz
 fuzz_targets=(obj ply stl off expression)
-# The same tests on one instruction set after the other are not run sanitized.
-per_instruction_set='_(baseline|avx2)$'
 python=.venv/bin/python
 
 usage() {
@@ -77,25 +74,43 @@ install_build_tools() {
 # CMake's folder is shared with the C++ tests: the core is compiled once.
 build_extension() {
   export ECHOPATH_BUILD_DIR=$build_dir CMAKE_ARGS="--preset default -DECHOPATH_BUILD_TESTS=ON ${CMAKE_ARGS:-}"
-  install_build_tools
   say "building the core (minutes the first time, seconds later)"
   "$python" setup.py -q build_ext --inplace
 }
 
+# Names the file that is there once the project, as it is, is installed with these extras.
+installed_mark() { printf '.venv/installed-%s-%s' "$(cat setup.py pyproject.toml | sha256sum | cut -c1-12)" "$1"; }
+is_project_installed() { compgen -G "$(installed_mark "$1")*" >/dev/null; }
+
+# One a line: what the project needs with these extras.
+requirements() {
+  "$python" - "$1" <<'PYTHON'
+import sys, tomllib
+with open("pyproject.toml", "rb") as file:
+    project = tomllib.load(file)["project"]
+extras = [project["optional-dependencies"][name] for name in sys.argv[1].split(",") if name]
+print(*project["dependencies"], *sum(extras, []), sep="\n")
+PYTHON
+}
+
+# What comes from elsewhere. Modules are compiled to bytecode as they are imported: most of them never are.
+install_requirements() {
+  local extras=$1 needed
+  # The library that unpacks meshopt's files has to be compiled, and asks for NumPy before.
+  [[ $extras != *test* ]] || pip_install --no-compile numpy
+  mapfile -t needed < <(requirements "$extras")
+  pip_install --no-compile --no-build-isolation "${needed[@]}"
+}
+
 # Installs the project editable, so that changes of its Python code are seen at once.
 install_project() {
-  local extras=$1 hash
-  hash=$(cat setup.py pyproject.toml | sha256sum | cut -c1-12)
-  compgen -G ".venv/installed-$hash-$extras*" >/dev/null && return
-  say "installing echopath into .venv"
-  # The library that unpacks meshopt's files has to be compiled, and asks for NumPy before.
-  [[ $extras == *test* ]] && pip_install numpy
+  local extras=$1
   pip_install --no-build-isolation -e ".${extras:+[$extras]}"
   # On the path itself, too: in the folder above, the project's own folder would else be taken for the package.
   local packages_folder
   packages_folder=$("$python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
   printf '%s\n' "$PWD/python" >"$packages_folder/echopath_sources.pth"
-  touch ".venv/installed-$hash-$extras"
+  touch "$(installed_mark "$extras")"
 }
 
 pip_install() { "$python" -m pip install -q --disable-pip-version-check "$@"; }
@@ -105,7 +120,16 @@ prepare() {
   shift
   install_packages "$@"
   make_environment
-  build_extension
+  install_build_tools
+  if is_project_installed "$extras"; then
+    build_extension
+    return
+  fi
+  say "installing what echopath needs into .venv, while the core is built"
+  install_requirements "$extras" &
+  local installing=$!
+  build_extension || { wait "$installing"; fail "the core was not built"; }
+  wait "$installing" || fail "pip did not install what echopath needs"
   install_project "$extras"
 }
 
@@ -117,8 +141,7 @@ wants_viewer() {
 
 has_viewer_tests() { compgen -G 'tests/viewer/test_*.py' >/dev/null; }
 
-# The viewer's tests wait for windows, so that they run alone; all others on all processors, files as a whole, since the tests
-# of a file share what is slow to make. No test that OPTIONS select is no fault.
+# No test that OPTIONS select is no fault.
 run_pytest() {
   local name=$1 status=0
   shift
@@ -127,35 +150,30 @@ run_pytest() {
   return "$status"
 }
 
+# On all processors, files as a whole, since the tests of a file share what is slow to make, and in the order of conftest.py.
 run_python_tests() {
-  local status=0
-  run_pytest python "$python" -m pytest --numprocesses "$(nproc)" --dist loadfile tests/python "$@" || status=$?
-  has_viewer_tests || return "$status"
-  QT_API=pyside6 run_pytest viewer xvfb-run -a -s "-screen 0 1600x1000x24" "$python" -m pytest tests/viewer "$@" || status=$?
-  return "$status"
+  run_pytest python "$python" -m pytest --numprocesses "$(nproc)" --dist loadfile --no-loadscope-reorder tests/python "$@"
+}
+
+# They wait for windows, in one process.
+run_viewer_tests() {
+  QT_API=pyside6 run_pytest viewer xvfb-run -a -s "-screen 0 1600x1000x24" "$python" -m pytest tests/viewer "$@"
 }
 
 run_ctest() {
-  local dir=$1
+  local name=$1
   shift
-  ctest --test-dir "$dir" --output-on-failure "$@" 2>&1 | tee "$dir/ctest.log"
+  ctest --test-dir "$build_dir" --output-on-failure --no-tests=error "$@" 2>&1 | tee "$build_dir/ctest_$name.log"
 }
 
-run_sanitized() {
-  rm -f "$sanitized_dir/ctest.log"
-  cmake --preset asan >"$sanitized_dir.log" &&
-    cmake --build "$sanitized_dir" --parallel "$(nproc)" &&
-    run_ctest "$sanitized_dir" --no-tests=error --parallel "$(nproc)" -E "$per_instruction_set"
-}
-
-closing_line() { grep 'tests passed' "$1/ctest.log"; }
+closing_line() { grep 'tests passed' "$build_dir/ctest_$1.log"; }
 pytest_line() { tail -n 1 "$build_dir/pytest_$1.log" | sed 's/^=* *//; s/ *=*$//'; }
 
 lint() {
   local status=0
   "$python" -m ruff check setup.py python viewer tests || status=$?
-  find cpp python/bindings tests \( -name '*.h' -o -name '*.cpp' \) -exec .venv/bin/clang-format --dry-run --Werror {} + ||
-    status=$?
+  find cpp python/bindings tests \( -name '*.h' -o -name '*.cpp' \) -print0 |
+    xargs -0 -n 50 -P "$(nproc)" .venv/bin/clang-format --dry-run --Werror || status=$?
   return "$status"
 }
 
@@ -221,24 +239,25 @@ run_fuzzers() {
 }
 
 run_tests() {
-  local cpp_status=0 sanitized_status=0 python_status=0 lint_status=0
+  local cpp_status=0 sanitized_status=0 python_status=0 viewer_status=0 lint_status=0
   say "linting"
   lint || lint_status=$?
-  say "building the C++ tests"
-  cmake --build "$build_dir" --parallel "$(nproc)"
+  say "building the C++ tests, with the modules as they are and under sanitizers"
+  cmake --build "$build_dir" --parallel "$(nproc)" --target all sanitized
   say "C++ tests"
-  run_ctest "$build_dir" --parallel "$(nproc)" || cpp_status=$?
+  run_ctest plain --parallel "$(nproc)" || cpp_status=$?
   say "C++ tests under the address and undefined-behaviour sanitizers"
-  run_sanitized || sanitized_status=$?
+  run_ctest sanitized -C Sanitized -L sanitized --parallel "$(nproc)" || sanitized_status=$?
   say "Python tests"
   run_python_tests "$@" || python_status=$?
+  ! has_viewer_tests || run_viewer_tests "$@" || viewer_status=$?
   say "results"
-  printf 'ctest, sanitized: %s\n' "$(closing_line "$sanitized_dir" || echo "ended with $sanitized_status")"
-  printf 'ctest:  %s\n' "$(closing_line "$build_dir" || echo "ended with $cpp_status")"
+  printf 'ctest, sanitized: %s\n' "$(closing_line sanitized || echo "ended with $sanitized_status")"
+  printf 'ctest:  %s\n' "$(closing_line plain || echo "ended with $cpp_status")"
   printf 'pytest: %s\n' "$(pytest_line python)"
   ! has_viewer_tests || printf 'pytest, viewer: %s\n' "$(pytest_line viewer)"
   [ "$lint_status" -eq 0 ] || fail "ruff or clang-format found what is to be mended, see above under linting"
-  [ "$cpp_status" -eq 0 ] && [ "$sanitized_status" -eq 0 ] && [ "$python_status" -eq 0 ] || fail "tests failed"
+  [ $((cpp_status + sanitized_status + python_status + viewer_status)) -eq 0 ] || fail "tests failed"
 }
 
 verb=${1:-}
@@ -261,6 +280,7 @@ case $verb in
   wheel)
     install_packages "${packages[@]}"
     make_environment
+    install_build_tools
     build_extension
     make_wheel
     ;;

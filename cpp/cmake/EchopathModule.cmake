@@ -6,27 +6,61 @@ if(ECHOPATH_WERROR)
   target_compile_options(echopath_options INTERFACE -Werror)
 endif()
 # What is looked at: all modules, and where threads are, the tests too, since their atomics stand in the same programs. Other
-# sanitizers leave the tests out, whose code takes twice as long to compile with them; of functions that a header defines, the
-# linker may then take the copy of a test.
-add_library(echopath_looked_at INTERFACE)
-if(ECHOPATH_SANITIZE)
-  target_compile_options(echopath_looked_at INTERFACE -fsanitize=${ECHOPATH_SANITIZE} -fno-omit-frame-pointer
-    -fno-sanitize-recover=all)
-  if(ECHOPATH_SANITIZE MATCHES address AND ECHOPATH_SANITIZE MATCHES undefined)
+# sanitizers leave the tests out; of functions that a header defines, the linker may then take the copy of a test.
+function(echopath_look target sanitizers)
+  target_compile_options(${target} INTERFACE -fsanitize=${sanitizers} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(${target} INTERFACE -fsanitize=${sanitizers})
+  if(sanitizers MATCHES address AND sanitizers MATCHES undefined)
     # Left out for a third of the time of compiling. The address sanitizer sees accesses through null and outside of objects
     # by itself; misaligned ones, and references to null that nothing is read through, are not seen.
-    target_compile_options(echopath_looked_at INTERFACE -fno-sanitize=null,object-size,alignment)
+    target_compile_options(${target} INTERFACE -fno-sanitize=null,object-size,alignment)
   endif()
-  target_link_options(echopath_options INTERFACE -fsanitize=${ECHOPATH_SANITIZE})
-  target_compile_definitions(echopath_options INTERFACE ECHOPATH_SANITIZED)
+endfunction()
+
+add_library(echopath_looked_at INTERFACE)
+if(ECHOPATH_SANITIZE)
+  echopath_look(echopath_looked_at ${ECHOPATH_SANITIZE})
   if(ECHOPATH_SANITIZE MATCHES thread)
     target_compile_definitions(echopath_options INTERFACE ECHOPATH_THREAD_SANITIZER)
     target_link_libraries(echopath_options INTERFACE echopath_looked_at)
   endif()
 endif()
 
+# Every module once more as NAME_sanitized, for the tests of that name: the objects of the tests are compiled once for both.
+# They are built by the target `sanitized` alone, and run by `ctest -C Sanitized -L sanitized`.
+set(ECHOPATH_SANITIZED_TWINS OFF)
+if(ECHOPATH_BUILD_TESTS AND NOT ECHOPATH_SANITIZE)
+  set(ECHOPATH_SANITIZED_TWINS ON)
+  add_library(echopath_looked_at_sanitized INTERFACE)
+  echopath_look(echopath_looked_at_sanitized address,undefined)
+  target_compile_options(echopath_looked_at_sanitized INTERFACE -O1 -g1)
+  add_custom_target(sanitized)
+endif()
+
+# echopath_twin(TARGET LIBS targets...): TARGET_sanitized, of the objects of TARGET, with the twins of LIBS.
+function(echopath_twin target)
+  cmake_parse_arguments(ARG "" "" "LIBS" ${ARGN})
+  if(NOT ECHOPATH_SANITIZED_TWINS)
+    return()
+  endif()
+  get_target_property(type ${target} TYPE)
+  set(twin ${target}_sanitized)
+  list(TRANSFORM ARG_LIBS APPEND _sanitized)
+  if(type STREQUAL EXECUTABLE)
+    add_executable(${twin} EXCLUDE_FROM_ALL $<TARGET_OBJECTS:${target}>)
+    target_link_libraries(${twin} PRIVATE ${ARG_LIBS} GTest::gtest_main echopath_looked_at_sanitized)
+    add_dependencies(sanitized ${twin})
+  else()
+    add_library(${twin} STATIC EXCLUDE_FROM_ALL $<TARGET_OBJECTS:${target}>)
+    target_link_libraries(${twin} PUBLIC ${ARG_LIBS})
+  endif()
+  set_target_properties(${twin} PROPERTIES LINKER_LANGUAGE CXX)
+endfunction()
+
 # Parsed once for all modules, and once more for all tests, instead of once for each file: about half of the time of compiling.
 set(echopath_common_headers <Eigen/Core> <Eigen/Geometry> <algorithm> <cmath> <complex> <functional> <memory> <string> <vector>)
+
+set(echopath_test_headers <gtest/gtest.h> <map> <random> <set> <sstream> ${echopath_common_headers})
 
 # Takes the parsed headers of `owner`, which is compiled with the same options; the owner, and what has OWN_OPTIONS, parses them
 # for itself.
@@ -42,29 +76,46 @@ endfunction()
 # A module's files are compiled some at a time: most of the time goes into reading the same templates, so that this halves
 # it. Names in unnamed namespaces are therefore unique within a module; each test file has a namespace named after it.
 set(ECHOPATH_UNITY_FILES 6 CACHE STRING "Number of files of a module that are compiled as one, 0 for each by itself")
-function(echopath_compile_together target)
+function(echopath_compile_together target files)
   if(ECHOPATH_UNITY_FILES GREATER 0)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${ECHOPATH_UNITY_FILES})
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${files})
   endif()
 endfunction()
+
+# What makes the compiler's work quick where nobody waits for the code: the extension hands over arrays, tests sum slowly.
+set(echopath_quickly_compiled $<$<CONFIG:Release>:-O1>)
 
 # echopath_module(NAME [DEPENDS modules...] [PUBLIC targets...] [PRIVATE targets...] [OPTIONS compile options...])
 function(echopath_module name)
   cmake_parse_arguments(ARG "" "" "DEPENDS;PUBLIC;PRIVATE;OPTIONS" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp */*.cpp)
-  list(TRANSFORM ARG_DEPENDS PREPEND echopath_)
-  add_library(echopath_${name} STATIC ${sources})
-  add_library(echopath::${name} ALIAS echopath_${name})
-  target_include_directories(echopath_${name} PUBLIC ${PROJECT_SOURCE_DIR}/cpp)
-  target_link_libraries(echopath_${name} PUBLIC ${ARG_DEPENDS} ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} echopath_options
-    echopath_looked_at)
+  echopath_library("" ${ECHOPATH_UNITY_FILES})
+  if(ECHOPATH_SANITIZED_TWINS)
+    # Without options that are for speed, so that it shares the parsed headers, and in large files: nobody changes one alone.
+    set(ARG_OPTIONS)
+    echopath_library(_sanitized 20)
+    set_target_properties(echopath_${name}_sanitized PROPERTIES EXCLUDE_FROM_ALL ON)
+  endif()
+endfunction()
+
+# The module of echopath_module's arguments, `name` and `suffix` together.
+macro(echopath_library suffix unity_files)
+  set(target echopath_${name}${suffix})
+  set(depends ${ARG_DEPENDS})
+  list(TRANSFORM depends REPLACE "(.+)" "echopath_\\1${suffix}")
+  add_library(${target} STATIC ${sources})
+  add_library(echopath::${name}${suffix} ALIAS ${target})
+  target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/cpp)
+  target_link_libraries(${target} PUBLIC ${depends} ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE} echopath_options
+    echopath_looked_at${suffix})
+  set(own)
   if(ARG_OPTIONS)
-    target_compile_options(echopath_${name} PRIVATE ${ARG_OPTIONS})
+    target_compile_options(${target} PRIVATE ${ARG_OPTIONS})
     set(own OWN_OPTIONS)
   endif()
-  echopath_compile_together(echopath_${name})
-  echopath_parse_headers_once(echopath_${name} echopath_base ${own} ${echopath_common_headers})
-endfunction()
+  echopath_compile_together(${target} ${unity_files})
+  echopath_parse_headers_once(${target} echopath_base${suffix} ${own} ${echopath_common_headers})
+endmacro()
 
 # echopath_kernels(MODULE headers...): compiles them into a module once per instruction set that base/simd.h picks from, as
 # base/lane_math.h says. What is compiled with options of its own cannot use headers that were parsed without.
@@ -82,6 +133,9 @@ function(echopath_kernels name)
       COMPILE_OPTIONS "${CMAKE_MATCH_3}")
     file(CONFIGURE OUTPUT ${file} CONTENT "${includes}\n")
     target_sources(echopath_${name} PRIVATE ${file})
+    if(ECHOPATH_SANITIZED_TWINS)
+      target_sources(echopath_${name}_sanitized PRIVATE ${file})
+    endif()
   endforeach()
 endfunction()
 
@@ -92,32 +146,53 @@ include(CheckCXXCompilerFlag)
 check_cxx_compiler_flag(-fcx-limited-range ECHOPATH_HAS_LIMITED_RANGE)  # clang has it from 18 on
 set(echopath_finite_numbers $<$<BOOL:${ECHOPATH_HAS_LIMITED_RANGE}>:-fcx-limited-range> -fno-math-errno)
 
-# echopath_test(NAME [EACH_INSTRUCTION_SET] [LIBS targets...] [HARD patterns...]): every .cpp of this folder in one
+# echopath_test(NAME [EACH_INSTRUCTION_SET [ONCE patterns...]] [COST seconds] [LIBS targets...] [HARD patterns...]): every
+# .cpp of this folder in one
 # GoogleTest program, test_NAME.
 # Tests that match a pattern are the test NAME_hard, with the label hard (ctest -L hard); all others the test NAME.
-# EACH_INSTRUCTION_SET: all of them again as NAME_baseline and NAME_avx2, where the machine's best is another.
+# EACH_INSTRUCTION_SET: all of them again as NAME_baseline and NAME_avx2, where the machine's best is another, but for those
+# that match a pattern of ONCE: statistics over many runs of code that the others run, too.
+# COST: about how long it takes, so that the longest begin first; 1 where it is not said.
+# Each is there a second time with sanitized modules: NAME_sanitized, NAME_hard_sanitized.
 function(echopath_test name)
-  cmake_parse_arguments(ARG "EACH_INSTRUCTION_SET" "" "LIBS;HARD" ${ARGN})
+  cmake_parse_arguments(ARG "EACH_INSTRUCTION_SET" "COST" "LIBS;HARD;ONCE" ${ARGN})
   file(GLOB sources CONFIGURE_DEPENDS *.cpp)
   add_executable(test_${name} ${sources})
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(test_${name} PRIVATE ECHOPATH_TEST_DATA="${PROJECT_SOURCE_DIR}/data")
+  target_compile_options(test_${name} PRIVATE ${echopath_quickly_compiled})
   target_link_libraries(test_${name} PRIVATE ${ARG_LIBS} GTest::gtest_main echopath_options)
-  echopath_compile_together(test_${name})
-  echopath_parse_headers_once(test_${name} test_base <gtest/gtest.h> ${echopath_common_headers})
+  echopath_twin(test_${name} LIBS ${ARG_LIBS})
+  echopath_compile_together(test_${name} ${ECHOPATH_UNITY_FILES})
+  echopath_parse_headers_once(test_${name} test_base ${echopath_test_headers})
   list(JOIN ARG_HARD ":" hard)
   if(hard)
-    add_test(NAME ${name} COMMAND test_${name} --gtest_filter=-${hard})
-    add_test(NAME ${name}_hard COMMAND test_${name} --gtest_filter=${hard})
+    echopath_add_tests(${name} test_${name} --gtest_filter=-${hard})
+    echopath_add_tests(${name}_hard test_${name} --gtest_filter=${hard})
     set_tests_properties(${name}_hard PROPERTIES LABELS hard FAIL_REGULAR_EXPRESSION "0 tests from 0 test suites ran")
   else()
-    add_test(NAME ${name} COMMAND test_${name})
+    echopath_add_tests(${name} test_${name})
   endif()
   if(ARG_EACH_INSTRUCTION_SET)
+    list(JOIN ARG_ONCE ":" once)
     foreach(set baseline avx2)
-      add_test(NAME ${name}_${set} COMMAND test_${name})
+      add_test(NAME ${name}_${set} COMMAND test_${name} --gtest_filter=-${once})
       set_tests_properties(${name}_${set} PROPERTIES ENVIRONMENT ECHOPATH_INSTRUCTION_SET=${set}
         SKIP_REGULAR_EXPRESSION "must be one that this machine has")
     endforeach()
+  endif()
+  if(ARG_COST)
+    get_property(tests DIRECTORY PROPERTY TESTS)
+    set_tests_properties(${tests} PROPERTIES COST ${ARG_COST})
+  endif()
+endfunction()
+
+# The test NAME, a program with its arguments, and its twin.
+function(echopath_add_tests name program)
+  add_test(NAME ${name} COMMAND ${program} ${ARGN})
+  if(ECHOPATH_SANITIZED_TWINS)
+    add_test(NAME ${name}_sanitized COMMAND ${program}_sanitized ${ARGN} CONFIGURATIONS Sanitized)
+    set_tests_properties(${name}_sanitized PROPERTIES LABELS sanitized
+      FAIL_REGULAR_EXPRESSION "0 tests from 0 test suites ran")
   endif()
 endfunction()

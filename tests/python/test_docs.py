@@ -12,14 +12,13 @@ import echopath as ep
 
 # Parameters that are objects, names or counts: they have neither a unit nor a shape.
 NO_QUANTITY = {
-    "actor", "args", "arguments", "clothing", "exponent", "footprint", "function", "glob", "interpolation", "keywords", "kwargs", "max",
-    "max_bounces", "mesh", "method", "min", "mirror", "mesh_or_actor", "multiplexing", "name", "noise_seed", "num_rays",
-    "num_slots", "num_threads", "parent", "parts", "path", "paths", "pattern", "progress", "radar", "receivers", "scene",
-    "seed", "shard", "show",
-    "selection", "selections", "skin", "smooth", "spectrum", "tags", "text", "title", "trace", "transmitters", "waveform",
-    "window", "zero_pad",
-    "batches", "evaluate", "folder", "keep", "keyframes", "num_batches", "frame", "replay", "retrace", "modelled", "reason",
-    "subdivisions", "material", "motion", "unknown", "visible", "block", "picture", "state", "what", "source",
+    "actor", "args", "arguments", "batches", "block", "clothing", "evaluate", "exponent", "folder", "footprint", "frame",
+    "function", "glob", "interpolation", "keep", "keyframes", "keywords", "kwargs", "material", "max", "max_bounces",
+    "mesh", "mesh_or_actor", "method", "min", "mirror", "modelled", "motion", "multiplexing", "name", "noise_seed",
+    "num_batches", "num_rays", "num_slots", "num_threads", "parent", "parts", "path", "paths", "pattern", "picture",
+    "progress", "radar", "reason", "receivers", "replay", "retrace", "scene", "seed", "selection", "selections", "shard",
+    "show", "skin", "smooth", "source", "spectrum", "state", "subdivisions", "tags", "text", "title", "trace",
+    "transmitters", "unknown", "visible", "waveform", "what", "window", "zero_pad",
 }
 UNITS = r"(m|s|Hz|W|K|rad|sr|dB|dBm|m/s|rad/s|m/s\^2|Hz/s|S/m|1/s|m\^2|J/K|sqrt\(W\)|degrees|cycles|[Ll]inear|metres)"
 QUANTITY = re.compile(rf"\[[\w, *]+\]|(?<![\w/]){UNITS}(?![\w/])")

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <random>
 
+#include "answers.h"
 #include "echopath/base/parallel.h"
 #include "echopath/trace/geometry/kept_geometry.h"
 #include "support/sanitized.h"
@@ -75,43 +76,6 @@ Scene soup(int num_layers) {
              layer == 0 ? moving_at({0.1, 0, 0}) : nullptr);
   }
   return scene;
-}
-
-struct Answers {
-  std::vector<Hit> hits;
-  std::vector<Vec3> positions;
-  std::vector<uint8_t> blocked;
-};
-
-Answers answers_of(const EmbreeScene& geometry) {
-  Answers answers;
-  std::vector<Segment> segments;
-  std::mt19937 random(11);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  for (int i = 0; i < 3000; ++i) {
-    const Vec3 direction = Vec3(1.0, 0.8 * uniform(random), 0.3 * uniform(random)).normalized();
-    const Vec3 onward(10.0 + 10.0 * uniform(random), 6.0 * uniform(random), 3.0);
-    RayHit hit;
-    if (geometry.intersect(Vec3::Zero(), direction, hit) != EmbreeScene::Verdict::kHit) continue;
-    answers.hits.push_back(hit.hit);
-    answers.positions.push_back(hit.position);
-    segments.push_back({geometry.lifted(hit.position, hit.normal), onward});
-  }
-  answers.blocked.resize(segments.size());
-  geometry.occluded(segments.data(), segments.size(), answers.blocked.data());
-  return answers;
-}
-
-template <class T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
-}
-
-void expect_same(const Answers& a, const Answers& b) {
-  ASSERT_GT(a.hits.size(), 1000u);
-  EXPECT_TRUE(same_bytes(a.hits, b.hits));
-  EXPECT_TRUE(same_bytes(a.positions, b.positions));
-  EXPECT_EQ(a.blocked, b.blocked);
 }
 
 void expect_as_fresh(EmbreeScene& kept, const Scene& scene, double time, const Vec3& origin = Vec3::Zero()) {

@@ -1,8 +1,6 @@
 #include "echopath/trace/geometry/embree_device.h"
 
-#include <algorithm>
 #include <cstdlib>
-#include <string>
 
 #include "echopath/base/errors.h"
 #include "echopath/base/simd.h"
@@ -23,8 +21,6 @@ const char* device_options() {
 #endif
 }
 
-bool keep_building(void* job, double) { return job == nullptr || !static_cast<Job*>(job)->cancelled(); }
-
 }  // namespace
 
 EmbreeScene::Device::Device() : device(rtcNewDevice(device_options())) {
@@ -34,53 +30,6 @@ EmbreeScene::Device::Device() : device(rtcNewDevice(device_options())) {
 EmbreeScene::Device::~Device() {
   if (scene) rtcReleaseScene(scene);
   rtcReleaseDevice(device);
-}
-
-void EmbreeScene::Device::check(const char* what) const {
-  const RTCError code = rtcGetDeviceError(device);
-  if (code == RTC_ERROR_CANCELLED) throw Cancelled();
-  if (code != RTC_ERROR_NONE) throw DeviceError(std::string("Embree: ") + what + " failed, code " + std::to_string(code));
-}
-
-void EmbreeScene::Device::start_scene(size_t num_meshes, bool tree_per_mesh) {
-  if (scene) rtcReleaseScene(scene);
-  scene = rtcNewScene(device);
-  has_tree_per_mesh = tree_per_mesh;
-  has_mesh.assign(num_meshes, false);
-  rtcSetSceneFlags(scene, tree_per_mesh ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_ROBUST);
-  rtcSetSceneBuildQuality(scene, tree_per_mesh ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM);
-}
-
-void EmbreeScene::Device::set_mesh(unsigned mesh_id, const std::vector<Vec3>& vertices,
-                                   const std::vector<Triangle>& triangles, unsigned mask) {
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* points = static_cast<float*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices.size()));
-  auto* indices = static_cast<uint32_t*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(uint32_t), triangles.size()));
-  if (!points || !indices) {
-    rtcReleaseGeometry(geometry);
-    throw DeviceError("Embree: out of memory for " + std::to_string(triangles.size()) + " triangles");
-  }
-  for (size_t i = 0; i < vertices.size(); ++i) {
-    for (int axis = 0; axis < 3; ++axis) points[3 * i + axis] = static_cast<float>(vertices[i][axis]);
-  }
-  for (size_t i = 0; i < triangles.size(); ++i) std::copy(triangles[i].begin(), triangles[i].end(), indices + 3 * i);
-  rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_MEDIUM);
-  rtcSetGeometryMask(geometry, mask);
-  rtcCommitGeometry(geometry);
-  if (has_mesh[mesh_id]) rtcDetachGeometry(scene, mesh_id);
-  rtcAttachGeometryByID(scene, geometry, mesh_id);
-  has_mesh[mesh_id] = true;
-  rtcReleaseGeometry(geometry);
-}
-
-void EmbreeScene::Device::build(Job* job) {
-  rtcSetSceneProgressMonitorFunction(scene, keep_building, job);
-  rtcCommitScene(scene);
-  rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
-  if (job) job->throw_if_cancelled();
-  check("building the scene");
 }
 
 #if RTC_VERSION_MAJOR >= 4

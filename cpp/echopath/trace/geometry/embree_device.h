@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "echopath/trace/geometry/embree_scene.h"
+#include "echopath/trace/geometry/tree_shape.h"
 
 namespace echopath {
 
@@ -82,28 +83,44 @@ class EmbreeScene::Queries {
   virtual void occluded(const ValidLanes& valid, RTCRay16& rays) const = 0;
 };
 
+// Holds Embree's scene. A geometry of it, named by an ID, is a mesh or a cluster of meshes.
 struct EmbreeScene::Device final : EmbreeScene::Queries {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   bool has_tree_per_mesh = false;
-  std::vector<bool> has_mesh;  // by mesh ID
 
   Device();
   ~Device() override;
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
-  void check(const char* what) const;
-  // Starts a scene with one tree over all triangles, or (`tree_per_mesh`) with one for each mesh and one over those: then a
-  // mesh that moves costs a new tree of its own and the upper one. Both depend on the triangles alone, however often they
-  // were built before.
-  void start_scene(size_t num_meshes, bool tree_per_mesh);
-  void set_mesh(unsigned mesh_id, const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles, unsigned mask);
-  void build(Job* job);
+  // Starts a scene with one tree over all triangles, or (`tree_per_mesh`) with one for each geometry and one over those: then
+  // what moves costs a fit of its own tree and a new upper one. All follow from the triangles alone, however often and from
+  // what they were built before.
+  void start_scene(size_t num_ids, bool tree_per_mesh);
+  // Sets a geometry to the mesh of that ID, which keeps its tree where it is the same mesh in much the same shape.
+  void set_mesh(uint32_t mesh_id, const EmbreeMeshes& meshes);
+  void set_cluster(uint32_t id, const EmbreeMeshes& meshes, const std::vector<uint32_t>& mesh_ids);
+  void remove(uint32_t id);
+  void build(const EmbreeMeshes& meshes, Job* job);
 
   void intersect(RTCRayHit& query) const override;
   void intersect(const ValidLanes& valid, RTCRayHit16& packet) const override;
   void occluded(RTCRay& ray) const override;
   void occluded(const ValidLanes& valid, RTCRay16& rays) const override;
+
+ private:
+  struct Tree {
+    RTCGeometry geometry = nullptr;       // the scene holds it; null where there is none
+    const Triangle* triangles = nullptr;  // of the mesh; null for a cluster
+    TreeShape shape;                      // in which it was grown
+  };
+  RTCGeometry new_geometry(size_t num_vertices, size_t num_triangles, const Triangle* shared) const;
+  void attach(uint32_t id, RTCGeometry geometry);
+  void commit(Job* job);
+  void check(const char* what) const;
+
+  std::vector<Tree> trees_;       // by ID
+  std::vector<uint32_t> to_fit_;  // their trees are to be grown in another shape first
 };
 
 }  // namespace echopath

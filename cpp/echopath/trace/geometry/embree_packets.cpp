@@ -3,6 +3,7 @@
 
 #include "echopath/base/simd.h"
 #include "echopath/trace/geometry/embree_device.h"
+#include "echopath/trace/geometry/embree_trees.h"
 
 namespace echopath {
 
@@ -123,6 +124,7 @@ void EmbreeScene::intersect(const Vec3& from, const LaneVectors& directions, int
   forget_hits(queries.hit);
   queries_->intersect(valid, queries);
   take(queries.hit, out.met);
+  name_hits(out.met);
   if (std::none_of(out.met.begin(), out.met.end(), is_met)) return out.verdicts.fill(Verdict::kMiss);
   PacketFacets facets;
   LaneValues is_close;
@@ -156,8 +158,17 @@ void EmbreeScene::look(const Vec3& from, const LaneVectors& directions, const St
   queries_->intersect(valid, queries);
   for (int lane = 0; lane < kPacketSize; ++lane) {
     const auto k = static_cast<size_t>(lane);
-    out.mesh_id[k] = valid.lanes[lane] ? queries.hit.geomID[lane] : kNothing;
+    const bool is_met = valid.lanes[lane] != 0 && queries.hit.geomID[lane] != kNothing;
+    out.mesh_id[k] = is_met ? named(queries.hit.geomID[lane], queries.hit.primID[lane], 0.0f, 0.0f).mesh_id : kNothing;
     out.distance[lane] = double{queries.ray.tfar[lane]} + moved[lane];
+  }
+}
+
+// Names the triangles that Embree means.
+void EmbreeScene::name_hits(std::array<Hit, kPacketSize>& met) const {
+  if (trees_->places().empty()) return;
+  for (Hit& hit : met) {
+    if (is_met(hit)) hit = named(hit.mesh_id, hit.triangle_id, hit.u, hit.v);
   }
 }
 

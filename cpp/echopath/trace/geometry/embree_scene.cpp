@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "echopath/scene/mesh/smooth.h"
 #include "echopath/trace/geometry/embree_device.h"
+#include "echopath/trace/geometry/embree_trees.h"
 
 namespace echopath {
 namespace {
@@ -14,10 +14,6 @@ namespace {
 constexpr double kFalseHitAbsolute = 1e-3;  // m
 constexpr double kFalseHitRelative = 1e-5;
 constexpr double kSmoothGrazing = 0.02;  // cosine of incidence below which the facet's own normal serves
-// Largest EmbreeMeshes::mean_cover for a tree per mesh: where loose heaps of triangles lie over each other, queries take 1.5
-// times as long at 2 and 4 times at 10; with separate objects they take -15 to +10 %.
-constexpr double kMaxCover = 1.5;
-constexpr double kSameOrigin = 1e-12;  // relative: the rounding of a box about another origin
 
 // Meets the plane of a triangle in double precision and sets (u, v) of the point of the triangle next to there, each rounded
 // once.
@@ -52,45 +48,61 @@ Vec3 origin_in(const Eigen::AlignedBox3d& box, const Vec3& near, bool is_rounded
 
 }  // namespace
 
-EmbreeScene::EmbreeScene(const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job)
-    : device_(std::make_unique<Device>()), queries_(device_.get()) {
+EmbreeScene::EmbreeScene() { forget(); }
+
+EmbreeScene::EmbreeScene(const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job) : EmbreeScene() {
   update(scene, pose, origin, job);
 }
 
+EmbreeScene::~EmbreeScene() = default;
+
+void EmbreeScene::forget() {
+  surfaces_.clear();
+  trees_ = std::make_unique<Trees>();
+  device_ = std::make_unique<Device>();
+  queries_ = device_.get();
+  meshes_ = {};
+}
+
 void EmbreeScene::update(const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job) {
-  std::vector<uint32_t> changed = meshes_.update(scene, pose, origin);
-  const bool tree_per_mesh = scene.is_anything_moving() && meshes_.mean_cover() <= kMaxCover;
-  if (!device_->scene || device_->has_mesh.size() != meshes_.size() || tree_per_mesh != device_->has_tree_per_mesh) {
-    device_->start_scene(meshes_.size(), tree_per_mesh);
-    changed.resize(meshes_.size());
-    std::iota(changed.begin(), changed.end(), 0u);
-  }
+  bring_to(scene, pose, [&](const Eigen::AlignedBox3d&) { return origin; }, job);
+}
+
+void EmbreeScene::update(const Scene& scene, const PosedScene& pose, const Vec3& near, bool near_moves, Job* job) {
+  bring_to(scene, pose, [&](const Eigen::AlignedBox3d& box) {
+    return origin_in(box, near, near_moves || scene.is_anything_moving());
+  }, job);
+}
+
+void EmbreeScene::bring_to(const Scene& scene, const PosedScene& pose, const EmbreeMeshes::OriginRule& origin,
+                           Job* job) try {
+  const std::vector<uint32_t> changed = meshes_.update(scene, pose, origin);
   surfaces_.resize(meshes_.size());
   for (const uint32_t mesh_id : changed) {
     const std::vector<Vec3>& normals = meshes_.normals(mesh_id);
     surfaces_[mesh_id] = {meshes_.triangles(mesh_id).data(), meshes_.vertices(mesh_id).data(),
                           normals.empty() ? nullptr : normals.data()};
-    device_->set_mesh(mesh_id, meshes_.vertices(mesh_id), meshes_.triangles(mesh_id), mask_of(mesh_id));
   }
-  const double largest = std::max(1.0, meshes_.largest_coordinate());
+  const EmbreeMeshes::Extent extent = meshes_.extent();
+  const double largest = std::max(1.0, extent.largest_coordinate);
   lift_ = 4.0 * 0x1.0p-24 * largest;
   reach_ = 4.0 * largest;
-  if (!changed.empty() || meshes_.size() == 0) device_->build(job);
+  trees_->update(meshes_, extent, changed, *device_, job);
+} catch (...) {
+  forget();
+  throw;
 }
-
-EmbreeScene::~EmbreeScene() = default;
 
 Vec3 EmbreeScene::origin_near(const Scene& scene, const PosedScene& pose, const Vec3& near, bool near_moves) {
   return origin_in(world_box(scene, pose), near, near_moves || scene.is_anything_moving());
 }
 
-Vec3 EmbreeScene::next_origin(const Scene& scene, const PosedScene& pose, const Vec3& near, bool near_moves) const {
-  if (!meshes_.is_current(scene, pose)) return origin_near(scene, pose, near, near_moves);
-  Eigen::AlignedBox3d box = meshes_.box();
-  if (!box.isEmpty()) box.translate(meshes_.origin());
-  const Vec3 next = origin_in(box, near, near_moves || scene.is_anything_moving());
-  const bool is_same = (next - meshes_.origin()).norm() <= kSameOrigin * (1.0 + next.norm());
-  return is_same ? meshes_.origin() : next;
+// Names the triangle that Embree means.
+Hit EmbreeScene::named(uint32_t geometry_id, uint32_t triangle_id, float u, float v) const {
+  const std::vector<const TrianglePlace*>& places = trees_->places();
+  if (places.empty() || !places[geometry_id]) return {geometry_id, triangle_id, u, v};
+  const TrianglePlace& place = places[geometry_id][triangle_id];
+  return {place.mesh_id, place.triangle_id, u, v};
 }
 
 EmbreeScene::Verdict EmbreeScene::intersect(const Vec3& from, const Vec3& direction, RayHit& out) const {
@@ -107,7 +119,7 @@ EmbreeScene::Verdict EmbreeScene::intersect(const Vec3& from, const Vec3& start,
   forget_hit(query.hit);
   queries_->intersect(query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return Verdict::kMiss;
-  out.hit = {query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v};
+  out.hit = named(query.hit.geomID, query.hit.primID, query.hit.u, query.hit.v);
   return confirm(from, direction, out);
 }
 

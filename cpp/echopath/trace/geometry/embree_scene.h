@@ -41,13 +41,19 @@ class EmbreeScene {
   // Raises DeviceError when Embree fails, Cancelled when the job is cancelled during the build, and invalid_argument where
   // coordinates relative to the origin are out of their range (base/range_of_coordinates.h).
   EmbreeScene(const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job = nullptr);
+  // Holds nothing yet.
+  EmbreeScene();
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
-  // Makes the scene as if anew, with the same answers, but builds only what differs from before: where something moves and
-  // meshes overlap little, the trees of the meshes that moved; elsewhere everything, unless nothing differs. Raises as the
-  // constructor does; after that the scene may only be destroyed.
+  // Makes the scene as if anew, with the same answers, but does only what differs from before. Where meshes overlap little,
+  // and something moves or there are hundreds of small ones, each has a tree of its own, or shares one with small neighbours:
+  // then a mesh that has moved costs a fit of its tree (6 ns a triangle) and the tree over all trees, and one that shares a
+  // tree that tree (0.2 us a triangle). Elsewhere everything is built, unless nothing differs. Raises as the constructor does
+  // and holds nothing after that.
   void update(const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job = nullptr);
+  // The same about origin_near of `near` (m, world), which may move.
+  void update(const Scene& scene, const PosedScene& pose, const Vec3& near, bool near_moves, Job* job);
 
   enum class Verdict { kMiss, kHit, kFalseHit };
   // Finds the closest hit from `from` along the unit vector `direction`. kFalseHit means that Embree reported a point that
@@ -81,8 +87,7 @@ class EmbreeScene {
   };
   static constexpr uint32_t kNothing = std::numeric_limits<uint32_t>::max();
   void look(const Vec3& from, const LaneVectors& directions, const Stretches& stretches, uint32_t mask, Looks& out) const;
-  // Returns the bit of a mesh: the same for all below one child of the scene's root, and one of 32.
-  uint32_t mask_of(uint32_t mesh_id) const { return uint32_t{1} << (static_cast<unsigned>(meshes_.object(mesh_id)) % 32u); }
+  uint32_t mask_of(uint32_t mesh_id) const { return meshes_.mask_of(mesh_id); }  // its bit: EmbreeMeshes::mask_of
   // Returns whether something lies on the open segment between the two points. Points on surfaces must be lifted first.
   bool occluded(const Vec3& from, const Vec3& to) const;
   // Answers this for `count` segments; it is 4 times as fast, in whatever order they come.
@@ -106,8 +111,6 @@ class EmbreeScene {
   // something or `near` moves, it is rounded to a grid, by no more than 1/16 of the scene's length in each axis: then it is
   // the same at most times, and meshes at rest need not be built again.
   static Vec3 origin_near(const Scene& scene, const PosedScene& pose, const Vec3& near, bool near_moves = false);
-  // Returns the same for the next update; where it would build nothing, without a look at the vertices.
-  Vec3 next_origin(const Scene& scene, const PosedScene& pose, const Vec3& near, bool near_moves) const;
   const Vec3& origin() const { return meshes_.origin(); }
 
   std::array<Vec3, 3> corners(uint32_t mesh_id, uint32_t triangle_id) const {
@@ -118,22 +121,27 @@ class EmbreeScene {
   size_t num_triangles(uint32_t mesh_id) const { return meshes_.triangles(mesh_id).size(); }
   // Returns vertices relative to the origin.
   const std::vector<Vec3>& vertices(uint32_t mesh_id) const { return meshes_.vertices(mesh_id); }
-  const Eigen::AlignedBox3d& box(uint32_t mesh_id) const { return meshes_.box(mesh_id); }
+  Eigen::AlignedBox3d box(uint32_t mesh_id) const { return meshes_.box(mesh_id); }
 
  private:
-  struct Device;
+  struct Device;    // embree_device.h
+  class Trees;      // embree_trees.h
   struct Surface {  // of one mesh: where its arrays begin
     const Triangle* triangles;
     const Vec3* vertices;
     const Vec3* normals;  // null where facets are meant
   };
+  void bring_to(const Scene& scene, const PosedScene& pose, const EmbreeMeshes::OriginRule& origin, Job* job);
+  void forget();
+  Hit named(uint32_t geometry_id, uint32_t triangle_id, float u, float v) const;
   Vec3 moved_up(const Vec3& from, const Vec3& direction) const {
     return from + way_up(unpacked(from), unpacked(direction), reach_) * direction;
   }
   SegmentRay ray_between(const Vec3& from, const Vec3& to) const {
     return segment_ray(unpacked(from), unpacked(to), 2.0 * lift_, reach_);
   }
-  // These two serve packets (embree_packets.cpp).
+  // These serve packets (embree_packets.cpp).
+  void name_hits(std::array<Hit, kPacketSize>& met) const;
   void fetch(const PacketHits& hits, PacketFacets& facets) const;
   void ask_segments(const RayLanes& rays, ValidLanes& blocked) const;
   // Embree has the ray begin at `start`.
@@ -142,6 +150,7 @@ class EmbreeScene {
   void curve(const std::array<Vec3, 3>& corners, const Vec3& direction, RayHit& hit) const;
 
   std::unique_ptr<Device> device_;
+  std::unique_ptr<Trees> trees_;
   const Queries* queries_;
   double lift_ = 0.0;   // m
   double reach_ = 0.0;  // m: rays from farther away are moved up to there

@@ -14,10 +14,10 @@ GeometryLoan::GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedSc
                            Job* job)
     : kept_(kept), geometry_(kept ? kept->take() : nullptr) {
   if (geometry_) {
-    geometry_->update(scene, pose, geometry_->next_origin(scene, pose, near, near_moves), job);
+    geometry_->update(scene, pose, near, near_moves, job);
   } else {
-    const Vec3 origin = EmbreeScene::origin_near(scene, pose, near, near_moves);
-    geometry_ = std::make_unique<EmbreeScene>(scene, pose, origin, job);
+    geometry_ = std::make_unique<EmbreeScene>();
+    geometry_->update(scene, pose, near, near_moves, job);
   }
 }
 

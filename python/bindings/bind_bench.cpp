@@ -9,6 +9,7 @@
 #include "array.h"
 #include "choice.h"
 #include "echopath/bench/bare_queries.h"
+#include "echopath/bench/moved_geometry.h"
 #include "echopath/bench/read_hits.h"
 #include "echopath/bench/replay_only.h"
 #include "echopath/bench/single_rays.h"
@@ -40,6 +41,12 @@ py::dict time_bare_queries(Scene scene, const Radar& radar, int64_t num_rays, in
   out["bare_seconds"] = seconds(found.bare);
   out["single_seconds"] = seconds(found.single);
   return out;
+}
+
+py::dict time_moved_geometry(Scene scene, const py::object& times) {
+  const auto at = as_vector<double>(times, "times", "[T]");
+  const MovedGeometry found = run_job("geometry", py::none(), [&](Job&) { return measure_moved_geometry(scene, at); });
+  return py::dict(py::arg("first") = found.first, py::arg("again") = found.again, py::arg("bare") = found.bare);
 }
 
 py::tuple synthesis_trial(const ChirpSequence& waveform, const py::object& delays, const py::object& amplitudes,
@@ -81,6 +88,12 @@ num_rays, max_bounces, seed: as in trace; repetitions: measurements, in turn
 Returns a dict: num_rays, num_paths, num_queries (num_in_packets and num_shadow of them), build_seconds (once) and
 trace_seconds (rays and record), bare_seconds (queries packed alike) and single_seconds (one by one), each a dict of lists
 [repetitions] in s: elapsed, and processor of all threads together.)");
+  m.def("moved_geometry", &time_moved_geometry, py::arg("scene"), py::arg("times"),
+        R"(Times what it costs to bring the geometry of a scene from time to time.
+
+times: [T] in s, the first one builds it
+Returns a dict of s of the processor: first; again [T - 1]; bare [T - 1], Embree alone with a tree for each mesh, of which those
+that move are fitted. Raises ValueError naming the argument.)");
   m.def("replay_only", &time_replay, py::arg("paths"), py::arg("radar"), py::kw_only(),
         py::arg("phase_tolerance") = ReplaySettings{}.phase_tolerance,
         "What replay costs without synthesis: evaluates all paths at all chirps and channels, one echo for paths over the "

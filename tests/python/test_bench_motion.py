@@ -2,7 +2,7 @@
 import numpy as np
 
 import echopath as ep
-from echopath.bench.worlds import crowd_scene, motion
+from echopath.bench.worlds import crowd_scene, motion, moved
 from echopath.bench.worlds.city import NO_STRATUM
 
 RAYS = 200
@@ -28,3 +28,10 @@ def test_rows_name_what_misses_its_limit():
     row = {"name": "radar drives", "paths": 1, "ns": 2.0 * motion.LIMIT_NS, "over_reference": 1.0, "error": 0.0}
     lines = motion.describe([row, row | {"ns": 0.0}])
     assert lines[1].endswith("MISSED ns") and lines[2].endswith("holds")
+
+
+def test_rows_of_moved_objects_stand_beside_embree_alone():
+    rows = moved.rows(quick=True)
+    assert all(row["first_s"] > 0.0 and row["again_s"] > 0.0 and row["bare_s"] > 0.0 for row in rows)
+    assert [row["meshes"] for row in rows] == [moved.QUICK_HOUSES + 2, moved.QUICK_BOXES + 1, 1, 1]
+    assert len(moved.describe(rows)) == len(rows) + 2

@@ -62,10 +62,10 @@ Tracer::Tracer(const SceneSnapshot& scene, const Radar& radar, const TraceSettin
                FittedStrata* fitted)
     : empty_(empty_record(scene, radar, settings)), num_rays_to_come_(settings.num_rays_to_come),
       pose_(*empty_.scene, empty_.frame.trace_time), world_from_radar_(radar.world_from_radar(empty_.frame.trace_time)),
-      origin_(EmbreeScene::origin_near(*empty_.scene, pose_, empty_.frame.transmitter, radar.motion != nullptr)),
-      loan_(kept, *empty_.scene, pose_, origin_, job), geometry_(*loan_), mirrors_(find_mirrors(*empty_.scene, geometry_)),
-      sbr_(settings_of_rays(settings)), frusta_(find_antenna_frusta(*empty_.scene, geometry_, mirrors_, sbr_, job)),
-      plan_(plan_rays(settings, fitted)), shooter_(*empty_.scene, geometry_, mirrors_, plan_, sbr_, frusta_) {
+      loan_(kept, *empty_.scene, pose_, empty_.frame.transmitter, radar.motion != nullptr, job), geometry_(*loan_),
+      origin_(geometry_.origin()), mirrors_(find_mirrors(*empty_.scene, geometry_)), sbr_(settings_of_rays(settings)),
+      frusta_(find_antenna_frusta(*empty_.scene, geometry_, mirrors_, sbr_, job)), plan_(plan_rays(settings, fitted)),
+      shooter_(*empty_.scene, geometry_, mirrors_, plan_, sbr_, frusta_) {
   aim_at_points(settings, job);
   empty_.frame.strata = plan_.strata;
   empty_.frame.statistics.num_rays = num_rays();

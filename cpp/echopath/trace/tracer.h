@@ -48,9 +48,9 @@ class Tracer {
   int64_t num_rays_to_come_;
   PosedScene pose_;
   Transform world_from_radar_;
-  Vec3 origin_;
   GeometryLoan loan_;
   EmbreeScene& geometry_;
+  Vec3 origin_;
   std::vector<Mirror> mirrors_;
   SbrSettings sbr_;
   AntennaFrusta frusta_;

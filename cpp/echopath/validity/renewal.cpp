@@ -37,9 +37,8 @@ class Renewer {
   Renewer(const Paths& paths, const Radar& radar, double time, Job* job, KeptGeometry* kept)
       : paths_(paths), radar_(carried_radar(paths, radar)), preparer_(paths, whole_patches(*paths.scene)),
         walk_(*paths.scene, preparer_.smooth_normals()), wavenumber_(radio_constants(paths, radar).wavenumber),
-        pose_(*paths.scene, time), origin_(EmbreeScene::origin_near(*paths.scene, pose_, paths.frame.transmitter)),
-        loan_(kept, *paths.scene, pose_, origin_, job), geometry_(*loan_),
-        scene_at_(*paths.scene, radar_, preparer_.patches(), origin_, time) {}
+        pose_(*paths.scene, time), loan_(kept, *paths.scene, pose_, paths.frame.transmitter, false, job), geometry_(*loan_),
+        origin_(geometry_.origin()), scene_at_(*paths.scene, radar_, preparer_.patches(), origin_, time) {}
 
   BlockOutcome renew_block(std::span<const int64_t> indices) const {
     BlockOutcome block;
@@ -132,9 +131,9 @@ class Renewer {
   SurfaceWalk walk_;
   double wavenumber_;
   PosedScene pose_;
-  Vec3 origin_;
   GeometryLoan loan_;
   const EmbreeScene& geometry_;
+  Vec3 origin_;
   PosedScene scene_at_;
 };
 

@@ -1,15 +1,16 @@
 // Builds Embree's scene and keeps it up to date.
 #include <algorithm>
-#include <cstring>
 #include <string>
 
 #include "echopath/base/errors.h"
+#include "echopath/base/one_thread.h"
 #include "echopath/trace/geometry/embree_device.h"
 
 namespace echopath {
 namespace {
 
 constexpr size_t kMostWithoutTree = 4;  // triangles of a mesh that Embree puts into the upper tree themselves
+constexpr size_t kFewToGrow = 20000;    // triangles whose trees one thread grows in 4 ms
 
 bool keep_building(void* job, double) { return job == nullptr || !static_cast<Job*>(job)->cancelled(); }
 
@@ -57,6 +58,7 @@ void EmbreeScene::Device::start_scene(size_t num_ids, bool tree_per_mesh) {
   has_tree_per_mesh = tree_per_mesh;
   trees_.assign(num_ids, {});
   to_fit_.clear();
+  num_to_grow_ = 0;
   rtcSetSceneFlags(scene, tree_per_mesh ? RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(scene, tree_per_mesh ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM);
 }
@@ -105,6 +107,7 @@ void EmbreeScene::Device::set_mesh(uint32_t mesh_id, const EmbreeMeshes& meshes)
   } else {
     write_vertices(tree.geometry, meshes.vertices(mesh_id));
   }
+  if (grows) num_to_grow_ += triangles.size();
   if (grows && !is_new) rtcUpdateGeometryBuffer(tree.geometry, RTC_BUFFER_TYPE_INDEX, 0);  // Embree grows it anew
   rtcSetGeometryBuildQuality(tree.geometry, has_tree_per_mesh ? RTC_BUILD_QUALITY_REFIT : RTC_BUILD_QUALITY_MEDIUM);
   rtcSetGeometryMask(tree.geometry, meshes.mask_of(mesh_id));
@@ -132,6 +135,7 @@ void EmbreeScene::Device::set_cluster(uint32_t id, const EmbreeMeshes& meshes, c
   rtcSetGeometryMask(geometry, ~0u);
   rtcCommitGeometry(geometry);
   attach(id, geometry);
+  num_to_grow_ += num_triangles;
 }
 
 void EmbreeScene::Device::commit(Job* job) {
@@ -142,15 +146,27 @@ void EmbreeScene::Device::commit(Job* job) {
   check("building the scene");
 }
 
+// Threads put the trees of the meshes in any order below the upper one, on which it depends which of two coincident triangles
+// is met. So these grow on all threads, where there is much to grow, but the upper tree of the last commit on one.
 void EmbreeScene::Device::build(const EmbreeMeshes& meshes, Job* job) {
-  commit(job);
-  if (to_fit_.empty()) return;
+  if (!has_tree_per_mesh) return commit(job);
+  if (!to_fit_.empty() || num_to_grow_ > kFewToGrow) {
+    commit(job);
+    touch_any();
+  }
   for (const uint32_t mesh_id : to_fit_) {
     write_vertices(trees_[mesh_id].geometry, meshes.vertices(mesh_id));
     rtcCommitGeometry(trees_[mesh_id].geometry);
   }
   to_fit_.clear();
-  commit(job);
+  num_to_grow_ = 0;
+  run_on_one_thread([&] { commit(job); });
+}
+
+// Has the next commit make the upper tree, though nothing else may be new.
+void EmbreeScene::Device::touch_any() {
+  const auto found = std::find_if(trees_.begin(), trees_.end(), [](const Tree& tree) { return tree.geometry != nullptr; });
+  if (to_fit_.empty() && found != trees_.end()) rtcCommitGeometry(found->geometry);
 }
 
 }  // namespace echopath

@@ -117,10 +117,12 @@ struct EmbreeScene::Device final : EmbreeScene::Queries {
   RTCGeometry new_geometry(size_t num_vertices, size_t num_triangles, const Triangle* shared) const;
   void attach(uint32_t id, RTCGeometry geometry);
   void commit(Job* job);
+  void touch_any();
   void check(const char* what) const;
 
   std::vector<Tree> trees_;       // by ID
   std::vector<uint32_t> to_fit_;  // their trees are to be grown in another shape first
+  size_t num_to_grow_ = 0;        // triangles whose trees are new
 };
 
 }  // namespace echopath

@@ -6,19 +6,15 @@ namespace echopath {
 
 GeometryLoan::GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job)
     : kept_(kept), geometry_(kept ? kept->take() : nullptr) {
-  if (geometry_) geometry_->update(scene, pose, origin, job);
-  else geometry_ = std::make_unique<EmbreeScene>(scene, pose, origin, job);
+  if (!geometry_) geometry_ = std::make_unique<EmbreeScene>();
+  geometry_->update(scene, pose, origin, job);
 }
 
 GeometryLoan::GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedScene& pose, const Vec3& near, bool near_moves,
                            Job* job)
     : kept_(kept), geometry_(kept ? kept->take() : nullptr) {
-  if (geometry_) {
-    geometry_->update(scene, pose, near, near_moves, job);
-  } else {
-    geometry_ = std::make_unique<EmbreeScene>();
-    geometry_->update(scene, pose, near, near_moves, job);
-  }
+  if (!geometry_) geometry_ = std::make_unique<EmbreeScene>();
+  geometry_->update(scene, pose, near, near_moves, job);
 }
 
 GeometryLoan::~GeometryLoan() {

@@ -7,9 +7,9 @@ from pathlib import Path
 from ...files import write_texts
 from ..machine import machine
 from ..steps import told
-from . import city, crowd, motion
+from . import city, crowd, motion, moved
 
-PARTS = {"crowd": crowd, "city": city, "motion": motion}
+PARTS = {"crowd": crowd, "city": city, "motion": motion, "moved": moved}
 
 
 def run_worlds(folder, *, quick: bool = False, progress=None) -> dict:

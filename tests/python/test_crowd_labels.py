@@ -4,6 +4,7 @@ import pytest
 
 import echopath as ep
 from echopath.actors import shapes
+from echopath.labels import family_pass
 from echopath.labels.annotate import make_request
 from echopath.labels.cell_owners import ALIKE
 from echopath.labels.powers import parts_by_rival
@@ -116,8 +117,6 @@ def test_the_number_of_threads_changes_no_bit(paths, radar):
 
 def test_memory_for_one_signal_at_a_time_gives_the_same_labels(paths, radar, monkeypatch):
     """Signals that are added some at a time are rounded otherwise."""
-    from echopath.labels import family_pass
-
     at_once = ep.annotate(paths, None, radar)
     monkeypatch.setattr(family_pass, "SIGNALS_IN_MEMORY", 1)
     by_one = ep.annotate(paths, None, radar)
@@ -133,3 +132,16 @@ def test_labels_say_what_was_left_out(paths, radar, families):
     assert f"{labels.left_out.families} families can own no cell" in str(labels)
     everything = ep.annotate(paths, None, radar, noise=False, dynamic_range_db=None)
     assert everything.left_out.families <= labels.left_out.families
+
+
+@pytest.mark.parametrize("shown", [0.0, 1e-9, 1e-1, 1e12])
+def test_what_maps_of_families_leave_out_at_first_owns_its_cells_all_the_same(paths, radar, monkeypatch, shown):
+    """With a floor of 1e12 times the noise no map shows anything at first, with 0 each shows all."""
+    usual = ep.annotate(paths, None, radar)
+    monkeypatch.setattr(family_pass, "SHOWN", shown)
+    other = ep.annotate(paths, None, radar)
+    assert other.objects and np.array_equal(other.object_map, usual.object_map)
+    assert np.array_equal(other.ghost_map, usual.ghost_map)
+    for one, another in zip(usual.objects + usual.ghosts, other.objects + other.ghosts):
+        assert (one.cells, one.box) == (another.cells, another.box)
+        assert another.power == pytest.approx(one.power, rel=SUM, abs=0.0)

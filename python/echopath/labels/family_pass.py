@@ -55,9 +55,8 @@ class FamilyPass:
         self._pass.set_adds_up(False)
         owners, mask = self._owners, self._request.masks(whole)[1]
         self._make_open(mask)
-        # Where no map shows anything, one may have left out the owner.
         if self._least > 0.0 and np.any(mask & (owners.best <= self._least)):
-            self._least = 0.0
+            self._least = 0.0  # what maps leave out may own these cells
             self._make(np.flatnonzero(self._is_made).tolist())
             self._make_open(mask)
         self._note_left_out(intervals)

@@ -100,7 +100,7 @@ TEST(FitStratum, NothingHoldsWhatSurroundsTheRadar) {
 }
 
 TEST(FitStratum, SamplersForDiscsGetCones) {
-  const auto stratum = fit_stratum(box({29.95, 0.95, -1}, {30.05, 1.05, 2}), Vec3::Zero(), "pole", false);
+  const auto stratum = fit_stratum(box({29.95, 0.95, -1}, {30.05, 1.05, 2}), Vec3::Zero(), "pole", 0);
   ASSERT_TRUE(stratum);
   EXPECT_FALSE(stratum->is_strip());
 }

@@ -22,7 +22,7 @@ double distance_to_triangle(const Vec3& point, const std::array<Vec3, 3>& corner
   return is_above ? std::abs(normal.dot(point - a)) : least;
 }
 
-double longest_edge(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+double longest_edge_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
   double longest = 0.0;
   for (const auto& [a, b, c] : triangles) {
     longest = std::max({longest, (vertices[a] - vertices[b]).squaredNorm(), (vertices[b] - vertices[c]).squaredNorm(),
@@ -37,18 +37,22 @@ double largest_stretch(const Mat3& linear) { return Eigen::JacobiSVD<Mat3>(linea
 
 NearestPoints::NearestPoints(const Scene& scene, const PosedScene& pose, const EmbreeScene& geometry,
                              std::span<const uint32_t> mesh_ids)
-    : scene_(scene), geometry_(geometry), longest_edge_(scene.meshes().size()) {
-  std::map<const Mesh*, double> known;  // of meshes that several nodes share
+    : scene_(scene), geometry_(geometry), pose_(pose) {
   for (const uint32_t id : mesh_ids) {
     const Node& node = scene.node_of(id);
-    if (node.deformation) {
-      longest_edge_[id] = longest_edge(geometry.vertices(id), node.mesh->triangles());
-      continue;
-    }
-    const auto [entry, is_new] = known.try_emplace(node.mesh.get());
-    if (is_new) entry->second = longest_edge(node.mesh->vertices(), node.mesh->triangles());
-    longest_edge_[id] = entry->second * largest_stretch(pose.linear(id));
+    if (node.deformation) of_deformed_.try_emplace(id);
+    else of_meshes_.try_emplace(node.mesh.get());
   }
+}
+
+double NearestPoints::longest_edge(uint32_t mesh_id) const {
+  const Node& node = scene_.node_of(mesh_id);
+  LongestEdge& edge = node.deformation ? of_deformed_.at(mesh_id) : of_meshes_.at(node.mesh.get());
+  std::call_once(edge.is_found, [&] {
+    const std::vector<Vec3>& vertices = node.deformation ? geometry_.vertices(mesh_id) : node.mesh->vertices();
+    edge.length = longest_edge_of(vertices, node.mesh->triangles());
+  });
+  return node.deformation ? edge.length : edge.length * largest_stretch(pose_.linear(mesh_id));
 }
 
 double NearestPoints::distance(const Vec3& point, std::span<const uint32_t> mesh_ids) const {
@@ -69,7 +73,7 @@ double NearestPoints::distance_to_mesh(const Vec3& point, uint32_t mesh, double 
   squares.reserve(vertices.size());
   for (const Vec3& vertex : vertices) squares.push_back((vertex - point).squaredNorm());
   least = std::min(least, std::sqrt(*std::min_element(squares.begin(), squares.end())));
-  const double reach = least + longest_edge_[mesh] / std::numbers::sqrt3, limit = reach * reach * (1.0 + 1e-9);
+  const double reach = least + longest_edge(mesh) / std::numbers::sqrt3, limit = reach * reach * (1.0 + 1e-9);
   const std::vector<Triangle>& triangles = scene_.node_of(mesh).mesh->triangles();
   for (uint32_t i = 0; i < triangles.size(); ++i) {
     const auto& [a, b, c] = triangles[i];

@@ -1,5 +1,7 @@
 #pragma once
 // Finds how near objects are.
+#include <map>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -10,7 +12,7 @@ namespace echopath {
 // Knows the longest edges of meshes as they are posed, by which most triangles need not be looked at.
 class NearestPoints {
  public:
-  // The scene and the geometry must outlive it; the geometry is the scene at the pose. Only `mesh_ids` are asked about.
+  // The scene, the pose and the geometry must outlive it; the geometry is the scene at the pose. Only `mesh_ids` are asked about.
   NearestPoints(const Scene& scene, const PosedScene& pose, const EmbreeScene& geometry, std::span<const uint32_t> mesh_ids);
   // Returns the distance in m from a point, relative to the geometry's origin, to the nearest point of the triangles of some
   // meshes.
@@ -21,7 +23,16 @@ class NearestPoints {
 
   const Scene& scene_;
   const EmbreeScene& geometry_;
-  std::vector<double> longest_edge_;  // by mesh ID, m
+  // Of a mesh, m, in its own frame or, where it deforms, posed; found when it is first asked for.
+  struct LongestEdge {
+    std::once_flag is_found;
+    double length = 0.0;
+  };
+  double longest_edge(uint32_t mesh_id) const;
+
+  const PosedScene& pose_;
+  mutable std::map<const Mesh*, LongestEdge> of_meshes_;  // that several nodes may share
+  mutable std::map<uint32_t, LongestEdge> of_deformed_;   // by mesh ID
 };
 
 }  // namespace echopath

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "echopath/base/scalar_math.h"
+#include "echopath/base/simd.h"
 #include "echopath/trace/launch/fit_stratum.h"
 
 namespace echopath {
@@ -10,13 +12,43 @@ namespace {
 
 constexpr double kBoxMargin = 16.0;   // lifts of the geometry: the rounding of vertices and rays in single precision
 constexpr double kEndMargin = 1e-6;   // relative to a distance, likewise
+constexpr double kLeast = 1e-300;      // stands for a direction's part that is zero
+constexpr size_t kMostBoxes = 32;     // of meshes; one box holds more of them
 constexpr size_t kFewVertices = 512;  // are as good as the corners of boxes
+constexpr int kFewTurns = 6;          // of strips: a stratum a little too wide costs fewer looks than the narrowest one
 
 bool is_any(const EmbreeScene::Stretches& stretches) {
   for (int lane = 0; lane < kPacketSize; ++lane) {
     if (stretches.end[lane] > stretches.begin[lane]) return true;
   }
   return false;
+}
+
+ECHOPATH_INLINE void invert_lanes(const LaneVectors* directions, LaneVectors* inverse) {
+  const auto inverted = [](double value) __attribute__((always_inline)) { return 1.0 / (value == 0.0 ? kLeast : value); };
+  ECHOPATH_SIDE_BY_SIDE
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    const VectorOf<double> direction = directions->at(lane);
+    inverse->set(lane, {inverted(direction.x), inverted(direction.y), inverted(direction.z)});
+  }
+}
+
+// Extends the stretches by those in a box, whose corners are relative to where the rays begin.
+ECHOPATH_INLINE void cross_box(VectorOf<double> low, VectorOf<double> high, const LaneVectors* inverse,
+                               EmbreeScene::Stretches* stretches) {
+  const auto smaller = [](double a, double b) __attribute__((always_inline)) { return ScalarMath::smaller(a, b); };
+  const auto larger = [](double a, double b) __attribute__((always_inline)) { return ScalarMath::larger(a, b); };
+  ECHOPATH_SIDE_BY_SIDE
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    const VectorOf<double> by = inverse->at(lane);
+    const double x0 = low.x * by.x, x1 = high.x * by.x, y0 = low.y * by.y, y1 = high.y * by.y;
+    const double z0 = low.z * by.z, z1 = high.z * by.z;
+    const double begin = larger(larger(smaller(x0, x1), smaller(y0, y1)), larger(smaller(z0, z1), 0.0)) * (1.0 - kEndMargin);
+    const double end = smaller(smaller(larger(x0, x1), larger(y0, y1)), larger(z0, z1)) * (1.0 + kEndMargin);
+    const bool is_met = end >= begin && end > 0.0;
+    stretches->begin[lane] = is_met ? smaller(stretches->begin[lane], begin) : stretches->begin[lane];
+    stretches->end[lane] = is_met ? larger(stretches->end[lane], end) : stretches->end[lane];
+  }
 }
 
 void add_corners(const Eigen::AlignedBox3d& box, std::vector<Vec3>& corners) {
@@ -28,13 +60,15 @@ void add_corners(const Eigen::AlignedBox3d& box, std::vector<Vec3>& corners) {
 
 ObjectView::ObjectView(const EmbreeScene& geometry, const SurfaceMap& surfaces, uint32_t object, const Vec3& apex)
     : geometry_(geometry), surfaces_(surfaces), object_(object), apex_(apex), mesh_ids_(surfaces.meshes_of(object)) {
+  Eigen::AlignedBox3d all;
   for (const uint32_t mesh : mesh_ids_) {
-    box_.extend(geometry.box(mesh));
+    all.extend(geometry.box(mesh));
+    boxes_.push_back(geometry.box(mesh));
     mask_ |= geometry.mask_of(mesh);
   }
-  const double margin = kBoxMargin * geometry.lift();
-  box_.extend((box_.max().array() + margin).matrix().eval());
-  box_.extend((box_.min().array() - margin).matrix().eval());
+  if (boxes_.size() > kMostBoxes) boxes_ = {all};
+  const Vec3 margin = Vec3::Constant(kBoxMargin * geometry.lift());
+  for (Eigen::AlignedBox3d& box : boxes_) box = {box.min() - margin, box.max() + margin};
 }
 
 Stratum ObjectView::stratum(bool closely) const {
@@ -47,35 +81,29 @@ Stratum ObjectView::stratum(bool closely) const {
     if (by_boxes) add_corners(geometry_.box(mesh), points);
     else points.insert(points.end(), vertices.begin(), vertices.end());
   }
-  const std::optional<Stratum> found = fit_stratum(points, apex_, surfaces_.names[object_]);
+  const std::optional<Stratum> found = fit_stratum(points, apex_, surfaces_.names[object_], closely ? kManyTurns : kFewTurns);
   if (!found && by_boxes) return stratum(true);
   return found.value_or(Stratum{});
 }
 
-// Returns the stretches of the rays in the object's box.
-EmbreeScene::Stretches ObjectView::stretches_in_box(const LaneVectors& directions, int count) const {
+// Returns the stretches of the rays from the first of the object's boxes to the end of the last.
+EmbreeScene::Stretches ObjectView::stretches_in_boxes(const LaneVectors& directions, int count) const {
   EmbreeScene::Stretches stretches;
   for (int lane = 0; lane < kPacketSize; ++lane) {
-    double begin = 0.0, end = lane < count ? std::numeric_limits<double>::infinity() : 0.0;
-    const Vec3 direction = directions[lane];
-    for (int axis = 0; axis < 3; ++axis) {
-      const double low = box_.min()[axis] - apex_[axis], high = box_.max()[axis] - apex_[axis];
-      if (direction[axis] == 0.0) {
-        if (low > 0.0 || high < 0.0) end = 0.0;
-        continue;
-      }
-      const double one = low / direction[axis], other = high / direction[axis];
-      begin = std::max(begin, std::min(one, other));
-      end = std::min(end, std::max(one, other));
-    }
-    stretches.begin[lane] = begin * (1.0 - kEndMargin);
-    stretches.end[lane] = end >= begin ? end * (1.0 + kEndMargin) : 0.0;
+    stretches.begin[lane] = std::numeric_limits<double>::infinity();
+    stretches.end[lane] = 0.0;
   }
+  LaneVectors inverse;
+  run_simd<&invert_lanes>(&directions, &inverse);
+  for (const Eigen::AlignedBox3d& box : boxes_) {
+    run_simd<&cross_box>(unpacked(box.min() - apex_), unpacked(box.max() - apex_), &inverse, &stretches);
+  }
+  for (int lane = count; lane < kPacketSize; ++lane) stretches.end[lane] = 0.0;
   return stretches;
 }
 
 void ObjectView::look(const LaneVectors& directions, int count, Seen& seen) const {
-  EmbreeScene::Stretches in_box = stretches_in_box(directions, count), whole = in_box;
+  EmbreeScene::Stretches in_box = stretches_in_boxes(directions, count), whole = in_box;
   seen.surface.fill(kNothing);
   seen.mesh.fill(kNothing);
   seen.hiding.fill(kNothing);
@@ -106,6 +134,33 @@ void ObjectView::look(const LaneVectors& directions, int count, Seen& seen) cons
     const bool is_hidden = is_there && first.distance[lane] < seen.distance[lane] * (1.0 - kSameDepth);
     if (is_there) seen.surface[k] = is_hidden ? surfaces_.of_mesh[seen.hiding[k]] : object_;
     if (!is_hidden) seen.hiding[k] = kNothing;
+  }
+}
+
+uint32_t ObjectView::only_hiding(const LaneVectors& directions, int count) const {
+  const EmbreeScene::Stretches in_box = stretches_in_boxes(directions, count);
+  EmbreeScene::Stretches before = in_box;
+  before.begin = {};
+  for (int lane = 0; lane < kPacketSize; ++lane) before.end[lane] = lane < count ? in_box.begin[lane] : 0.0;
+  EmbreeScene::Looks first;
+  geometry_.look(apex_, directions, before, ~uint32_t{0}, first);
+  uint32_t hiding = kNothing;
+  for (int lane = 0; lane < count; ++lane) {
+    if (in_box.end[lane] <= in_box.begin[lane]) continue;
+    const uint32_t mesh = first.mesh_id[static_cast<size_t>(lane)];
+    if (mesh == kNothing) return kSeveral;
+    if (hiding == kNothing) hiding = surfaces_.of_mesh[mesh];
+    if (hiding != surfaces_.of_mesh[mesh]) return kSeveral;
+  }
+  return hiding;
+}
+
+void ObjectView::look_for(const LaneVectors& directions, int count, uint32_t* surface) const {
+  Seen seen;
+  seen.mesh.fill(kNothing);
+  find_object(directions, stretches_in_boxes(directions, count), seen);
+  for (int lane = 0; lane < count; ++lane) {
+    surface[lane] = seen.mesh[static_cast<size_t>(lane)] == kNothing ? kNothing : object_;
   }
 }
 

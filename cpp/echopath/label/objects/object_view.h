@@ -16,6 +16,7 @@ class ObjectView {
   // Surfaces this near behind each other, relative to the distance, are one: a label on a box does not hide it.
   static constexpr double kSameDepth = 1e-5;
   static constexpr double kAfter = 1.0 + 1e-7;  // times a distance: one step of single precision
+  static constexpr uint32_t kSeveral = kNothing - 1;
   struct Seen {
     std::array<uint32_t, kPacketSize> surface;  // the object where nothing hides it, else what does; kNothing: not there
     std::array<uint32_t, kPacketSize> mesh, hiding;  // meshes of the object and of what hides it, or kNothing
@@ -31,9 +32,14 @@ class ObjectView {
   // `closely` by their vertices.
   Stratum stratum(bool closely) const;
   void look(const LaneVectors& directions, int count, Seen& seen) const;
+  // Writes the object where the directions meet it, hidden or not, else kNothing.
+  void look_for(const LaneVectors& directions, int count, uint32_t* surface) const;
+  // Returns the one surface that is met before the object's box in all of the directions that reach it, kNothing where none
+  // of them does, and kSeveral where there are several or some meet none.
+  uint32_t only_hiding(const LaneVectors& directions, int count) const;
 
  private:
-  EmbreeScene::Stretches stretches_in_box(const LaneVectors& directions, int count) const;
+  EmbreeScene::Stretches stretches_in_boxes(const LaneVectors& directions, int count) const;
   void find_object(const LaneVectors& directions, EmbreeScene::Stretches stretches, Seen& seen) const;
   bool is_own(uint32_t mesh) const { return surfaces_.of_mesh[mesh] == object_; }
 
@@ -42,7 +48,7 @@ class ObjectView {
   uint32_t object_;
   Vec3 apex_;
   std::vector<uint32_t> mesh_ids_;
-  Eigen::AlignedBox3d box_;
+  std::vector<Eigen::AlignedBox3d> boxes_;  // of its meshes, or one of all
   uint32_t mask_ = 0;
 };
 

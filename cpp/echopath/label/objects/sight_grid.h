@@ -40,6 +40,7 @@ class SightGrid {
   int64_t num_blocks() const { return int64_t{num_columns_} * num_rows_; }
   void direct(int64_t block, int cell, LaneValues& x, LaneValues& y, int lane) const;
   void look_at(const LaneValues& x, const LaneValues& y, int count, const Look& look, uint32_t* met) const;
+  void look_at_first_cells(const Look& look);
   void see(int64_t block, const Look& look);
   void queue(int64_t block);
   void queue_changes();

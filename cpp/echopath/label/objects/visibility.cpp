@@ -1,6 +1,7 @@
 #include "echopath/label/objects/visibility.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "echopath/base/errors.h"
@@ -17,6 +18,7 @@ constexpr int kGridCells = 2;        // for each direction asked for, at first
 constexpr double kLeastFill = 0.25;  // share of cells on the object below which there are to be more
 constexpr double kLooseFill = 0.2;   // below which the stratum is fitted to the vertices
 constexpr double kMostCells = 16.0;  // for each direction asked for
+constexpr int kFewerIfHidden = 16, kLeastCells = 64;  // cells of a grid that serves the solid angle alone
 
 // Holds the antennas of one end of the radar.
 struct End {
@@ -41,11 +43,45 @@ class ObjectScanner {
     const SightGrid::Look look = [this](const LaneVectors& directions, int count, uint32_t* met) {
       see(directions, count, met);
     };
-    const SightGrid grid = looked_at(num_directions, look);
+    const Stratum stratum = view_.stratum(false);
+    if (const std::optional<uint32_t> hiding = hidden_by(stratum, num_directions)) {
+      return hidden_sight(stratum, *hiding, num_directions);
+    }
+    const SightGrid grid = looked_at(stratum, num_directions, look);
     return sight_of(grid.counts(surfaces_.names.size()), grid.cell_angle());
   }
 
  private:
+  // Returns the surface that hides the object wherever it is: one that is met before its boxes in one direction of each block
+  // of a grid.
+  std::optional<uint32_t> hidden_by(const Stratum& stratum, int num_directions) const {
+    uint32_t hiding = ObjectView::kNothing;
+    SightGrid grid(stratum, int64_t{kGridCells} * num_directions);
+    grid.start([&](const LaneVectors& directions, int count, uint32_t* met) {
+      std::fill_n(met, count, SightGrid::kNothing);
+      if (hiding == ObjectView::kSeveral) return;
+      const uint32_t here = view_.only_hiding(directions, count);
+      if (hiding == ObjectView::kNothing) hiding = here;
+      if (here != ObjectView::kNothing && here != hiding) hiding = ObjectView::kSeveral;
+    });
+    const bool is_one = hiding != ObjectView::kNothing && hiding != ObjectView::kSeveral;
+    return is_one ? std::optional<uint32_t>(hiding) : std::nullopt;
+  }
+
+  // Looks only for the solid angle of an object that `hiding` hides.
+  Sight hidden_sight(const Stratum& stratum, uint32_t hiding, int num_directions) {
+    SightGrid grid(stratum, std::max(kLeastCells, num_directions / kFewerIfHidden));
+    grid.finish_everywhere([&](const LaneVectors& directions, int count, uint32_t* met) {
+      view_.look_for(directions, count, met);
+      for (int lane = 0; lane < count; ++lane) {
+        if (met[lane] == SightGrid::kNothing) continue;
+        met[lane] = hiding;
+        in_view_ = in_view_ || end_.has_gain_toward(directions[lane]);
+      }
+    });
+    return sight_of(grid.counts(surfaces_.names.size()), grid.cell_angle());
+  }
+
   // Looks at as many cells as it takes to have so many directions on the object.
   static SightGrid looked_at(const Stratum& stratum, double fill, int num_directions, const SightGrid::Look& look) {
     const double cells = fill > 0.0 ? std::min(kMostCells, 1.0 / fill) : kMostCells;
@@ -55,8 +91,7 @@ class ObjectScanner {
     return grid;
   }
 
-  SightGrid looked_at(int num_directions, const SightGrid::Look& look) const {
-    Stratum stratum = view_.stratum(false);
+  SightGrid looked_at(Stratum stratum, int num_directions, const SightGrid::Look& look) const {
     SightGrid grid(stratum, int64_t{kGridCells} * num_directions);
     double fill = grid.start(look);
     if (fill < kLooseFill) {

@@ -22,7 +22,6 @@ constexpr double kMargin = 1e-2, kMarginOfLarger = 1e-4;
 constexpr double kSteepestSine = 0.57;
 constexpr size_t kSampledVertices = 4096;  // for the middle of directions
 constexpr int kAxisSteps = 64;
-constexpr int kTriedTurns = 48;         // directions of strips, beside those of few hull edges
 constexpr int kOutwardDirections = 16;  // by which points inside the hull are sorted out
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a[0] * b[1] - a[1] * b[0]; }
@@ -171,10 +170,10 @@ bool serves(const Stratum& strip) {
 }
 
 // Returns unit vectors along which strips are tried: evenly turned, and along the edges of the hull where these are few.
-PlanePoints turns_to_try(const PlanePoints& hull) {
+PlanePoints turns_to_try(const PlanePoints& hull, int count) {
   PlanePoints turns;
-  for (int k = 0; k < kTriedTurns; ++k) turns.emplace_back(std::cos(kPi * k / kTriedTurns), std::sin(kPi * k / kTriedTurns));
-  if (hull.size() > kTriedTurns) return turns;
+  for (int k = 0; k < count; ++k) turns.emplace_back(std::cos(kPi * k / count), std::sin(kPi * k / count));
+  if (std::ssize(hull) > count) return turns;
   for (size_t i = 0; i < hull.size(); ++i) {
     const Eigen::Vector2d edge = hull[(i + 1) % hull.size()] - hull[i];
     if (edge.norm() > 0) turns.push_back(edge.normalized());
@@ -185,7 +184,7 @@ PlanePoints turns_to_try(const PlanePoints& hull) {
 }  // namespace
 
 std::optional<Stratum> fit_stratum(const std::vector<Vec3>& vertices, const Vec3& apex, std::string name,
-                                   bool may_be_strip) {
+                                   int num_turns) {
   std::vector<Vec3> directions;
   directions.reserve(vertices.size());
   for (const Vec3& vertex : vertices) {
@@ -205,7 +204,7 @@ std::optional<Stratum> fit_stratum(const std::vector<Vec3>& vertices, const Vec3
   std::vector<Vec3> corners;
   for (const Eigen::Vector2d& corner : hull) corners.push_back(plane.direction(corner));
   Stratum best = cone_around(plane.axis, corners);
-  for (const Eigen::Vector2d& along : may_be_strip ? turns_to_try(hull) : PlanePoints()) {
+  for (const Eigen::Vector2d& along : turns_to_try(hull, num_turns)) {
     const Stratum strip = strip_along(along, plane, hull, corners);
     if (serves(strip) && strip.solid_angle() < best.solid_angle()) best = strip;
   }

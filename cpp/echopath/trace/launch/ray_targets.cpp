@@ -92,7 +92,7 @@ class RayTargetFinder {
   std::optional<RayTarget> target_at(const Target& target, uint64_t input, std::string name, int num_mirrors,
                                      const Vertices& vertices) const {
     const auto fit = [&] {
-      return fit_stratum(vertices(), settings_.transmitter, std::move(name), settings_.may_use_strips);
+      return fit_stratum(vertices(), settings_.transmitter, std::move(name), settings_.may_use_strips ? kManyTurns : 0);
     };
     std::optional<Stratum> stratum = settings_.fitted ? settings_.fitted->find(input, fit) : fit();
     if (!stratum || stratum->solid_angle() > settings_.largest_solid_angle) return std::nullopt;

@@ -105,7 +105,8 @@ void SightGrid::queue(int64_t block) {
   queue_.push_back(block);
 }
 
-// Queues neighbours, corner to corner too, whose directions met different things. Around the domain nothing is met.
+// Queues one of two neighbours whose directions met different things: where the change is in the other one, the cells at
+// their border lead there. Around the domain nothing is met.
 void SightGrid::queue_changes() {
   const auto met = [&](int64_t block) { return first_met_[static_cast<size_t>(block)]; };
   for (int64_t block = 0; block < num_blocks(); ++block) {
@@ -113,15 +114,9 @@ void SightGrid::queue_changes() {
     const bool has_right = column + 1 < num_columns_, has_below = block + num_columns_ < num_blocks();
     const bool is_at_rim = column == 0 || !has_right || block < num_columns_ || !has_below;
     if (is_at_rim && met(block) != kNothing) queue(block);
-    const auto compare = [&](bool is_there, int64_t other) {
-      if (!is_there || met(block) == met(other)) return;
-      queue(block);
-      queue(other);
-    };
-    compare(has_right, block + 1);
-    compare(has_below, block + num_columns_);
-    compare(has_below && has_right, block + num_columns_ + 1);
-    compare(has_below && column > 0, block + num_columns_ - 1);
+    const bool differs_right = has_right && met(block) != met(block + 1);
+    const bool differs_below = has_below && met(block) != met(block + num_columns_);
+    if (differs_right || differs_below) queue(block);
   }
 }
 

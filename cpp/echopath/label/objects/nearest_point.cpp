@@ -55,32 +55,35 @@ double NearestPoints::longest_edge(uint32_t mesh_id) const {
   return node.deformation ? edge.length : edge.length * largest_stretch(pose_.linear(mesh_id));
 }
 
-double NearestPoints::distance(const Vec3& point, std::span<const uint32_t> mesh_ids) const {
+std::array<double, 2> NearestPoints::distances(const Points& points, std::span<const uint32_t> mesh_ids) const {
   std::vector<std::pair<double, uint32_t>> by_box;
-  for (const uint32_t id : mesh_ids) by_box.emplace_back(geometry_.box(id).exteriorDistance(point), id);
+  for (const uint32_t id : mesh_ids) by_box.emplace_back(geometry_.box(id).exteriorDistance(points[0]), id);
   std::sort(by_box.begin(), by_box.end());
-  double least = std::numeric_limits<double>::infinity();
+  std::array<double, 2> least;
+  least.fill(std::numeric_limits<double>::infinity());
+  const double apart = (points[1] - points[0]).norm();
   for (const auto& [distance, id] : by_box) {
-    if (distance < least) least = distance_to_mesh(point, id, least);
+    if (distance < std::max(least[0], least[1] + apart)) look_at_mesh(points, id, least);
   }
   return least;
 }
 
 // No point of a triangle is farther from its next corner than its longest edge over the root of 3.
-double NearestPoints::distance_to_mesh(const Vec3& point, uint32_t mesh, double least) const {
+void NearestPoints::look_at_mesh(const Points& points, uint32_t mesh, std::array<double, 2>& least) const {
   const std::vector<Vec3>& vertices = geometry_.vertices(mesh);
-  std::vector<double> squares;
-  squares.reserve(vertices.size());
-  for (const Vec3& vertex : vertices) squares.push_back((vertex - point).squaredNorm());
-  least = std::min(least, std::sqrt(*std::min_element(squares.begin(), squares.end())));
-  const double reach = least + longest_edge(mesh) / std::numbers::sqrt3, limit = reach * reach * (1.0 + 1e-9);
+  std::vector<double> squares(vertices.size());
+  for (size_t i = 0; i < vertices.size(); ++i) squares[i] = (vertices[i] - points[0]).squaredNorm();
+  const Vec3& nearest = vertices[static_cast<size_t>(std::min_element(squares.begin(), squares.end()) - squares.begin())];
+  for (size_t k = 0; k < 2; ++k) least[k] = std::min(least[k], (nearest - points[k]).norm());
+  const double reach = std::max(least[0], least[1] + (points[1] - points[0]).norm()) + longest_edge(mesh) / std::numbers::sqrt3;
+  const double limit = reach * reach * (1.0 + 1e-9);
   const std::vector<Triangle>& triangles = scene_.node_of(mesh).mesh->triangles();
   for (uint32_t i = 0; i < triangles.size(); ++i) {
     const auto& [a, b, c] = triangles[i];
     if (std::min({squares[a], squares[b], squares[c]}) > limit) continue;
-    least = std::min(least, distance_to_triangle(point, geometry_.corners(mesh, i)));
+    const std::array<Vec3, 3> corners = geometry_.corners(mesh, i);
+    for (size_t k = 0; k < 2; ++k) least[k] = std::min(least[k], distance_to_triangle(points[k], corners));
   }
-  return least;
 }
 
 }  // namespace echopath

@@ -1,5 +1,6 @@
 #pragma once
 // Finds how near objects are.
+#include <array>
 #include <map>
 #include <mutex>
 #include <span>
@@ -14,12 +15,13 @@ class NearestPoints {
  public:
   // The scene, the pose and the geometry must outlive it; the geometry is the scene at the pose. Only `mesh_ids` are asked about.
   NearestPoints(const Scene& scene, const PosedScene& pose, const EmbreeScene& geometry, std::span<const uint32_t> mesh_ids);
-  // Returns the distance in m from a point, relative to the geometry's origin, to the nearest point of the triangles of some
-  // meshes.
-  double distance(const Vec3& point, std::span<const uint32_t> mesh_ids) const;
+  // Returns the distances in m from two points, relative to the geometry's origin, to the nearest points of the triangles of
+  // some meshes. Where the points are near each other they cost little more than one.
+  using Points = std::array<Vec3, 2>;
+  std::array<double, 2> distances(const Points& points, std::span<const uint32_t> mesh_ids) const;
 
  private:
-  double distance_to_mesh(const Vec3& point, uint32_t mesh, double least) const;
+  void look_at_mesh(const Points& points, uint32_t mesh, std::array<double, 2>& least) const;
 
   const Scene& scene_;
   const EmbreeScene& geometry_;

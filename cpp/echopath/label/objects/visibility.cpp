@@ -34,9 +34,8 @@ struct End {
 // Finds what hides one object from one end.
 class ObjectScanner {
  public:
-  ObjectScanner(const EmbreeScene& geometry, const NearestPoints& nearest, const SurfaceMap& surfaces, uint32_t object,
-                const End& end)
-      : geometry_(geometry), nearest_(nearest), surfaces_(surfaces), object_(object), end_(end),
+  ObjectScanner(const EmbreeScene& geometry, const SurfaceMap& surfaces, uint32_t object, const End& end)
+      : geometry_(geometry), surfaces_(surfaces), object_(object), end_(end),
         view_(geometry, surfaces, object, end.position) {}
 
   Sight sight(int num_directions) {
@@ -118,7 +117,6 @@ class ObjectScanner {
     for (const int64_t count : counts) num_found += count;
     Sight sight;
     sight.in_view = num_found > 0 ? in_view_ : has_gain_toward_a_vertex();
-    sight.distance = nearest_.distance(end_.position, view_.mesh_ids());
     if (num_found == 0) return sight;
     const auto found = static_cast<double>(num_found);
     sight.solid_angle = found * solid_angle_each;
@@ -142,7 +140,6 @@ class ObjectScanner {
   }
 
   const EmbreeScene& geometry_;
-  const NearestPoints& nearest_;
   const SurfaceMap& surfaces_;
   uint32_t object_;
   const End& end_;
@@ -182,10 +179,13 @@ std::vector<ObjectVisibility> visibility(const Scene& scene, const Radar& radar,
   if (job) job->start(surfaces.num_objects);
   parallel_for(surfaces.num_objects, [&](int64_t i) {
     const auto object = static_cast<uint32_t>(i);
-    const auto from = [&](const End& end) {
-      return ObjectScanner(*geometry, nearest, surfaces, object, end).sight(settings.num_directions);
+    const auto distances = nearest.distances({ends[0].position, ends[1].position}, surfaces.meshes_of(object));
+    const auto from = [&](size_t end) {
+      Sight sight = ObjectScanner(*geometry, surfaces, object, ends[end]).sight(settings.num_directions);
+      sight.distance = distances[end];
+      return sight;
     };
-    seen[object] = {surfaces.names[object], from(ends[0]), from(ends[1])};
+    seen[object] = {surfaces.names[object], from(0), from(1)};
   }, job);
   return seen;
 }

@@ -62,10 +62,9 @@ Mat3 fringe_of_face(const WedgeFace& face, double n, double angle, const Vec3& i
 }  // namespace
 
 Wedge wedge_between(const WedgeFace& first, const WedgeFace& second) {
-  return {{first, second}, angle_from(first, second.inward)};
+  const double angle = angle_from(first, second.inward);
+  return {{first, second}, angle > kOnFace ? angle : kTwoPi};
 }
-
-Wedge wedge_of_rim(const WedgeFace& face) { return {{face, {face.inward, -face.normal}}, kTwoPi}; }
 
 bool is_outside(const Wedge& wedge, const Vec3& direction) {
   return angle_from(wedge.faces[0], direction) <= wedge.exterior_angle + kOnFace;

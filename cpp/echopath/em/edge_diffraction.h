@@ -26,10 +26,9 @@ struct Wedge {
   double exterior_angle;
 };
 
-// Returns the wedge of two faces that end at one edge, the space between their outsides.
+// Returns the wedge of two faces that end at one edge, with the space between their outsides; of both faces of one sheet, its
+// rim.
 Wedge wedge_between(const WedgeFace& first, const WedgeFace& second);
-// Returns the wedge of the rim of a sheet.
-Wedge wedge_of_rim(const WedgeFace& face);
 
 // Returns whether a unit vector from the edge leads into the space around the wedge.
 bool is_outside(const Wedge& wedge, const Vec3& direction);

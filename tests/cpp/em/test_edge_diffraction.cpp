@@ -86,7 +86,8 @@ TEST(EdgeDiffraction, WedgeOfFacesHasTheirAngle) {
     EXPECT_NEAR(wedge_between(made.faces[0], made.faces[1]).exterior_angle, exterior, 1e-12);
     EXPECT_NEAR(wedge_between(made.faces[1], made.faces[0]).exterior_angle, exterior, 1e-12);
   }
-  EXPECT_EQ(wedge_of_rim(wedge_of(kTwoPi).faces[0]).exterior_angle, kTwoPi);
+  const WedgeFace sheet = wedge_of(kTwoPi).faces[0];
+  EXPECT_EQ(wedge_between(sheet, {sheet.inward, -sheet.normal}).exterior_angle, kTwoPi);
 }
 
 // Which face is called the first does not matter.

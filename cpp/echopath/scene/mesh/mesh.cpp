@@ -9,6 +9,7 @@
 #pragma GCC diagnostic pop
 #endif
 #include <algorithm>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "echopath/base/errors.h"
 #include "echopath/scene/mesh/farthest_vertex.h"
 #include "echopath/scene/mesh/manifold.h"
+#include "echopath/scene/mesh/sharp_edges.h"
 
 namespace echopath {
 namespace {
@@ -121,8 +123,15 @@ bool lie_in_a_plane(const std::vector<Vec3>& vertices, const std::vector<Triangl
 
 }  // namespace
 
-Mesh::Mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles, std::vector<uint32_t> source_triangle)
-    : num_input_vertices_(static_cast<int64_t>(vertices.size())) {
+struct Mesh::KeptEdges {
+  std::once_flag found;
+  std::vector<SharpEdge> edges;
+};
+
+Mesh::Mesh() : edges_(std::make_shared<KeptEdges>()) {}
+
+Mesh::Mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles, std::vector<uint32_t> source_triangle) : Mesh() {
+  num_input_vertices_ = static_cast<int64_t>(vertices.size());
   constexpr size_t kMaxCount = 0x7fffffff / 3;  // OpenMesh counts half-edges in an int
   require(triangles.size() < kMaxCount, "triangles", "must be fewer than 715 million", triangles.size());
   require(source_triangle.empty() || source_triangle.size() == triangles.size(), "original_triangle",
@@ -182,5 +191,10 @@ MeshPtr Mesh::part(const MeshPtr& whole, std::vector<uint32_t> triangles) {
 }
 
 Mesh::~Mesh() = default;
+
+const std::vector<SharpEdge>& Mesh::sharp_edges() const {
+  std::call_once(edges_->found, [&] { edges_->edges = find_sharp_edges(*this); });
+  return edges_->edges;
+}
 
 }  // namespace echopath

@@ -11,6 +11,8 @@ namespace echopath {
 
 using Triangle = std::array<uint32_t, 3>;
 
+struct SharpEdge;  // scene/mesh/sharp_edges.h
+
 class Mesh;
 using MeshPtr = std::shared_ptr<const Mesh>;
 
@@ -41,6 +43,8 @@ class Mesh {
   bool is_closed() const { return is_closed_; }  // no boundary edge, no duplicated vertex
   double area() const { return area_; }          // m^2
   bool is_flat() const { return is_flat_; }      // all vertices in one plane, to 1e-6 of the extent
+  // Returns the edges that find_sharp_edges finds; it looks for them at the first call and is thread-safe.
+  const std::vector<SharpEdge>& sharp_edges() const;
 
   // whole() is the mesh that this one is a part of, null for a whole; whole_triangle() [F] and whole_vertex() [V] are the
   // indices there, empty for a whole. Vertex normals are those of the whole, so that a curved surface has no seams where it
@@ -52,7 +56,7 @@ class Mesh {
   uint32_t surface_vertex(uint32_t vertex) const { return whole_ ? whole_vertex_[vertex] : vertex; }
 
  private:
-  Mesh() = default;
+  Mesh();
 
   std::vector<Vec3> vertices_;
   std::vector<Triangle> triangles_;
@@ -62,6 +66,8 @@ class Mesh {
   double area_ = 0.0;  // m^2
   MeshPtr whole_;
   std::vector<uint32_t> whole_triangle_, whole_vertex_;
+  struct KeptEdges;
+  std::shared_ptr<KeptEdges> edges_;  // never null
 };
 
 }  // namespace echopath

@@ -92,8 +92,8 @@ void bind_selection(py::module_& m) {
 
 text: path expressions, and power > 1e-15 (W, at the trace time for the first antennas; also < <= >=), joined by
     ~ (not, binds tightest), & (and), | (or) and parentheses. A path expression is a regular expression over the hits of a
-    path between T and R. A hit is . (any), 'glob' (a mesh, by its full name or that of a group above it), S or D (specular,
-    diffuse), S'glob', ['a*' 'b'] or [^ 'a*']; operators are * + ? | ( ) {m,n}.
+    path between T and R. A hit is . (any), 'glob' (a mesh, by its full name or that of a group above it), S, D or E (specular,
+    diffuse, a point on a sharp edge), S'glob', ['a*' 'b'] or [^ 'a*']; operators are * + ? | ( ) {m,n}.
     Instead, another Selection to copy.
 Text stands wherever a Selection is asked for. Raises ValueError with a caret under the fault; matching raises one when a glob
 takes no mesh of the scene.)");

@@ -255,7 +255,7 @@ Raises ValueError where an index leads nowhere.)");
          R"(A table with a row for each path, as a pandas.DataFrame.
 
 Columns: bounces (number of hits), meshes (their names in order of travel, "wall > walker/arm"), events (S specular,
-D diffuse, a letter a hit), kind ("coherent" or "diffuse"), object, ghost_type and order (as `families` has them for the
+D diffuse, E on an edge, a letter a hit), kind ("coherent" or "diffuse"), object, ghost_type and order (as `families` has them for the
 objects of the scene), length in m and power in W at the trace time for the first antennas, stratum (what its ray was aimed
 at, "" for paths by images), batch (255: of all batches) and is_reversed; units in `attrs["units"]`.
 Needs pandas, raises ModuleNotFoundError without it.)");
@@ -291,8 +291,10 @@ share hits; selections share all hits of their trace.)");
       .def_property_readonly("weight", path_column(&Paths::weight), "[P] complex, what neither motion nor antennas change")
       .def_property_readonly("stratum", path_column(&Paths::stratum), "[P] index into frame.strata, 65535: image method")
       .def_property_readonly("batch", path_column(&Paths::batch), "[P] batch of rays, 255: all of them (image method)")
-      .def_property_readonly("flags", path_column(&Paths::flags),
-                             "[P] bits: 1, recorded as the reversal of another path; 2, of the second half of the rays")
+      .def_property_readonly(
+          "flags", path_column(&Paths::flags),
+          "[P] bits: 1, recorded as the reversal of another path; 2, of the second half of the rays; 4, with a point on an "
+          "edge: hit flags >> 8 & 63, for one of flags >> 16 pieces of it")
       .def_property_readonly("jones", &jones_of,
                              "[P, 2, 2] or [0, 2, 2] complex: (horizontal, vertical) at the receiver from the same at the "
                              "transmitter")

@@ -146,7 +146,7 @@ void warn_of_few_rays(const std::vector<RadarCrossSection>& entries, size_t num_
 py::object rcs_of(Scene scene, double frequency, const py::object& incidence, const py::object& observation,
                   const py::object& polarization, std::optional<int64_t> num_rays, int max_bounces, uint64_t seed,
                   const std::string& footprint, const std::string& sampler, std::optional<int> batches,
-                  std::optional<double> target_error_db, int64_t max_rays, bool components, bool return_error,
+                  std::optional<double> target_error_db, int64_t max_rays, bool edges, bool components, bool return_error,
                   const py::object& progress) {
   bool is_one = false;
   const std::vector<RcsDirections> pairs = pairs_of(incidence, observation, is_one);
@@ -166,7 +166,8 @@ py::object rcs_of(Scene scene, double frequency, const py::object& incidence, co
                              kFootprint.value_of(footprint),
                              kSampler.value_of(sampler),
                              effort.batches,
-                             effort.target};
+                             effort.target,
+                             edges};
   const auto entries = run_job("rcs", progress, [&](Job& job) { return rcs(scene, pairs, settings, &job); });
   if (target_error_db) {
     warn_of_missed_targets(entries, *target_error_db);
@@ -191,8 +192,9 @@ void bind_rcs(py::module_& m) {
         py::arg("observation") = py::none(), py::arg("polarization") = py::make_tuple(0, 0, 1),
         py::arg("num_rays") = py::none(), py::arg("max_bounces") = 4, py::arg("seed") = 1,
         py::arg("footprint") = "second_order", py::arg("sampler") = "lattice", py::arg("batches") = py::none(),
-        py::arg("target_error_db") = py::none(), py::arg("max_rays") = kMaxRays, py::arg("components") = false,
-        py::arg("return_error") = false, py::arg("progress") = py::none(), "What ep.rcs calls.");
+        py::arg("target_error_db") = py::none(), py::arg("max_rays") = kMaxRays, py::arg("edges") = false,
+        py::arg("components") = false, py::arg("return_error") = false, py::arg("progress") = py::none(),
+        "What ep.rcs calls.");
   m.def("mie_rcs", &mie_rcs_of, py::arg("radius"), py::arg("frequency"), py::arg("bistatic_angle") = 0.0,
         py::arg("plane") = "H", "What ep.mie_rcs calls.");
 }

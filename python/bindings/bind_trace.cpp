@@ -34,7 +34,7 @@ Effort effort_of(std::optional<int64_t> num_rays, int batches, std::optional<dou
 PathsPtr trace_paths(Scene scene, const Radar& radar, std::optional<int64_t> num_rays, int max_bounces, uint64_t seed,
                      double start_time, const std::string& polarization, const std::string& footprint,
                      const std::string& sampler, std::optional<int> batches, std::optional<double> target_error_db,
-                     int64_t max_rays, const std::string& scatterers, const py::object& progress,
+                     int64_t max_rays, const std::string& scatterers, bool edges, const py::object& progress,
                      const std::shared_ptr<KeptGeometry>& kept) {
   const Effort effort = effort_of(num_rays, batches.value_or(1), target_error_db, max_rays);
   TraceSettings settings;
@@ -47,6 +47,7 @@ PathsPtr trace_paths(Scene scene, const Radar& radar, std::optional<int64_t> num
   settings.batches = effort.batches;
   settings.sampler = kSampler.value_of(sampler);
   settings.scatterers = kScatterers.value_of(scatterers);
+  settings.edges = edges;
   const SceneSnapshot snapshot(std::move(scene));
   auto paths = std::make_shared<Paths>(run_job("trace", progress, [&](Job& job) {
     return effort.target ? trace_to_error(snapshot, radar, settings, *effort.target, &job, kept.get())
@@ -71,7 +72,7 @@ void bind_trace(py::module_& m) {
         py::arg("max_bounces") = 4, py::arg("seed") = 1, py::arg("start_time") = 0.0, py::arg("polarization") = "scalar",
         py::arg("footprint") = "second_order", py::arg("sampler") = "lattice", py::arg("batches") = py::none(),
         py::arg("target_error_db") = py::none(), py::arg("max_rays") = kMaxRays, py::arg("scatterers") = "rays",
-        py::arg("progress") = py::none(), py::arg("kept") = py::none(),
+        py::arg("edges") = false, py::arg("progress") = py::none(), py::arg("kept") = py::none(),
         "What ep.trace calls. kept: KeptGeometry of the scene, or None.");
   m.attr("DEFAULT_MAX_RAYS") = kMaxRays;
   m.attr("MOST_RAYS") = kMostRays;

@@ -1767,8 +1767,8 @@ class Selection:
 
     text: path expressions, and power > 1e-15 (W, at the trace time for the first antennas; also < <= >=), joined by
         ~ (not, binds tightest), & (and), | (or) and parentheses. A path expression is a regular expression over the hits of a
-        path between T and R. A hit is . (any), 'glob' (a mesh, by its full name or that of a group above it), S or D (specular,
-        diffuse), S'glob', ['a*' 'b'] or [^ 'a*']; operators are * + ? | ( ) {m,n}.
+        path between T and R. A hit is . (any), 'glob' (a mesh, by its full name or that of a group above it), S, D or E (specular,
+        diffuse, a point on a sharp edge), S'glob', ['a*' 'b'] or [^ 'a*']; operators are * + ? | ( ) {m,n}.
         Instead, another Selection to copy.
     Text stands wherever a Selection is asked for. Raises ValueError with a caret under the fault; matching raises one when a glob
     takes no mesh of the scene.
@@ -2008,10 +2008,15 @@ class TraceFrame:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
         ...
-    def __init__(self, *, start_time: float, trace_time: float, transmitter: ArrayLike, receiver: ArrayLike, strata: typing.Sequence[Stratum], seed: int, max_bounces: int, polarization: str, footprint: str, statistics: TraceStatistics, num_batches: int = 1, target_error_db: float = 0.0, error_db: float = 0.0, sampler: str = 'lattice', scatterers: str = 'rays') -> None:
+    def __init__(self, *, start_time: float, trace_time: float, transmitter: ArrayLike, receiver: ArrayLike, strata: typing.Sequence[Stratum], seed: int, max_bounces: int, polarization: str, footprint: str, statistics: TraceStatistics, num_batches: int = 1, target_error_db: float = 0.0, error_db: float = 0.0, sampler: str = 'lattice', scatterers: str = 'rays', edges: bool = False) -> None:
         ...
     def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
+    @property
+    def edges(self) -> bool:
+        """
+        whether echoes of sharp edges were looked for
+        """
     @property
     def error_db(self) -> float:
         """
@@ -2214,7 +2219,7 @@ class Paths:
     @property
     def flags(self) -> numpy.typing.NDArray[numpy.uint32]:
         """
-        [P] bits: 1, recorded as the reversal of another path; 2, of the second half of the rays
+        [P] bits: 1, recorded as the reversal of another path; 2, of the second half of the rays; 4, with a point on an edge: hit flags >> 8 & 63, for one of flags >> 16 pieces of it
         """
     @property
     def frame(self) -> TraceFrame:
@@ -3150,7 +3155,7 @@ def range_doppler(cube: typing.Any, radar: Radar, window: typing.Any = 'hann', z
     """
     What ep.range_doppler calls.
     """
-def rcs(scene: Scene, *, frequency: float, incidence: typing.Any, observation: typing.Any = None, polarization: typing.Any = (0, 0, 1), num_rays: int | None = None, max_bounces: int = 4, seed: int = 1, footprint: str = 'second_order', sampler: str = 'lattice', batches: int | None = None, target_error_db: float | None = None, max_rays: int = 16777216, components: bool = False, return_error: bool = False, progress: typing.Any = None) -> typing.Any:
+def rcs(scene: Scene, *, frequency: float, incidence: typing.Any, observation: typing.Any = None, polarization: typing.Any = (0, 0, 1), num_rays: int | None = None, max_bounces: int = 4, seed: int = 1, footprint: str = 'second_order', sampler: str = 'lattice', batches: int | None = None, target_error_db: float | None = None, max_rays: int = 16777216, edges: bool = False, components: bool = False, return_error: bool = False, progress: typing.Any = None) -> typing.Any:
     """
     What ep.rcs calls.
     """
@@ -3201,7 +3206,7 @@ def tessellation(mesh: Mesh) -> typing.Annotated[list[float], "FixedSize(4)"] | 
     """
     What echopath.tessellation.tessellation calls.
     """
-def trace(scene: Scene, radar: Radar, *, num_rays: int | None = None, max_bounces: int = 4, seed: int = 1, start_time: float = 0.0, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', batches: int | None = None, target_error_db: float | None = None, max_rays: int = 16777216, scatterers: str = 'rays', progress: typing.Any = None, kept: KeptGeometry | None = None) -> Paths:
+def trace(scene: Scene, radar: Radar, *, num_rays: int | None = None, max_bounces: int = 4, seed: int = 1, start_time: float = 0.0, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', batches: int | None = None, target_error_db: float | None = None, max_rays: int = 16777216, scatterers: str = 'rays', edges: bool = False, progress: typing.Any = None, kept: KeptGeometry | None = None) -> Paths:
     """
     What ep.trace calls. kept: KeptGeometry of the scene, or None.
     """

@@ -68,7 +68,7 @@ class TraceSettings(Settings):
     seed: of the directions and random phases, 0 or more; start_time: s, first sample of the frame
     polarization, footprint, sampler: words; batches: 1 to 64 independent parts of the rays, None: 1
     target_error_db: dB, error of each echo until which rays are added, at most max_rays
-    scatterers: of rough surfaces, a word
+    scatterers: of rough surfaces, a word; edges: whether echoes of sharp edges are looked for
     Raises TypeError or ValueError naming the keyword. Values are frozen; two with equal values are equal.
     """
 
@@ -83,13 +83,14 @@ class TraceSettings(Settings):
     target_error_db: float | None = None
     max_rays: int | float = _core.DEFAULT_MAX_RAYS
     scatterers: Scatterers = "auto"
+    edges: bool = False
 
     RULES: ClassVar[Mapping[str, Rule]] = {
         "num_rays": optional(count(1, MOST_RAYS)), "max_bounces": count(1, MOST_BOUNCES), "seed": seed_rule,
         "start_time": real(unit="s"), "polarization": one_of(Polarization), "footprint": one_of(Footprint),
         "sampler": one_of(Sampler), "batches": optional(count(1, MOST_BATCHES)),
         "target_error_db": optional(positive("dB")), "max_rays": count(1, MOST_RAYS),
-        "scatterers": one_of(Scatterers)}
+        "scatterers": one_of(Scatterers), "edges": flag}
 
 
 @_settings

@@ -9,7 +9,7 @@ from .families import families
 from .files import written_whole
 from .optional import needed_module
 
-_REVERSED = 1         # bit of Paths.flags
+_REVERSED, _EDGE = 1, 4  # bits of Paths.flags
 _NO_MESH = -1         # beyond the last hit of a path
 _BETWEEN = " > "      # names of meshes along a path
 PATH_UNITS = {"length": "m", "power": "W"}
@@ -72,9 +72,21 @@ def _chains(paths) -> tuple:
     chains, chain_of_path = _distinct(met)
     meshes = [_BETWEEN.join(names[mesh] for mesh in chain if mesh != _NO_MESH) for chain in chains]
     within = (np.uint64(1) << bounces.astype(np.uint64)) - np.uint64(1)  # of 64: all
-    marks, mark_of_path = _distinct(np.stack([paths.diffuse & within, bounces.astype(np.uint64)], axis=1))
-    events = ["".join("SD"[int(bits) >> hit & 1] for hit in range(int(count))) for bits, count in marks]
+    edge = edge_hits(paths).astype(np.uint64)
+    marks, mark_of_path = _distinct(np.stack([paths.diffuse & within, bounces.astype(np.uint64), edge], axis=1))
+    events = ["".join(event(int(bits), int(at), hit) for hit in range(int(count))) for bits, count, at in marks]
     return (chain_of_path, meshes), (mark_of_path, events)
+
+
+def edge_hits(paths) -> np.ndarray:
+    """[P] which hit of each path lies on an edge; 64: none."""
+    flags = np.asarray(paths.flags)
+    return np.where(flags & _EDGE, flags >> 8 & 63, 64)
+
+
+def event(diffuse: int, edge: int, hit: int) -> str:
+    """The letter of a hit of a path, as expressions have it: D where its bit of `diffuse` is set, E on an edge, else S."""
+    return "E" if hit == edge else "SD"[diffuse >> hit & 1]
 
 
 def _distinct(rows) -> tuple:

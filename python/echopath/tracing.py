@@ -29,7 +29,7 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
           footprint: Footprint = TraceSettings.footprint, sampler: Sampler = TraceSettings.sampler,
           batches: int | None = TraceSettings.batches, target_error_db: float | None = TraceSettings.target_error_db,
           max_rays: int | float = TraceSettings.max_rays, scatterers: Scatterers = TraceSettings.scatterers,
-          settings: TraceSettings | None = None, progress: Progress = None) -> _core.Paths:
+          edges: bool = TraceSettings.edges, settings: TraceSettings | None = None, progress: Progress = None) -> _core.Paths:
     """Shoots rays from the radar through the scene at mid-frame and records what they hit.
 
     scene: what is traced; radar: that looks at it
@@ -59,6 +59,9 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
         to frame; or "auto": "surface" in a `Sequence`, else "rays". Points of surfaces are less even: 5000 of them tell the
         mean power of a body to 0.5 %, as many rays to 0.1 %. What rays meet straight from the transmitter persists; second
         and further diffuse hits are drawn from there, and places that only flagged mirrors show are left to rays
+    edges: whether the echoes of sharp edges are looked for, too: what physical optics leaves out where two faces of a conductor
+        meet at 30 degrees or more, and at rims (`E` in path expressions). They are of first order, directly from the radar or
+        over flagged mirrors; dielectrics, and meshes that deform or change their scale, have none
     settings: TraceSettings that give the keywords which the call leaves out, or None
     progress: callable (stage, fraction), True for bars, or None
     From a scene's second trace on, and from the first of `simulate(labels=True)`, what has not moved since is not built again,
@@ -78,7 +81,7 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
     paths = _core.trace(scene, radar, num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
                         polarization=model, footprint=footprint, sampler=sampler, batches=batches,
                         target_error_db=target_error_db, max_rays=max_rays,
-                        scatterers="rays" if scatterers == "auto" else scatterers, progress=progress, kept=geometry)
+                        scatterers="rays" if scatterers == "auto" else scatterers, edges=edges, progress=progress, kept=geometry)
     for warn in (warn_of_lost_rays, warn_of_unfollowed_beams, warn_of_unaimed):
         warn(paths.frame.statistics, stacklevel=_CALLER)
     return paths
@@ -104,7 +107,8 @@ def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observati
         polarization: ArrayLike | Channel | Sequence[Channel] = (0.0, 0.0, 1.0), model: Polarization = "auto",
         num_rays: int | float | None = None, max_bounces: int = TraceSettings.max_bounces, seed: int = TraceSettings.seed,
         footprint: Footprint = TraceSettings.footprint, sampler: Sampler = TraceSettings.sampler, batches: int | None = None,
-        target_error_db: float | None = None, max_rays: int | float = TraceSettings.max_rays, components: bool = False,
+        target_error_db: float | None = None, max_rays: int | float = TraceSettings.max_rays,
+        edges: bool = TraceSettings.edges, components: bool = False,
         return_error: bool = False, progress: Progress = None
         ) -> CrossSections | dict[str, CrossSections] | tuple[CrossSections | dict[str, CrossSections], ...]:
     """Radar cross section of a scene in m^2, far field, at time 0.
@@ -121,7 +125,7 @@ def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observati
     model: with a polarization of [3], "scalar" (one coefficient a hit), "jones" (field vectors) or "auto", as in `trace`
     num_rays: rays per direction and transmit polarization, for all batches together; 131 072 for each batch unless given;
         max_bounces: 1 to 64
-    seed, footprint, sampler: as in `trace`
+    seed, footprint, sampler, edges: as in `trace`
     batches: as in `trace`; None: 8 for return_error, else 1
     target_error_db: dB; doubles the rays, from num_rays (16 384 unless given) to at most max_rays, as `trace` does, until
         each cross section, of a list of polarizations the first with each transmitter, is known that well
@@ -146,7 +150,7 @@ def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observati
     both = np.array([polarization, polarization]) if is_one and chosen == FIELD_VECTORS else polarization
     return _core.rcs(scene, frequency=frequency, incidence=incidence, observation=observation, polarization=both,
                      num_rays=num_rays, max_bounces=max_bounces, seed=seed, footprint=footprint, sampler=sampler,
-                     batches=batches, target_error_db=target_error_db, max_rays=max_rays, components=components,
+                     batches=batches, target_error_db=target_error_db, max_rays=max_rays, edges=edges, components=components,
                      return_error=return_error, progress=progress)
 
 

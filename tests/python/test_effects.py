@@ -97,6 +97,7 @@ CASES = {
     "thermal noise": (dict(noise_seed=3), "noise figure 12 dB", {}),
     "speckle that goes on from frame to frame": (dict(scene=make_scene(ROUGH), scatterers="surface"), "surface",
                                                  dict(scene=make_scene(ROUGH))),
+    "edge diffraction": (dict(edges=True), "edges = True", {}),
     "even spread of the rays": (dict(sampler="r2"), "r2", dict(sampler="random")),
     "rays aimed at objects": ({}, "a cone", dict(scene=make_scene(MIRROR))),
     "standard errors": (dict(batches=8), "batches = 8", {}),
@@ -215,7 +216,7 @@ def test_sequences_of_mirrors_that_were_not_followed_are_said_and_warned_of():
 def test_objects_that_no_rays_aim_at_are_said():
     statistics = ep.TraceStatistics(num_unaimed=12)
     effect = next(rule(rules.Case(make_scene(), make_radar(), rules.Settings(4, "second_order", "scalar", "lattice", 1, None,
-                  "rays", "material", "interpolated", "never", None), statistics)) for rule in rules.RULES
+                  "rays", False, "material", "interpolated", "never", None), statistics)) for rule in rules.RULES
                   if rule.name == "rays aimed at objects")
     assert effect.modelled and "12 objects and images have no rays of their own" in effect.reason
     with pytest.warns(RuntimeWarning, match="12 objects and images"):

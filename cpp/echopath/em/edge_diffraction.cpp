@@ -9,6 +9,7 @@ namespace echopath {
 namespace {
 
 constexpr double kLeastSine = 1e-3;     // of the angle between a wave and the edge
+constexpr double kLeastHeight = 1e-3;   // rad: directions nearer to the plane of a face count as that far off it
 constexpr double kOnFace = 1e-9;        // rad: a direction so little inside of a face lies on it
 constexpr double kLeastApart = 1e-5;    // rad: nearer to a boundary, the difference of two poles is taken from there
 constexpr double kLeastForward = 1e-6;  // sine of the angle to the grazing ray, where a coefficient ends to grow
@@ -59,6 +60,17 @@ Mat3 fringe_of_face(const WedgeFace& face, double n, double angle, const Vec3& i
   return face.inward * across * magnetic.transpose() + edge * (along / sine * edge + of_magnetic * magnetic).transpose();
 }
 
+// Returns a direction near the plane of a face as one a little off it. Toward the grazing ray itself the coefficient depends on
+// how the ray is approached; the field across a sheet that is seen along itself is the limit of directions off its plane.
+Vec3 off_faces(const Wedge& wedge, const Vec3& direction) {
+  for (const WedgeFace& face : wedge.faces) {
+    const double height = direction.dot(face.normal);
+    if (height >= -kOnFace && height < kLeastHeight && direction.dot(face.inward) > 0)
+      return (direction + (kLeastHeight - height) * face.normal).normalized();
+  }
+  return direction;
+}
+
 }  // namespace
 
 Wedge wedge_between(const WedgeFace& first, const WedgeFace& second) {
@@ -70,7 +82,8 @@ bool is_outside(const Wedge& wedge, const Vec3& direction) {
   return angle_from(wedge.faces[0], direction) <= wedge.exterior_angle + kOnFace;
 }
 
-Mat3 fringe_matrix(const Wedge& wedge, const Vec3& in, const Vec3& out) {
+Mat3 fringe_matrix(const Wedge& wedge, const Vec3& in, const Vec3& toward) {
+  const Vec3 out = off_faces(wedge, toward);
   const Vec3 edge = wedge.faces[0].inward.cross(wedge.faces[0].normal);
   if (edge.cross(in).norm() < kLeastSine || !is_outside(wedge, -in) || !is_outside(wedge, out)) return Mat3::Zero();
   const double n = wedge.exterior_angle / kPi;

@@ -121,6 +121,7 @@ TraceSettings tracing_of(const RcsSettings& settings) {
   tracing.footprint = settings.footprint;
   tracing.sampler = settings.sampler;
   tracing.batches = settings.batches;
+  tracing.edges = settings.edges;
   return tracing;
 }
 

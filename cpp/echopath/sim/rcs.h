@@ -44,6 +44,7 @@ struct RcsSettings {
   int batches = 1;  // 1 to 64; from 2 on cross sections have standard errors
   // Doubles the rays until the first channel of each transmit polarisation is known that well (sim/rays/trace_to_error.h).
   std::optional<ErrorTarget> target;
+  bool edges = false;  // TraceSettings::edges
 
   // Raises invalid_argument naming the field, the rule and the value.
   void validate() const;

@@ -25,6 +25,7 @@ struct TraceSettings {
   Sampler sampler = Sampler::kLattice;  // of the launch directions
   LaunchGuide guide;                    // by default the rule of launch.h
   Scatterers scatterers = Scatterers::kRays;
+  bool edges = false;  // also find the echoes of sharp edges (edges/edge_paths.h)
 
   void validate() const;  // raises invalid_argument naming the field, the rule and the value
 };

@@ -4,9 +4,9 @@
 
 #include "echopath/base/machine_memory.h"
 #include "echopath/base/parallel.h"
+#include "echopath/trace/edges/edge_paths.h"
 #include "echopath/trace/launch/aimed_points.h"
 #include "echopath/trace/mirrors/mirror_paths.h"
-#include "echopath/trace/record/record_writer.h"
 
 namespace echopath {
 namespace {
@@ -42,6 +42,7 @@ TraceFrame make_frame(const Radar& radar, const TraceSettings& settings) {
   frame.num_batches = settings.batches;
   frame.polarization = settings.polarization;
   frame.scatterers = settings.scatterers;
+  frame.edges = settings.edges;
   return frame;
 }
 
@@ -160,6 +161,13 @@ void Tracer::require_memory(const std::vector<PathBlock>& ahead) const {
   require(false, "num_rays", rule.str(), most_rays);
 }
 
+void Tracer::append_edge_paths(RecordWriter& record, Job* job) const {
+  const std::vector<PathBlock> blocks = find_edge_paths({*empty_.scene, pose_, geometry_, mirrors_, sbr_, frusta_}, job);
+  std::vector<const PathBlock*> all;
+  for (const PathBlock& block : blocks) all.push_back(&block);
+  record.append(all, job);
+}
+
 // Shoots in waves: the blocks are still in the cache when they become part of the record, and the next wave uses their
 // memory.
 Paths Tracer::run(Job* job) const {
@@ -169,6 +177,7 @@ Paths Tracer::run(Job* job) const {
   std::vector<const PathBlock*> all_over_mirrors;
   for (const PathBlock& block : over_mirrors) all_over_mirrors.push_back(&block);
   record.append(all_over_mirrors, job);
+  if (paths.frame.edges) append_edge_paths(record, job);
   if (job) job->start(num_blocks());
   std::vector<PathBlock> ahead, wave(static_cast<size_t>(std::max(kBlocksPerWave, kBlocksPerThread * num_threads())));
   const int64_t step = (num_blocks() + kBlocksAhead - 1) / kBlocksAhead;

@@ -3,6 +3,7 @@
 // module.
 #include "echopath/trace/geometry/kept_geometry.h"
 #include "echopath/trace/mirrors/plane_images.h"
+#include "echopath/trace/record/record_writer.h"
 #include "echopath/trace/sbr/sbr.h"
 #include "echopath/trace/trace.h"
 
@@ -38,6 +39,7 @@ class Tracer {
   std::vector<PathBlock> shoot_ahead(int64_t step, Job* job) const;
   std::vector<const PathBlock*> shoot_wave(int64_t begin, const std::vector<PathBlock>& ahead, int64_t step,
                                            std::vector<PathBlock>& wave, Job* job) const;
+  void append_edge_paths(RecordWriter& record, Job* job) const;
   void require_memory(const std::vector<PathBlock>& ahead) const;
   LaunchPlan plan_rays(const TraceSettings& settings, FittedStrata* fitted);
   SbrSettings settings_of_rays(const TraceSettings& settings) const;

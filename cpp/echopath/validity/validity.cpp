@@ -311,7 +311,7 @@ class ValidityCheck {
   std::pair<size_t, bool> end_of(const Paths& paths, size_t path, const Hit* hits) const {
     const int count = paths.num_bounces[path];
     const bool is_reversed = (paths.flags[path] & kReversedPath) != 0;
-    int last = -1;
+    int last = edge_hit(paths.flags[path]);
     for (int k = 0; k < count && last < 0; ++k) {
       const int hit = is_reversed ? k : count - 1 - k;
       const bool is_image =

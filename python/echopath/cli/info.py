@@ -12,6 +12,7 @@ from ..readers.load import READERS, is_foreign
 from ..scene_file import load_scene
 from ..sequence.contents import NAME as SEQUENCE_FILE
 from ..measures import in_dbm, with_error
+from ..tables import edge_hits, event
 from . import report
 from .model_info import describe_model
 
@@ -166,8 +167,8 @@ def _route(paths, path: int) -> str:
     """The hits of a path as an expression that takes it, and its length."""
     first, count = paths.offsets[path], int(paths.num_bounces[path])
     names = [mesh.name for mesh in paths.scene.meshes]
-    diffuse = int(paths.diffuse[path])
-    hits = [f"{'D' if diffuse >> k & 1 else 'S'}'{names[paths.mesh_id[first + k]]}'" for k in range(count)]
+    diffuse, edge = int(paths.diffuse[path]), int(edge_hits(paths)[path])
+    hits = [f"{event(diffuse, edge, k)}'{names[paths.mesh_id[first + k]]}'" for k in range(count)]
     one = np.zeros(paths.num_paths, bool)
     one[path] = True
     length = paths.select(one).lengths([paths.frame.trace_time])[0, 0]

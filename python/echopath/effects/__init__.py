@@ -10,7 +10,7 @@ from .rules import RULES, Case, Effect, Settings
 # What no scene and no setting can ask for.
 OUT_OF_SCOPE = [
     Effect("transmission through sheets", False, "not modelled"),
-    Effect("edge diffraction, creeping waves", False, "out of scope: deep sidelobes are wrong, main lobes within 1 dB"),
+    Effect("creeping waves, edge diffraction of higher order", False, "out of scope"),
     Effect("atmospheric loss", False, "not modelled: about 0.4 dB/km"),
     Effect("phase noise, quantisation", False, "not modelled"),
     Effect("interference", False, "not modelled"),
@@ -31,19 +31,19 @@ def effects(scene: _core.Scene, radar: _core.Radar, *, max_bounces: int = TraceS
             footprint: Footprint = TraceSettings.footprint, polarization: Polarization = TraceSettings.polarization,
             sampler: Sampler = TraceSettings.sampler, batches: int | None = TraceSettings.batches,
             target_error_db: float | None = TraceSettings.target_error_db,
-            scatterers: Scatterers = TraceSettings.scatterers, replay: Replay = SignalSettings.replay,
-            evaluate: Evaluate = SignalSettings.evaluate, retrace: Retrace = SignalSettings.retrace,
+            scatterers: Scatterers = TraceSettings.scatterers, edges: bool = TraceSettings.edges,
+            replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate, retrace: Retrace = SignalSettings.retrace,
             noise_seed: int | None = None) -> Effects:
     """Which effects a run of `scene` with `radar` models, and why.
 
-    max_bounces, footprint, polarization, sampler, batches, target_error_db (dB), scatterers: as in `trace`; replay, evaluate,
-    retrace: as in `synthesize`; noise_seed: as in `simulate`. Returns a list [E] of Effect, modelled ones first. Effects
-    that nothing can ask for stand last, under reasons that begin with "out of scope" or "not modelled". Raises TypeError or
+    max_bounces, footprint, polarization, sampler, batches, target_error_db (dB), scatterers, edges: as in `trace`; replay,
+    evaluate, retrace: as in `synthesize`; noise_seed: as in `simulate`. Returns a list [E] of Effect, modelled ones first.
+    Effects that nothing can ask for stand last, under reasons that begin with "out of scope" or "not modelled". Raises TypeError or
     ValueError naming the argument.
     """
     batches = batches or 1
     return _of_case(Case(scene, radar, Settings(max_bounces, footprint, polarization, sampler, batches, target_error_db,
-                                                scatterers, replay, evaluate, retrace, noise_seed)))
+                                                scatterers, edges, replay, evaluate, retrace, noise_seed)))
 
 
 def of_paths(paths, *, replay: str = "material", evaluate: str = "interpolated", retrace: str = "never",
@@ -52,7 +52,7 @@ def of_paths(paths, *, replay: str = "material", evaluate: str = "interpolated",
     retrace, noise_seed: of later stages."""
     frame = paths.frame
     settings = Settings(frame.max_bounces, frame.footprint, frame.polarization, frame.sampler, frame.num_batches,
-                        frame.target_error_db or None, frame.scatterers, replay, evaluate, retrace, noise_seed)
+                        frame.target_error_db or None, frame.scatterers, frame.edges, replay, evaluate, retrace, noise_seed)
     return _of_case(Case(paths.scene, paths.radar, settings, paths=paths))
 
 

@@ -33,6 +33,7 @@ class Settings:
     batches: int
     target_error_db: float | None
     scatterers: str
+    edges: bool
     replay: str
     evaluate: str
     retrace: str

@@ -3,8 +3,10 @@ from __future__ import annotations
 
 import math
 
+from .. import _core
 from .._core import speed_of_light
 from ..lost_rays import unfollowed_beams
+from ..measures import in_dbm
 from ..tessellation import coarse_meshes
 from .planes import imaged_planes
 from .rules import Case, rule
@@ -96,6 +98,25 @@ def _reflectivity(case: Case):
 @rule("diffuse lobe, random phase", "Material.scattering")
 def _diffuse(case: Case):
     return case.meshes_or(case.diffuse, "no material scatters diffusely")
+
+
+@rule("edge diffraction", "trace.edges")
+def _edges(case: Case):
+    conductors = case.of_material(lambda material: (material.conductor or material.reflectivity is not None)
+                                  and not material.mirror)
+    if len(conductors) == 0:
+        return False, "no material reflects like a conductor but flagged mirrors"
+    if not case.settings.edges:
+        return False, "edges = False: deep sidelobes of plates and boxes are wrong, main lobes within 1 dB"
+    return True, "edges = True" if case.paths is None else _found_edges(case.paths)
+
+
+def _found_edges(paths) -> str:
+    on_edges = paths.select("T .* E .* R")
+    if on_edges.num_paths == 0:
+        return "edges = True, but the radar sees none"
+    power = _core.received_power(on_edges).power
+    return f"edges = True: {on_edges.num_paths} pieces of edges, {in_dbm(power):.1f} dBm in all"
 
 
 @rule("speckle that goes on from frame to frame", "trace.scatterers")

@@ -14,7 +14,7 @@ PATH_FIELDS = {"offsets": np.int64, "num_bounces": np.uint8, "diffuse": np.uint6
 # Columns that are there only where the scene asks for them: dtype and shape of an entry.
 OPTIONAL_FIELDS = {"curved_cell": (np.float32, (7,)), "jones": (np.complex64, (2, 2))}
 _NOISE_LIKE = ("u", "v", "weight")  # compression does not pay
-FRAME_VALUES = ("start_time", "trace_time", "seed", "max_bounces", "polarization", "footprint", "sampler", "scatterers",
+FRAME_VALUES = ("start_time", "trace_time", "seed", "max_bounces", "polarization", "footprint", "sampler", "scatterers", "edges",
                 "num_batches", "target_error_db", "error_db")
 HIT = np.dtype(list(HIT_FIELDS.items()))
 STATISTICS = ("num_rays", "num_queries", "num_hits", "num_paths", "num_near_antenna", "num_grazing", "num_small_mirrors",
@@ -132,6 +132,7 @@ def _read_frame(group):
         polarization=read_attribute(group, "polarization", str), footprint=read_attribute(group, "footprint", str),
         sampler=read_attribute(group, "sampler", str),
         scatterers=read_attribute(group, "scatterers", str) if "scatterers" in group.attrs else "rays",
+        edges=read_attribute(group, "edges", bool) if "edges" in group.attrs else False,
         statistics=statistics,
         num_batches=read_attribute(group, "num_batches", int),
         target_error_db=read_attribute(group, "target_error_db", float),

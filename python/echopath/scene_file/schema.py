@@ -322,6 +322,7 @@ class TraceTable(Table):
     scatterers: Scatterers = Field(
         TraceSettings.scatterers, description="of rough surfaces: where rays meet them, points that are the same in every frame, "
                                               "or these for frames in a row alone")
+    edges: bool = Field(TraceSettings.edges, description="also find the echoes of sharp edges")
 
 
 class ReplayTable(Table):

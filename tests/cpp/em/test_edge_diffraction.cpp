@@ -256,6 +256,15 @@ TEST(EdgeDiffraction, WithPhysicalOpticsItIsReciprocalOnTheCone) {
   for (const double cosine : {0.0, 0.4}) EXPECT_NEAR(total(0.5, 3.9, cosine), total(3.9, 0.5, -cosine), 1e-9);
 }
 
+// A sheet seen along itself: the limit of directions nearby, for the field across it as for that along its edge.
+TEST(EdgeDiffraction, ItsOwnPlaneIsNoException) {
+  const Wedge sheet = wedge_of(kTwoPi);
+  const Mat3 in_plane = fringe_matrix(sheet, -across(0.0), across(0.0)),
+             beside = fringe_matrix(sheet, -across(2e-3), across(2e-3));
+  EXPECT_LT((in_plane - beside).norm(), 0.01 * beside.norm());
+  EXPECT_GT(std::abs(in_plane(1, 1)), 1.0);
+}
+
 // By the integral of e^{-jx} over a piece around its middle.
 TEST(EdgeDiffraction, FilterIsTheMeanOfThePhases) {
   for (const double phase : {0.0, 1e-5, 0.3, 2.0, 9.0}) {

@@ -7,6 +7,7 @@ from collections import OrderedDict
 import numpy as np
 
 import echopath as ep
+from echopath.tables import edge_hits, event
 
 from .antennas import world_from_antenna
 from .cell_index import CellBox, CellIndex
@@ -20,6 +21,7 @@ from .signals import both
 MAX_RAYS = 2000          # drawn at most, unless asked otherwise: few enough to see between them
 MAX_LISTED = 100_000     # rows of the table
 DYNAMIC_RANGE_DB = 60.0
+_EVENTS = {"S": "specular", "D": "diffuse", "E": "on an edge"}
 MAX_KEPT_MATCHES = 16    # masks of expressions kept for the next time
 
 
@@ -340,9 +342,9 @@ class Session:
     def explain(self, path: int) -> list[tuple]:
         """What a path is, in (label, text) lines."""
         cells, columns = self.columns.cells, self.columns
-        events = ["diffuse" if (int(self.paths.diffuse[path]) >> hit) & 1 else "specular"
-                  for hit in range(int(columns.num_bounces[path]))]
-        hits = [(f"hit {number + 1}", f"{self.mesh_names[mesh]} ({event})")
-                for number, (mesh, event) in enumerate(zip(columns.meshes_of(path), events))]
+        diffuse, edge = int(self.paths.diffuse[path]), int(edge_hits(self.paths)[path])
+        events = [_EVENTS[event(diffuse, edge, hit)] for hit in range(int(columns.num_bounces[path]))]
+        hits = [(f"hit {number + 1}", f"{self.mesh_names[mesh]} ({kind})")
+                for number, (mesh, kind) in enumerate(zip(columns.meshes_of(path), events))]
         return [("path", f"{path:,}"), *hits, ("range", f"{cells.range[path]:.3f} m"),
                 ("speed", f"{cells.velocity[path]:+.3f} m/s"), ("power", f"{columns.power_dbm[path]:.1f} dBm")]

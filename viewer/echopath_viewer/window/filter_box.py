@@ -11,7 +11,7 @@ UNKNOWN_PATHS = "Which paths are behind this map is not known: its signal was gi
 ERROR_WIDTH = 34  # letters
 EXAMPLE = "T .* 'wall*' .* R"
 EXPRESSION_HELP = """Path expression: T and R are the radar, between them each hit is . (any), a quoted mesh 'pedestrian/*',
-S or D (specular, diffuse); operators * + ? | ( ) {m,n}; expressions and power > 1e-15 (W) are joined by & | ~.
+S, D or E (specular, diffuse, on an edge); operators * + ? | ( ) {m,n}; expressions and power > 1e-15 (W) are joined by & | ~.
 T . R: direct echoes.   T .{2,} R: multipath.   T .* 'wall*' .* R: by way of a wall."""
 
 

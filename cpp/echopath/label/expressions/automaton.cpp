@@ -156,9 +156,10 @@ MeshClasses classify_meshes(const Nfa& nfa, const PathExpression& expression, co
   return classes;
 }
 
-bool takes_event(const HitPattern& pattern, bool diffuse) {
-  return pattern.event == HitPattern::Event::kAny || (pattern.event == HitPattern::Event::kDiffuse) == diffuse;
-}
+using Event = HitPattern::Event;
+constexpr Event kEventOfSymbol[] = {Event::kSpecular, Event::kDiffuse, Event::kEdge};
+
+bool takes_event(const HitPattern& pattern, Event event) { return pattern.event == Event::kAny || pattern.event == event; }
 
 // Makes the automaton deterministic by subset construction (Rabin and Scott 1959).
 class Determiniser {
@@ -179,13 +180,13 @@ class Determiniser {
   void expand(size_t state) {
     const StateSet& set = sets_[state]->first;
     for (const std::vector<bool>& taken_by : classes_.taken_by) {
-      for (const bool diffuse : {false, true}) {
+      for (const Event event : kEventOfSymbol) {
         StateSet reached;
         for (const int member : set) {
           if (member <= 0) continue;
           const Nfa::State& reader = nfa_.states[static_cast<size_t>(member)];
           const auto pattern = static_cast<size_t>(reader.pattern);
-          const bool taken = taken_by[pattern] && takes_event(*nfa_.patterns[pattern], diffuse);
+          const bool taken = taken_by[pattern] && takes_event(*nfa_.patterns[pattern], event);
           if (taken) reached.push_back(reader.next.front());
         }
         next_.push_back(index_of(reached));
@@ -238,11 +239,11 @@ Automaton::Automaton(const PathExpression& expression, const std::vector<std::st
   num_states_ = static_cast<int>(dfa.num_states());
   num_classes_ = static_cast<int>(classes.taken_by.size());
 
-  const size_t num_symbols = 2 * classes.taken_by.size();
+  const size_t num_symbols = kEvents * classes.taken_by.size();
   const size_t stride = num_symbols + 2;
   accept_column_ = static_cast<uint32_t>(num_symbols) + 1;
   symbols_.push_back(static_cast<uint32_t>(num_symbols));
-  for (const uint32_t mesh_class : classes.class_of_mesh) symbols_.push_back(2 * mesh_class);
+  for (const uint32_t mesh_class : classes.class_of_mesh) symbols_.push_back(kEvents * mesh_class);
   for (size_t state = 0; state < dfa.num_states(); ++state) {
     for (size_t symbol = 0; symbol < num_symbols; ++symbol) {
       table_.push_back(static_cast<uint32_t>(dfa.next()[state * num_symbols + symbol] * stride));
@@ -263,7 +264,7 @@ bool Automaton::takes_something_without(uint32_t mesh_class) const {
     if (std::exchange(was_seen[row], uint8_t{1}) != 0) continue;
     if (table_[row + accept_column_] != 0) return true;
     for (uint32_t symbol = 0; symbol + 1 < accept_column_; ++symbol) {
-      if (symbol / 2 != mesh_class) pending.push_back(table_[row + symbol]);
+      if (symbol / kEvents != mesh_class) pending.push_back(table_[row + symbol]);
     }
   }
   return false;
@@ -271,7 +272,7 @@ bool Automaton::takes_something_without(uint32_t mesh_class) const {
 
 void Automaton::find_needed_bits() {
   std::vector<uint64_t> of_class(static_cast<size_t>(num_classes_));
-  for (size_t mesh = 0; mesh + 1 < symbols_.size(); ++mesh) of_class[symbols_[mesh + 1] / 2] |= mesh_bit(mesh);
+  for (size_t mesh = 0; mesh + 1 < symbols_.size(); ++mesh) of_class[symbols_[mesh + 1] / kEvents] |= mesh_bit(mesh);
   for (uint32_t mesh_class = 0; mesh_class < of_class.size(); ++mesh_class) {
     if (!takes_something_without(mesh_class)) needed_bits_.push_back(of_class[mesh_class]);
   }
@@ -322,6 +323,10 @@ void narrow(const Automaton& automaton, const Paths& paths, std::vector<uint8_t>
       if (path == end || !candidates[path]) continue;
       const int64_t first = paths.offsets[path];
       const int num_hits = paths.num_bounces[path];
+      if (const int edge = paths.frame.edges ? edge_hit(paths.flags[path]) : -1; edge >= 0) {
+        candidates[path] = automaton.takes_with_edge(hits + first, num_hits, edge);
+        continue;
+      }
       candidates[path] = first + num_hits + Automaton::kOverread <= paths.num_hits()
                              ? automaton.takes_in_fours(hits + first, num_hits, paths.diffuse[path])
                              : automaton.takes(hits + first, num_hits, paths.diffuse[path]);

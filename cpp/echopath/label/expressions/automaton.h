@@ -12,7 +12,7 @@ namespace echopath {
 
 constexpr int kMaxAutomatonStates = 4096;
 
-// Reads symbols (mesh class, diffuse bit): meshes that every glob or set of the expression treats alike share a class.
+// Reads symbols (mesh class, event): meshes that every glob or set of the expression treats alike share a class.
 class Automaton {
  public:
   // mesh_names: full names by mesh ID, and behind them others that globs may take. Raises invalid_argument when a glob takes
@@ -35,7 +35,14 @@ class Automaton {
     return table_[row + accept_column_] != 0;
   }
 
-  // Returns the same faster, but may read up to kOverread hits beyond the path's own, which must be there. It steps in
+  // Returns the same of a path whose hit `edge` lies on an edge.
+  bool takes_with_edge(const Hit* hits, int num_hits, int edge) const {
+    uint32_t row = 0;
+    for (int k = 0; k < num_hits; ++k) row = table_[row + symbols_[hits[k].mesh_id + 1] + (k == edge ? kEdgeSymbol : 0)];
+    return table_[row + accept_column_] != 0;
+  }
+
+  // Returns the same as `takes` faster, but may read up to kOverread hits beyond the path's own, which must be there. It steps in
   // fours, past the end with the symbol that changes nothing: most paths have one to four hits, and a branch on the exact
   // number would be mispredicted so often that it costs more than the steps.
   static constexpr int kOverread = 4;
@@ -57,10 +64,12 @@ class Automaton {
   }
 
  private:
+  // Symbols of a class: specular, diffuse, on an edge.
+  static constexpr uint32_t kEvents = 3, kEdgeSymbol = 2;
   bool takes_something_without(uint32_t mesh_class) const;
   void find_needed_bits();
 
-  std::vector<uint32_t> symbols_;  // [1 + M] the symbol that changes nothing, then twice the class of each mesh
+  std::vector<uint32_t> symbols_;  // [1 + M] the symbol that changes nothing, then kEvents times the class of each mesh
   // [num_states, num_symbols + 2] holds where the row of the next state starts, by symbol (the one that changes nothing is
   // the last), and then 1 if the state takes the path, else 0. State 0 is the start.
   std::vector<uint32_t> table_;

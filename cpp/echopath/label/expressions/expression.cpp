@@ -7,7 +7,7 @@
 namespace echopath {
 namespace {
 
-const std::string kExpectHit = "expected a hit (. 'mesh' S D [...])";
+const std::string kExpectHit = "expected a hit (. 'mesh' S D E [...])";
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_continuation_byte(char c) { return (static_cast<unsigned char>(c) & 0xC0u) == 0x80u; }  // UTF-8
@@ -107,8 +107,8 @@ class ExpressionParser {
   Syntax parse_hit() {
     Syntax syntax{Syntax::Kind::kHit, {}, {}, 0, 0};
     if (take('.')) return syntax;
-    if (peek() == 'S' || peek() == 'D') {
-      syntax.hit.event = peek() == 'S' ? HitPattern::Event::kSpecular : HitPattern::Event::kDiffuse;
+    if (starts_event(peek())) {
+      syntax.hit.event = event_of(peek());
       const size_t after = at_ + 1;
       take(peek());
       if (!starts_meshes(peek())) return syntax;
@@ -141,7 +141,12 @@ class ExpressionParser {
   }
 
   static bool starts_meshes(char c) { return c == '\'' || c == '['; }
-  static bool starts_atom(char c) { return starts_meshes(c) || c == '.' || c == 'S' || c == 'D' || c == '('; }
+  static bool starts_atom(char c) { return starts_meshes(c) || c == '.' || starts_event(c) || c == '('; }
+  static bool starts_event(char c) { return c == 'S' || c == 'D' || c == 'E'; }
+  static HitPattern::Event event_of(char c) {
+    if (c == 'E') return HitPattern::Event::kEdge;
+    return c == 'S' ? HitPattern::Event::kSpecular : HitPattern::Event::kDiffuse;
+  }
   static bool is_operator(char c) { return c == '*' || c == '+' || c == '?' || c == '{'; }
 
   bool at_end() const { return at_ >= text_.size(); }

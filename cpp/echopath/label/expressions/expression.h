@@ -7,7 +7,7 @@
 //   repeat     := atom [ '*' | '+' | '?' | '{' m '}' | '{' m ',' '}' | '{' m ',' n '}' ]
 //   atom       := hit | '(' choice ')'
 //   hit        := '.' | event | [ event ] meshes
-//   event      := 'S' | 'D'                      specular or diffuse: the bit of that hit in Paths::diffuse
+//   event      := 'S' | 'D' | 'E'                specular or diffuse: the bit of that hit in Paths::diffuse; on an edge: edge_hit
 //   meshes     := glob | '[' [ '^' ] glob { glob } ']'
 //   glob       := "'" characters other than "'" "'"
 //
@@ -29,7 +29,7 @@ constexpr int kNoLimit = -1;
 
 // Describes what one hit must be.
 struct HitPattern {
-  enum class Event { kAny, kSpecular, kDiffuse };
+  enum class Event { kAny, kSpecular, kDiffuse, kEdge };
   struct Glob {
     std::string text;
     size_t position;  // of its opening quote in the expression, bytes

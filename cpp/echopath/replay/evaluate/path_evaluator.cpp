@@ -1,5 +1,7 @@
 #include "echopath/replay/evaluate/path_evaluator.h"
 
+#include "echopath/replay/evaluate/edge_echoes.h"
+
 namespace echopath {
 
 void PathEvaluator::begin(const PathPreparer& preparer, const Radar& radar, SpecularPoints specular) {
@@ -11,6 +13,7 @@ void PathEvaluator::evaluate(const PosedNodes& nodes, const RadioConstants& radi
                              const Wanted& wanted) {
   shared_legs_(*plan_, *preparer_, nodes, radio, channels);
   single_bounces_(*plan_, *preparer_, nodes, radio, channels, wanted);
+  evaluate_edges(*plan_, *preparer_, nodes, radio, channels);
   if (wanted.turned) shared_legs_.mark_turned(*plan_, wanted.turned);
   if (wanted.unfiltered) shared_legs_.mark_unfiltered(*plan_, radio, wanted.unfiltered);
 }

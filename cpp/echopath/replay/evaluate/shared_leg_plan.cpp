@@ -25,6 +25,7 @@ void SharedLegPlan::clear() {
   chains.clear();
   sliding.clear();
   mirror_paths.clear();
+  edge_paths.clear();
 }
 
 // Lists the hits and events of a path in the order in which it was traced.
@@ -64,7 +65,8 @@ void SharedLegPlanner::begin(const Paths& paths, const PathPreparer& preparer, S
 const SharedLegPlan& SharedLegPlanner::operator()(std::span<const int64_t> indices) {
   clear();
   for (size_t place = 0; place < indices.size(); ++place) {
-    if (!add_direct(place, indices[place])) add_chain(place, indices[place]);
+    if (paths_->flags[static_cast<size_t>(indices[place])] & kEdgePath) plan_.edge_paths.push_back({place, indices[place]});
+    else if (!add_direct(place, indices[place])) add_chain(place, indices[place]);
   }
   return plan_;
 }

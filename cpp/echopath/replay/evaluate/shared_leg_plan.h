@@ -47,6 +47,11 @@ struct SharedLegPlan {
     std::complex<double> weight;
   };
 
+  struct EdgePath {
+    size_t place;
+    int64_t path;
+  };
+
   // Lists the paths that one point sends straight back: at most one coherent and one diffuse path.
   struct Direct {
     static constexpr int64_t kNoPath = -1;
@@ -65,6 +70,7 @@ struct SharedLegPlan {
   std::vector<Chain> chains;     // by place
   std::vector<int64_t> sliding;  // paths whose points of reflection move (SpecularPoints::kFermat)
   std::vector<MirrorPath> mirror_paths;
+  std::vector<EdgePath> edge_paths;  // edge_echoes.h
 
   void clear();
 };

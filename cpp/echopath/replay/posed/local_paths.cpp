@@ -6,6 +6,7 @@
 
 #include "echopath/replay/kernels/cell_formula.h"
 #include "echopath/scene/mesh/kept_normals.h"
+#include "echopath/scene/mesh/sharp_edges.h"
 #include "echopath/scene/mesh/smooth.h"
 
 namespace echopath {
@@ -85,6 +86,13 @@ LocalHit PathPreparer::hit(const Hit& hit, std::deque<std::array<Vec3, 3>>& norm
   return local;
 }
 
+LocalHit PathPreparer::edge_hit(const Hit& hit, int num_pieces) const {
+  LocalHit local = this->hit(hit);
+  local.edge = sharp_edge_at(paths_.scene->node_of(hit.mesh_id).mesh->sharp_edges(), hit.triangle_id, local.u, local.v);
+  local.num_pieces = num_pieces;
+  return local;
+}
+
 bool PathPreparer::find_smooth_normals(const LocalHit& hit, std::array<Vec3, 3>& out) const {
   const std::vector<Vec3>& of_vertices = smooth_normals_[hit.mesh_id];
   if (of_vertices.empty()) return false;
@@ -113,10 +121,16 @@ LocalPath PathPreparer::local_path(int64_t index, LocalPaths& block) const {
   path.recorded = paths_.hits_of(index);
   path.count = paths_.num_bounces[p];
   path.is_reversed = (paths_.flags[p] & kReversedPath) != 0;
+  path.edge = echopath::edge_hit(paths_.flags[p]);
   for (int k = 0; k < path.count; ++k) {
     const int recorded = path.is_reversed ? path.count - 1 - k : k;
     const Hit& hit = paths_.hits_of(index)[recorded];
     path.diffuse |= (paths_.diffuse[p] >> recorded & 1) << k;
+    if (k == path.edge) {
+      block.hits.push_back(edge_hit(hit, num_edge_pieces(paths_.flags[p])));
+      path.first_material = path.last_material = k;
+      continue;
+    }
     block.hits.push_back(this->hit(hit, block.normals));
     if (is_image(hit.mesh_id, paths_.stratum[p]) && !path.is_diffuse(k)) {
       path.image |= uint64_t{1} << k;

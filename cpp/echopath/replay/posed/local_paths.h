@@ -31,6 +31,8 @@ class PathPreparer {
   LocalHit hit(const Hit& hit) const;
   // Returns a hit with its normals, which are stored in `normals`.
   LocalHit hit(const Hit& hit, std::deque<std::array<Vec3, 3>>& normals) const;
+  // Returns a hit on an edge.
+  LocalHit edge_hit(const Hit& hit, int num_pieces) const;
   bool is_mirror(uint32_t mesh_id) const { return mesh_is_mirror_[mesh_id] != 0; }
   // Returns whether a specular hit on the mesh is replayed by images: that of a flagged mirror, or of a path of the image
   // method.

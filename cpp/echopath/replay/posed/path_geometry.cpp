@@ -2,6 +2,7 @@
 
 #include "echopath/base/plane.h"
 #include "echopath/scene/mesh/smooth.h"
+#include "echopath/trace/edges/posed_edge.h"
 
 namespace echopath {
 namespace {
@@ -68,8 +69,10 @@ void pose_facet(const LocalHit& hit, const PosedScene& scene, PosedHit& out) {
 }
 
 void pose_hit(const LocalHit& hit, const PosedScene& scene, bool with_triangle, PosedHit& out) {
+  out.is_edge = hit.edge != nullptr;
   if (with_triangle || hit.deformed || hit.normals || hit.trace_area > 0) pose_triangle(hit, scene, out);
   else pose_point(hit, scene, out);
+  if (hit.edge) out.normal = outward_of(posed_wedge(*hit.edge, scene, hit.mesh_id));
 }
 
 void pose_hits(const LocalPath& path, const PosedScene& scene, PosedHit* out) {

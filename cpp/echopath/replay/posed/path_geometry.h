@@ -19,6 +19,9 @@ struct LocalHit {
   // Unit vertex normals at rest where the triangle is taken as smooth, else null. On deforming meshes only this difference
   // counts: their normals are those of the posed scene.
   const std::array<Vec3, 3>* normals = nullptr;
+  // Where the hit stands for a piece of an edge: the edge, and its pieces. It is posed with the normal outward_of the edge.
+  const SharpEdge* edge = nullptr;
+  int num_pieces = 0;
 };
 
 struct PosedHit {
@@ -28,6 +31,7 @@ struct PosedHit {
   Mat3 curvature;       // 1/m, about `normal` (scene/mesh/smooth.h); only where is_smooth
   bool is_smooth = false;
   double area_ratio = 1.0;  // of its triangle, over that at the trace
+  bool is_edge = false;     // LocalHit::edge
 };
 
 // Holds the part of a path that does not depend on time.
@@ -39,6 +43,8 @@ struct LocalPath {
   uint64_t diffuse = 0;
   uint64_t image = 0;    // bit per hit: specular on a flagged mirror, replayed by images
   uint64_t sliding = 0;  // bit per hit: other specular hits, whose point of reflection slides over the surface
+
+  int edge = -1;  // the hit on an edge, the material point of its path
 
   bool is_image(int hit) const { return image >> hit & 1; }
   bool is_diffuse(int hit) const { return diffuse >> hit & 1; }

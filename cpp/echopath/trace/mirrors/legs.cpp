@@ -37,7 +37,7 @@ void LegFinder::find(const LegQuery& query, const AntennaView& antenna, std::vec
 void LegFinder::add_direct(const LegQuery& query, const AntennaView& antenna, std::vector<Leg>& legs,
                            LegSearch& search) const {
   const Vec3 line = antenna.position - query.point;
-  if (query.normal.dot(line) <= 0) return;
+  if (!query.faces_all && query.normal.dot(line) <= 0) return;
   if (query.direct == ShadowState::kUnknown) {
     search.segments.push_back({geometry_.lifted(query.point, query.normal), antenna.position});
   }
@@ -51,7 +51,7 @@ void LegFinder::add_over_mirrors(const LegQuery& query, const AntennaView& anten
                                  std::vector<Leg>& legs, LegSearch& search) const {
   const Vec3& point = query.point;
   const Vec3 line = frustum.image() - point;
-  if (query.normal.dot(line) <= 0) return;
+  if (!query.faces_all && query.normal.dot(line) <= 0) return;
   const bool is_on_plane = frustum.lit_normal.dot(point) - frustum.offset < kNoLegWithin;
   if (is_on_plane || !frustum.reaches(point, kRim)) return;
   const size_t num_segments = search.segments.size();

@@ -46,6 +46,7 @@ struct LegQuery {
   int max_mirrors = 0;
   MirrorSequence skip = -1;                    // a sequence that is left out, negative for none
   ShadowState direct = ShadowState::kUnknown;  // of the antenna itself
+  bool faces_all = false;                      // legs leave to every side, from an edge that was lifted along the normal
 };
 
 // Holds what a search needs while it lasts; it is kept from search to search for its memory.

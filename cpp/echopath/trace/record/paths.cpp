@@ -8,6 +8,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
+#include "echopath/scene/mesh/sharp_edges.h"
 
 namespace echopath {
 namespace {
@@ -59,6 +60,20 @@ void validate_hit(const Hit& hit, const Scene& scene) {
   require(hit.triangle_id < num_triangles, "triangle_id", "must be a triangle of its mesh", hit.triangle_id);
   require(hit.u >= 0.0f && hit.v >= 0.0f && hit.u + hit.v <= 1.0f + kBarycentricRounding, "u and v",
           "must not be negative, their sum at most 1", hit.u + hit.v);
+}
+
+void validate_edge(const Paths& paths, size_t path) {
+  const int at = edge_hit(paths.flags[path]);
+  if (at < 0) return;
+  require(at < paths.num_bounces[path] && paths.diffuse[path] == 0, "flags",
+          "must name a hit of a coherent path as its edge, hit", at);
+  require(paths.stratum[path] == kNoStratum, "stratum", "must be 65535 where a path has an edge", int{paths.stratum[path]});
+  require(num_edge_pieces(paths.flags[path]) > 0, "flags", "must hold how many pieces an edge has", 0);
+  const Hit& hit = paths.hits_of(static_cast<int64_t>(path))[at];
+  validate_hit(hit, *paths.scene);
+  const std::vector<SharpEdge>& edges = paths.scene->node_of(hit.mesh_id).mesh->sharp_edges();
+  require(sharp_edge_at(edges, hit.triangle_id, double{hit.u}, double{hit.v}) != nullptr, "flags",
+          "must name hits on sharp edges, path", path);
 }
 
 HitSet used_hits(const Paths& paths) {
@@ -117,6 +132,7 @@ void Paths::validate_path(size_t path) const {
   if (!jones.empty()) {
     require(std::all_of(jones[path].begin(), jones[path].end(), is_finite), "jones", "must be finite, path", path);
   }
+  validate_edge(*this, path);
 }
 
 Paths Paths::select(const std::vector<uint8_t>& keep, Job* job) const {

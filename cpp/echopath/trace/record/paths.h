@@ -43,6 +43,17 @@ inline constexpr uint32_t kReversedPath = 1;
 // Marks the paths of every other ray (half_of_ray): the rays have two halves, each evenly spread over the launch directions.
 // Paths of the image method belong to neither, whatever their flag.
 inline constexpr uint32_t kSecondHalf = 2;
+// Marks a path with a point on a sharp edge (scene/mesh/sharp_edges.h), one of its hits. Its flags also hold which hit that is
+// and into how many pieces of one length the edge is parted: the path stands for the piece around its point. All its other hits
+// are images. Its weight holds the coefficients of the scalar model and what the faces keep in phase.
+inline constexpr uint32_t kEdgePath = 4;
+inline constexpr int kMostPieces = 65535;
+constexpr uint32_t edge_flags(int hit, int num_pieces) {
+  return kEdgePath | static_cast<uint32_t>(hit) << 8 | static_cast<uint32_t>(num_pieces) << 16;
+}
+// Return the hit on an edge, -1 where there is none, and the number of pieces.
+constexpr int edge_hit(uint32_t flags) { return flags & kEdgePath ? static_cast<int>(flags >> 8 & 63u) : -1; }
+constexpr int num_edge_pieces(uint32_t flags) { return static_cast<int>(flags >> 16); }
 // Returns the flag of a ray's paths by its index: 0 or kSecondHalf. It is the parity of the index's digits (Thue and Morse),
 // so that both halves of any few rays in a row have as many of them, and no digit of the nets that rays share tells them
 // apart.
@@ -79,6 +90,7 @@ struct TraceFrame {
   double target_error_db = 0.0;  // dB, the error of the received power that was asked for; 0: none
   double error_db = 0.0;         // dB, the one that was reached (sim/rays/trace_to_error.h); 0: not looked at
   Scatterers scatterers = Scatterers::kRays;
+  bool edges = false;  // sharp edges were looked for
 
   // Returns the rays per sr of one batch of a stratum, from which its launch cells are made. Filters for the cells of all
   // batches together would leave each batch its aliases, which do not cancel, because the lattices are independent of each
@@ -97,7 +109,7 @@ struct Paths {
   std::vector<std::complex<float>> weight;  // what neither motion nor antennas change (see replay/kernels/path_formula.h)
   std::vector<uint16_t> stratum;            // index into frame.strata; kNoStratum: none (image method)
   std::vector<uint8_t> batch;               // index of the batch of rays; 255: all of them (image method)
-  std::vector<uint32_t> flags;              // bits: kReversedPath, kSecondHalf
+  std::vector<uint32_t> flags;              // bits: kReversedPath, kSecondHalf, kEdgePath with edge_flags
   // [P, 7] or empty: the launch cell behind curved specular bounces, at the physical-optics hit. T1 and T2 are in units of
   // the triangle's edges (du1, dv1, du2, dv2), then T_a.U_b in m (11, 12, 22). A flat chain has zeros.
   std::vector<std::array<float, 7>> curved_cell;

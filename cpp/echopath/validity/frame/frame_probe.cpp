@@ -72,9 +72,11 @@ std::vector<Antenna> carried_and_rim(const Vec3& carried, const std::vector<Ante
   return out;
 }
 
-// Writes the signed cosines of incidence and departure [2 * hits]; images keep theirs.
+// Writes the signed cosines of incidence and departure [2 * hits]; images keep theirs, and edges, whose faces count as little
+// by themselves.
 void fill_cosines(const LocalPath& path, const PosedHit* hits, const Vec3& start, const Vec3& end,
                   std::vector<double>& out) {
+  if (path.edge >= 0) return;
   int previous = path.first_material;
   const auto set_arrival = [&](int k, const Vec3& travel) { out[static_cast<size_t>(2 * k)] = -hits[k].normal.dot(travel); };
   const auto set_departure = [&](int k, const Vec3& travel) {

@@ -17,6 +17,7 @@ struct LegTester::End {
   Vec3 point;
   Vec3 normal = Vec3::Zero();
   const Vec3* facet = nullptr;
+  bool is_edge = false;  // the normal leads away from its faces, whatever is seen from there
 
   // Returns a point from where the surface does not hide `toward` itself: the curved point of a hollow facet lies behind it.
   const Vec3& seen_from(const Vec3& toward) const {
@@ -31,7 +32,7 @@ LegTester::End LegTester::facet_of(const PosedHit& hit) {
 
 // Returns the end on the curved surface, where the trace left it.
 LegTester::End LegTester::surface_of(const PosedHit& hit) {
-  return {hit.point, hit.normal, hit.is_smooth ? &hit.facet : nullptr};
+  return {hit.point, hit.normal, hit.is_smooth ? &hit.facet : nullptr, hit.is_edge};
 }
 
 void LegTester::block(int leg) {
@@ -49,6 +50,11 @@ bool LegTester::is_known_blocked(int first, int last) const {
 // Lifts a point off the surface on the side of `toward`; an antenna stays.
 Vec3 LegTester::lifted(const Vec3& point, const Vec3& normal, const Vec3& toward) const {
   return geometry_.lifted(point, normal.dot(toward - point) >= 0 ? normal : Vec3(-normal));
+}
+
+// Lifts an end, at `point`, likewise; an edge is lifted off both of its faces.
+Vec3 LegTester::lifted_end(const End& end, const Vec3& point, const Vec3& toward) const {
+  return end.is_edge ? geometry_.lifted(point, end.normal) : lifted(point, end.normal, toward);
 }
 
 // Lifts a point of reflection off all the mirrors [first, last) that meet in it.
@@ -108,8 +114,8 @@ void LegTester::test(const End& from, int first, int last, const End& to) {
     const Vec3& start = leg > first ? image_points_[leg - 1] : from.seen_from(leg < last ? image_points_[leg] : to.point);
     const Vec3& end = leg < last ? image_points_[leg] : to.seen_from(start);
     if (leg > first && leg < last && (end - start).norm() <= kSamePlace) continue;
-    const Vec3 off_start = leg > first ? lifted_image(leg - 1, first, last, end) : lifted(start, from.normal, end);
-    const Vec3 off_end = leg < last ? end : lifted(end, to.normal, start);
+    const Vec3 off_start = leg > first ? lifted_image(leg - 1, first, last, end) : lifted_end(from, start, end);
+    const Vec3 off_end = leg < last ? end : lifted_end(to, end, start);
     if (is_blocked(off_start, off_end, leg < last ? leg : -1)) return block(leg);
   }
 }

@@ -29,6 +29,7 @@ TraceSettings settings_like(const TraceFrame& frame) {
   settings.batches = frame.num_batches;
   settings.sampler = frame.sampler;
   settings.scatterers = frame.scatterers;
+  settings.edges = frame.edges;
   return settings;
 }
 

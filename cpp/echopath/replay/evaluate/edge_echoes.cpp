@@ -1,0 +1,151 @@
+#include "echopath/replay/evaluate/edge_echoes.h"
+
+#include <cmath>
+
+#include "echopath/base/constants.h"
+#include "echopath/base/plane.h"
+#include "echopath/em/edge_diffraction.h"
+#include "echopath/em/surface_response.h"
+#include "echopath/replay/kernels/path_formula.h"
+#include "echopath/trace/edges/posed_edge.h"
+
+namespace echopath {
+namespace {
+
+// Returns the polarisation of an antenna across a direction, unit; zero along it.
+Vec3 across(const Vec3& polarization, const Vec3& direction) {
+  const Vec3 part = polarization - direction.dot(polarization) * direction;
+  return part.squaredNorm() > 1e-18 ? Vec3(part.normalized()) : Vec3(Vec3::Zero());
+}
+
+// Describes a way from an antenna to an edge.
+struct WayToEdge {
+  double length, root_gain, phase;  // m; of the antenna, rad
+  Vec3 direction;                   // unit, of travel where it arrives
+  FieldVector field;                // of a unit wave, where it arrives
+};
+
+// The mirrors between an antenna and an edge, in the order of travel from the antenna.
+struct MirrorsToEdge {
+  std::vector<PosedHit> hits;
+  std::vector<const Material*> materials;
+};
+
+class EdgeEchoes {
+ public:
+  EdgeEchoes(const PathPreparer& preparer, const RadioConstants& radio)
+      : paths_(preparer.paths()), radio_(radio), frequency_(kSpeedOfLight / radio.wavelength),
+        is_polarized_(!paths_.jones.empty()), hits_(64) {}
+
+  // Sets the path that is looked at, at a node.
+  void pose(const LocalPath& path, const PosedScene& scene) {
+    pose_hits(path, scene, hits_.data());
+    const LocalHit& hit = path.hits[path.edge];
+    point_ = hits_[static_cast<size_t>(path.edge)].point;
+    wedge_ = posed_wedge(*hit.edge, scene, hit.mesh_id);
+    const Vec3 corners[] = {hit.corner, hit.corner + hit.edge_u, hit.corner + hit.edge_v};
+    const Vec3 side = scene.linear(hit.mesh_id) * (corners[(hit.edge->side + 1) % 3] - corners[hit.edge->side]);
+    piece_ = (hit.edge->end - hit.edge->begin) / hit.num_pieces * side;
+    find_ways(path, scene.transmitters, true, in_);
+    find_ways(path, scene.receivers, false, out_);
+  }
+
+  double length(size_t transmitter, size_t receiver) const { return in_[transmitter].length + out_[receiver].length; }
+
+  // `polarization` is that of the transmitter.
+  std::complex<double> amplitude(size_t transmitter, size_t receiver, const Vec3& polarization,
+                                 std::complex<double> weight) const {
+    const WayToEdge &in = in_[transmitter], &out = out_[receiver];
+    if (in.length < kNearAntenna || out.length < kNearAntenna) return 0.0;
+    const Vec3 departure = -out.direction;
+    const Mat3 fringe = fringe_matrix(wedge_, in.direction, departure);
+    const FieldVector received =
+        is_polarized_ ? out.field : FieldVector(across(polarization, departure).cast<std::complex<double>>());
+    const std::complex<double> coupled = received.transpose() * (fringe * in.field);
+    const double filter = edge_filter(radio_.wavenumber * (in.direction - departure).dot(piece_));
+    const double size = radio_.coherent_scale() * in.root_gain * out.root_gain * piece_.norm() * filter /
+                        (2.0 * radio_.wavenumber * in.length * out.length);
+    const std::complex<double> factor = size * coupled * std::polar(1.0, in.phase + out.phase);
+    const ComplexOf<double> found =
+        amplitude_of<ScalarMath>(ComplexOf<double>{weight.real(), weight.imag()},
+                                 ComplexOf<double>{factor.real(), factor.imag()}, in.length + out.length);
+    return {found.re, found.im};
+  }
+
+ private:
+  void find_ways(const LocalPath& path, const std::vector<PosedAntenna>& antennas, bool of_transmitters,
+                 std::vector<WayToEdge>& ways) {
+    mirrors_.hits.clear();
+    mirrors_.materials.clear();
+    const int count = of_transmitters ? path.edge : path.count - 1 - path.edge;
+    for (int k = 0; k < count; ++k) {
+      const int at = of_transmitters ? k : path.count - 1 - k;
+      mirrors_.hits.push_back(hits_[static_cast<size_t>(at)]);
+      mirrors_.materials.push_back(paths_.scene->node_of(path.hits[at].mesh_id).material.get());
+    }
+    ways.clear();
+    for (const PosedAntenna& antenna : antennas) ways.push_back(way_from(antenna));
+  }
+
+  WayToEdge way_from(const PosedAntenna& antenna) const {
+    const int count = static_cast<int>(mirrors_.hits.size());
+    const UnfoldedLeg leg = unfolded_leg(mirrors_.hits.data(), antenna.position, 0, count, point_);
+    const AntennaGain gain = antenna.toward(leg.departure);
+    const FieldVector field = is_polarized_
+                                  ? over_mirrors(across(antenna.polarization, leg.departure), leg.departure)
+                                  : FieldVector(across(antenna.polarization, leg.arrival).cast<std::complex<double>>());
+    return {leg.length, std::sqrt(gain.power), gain.phase, leg.arrival, field};
+  }
+
+  FieldVector over_mirrors(const Vec3& polarization, Vec3 direction) const {
+    FieldVector field = polarization.cast<std::complex<double>>();
+    for (size_t k = 0; k < mirrors_.hits.size(); ++k) {
+      const Vec3& facet = mirrors_.hits[k].normal;
+      const Vec3 normal = facet.dot(direction) < 0 ? facet : Vec3(-facet);
+      const SurfaceModel model(*mirrors_.materials[k], frequency_);
+      const double cos_in = -normal.dot(direction);
+      const double coherent = model.respond(cos_in, PolarizationMode::kTe).coherent;
+      field = coherent * reflected_field(field, direction, normal, model.modes(cos_in));
+      direction = mirrored(direction, normal);
+    }
+    return field;
+  }
+
+  const Paths& paths_;
+  const RadioConstants& radio_;
+  double frequency_;  // Hz
+  bool is_polarized_;
+  std::vector<PosedHit> hits_;
+  MirrorsToEdge mirrors_;
+  std::vector<WayToEdge> in_, out_;
+  Wedge wedge_;
+  Vec3 point_, piece_;  // m
+};
+
+}  // namespace
+
+void evaluate_edges(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes,
+                    const RadioConstants& radio, const ChannelSpan& channels) {
+  if (plan.edge_paths.empty()) return;
+  std::vector<int64_t> indices;
+  for (const SharedLegPlan::EdgePath& path : plan.edge_paths) indices.push_back(path.path);
+  const LocalPaths local = preparer(indices);
+  EdgeEchoes echoes(preparer, radio);
+  for (size_t node = 0; node < nodes.size(); ++node) {
+    const PosedScene& scene = nodes.at(node);
+    const size_t num_receivers = scene.receivers.size();
+    for (size_t i = 0; i < indices.size(); ++i) {
+      const std::complex<double> weight(preparer.paths().weight[static_cast<size_t>(indices[i])]);
+      echoes.pose(local.paths[i], scene);
+      for (size_t channel = 0; channel < channels.nodes.size(); ++channel) {
+        const size_t of_all = channels.first + channel, transmitter = of_all / num_receivers,
+                     receiver = of_all % num_receivers;
+        const Vec3& polarization = scene.transmitters[transmitter].polarization;
+        channels.nodes[channel].set(node, plan.edge_paths[i].place, echoes.length(transmitter, receiver),
+                                    echoes.amplitude(transmitter, receiver, polarization, weight));
+      }
+    }
+  }
+}
+
+}  // namespace echopath

@@ -1,0 +1,253 @@
+"""edges=True: what sharp edges add to physical optics, as paths with a point on an edge."""
+import math
+import pickle
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from support.shapes import sphere
+
+INCH = 0.0254
+FREQUENCY = 10.24e9
+WAVENUMBER = 2.0 * math.pi * FREQUENCY / 299792458.0
+WIDTH, HEIGHT = 10.5 * INCH, 6.0 * INCH  # across and along the axis about which the plate turns
+FEW_RAYS = 2 ** 12
+SAME = 1e-6           # single precision of weights and barycentric coordinates
+FIRST_ORDER_DB = 0.1  # the rays' own physical optics
+
+
+def sheet(width: float = WIDTH, height: float = HEIGHT) -> ep.Mesh:
+    """A rectangle of two triangles in the yz-plane."""
+    corners = [(0.0, y * width / 2.0, z * height / 2.0) for y in (-1, 1) for z in (-1, 1)]
+    return ep.Mesh(np.array(corners), np.array([(0, 1, 3), (0, 3, 2)]))
+
+
+def box(size) -> ep.Mesh:
+    corners = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * np.asarray(size) / 2.0
+    faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    return ep.Mesh(corners, np.array([t for a, b, c, d in faces for t in ((a, b, c), (a, c, d))]))
+
+
+def scene_of(mesh, **keywords) -> ep.Scene:
+    scene = ep.Scene()
+    scene.add(mesh, name="plate", **{"material": ep.Material.metal(), **keywords})
+    return scene
+
+
+def directions(angles):
+    return np.stack([np.cos(angles), np.sin(angles), np.zeros_like(angles)], axis=1)
+
+
+def radar_at(position=(8.0, 0.5, 1.0), *, polarization=(0.0, 0.0, 1.0), receiver=None, num_chirps=1) -> ep.Radar:
+    waveform = ep.ChirpSequence(start_frequency=FREQUENCY, bandwidth=100e6, num_samples=64, sampling_rate=1e6,
+                                num_chirps=num_chirps, chirp_interval=200e-6)
+    antenna = {"polarization": polarization}
+    return ep.Radar(waveform, transmitters=[ep.Antenna(position, **antenna)],
+                    receivers=[ep.Antenna(position if receiver is None else receiver, **antenna)])
+
+
+def trace(scene, radar, **keywords):
+    return ep.trace(scene, radar, **{"num_rays": 200, "edges": True, **keywords})
+
+
+def fields(paths, time=None):
+    """[P] amplitudes with the phases of their lengths."""
+    time = paths.frame.trace_time if time is None else time
+    return paths.amplitudes([time])[0] * np.exp(-1j * WAVENUMBER * paths.lengths([time])[0])
+
+
+def on_edges(paths):
+    return paths.select("T .* E .* R")
+
+
+# --- against theory ---
+
+@pytest.mark.parametrize("channel", ["vv", "hh"])
+def test_a_plate_returns_what_the_first_order_of_edge_theory_has(channel):
+    """Both edges along the axis in closed form (Ross 1966, first order), in the plane across them."""
+    angles = np.radians([35.0, 50.0, 62.0, 75.0, 86.0, 90.0])
+    found = ep.rcs(scene_of(sheet()), frequency=FREQUENCY, incidence=directions(angles), polarization=[channel],
+                   num_rays=2 ** 15, edges=True)[:, 0]
+    x, sine = WAVENUMBER * WIDTH * np.sin(angles), np.sin(angles)
+    expected = HEIGHT ** 2 / math.pi * np.abs(np.cos(x) - 1j * np.sin(x) / sine) ** 2
+    assert np.abs(10.0 * np.log10(found / expected)).max() < FIRST_ORDER_DB
+
+
+@pytest.mark.parametrize("model", ["scalar", "jones"])
+def test_both_models_of_polarisation_agree_where_nothing_turns_it(model):
+    angles = np.radians([40.0, 70.0])
+    both = [ep.rcs(scene_of(sheet()), frequency=FREQUENCY, incidence=directions(angles), polarization=(0.0, 0.0, 1.0),
+                   model=one, num_rays=FEW_RAYS, edges=True) for one in (model, "jones")]
+    assert both[0] == pytest.approx(both[1], rel=1e-4, abs=0)
+
+
+def test_a_plate_is_reciprocal_across_its_edges():
+    """The diffracted field on Keller's cone is; physical optics alone errs by more."""
+    one, other = directions(np.radians([50.0])), directions(np.radians([-15.0]))
+
+    def change(edges):
+        there, back = (ep.rcs(scene_of(sheet()), frequency=FREQUENCY, incidence=a, observation=b, polarization=["hh"],
+                              num_rays=2 ** 15, edges=edges).item() for a, b in ((one, other), (other, one)))
+        return abs(10.0 * math.log10(there / back))
+    assert change(True) < 0.1 < 0.5 < change(False)
+
+
+def test_a_wave_over_a_metal_ground_comes_from_the_image_of_the_antenna():
+    """Each path over the ground is one in free space from the image, whose polarisation is the mirrored one."""
+    ground = ep.Mesh(np.array([(-50.0, -50, 0), (50, -50, 0), (50, 50, 0), (-50, 50, 0)]), np.array([(0, 1, 2), (0, 2, 3)]))
+    for polarization, image in (((0.0, 0.0, 1.0), (0.0, 0.0, 1.0)), ((0.28, 0.96, 0.0), (-0.28, -0.96, 0.0))):
+        scene = scene_of(sheet(), position=(0, 0, 1.5), yaw=0.4)
+        scene.add(ground, name="ground", material=ep.Material.metal(mirror=True))
+        both = on_edges(trace(scene, radar_at(polarization=polarization), polarization="jones"))
+        there = fields(both.select("T 'ground' E'plate' R"))
+        waveform = radar_at().waveform
+        free = ep.Radar(waveform, transmitters=[ep.Antenna((8.0, 0.5, -1.0), polarization=image)],
+                        receivers=[ep.Antenna((8.0, 0.5, 1.0), polarization=polarization)])
+        expected = fields(on_edges(trace(scene_of(sheet(), position=(0, 0, 1.5), yaw=0.4), free, polarization="jones")))
+        assert there == pytest.approx(expected, rel=1e-5, abs=np.abs(expected).max() * SAME)
+        back, twice = (fields(both.select(way)) for way in ("T E'plate' 'ground' R", "T 'ground' E'plate' 'ground' R"))
+        assert len(back) == len(twice) == len(there)
+
+
+def test_in_the_scalar_model_a_vertical_field_keeps_its_sign_over_the_ground():
+    ground = ep.Mesh(np.array([(-50.0, -50, 0), (50, -50, 0), (50, 50, 0), (-50, 50, 0)]), np.array([(0, 1, 2), (0, 2, 3)]))
+    scene = scene_of(sheet(), position=(0, 0, 1.5))
+    scene.add(ground, name="ground", material=ep.Material.metal(mirror=True))
+    sums = [fields(trace(scene, radar_at(polarization=(0.0, 1.0, 0.0)), polarization=model).select("T 'ground' E'plate' R")).sum()
+            for model in ("scalar", "jones")]
+    assert sums[0] == pytest.approx(sums[1], rel=0.02)
+
+
+# --- replay ---
+
+def test_edges_of_a_turning_plate_are_those_of_a_new_trace():
+    spin = 10.0  # rad/s
+    scene = scene_of(sheet(), motion=ep.LinearMotion(velocity=(1.0, -2.0, 0.5), angular_velocity=(0.0, 0.3, spin)))
+    radar = radar_at(num_chirps=128)
+    paths = on_edges(trace(scene, radar, start_time=0.0))
+    later = on_edges(trace(scene, radar, start_time=0.01))
+    assert later.num_paths == paths.num_paths
+    assert fields(paths, later.frame.trace_time) == pytest.approx(fields(later), rel=1e-5)
+    assert np.abs(fields(paths) - fields(later)).max() > 0.1 * np.abs(fields(later)).max()
+
+
+def test_the_signal_of_edges_follows_every_chirp():
+    scene = scene_of(sheet(), yaw=0.3, motion=ep.LinearMotion(angular_velocity=(0.0, 0.0, 20.0)))
+    radar = radar_at(num_chirps=64)
+    paths = on_edges(trace(scene, radar))
+    interpolated, exact = (ep.synthesize(paths, radar, evaluate=evaluate) for evaluate in ("interpolated", "samples"))
+    assert np.linalg.norm(interpolated - exact) < 1e-3 * np.linalg.norm(exact)
+
+
+def test_another_array_sees_the_same_edges_from_its_own_place():
+    scene, moved = scene_of(sheet(), yaw=0.7), (7.9, 0.9, 1.1)
+    paths = on_edges(trace(scene, radar_at()))
+    two = ep.Radar(radar_at().waveform, transmitters=[ep.Antenna((8.0, 0.5, 1.0))],
+                   receivers=[ep.Antenna((8.0, 0.5, 1.0)), ep.Antenna(moved)])
+    anew = on_edges(trace(scene, radar_at(receiver=moved)))
+    cube, expected = ep.synthesize(paths, two), ep.synthesize(anew, radar_at(receiver=moved))
+    assert np.linalg.norm(cube[0, 1] - expected[0, 0]) < 1e-4 * np.linalg.norm(expected)
+
+
+# --- the record ---
+
+@pytest.fixture(scope="module")
+def of_a_box():
+    return trace(scene_of(box((0.4, 0.5, 0.6)), yaw=0.4), radar_at(), num_rays=2000)
+
+
+def test_paths_name_a_point_on_an_edge(of_a_box):
+    edges = on_edges(of_a_box)
+    assert edges.num_paths > 0 and set(edges.num_bounces) == {1}
+    first = np.asarray(edges.offsets)
+    u, v = np.asarray(edges.u)[first], np.asarray(edges.v)[first]
+    assert np.all((u == 0.0) | (v == 0.0) | (u.astype(float) + v == 1.0))
+    corner = edges.points(0.0)[first] - np.mean(edges.points(0.0)[first], axis=0)
+    assert np.ptp(corner, axis=0) == pytest.approx([0.56, 0.61, 0.58], abs=0.05)
+
+
+def test_only_edges_that_both_antennas_see_make_echoes(of_a_box):
+    """Three faces of the box are in sight, with nine of its twelve edges."""
+    scene = scene_of(box((0.4, 0.5, 0.6)), yaw=0.4)
+    triangles = np.unique(np.asarray(on_edges(of_a_box).triangle_id)[np.asarray(on_edges(of_a_box).offsets)])
+    assert len(triangles) >= 5
+    scene.add(box((0.01, 5.0, 5.0)), name="screen", position=(4.0, 0.0, 0.0), material=ep.Material.metal())
+    hidden = trace(scene, radar_at())
+    assert hidden.select("T E'plate' R").num_paths == 0 < hidden.select("T E'screen' R").num_paths
+
+
+def test_expressions_and_partitions_know_them(of_a_box):
+    edges = of_a_box.select("T E R")
+    assert edges.num_paths == of_a_box.select("T E'plate' R").num_paths == of_a_box.select("T ['plate'] R & T E R").num_paths
+    assert (of_a_box.select("T S R").num_paths + edges.num_paths == of_a_box.select("T . R").num_paths
+            == of_a_box.num_paths)
+    assert of_a_box.select("T D R").num_paths == of_a_box.select("T E E R").num_paths == 0
+    radar = of_a_box.radar
+    parts = ep.decompose(of_a_box, radar, {"edges": "T .* E .* R"})
+    assert parts["edges"] == pytest.approx(ep.synthesize(edges, radar, tolerance=1e-9), abs=1e-6 * np.abs(parts["edges"]).max())
+    assert list(of_a_box.to_dataframe()["events"]).count("E") == edges.num_paths
+
+
+def test_files_and_pickles_keep_them(of_a_box, tmp_path):
+    of_a_box.save(tmp_path / "box.h5")
+    for again in (ep.Paths.load(tmp_path / "box.h5"), pickle.loads(pickle.dumps(of_a_box))):
+        assert again.frame.edges
+        assert np.array_equal(again.flags, of_a_box.flags)
+        assert np.array_equal(on_edges(again).amplitude, on_edges(of_a_box).amplitude)
+
+
+def test_a_record_whose_edge_is_none_is_refused(of_a_box):
+    names = ("offsets", "num_bounces", "diffuse", "weight", "stratum", "batch", "flags", "curved_cell", "jones")
+    columns = {name: np.array(getattr(of_a_box, name)) for name in names}
+    columns = {name: value for name, value in columns.items() if len(value)}
+    edge = int(np.flatnonzero(columns["flags"] & 4)[0])
+    hits = np.array(of_a_box.hits)
+    hits["u"][columns["offsets"][edge]] = hits["v"][columns["offsets"][edge]] = 0.25
+    with pytest.raises(ValueError, match="flags: must name hits on sharp edges"):
+        ep.Paths.from_arrays(hits=hits, **columns, scene=of_a_box.scene, radar=of_a_box.radar, frame=of_a_box.frame)
+
+
+def test_the_frame_stays_valid_while_nothing_moves(of_a_box):
+    report = ep.validity(of_a_box, of_a_box.radar)
+    assert report.ok
+    assert report.occluded_share == report.turned_share == report.left_share == 0.0
+
+
+# --- what has none ---
+
+@pytest.mark.parametrize("material, has_edges", [
+    (ep.Material.metal(), True), (ep.Material(reflectivity=0.25), True), (ep.Material(permittivity=4.0 - 0.2j), False)])
+def test_edges_of_conductors_make_echoes(material, has_edges):
+    paths = trace(scene_of(sheet(), material=material), radar_at())
+    assert (on_edges(paths).num_paths > 0) == has_edges
+
+
+def test_a_surface_that_reflects_less_has_weaker_edges():
+    full, half = (fields(on_edges(trace(scene_of(sheet(), material=material), radar_at()))).sum()
+                  for material in (ep.Material.metal(), ep.Material(reflectivity=0.25)))
+    assert half == pytest.approx(0.5 * full, rel=1e-5)
+
+
+def test_round_bodies_have_none():
+    assert on_edges(trace(scene_of(sphere((0.0, 0.0, 0.0), 0.2, 3)), radar_at())).num_paths == 0
+
+
+def test_without_the_keyword_nothing_is_looked_for():
+    paths = trace(scene_of(sheet()), radar_at(), edges=False)
+    assert not paths.frame.edges and not np.any(np.asarray(paths.flags) & 4)
+    assert on_edges(paths).num_paths == 0
+
+
+def test_effects_say_with_what_power():
+    off, on = ({effect.name: effect for effect in trace(scene_of(sheet()), radar_at(), edges=edges).effects}
+               for edges in (False, True))
+    assert not off["edge diffraction"].modelled and "edges = False" in off["edge diffraction"].reason
+    assert on["edge diffraction"].modelled and "dBm" in on["edge diffraction"].reason
+
+
+def test_frames_take_the_keyword():
+    frame = ep.simulate(scene_of(sheet(), yaw=0.5), radar_at(num_chirps=4), num_rays=500, edges=True, guard=False)
+    assert on_edges(frame.paths).num_paths > 0
+    with pytest.raises(TypeError, match="edges"):
+        ep.simulate(scene_of(sheet()), radar_at(), edges="yes")

@@ -1,5 +1,6 @@
 #include "echopath/trace/tracer.h"
 
+#include <iterator>
 #include <sstream>
 
 #include "echopath/base/machine_memory.h"
@@ -7,6 +8,7 @@
 #include "echopath/trace/edges/edge_paths.h"
 #include "echopath/trace/launch/aimed_points.h"
 #include "echopath/trace/mirrors/mirror_paths.h"
+#include "echopath/trace/record/record_writer.h"
 
 namespace echopath {
 namespace {
@@ -119,8 +121,12 @@ void Tracer::shoot_block(int64_t index, PathBlock& block) const {
   shoot(index * kRaysPerBlock, std::min(end, (index + 1) * kRaysPerBlock), block);
 }
 
-std::vector<PathBlock> Tracer::find_paths_over_mirrors(Job* job) const {
-  return find_mirror_paths(geometry_, mirrors_, sbr_, frusta_, job);
+std::vector<PathBlock> Tracer::find_paths_without_rays(Job* job) const {
+  std::vector<PathBlock> blocks = find_mirror_paths(geometry_, mirrors_, sbr_, frusta_, job);
+  if (!empty_.frame.edges) return blocks;
+  std::vector<PathBlock> of_edges = find_edge_paths({*empty_.scene, pose_, geometry_, mirrors_, sbr_, frusta_}, job);
+  std::move(of_edges.begin(), of_edges.end(), std::back_inserter(blocks));
+  return blocks;
 }
 
 // Shoots every `step`-th block.
@@ -161,23 +167,15 @@ void Tracer::require_memory(const std::vector<PathBlock>& ahead) const {
   require(false, "num_rays", rule.str(), most_rays);
 }
 
-void Tracer::append_edge_paths(RecordWriter& record, Job* job) const {
-  const std::vector<PathBlock> blocks = find_edge_paths({*empty_.scene, pose_, geometry_, mirrors_, sbr_, frusta_}, job);
-  std::vector<const PathBlock*> all;
-  for (const PathBlock& block : blocks) all.push_back(&block);
-  record.append(all, job);
-}
-
 // Shoots in waves: the blocks are still in the cache when they become part of the record, and the next wave uses their
 // memory.
 Paths Tracer::run(Job* job) const {
   Paths paths = empty_;
   RecordWriter record(paths);
-  const std::vector<PathBlock> over_mirrors = find_paths_over_mirrors(job);
-  std::vector<const PathBlock*> all_over_mirrors;
-  for (const PathBlock& block : over_mirrors) all_over_mirrors.push_back(&block);
-  record.append(all_over_mirrors, job);
-  if (paths.frame.edges) append_edge_paths(record, job);
+  const std::vector<PathBlock> without_rays = find_paths_without_rays(job);
+  std::vector<const PathBlock*> first_blocks;
+  for (const PathBlock& block : without_rays) first_blocks.push_back(&block);
+  record.append(first_blocks, job);
   if (job) job->start(num_blocks());
   std::vector<PathBlock> ahead, wave(static_cast<size_t>(std::max(kBlocksPerWave, kBlocksPerThread * num_threads())));
   const int64_t step = (num_blocks() + kBlocksAhead - 1) / kBlocksAhead;

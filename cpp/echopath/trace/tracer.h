@@ -3,7 +3,6 @@
 // module.
 #include "echopath/trace/geometry/kept_geometry.h"
 #include "echopath/trace/mirrors/plane_images.h"
-#include "echopath/trace/record/record_writer.h"
 #include "echopath/trace/sbr/sbr.h"
 #include "echopath/trace/trace.h"
 
@@ -30,8 +29,8 @@ class Tracer {
   const LaunchPlan& plan() const { return plan_; }
   const SbrSettings& sbr() const { return sbr_; }
   const AntennaFrusta& frusta() const { return frusta_; }
-  // Returns the paths over flagged mirrors alone.
-  std::vector<PathBlock> find_paths_over_mirrors(Job* job) const;
+  // Returns the paths that need no rays: over flagged mirrors alone, and those of edges where they are asked for.
+  std::vector<PathBlock> find_paths_without_rays(Job* job) const;
   // Returns what finds the paths over other planes, from the blocks that it is given.
   PlaneImages plane_images() const { return {*empty_.scene, geometry_, sbr_}; }
 
@@ -39,7 +38,6 @@ class Tracer {
   std::vector<PathBlock> shoot_ahead(int64_t step, Job* job) const;
   std::vector<const PathBlock*> shoot_wave(int64_t begin, const std::vector<PathBlock>& ahead, int64_t step,
                                            std::vector<PathBlock>& wave, Job* job) const;
-  void append_edge_paths(RecordWriter& record, Job* job) const;
   void require_memory(const std::vector<PathBlock>& ahead) const;
   LaunchPlan plan_rays(const TraceSettings& settings, FittedStrata* fitted);
   SbrSettings settings_of_rays(const TraceSettings& settings) const;

@@ -61,7 +61,7 @@ LiveRecord::LiveRecord(const Tracer& tracer, const TraceSettings& settings)
 
 Paths LiveRecord::paths_of(const std::vector<LiveBlockPtr>& some, Job* job) const {
   std::vector<const PathBlock*> parts;
-  for (const PathBlock& block : over_mirrors) parts.push_back(&block);
+  for (const PathBlock& block : without_rays) parts.push_back(&block);
   for (const LiveBlockPtr& block : some) parts.push_back(&block->paths);
   parts.push_back(&over_planes);
   Paths paths = empty;

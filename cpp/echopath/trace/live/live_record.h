@@ -51,11 +51,11 @@ class LiveRecord {
   SharedByRays shared;
   std::vector<Eigen::AlignedBox3d> boxes;  // of the meshes
   std::vector<LiveBlockPtr> blocks;
-  std::vector<PathBlock> over_mirrors;
+  std::vector<PathBlock> without_rays;
   PathBlock over_planes;
   PlaneDoubles doubles;
 
-  // Returns the record of the paths over mirrors and planes and of these blocks.
+  // Returns the record of the paths that need no rays, of these blocks and of the paths over planes.
   Paths paths_of(const std::vector<LiveBlockPtr>& some, Job* job) const;
 };
 

@@ -122,7 +122,7 @@ LiveTrace::Next LiveTrace::prepare(const SceneSnapshot& scene, const Radar& rada
   Change change;
   if (job) job->start(std::ssize(block_bounds(tracer.plan())));
   change.num_rays_shot = fill(tracer, comparison, next->blocks, job);
-  next->over_mirrors = tracer.find_paths_over_mirrors(job);
+  next->without_rays = tracer.find_paths_without_rays(job);
   PlaneImages images = tracer.plane_images();
   for (const LiveBlockPtr& block : next->blocks) images.add_chains(block->paths);
   next->over_planes = images.find(job);

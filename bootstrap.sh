@@ -150,9 +150,12 @@ run_pytest() {
   return "$status"
 }
 
-# On all processors, files as a whole, since the tests of a file share what is slow to make, and in the order of conftest.py.
+# On all processors, files as a whole, since the tests of a file share what is slow to make, and by name: xdist would begin
+# those of few tests last, which are the longest.
+# NumPy and FINUFFT keep to one thread each: those of several processes would wait for each other at full speed.
 run_python_tests() {
-  run_pytest python "$python" -m pytest --numprocesses "$(nproc)" --dist loadfile --no-loadscope-reorder tests/python "$@"
+  OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 run_pytest python "$python" -m pytest --numprocesses "$(nproc)" --dist loadfile \
+    --no-loadscope-reorder tests/python "$@"
 }
 
 # They wait for windows, in one process.

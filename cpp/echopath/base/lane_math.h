@@ -88,6 +88,17 @@ ECHOPATH_INLINE Vec every_other(Vec a, Vec b) {
 #endif
 }
 
+// The lanes of a but the first, then the first of b.
+ECHOPATH_INLINE Vec without_first(Vec a, Vec b) {
+#if ECHOPATH_LANES == 8
+  return __builtin_shufflevector(a, b, 1, 2, 3, 4, 5, 6, 7, 8);
+#elif ECHOPATH_LANES == 4
+  return __builtin_shufflevector(a, b, 1, 2, 3, 4);
+#else
+  return __builtin_shufflevector(a, b, 1, 2);
+#endif
+}
+
 // Lane i of the result is the sum of all lanes of x[i].
 ECHOPATH_INLINE Vec sums(const Vec* x) {
 #if ECHOPATH_LANES == 8

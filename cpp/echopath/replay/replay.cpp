@@ -25,7 +25,7 @@ constexpr double kFirstAmplitude = 1.0;  // relative to the largest
 
 // A path whose launch cell filters its amplitude down to this share of the tolerance, of what it would be without the
 // filter, needs no polynomial that follows it.
-constexpr double kDarkShare = 1e-3;
+constexpr double kDarkShare = 1e-5;
 
 // Returns the order at which a tail found at `order` would be within its tolerance.
 double order_for(double tolerance, double tail, double first, int order) {

@@ -256,7 +256,10 @@ void Synthesizer::add_still_part(std::span<const Echoes> blocks, Range part, con
 
 // Each task clears its own chirps in the rows of groups that are new.
 void Synthesizer::add_moving(std::span<const Echoes> blocks, ChannelRows& rows, Job* job) {
-  if (spread_ && !tiles_) tiles_ = KeptMemory::of_process().take<EchoTiles>();
+  if (spread_ && !tiles_) {
+    tiles_ = KeptMemory::of_process().take<EchoTiles>();
+    tiles_->forget();
+  }
   if (spread_) tiles_->assign(blocks, num_groups_, longest_delay(), static_cast<int>(spread_->spreading().grid_size));
   const std::vector<uint8_t> has_echoes = spread_ ? groups_of(*tiles_, num_groups_) : groups_of(blocks, num_groups_);
   const int64_t size = row_size(true);

@@ -53,6 +53,20 @@ TEST(DarkPaths, FilterThatStaysLowIsDark) {
   EXPECT_TRUE(is_found_dark(-12.0, -15.0));
 }
 
+// The logarithm in between is good to 2e-6.
+TEST(DarkPaths, EvenAmplitudesAreDarkExactlyBelowTheLimit) {
+  constexpr double kMargin = 1e-5;
+  const FrameNodes nodes = chebyshev_nodes(radar_of_a_frame(), 0.0, {}, kOrder);
+  for (double limit = 1e-60; limit < 1e3; limit *= 2.7) {
+    for (const double side : {-1.0, 1.0}) {
+      Echoes echoes;
+      echoes.num_echoes = 1;
+      echoes.amplitude.assign(nodes.times.size(), std::polar(limit * (1.0 + side * kMargin), 0.7));
+      EXPECT_EQ(is_dark(nodes, echoes, 0, limit), side < 0) << limit;
+    }
+  }
+}
+
 TEST(DarkPaths, FilterThatRisesAboveTheLimitIsNot) {
   ASSERT_GT(highest(8.0, 5.0), kLimit);
   EXPECT_FALSE(is_found_dark(8.0, 5.0));

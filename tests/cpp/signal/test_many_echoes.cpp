@@ -1,6 +1,8 @@
 // The NUFFT as it adds many moving echoes: sorted, in tiles, by moments of cells. Truth is the direct sum in double.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "cpp/signal/slow_sum.h"
 #include "echopath/base/parallel.h"
 
@@ -179,6 +181,46 @@ TEST(ManyEchoes, GroupsOfACrowdHoldTheirOwnAndAddUpToIt) {
     for (size_t i = 0; i < sum.size(); ++i) sum[i] += part[i];
   }
   EXPECT_LT(testing::largest_difference(sum, whole), kAdditivity * 3000);
+}
+
+// The second channel is near the first, so it takes over its order; the third has other delays and the fourth other groups.
+TEST(ManyEchoes, ChannelsThatShareAnOrderAndOthersEqualTheDirectSum) {
+  const ChirpSequence w = few_chirps();
+  constexpr double kTolerance = 1e-9;
+  constexpr int kCount = 900;
+  std::vector<Echoes> channels(4, crowd(w, kCount, 400 * cell_delay(w), 40, 1));
+  for (Echoes& echoes : channels) {
+    for (int p = 0; p < kCount; ++p) echoes.group.push_back(static_cast<uint32_t>(p % 2));
+  }
+  for (double& delay : channels[1].delay) delay += 0.3 * cell_delay(w);
+  for (Complex& amplitude : channels[1].amplitude) amplitude *= Complex(0.0, 1.0);
+  for (double& delay : channels[2].delay) delay = 840 * cell_delay(w) - delay;
+  std::reverse(channels[3].group.begin() + kCount / 2, channels[3].group.end());
+  channels[3].group.front() = 1;
+  Synthesizer all(w, 4, 2, kCount, {kTolerance, Method::kNufft});
+  for (int channel = 0; channel < 4; ++channel) all.add(channel, channels[static_cast<size_t>(channel)]);
+  for (uint32_t group = 0; group < 2; ++group) {
+    const std::vector<Complex> found = all.cube(static_cast<int>(group));
+    for (size_t channel = 0; channel < 4; ++channel) {
+      const Echoes own = echoes_of_group(channels[channel], group);
+      const auto direct = testing::synthesize(w, own, {.method = Method::kDirect});
+      const auto first = found.begin() + static_cast<ptrdiff_t>(channel * direct.size());
+      const std::vector<Complex> here(first, first + static_cast<ptrdiff_t>(direct.size()));
+      EXPECT_LT(rms_error(here, direct, testing::sum_of_magnitudes(own.amplitude)), kTolerance) << channel;
+    }
+  }
+}
+
+// Echoes that others before them resemble are sorted on their own all the same.
+TEST(ManyEchoes, OrderOfOtherWorkLeavesNoTrace) {
+  const ChirpSequence w = few_chirps();
+  const Echoes echoes = crowd(w, 900, 400 * cell_delay(w), 40, 1);
+  Echoes others = echoes;
+  for (size_t p = 0; p < others.delay.size(); ++p) others.delay[p] += (p % 3 - 1.0) * 0.8 * cell_delay(w);
+  const SynthesisOptions options{1e-9, Method::kNufft};
+  const auto expected = testing::synthesize(w, echoes, options);
+  testing::synthesize(w, others, options);
+  EXPECT_EQ(testing::synthesize(w, echoes, options), expected);
 }
 
 // tau = a + b x + c x^2 through three nodes, x the share of the frame: each chirp has a rate of its own.

@@ -127,14 +127,59 @@ void EchoTiles::find_keys(std::span<const Echoes> blocks, double longest_delay, 
   });
 }
 
-void EchoTiles::assign(std::span<const Echoes> blocks, int num_groups, double longest_delay, int num_cells) {
-  num_nodes_ = blocks.front().sampling.num_rows;
+void EchoTiles::sort(std::span<const Echoes> blocks, int num_groups, double longest_delay, int num_cells) {
   const DriftClasses drifts = classes_of_drift(blocks, longest_delay, num_cells);
   set_bits(blocks, num_groups, drifts.count);
   find_keys(blocks, longest_delay, drifts);
   radix_sort(order_, spare_order_, index_bits_, group_shift() + group_bits_);
+  remember(blocks);
   cut();
+}
+
+void EchoTiles::assign(std::span<const Echoes> blocks, int num_groups, double longest_delay, int num_cells) {
+  num_nodes_ = blocks.front().sampling.num_rows;
+  if (!fits(blocks, longest_delay / num_cells)) sort(blocks, num_groups, longest_delay, num_cells);
+  make_room();
   gather(blocks);
+}
+
+namespace {
+
+constexpr int64_t kSampleStep = 61;  // of the echoes whose delays tell whether an order fits
+
+// Calls visit(delay in the middle of the frame) for some echoes of a block.
+template <class Visit>
+void visit_samples(const Echoes& block, Visit visit) {
+  const double* delay = block.delay.data() + int64_t{block.sampling.num_rows / 2} * block.num_echoes;
+  for (int64_t p = 0; p < block.num_echoes; p += kSampleStep) visit(delay[p]);
+}
+
+}  // namespace
+
+void EchoTiles::remember(std::span<const Echoes> blocks) {
+  sizes_.clear();
+  samples_.clear();
+  groups_.resize(blocks.size());
+  for (size_t b = 0; b < blocks.size(); ++b) {
+    sizes_.push_back(blocks[b].num_echoes);
+    groups_[b] = blocks[b].group;
+    visit_samples(blocks[b], [&](double delay) { samples_.push_back(delay); });
+  }
+}
+
+// The order of another channel serves where the delays are the same to within a cell: antennas of an array are nearer to each
+// other than that. An order that does not suit the delays costs time and no accuracy.
+bool EchoTiles::fits(std::span<const Echoes> blocks, double cell) const {
+  if (sizes_.size() != blocks.size()) return false;
+  for (size_t b = 0; b < blocks.size(); ++b) {
+    if (sizes_[b] != blocks[b].num_echoes || groups_[b] != blocks[b].group) return false;
+  }
+  bool are_near = true;
+  auto sample = samples_.begin();
+  for (const Echoes& block : blocks) {
+    visit_samples(block, [&](double delay) { are_near = are_near && std::abs(delay - *sample++) < cell; });
+  }
+  return are_near;
 }
 
 // A tile ends where its group does.
@@ -157,7 +202,12 @@ void EchoTiles::cut() {
     vector += (end - begin + kLanes - 1) / kLanes;
     begin = end;
   }
-  const size_t size = static_cast<size_t>(vector) * num_nodes_ * 3 * kLanes;
+}
+
+void EchoTiles::make_room() {
+  if (tiles_.empty()) return;
+  const int64_t num_vectors = tiles_.back().vector + (tiles_.back().count + kLanes - 1) / kLanes;
+  const size_t size = static_cast<size_t>(num_vectors) * num_nodes_ * 3 * kLanes;
   if (size <= num_values_) return;
   nodes_.reset();
   nodes_ = std::make_unique_for_overwrite<double[]>(size);

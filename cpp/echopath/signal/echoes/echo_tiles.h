@@ -23,8 +23,12 @@ class EchoTiles {
   };
 
   // Takes the echoes of `blocks`, which share one sampling. Delays in [0, longest_delay], a span of `num_cells` cells, are
-  // told apart, others are not. Memory is used again.
+  // told apart, others are not. Memory is used again, and so is the order where the echoes are those of the last call as
+  // another channel sees them.
   void assign(std::span<const Echoes> blocks, int num_groups, double longest_delay, int num_cells);
+
+  // Sorts the echoes of the next call, whatever came before: results must not depend on other work of the process.
+  void forget() { sizes_.clear(); }
 
   int num_nodes() const { return num_nodes_; }
   const std::vector<Tile>& tiles() const { return tiles_; }
@@ -34,7 +38,11 @@ class EchoTiles {
  private:
   void set_bits(std::span<const Echoes> blocks, int num_groups, int num_drifts);
   void find_keys(std::span<const Echoes> blocks, double longest_delay, const DriftClasses& drifts);
+  void sort(std::span<const Echoes> blocks, int num_groups, double longest_delay, int num_cells);
+  bool fits(std::span<const Echoes> blocks, double cell) const;
+  void remember(std::span<const Echoes> blocks);
   void cut();
+  void make_room();
   void gather(std::span<const Echoes> blocks);
 
   int num_nodes_ = 0;
@@ -42,6 +50,10 @@ class EchoTiles {
   int local_bits_ = 0, index_bits_ = 0, delay_bits_ = 0, drift_bits_ = 0, group_bits_ = 0;
   int group_shift() const { return index_bits_ + delay_bits_ + drift_bits_; }
   std::vector<uint64_t> order_, spare_order_;  // keys of all echoes, and room to sort them
+  // What was sorted: echoes and groups of each block, and delays of a few echoes (s).
+  std::vector<int64_t> sizes_;
+  std::vector<std::vector<uint32_t>> groups_;
+  std::vector<double> samples_;
   std::vector<Tile> tiles_;
   std::vector<int64_t> first_;       // [tiles], place of the first echo of each in the order
   std::unique_ptr<double[]> nodes_;  // with room for `num_values_`

@@ -16,8 +16,10 @@ constexpr int kTermsAtOnce = kLanes == 8 ? 12 : 5;
 // From this many echoes in one cell on, their moments are quicker than a kernel for each; for kernels of one vector or two.
 constexpr int kFewInCell[] = {3, 2};
 // Where runs of one cell have fewer echoes on average, it pays to bring those of a cell together, if the tile has few cells.
-constexpr int kShortRun = 8;
+constexpr int kShortRun = 4;
 constexpr int kCellsOfTile = 128;
+// Moments of so many cells stay in the first-level cache beside the places of the echoes.
+constexpr int kCellsInTable = 32;
 // Echoes of a sorted tile are spread at this many places in turn, because the sum of the last few is not yet ready to load.
 constexpr int kStreams = 8;
 
@@ -141,16 +143,26 @@ ECHOPATH_INLINE void visit_shares(int share, int count, Visit visit) {
   }
 }
 
-CellCounts count_cells(const int32_t* cell, int count) {
-  int32_t lowest = cell[0], highest = cell[0];
+struct CellRange {
+  int32_t lowest, highest;
+  int size() const { return highest - lowest + 1; }
+};
+
+CellRange range_of(const int32_t* cell, int count) {
+  CellRange range{cell[0], cell[0]};
   for (int p = 1; p < count; ++p) {
-    lowest = cell[p] < lowest ? cell[p] : lowest;
-    highest = cell[p] > highest ? cell[p] : highest;
+    range.lowest = cell[p] < range.lowest ? cell[p] : range.lowest;
+    range.highest = cell[p] > range.highest ? cell[p] : range.highest;
   }
+  return range;
+}
+
+CellCounts count_cells(const int32_t* cell, const CellRange& range, int count) {
+  const int32_t lowest = range.lowest;
   CellCounts counts;
   counts.share = (count + CellCounts::kCounters - 1) / CellCounts::kCounters;
   counts.lowest = lowest;
-  counts.num_cells = highest - lowest + 1;
+  counts.num_cells = range.size();
   if (counts.num_cells > kCellsOfTile) return counts;
   for (int c = 0; c < counts.num_cells; ++c) {
     for (int k = 0; k < CellCounts::kCounters; ++k) counts.count[c][k] = 0;
@@ -215,22 +227,38 @@ struct Spreader {
     add_window(re, im, first + places.cell[p]);
   }
 
-  // Sums up to kLanes moments from d on over the lanes; a moment that is left alone is summed with both its parts at once.
+  // Holds the sums over echoes of one cell of (re + j im) t^d, d < kTerms.
+  struct Moments {
+    static constexpr int kRoom = (kTerms + 2 * kLanes - 1) / kLanes * kLanes;  // sums are stored in whole vectors
+    alignas(64) double re[kRoom], im[kRoom];
+
+    ECHOPATH_INLINE void clear() {
+#pragma GCC unroll 8
+      for (int d = 0; d < kRoom; d += kLanes) {
+        store(re + d, Vec{});
+        store(im + d, Vec{});
+      }
+    }
+  };
+
+  // Adds up to kLanes moments from d on, summed over the lanes; a moment that is left alone is summed with both its parts at
+  // once.
   template <int kFirst, int kCount>
-  ECHOPATH_INLINE static void add_up(int d, const Vec* moment_re, const Vec* moment_im, double* sum_re, double* sum_im) {
+  ECHOPATH_INLINE static void add_up(int d, const Vec* moment_re, const Vec* moment_im, Moments& to) {
+    double *const re = to.re + kFirst + d, *const im = to.im + kFirst + d;
     if (kLanes > 2 && d + 1 == kCount) {
       const Vec both = sums_of_two(moment_re[d], moment_im[d]);
-      sum_re[kFirst + d] = both[0];
-      sum_im[kFirst + d] = both[1];
+      *re += both[0];
+      *im += both[1];
       return;
     }
-    store(sum_re + kFirst + d, sums(moment_re + d));
-    store(sum_im + kFirst + d, sums(moment_im + d));
+    store(re, load(re) + sums(moment_re + d));
+    store(im, load(im) + sums(moment_im + d));
   }
 
-  // Adds terms [kFirst, kFirst + kCount) of echoes [begin, end), which share a cell: the sums of (re + j im) t^d.
+  // Adds terms [kFirst, kFirst + kCount) of echoes [begin, end), which share a cell.
   template <int kFirst, int kCount>
-  ECHOPATH_INLINE void add_moments(const Places& places, int begin, int end, double* sum_re, double* sum_im) const {
+  ECHOPATH_INLINE static void add_moments(const Places& places, int begin, int end, Moments& to) {
     constexpr int kRounded = (kCount + kLanes - 1) / kLanes * kLanes;
     Vec moment_re[kRounded] = {}, moment_im[kRounded] = {};
     Mask lane;
@@ -243,41 +271,119 @@ struct Spreader {
         re = kept ? re : Vec{};
         im = kept ? im : Vec{};
       }
+      // Even moments take the amplitude times powers of t^2, odd ones the amplitude times t likewise.
+      const Vec square = t * t, re_t = re * t, im_t = im * t;
       Vec power = all(1.0);
 #pragma GCC unroll 16
-      for (int d = 0; d < kFirst; ++d) power = power * t;
+      for (int d = 0; d + 1 < kFirst; d += 2) power = power * square;
 #pragma GCC unroll 16
       for (int d = 0; d < kCount; ++d) {
-        moment_re[d] = multiply_add(power, re, moment_re[d]);
-        moment_im[d] = multiply_add(power, im, moment_im[d]);
-        power = power * t;
+        const bool is_odd = (kFirst + d) % 2 != 0;
+        moment_re[d] = multiply_add(power, is_odd ? re_t : re, moment_re[d]);
+        moment_im[d] = multiply_add(power, is_odd ? im_t : im, moment_im[d]);
+        if (is_odd) power = power * square;
       }
     }
 #pragma GCC unroll 16
-    for (int d = 0; d < kCount; d += kLanes) add_up<kFirst, kCount>(d, moment_re, moment_im, sum_re, sum_im);
+    for (int d = 0; d < kCount; d += kLanes) add_up<kFirst, kCount>(d, moment_re, moment_im, to);
     if constexpr (kFirst + kCount < kTerms) {
       constexpr int kNext = kFirst + kCount, kLeft = kTerms - kNext;
-      add_moments<kNext, (kLeft < kTermsAtOnce ? kLeft : kTermsAtOnce)>(places, begin, end, sum_re, sum_im);
+      add_moments<kNext, (kLeft < kTermsAtOnce ? kLeft : kTermsAtOnce)>(places, begin, end, to);
     }
   }
+  ECHOPATH_INLINE static void add_all_moments(const Places& places, int begin, int end, Moments& to) {
+    add_moments<0, (kTerms < kTermsAtOnce ? kTerms : kTermsAtOnce)>(places, begin, end, to);
+  }
 
-  // The kernel is a polynomial in t, so a run of echoes needs its values once.
-  ECHOPATH_INLINE void add_run(const Places& places, int begin, int end, double* row) const {
-    alignas(64) double sum_re[kTerms + 2 * kLanes], sum_im[kTerms + 2 * kLanes];
-    add_moments<0, (kTerms < kTermsAtOnce ? kTerms : kTermsAtOnce)>(places, begin, end, sum_re, sum_im);
-    Vec re[kVectors] = {}, im[kVectors] = {};
+  // The kernel is a polynomial in t, so the echoes of a cell need its values once.
+  ECHOPATH_INLINE void add_kernels(const Moments& moments, Vec* re, Vec* im) const {
 #pragma GCC unroll 16
     for (int d = 0; d < kTerms; ++d) {
 #pragma GCC unroll 8
       for (int v = 0; v < kVectors; ++v) {
         const Vec coefficient = load(coefficients + (kTerms - 1 - d) * kPadded + v * kLanes);
-        re[v] = multiply_add(coefficient, all(sum_re[d]), re[v]);
-        im[v] = multiply_add(coefficient, all(sum_im[d]), im[v]);
+        re[v] = multiply_add(coefficient, all(moments.re[d]), re[v]);
+        im[v] = multiply_add(coefficient, all(moments.im[d]), im[v]);
       }
     }
+  }
+
+  ECHOPATH_INLINE void add_run(const Places& places, int begin, int end, double* row) const {
+    Moments moments;
+    moments.clear();
+    add_all_moments(places, begin, end, moments);
+    Vec re[kVectors] = {}, im[kVectors] = {};
+    add_kernels(moments, re, im);
     add_window(re, im, row);
   }
 
+  // Holds the values of the row that the kernel of one cell reaches. They are not read again from memory for the next cell:
+  // what was just written there is not yet ready to load in other parts.
+  class Window {
+   public:
+    ECHOPATH_INLINE Window(double* row, int64_t row_length) : re_(row), im_(row + row_length) {
+#pragma GCC unroll 8
+      for (int v = 0; v < kVectors; ++v) {
+        sum_re_[v] = load(re_ + v * kLanes);
+        sum_im_[v] = load(im_ + v * kLanes);
+      }
+    }
+
+    ECHOPATH_INLINE void add(const Vec* re, const Vec* im) {
+#pragma GCC unroll 8
+      for (int v = 0; v < kVectors; ++v) {
+        sum_re_[v] = sum_re_[v] + re[v];
+        sum_im_[v] = sum_im_[v] + im[v];
+      }
+    }
+
+    // Goes on to the next cell.
+    ECHOPATH_INLINE void move() {
+      move_part(sum_re_, re_++);
+      move_part(sum_im_, im_++);
+    }
+
+    ECHOPATH_INLINE void end() {
+#pragma GCC unroll 8
+      for (int v = 0; v < kVectors; ++v) {
+        store(re_ + v * kLanes, sum_re_[v]);
+        store(im_ + v * kLanes, sum_im_[v]);
+      }
+    }
+
+   private:
+    ECHOPATH_INLINE static void move_part(Vec* sum, double* at) {
+      *at = sum[0][0];
+      const Vec next = all(at[kPadded]);
+#pragma GCC unroll 8
+      for (int v = 0; v < kVectors; ++v) sum[v] = without_first(sum[v], v + 1 < kVectors ? sum[v + 1] : next);
+    }
+
+    double *re_, *im_;
+    Vec sum_re_[kVectors], sum_im_[kVectors];
+  };
+
+  // Adds runs by way of the moments of each cell in the range: a cell to which runs come back needs the kernel and the row but
+  // once.
+  void add_runs_by_cell(const Places& places, const RunEnds& ends, const CellRange& cells, double* first) const {
+    Moments table[kCellsInTable];
+    uint32_t taken = 0;
+    for (int c = 0; c < cells.size(); ++c) table[c].clear();
+    ends.visit_runs([&](int begin, int end) __attribute__((always_inline)) {
+      const int32_t cell = places.cell[begin] - cells.lowest;
+      taken |= uint32_t{1} << cell;
+      add_all_moments(places, begin, end, table[cell]);
+    });
+    Window window(first + cells.lowest, row_length);
+    for (int c = 0; c < cells.size(); ++c) {
+      if (c > 0) window.move();
+      if (!(taken >> c & 1)) continue;
+      Vec re[kVectors] = {}, im[kVectors] = {};
+      add_kernels(table[c], re, im);
+      window.add(re, im);
+    }
+    window.end();
+  }
   void add_runs(const Places& places, const RunEnds& ends, double* first) const {
     ends.visit_runs([&](int begin, int end)
                         __attribute__((always_inline)) { add_run(places, begin, end, first + places.cell[begin]); });
@@ -307,8 +413,9 @@ void spread_tile(const Spreading& spreading, const Places& places, int count, do
   const Spreader<kWidth> spreader{spreading.coefficients, spreading.row_length};
   const RunEnds ends(places.cell, count);
   const int runs = ends.count();
+  const CellRange range = range_of(places.cell, count);
   if (runs * kShortRun > count) {
-    CellCounts counts = count_cells(places.cell, count);
+    CellCounts counts = count_cells(places.cell, range, count);
     if (counts.num_cells <= kCellsOfTile && 2 * counts.num_taken <= runs && counts.num_taken * kFew <= count) {
       Places sorted;
       bring_together(places, count, counts, sorted);
@@ -316,6 +423,7 @@ void spread_tile(const Spreading& spreading, const Places& places, int count, do
     }
     if (runs * kFew > count) return spreader.add_apart(places, count, row);
   }
+  if (range.size() <= kCellsInTable) return spreader.add_runs_by_cell(places, ends, range, row);
   spreader.add_runs(places, ends, row);
 }
 

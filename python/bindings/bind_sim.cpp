@@ -111,11 +111,11 @@ std::unique_ptr<PartPass> part_pass(const Paths& paths, const Radar& radar, cons
 }
 
 py::list powers_of_pass(PartPass& pass, const PartPass::Sets& sets, const py::object& window, int zero_pad, double least,
-                        const py::object& progress) {
+                        const py::object& progress, const PartPass::Ranges& ranges) {
   const Window taper = as_window(window);
   py::list out;
   for (SetPower& of_set :
-       run_job("families", progress, [&](Job& job) { return pass.powers(sets, taper, zero_pad, least, &job); })) {
+       run_job("families", progress, [&](Job& job) { return pass.powers(sets, taper, zero_pad, least, &job, ranges); })) {
     out.append(py::make_tuple(numpy_take(std::move(of_set.cells)), of_set.mean_square));
   }
   return out;
@@ -161,10 +161,11 @@ of which is to be asked for once.)")
           [](PartPass& self) { run_job("families", py::none(), [&](Job& job) { self.finish_probe(&job); }); },
           "Fills the probe; to be called once, when all groups were added.")
       .def("powers", &powers_of_pass, py::arg("sets"), py::arg("window"), py::arg("zero_pad"), py::arg("least"),
-           py::arg("progress"),
+           py::arg("progress"), py::arg("ranges") = PartPass::Ranges(),
            R"(Powers of sets of groups in the cells of a range-Doppler map.
 
-sets: lists of groups whose fields add up; least: cells at ranges where one can show no more than that, in W, may be 0.
+sets: lists of groups whose fields add up; least: cells at ranges where one can show no more than that, in W, may be 0;
+ranges: of each set, 1 or 0 [R], whether cells of that range are asked for: the others may have no power; empty: all are.
 Returns for each (power [V * R] in W, mean over the channels, mean square of its
 samples in W).)")
       .def("cubes", &cubes_of_pass, py::arg("sets"), py::arg("progress"),

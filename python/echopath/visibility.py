@@ -22,7 +22,8 @@ class Sight:
         to 1. Names are those of objects, and of other surfaces as in `Family.via`
     in_view: an antenna has gain toward a part of it, hidden or not; toward a vertex of it where it is seen edge-on
     distance: m, to the nearest point of its triangles
-    solid_angle: sr that it would fill alone; 0: seen edge-on, and then the shares are 0
+    solid_angle: sr that it would fill alone, to a few percent where one surface hides all of it; 0: seen edge-on, and then
+        the shares are 0
     """
 
     visible_share: float

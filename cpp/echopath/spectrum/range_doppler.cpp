@@ -150,7 +150,7 @@ int64_t MapTransform::num_velocities() const { return plan_->doppler_fft.size();
 int64_t MapTransform::num_ranges() const { return plan_->num_ranges; }
 
 void MapTransform::transform(const std::complex<double>* samples, std::vector<std::complex<double>>& profiles,
-                             std::complex<double>* values) const {
+                             std::complex<double>* values, std::span<const uint8_t> asked) const {
   const int64_t num_chirps = static_cast<int64_t>(plan_->doppler_taper.size());
   const int64_t num_samples = static_cast<int64_t>(plan_->range_taper.size()), num_ranges = plan_->num_ranges;
   profiles.resize(static_cast<size_t>(num_chirps * num_ranges));
@@ -160,8 +160,10 @@ void MapTransform::transform(const std::complex<double>* samples, std::vector<st
                   profiles.data() + chirp * num_ranges);
   }
   for (int64_t first = 0; first < num_ranges; first += kColumnsPerTask) {
-    transform_strip(plan_->doppler_fft, plan_->doppler_taper, profiles.data() + first, num_ranges,
-                    std::min<int64_t>(kColumnsPerTask, num_ranges - first), values + first);
+    const int64_t count = std::min<int64_t>(kColumnsPerTask, num_ranges - first);
+    const auto in_strip = asked.empty() ? asked : asked.subspan(static_cast<size_t>(first), static_cast<size_t>(count));
+    if (!asked.empty() && std::none_of(in_strip.begin(), in_strip.end(), [](uint8_t one) { return one != 0; })) continue;
+    transform_strip(plan_->doppler_fft, plan_->doppler_taper, profiles.data() + first, num_ranges, count, values + first);
   }
 }
 

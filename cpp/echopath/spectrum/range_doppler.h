@@ -3,6 +3,7 @@
 #include <complex>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "echopath/base/job.h"
@@ -49,9 +50,10 @@ class MapTransform {
   MapTransform(MapTransform&&) noexcept;
   int64_t num_velocities() const;
   int64_t num_ranges() const;
-  // samples [chirp, sample] to values [V, R] in sqrt(W). `profiles` is memory for it.
+  // samples [chirp, sample] to values [V, R] in sqrt(W). `profiles` is memory for it. Ranges of which `asked` [R] is 0 may
+  // be left as they are; empty: all are asked for.
   void transform(const std::complex<double>* samples, std::vector<std::complex<double>>& profiles,
-                 std::complex<double>* values) const;
+                 std::complex<double>* values, std::span<const uint8_t> asked = {}) const;
   // The same where all chirps are alike, by the first of them: nearly no work.
   void transform_still(const std::complex<double>* samples, std::vector<std::complex<double>>& profiles,
                        std::complex<double>* values) const;

@@ -46,10 +46,14 @@ class CellOwners:
         self.family, self.own = np.where(mask, first[self._rival], NONE), np.where(mask, self.best, 0.0)
         return [rival for rival in np.unique(self._rival[mask]).tolist() if rival != NONE and len(self.rivals[rival]) > 1]
 
+    def ranges_of(self, rival: int) -> list:
+        """[R] 1 at the ranges where a rival has cells, else 0; after `give`."""
+        return np.any(self._mask & (self._rival == rival), axis=0).astype(np.uint8).tolist()
+
     def divide(self, rival: int, own, received) -> None:
         """Gives the cells of a rival to its strongest family by itself, the first of those that are alike.
 
-        own: [V, R] W of each of its families; received: W of each
+        own: [V, R] W of each of its families, at the ranges of its cells; received: W of each
         """
         numbers, at = np.array(self.rivals[rival], np.int32), self._mask & (self._rival == rival)
         here = np.stack([power[at] for power in own])

@@ -62,7 +62,7 @@ class FamilyPass:
         self._note_left_out(intervals)
         shared = owners.give(mask)
         alone = [[number] for rival in shared for number in owners.rivals[rival]]
-        powers = self._powers(alone, 0.0)
+        powers = self._powers(alone, 0.0, [owners.ranges_of(rival) for rival in shared for _ in owners.rivals[rival]])
         for rival in shared:
             own, received = zip(*(next(powers) for _ in owners.rivals[rival]))
             owners.divide(rival, own, received)
@@ -127,16 +127,19 @@ class FamilyPass:
             self._owners.add(rival, power, received)
             self._is_made[rival] = True
 
-    def _powers(self, sets: list, least: float):
+    def _powers(self, sets: list, least: float, ranges: list | None = None):
         """(power [V, R], mean square) in W of the signal of each set of families.
 
         least: W; cells at ranges where a set can show no more may be 0
+        ranges: of each set, [R] 1 where its power is asked for, else 0: there it may be 0; None: everywhere
         """
         plane, shape = self._request.plane, self._owners.best.shape
         most = max(1, SIGNALS_IN_MEMORY // self._pass.group_bytes)
-        for some in (sets[first:first + most] for first in range(0, len(sets), most)):
+        for first in range(0, len(sets), most):
+            some = sets[first:first + most]
             if plane.takes_receiver_sets:
-                for power, received in self._pass.powers(some, *plane.window_and_padding, least, self._progress):
+                asked = [] if ranges is None else ranges[first:first + most]
+                for power, received in self._pass.powers(some, *plane.window_and_padding, least, self._progress, asked):
                     yield power.reshape(shape), received
             else:
                 for cube in self._pass.cubes(some, self._progress):

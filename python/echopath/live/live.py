@@ -34,7 +34,7 @@ class Live:
     scene: is copied; radar: that looks at it, which may be set to another one at any time
     num_rays: 1 to 1e10, shared evenly among objects, their images and the field of view, half of them at least to what moves:
         the shares do not go by errors as those of `trace` do, because these change with every change of the scene
-    max_bounces, seed, start_time (s), polarization, footprint, sampler: as in `trace`
+    max_bounces, seed, start_time (s), polarization, footprint, sampler, edges: as in `trace`
     scatterers: "rays" (also for "auto"), or "surface" as in `trace`, so that the speckle of what is moved goes on; most rays
         are then shot again
     tolerance, replay, evaluate, phase_tolerance (rad): as in `synthesize`; method: likewise, where "auto" is "nufft" whatever
@@ -48,13 +48,14 @@ class Live:
                  max_bounces: int = TraceSettings.max_bounces, seed: int = TraceSettings.seed,
                  start_time: float = TraceSettings.start_time, polarization: Polarization = TraceSettings.polarization,
                  footprint: Footprint = TraceSettings.footprint, sampler: Sampler = TraceSettings.sampler,
-                 scatterers: Scatterers = TraceSettings.scatterers, tolerance: float = SignalSettings.tolerance,
+                 scatterers: Scatterers = TraceSettings.scatterers, edges: bool = TraceSettings.edges,
+                 tolerance: float = SignalSettings.tolerance,
                  method: Method = SignalSettings.method, replay: Replay = SignalSettings.replay,
                  evaluate: Evaluate = SignalSettings.evaluate, phase_tolerance: float = SignalSettings.phase_tolerance,
                  window: Window = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad):
         self._trace = {"max_bounces": max_bounces, "seed": seed, "start_time": start_time, "polarization": polarization,
                        "footprint": footprint, "sampler": sampler,
-                       "scatterers": "rays" if scatterers == "auto" else scatterers}
+                       "scatterers": "rays" if scatterers == "auto" else scatterers, "edges": edges}
         self._signal = {"tolerance": tolerance, "method": "nufft" if method == "auto" else method, "replay": replay,
                         "evaluate": evaluate, "phase_tolerance": phase_tolerance}
         self._window, self._zero_pad = window, zero_pad

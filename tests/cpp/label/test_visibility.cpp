@@ -22,8 +22,9 @@ constexpr double kShareError = 2e-3;  // of a share: 4096 directions over a stra
 constexpr double kAngleError = 3e-3;  // relative: all of the outline cuts cells of the lattice
 // Of a share of an object that fills 2 % of its cone, for the 1400 directions on it after refinement; 90 before.
 constexpr double kThinShareError = 3e-3;
-constexpr double kRounding = 1e-12;  // m
-constexpr double kSum = 1e-15;       // of some shares
+constexpr double kHiddenAngleError = 0.03;  // relative: 256 directions
+constexpr double kRounding = 1e-12;         // m
+constexpr double kSum = 1e-15;              // of some shares
 
 // Solid angle of the rectangle 0 <= y <= a, 0 <= z <= b at x = d, signed; seen from the origin.
 double corner_angle(double a, double b, double d) { return std::atan(a * b / (d * std::sqrt(a * a + b * b + d * d))); }
@@ -133,6 +134,31 @@ TEST(Visibility, EachEndSeesForItself) {
   EXPECT_EQ(seen.transmitter.visible_share, 0.0);
   EXPECT_EQ(seen.receiver.visible_share, 1.0);
   EXPECT_NEAR(seen.receiver.distance, std::hypot(10.0, 7.0), kRounding);  // the middle of an edge
+}
+
+TEST(Visibility, HiddenObjectsKeepTheirSolidAngle) {
+  Scene scene;
+  add_facing(scene, "plate", 10, -1, 1, -1, 1);
+  add_facing(scene, "screen", 5, -1, 1, -1, 1);
+  const Sight sight = seen_in(scene, {"plate"}).front().transmitter;
+  const double whole = rectangle_angle(-1, 1, -1, 1, 10);
+  EXPECT_EQ(sight.visible_share, 0.0);
+  EXPECT_EQ(occluded_by(sight, "screen"), 1.0);
+  EXPECT_NEAR(sight.solid_angle, whole, kHiddenAngleError * whole);
+  EXPECT_TRUE(sight.in_view);
+}
+
+// The plate is seen through a gap between two screens of one name, as wide as a sixth of it.
+TEST(Visibility, GapsInWhatHidesAnObjectAreFound) {
+  Scene scene;
+  add_facing(scene, "plate", 10, -1, 1, -1, 1);
+  add_mesh(scene, "screen",
+           {{5, -2, -2}, {5, 0.1, -2}, {5, 0.1, 2}, {5, -2, 2}, {5, 4.0 / 15, -2}, {5, 2, -2}, {5, 2, 2}, {5, 4.0 / 15, 2}},
+           {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}, share(Material::metal()));
+  const Sight sight = seen_in(scene, {"plate"}).front().transmitter;
+  const double visible = rectangle_angle(0.2, 8.0 / 15, -1, 1, 10) / rectangle_angle(-1, 1, -1, 1, 10);
+  EXPECT_NEAR(sight.visible_share, visible, kShareError);
+  EXPECT_NEAR(occluded_by(sight, "screen"), 1.0 - visible, kShareError);
 }
 
 TEST(Visibility, AntennasLookForwardOnly) {

@@ -92,6 +92,24 @@ TEST(PartPass, PowersOfSetsAreThoseOfTheSlowSums) {
   }
 }
 
+TEST(PartPass, RangesThatAreAskedForHaveTheSameBits) {
+  const Radar radar = radar_of();
+  const Paths paths = paths_of(radar);
+  PartPass pass(paths, radar, every_third(paths), 3, {});
+  const SetPower whole = pass.powers({{1}}, Window{}, 1, 0.0, nullptr).front();
+  const size_t num_ranges = whole.cells.size() / static_cast<size_t>(radar.waveform.num_chirps);
+  std::vector<uint8_t> asked(num_ranges);
+  const auto strongest = std::max_element(whole.cells.begin(), whole.cells.end()) - whole.cells.begin();
+  asked[static_cast<size_t>(strongest) % num_ranges] = asked.back() = 1;
+  const SetPower some = pass.powers({{1}}, Window{}, 1, 0.0, nullptr, {asked}).front();
+  for (size_t i = 0; i < whole.cells.size(); ++i) {
+    EXPECT_EQ(some.cells[i], asked[i % num_ranges] ? whole.cells[i] : 0.0) << i;
+  }
+  EXPECT_EQ(some.mean_square, whole.mean_square);
+  EXPECT_THROW(pass.powers({{1}}, Window{}, 1, 0.0, nullptr, {{1}}), std::invalid_argument);
+  EXPECT_THROW(pass.powers({{1}}, Window{}, 1, 0.0, nullptr, {asked, asked}), std::invalid_argument);
+}
+
 TEST(PartPass, EveryGroupMadeOnceAddsUpToTheWhole) {
   const Radar radar = radar_of();
   const Paths paths = paths_of(radar);
@@ -99,7 +117,7 @@ TEST(PartPass, EveryGroupMadeOnceAddsUpToTheWhole) {
   const std::vector<Cube> some = pass.cubes({{1}}, nullptr);
   pass.powers({{0}}, Window{}, 1, 0.0, nullptr);
   const std::vector<uint32_t> left{2};
-  pass.bounds(left, Window{}, 1, nullptr);
+  pass.bounds(left, Window{}, 1, 0.0, nullptr);
   pass.set_adds_up(false);
   pass.cubes({{0}, {2}}, nullptr);
   std::vector<std::complex<double>> expected = slow_samples(paths, radar, 1, std::vector<uint32_t>(paths.num_paths()), {0});
@@ -131,7 +149,7 @@ TEST(PartPass, BoundsHoldForThePowers) {
   const Paths paths = paths_of(radar);
   PartPass pass(paths, radar, every_third(paths), 3, {});
   const std::vector<uint32_t> groups{0, 1, 2};
-  const std::vector<double> bounds = pass.bounds(groups, Window{}, 1, nullptr);
+  const std::vector<double> bounds = pass.bounds(groups, Window{}, 1, 0.0, nullptr);
   pass.set_adds_up(false);
   const std::vector<SetPower> powers = pass.powers({{0}, {1}, {2}}, Window{}, 1, 0.0, nullptr);
   const auto num_ranges = bounds.size() / 3;

@@ -75,7 +75,8 @@ void NearestPoints::look_at_mesh(const Points& points, uint32_t mesh, std::array
   for (size_t i = 0; i < vertices.size(); ++i) squares[i] = (vertices[i] - points[0]).squaredNorm();
   const Vec3& nearest = vertices[static_cast<size_t>(std::min_element(squares.begin(), squares.end()) - squares.begin())];
   for (size_t k = 0; k < 2; ++k) least[k] = std::min(least[k], (nearest - points[k]).norm());
-  const double reach = std::max(least[0], least[1] + (points[1] - points[0]).norm()) + longest_edge(mesh) / std::numbers::sqrt3;
+  const double reach =
+      std::max(least[0], least[1] + (points[1] - points[0]).norm()) + longest_edge(mesh) / std::numbers::sqrt3;
   const double limit = reach * reach * (1.0 + 1e-9);
   const std::vector<Triangle>& triangles = scene_.node_of(mesh).mesh->triangles();
   for (uint32_t i = 0; i < triangles.size(); ++i) {

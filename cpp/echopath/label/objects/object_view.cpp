@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kBoxMargin = 16.0;   // lifts of the geometry: the rounding of vertices and rays in single precision
 constexpr double kEndMargin = 1e-6;   // relative to a distance, likewise
-constexpr double kLeast = 1e-300;      // stands for a direction's part that is zero
+constexpr double kLeast = 1e-300;     // stands for a direction's part that is zero
 constexpr size_t kMostBoxes = 32;     // of meshes; one box holds more of them
 constexpr size_t kFewVertices = 512;  // are as good as the corners of boxes
 constexpr int kFewTurns = 6;          // of strips: a stratum a little too wide costs fewer looks than the narrowest one
@@ -81,7 +81,8 @@ Stratum ObjectView::stratum(bool closely) const {
     if (by_boxes) add_corners(geometry_.box(mesh), points);
     else points.insert(points.end(), vertices.begin(), vertices.end());
   }
-  const std::optional<Stratum> found = fit_stratum(points, apex_, surfaces_.names[object_], closely ? kManyTurns : kFewTurns);
+  const std::optional<Stratum> found =
+      fit_stratum(points, apex_, surfaces_.names[object_], closely ? kManyTurns : kFewTurns);
   if (!found && by_boxes) return stratum(true);
   return found.value_or(Stratum{});
 }

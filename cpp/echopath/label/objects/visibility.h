@@ -35,6 +35,8 @@ struct VisibilitySettings {
   // (sight_grid.h), of up to 16 times as many cells where the object fills little of the stratum.
   // The error of a share is 4e-4 rms for half hidden plates and 4096 directions, and falls with the power -0.75. What hides
   // less than a block of the grid, 1/500 of the stratum, and nothing beside it, may be missed.
+  // An object before whose boxes one surface is met in each block is hidden by it; then only its solid angle is looked for,
+  // with a 16th of the directions (1.4 % rms for people, 9 % at most).
   int num_directions = 4096;
 };
 

@@ -129,24 +129,31 @@ std::vector<Cube> PartPass::cubes(const Sets& sets, Job* job) {
   return cubes;
 }
 
-std::vector<SetPower> PartPass::powers(const Sets& sets, const Window& window, int zero_pad, double least, Job* job) {
+std::vector<SetPower> PartPass::powers(const Sets& sets, const Window& window, int zero_pad, double least, Job* job,
+                                       const Ranges& ranges) {
+  const MapTransform map(radar_, window, zero_pad);
+  require(ranges.empty() || ranges.size() == sets.size(), "ranges", "must have one entry for each set", ranges.size());
+  for (const std::vector<uint8_t>& asked : ranges) {
+    require(std::ssize(asked) == map.num_ranges(), "ranges", "must have one entry for each range of the map", asked.size());
+  }
   const Sorted some = sorted(sets);
   Synthesizer signals = synthesizer(std::max(1, some.num_sets));
   run(some, false, &signals, nullptr, job);
   if (adds_up_) whole_.absorb(signals);
-  const MapTransform map(radar_, window, zero_pad);
   const BandMap band(radar_, window, zero_pad, least > 0.0 ? signals.spread() : nullptr);
   std::vector<SetPower> powers(sets.size());
   parallel_for(some.num_sets, [&](int64_t set) {
     if (job) job->throw_if_cancelled();
-    SetPower& power = powers[static_cast<size_t>(set)];
-    if (band.power(signals, stream_.num_channels(), static_cast<int>(set), least, power)) return;
-    power = power_of(signals, static_cast<int>(set), map);
+    const auto at = static_cast<size_t>(set);
+    if (band.power(signals, stream_.num_channels(), static_cast<int>(set), least, powers[at])) return;
+    const std::span<const uint8_t> asked = ranges.empty() ? std::span<const uint8_t>() : ranges[at];
+    powers[at] = power_of(signals, static_cast<int>(set), map, asked);
   });
   return powers;
 }
 
-SetPower PartPass::power_of(const Synthesizer& signals, int set, const MapTransform& map) const {
+SetPower PartPass::power_of(const Synthesizer& signals, int set, const MapTransform& map,
+                            std::span<const uint8_t> asked) const {
   const auto num_cells = static_cast<size_t>(map.num_velocities() * map.num_ranges());
   const int num_channels = stream_.num_channels();
   std::vector<std::complex<double>> profiles, values(num_cells);
@@ -158,8 +165,11 @@ SetPower PartPass::power_of(const Synthesizer& signals, int set, const MapTransf
     signals.write_samples(channel, set, samples.data());
     power.mean_square += sum_of_squares(samples);
     if (signals.is_still(channel, set)) map.transform_still(samples.data(), profiles, values.data());
-    else map.transform(samples.data(), profiles, values.data());
+    else map.transform(samples.data(), profiles, values.data(), asked);
     for (size_t cell = 0; cell < num_cells; ++cell) power.cells[cell] += std::norm(values[cell]);
+  }
+  for (size_t cell = 0; !asked.empty() && cell < num_cells; ++cell) {
+    if (!asked[cell % asked.size()]) power.cells[cell] = 0.0;
   }
   for (double& cell : power.cells) cell /= num_channels;
   power.mean_square /= static_cast<double>(num_channels) * static_cast<double>(samples.size());

@@ -31,9 +31,13 @@ class PartPass {
   void finish_probe(Job* job);
 
   using Sets = std::vector<std::vector<uint32_t>>;  // groups whose fields add up
-  // Returns the power of the signal of each set. Cells at ranges where a set can show no more than `least` W may be 0.
-  // Its memory is group_bytes() for each of them, and a few maps of a channel for each thread.
-  std::vector<SetPower> powers(const Sets& sets, const Window& window, int zero_pad, double least, Job* job);
+  // Returns the power of the signal of each set. Cells at ranges where a set can show no more than `least` W may be 0. With
+  // `ranges` [set][R] only those cells are looked at whose range is asked for (1, else 0), and the others may have no power.
+  // Its memory is group_bytes() for each of them, and a few maps of a channel for each thread. Raises invalid_argument where
+  // the ranges do not match the sets and the map.
+  using Ranges = std::vector<std::vector<uint8_t>>;
+  std::vector<SetPower> powers(const Sets& sets, const Window& window, int zero_pad, double least, Job* job,
+                               const Ranges& ranges = {});
   // Returns the signal of each set.
   std::vector<Cube> cubes(const Sets& sets, Job* job);
   // Adds some groups as one to the whole, where that is wanted, and returns bounds of what each can show (CellBounds):
@@ -46,7 +50,7 @@ class PartPass {
   Sorted sorted(const Sets& sets) const;
   Synthesizer synthesizer(int num_groups) const;
   void run(const Sorted& sorted, bool as_one, Synthesizer* out, CellBounds* bounds, Job* job);
-  SetPower power_of(const Synthesizer& signals, int set, const MapTransform& map) const;
+  SetPower power_of(const Synthesizer& signals, int set, const MapTransform& map, std::span<const uint8_t> asked) const;
 
   const Paths& paths_;
   const Radar& radar_;

@@ -183,8 +183,7 @@ PlanePoints turns_to_try(const PlanePoints& hull, int count) {
 
 }  // namespace
 
-std::optional<Stratum> fit_stratum(const std::vector<Vec3>& vertices, const Vec3& apex, std::string name,
-                                   int num_turns) {
+std::optional<Stratum> fit_stratum(const std::vector<Vec3>& vertices, const Vec3& apex, std::string name, int num_turns) {
   std::vector<Vec3> directions;
   directions.reserve(vertices.size());
   for (const Vec3& vertex : vertices) {

@@ -1,5 +1,5 @@
-// Trees that are kept and fitted answer as trees grown anew, after any sequence of changes; small neighbours share a tree, and
-// what rays meet of it goes by its own name.
+// Trees that are kept and fitted answer as trees grown anew, after any sequence of changes; small neighbours share a tree,
+// and what rays meet of it goes by its own name.
 #include <gtest/gtest.h>
 
 #include <algorithm>

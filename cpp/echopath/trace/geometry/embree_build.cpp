@@ -146,8 +146,9 @@ void EmbreeScene::Device::commit(Job* job) {
   check("building the scene");
 }
 
-// Threads put the trees of the meshes in any order below the upper one, on which it depends which of two coincident triangles
-// is met. So these grow on all threads, where there is much to grow, but the upper tree of the last commit on one.
+// Threads put the trees of the meshes in any order below the upper one, on which it depends which of two coincident
+// triangles is met. So these grow on all threads, where there is much to grow, but the upper tree of the last commit on
+// one.
 void EmbreeScene::Device::build(const EmbreeMeshes& meshes, Job* job) {
   if (!has_tree_per_mesh) return commit(job);
   if (!to_fit_.empty() || num_to_grow_ > kFewToGrow) {

@@ -93,9 +93,9 @@ struct EmbreeScene::Device final : EmbreeScene::Queries {
   ~Device() override;
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
-  // Starts a scene with one tree over all triangles, or (`tree_per_mesh`) with one for each geometry and one over those: then
-  // what moves costs a fit of its own tree and a new upper one. All follow from the triangles alone, however often and from
-  // what they were built before.
+  // Starts a scene with one tree over all triangles, or (`tree_per_mesh`) with one for each geometry and one over those:
+  // then what moves costs a fit of its own tree and a new upper one. All follow from the triangles alone, however often
+  // and from what they were built before.
   void start_scene(size_t num_ids, bool tree_per_mesh);
   // Sets a geometry to the mesh of that ID, which keeps its tree where it is the same mesh in much the same shape.
   void set_mesh(uint32_t mesh_id, const EmbreeMeshes& meshes);

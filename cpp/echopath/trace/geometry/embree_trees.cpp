@@ -9,8 +9,8 @@
 namespace echopath {
 namespace {
 
-// Largest EmbreeMeshes::Extent::mean_cover for trees of their own: where loose heaps of triangles lie over each other, queries
-// take 1.2 times as long at 2 and 1.8 times at 8.
+// Largest EmbreeMeshes::Extent::mean_cover for trees of their own: where loose heaps of triangles lie over each other,
+// queries take 1.2 times as long at 2 and 1.8 times at 8.
 constexpr double kMaxCover = 1.5;
 
 bool is_small(const EmbreeMeshes& meshes, uint32_t mesh_id) {

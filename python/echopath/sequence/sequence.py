@@ -29,6 +29,7 @@ from .record import record_of, start_time_of
 from .row import Row
 from .saving import SavedFrame, Shard, places_of, saved_frames, shard_rule
 from .stored import StoredSequence
+from .unused_memory import give_back_memory
 
 _ROUNDING = 1e-9  # relative, of an interval that is the duration of a frame by another sum
 
@@ -108,6 +109,7 @@ class Sequence(Row[Frame]):
             warn_of(frame.checks, stacklevel=stacklevel)
             yield frame
             del recorded, frame  # of which none is kept while the next is made
+            give_back_memory()
 
     def _recorded(self, place: int, progress=None, geometry=None) -> Recorded:
         """The record of the frame at a place; geometry: KeptGeometry where that of the scene is kept, None: as before."""

@@ -106,16 +106,17 @@ def _parser() -> argparse.ArgumentParser:
 
     bench = commands.add_parser("bench", help="measure error and speed side by side")
     bench.add_argument("what", choices=["physics", "replay", "labels", "hard", "speed", "crowd", "certificate", "targets",
-                                           "actors", "worlds", "live"],
+                                           "actors", "measured", "worlds", "live"],
                        help="physics: levels of canonical targets; replay: one record against tracing every chirp and "
                             "antenna; labels: cost of parts, rate of path expressions; hard: cases that break ray tracers "
                             "and coherent sums, each with its bound; speed: synthesis beside FINUFFT, frames, memory; "
                             "crowd: objects of a crowded scene against themselves alone; certificate: objects of random "
                             "moving scenes against traces of every 8th chirp, and what `validity` says of them; targets: a "
                             "pedestrian, a road and spheres beside published levels; actors: cross sections of vehicles, "
-                            "people and the rest over aspect; worlds: crowds, and cities of many walls and meshes, their "
-                            "mirror paths against a search over all walls; live: scenes that go on in time, a drive through a "
-                            "city street")
+                            "people and the rest over aspect; measured: a plate and a box of metal beside measurement and "
+                            "method of moments, with and without sharp edges; worlds: crowds, and cities of many walls and "
+                            "meshes, their mirror paths against a search over all walls; live: scenes that change and go on in "
+                            "time, a drive through a city street")
     bench.add_argument("--out", required=True, metavar="DIR", help="folder of its results")
     bench.add_argument("--quick", action="store_true", help="few shifts and rays, for a look; hard: without the heavy cases")
     bench.add_argument("--rays-max", type=positive, default=2**16, metavar="N",
@@ -272,15 +273,16 @@ def _labels(options) -> None:
 
 
 def _bench(options) -> None:
-    from ..bench import (actors, certificate, crowd, hard, labels, live, published, replay, report, run_actors,
-                         run_certificate, run_crowd, run_labels, run_live, run_physics, run_published, run_replay, run_speed,
-                         run_worlds, speed, worlds)
+    from ..bench import (actors, certificate, crowd, hard, labels, live, measured, published, replay, report, run_actors,
+                         run_certificate, run_crowd, run_labels, run_live, run_measured, run_physics, run_published,
+                         run_replay, run_speed, run_worlds, speed, worlds)
     from ..progress import progress_bars
 
     works = {"physics": (run_physics, report.describe), "labels": (run_labels, labels.describe),
              "hard": (hard.run_hard, hard.describe), "certificate": (run_certificate, certificate.describe),
              "crowd": (run_crowd, crowd.describe), "speed": (run_speed, speed.describe),
-             "actors": (run_actors, actors.describe), "worlds": (run_worlds, worlds.describe), "live": (run_live, live.describe),
+             "actors": (run_actors, actors.describe), "measured": (run_measured, measured.describe),
+             "worlds": (run_worlds, worlds.describe), "live": (run_live, live.describe),
              "targets": (run_published, published.describe), "replay": (run_replay, replay.describe)}
     more = {"physics": {"rays_max": options.rays_max}, "certificate": {"scenes": options.scenes}}
     require_writable(options.out, "--out")

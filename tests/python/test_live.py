@@ -97,7 +97,8 @@ def test_another_array_of_the_same_middle_shoots_none_and_is_right(live):
     assert difference(view, fresh_view(live)) < ROUNDING
 
 
-@pytest.mark.parametrize("keywords", [{"scatterers": "surface"}, {"polarization": "jones"}, {"method": "recurrence"}, {"edges": True}])
+@pytest.mark.parametrize("keywords", [{"scatterers": "surface"}, {"polarization": "jones"}, {"method": "recurrence"},
+                                      {"edges": True}])
 def test_settings_are_kept_through_changes(keywords):
     live = make_live(**keywords)
     live.update()

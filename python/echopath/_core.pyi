@@ -2178,7 +2178,7 @@ class Paths:
         A table with a row for each path, as a pandas.DataFrame.
 
         Columns: bounces (number of hits), meshes (their names in order of travel, "wall > walker/arm"), events (S specular,
-        D diffuse, a letter a hit), kind ("coherent" or "diffuse"), object, ghost_type and order (as `families` has them for the
+        D diffuse, E on an edge, a letter a hit), kind ("coherent" or "diffuse"), object, ghost_type and order (as `families` has them for the
         objects of the scene), length in m and power in W at the trace time for the first antennas, stratum (what its ray was aimed
         at, "" for paths by images), batch (255: of all batches) and is_reversed; units in `attrs["units"]`.
         Needs pandas, raises ModuleNotFoundError without it.
@@ -2441,7 +2441,7 @@ class LiveTrace:
         """
         The whole record, Paths.
         """
-    def update(self, scene: Scene, radar: Radar, *, num_rays: int, max_bounces: int, seed: int, start_time: float, polarization: str, footprint: str, sampler: str, scatterers: str, progress: typing.Any = None) -> dict[typing.Any, typing.Any]:
+    def update(self, scene: Scene, radar: Radar, *, num_rays: int, max_bounces: int, seed: int, start_time: float, polarization: str, footprint: str, sampler: str, scatterers: str, edges: bool, progress: typing.Any = None) -> dict[typing.Any, typing.Any]:
         """
         What ep.Live calls. Returns is_whole, num_rays_shot, and the Paths removed and added.
         """
@@ -2921,11 +2921,12 @@ class PartPass:
         """
         Fills the probe; to be called once, when all groups were added.
         """
-    def powers(self, sets: collections.abc.Sequence[collections.abc.Sequence[int]], window: typing.Any, zero_pad: int, least: float, progress: typing.Any) -> list[typing.Any]:
+    def powers(self, sets: collections.abc.Sequence[collections.abc.Sequence[int]], window: typing.Any, zero_pad: int, least: float, progress: typing.Any, ranges: collections.abc.Sequence[collections.abc.Sequence[int]] = []) -> list[typing.Any]:
         """
         Powers of sets of groups in the cells of a range-Doppler map.
 
-        sets: lists of groups whose fields add up; least: cells at ranges where one can show no more than that, in W, may be 0.
+        sets: lists of groups whose fields add up; least: cells at ranges where one can show no more than that, in W, may be 0;
+        ranges: of each set[typing.Any], 1 or 0 [R], whether cells of that range are asked for: the others may have no power; empty: all are.
         Returns for each (power [V * R] in W, mean over the channels, mean square of its
         samples in W).
         """

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cpp/label/plates.h"
 #include "echopath/base/parallel.h"
 #include "echopath/label/objects/appearing.h"
 #include "echopath/label/objects/visibility.h"
@@ -22,20 +23,8 @@ constexpr double kShareError = 2e-3;  // of a share: 4096 directions over a stra
 constexpr double kAngleError = 3e-3;  // relative: all of the outline cuts cells of the lattice
 // Of a share of an object that fills 2 % of its cone, for the 1400 directions on it after refinement; 90 before.
 constexpr double kThinShareError = 3e-3;
-constexpr double kHiddenAngleError = 0.03;  // relative: 256 directions
-constexpr double kRounding = 1e-12;         // m
-constexpr double kSum = 1e-15;              // of some shares
-
-// Solid angle of the rectangle 0 <= y <= a, 0 <= z <= b at x = d, signed; seen from the origin.
-double corner_angle(double a, double b, double d) { return std::atan(a * b / (d * std::sqrt(a * a + b * b + d * d))); }
-
-double rectangle_angle(double y0, double y1, double z0, double z1, double d) {
-  return corner_angle(y1, z1, d) - corner_angle(y0, z1, d) - corner_angle(y1, z0, d) + corner_angle(y0, z0, d);
-}
-
-void add_facing(Scene& scene, const std::string& name, double x, double y0, double y1, double z0, double z1) {
-  add_rectangle(scene, name, {x, y0, z0}, {0, y1 - y0, 0}, {0, 0, z1 - z0}, share(Material::metal()));
-}
+constexpr double kRounding = 1e-12;  // m
+constexpr double kSum = 1e-15;       // of some shares
 
 void add_disc(Scene& scene, const std::string& name, double x, double radius) {
   constexpr int kSides = 256;  // area short of the circle's by 1e-4
@@ -47,20 +36,6 @@ void add_disc(Scene& scene, const std::string& name, double x, double radius) {
     triangles.push_back({0, 1 + k, 1 + (k + 1) % kSides});
   }
   add_mesh(scene, name, vertices, triangles, share(Material::metal()));
-}
-
-std::vector<ObjectVisibility> seen_in(const Scene& scene, const std::vector<std::string>& names,
-                                      const Radar& radar = plain_radar(Vec3::Zero(), Vec3::Zero())) {
-  std::vector<NamedGlobs> objects;
-  for (const std::string& name : names) objects.push_back({name, {name}});
-  return visibility(scene, radar, map_surfaces(scene, objects));
-}
-
-double occluded_by(const Sight& sight, const std::string& name) {
-  for (const auto& [occluder, share] : sight.occluders) {
-    if (occluder == name) return share;
-  }
-  return 0.0;
 }
 
 TEST(Visibility, ScreenHidesWhatItCoversOfAPlate) {
@@ -134,31 +109,6 @@ TEST(Visibility, EachEndSeesForItself) {
   EXPECT_EQ(seen.transmitter.visible_share, 0.0);
   EXPECT_EQ(seen.receiver.visible_share, 1.0);
   EXPECT_NEAR(seen.receiver.distance, std::hypot(10.0, 7.0), kRounding);  // the middle of an edge
-}
-
-TEST(Visibility, HiddenObjectsKeepTheirSolidAngle) {
-  Scene scene;
-  add_facing(scene, "plate", 10, -1, 1, -1, 1);
-  add_facing(scene, "screen", 5, -1, 1, -1, 1);
-  const Sight sight = seen_in(scene, {"plate"}).front().transmitter;
-  const double whole = rectangle_angle(-1, 1, -1, 1, 10);
-  EXPECT_EQ(sight.visible_share, 0.0);
-  EXPECT_EQ(occluded_by(sight, "screen"), 1.0);
-  EXPECT_NEAR(sight.solid_angle, whole, kHiddenAngleError * whole);
-  EXPECT_TRUE(sight.in_view);
-}
-
-// The plate is seen through a gap between two screens of one name, as wide as a sixth of it.
-TEST(Visibility, GapsInWhatHidesAnObjectAreFound) {
-  Scene scene;
-  add_facing(scene, "plate", 10, -1, 1, -1, 1);
-  add_mesh(scene, "screen",
-           {{5, -2, -2}, {5, 0.1, -2}, {5, 0.1, 2}, {5, -2, 2}, {5, 4.0 / 15, -2}, {5, 2, -2}, {5, 2, 2}, {5, 4.0 / 15, 2}},
-           {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}, share(Material::metal()));
-  const Sight sight = seen_in(scene, {"plate"}).front().transmitter;
-  const double visible = rectangle_angle(0.2, 8.0 / 15, -1, 1, 10) / rectangle_angle(-1, 1, -1, 1, 10);
-  EXPECT_NEAR(sight.visible_share, visible, kShareError);
-  EXPECT_NEAR(occluded_by(sight, "screen"), 1.0 - visible, kShareError);
 }
 
 TEST(Visibility, AntennasLookForwardOnly) {

@@ -1,0 +1,39 @@
+#include <gtest/gtest.h>
+
+#include "cpp/label/plates.h"
+
+namespace echopath::test_hidden_objects {
+namespace {
+
+using namespace testing;
+
+constexpr double kShareError = 2e-3;        // as in test_visibility.cpp
+constexpr double kHiddenAngleError = 0.03;  // relative: 256 directions
+
+TEST(Visibility, HiddenObjectsKeepTheirSolidAngle) {
+  Scene scene;
+  add_facing(scene, "plate", 10, -1, 1, -1, 1);
+  add_facing(scene, "screen", 5, -1, 1, -1, 1);
+  const Sight sight = seen_in(scene, {"plate"}).front().transmitter;
+  const double whole = rectangle_angle(-1, 1, -1, 1, 10);
+  EXPECT_EQ(sight.visible_share, 0.0);
+  EXPECT_EQ(occluded_by(sight, "screen"), 1.0);
+  EXPECT_NEAR(sight.solid_angle, whole, kHiddenAngleError * whole);
+  EXPECT_TRUE(sight.in_view);
+}
+
+// The plate is seen through a gap between two screens of one name, as wide as a sixth of it.
+TEST(Visibility, GapsInWhatHidesAnObjectAreFound) {
+  Scene scene;
+  add_facing(scene, "plate", 10, -1, 1, -1, 1);
+  add_mesh(scene, "screen",
+           {{5, -2, -2}, {5, 0.1, -2}, {5, 0.1, 2}, {5, -2, 2}, {5, 4.0 / 15, -2}, {5, 2, -2}, {5, 2, 2}, {5, 4.0 / 15, 2}},
+           {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}, share(Material::metal()));
+  const Sight sight = seen_in(scene, {"plate"}).front().transmitter;
+  const double visible = rectangle_angle(0.2, 8.0 / 15, -1, 1, 10) / rectangle_angle(-1, 1, -1, 1, 10);
+  EXPECT_NEAR(sight.visible_share, visible, kShareError);
+  EXPECT_NEAR(occluded_by(sight, "screen"), 1.0 - visible, kShareError);
+}
+
+}  // namespace
+}  // namespace echopath::test_hidden_objects

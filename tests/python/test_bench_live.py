@@ -60,7 +60,7 @@ def test_rows_say_what_holds():
     found = {"triangles": 5, "all stages, s a frame": 2.5, "person, s": 1.0}
     rows = [{"what": what, "measured": value, "limit": drive.LIMITS.get(what),
              "holds": None if what not in drive.LIMITS else value <= drive.LIMITS[what]} for what, value in found.items()]
-    lines = live.describe({"machine": {"processor": "any", "threads": 2}, "rows": {"drive": rows}})
+    lines = live.describe({"machine": {"processor": "any", "threads": 2}, "rows": {"edits": [], "drive": rows}})
     assert lines[0] == "any, 2 threads"
     assert [line.split()[-1] for line in lines[-3:]] == ["5", "MISSED", "holds"]
 

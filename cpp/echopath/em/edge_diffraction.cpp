@@ -42,9 +42,9 @@ AtAngle at_angle(double c, double n, double& angle) {
   return {sine > 0 ? std::sin(w / n) / sine : 1.0 / n, difference(n), difference(1.0)};
 }
 
-// Returns the part of the matrix that one face makes. `angle` is that of the source, from this face; `n` is the exterior angle
-// over pi. The integrals of a current's two components along the strip are those of the exact solution less those of physical
-// optics, as far as the face is lit; `at_edge` is what the current across the edge leaves there.
+// Returns the part of the matrix that one face makes. `angle` is that of the source, from this face; `n` is the exterior
+// angle over pi. The integrals of a current's two components along the strip are those of the exact solution less those of
+// physical optics, as far as the face is lit; `at_edge` is what the current across the edge leaves there.
 Mat3 fringe_of_face(const WedgeFace& face, double n, double angle, const Vec3& in, const Vec3& out) {
   const Vec3 edge = face.inward.cross(face.normal);
   const double cosine = in.dot(edge), sine = std::sqrt(1.0 - cosine * cosine);
@@ -60,8 +60,8 @@ Mat3 fringe_of_face(const WedgeFace& face, double n, double angle, const Vec3& i
   return face.inward * across * magnetic.transpose() + edge * (along / sine * edge + of_magnetic * magnetic).transpose();
 }
 
-// Returns a direction near the plane of a face as one a little off it. Toward the grazing ray itself the coefficient depends on
-// how the ray is approached; the field across a sheet that is seen along itself is the limit of directions off its plane.
+// Returns a direction near the plane of a face as one a little off it. Toward the grazing ray itself the coefficient depends
+// on how the ray is approached; the field across a sheet that is seen along itself is the limit of directions off its plane.
 Vec3 off_faces(const Wedge& wedge, const Vec3& direction) {
   for (const WedgeFace& face : wedge.faces) {
     const double height = direction.dot(face.normal);

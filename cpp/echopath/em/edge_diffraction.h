@@ -2,13 +2,13 @@
 // Computes what physical optics leaves out at the edges of perfect conductors: the fringe currents beside an edge.
 //
 // The currents on both faces of a wedge are those of Sommerfeld's exact solution. Less those of physical optics, they are
-// integrated over a strip that begins at the edge and runs along the ray that grazes the face on Keller's cone; the strip does
-// not end. Physical optics and the fringe of all edges then count no current twice, and their sum is Keller's diffracted field
-// on the cone, in every direction about the edge. It stays finite at the boundaries of shadow and reflection. It is not finite
-// along the grazing ray itself (Ufimtsev's singularity), which no backscatter reaches but that from the plane of a face.
-// Higher orders are not modelled: the field of one edge is not cut off where another edge ends the face.
-// Sources: Michaeli 1986, "Elimination of infinities in equivalent edge currents, part I: fringe current components"; Mitzner
-// 1974 integrates across the edge instead; both agree on the cone (Knott 1985).
+// integrated over a strip that begins at the edge and runs along the ray that grazes the face on Keller's cone; the strip
+// does not end. Physical optics and the fringe of all edges then count no current twice, and their sum is Keller's
+// diffracted field on the cone, in every direction about the edge. It stays finite at the boundaries of shadow and
+// reflection. It is not finite along the grazing ray itself (Ufimtsev's singularity), which no backscatter reaches but that
+// from the plane of a face. Higher orders are not modelled: the field of one edge is not cut off where another edge ends the
+// face. Sources: Michaeli 1986, "Elimination of infinities in equivalent edge currents, part I: fringe current components";
+// Mitzner 1974 integrates across the edge instead; both agree on the cone (Knott 1985).
 #include "echopath/base/geometry.h"
 
 namespace echopath {
@@ -26,17 +26,17 @@ struct Wedge {
   double exterior_angle;
 };
 
-// Returns the wedge of two faces that end at one edge, with the space between their outsides; of both faces of one sheet, its
-// rim.
+// Returns the wedge of two faces that end at one edge, with the space between their outsides; of both faces of one sheet,
+// its rim.
 Wedge wedge_between(const WedgeFace& first, const WedgeFace& second);
 
 // Returns whether a unit vector from the edge leads into the space around the wedge.
 bool is_outside(const Wedge& wedge, const Vec3& direction);
 
-// Returns the real matrix M of the fringe of an edge. A wave that travels along the unit vector `in` with the field E makes the
-// field -j/(2 k) M E, across the unit vector `out`, that takes the place of Gamma K E of physical optics (surface_response.h)
-// times an area: it counts per metre of the edge, in m. M is zero inside of the wedge, for a flat wedge, and within 1e-3 rad
-// of the edge's own direction, along which the coefficient is not defined.
+// Returns the real matrix M of the fringe of an edge. A wave that travels along the unit vector `in` with the field E makes
+// the field -j/(2 k) M E, across the unit vector `out`, that takes the place of Gamma K E of physical optics
+// (surface_response.h) times an area: it counts per metre of the edge, in m. M is zero inside of the wedge, for a flat
+// wedge, and within 1e-3 rad of the edge's own direction, along which the coefficient is not defined.
 Mat3 fringe_matrix(const Wedge& wedge, const Vec3& in, const Vec3& out);
 
 // Returns the share of a straight piece of an edge: the mean of e^{-jx} over phases that grow by `phase` (rad) along it.

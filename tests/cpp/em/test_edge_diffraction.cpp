@@ -25,8 +25,8 @@ Wedge wedge_of(double exterior) {
   return {{{across(0.0), across(0.5 * kPi)}, {across(exterior), across(exterior - 0.5 * kPi)}}, exterior};
 }
 
-// Keller's coefficients of a wedge less those of the physical optics of its lit faces, f1 and g1 of Ufimtsev 2007 (Fundamentals
-// of the Physical Theory of Diffraction, equations 3.59 and 4.20 to 4.22).
+// Keller's coefficients of a wedge less those of the physical optics of its lit faces, f1 and g1 of Ufimtsev 2007
+// (Fundamentals of the Physical Theory of Diffraction, equations 3.59 and 4.20 to 4.22).
 struct FringeOfWedge {
   double electric, magnetic;
 };
@@ -112,8 +112,8 @@ Complex fresnel(double a) {
   return std::exp(-kJ * a * a) * sum * kStep / std::sqrt(kPi);
 }
 
-// Holds the currents of Sommerfeld's half plane less those of physical optics at x (in 1/k across the edge): across the edge of
-// a unit magnetic field along it, and along the edge of a unit electric field.
+// Holds the currents of Sommerfeld's half plane less those of physical optics at x (in 1/k across the edge): across the edge
+// of a unit magnetic field along it, and along the edge of a unit electric field.
 struct FringeCurrents {
   Complex across, along;
 };
@@ -197,8 +197,8 @@ BothKinds sommerfeld(double source, double rho, double at) {
   return {part(at - source) - part(at + source), part(at - source) + part(at + source)};
 }
 
-// Returns the incident field and that of the physical optics of the half plane, by a sum over its currents, whose far end fades
-// out.
+// Returns the incident field and that of the physical optics of the half plane, by a sum over its currents, whose far end
+// fades out.
 BothKinds physical_optics(double source, double rho, double at) {
   const double step = 0.13, end = 12000.0;
   BothKinds sum{0.0, 0.0};
@@ -240,7 +240,8 @@ TEST(EdgeDiffraction, PhysicalOpticsAndFringeAreSommerfeldsHalfPlane) {
   }
 }
 
-// The field of an edge on Keller's cone, with that of physical optics, is the same when source and receiver change their places.
+// The field of an edge on Keller's cone, with that of physical optics, is the same when source and receiver change their
+// places.
 TEST(EdgeDiffraction, WithPhysicalOpticsItIsReciprocalOnTheCone) {
   const double exterior = 1.7 * kPi;
   const Vec3 edge = Vec3::UnitZ();

@@ -117,7 +117,7 @@ TEST(PartPass, EveryGroupMadeOnceAddsUpToTheWhole) {
   const std::vector<Cube> some = pass.cubes({{1}}, nullptr);
   pass.powers({{0}}, Window{}, 1, 0.0, nullptr);
   const std::vector<uint32_t> left{2};
-  pass.bounds(left, Window{}, 1, 0.0, nullptr);
+  pass.bounds(left, Window{}, 1, nullptr);
   pass.set_adds_up(false);
   pass.cubes({{0}, {2}}, nullptr);
   std::vector<std::complex<double>> expected = slow_samples(paths, radar, 1, std::vector<uint32_t>(paths.num_paths()), {0});
@@ -149,7 +149,7 @@ TEST(PartPass, BoundsHoldForThePowers) {
   const Paths paths = paths_of(radar);
   PartPass pass(paths, radar, every_third(paths), 3, {});
   const std::vector<uint32_t> groups{0, 1, 2};
-  const std::vector<double> bounds = pass.bounds(groups, Window{}, 1, 0.0, nullptr);
+  const std::vector<double> bounds = pass.bounds(groups, Window{}, 1, nullptr);
   pass.set_adds_up(false);
   const std::vector<SetPower> powers = pass.powers({{0}, {1}, {2}}, Window{}, 1, 0.0, nullptr);
   const auto num_ranges = bounds.size() / 3;

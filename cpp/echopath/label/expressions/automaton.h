@@ -42,9 +42,9 @@ class Automaton {
     return table_[row + accept_column_] != 0;
   }
 
-  // Returns the same as `takes` faster, but may read up to kOverread hits beyond the path's own, which must be there. It steps in
-  // fours, past the end with the symbol that changes nothing: most paths have one to four hits, and a branch on the exact
-  // number would be mispredicted so often that it costs more than the steps.
+  // Returns the same as `takes` faster, but may read up to kOverread hits beyond the path's own, which must be there. It
+  // steps in fours, past the end with the symbol that changes nothing: most paths have one to four hits, and a branch on the
+  // exact number would be mispredicted so often that it costs more than the steps.
   static constexpr int kOverread = 4;
   bool takes_in_fours(const Hit* hits, int num_hits, uint64_t diffuse) const {
     if (num_hits == 1) return takes(hits, 1, diffuse);  // well predicted where paths of one hit are many or few

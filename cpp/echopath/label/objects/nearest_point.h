@@ -13,7 +13,8 @@ namespace echopath {
 // Knows the longest edges of meshes as they are posed, by which most triangles need not be looked at.
 class NearestPoints {
  public:
-  // The scene, the pose and the geometry must outlive it; the geometry is the scene at the pose. Only `mesh_ids` are asked about.
+  // The scene, the pose and the geometry must outlive it; the geometry is the scene at the pose. Only `mesh_ids` are asked
+  // about.
   NearestPoints(const Scene& scene, const PosedScene& pose, const EmbreeScene& geometry, std::span<const uint32_t> mesh_ids);
   // Returns the distances in m from two points, relative to the geometry's origin, to the nearest points of the triangles of
   // some meshes. Where the points are near each other they cost little more than one.

@@ -51,8 +51,8 @@ class ObjectScanner {
   }
 
  private:
-  // Returns the surface that hides the object wherever it is: one that is met before its boxes in one direction of each block
-  // of a grid.
+  // Returns the surface that hides the object wherever it is: one that is met before its boxes in one direction of each
+  // block of a grid.
   std::optional<uint32_t> hidden_by(const Stratum& stratum, int num_directions) const {
     uint32_t hiding = ObjectView::kNothing;
     SightGrid grid(stratum, int64_t{kGridCells} * num_directions);

@@ -13,7 +13,7 @@ namespace echopath {
 namespace {
 
 // Returns the polarisation of an antenna across a direction, unit; zero along it.
-Vec3 across(const Vec3& polarization, const Vec3& direction) {
+Vec3 part_across(const Vec3& polarization, const Vec3& direction) {
   const Vec3 part = polarization - direction.dot(polarization) * direction;
   return part.squaredNorm() > 1e-18 ? Vec3(part.normalized()) : Vec3(Vec3::Zero());
 }
@@ -60,7 +60,7 @@ class EdgeEchoes {
     const Vec3 departure = -out.direction;
     const Mat3 fringe = fringe_matrix(wedge_, in.direction, departure);
     const FieldVector received =
-        is_polarized_ ? out.field : FieldVector(across(polarization, departure).cast<std::complex<double>>());
+        is_polarized_ ? out.field : FieldVector(part_across(polarization, departure).cast<std::complex<double>>());
     const std::complex<double> coupled = received.transpose() * (fringe * in.field);
     const double filter = edge_filter(radio_.wavenumber * (in.direction - departure).dot(piece_));
     const double size = radio_.coherent_scale() * in.root_gain * out.root_gain * piece_.norm() * filter /
@@ -92,8 +92,8 @@ class EdgeEchoes {
     const UnfoldedLeg leg = unfolded_leg(mirrors_.hits.data(), antenna.position, 0, count, point_);
     const AntennaGain gain = antenna.toward(leg.departure);
     const FieldVector field = is_polarized_
-                                  ? over_mirrors(across(antenna.polarization, leg.departure), leg.departure)
-                                  : FieldVector(across(antenna.polarization, leg.arrival).cast<std::complex<double>>());
+                                  ? over_mirrors(part_across(antenna.polarization, leg.departure), leg.departure)
+                                  : FieldVector(part_across(antenna.polarization, leg.arrival).cast<std::complex<double>>());
     return {leg.length, std::sqrt(gain.power), gain.phase, leg.arrival, field};
   }
 

@@ -110,8 +110,8 @@ namespace {
 
 constexpr double kBendMargin = 2.0;  // by how much the parabola may bend more than the nodes tell
 
-// Returns the natural logarithm of a positive normal number to 2e-6: that of 2^k (1 + y) / (1 - y), |y| < 0.18, by three terms
-// of its series.
+// Returns the natural logarithm of a positive normal number to 2e-6: that of 2^k (1 + y) / (1 - y), |y| < 0.18, by three
+// terms of its series.
 double quick_log(double x) {
   constexpr uint64_t kOneHalfRoot = std::bit_cast<uint64_t>(0.5 * std::numbers::sqrt2);
   const uint64_t shifted = std::bit_cast<uint64_t>(x) - kOneHalfRoot, fraction = shifted & ((uint64_t{1} << 52) - 1);

@@ -14,7 +14,7 @@ constexpr double kSamePlace = 1e-6;      // of the extent of the mesh: two lines
 constexpr double kSameDirection = 1e-6;  // rad, likewise for faces about one edge
 
 // A side of a triangle as a stretch of a line.
-struct Side {
+struct EdgeSide {
   uint32_t triangle, side;
   Vec3 from, to;     // m
   Vec3 direction;    // unit, the same for all sides along one line
@@ -58,7 +58,7 @@ class SharpEdgeFinder {
     for (uint32_t t = 0; t < mesh_.triangles().size(); ++t) {
       for (uint32_t side = 0; side < 3; ++side) add_side(t, side);
     }
-    std::sort(sides_.begin(), sides_.end(), [](const Side& a, const Side& b) {
+    std::sort(sides_.begin(), sides_.end(), [](const EdgeSide& a, const EdgeSide& b) {
       return std::tie(a.key, a.triangle, a.side) < std::tie(b.key, b.triangle, b.side);
     });
     is_taken_.assign(sides_.size(), false);
@@ -78,10 +78,10 @@ class SharpEdgeFinder {
   // Takes all sides along the line of one side, and looks at each stretch between their ends.
   void take_line(size_t first) {
     std::vector<size_t> line;
-    const Side& one = sides_[first];
+    const EdgeSide& one = sides_[first];
     const double reach = one.high - one.low;
     for (size_t i = first; i < sides_.size() && sides_[i].key <= one.key + 2.0 * tolerance_; ++i) {
-      const Side& other = sides_[i];
+      const EdgeSide& other = sides_[i];
       const double turn = std::max(reach, other.high - other.low) * other.direction.cross(one.direction).norm();
       if (is_taken_[i] || turn > tolerance_ || (other.foot - one.foot).norm() > 2.0 * tolerance_) continue;
       is_taken_[i] = true;
@@ -121,7 +121,7 @@ class SharpEdgeFinder {
     Vec3 inward;
   };
 
-  Vec3 inward_of(const Side& side) const {
+  Vec3 inward_of(const EdgeSide& side) const {
     const Vec3& opposite = mesh_.vertices()[mesh_.triangles()[side.triangle][(side.side + 2) % 3]];
     const Vec3 along = (side.to - side.from).normalized(), line = opposite - side.from;
     return (line - along.dot(line) * along).normalized();
@@ -158,7 +158,7 @@ class SharpEdgeFinder {
   void add_edge(const std::vector<size_t>& here, double low, double high, const std::array<Vec3, 2>& inward,
                 const std::array<Vec3, 2>& normal) {
     const auto is_before = [&](size_t a, size_t b) { return sides_[a].triangle < sides_[b].triangle; };
-    const Side& side = sides_[*std::min_element(here.begin(), here.end(), is_before)];
+    const EdgeSide& side = sides_[*std::min_element(here.begin(), here.end(), is_before)];
     const double length = side.high - side.low;
     double begin = std::clamp((low - side.low) / length, 0.0, 1.0), end = std::clamp((high - side.low) / length, 0.0, 1.0);
     if (!side.runs_along()) std::tie(begin, end) = std::make_tuple(1.0 - end, 1.0 - begin);
@@ -168,7 +168,7 @@ class SharpEdgeFinder {
   const Mesh& mesh_;
   Vec3 middle_;
   double tolerance_;  // m
-  std::vector<Side> sides_;
+  std::vector<EdgeSide> sides_;
   std::vector<bool> is_taken_;
   std::vector<SharpEdge> edges_;
 };

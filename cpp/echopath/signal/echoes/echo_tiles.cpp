@@ -167,8 +167,8 @@ void EchoTiles::remember(std::span<const Echoes> blocks) {
   }
 }
 
-// The order of another channel serves where the delays are the same to within a cell: antennas of an array are nearer to each
-// other than that. An order that does not suit the delays costs time and no accuracy.
+// The order of another channel serves where the delays are the same to within a cell: antennas of an array are nearer to
+// each other than that. An order that does not suit the delays costs time and no accuracy.
 bool EchoTiles::fits(std::span<const Echoes> blocks, double cell) const {
   if (sizes_.size() != blocks.size()) return false;
   for (size_t b = 0; b < blocks.size(); ++b) {

@@ -363,8 +363,8 @@ struct Spreader {
     Vec sum_re_[kVectors], sum_im_[kVectors];
   };
 
-  // Adds runs by way of the moments of each cell in the range: a cell to which runs come back needs the kernel and the row but
-  // once.
+  // Adds runs by way of the moments of each cell in the range: a cell to which runs come back needs the kernel and the row
+  // but once.
   void add_runs_by_cell(const Places& places, const RunEnds& ends, const CellRange& cells, double* first) const {
     Moments table[kCellsInTable];
     uint32_t taken = 0;

@@ -43,9 +43,9 @@ inline constexpr uint32_t kReversedPath = 1;
 // Marks the paths of every other ray (half_of_ray): the rays have two halves, each evenly spread over the launch directions.
 // Paths of the image method belong to neither, whatever their flag.
 inline constexpr uint32_t kSecondHalf = 2;
-// Marks a path with a point on a sharp edge (scene/mesh/sharp_edges.h), one of its hits. Its flags also hold which hit that is
-// and into how many pieces of one length the edge is parted: the path stands for the piece around its point. All its other hits
-// are images. Its weight holds the coefficients of the scalar model and what the faces keep in phase.
+// Marks a path with a point on a sharp edge (scene/mesh/sharp_edges.h), one of its hits. Its flags also hold which hit that
+// is and into how many pieces of one length the edge is parted: the path stands for the piece around its point. All its
+// other hits are images. Its weight holds the coefficients of the scalar model and what the faces keep in phase.
 inline constexpr uint32_t kEdgePath = 4;
 inline constexpr int kMostPieces = 65535;
 constexpr uint32_t edge_flags(int hit, int num_pieces) {

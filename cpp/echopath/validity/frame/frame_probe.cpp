@@ -72,8 +72,8 @@ std::vector<Antenna> carried_and_rim(const Vec3& carried, const std::vector<Ante
   return out;
 }
 
-// Writes the signed cosines of incidence and departure [2 * hits]; images keep theirs, and edges, whose faces count as little
-// by themselves.
+// Writes the signed cosines of incidence and departure [2 * hits]; images keep theirs, and edges, whose faces count as
+// little by themselves.
 void fill_cosines(const LocalPath& path, const PosedHit* hits, const Vec3& start, const Vec3& end,
                   std::vector<double>& out) {
   if (path.edge >= 0) return;

@@ -5,7 +5,7 @@ import numpy as np
 
 import echopath as ep
 from echopath.bench import live
-from echopath.bench.live import drive, street
+from echopath.bench.live import drive, edits, street
 
 STREET_TRIANGLES = 40_000
 CLEARANCE = 0.1   # m between things that do not touch
@@ -63,6 +63,13 @@ def test_rows_say_what_holds():
     lines = live.describe({"machine": {"processor": "any", "threads": 2}, "rows": {"edits": [], "drive": rows}})
     assert lines[0] == "any, 2 threads"
     assert [line.split()[-1] for line in lines[-3:]] == ["5", "MISSED", "holds"]
+
+
+def test_a_moved_object_is_measured_beside_a_fresh_scene():
+    rows = {row["what"]: row for row in edits.moved_rows("sign", *edits.crowded_street(), 500, 1e9, 1)}
+    assert rows["sign, 500 rays: error"]["holds"] and rows["sign, 500 rays: moved, s"]["holds"]
+    assert 0.0 < rows["sign, 500 rays: share of rays shot"]["measured"] < 0.5
+    assert [line.split()[-1] for line in edits.describe(list(rows.values())) if "error" in line] == ["holds"]
 
 
 def test_stages_go_by_the_names_of_the_table():

@@ -88,37 +88,9 @@ def edit_at_random(live: ep.Live, draw: np.random.Generator, names: list[str], w
         live.set_map(window=window[0])
 
 
-def _set_material(node, material) -> None:
-    if node.children:
-        for child in node.children:
-            _set_material(child, material)
-    elif node.mesh is not None:
-        node.material = material
-
-
-def _with_128_chirps(of: ep.Radar) -> ep.Radar:
-    return of.replace(waveform=of.waveform.replace(num_chirps=128))
-
-
-def _rows(quick: bool) -> list[dict]:
-    found = []
-    for name, made in SCENES.items():
-        found += _moved(name, *made(), QUICK_RAYS if quick else RAYS, LIMITS[name], QUICK_UPDATES if quick else UPDATES)
-    for name, made in list(SCENES.items())[1:]:
-        found += _moved(name, *made(), QUICK_RAYS if quick else FEW_RAYS, MOST_SECONDS_OF_FEW,
-                        QUICK_UPDATES if quick else UPDATES)
-    found.append(_row("1000 random edits of the street of 20 objects: error", _error_of_edits(QUICK_EDITS if quick else EDITS),
-                      MOST_ERROR))
-    found.append(_row("2000 updates: memory over that after 200", _growth(QUICK_SOAK if quick else SOAK_UPDATES), MOST_GROWTH))
-    return found
-
-
-def _row(what: str, measured: float, limit: float | None) -> dict:
-    return {"what": what, "measured": measured, "limit": limit, "holds": None if limit is None else bool(measured <= limit)}
-
-
-def _moved(name: str, scene: ep.Scene, of_scene: ep.Radar, moved: str, num_rays: int, limit: float, updates: int
-           ) -> list[dict]:
+def moved_rows(name: str, scene: ep.Scene, of_scene: ep.Radar, moved: str, num_rays: int, limit: float, updates: int
+               ) -> list[dict]:
+    """Rows of one object that is moved by STEP so many times. name: of the rows; limit: s, of an update"""
     what = f"{name}, {num_rays} rays"
     live = ep.Live(scene, of_scene, num_rays=num_rays)
     live.update()
@@ -135,6 +107,35 @@ def _moved(name: str, scene: ep.Scene, of_scene: ep.Radar, moved: str, num_rays:
             *(_row(f"{what}: of it {stage}, s", value, None) for stage, value in stages.items()),
             _row(f"{what}: share of rays shot", views[-1][1].num_rays_shot / num_rays, None),
             _row(f"{what}: error", error, MOST_ERROR)]
+
+
+def _set_material(node, material) -> None:
+    if node.children:
+        for child in node.children:
+            _set_material(child, material)
+    elif node.mesh is not None:
+        node.material = material
+
+
+def _with_128_chirps(of: ep.Radar) -> ep.Radar:
+    return of.replace(waveform=of.waveform.replace(num_chirps=128))
+
+
+def _rows(quick: bool) -> list[dict]:
+    found = []
+    for name, made in SCENES.items():
+        found += moved_rows(name, *made(), QUICK_RAYS if quick else RAYS, LIMITS[name], QUICK_UPDATES if quick else UPDATES)
+    for name, made in list(SCENES.items())[1:]:
+        found += moved_rows(name, *made(), QUICK_RAYS if quick else FEW_RAYS, MOST_SECONDS_OF_FEW,
+                            QUICK_UPDATES if quick else UPDATES)
+    found.append(_row("1000 random edits of the street of 20 objects: error", _error_of_edits(QUICK_EDITS if quick else EDITS),
+                      MOST_ERROR))
+    found.append(_row("2000 updates: memory over that after 200", _growth(QUICK_SOAK if quick else SOAK_UPDATES), MOST_GROWTH))
+    return found
+
+
+def _row(what: str, measured: float, limit: float | None) -> dict:
+    return {"what": what, "measured": measured, "limit": limit, "holds": None if limit is None else bool(measured <= limit)}
 
 
 def _error_of_edits(count: int) -> float:

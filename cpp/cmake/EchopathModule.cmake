@@ -74,7 +74,7 @@ function(echopath_parse_headers_once target owner)
 endfunction()
 
 # A module's files are compiled some at a time: most of the time goes into reading the same templates, so that six at a time
-# halve it, and twelve take a quarter less again. Tests and bindings, whose files are long, are compiled six at a time. Names in
+# halve it, and twelve take a tenth less again. Tests and bindings, whose files are long, are compiled six at a time. Names in
 # unnamed namespaces are therefore unique within a module; each test file has a namespace named after it.
 set(ECHOPATH_UNITY_FILES 12 CACHE STRING "Number of files of a module that are compiled as one, 0 for each by itself")
 function(echopath_compile_together target files)

@@ -128,9 +128,9 @@ def _rows(quick: bool) -> list[dict]:
     for name, made in list(SCENES.items())[1:]:
         found += moved_rows(name, *made(), QUICK_RAYS if quick else FEW_RAYS, MOST_SECONDS_OF_FEW,
                             QUICK_UPDATES if quick else UPDATES)
-    found.append(_row("1000 random edits of the street of 20 objects: error", _error_of_edits(QUICK_EDITS if quick else EDITS),
-                      MOST_ERROR))
-    found.append(_row("2000 updates: memory over that after 200", _growth(QUICK_SOAK if quick else SOAK_UPDATES), MOST_GROWTH))
+    edits, soak = (QUICK_EDITS, QUICK_SOAK) if quick else (EDITS, SOAK_UPDATES)
+    found.append(_row(f"{edits} random edits of the street of 20 objects: error", _error_of_edits(edits), MOST_ERROR))
+    found.append(_row(f"{soak} updates: memory over that after {int(SOAK_FROM * soak)}", _growth(soak), MOST_GROWTH))
     return found
 
 

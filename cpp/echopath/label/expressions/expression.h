@@ -7,8 +7,7 @@
 //   repeat     := atom [ '*' | '+' | '?' | '{' m '}' | '{' m ',' '}' | '{' m ',' n '}' ]
 //   atom       := hit | '(' choice ')'
 //   hit        := '.' | event | [ event ] meshes
-//   event      := 'S' | 'D' | 'E'                specular or diffuse: the bit of that hit in Paths::diffuse; on an edge:
-// edge_hit
+//   event      := 'S' | 'D' | 'E'                specular or diffuse: the bit in Paths::diffuse; on an edge: edge_hit
 //   meshes     := glob | '[' [ '^' ] glob { glob } ']'
 //   glob       := "'" characters other than "'" "'"
 //

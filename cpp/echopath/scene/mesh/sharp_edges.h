@@ -10,8 +10,8 @@ namespace echopath {
 // Faces that turn by less are taken for one curved surface; the crease guard of smooth meshes has the same angle.
 inline constexpr double kSharpTurn = 0.5235987755982988;  // rad, 30 degrees
 
-// Describes one straight edge along a side of a triangle, in the frame of the mesh. Side i leads from corner i to corner i +
-// 1.
+// Describes one straight edge along a side of a triangle, in the frame of the mesh. Side i leads from corner i to the next
+// one.
 struct SharpEdge {
   uint32_t triangle, side;
   double begin, end;  // the stretch of the side, in [0, 1]: less than the side where it meets several others

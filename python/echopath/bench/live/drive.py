@@ -14,6 +14,7 @@ import numpy as np
 import echopath as ep
 
 from ...sequence.keep import write_frame
+from ..suite import describe_judged, judged
 from ..timing import processor_time, wall_time
 from . import street
 
@@ -37,17 +38,12 @@ def rows(*, quick: bool = False) -> list[dict]:
     """
     with multiprocessing.get_context("spawn").Pool(1) as pool:  # its memory is that of the drive alone
         found = pool.apply(_measured, (quick,))
-    return [{"what": what, "measured": value, "limit": LIMITS.get(what),
-             "holds": None if what not in LIMITS else bool(value <= LIMITS[what])} for what, value in found.items()]
+    return judged(found, LIMITS)
 
 
 def describe(rows: list[dict]) -> list[str]:
     """What, the figure, its limit, and whether it holds."""
-    lines = [f"{'drive':<44}{'measured':>12}{'limit':>10}"]
-    for row in rows:
-        limit = "" if row["limit"] is None else f"{row['limit']:10.3g}  {'holds' if row['holds'] else 'MISSED'}"
-        lines.append(f"{row['what']:<44}{row['measured']:12.4g}{limit}")
-    return lines
+    return describe_judged(rows, "drive")
 
 
 def sequence_of(frames: int, *, quick: bool = False) -> ep.Sequence:

@@ -7,12 +7,15 @@ from __future__ import annotations
 
 import multiprocessing
 import statistics
+from importlib.resources import as_file
 
 import numpy as np
 
 import echopath as ep
 
+from ...materials import data_folder
 from ..crowd_scenes import flat_city, radar, rounded_car, street
+from ..suite import describe_judged, judged_row
 from ..timing import wall_time
 from .drive import MIB, resident_memory
 
@@ -35,18 +38,11 @@ def rows(*, quick: bool = False) -> list[dict]:
 
 def describe(rows: list[dict]) -> list[str]:
     """What, the figure, its limit, and whether it holds."""
-    lines = [f"{'edits':<72}{'measured':>10}{'limit':>9}"]
-    for row in rows:
-        limit = "" if row["limit"] is None else f"{row['limit']:9.3g}  {'holds' if row['holds'] else 'MISSED'}"
-        lines.append(f"{row['what']:<72}{row['measured']:10.3g}{limit}")
-    return lines
+    return describe_judged(rows, "edits", width=72, measured="10.3g", limit="9.3g")
 
 
 def demo_street() -> tuple[ep.Scene, ep.Radar, str]:
     """(scene, radar, name of what is moved): the pedestrian, at whom or at whose images nearly all rays go."""
-    from importlib.resources import as_file
-
-    from ...materials import data_folder
     with as_file(data_folder("scenes") / "street.toml") as path:
         file = ep.load_scene(path)
     return file.scene, _with_128_chirps(file.radar), "pedestrian"
@@ -103,10 +99,11 @@ def moved_rows(name: str, scene: ep.Scene, of_scene: ep.Radar, moved: str, num_r
     fresh_seconds, fresh = wall_time(ep.Live(live.scene, of_scene, num_rays=num_rays).update)
     stages = {stage: statistics.median(view.stages[stage] for _, view in views) for stage in views[0][1].stages}
     error = float(np.abs(views[-1][1].cube - fresh.cube).max() / np.abs(fresh.cube).max())
-    return [_row(f"{what}: moved, s", seconds, limit), _row(f"{what}: moved over fresh", seconds / fresh_seconds, None),
-            *(_row(f"{what}: of it {stage}, s", value, None) for stage, value in stages.items()),
-            _row(f"{what}: share of rays shot", views[-1][1].num_rays_shot / num_rays, None),
-            _row(f"{what}: error", error, MOST_ERROR)]
+    return [judged_row(f"{what}: moved, s", seconds, limit),
+            judged_row(f"{what}: moved over fresh", seconds / fresh_seconds, None),
+            *(judged_row(f"{what}: of it {stage}, s", value, None) for stage, value in stages.items()),
+            judged_row(f"{what}: share of rays shot", views[-1][1].num_rays_shot / num_rays, None),
+            judged_row(f"{what}: error", error, MOST_ERROR)]
 
 
 def _set_material(node, material) -> None:
@@ -129,13 +126,9 @@ def _rows(quick: bool) -> list[dict]:
         found += moved_rows(name, *made(), QUICK_RAYS if quick else FEW_RAYS, MOST_SECONDS_OF_FEW,
                             QUICK_UPDATES if quick else UPDATES)
     edits, soak = (QUICK_EDITS, QUICK_SOAK) if quick else (EDITS, SOAK_UPDATES)
-    found.append(_row(f"{edits} random edits of the street of 20 objects: error", _error_of_edits(edits), MOST_ERROR))
-    found.append(_row(f"{soak} updates: memory over that after {int(SOAK_FROM * soak)}", _growth(soak), MOST_GROWTH))
+    found.append(judged_row(f"{edits} random edits of the street of 20 objects: error", _error_of_edits(edits), MOST_ERROR))
+    found.append(judged_row(f"{soak} updates: memory over that after {int(SOAK_FROM * soak)}", _growth(soak), MOST_GROWTH))
     return found
-
-
-def _row(what: str, measured: float, limit: float | None) -> dict:
-    return {"what": what, "measured": measured, "limit": limit, "holds": None if limit is None else bool(measured <= limit)}
 
 
 def _error_of_edits(count: int) -> float:

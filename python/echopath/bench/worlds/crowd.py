@@ -10,6 +10,7 @@ import echopath as ep
 
 from ...families import families
 from ...visibility import visibility_in_trace
+from ..suite import describe_judged, judged
 from ..timing import processor_time
 from . import crowd_scene
 
@@ -26,17 +27,12 @@ def rows(*, quick: bool = False) -> list[dict]:
     quick: a small crowd, for a look
     """
     found = _in_a_process(QUICK_EACH if quick else EACH, QUICK_RAYS if quick else RAYS)
-    return [{"what": f"crowd: {what}", "measured": value, "limit": LIMITS.get(what),
-             "holds": None if what not in LIMITS else bool(value <= LIMITS[what])} for what, value in found.items()]
+    return [row | {"what": f"crowd: {row['what']}"} for row in judged(found, LIMITS)]
 
 
 def describe(rows: list[dict]) -> list[str]:
     """What, the figure, its limit, and whether it holds."""
-    lines = [f"{'':<44}{'measured':>12}{'limit':>10}"]
-    for row in rows:
-        limit = "" if row["limit"] is None else f"{row['limit']:10.3g}  {'holds' if row['holds'] else 'MISSED'}"
-        lines.append(f"{row['what']:<44}{row['measured']:12.4g}{limit}")
-    return lines
+    return describe_judged(rows)
 
 
 def _in_a_process(each: int, rays: int) -> dict:

@@ -158,9 +158,21 @@ run_python_tests() {
     --no-loadscope-reorder tests/python "$@"
 }
 
-# They wait for windows, in one process.
-run_viewer_tests() {
-  QT_API=pyside6 run_pytest viewer xvfb-run -a -s "-screen 0 1600x1000x24" "$python" -m pytest tests/viewer "$@"
+# They share one screen, in one process, which keeps a processor busy that waits for the last of the other tests. What they
+# print comes after what those print.
+viewer_tests=
+run_viewer_tests_beside() {
+  has_viewer_tests || return 0
+  QT_API=pyside6 run_pytest viewer xvfb-run -a -s "-screen 0 1600x1000x24" "$python" -m pytest tests/viewer "$@" >/dev/null &
+  viewer_tests=$!
+}
+
+wait_for_viewer_tests() {
+  local status=0
+  [ -n "$viewer_tests" ] || return 0
+  wait "$viewer_tests" || status=$?
+  cat "$build_dir/pytest_viewer.log"
+  return "$status"
 }
 
 run_ctest() {
@@ -251,9 +263,10 @@ run_tests() {
   run_ctest plain --parallel "$(nproc)" || cpp_status=$?
   say "C++ tests under the address and undefined-behaviour sanitizers"
   run_ctest sanitized -C Sanitized -L sanitized --parallel "$(nproc)" || sanitized_status=$?
-  say "Python tests"
+  say "Python tests, those of the viewer beside them"
+  run_viewer_tests_beside "$@"
   run_python_tests "$@" || python_status=$?
-  ! has_viewer_tests || run_viewer_tests "$@" || viewer_status=$?
+  wait_for_viewer_tests || viewer_status=$?
   say "results"
   printf 'ctest, sanitized: %s\n' "$(closing_line sanitized || echo "ended with $sanitized_status")"
   printf 'ctest:  %s\n' "$(closing_line plain || echo "ended with $cpp_status")"

@@ -148,11 +148,10 @@ check_cxx_compiler_flag(-fcx-limited-range ECHOPATH_HAS_LIMITED_RANGE)  # clang 
 set(echopath_finite_numbers $<$<BOOL:${ECHOPATH_HAS_LIMITED_RANGE}>:-fcx-limited-range> -fno-math-errno)
 
 # echopath_test(NAME [EACH_INSTRUCTION_SET [ONCE patterns...]] [COST seconds] [LIBS targets...] [HARD patterns...]): every
-# .cpp of this folder in one
-# GoogleTest program, test_NAME.
+# .cpp of this folder in one GoogleTest program, test_NAME.
 # Tests that match a pattern are the test NAME_hard, with the label hard (ctest -L hard); all others the test NAME.
-# EACH_INSTRUCTION_SET: all of them again as NAME_baseline and NAME_avx2, where the machine's best is another, but for those
-# that match a pattern of ONCE: statistics over many runs of code that the others run, too.
+# EACH_INSTRUCTION_SET: all of them again as NAME_baseline and NAME_avx2, where the machine's best is another.
+# ONCE: tests that are repeated neither so nor with sanitized modules: statistics over many runs of code that others run, too.
 # COST: about how long it takes, so that the longest begin first; 1 where it is not said.
 # Each is there a second time with sanitized modules: NAME_sanitized, NAME_hard_sanitized.
 function(echopath_test name)
@@ -167,15 +166,13 @@ function(echopath_test name)
   echopath_compile_together(test_${name} 6)
   echopath_parse_headers_once(test_${name} test_base ${echopath_test_headers})
   list(JOIN ARG_HARD ":" hard)
+  list(JOIN ARG_ONCE ":" once)
+  echopath_add_tests(${name} test_${name} "-${hard}" "-${hard}:${once}")
   if(hard)
-    echopath_add_tests(${name} test_${name} --gtest_filter=-${hard})
-    echopath_add_tests(${name}_hard test_${name} --gtest_filter=${hard})
+    echopath_add_tests(${name}_hard test_${name} "${hard}" "${hard}")
     set_tests_properties(${name}_hard PROPERTIES LABELS hard FAIL_REGULAR_EXPRESSION "0 tests from 0 test suites ran")
-  else()
-    echopath_add_tests(${name} test_${name})
   endif()
   if(ARG_EACH_INSTRUCTION_SET)
-    list(JOIN ARG_ONCE ":" once)
     foreach(set baseline avx2)
       add_test(NAME ${name}_${set} COMMAND test_${name} --gtest_filter=-${once})
       set_tests_properties(${name}_${set} PROPERTIES ENVIRONMENT ECHOPATH_INSTRUCTION_SET=${set}
@@ -188,11 +185,11 @@ function(echopath_test name)
   endif()
 endfunction()
 
-# The test NAME, a program with its arguments, and its twin.
-function(echopath_add_tests name program)
-  add_test(NAME ${name} COMMAND ${program} ${ARGN})
+# The test NAME, of those that a filter of a program leaves, and its twin, of those that the filter of the twin leaves.
+function(echopath_add_tests name program filter twin_filter)
+  add_test(NAME ${name} COMMAND ${program} --gtest_filter=${filter})
   if(ECHOPATH_SANITIZED_TWINS)
-    add_test(NAME ${name}_sanitized COMMAND ${program}_sanitized ${ARGN} CONFIGURATIONS Sanitized)
+    add_test(NAME ${name}_sanitized COMMAND ${program}_sanitized --gtest_filter=${twin_filter} CONFIGURATIONS Sanitized)
     set_tests_properties(${name}_sanitized PROPERTIES LABELS sanitized
       FAIL_REGULAR_EXPRESSION "0 tests from 0 test suites ran")
   endif()

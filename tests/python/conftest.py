@@ -16,6 +16,17 @@ def ctrl_c_is_heard():
     signal.signal(signal.SIGINT, before)
 
 
+@pytest.fixture(autouse=True)
+def threads_stay_as_they_are():
+    """A test that changes the number of threads gives it back: later ones would quietly run in another way."""
+    before = ep.num_threads()
+    yield
+    left = ep.num_threads()
+    if left != before:
+        ep.set_num_threads(0)
+    assert left == before, f"the test leaves {left} threads for parallel loops where there were {before}"
+
+
 @pytest.fixture(scope="session")
 def plates_and_wall():
     """(paths, selections, {part: (range, velocity)} by closed form) of two plates beside a mirror wall."""

@@ -71,6 +71,23 @@ def moved_rigidly(times, matrices, clock: Clock):
     return placement, motion, bool(np.abs(turns - rotations).max() < RIGID)
 
 
+def moved_with_scale(times, matrices, clock: Clock) -> tuple[_core.CurveMotion, bool]:
+    """(CurveMotion, whether it is all of it) of transforms [T, 4, 4] at `times` [T] s that turn and scale, for a joint.
+
+    Each is a scale along its own axes, then a turn, then a shift, each of them linear between the samples; what shears stays
+    out.
+    """
+    matrices = np.asarray(matrices, float)
+    scales = np.linalg.norm(matrices[:, :3, :3], axis=1)
+    scales[:, 2] *= np.sign(np.linalg.det(matrices[:, :3, :3]))
+    turns = matrices[:, :3, :3] / scales[:, None, :]
+    rotations = _nearest_rotations(turns)
+    keys = clock.times(times)
+    motion = _core.CurveMotion(_core.Curve(keys, matrices[:, :3, 3]), _core.Curve(keys, quaternions(rotations)),
+                               _core.Curve(keys, scales), **clock.playback)
+    return motion, bool(np.abs(turns - rotations).max() < RIGID)
+
+
 def _nearest_rotations(turns: np.ndarray) -> np.ndarray:
     """The rotation nearest to each of matrices [T, 3, 3] (Higham 1986)."""
     left, _, right = np.linalg.svd(turns)

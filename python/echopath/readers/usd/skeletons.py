@@ -6,7 +6,7 @@ import numpy as np
 from ... import _core
 from ..axes import Axes
 from ..names import fit_name, unique
-from ..sampled import Clock, moved_rigidly
+from ..sampled import Clock, moved_rigidly, moved_with_scale
 from ..tree import Tree
 from .blend_shapes import blend_shapes_of
 from .stage import Timeline, matrix
@@ -104,10 +104,19 @@ def _joints(query, axes: Axes, timeline: Timeline, clock: Clock | None, tree: Tr
         moved = axes.matrices(local[:, index])
         if not np.isfinite(moved).all() or (np.abs(np.linalg.det(moved[:, :3, :3])) < 1e-60).any():
             raise ValueError(f"its joint '{name}' flattens space, or is not finite")
-        placement, motion, is_rigid = moved_rigidly(timeline.seconds(codes), moved, clock) if clock else (moved[0], None, True)
-        if not is_rigid:
-            tree.count("the changing scale of a joint is left out")
+        placement, motion = _moved(timeline.seconds(codes), moved, clock, tree) if clock else (moved[0], None)
         yield _core.Joint(name, names[parent] if parent >= 0 else None, transform=placement, motion=motion)
+
+
+def _moved(times, moved: np.ndarray, clock: Clock, tree: Tree) -> tuple:
+    """(placement [4, 4], motion or None) of a joint: where its scale changes, all of it is in the motion."""
+    placement, motion, is_rigid = moved_rigidly(times, moved, clock)
+    if is_rigid:
+        return placement, motion
+    motion, is_whole = moved_with_scale(times, moved, clock)
+    if not is_whole:
+        tree.count("the shear of a joint is left out")
+    return np.eye(4), motion
 
 
 def _local_transforms(query, animated: bool, timeline: Timeline) -> tuple[list, np.ndarray]:

@@ -1,4 +1,4 @@
-"""The command line: echopath demo | run | view | info | scene | labels | bench."""
+"""The command line: echopath demo | run | view | info | scene | labels | dataset | bench."""
 from __future__ import annotations
 
 import argparse
@@ -9,7 +9,7 @@ from pathlib import Path
 from .. import DeviceError
 from .._startup import EXIT_INTERRUPTED, STOPPED, loading_is_over
 from ..files import require_writable
-from .numbers import natural, positive, seconds, shard
+from .numbers import natural, number_range, positive, seconds, shard
 
 EXIT_BAD_INPUT = 2
 
@@ -103,6 +103,7 @@ def _parser() -> argparse.ArgumentParser:
     scene.set_defaults(command=_scene)
 
     _add_labels(commands)
+    _add_dataset(commands)
 
     bench = commands.add_parser("bench", help="measure error and speed side by side")
     bench.add_argument("what", choices=["physics", "replay", "labels", "hard", "speed", "crowd", "certificate", "targets",
@@ -145,6 +146,21 @@ def _add_labels(commands) -> None:
     labels.add_argument("--false-alarm-rate", type=float, default=1e-6, metavar="P",
                         help="of a cell of noise (default: %(default)s)")
     labels.set_defaults(command=_labels)
+
+
+def _add_dataset(commands) -> None:
+    dataset = commands.add_parser("dataset", help="make the labelled frames of a template, each scene drawn anew")
+    dataset.add_argument("template", metavar="DATASET.toml", help="template (keys: data/README.md)")
+    dataset.add_argument("--out", required=True, metavar="DIR",
+                         help="folder of the dataset; the same command goes on where it was stopped")
+    dataset.add_argument("--workers", type=positive, default=1, metavar="N",
+                         help="processes, which share the processors (default: %(default)s)")
+    dataset.add_argument("--shard", type=shard, default=None, metavar="K/N",
+                         help="every N-th scene alone, from the K-th on, while others make the other shards in the same folder")
+    dataset.add_argument("--frames", type=number_range, default=None, metavar="A:B",
+                         help="the scenes alone that one of the frames A to B - 1 belongs to, from 0 (default: all)")
+    dataset.add_argument("--only-failed", action="store_true", help="make those scenes again, and no others, that failed")
+    dataset.set_defaults(command=_dataset)
 
 
 def _add_trace_options(parser, default_rays) -> None:
@@ -270,6 +286,13 @@ def _labels(options) -> None:
         lines = label_file(options.frame, options.out, settings=settings, parts=options.part, progress=progress,
                            cfar={"method": options.cfar, "false_alarm_rate": options.false_alarm_rate})
     print("\n".join(lines))
+
+
+def _dataset(options) -> None:
+    from .dataset import lines_of
+
+    for line in lines_of(options):
+        print(line, flush=True)
 
 
 def _bench(options) -> None:

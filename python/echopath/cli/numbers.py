@@ -34,6 +34,14 @@ def shard(text: str) -> tuple[int, int]:
     raise argparse.ArgumentTypeError(f"must be K/N, the K-th of N shards, K from 1 to N, got '{text}'")
 
 
+def number_range(text: str) -> tuple[int, int]:
+    """Numbers from the first to the one before the end: 100:200."""
+    first, colon, end = text.partition(":")
+    if colon and first.isdecimal() and end.isdecimal() and int(first) < int(end) <= LARGEST_COUNT:
+        return int(first), int(end)
+    raise argparse.ArgumentTypeError(f"must be A:B, whole numbers with A below B, got '{text}'")
+
+
 def _whole_number(text: str, least: int) -> int:
     try:
         value = float(text)
@@ -42,3 +50,11 @@ def _whole_number(text: str, least: int) -> int:
     except (ValueError, OverflowError):
         pass
     raise argparse.ArgumentTypeError(f"must be a whole number of at least {least}, got '{text}'")
+
+
+def duration_words(seconds: float) -> str:
+    """In words that a person reads at a glance: 40 s, 12 min, 3 h 05 min."""
+    if seconds < 99.5:
+        return f"{seconds:.0f} s"
+    minutes = round(seconds / 60.0)
+    return f"{minutes} min" if minutes < 100 else f"{minutes // 60} h {minutes % 60:02d} min"

@@ -44,11 +44,9 @@ def simulate_file(scene_file: SceneFile, *, num_rays=None, seed=None, batches=No
 
 def keywords_of(scene_file: SceneFile, *, num_rays=None, seed=None, batches=None, truth=None, extra_parts=None) -> dict:
     """Keywords of `ep.simulate` and `ep.Sequence`; arguments as in `simulate_file`."""
-    instead = {"num_rays": num_rays, "seed": seed, "batches": batches}
-    return {name: value for name, value in instead.items() if value is not None} | {
-        "trace": scene_file.trace, "signal": scene_file.signal, "parts": scene_file.partitions() | (extra_parts or {}),
-        "angles": scene_file.angle_settings(), "labels": scene_file.labels, "detections": scene_file.detection_settings(),
-        "truth": scene_file.truth_settings() if truth is None else truth, "guard": scene_file.guard}
+    instead = {"num_rays": num_rays, "seed": seed, "batches": batches, "truth": truth}
+    keywords = scene_file.keywords() | {name: value for name, value in instead.items() if value is not None}
+    return keywords | {"parts": keywords["parts"] | (extra_parts or {})}
 
 
 def chosen_partition(texts, taken) -> dict:

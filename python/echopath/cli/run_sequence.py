@@ -10,6 +10,7 @@ from ..checks import refused
 from ..progress import progress_bars
 from ..scene_file import SceneFile
 from ..sequence import Sequence, load_sequence
+from .numbers import duration_words
 from .run import TRUTH_NAME, keywords_of
 
 
@@ -75,13 +76,5 @@ def _line(saved, frames: int) -> str:
     text = f"frame {saved.place + 1} of {frames} at {saved.start_time:.6g} s: "
     text += "is there" if saved.seconds is None else f"{saved.seconds:.1f} s"
     if saved.seconds_left:
-        text += f", {_duration(saved.seconds_left)} left"
+        text += f", {duration_words(saved.seconds_left)} left"
     return text
-
-
-def _duration(seconds: float) -> str:
-    """In words that a person reads at a glance: 40 s, 12 min, 3 h 05 min."""
-    if seconds < 99.5:
-        return f"{seconds:.0f} s"
-    minutes = round(seconds / 60.0)
-    return f"{minutes} min" if minutes < 100 else f"{minutes // 60} h {minutes % 60:02d} min"

@@ -1,11 +1,15 @@
 """Faults of a scene file in the words of the file: dotted path, rule, value."""
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
 from ..shown import shown
+
+Model = TypeVar("Model", bound=BaseModel)
 
 _RULES = {
     "missing": "is missing",
@@ -64,7 +68,7 @@ def describe(error: ValidationError, prefix: tuple = ()) -> str:
     return "\n".join(dict.fromkeys(lines))
 
 
-def validated(model: type[BaseModel], data: dict, prefix: tuple = ()) -> BaseModel:
+def validated(model: type[Model], data: Mapping[str, Any], prefix: tuple[str, ...] = ()) -> Model:
     """`data` as a `model`; raises ValueError with one line per fault, paths beginning with `prefix`."""
     try:
         return model.model_validate(data)
@@ -73,7 +77,7 @@ def validated(model: type[BaseModel], data: dict, prefix: tuple = ()) -> BaseMod
 
 
 @contextmanager
-def blamed(key: str):
+def blamed(key: str) -> Iterator[None]:
     """Prefixes what the core refuses with the dotted path of the key it came from."""
     try:
         yield

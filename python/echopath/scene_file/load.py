@@ -24,7 +24,14 @@ def read_scene(path: Path) -> SceneFile:
     """What `load_scene` returns."""
     if is_foreign(path):
         return _foreign(path)
-    table = _parse(path)
+    return scene_file_of(parse(path), path)
+
+
+def scene_file_of(table: dict, path: Path) -> SceneFile:
+    """What a scene file says, of its table; path: of the file, for messages and for what it names beside it.
+
+    Raises ValueError as `load_scene` does.
+    """
     try:
         settings = validated(SceneTable, table)
         trajectories = Trajectories(path.parent)
@@ -80,7 +87,8 @@ def _with_file(path: Path, line: str) -> str:
     return line if line.startswith("  ") else f"{path}: {line}"
 
 
-def _parse(path: Path) -> dict:
+def parse(path: Path) -> dict:
+    """The table of a TOML file. Raises ep.FileError, ValueError naming the file and the line."""
     try:
         return tomllib.loads(path.read_bytes().decode("utf-8-sig"))  # with a byte-order mark, too
     except OSError as error:

@@ -4,7 +4,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -12,6 +12,8 @@ from ..parts import as_partitions
 from ..settings import LabelSettings, SignalSettings, TraceSettings
 
 if TYPE_CHECKING:
+    from .. import _core
+    from ..scene import Scene
     from .schema import AngleTable, DetectionsTable, SequenceTable, TruthTable
 
 
@@ -28,19 +30,19 @@ class SceneFile:
 
     path: Path
     title: str
-    scene: object
-    radar: object
+    scene: Scene
+    radar: _core.Radar | None
     trace: TraceSettings
     signal: SignalSettings
     angle: AngleTable
-    parts: dict
+    parts: dict[str, Any]
     labels: LabelSettings | None = None
     detections: DetectionsTable | None = None
     guard: bool = True
     sequence: SequenceTable | None = None
     truth: TruthTable | None = None
 
-    def angle_settings(self) -> dict:
+    def angle_settings(self) -> dict[str, Any]:
         """Keywords of `ep.range_azimuth`, angles in rad; those without a value are left out."""
         settings = self.angle.model_dump(exclude={"azimuth_deg", "elevation_deg"}, exclude_none=True)
         settings["elevation"] = np.radians(self.angle.elevation_deg).tolist()
@@ -49,17 +51,23 @@ class SceneFile:
             settings["azimuth"] = np.radians(first + step * np.arange(math.floor((last - first) / step + 1e-9) + 1)).tolist()
         return settings
 
-    def detection_settings(self) -> dict | None:
+    def detection_settings(self) -> dict[str, Any] | None:
         """`detections` of `ep.simulate`: keywords of `ep.detect_frame`, None: no detections."""
         if self.detections is None:
             return None
         objects = None if self.labels is None else self.labels.objects
         return self.detections.model_dump() | {"objects": objects}
 
-    def truth_settings(self) -> dict | None:
+    def truth_settings(self) -> dict[str, Any] | None:
         """`truth` of `ep.simulate`: keywords of `ep.truth`, None: not asked for."""
         return None if self.truth is None else self.truth.model_dump(exclude_none=True)
 
-    def partitions(self) -> dict:
+    def keywords(self) -> dict[str, Any]:
+        """Keywords of `ep.simulate` and `ep.Sequence`."""
+        return {"trace": self.trace, "signal": self.signal, "parts": self.partitions(), "angles": self.angle_settings(),
+                "labels": self.labels, "detections": self.detection_settings(), "truth": self.truth_settings(),
+                "guard": self.guard}
+
+    def partitions(self) -> dict[str, Any]:
         """`parts` as {partition: {name: expression}}."""
         return as_partitions(self.parts)

@@ -1,0 +1,44 @@
+"""Makes a dataset, on the command line."""
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from collections.abc import Iterator
+
+from ..dataset import Forecast, MadeScene, make
+from ..dataset.folder import MANIFEST
+from .numbers import duration_words
+
+
+def lines_of(options) -> Iterator[str]:
+    """Makes what the options ask for; yields a line for each scene that is made, and what came of all."""
+    counts: Counter[str] = Counter()
+    try:
+        for told in make(options.template, options.out, workers=options.workers, shard=options.shard, frames=options.frames,
+                         only_failed=options.only_failed):
+            if isinstance(told, Forecast):
+                yield _forecast_line(told)
+                continue
+            counts["there" if told.was_there and told.record.state == "done" else told.record.state] += 1
+            if not told.was_there:
+                yield _line(told)
+    except KeyboardInterrupt:
+        print(f"\nthe same command goes on in {options.out}", file=sys.stderr)
+        raise
+    yield ", ".join(f"{count} scenes {state}" for state, count in sorted(counts.items())) or "no scene was to be made"
+    if counts["failed"]:
+        yield f"{options.out}/{MANIFEST} says why; --only-failed tries again"
+
+
+def _forecast_line(forecast: Forecast) -> str:
+    if forecast.frames == 0:
+        return "all frames are there"
+    return (f"{forecast.frames} frames to be made, in about {duration_words(forecast.seconds)}, "
+            f"{max(1, forecast.bytes >> 20)} MiB")
+
+
+def _line(made: MadeScene) -> str:
+    text = f"{made.done} of {made.total}: scene {made.scene} ({made.split}) {made.record.state}"
+    if made.record.reason:
+        text += f": {made.record.reason}"
+    return text if not made.seconds_left else f"{text}, {duration_words(made.seconds_left)} left"

@@ -1,0 +1,8 @@
+"""Labelled frames by the thousand: a template, whose values are drawn for each scene, and the folder that they are kept in."""
+from .folder import SceneRecord
+from .making import Forecast, MadeScene, make
+from .opened import Dataset, DatasetFrame, open
+from .template import DatasetTable, DrawnScene, Template
+
+__all__ = ["Dataset", "DatasetFrame", "DatasetTable", "DrawnScene", "Forecast", "MadeScene", "SceneRecord", "Template", "make",
+           "open"]

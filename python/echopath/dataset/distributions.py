@@ -1,0 +1,85 @@
+"""Values of a template that are drawn anew for each scene."""
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ..shown import shown
+
+_MORE = {"choice": {"weights"}, "normal": {"within"}}  # keys that may stand beside that of a kind
+_MOST_TRIES = 10_000                                   # of a normal distribution that is to lie within limits
+
+
+def is_distribution(value: Any) -> bool:
+    """Whether a value of a template is to be drawn: a table such as {uniform = [1, 2]}."""
+    if not isinstance(value, dict):
+        return False
+    kinds = [kind for kind in KINDS if isinstance(value.get(kind), list)]
+    return len(kinds) == 1 and value.keys() <= {kinds[0]} | _MORE.get(kinds[0], set())
+
+
+def drawn(table: dict[str, Any], place: str, random: np.random.Generator) -> Any:
+    """A value of the distribution of a table; place: its dotted path. Raises ValueError naming it for wrong parameters."""
+    kind = next(kind for kind in KINDS if kind in table)
+    return KINDS[kind](table, f"{place}.{kind}", random)
+
+
+def _pair(values: list[Any], place: str, rule: str, holds: Callable[[float, float], bool]) -> tuple[float, float]:
+    are_numbers = all(isinstance(one, (int, float)) and not isinstance(one, bool) and math.isfinite(one) for one in values)
+    if len(values) != 2 or not are_numbers or not holds(*values):
+        raise ValueError(f"{place}: must be {rule}, got {shown(values)}")
+    return values[0], values[1]
+
+
+def _ascending(low: float, high: float) -> bool:
+    return low <= high
+
+
+def _uniform(table: dict[str, Any], place: str, random: np.random.Generator) -> float:
+    low, high = _pair(table["uniform"], place, "[lowest, highest]", _ascending)
+    return float(low + (high - low) * random.random())
+
+
+def _log_uniform(table: dict[str, Any], place: str, random: np.random.Generator) -> float:
+    low, high = _pair(table["log_uniform"], place, "[lowest, highest], both above 0", lambda low, high: 0.0 < low <= high)
+    return float(low * (high / low) ** random.random())
+
+
+def _normal(table: dict[str, Any], place: str, random: np.random.Generator) -> float:
+    mean, deviation = _pair(table["normal"], place, "[mean, standard deviation]", lambda _, deviation: deviation >= 0.0)
+    low, high = _pair(table.get("within", [-1e300, 1e300]), place.replace("normal", "within"), "[lowest, highest]", _ascending)
+    for _ in range(_MOST_TRIES):
+        value = float(mean + deviation * random.standard_normal())
+        if low <= value <= high:
+            return value
+    rule = f"a distribution with a good share of its values within {shown(table['within'])}"
+    raise ValueError(f"{place}: must be {rule}, got {shown([mean, deviation])}")
+
+
+def _integer(table: dict[str, Any], place: str, random: np.random.Generator) -> int:
+    low, high = _pair(table["integer"], place, "[lowest, highest], whole numbers, both included",
+                      lambda low, high: low <= high and low == int(low) and high == int(high))
+    return int(random.integers(int(low), int(high), endpoint=True))
+
+
+def _choice(table: dict[str, Any], place: str, random: np.random.Generator) -> Any:
+    values, weights = table["choice"], table.get("weights")
+    if not values:
+        raise ValueError(f"{place}: must have at least one value, got []")
+    if weights is None:
+        weights = [1.0] * len(values)
+    if not isinstance(weights, list) or len(weights) != len(values) or not all(map(_is_weight, weights)) or not any(weights):
+        rule = f"{len(values)} numbers of at least 0, not all of them 0"
+        raise ValueError(f"{place.replace('choice', 'weights')}: must be {rule}, got {shown(weights)}")
+    return values[int(np.searchsorted(np.cumsum(weights) / np.sum(weights), random.random(), side="right"))]
+
+
+def _is_weight(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and 0.0 <= value < math.inf
+
+
+KINDS: dict[str, Callable[[dict[str, Any], str, np.random.Generator], Any]] = {
+    "uniform": _uniform, "log_uniform": _log_uniform, "normal": _normal, "integer": _integer, "choice": _choice}

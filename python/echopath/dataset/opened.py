@@ -1,0 +1,109 @@
+"""Datasets that are there, read when a frame is asked for."""
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator
+from functools import cached_property
+from pathlib import Path
+from typing import Any, NamedTuple, overload
+
+from .. import _core
+from ..checks import checked, refused
+from ..checks import path as folder_rule
+from ..frame import Frame
+from ..frame_maps import FrameMaps
+from ..sequence import StoredSequence, load_sequence
+from ..sequence.contents import frame_path
+from ..sequence.keep import read_frame
+from .folder import DRAWN, open_template, read_record, scene_folder
+from .template import Template
+
+
+class DatasetFrame(NamedTuple):
+    """A frame of a dataset.
+
+    number: of the frame, from 0, the same in every run; scene: number of its scene; place: in the scene, from 0
+    split: name of its split; frame: Frame where the dataset keeps all, else FrameMaps
+    """
+
+    number: int
+    scene: int
+    place: int
+    split: str
+    frame: Frame | FrameMaps
+
+
+class Dataset:
+    """The frames of a dataset that are done, made by `ep.dataset.open`: `len(dataset)`, `dataset[i]`, `for one in dataset`.
+
+    Each is read when it is asked for, and kept by nobody; a slice is a Dataset.
+    folder: Path; template: Template of it; numbers: of the frames, ascending
+    """
+
+    def __init__(self, folder: Path, template: Template, numbers: list[int]):
+        self.folder, self.template, self.numbers = folder, template, numbers
+
+    def __len__(self) -> int:
+        return len(self.numbers)
+
+    @overload
+    def __getitem__(self, place: int) -> DatasetFrame: ...
+    @overload
+    def __getitem__(self, place: slice) -> Dataset: ...
+
+    def __getitem__(self, place: int | slice) -> DatasetFrame | Dataset:
+        """The DatasetFrame at a place, or a Dataset of a slice. Raises IndexError, ep.FileError for a damaged file."""
+        if isinstance(place, slice):
+            return Dataset(self.folder, self.template, self.numbers[place])
+        number = self.numbers[place]
+        settings = self.template.settings
+        scene, at = divmod(number, settings.frames)
+        return DatasetFrame(number, scene, at, self.template.split_of(scene),
+                            read_frame(frame_path(scene_folder(self.folder, scene), at), settings.keep))
+
+    def __iter__(self) -> Iterator[DatasetFrame]:
+        return (self[place] for place in range(len(self)))
+
+    def split(self, name: str) -> Dataset:
+        """The frames of a split. Raises ValueError naming `name` for one that the template has not."""
+        if name not in self.template.settings.split:
+            names = " or ".join(f"'{one}'" for one in self.template.settings.split)
+            raise refused(ValueError, "name", names, name)
+        per_scene = self.template.settings.frames
+        return Dataset(self.folder, self.template, [number for number in self.numbers
+                                                    if self.template.split_of(number // per_scene) == name])
+
+    @cached_property
+    def scenes(self) -> list[int]:
+        """The numbers of the scenes that have a frame here."""
+        return sorted({number // self.template.settings.frames for number in self.numbers})
+
+    def sequence(self, scene: int) -> StoredSequence:
+        """The frames of a scene in time. Raises ep.FileError where it is not there."""
+        return load_sequence(scene_folder(self.folder, scene))
+
+    def drawn(self, scene: int) -> dict[str, Any]:
+        """{dotted path: value} of what the template drew for a scene. Raises ep.FileError where it is not there."""
+        path = scene_folder(self.folder, scene) / DRAWN
+        try:
+            values: dict[str, Any] = json.loads(path.read_bytes())
+            return values
+        except (OSError, ValueError) as error:
+            raise _core.FileError(f"{path}: cannot be read ({error})") from None
+
+    def __repr__(self) -> str:
+        return f"Dataset('{self.folder}', {len(self)} frames of {len(self.scenes)} scenes, keep='{self.template.settings.keep}')"
+
+
+@checked(folder=folder_rule)
+def open(folder: str | os.PathLike[str]) -> Dataset:
+    """The dataset that `ep.dataset.make` or `echopath dataset` wrote to a folder, or has written so far.
+
+    folder: of the dataset. Returns a Dataset of all frames of the scenes that are done. Raises ep.FileError where it is none.
+    """
+    folder = Path(folder)
+    template = open_template(folder)
+    frames = template.settings.frames
+    done = [scene for scene in range(template.settings.scenes) if read_record(folder, scene).state == "done"]
+    return Dataset(folder, template, [scene * frames + place for scene in done for place in range(frames)])

@@ -1,0 +1,85 @@
+"""Makes the frames of one scene of a dataset."""
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from .. import _core
+from ..files import write_texts
+from ..sequence.contents import frame_path
+from .folder import DRAWN, SceneRecord, checksum, damaged_files, read_record, scene_folder, write_record
+from .template import Template
+
+_CLAIM, _BEGUN = ".claim", ".begun"
+_MOST_DEATHS = 2  # of workers of one run at one scene
+
+
+@contextmanager
+def claimed(folder: Path, scene: int) -> Iterator[bool]:
+    """Whether this process alone makes the scene during the block; the system ends that when the process ends."""
+    own = scene_folder(folder, scene)
+    own.mkdir(parents=True, exist_ok=True)
+    handle = os.open(own / _CLAIM, os.O_RDWR | os.O_CREAT, 0o666)
+    try:
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            yield False
+            return
+        yield True
+    finally:
+        os.close(handle)
+
+
+def is_done(folder: Path, scene: int) -> bool:
+    """Whether all frames of a scene are there as they were written; those that are damaged are removed, to be made again."""
+    record = read_record(folder, scene)
+    damaged = damaged_files(folder, scene, record)
+    for path in damaged:
+        path.unlink(missing_ok=True)
+    return record.state == "done" and not damaged
+
+
+def make_scene(template: Template, folder: Path, scene: int, run: str) -> SceneRecord:
+    """Makes the frames of a scene that are missing, and writes what came of it; the caller has claimed it.
+
+    run: name of the run, in which a scene at which workers died twice has failed
+    """
+    deaths = _note_begin(folder, scene, run)
+    if deaths >= _MOST_DEATHS:
+        record = SceneRecord("failed", reason=f"{deaths} workers died at it")
+    else:
+        record = _made(template, folder, scene)
+    write_record(folder, scene, record)
+    (scene_folder(folder, scene) / _BEGUN).unlink(missing_ok=True)
+    return record
+
+
+def _made(template: Template, folder: Path, scene: int) -> SceneRecord:
+    own, frames = scene_folder(folder, scene), template.settings.frames
+    try:
+        drawn = template.draw(scene)
+        write_texts(own, {DRAWN: json.dumps(drawn.values, indent=1) + "\n"})
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # what a frame warns of is in its labels and checks
+            for _ in template.sequence(scene).save_frames(own, keep=template.settings.keep):
+                pass
+    except (ValueError, RuntimeError, _core.FileError, MemoryError) as error:
+        if isinstance(error, _core.FileError):
+            raise  # a disk that is full or away is no fault of the scene
+        return SceneRecord("failed", reason=f"{type(error).__name__}: {error}")
+    return SceneRecord("done", {path.name: checksum(path) for path in (frame_path(own, place) for place in range(frames))})
+
+
+def _note_begin(folder: Path, scene: int, run: str) -> int:
+    """How many workers of this run have begun the scene before."""
+    path = scene_folder(folder, scene) / _BEGUN
+    begun = path.read_text().split().count(run) if path.exists() else 0
+    with path.open("a") as file:
+        file.write(f"{run}\n")
+    return begun

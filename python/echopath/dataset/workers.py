@@ -1,0 +1,103 @@
+"""Processes that make the scenes of a dataset beside each other."""
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import time
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from ..threads import set_num_threads
+from .folder import RECORD, SceneRecord, read_record, scene_folder
+from .scene_work import claimed, is_done, make_scene
+from .template import Template
+
+PAUSE = 0.2  # s between looks for what others have made
+
+Done = tuple[int, SceneRecord]
+
+
+def in_this_process(template: Template, folder: Path, scenes: Sequence[int], run: str) -> Iterator[Done]:
+    """Makes the scenes that nobody else makes, then waits for those that others have claimed, and takes over what they leave.
+
+    Raises ep.FileError where files cannot be written.
+    """
+    waiting = list(scenes)
+    while waiting:
+        claimed_by_others = []
+        for scene in waiting:
+            with claimed(folder, scene) as is_mine:
+                if not is_mine:
+                    claimed_by_others.append(scene)
+                    continue
+                record = read_record(folder, scene)
+                if record.state == "to do" or (record.state == "done" and not is_done(folder, scene)):
+                    record = make_scene(template, folder, scene, run)
+            yield scene, record
+        waiting = claimed_by_others
+        if waiting:
+            time.sleep(PAUSE)
+
+
+def in_processes(path: Path, folder: Path, scenes: Sequence[int], run: str, count: int) -> Iterator[Done]:
+    """The same by `count` processes with an equal share of the processors each. One that dies is replaced.
+
+    path: of the template. Raises ChildProcessError where processes that make no scene go on dying.
+    """
+    context = multiprocessing.get_context("spawn")
+    threads = max(1, (os.cpu_count() or 1) // count)
+
+    def start(index: int) -> Any:
+        # Each begins elsewhere, so that they meet no sooner than they must.
+        turned = [*scenes[index::count], *(scene for other in range(count) if other != index for scene in scenes[other::count])]
+        process = context.Process(target=_work, args=(str(path), str(folder), turned, run, threads), daemon=True)
+        process.start()
+        return process
+
+    processes = [start(index) for index in range(count)]
+    try:
+        yield from _watched(folder, scenes, processes, start)
+    finally:
+        for process in processes:
+            process.terminate()
+        for process in processes:
+            process.join()
+
+
+def _watched(folder: Path, scenes: Sequence[int], processes: list[Any], start: Callable[[int], Any]) -> Iterator[Done]:
+    """What the processes make, as it comes."""
+    missing, deaths = list(scenes), 0
+    most_deaths = 3 * len(processes) + len(scenes)
+    while missing:
+        time.sleep(PAUSE)
+        ended = [process.exitcode is not None for process in processes]
+        for scene in list(missing):
+            record = read_record(folder, scene)
+            if record.state != "to do":
+                missing.remove(scene)
+                yield scene, record
+        for index, process in enumerate(processes):
+            if missing and ended[index]:
+                deaths += process.exitcode != 0
+                if deaths > most_deaths:
+                    raise ChildProcessError(f"workers: {deaths} of them died, the last with exit code {process.exitcode}")
+                processes[index] = start(index)
+
+
+def _work(path: str, folder: str, scenes: list[int], run: str, threads: int) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that started this one
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    set_num_threads(threads)
+    for _ in in_this_process(Template(Path(path)), Path(folder), scenes, run):
+        if os.getppid() == 1:  # the command was killed
+            return
+
+
+def forget_failures(folder: Path, scenes: Sequence[int]) -> list[int]:
+    """Those of the scenes that failed, which are to do again."""
+    failed = [scene for scene in scenes if read_record(folder, scene).state == "failed"]
+    for scene in failed:
+        (scene_folder(folder, scene) / RECORD).unlink()
+    return failed

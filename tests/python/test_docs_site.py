@@ -15,7 +15,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import echopath as ep
-from echopath import plots
+import echopath.dataset
 
 matplotlib.use("agg")
 ROOT = Path(__file__).parents[2]
@@ -25,7 +25,7 @@ SCRIPTS = sorted(EXAMPLES.glob("*/*.py"))
 NOTEBOOKS = sorted((EXAMPLES / "notebooks").glob("*.ipynb"))
 TASKS = ("own_mesh", "foreign_scene", "car_with_speed", "trajectories", "antenna_pattern", "angle_map", "frames_in_time",
          "live_scene", "spectrogram", "arms_only", "rcs_over_angle", "snr", "label_masks", "detections", "truth_and_tracks",
-         "ego_motion", "several_processes")
+         "ego_motion", "several_processes", "dataset")
 LARGEST_FILE = 200_000  # bytes
 
 
@@ -54,7 +54,7 @@ def wanted_names() -> set[str]:
     """What the reference must list: the names of the package but for its modules, bodies and pictures."""
     own = {name for name in ep.__all__ if not inspect.ismodule(getattr(ep, name))}
     bodies = {f"actors.{name}" for name in ep.actors.__all__ if name[0].islower()}
-    return own | bodies | {f"plots.{name}" for name in plots.__all__}
+    return own | bodies | {f"{module}.{name}" for module in ("dataset", "plots") for name in getattr(ep, module).__all__}
 
 
 def test_names_of_a_summary_are_found():
@@ -95,6 +95,7 @@ def test_lines_of_a_page_run(task, tmp_path, monkeypatch):
     exec(compile(code_of(DOCS / "how_do_i" / f"{task}.md"), f"{task}.md", "exec"), names)
     if task == "several_processes":  # a worker of its own would need the page as a file
         assert ep.load_frame(names["one_frame"](0.1)).paths.frame.start_time == 0.1
+        ep.set_num_threads(0)
 
 
 def test_the_gallery_has_its_pages():

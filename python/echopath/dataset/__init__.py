@@ -2,7 +2,8 @@
 from .folder import SceneRecord
 from .making import Forecast, MadeScene, make
 from .opened import Dataset, DatasetFrame, open
+from .radar_scenes import write_radar_scenes
 from .template import DatasetTable, DrawnScene, Template
 
 __all__ = ["Dataset", "DatasetFrame", "DatasetTable", "DrawnScene", "Forecast", "MadeScene", "SceneRecord", "Template", "make",
-           "open"]
+           "open", "write_radar_scenes"]

@@ -18,6 +18,7 @@ from ..scene_file.schema import Positive, SceneTable, Table
 from ..sequence import Sequence
 from ..sequence.keep import Keep
 from ..shown import shown
+from .classes import ClassName
 from .distributions import drawn, is_distribution
 
 MOST_SCENES = 10 ** 6
@@ -40,6 +41,8 @@ class DatasetTable(Table):
     interval: Positive | None = Field(None, description="s, from the start of a frame to that of the next; none: of one frame")
     keep: Keep = Field("maps", description="what the file of each frame keeps: all, maps with labels, or labels alone")
     seed: int = Field(0, ge=0, description="of all that is drawn")
+    classes: dict[str, ClassName] = Field(
+        {}, description="glob of objects' names = class, for exports; else by their actors, \"static\" without one")
     split: Annotated[dict[str, float], AfterValidator(_shares)] = Field(
         {"train": 0.8, "val": 0.1, "test": 0.1}, description="name = share of the scenes; each scene's is drawn")
 

@@ -1,0 +1,36 @@
+"""What kinds of road users the objects of a dataset are."""
+from __future__ import annotations
+
+from fnmatch import fnmatchcase
+from typing import Any, Literal, NamedTuple
+
+ClassName = Literal["car", "van", "truck", "bus", "train", "cyclist", "motorcycle", "pedestrian", "pedestrian_group", "animal",
+                    "other", "static"]
+
+
+class Codes(NamedTuple):
+    """The numbers of a class in public datasets.
+
+    radar_scenes: label of RadarScenes (Schumann et al. 2021)
+    ghost: class digit of the Radar Ghost Dataset (Kraus et al. 2021), 0: none there
+    """
+
+    radar_scenes: int
+    ghost: int
+
+
+CODES: dict[str, Codes] = {
+    "car": Codes(0, 3), "van": Codes(1, 4), "truck": Codes(2, 4), "bus": Codes(3, 4), "train": Codes(4, 0),
+    "cyclist": Codes(5, 2), "motorcycle": Codes(6, 5), "pedestrian": Codes(7, 1), "pedestrian_group": Codes(8, 0),
+    "animal": Codes(9, 0), "other": Codes(10, 0), "static": Codes(11, 0)}
+
+_OF_ACTORS: dict[str, ClassName] = {
+    "car": "car", "van": "van", "truck": "truck", "cyclist": "cyclist", "bicycle": "cyclist", "motorcycle": "motorcycle",
+    "pedestrian": "pedestrian", "captured_pedestrian": "pedestrian", "runner": "pedestrian", "standing_person": "pedestrian",
+    "child": "pedestrian", "dog": "animal", "drone": "other"}
+
+
+def classes_of(objects: list[dict[str, Any]], chosen: dict[str, ClassName]) -> dict[str, ClassName]:
+    """{name of an object: class} of the objects of a scene's table, by the globs that were chosen, else by their actors."""
+    return {one["name"]: next((kind for glob, kind in chosen.items() if fnmatchcase(one["name"], glob)),
+                              _OF_ACTORS.get(str(one.get("actor")), "static")) for one in objects}

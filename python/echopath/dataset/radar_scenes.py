@@ -1,0 +1,165 @@
+"""Datasets in the layout of RadarScenes, which its own tools read (Schumann et al. 2021, doi 10.5281/zenodo.4559821).
+
+The radar is the only sensor, number 1, and the car at once: the car's frame is that of the radar, level with the road.
+"""
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..checks import checked, refused
+from ..checks import path as folder_rule
+from ..detections.detections import Detections
+from ..files import require_writable, write_texts, written_whole
+from ..frame_file.h5 import writing
+from ..truth.cross_section import isotropic_power
+from .classes import CODES, classes_of
+from .opened import Dataset
+
+SENSOR = 1
+MICRO = 1e6  # timestamps are whole microseconds
+_STEP = 1e-4  # s, either side, of the differences that make the radar's velocity
+_CATEGORIES = {"train": "train", "val": "validation", "validation": "validation"}  # other splits keep their names
+
+POINTS = np.dtype([("timestamp", "i8"), ("sensor_id", "u1"), ("range_sc", "f4"), ("azimuth_sc", "f4"), ("rcs", "f4"),
+                   ("vr", "f4"), ("vr_compensated", "f4"), ("x_cc", "f4"), ("y_cc", "f4"), ("x_seq", "f4"), ("y_seq", "f4"),
+                   ("uuid", "S32"), ("track_id", "S32"), ("label_id", "u1"), ("ghost_label", "i2")])
+ODOMETRY = np.dtype([("timestamp", "i8"), ("x_seq", "f8"), ("y_seq", "f8"), ("yaw_seq", "f8"), ("vx", "f8"),
+                     ("yaw_rate", "f8")])
+
+
+class _Pose(NamedTuple):
+    """Where the radar is: world_from_radar [4, 4]; velocity [3] m/s in the world; angular: rad/s about z."""
+
+    world: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    angular: float
+
+    @property
+    def yaw(self) -> float:
+        return float(np.arctan2(self.world[1, 0], self.world[0, 0]))
+
+
+def _a_dataset(argument: str, value: Any) -> Dataset:
+    if not isinstance(value, Dataset):
+        raise refused(TypeError, argument, "a Dataset of ep.dataset.open", value)
+    return value
+
+
+@checked(dataset=_a_dataset, folder=folder_rule)
+def write_radar_scenes(dataset: Dataset, folder: str | os.PathLike[str]) -> None:
+    """Writes the detections of a dataset as RadarScenes has them: data/sequences.json, data/sensors.json, and for each scene
+    data/sequence_<k>/radar_data.h5 and scenes.json, k from 1.
+
+    dataset: as of `open`, of a template with [detections] and an array that tells azimuths apart
+    folder: new or empty; it gets the folder data. Every file is written whole or not at all.
+    Fields of radar_data, in its order: timestamp (us), sensor_id, range_sc (m), azimuth_sc (rad, left positive), rcs (dBsm, by
+    the radar equation with the gains of the first antennas), vr and vr_compensated (m/s, receding positive; the second without
+    the radar's own motion), x_cc, y_cc (m, car frame), x_seq, y_seq (m, world), uuid, track_id ("" of what is static or
+    noise), label_id; and behind them ghost_label, the label of the Radar Ghost Dataset (Kraus et al. 2021): 1000 times its class
+    and 111 for real echoes, 112, 122, 124 for ghosts, 0 for the background. A ghost has the track and the label_id of its object.
+    odometry has timestamp, x_seq, y_seq, yaw_seq, vx (m/s), yaw_rate (rad/s), a row for each frame.
+    Raises ValueError naming `dataset` where it has no detections with azimuths, ep.FileError where files cannot be written.
+    """
+    require_writable(folder, "folder")
+    data = Path(folder) / "data"
+    sequences = {}
+    for number, scene in enumerate(dataset.scenes, 1):
+        name = f"sequence_{number}"
+        sequences[name] = _write_sequence(dataset, scene, data / name, name)
+    write_texts(data, {"sequences.json": _json({"sequences": sequences}),
+                       "sensors.json": _json({f"radar_{SENSOR}": {"id": SENSOR, "x": 0.0, "y": 0.0, "yaw": 0.0}})})
+
+
+def _write_sequence(dataset: Dataset, scene: int, folder: Path, name: str) -> dict[str, Any]:
+    """Writes one scene; returns what sequences.json says of it."""
+    stored, template = dataset.sequence(scene), dataset.template
+    radar = stored.radar
+    classes = classes_of(template.draw(scene).table["objects"], template.settings.classes)
+    frames = [one for one in dataset if one.scene == scene]
+    points, odometry = [], np.zeros(len(frames), ODOMETRY)
+    for row, one in enumerate(frames):
+        if not isinstance(one.frame.detections, Detections):
+            raise refused(ValueError, "dataset", "of a template with [detections]", str(dataset.folder))
+        time = float(stored.times[one.place]) + 0.5 * radar.frame_duration
+        pose = _pose(radar, time)
+        odometry[row] = (round(MICRO * time), *pose.world[:2, 3], pose.yaw,
+                         pose.velocity @ pose.world[:3, 0], pose.angular)
+        points.append(_points_of(one.frame.detections, one.number, scene, radar, time, pose, classes))
+    _write_data(folder / "radar_data.h5", np.concatenate(points), odometry)
+    category = _CATEGORIES.get(template.split_of(scene), template.split_of(scene))
+    scenes = _scenes(odometry["timestamp"], [len(one) for one in points])
+    ends = {"first_timestamp": int(odometry["timestamp"][0]), "last_timestamp": int(odometry["timestamp"][-1])}
+    head = {"sequence_name": name, "category": category} | ends
+    write_texts(folder, {"scenes.json": _json(head | {"scenes": scenes})})
+    return {"category": category, "n_scenes": len(scenes), "n_detections": int(sum(map(len, points)))} | ends
+
+
+def _pose(radar: Any, time: float) -> _Pose:
+    before, world, after = (np.asarray(radar.world_from_radar(time + step)) for step in (-_STEP, 0.0, _STEP))
+    turn = after[:3, :3] @ before[:3, :3].T
+    return _Pose(world, (after[:3, 3] - before[:3, 3]) / (2 * _STEP), float(np.arctan2(turn[1, 0], turn[0, 0])) / (2 * _STEP))
+
+
+def _points_of(found: Detections, number: int, scene: int, radar: Any, time: float, pose: _Pose,
+               classes: dict[str, Any]) -> NDArray[Any]:
+    """The rows of one frame."""
+    if len(found) and np.isnan(found.azimuth).any():
+        raise refused(ValueError, "dataset", "of a radar whose antennas tell azimuths apart", "directions that are not known")
+    rows = np.zeros(len(found), POINTS)
+    own = found.points                                     # in the radar's frame
+    world = own @ pose.world[:3, :3].T + pose.world[:3, 3]
+    kinds = [classes.get(name, "static") for name in found.object]
+    rows["timestamp"], rows["sensor_id"] = round(MICRO * time), SENSOR
+    rows["range_sc"], rows["azimuth_sc"] = found.range, found.azimuth
+    rows["rcs"] = 10.0 * np.log10(found.power / isotropic_power(radar, world, time))
+    rows["vr"], rows["vr_compensated"] = found.velocity, found.velocity - _own_velocity(found, own, pose)
+    rows["x_cc"], rows["y_cc"], rows["x_seq"], rows["y_seq"] = own[:, 0], own[:, 1], world[:, 0], world[:, 1]
+    rows["uuid"] = [_identity(number, index) for index in range(len(found))]
+    rows["track_id"] = ["" if kind == "static" else _identity(scene, name) for kind, name in zip(kinds, found.object)]
+    rows["label_id"] = [CODES[kind].radar_scenes for kind in kinds]
+    rows["ghost_label"] = [code and 1000 * CODES[kind].ghost + code for kind, code in zip(kinds, found.class_code.tolist())]
+    return rows
+
+
+def _own_velocity(found: Detections, own: NDArray[np.float64], pose: _Pose) -> NDArray[np.float64]:
+    """Radial velocity in m/s that a point at rest would have, [D]: what the radar's own motion makes."""
+    ways = own - found.centre
+    directions = ways / np.linalg.norm(ways, axis=1, keepdims=True)
+    moved = pose.velocity @ pose.world[:3, :3] + np.cross([0.0, 0.0, pose.angular], found.centre)
+    return np.asarray(-directions @ moved)
+
+
+def _identity(*parts: object) -> str:
+    """32 hexadecimal digits, the same in every run."""
+    return hashlib.md5("/".join(map(str, parts)).encode("utf-8", "surrogatepass"), usedforsecurity=False).hexdigest()
+
+
+def _scenes(timestamps: NDArray[np.int64], counts: list[int]) -> dict[str, Any]:
+    """What scenes.json says of each frame, by its timestamp."""
+    times, ends = [int(time) for time in timestamps], np.cumsum([0, *counts]).tolist()
+    scenes = {}
+    for index, time in enumerate(times):
+        before = times[index - 1] if index else None
+        after = times[index + 1] if index + 1 < len(times) else None
+        scenes[str(time)] = {
+            "sensor_id": SENSOR, "prev_timestamp": before, "next_timestamp": after, "prev_timestamp_same_sensor": before,
+            "next_timestamp_same_sensor": after, "odometry_timestamp": time, "odometry_index": index,
+            "image_name": f"{time}.jpg", "radar_indices": [ends[index], ends[index + 1]]}
+    return scenes
+
+
+def _write_data(path: Path, points: NDArray[Any], odometry: NDArray[Any]) -> None:
+    with written_whole(path) as temporary, writing(temporary) as file:
+        file.create_dataset("radar_data", data=points)
+        file.create_dataset("odometry", data=odometry)
+
+
+def _json(value: Any) -> str:
+    return json.dumps(value, indent=1) + "\n"

@@ -1,0 +1,134 @@
+"""Datasets in the layout of RadarScenes, read by its own tools as they are."""
+import json
+
+import numpy as np
+import pytest
+from radar_scenes.coordinate_transformation import transform_detections_sequence_to_car
+from radar_scenes.labels import ClassificationLabel, Label
+from radar_scenes.sequence import Sequence, get_training_sequences, get_validation_sequences
+
+from echopath import dataset
+
+RADIUS, EGO, SPEED = 0.5, 4.0, 3.0  # m of the sphere at rest, m/s of the radar, m/s of the walker's stand-in
+PLACE = np.array([12.0, 3.0, 1.0])  # m, of the sphere
+RANGE_CELL, VELOCITY_CELL = 0.15, 0.152  # m, m/s
+TEMPLATE = f"""
+[dataset]
+scenes = 4
+frames = 3
+interval = 0.05
+seed = 2
+split = {{train = 0.5, val = 0.5}}
+[dataset.classes]
+"walker*" = "pedestrian"
+[radar]
+pattern = {{kind = "cosine_power", exponent = 4.0}}
+noise_figure_db = 0.0
+speed = {EGO}
+position = [1.0, 0.0, 1.0]
+[radar.waveform]
+start_frequency = 77e9
+bandwidth = 1e9
+num_samples = 256
+sampling_rate = 12.5e6
+num_chirps = 128
+chirp_interval = 1e-4
+[[radar.transmitters]]
+position = [0.0, 0.0, 0.0]
+""" + "".join(f"[[radar.receivers]]\nposition = [0.0, {0.00195 * k:.5f}, 0.0]\n" for k in range(8)) + f"""
+[[objects]]
+name = "ball"
+actor = "sphere"
+parameters = {{radius = {RADIUS}}}
+material = "metal"
+smooth = true
+position = {PLACE.tolist()}
+[[objects]]
+name = "walker"
+actor = "sphere"
+parameters = {{radius = 0.3}}
+material = "metal"
+smooth = true
+position = [9.0, -2.5, 1.0]
+yaw_deg = 0.0
+speed = {SPEED}
+[trace]
+num_rays = 3000
+[detections]
+[labels]
+[spectrum]
+window = "hann"
+"""
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("radar_scenes")
+    (folder / "balls.toml").write_text(TEMPLATE)
+    list(dataset.make(folder / "balls.toml", folder / "made"))
+    dataset.write_radar_scenes(dataset.open(folder / "made"), folder / "out")
+    return folder
+
+
+def sequences(written) -> list:
+    return [Sequence.from_json(str(path)) for path in sorted((written / "out" / "data").glob("sequence_*/scenes.json"))]
+
+
+def test_their_reader_finds_every_frame_and_both_splits(written):
+    made = dataset.open(written / "made")
+    assert [len(one) for one in sequences(written)] == [3] * 4
+    names = str(written / "out" / "data" / "sequences.json")
+    splits = {"train": get_training_sequences(names), "val": get_validation_sequences(names)}
+    assert {split: len(found) for split, found in splits.items()} == {split: len(made.split(split)) // 3 for split in splits}
+    for one in sequences(written):
+        times = [scene.timestamp for scene in one.scenes()]
+        assert times == one.timestamps == [scene.timestamp for scene in one.scenes(sensor_id=1)]
+        assert np.diff(times).tolist() == [50_000, 50_000]
+
+
+def test_points_are_where_the_targets_are(written):
+    for scene in (scene for one in sequences(written) for scene in one.scenes()):
+        time = scene.timestamp / 1e6
+        assert scene.odometry_data["x_seq"] == pytest.approx(1.0 + EGO * time, abs=1e-5)
+        assert scene.odometry_data["vx"] == pytest.approx(EGO, rel=1e-6) and abs(scene.odometry_data["yaw_rate"]) < 1e-6
+        points = scene.radar_data[scene.radar_data["label_id"] == Label.STATIC.value]
+        ball = points[np.argmax(points["rcs"])]
+        way = PLACE[:2] - [1.0 + EGO * time, 0.0136 / 4]
+        nearest = np.hypot(*way) - RADIUS  # the echo comes from the surface
+        assert abs(ball["range_sc"] - nearest) < 0.5 * RANGE_CELL
+        assert ball["azimuth_sc"] == pytest.approx(np.arctan2(way[1], way[0]), abs=0.03)
+        assert np.hypot(ball["x_seq"] - PLACE[0], ball["y_seq"] - PLACE[1]) == pytest.approx(RADIUS, abs=0.4)
+        x, y = transform_detections_sequence_to_car(points["x_seq"], points["y_seq"], scene.odometry_data)
+        np.testing.assert_allclose(np.stack([x, y]), np.stack([points["x_cc"], points["y_cc"]]), atol=1e-5)
+
+
+def test_velocities_and_cross_sections_are_those_of_the_targets(written):
+    for scene in (scene for one in sequences(written) for scene in one.scenes()):
+        points = scene.radar_data
+        ball = points[np.argmax(np.where(points["label_id"] == Label.STATIC.value, points["rcs"], -99.0))]
+        assert abs(ball["vr_compensated"]) < 0.5 * VELOCITY_CELL
+        assert ball["vr"] == pytest.approx(-EGO * np.cos(ball["azimuth_sc"]), abs=0.5 * VELOCITY_CELL)
+        assert ball["rcs"] == pytest.approx(10.0 * np.log10(np.pi * RADIUS**2), abs=1.5)  # cells of a Hann window lose up to 1.4
+        walker = points[points["label_id"] == Label.PEDESTRIAN.value][0]
+        assert walker["vr_compensated"] == pytest.approx(SPEED * np.cos(walker["azimuth_sc"]), abs=VELOCITY_CELL)
+        assert walker["ghost_label"] == 1111 and ball["ghost_label"] in (0, 111)
+        assert ClassificationLabel.label_to_clabel(int(walker["label_id"])) == ClassificationLabel.PEDESTRIAN
+
+
+def test_tracks_last_over_the_frames_of_a_scene_alone(written):
+    tracks = [{point["track_id"] for point in one.radar_data if point["label_id"] == Label.PEDESTRIAN.value}
+              for one in sequences(written)]
+    assert all(len(found) == 1 for found in tracks) and len(set.union(*tracks)) == 4
+    data = sequences(written)[0].radar_data
+    assert len(set(data["uuid"])) == len(data)
+    assert set(data["track_id"][data["label_id"] == Label.STATIC.value]) == {b""}
+
+
+def test_a_dataset_without_detections_is_refused(written, tmp_path):
+    (tmp_path / "plain.toml").write_text(TEMPLATE.replace("[detections]\n", "").replace("scenes = 4", "scenes = 1"))
+    list(dataset.make(tmp_path / "plain.toml", tmp_path / "made"))
+    with pytest.raises(ValueError, match=r"dataset: must be of a template with \[detections\]"):
+        dataset.write_radar_scenes(dataset.open(tmp_path / "made"), tmp_path / "out")
+    assert json.loads((written / "out" / "data" / "sensors.json").read_text())["radar_1"]["x"] == 0.0
+    with pytest.raises(TypeError, match="dataset: must be a Dataset"):
+        dataset.write_radar_scenes("made", tmp_path)

@@ -1,4 +1,5 @@
 """Datasets: what a template draws, and that every frame is there once, with the same bits, however a run is ended."""
+import base64
 import hashlib
 import os
 import shutil
@@ -6,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from html.parser import HTMLParser
 from pathlib import Path
 
 import numpy as np
@@ -287,6 +289,55 @@ def test_a_disk_that_is_too_small_is_told_before_the_first_frame(path, tmp_path,
     with pytest.raises(ep.FileError, match=r"folder: must have \d+ MiB for 12 frames, got 0 MiB"):
         list(dataset.make(path, tmp_path / "out"))
     assert not list((tmp_path / "out").rglob("frame_*"))
+
+
+# --- what is told of it ---
+
+class _Page(HTMLParser):
+    """The texts of the cells of all rows, and the pictures."""
+
+    def __init__(self, text: str):
+        super().__init__()
+        self.rows: list[list[str]] = []
+        self.pictures: list[bytes] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        if tag == "tr":
+            self.rows.append([])
+        elif tag in ("td", "th"):
+            self.rows[-1].append("")
+        elif tag == "img":
+            kind, _, code = dict(attributes)["src"].partition(",")
+            assert kind == "data:image/png;base64"
+            self.pictures.append(base64.b64decode(code))
+
+    def handle_data(self, data):
+        if self.rows and self.rows[-1]:
+            self.rows[-1][-1] += data.strip()
+
+
+def test_the_report_counts_what_is_there(whole, tmp_path):
+    _, folder = whole
+    dataset.write_report(folder, tmp_path / "page.html")
+    text = (tmp_path / "page.html").read_text()
+    page = _Page(text)
+    facts = {row[0]: row[1:] for row in page.rows if len(row) > 1}
+    opened = dataset.open(folder)
+    assert facts["scenes done"] == ["6 of 6"] and facts["frames done"] == ["12"]
+    assert facts["frames of 'train'"] == [str(len(opened.split("train")))]
+    labels = [one.frame.labels["parts"] for one in opened]
+    assert int(facts["static"][-2]) == sum(one.cells for label in labels for one in label.objects) > 0
+    assert sum(map(int, facts["static"][:2])) == sum(len(label.objects) for label in labels)
+    assert len(page.pictures) == 6 and all(picture.startswith(b"\x89PNG") for picture in page.pictures)
+    assert "http" not in text.replace("base64", "")
+
+
+def test_the_command_writes_the_report_beside_the_frames(whole, tmp_path):
+    copied = tmp_path / "copy"
+    shutil.copytree(whole[1], copied)
+    done = subprocess.run([sys.executable, "-m", "echopath", "dataset-report", copied], capture_output=True, text=True)
+    assert done.returncode == 0 and "wrote" in done.stdout and (copied / "report.html").stat().st_size > 10_000
 
 
 def test_a_folder_without_a_dataset_is_told(tmp_path):

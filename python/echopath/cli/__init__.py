@@ -161,6 +161,10 @@ def _add_dataset(commands) -> None:
                          help="the scenes alone that one of the frames A to B - 1 belongs to, from 0 (default: all)")
     dataset.add_argument("--only-failed", action="store_true", help="make those scenes again, and no others, that failed")
     dataset.set_defaults(command=_dataset)
+    report = commands.add_parser("dataset-report", help="write a page about what a dataset holds")
+    report.add_argument("folder", metavar="DIR", help="folder of the dataset")
+    report.add_argument("--out", default=None, metavar="PAGE.html", help="(default: DIR/report.html)")
+    report.set_defaults(command=_dataset_report)
 
 
 def _add_trace_options(parser, default_rays) -> None:
@@ -293,6 +297,14 @@ def _dataset(options) -> None:
 
     for line in lines_of(options):
         print(line, flush=True)
+
+
+def _dataset_report(options) -> None:
+    from ..dataset import write_report
+
+    page = options.out or Path(options.folder) / "report.html"
+    write_report(options.folder, page)
+    print(f"wrote {page}")
 
 
 def _bench(options) -> None:

@@ -3,7 +3,8 @@ from .folder import SceneRecord
 from .making import Forecast, MadeScene, make
 from .opened import Dataset, DatasetFrame, open
 from .radar_scenes import write_radar_scenes
+from .report import write_report
 from .template import DatasetTable, DrawnScene, Template
 
 __all__ = ["Dataset", "DatasetFrame", "DatasetTable", "DrawnScene", "Forecast", "MadeScene", "SceneRecord", "Template", "make",
-           "open", "write_radar_scenes"]
+           "open", "write_radar_scenes", "write_report"]

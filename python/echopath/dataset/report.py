@@ -1,0 +1,160 @@
+"""One HTML page that shows what a dataset holds, without other files."""
+from __future__ import annotations
+
+import base64
+import html
+import io
+import os
+from collections import Counter
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..checks import checked
+from ..checks import path as file_or_folder
+from ..files import write_texts
+from ..plots.style import CURVE_COLOURS, new_figure
+from .classes import CODES
+from .folder import read_record
+from .opened import Dataset, open
+from .statistics import Statistics, statistics_of
+
+EXAMPLES, MOST_DRAWN, FEW = 4, 12, 6  # pictures of frames; drawn numbers that are shown; values that have a bar each
+_DPI = 100
+_STYLE = ("body{font:15px/1.5 sans-serif;max-width:70em;margin:2em auto;padding:0 1em;color:#222}"
+          "table{border-collapse:collapse}td,th{padding:.2em .8em;border-bottom:1px solid #ddd;text-align:right}"
+          "td:first-child,th:first-child{text-align:left}img{max-width:100%}")
+
+
+@checked(folder=file_or_folder, path=file_or_folder)
+def write_report(folder: str | os.PathLike[str], path: str | os.PathLike[str]) -> None:
+    """Writes one HTML file about a dataset: what is done, objects by class, range and power, ghosts, detections, what was drawn,
+    how well the rays know the powers, and frames chosen evenly.
+
+    folder: of the dataset; path: of the file, written whole or not at all. At most 2000 frames, evenly spread, are read.
+    Raises ep.FileError where the folder is no dataset, or the file cannot be written.
+    """
+    dataset = open(folder)
+    found = statistics_of(dataset)
+    parts = [f"<h1>{html.escape(str(dataset.template.table.get('title') or dataset.folder.name))}</h1>", *_facts(dataset, found),
+             *_classes(dataset, found), *_histograms(found), *_detections(found), *_drawn(found), *_examples(dataset)]
+    head = f'<!doctype html><meta charset="utf-8"><title>Dataset</title><style>{_STYLE}</style>'
+    path = Path(path)
+    write_texts(path.parent, {path.name: "\n".join([head, *parts]) + "\n"})
+
+
+def _facts(dataset: Dataset, found: Statistics) -> Iterable[str]:
+    settings = dataset.template.settings
+    records = [read_record(dataset.folder, scene) for scene in range(settings.scenes)]
+    states = Counter(record.state for record in records)
+    yield _table(("", ""), [
+        ("scenes done", f"{states['done']} of {settings.scenes}"), ("frames done", str(len(dataset))),
+        *((f"frames of '{name}'", str(len(dataset.split(name)))) for name in settings.split),
+        ("frames read for this page", str(found.frames)),
+        ("objects in a map whose power the rays know to 0.3 dB", _percent(found.resolved_share))])
+    failed = [(f"scene {scene}", record.reason) for scene, record in enumerate(records) if record.state == "failed"]
+    if failed:
+        yield "<h2>Scenes that failed</h2>" + _table(("scene", "reason"), failed)
+
+
+def _percent(share: float) -> str:
+    return "none in any" if np.isnan(share) else f"{100.0 * share:.0f} %"
+
+
+def _classes(dataset: Dataset, found: Statistics) -> Iterable[str]:
+    """Objects, one for each frame that it is in, by class and split, and by status."""
+    kinds = _kinds(found)
+    if not kinds:
+        return
+    splits, statuses = list(dataset.template.settings.split), sorted({one.status for one in found.objects})
+    counts: Counter[tuple[str, str]] = Counter((one.kind, name) for one in found.objects for name in (one.split, one.status))
+    ghosts = Counter({kind: sum(count for (owner, _), count in found.ghosts.items() if owner == kind) for kind in kinds})
+    cells = Counter({kind: sum(one.cells for one in found.objects if one.kind == kind) for kind in kinds})
+    yield "<h2>Objects</h2><p>Each counts once in every frame.</p>" + _table(
+        ("class", *splits, *statuses, "cells", "cells of ghosts"),
+        [(kind, *(str(counts[kind, name]) for name in (*splits, *statuses)), str(cells[kind]), str(ghosts[kind]))
+         for kind in kinds])
+
+
+def _kinds(found: Statistics) -> list[str]:
+    return [kind for kind in CODES if any(one.kind == kind for one in found.objects)]
+
+
+def _histograms(found: Statistics) -> Iterable[str]:
+    """Ranges and powers of objects that have a cell, by class."""
+    seen = {kind: [one for one in found.objects if one.kind == kind and one.power] for kind in _kinds(found)}
+    seen = {kind: ones for kind, ones in seen.items() if ones}
+    if not seen:
+        return
+    colours = [CURVE_COLOURS[index % len(CURVE_COLOURS)] for index in range(len(seen))]
+    with new_figure(11.0, 3.4) as figure:
+        left, right = figure.subplots(1, 2)
+        for axes, label, values in (
+                (left, "Range of the strongest cell in m", [[one.range for one in ones] for ones in seen.values()]),
+                (right, "Power of the strongest cell in dBm",
+                 [[10.0 * np.log10(1e3 * one.power) for one in ones if one.power] for ones in seen.values()])):
+            axes.hist(values, bins=24, stacked=True, color=colours, label=list(seen))
+            axes.set_xlabel(label)
+            axes.set_ylabel("Objects in frames")
+        left.legend()
+    yield "<h2>Where they are, and how strong</h2>" + _image(figure)
+
+
+def _detections(found: Statistics) -> Iterable[str]:
+    if found.detections:
+        yield "<h2>Detections</h2>" + _table(("what made them", "number", "a frame"), [
+            (name, str(count), f"{count / found.frames:.2f}") for name, count in found.detections.most_common()])
+
+
+def _drawn(found: Statistics) -> Iterable[str]:
+    """Histograms of the numbers that were drawn in the most scenes."""
+    numbers = {place: values for place, values in found.drawn.items()
+               if len(set(map(str, values))) > 1 and all(isinstance(one, (int, float)) for one in values)}
+    chosen = sorted(numbers, key=lambda place: (-len(numbers[place]), place))[:MOST_DRAWN]
+    if not chosen:
+        return
+    rows = -(-len(chosen) // 3)
+    with new_figure(11.0, 2.3 * rows) as figure:
+        panels = figure.subplots(rows, 3, squeeze=False).flat
+        for axes, place in zip(panels, chosen):
+            _draw_numbers(axes, numbers[place])
+            axes.set_title(place.removeprefix("objects."))
+            axes.set_ylabel("Scenes")
+        for axes in list(panels):  # what is left of the iterator
+            axes.set_axis_off()
+    yield "<h2>What was drawn</h2>" + _image(figure)
+
+
+def _draw_numbers(axes: Any, values: list[float]) -> None:
+    """A bar for each value where there are few, else a histogram."""
+    counts = sorted(Counter(values).items())
+    if len(counts) <= FEW:
+        axes.bar([f"{value:g}" for value, _ in counts], [count for _, count in counts], color=CURVE_COLOURS[0])
+    else:
+        axes.hist(values, bins=20, color=CURVE_COLOURS[0])
+
+
+def _examples(dataset: Dataset) -> Iterable[str]:
+    """Labelled maps of some frames, evenly chosen."""
+    places = sorted({int(place) for place in np.linspace(0, len(dataset) - 1, EXAMPLES)}) if len(dataset) else []
+    for one in (dataset[place] for place in places):
+        for labels in list(one.frame.labels.values())[:1]:
+            with new_figure(11.0, 4.4) as figure:
+                title = f"Frame {one.number}: scene {one.scene}, {one.split}"
+                labels.plot("objects", ax=figure.subplots(), title=title)
+            yield _image(figure)
+
+
+def _image(figure: Any) -> str:
+    buffer = io.BytesIO()
+    figure.savefig(buffer, format="png", dpi=_DPI, metadata={"Software": None})
+    return f'<p><img alt="" src="data:image/png;base64,{base64.b64encode(buffer.getvalue()).decode()}"></p>'
+
+
+def _table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    def line(cells: Iterable[str], tag: str) -> str:
+        return "<tr>" + "".join(f"<{tag}>{html.escape(cell)}</{tag}>" for cell in cells) + "</tr>"
+
+    return "<table>" + line(head, "th") + "".join(line(row, "td") for row in rows) + "</table>"

@@ -1,0 +1,83 @@
+"""What a dataset holds, in numbers: objects, ghosts, detections, and how well the rays know them."""
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from ..detections.detections import Detections
+from .classes import ClassName, classes_of
+from .opened import Dataset, DatasetFrame
+
+MOST_FRAMES = 2000  # that are read, evenly spread
+
+
+class SeenObject(NamedTuple):
+    """An object of a frame: its class, the split and status of its label; range in m and power in W of its strongest cell, None
+    without one; cells: that it has; resolved: whether the rays know its power to 0.3 dB."""
+
+    kind: ClassName
+    split: str
+    status: str
+    range: float | None
+    power: float | None
+    cells: int
+    resolved: bool
+
+
+@dataclass
+class Statistics:
+    """What was counted in the frames of a dataset.
+
+    frames: that were read; objects: of all of them; ghosts: cells by (class, ghost type); detections: number by what made
+    them; drawn: {dotted path: values}, one for each scene
+    """
+
+    frames: int = 0
+    objects: list[SeenObject] = field(default_factory=list)
+    ghosts: Counter[tuple[str, int]] = field(default_factory=Counter)
+    detections: Counter[str] = field(default_factory=Counter)
+    drawn: dict[str, list[Any]] = field(default_factory=dict)
+
+    @property
+    def resolved_share(self) -> float:
+        """Of the objects that have cells, those whose power the rays know to 0.3 dB; NaN without any."""
+        seen = [one.resolved for one in self.objects if one.cells]
+        return sum(seen) / len(seen) if seen else float("nan")
+
+
+def statistics_of(dataset: Dataset) -> Statistics:
+    """Reads the frames, at most MOST_FRAMES of them. Raises ep.FileError for a damaged file."""
+    found = Statistics()
+    for scene in dataset.scenes:
+        for place, value in dataset.drawn(scene).items():
+            found.drawn.setdefault(place, []).append(value)
+    step = max(1, -(-len(dataset) // MOST_FRAMES))
+    kinds: dict[int, dict[str, ClassName]] = {}
+    for one in dataset[::step]:
+        if one.scene not in kinds:
+            table = dataset.template.draw(one.scene).table
+            kinds = {one.scene: classes_of(table["objects"], dataset.template.settings.classes)}
+        _count(one, kinds[one.scene], found)
+    return found
+
+
+def _count(one: DatasetFrame, kinds: dict[str, ClassName], found: Statistics) -> None:
+    found.frames += 1
+    for labels in list(one.frame.labels.values())[:1]:  # objects and ghosts are the same in all partitions
+        found.objects += _objects(labels, kinds, one.split)
+        for ghost in labels.ghosts:
+            found.ghosts[kinds.get(ghost.object, "static"), ghost.ghost_type] += ghost.cells
+    detections = one.frame.detections
+    if isinstance(detections, Detections):
+        for name, ghost_type, is_noise in zip(detections.object, detections.ghost_type, detections.is_noise):
+            kind = kinds.get(str(name), "static")
+            found.detections["noise" if is_noise else f"ghost of {kind}" if ghost_type else kind] += 1
+
+
+def _objects(labels: Any, kinds: dict[str, ClassName], split: str) -> Iterator[SeenObject]:
+    for one in labels.objects:
+        place, power = (None, None) if one.peak is None else (one.peak.range, one.peak.power)
+        is_resolved = one.received is not None and one.received.resolved
+        yield SeenObject(kinds.get(one.name, "static"), split, one.status, place, power, one.cells, is_resolved)

@@ -84,8 +84,8 @@ def _draw_cells(axes, labels, areas: list) -> None:
             _draw_area(axes, labels.range, rows, is_inside, colour)
             words = f"{name}: {_cells(np.count_nonzero(is_inside))}"
             axes.fill_between([], [], color=colour, alpha=FILL + 0.2, label=words)
-    axes.set_xlim(labels.range[near], labels.range[far - 1])
-    axes.set_ylim(rows[bottom], rows[top - 1])
+    for limit, axis, first, last in ((axes.set_xlim, labels.range, near, far - 1), (axes.set_ylim, rows, bottom, top - 1)):
+        limit(axis[first] - 0.5 * _step(axis), axis[last] + 0.5 * _step(axis))  # whole cells, be it one
     axes.set_xlabel(f"{RANGE_LABEL}{_unseen(labels)}")
     axes.set_ylabel(_row_label(labels))
     words = axes.get_legend_handles_labels()[1]

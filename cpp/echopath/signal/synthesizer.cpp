@@ -151,9 +151,12 @@ Synthesizer::~Synthesizer() {
   for (ChannelRows& channel : channels_) {
     for (std::unique_ptr<RowMemory>& rows : channel.moving) kept.leave(std::move(rows));
   }
-  kept.leave(std::move(tiles_));
+  for (std::unique_ptr<RowBands>& bands : bands_) kept.leave(std::move(bands));
+  leave_scratch();
 }
 Synthesizer::Synthesizer(Synthesizer&&) noexcept = default;
+
+void Synthesizer::leave_scratch() { KeptMemory::of_process().leave(std::move(tiles_)); }
 
 void Synthesizer::validate(const Echoes& block) const {
   validate_sampling(block.sampling, waveform_.num_chirps);
@@ -179,13 +182,12 @@ int64_t Synthesizer::row_size(bool moving) const {
 void Synthesizer::add(int channel, std::span<const Echoes> blocks, Job* job) {
   require_channel(channel);
   parallel_for(static_cast<int64_t>(blocks.size()), [&](int64_t i) { validate(blocks[static_cast<size_t>(i)]); });
-  ChannelRows& rows = channels_[channel];
   while (!blocks.empty()) {
     const std::span<const Echoes> run = blocks.first(run_of_one_sampling(blocks));
     if (run.front().sampling.is_static()) {
-      add_still(run, rows, job);
+      add_still(run, channels_[static_cast<size_t>(channel)], job);
     } else {
-      add_moving(run, rows, job);
+      add_moving(run, channel, job);
     }
     if (job) {
       for (const Echoes& block : run) job->advance(block.num_echoes);
@@ -203,12 +205,6 @@ std::vector<uint8_t> groups_of(std::span<const Echoes> blocks, int num_groups) {
     if (block.group.empty() && block.num_echoes > 0) has_echoes[0] = 1;
     for (const uint32_t group : block.group) has_echoes[group] = 1;
   }
-  return has_echoes;
-}
-
-std::vector<uint8_t> groups_of(const EchoTiles& tiles, int num_groups) {
-  std::vector<uint8_t> has_echoes(static_cast<size_t>(num_groups));
-  for (const EchoTiles::Tile& tile : tiles.tiles()) has_echoes[tile.group] = 1;
   return has_echoes;
 }
 
@@ -255,18 +251,20 @@ void Synthesizer::add_still_part(std::span<const Echoes> blocks, Range part, con
 }
 
 // Each task clears its own chirps in the rows of groups that are new.
-void Synthesizer::add_moving(std::span<const Echoes> blocks, ChannelRows& rows, Job* job) {
-  if (spread_ && !tiles_) {
-    tiles_ = KeptMemory::of_process().take<EchoTiles>();
-    tiles_->forget();
+void Synthesizer::add_moving(std::span<const Echoes> blocks, int channel, Job* job) {
+  const TimeSampling& sampling = blocks.front().sampling;
+  if (spread_) assign_tiles(blocks);
+  if (has_bands()) {
+    if (bands_.empty()) start_bands();
+    return run_tasks(waveform_.num_chirps,
+                     [&](int first, int count) { add_to_bands(sampling, channel, {first, first + count}, job); });
   }
-  if (spread_) tiles_->assign(blocks, num_groups_, longest_delay(), static_cast<int>(spread_->spreading().grid_size));
-  const std::vector<uint8_t> has_echoes = spread_ ? groups_of(*tiles_, num_groups_) : groups_of(blocks, num_groups_);
+  const std::vector<uint8_t> has_echoes = groups_of(blocks, num_groups_);
   const int64_t size = row_size(true);
   RowsOfGroups all(has_echoes.size()), fresh;
   for (size_t group = 0; group < all.size(); ++group) {
     if (!has_echoes[group]) continue;
-    std::unique_ptr<RowMemory>& of_group = rows.moving[group];
+    std::unique_ptr<RowMemory>& of_group = channels_[static_cast<size_t>(channel)].moving[group];
     const bool is_new = !of_group;
     if (is_new) of_group = RowMemory::take(static_cast<size_t>(size * waveform_.num_chirps));
     all[group] = of_group->values.get();
@@ -275,33 +273,89 @@ void Synthesizer::add_moving(std::span<const Echoes> blocks, ChannelRows& rows, 
   run_tasks(waveform_.num_chirps, [&](int first, int count) {
     for (double* const values : fresh) std::fill_n(values + first * size, count * size, 0.0);
     const Range chirps{first, first + count};
-    if (spread_) return add_tiles(blocks.front().sampling, chirps, all, job);
+    if (spread_) return add_tiles(sampling, chirps, all, job);
     for (const Echoes& block : blocks) add_rows(block, {0, block.num_echoes}, chirps, all, job);
   });
+}
+
+void Synthesizer::assign_tiles(std::span<const Echoes> blocks) {
+  if (!tiles_) {
+    tiles_ = KeptMemory::of_process().take<EchoTiles>();
+    tiles_->forget();
+  }
+  tiles_->assign(blocks, num_groups_, longest_delay(), static_cast<int>(spread_->spreading().grid_size));
+}
+
+int Synthesizer::chirps_of_piece(int piece) const {
+  return std::min(kChirpGroup, waveform_.num_chirps - piece * kChirpGroup);
+}
+
+void Synthesizer::start_bands() {
+  const int num_pieces = (waveform_.num_chirps + kChirpGroup - 1) / kChirpGroup;
+  for (int piece = 0; piece < num_pieces; ++piece) {
+    bands_.push_back(KeptMemory::of_process().take<RowBands>());
+    bands_.back()->start(channels_.size() * static_cast<size_t>(num_groups_), chirps_of_piece(piece));
+  }
+}
+
+size_t Synthesizer::band_row(int channel, int group) const {
+  return static_cast<size_t>(channel) * static_cast<size_t>(num_groups_) + static_cast<size_t>(group);
+}
+
+namespace {
+
+// Names a row of the bands of some chirps.
+struct BandRow {
+  RowBands& bands;
+  size_t row;
+};
+
+TileRows rows_of_band(void* of, const CellRange& cells) {
+  const auto* band = static_cast<const BandRow*>(of);
+  return band->bands.room(band->row, cells);
+}
+
+TileRows rows_given(void* of, const CellRange& /*cells*/) { return *static_cast<const TileRows*>(of); }
+
+}  // namespace
+
+void Synthesizer::add_to_bands(const TimeSampling& sampling, int channel, Range chirps, Job* job) {
+  for (const EchoTiles::Tile& tile : tiles_->tiles()) {
+    if (job) job->throw_if_cancelled();
+    for (int64_t chirp = chirps.begin; chirp < chirps.end; chirp += kChirpGroup) {
+      BandRow row{*bands_[static_cast<size_t>(chirp / kChirpGroup)], band_row(channel, static_cast<int>(tile.group))};
+      add_tile(tile, sampling, {chirp, std::min(chirp + kChirpGroup, chirps.end)}, {rows_of_band, &row});
+    }
+  }
 }
 
 // Returns the delay of the last cell.
 double Synthesizer::longest_delay() const { return waveform_.sampling_rate / waveform_.slope(); }
 
 void Synthesizer::add_tiles(const TimeSampling& sampling, Range chirps, const RowsOfGroups& rows, Job* job) const {
-  const Spreading spreading = spread_->spreading();
   const int64_t stride = row_size(true);
   for (const EchoTiles::Tile& tile : tiles_->tiles()) {
     if (job) job->throw_if_cancelled();
     for (int64_t chirp = chirps.begin; chirp < chirps.end; chirp += kChirpGroup) {
-      const auto weights = static_cast<size_t>(chirp * sampling.order);
-      const int count = static_cast<int>(std::min<int64_t>(kChirpGroup, chirps.end - chirp));
-      const TileAtChirps at{tiles_->nodes(tile),
-                            tile.count,
-                            sampling.num_rows,
-                            sampling.order,
-                            count,
-                            &sampling.first_row[static_cast<size_t>(chirp)],
-                            &sampling.value[weights],
-                            &sampling.slope[weights]};
-      signal_kernels().add_tile(*model_, spreading, at, rows[tile.group] + chirp * stride, stride);
+      TileRows there{rows[tile.group] + chirp * stride, stride / 2, stride};
+      add_tile(tile, sampling, {chirp, std::min(chirp + kChirpGroup, chirps.end)}, {rows_given, &there});
     }
   }
+}
+
+// Adds a tile at up to kChirpGroup chirps.
+void Synthesizer::add_tile(const EchoTiles::Tile& tile, const TimeSampling& sampling, Range chirps,
+                           const RowRoom& room) const {
+  const auto weights = static_cast<size_t>(chirps.begin * sampling.order);
+  const TileAtChirps at{tiles_->nodes(tile),
+                        tile.count,
+                        sampling.num_rows,
+                        sampling.order,
+                        static_cast<int>(chirps.end - chirps.begin),
+                        &sampling.first_row[static_cast<size_t>(chirps.begin)],
+                        &sampling.value[weights],
+                        &sampling.slope[weights]};
+  signal_kernels().add_tile(*model_, spread_->spreading(), at, room);
 }
 
 // Every chirp takes all echoes in their order, in blocks that do not depend on the tasks, so the bits are always the same.
@@ -341,64 +395,96 @@ void Synthesizer::require_group(int group) const {
   throw std::out_of_range("group: must be in [0, " + std::to_string(num_groups_) + "), got " + std::to_string(group));
 }
 
-bool Synthesizer::has_echoes(int channel, int group) const {
+bool Synthesizer::has_echoes(int channel, int group) const { return !is_still(channel, group) || has_still(channel, group); }
+
+bool Synthesizer::has_still(int channel, int group) const {
   require_channel(channel);
   require_group(group);
-  return !is_still(channel, group) || !channels_[static_cast<size_t>(channel)].still[static_cast<size_t>(group)].empty();
+  return !channels_[static_cast<size_t>(channel)].still[static_cast<size_t>(group)].empty();
 }
 
 bool Synthesizer::is_still(int channel, int group) const {
   require_channel(channel);
   require_group(group);
+  if (!bands_.empty()) return !bands_.front()->has(band_row(channel, group));
   return !channels_[static_cast<size_t>(channel)].moving[static_cast<size_t>(group)];
 }
 
-void Synthesizer::write_samples(int channel, int group, std::complex<double>* out) const {
-  require_channel(channel);
-  require_group(group);
-  const ChannelRows& rows = channels_[static_cast<size_t>(channel)];
-  const RowMemory* const moving = rows.moving[static_cast<size_t>(group)].get();
-  const std::vector<double>& still = rows.still[static_cast<size_t>(group)];
+RowCells Synthesizer::moving_cells(int channel, int group, int chirp) const {
+  if (!bands_.empty()) {
+    return bands_[static_cast<size_t>(chirp / kChirpGroup)]->cells(band_row(channel, group), chirp % kChirpGroup);
+  }
+  const RowMemory& rows = *channels_[static_cast<size_t>(channel)].moving[static_cast<size_t>(group)];
+  const int64_t size = row_size(true);
+  const double* const row = rows.values.get() + chirp * size;
+  return {0, size / 2, row, row + size / 2};
+}
+
+// Returns the row [re/im, row length] of a group with moving echoes, which may be made in `room`.
+const double* Synthesizer::moving_row(int channel, int group, int chirp, std::vector<double>& room) const {
+  const RowCells cells = moving_cells(channel, group, chirp);
+  if (2 * cells.count == row_size(true)) return cells.re;
+  room.assign(static_cast<size_t>(row_size(true)), 0.0);
+  add_moving_row(channel, group, chirp, room.data());
+  return room.data();
+}
+
+// Adds to a row [re/im, row length].
+void Synthesizer::add_moving_row(int channel, int group, int chirp, double* row) const {
+  const RowCells cells = moving_cells(channel, group, chirp);
+  run_simd<add_values>(cells.re, cells.count, row + cells.first);
+  run_simd<add_values>(cells.im, cells.count, row + row_size(true) / 2 + cells.first);
+}
+
+void Synthesizer::write_samples(int channel, std::span<const int> groups, std::complex<double>* out) const {
   const int64_t num_samples = waveform_.num_samples;
-  std::vector<std::complex<double>> at_rest(static_cast<size_t>(still.empty() ? 0 : num_samples));
-  if (!still.empty()) write_row(still.data(), false, at_rest.data());
-  for (int64_t chirp = 0; chirp < waveform_.num_chirps; ++chirp) {
-    std::complex<double>* samples = out + chirp * num_samples;
-    if (moving) write_row(moving->values.get() + chirp * row_size(true), true, samples);
-    else std::fill_n(samples, num_samples, 0.0);
-    for (size_t n = 0; n < at_rest.size(); ++n) samples[n] += at_rest[n];
+  std::vector<std::complex<double>> at_rest(static_cast<size_t>(num_samples)), of_group(at_rest.size());
+  std::vector<int> moving;
+  for (const int group : groups) {
+    if (!is_still(channel, group)) moving.push_back(group);
+    if (!has_still(channel, group)) continue;
+    write_row(channels_[static_cast<size_t>(channel)].still[static_cast<size_t>(group)].data(), false, of_group.data());
+    for (size_t n = 0; n < at_rest.size(); ++n) at_rest[n] += of_group[n];
+  }
+  std::vector<double> row(static_cast<size_t>(row_size(true)));
+  for (int chirp = 0; chirp < waveform_.num_chirps; ++chirp, out += num_samples) {
+    std::fill(row.begin(), row.end(), 0.0);
+    for (const int group : moving) add_moving_row(channel, group, chirp, row.data());
+    if (moving.empty()) std::fill_n(out, num_samples, 0.0);
+    else write_row(row.data(), true, out);
+    for (size_t n = 0; n < at_rest.size(); ++n) out[n] += at_rest[n];
   }
 }
 
-const double* Synthesizer::spread_rows(int channel, int group) const {
-  require_channel(channel);
-  require_group(group);
-  const ChannelRows& rows = channels_[static_cast<size_t>(channel)];
-  const RowMemory* const moving = rows.moving[static_cast<size_t>(group)].get();
-  return spread_ && moving && rows.still[static_cast<size_t>(group)].empty() ? moving->values.get() : nullptr;
-}
-
-void Synthesizer::absorb(const Synthesizer& other) {
+void Synthesizer::absorb(const Synthesizer& other, int num_groups) {
+  require(num_groups_ == 1, "num_groups", "must be 1 of what absorbs others", num_groups_);
   parallel_for(static_cast<int64_t>(channels_.size()), [&](int64_t channel) {
-    absorb_channel(other.channels_[static_cast<size_t>(channel)], channels_[static_cast<size_t>(channel)]);
+    for (int group = 0; group < num_groups; ++group) absorb_group(other, static_cast<int>(channel), group);
   });
 }
 
-void Synthesizer::absorb_channel(const ChannelRows& from, ChannelRows& to) const {
-  const auto count = static_cast<size_t>(row_size(true) * waveform_.num_chirps);
+void Synthesizer::absorb_group(const Synthesizer& other, int channel, int group) {
+  ChannelRows& to = channels_[static_cast<size_t>(channel)];
+  const std::vector<double>& still = other.channels_[static_cast<size_t>(channel)].still[static_cast<size_t>(group)];
+  if (!still.empty()) to.still.front().resize(still.size());
+  for (size_t i = 0; i < still.size(); ++i) to.still.front()[i] += still[i];
+  if (other.is_still(channel, group)) return;
+  const int64_t size = row_size(true);
+  const auto count = static_cast<size_t>(size * waveform_.num_chirps);
   std::unique_ptr<RowMemory>& moving = to.moving.front();
-  for (size_t group = 0; group < from.moving.size(); ++group) {
-    const std::vector<double>& still = from.still[group];
-    if (!still.empty()) to.still.front().resize(still.size());
-    for (size_t i = 0; i < still.size(); ++i) to.still.front()[i] += still[i];
-    if (!from.moving[group]) continue;
-    const bool is_new = !moving;
-    if (is_new) moving = RowMemory::take(count);
-    const double* const values = from.moving[group]->values.get();
-    double* const sum = moving->values.get();
-    if (is_new) std::copy_n(values, count, sum);
-    else run_simd<add_values>(values, static_cast<int64_t>(count), sum);
+  if (!moving) {
+    moving = RowMemory::take(count);
+    std::fill_n(moving->values.get(), count, 0.0);
   }
+  for (int chirp = 0; chirp < waveform_.num_chirps; ++chirp) {
+    other.add_moving_row(channel, group, chirp, moving->values.get() + chirp * size);
+  }
+}
+
+size_t Synthesizer::num_band_bytes() const {
+  size_t bytes = 0;
+  for (const std::unique_ptr<RowBands>& bands : bands_) bytes += bands->num_bytes();
+  return bytes;
 }
 
 std::vector<std::complex<double>> Synthesizer::cube(int group, Job* job) const {
@@ -406,23 +492,24 @@ std::vector<std::complex<double>> Synthesizer::cube(int group, Job* job) const {
   const size_t channel_size = static_cast<size_t>(waveform_.num_chirps) * static_cast<size_t>(waveform_.num_samples);
   std::vector<std::complex<double>> out(channels_.size() * channel_size);
   for (size_t channel = 0; channel < channels_.size(); ++channel) {
-    write_channel(channels_[channel], static_cast<size_t>(group), out.data() + channel * channel_size, job);
+    write_channel(static_cast<int>(channel), group, out.data() + channel * channel_size, job);
   }
   return out;
 }
 
 // Adds to `out`, zeros [chirp, sample], the samples of one channel and group.
-void Synthesizer::write_channel(const ChannelRows& rows, size_t group, std::complex<double>* out, Job* job) const {
-  const double* const moving = rows.moving[group] ? rows.moving[group]->values.get() : nullptr;
-  const std::vector<double>& still = rows.still[group];
-  if (!moving && still.empty()) return;
+void Synthesizer::write_channel(int channel, int group, std::complex<double>* out, Job* job) const {
+  const bool moves = !is_still(channel, group);
+  const std::vector<double>& still = channels_[static_cast<size_t>(channel)].still[static_cast<size_t>(group)];
+  if (!moves && still.empty()) return;
   const int64_t num_samples = waveform_.num_samples;
   std::vector<std::complex<double>> at_rest(static_cast<size_t>(num_samples));
   if (!still.empty()) write_row(still.data(), false, at_rest.data());
   parallel_for(waveform_.num_chirps, [&](int64_t chirp) {
     if (job) job->throw_if_cancelled();
     std::complex<double>* samples = out + chirp * num_samples;
-    if (moving) write_row(moving + chirp * row_size(true), true, samples);
+    std::vector<double> room;
+    if (moves) write_row(moving_row(channel, group, static_cast<int>(chirp), room), true, samples);
     for (int64_t n = 0; n < num_samples; ++n) samples[n] += at_rest[static_cast<size_t>(n)];
   });
 }

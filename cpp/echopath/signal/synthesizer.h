@@ -10,6 +10,7 @@
 #include "echopath/radar/radar.h"
 #include "echopath/signal/echoes/echo_tiles.h"
 #include "echopath/signal/echoes/echoes.h"
+#include "echopath/signal/echoes/row_bands.h"
 
 namespace echopath {
 
@@ -35,8 +36,8 @@ struct SynthesisOptions {
 // from the number of echoes of the whole set, whatever the groups. The same blocks in the same order give the same
 // bits for any number of threads. Echoes that do not move are added once, so a static scene gives bit-identical
 // chirps.
-// Memory: 16 bytes x channels x groups x chirps x samples (twice that for NUFFT), only for groups with moving echoes, and
-// what `add` says; it is left to KeptMemory for the next.
+// Memory: 16 bytes x channels x groups x chirps x samples (twice that for NUFFT, and of several groups only the cells of the
+// grid near their echoes), only for groups with moving echoes, and what `add` says; it is left to KeptMemory for the next.
 class Synthesizer {
  public:
   // `expected_echoes` counts the echoes of the whole set per channel. Raises invalid_argument on a bad waveform, count or
@@ -46,7 +47,7 @@ class Synthesizer {
   ~Synthesizer();
   Synthesizer(Synthesizer&&) noexcept;
 
-  size_t group_bytes() const;                // of a group whose echoes move, in all channels
+  size_t group_bytes() const;                // of a group whose echoes move and are at all ranges, in all channels
   Method method() const { return method_; }  // the one chosen, never kAuto
 
   // Adds blocks to a channel; parallel over chirps. It is quicker to add many echoes at once: a NUFFT sorts neighbouring
@@ -56,24 +57,33 @@ class Synthesizer {
   void add(int channel, std::span<const Echoes> blocks, Job* job = nullptr);
   void add(int channel, const Echoes& block, Job* job = nullptr) { add(channel, std::span(&block, 1), job); }
 
-  // Whether a channel and group has echoes so far, and whether none of them moves: then all chirps are the same.
+  // Whether a channel and group has echoes so far, whether some of them rest, and whether none of them moves: then all
+  // chirps are the same.
   bool has_echoes(int channel, int group) const;
+  bool has_still(int channel, int group) const;
   bool is_still(int channel, int group) const;
-  // Writes the samples of one channel and group so far to `out`, [chirp, sample] in sqrt(W), without a parallel loop.
-  void write_samples(int channel, int group, std::complex<double>* out) const;
+  // Writes the samples of one channel and some groups together, so far, to `out`, [chirp, sample] in sqrt(W), without a
+  // parallel loop.
+  void write_samples(int channel, std::span<const int> groups, std::complex<double>* out) const;
   // The method that spreads all echoes on grids, null where another one is at work; it lives as long as this.
   const SpreadMethod* spread() const { return spread_; }
-  // The rows of `spread` of one channel and group, [chirp, re/im, row length]; null where it has echoes at rest, or none.
-  const double* spread_rows(int channel, int group) const;
-  // Adds the signals of all groups of another, of the same waveform, channels, method and tolerance, to the first group.
-  void absorb(const Synthesizer& other);
+  // What a group and channel with moving echoes has in the row of one chirp, so far.
+  RowCells moving_cells(int channel, int group, int chirp) const;
+  // Adds the signals of the first groups of another, of the same waveform, channels, method and tolerance, to the first
+  // group.
+  void absorb(const Synthesizer& other, int num_groups);
+  // Whether only the cells near the echoes of a group take memory: echoes are spread on grids, and there are several groups.
+  bool has_bands() const { return spread_ && num_groups_ > 1; }
+  size_t num_band_bytes() const;
+  // Leaves the memory that only `add` needs to KeptMemory, which the next `add` takes again.
+  void leave_scratch();
   // Returns the samples [channel, chirp, sample] of one group so far, in sqrt(W).
   std::vector<std::complex<double>> cube(int group = 0, Job* job = nullptr) const;
 
  private:
   struct RowMemory;
   struct ChannelRows {
-    // [group], each [chirp, re/im, row length]; null until a moving echo of it comes
+    // [group], each [chirp, re/im, row length]; null until a moving echo of it comes, and where there are bands_
     std::vector<std::unique_ptr<RowMemory>> moving;
     std::vector<std::vector<double>> still;  // [group], each [re/im, row length], added to every chirp; empty likewise
   };
@@ -84,17 +94,25 @@ class Synthesizer {
   };
   void add_still(std::span<const Echoes> blocks, ChannelRows& rows, Job* job) const;
   void add_still_part(std::span<const Echoes> blocks, Range part, const RowsOfGroups& rows, Job* job) const;
-  void add_moving(std::span<const Echoes> blocks, ChannelRows& rows, Job* job);
+  void add_moving(std::span<const Echoes> blocks, int channel, Job* job);
+  void assign_tiles(std::span<const Echoes> blocks);
+  void start_bands();
+  int chirps_of_piece(int piece) const;
+  void add_to_bands(const TimeSampling& sampling, int channel, Range chirps, Job* job);
+  size_t band_row(int channel, int group) const;
   void add_tiles(const TimeSampling& sampling, Range chirps, const RowsOfGroups& rows, Job* job) const;
+  void add_tile(const EchoTiles::Tile& tile, const TimeSampling& sampling, Range chirps, const RowRoom& room) const;
   void add_rows(const Echoes& block, Range echoes, Range chirps, const RowsOfGroups& rows, Job* job) const;
   void add_some(const Echoes& block, int chirp, int64_t begin, int count, Rows rows) const;
   void require_channel(int channel) const;
   void require_group(int group) const;
   int64_t row_size(bool moving) const;
   double longest_delay() const;
+  const double* moving_row(int channel, int group, int chirp, std::vector<double>& room) const;
   void write_row(const double* row, bool moving, std::complex<double>* out) const;
-  void write_channel(const ChannelRows& rows, size_t group, std::complex<double>* out, Job* job) const;
-  void absorb_channel(const ChannelRows& from, ChannelRows& to) const;
+  void write_channel(int channel, int group, std::complex<double>* out, Job* job) const;
+  void absorb_group(const Synthesizer& other, int channel, int group);
+  void add_moving_row(int channel, int group, int chirp, double* row) const;
 
   ChirpSequence waveform_;
   int num_groups_;
@@ -106,6 +124,8 @@ class Synthesizer {
   std::unique_ptr<const CarrierModel> model_;
   std::unique_ptr<EchoTiles> tiles_;  // null until moving echoes come
   std::vector<ChannelRows> channels_;
+  // [chirp / chirps of a tile], of all channels and groups; there are none of a single group, or before moving echoes come
+  std::vector<std::unique_ptr<RowBands>> bands_;
 };
 
 }  // namespace echopath

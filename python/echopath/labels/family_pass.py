@@ -78,13 +78,14 @@ class FamilyPass:
         rest = np.setdiff1d(np.arange(len(families)), [number for rival in likely for number in rivals[rival]])
         if len(rest) > 0:
             self._bounds[rest] = self._pass.bounds(rest, *self._request.plane.window_and_padding, self._progress)
+        self._bound_of_rival = self._bounds_of_rivals()
         self._make(likely)
 
     def _likely_powers(self, paths, families) -> tuple:
         """Power [rivals] in W where the paths of a rival in two neighbouring cells of range add up in phase, at the time of the
         trace and for the first antennas, and the power of the strongest path in W."""
-        amplitude, waveform = np.sqrt(paths.power), self._radar.waveform
-        length = paths.lengths([paths.frame.trace_time], 0, 0)[0]
+        power, length = _core.power_and_length(paths)
+        amplitude, waveform = np.sqrt(power), self._radar.waveform
         cell = length * (waveform.slope * waveform.num_samples / (waveform.sampling_rate * _core.speed_of_light))
         rival_of = np.zeros(len(families), np.int64)
         for rival, members in enumerate(self._owners.rivals):
@@ -100,19 +101,23 @@ class FamilyPass:
         family = self._owners.families[self._owners.rivals[rival][0]]
         return bool(family.object) and not family.is_ghost
 
-    def _bound(self, rival: int):
-        """[R] W, the most that a rival can show in cells of a range."""
-        return np.sum(np.sqrt(self._bounds[self._owners.rivals[rival]]), axis=0) ** 2
+    def _bounds_of_rivals(self):
+        """[rivals, R] W, the most that each can show in cells of a range."""
+        roots, rivals = np.sqrt(self._bounds), self._owners.rivals
+        found = roots[[members[0] for members in rivals]] if rivals else roots
+        for rival, members in enumerate(rivals):
+            if len(members) > 1:
+                found[rival] = np.sum(roots[members], axis=0)
+        return found ** 2
 
     def _open_rivals(self, mask) -> list:
         """[(largest bound in W, rival), ...] of those not made that may own a cell, or tell of an object above the noise."""
-        least, found = np.where(mask, np.maximum(self._owners.best, self._least), np.inf).min(axis=0), []
-        for rival in np.flatnonzero(~self._is_made).tolist():
-            bound = self._bound(rival)
-            may_own = bool(np.any((bound >= least) & (bound > 0.0)))
-            if may_own or (self._is_direct(rival) and bound.max() > self._request.noise_floor):
-                found.append((float(bound.max()), rival))
-        return found
+        least = np.where(mask, np.maximum(self._owners.best, self._least), np.inf).min(axis=0)
+        bounds = self._bound_of_rival
+        largest = bounds.max(axis=1, initial=0.0)
+        may_own = np.any((bounds >= least) & (bounds > 0.0), axis=1)
+        tells = (largest > self._request.noise_floor) & [self._is_direct(rival) for rival in range(len(largest))]
+        return [(float(largest[rival]), rival) for rival in np.flatnonzero(~self._is_made & (may_own | tells)).tolist()]
 
     def _make_open(self, mask) -> None:
         """Makes those that may own a cell, strongest first, until there are none."""
@@ -122,10 +127,13 @@ class FamilyPass:
             self._make([rival for bound, rival in open_rivals if bound >= level])
 
     def _make(self, rivals: list) -> None:
-        sets = [self._owners.rivals[rival] for rival in rivals]
-        for rival, (power, received) in zip(rivals, self._powers(sets, self._least)):
-            self._owners.add(rival, power, received)
-            self._is_made[rival] = True
+        """Those of several families come apart from others: their signals are kept, for the families by themselves."""
+        members = self._owners.rivals
+        for shares in (False, True):
+            some = [rival for rival in rivals if (len(members[rival]) > 1) == shares]
+            for rival, (power, received) in zip(some, self._powers([members[rival] for rival in some], self._least)):
+                self._owners.add(rival, power, received)
+                self._is_made[rival] = True
 
     def _powers(self, sets: list, least: float, ranges: list | None = None):
         """(power [V, R], mean square) in W of the signal of each set of families.
@@ -152,7 +160,7 @@ class FamilyPass:
         rest = np.flatnonzero(~self._is_made).tolist()
         numbers = [number for rival in rest for number in owners.rivals[rival]]
         owners.left_out = LeftOut(len(numbers), float(mean[numbers].sum()),
-                                  max((float(self._bound(rival).max()) for rival in rest), default=0.0))
+                                  float(self._bound_of_rival[rest].max(initial=0.0)))
         alone = [members[0] for members, made in zip(owners.rivals, self._is_made) if made and len(members) == 1]
         mean[alone] = owners.received[alone]
         owners.received = mean

@@ -63,9 +63,11 @@ TEST(Kernels, RowsOfTilesEqualThoseOfTheBaseline) {
                               echoes.sampling.first_row.data(),
                               echoes.sampling.value.data(),
                               echoes.sampling.slope.data()};
+        TileRows to{rows[i].data(), 1064, 2 * 1064};
+        const RowRoom room{[](void* of, const CellRange&) { return *static_cast<const TileRows*>(of); }, &to};
         spoil_stack();
         (i == 0 ? kernels_for<SignalKernels, InstructionSet::kBaseline>() : signal_kernels())
-            .add_tile(model, spreading, at, rows[i].data(), 2 * 1064);
+            .add_tile(model, spreading, at, room);
       }
     }
     double largest = 0.0;

@@ -23,6 +23,24 @@ struct Spreading {
   int64_t row_length;
 };
 
+// Names the cells [first, end) of a row.
+struct CellRange {
+  int64_t first, end;
+};
+
+// Says where rows of some chirps stand: cell c of the first chirp has its real part at rows + c, its imaginary part
+// `row_length` behind that, and the next chirp begins `chirp_stride` behind.
+struct TileRows {
+  double* rows;
+  int64_t row_length, chirp_stride;
+};
+
+// Gives rows that have room for some cells.
+struct RowRoom {
+  TileRows (*rows_for)(void* of, const CellRange& cells);
+  void* of;
+};
+
 // Holds echoes of one group, near each other in delay, in the layout of EchoTiles, at a few chirps.
 struct TileAtChirps {
   static constexpr int kLanes = 8;       // of the layout, whatever the instruction set
@@ -42,9 +60,8 @@ struct SignalKernels {
   void (*modulate)(const CarrierModel& model, const EchoStates& states, int count, Carriers& out);
   // Adds carriers in any order, each to the row of its group.
   void (*spread)(const Spreading& spreading, const Carriers& carriers, Rows rows);
-  // Adds a tile to one row per chirp, `chirp_stride` doubles apart.
-  void (*add_tile)(const CarrierModel& model, const Spreading& spreading, const TileAtChirps& tile, double* rows,
-                   int64_t chirp_stride);
+  // Adds a tile to one row per chirp.
+  void (*add_tile)(const CarrierModel& model, const Spreading& spreading, const TileAtChirps& tile, const RowRoom& room);
 };
 
 inline const SignalKernels& signal_kernels() { return kernels<SignalKernels>(); }

@@ -143,21 +143,22 @@ ECHOPATH_INLINE void visit_shares(int share, int count, Visit visit) {
   }
 }
 
-struct CellRange {
+// The first cells of the kernels of some echoes.
+struct FirstCells {
   int32_t lowest, highest;
   int size() const { return highest - lowest + 1; }
 };
 
-CellRange range_of(const int32_t* cell, int count) {
-  CellRange range{cell[0], cell[0]};
-  for (int p = 1; p < count; ++p) {
+FirstCells range_of(const int32_t* cell, int count) {
+  FirstCells range{INT32_MAX, INT32_MIN};
+  for (int p = 0; p < count; ++p) {
     range.lowest = cell[p] < range.lowest ? cell[p] : range.lowest;
     range.highest = cell[p] > range.highest ? cell[p] : range.highest;
   }
   return range;
 }
 
-CellCounts count_cells(const int32_t* cell, const CellRange& range, int count) {
+CellCounts count_cells(const int32_t* cell, const FirstCells& range, int count) {
   const int32_t lowest = range.lowest;
   CellCounts counts;
   counts.share = (count + CellCounts::kCounters - 1) / CellCounts::kCounters;
@@ -365,7 +366,7 @@ struct Spreader {
 
   // Adds runs by way of the moments of each cell in the range: a cell to which runs come back needs the kernel and the row
   // but once.
-  void add_runs_by_cell(const Places& places, const RunEnds& ends, const CellRange& cells, double* first) const {
+  void add_runs_by_cell(const Places& places, const RunEnds& ends, const FirstCells& cells, double* first) const {
     Moments table[kCellsInTable];
     uint32_t taken = 0;
     for (int c = 0; c < cells.size(); ++c) table[c].clear();
@@ -413,7 +414,7 @@ void spread_tile(const Spreading& spreading, const Places& places, int count, do
   const Spreader<kWidth> spreader{spreading.coefficients, spreading.row_length};
   const RunEnds ends(places.cell, count);
   const int runs = ends.count();
-  const CellRange range = range_of(places.cell, count);
+  const FirstCells range = range_of(places.cell, count);
   if (runs * kShortRun > count) {
     CellCounts counts = count_cells(places.cell, range, count);
     if (counts.num_cells <= kCellsOfTile && 2 * counts.num_taken <= runs && counts.num_taken * kFew <= count) {
@@ -510,15 +511,29 @@ void place_tile_at_all(const CarrierModel& model, const Spreading& spreading, co
   }
 }
 
-void add_tile(const CarrierModel& model, const Spreading& spreading, const TileAtChirps& tile, double* rows,
-              int64_t chirp_stride) {
+// Returns where the kernels of a tile begin at all its chirps.
+FirstCells range_of(const Places* places, const TileAtChirps& tile) {
+  FirstCells all{INT32_MAX, INT32_MIN};
+  for (int chirp = 0; chirp < tile.num_chirps; ++chirp) {
+    const FirstCells here = range_of(places[chirp].cell, tile.count);
+    all.lowest = here.lowest < all.lowest ? here.lowest : all.lowest;
+    all.highest = here.highest > all.highest ? here.highest : all.highest;
+  }
+  return all;
+}
+
+void add_tile(const CarrierModel& model, const Spreading& spreading, const TileAtChirps& tile, const RowRoom& room) {
   Places places[TileAtChirps::kMaxChirps];
   // These phasor errors are far below the error of the kernel, which is 1e-7 and 9e-4 at these widths.
   if (spreading.width <= 4) place_tile_at_all<PhasorError::k7em6>(model, spreading, tile, places);
   else if (spreading.width <= 8) place_tile_at_all<PhasorError::k1em12>(model, spreading, tile, places);
   else place_tile_at_all<PhasorError::kRounding>(model, spreading, tile, places);
+  const FirstCells cells = range_of(places, tile);
+  const TileRows rows = room.rows_for(room.of, {cells.lowest, cells.highest + NufftKernel::padded(spreading.width)});
+  const Spreading there{spreading.width, spreading.coefficients, spreading.grid_size, rows.row_length};
   for (int chirp = 0; chirp < tile.num_chirps; ++chirp) {
-    kSpreadTile[spreading.width - NufftKernel::kMinWidth](spreading, places[chirp], tile.count, rows + chirp * chirp_stride);
+    kSpreadTile[spreading.width - NufftKernel::kMinWidth](there, places[chirp], tile.count,
+                                                          rows.rows + chirp * rows.chirp_stride);
   }
 }
 

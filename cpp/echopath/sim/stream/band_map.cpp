@@ -110,21 +110,25 @@ std::complex<double> BandMap::response(int64_t cell, int64_t column) const {
   return response_[static_cast<size_t>((step % size + size) % size)];
 }
 
-bool BandMap::power(const Synthesizer& signals, int num_channels, int group, double least, SetPower& out) const {
+bool BandMap::power(const SummedGroups& of, int num_channels, double least, std::vector<uint8_t>& asked,
+                    SetPower& out) const {
   if (response_.empty()) return false;
-  std::vector<const double*> rows;
-  for (int channel = 0; channel < num_channels; ++channel) {
-    if (!signals.has_echoes(channel, group)) continue;
-    rows.push_back(signals.spread_rows(channel, group));
-    if (!rows.back()) return false;
+  for (const int group : of.groups) {
+    for (int channel = 0; channel < num_channels; ++channel) {
+      if (of.signals->has_still(channel, group)) return false;
+    }
   }
-  const Band band = band_of(rows);
-  const std::vector<int64_t> columns = columns_of(band, least);
-  if (band.count * (static_cast<int64_t>(columns.size()) + band.count / 2) > kMostProducts) return false;
+  const Band band = band_of(of, num_channels);
+  const std::vector<int64_t> columns = columns_of(band, least, asked);
+  if (band.count * (std::ssize(columns) + band.count / 2) > kMostProducts) {
+    asked.assign(static_cast<size_t>(num_ranges_), 0);
+    for (const int64_t column : columns) asked[static_cast<size_t>(column)] = 1;
+    return false;
+  }
   out = {std::vector<double>(static_cast<size_t>(doppler_fft_.size() * num_ranges_)), 0.0};
   std::vector<double> lanes;
-  for (const double* const of_channel : rows) {
-    gather(of_channel, band, lanes);
+  for (int channel = 0; channel < num_channels; ++channel) {
+    gather(of, channel, band, lanes);
     add_columns(lanes, band, columns, out.cells);
     out.mean_square += sum_of_squares(lanes, band.count);
   }
@@ -134,29 +138,35 @@ bool BandMap::power(const Synthesizer& signals, int num_channels, int group, dou
   return true;
 }
 
-BandMap::Band BandMap::band_of(const std::vector<const double*>& rows) const {
-  const int64_t length = spread_->row_length();
-  std::vector<double> largest(static_cast<size_t>(length));
-  for (const double* const of_channel : rows) {
-    for (int64_t chirp = 0; chirp < num_chirps_; ++chirp) {
-      const double* const re = of_channel + 2 * chirp * length;
-      run_simd<find_largest_squares>(re, re + length, length, largest.data());
+// Returns the largest over chirps and channels, by cell of a row.
+std::vector<double> BandMap::magnitude_of(const Synthesizer& signals, int group, int num_channels) const {
+  std::vector<double> largest(static_cast<size_t>(spread_->row_length()));
+  for (int channel = 0; channel < num_channels; ++channel) {
+    for (int chirp = 0; !signals.is_still(channel, group) && chirp < num_chirps_; ++chirp) {
+      const RowCells cells = signals.moving_cells(channel, group, chirp);
+      run_simd<find_largest_squares>(cells.re, cells.im, cells.count, largest.data() + cells.first);
     }
   }
-  Band band;
-  while (band.first < length && largest[static_cast<size_t>(band.first)] == 0.0) ++band.first;
-  for (int64_t i = band.first; i < length; ++i) {
-    if (largest[static_cast<size_t>(i)] > 0.0) band.count = i + 1 - band.first;
-  }
-  for (int64_t i = 0; i < band.count; ++i) {
-    band.magnitude.push_back(std::sqrt(largest[static_cast<size_t>(band.first + i)]));
-  }
-  return band;
+  for (double& value : largest) value = std::sqrt(value);
+  return largest;
 }
 
-std::vector<int64_t> BandMap::columns_of(const Band& band, double least) const {
+BandMap::Band BandMap::band_of(const SummedGroups& of, int num_channels) const {
+  std::vector<double> sum(static_cast<size_t>(spread_->row_length()));
+  for (const int group : of.groups) {
+    const std::vector<double> of_group = magnitude_of(*of.signals, group, num_channels);
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += of_group[i];
+  }
+  const auto is_set = [](double value) { return value > 0.0; };
+  const auto begin = std::find_if(sum.begin(), sum.end(), is_set);
+  const auto end = std::find_if(sum.rbegin(), std::make_reverse_iterator(begin), is_set).base();
+  return {begin - sum.begin(), end - begin, {begin, end}};
+}
+
+std::vector<int64_t> BandMap::columns_of(const Band& band, double least, const std::vector<uint8_t>& asked) const {
   std::vector<int64_t> columns;
   for (int64_t column = 0; column < num_ranges_; ++column) {
+    if (!asked.empty() && !asked[static_cast<size_t>(column)]) continue;
     double most = 0.0;
     for (int64_t i = 0; i < band.count; ++i) {
       most += band.magnitude[static_cast<size_t>(i)] * std::abs(response(band.first + i, column));
@@ -167,15 +177,18 @@ std::vector<int64_t> BandMap::columns_of(const Band& band, double least) const {
 }
 
 // Sorts the cells of the band of all chirps to [cell, re/im, chirp].
-void BandMap::gather(const double* rows, const Band& band, std::vector<double>& lanes) const {
-  const int64_t length = spread_->row_length();
+void BandMap::gather(const SummedGroups& of, int channel, const Band& band, std::vector<double>& lanes) const {
   lanes.assign(static_cast<size_t>(2 * band.count * num_lanes_), 0.0);
-  for (int64_t chirp = 0; chirp < num_chirps_; ++chirp) {
-    const double* const row = rows + 2 * chirp * length + band.first;
-    double* lane = lanes.data() + chirp;
-    for (int64_t i = 0; i < band.count; ++i, lane += 2 * num_lanes_) {
-      lane[0] = row[i];
-      lane[num_lanes_] = row[length + i];
+  for (const int group : of.groups) {
+    for (int chirp = 0; !of.signals->is_still(channel, group) && chirp < num_chirps_; ++chirp) {
+      const RowCells cells = of.signals->moving_cells(channel, group, chirp);
+      const int64_t begin = std::max(cells.first, band.first);
+      const int64_t end = std::min(cells.first + cells.count, band.first + band.count);
+      double* lane = lanes.data() + 2 * (begin - band.first) * num_lanes_ + chirp;
+      for (int64_t i = begin - cells.first; i < end - cells.first; ++i, lane += 2 * num_lanes_) {
+        lane[0] += cells.re[i];
+        lane[num_lanes_] += cells.im[i];
+      }
     }
   }
 }

@@ -25,24 +25,33 @@ struct SetPower {
   double mean_square = 0.0;   // W, mean over channels, chirps and samples
 };
 
+// Names groups of a synthesizer whose fields add up.
+struct SummedGroups {
+  const Synthesizer* signals = nullptr;
+  std::vector<int> groups;
+};
+
 class BandMap {
  public:
   // Raises as MapTransform. `spread` must outlive it; null: no signal is a band.
   BandMap(const Radar& radar, const Window& window, int zero_pad, const SpreadMethod* spread);
 
-  // Writes the power of a group, and returns true, where its rows set so few cells that this is quicker than their
-  // samples. Cells of columns that can show no more than `least` W are 0. No parallel loop; several threads may use it.
-  bool power(const Synthesizer& signals, int num_channels, int group, double least, SetPower& out) const;
+  // Writes the power of some groups together, and returns true, where their rows set so few cells that this is quicker than
+  // their samples. Cells of columns that can show no more than `least` W are 0, and so are those that are not `asked` for
+  // ([R] 1 or 0; empty: all are); where it returns false, `asked` has all these columns. No parallel loop; several threads
+  // may use it.
+  bool power(const SummedGroups& of, int num_channels, double least, std::vector<uint8_t>& asked, SetPower& out) const;
 
  private:
   struct Band {
     int64_t first = 0, count = 0;   // cells of a row
-    std::vector<double> magnitude;  // [count], the largest over chirps and channels
+    std::vector<double> magnitude;  // [count], the largest over chirps and channels, sums over the groups
   };
-  Band band_of(const std::vector<const double*>& rows) const;
-  std::vector<int64_t> columns_of(const Band& band, double least) const;
+  std::vector<double> magnitude_of(const Synthesizer& signals, int group, int num_channels) const;
+  Band band_of(const SummedGroups& of, int num_channels) const;
+  std::vector<int64_t> columns_of(const Band& band, double least, const std::vector<uint8_t>& asked) const;
   std::complex<double> response(int64_t cell, int64_t column) const;
-  void gather(const double* rows, const Band& band, std::vector<double>& lanes) const;
+  void gather(const SummedGroups& of, int channel, const Band& band, std::vector<double>& lanes) const;
   void add_columns(const std::vector<double>& lanes, const Band& band, const std::vector<int64_t>& columns,
                    std::vector<double>& cells) const;
   double sum_of_squares(const std::vector<double>& lanes, int64_t count) const;

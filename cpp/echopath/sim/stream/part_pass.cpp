@@ -11,6 +11,7 @@ namespace echopath {
 namespace {
 
 constexpr uint32_t kNotAsked = std::numeric_limits<uint32_t>::max();
+constexpr int kFewestSignals = 2;  // which a synthesizer keeps as bands
 
 ReplaySettings replay_of(const CubeSettings& settings) {
   ReplaySettings replay = settings.replay;
@@ -36,11 +37,12 @@ double sum_of_squares(const std::vector<std::complex<double>>& samples) {
 
 }  // namespace
 
-// Some sets of groups: the set of each group, and their paths.
+// Some sets of groups: the signal to which each group is added, and their paths.
 struct PartPass::Sorted {
   std::vector<uint32_t> local;  // [num_groups], kNotAsked for others
   std::vector<int64_t> paths;   // set by set, ascending in each
   int num_sets = 0;
+  int num_signals = 0;  // of the sets, and behind them of the members of those with several
 };
 
 PartPass::PartPass(const Paths& paths, const Radar& radar, std::vector<uint32_t> group, uint32_t num_groups,
@@ -71,21 +73,51 @@ Cube PartPass::whole(Job* job) const {
   return cube;
 }
 
-PartPass::Sorted PartPass::sorted(const Sets& sets) const {
-  Sorted sorted{std::vector<uint32_t>(num_groups_, kNotAsked), {}, static_cast<int>(sets.size())};
+// The groups of a set have one signal, or each its own where they are kept `apart`; then sets whose signals are known have no
+// paths.
+PartPass::Sorted PartPass::sorted(const Sets& sets, bool apart) const {
+  Sorted sorted{std::vector<uint32_t>(num_groups_, kNotAsked), {}, static_cast<int>(sets.size()), 0};
+  sorted.num_signals = sorted.num_sets;
+  std::vector<uint32_t> set_of(num_groups_, kNotAsked);
   for (size_t set = 0; set < sets.size(); ++set) {
     for (const uint32_t group : sets[set]) {
       require(group < num_groups_, "groups", "must be below num_groups", group);
-      sorted.local[group] = static_cast<uint32_t>(set);
+      const bool is_member = apart && sets[set].size() > 1;
+      sorted.local[group] = is_member ? static_cast<uint32_t>(sorted.num_signals++) : static_cast<uint32_t>(set);
+      if (!apart || !is_kept(sets[set])) set_of[group] = static_cast<uint32_t>(set);
     }
   }
   std::vector<std::vector<int64_t>> of_set(sets.size());
   for (size_t path = 0; path < group_.size(); ++path) {
-    const uint32_t set = sorted.local[group_[path]];
+    const uint32_t set = set_of[group_[path]];
     if (set != kNotAsked) of_set[set].push_back(static_cast<int64_t>(path));
   }
   for (const std::vector<int64_t>& some : of_set) sorted.paths.insert(sorted.paths.end(), some.begin(), some.end());
   return sorted;
+}
+
+std::vector<SummedGroups> PartPass::summed(const Sets& sets, const Sorted& sorted, const Synthesizer& signals) const {
+  std::vector<SummedGroups> sums;
+  for (const std::vector<uint32_t>& set : sets) {
+    SummedGroups& sum = sums.emplace_back(SummedGroups{&signals, {}});
+    for (const uint32_t group : set) sum.groups.push_back(static_cast<int>(sorted.local[group]));
+    std::sort(sum.groups.begin(), sum.groups.end());
+    sum.groups.erase(std::unique(sum.groups.begin(), sum.groups.end()), sum.groups.end());
+    if (is_kept(set)) sum = kept_.at(set.front());
+  }
+  return sums;
+}
+
+// Keeps the signals where some of them were added to others.
+void PartPass::keep(const Sets& sets, const Sorted& sorted, Synthesizer signals) {
+  if (sorted.num_signals == sorted.num_sets || kept_bytes_ + signals.num_band_bytes() > kKeptSignals) return;
+  kept_bytes_ += signals.num_band_bytes();
+  signals.leave_scratch();
+  const auto& kept = kept_signals_.emplace_back(std::make_unique<const Synthesizer>(std::move(signals)));
+  for (const std::vector<uint32_t>& set : sets) {
+    for (const uint32_t group : set)
+      kept_.try_emplace(group, SummedGroups{kept.get(), {static_cast<int>(sorted.local[group])}});
+  }
 }
 
 void PartPass::run(const Sorted& sorted, bool as_one, Synthesizer* out, CellBounds* bounds, Job* job) {
@@ -106,7 +138,7 @@ void PartPass::run(const Sorted& sorted, bool as_one, Synthesizer* out, CellBoun
 std::vector<double> PartPass::bounds(std::span<const uint32_t> groups, const Window& window, int zero_pad, Job* job) {
   Sets alone;
   for (const uint32_t group : groups) alone.push_back({group});
-  Sorted some = sorted(alone);
+  Sorted some = sorted(alone, false);
   std::sort(some.paths.begin(),
             some.paths.end());  // they go into one signal, for which neighbours among the rays are better
   CellBounds bounds(paths_.num_paths(), radar_, settings_.synthesis.per_sample);
@@ -117,7 +149,7 @@ std::vector<double> PartPass::bounds(std::span<const uint32_t> groups, const Win
 }
 
 std::vector<Cube> PartPass::cubes(const Sets& sets, Job* job) {
-  const Sorted some = sorted(sets);
+  const Sorted some = sorted(sets, false);
   Synthesizer signals = synthesizer(std::max(1, some.num_sets));
   run(some, false, &signals, nullptr, job);
   std::vector<Cube> cubes;
@@ -125,7 +157,7 @@ std::vector<Cube> PartPass::cubes(const Sets& sets, Job* job) {
     cubes.push_back(Cube::zeros(radar_));
     cubes.back().values = signals.cube(set, job);
   }
-  if (adds_up_) whole_.absorb(signals);
+  if (adds_up_) whole_.absorb(signals, some.num_sets);
   return cubes;
 }
 
@@ -136,24 +168,25 @@ std::vector<SetPower> PartPass::powers(const Sets& sets, const Window& window, i
   for (const std::vector<uint8_t>& asked : ranges) {
     require(std::ssize(asked) == map.num_ranges(), "ranges", "must have one entry for each range of the map", asked.size());
   }
-  const Sorted some = sorted(sets);
-  Synthesizer signals = synthesizer(std::max(1, some.num_sets));
+  const Sorted some = sorted(sets, whole_.spread() != nullptr);
+  Synthesizer signals = synthesizer(std::max(kFewestSignals, some.num_signals));
   run(some, false, &signals, nullptr, job);
-  if (adds_up_) whole_.absorb(signals);
-  const BandMap band(radar_, window, zero_pad, least > 0.0 ? signals.spread() : nullptr);
+  if (adds_up_) whole_.absorb(signals, some.num_signals);
+  const std::vector<SummedGroups> sums = summed(sets, some, signals);
+  const BandMap band(radar_, window, zero_pad, least > 0.0 || !ranges.empty() ? signals.spread() : nullptr);
   std::vector<SetPower> powers(sets.size());
   parallel_for(some.num_sets, [&](int64_t set) {
     if (job) job->throw_if_cancelled();
     const auto at = static_cast<size_t>(set);
-    if (band.power(signals, stream_.num_channels(), static_cast<int>(set), least, powers[at])) return;
-    const std::span<const uint8_t> asked = ranges.empty() ? std::span<const uint8_t>() : ranges[at];
-    powers[at] = power_of(signals, static_cast<int>(set), map, asked);
+    std::vector<uint8_t> asked = ranges.empty() ? std::vector<uint8_t>() : ranges[at];
+    if (band.power(sums[at], stream_.num_channels(), least, asked, powers[at])) return;
+    powers[at] = power_of(sums[at], map, asked);
   });
+  keep(sets, some, std::move(signals));
   return powers;
 }
 
-SetPower PartPass::power_of(const Synthesizer& signals, int set, const MapTransform& map,
-                            std::span<const uint8_t> asked) const {
+SetPower PartPass::power_of(const SummedGroups& of, const MapTransform& map, std::span<const uint8_t> asked) const {
   const auto num_cells = static_cast<size_t>(map.num_velocities() * map.num_ranges());
   const int num_channels = stream_.num_channels();
   std::vector<std::complex<double>> profiles, values(num_cells);
@@ -161,11 +194,13 @@ SetPower PartPass::power_of(const Synthesizer& signals, int set, const MapTransf
                                             static_cast<size_t>(radar_.waveform.num_samples));
   SetPower power{std::vector<double>(num_cells), 0.0};
   for (int channel = 0; channel < num_channels; ++channel) {
-    if (!signals.has_echoes(channel, set)) continue;
-    signals.write_samples(channel, set, samples.data());
+    const auto any = [&](auto is_so) { return std::any_of(of.groups.begin(), of.groups.end(), is_so); };
+    if (!any([&](int group) { return of.signals->has_echoes(channel, group); })) continue;
+    of.signals->write_samples(channel, of.groups, samples.data());
     power.mean_square += sum_of_squares(samples);
-    if (signals.is_still(channel, set)) map.transform_still(samples.data(), profiles, values.data());
-    else map.transform(samples.data(), profiles, values.data(), asked);
+    const bool moves = any([&](int group) { return !of.signals->is_still(channel, group); });
+    if (moves) map.transform(samples.data(), profiles, values.data(), asked);
+    else map.transform_still(samples.data(), profiles, values.data());
     for (size_t cell = 0; cell < num_cells; ++cell) power.cells[cell] += std::norm(values[cell]);
   }
   for (size_t cell = 0; !asked.empty() && cell < num_cells; ++cell) {

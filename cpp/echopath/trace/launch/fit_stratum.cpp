@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "echopath/base/constants.h"
 #include "echopath/trace/geometry/convex_hull.h"
@@ -22,7 +23,8 @@ constexpr double kMargin = 1e-2, kMarginOfLarger = 1e-4;
 constexpr double kSteepestSine = 0.57;
 constexpr size_t kSampledVertices = 4096;  // for the middle of directions
 constexpr int kAxisSteps = 64;
-constexpr int kOutwardDirections = 16;  // by which points inside the hull are sorted out
+constexpr int kOutwardDirections = 16;        // by which points inside the hull are sorted out
+constexpr double kWithinCircle = 1.0 - 1e-6;  // of its radius: nearer to its rim rounding may tell otherwise
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a[0] * b[1] - a[1] * b[0]; }
 
@@ -69,23 +71,48 @@ struct GnomonicPlane {
   Vec3 direction(const Eigen::Vector2d& point) const { return (axis + point[0] * first + point[1] * second).normalized(); }
 };
 
+Eigen::Vector2d outermost_point(const PlanePoints& points, int k) {
+  const double angle = kTwoPi * k / kOutwardDirections;
+  const Eigen::Vector2d outward(std::cos(angle), std::sin(angle));
+  double farthest = outward.dot(points.front());
+  size_t best = 0;
+  for (size_t i = 1; i < points.size(); ++i) {
+    const double distance = outward.dot(points[i]);
+    if (distance <= farthest) continue;
+    farthest = distance;
+    best = i;
+  }
+  return points[best];
+}
+
+// Returns the points outside of a circle within the polygon of the outermost points in four directions: the others are
+// neither outermost in any direction nor corners of the hull.
+PlanePoints points_outside_of_circle(const PlanePoints& points) {
+  std::array<Eigen::Vector2d, 4> corners;
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  for (int k = 0; k < 4; ++k) {
+    corners[static_cast<size_t>(k)] = outermost_point(points, k * kOutwardDirections / 4);
+    centre += 0.25 * corners[static_cast<size_t>(k)];
+  }
+  double radius = std::numeric_limits<double>::max();
+  for (size_t k = 0; k < 4; ++k) {
+    const Eigen::Vector2d edge = corners[(k + 1) % 4] - corners[k];
+    const double inward = edge.squaredNorm() > 0 ? cross(edge, centre - corners[k]) / edge.norm() : 0.0;
+    radius = std::min(radius, std::max(0.0, inward));
+  }
+  const double limit = std::pow(kWithinCircle * radius, 2);
+  PlanePoints outer;
+  std::copy_if(points.begin(), points.end(), std::back_inserter(outer),
+               [&](const Eigen::Vector2d& point) { return !((point - centre).squaredNorm() < limit); });
+  return outer;
+}
+
 // Returns the points that may be corners of the convex hull: those outside of the polygon of the outermost ones in some
 // directions.
-PlanePoints outer_points(const PlanePoints& points) {
+PlanePoints outer_points(const PlanePoints& all) {
+  const PlanePoints points = points_outside_of_circle(all);
   std::array<Eigen::Vector2d, kOutwardDirections> outermost;
-  for (int k = 0; k < kOutwardDirections; ++k) {
-    const double angle = kTwoPi * k / kOutwardDirections;
-    const Eigen::Vector2d outward(std::cos(angle), std::sin(angle));
-    double farthest = outward.dot(points.front());
-    size_t best = 0;
-    for (size_t i = 1; i < points.size(); ++i) {
-      const double distance = outward.dot(points[i]);
-      if (distance <= farthest) continue;
-      farthest = distance;
-      best = i;
-    }
-    outermost[static_cast<size_t>(k)] = points[best];
-  }
+  for (int k = 0; k < kOutwardDirections; ++k) outermost[static_cast<size_t>(k)] = outermost_point(points, k);
   const auto is_inside = [&](const Eigen::Vector2d& point) {
     for (size_t k = 0; k < kOutwardDirections; ++k) {
       const Eigen::Vector2d edge = outermost[(k + 1) % kOutwardDirections] - outermost[k];

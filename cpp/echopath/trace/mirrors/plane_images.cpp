@@ -46,6 +46,28 @@ bool reaches_plane(const Eigen::AlignedBox3d& box, const Plane& plane, double to
          std::abs(plane.height(box.center())) <= 0.5 * plane.normal.cwiseAbs().dot(box.sizes()) + tolerance;
 }
 
+// Returns which vertices lie in a plane, [V] 1 or 0; empty: none of them.
+std::vector<uint8_t> vertices_in(const Plane& plane, const std::vector<Vec3>& vertices, double tolerance) {
+  std::vector<uint8_t> lies_in(vertices.size());
+  uint8_t any = 0;
+  for (size_t i = 0; i < vertices.size(); ++i) {
+    lies_in[i] = std::abs(plane.height(vertices[i])) <= tolerance;
+    any |= lies_in[i];
+  }
+  return any ? lies_in : std::vector<uint8_t>();
+}
+
+// Gives the triangles with all three corners in a plane its number, unless they have one.
+void name_triangles(const std::vector<Triangle>& triangles, const std::vector<uint8_t>& lies_in, int plane,
+                    std::vector<int>& plane_of_triangle) {
+  for (size_t i = 0; i < triangles.size(); ++i) {
+    const auto& [a, b, c] = triangles[i];
+    if (!(lies_in[a] & lies_in[b] & lies_in[c])) continue;
+    if (plane_of_triangle.empty()) plane_of_triangle.assign(triangles.size(), -1);
+    if (plane_of_triangle[i] < 0) plane_of_triangle[i] = plane;
+  }
+}
+
 bool is_near(const std::vector<Vec3>& points, const std::vector<Vec3>& others) {
   return std::equal(points.begin(), points.end(), others.begin(), others.end(),
                     [](const Vec3& a, const Vec3& b) { return (a - b).norm() < kSamePoint; });
@@ -192,19 +214,11 @@ void PlaneImages::find_triangles() {
   for (uint32_t mesh_id = 0; !joined_.empty() && mesh_id < scene_.meshes().size(); ++mesh_id) {
     const Node& node = scene_.node_of(mesh_id);
     if (node.material->mirror || node.deformation) continue;
-    const auto num_triangles = static_cast<uint32_t>(node.mesh->triangles().size());
     std::vector<int>& of_triangle = doubles_.plane_of_triangle[mesh_id];
     for (size_t plane = 0; plane < joined_.size(); ++plane) {
       if (!reaches_plane(geometry_.box(mesh_id), joined_[plane], tolerance_)) continue;
-      for (uint32_t triangle = 0; triangle < num_triangles; ++triangle) {
-        const std::array<Vec3, 3> corners = geometry_.corners(mesh_id, triangle);
-        const bool lies_in = std::all_of(corners.begin(), corners.end(), [&](const Vec3& corner) {
-          return std::abs(joined_[plane].height(corner)) <= tolerance_;
-        });
-        if (!lies_in) continue;
-        if (of_triangle.empty()) of_triangle.assign(num_triangles, -1);
-        if (of_triangle[triangle] < 0) of_triangle[triangle] = static_cast<int>(plane);
-      }
+      const std::vector<uint8_t> lies_in = vertices_in(joined_[plane], geometry_.vertices(mesh_id), tolerance_);
+      if (!lies_in.empty()) name_triangles(node.mesh->triangles(), lies_in, static_cast<int>(plane), of_triangle);
     }
   }
 }

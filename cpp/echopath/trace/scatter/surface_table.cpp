@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
+#include <unordered_map>
 
 namespace echopath {
 namespace {
@@ -24,24 +25,38 @@ double middle_extent(const std::vector<Vec3>& vertices) {
 
 bool is_unflagged_smooth(const Node& node) { return node.smooth && !node.material->mirror; }
 
-double width_of_smooth(const Node& node, const std::vector<Vec3>& vertices) {
-  if (!is_unflagged_smooth(node)) return 0.0;
-  const double width = middle_extent(vertices);
-  if (!node.mesh->whole()) return width;
-  // The whole surface is scaled as this part of it is.
-  const double at_rest = middle_extent(node.mesh->vertices());
-  return at_rest > 0 ? middle_extent(node.mesh->whole()->vertices()) * (width / at_rest) : width;
-}
+// Finds how wide smooth surfaces are.
+class SmoothWidths {
+ public:
+  double width_of(const Node& node, const std::vector<Vec3>& vertices) {
+    if (!is_unflagged_smooth(node)) return 0.0;
+    const double width = middle_extent(vertices);
+    if (!node.mesh->whole()) return width;
+    // The whole surface is scaled as this part of it is.
+    const double at_rest = middle_extent(node.mesh->vertices());
+    return at_rest > 0 ? extent_of_whole(*node.mesh->whole()) * (width / at_rest) : width;
+  }
+
+ private:
+  double extent_of_whole(const Mesh& whole) {
+    const auto [entry, is_new] = extents_.try_emplace(&whole);
+    if (is_new) entry->second = middle_extent(whole.vertices());
+    return entry->second;
+  }
+
+  std::unordered_map<const Mesh*, double> extents_;  // parts share their whole
+};
 
 }  // namespace
 
 SurfaceTable::SurfaceTable(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                            double frequency)
     : mirror_of_(mirrors, geometry) {
+  SmoothWidths widths;
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
     const Node& node = scene.node_of(id);
     models_.emplace_back(*node.material, frequency);
-    smooth_width_.push_back(width_of_smooth(node, geometry.vertices(id)));
+    smooth_width_.push_back(widths.width_of(node, geometry.vertices(id)));
     has_smooth_ = has_smooth_ || is_unflagged_smooth(node);
   }
 }

@@ -18,7 +18,8 @@ PathsPtr kept(Paths&& paths) { return std::make_shared<Paths>(std::move(paths));
 
 py::dict update_live(LiveTrace& live, Scene scene, const Radar& radar, int64_t num_rays, int max_bounces, uint64_t seed,
                      double start_time, const std::string& polarization, const std::string& footprint,
-                     const std::string& sampler, const std::string& scatterers, bool edges, const py::object& progress) {
+                     const std::string& sampler, const std::string& scatterers, bool edges, double attenuation,
+                     const py::object& progress) {
   TraceSettings settings;
   settings.num_rays = num_rays;
   settings.max_bounces = max_bounces;
@@ -29,6 +30,7 @@ py::dict update_live(LiveTrace& live, Scene scene, const Radar& radar, int64_t n
   settings.sampler = kSampler.value_of(sampler);
   settings.scatterers = kScatterers.value_of(scatterers);
   settings.edges = edges;
+  settings.attenuation = attenuation;
   const SceneSnapshot snapshot(std::move(scene));
   // What ends the job as it ends, such as an exception of `progress`, must leave the record that Python knows of.
   LiveTrace::Next next = run_job("trace", progress, [&](Job& job) { return live.prepare(snapshot, radar, settings, &job); });
@@ -49,7 +51,8 @@ void bind_live(py::module_& m) {
       .def(py::init<>())
       .def("update", &update_live, py::arg("scene"), py::arg("radar"), py::kw_only(), py::arg("num_rays"),
            py::arg("max_bounces"), py::arg("seed"), py::arg("start_time"), py::arg("polarization"), py::arg("footprint"),
-           py::arg("sampler"), py::arg("scatterers"), py::arg("edges"), py::arg("progress") = py::none(),
+           py::arg("sampler"), py::arg("scatterers"), py::arg("edges"), py::arg("attenuation"),
+           py::arg("progress") = py::none(),
            "What ep.Live calls. Returns is_whole, num_rays_shot, and the Paths removed and added.")
       .def(
           "paths",

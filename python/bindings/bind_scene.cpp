@@ -4,6 +4,7 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -13,7 +14,10 @@
 #include <vector>
 
 #include "argument.h"
+#include "array.h"
 #include "define.h"
+#include "echopath/base/constants.h"
+#include "echopath/em/backscatter.h"
 #include "echopath/em/coherent_share.h"
 #include "echopath/scene/mesh/tessellation.h"
 #include "echopath/scene/readers/readers.h"
@@ -30,7 +34,10 @@ std::shared_ptr<Material> material(Arg<"conductor", Flag> conductor, Arg<"permit
                                    Arg<"conductivity", Real> conductivity, Arg<"reflectivity", Optional<Real>> reflectivity,
                                    Arg<"roughness_height", Real> roughness_height,
                                    Arg<"scattering", Optional<Real>> scattering,
-                                   Arg<"cross_polarization", Real> cross_polarization, Arg<"mirror", Flag> mirror) {
+                                   Arg<"cross_polarization", Real> cross_polarization, Arg<"mirror", Flag> mirror,
+                                   Arg<"lobe_exponent", Count> lobe_exponent,
+                                   Arg<"backscatter_share", Real> backscatter_share,
+                                   Arg<"backscatter_exponent", Count> backscatter_exponent) {
   auto made = std::make_shared<Material>();
   made->conductor = *conductor;
   made->permittivity = *permittivity;
@@ -40,6 +47,9 @@ std::shared_ptr<Material> material(Arg<"conductor", Flag> conductor, Arg<"permit
   made->scattering = *scattering;
   made->cross_polarization = *cross_polarization;
   made->mirror = *mirror;
+  made->lobe_exponent = *lobe_exponent;
+  made->backscatter_share = *backscatter_share;
+  made->backscatter_exponent = *backscatter_exponent;
   made->validate();
   return made;
 }
@@ -56,7 +66,21 @@ py::dict fields_of(const Material& self) {
   fields["scattering"] = self.scattering;
   fields["cross_polarization"] = self.cross_polarization;
   fields["mirror"] = self.mirror;
+  fields["lobe_exponent"] = self.lobe_exponent;
+  fields["backscatter_share"] = self.backscatter_share;
+  fields["backscatter_exponent"] = self.backscatter_exponent;
   return fields;
+}
+
+py::array_t<double> backscatter(const Material& self, Arg<"grazing", VectorOf<double>> grazing,
+                                Arg<"frequency", Real> frequency) {
+  py::array_t<double> found(static_cast<py::ssize_t>(grazing->size()));
+  for (size_t i = 0; i < grazing->size(); ++i) {
+    const double angle = (*grazing)[i];
+    require(angle >= 0 && angle <= 0.5 * kPi, "grazing", "must lie in [0, pi/2] rad", angle);
+    found.mutable_data()[i] = backscatter_coefficient(self, *frequency, std::sin(angle));
+  }
+  return found;
 }
 
 std::string material_text(const Material& self) {
@@ -83,10 +107,15 @@ cross_polarization: K in [0, 0.5], share of diffuse power that leaves in the cro
 full depolarisation, the most a reciprocal surface without a preferred axis does
 mirror: True for planes larger than their Fresnel zone, which are treated by images whatever they meet; of a mesh that is no
     plane each of its planes
+lobe_exponent: of the lobe of diffuse power about the direction of mirroring (Degli-Esposti 2007), a whole number up to 100;
+    0: Lambert's lobe
+backscatter_share: of a lobe, share in [0, 1] of what goes back to where the wave comes from; backscatter_exponent: of that
+    part, up to 100, 0: as lobe_exponent
 Raises TypeError or ValueError naming the field, the rule and the value.)");
   define_init(type, &material, py::kw_only(), py::arg("conductor") = false, py::arg("permittivity") = py::none(),
               py::arg("conductivity") = 0.0, py::arg("reflectivity") = py::none(), py::arg("roughness_height") = 0.0,
-              py::arg("scattering") = py::none(), py::arg("cross_polarization") = 0.0, py::arg("mirror") = false)
+              py::arg("scattering") = py::none(), py::arg("cross_polarization") = 0.0, py::arg("mirror") = false,
+              py::arg("lobe_exponent") = 0, py::arg("backscatter_share") = 0.0, py::arg("backscatter_exponent") = 0)
       .def_readonly("conductor", &Material::conductor, "bool")
       .def_readonly("permittivity", &Material::permittivity, "complex, relative, or None")
       .def_readonly("conductivity", &Material::conductivity, "S/m")
@@ -95,7 +124,15 @@ Raises TypeError or ValueError naming the field, the rule and the value.)");
       .def_readonly("scattering", &Material::scattering, "S in [0, 1], or None")
       .def_readonly("cross_polarization", &Material::cross_polarization, "K in [0, 0.5]")
       .def_readonly("mirror", &Material::mirror, "bool")
+      .def_readonly("lobe_exponent", &Material::lobe_exponent, "of a directive lobe, 0: Lambert's")
+      .def_readonly("backscatter_share", &Material::backscatter_share, "of the lobe, in [0, 1]")
+      .def_readonly("backscatter_exponent", &Material::backscatter_exponent, "0: as lobe_exponent")
       .def("__repr__", &material_text);
+  define(type, "backscatter", &backscatter, py::arg("grazing"), py::kw_only(), py::arg("frequency"),
+         R"(Radar cross section per area of what a surface scatters back diffusely, sigma0 [N], without its coherent echo.
+
+grazing: [N] rad in [0, pi/2], from the surface; frequency: Hz
+Raises TypeError or ValueError naming the argument.)");
   define_static(type, "metal", &metal, py::arg("mirror") = false,
                 "A perfect conductor; mirror: a plane larger than its Fresnel zone. Raises TypeError naming the argument.");
   define_value<Material>(type, &fields_of);

@@ -6,13 +6,17 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "argument.h"
 #include "array.h"
 #include "choice.h"
 #include "echopath/sim/rays/ray_allocation.h"
+#include "echopath/trace/geometry/embree_scene.h"
 #include "echopath/trace/geometry/kept_geometry.h"
 #include "echopath/trace/trace.h"
 #include "error_target.h"
+#include "leaving.h"
 #include "run_job.h"
 #include "scene_geometry.h"
 
@@ -34,8 +38,8 @@ Effort effort_of(std::optional<int64_t> num_rays, int batches, std::optional<dou
 PathsPtr trace_paths(Scene scene, const Radar& radar, std::optional<int64_t> num_rays, int max_bounces, uint64_t seed,
                      double start_time, const std::string& polarization, const std::string& footprint,
                      const std::string& sampler, std::optional<int> batches, std::optional<double> target_error_db,
-                     int64_t max_rays, const std::string& scatterers, bool edges, const py::object& progress,
-                     const std::shared_ptr<KeptGeometry>& kept) {
+                     int64_t max_rays, const std::string& scatterers, bool edges, double attenuation,
+                     const py::object& progress, const std::shared_ptr<KeptGeometry>& kept) {
   const Effort effort = effort_of(num_rays, batches.value_or(1), target_error_db, max_rays);
   TraceSettings settings;
   settings.num_rays = effort.num_rays;
@@ -48,6 +52,7 @@ PathsPtr trace_paths(Scene scene, const Radar& radar, std::optional<int64_t> num
   settings.sampler = kSampler.value_of(sampler);
   settings.scatterers = kScatterers.value_of(scatterers);
   settings.edges = edges;
+  settings.attenuation = attenuation;
   const SceneSnapshot snapshot(std::move(scene));
   auto paths = std::make_shared<Paths>(run_job("trace", progress, [&](Job& job) {
     return effort.target ? trace_to_error(snapshot, radar, settings, *effort.target, &job, kept.get())
@@ -61,6 +66,22 @@ PathsPtr trace_paths(Scene scene, const Radar& radar, std::optional<int64_t> num
   return paths;
 }
 
+py::array_t<bool> are_clear(const Scene& scene, double time, const Vec3& from, const std::vector<Vec3>& points) {
+  std::vector<uint8_t> blocked(points.size(), 0);
+  if (scene.num_triangles() > 0 && !points.empty()) {
+    const WithoutGil released;
+    const PosedScene pose(scene, time);
+    const EmbreeScene geometry(scene, pose, EmbreeScene::origin_near(scene, pose, from));
+    std::vector<Segment> ways;
+    ways.reserve(points.size());
+    for (const Vec3& point : points) ways.push_back({from - geometry.origin(), point - geometry.origin()});
+    geometry.occluded(ways.data(), ways.size(), blocked.data());
+  }
+  py::array_t<bool> clear(static_cast<py::ssize_t>(points.size()));
+  for (size_t i = 0; i < points.size(); ++i) clear.mutable_data()[i] = !blocked[i];
+  return clear;
+}
+
 }  // namespace
 
 void bind_trace(py::module_& m) {
@@ -72,8 +93,15 @@ void bind_trace(py::module_& m) {
         py::arg("max_bounces") = 4, py::arg("seed") = 1, py::arg("start_time") = 0.0, py::arg("polarization") = "scalar",
         py::arg("footprint") = "second_order", py::arg("sampler") = "lattice", py::arg("batches") = py::none(),
         py::arg("target_error_db") = py::none(), py::arg("max_rays") = kMaxRays, py::arg("scatterers") = "rays",
-        py::arg("edges") = false, py::arg("progress") = py::none(), py::arg("kept") = py::none(),
-        "What ep.trace calls. kept: KeptGeometry of the scene, or None.");
+        py::arg("edges") = false, py::arg("attenuation") = 0.0, py::arg("progress") = py::none(),
+        py::arg("kept") = py::none(), "What ep.trace calls. kept: KeptGeometry of the scene, or None.");
+  m.def(
+      "are_clear",
+      [](const Scene& scene, Arg<"time", Real> time, Arg<"origin", Vector3> origin, Arg<"points", Points> points) {
+        return are_clear(scene, *time, *origin, *points);
+      },
+      py::arg("scene"), py::arg("time"), py::arg("origin"), py::arg("points"),
+      "Whether nothing of the scene lies between `origin` [3] and each of `points` [N, 3], m at `time` in s; [N].");
   m.attr("DEFAULT_MAX_RAYS") = kMaxRays;
   m.attr("MOST_RAYS") = kMostRays;
 }

@@ -55,9 +55,11 @@ TraceFrame frame_of(Arg<"start_time", Real> start_time, Arg<"trace_time", Real> 
                     Arg<"footprint", OneOf<kFootprint>> footprint, Arg<"statistics", Instance<TraceStatistics>> statistics,
                     Arg<"num_batches", Count> num_batches, Arg<"target_error_db", Number> target_error_db,
                     Arg<"error_db", Number> error_db, Arg<"sampler", OneOf<kSampler>> sampler,
-                    Arg<"scatterers", OneOf<kScatterers>> scatterers, Arg<"edges", Flag> edges) {
-  return {*start_time, *trace_time, *transmitter, *receiver,    *strata,          *seed,     *max_bounces, *polarization,
-          *footprint,  *sampler,    *statistics,  *num_batches, *target_error_db, *error_db, *scatterers,  *edges};
+                    Arg<"scatterers", OneOf<kScatterers>> scatterers, Arg<"edges", Flag> edges,
+                    Arg<"attenuation", Real> attenuation) {
+  return {*start_time,      *trace_time,   *transmitter, *receiver, *strata,     *seed,
+          *max_bounces,     *polarization, *footprint,   *sampler,  *statistics, *num_batches,
+          *target_error_db, *error_db,     *scatterers,  *edges,    *attenuation};
 }
 
 }  // namespace
@@ -134,7 +136,7 @@ void bind_trace_frame(py::module_& m) {
               py::arg("receiver"), py::arg("strata"), py::arg("seed"), py::arg("max_bounces"), py::arg("polarization"),
               py::arg("footprint"), py::arg("statistics"), py::arg("num_batches") = 1, py::arg("target_error_db") = 0.0,
               py::arg("error_db") = 0.0, py::arg("sampler") = "lattice", py::arg("scatterers") = "rays",
-              py::arg("edges") = false);
+              py::arg("edges") = false, py::arg("attenuation") = 0.0);
   bound_frame.def_readonly("start_time", &TraceFrame::start_time, "s, first sample of the frame")
       .def_readonly("trace_time", &TraceFrame::trace_time, "s, the time that the rays saw")
       .def_property_readonly(
@@ -164,6 +166,7 @@ void bind_trace_frame(py::module_& m) {
           "scatterers", [](const TraceFrame& self) { return kScatterers.name_of(self.scatterers); },
           "\"rays\" or \"surface\": what the scatterers of rough surfaces are")
       .def_readonly("edges", &TraceFrame::edges, "whether echoes of sharp edges were looked for")
+      .def_readonly("attenuation", &TraceFrame::attenuation, "Np/m of fields in the air, along every path")
       .def_readonly("statistics", &TraceFrame::statistics, "TraceStatistics");
   def_travel(bound_frame, field("start_time", &TraceFrame::start_time), field("trace_time", &TraceFrame::trace_time),
              field("transmitter", &TraceFrame::transmitter), field("receiver", &TraceFrame::receiver),
@@ -172,7 +175,8 @@ void bind_trace_frame(py::module_& m) {
              field("num_batches", &TraceFrame::num_batches), field("target_error_db", &TraceFrame::target_error_db),
              field("error_db", &TraceFrame::error_db), field("polarization", &TraceFrame::polarization, kPolarization),
              field("footprint", &TraceFrame::footprint, kFootprint), field("sampler", &TraceFrame::sampler, kSampler),
-             field("scatterers", &TraceFrame::scatterers, kScatterers), field("edges", &TraceFrame::edges));
+             field("scatterers", &TraceFrame::scatterers, kScatterers), field("edges", &TraceFrame::edges),
+             field("attenuation", &TraceFrame::attenuation));
 }
 
 }  // namespace echopath::bindings

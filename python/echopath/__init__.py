@@ -62,6 +62,7 @@ from .trajectories import Lane, Trajectory, read_trajectories
 from .truth import Truth, truth
 from .viewing import plot_rays, view
 from .visibility import ObjectVisibility, Sight, visibility
+from .weather import Weather
 
 __all__ = [
     "Actor", "AngleEstimates", "AngleSpectrum", "AngleTime", "Antenna", "AntennaPattern", "BeamPower", "CfarResult",
@@ -73,7 +74,7 @@ __all__ = [
     "ReceivedPower", "Renewal", "SavedFrame", "Scene", "SceneFile", "SceneNode", "Selection", "Sequence", "Sight",
     "SignalProbe", "SignalSettings", "Skin", "Spectrogram", "SpectrogramLabels", "StoredSequence", "Stratum",
     "TessellationWarning", "TraceFrame", "TraceSettings", "TraceStatistics", "Tracks", "Traffic", "Trajectory", "Truth",
-    "Unresolved", "Validity", "ValidityShares", "VertexSequence", "VirtualArray", "Watch", "actors", "add_noise",
+    "Unresolved", "Validity", "ValidityShares", "VertexSequence", "VirtualArray", "Watch", "Weather", "actors", "add_noise",
     "add_traffic", "angle_fft", "angle_time", "annotate", "annotate_frame", "beamform", "boltzmann", "cfar", "check_rays",
     "check_signal", "compensate_tdm", "decompose", "detect", "detect_frame", "effects", "estimate_angles", "families",
     "first", "foreign_materials", "hits", "last", "load_antenna", "load_frame", "load_labels", "load_mesh", "load_meshes",

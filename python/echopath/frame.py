@@ -30,8 +30,10 @@ class Frame:
     parts: {partition: {part: cube}}, without noise, part "other" included; {} when none was asked for
     selections: {partition: {part: expression as text}}, without "other"
     part_of_path: {partition: u16 [P]}, index of the part of each path in the order of `parts`
+    rain_cube: the same of the rain in the scene's weather, which only the map of the whole gets, as it gets the noise; None: none
     noise_seed: of the thermal noise, which is drawn from it and the start time of the frame (s); None: no noise
     replay, evaluate, retrace, keyframes: how the signal follows moving echoes, as in `synthesize`
+    effect_choices: pairs (name, True, False or "auto") of `effects` as in `trace`
     spectrum_settings: window and zero_pad of the maps; angle_settings: keywords of `range_azimuth` for its map
     spectrum: range-Doppler map of the cube with noise; part_spectra: {partition: {part: map}} without noise
     labels: {partition: Labels} of the cells of its map, of "parts" with the part "other" without partitions; {} when
@@ -51,6 +53,7 @@ class Frame:
     part_of_path: dict
     noise_seed: int | None
     spectrum_settings: dict
+    rain_cube: object = None
     spectrum: object = None
     part_spectra: dict = dataclasses.field(default_factory=dict)
     angle_settings: dict = dataclasses.field(default_factory=dict)
@@ -58,6 +61,7 @@ class Frame:
     evaluate: str = "interpolated"
     retrace: str = "never"
     keyframes: int = 0
+    effect_choices: tuple = ()
     labels: dict = dataclasses.field(default_factory=dict)
     detections: object = None
     kept_truth: object = None
@@ -66,13 +70,14 @@ class Frame:
 
     @property
     def noisy_cube(self):
-        """The cube with thermal noise, complex [tx, rx, chirp, sample], sqrt(W): the same bits at every call.
+        """The cube with rain and thermal noise, complex [tx, rx, chirp, sample], sqrt(W): the same bits at every call.
 
         The noise is drawn from the noise seed and the start time of the frame (s): frames in a row differ.
         """
+        cube = self.cube if self.rain_cube is None else self.cube + self.rain_cube
         if self.noise_seed is None:
-            return self.cube
-        return _core.add_noise(self.cube, self.radar, seed=self.noise_seed, start_time=self.paths.frame.start_time)
+            return cube
+        return _core.add_noise(cube, self.radar, seed=self.noise_seed, start_time=self.paths.frame.start_time)
 
     def plot(self, *, ax: Axes | None = None, vmin: float | None = None, vmax: float | None = None,
              title: str | None = None) -> Axes:
@@ -96,7 +101,8 @@ class Frame:
     def effects(self) -> list:
         """Which effects the frame models, which not, and why: list [E] of Effect, those of the paths and of the signal."""
         return of_paths(self.paths, replay=self.replay, evaluate=self.evaluate, retrace=self.retrace,
-                        noise_seed=self.noise_seed)
+                        noise_seed=self.noise_seed, effects=self.effect_choices, surroundings=self.scene,
+                        rain_cube=self.rain_cube)
 
     @cached_property
     def path_power(self):

@@ -23,6 +23,7 @@ from .stages import StageClock
 from .tracing import keep_geometry
 from .truth import truth_of_frame
 from .truth.asked import truth_keywords
+from .weather.echoes import rain_cube
 
 _FAMILIES = object()  # a view that has the name of no partition
 
@@ -96,10 +97,13 @@ class FrameRun:
     def _bare_frame(self, paths, whole, cubes: dict, groups: dict, probe, stages: list) -> Frame:
         """A frame without maps and what is made of them."""
         signal = self.signal
-        return Frame(scene=self.scene, radar=self.radar, paths=paths, cube=whole, parts=cubes, selections=self.selections,
+        rain = rain_cube(self.scene, self.radar, start_time=paths.frame.start_time, seed=self.trace.seed,
+                         effects=self.trace.effects, polarization=paths.frame.polarization)
+        return Frame(scene=self.scene, radar=self.radar, paths=paths, cube=whole, rain_cube=rain, parts=cubes, selections=self.selections,
                      part_of_path=groups, noise_seed=signal.noise_seed, spectrum_settings=self._of_map,
                      angle_settings=self.angle_settings, replay=signal.replay, evaluate=signal.evaluate,
                      retrace=signal.retrace, keyframes=signal.keyframes,
+                     effect_choices=self.trace.effects,
                      checks=_checks(whole, probe, signal, paths.frame) if self.guard else [], stages=stages)
 
     @property

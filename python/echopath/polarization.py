@@ -65,11 +65,11 @@ def antennas_of(radar) -> list:
 
 def are_crossed(antennas: Iterable) -> bool:
     """Whether one antenna has another polarisation, in the radar's frame, than the first."""
-    polarizations = [_polarization_of(antenna) for antenna in antennas]
+    polarizations = [polarization_of(antenna) for antenna in antennas]
     return any(abs(polarizations[0] @ other) < CO_POLARISED for other in polarizations[1:])
 
 
-def _polarization_of(antenna) -> np.ndarray:
+def polarization_of(antenna) -> np.ndarray:
     """[3] unit vector in the radar's frame."""
     real, imaginary = antenna.orientation[0], antenna.orientation[1:]
     cross = np.cross(imaginary, antenna.polarization)

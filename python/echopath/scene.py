@@ -8,13 +8,17 @@ from numpy.typing import ArrayLike
 
 from . import _core
 from .actors import Actor
-from .checks import anything, checked, flag, optional, real, refused, text, vector
+from .checks import an, anything, checked, flag, optional, real, refused, text, vector
 from .materials import known_material, materials
 from .placements import ORIGIN, motion_ahead, placement
 from .readers.model import Model
 from .scene_node import SceneNode, split_motion
+from .weather import Weather
 
 Content = _core.Mesh | Actor | Model | Sequence[tuple[str, _core.Mesh]] | None
+
+
+_WEATHER = optional(an(Weather))
 
 
 class Scene(_core.Scene):
@@ -26,16 +30,36 @@ class Scene(_core.Scene):
     world_vertices(mesh_id, time): [V, 3] in m; num_triangles; breakpoints [N] in s, of one run of what is looped
     Mesh IDs count without gaps the meshes that take part now, so they change when objects are removed or hidden; names do
     not. Paths keep the scene that they were traced in, with its mesh IDs.
-    scene: another Scene to copy, such as `paths.scene`; None: empty. Raises TypeError for anything else.
+    scene: another Scene to copy, such as `paths.scene`; None: empty
+    weather: the Weather in which it is; None: that of the scene that is copied, or empty space
+    Raises TypeError for anything else.
     """
 
-    def __init__(self, scene: _core.Scene | None = None):
+    def __init__(self, scene: _core.Scene | None = None, *, weather: Weather | None = None):
+        self.weather = getattr(scene, "weather", None) if weather is None else weather
         if scene is None:
             super().__init__()
         elif isinstance(scene, _core.Scene):
             super().__init__(scene)
         else:
             raise refused(TypeError, "scene", "a Scene to copy or None", scene)
+
+    @property
+    def weather(self) -> Weather | None:
+        """The Weather of the scene: its air weakens echoes, and its rain has echoes of its own. None: empty space."""
+        return self._weather
+
+    @weather.setter
+    def weather(self, weather: Weather | None) -> None:
+        self._weather = _WEATHER("weather", weather)
+
+    def __getstate__(self):
+        return super().__getstate__(), self.weather
+
+    def __setstate__(self, state) -> None:
+        nodes, weather = state
+        super().__setstate__(nodes)
+        self.weather = weather
 
     @checked(self=anything, mesh_or_actor=anything, name=text, material=anything, motion=anything,
              speed=optional(real(unit="m/s")), position=vector, yaw=real(unit="rad"), transform=anything,

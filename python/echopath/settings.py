@@ -15,6 +15,7 @@ from . import _core
 from .checks import LARGEST_COUNT, Rule, Window, count, flag, one_of, optional, positive, real
 from .checks import seed as seed_rule
 from .checks import window as window_rule
+from .effect_choices import Choices, effects_rule
 from .families import Objects, objects_rule
 from .keywords import known_keywords, refuse_unknown
 
@@ -53,14 +54,14 @@ class Settings:
 
 
 @dataclass_transform(kw_only_default=True, frozen_default=True)
-def _settings(kind: type[Kind]) -> type[Kind]:
+def settings_class(kind: type[Kind]) -> type[Kind]:
     """Decorator: a frozen dataclass of keywords, which refuses unknown ones with the nearest right one."""
     made = dataclasses.dataclass(frozen=True, kw_only=True)(kind)
     made.__init__ = known_keywords(made.__init__, made.__name__)  # type: ignore[method-assign]
     return made
 
 
-@_settings
+@settings_class
 class TraceSettings(Settings):
     """How rays are shot: the keywords of `trace`, which tells what they mean.
 
@@ -69,6 +70,7 @@ class TraceSettings(Settings):
     polarization, footprint, sampler: words; batches: 1 to 64 independent parts of the rays, None: 1
     target_error_db: dB, error of each echo until which rays are added, at most max_rays
     scatterers: of rough surfaces, a word; edges: whether echoes of sharp edges are looked for
+    effects: {name of an effect of the weather: True, False or "auto"}, as pairs
     Raises TypeError or ValueError naming the keyword. Values are frozen; two with equal values are equal.
     """
 
@@ -84,16 +86,17 @@ class TraceSettings(Settings):
     max_rays: int | float = _core.DEFAULT_MAX_RAYS
     scatterers: Scatterers = "auto"
     edges: bool = False
+    effects: Choices = ()
 
     RULES: ClassVar[Mapping[str, Rule]] = {
         "num_rays": optional(count(1, MOST_RAYS)), "max_bounces": count(1, MOST_BOUNCES), "seed": seed_rule,
         "start_time": real(unit="s"), "polarization": one_of(Polarization), "footprint": one_of(Footprint),
         "sampler": one_of(Sampler), "batches": optional(count(1, MOST_BATCHES)),
         "target_error_db": optional(positive("dB")), "max_rays": count(1, MOST_RAYS),
-        "scatterers": one_of(Scatterers), "edges": flag}
+        "scatterers": one_of(Scatterers), "edges": flag, "effects": effects_rule}
 
 
-@_settings
+@settings_class
 class SignalSettings(Settings):
     """How paths become a signal and its map: the keywords of `synthesize`, of the noise and of `range_doppler`.
 
@@ -129,7 +132,7 @@ class SignalSettings(Settings):
 REPLAY_KEYWORDS = ("tolerance", "method", "replay", "evaluate", "phase_tolerance", "retrace", "keyframes")
 
 
-@_settings
+@settings_class
 class LabelSettings(Settings):
     """How the cells of a map are labelled: the keywords of `annotate` that no frame settles.
 

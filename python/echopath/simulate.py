@@ -6,6 +6,7 @@ from typing import Any
 
 from . import _core
 from .checks import Progress, Window, anything, checked, flag
+from .effect_choices import Choices
 from .frame import Frame
 from .frame_run import FrameRun
 from .guard import warn_of
@@ -24,7 +25,7 @@ def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | 
              footprint: Footprint = TraceSettings.footprint, sampler: Sampler = TraceSettings.sampler,
              batches: int | None = TraceSettings.batches, target_error_db: float | None = TraceSettings.target_error_db,
              max_rays: int | float = TraceSettings.max_rays, scatterers: Scatterers = TraceSettings.scatterers,
-             edges: bool = TraceSettings.edges, parts: Mapping[str, Any] | None = None,
+             edges: bool = TraceSettings.edges, effects: Choices = TraceSettings.effects, parts: Mapping[str, Any] | None = None,
              tolerance: float = SignalSettings.tolerance, method: Method = SignalSettings.method,
              replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,
              phase_tolerance: float = SignalSettings.phase_tolerance, retrace: Retrace = SignalSettings.retrace,
@@ -38,7 +39,7 @@ def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | 
 
     scene: what is traced; radar: that looks at it
     num_rays, max_bounces, seed, start_time (s), polarization, footprint, sampler, batches, target_error_db (dB),
-        max_rays, scatterers, edges: as in `trace`
+        max_rays, scatterers, edges, effects: as in `trace`; the map also has the echoes of the rain in `Scene.weather`
     parts: {name: selection} for one partition (called "parts"), {partition: {name: selection}} for several, or None
     tolerance, method, replay, evaluate, phase_tolerance (rad), retrace, keyframes: as in `synthesize`; window, zero_pad: as
         in `range_doppler`
@@ -61,7 +62,7 @@ def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | 
     """
     tracing = TraceSettings(num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
                             polarization=polarization, footprint=footprint, sampler=sampler, batches=batches,
-                            target_error_db=target_error_db, max_rays=max_rays, scatterers=scatterers, edges=edges)
+                            target_error_db=target_error_db, max_rays=max_rays, scatterers=scatterers, edges=edges, effects=effects)
     signals = SignalSettings(tolerance=tolerance, method=method, replay=replay, evaluate=evaluate,
                              phase_tolerance=phase_tolerance, retrace=retrace, keyframes=keyframes, noise_seed=noise_seed,
                              window=window, zero_pad=zero_pad)

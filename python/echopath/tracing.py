@@ -9,11 +9,13 @@ from numpy.typing import NDArray
 
 from . import _core
 from .checks import ArrayLike, Progress, array, checked, flag, one_of, optional, positive, real, shown
+from .effect_choices import Choices
 from .lost_rays import warn_of_lost_rays, warn_of_unaimed, warn_of_unfollowed_beams
 from .polarization import FIELD_VECTORS, SCALAR, antennas_of, chosen_model
 from .settings import Footprint, Polarization, Sampler, Scatterers, TraceSettings
 from .sizes import warn_of_sizes
 from .tessellation import warn_of_coarse_meshes
+from .weather.weather import attenuation_of
 
 Channel = Literal["vv", "hh", "vh", "hv"]  # transmitted, received
 CrossSections = float | NDArray[np.float64]
@@ -29,7 +31,8 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
           footprint: Footprint = TraceSettings.footprint, sampler: Sampler = TraceSettings.sampler,
           batches: int | None = TraceSettings.batches, target_error_db: float | None = TraceSettings.target_error_db,
           max_rays: int | float = TraceSettings.max_rays, scatterers: Scatterers = TraceSettings.scatterers,
-          edges: bool = TraceSettings.edges, settings: TraceSettings | None = None, progress: Progress = None) -> _core.Paths:
+          edges: bool = TraceSettings.edges, effects: Choices = TraceSettings.effects,
+          settings: TraceSettings | None = None, progress: Progress = None) -> _core.Paths:
     """Shoots rays from the radar through the scene at mid-frame and records what they hit.
 
     scene: what is traced; radar: that looks at it
@@ -62,6 +65,8 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
     edges: whether the echoes of sharp edges are looked for, too: what physical optics leaves out where two faces of a conductor
         meet at 30 degrees or more, and at rims (`E` in path expressions). They are of first order, directly from the radar or
         over flagged mirrors; dielectrics, and meshes that deform or change their scale, have none
+    effects: {name: True, False or "auto"} of effects that `Scene.weather` asks for: "attenuation by weather", "echoes of rain"
+        (of `simulate`); those that are left out are "auto", on where the weather has them
     settings: TraceSettings that give the keywords which the call leaves out, or None
     progress: callable (stage, fraction), True for bars, or None
     From a scene's second trace on, and from the first of `simulate(labels=True)`, what has not moved since is not built again,
@@ -81,7 +86,8 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
     paths = _core.trace(scene, radar, num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
                         polarization=model, footprint=footprint, sampler=sampler, batches=batches,
                         target_error_db=target_error_db, max_rays=max_rays,
-                        scatterers="rays" if scatterers == "auto" else scatterers, edges=edges, progress=progress, kept=geometry)
+                        scatterers="rays" if scatterers == "auto" else scatterers, edges=edges,
+                        attenuation=attenuation_of(scene, radar, effects), progress=progress, kept=geometry)
     for warn in (warn_of_lost_rays, warn_of_unfollowed_beams, warn_of_unaimed):
         warn(paths.frame.statistics, stacklevel=_CALLER)
     return paths

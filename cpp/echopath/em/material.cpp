@@ -33,6 +33,18 @@ void Material::validate() const {
   }
   require(cross_polarization >= 0 && cross_polarization <= 0.5, "cross_polarization",
           "must lie in [0, 0.5], where one half is full depolarisation", cross_polarization);
+  validate_lobe();
+}
+
+void Material::validate_lobe() const {
+  const auto is_exponent = [](int exponent) { return exponent >= 0 && exponent <= kMostLobeExponent; };
+  require(is_exponent(lobe_exponent), "lobe_exponent", "must lie in 0 to 100; 0 is Lambert's lobe", lobe_exponent);
+  require(backscatter_share >= 0 && backscatter_share <= 1, "backscatter_share", "must lie in [0, 1]", backscatter_share);
+  require(backscatter_share == 0 || lobe_exponent > 0, "backscatter_share", "needs a lobe_exponent", backscatter_share);
+  require(is_exponent(backscatter_exponent), "backscatter_exponent", "must lie in 0 to 100; 0 stands for lobe_exponent",
+          backscatter_exponent);
+  require(backscatter_exponent == 0 || backscatter_share > 0, "backscatter_exponent", "needs a backscatter_share",
+          backscatter_exponent);
 }
 
 }  // namespace echopath

@@ -29,7 +29,7 @@ double ament_factor(double wavenumber, double roughness_height, double cos_incid
 }
 
 SurfaceModel::SurfaceModel(const Material& material, double frequency)
-    : material_(&material), is_dielectric_(!material.conductor && !material.reflectivity) {
+    : material_(&material), lobe_(material), is_dielectric_(!material.conductor && !material.reflectivity) {
   constant_.gamma = material.reflectivity ? -std::sqrt(*material.reflectivity) : -1.0;
   if (is_dielectric_) permittivity_ = complex_permittivity(material, frequency);
   constant_.facet = is_dielectric_ ? facet_reflection(permittivity_) : std::abs(constant_.gamma);

@@ -13,7 +13,7 @@
 // coefficient is that of the facet that mirrors one direction into the other, at normal incidence for backscatter.
 #include <complex>
 
-#include "echopath/em/material.h"
+#include "echopath/em/diffuse_lobe.h"
 
 namespace echopath {
 
@@ -41,6 +41,7 @@ class SurfaceModel {
  public:
   SurfaceModel(const Material& material, double frequency);
   const Material& material() const { return *material_; }
+  const DiffuseLobe& lobe() const { return lobe_; }
   // Returns whether the coefficients depend on the polarisation.
   bool is_dielectric() const { return is_dielectric_; }
   // is_constant() tells whether the response is the same for all waves; constant() is that response.
@@ -57,6 +58,7 @@ class SurfaceModel {
   SurfaceResponse respond_at(double cos_incidence, PolarizationMode mode) const;
 
   const Material* material_;
+  DiffuseLobe lobe_;
   SurfaceResponse constant_;  // the part that does not depend on the wave
   bool is_dielectric_;
   std::complex<double> permittivity_ = 1.0;  // relative, with the conductivity

@@ -8,6 +8,7 @@
 #include "echopath/base/errors.h"
 #include "echopath/base/kept_memory.h"
 #include "echopath/base/parallel.h"
+#include "echopath/replay/evaluate/attenuation.h"
 #include "echopath/replay/spare_echoes.h"
 #include "echopath/replay/time/chirp_derivatives.h"
 #include "echopath/replay/time/node_tails.h"
@@ -147,6 +148,11 @@ void Replayer::evaluate_at(std::span<const int64_t> paths, std::span<Target> tar
     }
   }
   KeptMemory::of_process().leave(std::move(evaluator));
+  if (paths_.frame.attenuation == 0.0 || paths.empty()) return;
+  for (const Target& target : targets) {
+    if (target.wanted.with_amplitudes)
+      attenuate(target.channels(), paths.size(), target.posed.size(), paths_.frame.attenuation);
+  }
 }
 
 std::vector<Echoes> Replayer::still(std::span<const int64_t> indices) const {

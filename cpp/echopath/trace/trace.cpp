@@ -1,5 +1,7 @@
 #include "echopath/trace/trace.h"
 
+#include <cmath>
+
 #include "echopath/base/range_of_coordinates.h"
 #include "echopath/trace/tracer.h"
 
@@ -10,6 +12,7 @@ void TraceSettings::validate() const {
   require(max_bounces >= 1 && max_bounces <= 64, "max_bounces", "must lie in [1, 64]", max_bounces);
   require_time(start_time, "start_time");
   require(batches >= 1 && batches <= 64, "batches", "must lie in [1, 64]", batches);
+  require(std::isfinite(attenuation) && attenuation >= 0, "attenuation", "must be >= 0 Np/m", attenuation);
   guide.validate();
 }
 

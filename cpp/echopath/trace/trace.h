@@ -25,7 +25,8 @@ struct TraceSettings {
   Sampler sampler = Sampler::kLattice;  // of the launch directions
   LaunchGuide guide;                    // by default the rule of launch.h
   Scatterers scatterers = Scatterers::kRays;
-  bool edges = false;  // also find the echoes of sharp edges (edges/edge_paths.h)
+  bool edges = false;        // also find the echoes of sharp edges (edges/edge_paths.h)
+  double attenuation = 0.0;  // Np/m, of fields in the air between the surfaces
 
   void validate() const;  // raises invalid_argument naming the field, the rule and the value
 };

@@ -45,6 +45,7 @@ TraceFrame make_frame(const Radar& radar, const TraceSettings& settings) {
   frame.polarization = settings.polarization;
   frame.scatterers = settings.scatterers;
   frame.edges = settings.edges;
+  frame.attenuation = settings.attenuation;
   return frame;
 }
 

@@ -3,15 +3,15 @@ from __future__ import annotations
 
 from .. import _core
 from ..checks import checked
+from ..effect_choices import Choices
 from ..settings import Evaluate, Footprint, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings, TraceSettings
-from . import surfaces, motion, radar, sampling  # each adds its rules, in this order
+from . import surfaces, motion, weather, radar, sampling  # each adds its rules, in this order
 from .rules import RULES, Case, Effect, Settings
 
 # What no scene and no setting can ask for.
 OUT_OF_SCOPE = [
     Effect("transmission through sheets", False, "not modelled"),
     Effect("creeping waves, edge diffraction of higher order", False, "out of scope"),
-    Effect("atmospheric loss", False, "not modelled: about 0.4 dB/km"),
     Effect("phase noise, quantisation", False, "not modelled"),
     Effect("interference", False, "not modelled"),
 ]
@@ -33,27 +33,28 @@ def effects(scene: _core.Scene, radar: _core.Radar, *, max_bounces: int = TraceS
             target_error_db: float | None = TraceSettings.target_error_db,
             scatterers: Scatterers = TraceSettings.scatterers, edges: bool = TraceSettings.edges,
             replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,
-            retrace: Retrace = SignalSettings.retrace, noise_seed: int | None = None) -> Effects:
+            retrace: Retrace = SignalSettings.retrace, noise_seed: int | None = None,
+            effects: Choices = TraceSettings.effects) -> Effects:
     """Which effects a run of `scene` with `radar` models, and why.
 
-    max_bounces, footprint, polarization, sampler, batches, target_error_db (dB), scatterers, edges: as in `trace`; replay,
+    max_bounces, footprint, polarization, sampler, batches, target_error_db (dB), scatterers, edges, effects: as in `trace`; replay,
     evaluate, retrace: as in `synthesize`; noise_seed: as in `simulate`. Returns a list [E] of Effect, modelled ones first.
     Effects that nothing can ask for stand last, under reasons that begin with "out of scope" or "not modelled". Raises
     TypeError or ValueError naming the argument.
     """
     batches = batches or 1
     return _of_case(Case(scene, radar, Settings(max_bounces, footprint, polarization, sampler, batches, target_error_db,
-                                                scatterers, edges, replay, evaluate, retrace, noise_seed)))
+                                                scatterers, edges, replay, evaluate, retrace, noise_seed, effects)))
 
 
 def of_paths(paths, *, replay: str = "material", evaluate: str = "interpolated", retrace: str = "never",
-             noise_seed: int | None = None) -> Effects:
+             noise_seed: int | None = None, effects: Choices = (), surroundings=None, rain_cube=None) -> Effects:
     """The effects of a trace, from the scene, radar and settings that it recorded and what it left out; replay, evaluate,
-    retrace, noise_seed: of later stages."""
+    retrace, noise_seed, rain_cube: of later stages; surroundings: the scene whose weather they had."""
     frame = paths.frame
     settings = Settings(frame.max_bounces, frame.footprint, frame.polarization, frame.sampler, frame.num_batches,
-                        frame.target_error_db or None, frame.scatterers, frame.edges, replay, evaluate, retrace, noise_seed)
-    return _of_case(Case(paths.scene, paths.radar, settings, paths=paths))
+                        frame.target_error_db or None, frame.scatterers, frame.edges, replay, evaluate, retrace, noise_seed, effects)
+    return _of_case(Case(paths.scene, paths.radar, settings, paths=paths, surroundings=surroundings, rain_cube=rain_cube))
 
 
 def _of_case(case: Case) -> Effects:

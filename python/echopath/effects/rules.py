@@ -9,8 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
+from ..effect_choices import Choices
 from ..names import MOST_NAMES, first_names
 from ..polarization import COHERENT_SHARE, antennas_of, chosen_model, coherent_share
+from ..weather.weather import weather_of
 
 
 @dataclasses.dataclass(frozen=True)
@@ -38,15 +40,18 @@ class Settings:
     evaluate: str
     retrace: str
     noise_seed: int | None
+    effects: Choices = ()
 
 
 class Case:
     """A scene, a radar and settings, and the IDs [N] of the meshes that several rules ask for, ascending.
 
-    paths: the trace that was made, None: none yet; statistics: its own, unless given
+    paths: the trace that was made, None: none yet; statistics: its own, unless given; surroundings: the scene whose weather
+    counts, unless `scene` has it; rain_cube: the signal of the rain, None: none or none yet
     """
 
-    def __init__(self, scene, radar, settings: Settings, statistics=None, *, paths=None):
+    def __init__(self, scene, radar, settings: Settings, statistics=None, *, paths=None, surroundings=None, rain_cube=None):
+        self.weather, self.rain_cube = weather_of(scene if surroundings is None else surroundings), rain_cube
         self.scene, self.radar, self.settings, self.paths = scene, radar, settings, paths
         self.statistics = statistics or (paths.frame.statistics if paths else None)
         self.wavelength = _core.speed_of_light / radar.waveform.start_frequency

@@ -100,6 +100,13 @@ def _diffuse(case: Case):
     return case.meshes_or(case.diffuse, "no material scatters diffusely")
 
 
+@rule("directive lobes and backscatter", "Material.lobe_exponent", "Material.backscatter_share",
+      "Material.backscatter_exponent")
+def _lobes(case: Case):
+    lobed = case.of_material(lambda material: case.share(material) < 1.0 and material.lobe_exponent > 0)
+    return case.meshes_or(lobed, "all that is rough scatters as Lambert's law says")
+
+
 @rule("edge diffraction", "trace.edges")
 def _edges(case: Case):
     conductors = case.of_material(lambda material: (material.conductor or material.reflectivity is not None)

@@ -184,6 +184,8 @@ def _write_signal(file, frame: Frame) -> None:
     group = file.create_group("signal")
     write_array(group, "cube", frame.cube, unit="sqrt(W)")
     write_array(group, "noisy_cube", frame.noisy_cube, unit="sqrt(W)")
+    if frame.rain_cube is not None:
+        write_array(group, "rain_cube", frame.rain_cube, unit="sqrt(W)")
     for name in SIGNAL_SETTINGS:
         write_attribute(group, name, getattr(frame, name))
     write_attribute(group, "keyframes", frame.keyframes)
@@ -228,6 +230,8 @@ def _write_partitions(file, frame: Frame, is_kept) -> None:
 def _read_signal(file, frame: Frame) -> None:
     group = read_group(file, "signal")
     frame.cube = read_array(group, "cube", np.complex128, _cube_shape(frame.radar))
+    if "rain_cube" in group:
+        frame.rain_cube = read_array(group, "rain_cube", np.complex128, _cube_shape(frame.radar))
     frame.noise_seed = read_attribute(group, "noise_seed", int) if "noise_seed" in group.attrs else None
     for name, known in SIGNAL_SETTINGS.items():
         setattr(frame, name, _one_of(group, name, known))

@@ -87,6 +87,8 @@ def _check_indices(group, hits, columns: dict, scene) -> None:
 def _write_frame(group, frame) -> None:
     for name in FRAME_VALUES:
         write_attribute(group, name, np.uint64(frame.seed) if name == "seed" else getattr(frame, name))
+    if frame.attenuation > 0:
+        write_attribute(group, "attenuation", frame.attenuation)
     write_array(group, "transmitter", frame.transmitter, unit="m")
     write_array(group, "receiver", frame.receiver, unit="m")
     for name in STATISTICS:
@@ -133,6 +135,7 @@ def _read_frame(group):
         sampler=read_attribute(group, "sampler", str),
         scatterers=read_attribute(group, "scatterers", str) if "scatterers" in group.attrs else "rays",
         edges=read_attribute(group, "edges", bool) if "edges" in group.attrs else False,
+        attenuation=read_attribute(group, "attenuation", float) if "attenuation" in group.attrs else 0.0,
         statistics=statistics,
         num_batches=read_attribute(group, "num_batches", int),
         target_error_db=read_attribute(group, "target_error_db", float),

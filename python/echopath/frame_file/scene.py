@@ -121,7 +121,8 @@ def _read_mesh(group, earlier: list):
 
 
 _MATERIAL_KINDS = {"conductor": bool, "permittivity": complex, "conductivity": float, "reflectivity": float,
-                   "roughness_height": float, "scattering": float, "cross_polarization": float, "mirror": bool}
+                   "roughness_height": float, "scattering": float, "cross_polarization": float, "mirror": bool,
+                   "lobe_exponent": int, "backscatter_share": float, "backscatter_exponent": int}
 
 
 def _write_material(group, material) -> None:

@@ -44,7 +44,7 @@ def _material(value, key: str):
 
 
 def build_scene(settings: SceneTable, folder: Path, trajectories: Trajectories):
-    scene = Scene()
+    scene = Scene(weather=None if settings.weather is None else Weather(**settings.weather.model_dump()))
     meshes_of_file = functools.cache(_core.load_meshes)  # objects that name one file share its meshes
     for index, table in enumerate(settings.objects):
         key = f"objects[{index}]"

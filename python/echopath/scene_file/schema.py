@@ -14,6 +14,7 @@ from pydantic_core import PydanticCustomError
 
 from .. import _core
 from ..checks import Rule, positive, window
+from ..effect_choices import effects_rule
 from ..gates import gate
 from ..parts import are_tables
 from ..settings import (
@@ -24,6 +25,7 @@ from ..shown import writable
 from ..spectra import FALSE_ALARM_RATE, RANK, CfarMethod
 from ..trajectories.arguments import checked_points, checked_stops, checked_times
 from ..trajectories.trajectory import ACCELERATION, DECELERATION
+from ..weather import Weather
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
@@ -239,6 +241,9 @@ class MaterialTable(Table):
     cross_polarization: Annotated[float, Field(ge=0, le=0.5)] = Field(
         0.0, description="share of diffuse power in the cross polarisation")
     mirror: bool = Field(False, description="a plane larger than its Fresnel zone, treated by images")
+    lobe_exponent: Annotated[int, Field(ge=0, le=100)] = Field(0, description="of the diffuse lobe; 0: Lambert's")
+    backscatter_share: Annotated[float, Field(ge=0, le=1)] = Field(0.0, description="of the lobe")
+    backscatter_exponent: Annotated[int, Field(ge=0, le=100)] = Field(0, description="of that part; 0: as lobe_exponent")
     base: str | None = Field(None, description="name of a known material that gives the other keys")
 
 
@@ -323,6 +328,18 @@ class TraceTable(Table):
         TraceSettings.scatterers, description="of rough surfaces: where rays meet them, points that are the same in every frame, "
                                               "or these for frames in a row alone")
     edges: bool = Field(TraceSettings.edges, description="also find the echoes of sharp edges")
+    effects: Annotated[Any, by_check(effects_rule)] = Field(
+        TraceSettings.effects, description="name of an effect of the weather = true, false or \"auto\"")
+
+
+class WeatherTable(Table):
+    rain_mm_per_hour: float = Field(Weather.rain_mm_per_hour, ge=0, le=300, description="mm/h")
+    fog_g_per_m3: float = Field(Weather.fog_g_per_m3, ge=0, le=10, description="g/m^3 of water")
+    temperature: float = Field(Weather.temperature, ge=200, le=340, description="K")
+    pressure: float = Field(Weather.pressure, ge=1e4, le=1.2e5, description="Pa")
+    humidity: float = Field(Weather.humidity, ge=0, le=1, description="share of saturation")
+    wind: Vector3 = Field(list(Weather.wind), description="m/s, world axes")
+    turbulence: float = Field(Weather.turbulence, ge=0, le=100, description="m/s, of the drops about it")
 
 
 class ReplayTable(Table):
@@ -439,6 +456,7 @@ class SceneTable(Table):
     guard: bool = Field(True, description="whether a run is held against slower ways at a few random places")
     radar: RadarTable
     objects: list[ObjectTable] = Field([], description="in the order of their mesh IDs")
+    weather: WeatherTable | None = Field(None, description="air, fog and rain; none: empty space")
     trace: TraceTable = TraceTable()
     replay: ReplayTable = ReplayTable()
     spectrum: SpectrumTable = SpectrumTable()

@@ -1,6 +1,7 @@
 #include "echopath/replay/evaluate/path_evaluator.h"
 
 #include "echopath/replay/evaluate/edge_echoes.h"
+#include "echopath/replay/evaluate/lobe_factors.h"
 
 namespace echopath {
 
@@ -14,6 +15,7 @@ void PathEvaluator::evaluate(const PosedNodes& nodes, const RadioConstants& radi
   shared_legs_(*plan_, *preparer_, nodes, radio, channels);
   single_bounces_(*plan_, *preparer_, nodes, radio, channels, wanted);
   evaluate_edges(*plan_, *preparer_, nodes, radio, channels);
+  if (wanted.with_amplitudes) apply_lobes(*plan_, *preparer_, nodes, channels);
   if (wanted.turned) shared_legs_.mark_turned(*plan_, wanted.turned);
   if (wanted.unfiltered) shared_legs_.mark_unfiltered(*plan_, radio, wanted.unfiltered);
 }

@@ -26,6 +26,7 @@ void SharedLegPlan::clear() {
   sliding.clear();
   mirror_paths.clear();
   edge_paths.clear();
+  lobed_paths.clear();
 }
 
 // Lists the hits and events of a path in the order in which it was traced.
@@ -67,6 +68,7 @@ const SharedLegPlan& SharedLegPlanner::operator()(std::span<const int64_t> indic
   for (size_t place = 0; place < indices.size(); ++place) {
     if (paths_->flags[static_cast<size_t>(indices[place])] & kEdgePath) plan_.edge_paths.push_back({place, indices[place]});
     else if (!add_direct(place, indices[place])) add_chain(place, indices[place]);
+    if (preparer_->has_lobe(indices[place])) plan_.lobed_paths.push_back({place, indices[place]});
   }
   return plan_;
 }

@@ -51,6 +51,7 @@ struct SharedLegPlan {
     size_t place;
     int64_t path;
   };
+  using LobedPath = EdgePath;
 
   // Lists the paths that one point sends straight back: at most one coherent and one diffuse path.
   struct Direct {
@@ -70,7 +71,8 @@ struct SharedLegPlan {
   std::vector<Chain> chains;     // by place
   std::vector<int64_t> sliding;  // paths whose points of reflection move (SpecularPoints::kFermat)
   std::vector<MirrorPath> mirror_paths;
-  std::vector<EdgePath> edge_paths;  // edge_echoes.h
+  std::vector<EdgePath> edge_paths;    // edge_echoes.h
+  std::vector<LobedPath> lobed_paths;  // lobe_factors.h; they stand among the others, too
 
   void clear();
 };

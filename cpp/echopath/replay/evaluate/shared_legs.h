@@ -25,6 +25,7 @@ struct ChannelNodes {
     length[at] = scale * length_there;
     amplitude[at] = echo_of ? amplitude[at] + amplitude_there : amplitude_there;
   }
+  void scale_amplitude(size_t node, size_t place, double factor) const { amplitude[node * stride + echo(place)] *= factor; }
 };
 
 // Names some channels [tx * num_rx + rx] for the antennas of the nodes, one after the other from `first` on.

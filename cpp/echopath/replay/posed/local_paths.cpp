@@ -1,6 +1,7 @@
 #include "echopath/replay/posed/local_paths.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -11,6 +12,18 @@
 
 namespace echopath {
 namespace {
+
+// Returns nothing where all lobes are Lambert's.
+std::vector<DiffuseLobe> lobes_of(const Scene& scene) {
+  std::vector<DiffuseLobe> lobes;
+  bool has_any = false;
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
+    lobes.emplace_back(*scene.node_of(id).material);
+    has_any = has_any || !lobes.back().is_lambert();
+  }
+  if (!has_any) lobes.clear();
+  return lobes;
+}
 
 // Returns the specular hits before the last material point that are not replayed by images.
 uint64_t sliding_hits(const LocalPath& path) {
@@ -34,6 +47,15 @@ PathPreparer::PathPreparer(const Paths& paths, std::vector<SurfacePatch> patches
     smooth_normals_.push_back(normals_at_trace(id));
     facet_area_.push_back(facet_area_at_trace(id));
   }
+  lobes_ = lobes_of(*paths.scene);
+}
+
+bool PathPreparer::meets_lobe(int64_t path) const {
+  const Hit* hits = paths_.hits_of(path);
+  for (uint64_t diffuse = paths_.diffuse[static_cast<size_t>(path)]; diffuse != 0; diffuse &= diffuse - 1) {
+    if (!lobes_[hits[std::countr_zero(diffuse)].mesh_id].is_lambert()) return true;
+  }
+  return false;
 }
 
 double PathPreparer::facet_area_at_trace(uint32_t mesh_id) const {

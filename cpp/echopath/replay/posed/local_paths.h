@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "echopath/em/diffuse_lobe.h"
 #include "echopath/replay/posed/hit_patches.h"
 #include "echopath/replay/posed/path_geometry.h"
 
@@ -54,11 +55,16 @@ class PathPreparer {
   // Returns the inverse of the matrix that the mesh had at the time of the trace.
   const Mat3& mesh_from_trace(uint32_t mesh_id) const { return mesh_from_trace_[mesh_id]; }
   const Paths& paths() const { return paths_; }
+  // Returns the lobes by mesh ID; empty where all are Lambert's.
+  const std::vector<DiffuseLobe>& lobes() const { return lobes_; }
+  // Returns whether a path scatters diffusely with another lobe than Lambert's.
+  bool has_lobe(int64_t path) const { return !lobes_.empty() && meets_lobe(path); }
 
  private:
   std::vector<Vec3> normals_at_trace(uint32_t mesh_id) const;
   double facet_area_at_trace(uint32_t mesh_id) const;
   LocalPath local_path(int64_t index, LocalPaths& block) const;
+  bool meets_lobe(int64_t path) const;
 
   const Paths& paths_;
   std::vector<SurfacePatch> patches_;                                       // by mesh ID
@@ -67,6 +73,7 @@ class PathPreparer {
   std::vector<Mat3> mesh_from_trace_;  // by mesh ID
   std::vector<std::vector<Vec3>> smooth_normals_;
   std::vector<double> facet_area_;  // by mesh ID
+  std::vector<DiffuseLobe> lobes_;
 };
 
 }  // namespace echopath

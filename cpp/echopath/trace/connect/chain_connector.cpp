@@ -20,7 +20,7 @@ void DiffuseChainConnector<Weight>::connect(Connection& at) const {
   const std::complex<double> natural = ray.coefficient * diffuse_coefficient(surface.response);
   for (const Leg& in : transmit) {
     const SurfaceResponse response = response_toward(surface, context_.settings.polarization, in.to_antenna);
-    const double share = std::sqrt(orders_.share(chain, surface, response, in));
+    const double share = std::sqrt(orders_.share(ray, surface, response, in));
     const Leg* out = leg_over(receive, in.sequence);
     if (out) writer_.write(at, *out, bits, share * (common * weight_.held(natural * out->gain)), OrderShares{});
     if (!chain.back) continue;

@@ -17,7 +17,8 @@ void DiffuseChainOrders::begin(Ray& ray, const SurfaceHit& surface, const Scatte
                                const std::vector<Leg>& receive) const {
   DiffuseChain& chain = ray.chain;
   chain.first = ray.depth - 1;
-  chain.density = sample.probability() * ray.stands_for / surface.area;
+  chain.density =
+      sample.probability() * ray.stands_for / surface.area * density_over_lambert(surface, ray.direction, sample.direction);
   chain.opposite_ratio = chain.opposite_survival = 1.0;
   chain.coefficient = 1.0;
   chain.back.reset();
@@ -39,6 +40,8 @@ void DiffuseChainOrders::scatter(Ray& ray, const SurfaceHit& surface, const Scat
   if (ray.depth - 1 == chain.first) return;
   chain.opposite_ratio *=
       chain.opposite_survival * context_.probabilities(*surface.model, response).diffuse / sample.probability();
+  chain.opposite_ratio *= density_over_lambert(surface, -sample.direction, -ray.direction) /
+                          density_over_lambert(surface, ray.direction, sample.direction);
   chain.opposite_survival = survival_probability(response, kRouletteBounce);
 }
 
@@ -57,13 +60,15 @@ void DiffuseChainOrders::reflect(Ray& ray, const SurfaceHit& surface, const Scat
   chain.back.reset();
 }
 
-double DiffuseChainOrders::share(const DiffuseChain& chain, const SurfaceHit& surface, const SurfaceResponse& response,
+double DiffuseChainOrders::share(const Ray& ray, const SurfaceHit& surface, const SurfaceResponse& response,
                                  const Leg& leg) const {
+  const DiffuseChain& chain = ray.chain;
   if (chain.opposite_ratio == 0) return 1.0;
   const double density = density_over(context_.plan, surface.point.hit.mesh_id, leg) *
                          surface.point.normal.dot(leg.to_antenna) / (leg.length * leg.length);
-  const double probability =
-      context_.probabilities(*surface.model, response).diffuse * survival_probability(response, leg.num_bounces + 1);
+  const double probability = context_.probabilities(*surface.model, response).diffuse *
+                             survival_probability(response, leg.num_bounces + 1) *
+                             density_over_lambert(surface, -leg.to_antenna, -ray.direction);
   return 1.0 / (1.0 + chain.opposite_ratio * density * probability / chain.density);
 }
 

@@ -5,8 +5,9 @@
 // Over every leg c' of the last hit it gives the paths (c, chain, c') and (c', opposite chain, c), with one random phase but
 // coefficients of their own. Rays that come over c' and end at c meet the same two paths, so the material area counts both
 // kinds of rays. Geometry drops out of the ratio between the kinds: from x to y rays have the density cos_x cos_y/(pi r^2)
-// per m^2 both ways. What remains is how they start and with which probabilities they go on. Over a transmit leg that no
-// LegFinder finds (many bounces, unflagged surfaces) no ray comes the opposite way.
+// per m^2 both ways. What remains is how they start, with which probabilities they go on, and the densities of their
+// directions over those of Lambert's lobe. Over a transmit leg that no LegFinder finds (many bounces, unflagged surfaces) no
+// ray comes the opposite way.
 #include "echopath/trace/connect/antenna_legs.h"
 
 namespace echopath {
@@ -23,7 +24,7 @@ class DiffuseChainOrders {
   void reflect(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample) const;
   // Returns the share of the rays of this order in all rays that meet the chain and the transmit leg behind its last hit.
   // `response` is that of the last hit to a wave that comes over the leg.
-  double share(const DiffuseChain& chain, const SurfaceHit& surface, const SurfaceResponse& response, const Leg& leg) const;
+  double share(const Ray& ray, const SurfaceHit& surface, const SurfaceResponse& response, const Leg& leg) const;
 
  private:
   const RayContext& context_;

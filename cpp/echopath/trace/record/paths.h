@@ -90,7 +90,8 @@ struct TraceFrame {
   double target_error_db = 0.0;  // dB, the error of the received power that was asked for; 0: none
   double error_db = 0.0;         // dB, the one that was reached (sim/rays/trace_to_error.h); 0: not looked at
   Scatterers scatterers = Scatterers::kRays;
-  bool edges = false;  // sharp edges were looked for
+  bool edges = false;        // sharp edges were looked for
+  double attenuation = 0.0;  // Np/m, of fields in the air at the radar's frequency; replay applies it to each whole length
 
   // Returns the rays per sr of one batch of a stratum, from which its launch cells are made. Filters for the cells of all
   // batches together would leave each batch its aliases, which do not cancel, because the lattices are independent of each

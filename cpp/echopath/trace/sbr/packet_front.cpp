@@ -53,6 +53,18 @@ void PacketFront::trace(int64_t begin, int count, FirstHits& first, TraceStatist
   arrive(first, statistics);
   see_receiver(first, statistics);
   run_simd<&leave_lanes>(&first, unpacked(context_.settings.receiver));
+  if (context_.surfaces.has_lobes()) leave_along_lobes(first);
+}
+
+// Gives rays that leave diffusely the directions of lobes other than Lambert's, by the same numbers.
+void PacketFront::leave_along_lobes(FirstHits& first) const {
+  for (int lane = 0; lane < first.count; ++lane) {
+    const auto k = static_cast<size_t>(lane);
+    if (!first.goes_on[k] || !first.arrives[k] || first.models[k]->lobe().is_lambert()) continue;
+    if (first.samples.lobe_sample[lane] < first.specular_probability[lane]) continue;
+    const Vec3 in = first.directions[lane], normal = first.hits.normal[lane], drawn = first.samples.lobe[lane];
+    first.out.set(lane, unpacked(first.models[k]->lobe().sample(in, normal, numbers_of(drawn))));
+  }
 }
 
 void PacketFront::launch(FirstHits& first) const {

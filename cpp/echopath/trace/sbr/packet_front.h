@@ -26,6 +26,7 @@ class PacketFront {
   void share_out(FirstHits& first, int lane) const;
   void find_response(FirstHits& first, int lane) const;
   void see_receiver(FirstHits& first, TraceStatistics& statistics) const;
+  void leave_along_lobes(FirstHits& first) const;
 
   const RayContext& context_;
   LaunchDirections directions_;

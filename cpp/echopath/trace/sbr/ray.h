@@ -106,6 +106,12 @@ struct ScatterSample {
 // Returns the coefficient of the field that a diffuse hit scatters.
 inline double diffuse_coefficient(const SurfaceResponse& response) { return response.facet * response.diffuse; }
 
+// Returns the density with which rays that arrive along `in` leave diffusely along `out`, over that of Lambert's lobe.
+inline double density_over_lambert(const SurfaceHit& surface, const Vec3& in, const Vec3& out) {
+  const DiffuseLobe& lobe = surface.model->lobe();
+  return lobe.is_lambert() ? 1.0 : lobe.density_over_lambert({in, surface.point.normal, out});
+}
+
 // Returns the response of the surface to a wave that comes from where `direction` points, a unit vector.
 inline SurfaceResponse response_toward(const SurfaceHit& surface, const Vec3& polarization, const Vec3& direction) {
   return respond_along(*surface.model, polarization, -direction, surface.point.normal);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "echopath/base/constants.h"
 #include "echopath/base/phasor.h"
 #include "echopath/base/random.h"
 #include "echopath/base/simd.h"
@@ -75,6 +76,12 @@ HitSamples hit_samples(uint64_t seed, int64_t ray, int depth) {
 }
 
 Vec3 cosine_lobe(const std::array<double, 2>& random) { return packed(direction_of(random[0], random[1])); }
+
+std::array<double, 2> numbers_of(const Vec3& of_cosine_lobe) {
+  const double x = of_cosine_lobe[0], y = of_cosine_lobe[1], turn = std::atan2(y, x) / kTwoPi;
+  const double below_one = 1.0 - 0x1.0p-53;
+  return {std::min(x * x + y * y, below_one), std::min(turn - std::floor(turn), below_one)};
+}
 
 void PacketSamples::draw(uint64_t seed, int64_t first, int count, const int* batches) {
   ScatterCell shift{};

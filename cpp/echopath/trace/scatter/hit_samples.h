@@ -20,6 +20,8 @@ HitSamples hit_samples(uint64_t seed, int64_t ray, int depth);
 
 // Returns a direction in a cosine lobe over a surface with its normal along z, from two numbers in [0, 1).
 Vec3 cosine_lobe(const std::array<double, 2>& random);
+// Returns the numbers of a direction of that lobe.
+std::array<double, 2> numbers_of(const Vec3& of_cosine_lobe);
 
 // Holds the samples of a packet's rays at their first hits: up to rounding, the results of hit_samples and of cosine_lobe of
 // scatter_point for each ray.

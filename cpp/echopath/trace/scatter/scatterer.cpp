@@ -28,17 +28,25 @@ ScatterSample Scatterer<Weight>::sample(const Ray& ray, const SurfaceHit& surfac
   const Vec3& normal = surface.point.normal;
   sample.from = context_.geometry.lifted(surface.point.position, normal);
   sample.direction = packed(sample.is_specular ? mirrored(unpacked(normal), unpacked(ray.direction), surface.cos_incidence)
-                                               : over_surface(unpacked(normal), unpacked(lobe_direction(ray, batch))));
+                                               : unpacked(lobe_direction(ray, surface, batch)));
   return sample;
 }
 
-// Returns the direction in which the ray leaves its hit diffusely, with the normal along z. Deeper in a chain, neighbouring
-// rays are no longer near each other and are drawn independently.
+// Deeper in a chain, neighbouring rays are no longer near each other and are drawn independently.
 template <class Weight>
-Vec3 Scatterer<Weight>::lobe_direction(const Ray& ray, int batch) const {
+std::array<double, 2> Scatterer<Weight>::lobe_numbers(const Ray& ray, int batch) const {
   const uint64_t seed = context_.settings.seed;
-  if (ray.coherent) return cosine_lobe(scatter_point(seed, batch, ray.index, ray.depth - 1));
-  return cosine_lobe(uniform2(seed, Stream::kBounce, static_cast<uint64_t>(ray.index), static_cast<uint32_t>(ray.depth)));
+  if (ray.coherent) return scatter_point(seed, batch, ray.index, ray.depth - 1);
+  return uniform2(seed, Stream::kBounce, static_cast<uint64_t>(ray.index), static_cast<uint32_t>(ray.depth));
+}
+
+// Returns the direction in which the ray leaves its hit diffusely.
+template <class Weight>
+Vec3 Scatterer<Weight>::lobe_direction(const Ray& ray, const SurfaceHit& surface, int batch) const {
+  const std::array<double, 2> numbers = lobe_numbers(ray, batch);
+  const DiffuseLobe& lobe = surface.model->lobe();
+  if (!lobe.is_lambert()) return lobe.sample(ray.direction, surface.point.normal, numbers);
+  return packed(over_surface(unpacked(surface.point.normal), unpacked(cosine_lobe(numbers))));
 }
 
 template <class Weight>
@@ -95,7 +103,8 @@ void Scatterer<Weight>::scatter(Ray& ray, const SurfaceHit& surface, const Scatt
   chains_.scatter(ray, surface, sample);
   weight_.scatter(ray, surface, sample.direction);
   ray.leg_length = 0.0;
-  ray.leg_density = sample.probability() * std::max(surface.point.normal.dot(sample.direction), 1e-9) / kPi;
+  ray.leg_density = sample.probability() * std::max(surface.point.normal.dot(sample.direction), 1e-9) / kPi *
+                    density_over_lambert(surface, ray.direction, sample.direction);
 }
 
 template <class Weight>

@@ -17,7 +17,8 @@ class Scatterer {
   bool leave(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample, HitLegs& legs) const;
 
  private:
-  Vec3 lobe_direction(const Ray& ray, int batch) const;
+  std::array<double, 2> lobe_numbers(const Ray& ray, int batch) const;
+  Vec3 lobe_direction(const Ray& ray, const SurfaceHit& surface, int batch) const;
   void reflect(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample) const;
   void leave_mirror(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample) const;
   void scatter(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample, HitLegs& legs) const;

@@ -57,6 +57,7 @@ SurfaceTable::SurfaceTable(const Scene& scene, const EmbreeScene& geometry, cons
     const Node& node = scene.node_of(id);
     models_.emplace_back(*node.material, frequency);
     smooth_width_.push_back(widths.width_of(node, geometry.vertices(id)));
+    has_lobes_ = has_lobes_ || !models_.back().lobe().is_lambert();
     has_smooth_ = has_smooth_ || is_unflagged_smooth(node);
   }
 }

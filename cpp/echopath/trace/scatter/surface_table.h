@@ -19,12 +19,14 @@ class SurfaceTable {
   double smooth_width(uint32_t mesh_id) const { return smooth_width_[mesh_id]; }
   // Returns whether any unflagged mesh is smooth: ray differentials are followed only then.
   bool has_smooth() const { return has_smooth_; }
+  // Returns whether any mesh has another lobe than Lambert's.
+  bool has_lobes() const { return has_lobes_; }
 
  private:
   std::vector<SurfaceModel> models_;
   MirrorIndex mirror_of_;
   std::vector<double> smooth_width_;
-  bool has_smooth_ = false;
+  bool has_smooth_ = false, has_lobes_ = false;
 };
 
 }  // namespace echopath

@@ -30,6 +30,7 @@ TraceSettings settings_like(const TraceFrame& frame) {
   settings.sampler = frame.sampler;
   settings.scatterers = frame.scatterers;
   settings.edges = frame.edges;
+  settings.attenuation = frame.attenuation;
   return settings;
 }
 

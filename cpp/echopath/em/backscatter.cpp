@@ -1,0 +1,19 @@
+#include "echopath/em/backscatter.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/base/constants.h"
+#include "echopath/em/surface_response.h"
+
+namespace echopath {
+
+double backscatter_coefficient(const Material& material, double frequency, double cos_incidence) {
+  const SurfaceModel model(material, frequency);
+  const SurfaceResponse response = model.respond(cos_incidence, PolarizationMode::kTe);
+  const double scattered = response.facet * response.diffuse;
+  const Vec3 back(std::sqrt(std::max(0.0, 1.0 - cos_incidence * cos_incidence)), 0.0, cos_incidence);
+  return 4.0 * kPi * cos_incidence * scattered * scattered * model.lobe()({-back, Vec3::UnitZ(), back});
+}
+
+}  // namespace echopath

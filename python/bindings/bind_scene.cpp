@@ -128,8 +128,9 @@ Raises TypeError or ValueError naming the field, the rule and the value.)");
       .def_readonly("backscatter_share", &Material::backscatter_share, "of the lobe, in [0, 1]")
       .def_readonly("backscatter_exponent", &Material::backscatter_exponent, "0: as lobe_exponent")
       .def("__repr__", &material_text);
-  define(type, "backscatter", &backscatter, py::arg("grazing"), py::kw_only(), py::arg("frequency"),
-         R"(Radar cross section per area of what a surface scatters back diffusely, sigma0 [N], without its coherent echo.
+  define(
+      type, "backscatter", &backscatter, py::arg("grazing"), py::kw_only(), py::arg("frequency"),
+      R"(Co-polar radar cross section per area of what a surface scatters back diffusely, sigma0 [N], without its coherent echo.
 
 grazing: [N] rad in [0, pi/2], from the surface; frequency: Hz
 Raises TypeError or ValueError naming the argument.)");

@@ -18,7 +18,7 @@ import numpy.typing
 import os
 import typing
 bench: types.ModuleType
-__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Curve', 'CurveMotion', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'LinearMotion', 'LiveTrace', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'MorphTargets', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'PartPass', 'Paths', 'Power', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'coherent_meshes', 'coherent_share', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'load_mesh', 'load_meshes', 'load_surfaces', 'looks_for_signals', 'may_appear_in_frame', 'mean_power', 'meant_name', 'mesh_names', 'mesh_traits', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'object_sizes', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'renew', 'set_num_threads', 'share_errors', 'speed_of_light', 'strongest_part', 'synthesize', 'synthesize_echoes', 'tessellation', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'warn_of_turns', 'window']
+__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Curve', 'CurveMotion', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'LinearMotion', 'LiveTrace', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'MorphTargets', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'PartPass', 'Paths', 'Power', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'are_clear', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'coherent_meshes', 'coherent_share', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'load_mesh', 'load_meshes', 'load_surfaces', 'looks_for_signals', 'may_appear_in_frame', 'mean_power', 'meant_name', 'mesh_names', 'mesh_traits', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'object_sizes', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'renew', 'set_num_threads', 'share_errors', 'speed_of_light', 'strongest_part', 'synthesize', 'synthesize_echoes', 'tessellation', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'warn_of_turns', 'window']
 class Motion:
     """
     Time -> rigid transform, in the axes of the node's parent about the node's own origin.
@@ -411,6 +411,10 @@ class Material:
     full depolarisation, the most a reciprocal surface without a preferred axis does
     mirror: True for planes larger than their Fresnel zone, which are treated by images whatever they meet; of a mesh that is no
         plane each of its planes
+    lobe_exponent: of the lobe of diffuse power about the direction of mirroring (Degli-Esposti 2007), a whole number up to 100;
+        0: Lambert's lobe
+    backscatter_share: of a lobe, share in [0, 1] of what goes back to where the wave comes from; backscatter_exponent: of that
+        part, up to 100, 0: as lobe_exponent
     Raises TypeError or ValueError naming the field, the rule and the value.
     """
     @staticmethod
@@ -426,18 +430,35 @@ class Material:
         ...
     def __hash__(self) -> int:
         ...
-    def __init__(self, *, conductor: bool = False, permittivity: complex | None = None, conductivity: float = 0.0, reflectivity: float | None = None, roughness_height: float = 0.0, scattering: float | None = None, cross_polarization: float = 0.0, mirror: bool = False) -> None:
+    def __init__(self, *, conductor: bool = False, permittivity: complex | None = None, conductivity: float = 0.0, reflectivity: float | None = None, roughness_height: float = 0.0, scattering: float | None = None, cross_polarization: float = 0.0, mirror: bool = False, lobe_exponent: int = 0, backscatter_share: float = 0.0, backscatter_exponent: int = 0) -> None:
         ...
     def __repr__(self) -> str:
         ...
     def __setstate__(self, arg0: typing.Any) -> None:
         ...
-    def replace(self, *, conductor: bool = ..., permittivity: complex | None = ..., conductivity: float = ..., reflectivity: float | None = ..., roughness_height: float = ..., scattering: float | None = ..., cross_polarization: float = ..., mirror: bool = ...) -> Material:
+    def backscatter(self, grazing: ArrayLike, *, frequency: float) -> numpy.typing.NDArray[numpy.float64]:
+        """
+        Co-polar radar cross section per area of what a surface scatters back diffusely, sigma0 [N], without its coherent echo.
+
+        grazing: [N] rad in [0, pi/2], from the surface; frequency: Hz
+        Raises TypeError or ValueError naming the argument.
+        """
+    def replace(self, *, conductor: bool = ..., permittivity: complex | None = ..., conductivity: float = ..., reflectivity: float | None = ..., roughness_height: float = ..., scattering: float | None = ..., cross_polarization: float = ..., mirror: bool = ..., lobe_exponent: int = ..., backscatter_share: float = ..., backscatter_exponent: int = ...) -> Material:
         """
         A copy with other values of some arguments.
 
         changes: arguments of the constructor, by name
         Raises TypeError or ValueError as the constructor does.
+        """
+    @property
+    def backscatter_exponent(self) -> int:
+        """
+        0: as lobe_exponent
+        """
+    @property
+    def backscatter_share(self) -> float:
+        """
+        of the lobe, in [0, 1]
         """
     @property
     def conductivity(self) -> float:
@@ -453,6 +474,11 @@ class Material:
     def cross_polarization(self) -> float:
         """
         K in [0, 0.5]
+        """
+    @property
+    def lobe_exponent(self) -> int:
+        """
+        of a directive lobe, 0: Lambert's
         """
     @property
     def mirror(self) -> bool:
@@ -2008,10 +2034,15 @@ class TraceFrame:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
         ...
-    def __init__(self, *, start_time: float, trace_time: float, transmitter: ArrayLike, receiver: ArrayLike, strata: typing.Sequence[Stratum], seed: int, max_bounces: int, polarization: str, footprint: str, statistics: TraceStatistics, num_batches: int = 1, target_error_db: float = 0.0, error_db: float = 0.0, sampler: str = 'lattice', scatterers: str = 'rays', edges: bool = False) -> None:
+    def __init__(self, *, start_time: float, trace_time: float, transmitter: ArrayLike, receiver: ArrayLike, strata: typing.Sequence[Stratum], seed: int, max_bounces: int, polarization: str, footprint: str, statistics: TraceStatistics, num_batches: int = 1, target_error_db: float = 0.0, error_db: float = 0.0, sampler: str = 'lattice', scatterers: str = 'rays', edges: bool = False, attenuation: float = 0.0) -> None:
         ...
     def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
+    @property
+    def attenuation(self) -> float:
+        """
+        Np/m of fields in the air, along every path
+        """
     @property
     def edges(self) -> bool:
         """
@@ -2441,7 +2472,7 @@ class LiveTrace:
         """
         The whole record, Paths.
         """
-    def update(self, scene: Scene, radar: Radar, *, num_rays: int, max_bounces: int, seed: int, start_time: float, polarization: str, footprint: str, sampler: str, scatterers: str, edges: bool, progress: typing.Any = None) -> dict[typing.Any, typing.Any]:
+    def update(self, scene: Scene, radar: Radar, *, num_rays: int, max_bounces: int, seed: int, start_time: float, polarization: str, footprint: str, sampler: str, scatterers: str, edges: bool, attenuation: float, progress: typing.Any = None) -> dict[typing.Any, typing.Any]:
         """
         What ep.Live calls. Returns is_whole, num_rays_shot, and the Paths removed and added.
         """
@@ -2984,6 +3015,10 @@ def angle_fft(spectrum: RangeDoppler, radar: Radar, *, window: typing.Any = 'han
     """
     What ep.angle_fft calls.
     """
+def are_clear(scene: Scene, time: float, origin: ArrayLike, points: ArrayLike) -> numpy.typing.NDArray[numpy.bool]:
+    """
+    Whether nothing of the scene lies between `origin` [3] and each of `points` [N, 3], m at `time` in s; [N].
+    """
 def beamform(spectrum: RangeDoppler, radar: Radar, azimuth: typing.Any = None, elevation: typing.Any = 0.0, *, cells: typing.Any = None, method: str = 'bartlett', window: typing.Any = 'rect', overlaps: str = 'average', compensate: bool = True, diagonal_loading: float = 0.01, velocity_neighbours: int = 1, range_neighbours: int = 2, forward_backward: bool = False, progress: typing.Any = None) -> BeamPower:
     """
     What the function of that name in ep calls.
@@ -3207,7 +3242,7 @@ def tessellation(mesh: Mesh) -> typing.Annotated[list[float], "FixedSize(4)"] | 
     """
     What echopath.tessellation.tessellation calls.
     """
-def trace(scene: Scene, radar: Radar, *, num_rays: int | None = None, max_bounces: int = 4, seed: int = 1, start_time: float = 0.0, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', batches: int | None = None, target_error_db: float | None = None, max_rays: int = 16777216, scatterers: str = 'rays', edges: bool = False, progress: typing.Any = None, kept: KeptGeometry | None = None) -> Paths:
+def trace(scene: Scene, radar: Radar, *, num_rays: int | None = None, max_bounces: int = 4, seed: int = 1, start_time: float = 0.0, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', batches: int | None = None, target_error_db: float | None = None, max_rays: int = 16777216, scatterers: str = 'rays', edges: bool = False, attenuation: float = 0.0, progress: typing.Any = None, kept: KeptGeometry | None = None) -> Paths:
     """
     What ep.trace calls. kept: KeptGeometry of the scene, or None.
     """

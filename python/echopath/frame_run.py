@@ -23,7 +23,7 @@ from .stages import StageClock
 from .tracing import keep_geometry
 from .truth import truth_of_frame
 from .truth.asked import truth_keywords
-from .weather.echoes import rain_cube
+from .weather.echoes import has_rain_echoes, rain_cube
 
 _FAMILIES = object()  # a view that has the name of no partition
 
@@ -47,6 +47,7 @@ class FrameRun:
         self.scene, self.radar, self.trace, self.signal, self.guard = scene, radar, trace, signal, guard
         self.partitions, self.angle_settings = as_partitions(parts), checked_settings(radar, angles)
         check_partitions(self.partitions, scene)
+        has_rain_echoes(scene, trace.effects)  # raises
         self._of_map = {"window": signal.window, "zero_pad": signal.zero_pad}
         self.label_settings = as_label_settings(labels)
         self._request = _label_request(scene, radar, self.label_settings, trace.batches or 1, self._of_map,
@@ -77,6 +78,7 @@ class FrameRun:
         with clock("parts of paths"):
             groups = {partition: part_of_path(paths, group) for partition, group in self.partitions.items()}
         frame = self._bare_frame(paths, whole, cubes, groups, probe, clock.stages)
+        frame.rain_cube = self._rain_cube(paths, clock)
         with clock("spectra"):
             with_spectra(frame)
         if sees_azimuth(self.radar):
@@ -97,14 +99,20 @@ class FrameRun:
     def _bare_frame(self, paths, whole, cubes: dict, groups: dict, probe, stages: list) -> Frame:
         """A frame without maps and what is made of them."""
         signal = self.signal
-        rain = rain_cube(self.scene, self.radar, start_time=paths.frame.start_time, seed=self.trace.seed,
-                         effects=self.trace.effects, polarization=paths.frame.polarization)
-        return Frame(scene=self.scene, radar=self.radar, paths=paths, cube=whole, rain_cube=rain, parts=cubes, selections=self.selections,
+        return Frame(scene=self.scene, radar=self.radar, paths=paths, cube=whole, parts=cubes, selections=self.selections,
                      part_of_path=groups, noise_seed=signal.noise_seed, spectrum_settings=self._of_map,
                      angle_settings=self.angle_settings, replay=signal.replay, evaluate=signal.evaluate,
                      retrace=signal.retrace, keyframes=signal.keyframes,
                      effect_choices=self.trace.effects,
                      checks=_checks(whole, probe, signal, paths.frame) if self.guard else [], stages=stages)
+
+    def _rain_cube(self, paths, clock):
+        """The signal of the rain of the scene, None where it has none."""
+        if not has_rain_echoes(self.scene, self.trace.effects):
+            return None
+        with clock("rain"):
+            return rain_cube(self.scene, self.radar, start_time=paths.frame.start_time, seed=self.trace.seed,
+                             effects=self.trace.effects, polarization=paths.frame.polarization)
 
     @property
     def selections(self) -> dict:

@@ -62,7 +62,8 @@ def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | 
     """
     tracing = TraceSettings(num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
                             polarization=polarization, footprint=footprint, sampler=sampler, batches=batches,
-                            target_error_db=target_error_db, max_rays=max_rays, scatterers=scatterers, edges=edges, effects=effects)
+                            target_error_db=target_error_db, max_rays=max_rays, scatterers=scatterers, edges=edges,
+                            effects=effects)
     signals = SignalSettings(tolerance=tolerance, method=method, replay=replay, evaluate=evaluate,
                              phase_tolerance=phase_tolerance, retrace=retrace, keyframes=keyframes, noise_seed=noise_seed,
                              window=window, zero_pad=zero_pad)

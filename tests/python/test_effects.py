@@ -41,12 +41,19 @@ def deforming():
 
 
 MOVING = ep.LinearMotion(velocity=(1, 0, 0))
+LOBED = ep.Material(reflectivity=0.5, scattering=1.0, lobe_exponent=4)
 TURNING = ep.Material(reflectivity=0.5, scattering=1.0, cross_polarization=0.2)
 
 
 SPECULAR_BALL = ep.Scene()
 SPECULAR_BALL.add(ep.actors.sphere(0.1), name="ball", material=SPECULAR, position=(5, 0, 0), smooth=True)
 MIRROR = ep.Material.metal(mirror=True)
+
+
+def rainy():
+    scene = make_scene()
+    scene.weather = ep.Weather(rain_mm_per_hour=10)
+    return scene
 
 
 def beside_mirror():
@@ -97,6 +104,9 @@ CASES = {
     "thermal noise": (dict(noise_seed=3), "noise figure 12 dB", {}),
     "speckle that goes on from frame to frame": (dict(scene=make_scene(ROUGH), scatterers="surface"), "surface",
                                                  dict(scene=make_scene(ROUGH))),
+    "directive lobes and backscatter": (dict(scene=make_scene(LOBED)), "plate", dict(scene=make_scene(ROUGH))),
+    "attenuation by weather": (dict(scene=rainy()), "rain 5.8", {}),
+    "echoes of rain": (dict(scene=rainy()), "nothing hides it", dict(scene=rainy(), effects={"echoes of rain": False})),
     "edge diffraction": (dict(edges=True), "edges = True", {}),
     "even spread of the rays": (dict(sampler="r2"), "r2", dict(sampler="random")),
     "rays aimed at objects": ({}, "a cone", dict(scene=make_scene(MIRROR))),

@@ -59,7 +59,7 @@ def test_a_patch_of_ground_has_the_level_of_its_lobe(material, grazing_deg):
     radar_at = np.array((-distance * math.cos(grazing), 0, distance * math.sin(grazing)))
     receiver_at = radar_at + (0, 3.0, 0)
     scene = scene_of(ground=(rectangle((-.5, -.5, 0), (1, 0, 0), (0, 1, 0)), material))
-    paths = ep.trace(scene, make_radar(radar_at, receiver_at), num_rays=30000, max_bounces=1, batches=BATCHES,
+    paths = ep.trace(scene, make_radar(radar_at, receiver_at), num_rays=8000, max_bounces=1, batches=BATCHES,
                      polarization="scalar")
     found, error = mean_and_error(paths)
     x, y = (0.05 * (np.arange(20) + .5) - .5 for _ in range(2))
@@ -69,7 +69,7 @@ def test_a_patch_of_ground_has_the_level_of_its_lobe(material, grazing_deg):
     sigma0 = 4 * np.pi * RHO * -arrival @ normal * lobe(material, arrival, normal, departure)
     truth = paths.radar.transmit_power * WAVELENGTH**2 / (4 * np.pi)**3 * np.sum(sigma0 / (r1 * r2)**2) / 400
     assert abs(found - truth) < STANDARD_ERRORS * error + 2e-3 * truth
-    assert error < 0.02 * truth
+    assert error < 0.03 * truth
 
 
 # Two plates of 1 m in a corner with a gap of .1 m, as in test_diffuse_chains.
@@ -101,12 +101,12 @@ def test_chains_of_lobes_have_the_levels_of_both_orders():
     transmitter = np.array((5 * math.cos(azimuth), 5 * math.sin(azimuth), .3))
     receiver = transmitter + (-.4, .5, .2)
     scene = scene_of(a=(rectangle(*PLATES[0]), materials[0]), b=(rectangle(*PLATES[1]), materials[1]))
-    paths = ep.trace(scene, make_radar(transmitter, receiver), num_rays=120000, max_bounces=2, batches=BATCHES,
+    paths = ep.trace(scene, make_radar(transmitter, receiver), num_rays=50000, max_bounces=2, batches=BATCHES,
                      polarization="scalar")
     for order, names in (((0, 1), "T 'a' 'b' R"), ((1, 0), "T 'b' 'a' R")):
         found, error = mean_and_error(paths.select(names))
         truth = paths.radar.transmit_power * two_bounces(materials, transmitter, receiver, order)
-        assert error < 0.03 * truth
+        assert error < 0.05 * truth
         assert abs(found - truth) < 3.5 * error + 5e-3 * truth
 
 

@@ -53,7 +53,9 @@ materials = st.one_of(
     st.builds(ep.Material, permittivity=st.builds(complex, st.floats(1, 90), st.floats(-40, 0)),
               conductivity=st.floats(0, 100), roughness_height=st.floats(0, 0.1),
               cross_polarization=st.floats(0, 0.5)),
-    st.builds(ep.Material, reflectivity=st.floats(0, 1), scattering=st.floats(0, 1)))
+    st.builds(ep.Material, reflectivity=st.floats(0, 1), scattering=st.floats(0, 1)),
+    st.builds(ep.Material, reflectivity=st.floats(0, 1), lobe_exponent=st.integers(1, 100),
+              backscatter_share=st.floats(0.01, 1), backscatter_exponent=st.integers(0, 100)))
 linear_motions = st.builds(ep.LinearMotion, vectors, vectors)
 interpolations = st.sampled_from(["cubic", "linear"])
 
@@ -129,7 +131,8 @@ KINDS = {"ChirpSequence": waveforms(), "pattern": patterns, "Material": material
 # All that can be read of them.
 READ = """start_frequency bandwidth num_samples sampling_rate num_chirps chirp_interval real slope kind peak_gain exponent
     table_gain table_phase azimuth elevation efficiency conductor permittivity conductivity reflectivity roughness_height
-    scattering cross_polarization mirror velocity angular_velocity times translations rotations vertices interpolation
+    scattering cross_polarization mirror lobe_exponent backscatter_share backscatter_exponent
+    velocity angular_velocity times translations rotations vertices interpolation
     breakpoints span num_vertices name parent transform motion inverse_bind joints weights joint_indices shape targets values
     in_tangents out_tangents translation rotation scale period offset triangles
     original_triangle original_vertex num_input_vertices num_removed_triangles num_duplicated_vertices is_closed area whole

@@ -90,6 +90,8 @@ CALLS = {
     "permittivity": (ep.Material, {"permittivity": 4 - 1j, "conductivity": 0.1, "roughness_height": 1e-3,
                                    "cross_polarization": 0.1}),
     "reflectivity": (ep.Material, {"reflectivity": 0.5, "scattering": 0.5}),
+    "lobe": (ep.Material, {"reflectivity": 0.5, "lobe_exponent": 4, "backscatter_share": 0.5, "backscatter_exponent": 3}),
+    "backscatter": (ep.Material(reflectivity=0.5).backscatter, {"grazing": [0.1], "frequency": 77e9}),
     "metal": (ep.Material.metal, {"mirror": True}),
     "LinearMotion": (ep.LinearMotion, {"velocity": (1, 2, 3), "angular_velocity": (0, 0, 1)}),
     "KeyframeMotion": (ep.KeyframeMotion, {"times": [0, 1], "translations": [[0, 0, 0], [1, 0, 0]],

@@ -13,7 +13,8 @@ double backscatter_coefficient(const Material& material, double frequency, doubl
   const SurfaceResponse response = model.respond(cos_incidence, PolarizationMode::kTe);
   const double scattered = response.facet * response.diffuse;
   const Vec3 back(std::sqrt(std::max(0.0, 1.0 - cos_incidence * cos_incidence)), 0.0, cos_incidence);
-  return 4.0 * kPi * cos_incidence * scattered * scattered * model.lobe()({-back, Vec3::UnitZ(), back});
+  const double co_polar = 1.0 - material.cross_polarization;
+  return 4.0 * kPi * co_polar * cos_incidence * scattered * scattered * model.lobe()({-back, Vec3::UnitZ(), back});
 }
 
 }  // namespace echopath

@@ -42,8 +42,8 @@ Vec3 drawn_about(const Vec3& axis, int exponent, const std::array<double, 2>& ra
 
 }  // namespace
 
-// The term is the sum of C(a, j) cos(psi)^j/2^a. Over the half space, cos(psi)^j has the integral 2 pi/(j + 1) for an even j,
-// and for an odd one that times cos(in) sum over w <= (j - 1)/2 of C(2 w, w) (sin(in)/2)^(2 w).
+// The term is the sum of C(a, j) cos(psi)^j/2^a. Over the half space, cos(psi)^j has the integral 2 pi/(j + 1) for an even
+// j, and for an odd one that times cos(in) sum over w <= (j - 1)/2 of C(2 w, w) (sin(in)/2)^(2 w).
 DiffuseLobe::Term::Term(int of) : exponent(of), odd(static_cast<size_t>((of + 1) / 2)) {
   double choose = power_of(0.5, of);  // C(a, j)/2^a
   for (int j = 0; j <= of; ++j) {

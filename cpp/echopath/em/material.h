@@ -15,8 +15,8 @@ struct Material {
   double roughness_height = 0.0;       // rms height in m (Ament)
   std::optional<double> scattering;    // S in [0, 1], S^2 is the diffuse share of power (Degli-Esposti 2007)
   double cross_polarization = 0.0;     // in [0, 0.5], share of diffuse power in the cross polarisation
-  // Lobe of what is scattered (em/diffuse_lobe.h): the exponent of a directive lobe, 0 for Lambert's; the share of it that goes
-  // back to where the wave comes from, and the exponent of that part, 0 for that of the other.
+  // Lobe of what is scattered (em/diffuse_lobe.h): the exponent of a directive lobe, 0 for Lambert's; the share of it that
+  // goes back to where the wave comes from, and the exponent of that part, 0 for that of the other.
   int lobe_exponent = 0;
   double backscatter_share = 0.0;
   int backscatter_exponent = 0;

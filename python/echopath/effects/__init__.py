@@ -37,8 +37,8 @@ def effects(scene: _core.Scene, radar: _core.Radar, *, max_bounces: int = TraceS
             effects: Choices = TraceSettings.effects) -> Effects:
     """Which effects a run of `scene` with `radar` models, and why.
 
-    max_bounces, footprint, polarization, sampler, batches, target_error_db (dB), scatterers, edges, effects: as in `trace`; replay,
-    evaluate, retrace: as in `synthesize`; noise_seed: as in `simulate`. Returns a list [E] of Effect, modelled ones first.
+    max_bounces, footprint, polarization, sampler, batches, target_error_db (dB), scatterers, edges, effects: as in `trace`;
+    replay, evaluate, retrace: as in `synthesize`; noise_seed: as in `simulate`. Returns a list [E] of Effect, modelled ones first.
     Effects that nothing can ask for stand last, under reasons that begin with "out of scope" or "not modelled". Raises
     TypeError or ValueError naming the argument.
     """
@@ -53,7 +53,8 @@ def of_paths(paths, *, replay: str = "material", evaluate: str = "interpolated",
     retrace, noise_seed, rain_cube: of later stages; surroundings: the scene whose weather they had."""
     frame = paths.frame
     settings = Settings(frame.max_bounces, frame.footprint, frame.polarization, frame.sampler, frame.num_batches,
-                        frame.target_error_db or None, frame.scatterers, frame.edges, replay, evaluate, retrace, noise_seed, effects)
+                        frame.target_error_db or None, frame.scatterers, frame.edges, replay, evaluate, retrace, noise_seed,
+                        effects)
     return _of_case(Case(paths.scene, paths.radar, settings, paths=paths, surroundings=surroundings, rain_cube=rain_cube))
 
 

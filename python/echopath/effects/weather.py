@@ -14,7 +14,7 @@ from .rules import Case, rule
 def _attenuation(case: Case):
     if case.paths is not None:
         attenuation = case.paths.frame.attenuation
-        return attenuation > 0, f"{_of_paths(case.paths, attenuation)}{_why_off(case)}"
+        return attenuation > 0, _of_paths(case.paths, attenuation) if attenuation > 0 else _why_off(case)
     if case.weather is None:
         return False, "the scene has no weather"
     parts = case.weather.attenuation_db_per_km(case.radar)
@@ -24,8 +24,6 @@ def _attenuation(case: Case):
 
 
 def _of_paths(paths, attenuation: float) -> str:
-    if attenuation == 0:
-        return "the record has none"
     powers, lengths = np.asarray(paths.power), paths.lengths([paths.frame.trace_time], 0, 0)[0]
     without = np.sum(powers * np.exp(2.0 * attenuation * lengths))
     lost = f", {10.0 * np.log10(without / powers.sum()):.2g} dB of the power" if powers.sum() > 0 else ""
@@ -33,7 +31,7 @@ def _of_paths(paths, attenuation: float) -> str:
 
 
 def _why_off(case: Case) -> str:
-    return ": effects has it off" if dict(case.settings.effects).get(ATTENUATION) is False else ""
+    return "effects has it off" if dict(case.settings.effects).get(ATTENUATION) is False else "the scene has no weather"
 
 
 @rule(RAIN_ECHOES, "Scene.weather")

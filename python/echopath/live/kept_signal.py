@@ -9,6 +9,7 @@ import numpy as np
 
 from .. import _core
 from ..polarization import antennas_of, chosen_model
+from ..weather.weather import attenuation_of
 
 # Signals are added and taken away so often before all is summed anew; each time rounds to some 1e-16 of the largest sample.
 MOST_DIFFERENCES = 256
@@ -49,7 +50,8 @@ class KeptSignal:
     def update(self, scene: _core.Scene, radar: _core.Radar, progress=None) -> Update:
         """Brings record and cube to this scene and radar. progress: callable (stage, fraction), True for bars, or None"""
         begin = time.perf_counter()
-        keywords = self._trace_keywords | {"polarization": self._model(scene, radar)}
+        keywords = self._trace_keywords | {"polarization": self._model(scene, radar),
+                                           "attenuation": attenuation_of(scene, radar)}
         change = self._record.update(scene, radar, num_rays=self.num_rays, progress=progress, **keywords)
         self._note(change)
         if self._whole is None and (radar != self._radar or self._num_differences >= MOST_DIFFERENCES):

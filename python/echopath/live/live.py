@@ -13,7 +13,6 @@ from ..settings import (
     MOST_RAYS, Evaluate, Footprint, Method, Polarization, Replay, Sampler, Scatterers, SignalSettings, TraceSettings,
 )
 from ..tessellation import warn_of_coarse_meshes
-from ..weather.weather import attenuation_of
 from .changes import Changes
 from .kept_signal import KeptSignal
 from .view import LiveView
@@ -56,8 +55,7 @@ class Live:
                  window: Window = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad):
         self._trace = {"max_bounces": max_bounces, "seed": seed, "start_time": start_time, "polarization": polarization,
                        "footprint": footprint, "sampler": sampler,
-                       "scatterers": "rays" if scatterers == "auto" else scatterers, "edges": edges,
-                       "attenuation": attenuation_of(scene, radar)}
+                       "scatterers": "rays" if scatterers == "auto" else scatterers, "edges": edges}
         self._signal = {"tolerance": tolerance, "method": "nufft" if method == "auto" else method, "replay": replay,
                         "evaluate": evaluate, "phase_tolerance": phase_tolerance}
         self._window, self._zero_pad = window, zero_pad

@@ -13,6 +13,7 @@ from .. import _core, actors
 from ..materials import materials
 from ..readers import load_model
 from ..scene import Scene
+from ..weather import Weather
 from .errors import blamed, validated
 from .schema import MODEL_KEYS, ObjectTable, SceneTable, Table, nearest_key
 from .trajectories import Trajectories

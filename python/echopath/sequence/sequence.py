@@ -46,8 +46,8 @@ class Sequence(Row[Frame]):
     frames: number of frames K, at least 1; interval: s, from start to start, at least the duration of a frame
     start_time: s, of frame 0
     num_rays, max_bounces, seed, polarization, footprint, sampler, batches, target_error_db (dB), max_rays, scatterers,
-        edges, effects: as in `trace`; the seed serves all frames, and "auto" scatterers are those of the surfaces, so that speckle goes
-        on from frame to frame
+        edges, effects: as in `trace`; the seed serves all frames, and "auto" scatterers are those of the surfaces, so that
+        speckle goes on from frame to frame
     parts, tolerance, method, replay, evaluate, phase_tolerance (rad), retrace, keyframes, noise_seed, window, zero_pad, angles,
         labels, detections, truth, guard, trace, signal: as in `simulate`
     times: starts of the frames, [K] in s
@@ -65,7 +65,8 @@ class Sequence(Row[Frame]):
                  sampler: Sampler = TraceSettings.sampler, batches: int | None = TraceSettings.batches,
                  target_error_db: float | None = TraceSettings.target_error_db,
                  max_rays: int | float = TraceSettings.max_rays, scatterers: Scatterers = TraceSettings.scatterers,
-                 edges: bool = TraceSettings.edges, effects: Choices = TraceSettings.effects, parts: Mapping[str, Any] | None = None,
+                 edges: bool = TraceSettings.edges, effects: Choices = TraceSettings.effects,
+                 parts: Mapping[str, Any] | None = None,
                  tolerance: float = SignalSettings.tolerance, method: Method = SignalSettings.method,
                  replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,
                  phase_tolerance: float = SignalSettings.phase_tolerance, retrace: Retrace = SignalSettings.retrace,
@@ -76,7 +77,8 @@ class Sequence(Row[Frame]):
                  guard: bool = True, trace: TraceSettings | None = None, signal: SignalSettings | None = None):
         tracing = TraceSettings(num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
                                 polarization=polarization, footprint=footprint, sampler=sampler, batches=batches,
-                                target_error_db=target_error_db, max_rays=max_rays, scatterers=scatterers, edges=edges, effects=effects)
+                                target_error_db=target_error_db, max_rays=max_rays, scatterers=scatterers, edges=edges,
+                                effects=effects)
         signals = SignalSettings(tolerance=tolerance, method=method, replay=replay, evaluate=evaluate,
                                  phase_tolerance=phase_tolerance, retrace=retrace, keyframes=keyframes, noise_seed=noise_seed,
                                  window=window, zero_pad=zero_pad)

@@ -19,16 +19,19 @@ CANDIDATES = 65536    # directions among which those of the drops are drawn by t
 _STREAM = 0x7261696E  # tells these random numbers from others of the same seed
 
 
+def has_rain_echoes(scene, effects: Choices) -> bool:
+    """Whether a scene's weather and `effects` ask for echoes of rain. Raises ValueError where only the latter do."""
+    weather = weather_of(scene)
+    has_rain = weather is not None and weather.rain_mm_per_hour > 0
+    return is_on(effects, RAIN_ECHOES, has_rain, "Scene.weather with rain_mm_per_hour")
+
+
 def rain_cube(scene, radar: _core.Radar, *, start_time: float, seed: int, effects: Choices = (), polarization: str = "scalar"):
-    """The signal of the rain in a frame alone, complex [tx, rx, chirp, sample] in sqrt(W); None where the scene has no rain.
+    """The signal of the rain in a frame alone, complex [tx, rx, chirp, sample] in sqrt(W), of a scene that has rain.
 
     start_time: s, of the frame; seed: of the drops, which differ from frame to frame, as those of showers do (their echoes
     lose their phase within a millisecond); effects: as in `trace`; polarization: "scalar" or "jones", the model of the frame
     """
-    weather = weather_of(scene)
-    has_rain = weather is not None and weather.rain_mm_per_hour > 0
-    if not is_on(effects, RAIN_ECHOES, has_rain, "Scene.weather with rain_mm_per_hour"):
-        return None
     paths = rain_paths(scene, radar, start_time=start_time, seed=seed, effects=effects, polarization=polarization)
     if paths is None:
         shape = (len(radar.transmitters), len(radar.receivers), radar.waveform.num_chirps, radar.waveform.num_samples)

@@ -6,8 +6,8 @@
 
 namespace echopath {
 
-// Multiplies the amplitudes at all nodes by exp(-attenuation * length). `num_paths` of the channels, from place 0 on, have been
-// written; `attenuation` is in Np/m.
+// Multiplies the amplitudes at all nodes by exp(-attenuation * length). `num_paths` of the channels, from place 0 on, have
+// been written; `attenuation` is in Np/m.
 void attenuate(const ChannelSpan& channels, size_t num_paths, size_t num_nodes, double attenuation);
 
 }  // namespace echopath

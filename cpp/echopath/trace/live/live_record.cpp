@@ -18,7 +18,7 @@ std::vector<std::vector<int>> sequences_of(const AntennaFrusta& frusta) {
 
 bool asks_the_same(const TraceSettings& a, const TraceSettings& b) {
   return a.num_rays == b.num_rays && a.footprint == b.footprint && a.batches == b.batches && a.sampler == b.sampler &&
-         a.scatterers == b.scatterers;
+         a.scatterers == b.scatterers && a.attenuation == b.attenuation;
 }
 
 bool has_foci(const std::vector<Stratum>& strata) {

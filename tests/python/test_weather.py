@@ -1,0 +1,242 @@
+"""Weather: attenuation to the digits that recommendations print, echoes of rain to the radar equation of a volume."""
+import math
+import pickle
+
+import numpy as np
+import pytest
+import scipy.special
+
+import echopath as ep
+from echopath.effect_choices import ATTENUATION, RAIN_ECHOES
+from echopath.weather import drops, echoes, fog, gas, rain
+from echopath.weather.weather import DB_PER_NEPER
+from support.radars import build_radar
+from support.scene_text import ANTENNAS, WAVEFORM
+
+WET = ep.Weather(rain_mm_per_hour=20.0)
+NOISE_BANDWIDTH = 2.0044  # of the Blackman-Harris window, cells
+
+# k_H, alpha_H, k_V, alpha_V as Recommendation ITU-R P.838-3 prints them in table 5.
+PRINTED = {1: ("0.0000259", "0.9691", "0.0000308", "0.8592"), 10: ("0.01217", "1.2571", "0.01129", "1.2156"),
+           20: ("0.09164", "1.0568", "0.09611", "0.9847"), 40: ("0.4431", "0.8673", "0.4274", "0.8421"),
+           60: ("0.8606", "0.7656", "0.8515", "0.7486"), 80: ("1.1704", "0.7115", "1.1668", "0.7021"),
+           100: ("1.3671", "0.6815", "1.3680", "0.6765")}
+
+
+@pytest.mark.parametrize("frequency_ghz", PRINTED)
+def test_coefficients_of_rain_are_those_that_are_printed(frequency_ghz):
+    found = [*rain.coefficients(1e9 * frequency_ghz, "h"), *rain.coefficients(1e9 * frequency_ghz, "v")]
+    for value, text in zip(found, PRINTED[frequency_ghz]):
+        assert f"{value:.{len(text) - 2}f}" == text
+
+
+def test_rain_between_both_polarisations_mixes_their_coefficients():
+    h, v, both = (rain.rain_attenuation(77e9, 25.0, tilt) for tilt in (0.0, math.pi / 2, math.pi / 4))
+    (k_h, a_h), (k_v, a_v) = rain.coefficients(77e9, "h"), rain.coefficients(77e9, "v")
+    assert h == pytest.approx(k_h * 25.0**a_h, rel=1e-12) and v == pytest.approx(k_v * 25.0**a_v, rel=1e-12)
+    assert min(h, v) < both < max(h, v)
+    assert rain.rain_attenuation(77e9, 0.0, 0.0) == 0.0
+
+
+def test_gases_are_those_of_the_examples_of_the_recommendation():
+    """12 GHz, 1013.25 hPa of dry air, 288.15 K, 7.5 g/m^3: dry .00869826 and wet .00953539 dB/km (validation examples of study
+    group 3 for P.676)."""
+    vapour = 7.5 * 288.15 / gas.VAPOUR_CONSTANT
+    assert gas.gas_attenuation(12e9, 288.15, 1013.25, vapour) == pytest.approx(0.00869826 + 0.00953539, rel=2e-3)
+    assert gas.gas_attenuation(60e9, 288.15, 1013.25, vapour) == pytest.approx(14.7, rel=0.02)
+    assert gas.gas_attenuation(22.235e9, 288.15, 1013.25, vapour) == pytest.approx(0.19, rel=0.05)
+
+
+def test_the_air_is_saturated_as_tables_of_steam_say():
+    """611.2 Pa at the triple point, 2339 Pa at 20 degrees Celsius over water, .4 % more in air."""
+    assert gas.saturation_pressure(273.15, 1013.25) == pytest.approx(6.1121 * 1.0039, rel=1e-3)
+    assert gas.saturation_pressure(293.15, 1013.25) == pytest.approx(23.39 * 1.004, rel=2e-3)
+
+
+def test_fog_absorbs_as_small_drops_of_water_do():
+    """Rayleigh: 6 pi/lambda Im((eps - 1)/(eps + 2)) of the share of the volume that is water, in field attenuation."""
+    for temperature in (273.15, 293.15):
+        permittivity = fog.water_permittivity(77e9, temperature)
+        loss = -((permittivity - 1) / (permittivity + 2)).imag
+        nepers = 3 * math.pi * 77e9 / ep.speed_of_light * loss * 1e-6
+        assert fog.fog_attenuation(77e9, 1.0, temperature) == pytest.approx(1e3 * DB_PER_NEPER * nepers, rel=2e-3)
+
+
+def slow_mie(size, index):
+    """Efficiencies (backscatter, extinction) by Bessel functions of complex argument."""
+    n = np.arange(1, int(size + 4 * size**(1 / 3) + 3))
+    inside = index.conjugate() * size
+
+    def riccati(function, z):
+        return z * function(n, z), function(n, z) + z * function(n, z, derivative=True)
+
+    psi, d_psi = riccati(scipy.special.spherical_jn, size)
+    chi, d_chi = riccati(scipy.special.spherical_yn, size)
+    xi, d_xi = psi + 1j * chi, d_psi + 1j * d_chi
+    psi_in, d_psi_in = riccati(scipy.special.spherical_jn, inside)
+    m = index.conjugate()
+    a = (m * psi_in * d_psi - psi * d_psi_in) / (m * psi_in * d_xi - xi * d_psi_in)
+    b = (psi_in * d_psi - m * psi * d_psi_in) / (psi_in * d_xi - m * xi * d_psi_in)
+    return (abs(np.sum((2 * n + 1) * (-1.0)**n * (a - b)))**2 / size**2,
+            2 * np.sum((2 * n + 1) * (a + b).real) / size**2)
+
+
+@pytest.mark.parametrize(("size", "index"), [(0.05, 3.0 - 1.5j), (0.8, 3.2 - 1.8j), (3.0, 3.2 - 1.8j), (9.0, 1.33 - 1e-3j)])
+def test_drops_scatter_as_mie_says(size, index):
+    assert drops.mie_sums(size, index) == pytest.approx(slow_mie(size, index), rel=1e-6)
+
+
+def test_the_series_has_the_published_extinction():
+    """Wiscombe 1979, m = 1.5 - j: 2.336321 at x = 1, 2.097502 at x = 100."""
+    assert drops.mie_sums(1.0, 1.5 - 1j)[1] == pytest.approx(2.336321, rel=1e-6)
+    assert drops.mie_sums(100.0, 1.5 - 1j)[1] == pytest.approx(2.097502, rel=1e-6)
+
+
+def test_rain_scatters_back_what_was_measured():
+    """70 GHz: 4.2e-5 R^1.1 per m (Currie, Dyer, Hayes 1975, quoted from memory), within 3 dB from 5 to 30 mm/h."""
+    for rate in (5.0, 10.0, 30.0):
+        found = drops.reflectivities(70e9, rate, 288.15).sum()
+        assert abs(10 * math.log10(found / (4.2e-5 * rate**1.1))) < 3.0
+
+
+def test_drops_take_about_what_the_recommendation_says():
+    for rate in (2.0, 10.0, 50.0):
+        assert drops.extinction_db_per_km(77e9, rate, 288.15) == pytest.approx(rain.rain_attenuation(77e9, rate, 0.0), rel=0.4)
+
+
+def ball_scene(weather=None):
+    scene = ep.Scene(weather=weather)
+    scene.add(ep.Mesh([[40, -1, -1], [40, 1, -1], [40, 0, 1]], [[0, 1, 2]]), name="plate", motion=ep.LinearMotion((2.0, 0, 0)),
+              material=ep.Material(reflectivity=0.5, scattering=0.8))
+    return scene
+
+
+@pytest.mark.parametrize("settings", [{}, {"evaluate": "chirps"}, {"evaluate": "samples"}, {"replay": "fermat"}])
+def test_echoes_are_weakened_along_their_whole_way(settings):
+    radar, still = build_radar(num_chirps=16, num_samples=256, bandwidth=250e6), {}
+    for weather in (None, WET):
+        paths = ep.trace(ball_scene(weather), radar, num_rays=200)
+        still[weather] = ep.synthesize(paths, radar, tolerance=1e-10, **settings), paths
+    (dry, dry_paths), (wet, wet_paths) = still[None], still[WET]
+    attenuation = 1e-3 * sum(WET.attenuation_db_per_km(radar).values()) / DB_PER_NEPER
+    assert wet_paths.frame.attenuation == attenuation and dry_paths.frame.attenuation == 0.0
+    lengths = wet_paths.lengths([wet_paths.frame.trace_time], 0, 0)[0]
+    assert wet_paths.amplitude == pytest.approx(dry_paths.amplitude * np.exp(-attenuation * lengths), rel=1e-9)
+    spread = attenuation * (lengths.max() - lengths.min())
+    factor = np.vdot(dry, wet) / np.vdot(dry, dry)
+    assert factor == pytest.approx(math.exp(-attenuation * lengths.mean()), abs=spread + 1e-4)
+
+
+def test_without_weather_not_a_bit_differs():
+    radar = build_radar(num_chirps=8)
+    paths = [ep.trace(ball_scene(weather), radar, num_rays=500, effects=effects)
+             for weather, effects in ((None, {}), (WET, {ATTENUATION: False}))]
+    signals = [ep.synthesize(one, radar) for one in paths]
+    assert np.array_equal(*signals) and np.array_equal(paths[0].weight, paths[1].weight)
+
+
+def rain_radar():
+    return build_radar(num_chirps=32, num_samples=128, bandwidth=150e6,
+                       transmitters=[ep.Antenna(pattern=ep.CosinePower(exponent=6.0))],
+                       receivers=[ep.Antenna(pattern=ep.CosinePower(exponent=6.0))])
+
+
+def test_rain_has_the_power_of_the_radar_equation_in_each_range():
+    """Of a volume: Pt lambda^2 eta/((4 pi)^3 r^2) dr times the integral of both gains, e^{-4 a r}."""
+    radar, scene, seeds = rain_radar(), ep.Scene(weather=WET), range(6)
+    maps = [ep.range_doppler(echoes.rain_cube(scene, radar, start_time=0.0, seed=seed), radar, window="blackman_harris")
+            for seed in seeds]
+    power = np.mean([np.sum(np.abs(one.values[0, 0])**2, 0) for one in maps], 0) / NOISE_BANDWIDTH**2
+    ranges = maps[0].range
+    pattern = radar.transmitters[0].pattern
+    angle = np.linspace(0, math.pi / 2, 20001)
+    gains = np.array([pattern.gain(math.cos(one)) for one in angle[::20]])
+    solid = 2 * math.pi * np.trapezoid(gains**2 * np.sin(angle[::20]), angle[::20])
+    attenuation = 1e-3 * sum(WET.attenuation_db_per_km(radar).values()) / DB_PER_NEPER
+    cells = slice(10, 110)
+    r = ranges[cells]
+    wavelength = ep.speed_of_light / radar.waveform.start_frequency
+    truth = (radar.transmit_power * wavelength**2 * WET.rain_reflectivity(radar) / ((4 * math.pi)**3 * r**2) * solid
+             * (ranges[1] - ranges[0]) * np.exp(-4 * attenuation * r))
+    ratio = power[cells] / truth
+    # The speckle of one chirp in a cell is exponential; drops of all speeds make the chirps of a frame nearly independent.
+    assert np.mean(ratio) == pytest.approx(1.0, abs=0.05)
+    assert np.mean(ratio[:30]) == pytest.approx(1.0, abs=0.1) and np.mean(ratio[-30:]) == pytest.approx(1.0, abs=0.1)
+
+
+def test_rain_speckles_and_moves_with_the_wind():
+    radar = rain_radar()
+    blown = WET.replace(wind=(5.0, 0, 0), turbulence=0.3)
+    cube = echoes.rain_cube(ep.Scene(weather=blown), radar, start_time=0.0, seed=1)
+    first = np.abs(ep.range_doppler(cube, radar, window="rect").values[0, 0])**2
+    velocity = ep.range_doppler(cube, radar).velocity
+    mean = (first.sum(1) * velocity).sum() / first.sum()
+    assert mean == pytest.approx(5.0 * 0.85, abs=0.6)  # along the beam, less toward its sides
+    one_chirp = np.abs(np.fft.fft(cube[0, 0], axis=-1))[:, 10:110]**2 * np.arange(10, 110)**2
+    assert np.std(one_chirp) / np.mean(one_chirp) == pytest.approx(1.0, abs=0.2)
+
+
+def test_rain_behind_a_wall_is_not_seen():
+    scene = ep.Scene(weather=WET)
+    scene.add(ep.Mesh([[20, -80, -80], [20, 80, -80], [20, 80, 80], [20, -80, 80]], [[0, 1, 2], [0, 2, 3]]), name="wall",
+              material="metal")
+    paths = echoes.rain_paths(scene, rain_radar(), start_time=0.0, seed=1)
+    assert paths.points(paths.frame.trace_time)[:, 0].max() < 20.0
+
+
+def test_a_frame_has_the_rain_in_its_map_alone(tmp_path):
+    radar, scene = build_radar(num_chirps=16, bandwidth=100e6), ball_scene(WET)
+    frames = [ep.simulate(scene, radar, num_rays=300, start_time=start, parts={"plate": "T 'plate' R"}) for start in (0.0, 0.05)]
+    frame = frames[0]
+    assert not np.array_equal(frames[0].rain_cube, frames[1].rain_cube)
+    assert sum(frame.parts["parts"].values()) == pytest.approx(frame.cube, abs=1e-18)
+    without = ep.simulate(scene, radar, num_rays=300, effects={RAIN_ECHOES: False})
+    assert without.rain_cube is None and np.array_equal(without.cube, frame.cube)
+    assert np.allclose(frame.noisy_cube - without.noisy_cube, frame.rain_cube, atol=1e-18)
+    ep.save_frame(frame, tmp_path / "frame.h5")
+    again = ep.load_frame(tmp_path / "frame.h5")
+    assert np.array_equal(again.rain_cube, frame.rain_cube) and again.paths.frame.attenuation > 0
+    assert np.array_equal(again.spectrum.values, frame.spectrum.values)
+
+
+def effect(effects, name):
+    return next(one for one in effects if one.name == name)
+
+
+def test_effects_say_what_the_weather_takes_and_carries():
+    radar = build_radar(num_chirps=4)
+    assert effect(ep.effects(ball_scene(), radar), ATTENUATION).reason == "the scene has no weather"
+    asked = ep.effects(ball_scene(WET), radar)
+    assert effect(asked, ATTENUATION).modelled and "rain 9" in effect(asked, ATTENUATION).reason
+    assert effect(asked, RAIN_ECHOES).modelled and "dBm" in effect(asked, RAIN_ECHOES).reason
+    off = ep.effects(ball_scene(WET), radar, effects={RAIN_ECHOES: False, ATTENUATION: False})
+    for name in (ATTENUATION, RAIN_ECHOES):
+        assert not effect(off, name).modelled and "effects has" in effect(off, name).reason
+    frame = ep.simulate(ball_scene(WET), radar, num_rays=100)
+    assert effect(frame.effects, RAIN_ECHOES).modelled and "dB of the power" in effect(frame.effects, ATTENUATION).reason
+
+
+@pytest.mark.parametrize(("choices", "error", "text"), [
+    ({"rain": True}, ValueError, "has no 'rain'"), ({RAIN_ECHOES: 2}, ValueError, "echoes of rain"),
+    ("rain", TypeError, "effects: must be"), ({RAIN_ECHOES: True}, ValueError, "needs Scene.weather")])
+def test_wrong_choices_are_refused(choices, error, text):
+    with pytest.raises(error, match=text):
+        ep.simulate(ball_scene(), build_radar(num_chirps=4), num_rays=50, effects=choices)
+
+
+def test_weather_travels_with_its_scene(tmp_path):
+    scene = ball_scene(WET)
+    assert pickle.loads(pickle.dumps(scene)).weather == WET and scene.copy().weather == WET
+    assert pickle.loads(pickle.dumps(WET)) == WET == WET.replace()
+    with pytest.raises(ValueError, match="^humidity: "):
+        ep.Weather(humidity=60)
+    with pytest.raises(TypeError, match="weather"):
+        scene.weather = {"rain": 3}
+
+
+def test_scene_files_have_weather(tmp_path):
+    (tmp_path / "wet.toml").write_text(WAVEFORM + ANTENNAS + "\n[weather]\nrain_mm_per_hour = 12\nwind = [1, 2, 0]\n[trace]\n"
+                                       'effects = {"echoes of rain" = false}\n', encoding="utf-8")
+    read = ep.load_scene(tmp_path / "wet.toml")
+    assert read.scene.weather == ep.Weather(rain_mm_per_hour=12, wind=(1, 2, 0))
+    assert read.trace.effects == ((RAIN_ECHOES, False),)

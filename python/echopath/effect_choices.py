@@ -1,11 +1,10 @@
 """Effects that the scene asks for and no keyword of their own: how `effects=` forces them on or off."""
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Literal
 
-from . import _core
-from .checks import refused
+from .checks import refused, shown
 
 ATTENUATION, RAIN_ECHOES = "attenuation by weather", "echoes of rain"
 SWITCHED = (ATTENUATION, RAIN_ECHOES)
@@ -18,9 +17,8 @@ def effects_rule(argument: str, value) -> tuple[tuple[str, Choice], ...]:
     pairs = _pairs(argument, value)
     for name, choice in pairs.items():
         if name not in SWITCHED:
-            nearest = _core.nearest_names(str(name), list(SWITCHED))[0]
-            raise ValueError(f"{argument}: has no {name!r}, did you mean {nearest!r}? It takes {', '.join(SWITCHED)}; other "
-                             "effects have keywords of their own or follow from the scene")
+            raise ValueError(f"{argument}: has no {shown(name)}, it takes {' and '.join(map(repr, SWITCHED))}; other effects "
+                             "have keywords of their own or follow from the scene")
         if not (choice is True or choice is False or choice == "auto"):
             raise refused(ValueError, f"{argument}[{name!r}]", 'True, False or "auto"', choice)
     return tuple((name, pairs[name]) for name in SWITCHED if name in pairs)
@@ -29,10 +27,9 @@ def effects_rule(argument: str, value) -> tuple[tuple[str, Choice], ...]:
 def _pairs(argument: str, value) -> dict:
     if isinstance(value, Mapping):
         return dict(value)
-    if isinstance(value, Iterable) and not isinstance(value, str):
-        pairs = list(value)
-        if all(isinstance(pair, (list, tuple)) and len(pair) == 2 for pair in pairs):
-            return dict(pairs)
+    if isinstance(value, (list, tuple)):
+        if all(isinstance(pair, (list, tuple)) and len(pair) == 2 and isinstance(pair[0], str) for pair in value):
+            return dict(value)
     raise refused(TypeError, argument, 'a dict {name of an effect: True, False or "auto"}', value)
 
 

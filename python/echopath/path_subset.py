@@ -9,6 +9,9 @@ from . import _core
 BLOCK = 1 << 20  # paths
 _DIGIT = 16      # bits of a power that one pass of `power_of_strongest` looks at
 
+HIT_FIELDS = {"mesh_id": np.uint32, "triangle_id": np.uint32, "u": np.float32, "v": np.float32}
+HIT = np.dtype(list(HIT_FIELDS.items()))
+
 
 def _blocks(size: int):
     """Slices that cover `size` entries."""

@@ -38,9 +38,9 @@ def effects(scene: _core.Scene, radar: _core.Radar, *, max_bounces: int = TraceS
     """Which effects a run of `scene` with `radar` models, and why.
 
     max_bounces, footprint, polarization, sampler, batches, target_error_db (dB), scatterers, edges, effects: as in `trace`;
-    replay, evaluate, retrace: as in `synthesize`; noise_seed: as in `simulate`. Returns a list [E] of Effect, modelled ones first.
-    Effects that nothing can ask for stand last, under reasons that begin with "out of scope" or "not modelled". Raises
-    TypeError or ValueError naming the argument.
+    replay, evaluate, retrace: as in `synthesize`; noise_seed: as in `simulate`. Returns a list [E] of Effect, modelled
+    ones first. Effects that nothing can ask for stand last, under reasons that begin with "out of scope" or "not modelled".
+    Raises TypeError or ValueError naming the argument.
     """
     batches = batches or 1
     return _of_case(Case(scene, radar, Settings(max_bounces, footprint, polarization, sampler, batches, target_error_db,

@@ -4,11 +4,10 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..path_subset import subset
+from ..path_subset import HIT, HIT_FIELDS, subset
 from .h5 import (blames_group, length_of, read_array, read_attribute, read_group, read_texts, write_array, write_attribute,
                  write_texts)
 
-HIT_FIELDS = {"mesh_id": np.uint32, "triangle_id": np.uint32, "u": np.float32, "v": np.float32}
 PATH_FIELDS = {"offsets": np.int64, "num_bounces": np.uint8, "diffuse": np.uint64, "weight": np.complex64,
                "stratum": np.uint16, "batch": np.uint8, "flags": np.uint32}
 # Columns that are there only where the scene asks for them: dtype and shape of an entry.
@@ -16,7 +15,6 @@ OPTIONAL_FIELDS = {"curved_cell": (np.float32, (7,)), "jones": (np.complex64, (2
 _NOISE_LIKE = ("u", "v", "weight")  # compression does not pay
 FRAME_VALUES = ("start_time", "trace_time", "seed", "max_bounces", "polarization", "footprint", "sampler", "scatterers", "edges",
                 "num_batches", "target_error_db", "error_db")
-HIT = np.dtype(list(HIT_FIELDS.items()))
 STATISTICS = ("num_rays", "num_queries", "num_hits", "num_paths", "num_near_antenna", "num_grazing", "num_small_mirrors",
               "num_false_hits", "num_unaimed", "num_unfollowed_beams")
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from .. import _core
 from ..effect_choices import RAIN_ECHOES, Choices, is_on
+from ..path_subset import HIT
 from ..signals import synthesize
 from .drops import DIAMETERS, fall_speeds, reflectivities
 from .weather import Weather, attenuation_of, weather_of
@@ -136,8 +137,6 @@ class _Record:
 
     def of(self, points, velocities, cross_sections, random):
         """_core.Paths over drops at `points` [N, 3] in mid-frame that move at `velocities` [N, 3] in m/s."""
-        from ..frame_file.paths import HIT
-
         count = len(points)
         phases = np.exp(2j * np.pi * random.random(count))
         hits = np.zeros(count, HIT)

@@ -35,7 +35,7 @@ from echopath_viewer.window.qt import QtWidgets
 window = view(sys.argv[1], block=False)
 while window.isHidden() or window.view3d._is_fresh:
     QtWidgets.QApplication.processEvents()
-window.view3d.render()
+window.view3d.repaint()
 print('up')
 """
 
@@ -142,7 +142,7 @@ def bench_change(window, name: str, change) -> None:
 def bench_drawing(window) -> None:
     window.session.select_cells(None)
     watch = Stopwatch()
-    window.view3d.render()
+    window.view3d.repaint()
     text = f"  {'drawing once':28} {1e3 * watch.processor():7.1f} ms (waited {1e3 * watch.wall():.1f} ms)"
     verdict(text, watch.processor(), None)
 
@@ -151,7 +151,7 @@ def settle(window) -> None:
     """Forgets what waits for the next turn of the event loop: it has been done, or is drawing."""
     window._listing.stop()
     window._pause.stop()
-    window.view3d._render_timer.stop()
+    window.view3d._is_behind = False
 
 
 def verdict(text: str, seconds: float, limit: float | None) -> None:

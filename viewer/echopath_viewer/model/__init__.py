@@ -1,9 +1,10 @@
 """What the viewer knows and shows, in NumPy: no VTK, no Qt."""
 from .cell_index import CellBox, CellIndex
-from .colours import COLOUR_MODES, Colouring, Legend, colour_rays, mesh_palette
+from .colours import COLOUR_MODES, Colouring, Legend, colour_rays
 from .columns import Columns, read_columns
 from .filters import FilterError, Filters
 from .inputs import ViewInput, from_file, from_frame, from_paths, whole_part
+from .palette import mesh_palette
 from .part_set import MESH_GROUP, OWN_GROUP, WHOLE, Part, PartSet
 from .segments import Segments, ray_segments
 from .session import Session

@@ -7,25 +7,31 @@ import numpy as np
 
 from echopath.plots.style import BOUNCE_COLOURS
 
+from .palette import rgb_of
+
 COLOUR_MODES = ("bounces", "mesh", "power", "range", "speed")
 POWER_SPAN_DB = 40.0  # below the strongest ray, where no limits are given
 MAX_LEGEND_ROWS = 12
 _SCALES = {"power": ("Power in dBm", "viridis"), "range": ("Range in m", "viridis"),
            "speed": ("Radial speed in m/s (away: +)", "coolwarm")}
-# Paul Tol's "muted" and "light" colours without the greys: told apart with most colour vision.
-_PALETTE = ("#332288", "#88ccee", "#44aa99", "#117733", "#999933", "#ddcc77", "#cc6677", "#882255", "#aa4499",
-            "#77aadd", "#ee8866", "#eedd88", "#ffaabb", "#99ddff", "#bbcc33", "#aaaa00")
-_MIRROR_PALETTE = ("#8ca6cc", "#9cb8a5", "#c4b08c", "#b3a0c4")  # pale: large planes lie behind everything
 
 
 @dataclasses.dataclass(frozen=True)
 class Legend:
-    """What colours mean: either `rows` [(label, (r, g, b))] or a scale `clim` (low, high) in the unit of `title`."""
+    """What colours mean: either `rows` [(label, (r, g, b))] or a scale `clim` (low, high) in the unit of `title`.
+
+    num_more: rows that are left out
+    """
 
     title: str
     rows: tuple = ()
     clim: tuple | None = None
     cmap: str = ""
+    num_more: int = 0
+
+    def texts(self) -> list[str]:
+        """The lines below the title, of which the first have colours."""
+        return [label for label, _ in self.rows] + ([f"and {self.num_more} more"] if self.num_more else [])
 
 
 @dataclasses.dataclass(frozen=True)
@@ -34,23 +40,6 @@ class Colouring:
 
     rgb: np.ndarray
     legend: Legend
-
-
-def mesh_palette(scene):
-    """A colour for each mesh, u8 [M, 3]: pale ones for mirrors, the large planes."""
-    counters = {True: 0, False: 0}
-    colours = []
-    for mesh in scene.meshes:
-        is_mirror = mesh.material.mirror
-        palette = _MIRROR_PALETTE if is_mirror else _PALETTE
-        colours.append(rgb_of(palette[counters[is_mirror] % len(palette)]))
-        counters[is_mirror] += 1
-    return np.array(colours, np.uint8).reshape(-1, 3)
-
-
-def rgb_of(text: str) -> tuple:
-    """(r, g, b) of "#rrggbb"."""
-    return tuple(int(text[at:at + 2], 16) for at in (1, 3, 5))
 
 
 def colour_rays(mode: str, columns, segments, palette, mesh_names, *, cmap=None, clim=None) -> Colouring:
@@ -119,7 +108,20 @@ def _by_bounces(columns, segments) -> Colouring:
 
 def _by_mesh(segments, palette, mesh_names) -> Colouring:
     table = np.vstack([palette, np.full((1, 3), 128, np.uint8)])  # the last, -1, for rays without a hit
-    present, counts = np.unique(segments.mesh_id, return_counts=True)
-    commonest = present[np.argsort(-counts, kind="stable")][:MAX_LEGEND_ROWS]
-    rows = tuple((mesh_names[mesh] if mesh >= 0 else "none", tuple(map(int, table[mesh]))) for mesh in sorted(commonest))
-    return Colouring(np.take(table, segments.mesh_id, axis=0), Legend("Mesh that the ray goes to", rows=rows))
+    return Colouring(np.take(table, segments.mesh_id, axis=0), _legend_of_objects(segments, palette, mesh_names))
+
+
+def _legend_of_objects(segments, palette, mesh_names) -> Legend:
+    """A row for each object that rays go to, those of most segments, in the mean of the shades of its meshes."""
+    tops = [name.partition("/")[0] for name in mesh_names]
+    counts = np.bincount(segments.mesh_id[segments.mesh_id >= 0], minlength=len(tops))
+    totals = dict.fromkeys(top for top, count in zip(tops, counts) if count)
+    for name in totals:
+        totals[name] = sum(int(count) for top, count in zip(tops, counts) if top == name)
+    kept = sorted(totals, key=lambda name: -totals[name])[:MAX_LEGEND_ROWS]
+    rows = tuple((name, _mean_colour(palette, [top == name for top in tops])) for name in totals if name in kept)
+    return Legend("Object that the ray goes to", rows=rows, num_more=len(totals) - len(rows))
+
+
+def _mean_colour(palette, meshes) -> tuple:
+    return tuple(int(value) for value in np.rint(palette[np.asarray(meshes)].mean(axis=0)))

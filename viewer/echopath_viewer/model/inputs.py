@@ -28,8 +28,12 @@ class ViewInput:
 
 
 def from_file(path) -> ViewInput:
-    """Reads a frame file. Raises ep.FileError where it is not ours or damaged."""
-    return from_frame(ep.load_frame(path), title=str(path))
+    """Reads a frame file. Raises ep.FileError, with its name, where it is not ours or damaged."""
+    frame = ep.load_frame(path)
+    try:
+        return from_frame(frame, title=str(path))
+    except (ValueError, IndexError) as error:  # what it holds does not fit together
+        raise ep.FileError(f"{path}: {error}") from None
 
 
 def from_frame(frame, title: str = "") -> ViewInput:

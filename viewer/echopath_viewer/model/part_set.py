@@ -11,6 +11,8 @@ from echopath.plots import power_dbm
 
 WHOLE = "whole"
 OWN_GROUP = "own"    # parts that were named in the viewer
+NO_SIGNAL_DBM = 0.0  # upper end of the colour scale where nothing is received
+_NOTHING_DBM = -1000.0  # dB re 1 mW: no echo is that weak
 MESH_GROUP = "mesh"  # the spectrum of the mesh that is selected
 
 
@@ -86,7 +88,21 @@ class PartSet:
         groups = (WHOLE, partition, OWN_GROUP, MESH_GROUP)
         return [part for group in groups if group is not None for part in self.of_group(group)]
 
-    def highest_level(self, tx: int, rx: int) -> float:
-        """The upper end of the colour scale in dBm: the peak of the whole, up to the next multiple of 5."""
-        return 5.0 * math.ceil(float(self.whole.level(tx, rx).max()) / 5.0)
+    def highest_level(self, tx: int, rx: int, ranges=None, velocities=None) -> float:
+        """The upper end of the colour scale in dBm: the peak of the whole, up to the next multiple of 5.
 
+        ranges in m, velocities in m/s: (first, last), where the peak is looked for; None: everywhere. Without any signal
+        it is so high that all maps are dark.
+        """
+        spectrum, level = self.whole.spectrum, self.whole.level(tx, rx)
+        columns, rows = _within(spectrum.range, ranges), _within(spectrum.velocity, velocities)
+        seen = level[rows, columns]
+        peak = float((seen if seen.size else level).max())
+        return NO_SIGNAL_DBM if peak <= _NOTHING_DBM else 5.0 * math.ceil(peak / 5.0)
+
+
+def _within(axis, ends) -> slice:
+    """The entries of an ascending axis between two values."""
+    if ends is None:
+        return slice(None)
+    return slice(int(np.searchsorted(axis, ends[0], "left")), int(np.searchsorted(axis, ends[1], "right")))

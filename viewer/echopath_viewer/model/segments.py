@@ -39,35 +39,51 @@ class Segments:
         return int(np.searchsorted(self.ray, num_rays, "left"))
 
 
+class RayBundle:
+    """Some paths of a record with how their rays hang together, which no time changes: only the points move."""
+
+    def __init__(self, paths, chosen):
+        """chosen: [N] indices of paths, in the order wanted."""
+        self.rays = np.asarray(chosen, np.int64)
+        is_chosen = np.zeros(paths.num_paths, bool)
+        is_chosen[self.rays] = True
+        self._kept = subset(paths, is_chosen)
+        row = (np.cumsum(is_chosen) - 1)[self.rays]  # of each ray among the kept paths, which are in the order of the record
+        num_hits = np.asarray(self._kept.num_bounces).astype(np.int64)[row]
+        self._last = np.cumsum(num_hits + 2) - 1      # point of each ray: the receiver
+        self._first = self._last - num_hits - 1       # the transmitter
+        self._num_points = int(self._last[-1]) + 1 if len(self._last) else 0
+        self._join(row, num_hits)
+
+    def _join(self, row, num_hits) -> None:
+        """Which points follow each other, and which are hits of what."""
+        first, last, count = self._first, self._last, self._num_points
+        ray_of_point = np.repeat(np.arange(len(self.rays), dtype=np.int32), num_hits + 2)
+        order = np.arange(count, dtype=np.int32) - first.astype(np.int32)[ray_of_point]
+        leads_on, is_hit = np.ones(count, bool), np.ones(count, bool)
+        leads_on[last] = is_hit[last] = is_hit[first] = False
+        begin, hits = np.flatnonzero(leads_on), np.flatnonzero(is_hit)
+        self._hit = (np.asarray(self._kept.offsets)[row] - 1)[ray_of_point[hits]] + order[hits]
+        hit_mesh = np.asarray(self._kept.mesh_id)[self._hit]
+        mesh = np.full(count, NO_MESH, np.int32)
+        mesh[hits] = hit_mesh
+        mesh[last] = mesh[last - 1]
+        self._joined = {"ends": np.stack([begin, begin + 1], axis=1), "ray": ray_of_point[begin], "bounce": order[begin],
+                        "mesh_id": mesh[begin + 1], "hits": hits, "hit_mesh": hit_mesh, "hit_ray": ray_of_point[hits]}
+
+    def at(self, time: float, transmitter, receiver) -> Segments:
+        """The segments at a time in s; transmitter, receiver: [3] m in the world at that time."""
+        points = np.empty((self._num_points, 3), np.float32)
+        points[self._first], points[self._last] = transmitter, receiver
+        replayed = np.asarray(self._kept.points(time), np.float32).reshape(-1, 3)
+        points[self._joined["hits"]] = np.take(replayed, self._hit, axis=0)  # four times as fast as [hit]
+        return Segments(rays=self.rays, points=points, **self._joined)
+
+
 def ray_segments(paths, chosen, time: float, transmitter, receiver) -> Segments:
     """The segments of some paths.
 
     chosen: [N] indices of paths, in the order wanted; time: s, of the replayed positions
     transmitter, receiver: [3] m in the world at that time.
     """
-    chosen = np.asarray(chosen, np.int64)
-    is_chosen = np.zeros(paths.num_paths, bool)
-    is_chosen[chosen] = True
-    kept = subset(paths, is_chosen)
-    row = (np.cumsum(is_chosen) - 1)[chosen]  # of each ray among the kept paths, which are in the order of the record
-    num_hits = np.asarray(kept.num_bounces).astype(np.int64)[row]
-    last = np.cumsum(num_hits + 2) - 1  # point of each ray: the receiver
-    first = last - num_hits - 1         # the transmitter
-    num_points = int(last[-1]) + 1 if len(last) else 0
-    ray_of_point = np.repeat(np.arange(len(chosen), dtype=np.int32), num_hits + 2)
-    order = np.arange(num_points, dtype=np.int32) - first.astype(np.int32)[ray_of_point]
-    leads_on, is_hit = np.ones(num_points, bool), np.ones(num_points, bool)
-    leads_on[last] = is_hit[last] = is_hit[first] = False
-    begin, hits = np.flatnonzero(leads_on), np.flatnonzero(is_hit)
-    hit = (np.asarray(kept.offsets)[row] - 1)[ray_of_point[hits]] + order[hits]
-    hit_mesh = np.asarray(kept.mesh_id)[hit]
-
-    points = np.empty((num_points, 3), np.float32)
-    points[first], points[last] = transmitter, receiver
-    replayed = np.asarray(kept.points(time), np.float32).reshape(-1, 3)
-    points[hits] = np.take(replayed, hit, axis=0)  # four times as fast as [hit]
-    mesh = np.full(num_points, NO_MESH, np.int32)
-    mesh[hits] = hit_mesh
-    mesh[last] = mesh[last - 1]
-    return Segments(rays=chosen, points=points, ends=np.stack([begin, begin + 1], axis=1), ray=ray_of_point[begin],
-                    bounce=order[begin], mesh_id=mesh[begin + 1], hits=hits, hit_mesh=hit_mesh, hit_ray=ray_of_point[hits])
+    return RayBundle(paths, chosen).at(time, transmitter, receiver)

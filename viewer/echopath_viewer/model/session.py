@@ -7,15 +7,17 @@ from collections import OrderedDict
 import numpy as np
 
 import echopath as ep
+from echopath.path_subset import paths_on
 from echopath.tables import edge_hits, event
 
 from .antennas import world_from_antenna
 from .cell_index import CellBox, CellIndex
-from .colours import COLOUR_MODES, colour_rays, mesh_palette
+from .colours import COLOUR_MODES, colour_rays
 from .columns import read_columns
 from .filters import Filters
+from .palette import mesh_palette
 from .part_set import MESH_GROUP, OWN_GROUP, WHOLE, Part
-from .segments import ray_segments
+from .segments import RayBundle
 from .signals import both
 
 MAX_RAYS = 2000          # drawn at most, unless asked otherwise: few enough to see between them
@@ -23,6 +25,7 @@ MAX_LISTED = 100_000     # rows of the table
 DYNAMIC_RANGE_DB = 60.0
 _EVENTS = {"S": "specular", "D": "diffuse", "E": "on an edge"}
 MAX_KEPT_MATCHES = 16    # masks of expressions kept for the next time
+MAX_KEPT_BUNDLES = 3     # of rays: those that are shown, lit and chosen
 
 
 class Session:
@@ -39,6 +42,7 @@ class Session:
         self.mesh_names = [mesh.name for mesh in self.scene.meshes]
         self.palette = mesh_palette(self.scene)
         self.hidden_meshes: set[int] = set()
+        self.hides_rays = True  # those over hidden meshes, too
         self.filters = Filters()
         self.part_key = (WHOLE, WHOLE)
         self.partition = next(iter(self.parts.partitions), None)
@@ -50,7 +54,7 @@ class Session:
         self.node_base = WHOLE, WHOLE  # the part whose paths the map of the node is made of
         self.is_node_stale = False     # that map is of other filters
         self.chirp = self.radar.waveform.num_chirps // 2
-        self._listeners, self._matches = [], OrderedDict()
+        self._listeners, self._matches, self._bundles = [], OrderedDict(), []
         self._read_channel(0, 0)
         self._refresh_visible()
 
@@ -141,10 +145,16 @@ class Session:
 
     def _set_visible(self, mask) -> None:
         self.visible = mask if self.part.mask is None else mask & self.part.mask
+        self._refresh_drawable()
+
+    def _refresh_drawable(self) -> None:
+        """Rays over meshes that are hidden are not drawn: they would end in the air."""
+        hidden = np.isin(np.arange(len(self.mesh_names)), list(self.hidden_meshes))
+        self.drawable = self.visible & ~paths_on(self.paths, hidden) if hidden.any() and self.hides_rays else self.visible
         if self.ray is not None and not self.visible[self.ray]:
             self.ray = None
         self._lit = self._lit_rays = None
-        self._visible_rays = self._strongest(self.visible)
+        self._visible_rays = self._strongest(self.drawable)
 
     def _strongest(self, mask):
         """Paths where `mask` [P] is true, strongest first: indices [N]."""
@@ -168,7 +178,7 @@ class Session:
         if self.lit is None:
             return np.zeros(0, np.int64)
         if self._lit_rays is None:
-            self._lit_rays = self._strongest(self.lit)
+            self._lit_rays = self._strongest(self.lit & self.drawable)
         return self._lit_rays[:self.max_rays if limit is None else limit]
 
     def listed_rays(self):
@@ -196,13 +206,25 @@ class Session:
         self._tell("meshes", "colours")
 
     def set_mesh_visible(self, meshes, is_visible: bool) -> None:
-        """meshes: IDs."""
-        self.hidden_meshes = self.hidden_meshes - set(meshes) if is_visible else self.hidden_meshes | set(meshes)
-        self._tell("meshes")
+        """meshes: IDs; rays over meshes that are hidden are not drawn."""
+        before = self.hidden_meshes
+        self.hidden_meshes = before - set(meshes) if is_visible else before | set(meshes)
+        if self.hidden_meshes != before and self.hides_rays:
+            self._refresh_drawable()
+            self._tell("meshes", "rays")
+        else:
+            self._tell("meshes")
 
     def segments(self, rays):
-        """The segments of paths at the time shown."""
-        return ray_segments(self.paths, rays, self.time, *self.antennas_at(self.time))
+        """The segments of paths at the time shown; a step in time selects no paths anew."""
+        return self._bundle_of(np.asarray(rays, np.int64)).at(self.time, *self.antennas_at(self.time))
+
+    def _bundle_of(self, rays) -> RayBundle:
+        """Made of the paths, or kept from the last times; the latest last."""
+        kept = next((bundle for bundle in self._bundles if np.array_equal(bundle.rays, rays)), None)
+        bundle = RayBundle(self.paths, rays) if kept is None else kept
+        self._bundles = [other for other in self._bundles if other is not bundle][1 - MAX_KEPT_BUNDLES:] + [bundle]
+        return bundle
 
     def colouring(self, segments, **scale):
         """The colours of segments; scale: cmap, clim."""
@@ -320,10 +342,24 @@ class Session:
         self.dynamic_range_db = float(decibels)
         self._tell("maps")
 
-    def map_limits(self) -> tuple:
-        """(lowest, highest) level in dBm of the colour scale of all maps."""
-        highest = self.parts.highest_level(*self.channel)
+    def map_limits(self, ranges=None, velocities=None) -> tuple:
+        """(lowest, highest) level in dBm of the colour scale of all maps.
+
+        ranges in m, velocities in m/s: (first, last) of what is seen of them, None: all; what lies outside sets no limits.
+        """
+        highest = self.parts.highest_level(*self.channel, ranges, velocities)
         return highest - self.dynamic_range_db, highest
+
+    def why_no_rays(self) -> str:
+        """Why no ray is lit in the selected cells; "" where some are or none are selected."""
+        if self.lit is None or self.lit_rays(1).size:
+            return ""
+        if self.lit.any():
+            return "the rays of these cells go over hidden meshes or have no power"
+        num_there = int(np.count_nonzero(self.index.mask_of(self.box)))
+        if num_there:
+            return f"{num_there:,} rays lie there, but filters or the part on display leave them out"
+        return "no ray lies there: the level is side lobes and Doppler spread of echoes in other cells, or noise"
 
     def cell_of(self, path: int) -> tuple | None:
         """(range index, velocity index) of a path; None for one outside the map."""

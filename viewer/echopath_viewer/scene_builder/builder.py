@@ -21,8 +21,11 @@ ANTENNA_SIZE = 0.02  # length of the axes, of the size of the picture
 class SceneBuilder:
     """Draws meshes, antennas, rays, lit rays and the chosen ray of a session, and follows its changes."""
 
-    def __init__(self, plotter, session, *, show_hits: bool = False, show_legend: bool = True, cmap=None, clim=None):
-        """plotter: any pyvista.Plotter; cmap, clim: of the colour scale of rays, None: by what is shown."""
+    def __init__(self, plotter, session, *, show_hits: bool = False, show_legend: bool = True, legend=None, cmap=None, clim=None):
+        """plotter: any pyvista.Plotter; cmap, clim: of the colour scale of rays, None: by what is shown.
+
+        legend: what shows legends in place of a layer in the picture: an object with show(model.Legend) and place()
+        """
         self.plotter, self.session = plotter, session
         self.show_hits = show_hits
         self._scale = {"cmap": cmap, "clim": clim}
@@ -31,7 +34,7 @@ class SceneBuilder:
         self.rays = RayLayer(plotter, "all", width=RAY_WIDTH, opacity=RAY_OPACITY)
         self.lit = RayLayer(plotter, "lit", width=LIT_WIDTH, in_front=True)
         self.chosen = RayLayer(plotter, "chosen", width=CHOSEN_WIDTH, in_front=True)
-        self.legend = LegendLayer(plotter) if show_legend else None
+        self.legend = legend if legend is not None else LegendLayer(plotter) if show_legend else None
         self.update({"meshes"})
         self._draw_rays()
         corners = self.corners()

@@ -5,17 +5,19 @@ import numpy as np
 
 from .polydata import lines_of, triangles_of
 
-BODY_OPACITY, MIRROR_OPACITY = 0.65, 0.15
+BODY_OPACITY, MIRROR_OPACITY, CHOSEN_OPACITY = 0.65, 0.15, 0.9
 AMBIENT = 0.4         # light from everywhere: surfaces seen at a grazing angle keep their colour
 OUTLINE_WIDTH = 1.5   # pixels
-CHOSEN_EDGE_WIDTH = 1.5
+CHOSEN_EDGE_WIDTH = 2.0
+CHOSEN_COLOUR = "#d55e00"
+CREASE = np.cos(np.radians(30.0))  # of the angle between two faces whose edge is drawn
 
 
 class MeshLayer:
     """One actor for each mesh: coloured by mesh ID, translucent, at its place at some time."""
 
     def __init__(self, plotter, scene, palette, time: float):
-        self._scene = scene
+        self._plotter, self._scene, self._creases = plotter, scene, {}
         self._is_moving = [scene.is_moving(mesh.id) for mesh in scene.meshes]
         self._polys, self.actors, self._outlines = [], [], {}
         for mesh in scene.meshes:
@@ -44,8 +46,9 @@ class MeshLayer:
             if self._is_moving[mesh]:
                 vertices = self._scene.world_vertices(mesh, time).astype(np.float32)
                 poly.points = vertices
-                if mesh in self._outlines:
-                    self._outlines[mesh].mapper.dataset.points = vertices
+                for edges in (self._outlines, self._creases):
+                    if mesh in edges:
+                        edges[mesh].mapper.dataset.points = vertices
 
     def colour(self, palette) -> None:
         for mesh, actor in enumerate(self.actors):
@@ -59,8 +62,25 @@ class MeshLayer:
             actor.SetVisibility(mesh not in hidden)
             if mesh in self._outlines:
                 self._outlines[mesh].SetVisibility(mesh not in hidden)
-            actor.prop.show_edges = mesh in chosen
-            actor.prop.line_width = CHOSEN_EDGE_WIDTH
+        self._choose(set(chosen) - set(hidden))
+
+    def _choose(self, chosen: set) -> None:
+        """Draws rims and creases of chosen meshes: all edges of a dense one would cover it."""
+        for mesh in chosen - set(self._creases):
+            vertices = np.asarray(self._polys[mesh].points)
+            triangles = np.asarray(self._scene.meshes[mesh].triangles)
+            edges = lines_of(vertices, creases(vertices, triangles))
+            self._creases[mesh] = self._plotter.add_mesh(
+                edges, name=f"creases {mesh}", color=CHOSEN_COLOUR, line_width=CHOSEN_EDGE_WIDTH, lighting=False,
+                pickable=False, show_scalar_bar=False, reset_camera=False, render=False)
+        for mesh, actor in self._creases.items():
+            actor.mapper.dataset.points = np.asarray(self._polys[mesh].points)
+            actor.SetVisibility(mesh in chosen)
+        for mesh, actor in enumerate(self.actors):
+            actor.prop.opacity = self._opacity_of(mesh) if mesh not in chosen else CHOSEN_OPACITY
+
+    def _opacity_of(self, mesh: int) -> float:
+        return MIRROR_OPACITY if self._scene.meshes[mesh].material.mirror else BODY_OPACITY
 
     def bounds_of(self, meshes) -> list:
         """Corners [N, 3] in m of the boxes around meshes."""
@@ -72,3 +92,16 @@ def boundary_edges(triangles):
     edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2).astype(np.int64), axis=1)
     unique, counts = np.unique(edges, axis=0, return_counts=True)
     return unique[counts == 1]
+
+
+def creases(vertices, triangles):
+    """Edges [E, 2] of the triangles [F, 3] that only one of them has, or where two meet at an angle."""
+    corners = np.asarray(vertices, float)[triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
+    edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2).astype(np.int64), axis=1)
+    unique, row, counts = np.unique(edges, axis=0, return_inverse=True, return_counts=True)
+    totals = np.zeros((len(unique), 3))
+    np.add.at(totals, np.ravel(row), np.repeat(normals, 3, axis=0))
+    cosine = 0.5 * np.einsum("ij,ij->i", totals, totals) - 1.0  # of two unit normals, from the length of their sum
+    return unique[(counts != 2) | (cosine < CREASE)]

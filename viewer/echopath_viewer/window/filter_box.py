@@ -8,7 +8,7 @@ from .qt import QtCore, QtGui, QtWidgets, Signal
 TYPING_PAUSE_MS = 350
 COUNT_LINES = 3
 UNKNOWN_PATHS = "Which paths are behind this map is not known: its signal was given without selections."
-ERROR_WIDTH = 34  # letters
+ERROR_WIDTH, MIN_ERROR_WIDTH = 34, 160  # letters, pixels
 EXAMPLE = "T .* 'wall*' .* R"
 EXPRESSION_HELP = """Path expression: T and R are the radar, between them each hit is . (any), a quoted mesh 'pedestrian/*',
 S, D or E (specular, diffuse, on an edge); operators * + ? | ( ) {m,n}; expressions and power > 1e-15 (W) are joined by & | ~.
@@ -31,8 +31,11 @@ class FilterBox(QtWidgets.QWidget):
         self.mesh_box = QtWidgets.QComboBox(editable=True)
         self.expression_edit = QtWidgets.QLineEdit(placeholderText=EXAMPLE, clearButtonEnabled=True)
         self.expression_edit.setToolTip(EXPRESSION_HELP)
+        self.expression_edit.setAcceptDrops(False)  # a file that is dropped here is the window's
+        self.mesh_box.lineEdit().setAcceptDrops(False)
         self.mesh_error, self.expression_error, self.name_error = ErrorLabel(), ErrorLabel(), ErrorLabel()
         self.name_edit = QtWidgets.QLineEdit(placeholderText="name what is shown", clearButtonEnabled=True)
+        self.name_edit.setAcceptDrops(False)
         self.name_edit.setToolTip("The rays that are shown now become a part with a map of its own.")
         self.add_button, self.reset_button = QtWidgets.QPushButton("Add"), QtWidgets.QPushButton("Show all")
         self.count_label = QtWidgets.QLabel(wordWrap=True)
@@ -143,8 +146,9 @@ class FilterBox(QtWidgets.QWidget):
         text = f"{visible:,} of {session.paths.num_paths:,} paths"
         if session.box is not None:
             text += f", {int(session.lit.sum()):,} of them in the selected cells"
-        drawn = min(session.max_rays, visible if session.box is None else int(session.lit.sum()))
-        self.count_label.setText(f"{text}; the strongest {drawn:,} are drawn")
+        drawn = len(session.shown_rays() if session.box is None else session.lit_rays())
+        why = session.why_no_rays()
+        self.count_label.setText(f"{text}; {why}" if why else f"{text}; {drawn:,} are drawn")
 
     def _show_all(self) -> None:
         self.session.set_filters(Filters())
@@ -173,14 +177,27 @@ class ErrorLabel(QtWidgets.QWidget):
 
     def __init__(self):
         super().__init__(visible=False)
+        self._lines = []
         self._what, self._where = QtWidgets.QLabel(wordWrap=True), QtWidgets.QLabel()
         self._where.setFont(QtGui.QFontDatabase.systemFont(QtGui.QFontDatabase.SystemFont.FixedFont))
+        self._where.setSizePolicy(QtWidgets.QSizePolicy.Policy.Ignored, QtWidgets.QSizePolicy.Policy.Fixed)
         self.setStyleSheet("color: #c0392b")
         column = QtWidgets.QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(0)
         column.addWidget(self._what)
         column.addWidget(self._where)
+
+    def resizeEvent(self, event):
+        super().resizeEvent(event)
+        self._fit()
+
+    def _fit(self) -> None:
+        """The message in as many lines as it needs, the place in as many letters as there is room for."""
+        width = max(self.width(), MIN_ERROR_WIDTH)
+        letters = max(int(width * ERROR_WIDTH / self._where.fontMetrics().horizontalAdvance("m" * ERROR_WIDTH)) - 1, 8)
+        self._where.setText("\n".join(around_caret(*self._lines, letters)) if len(self._lines) == 2 else "")
+        self._what.setMinimumHeight(self._what.heightForWidth(width) if self._what.text() else 0)
 
     def text(self) -> str:
         return f"{self._what.text()}\n{self._where.text()}".strip("\n")
@@ -189,7 +206,8 @@ class ErrorLabel(QtWidgets.QWidget):
         """text: a message; where it has a line with a caret below, the part around the caret is shown."""
         what, *where = text.split("\n")
         self._what.setText(what.removeprefix("path expression: "))
-        self._where.setText("\n".join(around_caret(*where[-2:])) if len(where) >= 2 else "")
+        self._lines = where[-2:]
+        self._fit()
         self._where.setVisible(len(where) >= 2)
         self.setVisible(bool(text))
 

@@ -1,7 +1,7 @@
 """Keys of the window: one table that makes the shortcuts and the help."""
 from __future__ import annotations
 
-from .qt import QtWidgets
+from .qt import Qt, QtWidgets
 
 # Key, name of the method of MainWindow, what it does.
 KEYS = (
@@ -31,6 +31,22 @@ MOUSE = (
     ("Scene: Ctrl + click", "the mesh under the cursor, walls too"), ("Tree: click, right button", "map of a mesh, more"),
     ("Table: click a heading, Ctrl+C", "sort, copy rows"),
 )
+
+
+_ARROWS = frozenset({Qt.Key.Key_Left, Qt.Key.Key_Right})
+_KEYS_OF_WIDGETS = (
+    (QtWidgets.QAbstractButton, frozenset({Qt.Key.Key_Space})),
+    (QtWidgets.QComboBox, frozenset({Qt.Key.Key_Space})),
+    (QtWidgets.QAbstractItemView, _ARROWS | {Qt.Key.Key_Space}),
+    (QtWidgets.QAbstractSlider, _ARROWS),
+)
+
+
+def uses_key(widget, event) -> bool:
+    """Whether a widget that has the focus does something of its own with a key, so that it is no shortcut."""
+    if event.modifiers() & ~Qt.KeyboardModifier.KeypadModifier:
+        return False
+    return any(isinstance(widget, kind) and event.key() in keys for kind, keys in _KEYS_OF_WIDGETS)
 
 
 def help_dialog(parent) -> QtWidgets.QDialog:

@@ -17,7 +17,7 @@ from .busy import run_with_progress
 from .demo import simulate_demo
 from .empty_page import EmptyPage
 from .filter_box import FilterBox
-from .keys import KEYS, help_dialog
+from .keys import KEYS, help_dialog, uses_key
 from .map_area import MapArea
 from .qt import Qt, QtCore, QtGui, QtWidgets
 from .ray_table import RayTable
@@ -43,6 +43,7 @@ class MainWindow(QtWidgets.QMainWindow):
         self.setAcceptDrops(True)
         self.tree, self.filter_box, self.view3d = SceneTree(), FilterBox(), View3D(self)
         self.time_bar, self.map_area, self.table = TimeBar(), MapArea(), RayTable()
+        self.time_bar.is_behind = self.view3d.is_behind
         self.banner, self.empty_page = Banner(), EmptyPage()
         self._listing = QtCore.QTimer(self, singleShot=True, interval=0)
         self._pause = QtCore.QTimer(self, singleShot=True, interval=SIGNAL_PAUSE_MS)
@@ -137,6 +138,17 @@ class MainWindow(QtWidgets.QMainWindow):
             run_with_progress(self, title, work)
         except ValueError as error:
             self.show_message(str(error))
+
+    def _isolate(self, name: str) -> None:
+        """Shows the object of a row of the legend alone, or everything where it is alone already."""
+        session = self.session
+        meshes = {mesh for mesh, full_name in enumerate(session.mesh_names) if f"{full_name}/".startswith(f"{name}/")}
+        others = set(range(len(session.mesh_names))) - meshes
+        if not meshes:
+            return
+        is_alone = session.hidden_meshes == others
+        session.set_mesh_visible(others, is_alone)
+        session.set_mesh_visible(meshes, True)
 
     def _name_part(self, name: str) -> None:
         self.filter_box.apply()
@@ -256,7 +268,6 @@ class MainWindow(QtWidgets.QMainWindow):
 
     def screenshot(self, path) -> None:
         """Writes a picture of the window. Raises ep.FileError."""
-        self.view3d.render()
         picture = self.grab().toImage()
         for keyword, text in origin_texts(self.session.paths.frame.seed if self.session else None).items():
             picture.setText(keyword, text)
@@ -336,6 +347,7 @@ class MainWindow(QtWidgets.QMainWindow):
         self.view3d.ray_clicked.connect(lambda ray: self.session.select_ray(ray))
         self.view3d.nothing_clicked.connect(lambda: self.session.select_ray(None))
         self.view3d.mesh_clicked.connect(lambda mesh: self._choose_node(self.session.mesh_names[mesh]))
+        self.view3d.legend_box.row_clicked.connect(self._isolate)
         self.table.ray_chosen.connect(lambda ray: self.session.select_ray(ray))
         self.empty_page.open_wanted.connect(self.open_dialog)
         self.empty_page.demo_wanted.connect(self._simulate_demo)
@@ -351,6 +363,13 @@ class MainWindow(QtWidgets.QMainWindow):
             action.setEnabled(is_shown)
 
     # --- Qt ---
+
+    def event(self, event):
+        """A key that the widget in focus uses itself is no shortcut of the window: Space on a check box checks it."""
+        if event.type() == QtCore.QEvent.Type.ShortcutOverride and uses_key(QtWidgets.QApplication.focusWidget(), event):
+            event.accept()
+            return True
+        return super().event(event)
 
     def dragEnterEvent(self, event):
         if event.mimeData().hasUrls():

@@ -109,7 +109,7 @@ class MapArea(QtWidgets.QWidget):
         parts = self.shown_parts()
         if list(self.panels) != [part.key for part in parts]:
             self._place_panels(parts)
-        limits = self.session.map_limits()
+        limits = self._limits()
         for part in parts:
             level = part.level(*self.session.channel)
             self.panels[part.key].show_map(title_of(part), level, part.spectrum, limits, self.view,
@@ -176,6 +176,13 @@ class MapArea(QtWidgets.QWidget):
         self.view = QtCore.QRectF(view)
         for panel in self.panels.values():
             panel.set_view(self.view)
+        if self.session is not None and self._limits() != self.colour_bar.limits:
+            self.rebuild()
+
+    def _limits(self) -> tuple:
+        """Of the colours in dBm: what lies outside of the view sets none."""
+        view = self.view
+        return self.session.map_limits((view.left(), view.right()), (view.top(), view.bottom()))
 
     def _show_marks(self) -> None:
         session = self.session

@@ -15,6 +15,7 @@ class TimeBar(QtWidgets.QWidget):
     def __init__(self, parent=None):
         super().__init__(parent)
         self.session = None
+        self.is_behind = lambda: False  # whether the last step is still to be drawn: the film waits for it
         self.play_button = QtWidgets.QPushButton("Play", checkable=True)
         self.slider = QtWidgets.QSlider(Qt.Orientation.Horizontal)
         self.label = QtWidgets.QLabel()
@@ -63,6 +64,8 @@ class TimeBar(QtWidgets.QWidget):
         (self._timer.start if is_on else self._timer.stop)()
 
     def _step(self) -> None:
+        if self.is_behind():
+            return
         count = self.slider.maximum() + 1
         self.slider.setValue((self.slider.value() + max(1, count // TICKS_PER_FRAME)) % count)
 

@@ -7,6 +7,7 @@ from vtkmodules.vtkRenderingCore import vtkCellPicker
 
 from ..model.picking import nearest_segment
 from ..scene_builder import SceneBuilder
+from .legend_box import LegendBox
 from .qt import Qt, QtCore, Signal
 
 CLICK_REACH = 5.0  # pixels: a click moves no farther, and a ray that close is meant
@@ -18,14 +19,18 @@ class View3D(QtInteractor):
     ray_clicked = Signal(int)
     mesh_clicked = Signal(int)
     nothing_clicked = Signal()
+    _in_paint = False  # of pyvistaqt, which sets it in its constructor
 
     def __init__(self, parent=None):
         self.builder = None  # a resize may come before the constructor has ended
         # Multisampling takes most of the time where there is no graphics card.
+        self._is_behind = self._is_fresh = False
         super().__init__(parent, auto_update=False, multi_samples=0)
-        self._press, self._is_fresh = None, False
-        self._render_timer = QtCore.QTimer(self, singleShot=True, interval=0)
-        self._render_timer.timeout.connect(self.render)
+        self._press, self.legend_box = None, LegendBox(self)
+        self.setAcceptDrops(False)  # what is dropped here is the window's: pyvistaqt would read it with VTK
+        # VTK draws in paintGL alone: a drawing of its own, at each turn of the camera, would come on top of that.
+        self.iren.interactor.EnableRenderOff()
+        self.iren.interactor.AddObserver("RenderEvent", lambda *_: self.render_soon())
         style = self.iren.interactor.GetInteractorStyle()
         style.AddObserver("StartInteractionEvent", lambda *_: self._set_moving(True))
         style.AddObserver("EndInteractionEvent", lambda *_: self._set_moving(False))
@@ -33,7 +38,7 @@ class View3D(QtInteractor):
     def show_session(self, session) -> None:
         """Replaces what is drawn."""
         self.clear()
-        self.builder = SceneBuilder(self, session)
+        self.builder = SceneBuilder(self, session, legend=self.legend_box)
         self._is_fresh = True
         QtCore.QTimer.singleShot(0, self._first_look)
 
@@ -51,13 +56,30 @@ class View3D(QtInteractor):
         self.builder.look(view)
         self.render_soon()
 
+    def render(self) -> None:
+        """What pyvista calls after changes; they are drawn with the next picture."""
+        self._rendered = True  # pyvista asks for it
+        self.render_soon()
+
     def render_soon(self) -> None:
         """Once, when all changes of this turn of the event loop are made."""
-        self._render_timer.start()
+        if not self._in_paint:
+            self._is_behind = True
+            self.update()
 
     def is_behind(self) -> bool:
         """Whether changes are still to be drawn."""
-        return self._render_timer.isActive()
+        return self._is_behind and self.isVisible()
+
+    def paintGL(self):
+        """Draws, once; changes that are made from now on ask for another picture."""
+        self._is_behind = False
+        interactor = self.iren.interactor
+        interactor.EnableRenderOn()
+        try:
+            super().paintGL()
+        finally:
+            interactor.EnableRenderOff()
 
     def camera_state(self) -> dict:
         camera = self.camera
@@ -120,10 +142,6 @@ class View3D(QtInteractor):
             self.nothing_clicked.emit()
 
     # --- Qt ---
-
-    def closeEvent(self, event):
-        self._render_timer.stop()
-        super().closeEvent(event)
 
     def resizeEvent(self, event):
         super().resizeEvent(event)

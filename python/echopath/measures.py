@@ -1,6 +1,8 @@
 """Figures of cubes and maps: power, velocities, how far parts are from adding up."""
 from __future__ import annotations
 
+import re
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -48,6 +50,11 @@ def with_error(power) -> str:
     high = f"{in_dbm(power.high):.2f} dBm"
     ends = f"{in_dbm(power.low):.2f} to {high}" if power.low > 0.0 else f"below {high}"
     return f"not resolved, {ends}"
+
+
+def for_pictures(text: str) -> str:
+    """Numbers as print has them: minus signs instead of hyphens, and ±."""
+    return re.sub(r"(?<![\w.])-(?=\d)", "\u2212", text.replace("+-", "\u00b1"))
 
 
 def velocity_extent(spectrum, below_peak_db: float = EXTENT_BELOW_PEAK_DB):

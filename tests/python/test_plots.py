@@ -70,7 +70,7 @@ def test_all_parts_share_one_colour_scale(spectrum):
 def test_levels_stand_with_their_errors_or_with_what_would_give_them(spectrum):
     power = SimpleNamespace(power=1e-10, low=0.99e-10, high=1.01e-10, interval_db=0.04, resolved=True)
     known = plot_overview(spectrum, {"arm": spectrum}, powers={"arm": power})
-    assert "arm\n-70.00 dBm ± 0.04 dB" in [axes.get_title() for axes in known.axes]
+    assert "arm\n−70.00 dBm ± 0.04 dB" in [axes.get_title() for axes in known.axes]
     for figure in (plot_range_doppler(spectrum, note="no errors"), plot_partition({"arm": spectrum}, note="no errors")):
         assert "no errors" in [text.get_text() for text in figure.texts]
 

@@ -10,7 +10,7 @@ import echopath as ep
 from .. import plots
 from ..frame import Frame
 from ..frame_file import LeftOut, min_power_of_budget, save_frame
-from ..measures import with_error
+from ..measures import for_pictures, with_error
 from ..parts import parts_of_options
 from ..plots.frames import noise_words, title_of
 from ..scene_file import SceneFile
@@ -103,15 +103,16 @@ def _write_pictures(frame: Frame, folder: Path, partitions) -> list:
     write("scene", plots.plot_scene(frame.scene, frame.paths, power=frame.path_power))
     vmin, vmax = plots.colour_limits(frame.spectrum)
     title = title_of(frame)
-    mean = f"; in the mean {with_error(frame.mean_power)}".replace("+-", "±")
+    mean = for_pictures(f"; in the mean {with_error(frame.mean_power)}")
     write("map", plots.plot_range_doppler(frame.spectrum, title=title + mean, vmin=vmin, vmax=vmax))
     for index, partition in enumerate(partitions):
         spectra = shown_parts(frame.part_spectra[partition], vmin)
         looks = {"vmin": vmin, "vmax": vmax, "powers": frame.mean_part_powers[partition]}
-        words = "The same taken apart" + (f" by {partition}" if partition != "parts" else "") + ", without noise"
+        words = "taken apart" + (f" by {partition}" if partition != "parts" else "") + ", without noise"
         words += "; mean powers and their 95 % intervals"
-        write(partition, plots.plot_partition(spectra, title=words, **looks))
+        write(partition, plots.plot_partition(spectra, title=f"What the radar receives, {words}", **looks))
         if index == 0:
+            words = f"The same {words}"
             write("overview", plots.plot_overview(frame.spectrum, spectra, title=title + mean, parts_title=words, **looks))
     if frame.range_azimuth is not None:
         maps = _maps_from_above(frame, next(iter(partitions), None), vmin)

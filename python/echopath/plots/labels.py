@@ -4,14 +4,13 @@ from __future__ import annotations
 import numpy as np
 
 from ..labels.images import colours_of
-from ..measures import SMALLEST_POWER, in_dbm, with_error
+from ..measures import SMALLEST_POWER, for_pictures, in_dbm, with_error
 from .maps import RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN
 from .style import axes_or_new, new_figure
 
 AZIMUTH_LABEL, AZIMUTH_MARGIN = "Azimuth in degrees (left: +)", 4.0
 FILL = 0.45                  # opacity of a label over the map
-ROOM_BELOW_DB = 6.0          # of the weakest bar
-UNRESOLVED_HATCH = "////"    # of the bar of a power that the rays do not know to 0.3 dB
+ROOM_BESIDE_DB = 6.0         # of the weakest and the strongest power
 MAX_UNSEEN, MAX_GHOSTS = 4, 14  # told one by one
 FEWEST_ROWS = 8              # that there is room for, so that few bars stay thin
 NAME_ASIDE, NAME_DEPTH = 14.0, 22.0  # points, from the peak of an object to its name
@@ -24,9 +23,9 @@ CLASSES = {"real": ("object itself", "#009e73"), 1: ("ghost, type 1: last bounce
 
 
 def plot_labels(labels, *, title="Which part made each cell", powers=None):
-    """The map in grey, its cells coloured and outlined by the part that dominates, and bars of the power of each part.
+    """The map in grey, its cells coloured and outlined by the part that dominates, and the power of each part.
 
-    labels: Labels; powers: {part: ep.ReceivedPower} of the bars, None: no bars
+    labels: Labels; powers: {part: ep.ReceivedPower}, None: none are drawn
     Returns a matplotlib figure: range in m across, radial velocity in m/s (receding positive) or azimuth in degrees up.
     """
     with new_figure(13.0 if powers else 9.0, 4.8) as figure:
@@ -212,7 +211,7 @@ def _draw_extents(panels, labels, rows: list) -> None:
         colour = CLASSES[getattr(label, "ghost_type", "real")][1]
         _draw_span(across, place, [(label.box[0], label.box[1])], half_range, label.peak[0], colour)
         _draw_span(up, place, _row_spans(labels, label), half_row, _in_plot_units(labels, label.peak[1]), colour)
-        words = f" {float(in_dbm(label.power)):.0f} dBm, {_cells(label.cells)}"
+        words = for_pictures(f" {float(in_dbm(label.power)):.0f} dBm, {_cells(label.cells)}")
         up.annotate(words, (1.0, place), xycoords=("axes fraction", "data"), va="center", fontsize=7.5)
     across.set_yticks(range(len(rows)), [_row_name(label) for label in rows], fontsize=7.5)
     across.set_ylim(max(len(rows), FEWEST_ROWS) - 0.5, -0.5)
@@ -220,8 +219,8 @@ def _draw_extents(panels, labels, rows: list) -> None:
     up.set_xlabel(_row_label(labels))
     up.tick_params(left=False)
     num_hidden = max(0, sum(ghost.peak is not None for ghost in labels.ghosts) - MAX_GHOSTS)
-    words = "Cells from, to; line: peak" if rows else "No cells of objects or ghosts"
-    across.set_title(words + (f"; {num_hidden} weaker ghosts left out" if num_hidden else ""), loc="left")
+    words = "Extent in the map (bar) and peak (line)" if rows else "No cells of objects or ghosts"
+    across.set_title(words + (f"; and {num_hidden} weaker ghosts" if num_hidden else ""), loc="left")
     for axes in panels:
         axes.grid(axis="x", alpha=0.25)
         axes.use_sticky_edges = False
@@ -247,10 +246,10 @@ def _row_name(label) -> str:
     return f"{label.object}, type {label.ghost_type}, order {label.order} via {' + '.join(label.via)}"
 
 
-# --- bars ---
+# --- powers ---
 
 def plot_part_powers(powers: dict, *, title="Received power by part"):
-    """Bars of the mean received power of each part with its 95 % interval; hatched where it is not resolved to 0.3 dB.
+    """The mean received power of each part with its 95 % interval; hollow where it is not resolved to 0.3 dB.
 
     powers: {part: ep.ReceivedPower}. Returns a matplotlib figure: power in dBm across.
     """
@@ -260,28 +259,37 @@ def plot_part_powers(powers: dict, *, title="Received power by part"):
 
 
 def draw_part_powers(axes, powers: dict, title="Mean received power by part") -> None:
-    """Bars from a common floor a little below the weakest."""
+    """A dot for each part with its interval; levels in dB have no zero that a bar could begin at."""
     shown = {name: power for name, power in powers.items() if power.power > 0.0}
     levels = {name: float(in_dbm(power.power)) for name, power in shown.items()}
-    floor = 10.0 * np.floor((min(levels.values(), default=0.0) - ROOM_BELOW_DB) / 10.0)
     names = list(powers)
     for place, (name, colour) in enumerate(zip(names, _colours(names))):
-        if name not in shown:
-            axes.text(floor, place, " no paths", va="center", fontsize=8, color="0.4")
-            continue
-        low, high = _error_bar(shown[name])
-        hatch = None if shown[name].resolved else UNRESOLVED_HATCH
-        axes.barh(place, levels[name] - floor, left=floor, color=colour, alpha=FILL + 0.3, hatch=hatch)
-        if high > low:
-            axes.plot([max(low, floor), high], [place, place], color="black", linewidth=1.2, marker="|", markersize=6)
-        text = with_error(shown[name]).replace("+-", "±") if high > low else f"{levels[name]:.1f} dBm"
-        axes.text(max(high, levels[name]), place, f" {text}", va="center", fontsize=8)
+        if name in shown:
+            _draw_power(axes, place, shown[name], colour)
+        else:
+            axes.text(0.02, place, "no paths", transform=axes.get_yaxis_transform(), va="center", fontsize=8, color="0.4")
     axes.set_yticks(range(len(names)), names)
     axes.set_ylim(len(names) - 0.5, -0.5)
-    highest = max(levels.values(), default=floor + 10.0)
-    axes.set_xlim(floor, highest + 0.45 * (highest - floor))
-    axes.set_xlabel("Power in dBm")
+    lowest = min(levels.values(), default=0.0) - ROOM_BESIDE_DB
+    axes.set_xlim(5.0 * np.floor(lowest / 5.0), 5.0 * np.ceil((max(levels.values(), default=lowest) + ROOM_BESIDE_DB) / 5.0))
+    axes.grid(alpha=0.25)
+    axes.set_xlabel("Power in dBm (hollow: not resolved)" if not all(power.resolved for power in shown.values()) else
+                    "Power in dBm")
     axes.set_title(title)
+
+
+def _draw_power(axes, place: int, power, colour) -> None:
+    """A dot over its interval, the numbers above it, where they hit no edge."""
+    low, high = _error_bar(power)
+    level = float(in_dbm(power.power))
+    if high > low:
+        ends = [max(low, level - ROOM_BESIDE_DB), high]
+        axes.plot(ends, [place, place], color="black", linewidth=1.2, marker="|", markersize=6)
+    axes.plot(level, place, "o", markersize=8, color=colour, markerfacecolor=colour if power.resolved else "white",
+              markeredgewidth=1.8)
+    text = with_error(power) if high > low else f"{level:.1f} dBm"
+    axes.annotate(for_pictures(text), (0.5, place), xycoords=("axes fraction", "data"), xytext=(0, 9), ha="center",
+                  textcoords="offset points", fontsize=8)
 
 
 def _error_bar(power) -> tuple[float, float]:

@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from ..checks import optional, real
-from ..measures import SMALLEST_POWER, STATIC_SPEED, in_dbm, with_error
+from ..measures import SMALLEST_POWER, STATIC_SPEED, for_pictures, in_dbm, with_error
 from .style import MAP_COLOURS, axes_or_new, new_figure
 
 DYNAMIC_RANGE_DB = 70.0      # below the peak that a map shows at most
@@ -80,7 +80,10 @@ def plot_partition(spectra: dict, *, title="", vmin=None, vmax=None, whole=None,
     with new_figure(3.4 * columns + 1.2, 3.4 * rows + 0.5) as figure:
         panels = list(figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).flat)
         image = _draw_parts(panels, spectra, vmin, vmax, powers)
-        figure.supxlabel(RANGE_LABEL, fontsize=9)
+        for number, axes in enumerate(panels[:len(spectra)]):  # the small print is the figure's own label
+            if number + columns >= len(spectra):
+                axes.set_xlabel(RANGE_LABEL)
+                axes.tick_params(labelbottom=True)
         figure.supylabel(VELOCITY_LABEL, fontsize=9)
         figure.suptitle(title, fontsize=11)
         _colour_bar(figure, image, panels[:len(spectra)])
@@ -120,7 +123,7 @@ def _draw_parts(panels: list, spectra: dict, vmin: float, vmax: float, powers):
     """The parts in as many panels, the panels left over removed; returns the last image."""
     for axes, (name, spectrum) in zip(panels, spectra.items()):
         image = _draw(axes, spectrum, vmin, vmax)
-        axes.set_title(part_title(name) + (f"\n{with_error(powers[name])}".replace("+-", "±") if powers else ""))
+        axes.set_title(part_title(name) + (f"\n{for_pictures(with_error(powers[name]))}" if powers else ""))
     for axes in panels[len(spectra):]:
         axes.remove()
     _crop(panels[:len(spectra)], signal_extent(list(spectra.values()), vmin, is_moving_meant=True))

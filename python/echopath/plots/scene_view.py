@@ -12,6 +12,7 @@ from .style import BOUNCE_COLOURS, new_figure
 BODY_COLOUR = np.array([0.35, 0.38, 0.44])
 MIRROR_COLOUR = (0.55, 0.65, 0.80)
 LIGHT = np.array([-0.55, -0.45, 0.70])  # towards the lamp
+CUT = 1e-6                              # m: what lies as near to the border of the picture was cut there
 MARGIN = 0.6                            # m around the rays
 RADAR_LABEL = "radar"
 MOST_NAMES = 12                         # objects that bear their names in a picture; more would hide each other
@@ -41,7 +42,7 @@ def plot_scene(scene, paths, *, num_rays=300, time=None, power=None,
 
     paths: of `trace`; num_rays: drawn at most, the strongest that hit anything but mirrors (any, where none does)
     time: of the picture in s, None: the time of the trace; power: of the paths [P] in W where it is known already
-    Mirrors are drawn translucent; up to 12 objects bear their names.
+    Mirrors are drawn translucent, without an edge where they go on beyond the picture; up to 12 objects bear their names.
     Returns a matplotlib figure with three views in metres.
     """
     time = paths.frame.trace_time if time is None else time
@@ -112,10 +113,15 @@ def _add_mesh(drawing: _Drawing, triangles, is_mirror: bool) -> None:
     polygons = clip_triangles(triangles, drawing.low, drawing.high)
     if is_mirror:
         drawing.mirrors += polygons
-        drawing.mirror_edges += outline(polygons)
+        drawing.mirror_edges += [edge for edge in outline(polygons) if not _is_cut(edge, drawing.low, drawing.high)]
         return
     drawing.bodies += polygons
     drawing.body_colours += [_shaded(polygon) for polygon in polygons]
+
+
+def _is_cut(edge, low, high) -> bool:
+    """Whether an edge [2, 3] lies on the border of the picture: there the mirror goes on, and has no edge."""
+    return any(np.isclose(edge, border, rtol=0.0, atol=CUT).all(axis=0).any() for border in (low, high))
 
 
 def _shaded(polygon):

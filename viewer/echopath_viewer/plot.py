@@ -28,6 +28,7 @@ def plot_rays(scene, paths, *, selection="", num_rays=NUM_RAYS, color_by="bounce
     _check_numbers(paths.radar, tx, rx, num_rays, chirp)
     session = _session_of(scene, paths)
     session.hides_rays = False  # what is hidden here stands in the way of rays that are meant to be seen
+    session.set_sampling("strongest")
     session.set_max_rays(num_rays)
     session.set_color_by(color_by)
     if (tx, rx) != session.channel:

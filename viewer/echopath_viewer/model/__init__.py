@@ -6,12 +6,13 @@ from .filters import FilterError, Filters
 from .inputs import ViewInput, from_file, from_frame, from_paths, whole_part
 from .palette import mesh_palette
 from .part_set import MESH_GROUP, OWN_GROUP, WHOLE, Part, PartSet
+from .ray_sample import SAMPLINGS
 from .segments import Segments, ray_segments
 from .session import Session
 from .signals import Signals
 
 __all__ = [
     "COLOUR_MODES", "CellBox", "CellIndex", "Colouring", "Columns", "FilterError", "Filters", "Legend", "MESH_GROUP",
-    "OWN_GROUP", "Part", "PartSet", "Segments", "Session", "Signals", "ViewInput", "WHOLE", "colour_rays", "from_file",
-    "from_frame", "from_paths", "mesh_palette", "ray_segments", "read_columns", "whole_part",
+    "OWN_GROUP", "Part", "PartSet", "SAMPLINGS", "Segments", "Session", "Signals", "ViewInput", "WHOLE", "colour_rays",
+    "from_file", "from_frame", "from_paths", "mesh_palette", "ray_segments", "read_columns", "whole_part",
 ]

@@ -14,7 +14,7 @@ class Columns:
     """Columns by path and by hit at one channel of the radar.
 
     paths: the record; tx, rx: indices of the antennas
-    power: [P] W at the trace time, power_dbm: the same in dB re 1 mW
+    amplitude: complex [P] sqrt(W) at the trace time; power: [P] W, its square; power_dbm: the same in dB re 1 mW
     cells: PathCells, range in m and velocity in m/s and cell of each path
     offsets, num_bounces: [P]; mesh_id: [H]
     """
@@ -22,6 +22,7 @@ class Columns:
     paths: object
     tx: int
     rx: int
+    amplitude: np.ndarray
     power: np.ndarray
     power_dbm: np.ndarray
     cells: ep.PathCells
@@ -50,7 +51,9 @@ class Columns:
 
 def read_columns(paths, spectrum, tx: int = 0, rx: int = 0) -> Columns:
     """The columns of a record at a channel; spectrum: any map of the radar, for its axes."""
-    power = np.abs(paths.amplitudes([paths.frame.trace_time], tx, rx)[0]) ** 2
-    return Columns(paths=paths, tx=tx, rx=rx, power=power, power_dbm=in_dbm(power, SMALLEST_POWER),
-                   cells=ep.path_cells(paths, spectrum, tx=tx, rx=rx), offsets=np.asarray(paths.offsets),
-                   num_bounces=np.asarray(paths.num_bounces), mesh_id=np.ascontiguousarray(paths.mesh_id))
+    amplitude = paths.amplitudes([paths.frame.trace_time], tx, rx)[0]
+    power = np.abs(amplitude) ** 2
+    return Columns(paths=paths, tx=tx, rx=rx, amplitude=amplitude.astype(np.complex64), power=power,
+                   power_dbm=in_dbm(power, SMALLEST_POWER), cells=ep.path_cells(paths, spectrum, tx=tx, rx=rx),
+                   offsets=np.asarray(paths.offsets), num_bounces=np.asarray(paths.num_bounces),
+                   mesh_id=np.ascontiguousarray(paths.mesh_id))

@@ -7,7 +7,7 @@ from collections import OrderedDict
 import numpy as np
 
 import echopath as ep
-from echopath.path_subset import paths_on
+from echopath.path_subset import paths_on, strongest
 from echopath.tables import edge_hits, event
 
 from .antennas import world_from_antenna
@@ -17,8 +17,10 @@ from .columns import read_columns
 from .filters import Filters
 from .palette import mesh_palette
 from .part_set import MESH_GROUP, OWN_GROUP, WHOLE, Part
+from .ray_sample import SAMPLINGS, RaySampler
 from .segments import RayBundle
 from .signals import both
+from .touch_groups import TouchGroups
 
 MAX_RAYS = 2000          # drawn at most, unless asked otherwise: few enough to see between them
 MAX_LISTED = 100_000     # rows of the table
@@ -46,7 +48,7 @@ class Session:
         self.filters = Filters()
         self.part_key = (WHOLE, WHOLE)
         self.partition = next(iter(self.parts.partitions), None)
-        self.color_by, self.max_rays = "bounces", MAX_RAYS
+        self.color_by, self.max_rays, self.sampling = "bounces", MAX_RAYS, SAMPLINGS[0]
         self.dynamic_range_db = DYNAMIC_RANGE_DB
         self.box: CellBox | None = None
         self.ray: int | None = None
@@ -55,6 +57,7 @@ class Session:
         self.is_node_stale = False     # that map is of other filters
         self.chirp = self.radar.waveform.num_chirps // 2
         self._listeners, self._matches, self._bundles = [], OrderedDict(), []
+        self._groups = None
         self._read_channel(0, 0)
         self._refresh_visible()
 
@@ -85,8 +88,7 @@ class Session:
         self.columns = read_columns(self.paths, self.parts.whole.spectrum, tx, rx)
         spectrum, cells = self.parts.whole.spectrum, self.columns.cells
         self.index = CellIndex(cells.range_index, cells.velocity_index, len(spectrum.range), len(spectrum.velocity))
-        order = np.argsort(-self.columns.power, kind="stable")
-        self._strongest_first = order[:np.count_nonzero(self.columns.power)]  # never paths of no power
+        self._sampler = None
 
     def set_chirp(self, chirp: int) -> None:
         """Moves scene and rays to the middle of a chirp; kept within the frame."""
@@ -132,9 +134,10 @@ class Session:
     def set_partition(self, partition: str | None) -> None:
         """Which partition the small maps show."""
         self.partition = partition
+        self._sample = None
         if self.part not in self.parts.shown_beside(partition):
             self.set_part((WHOLE, WHOLE))
-        self._tell("maps")
+        self._tell("maps", "rays")
 
     @property
     def part(self) -> Part:
@@ -154,11 +157,7 @@ class Session:
         if self.ray is not None and not self.visible[self.ray]:
             self.ray = None
         self._lit = self._lit_rays = None
-        self._visible_rays = self._strongest(self.drawable)
-
-    def _strongest(self, mask):
-        """Paths where `mask` [P] is true, strongest first: indices [N]."""
-        return self._strongest_first[mask[self._strongest_first]]
+        self._sample = None
 
     @property
     def lit(self):
@@ -170,27 +169,58 @@ class Session:
         return self._lit
 
     def shown_rays(self, limit: int | None = None):
-        """The strongest visible paths, strongest first: indices [N]."""
-        return self._visible_rays[:self.max_rays if limit is None else limit]
+        """The visible paths that are drawn: indices [N]; by `sampling` spread over the objects or the strongest.
+
+        limit: the strongest of that number instead, strongest first
+        """
+        if limit is not None or self.sampling == "strongest":
+            return strongest(self.columns.power, self.max_rays if limit is None else limit, self.drawable)
+        if self._sample is None:
+            parts = [part.mask for part in self.parts.of_group(self.partition) if part.mask is not None]
+            self._sample = self.sampler.sample(self.drawable, self.max_rays, parts)
+        return self._sample
+
+    @property
+    def sampler(self) -> RaySampler:
+        """Made when it is first asked for."""
+        if self._groups is None:
+            columns = self.columns
+            self._groups = TouchGroups(columns.offsets, columns.num_bounces, columns.mesh_id, len(self.mesh_names))
+        if self._sampler is None:
+            cells = self.columns.cells
+            cell = cells.velocity_index.astype(np.int64) * len(self.parts.whole.spectrum.range) + cells.range_index
+            self._sampler = RaySampler(self._groups, self.columns.amplitude, cell, len(self.mesh_names))
+        return self._sampler
+
+    def set_sampling(self, sampling: str) -> None:
+        """Which rays are drawn where there are too many: a name of SAMPLINGS."""
+        if sampling not in SAMPLINGS:
+            raise ValueError(f"sampling: must be one of {', '.join(SAMPLINGS)}, got {sampling!r}")
+        self.sampling, self._sample = sampling, None
+        self._tell("rays")
 
     def lit_rays(self, limit: int | None = None):
         """The strongest paths in the selected cells, strongest first: indices [N]."""
         if self.lit is None:
             return np.zeros(0, np.int64)
         if self._lit_rays is None:
-            self._lit_rays = self._strongest(self.lit & self.drawable)
+            self._lit_rays = strongest(self.columns.power, max(MAX_LISTED, self.max_rays), self.lit & self.drawable)
         return self._lit_rays[:self.max_rays if limit is None else limit]
 
     def listed_rays(self):
-        """The rows of the table: the rays of the selected cells, or where none are selected those that are drawn."""
-        return self.shown_rays() if self.box is None else self.lit_rays(MAX_LISTED)
+        """The rows of the table, strongest first: the rays of the selected cells, or where none are selected those that
+        are drawn."""
+        if self.box is not None:
+            return self.lit_rays(MAX_LISTED)
+        drawn = self.shown_rays()
+        return drawn[np.argsort(-self.columns.power[drawn], kind="stable")]
 
     def mesh_counts(self):
         """How many visible paths hit each mesh: [M]."""
         return self.columns.count_by_mesh(self.visible, len(self.mesh_names))
 
     def set_max_rays(self, count: int) -> None:
-        self.max_rays = int(count)
+        self.max_rays, self._sample, self._lit_rays = int(count), None, None
         self._tell("rays")
 
     # --- colours ---

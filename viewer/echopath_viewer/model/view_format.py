@@ -6,6 +6,7 @@ import math
 
 from .colours import COLOUR_MODES
 from .filters import MAX_BOUNCES, Filters
+from .ray_sample import SAMPLINGS
 
 FORMAT = "echopath view"
 VERSION = 1
@@ -96,6 +97,7 @@ _RULES = {
     "channel": (lambda value: _is_list(value, 2, _is_index), "[transmitter, receiver]"),
     "color_by": (lambda value: _is_text(value) and value in COLOUR_MODES, f"one of {', '.join(COLOUR_MODES)}"),
     "max_rays": (lambda value: _is_index(value, 1), "a positive integer"),
+    "sampling": (lambda value: _is_text(value) and value in SAMPLINGS, f"one of {', '.join(SAMPLINGS)}"),
     "dynamic_range_db": (lambda value: _is_number(value) and value > 0.0, "a positive number of dB"),
     "chirp": (_is_index, "an index"),
     "box": (_or_none(lambda value: _is_list(value, 4, _is_index)), "null or four indices of cells"),

@@ -21,7 +21,8 @@ def state_of(session) -> dict:
         "own_parts": {part.name: part.recipe for part in session.parts.of_group(OWN_GROUP)},
         "node": session.node, "node_base": list(session.node_base),
         "part": list(session.part_key), "partition": session.partition, "channel": list(session.channel),
-        "color_by": session.color_by, "max_rays": session.max_rays, "dynamic_range_db": session.dynamic_range_db,
+        "color_by": session.color_by, "max_rays": session.max_rays, "sampling": session.sampling,
+        "dynamic_range_db": session.dynamic_range_db,
         "chirp": session.chirp, "box": dataclasses.astuple(session.box) if session.box else None, "ray": session.ray,
         "hidden_meshes": sorted(session.mesh_names[mesh] for mesh in session.hidden_meshes),
         "mesh_colours": {name: [int(value) for value in rgb] for name, rgb in zip(session.mesh_names, session.palette)},
@@ -132,6 +133,7 @@ def _set_partition(session, partition) -> None:
 def _apply_looks(session, state: dict, misfits: list) -> None:
     if state.get("color_by") in COLOUR_MODES:
         session.set_color_by(state["color_by"])
+    session.set_sampling(state.get("sampling", session.sampling))
     session.set_max_rays(state.get("max_rays", session.max_rays))
     session.set_dynamic_range(state.get("dynamic_range_db", session.dynamic_range_db))
     number_of = {name: number for number, name in enumerate(session.mesh_names)}

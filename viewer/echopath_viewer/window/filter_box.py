@@ -1,7 +1,7 @@
 """Which rays are shown and how."""
 from __future__ import annotations
 
-from ..model import COLOUR_MODES, FilterError, Filters
+from ..model import COLOUR_MODES, SAMPLINGS, FilterError, Filters
 from ..model.filters import MAX_BOUNCES
 from .qt import QtCore, QtGui, QtWidgets, Signal
 
@@ -44,7 +44,10 @@ class FilterBox(QtWidgets.QWidget):
         self.colour_box.addItems(COLOUR_MODES)
         self.limit_box = QtWidgets.QSpinBox(minimum=1, maximum=5_000_000, singleStep=500, groupSeparatorShown=True)
         self.limit_box.setStepType(QtWidgets.QAbstractSpinBox.StepType.AdaptiveDecimalStepType)
-        self.hits_check = QtWidgets.QCheckBox("with hit points")
+        self.sampling_box = QtWidgets.QComboBox()
+        self.sampling_box.addItems(SAMPLINGS)
+        self.sampling_box.setToolTip("Which rays are drawn: some of every object and part, or the strongest.")
+        self.hits_check = QtWidgets.QCheckBox("hit points")
         self._pause = QtCore.QTimer(self, singleShot=True, interval=TYPING_PAUSE_MS)
         self._arrange()
         self._connect()
@@ -53,8 +56,8 @@ class FilterBox(QtWidgets.QWidget):
         form = QtWidgets.QFormLayout(self)
         form.setContentsMargins(4, 4, 4, 4)
         form.setFieldGrowthPolicy(QtWidgets.QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
-        form.addRow("Colour by", self.colour_box)
-        form.addRow("Draw strongest", _row(self.limit_box, self.hits_check))
+        form.addRow("Colour by", _row(self.colour_box, self.hits_check))
+        form.addRow("Draw", _row(self.limit_box, self.sampling_box))
         form.addRow("Bounces", _row(self.from_box, QtWidgets.QLabel("to"), self.to_box, self.reset_button))
         form.addRow("Power", _row(self.power_check, self.power_box))
         form.addRow("Over mesh", self.mesh_box)
@@ -79,6 +82,7 @@ class FilterBox(QtWidgets.QWidget):
         self.reset_button.clicked.connect(self._show_all)
         self.colour_box.currentTextChanged.connect(lambda mode: self.session and self.session.set_color_by(mode))
         self.limit_box.valueChanged.connect(lambda count: self.session and self.session.set_max_rays(count))
+        self.sampling_box.activated.connect(lambda _: self.session.set_sampling(self.sampling_box.currentText()))
         self.hits_check.toggled.connect(self.hits_toggled)
 
     # --- session ---
@@ -140,6 +144,7 @@ class FilterBox(QtWidgets.QWidget):
         with QtCore.QSignalBlocker(self.colour_box), QtCore.QSignalBlocker(self.limit_box):
             self.colour_box.setCurrentText(session.color_by)
             self.limit_box.setValue(session.max_rays)
+            self.sampling_box.setCurrentText(session.sampling)
         if not session.part.is_known:
             self.count_label.setText(UNKNOWN_PATHS)
             return

@@ -110,8 +110,10 @@ class RayTable(QtWidgets.QWidget):
         """The rays that are listed now, and the one that is chosen."""
         self.model.show_rays(session, session.listed_rays())
         total = int(session.visible.sum() if session.box is None else session.lit.sum())
-        where = "shown" if session.box is None else "in the selected cells"
-        self.title.setText(f"{len(self.model.rays):,} strongest of {total:,} rays {where}")
+        if session.box is None:
+            self.title.setText(f"the {len(self.model.rays):,} rays that are drawn, of {total:,}")
+        else:
+            self.title.setText(f"{len(self.model.rays):,} strongest of {total:,} rays in the selected cells")
         self._show_chosen(session)
 
     def _show_chosen(self, session) -> None:

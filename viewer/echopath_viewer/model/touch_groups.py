@@ -1,0 +1,65 @@
+"""Paths sorted by the set of meshes that they touch."""
+from __future__ import annotations
+
+import numpy as np
+
+_STRIDE = 97  # of the paths that are looked at first: they know most sets
+
+
+class TouchGroups:
+    """Paths by the set of meshes that they hit, in whatever order and however often.
+
+    group_of_path: i32 [P]; order: [P] the paths, group by group; begins: [G + 1] where each group begins there
+    meshes: [G] sorted mesh IDs of each group, tuples
+    """
+
+    def __init__(self, offsets, num_bounces, mesh_id, num_meshes: int):
+        """offsets, num_bounces: [P]; mesh_id: [H] of the hits."""
+        keys = _keys_of_sets(offsets, num_bounces, mesh_id, num_meshes)
+        known, self.group_of_path = _numbered(keys)
+        self.order = np.argsort(self.group_of_path.astype(np.uint16 if len(known) < 65536 else np.uint32), kind="stable")
+        counts = np.bincount(self.group_of_path, minlength=len(known))
+        self.begins = np.concatenate([[0], np.cumsum(counts)])
+        first = self.order[self.begins[:-1]]
+        self.meshes = [tuple(sorted(set(mesh_id[offsets[path]:offsets[path] + num_bounces[path]].tolist()))) for path in first]
+
+    def __len__(self) -> int:
+        return len(self.meshes)
+
+    def slices(self):
+        """Where the paths of each group stand in `order`."""
+        return (slice(begin, end) for begin, end in zip(self.begins[:-1], self.begins[1:]))
+
+    def touching(self, num_meshes: int):
+        """Which groups touch each mesh: bool [G, M]."""
+        touches = np.zeros((len(self), num_meshes), bool)
+        for group, meshes in enumerate(self.meshes):
+            touches[group, list(meshes)] = True
+        return touches
+
+
+def _keys_of_sets(offsets, num_bounces, mesh_id, num_meshes: int):
+    """A number for each path that says which meshes it hits: random words of the meshes, each taken once; u64 [P]."""
+    words = np.random.default_rng(0).integers(1, 2**63, num_meshes, dtype=np.uint64)
+    keys = np.zeros(len(offsets), np.uint64)
+    for hit in range(int(num_bounces.max(initial=0))):
+        paths = np.flatnonzero(num_bounces > hit)
+        at = offsets[paths]
+        mesh = mesh_id[at + hit]
+        is_new = np.ones(len(paths), bool)
+        for earlier in range(hit):
+            is_new &= mesh_id[at + earlier] != mesh
+        keys[paths[is_new]] ^= words[mesh[is_new]]
+    return keys
+
+
+def _numbered(keys):
+    """(the different keys, sorted; which of them each one is, i32): faster than np.unique where there are few."""
+    known = np.unique(keys[::_STRIDE])
+    while len(keys):
+        at = np.minimum(np.searchsorted(known, keys), len(known) - 1).astype(np.int32)
+        missing = known[at] != keys
+        if not missing.any():
+            return known, at
+        known = np.union1d(known, keys[missing])
+    return known, np.zeros(0, np.int32)

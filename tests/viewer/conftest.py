@@ -77,6 +77,7 @@ def window(qtbot, shared_window, frame):
     window.map_area.show_one(False)
     window.map_area.set_view(window.map_area.whole_view)
     window.filter_box.hits_check.setChecked(False)
+    window.tabs.setCurrentWidget(window.table)
     window.filter_box.name_edit.clear()
     window.filter_box.show_name_error("")
     window.table.view.sortByColumn(3, Qt.SortOrder.DescendingOrder)

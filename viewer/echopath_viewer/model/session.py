@@ -51,6 +51,9 @@ class Session:
         self.color_by, self.max_rays, self.sampling = "bounces", MAX_RAYS, SAMPLINGS[0]
         self.dynamic_range_db = DYNAMIC_RANGE_DB
         self.box: CellBox | None = None
+        self.cell: tuple | None = None  # (range index, velocity index) whose contributions are told
+        self.attribution = None         # Attribution of the frame, once somebody has made it
+        self.family = self._family_mask = None  # EchoGroup whose paths are lit, wherever they lie
         self.ray: int | None = None
         self.node: str | None = None
         self.node_base = WHOLE, WHOLE  # the part whose paths the map of the node is made of
@@ -165,7 +168,8 @@ class Session:
         if self.box is None:
             return None
         if self._lit is None:
-            self._lit = self.visible & self.index.mask_of(self.box)
+            is_there = self.index.mask_of(self.box) if self.family is None else self._family_mask
+            self._lit = self.visible & is_there
         return self._lit
 
     def shown_rays(self, limit: int | None = None):
@@ -262,12 +266,40 @@ class Session:
 
     # --- selection ---
 
-    def select_cells(self, box: CellBox | None) -> None:
-        """Selects the rays in a rectangle of cells; None selects none."""
+    def select_cells(self, box: CellBox | None, cell: tuple | None = None) -> None:
+        """Selects the rays in a rectangle of cells; None selects none.
+
+        cell: (range index, velocity index) in it whose contributions are told, None: its highest
+        """
         spectrum = self.parts.whole.spectrum
         self.box = None if box is None else box.within(len(spectrum.range), len(spectrum.velocity))
+        self.cell = self._highest_cell() if cell is None and self.box is not None else cell
+        self._lit = self._lit_rays = self.ray = self.family = self._family_mask = None
+        self._tell("selection")
+
+    def _highest_cell(self) -> tuple | None:
+        box, level = self.box, self.parts.whole.level(*self.channel)
+        inside = level[box.first_velocity:box.last_velocity + 1, box.first_range:box.last_range + 1]
+        if not inside.size:
+            return None
+        velocity, distance = np.unravel_index(inside.argmax(), inside.shape)
+        return int(distance) + box.first_range, int(velocity) + box.first_velocity
+
+    def select_family(self, group) -> None:
+        """Lights the paths of an EchoGroup of the attribution, wherever they lie; None: those of the selected cells again."""
+        self.family = group
+        self._family_mask = None if group is None else self.attribution.paths_of(group)
         self._lit = self._lit_rays = self.ray = None
         self._tell("selection")
+
+    def cell_attribution(self):
+        """CellAttribution of the selected cell at the channel on display; None where there is no cell or no attribution."""
+        if self.cell is None or self.attribution is None:
+            return None
+        spectrum = self.parts.whole.spectrum
+        weights = np.zeros(spectrum.values.shape[:2])
+        weights[self.channel] = 1.0
+        return self.attribution.of_cell(spectrum, *self.cell, weights)
 
     def select_ray(self, path: int | None) -> None:
         """Selects one path: its hits and its cell."""

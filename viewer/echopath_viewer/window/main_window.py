@@ -14,6 +14,7 @@ from ..model import COLOUR_MODES, Session, from_file, from_frame
 from ..model.view_state import apply_state, load_state, save_state, state_of
 from ..scene_builder import VIEWS, export_meshes, export_rays
 from .busy import run_with_progress
+from .contributions import ContributionsPanel
 from .demo import simulate_demo
 from .empty_page import EmptyPage
 from .filter_box import FilterBox
@@ -43,6 +44,7 @@ class MainWindow(QtWidgets.QMainWindow):
         self.setAcceptDrops(True)
         self.tree, self.filter_box, self.view3d = SceneTree(), FilterBox(), View3D(self)
         self.time_bar, self.map_area, self.table = TimeBar(), MapArea(), RayTable()
+        self.contributions, self.tabs = ContributionsPanel(), QtWidgets.QTabWidget()
         self.time_bar.is_behind = self.view3d.is_behind
         self.banner, self.empty_page = Banner(), EmptyPage()
         self._listing = QtCore.QTimer(self, singleShot=True, interval=0)
@@ -75,6 +77,7 @@ class MainWindow(QtWidgets.QMainWindow):
         self.view3d.show_session(self.session)
         self.view3d.builder.set_show_hits(self.filter_box.hits_check.isChecked())
         self.table.show_session(self.session)
+        self.contributions.show_session(self.session)
         self._show_slow_time()
         self.session.listen(self._changed)
         self.setWindowTitle(f"{self.session.title or 'paths'} - {TITLE}")
@@ -106,6 +109,8 @@ class MainWindow(QtWidgets.QMainWindow):
             self.tree.refresh()
         if stale & {"rays", "selection"}:
             self.table.show_session(self.session)
+        if "selection" in stale:
+            self.contributions.refresh()
         if stale & {"rays", "selection", "colours"}:
             self.filter_box.show_counts()
         if stale & {"selection", "rays"}:
@@ -263,7 +268,8 @@ class MainWindow(QtWidgets.QMainWindow):
     def settle(self) -> None:
         """Returns when lists, signals and the scene show what the session shows now."""
         QtWidgets.QApplication.processEvents()
-        while self._listing.isActive() or self._pause.isActive() or self.view3d.is_behind():
+        while (self._listing.isActive() or self._pause.isActive() or self.view3d.is_behind()
+               or self.contributions.work.is_running):
             QtWidgets.QApplication.processEvents(QtCore.QEventLoop.ProcessEventsFlag.WaitForMoreEvents)
 
     def screenshot(self, path) -> None:
@@ -283,10 +289,12 @@ class MainWindow(QtWidgets.QMainWindow):
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.view3d, 1)
         column.addWidget(self.time_bar)
-        right = _splitter(Qt.Orientation.Vertical, (self.map_area, 3), (self.table, 1))
+        self.tabs.addTab(self.contributions, "What makes the cell")
+        self.tabs.addTab(self.table, "Rays")
+        right = _splitter(Qt.Orientation.Vertical, (self.map_area, 3), (self.tabs, 1))
         self.content = _splitter(Qt.Orientation.Horizontal, (left, 0), (middle, 3), (right, 2))
         self.content.setSizes([300, 690, 610])
-        right.setSizes([620, 260])
+        right.setSizes([600, 280])
         self.pages = QtWidgets.QStackedWidget()
         self.pages.addWidget(self.content)
         self.pages.addWidget(self.empty_page)
@@ -380,6 +388,7 @@ class MainWindow(QtWidgets.QMainWindow):
 
     def closeEvent(self, event):
         self.time_bar.stop()
+        self.contributions.work.stop()
         self._listing.stop()
         self._pause.stop()
         self.session = None

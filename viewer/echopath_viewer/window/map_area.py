@@ -30,6 +30,8 @@ class MapArea(QtWidgets.QWidget):
         self.reach_box = QtWidgets.QSpinBox(minimum=0, maximum=50, prefix="± ", suffix=" cells")
         self.reach_box.setToolTip("How far from a clicked cell rays are taken. Half a resolution cell unless set otherwise.")
         self.range_slider = QtWidgets.QSlider(Qt.Orientation.Horizontal)
+        self.range_slider.setMinimumWidth(60)
+        self.range_slider.setToolTip("Dynamic range of the colours, below the peak that is in view.")
         self.range_slider.setRange(MIN_DYNAMIC_RANGE_DB, MAX_DYNAMIC_RANGE_DB)
         self.range_label, self.read_out = QtWidgets.QLabel(), QtWidgets.QLabel(HINT)
         self.colour_bar = ColourBar()
@@ -42,7 +44,7 @@ class MapArea(QtWidgets.QWidget):
             box.setMaximumWidth(190)
         first, second = QtWidgets.QHBoxLayout(), QtWidgets.QHBoxLayout()
         for row, items in ((first, ("Maps:", self.layout_box, "by", self.partition_box, "Rays and map of", self.part_box)),
-                           (second, ("Channel:", self.channel_box, "Click takes", self.reach_box, "Dynamic range",
+                           (second, ("Channel:", self.channel_box, "Click:", self.reach_box, "Colours:",
                                      self.range_slider, self.range_label))):
             for item in items:
                 row.addWidget(QtWidgets.QLabel(item) if isinstance(item, str) else item)
@@ -144,7 +146,7 @@ class MapArea(QtWidgets.QWidget):
 
     def _new_panel(self, key: tuple) -> MapPanel:
         panel = MapPanel()
-        panel.cell_clicked.connect(lambda *cell: self._pick(key, CellBox.around(*cell, self.reach_box.value())))
+        panel.cell_clicked.connect(lambda *cell: self._pick(key, CellBox.around(*cell, self.reach_box.value()), cell))
         panel.click_undone.connect(self._undo_pick)
         panel.box_dragged.connect(lambda box: self._pick(key, box))
         panel.hovered.connect(lambda *at: self._read(key, *at))
@@ -153,11 +155,11 @@ class MapArea(QtWidgets.QWidget):
         panel.view_reset.connect(self.next_view)
         return panel
 
-    def _pick(self, key: tuple, box: CellBox) -> None:
+    def _pick(self, key: tuple, box: CellBox, cell: tuple | None = None) -> None:
         self._before_pick = self.session, self.session.part_key, self.session.box, self.session.ray
         if key != self.session.part_key:
             self.session.set_part(key)
-        self.session.select_cells(box)
+        self.session.select_cells(box, cell)
 
     def _undo_pick(self) -> None:
         session, key, box, ray = self._before_pick

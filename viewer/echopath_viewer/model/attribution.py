@@ -1,0 +1,190 @@
+"""Which echoes make a cell: complex contributions of families of paths, which add up to its value."""
+from __future__ import annotations
+
+import dataclasses
+from functools import cached_property
+
+import numpy as np
+
+import echopath as ep
+from echopath import _core
+from echopath.measures import SMALLEST_POWER, in_dbm
+
+MAX_BYTES = 2 << 30     # of the signals of all families, while they are made
+MAX_MIRRORS = 16        # told apart in the background: those that most paths touch
+REST = "rest: noise, and paths that the file leaves out"
+BACKGROUND = "background"
+
+
+@dataclasses.dataclass(frozen=True)
+class EchoGroup:
+    """Paths of one family that touch the same things.
+
+    name: as it is shown; touched: names of the objects and mirrors on their way, those that can be taken out
+    peak_range (m), peak_velocity (m/s): where its own map is highest, at the first channel; family: ep.Family
+    """
+
+    name: str
+    touched: frozenset
+    peak_range: float
+    peak_velocity: float
+    family: object = None
+
+
+@dataclasses.dataclass(frozen=True)
+class Contribution:
+    """What a group of echoes adds to a cell: `value` in sqrt(W), complex; without_db: change of the cell's level without it."""
+
+    name: str
+    value: complex
+    without_db: float
+    group: EchoGroup | None = None
+
+
+@dataclasses.dataclass(frozen=True)
+class CellAttribution:
+    """The value of a cell, or of a beam of one, in sqrt(W) and what makes it; the contributions add up to the value.
+
+    contributions: strongest first, last what no family has; without: ((name, dB), ...), the change of the level without all
+    paths that touch an object or a mirror, the largest first
+    """
+
+    value: complex
+    contributions: tuple
+    without: tuple
+
+    @property
+    def level_dbm(self) -> float:
+        """Of the cell, dB re 1 mW."""
+        return float(in_dbm(abs(self.value) ** 2, SMALLEST_POWER))
+
+
+class Attribution:
+    """The signals of all families of a frame, kept so that any cell is taken apart at once.
+
+    groups: tuple of EchoGroup
+    """
+
+    def __init__(self, signals, objects=None, progress=None):
+        """signals: model.Signals of the frame; objects: as in `ep.families`; progress: callable (stage, fraction)
+
+        Raises ValueError where the signals would take more than MAX_BYTES.
+        """
+        self._paths, self._settings = signals.paths, signals.spectrum_settings
+        families = ep.families(self._paths, objects)
+        mirrors = self._mirrors(families)
+        waveform, radar = self._paths.radar.waveform, self._paths.radar
+        size = 16 * len(radar.transmitters) * len(radar.receivers) * waveform.num_chirps * waveform.num_samples
+        if size * (len(families) + len(mirrors)) > MAX_BYTES:
+            raise ValueError(f"families: the signals of {len(families)} would take more than {MAX_BYTES >> 30} GiB")
+        cubes = self._decomposed(families, mirrors, signals.settings, progress)
+        num_tx, num_rx, *samples = next(iter(cubes.values())).shape
+        self._cubes = np.zeros((num_tx, num_rx, len(cubes), *samples), np.complex64)  # a channel in one piece
+        self._families, self._mirror_names = families, mirrors
+        self.groups = tuple(self._group(row, key, mirrors, cube) for row, (key, cube) in enumerate(cubes.items()))
+
+    def _mirrors(self, families) -> list[str]:
+        """What the paths of the background touch and is no object: names of children of the root."""
+        background = families.family_of_path == len(families.families) - 1
+        paths, offsets = np.flatnonzero(background), np.asarray(self._paths.offsets)
+        counts = np.zeros(len(self._paths.scene.meshes), np.int64)
+        num_bounces, mesh_id = np.asarray(self._paths.num_bounces), np.asarray(self._paths.mesh_id)
+        for hit in range(int(num_bounces[paths].max(initial=0))):
+            at = offsets[paths[num_bounces[paths] > hit]] + hit
+            counts += np.bincount(mesh_id[at], minlength=len(counts))
+        totals = {}
+        for mesh, count in zip(self._paths.scene.meshes, counts):
+            top = mesh.name.partition("/")[0]
+            totals[top] = totals.get(top, 0) + int(count)
+        return sorted((name for name, count in totals.items() if count), key=lambda name: -totals[name])[:MAX_MIRRORS]
+
+    def _decomposed(self, families, mirrors, settings, progress) -> dict:
+        """{(family, mirror or "other", ...): cube}, the mirrors telling the paths of the background apart."""
+        views = [families.grouping] + [_core.Grouping.selections([(name, ep.hits(name))]) for name in mirrors]
+        grouping = _core.Grouping.all_of(views)
+        return dict(_core.decompose(self._paths, None, [grouping], progress=progress, **settings)[0])
+
+    def _group(self, row: int, key: tuple, mirrors, cube) -> EchoGroup:
+        self._cubes[:, :, row] = cube
+        family, *words = key
+        on_way = [name for name, word in zip(mirrors, words) if word == name]
+        touched = {family.object, *family.via} if family.object else set(on_way)
+        name = str(family) if family.object else f"{BACKGROUND} over {' + '.join(on_way)}" if on_way else BACKGROUND
+        return EchoGroup(name, frozenset(touched), *self._peak(cube), family)
+
+    def _peak(self, cube) -> tuple:
+        spectrum = ep.range_doppler(cube, self._paths.radar, **self._settings)
+        velocity, distance = np.unravel_index(np.abs(spectrum.values[0, 0]).argmax(), spectrum.values.shape[2:])
+        return float(spectrum.range[distance]), float(spectrum.velocity[velocity])
+
+    def paths_of(self, group: EchoGroup):
+        """Which paths a group holds: bool [P]."""
+        families = self._families
+        mask = families.family_of_path == families.families.index(group.family)
+        if not group.family.object:
+            for name in self._mirror_names:
+                hits = np.asarray(ep.hits(name).matches(self._paths))
+                mask &= hits if name in group.touched else ~hits
+        return mask
+
+    @cached_property
+    def things(self) -> tuple:
+        """Names of what can be taken out: objects and mirrors."""
+        return tuple(sorted(set().union(*(group.touched for group in self.groups))))
+
+    def values(self, range_index: int, velocity_index: int, weights):
+        """What each group adds to a cell: complex [G], sqrt(W).
+
+        weights: complex [tx, rx] of the channels: one channel, or the steering of a beam
+        """
+        chirps, samples = cell_weights(self._paths.radar.waveform, range_index, velocity_index, **self._settings)
+        used = np.argwhere(np.asarray(weights) != 0.0)
+        values = np.zeros(len(self.groups), complex)
+        for tx, rx in used:
+            of_channel = self._cubes[tx, rx]
+            profiles = of_channel.reshape(-1, len(samples)) @ samples.astype(np.complex64)
+            values += weights[tx, rx] * (profiles.reshape(len(self.groups), -1).astype(complex) @ chirps)
+        return values
+
+    def of_cell(self, spectrum, range_index: int, velocity_index: int, weights) -> CellAttribution:
+        """The contributions to a cell of a map of the frame; weights: as in `values`, [tx, rx]."""
+        values = self.values(range_index, velocity_index, weights)
+        value = complex(np.sum(np.asarray(weights) * spectrum.values[:, :, velocity_index, range_index]))
+        contributions = [Contribution(group.name, complex(part), _change_db(value, part), group)
+                         for group, part in zip(self.groups, values)]
+        contributions.sort(key=lambda one: -abs(one.value))
+        rest = value - complex(values.sum())
+        contributions.append(Contribution(REST, rest, _change_db(value, rest)))
+        without = [(thing, _change_db(value, sum(part for group, part in zip(self.groups, values) if thing in group.touched)))
+                   for thing in self.things]
+        return CellAttribution(value, tuple(contributions), tuple(sorted(without, key=lambda one: one[1])))
+
+
+def cell_weights(waveform, range_index: int, velocity_index: int, *, window="hann", zero_pad: int = 1) -> tuple:
+    """(chirps [C], samples [N]), complex: the value of a cell of `range_doppler` is chirps @ cube[tx, rx] @ samples.
+
+    Model: the two windowed Fourier transforms of the map, evaluated at one frequency each.
+    """
+    num_chirps, num_samples = waveform.num_chirps, waveform.num_samples
+    doppler = velocity_index - num_chirps * zero_pad // 2
+    scale = np.sqrt(2.0) if waveform.real else 1.0  # a real sample has half of its amplitude at positive frequencies
+    return (_taper(window, num_chirps) * _tone(doppler, num_chirps, zero_pad),
+            scale * _taper(window, num_samples) * _tone(range_index, num_samples, zero_pad))
+
+
+def _taper(window, count: int):
+    name, *side_lobes = (window,) if isinstance(window, str) else window
+    samples = np.asarray(_core.window(name, count, *side_lobes))
+    return samples / samples.sum()
+
+
+def _tone(index: int, count: int, zero_pad: int):
+    return np.exp(-2j * np.pi * (index * np.arange(count) % (count * zero_pad)) / (count * zero_pad))
+
+
+def _change_db(value: complex, taken: complex) -> float:
+    """dB by which a level changes where `taken` is taken from `value`."""
+    left, whole = abs(value - taken), abs(value)
+    if whole == 0.0:
+        return 0.0
+    return float(20.0 * np.log10(max(left / whole, 1e-15)))

@@ -1,0 +1,145 @@
+"""What makes the selected cell: a table of families, their phasors, and the level without each thing."""
+from __future__ import annotations
+
+import numpy as np
+
+from echopath.measures import SMALLEST_POWER, for_pictures, in_dbm
+
+from ..model.attribution import Attribution
+from .background_work import BackgroundWork
+from .phasors import COLOURS, MAX_ARROWS, PhasorDiagram
+from .qt import Qt, QtGui, QtWidgets
+
+HINT = "Click a cell: which echoes make it, and what its level would be without each object or wall."
+COLUMNS = ("Echoes", "dBm", "Phase", "Without", "Own peak at")
+SHOWN_BELOW_DB = 60.0   # the strongest: weaker rows are told as one
+LEAST_CHANGE_DB = 0.05  # of a level, that is told
+MOST_ROWS = 40
+
+
+class ContributionsPanel(QtWidgets.QWidget):
+    """Follows the selected cell; the signals of the families are made in a thread when the first one is asked for."""
+
+    def __init__(self, parent=None):
+        super().__init__(parent)
+        self.session, self._rows = None, []
+        self.title, self.without = QtWidgets.QLabel(HINT, wordWrap=True), QtWidgets.QLabel(wordWrap=True)
+        for label in (self.title, self.without):
+            label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self.bar = QtWidgets.QProgressBar(textVisible=False, maximum=1000, visible=False)
+        self.bar.setFixedHeight(4)
+        self.table, self.phasors = QtWidgets.QTableWidget(0, len(COLUMNS)), PhasorDiagram()
+        self.work = BackgroundWork(self)
+        self._arrange()
+        self.work.done.connect(self._take)
+        self.work.failed.connect(self._fail)
+        self.work.advanced.connect(lambda share: self.bar.setValue(int(1000 * share)))
+        self.table.itemSelectionChanged.connect(self._row_chosen)
+
+    def _arrange(self) -> None:
+        self.table.setHorizontalHeaderLabels(COLUMNS)
+        self.table.setSelectionBehavior(QtWidgets.QAbstractItemView.SelectionBehavior.SelectRows)
+        self.table.setSelectionMode(QtWidgets.QAbstractItemView.SelectionMode.SingleSelection)
+        self.table.setEditTriggers(QtWidgets.QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.table.setToolTip("Choose a row: its paths light up, wherever they lie.")
+        self.table.verticalHeader().hide()
+        self.table.verticalHeader().setDefaultSectionSize(20)
+        header = self.table.horizontalHeader()
+        header.setSectionResizeMode(QtWidgets.QHeaderView.ResizeMode.ResizeToContents)
+        header.setSectionResizeMode(0, QtWidgets.QHeaderView.ResizeMode.Stretch)
+        both = QtWidgets.QHBoxLayout()
+        both.addWidget(self.table, 3)
+        both.addWidget(self.phasors, 1)
+        column = QtWidgets.QVBoxLayout(self)
+        column.setContentsMargins(2, 2, 2, 2)
+        for widget in (self.bar, self.title, self.without):
+            column.addWidget(widget)
+        column.addLayout(both, 1)
+
+    def show_session(self, session) -> None:
+        self.work.stop()
+        self.bar.hide()
+        self.session = session
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Tells of the cell that is selected now, if anyone looks."""
+        session = self.session
+        if session is None or not self.isVisible() or (session.family is not None and self._rows):
+            return
+        if session.cell is None:
+            self._show_nothing(HINT)
+        elif session.attribution is not None:
+            self._show(session.cell_attribution())
+        elif not self.work.is_running:
+            self._show_nothing("The signals of all families of paths are made, once ...")
+            self.bar.setValue(0)
+            self.bar.show()
+            signals = session.signals
+            self.work.start(lambda progress: Attribution(signals, progress=progress))
+
+    def showEvent(self, event):
+        super().showEvent(event)
+        self.refresh()
+
+    def _take(self, attribution) -> None:
+        self.bar.hide()
+        self.session.attribution = attribution
+        self.refresh()
+
+    def _fail(self, text: str) -> None:
+        self.bar.hide()
+        self._show_nothing(text)
+
+    def _show_nothing(self, text: str) -> None:
+        self.title.setText(text)
+        self.without.setText("")
+        self._fill([])
+        self.phasors.show_values([], 1.0)
+
+    def _show(self, cell) -> None:
+        """cell: CellAttribution."""
+        spectrum, (distance, velocity) = self.session.parts.whole.spectrum, self.session.cell
+        place = f"{spectrum.range[distance]:.2f} m, {spectrum.velocity[velocity]:+.2f} m/s"
+        self.title.setText(for_pictures(f"<b>{place}: {cell.level_dbm:.1f} dBm</b>, the sum of"))
+        told = [f"without {name}: <b>{change:+.1f} dB</b>" for name, change in cell.without if abs(change) >= LEAST_CHANGE_DB]
+        self.without.setText(for_pictures("   ".join(told)))
+        self._fill(self._chosen(cell))
+        self.phasors.show_values([one.value for one in sorted(cell.contributions, key=lambda one: -abs(one.value))], cell.value)
+
+    @staticmethod
+    def _chosen(cell) -> list:
+        """(contribution, phase relative to the sum) of the rows, strongest first."""
+        ordered = sorted(cell.contributions, key=lambda one: -abs(one.value))
+        least = abs(ordered[0].value) * 10.0 ** (-SHOWN_BELOW_DB / 20.0)
+        kept = [one for one in ordered if abs(one.value) > least or one is ordered[0]][:MOST_ROWS]
+        return [(one, float(np.degrees(np.angle(one.value / cell.value))) if cell.value else 0.0) for one in kept]
+
+    def _fill(self, rows: list) -> None:
+        self.table.blockSignals(True)
+        self._rows = [one for one, _ in rows]
+        self.table.clearSelection()
+        self.table.setRowCount(len(rows))
+        for number, (one, phase) in enumerate(rows):
+            level = float(in_dbm(abs(one.value) ** 2, SMALLEST_POWER))
+            peak = "" if one.group is None else f"{one.group.peak_range:.2f} m, {one.group.peak_velocity:+.2f} m/s"
+            texts = (one.name, f"{level:.1f}", f"{phase:+.0f}°", f"{one.without_db:+.2f} dB", peak)
+            for column, text in enumerate(texts):
+                item = QtWidgets.QTableWidgetItem(text if column == 0 else for_pictures(text))
+                if column:
+                    item.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+                self.table.setItem(number, column, item)
+            self.table.item(number, 0).setIcon(_swatch(COLOURS[min(number, MAX_ARROWS - 1)]))
+            self.table.item(number, 0).setToolTip(one.name)
+        self.table.blockSignals(False)
+
+    def _row_chosen(self) -> None:
+        rows = {index.row() for index in self.table.selectedIndexes()}
+        if self.session is not None and len(rows) == 1:
+            self.session.select_family(self._rows[rows.pop()].group)
+
+
+def _swatch(colour: str) -> QtGui.QIcon:
+    pixmap = QtGui.QPixmap(12, 12)
+    pixmap.fill(QtGui.QColor(colour))
+    return QtGui.QIcon(pixmap)

@@ -16,6 +16,7 @@
 #include "echopath/base/errors.h"
 #include "echopath/base/range_of_coordinates.h"
 #include "echopath/radar/radar.h"
+#include "held_object.h"
 #include "in_package.h"
 #include "plausible.h"
 #include "value.h"
@@ -27,7 +28,29 @@ namespace {
 constexpr double kNormTolerance = 1e-6, kNormRounding = 1e-14;
 constexpr double kLevel = 1e-9;  // rad, of antennas whose +y is level
 
-constexpr auto kMultiplexing = choice<Multiplexing>("multiplexing", "tdm");
+constexpr auto kMultiplexing = choice<Multiplexing>("multiplexing", "tdm", "bpm", "ddm", "cdm");
+
+// What the package knows as ep.Receiver, which the core carries along.
+struct ReceiverKind {
+  using Value = std::shared_ptr<const void>;
+  static constexpr auto type_name = py::detail::const_name("object");
+  static Value from(py::handle value, const char* argument) {
+    if (!value.is_none() && !py::isinstance(value, py::module_::import("echopath.receiver").attr("Receiver")))
+      refuse_type(argument, "must be a Receiver or None", value);
+    return hold(py::reinterpret_borrow<py::object>(value));
+  }
+};
+
+std::vector<std::vector<double>> rows_of(const std::optional<py::array_t<double, py::array::c_style>>& table) {
+  std::vector<std::vector<double>> rows;
+  if (!table) return rows;
+  const auto length = static_cast<size_t>(table->shape(1));
+  for (py::ssize_t row = 0; row < table->shape(0); ++row) {
+    const double* const first = table->data() + static_cast<size_t>(row) * length;
+    rows.emplace_back(first, first + length);
+  }
+  return rows;
+}
 
 template <class Vector>
 void make_unit(Vector& vector, const char* argument) {
@@ -89,10 +112,19 @@ Radar radar(const Arg<"waveform", Instance<ChirpSequence>>& waveform,
             const Arg<"motion", Optional<Instance<std::shared_ptr<Motion>>>>& motion,
             const Arg<"speed", Optional<Real>>& speed, const Arg<"transmit_power", Real>& transmit_power,
             const Arg<"noise_figure_db", Real>& noise_figure_db,
-            const Arg<"multiplexing", OneOf<kMultiplexing>>& multiplexing) {
-  Radar made{*waveform,     *transmitters, *receivers, *transmit_power, *noise_figure_db,
-             *multiplexing, *position,     *yaw,       *pitch,          motion_of(*motion, *speed, *yaw)};
+            const Arg<"multiplexing", OneOf<kMultiplexing>>& multiplexing, const Arg<"empty_slots", Positive>& empty_slots,
+            const Arg<"code_phases", Optional<Array<double, "[tx, slots]">>>& code_phases,
+            const Arg<"receiver", ReceiverKind>& receiver) {
+  Radar made{*waveform,        *transmitters,
+             *receivers,       *transmit_power,
+             *noise_figure_db, *multiplexing,
+             *position,        *yaw,
+             *pitch,           motion_of(*motion, *speed, *yaw),
+             *empty_slots,     rows_of(*code_phases),
+             *receiver};
   made.validate();
+  require(made.code_phases.empty() || made.code_phases.size() == made.transmitters.size(), "code_phases",
+          "must have one row for each transmitter", made.code_phases.size());
   warn_of_turns(made.yaw);
   return made;
 }
@@ -108,12 +140,24 @@ py::dict keywords_of(const Antenna& self) {
 
 py::object motion_object(const Radar& self) { return py::cast(std::const_pointer_cast<Motion>(self.motion)); }
 
+// Phases [tx, slots] in a new array, None where there is no code.
+py::object code_phases_of(const Radar& self) {
+  if (self.code_phases.empty()) return py::none();
+  std::vector<double> values;
+  for (const std::vector<double>& row : self.code_phases) values.insert(values.end(), row.begin(), row.end());
+  const auto num_rows = static_cast<py::ssize_t>(self.code_phases.size());
+  const auto length = static_cast<py::ssize_t>(self.code_phases.front().size());
+  return numpy_take(std::move(values), {num_rows, length});
+}
+
 py::dict keywords_of(const Radar& self) {
   return py::dict(py::arg("waveform") = self.waveform, py::arg("transmitters") = self.transmitters,
                   py::arg("receivers") = self.receivers, py::arg("position") = tuple_of(self.position),
                   py::arg("yaw") = self.yaw, py::arg("pitch") = self.pitch, py::arg("motion") = motion_object(self),
                   py::arg("transmit_power") = self.transmit_power, py::arg("noise_figure_db") = self.noise_figure_db,
-                  py::arg("multiplexing") = kMultiplexing.name_of(self.multiplexing));
+                  py::arg("multiplexing") = kMultiplexing.name_of(self.multiplexing),
+                  py::arg("empty_slots") = self.empty_slots, py::arg("code_phases") = code_phases_of(self),
+                  py::arg("receiver") = held(self.receiver));
 }
 
 py::object replace_in_antenna(const Antenna& self, const py::kwargs& changes) {
@@ -224,14 +268,21 @@ speed: m/s ahead, instead of a motion: level, along (cos yaw, sin yaw, 0), negat
     LinearMotion of that velocity, which a later change of yaw leaves as it is
 transmit_power: W per transmitter
 noise_figure_db: dB, single sideband
-multiplexing: "tdm": transmitters take turns, one slot each
+multiplexing: "tdm": transmitters take turns, one slot each. With the others all send in every slot, and `synthesize` gives
+    what a receiver has, [1, rx, slots, sample], until `demultiplex` takes it apart: "bpm": signs of a Hadamard matrix over
+    num_slots slots, which make one of the num_chirps; "ddm": transmitter m turns by m / (transmitters + empty_slots) of a
+    cycle from chirp to chirp; "cdm": by code_phases
+empty_slots: of "ddm", at least 1: shares of the Doppler axis to which no transmitter is moved, which tell velocities apart
+code_phases: of "cdm", [tx, slots] rad: transmitter m turns by code_phases[m, i] in slot i, repeated
+receiver: Receiver, the faults of the front end and the converter that follow the ideal signal, or None
 Angles that are estimated count in the radar's axes. Radars of equal arguments are equal, and pickle.
 Raises ValueError or TypeError naming the argument, for a speed of light or more, too. Warns (RuntimeWarning) of a yaw beyond
 a turn, which looks like degrees.)");
   define_init(type, &radar, py::arg("waveform"), py::kw_only(), py::arg("transmitters"), py::arg("receivers"),
               py::arg("position") = py::make_tuple(0.0, 0.0, 0.0), py::arg("yaw") = 0.0, py::arg("pitch") = 0.0,
               py::arg("motion") = py::none(), py::arg("speed") = py::none(), py::arg("transmit_power") = 0.01,
-              py::arg("noise_figure_db") = 12.0, py::arg("multiplexing") = "tdm");
+              py::arg("noise_figure_db") = 12.0, py::arg("multiplexing") = "tdm", py::arg("empty_slots") = 1,
+              py::arg("code_phases") = py::none(), py::arg("receiver") = py::none());
   type.def_readonly("waveform", &Radar::waveform, "ChirpSequence")
       .def_readonly("transmitters", &Radar::transmitters, "list of Antenna, a copy")
       .def_readonly("receivers", &Radar::receivers, "list of Antenna, a copy")
@@ -243,7 +294,15 @@ a turn, which looks like degrees.)");
       .def_readonly("transmit_power", &Radar::transmit_power, "W per transmitter")
       .def_readonly("noise_figure_db", &Radar::noise_figure_db, "dB, single sideband")
       .def_property_readonly(
-          "multiplexing", [](const Radar& self) { return kMultiplexing.name_of(self.multiplexing); }, "\"tdm\"")
+          "multiplexing", [](const Radar& self) { return kMultiplexing.name_of(self.multiplexing); },
+          "\"tdm\", \"bpm\", \"ddm\" or \"cdm\"")
+      .def_readonly("empty_slots", &Radar::empty_slots, "of \"ddm\": shares of the Doppler axis without a transmitter")
+      .def_property_readonly("code_phases", &code_phases_of, "[tx, slots] rad of \"cdm\", or None")
+      .def_property_readonly(
+          "receiver", [](const Radar& self) { return held(self.receiver); }, "Receiver, or None")
+      .def_property_readonly("num_slots", &Radar::num_slots,
+                             "slots that make one of the num_chirps: of \"tdm\" one per transmitter, of \"bpm\" the length "
+                             "of its code, else 1")
       .def_property_readonly("frame_duration", &Radar::frame_duration, "s, from the first sample to the last")
       .def("__repr__", [](const Radar& self) { return text_of(self); });
   define(type, "_repr_html_", from_package("notebook", "radar_html"), "A table for notebooks.");

@@ -28,7 +28,8 @@ RETURNS = {
     ("Curve", "in_tangents"): f"{REAL} | None", ("Curve", "out_tangents"): f"{REAL} | None",
     ("CurveMotion", "period"): "float | None", ("MorphTargets", "period"): "float | None",
     ("VertexSequence", "period"): "float | None",
-    ("Radar", "motion"): "Motion | None", ("Radar", "_repr_html_"): "str",
+    ("Radar", "motion"): "Motion | None", ("Radar", "receiver"): "Receiver | None",
+    ("Radar", "code_phases"): f"{REAL} | None", ("Radar", "_repr_html_"): "str",
     ("RangeDoppler", "values"): COMPLEX, ("RangeDoppler", "window"): WINDOW, ("RangeDoppler", "_repr_html_"): "str",
     ("VirtualArray", "default_angles"): f"tuple[{REAL}, {REAL}]", ("VirtualArray", "positions"): REAL,
     ("VirtualArray", "element_of_channel"): INDEX, ("VirtualArray", "elements"): REAL, ("VirtualArray", "gaps"): INDEX,
@@ -49,7 +50,7 @@ RETURNS = {
     ("SignalProbe", "share_field"): COMPLEX, ("SignalProbe", "share_power"): REAL,
 }
 IMPORTS = ("from echopath.effects.rules import Effect\nfrom echopath.foreign_types import Axes, DataArray, DataFrame, Dataset\n"
-           "from echopath.frame_file.frame import LeftOut\nfrom typing import Literal\n")
+           "from echopath.frame_file.frame import LeftOut\nfrom echopath.receiver import Receiver\nfrom typing import Literal\n")
 
 # (class, member) -> {argument: what it takes}
 TAKES = {
@@ -59,7 +60,8 @@ TAKES = {
     ("Paths", "load"): {"path": PATH}, ("Paths", "save"): {"path": PATH},
     ("Paths", "amplitudes"): {"replay": REPLAY}, ("Paths", "lengths"): {"replay": REPLAY},
     ("KeyframeMotion", "__init__"): {"interpolation": INTERPOLATION},
-    ("VertexSequence", "__init__"): {"interpolation": INTERPOLATION}, ("Radar", "__init__"): {"multiplexing": "Literal['tdm']"},
+    ("VertexSequence", "__init__"): {"interpolation": INTERPOLATION},
+    ("Radar", "__init__"): {"multiplexing": "Literal['tdm', 'bpm', 'ddm', 'cdm']", "receiver": "Receiver | None"},
     ("RangeDoppler", "plot"): LEVELS, ("RangeAzimuth", "plot"): LEVELS,
     ("AngleSpectrum", "plot"): AXES | {"range": "float | None", "velocity": "float | None"},
 }

@@ -43,11 +43,13 @@ from .parts import Parts, decompose
 from .path_cells import PathCells, path_cells
 from .powers import received_power, received_powers
 from .readers import Model, ModelNode, foreign_materials, load_model
+from .receiver import Adc, PhaseNoise, Receiver, Reception, receive
 from .resolution import Interval, Unresolved, unresolved
 from .scene import Scene
 from .scene_file import SceneFile, load_scene
 from .scene_node import SceneNode
 from .selections import first, hits, last, num_bounces, power
+from .sensor_files import SensorConfig, load_radar, load_sensor, save_raw
 from .sequence import SavedFrame, Sequence, StoredSequence, load_sequence
 from .settings import LabelSettings, SignalSettings, TraceSettings
 from .signals import add_noise, synthesize
@@ -59,30 +61,33 @@ from .tracing import mie_rcs, rcs, trace
 from .tracks import Tracks, track
 from .traffic import Traffic, add_traffic
 from .trajectories import Lane, Trajectory, read_trajectories
+from .transmit import demultiplex
 from .truth import Truth, truth
 from .viewing import plot_rays, view
 from .visibility import ObjectVisibility, Sight, visibility
 from .weather import Weather
 
 __all__ = [
-    "Actor", "AngleEstimates", "AngleSpectrum", "AngleTime", "Antenna", "AntennaPattern", "BeamPower", "CfarResult",
+    "Actor", "Adc", "AngleEstimates", "AngleSpectrum", "AngleTime", "Antenna", "AntennaPattern", "BeamPower", "CfarResult",
     "Check", "ChirpSequence", "CoplanarOverlap", "CosinePower", "Curve", "CurveMotion", "Deformation", "Detections",
     "DeviceError", "Effect", "Families", "Family", "FileError", "Frame", "FrameMaps", "GainTable", "GhostLabel",
     "GuardWarning", "Interval", "Isotropic", "Joint", "KeyframeMotion", "LabelSettings", "Labels", "Lane", "LinearMotion",
     "Live", "LiveView", "Material", "Mesh", "Model", "ModelNode", "MorphTargets", "Motion", "ObjectLabel", "ObjectValidity",
-    "ObjectVisibility", "Part", "Parts", "PathCells", "Paths", "Radar", "RangeAzimuth", "RangeDoppler", "RangeTime",
-    "ReceivedPower", "Renewal", "SavedFrame", "Scene", "SceneFile", "SceneNode", "Selection", "Sequence", "Sight",
-    "SignalProbe", "SignalSettings", "Skin", "Spectrogram", "SpectrogramLabels", "StoredSequence", "Stratum",
-    "TessellationWarning", "TraceFrame", "TraceSettings", "TraceStatistics", "Tracks", "Traffic", "Trajectory", "Truth",
-    "Unresolved", "Validity", "ValidityShares", "VertexSequence", "VirtualArray", "Watch", "Weather", "actors", "add_noise",
-    "add_traffic", "angle_fft", "angle_time", "annotate", "annotate_frame", "beamform", "boltzmann", "cfar", "check_rays",
-    "check_signal", "compensate_tdm", "decompose", "detect", "detect_frame", "effects", "estimate_angles", "families",
-    "first", "foreign_materials", "hits", "last", "load_antenna", "load_frame", "load_labels", "load_mesh", "load_meshes",
-    "load_model", "load_scene", "load_sequence", "materials", "mesh_from", "mie_rcs", "num_bounces", "num_threads",
+    "ObjectVisibility", "Part", "Parts", "PathCells", "Paths", "PhaseNoise", "Radar", "RangeAzimuth", "RangeDoppler",
+    "RangeTime", "ReceivedPower", "Receiver", "Reception", "Renewal", "SavedFrame", "Scene", "SceneFile", "SceneNode",
+    "Selection", "SensorConfig", "Sequence", "Sight", "SignalProbe", "SignalSettings", "Skin", "Spectrogram",
+    "SpectrogramLabels", "StoredSequence", "Stratum", "TessellationWarning", "TraceFrame", "TraceSettings",
+    "TraceStatistics", "Tracks", "Traffic", "Trajectory", "Truth", "Unresolved", "Validity", "ValidityShares",
+    "VertexSequence", "VirtualArray", "Watch", "Weather", "actors", "add_noise", "add_traffic", "angle_fft", "angle_time",
+    "annotate", "annotate_frame", "beamform", "boltzmann", "cfar", "check_rays", "check_signal", "compensate_tdm",
+    "decompose", "demultiplex", "detect", "detect_frame", "effects", "estimate_angles", "families", "first",
+    "foreign_materials", "hits", "last", "load_antenna", "load_frame", "load_labels", "load_mesh", "load_meshes",
+    "load_model", "load_radar", "load_scene", "load_sensor", "load_sequence", "materials", "mesh_from", "mie_rcs",
+    "num_bounces", "num_threads",
     "path_cells", "plot_rays", "plots", "power", "power_by_chirp", "range_azimuth", "range_doppler", "range_time", "rcs",
-    "read_trajectories", "received_power", "received_powers", "renew", "save_frame", "save_label_images", "save_labels",
-    "set_num_threads", "simulate", "spectrogram", "spectrogram_labels", "speed_of_light", "synthesize", "trace", "track",
-    "truth", "unresolved", "validity", "view", "virtual_array", "visibility",
+    "read_trajectories", "receive", "received_power", "received_powers", "renew", "save_frame", "save_label_images",
+    "save_labels", "save_raw", "set_num_threads", "simulate", "spectrogram", "spectrogram_labels", "speed_of_light",
+    "synthesize", "trace", "track", "truth", "unresolved", "validity", "view", "virtual_array", "visibility",
 ]
 
 

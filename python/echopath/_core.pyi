@@ -9,6 +9,7 @@ import types
 from echopath.effects.rules import Effect
 from echopath.foreign_types import Axes, DataArray, DataFrame, Dataset
 from echopath.frame_file.frame import LeftOut
+from echopath.receiver import Receiver
 from typing import Literal
 import collections.abc
 from echopath import DeviceError
@@ -1004,6 +1005,10 @@ class ChirpSequence:
     num_chirps: per transmitter
     chirp_interval: s between neighbouring slots, at least num_samples / sampling_rate
     real: real IF samples instead of complex ones
+    extra_idle: s, 0 or more, by which the slot after this one begins later: slot i takes entry i modulo their number (staggered
+        pulse repetition); () for none
+    frequency_steps: Hz added to the start frequency of a slot, likewise (frequency hopping)
+    bandwidth_steps: Hz added to the bandwidth of a slot, likewise; maps keep the axes of the waveform without steps
     Raises TypeError or ValueError naming the argument, for a start_frequency below 1 MHz, too. Warns (RuntimeWarning) of a
     bandwidth above start_frequency or below 1 kHz and of a chirp_interval above 1 s, which look like other units.
     """
@@ -1015,7 +1020,7 @@ class ChirpSequence:
         ...
     def __hash__(self) -> int:
         ...
-    def __init__(self, *, start_frequency: float = 77000000000.0, bandwidth: float = 1000000000.0, num_samples: int = 512, sampling_rate: float = 20000000.0, num_chirps: int = 128, chirp_interval: float = 6e-05, real: bool = False) -> None:
+    def __init__(self, *, start_frequency: float = 77000000000.0, bandwidth: float = 1000000000.0, num_samples: int = 512, sampling_rate: float = 20000000.0, num_chirps: int = 128, chirp_interval: float = 6e-05, real: bool = False, extra_idle: ArrayLike = (), frequency_steps: ArrayLike = (), bandwidth_steps: ArrayLike = ()) -> None:
         ...
     def __repr__(self) -> str:
         ...
@@ -1025,12 +1030,19 @@ class ChirpSequence:
         """
         m/s, unambiguous up to +- this, when `num_slots` transmitters take turns. Raises TypeError or ValueError naming the argument.
         """
-    def replace(self, *, start_frequency: float = ..., bandwidth: float = ..., num_samples: int = ..., sampling_rate: float = ..., num_chirps: int = ..., chirp_interval: float = ..., real: bool = ...) -> ChirpSequence:
+    def replace(self, *, start_frequency: float = ..., bandwidth: float = ..., num_samples: int = ..., sampling_rate: float = ..., num_chirps: int = ..., chirp_interval: float = ..., real: bool = ..., extra_idle: ArrayLike = ..., frequency_steps: ArrayLike = ..., bandwidth_steps: ArrayLike = ...) -> ChirpSequence:
         """
         A copy with other values of some arguments.
 
         changes: arguments of the constructor, by name
         Raises TypeError or ValueError as the constructor does.
+        """
+    def slot_start(self, slot: int) -> float:
+        """
+        When a slot begins.
+
+        slot: index, 0 or more
+        Returns s after the start of the first slot. Raises TypeError or ValueError naming the argument.
         """
     def velocity_resolution(self, num_slots: int = 1) -> float:
         """
@@ -1040,6 +1052,11 @@ class ChirpSequence:
     def bandwidth(self) -> float:
         """
         Hz, sampled
+        """
+    @property
+    def bandwidth_steps(self) -> tuple[typing.Any, ...]:
+        """
+        Hz, of each slot, repeated
         """
     @property
     def centre_frequency(self) -> float:
@@ -1057,9 +1074,24 @@ class ChirpSequence:
         s, between neighbouring slots
         """
     @property
+    def extra_idle(self) -> tuple[typing.Any, ...]:
+        """
+        s, after each slot, repeated
+        """
+    @property
+    def frequency_steps(self) -> tuple[typing.Any, ...]:
+        """
+        Hz, of each slot, repeated
+        """
+    @property
     def max_range(self) -> float:
         """
         m, unambiguous
+        """
+    @property
+    def mean_interval(self) -> float:
+        """
+        s, between neighbouring slots in the mean
         """
     @property
     def num_chirps(self) -> int:
@@ -1258,7 +1290,13 @@ class Radar:
         LinearMotion of that velocity, which a later change of yaw leaves as it is
     transmit_power: W per transmitter
     noise_figure_db: dB, single sideband
-    multiplexing: "tdm": transmitters take turns, one slot each
+    multiplexing: "tdm": transmitters take turns, one slot each. With the others all send in every slot, and `synthesize` gives
+        what a receiver has, [1, rx, slots, sample], until `demultiplex` takes it apart: "bpm": signs of a Hadamard matrix over
+        num_slots slots, which make one of the num_chirps; "ddm": transmitter m turns by m / (transmitters + empty_slots) of a
+        cycle from chirp to chirp; "cdm": by code_phases
+    empty_slots: of "ddm", at least 1: shares of the Doppler axis to which no transmitter is moved, which tell velocities apart
+    code_phases: of "cdm", [tx, slots] rad: transmitter m turns by code_phases[m, i] in slot i, repeated
+    receiver: Receiver, the faults of the front end and the converter that follow the ideal signal, or None
     Angles that are estimated count in the radar's axes. Radars of equal arguments are equal, and pickle.
     Raises ValueError or TypeError naming the argument, for a speed of light or more, too. Warns (RuntimeWarning) of a yaw beyond
     a turn, which looks like degrees.
@@ -1271,7 +1309,7 @@ class Radar:
         ...
     def __hash__(self) -> int:
         ...
-    def __init__(self, waveform: ChirpSequence, *, transmitters: typing.Sequence[Antenna], receivers: typing.Sequence[Antenna], position: ArrayLike = (0.0, 0.0, 0.0), yaw: float = 0.0, pitch: float = 0.0, motion: Motion | None = None, speed: float | None = None, transmit_power: float = 0.01, noise_figure_db: float = 12.0, multiplexing: Literal['tdm'] = 'tdm') -> None:
+    def __init__(self, waveform: ChirpSequence, *, transmitters: typing.Sequence[Antenna], receivers: typing.Sequence[Antenna], position: ArrayLike = (0.0, 0.0, 0.0), yaw: float = 0.0, pitch: float = 0.0, motion: Motion | None = None, speed: float | None = None, transmit_power: float = 0.01, noise_figure_db: float = 12.0, multiplexing: Literal['tdm', 'bpm', 'ddm', 'cdm'] = 'tdm', empty_slots: int = 1, code_phases: ArrayLike | None = None, receiver: Receiver | None = None) -> None:
         ...
     def __repr__(self) -> str:
         ...
@@ -1288,7 +1326,7 @@ class Radar:
         tx, chirp: indices of the transmitter and of its chirp
         Returns s after the frame's start. Raises IndexError.
         """
-    def replace(self, *, waveform: ChirpSequence = ..., transmitters: typing.Sequence[Antenna] = ..., receivers: typing.Sequence[Antenna] = ..., position: ArrayLike = ..., yaw: float = ..., pitch: float = ..., motion: Motion | None = ..., speed: float | None = ..., transmit_power: float = ..., noise_figure_db: float = ..., multiplexing: Literal['tdm'] = ...) -> Radar:
+    def replace(self, *, waveform: ChirpSequence = ..., transmitters: typing.Sequence[Antenna] = ..., receivers: typing.Sequence[Antenna] = ..., position: ArrayLike = ..., yaw: float = ..., pitch: float = ..., motion: Motion | None = ..., speed: float | None = ..., transmit_power: float = ..., noise_figure_db: float = ..., multiplexing: Literal['tdm', 'bpm', 'ddm', 'cdm'] = ..., empty_slots: int = ..., code_phases: ArrayLike | None = ..., receiver: Receiver | None = ...) -> Radar:
         """
         A copy with some arguments of the constructor changed.
 
@@ -1303,6 +1341,16 @@ class Radar:
         Returns [4, 4], translation in m. Raises ValueError where `motion` is not defined.
         """
     @property
+    def code_phases(self) -> numpy.typing.NDArray[numpy.float64] | None:
+        """
+        [tx, slots] rad of "cdm", or None
+        """
+    @property
+    def empty_slots(self) -> int:
+        """
+        of "ddm": shares of the Doppler axis without a transmitter
+        """
+    @property
     def frame_duration(self) -> float:
         """
         s, from the first sample to the last
@@ -1315,12 +1363,17 @@ class Radar:
     @property
     def multiplexing(self) -> str:
         """
-        "tdm"
+        "tdm", "bpm", "ddm" or "cdm"
         """
     @property
     def noise_figure_db(self) -> float:
         """
         dB, single sideband
+        """
+    @property
+    def num_slots(self) -> int:
+        """
+        slots that make one of the num_chirps: of "tdm" one per transmitter, of "bpm" the length of its code, else 1
         """
     @property
     def pitch(self) -> float:
@@ -1331,6 +1384,11 @@ class Radar:
     def position(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         [3] m, in the world, without `motion`
+        """
+    @property
+    def receiver(self) -> Receiver | None:
+        """
+        Receiver, or None
         """
     @property
     def receivers(self) -> list[Antenna]:

@@ -35,7 +35,7 @@ def checked_settings(radar, settings, velocity_gate=None) -> dict:
     if gate("velocity_gate", settings.get("velocity_gate")) and settings.get("velocity") is not None:
         raise refused(ValueError, "velocity_gate", "None where a velocity is chosen", settings["velocity_gate"])
     velocity = optional(real(unit="m/s"))("velocity", settings.get("velocity"))
-    limit = radar.waveform.max_velocity(len(radar.transmitters))
+    limit = radar.waveform.max_velocity(radar.num_slots)
     if velocity is not None and abs(velocity) > limit:
         raise ValueError(f"velocity: must be within +-{limit:.6g} m/s, got {velocity}")
     small = _with_one_sample(radar)

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+import os
 from typing import TYPE_CHECKING
 from functools import cached_property
 
@@ -12,8 +13,10 @@ from .angles import range_azimuth
 from .azimuth_map import sees_azimuth
 from .effects import of_paths
 from .families import families as find_families
+from .receiver import receive
 from .resolution import mean_powers, unresolved_of
 from .stages import Stage
+from .transmit import demultiplex
 
 if TYPE_CHECKING:
     from .foreign_types import Axes
@@ -26,11 +29,15 @@ class Frame:
     """One simulated frame.
 
     scene, radar: what was simulated; paths: what every ray touched
-    cube: complex [tx, rx, chirp, sample], sqrt(W), without noise; the sum of the parts of each partition
+    cube: complex [tx, rx, chirp, sample], sqrt(W), each transmitter alone, without noise and faults of the receiver; the sum
+        of the parts of each partition
+    coded_cube: [1, rx, slots, sample], sqrt(W), what receivers have of transmitters that send at once, without noise; None
+        where they take turns
     parts: {partition: {part: cube}}, without noise, part "other" included; {} when none was asked for
     selections: {partition: {part: expression as text}}, without "other"
     part_of_path: {partition: u16 [P]}, index of the part of each path in the order of `parts`
-    rain_cube: the same of the rain in the scene's weather, which only the map of the whole gets, as it gets the noise; None: none
+    rain_cube: as coded_cube where there is one, else as cube, of the rain in the scene's weather, which only the map of the
+        whole gets, as it gets the noise; None: none
     noise_seed: of the thermal noise, which is drawn from it and the start time of the frame (s); None: no noise
     replay, evaluate, retrace, keyframes: how the signal follows moving echoes, as in `synthesize`
     effect_choices: pairs (name, True, False or "auto") of `effects` as in `trace`
@@ -54,6 +61,7 @@ class Frame:
     noise_seed: int | None
     spectrum_settings: dict
     rain_cube: object = None
+    coded_cube: object = None
     spectrum: object = None
     part_spectra: dict = dataclasses.field(default_factory=dict)
     angle_settings: dict = dataclasses.field(default_factory=dict)
@@ -70,14 +78,33 @@ class Frame:
 
     @property
     def noisy_cube(self):
-        """The cube with rain and thermal noise, complex [tx, rx, chirp, sample], sqrt(W): the same bits at every call.
+        """The cube with rain, thermal noise and the faults of the receiver, complex [tx, rx, chirp, sample], sqrt(W): the same
+        bits at every call. Codes of transmitters are undone (`demultiplex`).
 
         The noise is drawn from the noise seed and the start time of the frame (s): frames in a row differ.
         """
-        cube = self.cube if self.rain_cube is None else self.cube + self.rain_cube
-        if self.noise_seed is None:
-            return cube
-        return _core.add_noise(cube, self.radar, seed=self.noise_seed, start_time=self.paths.frame.start_time)
+        return demultiplex(self.received.cube, self.radar)
+
+    @property
+    def received(self):
+        """Reception: what the converter of the receiver gives, before `demultiplex`, made anew at every call."""
+        return receive(self._arriving_cube, self.radar, seed=self.noise_seed, start_time=self.paths.frame.start_time)
+
+    @property
+    def _arriving_cube(self):
+        """What comes to the receivers, with the rain and without noise: of transmitters that send at once their sum."""
+        cube = self.cube if self.coded_cube is None else self.coded_cube
+        return cube if self.rain_cube is None else cube + self.rain_cube
+
+    def save_raw(self, path: str | os.PathLike[str]) -> int:
+        """Writes what the converter gives as a DCA1000 would: signed 16-bit words, I0 I1 Q0 Q1, slot by slot.
+
+        path: of the file, which is written whole or not at all. Returns the number of bytes. Raises what `ep.save_raw`
+        raises, which writes several frames.
+        """
+        from .sensor_files import save_raw
+
+        return save_raw(self, path)
 
     def plot(self, *, ax: Axes | None = None, vmin: float | None = None, vmax: float | None = None,
              title: str | None = None) -> Axes:

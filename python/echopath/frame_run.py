@@ -17,10 +17,13 @@ from .labels.annotate import as_label_settings, label_frame, make_request, owner
 from .labels.family_pass import FamilyPass
 from .parts import ONLY_PARTITION, as_partitions, check_partitions, decompose
 from .path_subset import part_of_path
+from .receiver.chain import transmitted_code
+from .receiver.channels import require_channels
 from .settings import LabelSettings, SignalSettings, TraceSettings
-from .signals import synthesize
 from .stages import StageClock
 from .tracing import keep_geometry
+from .transmit import code_of, coded_cube, is_coded, synthesize_slots
+from .transmit.signals import has_steps
 from .truth import truth_of_frame
 from .truth.asked import truth_keywords
 from .weather.echoes import has_rain_echoes, rain_cube
@@ -45,6 +48,7 @@ class FrameRun:
     def __init__(self, scene, radar, trace: TraceSettings, signal: SignalSettings, parts, angles, labels, detections,
                  truth, guard: bool):
         self.scene, self.radar, self.trace, self.signal, self.guard = scene, radar, trace, signal, guard
+        _check_radar(radar, labels)
         self.partitions, self.angle_settings = as_partitions(parts), checked_settings(radar, angles)
         check_partitions(self.partitions, scene)
         has_rain_echoes(scene, trace.effects)  # raises
@@ -72,13 +76,17 @@ class FrameRun:
         paths, clock = recorded
         with clock("synthesis"):
             settings = self.signal.of_replay() | {"progress": progress}
-            probe = _core.SignalProbe(seed=self.trace.seed) if self.guard else None
+            probe = _core.SignalProbe(seed=self.trace.seed) if self.guard and not has_steps(self.radar) else None
             families = find_families(paths, self._request.objects) if self._request else None
             cubes, whole, owners = _cubes(paths, self.radar, self.partitions, families, self._request, settings, probe)
         with clock("parts of paths"):
             groups = {partition: part_of_path(paths, group) for partition, group in self.partitions.items()}
         frame = self._bare_frame(paths, whole, cubes, groups, probe, clock.stages)
         frame.rain_cube = self._rain_cube(paths, clock)
+        if is_coded(self.radar):
+            with clock("code of the transmitters"):
+                frame.coded_cube = coded_cube(paths, self.radar, whole, code=transmitted_code(self.radar),
+                                              **self.signal.of_replay())
         with clock("spectra"):
             with_spectra(frame)
         if sees_azimuth(self.radar):
@@ -104,7 +112,7 @@ class FrameRun:
                      angle_settings=self.angle_settings, replay=signal.replay, evaluate=signal.evaluate,
                      retrace=signal.retrace, keyframes=signal.keyframes,
                      effect_choices=self.trace.effects,
-                     checks=_checks(whole, probe, signal, paths.frame) if self.guard else [], stages=stages)
+                     checks=_checks(whole, probe, signal, paths.frame) if probe else [], stages=stages)
 
     def _rain_cube(self, paths, clock):
         """The signal of the rain of the scene, None where it has none."""
@@ -121,13 +129,23 @@ class FrameRun:
                 for partition, group in self.partitions.items()}
 
 
+def _check_radar(radar, labels) -> None:
+    """Raises ValueError, before the long work, for what no frame of a radar can have."""
+    code_of(radar)
+    if radar.receiver is not None:
+        require_channels(radar.receiver, radar)
+    if labels not in (None, False) and has_steps(radar):
+        raise ValueError("labels: must be off where the chirps of a frame have steps of frequency or bandwidth: its map is "
+                         "that of equal chirps")
+
+
 def _cubes(paths, radar, partitions: dict, families, request, settings: dict, probe):
     """{partition: {part: cube}}, the whole, and what finds the owners of cells, as `label_frame` takes it.
 
     families, request: None: no labels, and no owners
     """
     if not partitions and families is None:
-        return {}, synthesize(paths, radar, **settings, probe=probe), None
+        return {}, synthesize_slots(paths, radar, **settings, probe=probe), None
     if families is None or settings["retrace"] != "never":
         return _decomposed(paths, radar, partitions, families, request, settings | {"probe": probe})
     if not partitions:

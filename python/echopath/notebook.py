@@ -34,7 +34,7 @@ def radar_html(radar) -> str:
                   f"every {1e6 * waveform.chirp_interval:.6g} µs",
         "antennas": f"{num_transmitters} transmitters, {len(radar.receivers)} receivers, {radar.multiplexing}",
         "range": f"cells of {waveform.range_resolution:.4g} m up to {waveform.max_range:.4g} m",
-        "velocity": f"up to ±{waveform.max_velocity(num_transmitters):.4g} m/s",
+        "velocity": f"up to ±{waveform.max_velocity(radar.num_slots):.4g} m/s",
         "transmit power": f"{float(in_dbm(radar.transmit_power)):.4g} dBm a transmitter",
         "noise figure": f"{radar.noise_figure_db:.4g} dB",
         "motion": "at rest" if radar.motion is None else repr(radar.motion)})

@@ -10,6 +10,7 @@ from .equality import is_same
 from .families import Families
 from .settings import Evaluate, Method, Replay, Retrace, SignalSettings
 from .signals import RULES
+from .transmit.signals import has_steps
 
 View = Mapping[str, Selection | str] | Families | Grouping
 Views = View | Mapping[Hashable, View] | None
@@ -163,6 +164,8 @@ def decompose(paths: _core.Paths, radar: _core.Radar | None = None, parts: Views
         either of them} for several views at once
     tolerance (relative rms), method, replay, evaluate, phase_tolerance (rad), retrace, keyframes, settings, probe, progress:
         as in `synthesize`
+    Cubes are those of each transmitter alone, [tx, rx, chirp, sample], for transmitters that send at once, too: what
+    `demultiplex` aims at. Slots that differ in frequency or bandwidth are refused.
     Returns Parts, {name: cube} with "other" for the rest, or {Family: cube} with the background last, the cubes [tx, rx,
     chirp, sample] adding up to the whole; for several views {view: Parts}. Raises TypeError or ValueError naming the
     argument, also for bad names and selections.
@@ -170,6 +173,8 @@ def decompose(paths: _core.Paths, radar: _core.Radar | None = None, parts: Views
     parts = {} if parts is None else parts
     is_one_view = not _is_table_of_views(parts)
     views = {"": parts} if is_one_view else parts
+    if has_steps(paths.radar if radar is None else radar):
+        raise ValueError("radar: must have chirps without steps of frequency or bandwidth for parts of its signal")
     cubes = _core.decompose(paths, radar, [_grouping(view) for view in views.values()], tolerance=tolerance, method=method,
                             replay=replay, evaluate=evaluate, phase_tolerance=phase_tolerance, retrace=retrace,
                             keyframes=keyframes, progress=progress, probe=probe)

@@ -89,5 +89,5 @@ def _range_index(beat, waveform, axis):
 def _velocity_index(velocity, axis, radar):
     """Nearest cell of each velocity in m/s, folded into the axis: i32 [P]."""
     count = len(axis)
-    step = 2.0 * radar.waveform.max_velocity(len(radar.transmitters)) / count
+    step = 2.0 * radar.waveform.max_velocity(radar.num_slots) / count
     return ((np.rint(velocity / step).astype(np.int64) + count // 2) % count).astype(np.int32)

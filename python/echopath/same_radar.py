@@ -5,6 +5,7 @@ import numpy as np
 
 WAVEFORM_KINDS = {"start_frequency": float, "bandwidth": float, "num_samples": int, "sampling_rate": float,
                   "num_chirps": int, "chirp_interval": float, "real": bool}
+WAVEFORM_LISTS = ("extra_idle", "frequency_steps", "bandwidth_steps")
 _NUM_TIMES = 5  # at which motions are compared, over the frame
 
 
@@ -15,12 +16,14 @@ def difference(radar, other, start_time: float = 0.0) -> str:
     """
     if radar is other:
         return ""
-    for name in WAVEFORM_KINDS:
+    for name in (*WAVEFORM_KINDS, *WAVEFORM_LISTS):
         if getattr(radar.waveform, name) != getattr(other.waveform, name):
             return name
-    for name in ("transmit_power", "multiplexing", "transmitters", "receivers"):
+    for name in ("transmit_power", "multiplexing", "empty_slots", "transmitters", "receivers", "receiver"):
         if getattr(radar, name) != getattr(other, name):
             return name
+    if not np.array_equal(radar.code_phases, other.code_phases):
+        return "code_phases"
     times = start_time + np.linspace(0.0, radar.frame_duration, _NUM_TIMES)
     if all(np.array_equal(radar.world_from_radar(time), other.world_from_radar(time)) for time in times):
         return ""

@@ -6,7 +6,9 @@ from numpy.typing import NDArray
 
 from . import _core
 from .checks import ArrayLike, Progress, an, checked, optional, real
+from .receiver.chain import transmitted_code
 from .settings import Evaluate, Method, Replay, Retrace, SignalSettings
+from .transmit import code_signal, is_coded, radar_of_noise, slots_radar, synthesize_slots
 
 RULES = SignalSettings.RULES | {"radar": optional(an(_core.Radar)), "probe": optional(an(_core.SignalProbe))}
 
@@ -38,12 +40,17 @@ def synthesize(paths: _core.Paths, radar: _core.Radar | None = None, *, toleranc
     settings: SignalSettings that give the keywords which the call leaves out, or None
     probe: a SignalProbe, filled with spot checks of this signal, or None
     progress: callable (stage, fraction), True for bars, or None
-    Returns the cube [tx, rx, chirp, sample], complex128 in sqrt(W). Warns (RuntimeWarning) of what will take over 10 s. Raises
-    TypeError or ValueError naming the argument, KeyboardInterrupt on Ctrl-C.
+    Returns the cube [tx, rx, chirp, sample], complex128 in sqrt(W); of transmitters that send at once [1, rx, slots, sample],
+    which `demultiplex` takes apart, with the errors of their chains where the Receiver has some: it needs the memory of all
+    transmitters. Waveforms whose slots differ cost one synthesis for each kind of chirp, and take no probe. Warns
+    (RuntimeWarning) of what will take over 10 s. Raises TypeError or ValueError naming the argument, KeyboardInterrupt on
+    Ctrl-C.
     """
-    return _core.synthesize(paths, radar, tolerance=tolerance, method=method, replay=replay, evaluate=evaluate,
-                            phase_tolerance=phase_tolerance, retrace=retrace, keyframes=keyframes, progress=progress,
-                            probe=probe)
+    radar = paths.radar if radar is None else radar
+    made_by = dict(tolerance=tolerance, method=method, replay=replay, evaluate=evaluate, phase_tolerance=phase_tolerance,
+                   retrace=retrace, keyframes=keyframes, progress=progress)
+    separate = synthesize_slots(paths, slots_radar(radar) if is_coded(radar) else radar, **made_by, probe=probe)
+    return code_signal(separate, transmitted_code(radar)) if is_coded(radar) else separate
 
 
 @checked(start_time=real(unit="s"))
@@ -52,12 +59,14 @@ def add_noise(cube: ArrayLike, radar: _core.Radar, *, seed: int, start_time: flo
 
     Circular Gaussian of k T0 F fs per complex sample, half of it for real samples, independent between samples and between
     frames that start at different times.
-    cube: [tx, rx, chirp, sample] in sqrt(W), of that radar
+    cube: [tx, rx, chirp, sample] in sqrt(W), of that radar, or [1, rx, slots, sample] before `demultiplex`
     radar: whose noise figure and sampling rate count
     seed: 0 or more; start_time: s, first sample of the frame (`paths.frame.start_time`): the noise is drawn from both, so
         that frames in a row have one seed and noise of their own, and each the same noise whether it is made alone or not.
         Without start_time every frame has the noise of one that starts at 0: the same in all frames of one seed
-    Returns a new cube [tx, rx, chirp, sample] in sqrt(W). Raises TypeError or ValueError naming the argument, also unless
-    the cube has the shape that the radar gives it.
+    Returns a new cube of that shape in sqrt(W). Raises TypeError or ValueError naming the argument, also unless the cube has
+    the shape that the radar gives it.
     """
+    if is_coded(radar) and np.shape(cube)[0] == 1:
+        radar = radar_of_noise(radar)
     return _core.add_noise(cube, radar, seed=seed, start_time=start_time)

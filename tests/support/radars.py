@@ -7,7 +7,7 @@ import echopath as ep
 
 FREQUENCY = 77e9  # Hz
 WAVEFORM = {"start_frequency": FREQUENCY, "bandwidth": 1e9, "num_samples": 64, "sampling_rate": 20e6, "num_chirps": 1,
-            "chirp_interval": 60e-6, "real": False}
+            "chirp_interval": 60e-6, "real": False, "extra_idle": (), "frequency_steps": (), "bandwidth_steps": ()}
 
 
 def build_radar(transmitters=((0, 0, 0),), receivers=((0, 0, 0),), **settings) -> ep.Radar:

@@ -1,6 +1,9 @@
 #include "echopath/radar/radar.h"
 
+#include <bit>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -49,6 +52,26 @@ void require_index(int index, int count, const char* name) {
                           std::to_string(index));
 }
 
+void validate_list(const std::vector<double>& values, const char* argument, double least, const char* rule) {
+  for (const double value : values) require(std::isfinite(value) && value > least, argument, rule, value);
+}
+
+double sum_of(const std::vector<double>& values, size_t count) {
+  return std::accumulate(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count), 0.0);
+}
+
+void validate_code(const Radar& radar) {
+  require(radar.empty_slots >= 1, "empty_slots", "must be at least 1", radar.empty_slots);
+  const bool has_code = radar.multiplexing == Multiplexing::kCdm;
+  require(has_code == !radar.code_phases.empty(), "code_phases", "must be given for cdm and for nothing else",
+          radar.code_phases.size());
+  for (const std::vector<double>& row : radar.code_phases) {
+    require(!row.empty() && row.size() == radar.code_phases.front().size(), "code_phases",
+            "must have rows of one length, at least 1", row.size());
+    for (const double phase : row) require(std::isfinite(phase), "code_phases", "must be finite", phase);
+  }
+}
+
 // Replay asks for gains once per path, antenna and instant: the usual whole exponents must not cost a call of pow.
 double power_of(double base, double exponent) {
   constexpr int kLargestWhole = 16;
@@ -71,9 +94,26 @@ void ChirpSequence::validate() const {
   require(chirp_interval >= chirp_duration() * (1.0 - kSlotTolerance), "chirp_interval",
           "must be at least num_samples / sampling_rate = " + std::to_string(chirp_duration() * 1e6) + " us",
           chirp_interval);
+  validate_list(extra_idle, "extra_idle", -std::numeric_limits<double>::min(), "must be finite and not negative");
+  validate_list(frequency_steps, "frequency_steps", -start_frequency, "must be finite and leave a positive start_frequency");
+  validate_list(bandwidth_steps, "bandwidth_steps", -bandwidth, "must be finite and leave a positive bandwidth");
 }
 
 double ChirpSequence::wavelength() const { return kSpeedOfLight / centre_frequency(); }
+
+double ChirpSequence::mean_interval() const {
+  if (extra_idle.empty()) return chirp_interval;
+  return chirp_interval + sum_of(extra_idle, extra_idle.size()) / static_cast<double>(extra_idle.size());
+}
+
+double ChirpSequence::slot_start(int64_t slot) const {
+  // One product of an exact integer: equal spacing up to one rounding, however long the frame.
+  const double even = static_cast<double>(slot) * chirp_interval;
+  if (extra_idle.empty()) return even;
+  const auto length = static_cast<int64_t>(extra_idle.size());
+  return even + static_cast<double>(slot / length) * sum_of(extra_idle, extra_idle.size()) +
+         sum_of(extra_idle, static_cast<size_t>(slot % length));
+}
 
 double ChirpSequence::range_resolution() const { return kSpeedOfLight / (2.0 * bandwidth); }
 
@@ -81,7 +121,7 @@ double ChirpSequence::max_range() const { return (real ? 0.5 : 1.0) * num_sample
 
 double ChirpSequence::velocity_resolution(int num_slots) const {
   require(num_slots >= 1, "num_slots", "must be at least 1", num_slots);
-  return wavelength() / (2.0 * num_chirps * num_slots * chirp_interval);
+  return wavelength() / (2.0 * num_chirps * num_slots * mean_interval());
 }
 
 double ChirpSequence::max_velocity(int num_slots) const { return 0.5 * num_chirps * velocity_resolution(num_slots); }
@@ -154,6 +194,12 @@ void Radar::validate() const {
   require_in_range(position, "position", "the radar");
   require(std::isfinite(yaw), "yaw", "must be finite", yaw);
   require(std::abs(pitch) <= 0.5 * kPi, "pitch", "must be from -pi/2 to pi/2 rad", pitch);
+  validate_code(*this);
+}
+
+int Radar::num_slots() const {
+  if (multiplexing == Multiplexing::kTdm) return static_cast<int>(transmitters.size());
+  return multiplexing == Multiplexing::kBpm ? static_cast<int>(std::bit_ceil(transmitters.size())) : 1;
 }
 
 Transform Radar::world_from_radar(double time) const {
@@ -161,16 +207,14 @@ Transform Radar::world_from_radar(double time) const {
 }
 
 double Radar::chirp_time(int tx, int chirp) const {
-  require_index(tx, num_slots(), "tx");
+  require_index(tx, static_cast<int>(transmitters.size()), "tx");
   require_index(chirp, waveform.num_chirps, "chirp");
-  // One product of an exact integer: equal spacing up to one rounding, however long the frame.
-  const double slot = static_cast<double>(chirp) * num_slots() + tx;
-  return slot * waveform.chirp_interval + waveform.window_centre();
+  return waveform.slot_start(int64_t{chirp} * num_slots() + (takes_turns() ? tx : 0)) + waveform.window_centre();
 }
 
 double Radar::frame_duration() const {
-  const double last_slot = static_cast<double>(waveform.num_chirps) * num_slots() - 1.0;
-  return last_slot * waveform.chirp_interval + (waveform.num_samples - 1) / waveform.sampling_rate;
+  const int64_t last_slot = int64_t{waveform.num_chirps} * num_slots() - 1;
+  return waveform.slot_start(last_slot) + (waveform.num_samples - 1) / waveform.sampling_rate;
 }
 
 }  // namespace echopath

@@ -1,5 +1,6 @@
 #pragma once
 // Describes the waveform, the antennas and the radar that carries them.
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,15 +11,19 @@
 
 namespace echopath {
 
-// Describes a frame of linear up-chirps. `bandwidth` is what the num_samples samples sweep.
+// Describes a frame of linear up-chirps. `bandwidth` is what the num_samples samples sweep. The slots of a frame, one chirp
+// each, may differ: slot i takes entry i modulo the length of each of the three last lists, which are empty where all are alike.
 struct ChirpSequence {
-  double start_frequency = 77e9;  // Hz, at the first sample
-  double bandwidth = 1e9;         // Hz, sampled
-  int num_samples = 512;          // per chirp
-  double sampling_rate = 20e6;    // Hz
-  int num_chirps = 128;           // per transmitter
-  double chirp_interval = 60e-6;  // s, between neighbouring slots
-  bool real = false;              // real IF samples instead of complex
+  double start_frequency = 77e9;        // Hz, at the first sample
+  double bandwidth = 1e9;               // Hz, sampled
+  int num_samples = 512;                // per chirp
+  double sampling_rate = 20e6;          // Hz
+  int num_chirps = 128;                 // per transmitter
+  double chirp_interval = 60e-6;        // s, between neighbouring slots
+  bool real = false;                    // real IF samples instead of complex
+  std::vector<double> extra_idle;       // s, >= 0, by which the slot after this one begins later
+  std::vector<double> frequency_steps;  // Hz, added to the start frequency
+  std::vector<double> bandwidth_steps;  // Hz, added to the bandwidth
 
   void validate() const;  // raises invalid_argument naming the field, the rule and the value
   double slope() const { return bandwidth * sampling_rate / num_samples; }          // Hz/s
@@ -26,6 +31,8 @@ struct ChirpSequence {
   double window_centre() const { return 0.5 * (num_samples - 1) / sampling_rate; }  // s after the first sample
   double centre_frequency() const { return start_frequency + 0.5 * bandwidth; }     // Hz
   double wavelength() const;                                                        // m, at the centre frequency
+  double mean_interval() const;                                                     // s, between neighbouring slots
+  double slot_start(int64_t slot) const;                                            // s after the first slot's
   double range_resolution() const;                                                  // m, c / 2B
   double max_range() const;                                                         // m, c fs / (2 slope), half if real
   double velocity_resolution(int num_slots) const;                                  // m/s
@@ -73,7 +80,11 @@ struct Antenna {
 // coordinates (base/range_of_coordinates.h).
 Vec3 mean_position(const std::vector<Antenna>& antennas, const Transform& world_from_radar);
 
-enum class Multiplexing { kTdm };  // one transmitter per slot
+// How transmitters share the chirps. kTdm: one transmitter per slot. The others send in all slots at once, by a code over
+// the slots; echoes and cubes are those of each transmitter by itself, [tx, rx, chirp, sample], as a receiver that undoes the
+// code has them: kBpm: the signs of a Hadamard matrix over num_slots slots, which make one chirp. kDdm: transmitter m turns
+// by m / (transmitters + empty_slots) of a cycle from chirp to chirp. kCdm: it turns by code_phases[m].
+enum class Multiplexing { kTdm, kBpm, kDdm, kCdm };
 
 struct Radar {
   ChirpSequence waveform;
@@ -84,13 +95,19 @@ struct Radar {
   Vec3 position = Vec3::Zero();          // m, in the world: origin of the radar's frame
   double yaw = 0.0, pitch = 0.0;         // rad, of the radar's frame in the world, see `turned`
   std::shared_ptr<const Motion> motion;  // moves the placed radar (see `moved`); null: at rest
+  int empty_slots = 1;                   // of kDdm, at least 1: shares of the Doppler axis that no transmitter is moved to
+  std::vector<std::vector<double>> code_phases;  // rad, [tx, slots], of kCdm, repeated; empty for others
+  std::shared_ptr<const void> receiver;          // what follows the ideal signal, for those who know it; null: nothing
 
   void validate() const;
-  int num_slots() const { return static_cast<int>(transmitters.size()); }
+  bool takes_turns() const { return multiplexing == Multiplexing::kTdm; }
+  // Returns how many slots make one of the num_chirps: one for each transmitter, or the length of the BPM code, or 1.
+  int num_slots() const;
   // Returns Translation(position) motion(time) R(yaw, pitch): a velocity is in the axes of the world, and the radar turns
   // about its own origin, as the nodes of a scene do.
   Transform world_from_radar(double time) const;
-  // Returns the time (s after the frame's start) of the window centre of chirp `chirp` of transmitter `tx`.
+  // Returns the time (s after the frame's start) of the window centre of chirp `chirp` of transmitter `tx`; of simultaneous
+  // codes that of its first slot.
   double chirp_time(int tx, int chirp) const;
   double frame_duration() const;  // s, from the first sample to the last
 };

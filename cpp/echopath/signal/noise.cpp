@@ -22,7 +22,8 @@ std::complex<double> gaussian_pair(uint64_t seed, int64_t index) {
 double noise_power(const Radar& radar) {
   const double noise_factor = std::pow(10.0, radar.noise_figure_db / 10.0);
   const double complex_power = kBoltzmann * kReferenceTemperature * noise_factor * radar.waveform.sampling_rate;
-  return radar.waveform.real ? 0.5 * complex_power : complex_power;
+  const double averaged = radar.multiplexing == Multiplexing::kBpm ? radar.num_slots() : 1.0;
+  return (radar.waveform.real ? 0.5 * complex_power : complex_power) / averaged;
 }
 
 double noise_power_in_cell(const Radar& radar) {

@@ -10,7 +10,7 @@
 namespace echopath {
 
 // Returns the noise power of one IF sample in W: k T0 F fs for complex samples, half of it for real ones (single-sideband
-// noise figure, no image).
+// noise figure, no image). A BPM code that is undone averages over its slots.
 double noise_power(const Radar& radar);
 
 // Returns the noise power in W in the range-Doppler cell that all samples of a frame make with even weights, to compare with

@@ -38,7 +38,7 @@ double exact_seconds(const Paths& paths, const Radar& radar, const CubeSettings&
   const double of_place = settings.replay.specular == SpecularPoints::kMaterial ? kMaterialSeconds : kFermatSeconds;
   const double of_chirp = (settings.replay.exact ? of_place * moving.places : 0.0) +
                           (settings.synthesis.per_sample ? kSampleSeconds * moving.paths * radar.waveform.num_samples : 0.0);
-  const double num_chirps = static_cast<double>(radar.waveform.num_chirps) * radar.num_slots();
+  const double num_chirps = static_cast<double>(radar.waveform.num_chirps) * static_cast<double>(radar.transmitters.size());
   return of_chirp * num_chirps * static_cast<double>(radar.receivers.size()) / num_threads();
 }
 

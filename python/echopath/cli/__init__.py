@@ -78,6 +78,9 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--truth", action="store_true",
                      help="also place, motion, box, visible share and cross section of each object, in frame.h5 and truth.csv "
                           "(default: as [truth] of the scene file says)")
+    run.add_argument("--raw", metavar="OUT.bin",
+                     help="also what the sensor's converter gives, frame after frame as a DCA1000 writes it: signed 16-bit "
+                          "words, I0 I1 Q0 Q1")
     _add_sequence_options(run)
     run.set_defaults(command=_run)
 
@@ -232,11 +235,13 @@ def _view(options) -> None:
 def _run(options) -> None:
     from . import report
     from ..progress import progress_bars
-    from .run import certify, chosen_partition, simulate_file, write_outputs
+    from .run import certify, chosen_partition, raw_line, simulate_file, write_outputs
     from .run_sequence import is_sequence, run_sequence
     from ..scene_file import load_scene
 
     require_writable(options.out, "--out")
+    if options.raw is not None:
+        require_writable(Path(options.raw).parent, "--raw")
     scene_file = load_scene(options.scene)
     if scene_file.radar is None:
         raise ValueError(f"{options.scene}: has no radar; 'echopath scene {options.scene} --out SCENE.toml' writes a scene file "
@@ -251,6 +256,8 @@ def _run(options) -> None:
                               batches=options.batches, extra_parts=chosen, truth=options.truth or None, progress=progress)
         certificate = certify(frame, progress=progress)
         written = write_outputs(frame, options.out, partitions=frame.parts)
+    if options.raw is not None:
+        print(raw_line(options.raw, frame.save_raw(options.raw)))
     for text in [scene_file.title or options.scene, *report.counts(frame.paths),
                  *report.overlaps(frame.scene, frame.paths.frame.trace_time), *report.effects(frame.effects),
                  *report.stages(frame.stages), *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),

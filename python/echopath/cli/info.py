@@ -95,20 +95,18 @@ def _material(mesh) -> str:
 
 def _describe_radar(radar) -> list[str]:
     waveform = radar.waveform
-    slots = len(radar.transmitters)
     cell = 0.5 * ep.speed_of_light / waveform.bandwidth
-    wavelength = ep.speed_of_light / (waveform.start_frequency + 0.5 * waveform.bandwidth)
     max_range = cell * waveform.num_samples * (0.5 if waveform.real else 1.0)
     return ["radar",
-            report.line("antennas", f"{slots} transmitting, {len(radar.receivers)} receiving"),
+            report.line("antennas", f"{len(radar.transmitters)} transmitting, {len(radar.receivers)} receiving"),
             *_describe_array(ep.virtual_array(radar)),
             report.line("place", _place(radar)),
             report.line("frequency", f"{waveform.start_frequency / 1e9:g} GHz + {waveform.bandwidth / 1e9:g} GHz"),
             report.line("samples, chirps", f"{waveform.num_samples} at {waveform.sampling_rate / 1e6:g} MHz, "
                         f"{waveform.num_chirps} every {waveform.chirp_interval * 1e6:g} us"),
             report.line("range", f"to {max_range:.2f} m, resolution {cell:.3f} m"),
-            report.line("velocity", f"+-{wavelength / (4.0 * slots * waveform.chirp_interval):.2f} m/s, resolution "
-                        f"{wavelength / (2.0 * slots * waveform.chirp_interval * waveform.num_chirps):.3f} m/s")]
+            report.line("velocity", f"+-{waveform.max_velocity(radar.num_slots):.2f} m/s, resolution "
+                        f"{waveform.velocity_resolution(radar.num_slots):.3f} m/s")]
 
 
 def _place(radar) -> str:

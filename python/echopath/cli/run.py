@@ -93,6 +93,11 @@ def write_outputs(frame: Frame, folder, partitions) -> Written:
     return Written(frame_path, left_out, pictures)
 
 
+def raw_line(path, num_bytes: int) -> str:
+    """What to say of a file of raw data."""
+    return f"wrote {path}: {num_bytes} bytes of raw data"
+
+
 def _write_pictures(frame: Frame, folder: Path, partitions) -> list:
     written = []
 

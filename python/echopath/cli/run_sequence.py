@@ -10,8 +10,9 @@ from ..checks import refused
 from ..progress import progress_bars
 from ..scene_file import SceneFile
 from ..sequence import Sequence, load_sequence
+from ..sensor_files import save_raw
 from .numbers import duration_words
-from .run import TRUTH_NAME, keywords_of
+from .run import TRUTH_NAME, keywords_of, raw_line
 
 
 def is_sequence(scene_file: SceneFile, options) -> bool:
@@ -36,6 +37,8 @@ def run_sequence(scene_file: SceneFile, options, extra_parts: dict) -> Iterator[
         raise ValueError("--interval: must be given with --frames, in s from the start of a frame to that of the next")
     keywords = keywords_of(scene_file, num_rays=options.rays, seed=options.seed, batches=options.batches,
                            truth=options.truth or None, extra_parts=extra_parts)
+    if options.raw is not None and (keep not in (None, "all") or options.shard is not None):
+        raise ValueError("--raw: needs the signals of all frames: --keep all, without --shard")
     if keep == "labels" and keywords["labels"] is None:
         keywords["labels"] = True
     sequence = Sequence(scene_file.scene, scene_file.radar, frames=frames, interval=interval, **keywords)
@@ -49,6 +52,8 @@ def run_sequence(scene_file: SceneFile, options, extra_parts: dict) -> Iterator[
         raise
     stored = load_sequence(options.out)
     yield f"wrote {stored}"
+    if options.raw is not None:
+        yield raw_line(options.raw, save_raw(stored, options.raw))
     if keywords["truth"] is not None:
         stored.truth.to_csv(stored.folder / TRUTH_NAME)
         yield f"wrote {stored.folder / TRUTH_NAME}"

@@ -133,7 +133,7 @@ class EchoFields:
         order = np.argsort(number, kind="stable")
         index = inside[order]
         doppler = (cells.range[index] - 0.5 * cells.length[index]) * waveform.slope / waveform.centre_frequency
-        bin_width = 2.0 * waveform.max_velocity(len(paths.radar.transmitters)) / waveform.num_chirps
+        bin_width = 2.0 * waveform.max_velocity(paths.radar.num_slots) / waveform.num_chirps
         range_step = _core.speed_of_light * waveform.sampling_rate / (2.0 * waveform.slope * waveform.num_samples * pad)
         shift, field = self._of_channels(cells.length, index, range_step * pad)
         return {"number": number[order], "index": index, "range": cells.range[index] / range_step,
@@ -200,7 +200,7 @@ def _chirp_times(paths, tx=0):
 def _duration(paths) -> float:
     """Of all chirps of one transmitter and the slots between them, s."""
     radar = paths.radar
-    return radar.waveform.num_chirps * len(radar.transmitters) * radar.waveform.chirp_interval
+    return radar.waveform.num_chirps * radar.num_slots * radar.waveform.mean_interval
 
 
 def _speed_change(paths, length):

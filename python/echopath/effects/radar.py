@@ -34,8 +34,30 @@ def _array(case: Case):
 
 @rule("transmitters take turns (TDM)", "Radar.transmitters", "Radar.multiplexing")
 def _turns(case: Case):
-    slots = len(case.radar.transmitters)
-    return slots > 1, f"{slots} transmitter" + "s" * (slots > 1)
+    count = len(case.radar.transmitters)
+    if case.radar.multiplexing != "tdm":
+        return False, "they send at once"
+    return count > 1, f"{count} transmitter" + "s" * (count > 1)
+
+
+@rule("transmitters send at once by a code", "Radar.empty_slots", "Radar.code_phases")
+def _codes(case: Case):
+    kind = case.radar.multiplexing
+    return kind != "tdm", "they take turns" if kind == "tdm" else kind
+
+
+@rule("chirps that differ within a frame", "ChirpSequence.extra_idle", "ChirpSequence.frequency_steps",
+      "ChirpSequence.bandwidth_steps")
+def _steps(case: Case):
+    names = [name for name in ("extra_idle", "frequency_steps", "bandwidth_steps") if getattr(case.radar.waveform, name)]
+    return bool(names), ", ".join(names) or "all chirps are alike"
+
+
+@rule("faults of the receiver", "Radar.receiver")
+def _receiver(case: Case):
+    if case.radar.receiver is None:
+        return False, "no Receiver is given: it is ideal but for its noise"
+    return True, ", ".join(case.radar.receiver.plain()) or "all are off"
 
 
 @rule("polarised fields", "trace.polarization", "Antenna.polarization")

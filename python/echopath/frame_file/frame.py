@@ -19,6 +19,7 @@ from ..interrupts import interrupts_are_kept
 from ..keywords import parameters_of
 from ..labels.labels import Labels
 from ..settings import Evaluate, Replay, Retrace
+from ..transmit import is_coded, signal_shape
 from .checks import read_checks, write_checks
 from .container import file_with_paths, new_file, our_file
 from .detections import read_detections, write_detections
@@ -186,6 +187,8 @@ def _write_signal(file, frame: Frame) -> None:
     write_array(group, "noisy_cube", frame.noisy_cube, unit="sqrt(W)")
     if frame.rain_cube is not None:
         write_array(group, "rain_cube", frame.rain_cube, unit="sqrt(W)")
+    if frame.coded_cube is not None:
+        write_array(group, "coded_cube", frame.coded_cube, unit="sqrt(W)")
     for name in SIGNAL_SETTINGS:
         write_attribute(group, name, getattr(frame, name))
     write_attribute(group, "keyframes", frame.keyframes)
@@ -231,7 +234,9 @@ def _read_signal(file, frame: Frame) -> None:
     group = read_group(file, "signal")
     frame.cube = read_array(group, "cube", np.complex128, _cube_shape(frame.radar))
     if "rain_cube" in group:
-        frame.rain_cube = read_array(group, "rain_cube", np.complex128, _cube_shape(frame.radar))
+        frame.rain_cube = read_array(group, "rain_cube", np.complex128, signal_shape(frame.radar))
+    if is_coded(frame.radar):
+        frame.coded_cube = read_array(group, "coded_cube", np.complex128, signal_shape(frame.radar))
     frame.noise_seed = read_attribute(group, "noise_seed", int) if "noise_seed" in group.attrs else None
     for name, known in SIGNAL_SETTINGS.items():
         setattr(frame, name, _one_of(group, name, known))

@@ -1,10 +1,13 @@
 """Radars in HDF5 groups (layout: data/README.md)."""
 from __future__ import annotations
 
+import json
+
 import numpy as np
 
 from .. import _core
-from ..same_radar import WAVEFORM_KINDS, table_key
+from ..receiver import Receiver
+from ..same_radar import WAVEFORM_KINDS, WAVEFORM_LISTS, table_key
 from .h5 import blames_group, read_array, read_attribute, read_group, read_texts, write_array, write_attribute, write_texts
 from .motion import read_motion, write_motion
 
@@ -14,6 +17,7 @@ def write_radar(group, radar) -> None:
     write_attribute(group, "transmit_power", radar.transmit_power)
     write_attribute(group, "noise_figure_db", radar.noise_figure_db)
     write_attribute(group, "multiplexing", radar.multiplexing)
+    _write_sensor(group, radar)
     write_attribute(group, "yaw", radar.yaw)
     write_attribute(group, "pitch", radar.pitch)
     write_array(group, "position", radar.position, unit="m")
@@ -26,17 +30,42 @@ def write_radar(group, radar) -> None:
         write_motion(group.create_group("motion"), radar.motion)
 
 
+def _write_sensor(group, radar) -> None:
+    """What radars whose transmitters take turns, of equal chirps and with an ideal receiver, need not say."""
+    for name in WAVEFORM_LISTS:
+        if getattr(radar.waveform, name):
+            write_array(group, name, np.array(getattr(radar.waveform, name), np.float64))
+    if radar.multiplexing != "tdm":
+        write_attribute(group, "empty_slots", radar.empty_slots)
+    if radar.code_phases is not None:
+        write_array(group, "code_phases", radar.code_phases, unit="rad")
+    if radar.receiver is not None:
+        write_attribute(group, "receiver", json.dumps(radar.receiver.plain()))
+
+
+def _read_sensor(group) -> dict:
+    keywords = {}
+    if "empty_slots" in group.attrs:
+        keywords["empty_slots"] = read_attribute(group, "empty_slots", int)
+    if "code_phases" in group:
+        keywords["code_phases"] = read_array(group, "code_phases", np.float64, (None, None))
+    if "receiver" in group.attrs:
+        keywords["receiver"] = Receiver(**json.loads(read_attribute(group, "receiver", str)))
+    return keywords
+
+
 @blames_group
 def read_radar(group):
     """The radar of a group."""
     source = read_group(group, "waveform")
     fields = {field: read_attribute(source, field, kind) for field, kind in WAVEFORM_KINDS.items()}
+    fields |= {name: read_array(group, name, np.float64, (None,)) for name in WAVEFORM_LISTS if name in group}
     return _core.Radar(_core.ChirpSequence(**fields), transmitters=_read_antennas(read_group(group, "transmitters")),
                        receivers=_read_antennas(read_group(group, "receivers")),
                        transmit_power=read_attribute(group, "transmit_power", float),
                        noise_figure_db=read_attribute(group, "noise_figure_db", float),
                        multiplexing=read_attribute(group, "multiplexing", str),
-                       position=read_array(group, "position", np.float64, (3,)),
+                       **_read_sensor(group), position=read_array(group, "position", np.float64, (3,)),
                        yaw=read_attribute(group, "yaw", float), pitch=read_attribute(group, "pitch", float),
                        motion=read_motion(read_group(group, "motion")) if "motion" in group else None)
 

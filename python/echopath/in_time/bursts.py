@@ -58,7 +58,7 @@ class Burst(NamedTuple):
 
 def chirp_period(radar) -> float:
     """s, between the chirps of one transmitter."""
-    return len(radar.transmitters) * radar.waveform.chirp_interval
+    return radar.num_slots * radar.waveform.mean_interval
 
 
 def frames_rule(argument: str, value):

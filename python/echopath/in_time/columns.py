@@ -137,5 +137,6 @@ def _of_channels(radar, burst: Burst):
     num_tx, num_rx = burst.cube.shape[:2]
     if (num_tx, num_rx) == (len(radar.transmitters), len(radar.receivers)):
         return radar
-    waveform = radar.waveform.replace(chirp_interval=chirp_period(radar) / num_tx)
-    return radar.replace(waveform=waveform, transmitters=radar.transmitters[:num_tx], receivers=radar.receivers[:num_rx])
+    waveform = radar.waveform.replace(chirp_interval=chirp_period(radar) / num_tx, extra_idle=())
+    return radar.replace(waveform=waveform, transmitters=radar.transmitters[:num_tx], receivers=radar.receivers[:num_rx],
+                         multiplexing="tdm", code_phases=None)

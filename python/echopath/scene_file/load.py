@@ -113,6 +113,7 @@ def _build_radar(table: RadarTable, folder: Path, trajectories: Trajectories):
     with blamed("radar"):
         return _core.Radar(waveform, **antennas, transmit_power=table.transmit_power,
                            noise_figure_db=table.noise_figure_db, multiplexing=table.multiplexing,
+                           empty_slots=table.empty_slots, code_phases=table.code_phases, receiver=table.receiver,
                            position=tuple(table.position), yaw=math.radians(table.yaw_deg),
                            pitch=math.radians(table.pitch_deg),
                            motion=motion_of(table.motion, "radar.motion") or trajectories.of(table, "radar"),

@@ -17,6 +17,7 @@ from ..checks import Rule, positive, window
 from ..effect_choices import effects_rule
 from ..gates import gate
 from ..parts import are_tables
+from ..receiver.settings import receiver_rule
 from ..settings import (
     MOST_BATCHES, MOST_BOUNCES, MOST_RAYS, Evaluate, Footprint, LabelSettings, Plane, Polarization, Replay, Retrace, Sampler,
     Scatterers, SignalSettings, TraceSettings,
@@ -118,6 +119,9 @@ class WaveformTable(Table):
     num_chirps: int = Field(ge=1, description="per transmitter")
     chirp_interval: Positive = Field(description="s, between neighbouring slots")
     real: bool = Field(False, description="real instead of complex samples")
+    extra_idle: list[NotNegative] = Field([], description="s, after each slot, repeated over the slots")
+    frequency_steps: list[Number] = Field([], description="Hz, of each slot, likewise")
+    bandwidth_steps: list[Number] = Field([], description="Hz, of each slot, likewise")
 
 
 class IsotropicTable(Table):
@@ -217,7 +221,10 @@ class RadarTable(Table):
     polarization: Vector3 = Field([0.0, 0.0, 1.0], description="of antennas without their own")
     transmit_power: Positive = Field(0.01, description="W, per transmitter")
     noise_figure_db: Number = Field(12.0, description="dB")
-    multiplexing: Literal["tdm"] = Field("tdm", description="one transmitter per slot")
+    multiplexing: Literal["tdm", "bpm", "ddm", "cdm"] = Field("tdm", description="how transmitters share the chirps")
+    empty_slots: int = Field(1, ge=1, description="of \"ddm\": shares of the Doppler axis without a transmitter")
+    code_phases: list[list[Number]] | None = Field(None, description="rad, of \"cdm\", a row for each transmitter")
+    receiver: Annotated[Any, by_check(receiver_rule)] | None = Field(None, description="its faults; none: ideal")
     position: Vector3 = Field([0.0, 0.0, 0.0], description="m, in the world")
     yaw_deg: Number = Field(0.0, description="degrees about z, left positive")
     pitch_deg: Pitch = Field(0.0, description="degrees, up positive")

@@ -9,6 +9,7 @@ from .. import _core
 from ..effect_choices import RAIN_ECHOES, Choices, is_on
 from ..path_subset import HIT
 from ..signals import synthesize
+from ..transmit import signal_shape
 from .drops import DIAMETERS, fall_speeds, reflectivities
 from .weather import Weather, attenuation_of, weather_of
 
@@ -28,15 +29,14 @@ def has_rain_echoes(scene, effects: Choices) -> bool:
 
 
 def rain_cube(scene, radar: _core.Radar, *, start_time: float, seed: int, effects: Choices = (), polarization: str = "scalar"):
-    """The signal of the rain in a frame alone, complex [tx, rx, chirp, sample] in sqrt(W), of a scene that has rain.
+    """The signal of the rain in a frame alone, complex, in the shape of `synthesize` in sqrt(W), of a scene that has rain.
 
     start_time: s, of the frame; seed: of the drops, which differ from frame to frame, as those of showers do (their echoes
     lose their phase within a millisecond); effects: as in `trace`; polarization: "scalar" or "jones", the model of the frame
     """
     paths = rain_paths(scene, radar, start_time=start_time, seed=seed, effects=effects, polarization=polarization)
     if paths is None:
-        shape = (len(radar.transmitters), len(radar.receivers), radar.waveform.num_chirps, radar.waveform.num_samples)
-        return np.zeros(shape, complex)
+        return np.zeros(signal_shape(radar), complex)
     return synthesize(paths, radar)
 
 

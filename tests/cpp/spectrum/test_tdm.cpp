@@ -12,7 +12,7 @@ constexpr double kLastDigit = 1e-6;  // rad, as printed
 
 TEST(Tdm, TenMetresPerSecondTurnASlotByItsPublishedPhase) {
   Radar radar = testing::line_radar(1);
-  const auto phasors = slot_phasors(radar.waveform, 3, {10.0});
+  const auto phasors = slot_phasors(radar, {10.0});
   EXPECT_NEAR(std::arg(phasors[1]), -0.974568, kLastDigit);
   EXPECT_NEAR(std::arg(phasors[2]), -2 * 0.974568, 2 * kLastDigit);
 }

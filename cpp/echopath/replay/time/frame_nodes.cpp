@@ -133,7 +133,7 @@ FrameNodes chebyshev_nodes(const Radar& radar, double start_time, const std::vec
   const std::vector<Piece> pieces = pieces_of(start_time, start_time + radar.frame_duration(), breakpoints);
   const NodeSet set(order, derivatives);
   FrameNodes nodes = lobatto_nodes(pieces, order);
-  for (int tx = 0; tx < radar.num_slots(); ++tx) {
+  for (int tx = 0; tx < static_cast<int>(radar.transmitters.size()); ++tx) {
     TimeSampling& sampling = nodes.sampling.emplace_back();
     sampling.num_rows = static_cast<int>(nodes.times.size());
     for (int chirp = 0; chirp < radar.waveform.num_chirps; ++chirp) {
@@ -147,7 +147,8 @@ FrameNodes chebyshev_nodes(const Radar& radar, double start_time, const std::vec
 
 FrameNodes exact_nodes(const Radar& radar, double start_time, int order, int transmitter, ChirpDerivatives derivatives) {
   require(order >= 3 && order % 2 == 1, "order", "must be odd and >= 3", order);
-  require(transmitter >= 0 && transmitter < radar.num_slots(), "transmitter", "must be one of the radar's", transmitter);
+  require(transmitter >= 0 && transmitter < static_cast<int>(radar.transmitters.size()), "transmitter",
+          "must be one of the radar's", transmitter);
   const double half = radar.waveform.window_centre();
   const NodeSet set(order, derivatives);
   FrameNodes nodes;

@@ -30,13 +30,14 @@ void take_out(const Radar& radar, double time, Paths& found, Job* job, KeptGeome
 std::vector<Stretch> stretches_of(const Radar& radar, double start_time, int count) {
   const int num_chirps = radar.waveform.num_chirps;
   require(count >= 1 && count <= num_chirps, "keyframes", "must lie in [1, num_chirps]", count);
-  const double chirp_distance = radar.num_slots() * radar.waveform.chirp_interval;
+  require(radar.waveform.extra_idle.empty(), "radar.waveform.extra_idle", "must be empty with keyframes, values",
+          radar.waveform.extra_idle.size());
   std::vector<Stretch> stretches;
   for (int i = 0; i < count; ++i) {
     const auto bound = [&](int64_t k) { return static_cast<int>(k * num_chirps / count); };
     Stretch stretch;
     stretch.first_chirp = bound(i);
-    stretch.start_time = start_time + stretch.first_chirp * chirp_distance;
+    stretch.start_time = start_time + radar.waveform.slot_start(int64_t{stretch.first_chirp} * radar.num_slots());
     stretch.radar = radar;
     stretch.radar.waveform.num_chirps = bound(i + 1) - bound(i);
     stretch.middle = stretch.start_time + 0.5 * stretch.radar.frame_duration();

@@ -93,7 +93,7 @@ AngleSpectrum angle_fft(const RangeDoppler& map, const Radar& radar, const Angle
   require(options.zero_pad >= 1 && options.zero_pad <= kMaxZeroPad, "zero_pad", "must be in [1, 64]", options.zero_pad);
   require(array.grid.has_value(), "radar", "must have a virtual array of equal steps for angle_fft (beamform takes any)",
           std::to_string(array.elements.size()) + " elements that are on no such grid");
-  const ElementReader reader(map, array, radar.waveform, options.overlaps, options.compensate);
+  const ElementReader reader(map, array, radar, options.overlaps, options.compensate);
   const GridTransform transform(array, options);
   const int64_t num_ranges = reader.num_ranges(), num_cells = reader.num_velocities() * num_ranges;
   const int64_t num_directions = transform.rows().size() * transform.columns().size();

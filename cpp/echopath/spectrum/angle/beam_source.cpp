@@ -58,7 +58,7 @@ Eigen::VectorXd CellBeam::power(const BeamKernel& beams, Combine combine, const 
 
 BeamSource::BeamSource(const RangeDoppler& map, const Radar& radar, const BeamformOptions& options)
     : options_(options), array_(virtual_array(radar)),
-      reader_(checked(map, radar), array_, radar.waveform, options.overlaps, options.compensate) {
+      reader_(checked(map, radar), array_, radar, options.overlaps, options.compensate) {
   options.validate();
   const std::vector<double> weights = element_weights(array_, options.window);
   weights_ = Eigen::Map<const Eigen::VectorXd>(weights.data(), static_cast<int64_t>(weights.size()));

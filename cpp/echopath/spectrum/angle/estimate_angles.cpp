@@ -140,14 +140,14 @@ void EstimateOptions::validate(int num_slots) const {
   require(peak_range_db >= kMinPeakRange && peak_range_db <= kMaxPeakRange, "peak_range_db", "must be in [0, 200]",
           peak_range_db);
   require(folds >= 0 && 2 * folds < std::max(2, num_slots), "folds",
-          "must be at least 0 and less than half the number of transmitters", folds);
+          "must be at least 0 and less than half the number of slots in which transmitters take turns", folds);
   require(folds == 0 || beams.compensate, "folds", "needs the phase between slots to be compensated", folds);
 }
 
 AngleEstimates estimate_angles(const RangeDoppler& map, const Radar& radar, const std::vector<Cell>& cells,
                                const AngleGrid& angles, const EstimateOptions& options, Job* job) {
   angles.validate();
-  options.validate(static_cast<int>(radar.transmitters.size()));
+  options.validate(radar.num_slots());
   require(options.folds == 0 || !map.is_tdm_compensated, "folds", "needs a map that was not compensated before",
           options.folds);
   const BeamSource source(map, radar, options.beams);
@@ -158,7 +158,7 @@ AngleEstimates estimate_angles(const RangeDoppler& map, const Radar& radar, cons
   parallel_for(static_cast<int64_t>(cells.size()), [&](int64_t i) { found[i] = search.find(cells[i]); }, job);
 
   const Vec3 middle = 0.5 * (mean_position(radar.transmitters) + mean_position(radar.receivers));
-  const double span = 2.0 * radar.waveform.max_velocity(map.num_transmitters);
+  const double span = 2.0 * radar.waveform.max_velocity(radar.num_slots());
   AngleEstimates result;
   for (size_t i = 0; i < cells.size(); ++i) {
     for (const Peak& peak : found[i].peaks) {

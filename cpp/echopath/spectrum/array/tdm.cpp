@@ -33,12 +33,13 @@ void require_axes(const RangeDoppler& map, const Radar& radar) {
 
 }  // namespace
 
-std::vector<std::complex<double>> slot_phasors(const ChirpSequence& waveform, int num_slots,
-                                               const std::vector<double>& velocity) {
+std::vector<std::complex<double>> slot_phasors(const Radar& radar, const std::vector<double>& velocity) {
+  const ChirpSequence& waveform = radar.waveform;
   std::vector<std::complex<double>> phasors;
-  for (int slot = 0; slot < num_slots; ++slot) {
+  for (int tx = 0; tx < static_cast<int>(radar.transmitters.size()); ++tx) {
+    const int slot = radar.takes_turns() ? tx : 0;
     for (const double v : velocity) {
-      phasors.push_back(std::polar(1.0, -2.0 * kTwoPi * v / waveform.wavelength() * slot * waveform.chirp_interval));
+      phasors.push_back(std::polar(1.0, -2.0 * kTwoPi * v / waveform.wavelength() * slot * waveform.mean_interval()));
     }
   }
   return phasors;
@@ -62,9 +63,9 @@ RangeDoppler compensate_tdm(const RangeDoppler& map, const Radar& radar, int fol
   require(std::abs(fold) <= kMaxFold, "fold", "must be in [-1000, 1000]", fold);
   RangeDoppler result = map;
   result.is_tdm_compensated = true;
-  const double span = 2.0 * radar.waveform.max_velocity(map.num_transmitters);
+  const double span = 2.0 * radar.waveform.max_velocity(radar.num_slots());
   for (double& v : result.velocity) v += fold * span;
-  const auto phasors = slot_phasors(radar.waveform, map.num_transmitters, result.velocity);
+  const auto phasors = slot_phasors(radar, result.velocity);
   const int64_t num_velocities = static_cast<int64_t>(map.velocity.size());
   const int64_t num_ranges = static_cast<int64_t>(map.range.size());
   parallel_for(map.num_transmitters * map.num_receivers * num_velocities, [&](int64_t row) {

@@ -11,9 +11,8 @@
 namespace echopath {
 
 // Returns e^{-j 2 pi f_D m Td} with f_D = 2 v / wavelength, [tx, V], which takes out the phase that a velocity v adds until
-// slot m.
-std::vector<std::complex<double>> slot_phasors(const ChirpSequence& waveform, int num_slots,
-                                               const std::vector<double>& velocity);
+// slot m; 1 where the transmitters do not take turns.
+std::vector<std::complex<double>> slot_phasors(const Radar& radar, const std::vector<double>& velocity);
 
 // Returns the map with the phase between slots taken out, each cell by its velocity. A target between two cells keeps at
 // most pi (M - 1) / (M Nc) of it, for M transmitters and Nc chirps.

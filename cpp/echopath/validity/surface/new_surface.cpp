@@ -12,6 +12,8 @@ namespace {
 Radar instant_radar(const Paths& record, const Radar& radar, size_t antenna) {
   Radar probe = probe_radar(record, radar);
   probe.transmitters = {probe.transmitters[std::min(antenna, probe.transmitters.size() - 1)]};
+  probe.multiplexing = Multiplexing::kTdm;
+  probe.code_phases.clear();
   probe.receivers = {probe.receivers[std::min(antenna, probe.receivers.size() - 1)]};
   probe.waveform.num_chirps = probe.waveform.num_samples = 1;
   return probe;

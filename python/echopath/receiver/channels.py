@@ -1,0 +1,60 @@
+"""Errors of channels: of their chains, their drift, and what couples from one receiver into another."""
+from __future__ import annotations
+
+import numpy as np
+
+from ..checks import refused
+from .settings import Receiver
+
+
+def require_channels(receiver: Receiver, radar) -> None:
+    """Raises ValueError naming the table that is not of the radar's antennas."""
+    num_tx, num_rx = len(radar.transmitters), len(radar.receivers)
+    sizes = {"transmitter_gain_db": (num_tx,), "transmitter_phase": (num_tx,), "receiver_gain_db": (num_rx,),
+             "receiver_phase": (num_rx,), "gain_drift_db": (num_rx,), "phase_drift": (num_rx,),
+             "leakage_db": (num_tx, num_rx), "coupling_db": (num_rx, num_rx)}
+    for name, size in sizes.items():
+        value = getattr(receiver, name)
+        if value and np.shape(value) != size:
+            raise refused(ValueError, f"receiver.{name}", f"of the shape {size} for this radar", np.array(value))
+
+
+def transmitter_factors(receiver: Receiver, radar) -> np.ndarray | None:
+    """What the transmitters' chains multiply their signals by, complex [tx], with the phase that samples have of it; None:
+    nothing."""
+    require_channels(receiver, radar)
+    return _factors(receiver.transmitter_gain_db, receiver.transmitter_phase, len(radar.transmitters))
+
+
+def receiver_factors(receiver: Receiver, radar, slots) -> np.ndarray | None:
+    """Likewise of the receivers' chains, complex, as a cube takes it: [T, rx, C, 1]; None: nothing."""
+    num_rx = len(radar.receivers)
+    fixed = _factors(receiver.receiver_gain_db, receiver.receiver_phase, num_rx)
+    if not receiver.gain_drift_db and not receiver.phase_drift:
+        return None if fixed is None else fixed[None, :, None, None]
+    time = (slots.start_time + slots.begin)[:, None, :]
+    rate = _log_factors(receiver.gain_drift_db, receiver.phase_drift, num_rx)[:, None]
+    return np.exp(time * rate)[..., None] * (1.0 if fixed is None else fixed[:, None, None])
+
+
+def _log_factors(gain_db, phase, count: int) -> np.ndarray:
+    gain = np.array(gain_db) if gain_db else np.zeros(count)
+    turn = np.array(phase) if phase else np.zeros(count)
+    return gain * np.log(10.0) / 20.0 + 1j * turn
+
+
+def _factors(gain_db, phase, count: int) -> np.ndarray | None:
+    return np.exp(_log_factors(gain_db, phase, count)) if gain_db or phase else None
+
+
+def coupled(cube: np.ndarray, radar, receiver: Receiver) -> np.ndarray:
+    """What each receiver has with what couples in from the others: later by the delay, so that every echo turns by
+    2 pi (f0 + slope t) delay."""
+    if not receiver.coupling_db:
+        return cube
+    share = 10.0 ** (np.array(receiver.coupling_db) / 20.0)
+    np.fill_diagonal(share, 0.0)
+    waveform = radar.waveform
+    time = np.arange(waveform.num_samples) / waveform.sampling_rate
+    turn = np.exp(2j * np.pi * (waveform.start_frequency + waveform.slope * time) * receiver.coupling_delay)
+    return cube + np.einsum("ab,tacs,s->tbcs", share, cube, turn, optimize=True)

@@ -1,0 +1,47 @@
+"""The converter: clock jitter, gain, saturation, quantisation."""
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from .filters import beat_frequencies
+from .settings import Adc
+
+
+def converted(cube: np.ndarray, waveform, adc: Adc, generator: np.random.Generator | None):
+    """cube in sqrt(W) -> (what the codes stand for in sqrt(W), codes int16 [..., 2 or 1], gain in dB)
+
+    generator: of the jitter, None: none
+    """
+    if adc.clock_jitter > 0.0 and generator is not None:
+        cube = _jittered(cube, waveform, adc.clock_jitter, generator)
+    branches = np.stack([cube.real] if waveform.real else [cube.real, cube.imag], axis=-1)
+    gain_db = _automatic_gain(branches, waveform, adc) if adc.automatic_gain else adc.gain_db
+    step = _full_scale(waveform, adc) * 10.0 ** (-gain_db / 20.0) / 2 ** (adc.bits - 1)
+    codes = np.clip(np.rint(branches / step), -2 ** (adc.bits - 1), 2 ** (adc.bits - 1) - 1).astype(np.int16)
+    values = codes * step
+    cube = values[..., 0] + (0j if waveform.real else 1j * values[..., 1])
+    return cube, codes, gain_db
+
+
+def _full_scale(waveform, adc: Adc) -> float:
+    """The largest value of a branch in sqrt(W), at the input of the converter: of real samples a tone of power P reaches
+    sqrt(2 P), in the branches of complex ones sqrt(P)."""
+    power = 1e-3 * 10.0 ** (adc.full_scale_dbm / 10.0)
+    return math.sqrt(2.0 * power if waveform.real else power)
+
+
+def _automatic_gain(branches, waveform, adc: Adc) -> float:
+    largest = float(np.max(np.abs(branches), initial=0.0))
+    if largest == 0.0:
+        return adc.gain_db
+    gain_db = 20.0 * math.log10(_full_scale(waveform, adc) / largest) - adc.headroom_db
+    return gain_db if adc.gain_step_db == 0.0 else math.floor(gain_db / adc.gain_step_db) * adc.gain_step_db
+
+
+def _jittered(cube, waveform, jitter: float, generator):
+    """Each instant has its own deviation, in all channels alike: to first order the slope of the signal times it."""
+    slope = np.fft.ifft(np.fft.fft(cube, axis=-1) * 2j * np.pi * beat_frequencies(waveform), axis=-1)
+    deviation = generator.normal(0.0, jitter, (cube.shape[0], 1, *cube.shape[2:]))
+    return cube + deviation * (slope.real if waveform.real else slope)

@@ -1,0 +1,143 @@
+"""The oscillator that transmitters and mixers share: what it does in the meantime of an echo's delay.
+
+An oscillator of phase phi turns an echo of delay d by phi(t) - phi(t - d): noise of offset f is left with the factor
+4 sin^2(pi f d) of its power (range correlation; Budge, Burt 1993). A beat frequency f tells its delay, d = f / slope, and a
+filter that turns frequency f by pi f^2 / slope brings each beat frequency forward by its delay. Between that filter and its
+opposite all echoes are multiplied by one function m, which has gone through the filter too: a tone f then comes out as
+m(t - f / slope) times the tone, exactly. All delays cost a few transforms of a chirp.
+
+A chirp of N samples is worked on at twice its sampling rate, over two of its durations: the signal repeats, and the
+oscillator has its past in the first half, which is bent so that it goes on from the end of the second.
+"""
+from __future__ import annotations
+
+import numpy as np
+
+from .analytic import analytic, as_samples
+from .filters import NEGATIVE_SHARE
+from .leakage import leaked_tone
+from .settings import Receiver
+
+SLOTS_AT_ONCE = 16
+_OVERSAMPLING = 32  # of the slow part of the phase noise, which is interpolated by straight lines
+
+
+class Oscillator:
+    """Phase noise and frequency error of a frame.
+
+    receiver: Receiver; slots: SlotTimes; generator: of the phase noise, None: without noise
+    """
+
+    def __init__(self, radar, receiver: Receiver, slots, generator):
+        self._waveform, self._slots = radar.waveform, slots
+        self._noise = None if generator is None else receiver.phase_noise
+        self._error = receiver.frequency_error
+        self.is_ideal = self._noise is None and not self._error
+        self._count = radar.waveform.num_samples
+        if not self.is_ideal:
+            self._phase = self._phases(generator)  # [T, C or 1, 4 N], rad
+
+    def mixed(self, cube: np.ndarray) -> np.ndarray:
+        """The cube [T, rx, C, sample] with what the oscillator does to the echoes in it, by their beat frequencies."""
+        mixed = np.empty(cube.shape, np.complex128)
+        for tx in range(cube.shape[0]):
+            for begin in range(0, cube.shape[2], SLOTS_AT_ONCE):
+                piece = slice(begin, begin + SLOTS_AT_ONCE)
+                phase = self._phase[tx, piece] if self._phase.shape[1] > 1 else self._phase[tx]
+                mixed[tx, :, piece] = self._mixed_chirps(cube[tx, :, piece], phase)
+        return mixed
+
+    def leaked(self, delay: float) -> np.ndarray:
+        """An echo of a delay (s) and amplitude 1 with what it does to it: complex, as a cube takes it, [T, 1, C or 1, sample].
+        What the filter before the converter cuts off is missing."""
+        frequency = np.fft.fftfreq(4 * self._count, 0.5 / self._waveform.sampling_rate)
+        past = np.fft.ifft(np.fft.fft(np.exp(-1j * self._phase)) * np.exp(-2j * np.pi * frequency * delay))
+        tone = leaked_tone(self._waveform, delay, self._time)
+        return self._passed(np.exp(1j * self._phase) * past * tone)[:, None]
+
+    def _mixed_chirps(self, chirps, phase):
+        """[rx, C, N], phase [C or 1, 4 N] -> [rx, C, N]"""
+        waveform, count = self._waveform, self._count
+        cells, signed = _cells(count, waveform.real)
+        forward = np.exp(1j * np.pi / waveform.slope * (np.fft.fftfreq(4 * count, 0.5 / waveform.sampling_rate)) ** 2)
+        spectrum = np.zeros((*chirps.shape[:-1], 4 * count), np.complex128)
+        spectrum[..., 2 * signed] = 4.0 * np.fft.fft(analytic(chirps, waveform.real))[..., cells]
+        common = np.fft.ifft(np.fft.fft(np.exp(-1j * phase)) * forward)
+        signal = np.fft.ifft(np.fft.fft(np.fft.ifft(spectrum * forward) * common) / forward) * np.exp(1j * phase)
+        return as_samples(self._passed(signal), waveform.real)
+
+    def _passed(self, signal):
+        """The second half of [..., 4 N] at the sampling rate, complex, without what lies outside the band."""
+        count = self._count
+        band = np.zeros(4 * count)
+        lowest = -2 * int(count * NEGATIVE_SHARE)
+        band[np.arange(lowest, lowest + (count if self._waveform.real else 2 * count))] = 1.0
+        return np.fft.ifft(np.fft.fft(signal) * band)[..., 2 * count::2]
+
+    def _phases(self, generator) -> np.ndarray:
+        time, count = self._time, self._count
+        phase = np.zeros((self._slots.begin.shape[0], 1, 4 * count))
+        for power, coefficient in enumerate(self._error):
+            phase = phase + 2.0 * np.pi * coefficient * time ** (power + 1) / (power + 1)
+        if self._noise is not None:
+            phase = phase + self._slow_noise(generator, time)
+        phase = _bent(phase, self._past(time))
+        return phase if self._noise is None else phase + self._fast_noise(generator)
+
+    @property
+    def _time(self) -> np.ndarray:
+        """[4 N] s after the first sample, which is in the middle."""
+        return (np.arange(4 * self._count) - 2 * self._count) * 0.5 / self._waveform.sampling_rate
+
+    def _past(self, time) -> int:
+        """Index of the first sample of the past that an echo can have come from."""
+        longest = self._waveform.sampling_rate / self._waveform.slope
+        return int(np.clip(np.searchsorted(time, -1.25 * longest) - 2, 2, 2 * self._count))
+
+    @property
+    def _line_distance(self) -> float:
+        """Hz between the lines of noise within a chirp; slower noise goes on from chirp to chirp."""
+        return 0.5 * self._waveform.sampling_rate / self._count
+
+    def _fast_noise(self, generator):
+        """[T, C, 4 N] rad: each chirp's own, at offsets above half the distance of its lines."""
+        lines = self._line_distance * np.arange(1, 2 * self._count + 1)
+        return _noise_of_lines(self._noise, lines, self._line_distance, 4 * self._count, self._slots.begin.shape, generator)
+
+    def _slow_noise(self, generator, time):
+        """[T, C, 4 N] rad, of one oscillator that goes on through the frame."""
+        begin = self._slots.begin
+        duration = 2.0 * (begin.max() + time[-1] - time[0])
+        lines = np.arange(1, max(2, int(0.5 * self._line_distance * duration) + 1)) / duration
+        size = 2 * _OVERSAMPLING * (len(lines) + 1)
+        slow = _noise_of_lines(self._noise, lines, 1.0 / duration, size, (), generator)
+        at = begin[..., None] + (time - time[0])
+        return np.interp(at, np.arange(size) * duration / size, slow)
+
+
+def _cells(count: int, real: bool):
+    """Cells of the transform of a chirp that hold its signal, and their signed numbers."""
+    lowest = -int(count * NEGATIVE_SHARE)
+    signed = np.arange(lowest, lowest + count)
+    if real:
+        signed = signed[(signed >= 0) & (signed <= count // 2)]
+    return signed % count, signed
+
+
+def _noise_of_lines(mask, lines, distance: float, size: int, shape: tuple, generator) -> np.ndarray:
+    """Noise of the density of a mask, [*shape, size] over one period; lines: Hz of harmonics 1, 2, ... of it."""
+    deviation = np.sqrt(0.5 * mask.density(lines) * distance)
+    spectrum = np.zeros((*shape, size // 2 + 1), np.complex128)
+    spectrum[..., 1:1 + len(lines)] = deviation * (generator.standard_normal((*shape, len(lines)))
+                                                   + 1j * generator.standard_normal((*shape, len(lines))))
+    return np.fft.irfft(spectrum, size) * size
+
+
+def _bent(phase: np.ndarray, past: int) -> np.ndarray:
+    """Phase [..., 4 N] whose first `past` values lead from its end to the rest by a cubic, so that it can repeat."""
+    x = np.arange(1, past + 1) / (past + 1)
+    end, end_slope = phase[..., -1:], phase[..., -1:] - phase[..., -2:-1]
+    begin, slope = phase[..., past:past + 1], phase[..., past + 1:past + 2] - phase[..., past:past + 1]
+    cubic = ((1 + 2 * x) * (1 - x) ** 2 * end + x * (1 - x) ** 2 * (past + 1) * end_slope
+             + x ** 2 * (3 - 2 * x) * begin + x ** 2 * (x - 1) * (past + 1) * slope)
+    return np.concatenate([cubic, phase[..., past:]], axis=-1)

@@ -1,0 +1,171 @@
+"""What a receiver may be: frozen values, the one home of the names, units and defaults of its faults."""
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import ClassVar
+
+import numpy as np
+
+from ..checks import Rule, array, count, flag, optional, real, refused
+from ..settings import Settings, _settings
+
+Row = tuple[float, ...]
+Table = tuple[Row, ...]
+
+
+def _row(unit: str = "") -> Rule:
+    """Finite numbers [N] as a tuple."""
+    rule = array("[N]", finite=True)
+    return lambda argument, value: tuple(float(one) for one in rule(argument, value))
+
+
+def _table(argument: str, value) -> Table:
+    """Finite numbers [A, B] as tuples, kept so that the value can be hashed."""
+    return tuple(tuple(float(one) for one in row) for row in array("[A, B]", finite=True)(argument, value))
+
+
+def _pair(argument: str, value) -> tuple[float, float]:
+    first, second = array("[2]", finite=True)(argument, value)
+    return float(first), float(second)
+
+
+def _value(kind: type) -> Rule:
+    """An object of a class of settings, or a dict of its keywords."""
+    def check(argument: str, value):
+        if isinstance(value, kind):
+            return value
+        if not isinstance(value, Mapping):
+            raise refused(TypeError, argument, f"{kind.__name__}, a dict of its keywords or None", value)
+        try:
+            return kind(**value)
+        except (TypeError, ValueError) as error:
+            told = str(error)
+            called = f"{kind.__name__}: "
+            raise type(error)(f"{argument}: {told.removeprefix(called)}" if told.startswith(called)
+                              else f"{argument}.{told}") from None
+
+    return check
+
+
+@_settings
+class PhaseNoise(Settings):
+    """Phase noise of the oscillator that transmitters and mixers share, by a mask.
+
+    offsets: [M] Hz from the carrier, ascending, above 0; levels: [M] dBc/Hz there, on one side of the carrier. Between them
+        the level runs straight over the logarithm of the offset, beyond the ends it stays.
+    Raises TypeError or ValueError naming the keyword. Values are frozen; two with equal values are equal.
+    """
+
+    offsets: Sequence[float] = ()
+    levels: Sequence[float] = ()
+
+    RULES: ClassVar[Mapping[str, Rule]] = {"offsets": _row(), "levels": _row()}
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if not self.offsets or min(self.offsets) <= 0.0 or np.any(np.diff(self.offsets) <= 0.0):
+            raise refused(ValueError, "offsets", "ascending Hz above 0, one at least", self.offsets)
+        if len(self.levels) != len(self.offsets):
+            raise refused(ValueError, "levels", f"{len(self.offsets)} numbers, one for each offset", self.levels)
+
+    def density(self, offset) -> np.ndarray:
+        """Power relative to the carrier's in 1 Hz at offsets in Hz: an array of their shape, linear."""
+        log = np.log10(np.maximum(np.abs(offset), self.offsets[0]))
+        return 10.0 ** (np.interp(log, np.log10(self.offsets), self.levels) / 10.0)
+
+
+@_settings
+class Adc(Settings):
+    """The converter of the receiver, and the amplifier before it.
+
+    bits: 2 to 16, of each of the two branches, or of the one of real samples
+    full_scale_dbm: dBm, power of the tone that just fills the converter, at its input
+    gain_db: dB from the antenna to the converter; automatic_gain: chosen anew for each frame instead, so that its largest
+        sample stays headroom_db (dB, 0 or more) below full scale, in steps of gain_step_db (dB, 0: any gain)
+    clock_jitter: s, rms deviation of the sampling instants
+    Raises TypeError or ValueError naming the keyword. Values are frozen; two with equal values are equal.
+    """
+
+    bits: int = 12
+    full_scale_dbm: float = 10.0
+    gain_db: float = 30.0
+    automatic_gain: bool = False
+    headroom_db: float = 6.0
+    gain_step_db: float = 2.0
+    clock_jitter: float = 0.0
+
+    RULES: ClassVar[Mapping[str, Rule]] = {
+        "bits": count(2, 16), "full_scale_dbm": real(unit="dBm"), "gain_db": real(unit="dB"), "automatic_gain": flag,
+        "headroom_db": real(0.0, unit="dB"), "gain_step_db": real(0.0, unit="dB"), "clock_jitter": real(0.0, unit="s")}
+
+
+@_settings
+class Receiver(Settings):
+    """Faults of a receiver; what is not given is ideal. `echopath.receiver` has the order of the stages.
+
+    phase_noise: PhaseNoise or a dict of its keywords; frequency_error: (c0, c1, ...), the frequency is off by c0 + c1 t +
+        c2 t^2 + ... Hz, t in s from the first sample of a chirp
+    leakage_db: [tx, rx] dB of the transmit power that leaks into each receiver, after leakage_delay (s)
+    coupling_db: [rx, rx] dB from receiver (row) to receiver (column) after coupling_delay (s); the diagonal counts for nothing
+    transmitter_gain_db, transmitter_phase: [tx] dB and rad, errors of the chains; receiver_gain_db, receiver_phase: [rx],
+        likewise; gain_drift_db, phase_drift: [rx] dB/s and rad/s that the receivers' errors change by, from time 0 on
+    compression_dbm: dBm at the antenna where the gain is 1 dB lower, of a gain that falls as 1 / sqrt(1 + power / saturation)
+    high_pass: [N] Hz, corners of that many first-order filters; low_pass: Hz, corner (-3 dB) of a Butterworth filter of
+        low_pass_poles poles, 1 to 10
+    iq_gain_db, iq_phase: dB and rad by which the Q branch differs from the I branch; dc_offset: (I, Q) in sqrt(W)
+    adc: Adc or a dict of its keywords
+    Empty or None is none. Raises TypeError or ValueError naming the keyword. Values are frozen; two with equal values are equal.
+    """
+
+    phase_noise: PhaseNoise | Mapping[str, object] | None = None
+    frequency_error: Sequence[float] = ()
+    leakage_db: Sequence[Sequence[float]] = ()
+    leakage_delay: float = 0.0
+    coupling_db: Sequence[Sequence[float]] = ()
+    coupling_delay: float = 0.0
+    transmitter_gain_db: Sequence[float] = ()
+    transmitter_phase: Sequence[float] = ()
+    receiver_gain_db: Sequence[float] = ()
+    receiver_phase: Sequence[float] = ()
+    gain_drift_db: Sequence[float] = ()
+    phase_drift: Sequence[float] = ()
+    compression_dbm: float | None = None
+    high_pass: Sequence[float] = ()
+    low_pass: float | None = None
+    low_pass_poles: int = 4
+    iq_gain_db: float = 0.0
+    iq_phase: float = 0.0
+    dc_offset: tuple[float, float] = (0.0, 0.0)
+    adc: Adc | Mapping[str, object] | None = None
+
+    RULES: ClassVar[Mapping[str, Rule]] = {
+        "phase_noise": optional(_value(PhaseNoise)), "frequency_error": _row(), "leakage_db": lambda name, value: _some(
+            name, value), "leakage_delay": real(0.0, unit="s"), "coupling_db": lambda name, value: _some(name, value),
+        "coupling_delay": real(0.0, unit="s"), "transmitter_gain_db": _row(), "transmitter_phase": _row(),
+        "receiver_gain_db": _row(), "receiver_phase": _row(), "gain_drift_db": _row(), "phase_drift": _row(),
+        "compression_dbm": optional(real(unit="dBm")), "high_pass": _row(), "low_pass": optional(real(above=0.0, unit="Hz")),
+        "low_pass_poles": count(1, 10), "iq_gain_db": real(unit="dB"), "iq_phase": real(-math.pi / 2, math.pi / 2, "rad"),
+        "dc_offset": _pair, "adc": optional(_value(Adc))}
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if any(corner <= 0.0 for corner in self.high_pass):
+            raise refused(ValueError, "high_pass", "Hz above 0", self.high_pass)
+
+    def plain(self) -> dict:
+        """{keyword: value} of what is not the default, values of its values likewise: for files."""
+        return _plain(self)
+
+
+def _some(argument: str, value) -> Table:
+    return () if len(np.shape(value)) < 2 and np.size(value) == 0 else _table(argument, value)
+
+
+def _plain(value: Settings) -> dict:
+    default = {name: field.default for name, field in value.__dataclass_fields__.items() if name in value.RULES}
+    return {name: _plain(one) if isinstance(one, Settings) else one for name, one in value.keywords().items()
+            if one != default[name]}
+
+
+receiver_rule = _value(Receiver)

@@ -1,0 +1,64 @@
+"""Frames and sub-frames of a mmWave configuration: which chirps they send how often."""
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from .cfg import Command, Lines
+
+ADVANCED = 3  # dfeDataOutputMode of frames that have sub-frames
+
+
+class FramePlan(NamedTuple):
+    """A frame or sub-frame.
+
+    command: its line; subframe: its index, 0 of plain frames; first, num_chirps: indices of the chirps of one loop
+    num_loops: of them; forced_profile: instead of that of the chirps, -1: none
+    start_time: s, after the frame's start; interval: s, from frame to frame; num_frames: 0: without end
+    """
+
+    command: Command
+    subframe: int
+    first: int
+    num_chirps: int
+    num_loops: int
+    forced_profile: int
+    start_time: float
+    interval: float
+    num_frames: int
+
+
+def plans_of(lines: Lines) -> list[FramePlan]:
+    """The frame, or its sub-frames. Raises ep.FileError naming the line."""
+    modes = lines.of("dfeDataOutputMode")
+    if modes and modes[-1]["mode"] == ADVANCED or not modes and lines.of("advFrameCfg"):
+        return _subframes(lines)
+    if modes and modes[-1]["mode"] != 1:
+        raise modes[-1].error(f"mode: must be 1 (frames) or {ADVANCED} (sub-frames), got {modes[-1]['mode']}")
+    frame = lines.one("frameCfg")
+    count = _positive(frame, "last", frame["last"] - frame["first"] + 1)
+    return [FramePlan(frame, 0, frame["first"], count, _positive(frame, "num_loops", frame["num_loops"]), -1, 0.0,
+                      1e-3 * frame["period_ms"], frame["num_frames"])]
+
+
+def _subframes(lines: Lines) -> list[FramePlan]:
+    frame = lines.one("advFrameCfg")
+    given = {command["subframe"]: command for command in lines.of("subFrameCfg")}
+    plans, start = [], 0.0
+    interval = sum(1e-3 * command["period_ms"] for command in given.values())
+    for index in range(_positive(frame, "num_subframes", frame["num_subframes"])):
+        if index not in given:
+            raise frame.error(f"num_subframes: subFrameCfg {index} is missing")
+        command = given[index]
+        if command["num_bursts"] * command["num_burst_loops"] != 1:
+            raise command.error("num_bursts, num_burst_loops: must be 1, other bursts are not known")
+        plans.append(FramePlan(command, index, command["first"], _positive(command, "num_chirps", command["num_chirps"]),
+                               _positive(command, "num_loops", command["num_loops"]), command["forced_profile"], start,
+                               interval, frame["num_frames"]))
+        start += 1e-3 * command["period_ms"]
+    return plans
+
+
+def _positive(command: Command, name: str, value: int) -> int:
+    if value < 1:
+        raise command.error(f"{name}: must leave at least 1, got {value}")
+    return value

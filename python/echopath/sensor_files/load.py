@@ -1,0 +1,134 @@
+"""From a mmWave configuration to the radar that it sets up."""
+from __future__ import annotations
+
+import dataclasses
+import os
+from pathlib import Path
+
+from .. import _core
+from ..checks import checked, flag, optional, refused, text
+from ..checks import count as count_rule
+from .boards import Board, board_names, board_of_platform, read_board
+from .cfg import Lines, read_lines
+from .frames import FramePlan, plans_of
+from .slots import SlotTable
+
+# kHz, corners of the two high-pass filters by their codes (mmWave SDK, profileCfg).
+HIGH_PASS_1, HIGH_PASS_2 = (175e3, 235e3, 350e3, 700e3), (350e3, 700e3, 1.4e6, 2.8e6)
+BITS = (12, 14, 16)
+_RF_GAIN_BITS = 0x3F  # of the gain; what is above tells how it is shared
+
+
+@dataclasses.dataclass(frozen=True)
+class SensorConfig:
+    """What a mmWave configuration sets up.
+
+    radars: Radar of each sub-frame in their order, one of a plain frame; start_times: s, of each after the frame's start
+    interval: s, from frame to frame; num_frames: 0: without end
+    board: name of the board whose antennas they have; ignored: names of the commands that say nothing of the signal, or
+        nothing that is known
+    """
+
+    radars: tuple[_core.Radar, ...]
+    start_times: tuple[float, ...]
+    interval: float
+    num_frames: int
+    board: str
+    ignored: tuple[str, ...]
+
+
+@checked(board=optional(text), ideal=flag)
+def load_sensor(path: str | os.PathLike[str], board: str | None = None, *, ideal: bool = False) -> SensorConfig:
+    """Reads the configuration of a TI mmWave sensor (.cfg): all of its sub-frames.
+
+    The commands profileCfg, chirpCfg, frameCfg, advFrameCfg, subFrameCfg, channelCfg, adcCfg, bpmCfg and dfeDataOutputMode
+    count; `ignored` names the others. Transmitters that take turns make "tdm", two by bpmCfg "bpm". start_frequency is that of
+    the first sample. Chirps that differ in start frequency, slope or idle time become steps of the waveform.
+    path: of the file
+    board: "IWR1443", "AWR1843", "IWR6843ISK", "IWR6843AOP" or "AWR2243_cascade"; None: as the file's line "Platform" says
+    ideal: without the filters and the converter that the file describes
+    Returns a SensorConfig. Raises ep.FileError naming the line, ValueError for boards.
+    """
+    lines = read_lines(Path(path))
+    chosen = _board(lines, board)
+    plans = plans_of(lines)
+    radars = tuple(_radar(lines, chosen, plan, ideal) for plan in plans)
+    return SensorConfig(radars, tuple(plan.start_time for plan in plans), plans[0].interval, plans[0].num_frames, chosen.name,
+                        lines.others)
+
+
+@checked(board=optional(text), subframe=count_rule(), ideal=flag)
+def load_radar(path: str | os.PathLike[str], board: str | None = None, *, subframe: int = 0,
+               ideal: bool = False) -> _core.Radar:
+    """The radar of the configuration of a TI mmWave sensor (.cfg), with the antennas of its board.
+
+    path, board, ideal: as in `load_sensor`, which reads all sub-frames
+    subframe: index of the sub-frame, 0 of a plain frame
+    Returns a Radar at the origin that looks along +x; `replace` places it. Raises ep.FileError naming the line, ValueError
+    for boards and sub-frames that are unknown.
+    """
+    radars = load_sensor(path, board, ideal=ideal).radars
+    if subframe >= len(radars):
+        raise refused(ValueError, "subframe", f"below {len(radars)}, the number of sub-frames", subframe)
+    return radars[subframe]
+
+
+def _board(lines: Lines, name: str | None) -> Board:
+    if name is not None:
+        return read_board(name)
+    board = board_of_platform(lines.platform)
+    if board is None:
+        said = f"'{lines.platform}'" if lines.platform else "nothing"
+        raise ValueError(f"board: must be given, one of {', '.join(board_names())}: the file says {said} of its platform")
+    return board
+
+
+def _radar(lines: Lines, board: Board, plan: FramePlan, ideal: bool) -> _core.Radar:
+    slots = SlotTable(lines, plan)
+    antennas = _antennas_of(lines, board)
+    code = slots.transmit_code(_bits(lines.one("channelCfg")["transmitters"]))
+    if code.transmitters[-1] >= len(board.transmitters):
+        raise slots.error(f"transmitter {code.transmitters[-1] + 1}: {board.name} has {len(board.transmitters)}")
+    waveform = slots.waveform(num_chirps=plan.num_loops * plan.num_chirps // code.slots_of_chirp, real=_is_real(lines))
+    try:
+        return _core.Radar(waveform, transmitters=[board.transmitters[i] for i in code.order], receivers=antennas,
+                           transmit_power=board.transmit_power, noise_figure_db=board.noise_figure_db,
+                           multiplexing=code.kind, code_phases=code.phases,
+                           receiver=None if ideal else _receiver(lines, slots))
+    except ValueError as error:
+        raise slots.error(str(error)) from None
+
+
+def _antennas_of(lines: Lines, board: Board) -> list:
+    command = lines.one("channelCfg")
+    chosen = _bits(command["receivers"])
+    if not chosen or chosen[-1] >= len(board.receivers):
+        raise command.error(f"receivers: must be a mask of the {len(board.receivers)} of {board.name}, got "
+                            f"{command['receivers']}")
+    return [board.receivers[i] for i in chosen]
+
+
+def _receiver(lines: Lines, slots: SlotTable):
+    from ..receiver import Adc, Receiver
+
+    profile, adc = slots.profile, lines.one("adcCfg")
+    corners = []
+    for name, known in (("high_pass_1", HIGH_PASS_1), ("high_pass_2", HIGH_PASS_2)):
+        if not 0 <= profile[name] < len(known):
+            raise profile.error(f"{name}: must be 0 to {len(known) - 1}, got {profile[name]}")
+        corners.append(known[profile[name]])
+    if not 0 <= adc["bits"] < len(BITS):
+        raise adc.error(f"bits: must be 0, 1 or 2 for {BITS} bits, got {adc['bits']}")
+    gain_db = float(int(profile["gain_db"]) & _RF_GAIN_BITS)
+    return Receiver(high_pass=corners, adc=Adc(bits=BITS[adc["bits"]], gain_db=gain_db))
+
+
+def _is_real(lines: Lines) -> bool:
+    adc = lines.one("adcCfg")
+    if adc["format"] not in (0, 1, 2, 3):
+        raise adc.error(f"format: must be 0 (real), 1, 2 or 3 (complex), got {adc['format']}")
+    return adc["format"] == 0
+
+
+def _bits(mask: int) -> list[int]:
+    return [bit for bit in range(max(mask, 0).bit_length()) if mask >> bit & 1]

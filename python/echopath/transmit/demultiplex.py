@@ -1,0 +1,61 @@
+"""Undoes the code of transmitters: from what receivers have to the signal of each transmitter."""
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from ..checks import ArrayLike, checked, refused
+from .code import code_of, hadamard, is_coded, num_frame_slots
+from .doppler_division import undo_doppler_division
+
+
+@checked()
+def demultiplex(cube: ArrayLike, radar: _core.Radar) -> NDArray[np.complex128]:
+    """The signal of each transmitter from what the receivers have of all of them.
+
+    "tdm": the slots in a row become the chirps of their transmitters. "bpm": the sum of the slots of a chirp by their signs,
+    each slot turned back to the time of the first by the velocity of its Doppler cell; exact for what stands still, and up to
+    the ends of the frame for velocities within +-`max_velocity(num_slots)`. "ddm": each cell of range and velocity is one
+    transmitter's, by the empty shares of the Doppler axis, so that velocities are known within +-`max_velocity()`; of two
+    targets at one range whose velocities are a share apart the stronger one is right (see `transmit/doppler_division.py`).
+    "cdm": compressed by the conjugate code, which leaves what the codes correlate.
+    cube: [1, rx, slots, sample] in sqrt(W) as `synthesize` and `receive` give it, or one that is apart already,
+        [tx, rx, chirp, sample], which is returned as it is
+    radar: that of the cube
+    Returns [tx, rx, chirp, sample] in sqrt(W). Raises TypeError or ValueError naming the argument.
+    """
+    cube = np.asarray(cube, np.complex128)
+    num_tx, num_rx, waveform = len(radar.transmitters), len(radar.receivers), radar.waveform
+    apart = (num_tx, num_rx, waveform.num_chirps, waveform.num_samples)
+    received = (1, num_rx, num_frame_slots(radar), waveform.num_samples)
+    if cube.shape == apart and (num_tx > 1 or not is_coded(radar) or radar.num_slots > 1):
+        return cube
+    if cube.shape != received:
+        raise refused(ValueError, "cube", f"of the shape {received}, or {apart} where it is apart already", cube)
+    return _UNDO[radar.multiplexing](cube[0], radar)
+
+
+def _undo_turns(signal, radar):
+    """[rx, slots, S] -> [tx, rx, chirp, S]"""
+    num_rx, _, num_samples = signal.shape
+    by_slot = signal.reshape(num_rx, radar.waveform.num_chirps, len(radar.transmitters), num_samples)
+    return np.ascontiguousarray(np.moveaxis(by_slot, 2, 0))
+
+
+def _undo_signs(signal, radar):
+    """Slot i of a chirp is i / length of the chirp's interval late: e^{-j 2 pi f i} takes that out of cell f of the chirps."""
+    num_rx, _, num_samples = signal.shape
+    length, num_chirps = radar.num_slots, radar.waveform.num_chirps
+    late = np.array([radar.waveform.slot_start(slot) for slot in range(length)]) / radar.waveform.mean_interval / length
+    by_slot = np.fft.fft(signal.reshape(num_rx, num_chirps, length, num_samples), axis=1)
+    by_slot *= np.exp(-2j * np.pi * np.fft.fftfreq(num_chirps)[:, None] * late)[:, :, None]
+    signs = hadamard(length)[:len(radar.transmitters)] / length
+    return np.fft.ifft(np.einsum("tl,rcls->trcs", signs, by_slot, optimize=True), axis=2)
+
+
+def _undo_phases(signal, radar):
+    return np.conj(code_of(radar))[:, None, :, None] * signal
+
+
+_UNDO = {"tdm": _undo_turns, "bpm": _undo_signs, "ddm": undo_doppler_division, "cdm": _undo_phases}

@@ -1,0 +1,77 @@
+"""Undoes Doppler division: transmitter m appears m shares of the Doppler axis above the velocity of the target.
+
+With Q shares, M of them with a transmitter, a target in share b of the axis shows in shares b to b + M - 1 (modulo Q) and
+leaves the others empty: cells d + j N / Q of one range, j = 0 .. Q - 1, have one target at most, and b is where the empty
+shares have the least power, summed over the receivers and over the cells next to each. The value of transmitter m at that
+velocity is then that of share b + m; at velocities of other shares stands what an empty one holds, the noise. Cells whose
+shares do not differ more than noise does are left as they are, so that noise keeps its level and its distribution.
+
+Both axes are tapered by Hamming's window meanwhile (sidelobes at -43 dB), so that a strong target does not decide for weak
+ones beside it; the taper is taken out again. Velocities of two targets at one range that are a multiple of a share apart
+cannot be told apart: the stronger one's share is taken for both.
+"""
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+
+from .code import num_shares
+
+# Share of the cells of noise alone that seem to have a target.
+FALSE_TARGET_RATE = 1e-2
+
+
+def undo_doppler_division(signal: np.ndarray, radar) -> np.ndarray:
+    """[rx, chirp, S] -> [tx, rx, chirp, S], in sqrt(W)."""
+    num_tx, shares = len(radar.transmitters), num_shares(radar)
+    num_rx, num_chirps, num_samples = signal.shape
+    taper = _hamming(num_chirps)[:, None] * _hamming(num_samples)
+    cells = np.fft.fft2(signal * taper)
+    share, ratio = _shares_and_ratios(_smoothed_power(cells), num_tx, shares)
+    is_target = ratio > _ratio_of_noise(num_tx, shares, num_rx)
+    cells = cells.reshape(num_rx, shares, num_chirps // shares, num_samples)
+    apart = np.empty((num_tx, *cells.shape), np.complex128)
+    for tx in range(num_tx):
+        for b in range(shares):
+            apart[tx, :, b] = cells[:, (b + tx) % shares]
+            other = is_target & (share != b)
+            empty = np.take_along_axis(cells, ((share + num_tx) % shares)[None, None], axis=1)[:, 0]
+            np.copyto(apart[tx, :, b], empty, where=other)
+    values = np.fft.ifft2(apart.reshape(num_tx, num_rx, num_chirps, num_samples))
+    values /= taper
+    return values
+
+
+def _smoothed_power(cells):
+    """Power [chirp, S] of cells [rx, chirp, S], summed over receivers and weighted by 1 2 1 with neighbours on each axis."""
+    power = np.sum(np.abs(cells) ** 2, axis=0)
+    for axis in (0, 1):
+        power = 2.0 * power + np.roll(power, 1, axis) + np.roll(power, -1, axis)
+    return power
+
+
+def _shares_and_ratios(power, num_tx: int, shares: int):
+    """Of power [chirp, S]: the share [D, S] of a target, and the ratio [D, S] of the mean power of full and empty shares."""
+    power = power.reshape(shares, -1, power.shape[-1])
+    num_empty = shares - num_tx
+    empty = np.stack([sum(power[(b + e) % shares] for e in range(num_tx, shares)) for b in range(shares)])
+    share, rest = np.argmin(empty, axis=0), np.min(empty, axis=0)
+    full = np.sum(power, axis=0) - rest
+    return share, full * num_empty / np.maximum(rest * num_tx, np.finfo(float).tiny)
+
+
+@lru_cache
+def _ratio_of_noise(num_tx: int, shares: int, num_rx: int) -> float:
+    """The ratio that noise alone exceeds in FALSE_TARGET_RATE of the cells, drawn once from a fixed seed."""
+    num_chirps, num_samples, ratios = 32 * shares, 64, []
+    generator, taper = np.random.default_rng(1), _hamming(num_chirps)[:, None] * _hamming(num_samples)
+    for _ in range(16):
+        noise = generator.standard_normal((2, num_rx, num_chirps, num_samples))
+        cells = np.fft.fft2((noise[0] + 1j * noise[1]) * taper)
+        ratios.append(_shares_and_ratios(_smoothed_power(cells), num_tx, shares)[1])
+    return float(np.quantile(ratios, 1.0 - FALSE_TARGET_RATE))
+
+
+def _hamming(count: int) -> np.ndarray:
+    return 0.54 - 0.46 * np.cos(2.0 * np.pi * np.arange(count) / count)

@@ -1,0 +1,57 @@
+"""Signals of radars whose transmitters send at once, or whose chirps differ from slot to slot."""
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from .. import _core
+from .code import code_of, code_signal, is_coded, num_frame_slots, slots_radar
+
+
+def has_steps(radar: _core.Radar) -> bool:
+    """Whether slots differ in start frequency or bandwidth."""
+    return bool(np.any(radar.waveform.frequency_steps) or np.any(radar.waveform.bandwidth_steps))
+
+
+def synthesize_slots(paths: _core.Paths, radar: _core.Radar, **settings) -> np.ndarray:
+    """The signal of each transmitter alone, [tx, rx, chirp, sample] in sqrt(W).
+
+    settings: keywords of `_core.synthesize`. Slots that differ cost one synthesis for each kind of chirp. Memory: 16 bytes a
+    sample, and as much again while chirps of several kinds are put together.
+    """
+    if not has_steps(radar):
+        return _core.synthesize(paths, radar, **settings)
+    settings = {name: value for name, value in settings.items() if name != "probe"}
+    return _by_kind_of_chirp(radar, lambda one: _core.synthesize(paths, one, **settings))
+
+
+def _by_kind_of_chirp(radar: _core.Radar, cube_of: Callable[[_core.Radar], np.ndarray]) -> np.ndarray:
+    waveform, num_tx = radar.waveform, len(radar.transmitters)
+    chirps = np.arange(waveform.num_chirps) * radar.num_slots
+    slots = chirps + (0 if is_coded(radar) else np.arange(num_tx)[:, None]) + np.zeros((num_tx, 1), int)
+    kinds = np.stack([_repeated(steps, slots) for steps in (waveform.frequency_steps, waveform.bandwidth_steps)], axis=-1)
+    cube = np.empty((num_tx, len(radar.receivers), waveform.num_chirps, waveform.num_samples), np.complex128)
+    for kind in np.unique(kinds.reshape(-1, 2), axis=0):
+        plain = waveform.replace(start_frequency=waveform.start_frequency + kind[0],
+                                 bandwidth=waveform.bandwidth + kind[1], frequency_steps=(), bandwidth_steps=())
+        tx, chirp = np.nonzero(np.all(kinds == kind, axis=-1))
+        cube[tx, :, chirp] = cube_of(radar.replace(waveform=plain))[tx, :, chirp]
+    return cube
+
+
+def _repeated(steps, slots) -> np.ndarray:
+    return np.take(steps, slots % len(steps)) if len(steps) else np.zeros(slots.shape)
+
+
+def coded_cube(paths: _core.Paths, radar: _core.Radar, separate: np.ndarray | None = None, *,
+               code: np.ndarray | None = None, **settings) -> np.ndarray:
+    """What the receivers have before `demultiplex`, [1, rx, slots, sample] in sqrt(W), without noise.
+
+    separate: [tx, rx, chirp, sample] of `synthesize_slots`, which is made anew where it is None or has not every slot
+    code: complex [tx, slots], None: `code_of` the radar; settings: keywords of `_core.synthesize`
+    """
+    code = code_of(radar) if code is None else code
+    if separate is None or separate.shape[2] != num_frame_slots(radar):
+        separate = synthesize_slots(paths, slots_radar(radar), **settings)
+    return code_signal(separate, code)

@@ -1,0 +1,281 @@
+"""Faults of receivers against their closed forms."""
+import pickle
+
+import numpy as np
+import pytest
+from support.radars import build_radar
+
+import echopath as ep
+from echopath.receiver.oscillator import Oscillator
+from echopath.receiver.slots import SlotTimes
+
+C = ep.speed_of_light
+LEVEL = 0.2      # dB, promised for levels
+SHARE = 0.01     # promised for amplitudes and times, relative
+RATE, COUNT = 20e6, 512
+SLOPE = 1e9 * RATE / COUNT
+
+
+def one_channel(num_chirps=8, **settings):
+    return build_radar(num_samples=COUNT, num_chirps=num_chirps, **settings)
+
+
+def tone(cell, power=1.0, num_chirps=8):
+    """An echo [1, 1, chirp, sample] of a beat frequency of so many cells, in W."""
+    return np.sqrt(power) * np.exp(2j * np.pi * cell * np.arange(COUNT) / COUNT) * np.ones((1, 1, num_chirps, 1))
+
+
+def received(cube, seed=None, num_chirps=8, **faults):
+    radar = one_channel(num_chirps, receiver=ep.Receiver(**faults))
+    return ep.receive(cube, radar, seed=seed)
+
+
+def levels(cube):
+    """Mean power of each cell of the range transform, tones at their power: [COUNT] in W."""
+    spectrum = np.fft.fft(cube, axis=-1) / COUNT
+    return np.mean(np.abs(spectrum) ** 2, axis=(0, 1, 2))
+
+
+def floor(cube):
+    """Mean density of noise in each cell, [COUNT] in W/Hz: by Hann's window, for a floor that rises by 40 dB leaks otherwise."""
+    window = np.sin(np.pi * np.arange(COUNT) / COUNT) ** 2
+    spectrum = np.fft.fft(cube * window, axis=-1)
+    return np.mean(np.abs(spectrum) ** 2, axis=(0, 1, 2)) / (RATE * np.sum(window ** 2))
+
+
+def db(ratio):
+    return 10.0 * np.log10(ratio)
+
+
+def test_an_ideal_receiver_keeps_every_bit():
+    cube, radar = tone(33.3), one_channel()
+    plain = ep.add_noise(cube, radar, seed=5)
+    np.testing.assert_array_equal(ep.receive(cube, radar, seed=5).cube, plain)
+    np.testing.assert_array_equal(ep.receive(cube, radar.replace(receiver=ep.Receiver()), seed=5).cube, plain)
+
+
+@pytest.mark.parametrize("distance", [3.0, 10.0, 30.0, 60.0])
+@pytest.mark.parametrize("offset", [1.25e6, 3e6])
+def test_phase_noise_falls_by_the_range_correlation(distance, offset):
+    """L(f) 4 sin^2(pi f d) below the echo, by the mask and the delay d."""
+    delay = 2.0 * distance / C
+    cell = round(SLOPE * delay / RATE * COUNT)
+    delay, density = cell * RATE / COUNT / SLOPE, 1e-13
+    noise = ep.PhaseNoise(offsets=[1e3], levels=[-130.0])  # small: its square is no part of the form
+    chirps = 800
+    radar = one_channel(chirps, receiver=ep.Receiver(phase_noise=noise), noise_figure_db=0.0)
+    slots = SlotTimes(radar, 0.0)
+    mixed = Oscillator(radar, radar.receiver, slots, slots.generator(1, "phase noise")).mixed(tone(cell, 1.0, chirps))
+    lines = round(offset * COUNT / RATE) + np.arange(-8, 9)
+    measured = floor(mixed)
+    wanted = density * 4.0 * np.sin(np.pi * lines * RATE / COUNT * delay) ** 2
+    for side in (cell + lines, cell - lines):
+        inside = (side > 0) & (side < COUNT - COUNT // 16)
+        if inside.any():
+            assert db(measured[side[inside]].mean() / wanted[inside].mean()) == pytest.approx(0.0, abs=LEVEL)
+
+
+def test_echoes_of_one_delay_have_the_phase_noise_of_the_oscillator_then_and_now():
+    """Against the phases themselves: phi(t) - phi(t - d), a whole number of samples ago."""
+    noise = ep.PhaseNoise(offsets=[1e3, 4e6, 5e6], levels=[-80.0, -80.0, -200.0])
+    radar = one_channel(1, receiver=ep.Receiver(phase_noise=noise))
+    slots = SlotTimes(radar, 0.0)
+    oscillator = Oscillator(radar, radar.receiver, slots, slots.generator(7, "phase noise"))
+    ago = 8  # samples of the doubled rate
+    cell = ago / (2.0 * RATE) * SLOPE / RATE * COUNT
+    assert cell == round(cell)
+    phase = oscillator._phase[0, 0]
+    difference = phase[2 * COUNT::2] - phase[2 * COUNT - ago:4 * COUNT - ago:2]
+    mixed = oscillator.mixed(tone(cell, 1.0, 1))[0, 0, 0] / tone(cell, 1.0, 1)[0, 0, 0]
+    inner = slice(8, -8)
+    inner = slice(COUNT // 8, -COUNT // 8)  # the signal is taken to repeat, which its ends feel
+    error = np.abs(mixed - np.exp(1j * difference))[inner]
+    assert np.sqrt(np.mean(error ** 2)) < SHARE * np.std(difference)
+
+
+def test_frequency_errors_act_by_the_delay_of_each_echo():
+    """A law c1 t is a slope that is off by c1: the beat frequency moves by c1 d."""
+    cell = 60
+    delay = cell * RATE / COUNT / SLOPE
+    cube = received(tone(cell), frequency_error=(0.0, 1e-3 * SLOPE)).cube[0, 0, 0]
+    beat = np.polyfit(np.arange(COUNT)[32:-32], np.unwrap(np.angle(cube))[32:-32], 1)[0] * RATE / (2 * np.pi)
+    assert beat - cell * RATE / COUNT == pytest.approx(1e-3 * SLOPE * delay, rel=SHARE)
+
+
+def test_a_curved_frequency_law_bends_the_phase_of_an_echo():
+    """c2 t^2: the phase is 2 pi c2 (t^3 - (t - d)^3) / 3."""
+    cell, bend = 100, 2e16
+    delay, time = cell * RATE / COUNT / SLOPE, np.arange(COUNT) / RATE
+    cube = received(tone(cell), frequency_error=(0.0, 0.0, bend)).cube[0, 0, 0]
+    found = np.unwrap(np.angle(cube / tone(cell)[0, 0, 0]))[40:-40]
+    wanted = (2 * np.pi * bend * (time ** 3 - (time - delay) ** 3) / 3)[40:-40]
+    assert found - found[0] == pytest.approx(wanted - wanted[0], abs=SHARE * np.ptp(wanted))
+
+
+def test_leakage_is_an_echo_of_its_level_and_delay():
+    radar = one_channel(receiver=ep.Receiver(leakage_db=[[-30.0]], leakage_delay=1e-9), transmit_power=0.02)
+    cube = ep.receive(np.zeros((1, 1, 8, COUNT)), radar, seed=None).cube[0, 0]
+    assert np.mean(np.abs(cube) ** 2) == pytest.approx(0.02e-3, rel=SHARE)
+    beat = np.polyfit(np.arange(COUNT), np.unwrap(np.angle(cube[3])), 1)[0] * RATE / (2 * np.pi)
+    assert beat == pytest.approx(SLOPE * 1e-9, rel=SHARE)
+    cycles = 77e9 * 1e-9 - 0.5 * SLOPE * 1e-18
+    assert np.angle(cube[0, 0] * np.exp(-2j * np.pi * cycles)) == pytest.approx(0.0, abs=1e-9)
+
+
+def test_leakage_has_the_phase_noise_of_its_own_short_delay():
+    noise = ep.PhaseNoise(offsets=[1e3], levels=[-130.0])
+    radar = one_channel(200, receiver=ep.Receiver(phase_noise=noise, leakage_db=[[-20.0]], leakage_delay=5e-9),
+                        transmit_power=1.0, noise_figure_db=0.0)
+    cube = ep.receive(np.zeros((1, 1, 200, COUNT)), radar, seed=1).cube
+    time = np.arange(COUNT) / RATE
+    steady = cube * np.exp(-2j * np.pi * SLOPE * 5e-9 * time)
+    lines = np.arange(60, 100)
+    wanted = 1e-2 * 1e-13 * 4.0 * np.sin(np.pi * lines * RATE / COUNT * 5e-9) ** 2
+    assert db(floor(steady)[lines].mean() / wanted.mean()) == pytest.approx(0.0, abs=LEVEL)
+
+
+def test_coupling_adds_what_other_receivers_have():
+    radar = build_radar(receivers=((0, 0, 0), (0, 0.01, 0)), num_samples=COUNT, num_chirps=2,
+                        receiver=ep.Receiver(coupling_db=[[0, -20.0], [-30.0, 0]], coupling_delay=0.1e-9))
+    cube = np.stack([tone(50, num_chirps=2)[0, 0], np.zeros((2, COUNT))])[None]
+    out = ep.receive(cube, radar, seed=None).cube[0]
+    turn = np.exp(2j * np.pi * (77e9 + SLOPE * np.arange(COUNT) / RATE) * 0.1e-9)
+    np.testing.assert_allclose(out[0], cube[0, 0], rtol=1e-12)
+    np.testing.assert_allclose(out[1], 0.1 * cube[0, 0] * turn, rtol=1e-9)
+
+
+def test_errors_of_channels_and_their_drift():
+    radar = build_radar(receivers=((0, 0, 0), (0, 0.01, 0)), transmitters=((0, 0, 0), (0, 0.02, 0)), num_samples=COUNT,
+                        num_chirps=4, receiver=ep.Receiver(receiver_gain_db=[0, 1.0], receiver_phase=[0, 0.3],
+                                                           transmitter_phase=[0, -0.2], gain_drift_db=[0, 2.0],
+                                                           phase_drift=[5.0, 0]))
+    ones = np.ones((2, 2, 4, COUNT))
+    out = ep.receive(ones, radar, seed=None, start_time=10.0).cube
+    time = 10.0 + 60e-6 * (2 * np.arange(4) + 1)  # of the second transmitter
+    assert np.angle(out[1, 0, :, 0] * np.exp(-1j * (5.0 * time - 0.2))) == pytest.approx(0.0, abs=1e-9)
+    assert 20 * np.log10(np.abs(out[1, 1, :, 0])) == pytest.approx(1.0 + 2.0 * time, rel=1e-9)
+    assert np.angle(out[1, 1, :, 0]) == pytest.approx(0.1, abs=1e-9)
+
+
+def test_thermal_noise_goes_through_the_errors_of_the_converter_and_not_of_the_transmitters():
+    radar = one_channel(64, receiver=ep.Receiver(transmitter_gain_db=[20.0]))
+    out = ep.receive(np.zeros((1, 1, 64, COUNT)), radar, seed=2).cube
+    np.testing.assert_array_equal(out, ep.add_noise(np.zeros((1, 1, 64, COUNT)), radar, seed=2))
+
+
+def test_a_blocker_compresses_a_weak_echo_and_mirrors_it():
+    """Weak beside strong A of saturation S: gain (g + g'A / 2), image g'A / 2, with g = 1 / sqrt(1 + A^2 / S)."""
+    point, blocker, weak = -10.0, 1e-4 * 10 ** 0.3, 1e-12
+    out = received(tone(40, blocker) + tone(90, weak), compression_dbm=point).cube
+    x = blocker / (1e-3 * 10 ** (point / 10) / (10 ** 0.1 - 1))
+    gain = (1 + x) ** -0.5
+    half = -0.5 * x * (1 + x) ** -1.5
+    measured = levels(out)
+    assert db(measured[40] / blocker) == pytest.approx(db(gain ** 2), abs=LEVEL)
+    assert db(measured[90] / weak) == pytest.approx(db((gain + half) ** 2), abs=LEVEL)
+    assert db(measured[(2 * 40 - 90) % COUNT] / weak) == pytest.approx(db(half ** 2), abs=LEVEL)
+    alone = received(tone(40, 1e-3 * 10 ** (point / 10)), compression_dbm=point).cube
+    assert db(levels(alone)[40] / 1e-4) == pytest.approx(-1.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("frequency", [200e3, 781250.0, 4e6])
+def test_filters_have_their_response(frequency):
+    cell = round(frequency * COUNT / RATE)
+    f = cell * RATE / COUNT
+    out = received(tone(cell), high_pass=[350e3, 700e3], low_pass=5e6, low_pass_poles=3).cube
+    high = (f / 350e3) ** 2 / (1 + (f / 350e3) ** 2) * (f / 700e3) ** 2 / (1 + (f / 700e3) ** 2)
+    low = 1 / (1 + (f / 5e6) ** 6)
+    assert db(levels(out)[cell]) == pytest.approx(db(high * low), abs=1e-6)
+
+
+def test_filters_of_real_samples_have_the_response_of_complex_ones():
+    radar = one_channel(real=True, receiver=ep.Receiver(high_pass=[350e3], low_pass=3e6, low_pass_poles=2))
+    cube = np.sqrt(2.0) * tone(37).real
+    out = ep.receive(cube, radar, seed=None).cube
+    complex_out = received(tone(37), high_pass=[350e3], low_pass=3e6, low_pass_poles=2).cube
+    np.testing.assert_allclose(out, np.sqrt(2.0) * complex_out.real, atol=1e-9)
+
+
+@pytest.mark.parametrize("gain_db, phase", [(0.5, 0.0), (0.0, 0.05), (-0.3, -0.03)])
+def test_imbalance_makes_an_image_line(gain_db, phase):
+    out = levels(received(tone(70), iq_gain_db=gain_db, iq_phase=phase).cube)
+    g = 10 ** (gain_db / 20)
+    ratio = (1 - 2 * g * np.cos(phase) + g * g) / (1 + 2 * g * np.cos(phase) + g * g)
+    assert db(out[COUNT - 70] / out[70]) == pytest.approx(db(ratio), abs=1e-6)
+
+
+def test_the_branch_q_alone_is_wrong():
+    out = received(np.full((1, 1, 8, COUNT), 3.0 + 4.0j), iq_gain_db=6.0, iq_phase=0.1, dc_offset=(0.5, -0.25)).cube
+    g = 10 ** 0.3
+    assert out[0, 0, 0, 0] == pytest.approx(3.5 + 1j * (g * (4.0 * np.cos(0.1) + 3.0 * np.sin(0.1)) - 0.25))
+
+
+@pytest.mark.parametrize("bits", [8, 10, 14])
+@pytest.mark.parametrize("real", [False, True])
+def test_quantisation_noise_is_6_db_a_bit(bits, real):
+    adc = ep.Adc(bits=bits, full_scale_dbm=0.0, gain_db=20.0)
+    radar = one_channel(64, real=real, receiver=ep.Receiver(adc=adc))
+    cell = 33.317 + np.arange(64)[:, None] * 0.713  # no two chirps alike
+    largest = 1.0 - 1.5 / 2 ** (bits - 1)  # beyond which the upper end clips
+    full = largest * np.sqrt(1e-5) * np.exp(2j * np.pi * cell * np.arange(COUNT) / COUNT)[None, None]
+    full = np.sqrt(2.0) * full.real + 0j if real else full
+    out = ep.receive(full, radar, seed=None)
+    noise = np.mean(np.abs(out.cube - full) ** 2)
+    assert db(noise / 1e-5) == pytest.approx(-6.0206 * bits - 1.7609, abs=LEVEL)
+    assert out.codes.dtype == np.int16 and out.gain_db == 20.0
+    assert np.abs(out.codes.astype(int)).max() <= 2 ** (bits - 1)
+
+
+def test_the_converter_saturates_and_its_gain_adapts():
+    adc = ep.Adc(bits=10, full_scale_dbm=0.0, gain_db=40.0)
+    out = received(tone(20, 1e-3), adc=adc)
+    assert out.codes.min() == -512 and out.codes.max() == 511
+    automatic = received(tone(20, 1e-3), adc=adc.replace(automatic_gain=True, headroom_db=3.0, gain_step_db=2.0))
+    assert automatic.gain_db == -4.0
+    assert np.abs(automatic.codes.astype(int)).max() == round(512 * 10 ** (-4.0 / 20))
+
+
+def test_jitter_makes_noise_by_the_square_of_the_frequency():
+    cell, jitter = 200, 50e-12
+    adc = ep.Adc(bits=16, full_scale_dbm=33.0, gain_db=0.0, clock_jitter=jitter)
+    radar = one_channel(64, receiver=ep.Receiver(adc=adc), noise_figure_db=0.0)
+    out = ep.receive(tone(cell, 1.0, 64), radar, seed=3).cube
+    noise = np.mean(np.abs(out - tone(cell, 1.0, 64)) ** 2)
+    assert db(noise) == pytest.approx(20 * np.log10(2 * np.pi * cell * RATE / COUNT * jitter), abs=LEVEL)
+
+
+def test_the_same_seed_gives_the_same_bits_and_frames_differ():
+    faults = dict(phase_noise=dict(offsets=[1e4, 1e6], levels=[-80, -100]), adc=dict(bits=12, clock_jitter=1e-12))
+    one, same = (received(tone(60), seed=4, **faults).cube for _ in range(2))
+    np.testing.assert_array_equal(one, same)
+    radar = one_channel(receiver=ep.Receiver(**faults))
+    assert not np.array_equal(one, ep.receive(tone(60), radar, seed=4, start_time=0.1).cube)
+
+
+def test_receivers_are_values_that_files_keep(tmp_path):
+    receiver = ep.Receiver(phase_noise=ep.PhaseNoise(offsets=[1e3, 1e6], levels=[-80, -100]), leakage_db=[[-30.0]],
+                           adc=ep.Adc(bits=14), dc_offset=(1e-6, 0.0), high_pass=[1e5])
+    radar = one_channel(1, receiver=receiver)
+    assert hash(receiver) == hash(ep.Receiver(**receiver.plain())) and ep.Receiver(**receiver.plain()) == receiver
+    assert pickle.loads(pickle.dumps(radar)) == radar
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(1, 1), name="plate", material="metal", position=(5, 0, 0))
+    ep.trace(scene, radar, num_rays=500).save(tmp_path / "f.h5")
+    assert ep.Paths.load(tmp_path / "f.h5").radar == radar
+
+
+@pytest.mark.parametrize("keywords, told", [
+    (dict(phase_noise=dict(offsets=[1e3, 1e2], levels=[0, 0])), "phase_noise.offsets: must be ascending"),
+    (dict(phase_noise=dict(offsets=[1e3], levels=[0, 0])), "phase_noise.levels: must be 1 numbers"),
+    (dict(adc=dict(bits=17)), "adc.bits: must be"),
+    (dict(high_pass=[-1.0]), "high_pass: must be Hz above 0"),
+    (dict(iq_phase=2.0), "iq_phase: must be"),
+])
+def test_bad_receivers_are_refused_by_name(keywords, told):
+    with pytest.raises(ValueError, match=f"^{told}"):
+        ep.Receiver(**keywords)
+
+
+def test_tables_of_other_antennas_are_refused():
+    with pytest.raises(ValueError, match=r"^receiver.leakage_db: must be of the shape \(1, 1\)"):
+        received(tone(3), leakage_db=[[1.0, 2.0]])

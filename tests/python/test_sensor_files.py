@@ -1,0 +1,218 @@
+"""Configurations and raw data of TI sensors, read back by a tool of theirs (OpenRadar 1.0.1, unchanged)."""
+import numpy as np
+import pytest
+
+import echopath as ep
+
+C = ep.speed_of_light
+CONFIGURATION = """% Platform : xWR68xx
+dfeDataOutputMode 1
+channelCfg 15 5 0
+adcCfg 2 1
+adcbufCfg -1 0 1 1 1
+profileCfg 0 60 7 6 40 0 0 70 1 128 5000 0 0 30
+chirpCfg 0 0 0 0 0 0 0 1
+chirpCfg 1 1 0 0 0 0 0 4
+frameCfg 0 1 32 0 50 1 0
+guiMonitor -1 1 1 0 0 0 1
+sensorStart
+"""
+RATE, COUNT, SLOPE, INTERVAL = 5e6, 128, 70e12, 47e-6
+START = 60e9 + SLOPE * 6e-6
+
+
+@pytest.fixture
+def written(tmp_path):
+    """write(text) -> path of a configuration; write(old=new) replaces in the one above."""
+    def write(text=None, **lines):
+        text = CONFIGURATION if text is None else text
+        for command, line in lines.items():
+            text = "\n".join(line if one.split()[:1] == [command] else one for one in text.splitlines()) + "\n"
+        path = tmp_path / "sensor.cfg"
+        path.write_text(text)
+        return path
+    return write
+
+
+def test_a_configuration_sets_up_its_radar(written):
+    radar = ep.load_radar(written())
+    waveform = radar.waveform
+    assert waveform.start_frequency == pytest.approx(START, rel=1e-15)
+    assert waveform.slope == pytest.approx(SLOPE, rel=1e-15)
+    assert (waveform.num_samples, waveform.sampling_rate, waveform.num_chirps) == (COUNT, RATE, 32)
+    assert waveform.chirp_interval == pytest.approx(INTERVAL, rel=1e-12)
+    assert not waveform.real and radar.multiplexing == "tdm"
+    half = 0.5 * C / 62e9
+    np.testing.assert_allclose([one.position for one in radar.transmitters], [(0, 0, 0), (0, 4 * half, 0)])
+    np.testing.assert_allclose([one.position for one in radar.receivers], [(0, i * half, 0) for i in range(4)])
+    assert radar.receiver == ep.Receiver(high_pass=[175e3, 350e3], adc=ep.Adc(bits=16, gain_db=30.0))
+    assert ep.load_radar(written(), ideal=True).receiver is None
+
+
+def test_what_says_nothing_of_the_signal_is_named_and_left_alone(written):
+    sensor = ep.load_sensor(written())
+    assert sensor.ignored == ("adcbufCfg", "guiMonitor", "sensorStart")
+    assert (sensor.interval, sensor.num_frames, sensor.board, sensor.start_times) == (0.05, 0, "IWR6843ISK", (0.0,))
+
+
+@pytest.mark.parametrize("board, tx, rx", [("IWR1443", 3, 4), ("AWR1843", 3, 4), ("IWR6843ISK", 3, 4), ("IWR6843AOP", 3, 4),
+                                           ("AWR2243_cascade", 12, 16)])
+def test_boards_have_their_antennas(written, board, tx, rx):
+    masks = f"channelCfg {2 ** rx - 1} {2 ** tx - 1} 0"
+    radar = ep.load_radar(written(channelCfg=masks), board)
+    assert len(radar.receivers) == rx and len(radar.transmitters) == 2
+
+
+def virtual_places(board, tx, rx, written):
+    text = CONFIGURATION.replace("channelCfg 15 5 0", f"channelCfg {2 ** rx - 1} {2 ** tx - 1} 0")
+    lines = [line for line in text.splitlines() if not line.startswith(("chirpCfg", "frameCfg"))]
+    lines += [f"chirpCfg {i} {i} 0 0 0 0 0 {1 << i}" for i in range(tx)] + [f"frameCfg 0 {tx - 1} 4 0 100 1 0"]
+    radar = ep.load_radar(written("\n".join(lines)), board)
+    places = np.array([[t.position + r.position for r in radar.receivers] for t in radar.transmitters])
+    return places / (0.5 * C / {"AWR2243_cascade": 76.8e9}.get(board, 62e9))
+
+
+def test_virtual_elements_are_those_that_ti_publishes(written):
+    """antGeometry0 (to the right) and antGeometry1 (up) of configurations for the 6843; 86 azimuths of the cascade (JAJU737A)."""
+    isk = virtual_places("IWR6843ISK", 3, 4, written).reshape(12, 3)
+    np.testing.assert_allclose(-isk[:, 1], [0, -1, -2, -3, -2, -3, -4, -5, -4, -5, -6, -7], atol=1e-9)
+    np.testing.assert_allclose(isk[:, 2] - 1, [-1, -1, -1, -1, 0, 0, 0, 0, -1, -1, -1, -1], atol=1e-9)
+    aop = virtual_places("IWR6843AOP", 3, 4, written).reshape(12, 3)
+    np.testing.assert_allclose(-aop[:, 1], [-1, -1, 0, 0, -3, -3, -2, -2, -1, -1, 0, 0], atol=1e-9)
+    np.testing.assert_allclose(aop[:, 2], [-1, 0, -1, 0, -3, -2, -3, -2, -3, -2, -3, -2], atol=1e-9)
+    cascade = virtual_places("AWR2243_cascade", 12, 16, written).reshape(-1, 3)
+    level = np.round(cascade[np.abs(cascade[:, 2]) < 0.5, 1]).astype(int)
+    assert len(set(level)) == 86
+
+
+def test_sub_frames_are_radars_that_begin_one_after_the_other(written):
+    text = CONFIGURATION.replace("dfeDataOutputMode 1", "dfeDataOutputMode 3").replace(
+        "profileCfg 0", "profileCfg 1 60.5 7 6 50 0 0 40 1 64 4000 0 0 30\nprofileCfg 0").replace(
+        "frameCfg 0 1 32 0 50 1 0", "chirpCfg 2 2 1 0 0 0 0 1\nadvFrameCfg 2 0 0 1 0\nsubFrameCfg 0 -1 0 2 16 20 0 1 1 20\n"
+        "subFrameCfg 1 -1 2 1 64 30 0 1 1 30")
+    sensor = ep.load_sensor(written(text))
+    assert sensor.start_times == (0.0, pytest.approx(0.02)) and sensor.interval == pytest.approx(0.05)
+    first, second = sensor.radars
+    assert (first.waveform.num_chirps, len(first.transmitters)) == (16, 2)
+    assert (second.waveform.num_chirps, len(second.transmitters), second.waveform.num_samples) == (64, 1, 64)
+    assert ep.load_radar(written(text), subframe=1) == second
+    with pytest.raises(ValueError, match="^subframe: must be below 2"):
+        ep.load_radar(written(text), subframe=2)
+
+
+def test_chirps_that_differ_become_steps(written):
+    text = CONFIGURATION.replace("chirpCfg 1 1 0 0 0 0 0 4", "chirpCfg 1 1 0 1e6 0 2 0 4")
+    waveform = ep.load_radar(written(text)).waveform
+    assert waveform.frequency_steps == pytest.approx((0.0, 1e6))
+    assert waveform.extra_idle == pytest.approx((2e-6, 0.0)) and waveform.chirp_interval == pytest.approx(INTERVAL)
+
+
+def test_signs_of_two_transmitters_are_bpm(written):
+    text = CONFIGURATION.replace(" 0 0 0 0 1\n", " 0 0 0 0 5\n").replace(" 0 0 0 0 4\n", " 0 0 0 0 5\n") + "bpmCfg -1 1 0 1\n"
+    radar = ep.load_radar(written(text))
+    assert (radar.multiplexing, radar.num_slots, radar.waveform.num_chirps) == ("bpm", 2, 32)
+
+
+@pytest.mark.parametrize("lines, told", [
+    (dict(profileCfg="profileCfg 0 60 7 6 40 0 0 70 1 128"), r"sensor.cfg:6: profileCfg: must have 14 arguments"),
+    (dict(profileCfg="profileCfg 0 60 x 6 40 0 0 70 1 128 5000 0 0 30"), "sensor.cfg:6: profileCfg: idle_us: must be a number"),
+    (dict(profileCfg="profileCfg 0 60 7 6 30 0 0 70 1 128 5000 0 0 30"), "sensor.cfg:6: profileCfg: ramp_end_us: must be at"),
+    (dict(profileCfg="profileCfg 3 60 7 6 40 0 0 70 1 128 5000 0 0 30"), "sensor.cfg:7: chirpCfg: profile: must be that"),
+    (dict(profileCfg="profileCfg 0 60 7 6 40 0 0 70 1 128 5000 7 0 30"), "sensor.cfg:6: profileCfg: high_pass_1: must be 0"),
+    (dict(channelCfg="channelCfg 15 1 0"), "sensor.cfg:8: chirpCfg: transmitters: 3 is not enabled"),
+    (dict(channelCfg="channelCfg 31 5 0"), "sensor.cfg:3: channelCfg: receivers: must be a mask of the 4"),
+    (dict(adcCfg="adcCfg 5 1"), "sensor.cfg:4: adcCfg: bits: must be 0, 1 or 2"),
+    (dict(adcCfg="adcCfg 2.5 1"), "sensor.cfg:4: adcCfg: bits: must be a whole number"),
+    (dict(frameCfg="frameCfg 0 2 32 0 50 1 0"), "sensor.cfg:9: frameCfg: chirp 2: has no chirpCfg"),
+    (dict(frameCfg="sensorStop"), "sensor.cfg: has no frameCfg"),
+    (dict(dfeDataOutputMode="dfeDataOutputMode 2"), "sensor.cfg:2: dfeDataOutputMode: mode: must be 1"),
+])
+def test_bad_lines_are_errors_with_their_numbers(written, lines, told):
+    with pytest.raises(ep.FileError, match=told):
+        ep.load_radar(written(**lines))
+
+
+def test_boards_that_nobody_names_are_asked_for(written):
+    with pytest.raises(ValueError, match="^board: must be given, one of .*: the file says nothing"):
+        ep.load_radar(written(CONFIGURATION.replace("% Platform : xWR68xx\n", "")))
+    with pytest.raises(ValueError, match="^board: must be one of AWR1843"):
+        ep.load_radar(written(), "AWR")
+
+
+def frame_of(sensor, azimuth=0.0, distance=2.0, speed=0.0, **keywords):
+    out = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
+    scene = ep.Scene()
+    scene.add(ep.actors.trihedral(0.1), name="corner", material=ep.Material.metal(), position=tuple(distance * out),
+              yaw=azimuth, motion=ep.LinearMotion(velocity=tuple(speed * out)))
+    return ep.simulate(scene, sensor, num_rays=20_000, **keywords)
+
+
+def read_by_openradar(path, num_slots=64):
+    from mmwave.dataloader import DCA1000
+    import mmwave.dsp as dsp
+
+    raw = np.fromfile(path, np.int16)
+    adc = DCA1000.organize(raw.astype(np.float64), num_slots, 4, COUNT)
+    return dsp.doppler_processing(dsp.range_processing(adc), num_tx_antennas=2)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_openradar_finds_range_and_velocity_within_half_a_cell(written, tmp_path):
+    pytest.importorskip("mmwave")
+    sensor = ep.load_radar(written())
+    frame_of(sensor, speed=0.8).save_raw(tmp_path / "frame.bin")
+    assert (tmp_path / "frame.bin").stat().st_size == 64 * 4 * COUNT * 4
+    power, _ = read_by_openradar(tmp_path / "frame.bin")
+    power = power[:COUNT // 2]
+    place, doppler = np.unravel_index(power.argmax(), power.shape)
+    cell, speed_cell = sensor.waveform.range_resolution, sensor.waveform.velocity_resolution(2)
+    assert place * cell == pytest.approx(2.0 + 0.8 * 32 * INTERVAL, abs=0.5 * cell)  # in the middle of the frame
+    assert (doppler if doppler < 16 else doppler - 32) * speed_cell == pytest.approx(0.8, abs=0.5 * speed_cell)
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("azimuth_deg", [-25.0, 0.0, 12.0])
+def test_openradar_finds_the_azimuth_of_a_corner_within_a_degree(written, tmp_path, azimuth_deg):
+    """x of the board is to the right; 8 elements half a wavelength of 62 GHz apart."""
+    pytest.importorskip("mmwave")
+    sensor = ep.load_radar(written())
+    frame_of(sensor, azimuth=np.radians(azimuth_deg), distance=4.0).save_raw(tmp_path / "frame.bin")
+    power, snapshot = read_by_openradar(tmp_path / "frame.bin")
+    place = power[:COUNT // 2, 0].argmax()
+    angle_fft = np.abs(np.fft.fft(snapshot[place, :, 0], 1024))
+    peak = np.fft.fftfreq(1024)[angle_fft.argmax()]
+    scale = sensor.waveform.centre_frequency / 62e9  # elements are half a wavelength apart at 62 GHz
+    assert np.degrees(np.arcsin(-2.0 * peak / scale)) == pytest.approx(azimuth_deg, abs=1.0)
+
+
+def test_words_are_real_real_imaginary_imaginary_slot_by_slot(written, tmp_path):
+    frame = frame_of(ep.load_radar(written()))
+    codes = frame.received.codes
+    assert frame.save_raw(tmp_path / "one.bin") == codes.nbytes
+    words = np.fromfile(tmp_path / "one.bin", "<i2").reshape(32, 2, 4, COUNT // 2, 4)
+    for tx in range(2):
+        expected = np.moveaxis(codes[tx], 0, 1)  # [chirp, rx, sample, branch]
+        np.testing.assert_array_equal(words[:, tx, ..., :2].reshape(32, 4, COUNT), expected[..., 0])
+        np.testing.assert_array_equal(words[:, tx, ..., 2:].reshape(32, 4, COUNT), expected[..., 1])
+
+
+def test_frames_follow_each_other_and_a_file_that_fails_is_not_written(written, tmp_path):
+    sensor = ep.load_radar(written())
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.2, 0.2), name="plate", material="metal", position=(3, 0, 0),
+              motion=ep.LinearMotion(velocity=(1, 0, 0)))
+    sequence = ep.Sequence(scene, sensor, frames=2, interval=0.05, num_rays=1000)
+    size = ep.save_raw(sequence, tmp_path / "two.bin")
+    whole = (tmp_path / "two.bin").read_bytes()
+    assert size == len(whole) == 2 * 64 * 4 * COUNT * 4 and whole[:size // 2] != whole[size // 2:]
+    assert sequence[1].save_raw(tmp_path / "second.bin") == size // 2
+    assert (tmp_path / "second.bin").read_bytes() == whole[size // 2:]
+
+    def failing():
+        yield sequence[0]
+        raise RuntimeError("no second frame")
+
+    with pytest.raises(RuntimeError, match="no second frame"):
+        ep.save_raw(failing(), tmp_path / "half.bin")
+    assert sorted(one.name for one in tmp_path.glob("*.bin")) == ["second.bin", "two.bin"]
+    assert not list(tmp_path.glob(".half*"))

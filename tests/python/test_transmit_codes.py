@@ -1,0 +1,192 @@
+"""Codes of transmitters that send at once, and what undoes them."""
+import numpy as np
+import pytest
+from support.radars import build_radar
+
+import echopath as ep
+
+C = ep.speed_of_light
+ROUNDING = 1e-12      # of sums of a few hundred terms, relative to the largest
+SAME_STATIC = 1e-9    # promised for scenes at rest, relative
+NUM_TX, NUM_RX = 3, 4
+HALF = 0.5 * C / 77.5e9
+
+
+def array_radar(multiplexing="tdm", num_chirps=32, **settings):
+    """Three transmitters 2 wavelengths apart, four receivers half a wavelength apart: a line of 12 elements."""
+    return build_radar([(0, 4 * m * HALF, 0) for m in range(NUM_TX)], [(0, n * HALF, 0) for n in range(NUM_RX)],
+                       num_chirps=num_chirps, multiplexing=multiplexing, **settings)
+
+
+def plates(*speeds, radar=None, azimuths=None):
+    """Paths of small balls at 3, 4, ... m that move away at those speeds."""
+    scene = ep.Scene()
+    for i, speed in enumerate(speeds):
+        azimuth = 0.2 if azimuths is None else azimuths[i]
+        out = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
+        scene.add(ep.actors.sphere(0.1), name=f"ball{i}", material=ep.Material.metal(), smooth=True,
+                  position=tuple((3.0 + i) * out), motion=ep.LinearMotion(velocity=tuple(speed * out)))
+    return ep.trace(scene, radar or array_radar(), num_rays=2000, max_bounces=1)
+
+
+@pytest.mark.parametrize("code", [dict(multiplexing="ddm"), dict(multiplexing="bpm"),
+                                  dict(multiplexing="cdm", code_phases=np.pi * np.eye(3, 4)[::-1])])
+def test_what_receivers_have_is_the_sum_of_the_transmitters_by_their_codes(code):
+    radar = array_radar(num_chirps=8, **code)
+    paths = plates(3.0, radar=radar)
+    slots = 8 * radar.num_slots
+    alone = [ep.synthesize(paths, build_radar([transmitter], radar.receivers, num_chirps=slots))
+             for transmitter in radar.transmitters]
+    slot = np.arange(slots)
+    phases = {"ddm": lambda m: 2 * np.pi * m * slot / 4,
+              "bpm": lambda m: np.pi * ((slot % 4 & m) % 3 != 0),  # rows 0 1 2 of the matrix of order 4
+              "cdm": lambda m: np.where(slot % 4 == 2 - m, np.pi, 0.0)}[radar.multiplexing]
+    expected = sum(np.exp(1j * phases(m))[:, None] * cube[0] for m, cube in enumerate(alone))
+    cube = ep.synthesize(paths, radar)
+    assert cube.shape == (1, NUM_RX, slots, 64)
+    assert np.max(np.abs(cube[0] - expected)) < 1e-6 * np.max(np.abs(expected))  # the tolerance of each synthesis
+
+
+@pytest.mark.parametrize("multiplexing", ["ddm", "bpm"])
+def test_a_scene_at_rest_comes_back_as_transmitters_that_take_turns_have_it(multiplexing):
+    radar = array_radar(multiplexing)
+    paths = plates(0.0, 0.0, radar=radar)
+    turns = ep.synthesize(paths, array_radar())
+    apart = ep.demultiplex(ep.synthesize(paths, radar), radar)
+    assert apart.shape == turns.shape
+    assert np.max(np.abs(apart - turns)) < SAME_STATIC * np.max(np.abs(turns))
+
+
+def test_slots_in_a_row_become_the_chirps_of_their_transmitters():
+    radar = array_radar(num_chirps=4)
+    cube = ep.synthesize(plates(5.0, radar=radar), radar)
+    row = np.stack([cube[slot % NUM_TX, :, slot // NUM_TX] for slot in range(4 * NUM_TX)], axis=1)[None]
+    np.testing.assert_array_equal(ep.demultiplex(row, radar), cube)
+    np.testing.assert_array_equal(ep.demultiplex(cube, radar), cube)
+
+
+def strongest(cube, radar):
+    spectrum = ep.range_doppler(cube, radar)
+    power = np.mean(np.abs(spectrum.values) ** 2, axis=(0, 1))
+    return spectrum, np.unravel_index(power.argmax(), power.shape)
+
+
+@pytest.mark.parametrize("speed", [-14.0, -3.0, 2.5, 9.0, 13.0])
+def test_empty_slots_tell_velocities_beyond_a_share_of_the_axis(speed):
+    """+-16.1 m/s are unambiguous, a share of four is 8.1 m/s wide."""
+    radar = array_radar("ddm", num_chirps=64)
+    cube = ep.demultiplex(ep.synthesize(plates(speed, radar=radar), radar), radar)
+    spectrum, cell = strongest(cube, radar)
+    assert spectrum.velocity[cell[0]] == pytest.approx(speed, abs=radar.waveform.velocity_resolution())
+    found = ep.estimate_angles(spectrum, radar, cells=[cell])
+    assert found.azimuth[0] == pytest.approx(0.2, abs=0.02)
+
+
+@pytest.mark.parametrize("speed", [-3.0, 2.2])
+def test_moving_targets_keep_their_azimuth_through_signs(speed):
+    radar = array_radar("bpm", num_chirps=64)
+    assert abs(speed) < radar.waveform.max_velocity(4)
+    cube = ep.demultiplex(ep.synthesize(plates(speed, radar=radar), radar), radar)
+    spectrum, cell = strongest(cube, radar)
+    assert spectrum.velocity[cell[0]] == pytest.approx(speed, abs=radar.waveform.velocity_resolution(4))
+    assert ep.estimate_angles(spectrum, radar, cells=[cell]).azimuth[0] == pytest.approx(0.2, abs=0.02)
+
+
+def test_noise_keeps_its_level_and_its_false_alarms_through_doppler_division():
+    radar = array_radar("ddm", num_chirps=64, num_samples=128)
+    noise = ep.add_noise(np.zeros((1, NUM_RX, 64, 128)), radar, seed=3)
+    spectrum = ep.range_doppler(ep.demultiplex(noise, radar), radar)
+    plain = ep.range_doppler(ep.add_noise(np.zeros((NUM_TX, NUM_RX, 64, 128)), radar, seed=4), radar)
+    levels = [10.0 * np.log10(np.mean(np.abs(one.values) ** 2)) for one in (spectrum, plain)]
+    assert levels[0] == pytest.approx(levels[1], abs=0.2)
+    rate = np.mean(ep.cfar(spectrum, radar, false_alarm_rate=1e-2).mask)
+    assert 0.3e-2 < rate < 3e-2
+
+
+def test_averaging_over_a_sign_code_lowers_the_noise_by_its_length():
+    radar = array_radar("bpm", num_chirps=16)
+    noise = ep.demultiplex(ep.add_noise(np.zeros((1, NUM_RX, 64, 64)), radar, seed=3), radar)
+    one = ep.add_noise(np.zeros((NUM_TX, NUM_RX, 16, 64)), array_radar(num_chirps=16), seed=3)
+    assert 10.0 * np.log10(np.mean(np.abs(one) ** 2) / np.mean(np.abs(noise) ** 2)) == pytest.approx(6.02, abs=0.2)
+
+
+def test_frames_of_codes_have_labels_and_detections_of_their_objects():
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.2), name="near", material=ep.Material.metal(), position=(4, 0.5, 0), smooth=True)
+    scene.add(ep.actors.sphere(0.2), name="far", material=ep.Material.metal(), position=(7, -1.0, 0), smooth=True,
+              motion=ep.LinearMotion(velocity=(9.0, 0, 0)))
+    radar = array_radar("ddm", num_chirps=64, transmit_power=0.1)
+    frame = ep.simulate(scene, radar, num_rays=4000, max_bounces=1, labels=True, detections=True)
+    assert frame.coded_cube.shape == (1, NUM_RX, 64, 64)
+    assert set(frame.detections.object) >= {"near", "far"}
+    seen = {one.name: one for one in frame.labels["parts"].objects}
+    assert seen["far"].peak.velocity == pytest.approx(9.0, abs=0.7)
+
+
+def test_staggered_slots_begin_later_by_the_idle_times_before_them():
+    radar = build_radar(num_chirps=6, extra_idle=(1e-6, 4e-6, 0.0))
+    starts = [radar.waveform.slot_start(slot) for slot in range(6)]
+    assert starts == pytest.approx([0, 61e-6, 125e-6, 185e-6, 246e-6, 310e-6], rel=1e-12)
+    assert radar.frame_duration == pytest.approx(310e-6 + 63 / 20e6, rel=1e-12)
+    speed, paths = 8.0, plates(8.0, radar=radar)
+    phases = np.unwrap(np.angle(ep.synthesize(paths, radar)[0, 0, :, 32]))
+    even = np.unwrap(np.angle(ep.synthesize(paths, build_radar(num_chirps=6))[0, 0, :, 32]))
+    late = np.array(starts) - 60e-6 * np.arange(6)
+    carrier = 77e9 + radar.waveform.slope * 32 / 20e6
+    assert phases - even == pytest.approx(4 * np.pi * carrier * speed / C * late, abs=2e-3)
+
+
+def test_steps_of_frequency_turn_each_chirp_by_the_delay():
+    steps = (0.0, 2e6, -3e6)
+    radar = build_radar(num_chirps=6, frequency_steps=steps)
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.05, 0.05), name="plate", material=ep.Material.metal(), position=(5, 0, 0))
+    paths = ep.trace(scene, radar, num_rays=2000, max_bounces=1)
+    cube = ep.synthesize(paths, radar)[0, 0, :, 32]
+    turned = np.angle(cube / cube[0]) / (2 * np.pi)
+    expected = np.resize(steps, 6) * 10.0 / C
+    assert np.mod(turned - expected + 0.5, 1.0) - 0.5 == pytest.approx(0.0, abs=2e-4)  # a plate has some depth of delay
+
+
+def test_steps_of_bandwidth_change_the_beat_frequency():
+    radar = build_radar(num_chirps=2, num_samples=256, bandwidth_steps=(0.0, 2.5e8))
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.05, 0.05), name="plate", material=ep.Material.metal(), position=(10, 0, 0))
+    cube = ep.synthesize(ep.trace(scene, radar, num_rays=2000, max_bounces=1), radar)[0, 0]
+    beats = [np.polyfit(np.arange(256), np.unwrap(np.angle(chirp)), 1)[0] * 20e6 / (2 * np.pi) for chirp in cube]
+    for beat, bandwidth in zip(beats, (1e9, 1.25e9)):
+        assert beat == pytest.approx(bandwidth * 20e6 / 256 * 20.0 / C, rel=1e-4)
+
+
+def test_codes_travel_with_their_radars(tmp_path):
+    radar = array_radar("cdm", num_chirps=8, code_phases=[[0, 1], [2, 3], [4, 5.0]], extra_idle=[1e-6, 0])
+    assert radar.replace(yaw=0.1).replace(yaw=0.0) == radar
+    paths = plates(1.0, radar=radar)
+    paths.save(tmp_path / "frame.h5")
+    back = ep.Paths.load(tmp_path / "frame.h5").radar
+    np.testing.assert_array_equal(back.code_phases, radar.code_phases)
+    assert back.waveform == radar.waveform and back.multiplexing == "cdm"
+
+
+@pytest.mark.parametrize("keywords, told", [
+    (dict(multiplexing="cdm"), "code_phases: must be given for cdm"),
+    (dict(code_phases=[[0.0]]), "code_phases: must be given for cdm"),
+    (dict(multiplexing="cdm", code_phases=[[0.0]]), "code_phases: must have one row for each transmitter"),
+    (dict(multiplexing="ddm", empty_slots=0), "empty_slots: must be"),
+    (dict(extra_idle=(-1e-6,)), "extra_idle: must be finite and not negative"),
+    (dict(frequency_steps=(-80e9,)), "frequency_steps: must"),
+])
+def test_bad_codes_are_refused_by_name(keywords, told):
+    with pytest.raises(ValueError, match=f"^{told}"):
+        array_radar(**keywords)
+
+
+def test_what_cannot_be_taken_apart_is_refused():
+    radar = array_radar("ddm", num_chirps=30)
+    with pytest.raises(ValueError, match="^waveform.num_chirps: must be a multiple of .* = 4, got 30"):
+        ep.demultiplex(np.zeros((1, NUM_RX, 30, 64)), radar)
+    with pytest.raises(ValueError, match="^cube: must be of the shape"):
+        ep.demultiplex(np.zeros((1, NUM_RX, 31, 64)), array_radar("bpm"))
+    real = array_radar("ddm", real=True)
+    with pytest.raises(ValueError, match="^waveform.real: must be False"):
+        ep.synthesize(plates(0.0, radar=real), real)

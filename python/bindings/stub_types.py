@@ -28,6 +28,7 @@ RETURNS = {
     ("Curve", "in_tangents"): f"{REAL} | None", ("Curve", "out_tangents"): f"{REAL} | None",
     ("CurveMotion", "period"): "float | None", ("MorphTargets", "period"): "float | None",
     ("VertexSequence", "period"): "float | None",
+    **{("ChirpSequence", name): "tuple[float, ...]" for name in ("extra_idle", "frequency_steps", "bandwidth_steps")},
     ("Radar", "motion"): "Motion | None", ("Radar", "receiver"): "Receiver | None",
     ("Radar", "code_phases"): f"{REAL} | None", ("Radar", "_repr_html_"): "str",
     ("RangeDoppler", "values"): COMPLEX, ("RangeDoppler", "window"): WINDOW, ("RangeDoppler", "_repr_html_"): "str",

@@ -1054,7 +1054,7 @@ class ChirpSequence:
         Hz, sampled
         """
     @property
-    def bandwidth_steps(self) -> tuple[typing.Any, ...]:
+    def bandwidth_steps(self) -> tuple[float, ...]:
         """
         Hz, of each slot, repeated
         """
@@ -1074,12 +1074,12 @@ class ChirpSequence:
         s, between neighbouring slots
         """
     @property
-    def extra_idle(self) -> tuple[typing.Any, ...]:
+    def extra_idle(self) -> tuple[float, ...]:
         """
         s, after each slot, repeated
         """
     @property
-    def frequency_steps(self) -> tuple[typing.Any, ...]:
+    def frequency_steps(self) -> tuple[float, ...]:
         """
         Hz, of each slot, repeated
         """

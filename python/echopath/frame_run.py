@@ -134,7 +134,7 @@ def _check_radar(radar, labels) -> None:
     code_of(radar)
     if radar.receiver is not None:
         require_channels(radar.receiver, radar)
-    if labels not in (None, False) and has_steps(radar):
+    if labels is not None and labels is not False and has_steps(radar):
         raise ValueError("labels: must be off where the chirps of a frame have steps of frequency or bandwidth: its map is "
                          "that of equal chirps")
 

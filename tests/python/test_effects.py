@@ -40,6 +40,7 @@ def deforming():
     return scene
 
 
+STAGGERED = ep.ChirpSequence(num_chirps=2, extra_idle=(0.0, 1e-6))
 MOVING = ep.LinearMotion(velocity=(1, 0, 0))
 LOBED = ep.Material(reflectivity=0.5, scattering=1.0, lobe_exponent=4)
 TURNING = ep.Material(reflectivity=0.5, scattering=1.0, cross_polarization=0.2)
@@ -96,7 +97,7 @@ CASES = {
     "array from one set of rays": (dict(radar=make_radar(2)), "2 x 1", {}),
     "transmitters take turns (TDM)": (dict(radar=make_radar(2)), "2 transmitters", {}),
     "transmitters send at once by a code": (dict(radar=make_radar(2).replace(multiplexing="bpm")), "bpm", {}),
-    "chirps that differ within a frame": (dict(radar=make_radar().replace(waveform=ep.ChirpSequence(num_chirps=2, extra_idle=(0.0, 1e-6)))), "extra_idle", {}),
+    "chirps that differ within a frame": (dict(radar=make_radar().replace(waveform=STAGGERED)), "extra_idle", {}),
     "faults of the receiver": (dict(radar=make_radar().replace(receiver=ep.Receiver(iq_gain_db=1.0))), "iq_gain_db", {}),
     "polarised fields": ({}, "no flagged mirrors: plate", dict(polarization="scalar")),
     "depolarisation by roughness": (dict(scene=make_scene(TURNING)), "plate",

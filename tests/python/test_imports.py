@@ -14,6 +14,7 @@ CLOSING = {
     ("echopath.labels.labels", "echopath.plots"): "Labels.plot draws with plots, which take the colours of labels",
     ("echopath.frame", "echopath.plots"): "Frame.plot draws with plots, which take the colours of labels of frames",
     ("echopath.frame", "echopath.truth"): "Frame.truth asks for the truth, which also takes rows of frames",
+    ("echopath.frame", "echopath.sensor_files"): "Frame.save_raw writes with what writes several frames",
     ("echopath.readers.model", "echopath.readers.along"): "Model.along makes another model of its nodes",
     ("echopath.cli", "echopath_viewer"): "`echopath view` starts the viewer, whose demo is that of the command line",
 }

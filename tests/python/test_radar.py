@@ -75,7 +75,7 @@ def test_bad_radar_names_the_field():
     with pytest.raises(ValueError, match="^transmit_power: "):
         ep.Radar(reference(), transmitters=one, receivers=one, transmit_power=-1)
     with pytest.raises(ValueError, match="^multiplexing: "):
-        ep.Radar(reference(), transmitters=one, receivers=one, multiplexing="ddm")
+        ep.Radar(reference(), transmitters=one, receivers=one, multiplexing="fdm")
     with pytest.raises(ValueError, match="^polarization: "):
         ep.Antenna(polarization=(0, 0, 1.1))
     with pytest.raises(ValueError, match="^orientation: "):
@@ -85,7 +85,7 @@ def test_bad_radar_names_the_field():
     with pytest.raises(TypeError, match="'num_chirps'"):
         ep.ChirpSequence(num_chirp=3)
     with pytest.raises(TypeError, match="'receivers'"):
-        ep.Radar(reference(), transmitters=one, receivers=one, reciever=one)
+        ep.Radar(reference(), transmitters=one, receivers=one, recievers=one)
 
 
 WRONG = ["abc", b"abc", object(), {}, set(), [[]], (1, 2), np.zeros((2, 2)), np.nan, np.inf, -np.inf, 1j, "\ud800", 1e400,

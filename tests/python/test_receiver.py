@@ -266,7 +266,7 @@ def test_receivers_are_values_that_files_keep(tmp_path):
 
 @pytest.mark.parametrize("keywords, told", [
     (dict(phase_noise=dict(offsets=[1e3, 1e2], levels=[0, 0])), "phase_noise.offsets: must be ascending"),
-    (dict(phase_noise=dict(offsets=[1e3], levels=[0, 0])), "phase_noise.levels: must be 1 numbers"),
+    (dict(phase_noise=dict(offsets=[1e3], levels=[0, 0])), "phase_noise.offsets: must be as many as levels, 2"),
     (dict(adc=dict(bits=17)), "adc.bits: must be"),
     (dict(high_pass=[-1.0]), "high_pass: must be Hz above 0"),
     (dict(iq_phase=2.0), "iq_phase: must be"),

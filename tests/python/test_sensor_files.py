@@ -216,3 +216,46 @@ def test_frames_follow_each_other_and_a_file_that_fails_is_not_written(written, 
         ep.save_raw(failing(), tmp_path / "half.bin")
     assert sorted(one.name for one in tmp_path.glob("*.bin")) == ["second.bin", "two.bin"]
     assert not list(tmp_path.glob(".half*"))
+
+
+SCENE = """[radar]
+sensor = "sensor.cfg"
+position = [0, 0, 1]
+yaw_deg = 90
+
+[trace]
+num_rays = 1000
+
+[[objects]]
+name = "plate"
+actor = "plate"
+parameters = {width = 0.3, height = 0.3}
+material = "metal"
+position = [0, 4, 1]
+yaw_deg = 90
+"""
+
+
+def test_scene_files_take_sensors_and_runs_write_raw_data(written, tmp_path, capsys):
+    written()
+    (tmp_path / "scene.toml").write_text(SCENE)
+    radar = ep.load_scene(tmp_path / "scene.toml").radar
+    assert radar == ep.load_radar(tmp_path / "sensor.cfg").replace(position=(0, 0, 1), yaw=np.pi / 2)
+    from echopath.cli import main
+
+    arguments = ["run", str(tmp_path / "scene.toml"), "--out", str(tmp_path / "out"), "--raw", str(tmp_path / "two.bin")]
+    assert not main([*arguments, "--frames", "2", "--interval", "0.05"])
+    size = 64 * 4 * COUNT * 4
+    assert (tmp_path / "two.bin").stat().st_size == 2 * size and f"{2 * size} bytes of raw data" in capsys.readouterr().out
+    assert main([*arguments, "--frames", "2", "--interval", "0.05", "--keep", "maps"])
+    assert "--raw: needs the signals of all frames" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("line, told", [
+    ('board = "IWR6843"', "radar: board: must be one of"), ("noise_figure_db = 3.0", "noise_figure_db: must not stand beside"),
+    ("receiver = {adc = {bits = 40}}", "radar.receiver.adc.bits: must be"), ("receiver = {adv = 3}", "unknown keyword 'adv'")])
+def test_bad_sensors_of_scene_files_are_refused(written, tmp_path, line, told):
+    written()
+    (tmp_path / "scene.toml").write_text(SCENE.replace("yaw_deg = 90\n\n[trace]", f"{line}\n\n[trace]"))
+    with pytest.raises(ValueError, match=told):
+        ep.load_scene(tmp_path / "scene.toml")

@@ -50,7 +50,7 @@ def test_signatures_of_the_extension_are_as_they_are_written():
     """Worked out by hand from the docstrings."""
     assert str(inspect.signature(ep.ChirpSequence)) == (
         "(*, start_frequency=77000000000.0, bandwidth=1000000000.0, num_samples=512, sampling_rate=20000000.0, "
-        "num_chirps=128, chirp_interval=6e-05, real=False)")
+        "num_chirps=128, chirp_interval=6e-05, real=False, extra_idle=(), frequency_steps=(), bandwidth_steps=())")
     assert list(inspect.signature(ep.Radar).parameters)[:3] == ["waveform", "transmitters", "receivers"]
     assert inspect.signature(ep.Antenna).parameters["polarization"].default == (0.0, 0.0, 1.0)
     assert str(inspect.signature(ep.CosinePower)) == "(exponent, peak_gain=None)"

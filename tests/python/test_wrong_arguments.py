@@ -36,6 +36,9 @@ def good(tmp_path_factory) -> dict:
     (folder / "box.glb").write_bytes(box_file().glb())
     (folder / "antenna.csv").write_text("azimuth_deg,elevation_deg,gain_db\n" + "".join(
         f"{azimuth},{elevation},0\n" for azimuth in (-10, 10) for elevation in (-10, 10)))
+    (folder / "sensor.cfg").write_text(
+        "% Platform : xWR68xx\nchannelCfg 1 1 0\nadcCfg 2 1\nprofileCfg 0 60 7 6 40 0 0 70 1 64 5000 0 0 30\n"
+        "chirpCfg 0 0 0 0 0 0 0 1\nframeCfg 0 0 8 0 50 1 0\n")
     (folder / "drive.csv").write_text("t,x,y\n0,0,0\n1,1,0\n")
     mesh, of_map = {"path": folder / "mesh.obj"}, {"spectrum": spectrum, "radar": radar}
     labels = next(iter(frame.labels.values()))
@@ -48,6 +51,8 @@ def good(tmp_path_factory) -> dict:
         "annotate": {"paths": paths, "parts": {"plate": "T 'plate' R"}},
         "annotate_frame": {"frame": frame, "parts": {"again": {"plate": "T 'plate' R"}}},
         "cfar": of_map, "check_rays": {"probe": probe, "frame": paths.frame}, "check_signal": {"cube": cube, "probe": probe},
+        "demultiplex": {"cube": cube, "radar": radar}, "load_radar": {"path": folder / "sensor.cfg"},
+        "load_sensor": {"path": folder / "sensor.cfg"}, "receive": {"cube": cube, "radar": radar, "seed": 1},
         "compensate_tdm": of_map, "decompose": {"paths": paths, "parts": {"plate": "T 'plate' R"}}, "detect": of_map,
         "detect_frame": {"frame": frame}, "effects": {"scene": scene, "radar": radar},
         "estimate_angles": of_map | {"cells": [[0, 1]]}, "families": {"paths": paths}, "first": {"glob": "plate"},
@@ -66,16 +71,18 @@ def good(tmp_path_factory) -> dict:
         "renew": {"paths": paths, "time": 0.0}, "save_frame": {"frame": frame, "path": folder / "saved.h5"},
         "save_label_images": {"labels": labels, "folder": folder / "images"},
         "save_labels": {"labels": frame.labels, "path": folder / "labels.h5"}, "set_num_threads": {"num_threads": 0},
+        "save_raw": {"frames": frame, "path": folder / "saved.bin"},
         "simulate": {"scene": scene, "radar": radar, "num_rays": 200, "guard": False}, "synthesize": {"paths": paths},
         "trace": {"scene": scene, "radar": radar, "num_rays": 200},
         "unresolved": {"paths": paths}, "validity": {"paths": paths}, "view": {"what": scene, "paths": paths},
         "virtual_array": {"radar": radar}, "visibility": {"scene": scene, "radar": radar, "num_directions": 16},
-        "TraceSettings": {}, "SignalSettings": {}, "LabelSettings": {}, "Sequence": in_time,
+        "TraceSettings": {}, "SignalSettings": {}, "LabelSettings": {}, "Sequence": in_time, "Receiver": {}, "Adc": {},
+        "PhaseNoise": {"offsets": [1e3], "levels": [-90.0]},
     }
 
 
 # Classes whose constructors are held to the same.
-CLASSES = ["TraceSettings", "SignalSettings", "LabelSettings", "Sequence"]
+CLASSES = ["TraceSettings", "SignalSettings", "LabelSettings", "Sequence", "Receiver", "Adc", "PhaseNoise"]
 # Of the extension, which checks their arguments itself; and what reads foreign files, whose readers have tests of their own.
 APART = {"CosinePower", "GainTable", "Isotropic"}
 FUNCTIONS = sorted(name for name in ep.__all__ if inspect.isroutine(getattr(ep, name)) and name not in APART)

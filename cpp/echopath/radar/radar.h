@@ -12,7 +12,8 @@
 namespace echopath {
 
 // Describes a frame of linear up-chirps. `bandwidth` is what the num_samples samples sweep. The slots of a frame, one chirp
-// each, may differ: slot i takes entry i modulo the length of each of the three last lists, which are empty where all are alike.
+// each, may differ: slot i takes entry i modulo the length of each of the three last lists, which are empty where all are
+// alike.
 struct ChirpSequence {
   double start_frequency = 77e9;        // Hz, at the first sample
   double bandwidth = 1e9;               // Hz, sampled
@@ -81,9 +82,9 @@ struct Antenna {
 Vec3 mean_position(const std::vector<Antenna>& antennas, const Transform& world_from_radar);
 
 // How transmitters share the chirps. kTdm: one transmitter per slot. The others send in all slots at once, by a code over
-// the slots; echoes and cubes are those of each transmitter by itself, [tx, rx, chirp, sample], as a receiver that undoes the
-// code has them: kBpm: the signs of a Hadamard matrix over num_slots slots, which make one chirp. kDdm: transmitter m turns
-// by m / (transmitters + empty_slots) of a cycle from chirp to chirp. kCdm: it turns by code_phases[m].
+// the slots; echoes and cubes are those of each transmitter by itself, [tx, rx, chirp, sample], as a receiver that undoes
+// the code has them: kBpm: the signs of a Hadamard matrix over num_slots slots, which make one chirp. kDdm: transmitter m
+// turns by m / (transmitters + empty_slots) of a cycle from chirp to chirp. kCdm: it turns by code_phases[m].
 enum class Multiplexing { kTdm, kBpm, kDdm, kCdm };
 
 struct Radar {

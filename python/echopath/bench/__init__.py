@@ -3,7 +3,7 @@
 synthesis, frames and memory, `run_crowd(folder)` of the objects of crowded scenes, `run_certificate(folder)` of what moves,
  `run_published(folder)` of levels beside published ones, `run_actors(folder)` of the actors over aspect,
  `run_measured(folder)` of metal targets beside measurements, `run_worlds(folder)` of cities and crowds, `run_live(folder)` of
- scenes that change and go on in time."""
+ scenes that change and go on in time, `run_receiver(folder)` of the faults of receivers and the codes of transmitters."""
 from .actors import run_actors
 from .certificate import run_certificate
 from .crowd import run_crowd
@@ -12,9 +12,10 @@ from .live import run_live
 from .measured import run_measured
 from .physics import run_physics
 from .published import run_published
+from .receiver import run_receiver
 from .replay import run_replay
 from .speed import run_speed
 from .worlds import run_worlds
 
 __all__ = ["run_actors", "run_certificate", "run_crowd", "run_labels", "run_live", "run_measured", "run_physics",
-           "run_published", "run_replay", "run_speed", "run_worlds"]
+           "run_published", "run_receiver", "run_replay", "run_speed", "run_worlds"]

@@ -67,10 +67,14 @@ class PhaseNoise(Settings):
         if not self.offsets or min(self.offsets) <= 0.0 or np.any(np.diff(self.offsets) <= 0.0):
             raise refused(ValueError, "offsets", "ascending Hz above 0, one at least", self.offsets)
         if len(self.levels) != len(self.offsets):
-            raise refused(ValueError, "levels", f"{len(self.offsets)} numbers, one for each offset", self.levels)
+            raise refused(ValueError, "offsets", f"as many as levels, {len(self.levels)}", self.offsets)
 
     def density(self, offset) -> np.ndarray:
-        """Power relative to the carrier's in 1 Hz at offsets in Hz: an array of their shape, linear."""
+        """Power relative to the carrier's in 1 Hz.
+
+        offset: Hz, a number or an array of either sign
+        Returns an array of that shape, linear, in 1/Hz. Raises TypeError for what are no numbers.
+        """
         log = np.log10(np.maximum(np.abs(offset), self.offsets[0]))
         return 10.0 ** (np.interp(log, np.log10(self.offsets), self.levels) / 10.0)
 
@@ -159,7 +163,7 @@ class Receiver(Settings):
 
 
 def _some(argument: str, value) -> Table:
-    return () if len(np.shape(value)) < 2 and np.size(value) == 0 else _table(argument, value)
+    return () if isinstance(value, (tuple, list)) and not value else _table(argument, value)
 
 
 def _plain(value: Settings) -> dict:

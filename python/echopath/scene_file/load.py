@@ -11,6 +11,7 @@ from ..azimuth_map import checked_settings
 from ..families import named_globs
 from ..parts import check_partitions
 from ..readers.load import is_foreign
+from ..sensor_files import load_radar
 from ..settings import LabelSettings, SignalSettings, TraceSettings
 from .errors import blamed, validated
 from .foreign import foreign_scene
@@ -102,6 +103,11 @@ def parse(path: Path) -> dict:
 
 
 def _build_radar(table: RadarTable, folder: Path, trajectories: Trajectories):
+    if table.sensor is not None:
+        with blamed("radar"):
+            radar = load_radar(folder / table.sensor, table.board)
+            radar = radar if table.receiver is None else radar.replace(receiver=table.receiver)
+            return radar.replace(**_place(table, trajectories))
     with blamed("radar.waveform"):
         waveform = _core.ChirpSequence(**table.waveform.model_dump())
     antennas = {}
@@ -114,10 +120,14 @@ def _build_radar(table: RadarTable, folder: Path, trajectories: Trajectories):
         return _core.Radar(waveform, **antennas, transmit_power=table.transmit_power,
                            noise_figure_db=table.noise_figure_db, multiplexing=table.multiplexing,
                            empty_slots=table.empty_slots, code_phases=table.code_phases, receiver=table.receiver,
-                           position=tuple(table.position), yaw=math.radians(table.yaw_deg),
-                           pitch=math.radians(table.pitch_deg),
-                           motion=motion_of(table.motion, "radar.motion") or trajectories.of(table, "radar"),
-                           speed=table.speed)
+                           **_place(table, trajectories))
+
+
+def _place(table: RadarTable, trajectories: Trajectories) -> dict:
+    """Keywords of Radar that say where it is and how it moves."""
+    motion = motion_of(table.motion, "radar.motion") or trajectories.of(table, "radar")
+    return {"position": tuple(table.position), "yaw": math.radians(table.yaw_deg), "pitch": math.radians(table.pitch_deg),
+            "motion": motion} | ({} if table.speed is None else {"speed": table.speed})
 
 
 def _antenna(antenna, radar: RadarTable, folder: Path):

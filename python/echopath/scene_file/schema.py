@@ -214,9 +214,11 @@ def one_motion(table):
 
 
 class RadarTable(Table):
-    waveform: WaveformTable
-    transmitters: list[AntennaTable] = Field(min_length=1, description="at least one")
-    receivers: list[AntennaTable] = Field(min_length=1, description="at least one")
+    sensor: str | None = Field(None, description="configuration of a TI sensor, instead of waveform and antennas")
+    board: str | None = Field(None, description="whose antennas the sensor has; none: as its file says")
+    waveform: WaveformTable | None = Field(None, description="none: that of the sensor")
+    transmitters: list[AntennaTable] | None = Field(None, min_length=1, description="at least one")
+    receivers: list[AntennaTable] | None = Field(None, min_length=1, description="at least one")
     pattern: PatternTable | None = Field(None, description="of antennas without their own; none: isotropic")
     polarization: Vector3 = Field([0.0, 0.0, 1.0], description="of antennas without their own")
     transmit_power: Positive = Field(0.01, description="W, per transmitter")
@@ -234,6 +236,20 @@ class RadarTable(Table):
     id: str | None = Field(None, description="of the object of the file; none: its only one")
 
     _one_motion = model_validator(mode="after")(one_motion)
+
+    @model_validator(mode="after")
+    def _one_source(self):
+        own = ("waveform", "transmitters", "receivers")
+        if self.sensor is None:
+            for key in own:
+                if getattr(self, key) is None:
+                    raise broken_rule(key, "must be given, or a sensor", None)
+            return self
+        beside = {*own, "pattern", "polarization", "transmit_power", "noise_figure_db", "multiplexing", "empty_slots",
+                  "code_phases"}
+        for key in beside & self.model_fields_set:
+            raise broken_rule(key, "must not stand beside sensor", key)
+        return self
 
 
 class MaterialTable(Table):

@@ -8,6 +8,7 @@ from pathlib import Path
 from .. import _core
 from ..checks import checked, flag, optional, refused, text
 from ..checks import count as count_rule
+from ..receiver import Adc, Receiver
 from .boards import Board, board_names, board_of_platform, read_board
 from .cfg import Lines, read_lines
 from .frames import FramePlan, plans_of
@@ -64,8 +65,8 @@ def load_radar(path: str | os.PathLike[str], board: str | None = None, *, subfra
 
     path, board, ideal: as in `load_sensor`, which reads all sub-frames
     subframe: index of the sub-frame, 0 of a plain frame
-    Returns a Radar at the origin that looks along +x; `replace` places it. Raises ep.FileError naming the line, ValueError
-    for boards and sub-frames that are unknown.
+    Returns a Radar at the origin that looks along +x, its antennas in m as the board has them; `replace` places it. Raises
+    ep.FileError naming the line, ValueError for boards and sub-frames that are unknown.
     """
     radars = load_sensor(path, board, ideal=ideal).radars
     if subframe >= len(radars):
@@ -109,8 +110,6 @@ def _antennas_of(lines: Lines, board: Board) -> list:
 
 
 def _receiver(lines: Lines, slots: SlotTable):
-    from ..receiver import Adc, Receiver
-
     profile, adc = slots.profile, lines.one("adcCfg")
     corners = []
     for name, known in (("high_pass_1", HIGH_PASS_1), ("high_pass_2", HIGH_PASS_2)):

@@ -1,0 +1,24 @@
+"""`echopath bench receiver`: faults of a receiver beside their closed forms, codes beside turns, and what they cost in a street.
+
+Levels are those of a tone; the cost is processor time of `ep.receive`, or of `ep.demultiplex`, for the cube of a street of
+some twenty objects.
+"""
+from __future__ import annotations
+
+from ..suite import describe_parts, run_parts
+from . import codes, cost, faults
+
+PARTS = {"faults": faults, "codes": codes, "cost": cost}
+
+
+def run_receiver(folder, *, quick: bool = False, progress=None) -> dict:
+    """Measures every part and writes receiver.json into `folder`; returns what it holds.
+
+    quick: small, for a look; progress: callable (stage, fraction) or None
+    """
+    return run_parts("receiver", PARTS, folder, quick=quick, progress=progress)
+
+
+def describe(results: dict) -> list[str]:
+    """Lines for people."""
+    return describe_parts(PARTS, results)

@@ -71,6 +71,8 @@ def good(tmp_path_factory) -> dict:
         "renew": {"paths": paths, "time": 0.0}, "save_frame": {"frame": frame, "path": folder / "saved.h5"},
         "save_label_images": {"labels": labels, "folder": folder / "images"},
         "save_labels": {"labels": frame.labels, "path": folder / "labels.h5"}, "set_num_threads": {"num_threads": 0},
+        "interference": {"radar": radar, "other": radar.replace(position=(9, 0, 0))},
+        "interference_radar": {"radar": radar, "other": radar},
         "save_raw": {"frames": frame, "path": folder / "saved.bin"},
         "simulate": {"scene": scene, "radar": radar, "num_rays": 200, "guard": False}, "synthesize": {"paths": paths},
         "trace": {"scene": scene, "radar": radar, "num_rays": 200},

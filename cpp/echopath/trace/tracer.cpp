@@ -3,9 +3,9 @@
 #include <iterator>
 #include <sstream>
 
+#include "echopath/base/constants.h"
 #include "echopath/base/machine_memory.h"
 #include "echopath/base/parallel.h"
-#include "echopath/trace/edges/edge_paths.h"
 #include "echopath/trace/launch/aimed_points.h"
 #include "echopath/trace/mirrors/mirror_paths.h"
 #include "echopath/trace/record/record_writer.h"
@@ -95,6 +95,7 @@ SbrSettings Tracer::settings_of_rays(const TraceSettings& settings) const {
   SbrSettings sbr;
   sbr.max_bounces = settings.max_bounces;
   sbr.is_polarized = settings.polarization == PolarizationModel::kJones;
+  sbr.finds_edges = settings.edges;
   sbr.seed = settings.seed;
   sbr.frequency = empty_.radar.waveform.start_frequency;
   sbr.transmitter = empty_.frame.transmitter - origin_;
@@ -125,9 +126,17 @@ void Tracer::shoot_block(int64_t index, PathBlock& block) const {
 std::vector<PathBlock> Tracer::find_paths_without_rays(Job* job) const {
   std::vector<PathBlock> blocks = find_mirror_paths(geometry_, mirrors_, sbr_, frusta_, job);
   if (!empty_.frame.edges) return blocks;
-  std::vector<PathBlock> of_edges = find_edge_paths({*empty_.scene, pose_, geometry_, mirrors_, sbr_, frusta_}, job);
+  std::vector<PathBlock> of_edges = find_edge_paths(edge_query(), job);
   std::move(of_edges.begin(), of_edges.end(), std::back_inserter(blocks));
   return blocks;
+}
+
+LitPlanes Tracer::lit_planes() const { return {*empty_.scene, geometry_, kSpeedOfLight / sbr_.frequency}; }
+
+std::vector<PathBlock> Tracer::find_edges(LitPlanes& lit, Job* job) const {
+  if (!empty_.frame.edges) return {};
+  lit.finish((sbr_.receiver - sbr_.transmitter).norm());
+  return find_edges_over_planes(edge_query(), lit, job);
 }
 
 // Shoots every `step`-th block.
@@ -184,13 +193,20 @@ Paths Tracer::run(Job* job) const {
   require_memory(ahead);
   record.expect(ahead, num_blocks());
   PlaneImages images = plane_images();
+  LitPlanes lit = lit_planes();
   for (int64_t begin = 0; begin < num_blocks(); begin += std::ssize(wave)) {
     const std::vector<const PathBlock*> blocks = shoot_wave(begin, ahead, step, wave, job);
-    for (const PathBlock* block : blocks) images.add_chains(*block);
+    for (const PathBlock* block : blocks) {
+      images.add_chains(*block);
+      lit.add_chains(*block);
+    }
     record.append(blocks, job);
   }
   const PathBlock over_planes = images.find(job);
-  record.append({&over_planes}, job);
+  const std::vector<PathBlock> of_edges = find_edges(lit, job);
+  std::vector<const PathBlock*> last_blocks = {&over_planes};
+  for (const PathBlock& block : of_edges) last_blocks.push_back(&block);
+  record.append(last_blocks, job);
   record.finish();
   images.doubles().leave_out(paths, job);
   return paths;

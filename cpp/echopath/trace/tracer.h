@@ -1,6 +1,7 @@
 #pragma once
 // Carries out the steps of a trace: it makes once what all rays share, and shoots the rays in blocks. Internal to the
 // module.
+#include "echopath/trace/edges/edges_over_planes.h"
 #include "echopath/trace/geometry/kept_geometry.h"
 #include "echopath/trace/mirrors/plane_images.h"
 #include "echopath/trace/sbr/sbr.h"
@@ -33,8 +34,13 @@ class Tracer {
   std::vector<PathBlock> find_paths_without_rays(Job* job) const;
   // Returns what finds the paths over other planes, from the blocks that it is given.
   PlaneImages plane_images() const { return {*empty_.scene, geometry_, sbr_}; }
+  // Returns what finds which planes light which, from the blocks that it is given, where edges are asked for.
+  LitPlanes lit_planes() const;
+  // Returns the paths of edges over these planes; none where edges are not asked for.
+  std::vector<PathBlock> find_edges(LitPlanes& lit, Job* job) const;
 
  private:
+  EdgeQuery edge_query() const { return {*empty_.scene, pose_, geometry_, mirrors_, sbr_, frusta_}; }
   std::vector<PathBlock> shoot_ahead(int64_t step, Job* job) const;
   std::vector<const PathBlock*> shoot_wave(int64_t begin, const std::vector<PathBlock>& ahead, int64_t step,
                                            std::vector<PathBlock>& wave, Job* job) const;

@@ -22,7 +22,7 @@ Vec3 part_across(const Vec3& polarization, const Vec3& direction) {
 struct WayToEdge {
   double length, root_gain, phase;  // m; of the antenna, rad
   Vec3 direction;                   // unit, of travel where it arrives
-  FieldVector field;                // of a unit wave, where it arrives
+  FieldVector field;                // of a unit wave, where it arrives; zero in the scalar model
 };
 
 // The mirrors between an antenna and an edge, in the order of travel from the antenna.
@@ -46,22 +46,26 @@ class EdgeEchoes {
     const Vec3 corners[] = {hit.corner, hit.corner + hit.edge_u, hit.corner + hit.edge_v};
     const Vec3 side = scene.linear(hit.mesh_id) * (corners[(hit.edge->side + 1) % 3] - corners[hit.edge->side]);
     piece_ = (hit.edge->end - hit.edge->begin) / hit.num_pieces * side;
-    find_ways(path, scene.transmitters, true, in_);
-    find_ways(path, scene.receivers, false, out_);
+    is_reversed_ = path.is_reversed;
+    find_ways(path, scene.antennas(is_reversed_), true, in_);
+    find_ways(path, scene.antennas(!is_reversed_), false, out_);
   }
 
-  double length(size_t transmitter, size_t receiver) const { return in_[transmitter].length + out_[receiver].length; }
+  double length(size_t transmitter, size_t receiver) const {
+    return way_in(transmitter, receiver).length + way_out(transmitter, receiver).length;
+  }
 
   // `polarization` is that of the transmitter.
   std::complex<double> amplitude(size_t transmitter, size_t receiver, const Vec3& polarization,
                                  std::complex<double> weight) const {
-    const WayToEdge &in = in_[transmitter], &out = out_[receiver];
+    const WayToEdge &in = way_in(transmitter, receiver), &out = way_out(transmitter, receiver);
     if (in.length < kNearAntenna || out.length < kNearAntenna) return 0.0;
     const Vec3 departure = -out.direction;
     const Mat3 fringe = fringe_matrix(wedge_, in.direction, departure);
-    const FieldVector received =
-        is_polarized_ ? out.field : FieldVector(part_across(polarization, departure).cast<std::complex<double>>());
-    const std::complex<double> coupled = received.transpose() * (fringe * in.field);
+    const auto seen = [&](const WayToEdge& way, const Vec3& direction) {
+      return is_polarized_ ? way.field : FieldVector(part_across(polarization, direction).cast<std::complex<double>>());
+    };
+    const std::complex<double> coupled = seen(out, departure).transpose() * (fringe * seen(in, in.direction));
     const double filter = edge_filter(radio_.wavenumber * (in.direction - departure).dot(piece_));
     const double size = radio_.coherent_scale() * in.root_gain * out.root_gain * piece_.norm() * filter /
                         (2.0 * radio_.wavenumber * in.length * out.length);
@@ -73,13 +77,18 @@ class EdgeEchoes {
   }
 
  private:
-  void find_ways(const LocalPath& path, const std::vector<PosedAntenna>& antennas, bool of_transmitters,
+  // A reversed path begins at the receiver.
+  const WayToEdge& way_in(size_t transmitter, size_t receiver) const { return in_[is_reversed_ ? receiver : transmitter]; }
+  const WayToEdge& way_out(size_t transmitter, size_t receiver) const { return out_[is_reversed_ ? transmitter : receiver]; }
+
+  // Sets the ways between the edge and the antennas at the start of the path as it was traced, or at its end.
+  void find_ways(const LocalPath& path, const std::vector<PosedAntenna>& antennas, bool of_start,
                  std::vector<WayToEdge>& ways) {
     mirrors_.hits.clear();
     mirrors_.materials.clear();
-    const int count = of_transmitters ? path.edge : path.count - 1 - path.edge;
+    const int count = of_start ? path.edge : path.count - 1 - path.edge;
     for (int k = 0; k < count; ++k) {
-      const int at = of_transmitters ? k : path.count - 1 - k;
+      const int at = of_start ? k : path.count - 1 - k;
       mirrors_.hits.push_back(hits_[static_cast<size_t>(at)]);
       mirrors_.materials.push_back(paths_.scene->node_of(path.hits[at].mesh_id).material.get());
     }
@@ -91,9 +100,8 @@ class EdgeEchoes {
     const int count = static_cast<int>(mirrors_.hits.size());
     const UnfoldedLeg leg = unfolded_leg(mirrors_.hits.data(), antenna.position, 0, count, point_);
     const AntennaGain gain = antenna.toward(leg.departure);
-    const FieldVector field = is_polarized_
-                                  ? over_mirrors(part_across(antenna.polarization, leg.departure), leg.departure)
-                                  : FieldVector(part_across(antenna.polarization, leg.arrival).cast<std::complex<double>>());
+    FieldVector field = FieldVector::Zero();
+    if (is_polarized_) field = over_mirrors(part_across(antenna.polarization, leg.departure), leg.departure);
     return {leg.length, std::sqrt(gain.power), gain.phase, leg.arrival, field};
   }
 
@@ -114,7 +122,7 @@ class EdgeEchoes {
   const Paths& paths_;
   const RadioConstants& radio_;
   double frequency_;  // Hz
-  bool is_polarized_;
+  bool is_polarized_, is_reversed_ = false;
   std::vector<PosedHit> hits_;
   MirrorsToEdge mirrors_;
   std::vector<WayToEdge> in_, out_;

@@ -30,6 +30,7 @@ void Connector<Weight>::connect(Connection& at) const {
   at.legs.receive.clear();
   at.legs.has_receive = false;
   if (!ray.is_owned) return;
+  if (context_.settings.finds_edges) show_lit_plane(at);
   if (is_near_antenna(surface.point.position)) {
     ++at.block.statistics.num_near_antenna;
     return;
@@ -69,6 +70,15 @@ void Connector<Weight>::connect_coherent(Connection& at) const {
         ray.num_mirrors > 0 ? orders_.shares(ray, surface, leg, at.block.statistics.num_queries) : OrderShares{};
     writer_.write(at, leg, 0, weight * weight_.held(leg.gain), shares);
   }
+}
+
+// Notes the planes over which a coherent ray came to a plane, none of them flagged.
+template <class Weight>
+void Connector<Weight>::show_lit_plane(Connection& at) const {
+  const Ray& ray = at.ray;
+  const bool is_over_planes = ray.coherent && ray.depth > 1 && ray.num_mirrors + 1 == ray.depth && !ray.is_curved;
+  if (!is_over_planes || at.surface.point.is_smooth || at.surface.material->mirror) return;
+  at.block.add_lit_chain(ray.depth, std::sqrt(at.surface.area / at.surface.cos_incidence));
 }
 
 // Notes the ray's planes where it shows an image of the receiver over unflagged planes alone.

@@ -21,6 +21,7 @@ class Connector {
  private:
   bool is_near_antenna(const Vec3& point) const;
   void connect_coherent(Connection& at) const;
+  void show_lit_plane(Connection& at) const;
   void show_image(Connection& at) const;
   void connect_diffuse(Connection& at) const;
 

@@ -31,6 +31,11 @@ double share_of_own_order(double quality) {
 
 }  // namespace
 
+OrderShares order_shares(double cover, double opposite_cover) {
+  return {share_of_own_order(quality_of_order(cover, opposite_cover, 1.0)),
+          1.0 - share_of_own_order(quality_of_order(opposite_cover, cover, 1.0))};
+}
+
 // Follows fields where `target` is given.
 ZoneCover MirrorOrders::cover_of(const MirrorView& view, const ZoneTarget* target, int64_t& num_queries) const {
   const double wavelength = context_.wavelength;

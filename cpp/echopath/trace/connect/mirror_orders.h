@@ -21,6 +21,10 @@ struct OrderShares {
   double own = 1.0, opposite = 0.0;
 };
 
+// Returns both shares where `cover` is the share of the Fresnel zone that the own order's first mirror covers, and
+// `opposite_cover` that of the opposite one's, for orders that rays resolve alike.
+OrderShares order_shares(double cover, double opposite_cover);
+
 class MirrorOrders {
  public:
   explicit MirrorOrders(const RayContext& context) : context_(context) {}

@@ -64,6 +64,7 @@ Paths LiveRecord::paths_of(const std::vector<LiveBlockPtr>& some, Job* job) cons
   for (const PathBlock& block : without_rays) parts.push_back(&block);
   for (const LiveBlockPtr& block : some) parts.push_back(&block->paths);
   parts.push_back(&over_planes);
+  for (const PathBlock& block : edges_over_planes) parts.push_back(&block);
   Paths paths = empty;
   RecordWriter writer(paths);
   writer.append(parts, job);

@@ -53,6 +53,7 @@ class LiveRecord {
   std::vector<LiveBlockPtr> blocks;
   std::vector<PathBlock> without_rays;
   PathBlock over_planes;
+  std::vector<PathBlock> edges_over_planes;
   PlaneDoubles doubles;
 
   // Returns the record of the paths that need no rays, of these blocks and of the paths over planes.

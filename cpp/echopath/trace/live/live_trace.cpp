@@ -124,8 +124,13 @@ LiveTrace::Next LiveTrace::prepare(const SceneSnapshot& scene, const Radar& rada
   change.num_rays_shot = fill(tracer, comparison, next->blocks, job);
   next->without_rays = tracer.find_paths_without_rays(job);
   PlaneImages images = tracer.plane_images();
-  for (const LiveBlockPtr& block : next->blocks) images.add_chains(block->paths);
+  LitPlanes lit = tracer.lit_planes();
+  for (const LiveBlockPtr& block : next->blocks) {
+    images.add_chains(block->paths);
+    lit.add_chains(block->paths);
+  }
   next->over_planes = images.find(job);
+  next->edges_over_planes = tracer.find_edges(lit, job);
   next->doubles = images.doubles();
   change.is_whole =
       !comparison.shares_blocks() || !(record_->doubles == next->doubles) ||

@@ -59,12 +59,15 @@ void PathBlock::end_fan() {
 void PathBlock::end_chains(const Hit* ray_hits) {
   const auto first = static_cast<uint32_t>(chain_hits.size());
   uint32_t longest = 0;
-  for (size_t i = first_chain_of_ray_; i < chains.size(); ++i) {
-    chains[i].first = first;
-    longest = std::max(longest, chains[i].count);
-  }
+  const auto begin_at_first = [&](Chain& chain) {
+    chain.first = first;
+    longest = std::max(longest, chain.count);
+  };
+  std::for_each(chains.begin() + static_cast<int64_t>(first_chain_of_ray_), chains.end(), begin_at_first);
+  std::for_each(lit_chains.begin() + static_cast<int64_t>(first_lit_chain_of_ray_), lit_chains.end(), begin_at_first);
   chain_hits.insert(chain_hits.end(), ray_hits, ray_hits + longest);
   first_chain_of_ray_ = chains.size();
+  first_lit_chain_of_ray_ = lit_chains.size();
 }
 
 void PathBlock::clear() {
@@ -78,9 +81,10 @@ void PathBlock::clear() {
   fan_hits.clear();
   chain_hits.clear();
   chains.clear();
+  lit_chains.clear();
   statistics = TraceStatistics();
   num_fan_paths_ = num_fan_hits_ = 0;
-  first_of_ray_ = first_chain_of_ray_ = 0;
+  first_of_ray_ = first_chain_of_ray_ = first_lit_chain_of_ray_ = 0;
   used_depth_ = 0;
   current_batch = kNoBatch;
   current_half = 0;

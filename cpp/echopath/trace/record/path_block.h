@@ -28,6 +28,12 @@ class PathBlock {
   };
   std::vector<Hit> chain_hits;
   std::vector<Chain> chains;
+  // The hits of a ray over planes that light the last of them (edges/lit_planes.h), and the distance in m to the rays beside
+  // it on that surface.
+  struct LitChain : Chain {
+    float spacing = 0.0f;
+  };
+  std::vector<LitChain> lit_chains;
 
   // Adds a path with hits of its own.
   void add(const Hit* first, int count, uint64_t diffuse_bits, std::complex<float> path_weight, int path_stratum);
@@ -53,6 +59,10 @@ class PathBlock {
   void add_leg_hit(const Hit& hit);
   // Adds a chain of the first `count` hits of the current ray.
   void add_chain(int count) { chains.push_back({0, static_cast<uint32_t>(count)}); }
+  // Adds the first `count` hits of the current ray as planes that light the last of them.
+  void add_lit_chain(int count, double spacing) {
+    lit_chains.push_back({{0, static_cast<uint32_t>(count)}, static_cast<float>(spacing)});
+  }
   // Adds the matrix of the next pair of a polarised fan, by way in and then by way out.
   void add_pair_jones(const JonesMatrix& matrix) { fan_jones.push_back(matrix); }
   void end_fan();
@@ -70,7 +80,7 @@ class PathBlock {
     }
     first_of_ray_ = rows.size();
     used_depth_ = 0;
-    if (first_chain_of_ray_ < chains.size()) end_chains(ray_hits);
+    if (first_chain_of_ray_ < chains.size() || first_lit_chain_of_ray_ < lit_chains.size()) end_chains(ray_hits);
   }
   // Return the size of the record that this block becomes.
   size_t num_paths() const { return rows.size() + num_fan_paths_; }
@@ -91,7 +101,7 @@ class PathBlock {
   }
 
   size_t first_of_ray_ = 0;        // first path of the current ray
-  size_t first_chain_of_ray_ = 0;  // likewise
+  size_t first_chain_of_ray_ = 0, first_lit_chain_of_ray_ = 0;  // likewise
   int used_depth_ = 0;  // hits of the ray that such paths use; the offset of these paths is kOfRay until the ray ends
   size_t num_fan_paths_ = 0, num_fan_hits_ = 0;
 };

@@ -13,6 +13,7 @@ struct SbrSettings {
   Vec3 transmitter = Vec3::Zero();  // relative to the trace origin, as the receiver
   Vec3 receiver = Vec3::Zero();
   bool is_polarized = false;          // follow field vectors (PolarizationModel::kJones)
+  bool finds_edges = false;           // note which planes light which (edges/lit_planes.h)
   Vec3 polarization = Vec3::UnitZ();  // transmit polarisation, unit, world axes
   // Probability of going on specularly where a surface does both. 0 stands for its specular share; any other value leaves
   // the expected echo as it is.

@@ -1,0 +1,243 @@
+#include "echopath/trace/edges/edges_over_planes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/base/constants.h"
+#include "echopath/base/parallel.h"
+#include "echopath/trace/connect/mirror_orders.h"
+#include "echopath/trace/edges/posed_edge.h"
+#include "echopath/trace/mirrors/legs.h"
+#include "echopath/trace/near_antenna.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kFlatFrontOverPlanes = 0.1;  // rad, of the wave fronts over half a piece
+constexpr double kOfLitEdge = 1.0 / 16;       // of the edge, a piece at most
+constexpr double kOfWave = 0.5;               // wavelengths, the shortest piece for that
+
+// An edge as it stands, and what the antennas light over planes of its faces.
+struct LitEdge {
+  uint32_t mesh_id;
+  SharpEdge edge;
+  Wedge wedge;
+  Vec3 from, to;                               // m, along the side of the triangle
+  std::vector<const LitPlane*> transmit, receive;
+};
+
+// Returns the stretch of a segment within a box, in shares of it; empty where the first is larger.
+std::pair<double, double> stretch_within(const Vec3& from, const Vec3& to, const Eigen::AlignedBox3d& box) {
+  double begin = 0.0, end = 1.0;
+  const Vec3 line = to - from;
+  for (int axis = 0; axis < 3; ++axis) {
+    double low = box.min()[axis] - from[axis], high = box.max()[axis] - from[axis];
+    if (line[axis] == 0.0) {
+      if (low > 0 || high < 0) return {1.0, 0.0};
+      continue;
+    }
+    if (line[axis] < 0) std::swap(low, high);
+    begin = std::max(begin, low / line[axis]);
+    end = std::min(end, high / line[axis]);
+  }
+  return {begin, end};
+}
+
+// Finds what is lit of the edges, by the planes of their faces.
+class EdgesOnPlanes {
+ public:
+  EdgesOnPlanes(const LitPlanes& lit, const std::vector<LitPlane>& of_antenna) : lit_(lit), by_plane_(lit.planes().size()) {
+    for (const LitPlane& one : of_antenna) by_plane_[static_cast<size_t>(one.plane)].push_back(&one);
+  }
+
+  std::vector<const LitPlane*> of(const LitEdge& edge) const {
+    std::vector<const LitPlane*> found;
+    int before = -1;
+    for (const WedgeFace& face : edge.wedge.faces) {
+      const Vec3 inside = 0.5 * (edge.from + edge.to) + (edge.to - edge.from).norm() * face.inward;
+      const int plane = lit_.plane_through(std::array<Vec3, 3>{edge.from, edge.to, inside}, face.normal);
+      if (plane < 0 || plane == before) continue;
+      before = plane;
+      for (const LitPlane* one : by_plane_[static_cast<size_t>(plane)]) {
+        const auto [begin, end] = stretch_within(edge.from, edge.to, one->box);
+        if (begin <= end) found.push_back(one);
+      }
+    }
+    return found;
+  }
+
+ private:
+  const LitPlanes& lit_;
+  std::vector<std::vector<const LitPlane*>> by_plane_;
+};
+
+std::vector<LitEdge> lit_edges(const EdgeQuery& query, const LitPlanes& lit) {
+  std::vector<LitEdge> found;
+  const EdgesOnPlanes transmit(lit, lit.from_transmitter()), receive(lit, lit.from_receiver());
+  for (uint32_t id = 0; id < query.scene.meshes().size(); ++id) {
+    for (const SharpEdge& edge : echoing_edges(query.scene, id)) {
+      const auto corners = query.geometry.corners(id, edge.triangle);
+      const Vec3 &from = corners[edge.side], line = corners[(edge.side + 1) % 3] - from;
+      LitEdge one{id, edge, posed_wedge(edge, query.pose, id), from + edge.begin * line, from + edge.end * line, {}, {}};
+      one.transmit = transmit.of(one);
+      one.receive = receive.of(one);
+      if (!one.transmit.empty() || !one.receive.empty()) found.push_back(std::move(one));
+    }
+  }
+  return found;
+}
+
+// Follows the ways to and from the pieces of one edge. It serves one thread.
+class LitEdgeTracer {
+ public:
+  LitEdgeTracer(const EdgeQuery& query, const LitPlanes& lit, const LitEdge& edge, PathBlock& block)
+      : query_(query), lit_(lit), edge_(edge), block_(block), outward_(outward_of(edge.wedge)),
+        planes_(query.scene, query.geometry, lit, query.settings),
+        finder_(query.geometry, query.mirrors, query.settings.frequency, query.settings.polarization) {}
+
+  void trace() {
+    const auto corners = query_.geometry.corners(edge_.mesh_id, edge_.edge.triangle);
+    num_pieces_ = num_pieces();
+    for (int piece = 0; piece < num_pieces_; ++piece) {
+      const double at = (piece + 0.5) / num_pieces_, along = edge_.edge.begin + (edge_.edge.end - edge_.edge.begin) * at;
+      const PointOnSide side = point_on_side(edge_.edge.side, along);
+      hit_ = {edge_.mesh_id, edge_.edge.triangle, side.u, side.v};
+      point_ = corners[0] + double{side.u} * (corners[1] - corners[0]) + double{side.v} * (corners[2] - corners[0]);
+      add_piece(at);
+    }
+  }
+
+ private:
+  // A way between the edge and an antenna: directly or over flagged mirrors, or over planes.
+  struct Way {
+    std::vector<Hit> hits;  // from the edge toward the antenna
+    Vec3 to_antenna;
+    std::complex<double> gain;
+    double share = 1.0;
+    OrderShares orders;
+    bool is_over_planes = false;
+  };
+
+  int num_pieces() const {
+    const double wavenumber = kTwoPi * query_.settings.frequency / kSpeedOfLight, length = (edge_.to - edge_.from).norm();
+    const auto inverse = [&](const Vec3& antenna) {
+      return 1.0 / std::max(distance_to_segment(antenna, edge_.from, edge_.to), kNearAntenna);
+    };
+    const double bend = wavenumber * (inverse(query_.settings.transmitter) + inverse(query_.settings.receiver));
+    const double piece = std::min(std::sqrt(8.0 * kFlatFrontOverPlanes / bend),
+                                  std::max(kOfLitEdge * length, kOfWave * kTwoPi / wavenumber));
+    return static_cast<int>(std::clamp(std::ceil(length / piece), 1.0, double{kMostPieces}));
+  }
+
+  void add_piece(double at) {
+    const std::vector<Way> in = over_planes(edge_.transmit, query_.settings.transmitter, query_.settings.receiver, at),
+                           out = over_planes(edge_.receive, query_.settings.receiver, query_.settings.transmitter, at);
+    if (in.empty() && out.empty()) return;
+    ++block_.statistics.num_hits;
+    const std::vector<Way> in_direct = direct(query_.settings.transmitter), out_direct = direct(query_.settings.receiver);
+    for (const Way& one : in) {
+      for (const Way& other : out) add_path(one, other, 1.0, 0);
+      for (const Way& other : out_direct) add_path(one, other, one.orders.own, 0);
+    }
+    for (const Way& one : in_direct) {
+      for (const Way& other : out) add_path(one, other, other.orders.opposite, kReversedPath);
+    }
+  }
+
+  std::vector<Way> over_planes(const std::vector<const LitPlane*>& lit, const Vec3& antenna, const Vec3& other, double at) {
+    std::vector<Way> ways;
+    for (const LitPlane* over : lit) {
+      const auto [begin, end] = stretch_within(edge_.from, edge_.to, over->box);
+      if (at < begin || at > end || std::ssize(over->mirrors) >= query_.settings.max_bounces) continue;
+      const std::optional<PlaneLeg> leg = planes_.find(point_, outward_, antenna, *over, block_.statistics.num_queries);
+      if (!leg || leg->length < kNearAntenna || !is_outside(edge_.wedge, leg->to_antenna)) continue;
+      Way& way = ways.emplace_back();
+      for (const RayHit& bounce : leg->bounces) way.hits.push_back(bounce.hit);
+      way.to_antenna = leg->to_antenna;
+      way.gain = leg->gain;
+      way.share = leg->share;
+      way.orders = orders_of(*leg, *over, other);
+      way.is_over_planes = true;
+    }
+    return ways;
+  }
+
+  std::vector<Way> direct(const Vec3& antenna) {
+    LegQuery query{point_, outward_, 0};
+    query.faces_all = true;
+    finder_.find(query, {antenna, {}, {}}, legs_, search_);
+    block_.statistics.num_queries += std::exchange(search_.num_queries, 0);
+    std::vector<Way> ways;
+    for (const Leg& leg : legs_) {
+      if (leg.length >= kNearAntenna && is_outside(edge_.wedge, leg.to_antenna)) ways.push_back({{}, leg.to_antenna, leg.gain});
+    }
+    return ways;
+  }
+
+  // Returns the shares of both orders in which rays go over these planes and the face of the edge, to the other antenna.
+  OrderShares orders_of(const PlaneLeg& leg, const LitPlane& over, const Vec3& other) {
+    const Plane& plane = lit_.planes()[static_cast<size_t>(over.plane)];
+    const Vec3 normal = plane.height(point_ + leg.to_antenna) >= plane.height(point_) ? plane.normal : Vec3(-plane.normal);
+    const Vec3 middle = over.box.center() - plane.height(over.box.center()) * plane.normal;
+    RayHit face;
+    ++block_.statistics.num_queries;
+    const double above = 0.5 * over.box.diagonal().norm();
+    if (query_.geometry.intersect_from_surface(middle + above * normal, -normal, face) != EmbreeScene::Verdict::kHit ||
+        lit_.plane_of(face.hit) != over.plane)
+      return {};
+    const Vec3 line = face.position - other;
+    const double behind = (leg.bounces.front().position - face.position).norm();
+    return order_shares(leg.first_cover, std::max(planes_.cover_of(face, line.normalized(), line.norm(), behind,
+                                                                  block_.statistics.num_queries), 1e-9));
+  }
+
+  // Returns the share of a field that the faces keep in phase: as they would mirror it, the one that faces it more.
+  double kept_share(const Vec3& to_antenna) const {
+    const double cosine = std::max(to_antenna.dot(edge_.wedge.faces[0].normal), to_antenna.dot(edge_.wedge.faces[1].normal));
+    const SurfaceResponse response = respond(*query_.scene.node_of(edge_.mesh_id).material, query_.settings.frequency,
+                                             std::clamp(cosine, 0.0, 1.0), PolarizationMode::kTe);
+    return std::abs(response.gamma) * response.coherent;
+  }
+
+  void add_path(const Way& in, const Way& out, double share, uint32_t flag) {
+    if (share <= 0 || std::ssize(in.hits) + 1 + std::ssize(out.hits) > query_.settings.max_bounces) return;
+    std::vector<Hit> hits(in.hits.rbegin(), in.hits.rend());
+    const int at = static_cast<int>(hits.size());
+    hits.push_back(hit_);
+    hits.insert(hits.end(), out.hits.begin(), out.hits.end());
+    const std::complex<double> over_mirrors = query_.settings.is_polarized ? 1.0 : in.gain * out.gain;
+    const std::complex<double> weight = share * in.share * out.share * kept_share(in.to_antenna) * over_mirrors;
+    block_.add(hits.data(), static_cast<int>(hits.size()), 0, std::complex<float>(weight), kNoStratum);
+    block_.set_edge(at, num_pieces_);
+    block_.rows.flags[block_.rows.size() - 1] |= flag;
+    if (query_.settings.is_polarized) block_.set_jones({1.0f, 0.0f, 0.0f, 1.0f});
+  }
+
+  const EdgeQuery& query_;
+  const LitPlanes& lit_;
+  const LitEdge& edge_;
+  PathBlock& block_;
+  Vec3 outward_;
+  PlaneLegFinder planes_;
+  LegFinder finder_;
+  std::vector<Leg> legs_;
+  LegSearch search_;
+  int num_pieces_ = 1;
+  Hit hit_;      // of the piece at hand
+  Vec3 point_;  // m, likewise
+};
+
+}  // namespace
+
+std::vector<PathBlock> find_edges_over_planes(const EdgeQuery& query, const LitPlanes& lit, Job* job) {
+  const std::vector<LitEdge> edges = lit_edges(query, lit);
+  std::vector<PathBlock> blocks(edges.size());
+  Job own(job);
+  parallel_for(std::ssize(blocks), [&](int64_t i) {
+    const auto at = static_cast<size_t>(i);
+    LitEdgeTracer(query, lit, edges[at], blocks[at]).trace();
+  }, &own);
+  return blocks;
+}
+
+}  // namespace echopath

@@ -1,0 +1,111 @@
+#include "echopath/trace/edges/lit_planes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace echopath {
+namespace {
+
+constexpr double kStrays = 1.0 / 16.0;  // wavelengths by which facets of one plane may stray from it
+constexpr double kSlope = 2e-3;         // of the keys of planes that may be one
+constexpr double kApart = 4.0;          // distances of the antennas by which what they light may differ
+constexpr double kRaysBeside = 2.0;         // spacings of rays around a hit where others may have gone by
+
+// The key of a direction and of its opposite are the same.
+double slope_key(const Vec3& normal) { return std::abs(normal.dot(Vec3(0.7193, 0.5271, 0.4526))); }
+
+}  // namespace
+
+LitPlanes::LitPlanes(const Scene& scene, const EmbreeScene& geometry, double wavelength)
+    : scene_(scene), geometry_(geometry), tolerance_(std::max(kStrays * wavelength, 4.0 * geometry.lift())) {}
+
+bool LitPlanes::may_mirror(const Hit& hit) const {
+  const Node& node = scene_.node_of(hit.mesh_id);
+  return !node.deformation && !node.material->mirror;
+}
+
+void LitPlanes::add_chains(const PathBlock& block) {
+  std::vector<Facet> facets;
+  for (const PathBlock::LitChain& chain : block.lit_chains) {
+    const std::span<const Hit> hits(block.chain_hits.data() + chain.first, chain.count);
+    if (!std::all_of(hits.begin(), hits.end(), [&](const Hit& hit) { return may_mirror(hit); })) continue;
+    facets.clear();
+    for (const Hit& hit : hits) facets.push_back({hit.mesh_id, hit.triangle_id});
+    Boxes& boxes = chains_[facets];
+    boxes.resize(hits.size());
+    for (size_t k = 0; k < hits.size(); ++k) {
+      const auto [a, b, c] = geometry_.corners(hits[k].mesh_id, hits[k].triangle_id);
+      const Vec3 point = a + double{hits[k].u} * (b - a) + double{hits[k].v} * (c - a);
+      const Vec3 around = Vec3::Constant(kRaysBeside * double{chain.spacing});
+      boxes[k].extend(point - around).extend(point + around);
+    }
+  }
+}
+
+void LitPlanes::find_planes() {
+  for (const auto& [facets, boxes] : chains_) {
+    for (const Facet& facet : facets) plane_of_facet_[facet] = -1;
+  }
+  for (auto& [facet, index] : plane_of_facet_) {
+    const auto corners = geometry_.corners(facet.mesh_id, facet.triangle_id);
+    const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized();
+    index = plane_through(corners, normal);
+    if (index >= 0) continue;
+    index = static_cast<int>(planes_.size());
+    planes_.push_back({corners[0], normal});
+    const std::pair<double, int> key(slope_key(normal), index);
+    by_slope_.insert(std::upper_bound(by_slope_.begin(), by_slope_.end(), key), key);
+  }
+}
+
+int LitPlanes::plane_through(std::span<const Vec3> points, const Vec3& normal) const {
+  const double key = slope_key(normal);
+  int found = -1;
+  auto one = std::lower_bound(by_slope_.begin(), by_slope_.end(), std::pair(key - kSlope, -1));
+  for (; one != by_slope_.end() && one->first <= key + kSlope; ++one) {
+    const Plane& plane = planes_[static_cast<size_t>(one->second)];
+    const auto lies_in = [&](const Vec3& point) { return std::abs(plane.height(point)) <= tolerance_; };
+    const bool is_parallel = plane.normal.cross(normal).norm() < kSlope;
+    if (is_parallel && std::all_of(points.begin(), points.end(), lies_in) && (found < 0 || one->second < found))
+      found = one->second;
+  }
+  return found;
+}
+
+int LitPlanes::plane_of(const Hit& hit) const {
+  if (!may_mirror(hit)) return -1;
+  if (const auto known = plane_of_facet_.find({hit.mesh_id, hit.triangle_id}); known != plane_of_facet_.end())
+    return known->second;
+  const auto corners = geometry_.corners(hit.mesh_id, hit.triangle_id);
+  return plane_through(corners, (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized());
+}
+
+void LitPlanes::finish(double apart) {
+  find_planes();
+  Found there, back;
+  const auto widened = [&](const Eigen::AlignedBox3d& box) -> Eigen::AlignedBox3d {
+    const Vec3 around = Vec3::Constant(kApart * apart);
+    return {box.min() - around, box.max() + around};
+  };
+  for (const auto& [facets, boxes] : chains_) {
+    std::vector<int> planes;
+    for (const Facet& facet : facets) planes.push_back(plane_of_facet_.at(facet));
+    there[{{planes.begin(), planes.end() - 1}, planes.back()}].extend(boxes.back());
+    for (size_t k = 0; k + 1 < planes.size(); ++k) {
+      const std::vector<int> mirrors(planes.rbegin(), planes.rend() - static_cast<int64_t>(k) - 1);
+      if (apart > 0) back[{mirrors, planes[k]}].extend(widened(boxes[k]));
+    }
+  }
+  for (const auto& [ways, box] : there) back[ways].extend(widened(box));
+  chains_.clear();
+  from_transmitter_ = sorted(there);
+  from_receiver_ = sorted(back);
+}
+
+std::vector<LitPlane> LitPlanes::sorted(const Found& found) {
+  std::vector<LitPlane> out;
+  for (const auto& [ways, box] : found) out.push_back({ways.first, ways.second, box});
+  return out;
+}
+
+}  // namespace echopath

@@ -1,0 +1,64 @@
+#pragma once
+// Knows which planes rays found to light other planes, for the echoes of edges behind mirrors that nobody flagged.
+#include <map>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "echopath/base/plane.h"
+#include "echopath/trace/record/path_block.h"
+#include "echopath/trace/geometry/embree_scene.h"
+
+namespace echopath {
+
+// Says that waves from an antenna light a plane over mirrors, all of them indices of planes.
+struct LitPlane {
+  std::vector<int> mirrors;  // in order of travel from the antenna
+  int plane;
+  Eigen::AlignedBox3d box;  // m: where rays met it, and the space to the rays beside them
+};
+
+// The planes of facets on which rays were mirrored, or arrived. Facets that lie in one plane to a sixteenth of the wavelength
+// are one plane, whatever meshes they belong to.
+class LitPlanes {
+ public:
+  // All must outlive it.
+  LitPlanes(const Scene& scene, const EmbreeScene& geometry, double wavelength);
+  // Takes what the rays of a block found.
+  void add_chains(const PathBlock& block);
+  // Ends the search: sorts what was found, so that it does not hang on the order of the rays. `apart` is the distance in m
+  // between both antennas.
+  void finish(double apart);
+  // Return what each antenna lights. The rays come from the transmitter; what the receiver lights is the same where it is at
+  // the same place, and else also what rays met in the opposite order. `finish` must have been called.
+  const std::vector<LitPlane>& from_transmitter() const { return from_transmitter_; }
+  const std::vector<LitPlane>& from_receiver() const { return from_receiver_; }
+  const std::vector<Plane>& planes() const { return planes_; }
+  // Returns the plane on which a facet lies, -1 where it lies on none.
+  int plane_of(const Hit& hit) const;
+  // Returns the plane in which all these points lie, -1 where there is none. `normal` is the unit normal of their own plane.
+  int plane_through(std::span<const Vec3> points, const Vec3& normal) const;
+
+ private:
+  struct Facet {
+    uint32_t mesh_id, triangle_id;
+    auto operator<=>(const Facet&) const = default;
+  };
+  using Boxes = std::vector<Eigen::AlignedBox3d>;  // of each facet of a chain
+  using Found = std::map<std::pair<std::vector<int>, int>, Eigen::AlignedBox3d>;
+
+  bool may_mirror(const Hit& hit) const;
+  void find_planes();
+  static std::vector<LitPlane> sorted(const Found& found);
+
+  const Scene& scene_;
+  const EmbreeScene& geometry_;
+  double tolerance_;  // m
+  std::map<std::vector<Facet>, Boxes> chains_;
+  std::map<Facet, int> plane_of_facet_;
+  std::vector<Plane> planes_;
+  std::vector<std::pair<double, int>> by_slope_;  // planes by a key that nearly parallel ones share
+  std::vector<LitPlane> from_transmitter_, from_receiver_;
+};
+
+}  // namespace echopath

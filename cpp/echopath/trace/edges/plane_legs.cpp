@@ -1,0 +1,94 @@
+#include "echopath/trace/edges/plane_legs.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/base/constants.h"
+#include "echopath/trace/mirrors/mirror_zone.h"
+#include "echopath/trace/mirrors/mirrors.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kLeastOffPlane = 1e-4;  // m: a point this near a plane has no leg over it
+constexpr double kPointAside = 1e-5;     // m: a leg is that of points so far to either side, half of each
+constexpr double kMirrorsAll = 0.5;      // share of the Fresnel zone with which a plane mirrors the whole field
+// No scene is likely to be built along this direction.
+const Vec3 kShiftOfPoint = Vec3(0.5320508076, -0.4515026222, 0.7163118961).normalized();
+
+}  // namespace
+
+std::optional<PlaneLeg> PlaneLegFinder::find(const Vec3& point, const Vec3& outward, const Vec3& antenna, const LitPlane& over,
+                                             int64_t& num_queries) const {
+  PlaneLeg found;
+  int num_found = 0;
+  for (const double side : {1.0, -1.0}) {
+    PlaneLeg leg;
+    if (!follow(point + side * kPointAside * kShiftOfPoint, outward, antenna, over, leg, num_queries)) continue;
+    if (num_found++ == 0) found = std::move(leg);
+  }
+  if (num_found == 0) return std::nullopt;
+  found.share = 0.5 * num_found;
+  weigh(point, antenna, found, num_queries);
+  if (std::abs(found.gain) == 0) return std::nullopt;
+  return found;
+}
+
+bool PlaneLegFinder::follow(const Vec3& point, const Vec3& outward, const Vec3& antenna, const LitPlane& over, PlaneLeg& leg,
+                            int64_t& num_queries) const {
+  std::vector<Vec3> images = {antenna};
+  for (const int mirror : over.mirrors) images.push_back(lit_.planes()[static_cast<size_t>(mirror)].image(images.back()));
+  leg.length = (images.back() - point).norm();
+  leg.to_antenna = (images.back() - point) / leg.length;
+  Vec3 position = point, from = geometry_.lifted(point, outward);
+  for (size_t k = over.mirrors.size(); k-- > 0;) {
+    RayHit& met = leg.bounces.emplace_back();
+    if (!bounce(from, position, images[k + 1], over.mirrors[k], met, num_queries)) return false;
+    position = met.position;
+    from = geometry_.lifted(position, met.normal);
+  }
+  ++num_queries;
+  return !geometry_.occluded(from, antenna);
+}
+
+// Looks from a point toward an image behind the plane, and finds the point where the wave meets the plane.
+bool PlaneLegFinder::bounce(const Vec3& from, const Vec3& position, const Vec3& image, int plane, RayHit& met,
+                            int64_t& num_queries) const {
+  const Plane& mirror = lit_.planes()[static_cast<size_t>(plane)];
+  const double before = mirror.height(position), behind = mirror.height(image);
+  if (before * behind >= 0 || std::abs(before) < kLeastOffPlane) return false;
+  const Vec3 line = position + before / (before - behind) * (image - position) - from;
+  const double length = line.norm();
+  ++num_queries;
+  if (geometry_.intersect_from_surface(from, line / length, met) != EmbreeScene::Verdict::kHit) return false;
+  return !met.is_smooth && lit_.plane_of(met.hit) == plane;
+}
+
+double PlaneLegFinder::cover_of(const RayHit& point, const Vec3& arrival, double before, double behind,
+                                int64_t& num_queries) const {
+  const MirrorView view{point, arrival, before, behind};
+  return cover_of_zone(geometry_, view, nullptr, kSpeedOfLight / settings_.frequency, num_queries).share;
+}
+
+// Sets the coefficients, seen by a wave that travels to the antenna, and how much of it the planes mirror.
+void PlaneLegFinder::weigh(const Vec3& point, const Vec3& antenna, PlaneLeg& leg, int64_t& num_queries) const {
+  Vec3 position = point;
+  double travelled = 0.0;
+  for (size_t k = 0; k < leg.bounces.size(); ++k) {
+    const RayHit& met = leg.bounces[k];
+    const Vec3 direction = (met.position - position).normalized();
+    const double behind = (met.position - position).norm();
+    travelled += behind;
+    const SurfaceModel model(*scene_.node_of(met.hit.mesh_id).material, settings_.frequency);
+    const PolarizationMode mode = mode_along(model, settings_.polarization, direction, met.normal);
+    const SurfaceResponse response = model.respond(-direction.dot(met.normal), mode);
+    leg.gain *= response.gamma * response.coherent *
+                mirror_sign(model.material(), mode, settings_.polarization, direction, met.normal);
+    const Vec3 next = k + 1 < leg.bounces.size() ? leg.bounces[k + 1].position : antenna;
+    leg.first_cover = cover_of(met, (met.position - next).normalized(), leg.length - travelled, behind, num_queries);
+    leg.share *= std::min(1.0, leg.first_cover / kMirrorsAll);
+    position = met.position;
+  }
+}
+
+}  // namespace echopath

@@ -5,6 +5,7 @@
 #include "echopath/base/constants.h"
 #include "echopath/base/plane.h"
 #include "echopath/em/edge_diffraction.h"
+#include "echopath/em/edge_shadow.h"
 #include "echopath/em/surface_response.h"
 #include "echopath/replay/kernels/path_formula.h"
 #include "echopath/trace/edges/posed_edge.h"
@@ -47,6 +48,7 @@ class EdgeEchoes {
     const Vec3 side = scene.linear(hit.mesh_id) * (corners[(hit.edge->side + 1) % 3] - corners[hit.edge->side]);
     piece_ = (hit.edge->end - hit.edge->begin) / hit.num_pieces * side;
     is_reversed_ = path.is_reversed;
+    is_past_edge_ = path.is_past_edge;
     find_ways(path, scene.antennas(is_reversed_), true, in_);
     find_ways(path, scene.antennas(!is_reversed_), false, out_);
   }
@@ -61,11 +63,10 @@ class EdgeEchoes {
     const WayToEdge &in = way_in(transmitter, receiver), &out = way_out(transmitter, receiver);
     if (in.length < kNearAntenna || out.length < kNearAntenna) return 0.0;
     const Vec3 departure = -out.direction;
-    const Mat3 fringe = fringe_matrix(wedge_, in.direction, departure);
     const auto seen = [&](const WayToEdge& way, const Vec3& direction) {
       return is_polarized_ ? way.field : FieldVector(part_across(polarization, direction).cast<std::complex<double>>());
     };
-    const std::complex<double> coupled = seen(out, departure).transpose() * (fringe * seen(in, in.direction));
+    const std::complex<double> coupled = seen(out, departure).transpose() * diffracted(seen(in, in.direction), in, departure);
     const double filter = edge_filter(radio_.wavenumber * (in.direction - departure).dot(piece_));
     const double size = radio_.coherent_scale() * in.root_gain * out.root_gain * piece_.norm() * filter /
                         (2.0 * radio_.wavenumber * in.length * out.length);
@@ -80,6 +81,15 @@ class EdgeEchoes {
   // A reversed path begins at the receiver.
   const WayToEdge& way_in(size_t transmitter, size_t receiver) const { return in_[is_reversed_ ? receiver : transmitter]; }
   const WayToEdge& way_out(size_t transmitter, size_t receiver) const { return out_[is_reversed_ ? transmitter : receiver]; }
+
+  FieldVector diffracted(const FieldVector& field, const WayToEdge& in, const Vec3& departure) const {
+    if (!is_past_edge_) return fringe_matrix(wedge_, in.direction, departure) * field;
+    // `mirrors_` are those at the end of the path, of which the last one is next to the edge.
+    const PosedHit& next = mirrors_.hits.back();
+    const double behind = next.normal.dot(next.point - point_) / next.normal.dot(departure);
+    const double phase = radio_.wavenumber * in.length * behind / (in.length + behind);
+    return past_edge_matrix(wedge_, in.direction, departure, std::max(phase, 0.0)) * field;
+  }
 
   // Sets the ways between the edge and the antennas at the start of the path as it was traced, or at its end.
   void find_ways(const LocalPath& path, const std::vector<PosedAntenna>& antennas, bool of_start,
@@ -122,7 +132,7 @@ class EdgeEchoes {
   const Paths& paths_;
   const RadioConstants& radio_;
   double frequency_;  // Hz
-  bool is_polarized_, is_reversed_ = false;
+  bool is_polarized_, is_reversed_ = false, is_past_edge_ = false;
   std::vector<PosedHit> hits_;
   MirrorsToEdge mirrors_;
   std::vector<WayToEdge> in_, out_;

@@ -145,6 +145,7 @@ LocalPath PathPreparer::local_path(int64_t index, LocalPaths& block) const {
   path.is_reversed = (paths_.flags[p] & kReversedPath) != 0;
   path.edge = echopath::edge_hit(paths_.flags[p]);
   if (path.edge >= 0 && path.is_reversed) path.edge = path.count - 1 - path.edge;
+  path.is_past_edge = (paths_.flags[p] & kPastEdge) != 0;
   for (int k = 0; k < path.count; ++k) {
     const int recorded = path.is_reversed ? path.count - 1 - k : k;
     const Hit& hit = paths_.hits_of(index)[recorded];

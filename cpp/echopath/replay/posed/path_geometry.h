@@ -44,6 +44,7 @@ struct LocalPath {
   uint64_t image = 0;    // bit per hit: specular on a flagged mirror, replayed by images
   uint64_t sliding = 0;  // bit per hit: other specular hits, whose point of reflection slides over the surface
 
+  bool is_past_edge = false;  // kPastEdge
   int edge = -1;  // the hit on an edge, the material point of its path
 
   bool is_image(int hit) const { return image >> hit & 1; }

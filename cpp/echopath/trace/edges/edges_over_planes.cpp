@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kFlatFrontOverPlanes = 0.1;  // rad, of the wave fronts over half a piece
 constexpr double kOfLitEdge = 1.0 / 16;       // of the edge, a piece at most
+constexpr double kCornerGap = 1.0 / 16.0;     // wavelengths: surfaces that lie so near to each other abut
 constexpr double kOfWave = 0.5;               // wavelengths, the shortest piece for that
 
 // An edge as it stands, and what the antennas light over planes of its faces.
@@ -114,6 +115,7 @@ class LitEdgeTracer {
     Vec3 to_antenna;
     std::complex<double> gain;
     double share = 1.0;
+    std::complex<double> past_edge = 0.0;  // share of the field of a wave that goes by the edge and on that way
     OrderShares orders;
     bool is_over_planes = false;
   };
@@ -140,7 +142,10 @@ class LitEdgeTracer {
       for (const Way& other : out_direct) add_path(one, other, one.orders.own, 0);
     }
     for (const Way& one : in_direct) {
-      for (const Way& other : out) add_path(one, other, other.orders.opposite, kReversedPath);
+      for (const Way& other : out) {
+        add_path(one, other, other.orders.opposite, kReversedPath);
+        add_path(one, other, other.past_edge, kPastEdge);
+      }
     }
   }
 
@@ -157,6 +162,9 @@ class LitEdgeTracer {
       way.gain = leg->gain;
       way.share = leg->share;
       way.orders = orders_of(*leg, *over, other);
+      if (meets_next_plane(*over)) way.orders.opposite = 0.0;
+      way.past_edge = (1.0 - way.orders.opposite) *
+                      planes_.field_beside_rims(point_, antenna, *leg, block_.statistics.num_queries);
       way.is_over_planes = true;
     }
     return ways;
@@ -191,6 +199,26 @@ class LitEdgeTracer {
                                                                   block_.statistics.num_queries), 1e-9));
   }
 
+  // Returns whether the lit face goes on from the edge to the plane that is next to it, as in a corner.
+  bool meets_next_plane(const LitPlane& over) {
+    const int next = over.mirrors.back();
+    const Plane& mirror = lit_.planes()[static_cast<size_t>(next)];
+    const double gap = std::max(kCornerGap * kSpeedOfLight / query_.settings.frequency, 4.0 * query_.geometry.lift());
+    for (const WedgeFace& face : edge_.wedge.faces) {
+      const Vec3 from = point_ + gap * (face.inward + face.normal);
+      RayHit met;
+      block_.statistics.num_queries += 2;
+      if (query_.geometry.intersect_from_surface(from, face.inward, met) != EmbreeScene::Verdict::kHit ||
+          lit_.plane_of(met.hit) != next || std::abs(mirror.height(point_)) < gap)
+        continue;
+      const Vec3 beside = from + std::max(met.distance - 2.0 * gap, 0.0) * face.inward;
+      if (query_.geometry.intersect_from_surface(beside, -face.normal, met) == EmbreeScene::Verdict::kHit &&
+          met.distance < 2.0 * gap)
+        return true;
+    }
+    return false;
+  }
+
   // Returns the share of a field that the faces keep in phase: as they would mirror it, the one that faces it more.
   double kept_share(const Vec3& to_antenna) const {
     const double cosine = std::max(to_antenna.dot(edge_.wedge.faces[0].normal), to_antenna.dot(edge_.wedge.faces[1].normal));
@@ -199,8 +227,8 @@ class LitEdgeTracer {
     return std::abs(response.gamma) * response.coherent;
   }
 
-  void add_path(const Way& in, const Way& out, double share, uint32_t flag) {
-    if (share <= 0 || std::ssize(in.hits) + 1 + std::ssize(out.hits) > query_.settings.max_bounces) return;
+  void add_path(const Way& in, const Way& out, std::complex<double> share, uint32_t flag) {
+    if (share == 0.0 || std::ssize(in.hits) + 1 + std::ssize(out.hits) > query_.settings.max_bounces) return;
     std::vector<Hit> hits(in.hits.rbegin(), in.hits.rend());
     const int at = static_cast<int>(hits.size());
     hits.push_back(hit_);

@@ -13,6 +13,7 @@ namespace {
 constexpr double kLeastOffPlane = 1e-4;  // m: a point this near a plane has no leg over it
 constexpr double kPointAside = 1e-5;     // m: a leg is that of points so far to either side, half of each
 constexpr double kMirrorsAll = 0.5;      // share of the Fresnel zone with which a plane mirrors the whole field
+constexpr double kZonesToRim = 4.0;  // half Fresnel zones: rims farther off count as so far
 // No scene is likely to be built along this direction.
 const Vec3 kShiftOfPoint = Vec3(0.5320508076, -0.4515026222, 0.7163118961).normalized();
 
@@ -20,27 +21,32 @@ const Vec3 kShiftOfPoint = Vec3(0.5320508076, -0.4515026222, 0.7163118961).norma
 
 std::optional<PlaneLeg> PlaneLegFinder::find(const Vec3& point, const Vec3& outward, const Vec3& antenna, const LitPlane& over,
                                              int64_t& num_queries) const {
+  std::vector<Vec3> images = {antenna};
+  for (const int mirror : over.mirrors) images.push_back(plane(mirror).image(images.back()));
+  const Plane& face = plane(over.plane);
+  const Vec3 lit = face.height(images.back()) > 0 ? face.normal : Vec3(-face.normal);
+  const Vec3 along = (kShiftOfPoint - lit.dot(kShiftOfPoint) * lit).normalized();
+  const Vec3 lift = (outward + lit).normalized();
   PlaneLeg found;
   int num_found = 0;
   for (const double side : {1.0, -1.0}) {
     PlaneLeg leg;
-    if (!follow(point + side * kPointAside * kShiftOfPoint, outward, antenna, over, leg, num_queries)) continue;
-    if (num_found++ == 0) found = std::move(leg);
+    if (follow(point + side * kPointAside * along, lift, images, over, leg, num_queries) && num_found++ == 0)
+      found = std::move(leg);
   }
   if (num_found == 0) return std::nullopt;
   found.share = 0.5 * num_found;
+  found.length = (images.back() - point).norm();
+  found.to_antenna = (images.back() - point) / found.length;
   weigh(point, antenna, found, num_queries);
   if (std::abs(found.gain) == 0) return std::nullopt;
   return found;
 }
 
-bool PlaneLegFinder::follow(const Vec3& point, const Vec3& outward, const Vec3& antenna, const LitPlane& over, PlaneLeg& leg,
-                            int64_t& num_queries) const {
-  std::vector<Vec3> images = {antenna};
-  for (const int mirror : over.mirrors) images.push_back(lit_.planes()[static_cast<size_t>(mirror)].image(images.back()));
-  leg.length = (images.back() - point).norm();
-  leg.to_antenna = (images.back() - point) / leg.length;
-  Vec3 position = point, from = geometry_.lifted(point, outward);
+// `images` are those of the antenna over the first mirrors, beginning with none.
+bool PlaneLegFinder::follow(const Vec3& point, const Vec3& lift, const std::vector<Vec3>& images, const LitPlane& over,
+                            PlaneLeg& leg, int64_t& num_queries) const {
+  Vec3 position = point, from = geometry_.lifted(point, lift);
   for (size_t k = over.mirrors.size(); k-- > 0;) {
     RayHit& met = leg.bounces.emplace_back();
     if (!bounce(from, position, images[k + 1], over.mirrors[k], met, num_queries)) return false;
@@ -48,20 +54,20 @@ bool PlaneLegFinder::follow(const Vec3& point, const Vec3& outward, const Vec3& 
     from = geometry_.lifted(position, met.normal);
   }
   ++num_queries;
-  return !geometry_.occluded(from, antenna);
+  return !geometry_.occluded(from, images.front());
 }
 
 // Looks from a point toward an image behind the plane, and finds the point where the wave meets the plane.
-bool PlaneLegFinder::bounce(const Vec3& from, const Vec3& position, const Vec3& image, int plane, RayHit& met,
+bool PlaneLegFinder::bounce(const Vec3& from, const Vec3& position, const Vec3& image, int index, RayHit& met,
                             int64_t& num_queries) const {
-  const Plane& mirror = lit_.planes()[static_cast<size_t>(plane)];
+  const Plane& mirror = this->plane(index);
   const double before = mirror.height(position), behind = mirror.height(image);
   if (before * behind >= 0 || std::abs(before) < kLeastOffPlane) return false;
   const Vec3 line = position + before / (before - behind) * (image - position) - from;
   const double length = line.norm();
   ++num_queries;
   if (geometry_.intersect_from_surface(from, line / length, met) != EmbreeScene::Verdict::kHit) return false;
-  return !met.is_smooth && lit_.plane_of(met.hit) == plane;
+  return !met.is_smooth && lit_.plane_of(met.hit) == index;
 }
 
 double PlaneLegFinder::cover_of(const RayHit& point, const Vec3& arrival, double before, double behind,
@@ -89,6 +95,25 @@ void PlaneLegFinder::weigh(const Vec3& point, const Vec3& antenna, PlaneLeg& leg
     leg.share *= std::min(1.0, leg.first_cover / kMirrorsAll);
     position = met.position;
   }
+}
+
+std::complex<double> PlaneLegFinder::field_beside_rims(const Vec3& point, const Vec3& antenna, const PlaneLeg& leg,
+                                                       int64_t& num_queries) const {
+  const double wavelength = kSpeedOfLight / settings_.frequency, gap = std::max(wavelength / 16.0, 4.0 * geometry_.lift());
+  const RayHit& met = leg.bounces.front();
+  const Vec3 next = leg.bounces.size() > 1 ? leg.bounces[1].position : antenna;
+  const double behind = (met.position - point).norm();
+  const MirrorView view{met, (met.position - next).normalized(), leg.length - behind, behind};
+  const SurfaceAround around(geometry_, met, gap, num_queries);
+  std::complex<double> field = 1.0;
+  for (const ZoneAxis& axis : zone_axes(view, wavelength)) {
+    const double reach = kZonesToRim * axis.half;
+    std::complex<double> left = -1.0;
+    for (const Vec3& way : {axis.along, Vec3(-axis.along)})
+      left += field_beside_edge(around.find_end(way, reach).distance / axis.half);
+    field *= left;
+  }
+  return field;
 }
 
 }  // namespace echopath

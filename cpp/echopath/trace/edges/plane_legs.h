@@ -33,10 +33,16 @@ class PlaneLegFinder {
   // Returns the share of its Fresnel zone that a surface covers as a mirror, for a wave that arrives along `arrival`.
   double cover_of(const RayHit& point, const Vec3& arrival, double before, double behind, int64_t& num_queries) const;
 
+  // Returns the field that a wave from the point has behind the first bounce, over that of an endless plane: what the rims of the
+  // surface leave of it, where the inside of a corner counts as a rim too.
+  std::complex<double> field_beside_rims(const Vec3& point, const Vec3& antenna, const PlaneLeg& leg,
+                                         int64_t& num_queries) const;
+
  private:
-  bool follow(const Vec3& point, const Vec3& outward, const Vec3& antenna, const LitPlane& over, PlaneLeg& leg,
+  const Plane& plane(int index) const { return lit_.planes()[static_cast<size_t>(index)]; }
+  bool follow(const Vec3& point, const Vec3& lift, const std::vector<Vec3>& images, const LitPlane& over, PlaneLeg& leg,
               int64_t& num_queries) const;
-  bool bounce(const Vec3& from, const Vec3& position, const Vec3& image, int plane, RayHit& met, int64_t& num_queries) const;
+  bool bounce(const Vec3& from, const Vec3& position, const Vec3& image, int index, RayHit& met, int64_t& num_queries) const;
   void weigh(const Vec3& point, const Vec3& antenna, PlaneLeg& leg, int64_t& num_queries) const;
 
   const Scene& scene_;

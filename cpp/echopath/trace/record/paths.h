@@ -47,6 +47,9 @@ inline constexpr uint32_t kSecondHalf = 2;
 // is and into how many pieces of one length the edge is parted: the path stands for the piece around its point. All its
 // other hits are images. Its weight holds the coefficients of the scalar model and what the faces keep in phase.
 inline constexpr uint32_t kEdgePath = 4;
+// Marks, beside that, a path whose edge sends on only what it makes of the wave that goes by (em/edge_shadow.h), toward a
+// mirror.
+inline constexpr uint32_t kPastEdge = 32;
 inline constexpr int kMostPieces = 65535;
 constexpr uint32_t edge_flags(int hit, int num_pieces) {
   return kEdgePath | static_cast<uint32_t>(hit) << 8 | static_cast<uint32_t>(num_pieces) << 16;

@@ -1,0 +1,45 @@
+#include "echopath/em/edge_shadow.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/base/constants.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kLeastAcross = 1e-3;       // sine of the angle between a wave and the edge
+constexpr double kLeastOffBoundary = 1e-6;  // rad: nearer to the boundary of shadow counts as that far off it
+
+// Returns what remains of a coefficient in the transition, where `within` half Fresnel zones lie between the boundary and the
+// direction. Uses the auxiliary functions of Fresnel's integrals to 2e-3: Abramowitz and Stegun (1964), 7.3.32 and 7.3.33.
+std::complex<double> transition(double within) {
+  const double x = std::sqrt(2.0) * within;
+  const double f = (1.0 + 0.926 * x) / (2.0 + x * (1.792 + x * 3.104));
+  const double g = 1.0 / (2.0 + x * (4.142 + x * (3.492 + x * 6.670)));
+  return kPi * x * std::complex<double>(f, g);
+}
+
+}  // namespace
+
+Eigen::Matrix3cd past_edge_matrix(const Wedge& wedge, const Vec3& in, const Vec3& out, double phase) {
+  const Vec3 axis = wedge.faces[0].inward.cross(wedge.faces[0].normal);
+  const Vec3 across_in = axis.cross(in), across_out = axis.cross(out);
+  const double sine = across_in.norm();
+  if (std::min(sine, across_out.norm()) < kLeastAcross || !is_outside(wedge, -in) || !is_outside(wedge, out))
+    return Eigen::Matrix3cd::Zero();
+  const auto angle = [&](const Vec3& direction) {
+    const double about = std::atan2(direction.dot(wedge.faces[0].normal), direction.dot(wedge.faces[0].inward));
+    return std::clamp(about < 0 ? about + kTwoPi : about, 0.0, wedge.exterior_angle);
+  };
+  double turn = angle(out) - angle(-in);
+  if (std::abs(std::abs(turn) - kPi) < kLeastOffBoundary) turn = std::copysign(kPi - kLeastOffBoundary, turn);
+  const double n = wedge.exterior_angle / kPi;
+  const double within = std::sqrt(2.0 * phase / kPi) * sine * std::abs(std::cos(0.5 * turn));
+  const double cotangents = 1.0 / std::tan(0.5 * (kPi + turn) / n) + 1.0 / std::tan(0.5 * (kPi - turn) / n);
+  const Vec3 phi_in = across_in / sine, phi_out = across_out.normalized();
+  const Mat3 turned = phi_out * phi_in.transpose() + phi_out.cross(out) * phi_in.cross(in).transpose();
+  return -cotangents / n * transition(within) * turned.cast<std::complex<double>>();
+}
+
+}  // namespace echopath

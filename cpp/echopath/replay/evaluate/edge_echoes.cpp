@@ -88,7 +88,7 @@ class EdgeEchoes {
     const PosedHit& next = mirrors_.hits.back();
     const double behind = next.normal.dot(next.point - point_) / next.normal.dot(departure);
     const double phase = radio_.wavenumber * in.length * behind / (in.length + behind);
-    return past_edge_matrix(wedge_, in.direction, departure, std::max(phase, 0.0)) * field;
+    return diffraction_matrix(wedge_, in.direction, departure, std::max(phase, 0.0)) * field;
   }
 
   // Sets the ways between the edge and the antennas at the start of the path as it was traced, or at its end.

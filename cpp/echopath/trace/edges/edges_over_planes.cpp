@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/parallel.h"
@@ -115,9 +116,8 @@ class LitEdgeTracer {
     Vec3 to_antenna;
     std::complex<double> gain;
     double share = 1.0;
-    std::complex<double> past_edge = 0.0;  // share of the field of a wave that goes by the edge and on that way
     OrderShares orders;
-    bool is_over_planes = false;
+    std::complex<double> past_edge = 0.0;  // share of what the edge sends that way to a mirror (kPastEdge)
   };
 
   int num_pieces() const {
@@ -132,11 +132,14 @@ class LitEdgeTracer {
   }
 
   void add_piece(double at) {
-    const std::vector<Way> in = over_planes(edge_.transmit, query_.settings.transmitter, query_.settings.receiver, at),
-                           out = over_planes(edge_.receive, query_.settings.receiver, query_.settings.transmitter, at);
+    const bool is_lit = is_within(edge_.transmit, at) || is_within(edge_.receive, at);
+    if (!is_lit) return;
+    const Vec3 &transmitter = query_.settings.transmitter, &receiver = query_.settings.receiver;
+    const std::vector<Way> in_direct = direct(transmitter), out_direct = direct(receiver);
+    const std::vector<Way> in = over_planes(edge_.transmit, {transmitter, receiver, at, false}),
+                           out = over_planes(edge_.receive, {receiver, transmitter, at, !in_direct.empty()});
     if (in.empty() && out.empty()) return;
     ++block_.statistics.num_hits;
-    const std::vector<Way> in_direct = direct(query_.settings.transmitter), out_direct = direct(query_.settings.receiver);
     for (const Way& one : in) {
       for (const Way& other : out) add_path(one, other, 1.0, 0);
       for (const Way& other : out_direct) add_path(one, other, one.orders.own, 0);
@@ -149,7 +152,22 @@ class LitEdgeTracer {
     }
   }
 
-  std::vector<Way> over_planes(const std::vector<const LitPlane*>& lit, const Vec3& antenna, const Vec3& other, double at) {
+  bool is_within(const std::vector<const LitPlane*>& lit, double at) const {
+    return std::any_of(lit.begin(), lit.end(), [&](const LitPlane* over) {
+      const auto [begin, end] = stretch_within(edge_.from, edge_.to, over->box);
+      return at >= begin && at <= end;
+    });
+  }
+
+  // Says which ways are looked for: from the place `at` in [0, 1] of the edge to an antenna.
+  struct WayQuery {
+    Vec3 antenna, other;
+    double at;
+    bool is_end;  // waves go on that way from the edge, to which they came directly
+  };
+
+  std::vector<Way> over_planes(const std::vector<const LitPlane*>& lit, const WayQuery& query) {
+    const auto& [antenna, other, at, is_end] = query;
     std::vector<Way> ways;
     for (const LitPlane* over : lit) {
       const auto [begin, end] = stretch_within(edge_.from, edge_.to, over->box);
@@ -161,11 +179,11 @@ class LitEdgeTracer {
       way.to_antenna = leg->to_antenna;
       way.gain = leg->gain;
       way.share = leg->share;
-      way.orders = orders_of(*leg, *over, other);
-      if (meets_next_plane(*over)) way.orders.opposite = 0.0;
-      way.past_edge = (1.0 - way.orders.opposite) *
-                      planes_.field_beside_rims(point_, antenna, *leg, block_.statistics.num_queries);
-      way.is_over_planes = true;
+      way.orders = kept_orders(*leg, *over, other);
+      if (is_end && way.orders.opposite < 1.0) {
+        way.past_edge = (1.0 - way.orders.opposite) *
+                        planes_.field_beside_rims(point_, antenna, *leg, block_.statistics.num_queries);
+      }
     }
     return ways;
   }
@@ -180,6 +198,15 @@ class LitEdgeTracer {
       if (leg.length >= kNearAntenna && is_outside(edge_.wedge, leg.to_antenna)) ways.push_back({{}, leg.to_antenna, leg.gain});
     }
     return ways;
+  }
+
+  // Returns the shares of the orders, which the pieces of one edge have in common.
+  OrderShares kept_orders(const PlaneLeg& leg, const LitPlane& over, const Vec3& other) {
+    const auto known = orders_.find(&over);
+    if (known != orders_.end()) return known->second;
+    OrderShares orders = orders_of(leg, over, other);
+    if (meets_next_plane(over)) orders.opposite = 0.0;
+    return orders_[&over] = orders;
   }
 
   // Returns the shares of both orders in which rays go over these planes and the face of the edge, to the other antenna.
@@ -250,6 +277,7 @@ class LitEdgeTracer {
   LegFinder finder_;
   std::vector<Leg> legs_;
   LegSearch search_;
+  std::map<const LitPlane*, OrderShares> orders_;  // by what is lit
   int num_pieces_ = 1;
   Hit hit_;      // of the piece at hand
   Vec3 point_;  // m, likewise

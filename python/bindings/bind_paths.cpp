@@ -131,6 +131,42 @@ struct HitRows {
   }
 };
 
+// As Paths.passes has them.
+struct PassRow {
+  uint32_t mesh_id, triangle_id;
+  float u, v;
+  uint32_t leg;
+};
+static_assert(sizeof(PassRow) == sizeof(Pass));
+
+py::array passes_of(const py::object& self) {
+  const auto& passes = self.cast<const Paths&>().passes;
+  const auto* rows = reinterpret_cast<const PassRow*>(passes.data());
+  return numpy_view(rows, {static_cast<py::ssize_t>(passes.size())}, self);
+}
+
+// [N] structured, as Paths.passes has them.
+struct PassRows {
+  using Value = std::vector<Pass>;
+  static constexpr auto type_name = py::detail::const_name("ArrayLike");
+  static Value from(py::handle value, const char* argument) {
+    constexpr const char* kRule = "must be an array [N] of (mesh_id, triangle_id, u, v, leg) as Paths.passes has it";
+    if (!py::isinstance<py::array>(value)) refuse_type(argument, kRule, value);
+    const auto given = py::reinterpret_borrow<py::array>(value);
+    if (given.ndim() != 1 || !given.dtype().equal(py::dtype::of<PassRow>())) {
+      throw py::type_error(std::string(argument) + ": " + kRule + ", got " + std::string(py::str(given.dtype())) + " of " +
+                           std::to_string(given.ndim()) + " dimensions");
+    }
+    const py::array_t<PassRow, py::array::c_style | py::array::forcecast> rows(given);
+    Value passes;
+    for (py::ssize_t i = 0; i < rows.size(); ++i) {
+      const PassRow& row = rows.data()[i];
+      passes.push_back({{row.mesh_id, row.triangle_id, row.u, row.v}, row.leg});
+    }
+    return passes;
+  }
+};
+
 // Rows of `size` numbers, of a flat vector.
 template <class Row, class T>
 std::vector<Row> rows_of(const std::vector<T>& values, size_t size) {
@@ -149,6 +185,8 @@ PathsPtr paths_from_arrays(Arg<"hits", HitRows> hits, Arg<"offsets", VectorOf<in
                            Arg<"flags", VectorOf<uint32_t, "[P]">> flags,
                            Arg<"curved_cell", Optional<VectorOf<float, "[P, 7]">>> curved_cell,
                            Arg<"jones", Optional<VectorOf<ComplexFloat, "[P, 2, 2]">>> jones,
+                           Arg<"passes", Optional<PassRows>> passes,
+                           Arg<"pass_offsets", Optional<VectorOf<int64_t, "[P + 1]">>> pass_offsets,
                            Arg<"scene", Instance<std::shared_ptr<Scene>>> scene, Arg<"radar", Instance<Radar>> radar,
                            Arg<"frame", Instance<TraceFrame>> frame) {
   auto paths = std::make_shared<Paths>();
@@ -162,6 +200,8 @@ PathsPtr paths_from_arrays(Arg<"hits", HitRows> hits, Arg<"offsets", VectorOf<in
   paths->flags = *flags;
   if (*curved_cell) paths->curved_cell = rows_of<decltype(paths->curved_cell)::value_type>(**curved_cell, 7);
   if (*jones) paths->jones = rows_of<decltype(paths->jones)::value_type>(**jones, 4);
+  if (*passes) paths->passes = **passes;
+  if (*pass_offsets) paths->pass_offsets = **pass_offsets;
   paths->scene = std::make_shared<const Scene>(**scene);
   paths->radar = *radar;
   paths->frame = *frame;
@@ -170,13 +210,14 @@ PathsPtr paths_from_arrays(Arg<"hits", HitRows> hits, Arg<"offsets", VectorOf<in
 }
 
 // What from_arrays takes, by name: also the state of a pickle.
-const std::vector<std::string> kPathsState = {"hits",  "offsets",     "num_bounces", "diffuse", "weight", "stratum", "batch",
-                                              "flags", "curved_cell", "jones",       "scene",   "radar",  "frame"};
+const std::vector<std::string> kPathsState = {"hits",   "offsets",      "num_bounces", "diffuse", "weight",
+                                              "stratum", "batch",       "flags",       "curved_cell", "jones",
+                                              "passes",  "pass_offsets", "scene",      "radar",       "frame"};
 
 py::dict paths_state(const py::object& self) {
   py::dict state;
   for (const std::string& name : kPathsState) state[name.c_str()] = self.attr(name.c_str());
-  for (const char* name : {"curved_cell", "jones"}) {
+  for (const char* name : {"curved_cell", "jones", "passes", "pass_offsets"}) {
     if (py::len(state[name]) == 0) state[name] = py::none();
   }
   return state;
@@ -243,12 +284,13 @@ below it are left out and counted. Returns what was left out. Raises ep.FileErro
                 "Reads the paths of a frame file at `path`: the same bits that were written. Raises ep.FileError.");
   define_static(type, "from_arrays", &paths_from_arrays, py::kw_only(), py::arg("hits"), py::arg("offsets"),
                 py::arg("num_bounces"), py::arg("diffuse"), py::arg("weight"), py::arg("stratum"), py::arg("batch"),
-                py::arg("flags"), py::arg("curved_cell") = py::none(), py::arg("jones") = py::none(), py::arg("scene"),
-                py::arg("radar"), py::arg("frame"),
+                py::arg("flags"), py::arg("curved_cell") = py::none(), py::arg("jones") = py::none(),
+                py::arg("passes") = py::none(), py::arg("pass_offsets") = py::none(), py::arg("scene"), py::arg("radar"),
+                py::arg("frame"),
                 R"(Paths of arrays as the properties give them.
 
 hits: [H] structured; offsets, num_bounces, diffuse, weight, stratum, batch, flags: [P]; curved_cell: [P, 7] or None; jones:
-[P, 2, 2] complex or None
+[P, 2, 2] complex or None; passes: [N] structured and pass_offsets: [P + 1], or None
 scene, radar, frame: what they belong to
 Raises ValueError where an index leads nowhere.)");
   define(type, "to_dataframe", from_package("tables", "paths_table"),
@@ -272,6 +314,7 @@ attrs["mesh_names"]. Needs xarray, raises ModuleNotFoundError without it.)");
 
 void bind_paths(py::module_& m) {
   PYBIND11_NUMPY_DTYPE(Hit, mesh_id, triangle_id, u, v);
+  PYBIND11_NUMPY_DTYPE(PassRow, mesh_id, triangle_id, u, v, leg);
   PathsClass type(m, "Paths",
                   R"(The record of a trace: what every ray touched. Cannot be changed; its arrays are views.
 
@@ -302,6 +345,11 @@ share hits; selections share all hits of their trace.)");
           "curved_cell", &curved_cell_of,
           "[P, 7] or [0, 7]: launch cells behind curved specular bounces (trace/record/paths.h); zeros on flat "
           "chains")
+      .def_property_readonly("passes", &passes_of,
+                             "[N] structured: mesh_id, triangle_id, u, v and leg of each pass through a sheet, in order of "
+                             "travel, path by path; leg k ends at hit k, the last one at the receiver")
+      .def_property_readonly("pass_offsets", path_column(&Paths::pass_offsets),
+                             "[P + 1] or [0]: path i has the passes pass_offsets[i] to pass_offsets[i + 1]")
       .def_property_readonly(
           "scene", [](const Paths& self) { return std::const_pointer_cast<Scene>(self.scene); }, "snapshot of the scene")
       .def_readonly("radar", &Paths::radar, "snapshot of the radar")

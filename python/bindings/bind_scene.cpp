@@ -32,7 +32,7 @@ namespace {
 
 std::shared_ptr<Material> material(Arg<"conductor", Flag> conductor, Arg<"permittivity", Optional<Complex>> permittivity,
                                    Arg<"conductivity", Real> conductivity, Arg<"reflectivity", Optional<Real>> reflectivity,
-                                   Arg<"roughness_height", Real> roughness_height,
+                                   Arg<"layers", List<Instance<Layer>>> layers, Arg<"roughness_height", Real> roughness_height,
                                    Arg<"scattering", Optional<Real>> scattering,
                                    Arg<"cross_polarization", Real> cross_polarization, Arg<"mirror", Flag> mirror,
                                    Arg<"lobe_exponent", Count> lobe_exponent,
@@ -43,6 +43,7 @@ std::shared_ptr<Material> material(Arg<"conductor", Flag> conductor, Arg<"permit
   made->permittivity = *permittivity;
   made->conductivity = *conductivity;
   made->reflectivity = *reflectivity;
+  made->layers = *layers;
   made->roughness_height = *roughness_height;
   made->scattering = *scattering;
   made->cross_polarization = *cross_polarization;
@@ -56,12 +57,19 @@ std::shared_ptr<Material> material(Arg<"conductor", Flag> conductor, Arg<"permit
 
 std::shared_ptr<Material> metal(Arg<"mirror", Flag> mirror) { return std::make_shared<Material>(Material::metal(*mirror)); }
 
+py::tuple layers_of(const Material& self) {
+  py::tuple layers(self.layers.size());
+  for (size_t i = 0; i < self.layers.size(); ++i) layers[i] = self.layers[i];
+  return layers;
+}
+
 py::dict fields_of(const Material& self) {
   py::dict fields;
   fields["conductor"] = self.conductor;
   fields["permittivity"] = self.permittivity;
   fields["conductivity"] = self.conductivity;
   fields["reflectivity"] = self.reflectivity;
+  fields["layers"] = layers_of(self);
   fields["roughness_height"] = self.roughness_height;
   fields["scattering"] = self.scattering;
   fields["cross_polarization"] = self.cross_polarization;
@@ -100,6 +108,7 @@ Exactly one of
 conductor: True for a perfect conductor
 permittivity: complex, relative, eps' - j eps'' (imaginary part <= 0)
 reflectivity: share of power in [0, 1] that is reflected at every angle
+layers: [K] ep.Layer of a sheet, from the side of the surface's normals on, through which waves pass; `mirror` must be False
 and further
 conductivity: S/m, adds to the permittivity
 roughness_height: rms height in m (Ament), or scattering: S in [0, 1], S^2 is the diffuse share of power
@@ -113,13 +122,15 @@ backscatter_share: of a lobe, share in [0, 1] of what goes back to where the wav
     part, up to 100, 0: as lobe_exponent
 Raises TypeError or ValueError naming the field, the rule and the value.)");
   define_init(type, &material, py::kw_only(), py::arg("conductor") = false, py::arg("permittivity") = py::none(),
-              py::arg("conductivity") = 0.0, py::arg("reflectivity") = py::none(), py::arg("roughness_height") = 0.0,
-              py::arg("scattering") = py::none(), py::arg("cross_polarization") = 0.0, py::arg("mirror") = false,
-              py::arg("lobe_exponent") = 0, py::arg("backscatter_share") = 0.0, py::arg("backscatter_exponent") = 0)
+              py::arg("conductivity") = 0.0, py::arg("reflectivity") = py::none(), py::arg("layers") = py::tuple(),
+              py::arg("roughness_height") = 0.0, py::arg("scattering") = py::none(), py::arg("cross_polarization") = 0.0,
+              py::arg("mirror") = false, py::arg("lobe_exponent") = 0, py::arg("backscatter_share") = 0.0,
+              py::arg("backscatter_exponent") = 0)
       .def_readonly("conductor", &Material::conductor, "bool")
       .def_readonly("permittivity", &Material::permittivity, "complex, relative, or None")
       .def_readonly("conductivity", &Material::conductivity, "S/m")
       .def_readonly("reflectivity", &Material::reflectivity, "share of power in [0, 1], or None")
+      .def_property_readonly("layers", &layers_of, "tuple [K] of ep.Layer, empty unless a sheet")
       .def_readonly("roughness_height", &Material::roughness_height, "rms height in m")
       .def_readonly("scattering", &Material::scattering, "S in [0, 1], or None")
       .def_readonly("cross_polarization", &Material::cross_polarization, "K in [0, 0.5]")

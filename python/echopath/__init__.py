@@ -15,7 +15,7 @@ from . import actors, plots
 from ._core import (
     AngleEstimates, AngleSpectrum, Antenna, AntennaPattern, BeamPower, CfarResult, ChirpSequence, CoplanarOverlap,
     CosinePower, Curve, CurveMotion, Deformation, DeviceError, Family, FileError, GainTable, Isotropic, Joint,
-    KeyframeMotion, LinearMotion, Material, Mesh, MorphTargets, Motion, ObjectValidity, Paths, Radar, RangeAzimuth,
+    KeyframeMotion, Layer, LinearMotion, Material, Mesh, MorphTargets, Motion, ObjectValidity, Paths, Radar, RangeAzimuth,
     RangeDoppler, ReceivedPower, Renewal, Selection, SignalProbe, Skin, Stratum, TraceFrame, TraceStatistics, Validity,
     ValidityShares, VertexSequence, VirtualArray, __version__, boltzmann, speed_of_light,
 )
@@ -51,8 +51,10 @@ from .scene_file import SceneFile, load_scene
 from .scene_node import SceneNode
 from .selections import first, hits, last, num_bounces, power
 from .sensor_files import SensorConfig, load_radar, load_sensor, save_raw
+from .selections import first, hits, last, num_bounces, passes, power
 from .sequence import SavedFrame, Sequence, StoredSequence, load_sequence
 from .settings import LabelSettings, SignalSettings, TraceSettings
+from .sheets import SheetCoefficients, sheet_coefficients
 from .signals import add_noise, synthesize
 from .simulate import simulate
 from .spectra import cfar, range_doppler
@@ -73,22 +75,23 @@ __all__ = [
     "CfarResult", "Check", "ChirpSequence", "CoplanarOverlap", "CosinePower", "Curve", "CurveMotion", "Deformation",
     "Detections", "DeviceError", "Effect", "Families", "Family", "FileError", "Frame", "FrameMaps", "GainTable",
     "GhostLabel", "GuardWarning", "Interval", "Isotropic", "Joint", "KeyframeMotion", "LabelSettings", "Labels", "Lane",
-    "LinearMotion", "Live", "LiveView", "Material", "Mesh", "Model", "ModelNode", "MorphTargets", "Motion", "ObjectLabel",
-    "ObjectValidity", "ObjectVisibility", "Part", "Parts", "PathCells", "Paths", "PhaseNoise", "Radar", "RangeAzimuth",
-    "RangeDoppler", "RangeTime", "ReceivedPower", "Receiver", "Reception", "Renewal", "SavedFrame", "Scene", "SceneFile",
-    "SceneNode", "Selection", "SensorConfig", "Sequence", "Sight", "SignalProbe", "SignalSettings", "Skin", "Spectrogram",
-    "SpectrogramLabels", "StoredSequence", "Stratum", "TessellationWarning", "TraceFrame", "TraceSettings",
-    "TraceStatistics", "Tracks", "Traffic", "Trajectory", "Truth", "Unresolved", "Validity", "ValidityShares",
-    "VertexSequence", "VirtualArray", "Watch", "Weather", "actors", "add_noise", "add_traffic", "angle_fft", "angle_time",
-    "annotate", "annotate_frame", "beamform", "boltzmann", "cfar", "check_rays", "check_signal", "compensate_tdm",
-    "decompose", "demultiplex", "detect", "detect_frame", "effects", "estimate_angles", "families", "first",
-    "foreign_materials", "hits", "interference", "interference_radar", "last", "load_antenna", "load_frame",
-    "load_labels", "load_mesh", "load_meshes", "load_model", "load_radar", "load_scene", "load_sensor", "load_sequence",
-    "materials", "mesh_from", "mie_rcs", "num_bounces", "num_threads", "path_cells", "plot_rays", "plots", "power",
-    "power_by_chirp", "range_azimuth", "range_doppler", "range_time", "rcs", "read_trajectories", "receive",
-    "received_power", "received_powers", "renew", "save_frame", "save_label_images", "save_labels", "save_raw",
-    "set_num_threads", "simulate", "spectrogram", "spectrogram_labels", "speed_of_light", "synthesize", "trace", "track",
-    "truth", "unresolved", "validity", "view", "virtual_array", "visibility",
+    "Layer", "LinearMotion", "Live", "LiveView", "Material", "Mesh", "Model", "ModelNode", "MorphTargets", "Motion",
+    "ObjectLabel", "ObjectValidity", "ObjectVisibility", "Part", "Parts", "PathCells", "Paths", "PhaseNoise", "Radar",
+    "RangeAzimuth", "RangeDoppler", "RangeTime", "ReceivedPower", "Receiver", "Reception", "Renewal", "SavedFrame",
+    "Scene", "SceneFile", "SceneNode", "Selection", "SensorConfig", "Sequence", "SheetCoefficients", "Sight",
+    "SignalProbe", "SignalSettings", "Skin", "Spectrogram", "SpectrogramLabels", "StoredSequence", "Stratum",
+    "TessellationWarning", "TraceFrame", "TraceSettings", "TraceStatistics", "Tracks", "Traffic", "Trajectory", "Truth",
+    "Unresolved", "Validity", "ValidityShares", "VertexSequence", "VirtualArray", "Watch", "Weather", "actors",
+    "add_noise", "add_traffic", "angle_fft", "angle_time", "annotate", "annotate_frame", "beamform", "boltzmann", "cfar",
+    "check_rays", "check_signal", "compensate_tdm", "decompose", "demultiplex", "detect", "detect_frame", "effects",
+    "estimate_angles", "families", "first", "foreign_materials", "hits", "interference", "interference_radar", "last",
+    "load_antenna", "load_frame", "load_labels", "load_mesh", "load_meshes", "load_model", "load_radar", "load_scene",
+    "load_sensor", "load_sequence", "materials", "mesh_from", "mie_rcs", "num_bounces", "num_threads", "passes",
+    "path_cells", "plot_rays", "plots", "power", "power_by_chirp", "range_azimuth", "range_doppler", "range_time", "rcs",
+    "read_trajectories", "receive", "received_power", "received_powers", "renew", "save_frame", "save_label_images",
+    "save_labels", "save_raw", "set_num_threads", "sheet_coefficients", "simulate", "spectrogram", "spectrogram_labels",
+    "speed_of_light", "synthesize", "trace", "track", "truth", "unresolved", "validity", "view", "virtual_array",
+    "visibility",
 ]
 
 

@@ -41,3 +41,12 @@ def unfollowed_beams(statistics) -> str:
     """How many sequences of mirrors a trace did not follow further; "" for none."""
     count = statistics.num_unfollowed_beams
     return f"{count:,} sequences of mirrors were not followed further" if count else ""
+
+
+def unfollowed_sheets(statistics) -> str:
+    """Where a trace did not split rays at sheets, and how many legs it took to end at one; "" for none."""
+    unsplit, stopped = statistics.num_unsplit_rays, statistics.num_stopped_passes
+    texts = [f"{unsplit:,} rays were not reflected at a sheet because they had split at too many before"] if unsplit else []
+    if stopped:
+        texts.append(f"{stopped:,} legs end behind 64 sheets")
+    return "; ".join(texts)

@@ -61,13 +61,26 @@ class MaterialLibrary(Mapping):
 
 
 def _read(file):
-    """A material file -> (Material, source). Permittivity is [eps', eps'']: eps = eps' - j eps''."""
+    """A material file -> (Material, source)."""
     table = tomllib.loads(file.read_text(encoding="utf-8"))
     source = table.pop("source")
-    if "permittivity" in table:
-        real, loss = table["permittivity"]
-        table["permittivity"] = complex(real, -loss)
-    return _core.Material(**table), source
+    return _core.Material(**material_fields(table)), source
+
+
+def material_fields(table: dict) -> dict:
+    """The fields of a Material from the keys of a file: permittivities are eps' or [eps', eps''] for eps' - j eps'', layers are
+    tables of the fields of a Layer."""
+    fields = dict(table)
+    if isinstance(fields.get("permittivity"), list):
+        fields["permittivity"] = _complex(fields["permittivity"])
+    if "layers" in fields:
+        fields["layers"] = [_core.Layer(**{**layer, "permittivity": _complex(layer["permittivity"])})
+                            for layer in fields["layers"]]
+    return fields
+
+
+def _complex(value):
+    return complex(value[0], -value[1]) if isinstance(value, list) else value
 
 
 materials = MaterialLibrary()

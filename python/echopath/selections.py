@@ -5,7 +5,7 @@ from . import _core
 from ._core import num_bounces, power
 from .checks import checked, text
 
-__all__ = ["first", "hits", "last", "num_bounces", "power"]
+__all__ = ["first", "hits", "last", "num_bounces", "passes", "power"]
 
 
 @checked(glob=text)
@@ -33,3 +33,13 @@ def last(glob: str) -> _core.Selection:
     glob: of mesh names. Raises TypeError or ValueError naming the argument.
     """
     return _core.last(glob)
+
+
+@checked(glob=text)
+def passes(glob: str) -> _core.Selection:
+    """Selection of the paths that go through a sheet that the glob takes, as in T .* P'glob' .* R.
+
+    glob: of mesh names. Raises TypeError or ValueError naming the argument.
+    """
+    _core.hits(glob)  # raises for what cannot stand in quotes
+    return _core.Selection(f"T .* P'{glob}' .* R")

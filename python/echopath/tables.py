@@ -51,7 +51,7 @@ def paths_table(paths):
     family = found.family_of_path
     columns = {
         "bounces": np.asarray(paths.num_bounces),
-        "meshes": texts(*meshes), "events": texts(*events),
+        "meshes": texts(*meshes), "events": texts(*events), "passes": texts(*_passes(paths)),
         "kind": texts((paths.diffuse != 0).astype(np.int8), ["coherent", "diffuse"]),
         "object": texts(family, [one.object for one in found]), "ghost_type": found.ghost_type, "order": found.order,
         "length": paths.lengths([paths.frame.trace_time])[0], "power": paths.power,
@@ -76,6 +76,20 @@ def _chains(paths) -> tuple:
     marks, mark_of_path = _distinct(np.stack([paths.diffuse & within, bounces.astype(np.uint64), edge], axis=1))
     events = ["".join(event(int(bits), int(at), hit) for hit in range(int(count))) for bits, count, at in marks]
     return (chain_of_path, meshes), (mark_of_path, events)
+
+
+def _passes(paths) -> tuple:
+    """(code [P], texts [N]) of the sheets through which each path goes, in order of travel."""
+    if len(paths.passes) == 0:
+        return np.zeros(paths.num_paths, np.int64), [""]
+    names, offsets, mesh_id = [mesh.name for mesh in paths.scene.meshes], paths.pass_offsets, paths.passes["mesh_id"]
+    counts = np.diff(offsets)
+    met = np.full((paths.num_paths, int(counts.max())), _NO_MESH, np.int64)
+    for place in range(met.shape[1]):
+        has_it = counts > place
+        met[has_it, place] = mesh_id[offsets[:-1][has_it] + place]
+    chains, chain_of_path = _distinct(met)
+    return chain_of_path, [_BETWEEN.join(names[mesh] for mesh in chain if mesh != _NO_MESH) for chain in chains]
 
 
 def edge_hits(paths) -> np.ndarray:

@@ -220,7 +220,7 @@ FAULTS = [
     (RADAR + "[parts]\na = 'T R'\nb = {c = 'T R'}",
      "parts: must be all selections (one partition) or all tables of selections (several), got ['a', 'b']"),
     (RADAR + "[parts]\na = 'T & R'",
-     "parts.a: path expression: expected a hit (. 'mesh' S D E [...]) or '(', got &\n  T & R\n    ^"),
+     "parts.a: path expression: expected a hit (. 'mesh' S D E P [...]) or '(', got &\n  T & R\n    ^"),
     (RADAR + "[parts.b]\na = 'T . R & power > x'",
      "parts.b.a: path expression: expected a power in W, such as 1e-15, got x\n"),
     (RADAR + "[parts.b]\na = 'T . R & power > abc'",

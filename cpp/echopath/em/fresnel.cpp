@@ -15,14 +15,6 @@ std::complex<double> principal_root(std::complex<double> squared) {
   return {std::abs(smaller), std::copysign(larger, smaller)};
 }
 
-// The principal root has Re q >= 0, hence Im q <= 0 for a lossy or lossless half space. The root of a permittivity below
-// sin^2 lies on the branch cut, where a wave that decays has Im q < 0.
-std::complex<double> transmitted_cosine(std::complex<double> permittivity, double cos_incidence) {
-  const std::complex<double> squared = permittivity - (1.0 - cos_incidence * cos_incidence);
-  const std::complex<double> root = principal_root(squared);
-  return root.imag() > 0 ? -root : root;
-}
-
 std::complex<double> te_of(std::complex<double> q, double cos_incidence) {
   return (cos_incidence - q) / (cos_incidence + q);
 }
@@ -32,6 +24,14 @@ std::complex<double> tm_of(std::complex<double> q, std::complex<double> permitti
 }
 
 }  // namespace
+
+// The principal root has Re q >= 0, hence Im q <= 0 for a lossy or lossless half space. The root of a permittivity below
+// sin^2 lies on the branch cut, where a wave that decays has Im q < 0.
+std::complex<double> transmitted_cosine(std::complex<double> permittivity, double cos_incidence) {
+  const std::complex<double> squared = permittivity - (1.0 - cos_incidence * cos_incidence);
+  const std::complex<double> root = principal_root(squared);
+  return root.imag() > 0 ? -root : root;
+}
 
 std::complex<double> fresnel_te(std::complex<double> permittivity, double cos_incidence) {
   return te_of(transmitted_cosine(permittivity, cos_incidence), cos_incidence);

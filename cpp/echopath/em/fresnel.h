@@ -9,6 +9,9 @@ namespace echopath {
 std::complex<double> fresnel_te(std::complex<double> permittivity, double cos_incidence);  // E across the plane of incidence
 std::complex<double> fresnel_tm(std::complex<double> permittivity, double cos_incidence);  // E in the plane of incidence
 
+// Returns q = sqrt(eps - sin^2), the cosine of the wave in the half space times the refractive index.
+std::complex<double> transmitted_cosine(std::complex<double> permittivity, double cos_incidence);
+
 // Computes both modes at once.
 struct FresnelModes {
   std::complex<double> te, tm;

@@ -5,6 +5,32 @@
 #include "echopath/base/errors.h"
 
 namespace echopath {
+namespace {
+
+constexpr size_t kMostLayers = 64;
+
+void validate_permittivity(const std::complex<double>& permittivity) {
+  require(std::isfinite(permittivity.real()) && std::isfinite(permittivity.imag()), "permittivity", "must be finite",
+          permittivity);
+  require(permittivity.imag() <= 0, "permittivity", "is eps' - j eps'': its imaginary part must not be positive",
+          permittivity);
+  require(permittivity != std::complex<double>(0.0, 0.0), "permittivity", "must not be 0", permittivity);
+}
+
+void validate_layers(const Material& material) {
+  require(material.layers.size() <= kMostLayers, "layers", "must be at most 64", material.layers.size());
+  for (const Layer& layer : material.layers) {
+    require(std::isfinite(layer.thickness) && layer.thickness > 0, "thickness", "of a layer must be > 0 m",
+            layer.thickness);
+    validate_permittivity(layer.permittivity);
+    require(std::isfinite(layer.conductivity) && layer.conductivity >= 0, "conductivity", "must be >= 0 S/m",
+            layer.conductivity);
+  }
+  require(!material.is_sheet() || !material.mirror, "mirror",
+          "must be False where a material has layers: flagged mirrors let nothing pass", material.mirror);
+}
+
+}  // namespace
 
 Material Material::metal(bool mirror) {
   Material material;
@@ -14,15 +40,10 @@ Material Material::metal(bool mirror) {
 }
 
 void Material::validate() const {
-  const int kinds = (conductor ? 1 : 0) + (permittivity ? 1 : 0) + (reflectivity ? 1 : 0);
-  require(kinds == 1, "material", "takes exactly one of conductor, permittivity, reflectivity", kinds);
-  if (permittivity) {
-    require(std::isfinite(permittivity->real()) && std::isfinite(permittivity->imag()), "permittivity", "must be finite",
-            *permittivity);
-    require(permittivity->imag() <= 0, "permittivity", "is eps' - j eps'': its imaginary part must not be positive",
-            *permittivity);
-    require(*permittivity != std::complex<double>(0.0, 0.0), "permittivity", "must not be 0", *permittivity);
-  }
+  const int kinds = (conductor ? 1 : 0) + (permittivity ? 1 : 0) + (reflectivity ? 1 : 0) + (is_sheet() ? 1 : 0);
+  require(kinds == 1, "material", "takes exactly one of conductor, permittivity, reflectivity, layers", kinds);
+  if (permittivity) validate_permittivity(*permittivity);
+  validate_layers(*this);
   require(std::isfinite(conductivity) && conductivity >= 0, "conductivity", "must be >= 0 S/m", conductivity);
   require(conductivity == 0 || permittivity.has_value(), "conductivity", "needs a permittivity", conductivity);
   if (reflectivity) require(*reflectivity >= 0 && *reflectivity <= 1, "reflectivity", "must lie in [0, 1]", *reflectivity);

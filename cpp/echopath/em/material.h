@@ -3,15 +3,28 @@
 #include <complex>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace echopath {
 
-// Takes exactly one of conductor, permittivity, reflectivity, and at most one of roughness_height, scattering.
+// Describes one layer of a sheet.
+struct Layer {
+  double thickness = 0.0;                   // m
+  std::complex<double> permittivity = 1.0;  // relative, eps' - j eps'', imaginary part <= 0
+  double conductivity = 0.0;                // S/m, adds -j sigma/(w eps0)
+
+  bool operator==(const Layer&) const = default;
+};
+
+// Takes exactly one of conductor, permittivity, reflectivity, layers, and at most one of roughness_height, scattering.
 struct Material {
   bool conductor = false;                            // perfect conductor
   std::optional<std::complex<double>> permittivity;  // relative, eps' - j eps'', imaginary part <= 0
   double conductivity = 0.0;                         // S/m, adds -j sigma/(w eps0)
   std::optional<double> reflectivity;  // power reflectivity in [0, 1] at every angle (reflects like a conductor)
+  // Of a sheet in air, through which waves pass (em/layer_stack.h), from the side of the surface's normals on. The surface is
+  // the face that the wave meets first.
+  std::vector<Layer> layers;
   double roughness_height = 0.0;       // rms height in m (Ament)
   std::optional<double> scattering;    // S in [0, 1], S^2 is the diffuse share of power (Degli-Esposti 2007)
   double cross_polarization = 0.0;     // in [0, 0.5], share of diffuse power in the cross polarisation
@@ -25,6 +38,7 @@ struct Material {
   static constexpr int kMostLobeExponent = 100;
 
   static Material metal(bool mirror = false);
+  bool is_sheet() const { return !layers.empty(); }
   // Raises invalid_argument naming the field, the rule and the value.
   void validate() const;
 

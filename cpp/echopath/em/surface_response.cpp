@@ -6,6 +6,7 @@
 #include "echopath/base/constants.h"
 #include "echopath/em/fresnel.h"
 #include "echopath/em/jones.h"
+#include "echopath/em/layer_stack.h"
 
 namespace echopath {
 namespace {
@@ -15,6 +16,13 @@ double other_share(double share) { return std::sqrt(std::max(0.0, 1.0 - share * 
 std::complex<double> complex_permittivity(const Material& material, double frequency) {
   const double loss = material.conductivity / (kTwoPi * frequency * kVacuumPermittivity);
   return *material.permittivity - std::complex<double>(0.0, loss);
+}
+
+std::shared_ptr<const LayerStack> layers_of(const Material& material, double frequency, SheetSide side) {
+  if (!material.is_sheet()) return nullptr;
+  std::vector<Layer> layers = material.layers;
+  if (side == SheetSide::kBack) std::reverse(layers.begin(), layers.end());
+  return std::make_shared<const LayerStack>(layers, frequency);
 }
 
 double facet_reflection(std::complex<double> permittivity) { return std::abs(fresnel_te(permittivity, 1.0)); }
@@ -28,11 +36,13 @@ double ament_factor(double wavenumber, double roughness_height, double cos_incid
   return ament_of_phase(wavenumber * roughness_height * cos_incidence);
 }
 
-SurfaceModel::SurfaceModel(const Material& material, double frequency)
-    : material_(&material), lobe_(material), is_dielectric_(!material.conductor && !material.reflectivity) {
+SurfaceModel::SurfaceModel(const Material& material, double frequency, SheetSide side)
+    : material_(&material), lobe_(material), is_dielectric_(!material.conductor && !material.reflectivity),
+      layers_(layers_of(material, frequency, side)) {
   constant_.gamma = material.reflectivity ? -std::sqrt(*material.reflectivity) : -1.0;
-  if (is_dielectric_) permittivity_ = complex_permittivity(material, frequency);
+  if (material.permittivity) permittivity_ = complex_permittivity(material, frequency);
   constant_.facet = is_dielectric_ ? facet_reflection(permittivity_) : std::abs(constant_.gamma);
+  if (layers_) constant_.facet = std::abs(layers_->reflection(1.0).te);
   if (material.scattering) {
     constant_.diffuse = *material.scattering;
     constant_.coherent = other_share(constant_.diffuse);
@@ -45,7 +55,8 @@ SurfaceResponse SurfaceModel::respond_at(double cos_incidence, PolarizationMode 
   SurfaceResponse response = constant_;
   if (is_dielectric_) {
     const bool is_te = mode == PolarizationMode::kTe;
-    response.gamma = is_te ? fresnel_te(permittivity_, cos_incidence) : fresnel_tm(permittivity_, cos_incidence);
+    if (layers_) response.gamma = is_te ? layers_->reflection(cos_incidence).te : layers_->reflection(cos_incidence).tm;
+    else response.gamma = is_te ? fresnel_te(permittivity_, cos_incidence) : fresnel_tm(permittivity_, cos_incidence);
   }
   if (wavenumber_height_ > 0) {
     response.coherent = ament_of_phase(wavenumber_height_ * cos_incidence);
@@ -57,7 +68,7 @@ SurfaceResponse SurfaceModel::respond_at(double cos_incidence, PolarizationMode 
 // The TM coefficient of a conductor is +1 for field vectors.
 ModeCoefficients SurfaceModel::modes(double cos_incidence) const {
   if (!is_dielectric_) return {constant_.gamma, -constant_.gamma};
-  const FresnelModes found = fresnel_modes(permittivity_, cos_incidence);
+  const FresnelModes found = layers_ ? layers_->reflection(cos_incidence) : fresnel_modes(permittivity_, cos_incidence);
   return {found.te, found.tm};
 }
 

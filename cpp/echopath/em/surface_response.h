@@ -12,6 +12,7 @@
 // Sources: Kirchhoff's approximation in its limit of geometrical optics (Ulaby, Moore, Fung 1982, volume 2, chapter 12): the
 // coefficient is that of the facet that mirrors one direction into the other, at normal incidence for backscatter.
 #include <complex>
+#include <memory>
 
 #include "echopath/em/diffuse_lobe.h"
 
@@ -35,11 +36,15 @@ double ament_factor(double wavenumber, double roughness_height, double cos_incid
 SurfaceResponse respond(const Material& material, double frequency, double cos_incidence, PolarizationMode mode);
 
 struct ModeCoefficients;  // em/jones.h
+class LayerStack;         // em/layer_stack.h
+
+// The side from which a wave meets a sheet: that of the surface's normals, or the other one.
+enum class SheetSide { kFront, kBack };
 
 // Models a material at one frequency and works out once what does not depend on the wave. `material` must outlive it.
 class SurfaceModel {
  public:
-  SurfaceModel(const Material& material, double frequency);
+  SurfaceModel(const Material& material, double frequency, SheetSide side = SheetSide::kFront);
   const Material& material() const { return *material_; }
   const DiffuseLobe& lobe() const { return lobe_; }
   // Returns whether the coefficients depend on the polarisation.
@@ -62,6 +67,7 @@ class SurfaceModel {
   SurfaceResponse constant_;  // the part that does not depend on the wave
   bool is_dielectric_;
   std::complex<double> permittivity_ = 1.0;  // relative, with the conductivity
+  std::shared_ptr<const LayerStack> layers_;  // of a sheet, as the wave meets them
   double wavenumber_height_ = 0.0;           // rad, k sigma_h; 0 for a smooth surface or a constant share that scatters
 };
 

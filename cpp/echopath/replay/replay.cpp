@@ -79,7 +79,7 @@ struct Replayer::Target {
 
 Replayer::Replayer(const Paths& paths, const Radar& radar, const ReplaySettings& settings)
     : paths_(paths), radar_(checked(radar, paths, settings)), settings_(settings), radio_(radio_constants(paths, radar)),
-      preparer_(paths, hit_patches(paths)), grids_(paths, radar, settings), posed_(grids_, paths, radar, preparer_) {}
+      preparer_(paths, hit_patches(paths)), sheets_(preparer_, radio_.wavelength), grids_(paths, radar, settings), posed_(grids_, paths, radar, preparer_) {}
 
 PathGrids Replayer::path_grids() const {
   return PathGrids(paths_, radar_, grids_, posed_, radio_.wavenumber, settings_.phase_tolerance);
@@ -136,7 +136,7 @@ RadioConstants Replayer::radio_of(const Target& target) const {
 
 void Replayer::evaluate_at(std::span<const int64_t> paths, std::span<Target> targets) const {
   std::unique_ptr<PathEvaluator> evaluator = KeptMemory::of_process().take<PathEvaluator>();
-  evaluator->begin(preparer_, radar_, settings_.specular);
+  evaluator->begin(preparer_, radar_, sheets_, settings_.specular);
   for (size_t begin = 0; begin < paths.size(); begin += kPlannedTogether) {
     evaluator->plan(paths.subspan(begin, std::min(kPlannedTogether, paths.size() - begin)));
     for (Target& target : targets) {

@@ -78,6 +78,7 @@ class Replayer {
   ReplaySettings settings_;
   RadioConstants radio_;
   PathPreparer preparer_;
+  SheetPassages sheets_;
   TimeGrids grids_;
   PosedGrids posed_;
 };

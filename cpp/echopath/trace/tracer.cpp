@@ -9,6 +9,7 @@
 #include "echopath/trace/launch/aimed_points.h"
 #include "echopath/trace/mirrors/mirror_paths.h"
 #include "echopath/trace/record/record_writer.h"
+#include "echopath/trace/sheets/passes.h"
 
 namespace echopath {
 namespace {
@@ -209,6 +210,7 @@ Paths Tracer::run(Job* job) const {
   record.append(last_blocks, job);
   record.finish();
   images.doubles().leave_out(paths, job);
+  add_passes(paths, job);
   return paths;
 }
 

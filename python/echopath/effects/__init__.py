@@ -10,7 +10,6 @@ from .rules import RULES, Case, Effect, Settings
 
 # What no scene and no setting can ask for.
 OUT_OF_SCOPE = [
-    Effect("transmission through sheets", False, "not modelled"),
     Effect("creeping waves, edge diffraction of higher order", False, "out of scope"),
     Effect("phase noise, quantisation", False, "not modelled"),
     Effect("interference", False, "not modelled"),

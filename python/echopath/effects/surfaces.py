@@ -5,8 +5,9 @@ import math
 
 from .. import _core
 from .._core import speed_of_light
-from ..lost_rays import unfollowed_beams
+from ..lost_rays import unfollowed_beams, unfollowed_sheets
 from ..measures import in_dbm
+from ..sheets import sheet_coefficients
 from ..tessellation import coarse_meshes
 from .planes import imaged_planes
 from .rules import Case, rule
@@ -93,6 +94,35 @@ def _fresnel(case: Case):
 def _reflectivity(case: Case):
     constant = case.of_material(lambda material: material.reflectivity is not None)
     return case.meshes_or(constant, "no material has a reflectivity")
+
+
+@rule("transmission through sheets", "Material.layers")
+def _sheets(case: Case):
+    sheets = case.of_material(lambda material: material.layers)
+    if len(sheets) == 0:
+        return False, "no material has layers"
+    reason = f"{case.named(sheets)}; {_passed_power(case, sheets)}"
+    if case.paths is not None:
+        reason += f"; {_found_passes(case.paths)}"
+    left_out = unfollowed_sheets(case.statistics) if case.statistics else ""
+    return True, f"{reason}; {left_out}" if left_out else reason
+
+
+def _passed_power(case: Case, sheets) -> str:
+    """How much of the power passes each kind of sheet once, at normal incidence."""
+    meshes = list(case.scene.meshes)
+    materials = dict.fromkeys(meshes[index].material for index in sheets)  # each once, in order
+    frequency = case.radar.waveform.start_frequency
+    shares = [sheet_coefficients(one, frequency=frequency, incidence=0.0).passed_power()[0] for one in materials]
+    levels = ", ".join(f"{10.0 * math.log10(max(share, 1e-30)):.1f} dB" for share in shares)
+    return f"{levels} of the power pass{'es' * (len(shares) == 1)} at normal incidence"
+
+
+def _found_passes(paths) -> str:
+    through = paths.select("T .* P .* R") if len(paths.passes) else None
+    if through is None or through.num_paths == 0:
+        return "no path goes through them"
+    return f"{through.num_paths} paths go through them, {in_dbm(_core.received_power(through).power):.1f} dBm in all"
 
 
 @rule("diffuse lobe, random phase", "Material.scattering")

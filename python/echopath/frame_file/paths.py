@@ -12,11 +12,15 @@ PATH_FIELDS = {"offsets": np.int64, "num_bounces": np.uint8, "diffuse": np.uint6
                "stratum": np.uint16, "batch": np.uint8, "flags": np.uint32}
 # Columns that are there only where the scene asks for them: dtype and shape of an entry.
 OPTIONAL_FIELDS = {"curved_cell": (np.float32, (7,)), "jones": (np.complex64, (2, 2))}
+# Of each pass through a sheet, where there are any.
+PASS_FIELDS = HIT_FIELDS | {"leg": np.uint32}
+PASS = np.dtype(list(PASS_FIELDS.items()))
 _NOISE_LIKE = ("u", "v", "weight")  # compression does not pay
 FRAME_VALUES = ("start_time", "trace_time", "seed", "max_bounces", "polarization", "footprint", "sampler", "scatterers", "edges",
                 "num_batches", "target_error_db", "error_db")
 STATISTICS = ("num_rays", "num_queries", "num_hits", "num_paths", "num_near_antenna", "num_grazing", "num_small_mirrors",
               "num_false_hits", "num_unaimed", "num_unfollowed_beams")
+LATER_STATISTICS = ("num_unsplit_rays", "num_stopped_passes")  # which older files do not have
 
 
 def write_paths(group, paths, min_power: float = 0.0, power=None):
@@ -39,7 +43,23 @@ def write_paths(group, paths, min_power: float = 0.0, power=None):
     for name in OPTIONAL_FIELDS:
         if len(getattr(written, name)):
             write_array(group["paths"], name, getattr(written, name))
+    if len(written.passes):
+        _write_passes(group.create_group("passes"), written)
     return keep
+
+
+def _write_passes(group, paths) -> None:
+    write_array(group, "pass_offsets", paths.pass_offsets, compress=True)
+    for name in PASS_FIELDS:
+        write_array(group, name, paths.passes[name], compress=name not in _NOISE_LIKE)
+
+
+@blames_group
+def _read_passes(group, num_paths: int) -> dict:
+    passes = np.empty(length_of(group, "mesh_id"), PASS)
+    for name, dtype in PASS_FIELDS.items():
+        passes[name] = read_array(group, name, dtype, (len(passes),))
+    return {"passes": passes, "pass_offsets": read_array(group, "pass_offsets", np.int64, (num_paths + 1,))}
 
 
 @blames_group
@@ -56,6 +76,8 @@ def read_paths(group, scene, radar):
     for name, (dtype, shape) in OPTIONAL_FIELDS.items():
         if name in source:
             columns[name] = read_array(source, name, dtype, (num_paths, *shape))
+    if "passes" in group:
+        columns |= _read_passes(read_group(group, "passes"), num_paths)
     _check_names(source)
     _check_indices(group, hits, columns, scene)
     frame = _read_frame(read_group(group, "frame"))
@@ -89,7 +111,7 @@ def _write_frame(group, frame) -> None:
         write_attribute(group, "attenuation", frame.attenuation)
     write_array(group, "transmitter", frame.transmitter, unit="m")
     write_array(group, "receiver", frame.receiver, unit="m")
-    for name in STATISTICS:
+    for name in STATISTICS + LATER_STATISTICS:
         write_attribute(group, name, getattr(frame.statistics, name))
     strata = list(frame.strata)
     write_texts(group, "stratum_name", [stratum.name for stratum in strata])
@@ -123,7 +145,8 @@ def _read_frame(group):
                             half_azimuth=float(strip[i, 0]), low=float(strip[i, 1]), high=float(strip[i, 2]),
                             object=int(aimed_at[i]), num_mirrors=int(mirrors[i]), focus_of=int(focus_of[i]))
               for i in range(len(names))]
-    statistics = _core.TraceStatistics(**{name: read_attribute(group, name, int) for name in STATISTICS})
+    there = STATISTICS + tuple(name for name in LATER_STATISTICS if name in group.attrs)
+    statistics = _core.TraceStatistics(**{name: read_attribute(group, name, int) for name in there})
     return _core.TraceFrame(
         start_time=read_attribute(group, "start_time", float), trace_time=read_attribute(group, "trace_time", float),
         transmitter=read_array(group, "transmitter", np.float64, (3,)),

@@ -130,12 +130,25 @@ def _write_material(group, material) -> None:
         value = getattr(material, field)
         if value is not None:
             write_attribute(group, field, value)
+    if material.layers:
+        write_array(group, "layer_thickness", np.array([layer.thickness for layer in material.layers]), unit="m")
+        write_array(group, "layer_permittivity", np.array([layer.permittivity for layer in material.layers], np.complex128))
+        write_array(group, "layer_conductivity", np.array([layer.conductivity for layer in material.layers]), unit="S/m")
 
 
 @blames_group
 def _read_material(group):
-    return _core.Material(**{field: read_attribute(group, field, kind) for field, kind in _MATERIAL_KINDS.items()
-                             if field in group.attrs})
+    return _core.Material(layers=_read_layers(group), **{field: read_attribute(group, field, kind)
+                                                         for field, kind in _MATERIAL_KINDS.items() if field in group.attrs})
+
+
+def _read_layers(group) -> list:
+    if "layer_thickness" not in group:
+        return []
+    thickness = read_array(group, "layer_thickness", np.float64, (None,))
+    permittivity = read_array(group, "layer_permittivity", np.complex128, thickness.shape)
+    conductivity = read_array(group, "layer_conductivity", np.float64, thickness.shape)
+    return [_core.Layer(*layer) for layer in zip(thickness.tolist(), permittivity.tolist(), conductivity.tolist())]
 
 
 def _alone(function):

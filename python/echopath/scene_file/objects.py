@@ -10,7 +10,7 @@ from pathlib import Path
 from pydantic import create_model
 
 from .. import _core, actors
-from ..materials import materials
+from ..materials import material_fields, materials
 from ..readers import load_model
 from ..scene import Scene
 from ..weather import Weather
@@ -38,9 +38,7 @@ def _material(value, key: str):
             return materials[value]
         given = value.model_dump(exclude_unset=True)
         base = given.pop("base", None)
-        if isinstance(given.get("permittivity"), list):
-            real, loss = given["permittivity"]
-            given["permittivity"] = complex(real, -loss)
+        given = material_fields(given)
         return materials[base].replace(**given) if base is not None else _core.Material(**given)
 
 

@@ -252,12 +252,20 @@ class RadarTable(Table):
         return self
 
 
+class LayerTable(Table):
+    thickness: Positive = Field(description="m")
+    permittivity: Permittivity = Field(description="relative; eps' or [eps', eps''] for eps' - j eps''")
+    conductivity: NotNegative = Field(0.0, description="S/m")
+
+
 class MaterialTable(Table):
     conductor: bool = Field(False, description="perfect conductor")
     permittivity: Permittivity | None = Field(None, description="relative; eps' or [eps', eps''] for eps' - j eps''")
     conductivity: NotNegative = Field(0.0, description="S/m")
     reflectivity: Annotated[float, Field(ge=0, le=1)] | None = Field(
         None, description="share of power, at every angle")
+    layers: list[LayerTable] = Field(
+        (), min_length=1, description="of a sheet that waves pass, from the side of the surface's normals on")
     roughness_height: NotNegative = Field(0.0, description="m, rms")
     scattering: Annotated[float, Field(ge=0, le=1)] | None = Field(
         None, description="S; S^2 is the diffuse share of reflected power")

@@ -55,7 +55,7 @@ TEST(PathExpressionSyntax, TreeFollowsTheGrammar) {
 }
 
 TEST(PathExpressionSyntax, CaretStandsUnderTheFault) {
-  const std::string hit = "a hit (. 'mesh' S D E [...])";
+  const std::string hit = "a hit (. 'mesh' S D E P [...])";
   expect_fault_at("@", "T");
   expect_fault_at("@'wall' R", "T");
   expect_fault_at("T@", hit + ", '(' or R");

@@ -157,15 +157,20 @@ MeshClasses classify_meshes(const Nfa& nfa, const PathExpression& expression, co
 }
 
 using Event = HitPattern::Event;
-constexpr Event kEventOfSymbol[] = {Event::kSpecular, Event::kDiffuse, Event::kEdge};
+constexpr Event kEventOfSymbol[] = {Event::kSpecular, Event::kDiffuse, Event::kEdge, Event::kPass};
 
 bool takes_event(const HitPattern& pattern, Event event) { return pattern.event == Event::kAny || pattern.event == event; }
+
+bool names_passes(const Nfa& nfa) {
+  return std::any_of(nfa.patterns.begin(), nfa.patterns.end(),
+                     [](const HitPattern* pattern) { return pattern->event == Event::kPass; });
+}
 
 // Makes the automaton deterministic by subset construction (Rabin and Scott 1959).
 class Determiniser {
  public:
-  Determiniser(const Nfa& nfa, const MeshClasses& classes, const std::string& text)
-      : nfa_(nfa), classes_(classes), text_(text), seen_(nfa.states.size(), 0) {
+  Determiniser(const Nfa& nfa, const MeshClasses& classes, uint32_t num_events, const std::string& text)
+      : nfa_(nfa), classes_(classes), events_(kEventOfSymbol, num_events), text_(text), seen_(nfa.states.size(), 0) {
     index_of({nfa.start});
     for (size_t state = 0; state < sets_.size(); ++state) expand(state);
   }
@@ -180,7 +185,7 @@ class Determiniser {
   void expand(size_t state) {
     const StateSet& set = sets_[state]->first;
     for (const std::vector<bool>& taken_by : classes_.taken_by) {
-      for (const Event event : kEventOfSymbol) {
+      for (const Event event : events_) {
         StateSet reached;
         for (const int member : set) {
           if (member <= 0) continue;
@@ -222,6 +227,7 @@ class Determiniser {
 
   const Nfa& nfa_;
   const MeshClasses& classes_;
+  std::span<const Event> events_;
   const std::string& text_;
   std::vector<int64_t> seen_;  // last visit of each state
   int64_t visit_ = 0;
@@ -235,15 +241,16 @@ class Determiniser {
 Automaton::Automaton(const PathExpression& expression, const std::vector<std::string>& mesh_names) {
   const Nfa nfa = NfaBuilder(expression).take();
   const MeshClasses classes = classify_meshes(nfa, expression, mesh_names);
-  const Determiniser dfa(nfa, classes, expression.text);
+  num_events_ = names_passes(nfa) ? kPassSymbol + 1 : kPassSymbol;
+  const Determiniser dfa(nfa, classes, num_events_, expression.text);
   num_states_ = static_cast<int>(dfa.num_states());
   num_classes_ = static_cast<int>(classes.taken_by.size());
 
-  const size_t num_symbols = kEvents * classes.taken_by.size();
+  const size_t num_symbols = num_events_ * classes.taken_by.size();
   const size_t stride = num_symbols + 2;
   accept_column_ = static_cast<uint32_t>(num_symbols) + 1;
   symbols_.push_back(static_cast<uint32_t>(num_symbols));
-  for (const uint32_t mesh_class : classes.class_of_mesh) symbols_.push_back(kEvents * mesh_class);
+  for (const uint32_t mesh_class : classes.class_of_mesh) symbols_.push_back(num_events_ * mesh_class);
   for (size_t state = 0; state < dfa.num_states(); ++state) {
     for (size_t symbol = 0; symbol < num_symbols; ++symbol) {
       table_.push_back(static_cast<uint32_t>(dfa.next()[state * num_symbols + symbol] * stride));
@@ -252,6 +259,20 @@ Automaton::Automaton(const PathExpression& expression, const std::vector<std::st
     table_.push_back(dfa.accepts(state) ? 1 : 0);
   }
   find_needed_bits();
+}
+
+bool Automaton::takes_with_passes(const Hit* hits, int num_hits, uint64_t diffuse, int edge,
+                                  std::span<const Pass> passes) const {
+  uint32_t row = 0;
+  size_t next = 0;
+  const auto read = [&](uint32_t mesh_id, uint32_t event) { row = table_[row + symbols_[mesh_id + 1] + event]; };
+  for (int k = 0; k <= num_hits; ++k) {
+    for (; next < passes.size() && passes[next].leg == static_cast<uint32_t>(k); ++next) {
+      read(passes[next].hit.mesh_id, kPassSymbol);
+    }
+    if (k < num_hits) read(hits[k].mesh_id, k == edge ? kEdgeSymbol : static_cast<uint32_t>(diffuse >> k & 1u));
+  }
+  return table_[row + accept_column_] != 0;
 }
 
 // Walks from the start; states are named by the beginnings of their rows.
@@ -264,7 +285,7 @@ bool Automaton::takes_something_without(uint32_t mesh_class) const {
     if (std::exchange(was_seen[row], uint8_t{1}) != 0) continue;
     if (table_[row + accept_column_] != 0) return true;
     for (uint32_t symbol = 0; symbol + 1 < accept_column_; ++symbol) {
-      if (symbol / kEvents != mesh_class) pending.push_back(table_[row + symbol]);
+      if (symbol / num_events_ != mesh_class) pending.push_back(table_[row + symbol]);
     }
   }
   return false;
@@ -272,7 +293,7 @@ bool Automaton::takes_something_without(uint32_t mesh_class) const {
 
 void Automaton::find_needed_bits() {
   std::vector<uint64_t> of_class(static_cast<size_t>(num_classes_));
-  for (size_t mesh = 0; mesh + 1 < symbols_.size(); ++mesh) of_class[symbols_[mesh + 1] / kEvents] |= mesh_bit(mesh);
+  for (size_t mesh = 0; mesh + 1 < symbols_.size(); ++mesh) of_class[symbols_[mesh + 1] / num_events_] |= mesh_bit(mesh);
   for (uint32_t mesh_class = 0; mesh_class < of_class.size(); ++mesh_class) {
     if (!takes_something_without(mesh_class)) needed_bits_.push_back(of_class[mesh_class]);
   }
@@ -284,6 +305,7 @@ std::vector<uint64_t> mesh_bits(const Paths& paths, Job* job) {
     for (size_t path = begin; path < end; ++path) {
       const Hit* hits = paths.hits_of(static_cast<int64_t>(path));
       for (int k = 0; k < paths.num_bounces[path]; ++k) bits[path] |= mesh_bit(hits[k].mesh_id);
+      for (const Pass& pass : paths.passes_of(path)) bits[path] |= mesh_bit(pass.hit.mesh_id);
     }
   });
   return bits;
@@ -323,7 +345,12 @@ void narrow(const Automaton& automaton, const Paths& paths, std::vector<uint8_t>
       if (path == end || !candidates[path]) continue;
       const int64_t first = paths.offsets[path];
       const int num_hits = paths.num_bounces[path];
-      if (const int edge = paths.frame.edges ? edge_hit(paths.flags[path]) : -1; edge >= 0) {
+      const int edge = paths.frame.edges ? edge_hit(paths.flags[path]) : -1;
+      if (const auto passes = paths.passes_of(path); automaton.sees_passes() && !passes.empty()) {
+        candidates[path] = automaton.takes_with_passes(hits + first, num_hits, paths.diffuse[path], edge, passes);
+        continue;
+      }
+      if (edge >= 0) {
         candidates[path] = automaton.takes_with_edge(hits + first, num_hits, edge);
         continue;
       }

@@ -1,6 +1,7 @@
 #pragma once
 // Compiles a path expression for one scene into a deterministic automaton that reads one table entry per hit.
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,11 @@ class Automaton {
     return table_[row + accept_column_] != 0;
   }
 
+  // Returns whether the expression names passes through sheets, which are hits to it then.
+  bool sees_passes() const { return num_events_ > kPassSymbol; }
+  // Returns the same of a path with passes, for an expression that sees them; `edge` is -1 where no hit lies on one.
+  bool takes_with_passes(const Hit* hits, int num_hits, uint64_t diffuse, int edge, std::span<const Pass> passes) const;
+
   // Returns the same as `takes` faster, but may read up to kOverread hits beyond the path's own, which must be there. It
   // steps in fours, past the end with the symbol that changes nothing: most paths have one to four hits, and a branch on the
   // exact number would be mispredicted so often that it costs more than the steps.
@@ -64,17 +70,17 @@ class Automaton {
   }
 
  private:
-  // Symbols of a class: specular, diffuse, on an edge.
-  static constexpr uint32_t kEvents = 3, kEdgeSymbol = 2;
+  // Symbols of a class: specular, diffuse, on an edge, and a pass where the expression names passes.
+  static constexpr uint32_t kEdgeSymbol = 2, kPassSymbol = 3;
   bool takes_something_without(uint32_t mesh_class) const;
   void find_needed_bits();
 
-  std::vector<uint32_t> symbols_;  // [1 + M] the symbol that changes nothing, then kEvents times the class of each mesh
+  std::vector<uint32_t> symbols_;  // [1 + M] the symbol that changes nothing, then num_events_ times the class of each mesh
   // [num_states, num_symbols + 2] holds where the row of the next state starts, by symbol (the one that changes nothing is
   // the last), and then 1 if the state takes the path, else 0. State 0 is the start.
   std::vector<uint32_t> table_;
   std::vector<uint64_t> needed_bits_;
-  uint32_t accept_column_ = 0;
+  uint32_t accept_column_ = 0, num_events_ = kPassSymbol;
   int num_states_ = 0, num_classes_ = 0;
 };
 

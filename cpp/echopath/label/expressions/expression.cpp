@@ -7,7 +7,7 @@
 namespace echopath {
 namespace {
 
-const std::string kExpectHit = "expected a hit (. 'mesh' S D E [...])";
+const std::string kExpectHit = "expected a hit (. 'mesh' S D E P [...])";
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_continuation_byte(char c) { return (static_cast<unsigned char>(c) & 0xC0u) == 0x80u; }  // UTF-8
@@ -142,9 +142,10 @@ class ExpressionParser {
 
   static bool starts_meshes(char c) { return c == '\'' || c == '['; }
   static bool starts_atom(char c) { return starts_meshes(c) || c == '.' || starts_event(c) || c == '('; }
-  static bool starts_event(char c) { return c == 'S' || c == 'D' || c == 'E'; }
+  static bool starts_event(char c) { return c == 'S' || c == 'D' || c == 'E' || c == 'P'; }
   static HitPattern::Event event_of(char c) {
     if (c == 'E') return HitPattern::Event::kEdge;
+    if (c == 'P') return HitPattern::Event::kPass;
     return c == 'S' ? HitPattern::Event::kSpecular : HitPattern::Event::kDiffuse;
   }
   static bool is_operator(char c) { return c == '*' || c == '+' || c == '?' || c == '{'; }

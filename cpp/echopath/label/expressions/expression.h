@@ -7,10 +7,12 @@
 //   repeat     := atom [ '*' | '+' | '?' | '{' m '}' | '{' m ',' '}' | '{' m ',' n '}' ]
 //   atom       := hit | '(' choice ')'
 //   hit        := '.' | event | [ event ] meshes
-//   event      := 'S' | 'D' | 'E'                specular or diffuse: the bit in Paths::diffuse; on an edge: edge_hit
+//   event      := 'S' | 'D' | 'E' | 'P'          specular or diffuse: the bit in Paths::diffuse; on an edge: edge_hit; a pass
 //   meshes     := glob | '[' [ '^' ] glob { glob } ']'
 //   glob       := "'" characters other than "'" "'"
 //
+// Passes through sheets (Paths::passes) are hits only to an expression that names the event P anywhere; then . and a glob or
+// set without an event take them, too. To all others they do not exist: the echo of what stands behind a pane is T . R.
 // The whole path must match. T and R bind weakest: T 'a' | 'b' R is T ('a' | 'b') R. Counts m <= n are at most
 // kMaxRepeatCount; a repeat of a repeat needs parentheses. White space may stand between any two symbols and means
 // nothing, with one exception: between an event and a glob or set it is an error, as S'a' is one hit and (S) 'a' two.
@@ -29,7 +31,7 @@ constexpr int kNoLimit = -1;
 
 // Describes what one hit must be.
 struct HitPattern {
-  enum class Event { kAny, kSpecular, kDiffuse, kEdge };
+  enum class Event { kAny, kSpecular, kDiffuse, kEdge, kPass };
   struct Glob {
     std::string text;
     size_t position;  // of its opening quote in the expression, bytes

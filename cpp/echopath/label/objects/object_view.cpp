@@ -15,6 +15,7 @@ constexpr double kEndMargin = 1e-6;   // relative to a distance, likewise
 constexpr double kLeast = 1e-300;     // stands for a direction's part that is zero
 constexpr size_t kMostBoxes = 32;     // of meshes; one box holds more of them
 constexpr size_t kFewVertices = 512;  // are as good as the corners of boxes
+constexpr auto kHiding = static_cast<uint32_t>(Sees::kOpaque);  // sheets let waves pass
 constexpr int kFewTurns = 6;          // of strips: a stratum a little too wide costs fewer looks than the narrowest one
 
 bool is_any(const EmbreeScene::Stretches& stretches) {
@@ -113,14 +114,16 @@ void ObjectView::look(const LaneVectors& directions, int count, Seen& seen) cons
     if (whole.end[lane] > whole.begin[lane]) whole.begin[lane] = 0.0;
   }
   EmbreeScene::Looks first;
-  geometry_.look(apex_, directions, whole, ~uint32_t{0}, first);
+  geometry_.look(apex_, directions, whole, kHiding, first);
+  const bool has_sheets = (mask_ & static_cast<uint32_t>(Sees::kSheets)) != 0;
   for (int lane = 0; lane < kPacketSize; ++lane) {
     const auto k = static_cast<size_t>(lane);
     if (first.mesh_id[k] != kNothing && !is_own(first.mesh_id[k])) {
-      in_box.begin[lane] = std::max(in_box.begin[lane], first.distance[lane] * (1.0 - 2.0 * kSameDepth));
+      if (!has_sheets) in_box.begin[lane] = std::max(in_box.begin[lane], first.distance[lane] * (1.0 - 2.0 * kSameDepth));
       seen.hiding[k] = first.mesh_id[k];
       continue;
     }
+    if (has_sheets) continue;  // one of its sheets may be nearer
     in_box.end[lane] = 0.0;  // the object itself, or nothing
     if (first.mesh_id[k] == kNothing) continue;
     seen.surface[k] = object_;
@@ -130,8 +133,9 @@ void ObjectView::look(const LaneVectors& directions, int count, Seen& seen) cons
   find_object(directions, in_box, seen);
   for (int lane = 0; lane < kPacketSize; ++lane) {
     const auto k = static_cast<size_t>(lane);
-    if (seen.hiding[k] == kNothing) continue;
     const bool is_there = seen.mesh[k] != kNothing;
+    if (is_there && seen.hiding[k] == kNothing) seen.surface[k] = object_;
+    if (seen.hiding[k] == kNothing) continue;
     const bool is_hidden = is_there && first.distance[lane] < seen.distance[lane] * (1.0 - kSameDepth);
     if (is_there) seen.surface[k] = is_hidden ? surfaces_.of_mesh[seen.hiding[k]] : object_;
     if (!is_hidden) seen.hiding[k] = kNothing;
@@ -144,7 +148,7 @@ uint32_t ObjectView::only_hiding(const LaneVectors& directions, int count) const
   before.begin = {};
   for (int lane = 0; lane < kPacketSize; ++lane) before.end[lane] = lane < count ? in_box.begin[lane] : 0.0;
   EmbreeScene::Looks first;
-  geometry_.look(apex_, directions, before, ~uint32_t{0}, first);
+  geometry_.look(apex_, directions, before, kHiding, first);
   uint32_t hiding = kNothing;
   for (int lane = 0; lane < count; ++lane) {
     if (in_box.end[lane] <= in_box.begin[lane]) continue;

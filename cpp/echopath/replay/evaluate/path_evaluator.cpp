@@ -5,8 +5,10 @@
 
 namespace echopath {
 
-void PathEvaluator::begin(const PathPreparer& preparer, const Radar& radar, SpecularPoints specular) {
+void PathEvaluator::begin(const PathPreparer& preparer, const Radar& radar, const SheetPassages& sheets,
+                          SpecularPoints specular) {
   preparer_ = &preparer;
+  sheets_ = &sheets;
   planner_.begin(preparer.paths(), preparer, specular, can_evaluate_single_bounces(radar));
 }
 
@@ -16,6 +18,7 @@ void PathEvaluator::evaluate(const PosedNodes& nodes, const RadioConstants& radi
   single_bounces_(*plan_, *preparer_, nodes, radio, channels, wanted);
   evaluate_edges(*plan_, *preparer_, nodes, radio, channels);
   if (wanted.with_amplitudes) apply_lobes(*plan_, *preparer_, nodes, channels);
+  if (!preparer_->paths().passes.empty()) sheets_->apply(indices_, nodes, channels);
   if (wanted.turned) shared_legs_.mark_turned(*plan_, wanted.turned);
   if (wanted.unfiltered) shared_legs_.mark_unfiltered(*plan_, radio, wanted.unfiltered);
 }

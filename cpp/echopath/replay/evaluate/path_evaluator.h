@@ -1,6 +1,7 @@
 #pragma once
 // Evaluates lengths and amplitudes of blocks of paths at the nodes of a time grid: it plans what the paths share and
 // evaluates that once.
+#include "echopath/replay/evaluate/sheet_passages.h"
 #include "echopath/replay/evaluate/single_bounces.h"
 
 namespace echopath {
@@ -9,12 +10,15 @@ namespace echopath {
 class PathEvaluator {
  public:
   using Wanted = SingleBounceEvaluation::Wanted;
-  // Sets the record whose blocks are evaluated from now on, and the `radar` to which it is played back. All must outlive
-  // this use. With SpecularPoints::kFermat, lengths, cosines, gains and spreading are those over the moved points, for each
+  // Sets the record whose blocks are evaluated from now on, the `radar` to which it is played back, and what its sheets do. All
+  // must outlive this use. With SpecularPoints::kFermat, lengths, cosines, gains and spreading are those over the moved points, for each
   // antenna at which a path begins; reflection coefficients and launch cells stay those of the trace.
-  void begin(const PathPreparer& preparer, const Radar& radar, SpecularPoints specular);
+  void begin(const PathPreparer& preparer, const Radar& radar, const SheetPassages& sheets, SpecularPoints specular);
   // Plans the paths that are evaluated next; the indices must outlive that evaluation.
-  void plan(std::span<const int64_t> indices) { plan_ = &planner_(indices); }
+  void plan(std::span<const int64_t> indices) {
+    plan_ = &planner_(indices);
+    indices_ = indices;
+  }
   void evaluate(const PosedNodes& nodes, const RadioConstants& radio, const ChannelSpan& channels,
                 const Wanted& wanted = {});
   size_t num_bytes() const { return shared_legs_.num_bytes() + single_bounces_.num_bytes(); }  // of its memory, nearly all
@@ -23,7 +27,9 @@ class PathEvaluator {
   SharedLegPlanner planner_;
   SharedLegEvaluation shared_legs_;
   SingleBounceEvaluation single_bounces_;
+  std::span<const int64_t> indices_;
   const PathPreparer* preparer_ = nullptr;
+  const SheetPassages* sheets_ = nullptr;
   const SharedLegPlan* plan_ = nullptr;
 };
 

@@ -26,6 +26,12 @@ struct ChannelNodes {
     amplitude[at] = echo_of ? amplitude[at] + amplitude_there : amplitude_there;
   }
   void scale_amplitude(size_t node, size_t place, double factor) const { amplitude[node * stride + echo(place)] *= factor; }
+  // Lengthens an echo, which is that of one path alone, by `longer` (m) and multiplies its amplitude.
+  void pass(size_t node, size_t place, double longer, std::complex<double> factor) const {
+    const size_t at = node * stride + echo(place);
+    length[at] += scale * longer;
+    amplitude[at] *= factor;
+  }
 };
 
 // Names some channels [tx * num_rx + rx] for the antennas of the nodes, one after the other from `first` on.

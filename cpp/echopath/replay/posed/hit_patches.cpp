@@ -19,6 +19,9 @@ std::vector<SurfacePatch> hit_patches(const Paths& paths) {
       if (!is_hit[hits[k].mesh_id].empty()) is_hit[hits[k].mesh_id][hits[k].triangle_id] = 1;
     }
   }
+  for (const Pass& pass : paths.passes) {
+    if (!is_hit[pass.hit.mesh_id].empty()) is_hit[pass.hit.mesh_id][pass.hit.triangle_id] = 1;
+  }
   for (uint32_t id = 0; id < num_meshes; ++id) {
     const Node& node = paths.scene->node_of(id);
     if (node.deformation) patches[id] = make_patch(*node.mesh, is_hit[id], node.smooth);

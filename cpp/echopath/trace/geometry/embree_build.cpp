@@ -132,7 +132,7 @@ void EmbreeScene::Device::set_cluster(uint32_t id, const EmbreeMeshes& meshes, c
     first += static_cast<uint32_t>(meshes.vertices(mesh_id).size());
   }
   rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_MEDIUM);
-  rtcSetGeometryMask(geometry, ~0u);
+  rtcSetGeometryMask(geometry, static_cast<uint32_t>(Sees::kOpaque));
   rtcCommitGeometry(geometry);
   attach(id, geometry);
   num_to_grow_ += num_triangles;

@@ -31,7 +31,7 @@ void set_ray(RTCRay& ray, const VectorOf<Real>& from, const VectorOf<Real>& dire
   ray.tnear = 0.0f;
   ray.tfar = far;
   ray.time = 0.0f;
-  ray.mask = 0xFFFFFFFFu;
+  ray.mask = static_cast<uint32_t>(Sees::kOpaque);
   ray.id = 0;
   ray.flags = 0;
 }
@@ -50,7 +50,7 @@ ECHOPATH_INLINE void set_ray(RTCRay16& rays, int lane, const VectorOf<Real>& fro
   rays.tnear[lane] = 0.0f;
   rays.tfar[lane] = far;
   rays.time[lane] = 0.0f;
-  rays.mask[lane] = 0xFFFFFFFFu;
+  rays.mask[lane] = static_cast<uint32_t>(Sees::kOpaque);
   rays.id[lane] = 0;
   rays.flags[lane] = 0;
 }

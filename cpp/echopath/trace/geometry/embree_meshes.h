@@ -10,6 +10,10 @@
 
 namespace echopath {
 
+// Says which surfaces a query looks at, as a mask of bits. Sheets (Material::layers) let waves pass, so that most queries
+// go through them.
+enum class Sees : uint32_t { kOpaque = 0x7FFFFFFFu, kSheets = 0x80000000u, kAll = 0xFFFFFFFFu };
+
 class EmbreeMeshes {
  public:
   // Returns the origin (m, world) for meshes within a bounding box (m, world).
@@ -29,9 +33,11 @@ class EmbreeMeshes {
   bool is_moving(uint32_t mesh_id) const { return meshes_[mesh_id].source.is_moving; }  // Scene::is_moving
   // Returns the linear part of the pose where the mesh is rigid, else null.
   const Mat3* rigid_pose(uint32_t mesh_id) const;
-  // Returns the bit of a mesh: the same for all below one child of the scene's root, and one of 32.
+  bool is_sheet(uint32_t mesh_id) const { return meshes_[mesh_id].source.is_sheet; }
+  // Returns the bit of a mesh: that of sheets, or else the same for all below one child of the scene's root, and one of 31.
   uint32_t mask_of(uint32_t mesh_id) const {
-    return uint32_t{1} << (static_cast<unsigned>(meshes_[mesh_id].source.object) % 32u);
+    if (is_sheet(mesh_id)) return static_cast<uint32_t>(Sees::kSheets);
+    return uint32_t{1} << (static_cast<unsigned>(meshes_[mesh_id].source.object) % 31u);
   }
   Eigen::AlignedBox3d box(uint32_t mesh_id) const;  // m
   const Eigen::AlignedBox3d& world_box(uint32_t mesh_id) const { return world_boxes_[mesh_id]; }
@@ -52,7 +58,7 @@ class EmbreeMeshes {
     double time = 0.0;                // s, where it deforms
     Mat3 linear = Mat3::Identity();   // of the pose
     Vec3 translation = Vec3::Zero();  // m, world
-    bool smooth = false, is_moving = false;
+    bool smooth = false, is_moving = false, is_sheet = false;
     int object = -1;  // SceneMesh::object
     bool is_of(const Scene& scene, const PosedScene& pose, uint32_t mesh_id) const;
   };

@@ -114,13 +114,21 @@ void EmbreeScene::PacketHits::set(int lane, const RayHit& hit) {
   if (hit.is_smooth) curvature[k] = hit.curvature;
 }
 
-void EmbreeScene::intersect(const Vec3& from, const LaneVectors& directions, int count, PacketHits& out) const {
+void EmbreeScene::intersect(const Vec3& from, const LaneVectors& directions, int count, PacketHits& out, Sees sees,
+                            const LaneValues* begins) const {
   alignas(64) RTCRayHit16 queries;
   ValidLanes valid;
   RayLanes rays;
   run_simd<&move_up_lanes>(unpacked(from), &directions, reach_, &rays);
-  for (int lane = 0; lane < kPacketSize; ++lane) rays.far[lane] = lane < count ? double{kInfinity} : -1.0;
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    rays.far[lane] = lane < count && (!begins || (*begins)[lane] >= 0.0) ? double{kInfinity} : -1.0;
+  }
   run_simd<&round_lanes>(&rays, &queries.ray, &valid);
+  std::fill_n(queries.ray.mask, kPacketSize, static_cast<uint32_t>(sees));
+  for (int lane = 0; begins && lane < kPacketSize; ++lane) {
+    const double moved = way_up(unpacked(from), directions.at(lane), reach_);
+    queries.ray.tnear[lane] = static_cast<float>(std::max(0.0, (*begins)[lane] - moved));
+  }
   forget_hits(queries.hit);
   queries_->intersect(valid, queries);
   take(queries.hit, out.met);

@@ -83,6 +83,8 @@ void EmbreeScene::bring_to(const Scene& scene, const PosedScene& pose, const Emb
     surfaces_[mesh_id] = {meshes_.triangles(mesh_id).data(), meshes_.vertices(mesh_id).data(),
                           normals.empty() ? nullptr : normals.data()};
   }
+  has_sheets_ = false;
+  for (uint32_t mesh_id = 0; mesh_id < meshes_.size(); ++mesh_id) has_sheets_ = has_sheets_ || meshes_.is_sheet(mesh_id);
   const EmbreeMeshes::Extent extent = meshes_.extent();
   const double largest = std::max(1.0, extent.largest_coordinate);
   lift_ = 4.0 * 0x1.0p-24 * largest;
@@ -106,16 +108,20 @@ Hit EmbreeScene::named(uint32_t geometry_id, uint32_t triangle_id, float u, floa
 }
 
 EmbreeScene::Verdict EmbreeScene::intersect(const Vec3& from, const Vec3& direction, RayHit& out) const {
-  return intersect(from, moved_up(from, direction), direction, out);
+  return intersect(from, {moved_up(from, direction), 0.0}, direction, Sees::kOpaque, out);
 }
 
-EmbreeScene::Verdict EmbreeScene::intersect_from_surface(const Vec3& from, const Vec3& direction, RayHit& out) const {
-  return intersect(from, from, direction, out);
+EmbreeScene::Verdict EmbreeScene::intersect_from_surface(const Vec3& from, const Vec3& direction, RayHit& out, Sees sees,
+                                                         double begin) const {
+  return intersect(from, {from, begin}, direction, sees, out);
 }
 
-EmbreeScene::Verdict EmbreeScene::intersect(const Vec3& from, const Vec3& start, const Vec3& direction, RayHit& out) const {
+EmbreeScene::Verdict EmbreeScene::intersect(const Vec3& from, const RayStart& start, const Vec3& direction, Sees sees,
+                                            RayHit& out) const {
   RTCRayHit query;
-  set_ray(query.ray, unpacked(start), unpacked(direction), kInfinity);
+  set_ray(query.ray, unpacked(start.at), unpacked(direction), kInfinity);
+  query.ray.tnear = static_cast<float>(start.begin);
+  query.ray.mask = static_cast<uint32_t>(sees);
   forget_hit(query.hit);
   queries_->intersect(query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return Verdict::kMiss;

@@ -35,7 +35,8 @@ struct Segment {
 };
 
 // Coordinates are relative to `origin` (world), so that single precision resolves the space around it. A ray that starts far
-// outside the scene is first moved up to it in double precision. Queries are thread-safe.
+// outside the scene is first moved up to it in double precision. Queries are thread-safe, and go through sheets unless they
+// are told otherwise.
 class EmbreeScene {
  public:
   // Raises DeviceError when Embree fails, Cancelled when the job is cancelled during the build, and invalid_argument where
@@ -59,8 +60,14 @@ class EmbreeScene {
   // Finds the closest hit from `from` along the unit vector `direction`. kFalseHit means that Embree reported a point that
   // double precision does not find on the ray (slivers near grazing); the ray counts as lost.
   Verdict intersect(const Vec3& from, const Vec3& direction, RayHit& out) const;
-  // Finds the closest hit from a point of the scene itself, on a surface or lifted off it.
-  Verdict intersect_from_surface(const Vec3& from, const Vec3& direction, RayHit& out) const;
+  // Finds the closest hit from a point of the scene itself, on a surface or lifted off it, among the surfaces that the ray
+  // sees and no nearer than `begin` (m).
+  Verdict intersect_from_surface(const Vec3& from, const Vec3& direction, RayHit& out, Sees sees = Sees::kOpaque,
+                                 double begin = 0.0) const;
+  // Returns from where on a ray meets what lies behind a hit at `distance`, both in m.
+  double behind(double distance) const { return distance * (1.0 + 0x1.0p-20) + 2.0 * lift_; }
+  bool has_sheets() const { return has_sheets_; }
+  bool is_sheet(uint32_t mesh_id) const { return meshes_.is_sheet(mesh_id); }
   // Holds what the rays of a packet meet, lane by lane.
   struct PacketHits {
     std::array<Verdict, kPacketSize> verdicts;
@@ -75,9 +82,11 @@ class EmbreeScene {
   };
   // Finds the closest hits of the first `count` rays of a packet, from one point; it is 4 times as fast where they are
   // nearly parallel. The lanes behind them must hold finite numbers too, and meet nothing.
-  void intersect(const Vec3& from, const LaneVectors& directions, int count, PacketHits& out) const;
+  // With `begins` (m), they are the closest no nearer than there, and rays with negative ones meet nothing.
+  void intersect(const Vec3& from, const LaneVectors& directions, int count, PacketHits& out, Sees sees = Sees::kOpaque,
+                 const LaneValues* begins = nullptr) const;
   // Finds what the rays of a packet from one point meet first in their stretches, in single precision and without the hits
-  // themselves. Of all meshes, those that share a bit with `mask` are looked at.
+  // themselves. Of all meshes, those that share a bit with `mask` are looked at: bits of Sees, or those of mask_of.
   struct Stretches {
     LaneValues begin, end;  // m, along the rays; a ray whose stretch is empty is not asked about
   };
@@ -145,13 +154,18 @@ class EmbreeScene {
   void fetch(const PacketHits& hits, PacketFacets& facets) const;
   void ask_segments(const RayLanes& rays, ValidLanes& blocked) const;
   // Embree has the ray begin at `start`.
-  Verdict intersect(const Vec3& from, const Vec3& start, const Vec3& direction, RayHit& out) const;
+  struct RayStart {
+    Vec3 at;
+    double begin;  // m, from there
+  };
+  Verdict intersect(const Vec3& from, const RayStart& start, const Vec3& direction, Sees sees, RayHit& out) const;
   Verdict confirm(const Vec3& from, const Vec3& direction, RayHit& hit) const;
   void curve(const std::array<Vec3, 3>& corners, const Vec3& direction, RayHit& hit) const;
 
   std::unique_ptr<Device> device_;
   std::unique_ptr<Trees> trees_;
   const Queries* queries_;
+  bool has_sheets_ = false;
   double lift_ = 0.0;   // m
   double reach_ = 0.0;  // m: rays from farther away are moved up to there
   EmbreeMeshes meshes_;

@@ -30,7 +30,7 @@ double TriangleRim::distance(const Vec3& from, const Vec3& along) const {
 double SurfaceAround::distance_to_wall(const Vec3& along, double reach) const {
   RayHit met;
   ++num_queries_;
-  const bool meets = geometry_.intersect_from_surface(above(along, 0.0), along, met) == EmbreeScene::Verdict::kHit;
+  const bool meets = geometry_.intersect_from_surface(above(along, 0.0), along, met, sees_) == EmbreeScene::Verdict::kHit;
   return meets ? std::min(met.distance, reach) : reach;
 }
 
@@ -39,7 +39,7 @@ double SurfaceAround::end_of_triangle_at(const Vec3& along, double distance) con
   RayHit met;
   ++num_queries_;
   const Vec3 from = above(along, distance);
-  if (geometry_.intersect_from_surface(from, -point_.normal, met) != EmbreeScene::Verdict::kHit) return -1.0;
+  if (geometry_.intersect_from_surface(from, -point_.normal, met, sees_) != EmbreeScene::Verdict::kHit) return -1.0;
   const double cos_bend = std::min(1.0, point_.normal.dot(met.normal));
   if (cos_bend < kCosBend) return -1.0;
   // A surface that has turned by an angle has sunk by no more than the tangent of it per length.

@@ -22,11 +22,12 @@ class TriangleRim {
 
 // A surface goes on over triangles that lie on each other's rims within `gap` (m) and turn away by at most 30 degrees from
 // the point's normal; it may overlook a hole between the point and the place that is looked at. `along` is a unit tangent.
-// Its rays are added to num_queries. All must outlive it.
+// Its rays are added to num_queries; they see sheets where the point lies on one. All must outlive it.
 class SurfaceAround {
  public:
   SurfaceAround(const EmbreeScene& geometry, const RayHit& point, double gap, int64_t& num_queries)
-      : geometry_(geometry), point_(point), rim_(geometry, point.hit), gap_(gap), num_queries_(num_queries) {}
+      : geometry_(geometry), point_(point), rim_(geometry, point.hit), gap_(gap),
+        sees_(geometry.is_sheet(point.hit.mesh_id) ? Sees::kAll : Sees::kOpaque), num_queries_(num_queries) {}
 
   // Returns how far the point's own triangle goes on.
   double distance_to_rim(const Vec3& along) const { return rim_.distance(point_.position, along); }
@@ -50,6 +51,7 @@ class SurfaceAround {
   const RayHit& point_;
   TriangleRim rim_;
   double gap_;
+  Sees sees_;
   int64_t& num_queries_;
 };
 

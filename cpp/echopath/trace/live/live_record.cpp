@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "echopath/trace/record/record_writer.h"
+#include "echopath/trace/sheets/passes.h"
 
 namespace echopath {
 namespace {
@@ -70,6 +71,7 @@ Paths LiveRecord::paths_of(const std::vector<LiveBlockPtr>& some, Job* job) cons
   writer.append(parts, job);
   writer.finish();
   doubles.leave_out(paths, job);
+  add_passes(paths, job);
   return paths;
 }
 

@@ -53,6 +53,11 @@ class PathSums {
              paths_.batch[path]);
     if (!paths_.curved_cell.empty()) bits.add(paths_.curved_cell[path]);
     if (!paths_.jones.empty()) bits.add(paths_.jones[path]);
+    for (const Pass& pass : paths_.passes_of(path)) {
+      if (changed_[pass.hit.mesh_id]) return kUnlike;
+      bits.add(pass.hit);
+      bits.add(uint64_t{pass.leg});
+    }
     return std::max(bits.value(), kUnlike + 1);
   }
 
@@ -92,10 +97,12 @@ Paths with_own_meshes(const Paths& paths, Job* job) {
   Paths out = paths.with_own_hits(job);
   std::vector<bool> is_met(paths.scene->meshes().size());
   for (const Hit& hit : *out.hits) is_met[hit.mesh_id] = true;
+  for (const Pass& pass : out.passes) is_met[pass.hit.mesh_id] = true;
   std::vector<uint32_t> place(is_met.size());
   for (size_t id = 0, count = 0; id < is_met.size(); ++id) place[id] = static_cast<uint32_t>(is_met[id] ? count++ : count);
   auto hits = std::make_shared<std::vector<Hit>>(*out.hits);
   for (Hit& hit : *hits) hit.mesh_id = place[hit.mesh_id];
+  for (Pass& pass : out.passes) pass.hit.mesh_id = place[pass.hit.mesh_id];
   out.hits = std::move(hits);
   auto scene = std::make_shared<Scene>(*paths.scene);
   scene->keep_meshes(is_met);

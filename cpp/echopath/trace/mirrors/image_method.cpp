@@ -87,13 +87,17 @@ Vec3 ImageMethod::departure() const {
   return (image - settings_.transmitter).normalized();
 }
 
+SheetSide ImageMethod::side_met(size_t k, const Vec3& direction) const {
+  return direction.dot(mirror(k).normal) < 0 ? SheetSide::kFront : SheetSide::kBack;
+}
+
 JonesMatrix ImageMethod::jones_matrix() const {
   Vec3 direction = departure();
   FieldPair fields = launched_fields(direction);
   for (size_t k = 0; k < points_.size(); ++k) {
     const Vec3 normal = direction.dot(mirror(k).normal) < 0 ? mirror(k).normal : Vec3(-mirror(k).normal);
     const double cos_incidence = -direction.dot(normal);
-    const SurfaceModel model(*mirror(k).material, settings_.frequency);
+    const SurfaceModel model(*mirror(k).material, settings_.frequency, side_met(k, direction));
     const ModeCoefficients modes = model.modes(cos_incidence);
     const double coherent = model.respond(cos_incidence, PolarizationMode::kTe).coherent;
     for (FieldVector& field : fields) field = coherent * reflected_field(field, direction, normal, modes);
@@ -108,8 +112,8 @@ std::complex<double> ImageMethod::field() const {
   for (size_t k = 0; k < points_.size(); ++k) {
     const Vec3& normal = mirror(k).normal;
     const PolarizationMode mode = polarization_mode(settings_.polarization, direction, normal);
-    const SurfaceResponse response =
-        respond(*mirror(k).material, settings_.frequency, std::abs(direction.dot(normal)), mode);
+    const SurfaceModel model(*mirror(k).material, settings_.frequency, side_met(k, direction));
+    const SurfaceResponse response = model.respond(std::abs(direction.dot(normal)), mode);
     product *= response.gamma * response.coherent *
                mirror_sign(*mirror(k).material, mode, settings_.polarization, direction, normal);
     direction = mirror(k).mirrored(direction);

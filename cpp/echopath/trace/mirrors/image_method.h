@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "echopath/em/surface_response.h"
 #include "echopath/trace/geometry/embree_scene.h"
 #include "echopath/trace/mirrors/mirrors.h"
 #include "echopath/trace/record/path_block.h"
@@ -55,6 +56,7 @@ class ImageMethod {
   Vec3 lifted_toward(size_t k, const Vec3& target) const;
   bool sees_all(const Vec3& receiver);
   Vec3 departure() const;
+  SheetSide side_met(size_t k, const Vec3& direction) const;
   JonesMatrix jones_matrix() const;
   std::complex<double> field() const;
 

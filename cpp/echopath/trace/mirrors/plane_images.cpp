@@ -11,6 +11,7 @@ namespace echopath {
 namespace {
 
 constexpr double kSamePoint = 1e-3;           // m: paths whose points lie so near to each other are one
+constexpr double kNearSheet = 4.0;            // tolerances: from so near a sheet is looked at
 constexpr double kFlatPhase = 1.0 / 16.0;     // wavelengths by which a surface may stray from a plane of which it is a part
 constexpr double kAboutCorner = 4.0;          // half Fresnel zones between bounces at the same corner
 constexpr size_t kMostAtCorner = 4;           // bounces
@@ -27,7 +28,9 @@ class RayLocator final : public PointLocator {
     const double length = line.norm();
     RayHit met;
     const Vec3 direction = line / length;
-    if (geometry_.intersect(from, direction, met) != EmbreeScene::Verdict::kHit) return std::nullopt;
+    const bool meets = geometry_.is_sheet(mirror.mesh_id) ? meets_sheet(mirror, from, direction, length, met)
+                                                          : geometry_.intersect(from, direction, met) == kHit;
+    if (!meets) return std::nullopt;
     const bool is_there = std::abs(met.distance - length) * std::abs(direction.dot(mirror.normal)) < tolerance_;
     if (!is_there || met.hit.mesh_id != mirror.mesh_id || met.is_smooth) return std::nullopt;
     for (const Vec3& corner : geometry_.corners(met.hit.mesh_id, met.hit.triangle_id)) {
@@ -37,6 +40,18 @@ class RayLocator final : public PointLocator {
   }
 
  private:
+  static constexpr auto kHit = EmbreeScene::Verdict::kHit;
+
+  // Looks at the sheet from right before it, because others may lie on the way.
+  bool meets_sheet(const Mirror& sheet, const Vec3& from, const Vec3& direction, double length, RayHit& met) const {
+    const double before = std::max(0.0, length - kNearSheet * tolerance_ / std::abs(direction.dot(sheet.normal)));
+    const Vec3 start = from + before * direction;
+    if (geometry_.occluded(from, start)) return false;
+    if (geometry_.intersect_from_surface(start, direction, met, Sees::kAll) != kHit) return false;
+    met.distance += before;
+    return true;
+  }
+
   const EmbreeScene& geometry_;
   double tolerance_;
 };

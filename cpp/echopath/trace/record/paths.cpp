@@ -76,6 +76,41 @@ void validate_edge(const Paths& paths, size_t path) {
           "must name hits on sharp edges, path", path);
 }
 
+void validate_passes(const Paths& paths) {
+  const std::vector<int64_t>& offsets = paths.pass_offsets;
+  const size_t size = paths.offsets.size();
+  require(offsets.empty() || offsets.size() == size + 1, "pass_offsets", "must be empty or have one entry more than paths",
+          offsets.size());
+  const auto end = static_cast<int64_t>(paths.passes.size());
+  require((offsets.empty() ? 0 : offsets.back()) == end, "pass_offsets", "must end with the number of passes", end);
+  require(offsets.empty() || (offsets.front() == 0 && std::is_sorted(offsets.begin(), offsets.end())), "pass_offsets",
+          "must begin with 0 and ascend, entries", offsets.size());
+  for (size_t path = 0; path < size; ++path) {
+    uint32_t leg = 0;
+    for (const Pass& pass : paths.passes_of(path)) {
+      require(pass.leg >= leg && pass.leg <= paths.num_bounces[path], "passes", "must lie on legs in order of travel, leg",
+              pass.leg);
+      leg = pass.leg;
+      validate_hit(pass.hit, *paths.scene);
+      require(paths.scene->node_of(pass.hit.mesh_id).material->is_sheet(), "passes",
+              "must lie on meshes whose materials have layers, mesh", pass.hit.mesh_id);
+    }
+  }
+}
+
+// Gives `out` the passes of the paths that are kept.
+void select_passes(const Paths& paths, const std::vector<uint8_t>& keep, Paths& out) {
+  if (paths.pass_offsets.empty()) return;
+  out.pass_offsets.push_back(0);
+  for (size_t path = 0; path < keep.size(); ++path) {
+    if (!keep[path]) continue;
+    const std::span<const Pass> own = paths.passes_of(path);
+    out.passes.insert(out.passes.end(), own.begin(), own.end());
+    out.pass_offsets.push_back(static_cast<int64_t>(out.passes.size()));
+  }
+  if (out.passes.empty()) out.pass_offsets.clear();
+}
+
 HitSet used_hits(const Paths& paths) {
   HitSet used(static_cast<size_t>(paths.num_hits()));
   for (size_t i = 0; i < paths.offsets.size(); ++i) {
@@ -112,6 +147,7 @@ void Paths::validate() const {
   validate_foci(frame.strata);
   for (size_t path = 0; path < size; ++path) validate_path(path);
   for (const Hit& hit : *hits) validate_hit(hit, *scene);
+  validate_passes(*this);
 }
 
 void Paths::validate_path(size_t path) const {
@@ -150,6 +186,7 @@ Paths Paths::select(const std::vector<uint8_t>& keep, Job* job) const {
   out.flags = column(flags);
   if (!curved_cell.empty()) out.curved_cell = column(curved_cell);
   if (!jones.empty()) out.jones = column(jones);
+  select_passes(*this, keep, out);
   out.scene = scene;
   out.radar = radar;
   out.frame = frame;

@@ -5,6 +5,7 @@
 #include <complex>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,12 @@ struct Hit {  // 16 bytes
       : mesh_id(mesh), triangle_id(triangle), u(first), v(second) {}
 };
 static_assert(sizeof(Hit) == 16);
+
+// Names where a path goes through a sheet (Material::layers), which is no bounce.
+struct Pass {  // 20 bytes
+  Hit hit;       // at the trace; the point of passing is met anew at other times and for other antennas
+  uint32_t leg;  // of the path on which it lies: leg k ends at hit k, the last one at the receiver
+};
 
 // Marks paths that rays did not find (image method) and that have no stratum.
 inline constexpr uint16_t kNoStratum = 65535;
@@ -75,6 +82,8 @@ struct TraceStatistics {
   int64_t num_false_hits = 0;     // Embree hits that double precision did not confirm
   int64_t num_unaimed = 0;        // objects and images that no rays aim at, because there are too many of them
   int64_t num_unfollowed_beams = 0;  // sequences of mirrors whose further mirrors were not looked for (kMaxFrusta)
+  int64_t num_unsplit_rays = 0;    // rays that only went on at a sheet, because they had split at too many before
+  int64_t num_stopped_passes = 0;  // legs of paths that are taken to end at a sheet, behind kMostPasses others
 };
 
 // Holds the values to which a path's amplitude and length refer.
@@ -122,6 +131,11 @@ struct Paths {
   // then are not in the weight. Those of coherent paths are divided by cos_i at the last surface.
   std::vector<JonesMatrix> jones;
 
+  // The sheets through which paths go, in order of travel, path by path: those of path p are [pass_offsets[p],
+  // pass_offsets[p + 1]). Both are empty where no path goes through any.
+  std::vector<Pass> passes;
+  std::vector<int64_t> pass_offsets;  // [P + 1] or empty
+
   std::shared_ptr<const Scene> scene;  // snapshot
   Radar radar;                         // snapshot
   TraceFrame frame;
@@ -129,6 +143,12 @@ struct Paths {
   int64_t num_paths() const { return static_cast<int64_t>(offsets.size()); }
   int64_t num_hits() const { return hits ? static_cast<int64_t>(hits->size()) : 0; }
   const Hit* hits_of(int64_t path) const { return hits->data() + offsets[static_cast<size_t>(path)]; }
+
+  std::span<const Pass> passes_of(size_t path) const {
+    if (pass_offsets.empty()) return {};
+    const auto first = static_cast<size_t>(pass_offsets[path]), end = static_cast<size_t>(pass_offsets[path + 1]);
+    return {passes.data() + first, end - first};
+  }
 
   // Raises invalid_argument when array sizes differ or an index leads nowhere (hit, mesh, triangle, stratum).
   void validate() const;

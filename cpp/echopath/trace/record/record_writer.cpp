@@ -18,6 +18,7 @@ void add_statistics(TraceStatistics& total, const TraceStatistics& part) {
   total.num_near_antenna += part.num_near_antenna;
   total.num_grazing += part.num_grazing;
   total.num_small_mirrors += part.num_small_mirrors;
+  total.num_unsplit_rays += part.num_unsplit_rays;
   total.num_false_hits += part.num_false_hits;
 }
 

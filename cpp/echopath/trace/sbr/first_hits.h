@@ -5,8 +5,12 @@
 
 namespace echopath {
 
+// Between the random numbers of a ray and those of the ray that is split off it at a sheet.
+inline constexpr int64_t kBranch = int64_t{1} << 44;
+
 struct FirstHits {
   int64_t begin = 0;                     // index of the first ray
+  int num_sheets = 0;                    // through which the rays have gone
   const SurfacePoint* points = nullptr;  // [count] at which the rays are aimed; null for rays of a lattice
   int count = 0;
   LaunchPlan::Places places;
@@ -32,8 +36,10 @@ struct FirstHits {
   LaneVectors out;            // the direction in which it goes on
   std::array<bool, kPacketSize> goes_on;  // whether the ray goes on at all
 
-  // Returns the index of a lane's ray in the random numbers of its further hits.
-  int64_t index(int lane) const { return points ? points[lane].key : begin + lane; }
+  // Returns the index of the lane's ray, and that in the random numbers of its hits: behind each sheet these are others,
+  // unless they belong to the point at which the ray is aimed.
+  int64_t ray(int lane) const { return points ? points[lane].key : begin + lane; }
+  int64_t index(int lane) const { return points ? points[lane].key : begin + lane + num_sheets * kBranch; }
   void set_response(int lane, const SurfaceResponse& response, const LobeProbabilities& lobes) {
     gamma_re[lane] = response.gamma.real();
     gamma_im[lane] = response.gamma.imag();

@@ -8,6 +8,8 @@
 namespace echopath {
 namespace {
 
+constexpr int kMostSheetsAhead = 16;  // of the first hit: at further ones, rays only go on
+
 struct Antennas {
   VectorOf<double> transmitter, receiver;
 };
@@ -45,11 +47,19 @@ ECHOPATH_INLINE void leave_lanes(FirstHits* first, VectorOf<double> receiver) {
 void PacketFront::trace(int64_t begin, int count, FirstHits& first, TraceStatistics& statistics) const {
   first.begin = begin;
   first.count = count;
+  first.num_sheets = 0;
   first.points = nullptr;
   if (context_.plan.is_aimed_at_point(begin)) launch_at_points(first);
   else launch(first);
-  context_.geometry.intersect(context_.settings.transmitter, first.directions, count, first.hits);
-  statistics.num_queries += count;
+  draw_samples(first);
+  find_hits(first, nullptr, statistics);
+}
+
+// Finds the first hits, or with `begins` (m) those behind there.
+void PacketFront::find_hits(FirstHits& first, const LaneValues* begins, TraceStatistics& statistics) const {
+  const Sees sees = first.num_sheets < kMostSheetsAhead ? Sees::kAll : Sees::kOpaque;
+  context_.geometry.intersect(context_.settings.transmitter, first.directions, first.count, first.hits, sees, begins);
+  statistics.num_queries += first.count;
   arrive(first, statistics);
   see_receiver(first, statistics);
   run_simd<&leave_lanes>(&first, unpacked(context_.settings.receiver));
@@ -67,6 +77,32 @@ void PacketFront::leave_along_lobes(FirstHits& first) const {
   }
 }
 
+bool PacketFront::trace_behind_sheets(FirstHits& first, TraceStatistics& statistics) const {
+  if (!context_.geometry.has_sheets()) return false;
+  LaneValues begins;
+  int num_rays = 0;
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    const auto k = static_cast<size_t>(lane);
+    const bool is_at_sheet = lane < first.count && first.hits.verdicts[k] == EmbreeScene::Verdict::kHit &&
+                             context_.geometry.is_sheet(first.hits.met[k].mesh_id);
+    begins[lane] = is_at_sheet ? context_.geometry.behind(first.hits.distance[lane]) : -1.0;
+    num_rays += is_at_sheet;
+  }
+  if (num_rays == 0) return false;
+  if (++first.num_sheets == kMostSheetsAhead) statistics.num_unsplit_rays += num_rays;
+  draw_samples(first);
+  find_hits(first, &begins, statistics);
+  return true;
+}
+
+void PacketFront::draw_samples(FirstHits& first) const {
+  const uint64_t seed = context_.settings.seed;
+  if (!first.points) return first.samples.draw(seed, first.index(0), first.count, first.places.batches.data());
+  std::array<int64_t, kPacketSize> keys;
+  for (int lane = 0; lane < kPacketSize; ++lane) keys[static_cast<size_t>(lane)] = first.index(std::min(lane, first.count - 1));
+  first.samples.draw_by_keys(seed, keys.data(), first.count);
+}
+
 void PacketFront::launch(FirstHits& first) const {
   const LaunchPlan& plan = context_.plan;
   LaunchPlan::Places& places = first.places;
@@ -81,23 +117,19 @@ void PacketFront::launch(FirstHits& first) const {
       first.densities[lane] = has_foci ? density / plan.foci.rays_of_owner(stratum, first.directions[lane]) : density;
     }
   }
-  first.samples.draw(context_.settings.seed, first.begin, first.count, places.batches.data());
 }
 
 void PacketFront::launch_at_points(FirstHits& first) const {
   const LaunchPlan& plan = context_.plan;
   first.points = plan.aimed_points.data() + (first.begin - plan.first_point);
-  std::array<int64_t, kPacketSize> keys;
   for (int lane = 0; lane < kPacketSize; ++lane) {
     const SurfacePoint& point = first.points[std::min(lane, first.count - 1)];
     const auto k = static_cast<size_t>(lane);
-    keys[k] = point.key;
     first.places.strata[k] = point.stratum;
     first.places.batches[k] = static_cast<int>(point.key % plan.batches);
     first.directions.set(lane, unpacked((point.position - context_.settings.transmitter).normalized()));
     first.densities[lane] = plan.default_density[static_cast<size_t>(point.stratum)];
   }
-  first.samples.draw_by_keys(context_.settings.seed, keys.data(), first.count);
 }
 
 void PacketFront::arrive(FirstHits& first, TraceStatistics& statistics) const {
@@ -146,7 +178,7 @@ void PacketFront::share_out(FirstHits& first, int lane) const {
 
 void PacketFront::find_response(FirstHits& first, int lane) const {
   const auto k = static_cast<size_t>(lane);
-  const SurfaceModel& model = context_.surfaces.model(first.hits.met[k].mesh_id);
+  const SurfaceModel& model = context_.surfaces.model(first.hits.met[k], first.hits.normal[lane]);
   first.models[k] = &model;
   first.modes[k] = model.is_constant()
                        ? PolarizationMode::kTe

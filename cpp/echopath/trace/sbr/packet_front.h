@@ -14,12 +14,17 @@ class PacketFront {
   explicit PacketFront(const RayContext& context) : context_(context), directions_(context.plan.strata) {}
   // Traces the rays [begin, begin + count) of the plan.
   void trace(int64_t begin, int count, FirstHits& first, TraceStatistics& statistics) const;
+  // Traces the rays that have met sheets on through these, as others beside those that are reflected there. Returns false
+  // where none has, or none meets anything.
+  bool trace_behind_sheets(FirstHits& first, TraceStatistics& statistics) const;
   // Makes the ray of a lane, and the hit where it arrives.
   void start(const FirstHits& first, int lane, Ray& ray, SurfaceHit& surface) const;
 
  private:
   void launch(FirstHits& first) const;
   void launch_at_points(FirstHits& first) const;
+  void draw_samples(FirstHits& first) const;
+  void find_hits(FirstHits& first, const LaneValues* begins, TraceStatistics& statistics) const;
   void arrive(FirstHits& first, TraceStatistics& statistics) const;
   bool counts(FirstHits& first, int lane) const;
   bool meets_point(const FirstHits& first, int lane) const;

@@ -43,6 +43,7 @@ struct DiffuseChain {
 struct Ray {
   int64_t index = 0;
   int stratum = 0;
+  int num_splits = 0;  // sheets behind which it has gone on while another ray was reflected
   Vec3 direction, launch_direction;
   RayHits hits;
   int depth = 0;                         // hits so far

@@ -7,6 +7,13 @@
 
 namespace echopath {
 
+namespace {
+
+constexpr int kMostSplits = 3;
+constexpr int64_t kBranchOfWalk = int64_t{1} << 49;  // beyond those of first hits behind sheets (kBranch)
+
+}  // namespace
+
 // Holds the packet, and the ray of it that is followed now.
 template <class Weight>
 struct RayWalk<Weight>::Scratch {
@@ -16,6 +23,7 @@ struct RayWalk<Weight>::Scratch {
   SurfaceHit surface;
   HitLegs legs;
   HitFields fields;
+  int64_t num_branches = 0;  // of the launch ray that is followed
 };
 
 template <class Weight>
@@ -24,10 +32,12 @@ void RayWalk<Weight>::shoot(int64_t begin, int64_t end, PathBlock& block) const 
   for (; begin < end; begin += kPacketSize) {
     const int count = static_cast<int>(std::min<int64_t>(kPacketSize, end - begin));
     front_.trace(begin, count, scratch.first, block.statistics);
-    if (has_straight_legs_) scratch.echoes.find(scratch.first, context_.settings.receiver);
-    for (int lane = 0; lane < count; ++lane) {
-      if (scratch.first.arrives[static_cast<size_t>(lane)]) shoot_lane(lane, scratch, block);
-    }
+    do {
+      if (has_straight_legs_) scratch.echoes.find(scratch.first, context_.settings.receiver);
+      for (int lane = 0; lane < count; ++lane) {
+        if (scratch.first.arrives[static_cast<size_t>(lane)]) shoot_lane(lane, scratch, block);
+      }
+    } while (front_.trace_behind_sheets(scratch.first, block.statistics));
   }
   block.statistics.num_queries += std::exchange(scratch.legs.search.num_queries, 0);
 }
@@ -38,7 +48,8 @@ void RayWalk<Weight>::shoot_lane(int lane, Scratch& scratch, PathBlock& block) c
   const auto k = static_cast<size_t>(lane);
   const FirstHits& first = scratch.first;
   block.current_batch = static_cast<uint8_t>(first.places.batches[k]);
-  block.current_half = half_of_ray(first.index(lane));
+  block.current_half = half_of_ray(first.ray(lane));
+  if (context_.geometry.has_sheets()) return shoot_lane_among_sheets(lane, scratch, block);
   RayHit met;
   const bool goes_on = first.goes_on[k] && meets(first.lifted[lane], first.out[lane], met, block);
   const bool has_plain_hit = has_straight_legs_ && is_plain(first, lane);
@@ -86,9 +97,10 @@ void RayWalk<Weight>::connect(Scratch& scratch, PathBlock& block) const {
 }
 
 template <class Weight>
-bool RayWalk<Weight>::meets(const Vec3& from, const Vec3& direction, RayHit& met, PathBlock& block) const {
+bool RayWalk<Weight>::meets(const Vec3& from, const Vec3& direction, RayHit& met, PathBlock& block, Sees sees,
+                            double begin) const {
   ++block.statistics.num_queries;
-  const EmbreeScene::Verdict verdict = context_.geometry.intersect_from_surface(from, direction, met);
+  const EmbreeScene::Verdict verdict = context_.geometry.intersect_from_surface(from, direction, met, sees, begin);
   if (verdict == EmbreeScene::Verdict::kFalseHit) ++block.statistics.num_false_hits;
   return verdict == EmbreeScene::Verdict::kHit;
 }
@@ -96,14 +108,76 @@ bool RayWalk<Weight>::meets(const Vec3& from, const Vec3& direction, RayHit& met
 // Carries the ray from the hit where it is to the one that it meets next.
 template <class Weight>
 bool RayWalk<Weight>::travel(const ScatterSample& sample, const RayHit& met, Scratch& scratch, PathBlock& block) const {
+  return scatterer_.leave(scratch.ray, scratch.surface, sample, scratch.legs) && arrive(met, scratch, block);
+}
+
+template <class Weight>
+bool RayWalk<Weight>::arrive(const RayHit& met, Scratch& scratch, PathBlock& block) const {
   Ray& ray = scratch.ray;
   SurfaceHit& surface = scratch.surface;
-  if (!scatterer_.leave(ray, surface, sample, scratch.legs)) return false;
   surface.point = met;
   surface.receiver = ShadowState::kUnknown;
   if (!arrivals_.arrive(ray, surface, block.statistics)) return false;
   surface.samples = hit_samples(context_.settings.seed, ray.index, ray.depth);
   return true;
+}
+
+// Follows a ray as shoot_lane does, in a scene with sheets.
+template <class Weight>
+void RayWalk<Weight>::shoot_lane_among_sheets(int lane, Scratch& scratch, PathBlock& block) const {
+  const bool has_plain_hit = has_straight_legs_ && is_plain(scratch.first, lane);
+  scratch.num_branches = 0;
+  if (has_plain_hit) add_plain_echoes(lane, scratch, block);
+  start(lane, scratch);
+  if (!has_plain_hit) connect(scratch, block);
+  if (scratch.first.goes_on[static_cast<size_t>(lane)]) go_on_among_sheets(scratch.first.sample(lane), scratch, block);
+  block.end_ray(scratch.ray.hits.data());
+}
+
+template <class Weight>
+void RayWalk<Weight>::follow_among_sheets(Scratch& scratch, PathBlock& block) const {
+  connect(scratch, block);
+  if (scratch.ray.depth == context_.settings.max_bounces) return;
+  const ScatterSample sample = scatterer_.sample(scratch.ray, scratch.surface, block.current_batch);
+  if (!sample.ends) go_on_among_sheets(sample, scratch, block);
+}
+
+// Has the ray reflected at each sheet on its way, and carries it on behind the last one.
+template <class Weight>
+void RayWalk<Weight>::go_on_among_sheets(const ScatterSample& sample, Scratch& scratch, PathBlock& block) const {
+  if (!scatterer_.leave(scratch.ray, scratch.surface, sample, scratch.legs)) return;
+  RayHit met;
+  for (double begin = 0.0; meets_next(sample, begin, scratch, met, block); begin = context_.geometry.behind(met.distance)) {
+    if (!context_.geometry.is_sheet(met.hit.mesh_id)) {
+      if (arrive(met, scratch, block)) follow_among_sheets(scratch, block);
+      return;
+    }
+    reflect_at_sheet(met, scratch, block);
+    ++scratch.ray.num_splits;
+  }
+}
+
+// Finds what the ray meets next: at sheets only while it may still split.
+template <class Weight>
+bool RayWalk<Weight>::meets_next(const ScatterSample& sample, double begin, Scratch& scratch, RayHit& met,
+                                 PathBlock& block) const {
+  if (!meets(sample.from, sample.direction, met, block, Sees::kAll, begin)) return false;
+  if (scratch.ray.num_splits < kMostSplits || !context_.geometry.is_sheet(met.hit.mesh_id)) return true;
+  ++block.statistics.num_unsplit_rays;
+  return meets(sample.from, sample.direction, met, block, Sees::kOpaque, begin);
+}
+
+// Follows the ray that is reflected at a sheet, with random numbers of its own, and takes the other one up again.
+template <class Weight>
+void RayWalk<Weight>::reflect_at_sheet(const RayHit& met, Scratch& scratch, PathBlock& block) const {
+  const Ray ray = scratch.ray;
+  const SurfaceHit surface = scratch.surface;
+  scratch.ray.index += kBranchOfWalk * ++scratch.num_branches;
+  ++scratch.ray.num_splits;
+  if (arrive(met, scratch, block)) follow_among_sheets(scratch, block);
+  block.end_ray(scratch.ray.hits.data());
+  scratch.ray = ray;
+  scratch.surface = surface;
 }
 
 template class RayWalk<ScalarWeight>;

@@ -9,6 +9,10 @@ namespace echopath {
 
 // Joins the parts: PacketFront takes a packet of rays to its first hits, Scatterer and Arrivals take each ray to its next
 // hits, and Connector joins each hit to the receiver.
+//
+// A ray that meets sheets (Material::layers) is split: one ray is reflected at each sheet, and one goes on through all of them
+// to what lets nothing pass. Beyond kMostSplits sheets behind its first hit, a ray only goes on. What sheets do to what
+// passes is added to the record at its end (sheets/passes.h).
 template <class Weight>
 class RayWalk {
  public:
@@ -25,8 +29,15 @@ class RayWalk {
   void start(int lane, Scratch& scratch) const;
   void follow(Scratch& scratch, PathBlock& block) const;
   void connect(Scratch& scratch, PathBlock& block) const;
-  bool meets(const Vec3& from, const Vec3& direction, RayHit& met, PathBlock& block) const;
+  bool meets(const Vec3& from, const Vec3& direction, RayHit& met, PathBlock& block, Sees sees = Sees::kOpaque,
+             double begin = 0.0) const;
   bool travel(const ScatterSample& sample, const RayHit& met, Scratch& scratch, PathBlock& block) const;
+  bool arrive(const RayHit& met, Scratch& scratch, PathBlock& block) const;
+  void shoot_lane_among_sheets(int lane, Scratch& scratch, PathBlock& block) const;
+  void follow_among_sheets(Scratch& scratch, PathBlock& block) const;
+  void go_on_among_sheets(const ScatterSample& sample, Scratch& scratch, PathBlock& block) const;
+  bool meets_next(const ScatterSample& sample, double begin, Scratch& scratch, RayHit& met, PathBlock& block) const;
+  void reflect_at_sheet(const RayHit& met, Scratch& scratch, PathBlock& block) const;
 
   const RayContext& context_;
   const PacketFront& front_;

@@ -24,7 +24,7 @@ bool Arrivals::arrive(Ray& ray, SurfaceHit& surface, TraceStatistics& statistics
 }
 
 void Arrivals::find_response(const Ray& ray, SurfaceHit& surface) const {
-  surface.model = &context_.surfaces.model(surface.point.hit.mesh_id);
+  surface.model = &context_.surfaces.model(surface.point.hit, surface.point.normal);
   surface.mode = mode_along(*surface.model, context_.settings.polarization, ray.direction, surface.point.normal);
   surface.response = surface.model->respond(surface.cos_incidence, surface.mode);
 }

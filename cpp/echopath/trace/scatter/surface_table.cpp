@@ -51,15 +51,22 @@ class SmoothWidths {
 
 SurfaceTable::SurfaceTable(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
                            double frequency)
-    : mirror_of_(mirrors, geometry) {
+    : geometry_(geometry), mirror_of_(mirrors, geometry) {
   SmoothWidths widths;
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
     const Node& node = scene.node_of(id);
     models_.emplace_back(*node.material, frequency);
+    if (node.material->layers.size() > 1) backs_.emplace(id, SurfaceModel(*node.material, frequency, SheetSide::kBack));
     smooth_width_.push_back(widths.width_of(node, geometry.vertices(id)));
     has_lobes_ = has_lobes_ || !models_.back().lobe().is_lambert();
     has_smooth_ = has_smooth_ || is_unflagged_smooth(node);
   }
+}
+
+bool SurfaceTable::is_met_from_behind(const Hit& hit, const Vec3& normal) const {
+  if (!backs_.contains(hit.mesh_id)) return false;
+  const auto [a, b, c] = geometry_.corners(hit.mesh_id, hit.triangle_id);
+  return (b - a).cross(c - a).dot(normal) < 0.0;
 }
 
 }  // namespace echopath

@@ -71,8 +71,11 @@ struct FrameCheck::Sweep {
 FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, CheckTimes times, SpecularPoints specular, Job* job)
     : paths_(paths), times_(std::move(times)), probe_radar_(probe_radar(paths, radar)),
       first_radar_(with_first_antennas(radar)), preparer_(paths, whole_patches(*paths.scene)),
-      walk_(*paths.scene, preparer_.smooth_normals()), radio_(radio_constants(paths, radar)), specular_(specular),
+      walk_(*paths.scene, preparer_.smooth_normals()), radio_(radio_constants(paths, radar)),
+      sheets_(preparer_, radio_.wavelength), specular_(specular),
       mesh_moves_(moving_meshes(*paths.scene)) {
+  sheets_move_ = std::any_of(paths.passes.begin(), paths.passes.end(),
+                             [&](const Pass& pass) { return mesh_moves_[pass.hit.mesh_id] != 0; });
   is_geometry_still_ = std::count(mesh_moves_.begin(), mesh_moves_.end(), 1) == 0;
   is_still_ = is_geometry_still_ && !radar.motion;
   const PosedScene pose(*paths.scene, paths.frame.trace_time);
@@ -158,7 +161,7 @@ void FrameCheck::pose(size_t first, size_t count, Job* job) {
 
 bool FrameCheck::is_still(const LocalPath& path) const {
   const auto moves = [&](const LocalHit& hit) { return mesh_moves_[hit.mesh_id] != 0; };
-  return is_still_ || (!first_radar_.motion && std::none_of(path.hits, path.hits + path.count, moves));
+  return is_still_ || (!first_radar_.motion && !sheets_move_ && std::none_of(path.hits, path.hits + path.count, moves));
 }
 
 std::vector<Echo> FrameCheck::echoes_at(std::span<const int64_t> paths, const PosedNodes& nodes) const {
@@ -168,7 +171,7 @@ std::vector<Echo> FrameCheck::echoes_at(std::span<const int64_t> paths, const Po
   std::vector<std::complex<double>> amplitudes(lengths.size());
   const ChannelNodes all{lengths.data(), amplitudes.data(), paths.size(), 0, 1.0};
   std::unique_ptr<PathEvaluator> evaluator = KeptMemory::of_process().take<PathEvaluator>();
-  evaluator->begin(preparer_, first_radar_, specular_);
+  evaluator->begin(preparer_, first_radar_, sheets_, specular_);
   evaluator->plan(paths);
   evaluator->evaluate(nodes, radio_, {0, {&all, 1}});
   KeptMemory::of_process().leave(std::move(evaluator));

@@ -1,0 +1,182 @@
+#include "echopath/trace/sheets/passes.h"
+
+#include <algorithm>
+#include <map>
+
+#include "echopath/base/parallel.h"
+#include "echopath/em/sheet_model.h"
+#include "echopath/trace/geometry/embree_scene.h"
+
+namespace echopath {
+namespace {
+
+constexpr int64_t kPathsTogether = 1 << 12;
+constexpr double kLiftAbsolute = 1e-6, kLiftRelative = 0x1.0p-21;  // m, and of the coordinates: single precision
+
+using Matrix2 = Eigen::Matrix2cd;
+
+// Holds the sheets of a scene alone.
+class SheetScene {
+ public:
+  SheetScene(const Scene& scene, double time, const Vec3& origin, Job* job) : scene_(scene) {
+    std::vector<bool> is_sheet;
+    for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
+      is_sheet.push_back(scene.node_of(id).material->is_sheet());
+      if (is_sheet.back()) ids_.push_back(id);
+    }
+    if (ids_.empty()) return;
+    scene_.keep_meshes(is_sheet);
+    geometry_.update(scene_, PosedScene(scene_, time), origin, job);
+  }
+  bool is_empty() const { return ids_.empty(); }
+
+  // Finds the next sheet at `begin` (m) or farther along the ray, with its own mesh ID.
+  bool meets(const Vec3& from, const Vec3& direction, double begin, RayHit& met) const {
+    if (geometry_.intersect_from_surface(from, direction, met, Sees::kSheets, begin) != EmbreeScene::Verdict::kHit) return false;
+    met.hit.mesh_id = ids_[met.hit.mesh_id];
+    return true;
+  }
+  double behind(double distance) const { return geometry_.behind(distance); }
+
+ private:
+  Scene scene_;
+  std::vector<uint32_t> ids_;
+  EmbreeScene geometry_;
+};
+
+// Holds the passes of some paths in a row.
+struct PassBlock {
+  std::vector<Pass> passes;
+  std::vector<int64_t> counts;  // by path
+  int64_t num_stopped = 0;
+};
+
+class PassFinder {
+ public:
+  PassFinder(Paths& paths, const SheetScene& sheets)
+      : paths_(paths), sheets_(sheets), pose_(*paths.scene, paths.frame.trace_time), origin_(paths.frame.transmitter) {
+    for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) {
+      const Material& material = *paths.scene->node_of(id).material;
+      if (material.is_sheet()) models_.emplace(id, SheetModel(material, paths.radar.waveform.start_frequency));
+    }
+  }
+
+  PassBlock find(int64_t begin, int64_t end) const {
+    PassBlock block;
+    for (int64_t path = begin; path < end; ++path) {
+      const size_t before = block.passes.size();
+      find_passes(static_cast<size_t>(path), block);
+      block.counts.push_back(static_cast<int64_t>(block.passes.size() - before));
+    }
+    return block;
+  }
+
+ private:
+  struct LegEnd {
+    Vec3 at;       // relative to the transmitter
+    Vec3 normal;   // of the sheet on which it lies, else zero
+  };
+
+  LegEnd end_of(const Hit& hit) const {
+    const auto [a, b, c] = pose_.world_triangle(hit.mesh_id, hit.triangle_id);
+    const Vec3 at = a + double{hit.u} * (b - a) + double{hit.v} * (c - a) - origin_;
+    return {at, models_.contains(hit.mesh_id) ? Vec3((b - a).cross(c - a).normalized()) : Vec3(Vec3::Zero())};
+  }
+
+  // Moves the end of a leg off its sheet, toward the other end.
+  static Vec3 lifted(const LegEnd& end, const Vec3& other) {
+    const double lift = kLiftAbsolute + kLiftRelative * std::max(end.at.cwiseAbs().maxCoeff(), other.cwiseAbs().maxCoeff());
+    return end.at + std::copysign(lift, end.normal.dot(other - end.at)) * end.normal;
+  }
+
+  void find_passes(size_t path, PassBlock& block) const {
+    const Hit* hits = paths_.hits_of(static_cast<int64_t>(path));
+    const int count = paths_.num_bounces[path];
+    LegEnd from{Vec3::Zero(), Vec3::Zero()};
+    for (int leg = 0; leg <= count; ++leg) {
+      const LegEnd to = leg < count ? end_of(hits[leg]) : LegEnd{paths_.frame.receiver - origin_, Vec3::Zero()};
+      add_leg(path, {static_cast<uint32_t>(leg), leg == 0, leg == count}, lifted(from, to.at), lifted(to, from.at), block);
+      from = to;
+    }
+  }
+
+  struct LegPlace {
+    uint32_t index;
+    bool is_first, is_last;
+  };
+  void add_leg(size_t path, const LegPlace& leg, const Vec3& from, const Vec3& to, PassBlock& block) const {
+    const Vec3 line = to - from;
+    const double length = line.norm();
+    const Vec3 direction = line / length;
+    RayHit met;
+    int count = 0;
+    for (double begin = 0.0; sheets_.meets(from, direction, begin, met) && met.distance < length;
+         begin = sheets_.behind(met.distance)) {
+      if (++count > kMostPasses) {
+        paths_.weight[path] = 0.0f;
+        ++block.num_stopped;
+        return;
+      }
+      block.passes.push_back({met.hit, leg.index});
+      if (!paths_.jones.empty() && (leg.is_first || leg.is_last)) polarize(path, leg, direction, met);
+    }
+  }
+
+  // Puts the passage of both modes, over that of the TE mode, to the end of the matrix at which the leg lies.
+  void polarize(size_t path, const LegPlace& leg, const Vec3& direction, const RayHit& met) const {
+    const SheetPassage passage = models_.at(met.hit.mesh_id).passage(std::min(1.0, std::abs(direction.dot(met.normal))));
+    const bool is_reversed = (paths_.flags[path] & kReversedPath) != 0;
+    const TransverseBasis basis = transverse_basis(is_reversed ? Vec3(-direction) : direction);
+    const Vec3 across = direction.cross(met.normal);
+    if (across.norm() < 1e-9 || passage.te == 0.0) return;
+    const Vec3 te = across.normalized();
+    const Eigen::Vector2cd axis(te.dot(basis.horizontal), te.dot(basis.vertical));
+    const Matrix2 of_te = axis * axis.transpose(), through = of_te + passage.tm / passage.te * (Matrix2::Identity() - of_te);
+    JonesMatrix& entries = paths_.jones[path];
+    Matrix2 matrix;
+    for (int i = 0; i < 4; ++i) matrix(i / 2, i % 2) = std::complex<double>(entries[static_cast<size_t>(i)]);
+    // The columns of the matrix belong to the end at which the path was traced from.
+    matrix = leg.is_first != is_reversed ? Matrix2(matrix * through) : Matrix2(through * matrix);
+    for (int i = 0; i < 4; ++i) entries[static_cast<size_t>(i)] = std::complex<float>(matrix(i / 2, i % 2));
+  }
+
+  Paths& paths_;  // each task changes its own paths
+  const SheetScene& sheets_;
+  PosedScene pose_;
+  Vec3 origin_;
+  std::map<uint32_t, SheetModel> models_;  // by mesh ID
+};
+
+void join(const std::vector<PassBlock>& blocks, Paths& paths) {
+  paths.passes.clear();
+  paths.pass_offsets.assign(1, 0);
+  for (const PassBlock& block : blocks) {
+    paths.passes.insert(paths.passes.end(), block.passes.begin(), block.passes.end());
+    for (const int64_t count : block.counts) paths.pass_offsets.push_back(paths.pass_offsets.back() + count);
+    paths.frame.statistics.num_stopped_passes += block.num_stopped;
+  }
+  if (paths.passes.empty()) paths.pass_offsets.clear();
+}
+
+}  // namespace
+
+Vec3 sheet_polarization(const Paths& paths) {
+  const Antenna& first = paths.radar.transmitters.front();
+  const Transform world_from_radar = paths.radar.world_from_radar(paths.frame.trace_time);
+  return (world_from_radar.linear() * (first.orientation * first.polarization)).normalized();
+}
+
+void add_passes(Paths& paths, Job* job) {
+  const SheetScene sheets(*paths.scene, paths.frame.trace_time, paths.frame.transmitter, job);
+  if (sheets.is_empty() || paths.num_paths() == 0) return;
+  const PassFinder finder(paths, sheets);
+  std::vector<PassBlock> blocks(static_cast<size_t>((paths.num_paths() + kPathsTogether - 1) / kPathsTogether));
+  Job own(job);
+  parallel_for(std::ssize(blocks), [&](int64_t i) {
+    const int64_t begin = i * kPathsTogether;
+    blocks[static_cast<size_t>(i)] = finder.find(begin, std::min(begin + kPathsTogether, paths.num_paths()));
+  }, &own);
+  join(blocks, paths);
+}
+
+}  // namespace echopath

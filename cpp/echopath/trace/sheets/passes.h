@@ -1,0 +1,24 @@
+#pragma once
+// Adds to a record the sheets through which its paths go (Paths::passes).
+//
+// Queries of rays go through sheets, so that the record has the paths behind them as if they were not there. Here each leg of
+// each path is laid against the sheets alone. Their transmission is no part of the weight: replay computes it for each time
+// and antenna (replay/evaluate/sheet_passages.h). In a polarised trace the matrix gets what both modes do to the components
+// at either end of the path, over the transmission of the TE mode; between hits, the modes count by the polarisation of the
+// first transmitter.
+#include "echopath/trace/record/paths.h"
+
+namespace echopath {
+
+// Passes of one leg from which on it is taken to end at the next sheet: its path has no weight then, and is counted.
+inline constexpr int kMostPasses = 64;
+
+// Does nothing where the scene has no sheets. The result is the same for any number of threads. Raises DeviceError and
+// Cancelled.
+void add_passes(Paths& paths, Job* job = nullptr);
+
+// Returns the polarisation in the world by which the scalar model and the legs between hits tell modes apart: that of the
+// first transmitter at the time of the trace.
+Vec3 sheet_polarization(const Paths& paths);
+
+}  // namespace echopath

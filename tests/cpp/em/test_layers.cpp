@@ -1,0 +1,197 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "echopath/base/constants.h"
+#include "echopath/em/sheet_model.h"
+#include "echopath/em/surface_response.h"
+
+namespace echopath::test_layers {
+namespace {
+
+using Complex = std::complex<double>;
+constexpr double kFrequency = 77e9;  // Hz
+constexpr double kRounding = 1e-12;
+constexpr double kDifference = 1e-6;  // m, of delays by finite differences of a phase
+const double kWavenumber = kTwoPi * kFrequency / kSpeedOfLight;
+const std::vector<double> kCosines = {1.0, 0.9, 0.6, 0.3, 0.05, 0.001};
+const std::vector<Layer> kPane = {{0.004, Complex(6.3, -0.4)}};
+const std::vector<Layer> kStack = {{0.0001, Complex(9.0, -0.5)}, {0.003, Complex(2.3, 0.0)}, {0.002, Complex(1.2, -0.02), 0.4}};
+const std::vector<Layer> kLossless = {{0.0002, 7.0}, {0.003, 2.3}, {0.0011, 4.0}};
+
+struct Pair {
+  Complex reflection, transmission;
+};
+
+// Airy 1833 for one slab: the sum of a geometric series over the bounces between both faces.
+Pair airy(const Layer& slab, double cosine, bool is_te) {
+  const Complex q = std::sqrt(slab.permittivity - (1.0 - cosine * cosine));
+  const Complex face = is_te ? (cosine - q) / (cosine + q) : (slab.permittivity * cosine - q) / (slab.permittivity * cosine + q);
+  const Complex through = std::exp(Complex(0.0, -kWavenumber * slab.thickness) * q);
+  const Complex sum = 1.0 - face * face * through * through;
+  return {face * (1.0 - through * through) / sum, (1.0 - face * face) * through / sum};
+}
+
+// The characteristic matrix of Abeles: tangential fields before the stack from those behind it (Born and Wolf, 1.6).
+Pair by_matrices(const std::vector<Layer>& layers, double cosine, bool is_te) {
+  std::array<Complex, 4> all = {1.0, 0.0, 0.0, 1.0};
+  for (const Layer& layer : layers) {
+    const Complex eps =
+        layer.permittivity - Complex(0.0, layer.conductivity / (kTwoPi * kFrequency * kVacuumPermittivity));
+    const Complex q = std::sqrt(eps - (1.0 - cosine * cosine)), admittance = is_te ? q : eps / q;
+    const Complex phase = kWavenumber * layer.thickness * q, c = std::cos(phase), s = Complex(0.0, 1.0) * std::sin(phase);
+    all = {all[0] * c + all[1] * s * admittance, all[0] * s / admittance + all[1] * c,
+           all[2] * c + all[3] * s * admittance, all[2] * s / admittance + all[3] * c};
+  }
+  const double outside = is_te ? cosine : 1.0 / cosine;
+  const Complex electric = all[0] + all[1] * outside, magnetic = all[2] + all[3] * outside;
+  const Complex sum = outside * electric + magnetic, reflection = (outside * electric - magnetic) / sum;
+  // In the plane of incidence the sign is that of the magnetic field (fresnel_tm).
+  return {is_te ? reflection : -reflection, 2.0 * outside / sum};
+}
+
+void expect_near(Complex found, Complex expected) { EXPECT_LT(std::abs(found - expected), kRounding) << found << expected; }
+
+TEST(LayerStack, OneLayerIsAirysSlab) {
+  for (const double cosine : kCosines) {
+    const LayerStack slab(kPane, kFrequency);
+    const Pair te = airy(kPane[0], cosine, true), tm = airy(kPane[0], cosine, false);
+    expect_near(slab.reflection(cosine).te, te.reflection);
+    expect_near(slab.reflection(cosine).tm, tm.reflection);
+    expect_near(slab.transmission(cosine).te, te.transmission);
+    expect_near(slab.transmission(cosine).tm, tm.transmission);
+  }
+}
+
+TEST(LayerStack, SeveralLayersAreTheirCharacteristicMatrices) {
+  for (const double cosine : kCosines) {
+    const LayerStack stack(kStack, kFrequency);
+    const Pair te = by_matrices(kStack, cosine, true), tm = by_matrices(kStack, cosine, false);
+    expect_near(stack.reflection(cosine).te, te.reflection);
+    expect_near(stack.reflection(cosine).tm, tm.reflection);
+    expect_near(stack.transmission(cosine).te, te.transmission);
+    expect_near(stack.transmission(cosine).tm, tm.transmission);
+  }
+}
+
+TEST(LayerStack, LosslessStacksConservePower) {
+  const LayerStack stack(kLossless, kFrequency);
+  for (const double cosine : kCosines) {
+    const FresnelModes reflected = stack.reflection(cosine);
+    const LayerTransmission passed = stack.transmission(cosine);
+    EXPECT_NEAR(std::norm(reflected.te) + std::norm(passed.te), 1.0, kRounding);
+    EXPECT_NEAR(std::norm(reflected.tm) + std::norm(passed.tm), 1.0, kRounding);
+  }
+}
+
+TEST(LayerStack, BothSidesPassTheSameAndReflectDifferently) {
+  std::vector<Layer> reversed = kStack;
+  std::reverse(reversed.begin(), reversed.end());
+  const LayerStack front(kStack, kFrequency), back(reversed, kFrequency);
+  for (const double cosine : kCosines) {
+    expect_near(front.transmission(cosine).te, back.transmission(cosine).te);
+    expect_near(front.transmission(cosine).tm, back.transmission(cosine).tm);
+  }
+  EXPECT_GT(std::abs(front.reflection(0.6).te - back.reflection(0.6).te), 0.01);
+}
+
+TEST(LayerStack, HalfAWavelengthIsAWindow) {
+  const double inside = std::sqrt(4.0 - 0.19);  // at a cosine of 0.9
+  const LayerStack stack(std::vector<Layer>{{kPi / (kWavenumber * inside), 4.0}}, kFrequency);
+  EXPECT_LT(std::abs(stack.reflection(0.9).te), kRounding);
+  EXPECT_NEAR(std::abs(stack.transmission(0.9).tm), 1.0, kRounding);
+}
+
+TEST(LayerStack, AirChangesNothing) {
+  const LayerStack stack(std::vector<Layer>{{0.3, 1.0}}, kFrequency);
+  for (const double cosine : kCosines) {
+    expect_near(stack.over_free_space(cosine).te, 1.0);
+    expect_near(stack.reflection(cosine).tm, 0.0);
+    EXPECT_NEAR(stack.offset(cosine), 0.0, kRounding);
+  }
+}
+
+TEST(LayerStack, ThickMetalReflectsAllAndPassesNothing) {
+  const LayerStack stack(std::vector<Layer>{{1.0, 1.0, 1e7}}, kFrequency);
+  EXPECT_NEAR(std::abs(stack.reflection(0.7).te), 1.0, 1e-3);  // skin depth .6 um
+  EXPECT_EQ(std::abs(stack.transmission(0.7).te), 0.0);
+  EXPECT_EQ(std::abs(stack.transmission(0.0).te), 0.0);
+}
+
+// Snell's law within the slab, and Fermat's principle for the whole way of a bent ray from point to point.
+TEST(SheetModel, PhaseOfTheStraightLegIsThatOfTheBentRay) {
+  const double length = 0.5, thickness = 0.004, index = 2.5, wavelength = kTwoPi / kWavenumber;
+  for (const double angle : {0.3, 0.8, 1.1}) {
+    const double across = length * std::sin(angle), ahead = length * std::cos(angle);
+    double low = 0.0, high = std::sin(angle) + 0.1;  // of the bent ray outside
+    for (int step = 0; step < 200; ++step) {
+      const double sine = 0.5 * (low + high), cosine = std::sqrt(1.0 - sine * sine);
+      const double inside = sine / index, found = (ahead - thickness) * sine / cosine + thickness * inside / std::sqrt(1.0 - inside * inside);
+      (found < across ? low : high) = sine;
+    }
+    const double outside = std::sqrt(1.0 - low * low), within = std::sqrt(1.0 - low * low / (index * index));
+    const double bent = (ahead - thickness) / outside + index * thickness / within;
+    const double sine = std::sin(angle), cosine = std::cos(angle);
+    const double straight = length + thickness * (std::sqrt(index * index - sine * sine) - cosine);
+    const LayerStack slab(std::vector<Layer>{{thickness, index * index}}, kFrequency);
+    const double offset = slab.offset(cosine);
+    EXPECT_NEAR(offset, thickness * (sine - cosine * sine / std::sqrt(index * index - sine * sine)), 1e-12);
+    const double later = detour(Vec3(offset, 0.0, 0.0), length, wavelength);
+    EXPECT_NEAR(straight + later, bent, 0.1 * std::abs(straight - bent) + 1e-9) << angle;
+  }
+}
+
+TEST(SheetModel, DelayIsThatOfTheSlowerWave) {
+  const double index = 1.5;
+  Material sheet;
+  sheet.layers = {{0.01, index * index}};
+  const SheetPassage passage = SheetModel(sheet, kFrequency).passage(1.0);
+  // Of the direct wave (index - 1) d, turned by the bounces within: the slope of the phase of Airy's formula.
+  const auto phase = [&](double frequency) {
+    const double k = kTwoPi * frequency / kSpeedOfLight, face = (1.0 - index) / (1.0 + index);
+    const Complex through = std::polar(1.0, -k * index * 0.01);
+    return std::arg((1.0 - face * face) * through / (1.0 - face * face * through * through) * std::polar(1.0, k * 0.01));
+  };
+  const double step = 1e6, slope = (phase(kFrequency + step) - phase(kFrequency - step)) / (2.0 * step);
+  EXPECT_NEAR(passage.te_delay, -slope * kSpeedOfLight / kTwoPi, kDifference);
+  EXPECT_NEAR(passage.te_delay, 0.005, 0.002);
+}
+
+TEST(SheetModel, SharesOfModesFollowThePolarisation) {
+  const Vec3 normal = Vec3::UnitX(), level = Vec3(0.8, 0.6, 0.0), steep = Vec3(0.8, 0.0, 0.6);
+  EXPECT_NEAR(te_share(Vec3::UnitZ(), level, normal), 1.0, kRounding);
+  EXPECT_NEAR(te_share(Vec3::UnitZ(), steep, normal), 0.0, kRounding);
+  EXPECT_NEAR(te_share(Vec3(0.0, 1.0, 1.0), Vec3(0.8, 0.36, 0.48), normal), te_share(Vec3(0.0, -1.0, -1.0), Vec3(0.8, 0.36, 0.48), normal),
+              kRounding);
+  EXPECT_EQ(te_share(Vec3::UnitZ(), normal, normal), 1.0);
+}
+
+TEST(SurfaceModel, SheetsReflectAsTheirLayersFromEitherSide) {
+  Material sheet;
+  sheet.layers = kStack;
+  const SurfaceModel front(sheet, kFrequency), back(sheet, kFrequency, SheetSide::kBack);
+  std::vector<Layer> reversed = kStack;
+  std::reverse(reversed.begin(), reversed.end());
+  expect_near(front.respond(0.6, PolarizationMode::kTe).gamma, LayerStack(kStack, kFrequency).reflection(0.6).te);
+  expect_near(back.respond(0.6, PolarizationMode::kTm).gamma, LayerStack(reversed, kFrequency).reflection(0.6).tm);
+}
+
+TEST(Material, LayersExcludeOtherKindsAndMirrors) {
+  Material sheet;
+  sheet.layers = kPane;
+  sheet.validate();
+  sheet.mirror = true;
+  EXPECT_THROW(sheet.validate(), std::invalid_argument);
+  sheet.mirror = false;
+  sheet.conductor = true;
+  EXPECT_THROW(sheet.validate(), std::invalid_argument);
+  sheet.conductor = false;
+  sheet.layers[0].thickness = 0.0;
+  EXPECT_THROW(sheet.validate(), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace echopath::test_layers

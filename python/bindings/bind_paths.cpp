@@ -210,9 +210,9 @@ PathsPtr paths_from_arrays(Arg<"hits", HitRows> hits, Arg<"offsets", VectorOf<in
 }
 
 // What from_arrays takes, by name: also the state of a pickle.
-const std::vector<std::string> kPathsState = {"hits",   "offsets",      "num_bounces", "diffuse", "weight",
-                                              "stratum", "batch",       "flags",       "curved_cell", "jones",
-                                              "passes",  "pass_offsets", "scene",      "radar",       "frame"};
+const std::vector<std::string> kPathsState = {"hits",    "offsets",      "num_bounces", "diffuse",     "weight",
+                                              "stratum", "batch",        "flags",       "curved_cell", "jones",
+                                              "passes",  "pass_offsets", "scene",       "radar",       "frame"};
 
 py::dict paths_state(const py::object& self) {
   py::dict state;

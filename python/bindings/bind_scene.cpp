@@ -32,7 +32,8 @@ namespace {
 
 std::shared_ptr<Material> material(Arg<"conductor", Flag> conductor, Arg<"permittivity", Optional<Complex>> permittivity,
                                    Arg<"conductivity", Real> conductivity, Arg<"reflectivity", Optional<Real>> reflectivity,
-                                   Arg<"layers", List<Instance<Layer>>> layers, Arg<"roughness_height", Real> roughness_height,
+                                   Arg<"layers", List<Instance<Layer>>> layers,
+                                   Arg<"roughness_height", Real> roughness_height,
                                    Arg<"scattering", Optional<Real>> scattering,
                                    Arg<"cross_polarization", Real> cross_polarization, Arg<"mirror", Flag> mirror,
                                    Arg<"lobe_exponent", Count> lobe_exponent,

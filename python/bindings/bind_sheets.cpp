@@ -15,8 +15,10 @@ namespace echopath::bindings {
 namespace {
 
 // [5, N]: reflection TE and TM, transmission TE and TM, and the delays of both as one complex number.
-py::array_t<std::complex<double>> coefficients(Arg<"material", Instance<Material>> material, Arg<"frequency", Real> frequency,
-                                               Arg<"incidence", VectorOf<double>> incidence, Arg<"from_behind", Flag> behind) {
+py::array_t<std::complex<double>> coefficients(Arg<"material", Instance<Material>> material,
+                                               Arg<"frequency", Real> frequency,
+                                               Arg<"incidence", VectorOf<double>> incidence,
+                                               Arg<"from_behind", Flag> behind) {
   require(material->is_sheet(), "material", "must have layers", 0);
   require(*frequency > 0, "frequency", "must be > 0 Hz", *frequency);
   std::vector<Layer> layers = material->layers;

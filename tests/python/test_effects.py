@@ -111,6 +111,7 @@ CASES = {
     "directive lobes and backscatter": (dict(scene=make_scene(LOBED)), "plate", dict(scene=make_scene(ROUGH))),
     "attenuation by weather": (dict(scene=rainy()), "rain 5.8", {}),
     "echoes of rain": (dict(scene=rainy()), "nothing hides it", dict(scene=rainy(), effects={"echoes of rain": False})),
+    "transmission through sheets": (dict(scene=make_scene(ep.materials["glass_pane"])), "-6.3 dB", {}),
     "edge diffraction": (dict(edges=True), "edges = True", {}),
     "even spread of the rays": (dict(sampler="r2"), "r2", dict(sampler="random")),
     "rays aimed at objects": ({}, "a cone", dict(scene=make_scene(MIRROR))),

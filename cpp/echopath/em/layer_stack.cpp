@@ -34,8 +34,7 @@ void join(Complex interface, Complex through, Complex& reflection, Complex& tran
 
 }  // namespace
 
-LayerStack::LayerStack(std::span<const Layer> layers, double frequency)
-    : wavenumber_(kTwoPi * frequency / kSpeedOfLight) {
+LayerStack::LayerStack(std::span<const Layer> layers, double frequency) : wavenumber_(kTwoPi * frequency / kSpeedOfLight) {
   for (const Layer& layer : layers) {
     const double loss = layer.conductivity / (kTwoPi * frequency * kVacuumPermittivity);
     slices_.push_back({layer.permittivity - Complex(0.0, loss), wavenumber_ * layer.thickness});
@@ -50,8 +49,8 @@ LayerStack::Joined LayerStack::joined(double cos_incidence) const {
   Side behind = air;
   Complex through = 1.0;  // the layer that lies before `behind`
   for (size_t k = slices_.size() + 1; k-- > 0;) {
-    const Side before = k == 0 ? air : Side{slices_[k - 1].permittivity,
-                                            transmitted_cosine(slices_[k - 1].permittivity, cos_incidence)};
+    const Side before =
+        k == 0 ? air : Side{slices_[k - 1].permittivity, transmitted_cosine(slices_[k - 1].permittivity, cos_incidence)};
     const Interface at = reflection_between(before, behind);
     join(at.te, through, out.reflection.te, out.transmission.te);
     join(at.tm, through, out.reflection.tm, out.transmission.tm);
@@ -87,6 +86,12 @@ double LayerStack::offset(double cos_incidence) const {
     if (inside > 0.0) across += slice.phase / wavenumber_ * sine * (1.0 - cos_incidence / inside);
   }
   return across;
+}
+
+double LayerStack::most_phase() const {
+  double phase = 0.0;
+  for (const Slice& slice : slices_) phase += 2.0 * slice.phase * std::max(1.0, std::sqrt(std::abs(slice.permittivity)));
+  return phase;
 }
 
 }  // namespace echopath

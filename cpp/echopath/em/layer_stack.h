@@ -33,6 +33,8 @@ class LayerStack {
   // Returns by how much a ray leaves the stack beside the straight line, in m across the ray: the sum of what its layers
   // refract. It is positive toward the foot of the normal at the point of entry.
   double offset(double cos_incidence) const;
+  // Returns the phase in rad of a wave that runs to and fro within all layers at normal incidence.
+  double most_phase() const;
 
  private:
   struct Slice {

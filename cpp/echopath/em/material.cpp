@@ -20,8 +20,7 @@ void validate_permittivity(const std::complex<double>& permittivity) {
 void validate_layers(const Material& material) {
   require(material.layers.size() <= kMostLayers, "layers", "must be at most 64", material.layers.size());
   for (const Layer& layer : material.layers) {
-    require(std::isfinite(layer.thickness) && layer.thickness > 0, "thickness", "of a layer must be > 0 m",
-            layer.thickness);
+    require(std::isfinite(layer.thickness) && layer.thickness > 0, "thickness", "of a layer must be > 0 m", layer.thickness);
     validate_permittivity(layer.permittivity);
     require(std::isfinite(layer.conductivity) && layer.conductivity >= 0, "conductivity", "must be >= 0 S/m",
             layer.conductivity);

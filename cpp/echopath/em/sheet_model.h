@@ -13,9 +13,9 @@ namespace echopath {
 
 // Holds what one crossing does to the wave, in both modes.
 struct SheetPassage {
-  std::complex<double> te, tm;                 // over free space
-  double te_delay = 0.0, tm_delay = 0.0;       // m, longer than free space
-  double offset = 0.0;                         // m, across the ray, toward the foot of the normal at the point of entry
+  std::complex<double> te, tm;            // over free space
+  double te_delay = 0.0, tm_delay = 0.0;  // m, longer than free space
+  double offset = 0.0;                    // m, across the ray, toward the foot of the normal at the point of entry
 };
 
 class SheetModel {
@@ -24,6 +24,9 @@ class SheetModel {
   SheetModel(const Material& material, double frequency);
   // cos_incidence in [0, 1] is taken from the normal, of either side: both have the same passage.
   SheetPassage passage(double cos_incidence) const;
+  // Returns the phase in rad that a wave turns by within the layers and back, straight through: about the rate at which a
+  // passage changes with the cosine.
+  double most_phase() const { return at_.most_phase(); }
 
  private:
   LayerStack at_, below_, above_;  // at the frequency, and at two frequencies about it

@@ -66,9 +66,9 @@ class SurfaceModel {
   DiffuseLobe lobe_;
   SurfaceResponse constant_;  // the part that does not depend on the wave
   bool is_dielectric_;
-  std::complex<double> permittivity_ = 1.0;  // relative, with the conductivity
+  std::complex<double> permittivity_ = 1.0;   // relative, with the conductivity
   std::shared_ptr<const LayerStack> layers_;  // of a sheet, as the wave meets them
-  double wavenumber_height_ = 0.0;           // rad, k sigma_h; 0 for a smooth surface or a constant share that scatters
+  double wavenumber_height_ = 0.0;            // rad, k sigma_h; 0 for a smooth surface or a constant share that scatters
 };
 
 }  // namespace echopath

@@ -115,7 +115,7 @@ def _passed_power(case: Case, sheets) -> str:
     frequency = case.radar.waveform.start_frequency
     shares = [sheet_coefficients(one, frequency=frequency, incidence=0.0).passed_power()[0] for one in materials]
     levels = ", ".join(f"{10.0 * math.log10(max(share, 1e-30)):.1f} dB" for share in shares)
-    return f"{levels} of the power pass{'es' * (len(shares) == 1)} at normal incidence"
+    return f"at normal incidence the power that passes is {levels}"
 
 
 def _found_passes(paths) -> str:

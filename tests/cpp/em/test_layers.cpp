@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "echopath/base/constants.h"
-#include "echopath/em/sheet_model.h"
+#include "echopath/em/sheet_table.h"
 #include "echopath/em/surface_response.h"
 
 namespace echopath::test_layers {
@@ -19,7 +19,8 @@ constexpr double kDifference = 1e-6;  // m, of delays by finite differences of a
 const double kWavenumber = kTwoPi * kFrequency / kSpeedOfLight;
 const std::vector<double> kCosines = {1.0, 0.9, 0.6, 0.3, 0.05, 0.001};
 const std::vector<Layer> kPane = {{0.004, Complex(6.3, -0.4)}};
-const std::vector<Layer> kStack = {{0.0001, Complex(9.0, -0.5)}, {0.003, Complex(2.3, 0.0)}, {0.002, Complex(1.2, -0.02), 0.4}};
+const std::vector<Layer> kStack = {
+    {0.0001, Complex(9.0, -0.5)}, {0.003, Complex(2.3, 0.0)}, {0.002, Complex(1.2, -0.02), 0.4}};
 const std::vector<Layer> kLossless = {{0.0002, 7.0}, {0.003, 2.3}, {0.0011, 4.0}};
 
 struct Pair {
@@ -29,7 +30,8 @@ struct Pair {
 // Airy 1833 for one slab: the sum of a geometric series over the bounces between both faces.
 Pair airy(const Layer& slab, double cosine, bool is_te) {
   const Complex q = std::sqrt(slab.permittivity - (1.0 - cosine * cosine));
-  const Complex face = is_te ? (cosine - q) / (cosine + q) : (slab.permittivity * cosine - q) / (slab.permittivity * cosine + q);
+  const Complex face =
+      is_te ? (cosine - q) / (cosine + q) : (slab.permittivity * cosine - q) / (slab.permittivity * cosine + q);
   const Complex through = std::exp(Complex(0.0, -kWavenumber * slab.thickness) * q);
   const Complex sum = 1.0 - face * face * through * through;
   return {face * (1.0 - through * through) / sum, (1.0 - face * face) * through / sum};
@@ -39,12 +41,11 @@ Pair airy(const Layer& slab, double cosine, bool is_te) {
 Pair by_matrices(const std::vector<Layer>& layers, double cosine, bool is_te) {
   std::array<Complex, 4> all = {1.0, 0.0, 0.0, 1.0};
   for (const Layer& layer : layers) {
-    const Complex eps =
-        layer.permittivity - Complex(0.0, layer.conductivity / (kTwoPi * kFrequency * kVacuumPermittivity));
+    const Complex eps = layer.permittivity - Complex(0.0, layer.conductivity / (kTwoPi * kFrequency * kVacuumPermittivity));
     const Complex q = std::sqrt(eps - (1.0 - cosine * cosine)), admittance = is_te ? q : eps / q;
     const Complex phase = kWavenumber * layer.thickness * q, c = std::cos(phase), s = Complex(0.0, 1.0) * std::sin(phase);
-    all = {all[0] * c + all[1] * s * admittance, all[0] * s / admittance + all[1] * c,
-           all[2] * c + all[3] * s * admittance, all[2] * s / admittance + all[3] * c};
+    all = {all[0] * c + all[1] * s * admittance, all[0] * s / admittance + all[1] * c, all[2] * c + all[3] * s * admittance,
+           all[2] * s / admittance + all[3] * c};
   }
   const double outside = is_te ? cosine : 1.0 / cosine;
   const Complex electric = all[0] + all[1] * outside, magnetic = all[2] + all[3] * outside;
@@ -129,7 +130,8 @@ TEST(SheetModel, PhaseOfTheStraightLegIsThatOfTheBentRay) {
     double low = 0.0, high = std::sin(angle) + 0.1;  // of the bent ray outside
     for (int step = 0; step < 200; ++step) {
       const double sine = 0.5 * (low + high), cosine = std::sqrt(1.0 - sine * sine);
-      const double inside = sine / index, found = (ahead - thickness) * sine / cosine + thickness * inside / std::sqrt(1.0 - inside * inside);
+      const double inside = sine / index,
+                   found = (ahead - thickness) * sine / cosine + thickness * inside / std::sqrt(1.0 - inside * inside);
       (found < across ? low : high) = sine;
     }
     const double outside = std::sqrt(1.0 - low * low), within = std::sqrt(1.0 - low * low / (index * index));
@@ -160,12 +162,26 @@ TEST(SheetModel, DelayIsThatOfTheSlowerWave) {
   EXPECT_NEAR(passage.te_delay, 0.005, 0.002);
 }
 
+TEST(SheetTable, AgreesWithTheModelBetweenItsRows) {
+  Material sheet;
+  sheet.layers = {{0.0125, Complex(2.7, -0.1)}, {0.075, 1.0}, {0.0125, Complex(2.7, -0.1)}};  // the walls of a room
+  const SheetModel model(sheet, kFrequency);
+  const SheetTable table(model);
+  double worst = 0.0;
+  for (double cosine = 0.0; cosine <= 1.0; cosine += 0.000731) {
+    const SheetPassage expected = model.passage(cosine), found = table.passage(cosine);
+    worst = std::max({worst, std::abs(found.te - expected.te), std::abs(found.tm - expected.tm)});
+  }
+  EXPECT_LT(worst, 1e-8);
+  EXPECT_LT(std::abs(table.passage(1.0).te - model.passage(1.0).te), kRounding);
+}
+
 TEST(SheetModel, SharesOfModesFollowThePolarisation) {
   const Vec3 normal = Vec3::UnitX(), level = Vec3(0.8, 0.6, 0.0), steep = Vec3(0.8, 0.0, 0.6);
   EXPECT_NEAR(te_share(Vec3::UnitZ(), level, normal), 1.0, kRounding);
   EXPECT_NEAR(te_share(Vec3::UnitZ(), steep, normal), 0.0, kRounding);
-  EXPECT_NEAR(te_share(Vec3(0.0, 1.0, 1.0), Vec3(0.8, 0.36, 0.48), normal), te_share(Vec3(0.0, -1.0, -1.0), Vec3(0.8, 0.36, 0.48), normal),
-              kRounding);
+  EXPECT_NEAR(te_share(Vec3(0.0, 1.0, 1.0), Vec3(0.8, 0.36, 0.48), normal),
+              te_share(Vec3(0.0, -1.0, -1.0), Vec3(0.8, 0.36, 0.48), normal), kRounding);
   EXPECT_EQ(te_share(Vec3::UnitZ(), normal, normal), 1.0);
 }
 

@@ -16,7 +16,7 @@ constexpr double kLeast = 1e-300;     // stands for a direction's part that is z
 constexpr size_t kMostBoxes = 32;     // of meshes; one box holds more of them
 constexpr size_t kFewVertices = 512;  // are as good as the corners of boxes
 constexpr auto kHiding = static_cast<uint32_t>(Sees::kOpaque);  // sheets let waves pass
-constexpr int kFewTurns = 6;          // of strips: a stratum a little too wide costs fewer looks than the narrowest one
+constexpr int kFewTurns = 6;  // of strips: a stratum a little too wide costs fewer looks than the narrowest one
 
 bool is_any(const EmbreeScene::Stretches& stretches) {
   for (int lane = 0; lane < kPacketSize; ++lane) {
@@ -124,7 +124,7 @@ void ObjectView::look(const LaneVectors& directions, int count, Seen& seen) cons
       continue;
     }
     if (has_sheets) continue;  // one of its sheets may be nearer
-    in_box.end[lane] = 0.0;  // the object itself, or nothing
+    in_box.end[lane] = 0.0;    // the object itself, or nothing
     if (first.mesh_id[k] == kNothing) continue;
     seen.surface[k] = object_;
     seen.mesh[k] = first.mesh_id[k];

@@ -10,7 +10,8 @@
 namespace echopath {
 namespace {
 
-constexpr double kBeside = 0.5;  // of a triangle's edges: so far beside it a curved surface is followed
+constexpr size_t kManyPasses = 4096;  // as many as it costs to make a table
+constexpr double kBeside = 0.5;       // of a triangle's edges: so far beside it a curved surface is followed
 
 }  // namespace
 
@@ -38,6 +39,7 @@ class SheetPassages::OfPath {
     }
     posed_.resize(hits_.size());
     for (const Pass& pass : passes_) sheets_.push_back(shared.preparer_.hit(pass.hit, normals_));
+    posed_sheets_.resize(sheets_.size());
     for (first_material_ = 0; first_material_ < count_ && is_image_[at(first_material_)];) ++first_material_;
     for (last_material_ = count_ - 1; last_material_ >= 0 && is_image_[at(last_material_)];) --last_material_;
   }
@@ -45,6 +47,7 @@ class SheetPassages::OfPath {
   void pose(const PosedScene& scene) {
     scene_ = &scene;
     for (size_t k = 0; k < hits_.size(); ++k) pose_hit(hits_[k], scene, false, posed_[k]);
+    for (size_t k = 0; k < sheets_.size(); ++k) pose_facet(sheets_[k], scene, posed_sheets_[k]);
     const Ends nowhere{Vec3::Zero(), Vec3::Zero()};
     start_.clear();
     end_.clear();
@@ -89,8 +92,8 @@ class SheetPassages::OfPath {
     for (size_t k = begin; k < end; ++k) {
       const Vec3 normal = normal_at(k, from, direction);
       const double cosine = std::min(1.0, std::abs(direction.dot(normal)));
-      const SheetPassage passage = shared_.models_.at(sheets_[k].mesh_id).passage(cosine);
-      const SheetFactor factor = sheet_factor(passage, te_share_of(leg, direction, normal));
+      const SheetPassage passage = shared_.of_mesh_[sheets_[k].mesh_id]->passage(cosine);
+      const SheetFactor factor = sheet_factor(passage, te_share(shared_.polarization_, direction, normal));
       all = all * Passed{factor.field, factor.delay};
       offset += passage.offset * toward_foot(direction, normal);
     }
@@ -99,15 +102,10 @@ class SheetPassages::OfPath {
     return all;
   }
 
-  // The matrix of a polarised path holds both modes at its ends, over the TE mode.
-  double te_share_of(int leg, const Vec3& direction, const Vec3& normal) const {
-    if (!paths_.jones.empty() && (leg == 0 || leg == count_)) return 1.0;
-    return te_share(shared_.polarization_, direction, normal);
-  }
-
   // Returns the unit vector across the ray that leads toward the normal through its point of entry.
   static Vec3 toward_foot(const Vec3& direction, const Vec3& normal) {
-    const Vec3 ahead = direction.dot(normal) > 0.0 ? normal : Vec3(-normal), across = ahead - ahead.dot(direction) * direction;
+    const Vec3 ahead = direction.dot(normal) > 0.0 ? normal : Vec3(-normal),
+               across = ahead - ahead.dot(direction) * direction;
     const double size = across.norm();
     return size > 1e-9 ? Vec3(across / size) : Vec3(Vec3::Zero());
   }
@@ -115,8 +113,7 @@ class SheetPassages::OfPath {
   // Returns the normal of the sheet where a line crosses it.
   Vec3 normal_at(size_t pass, const Vec3& from, const Vec3& direction) const {
     const LocalHit& sheet = sheets_[pass];
-    PosedHit posed;
-    pose_facet(sheet, *scene_, posed);
+    PosedHit posed = posed_sheets_[pass];
     if (!sheet.normals) return posed.normal;
     const Vec3 across = posed.edge_u.cross(posed.edge_v);
     const double slope = direction.dot(across);
@@ -164,7 +161,7 @@ class SheetPassages::OfPath {
   std::deque<std::array<Vec3, 3>> normals_;
   std::vector<LocalHit> hits_, sheets_;
   std::vector<bool> is_image_;
-  std::vector<PosedHit> posed_;
+  std::vector<PosedHit> posed_, posed_sheets_;
   const PosedScene* scene_ = nullptr;
   std::vector<Passed> start_, end_;  // by antenna
   Passed inner_;
@@ -175,9 +172,13 @@ SheetPassages::SheetPassages(const PathPreparer& preparer, double wavelength)
   const Paths& paths = preparer.paths();
   if (paths.passes.empty()) return;
   polarization_ = sheet_polarization(paths);
-  for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) {
-    const Material& material = *paths.scene->node_of(id).material;
-    if (material.is_sheet()) models_.emplace(id, SheetModel(material, kSpeedOfLight / wavelength));
+  of_mesh_.resize(paths.scene->meshes().size());
+  for (const Pass& pass : paths.passes) {
+    std::optional<Sheet>& sheet = of_mesh_[pass.hit.mesh_id];
+    if (sheet) continue;
+    const SheetModel model(*paths.scene->node_of(pass.hit.mesh_id).material, kSpeedOfLight / wavelength);
+    sheet = Sheet{model, std::nullopt};
+    if (paths.passes.size() > kManyPasses) sheet->table.emplace(model);
   }
 }
 

@@ -75,7 +75,8 @@ void PathGrids::first(int64_t begin, std::span<uint8_t> first) const {
         needed = std::max(needed, of_mesh[hits[std::min(k + step, num_hits - 1)].mesh_id]);
     }
     if (!paths_.passes.empty()) {
-      for (const Pass& pass : paths_.passes_of(static_cast<size_t>(path))) needed = std::max(needed, of_mesh[pass.hit.mesh_id]);
+      for (const Pass& pass : paths_.passes_of(static_cast<size_t>(path)))
+        needed = std::max(needed, of_mesh[pass.hit.mesh_id]);
     }
     first[i] = static_cast<uint8_t>(needed);
   }

@@ -13,7 +13,8 @@ bool EmbreeMeshes::Source::is_of(const Scene& scene, const PosedScene& pose, uin
   const Node& node = scene.node_of(mesh_id);
   return mesh == node.mesh && deformation == node.deformation && (!deformation || time == pose.time()) &&
          translation == pose.world_translation(mesh_id) && linear == pose.linear(mesh_id) && smooth == node.smooth &&
-         is_sheet == node.material->is_sheet() && object == scene.meshes()[mesh_id].object && is_moving == scene.is_moving(mesh_id);
+         is_sheet == node.material->is_sheet() && object == scene.meshes()[mesh_id].object &&
+         is_moving == scene.is_moving(mesh_id);
 }
 
 EmbreeMeshes::Source EmbreeMeshes::source_of(const Scene& scene, const PosedScene& pose, uint32_t mesh_id) {

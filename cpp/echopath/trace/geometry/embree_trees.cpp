@@ -15,7 +15,8 @@ constexpr double kMaxCover = 1.5;
 
 bool is_small(const EmbreeMeshes& meshes, uint32_t mesh_id) {
   const size_t num_triangles = meshes.triangles(mesh_id).size();
-  return !meshes.is_moving(mesh_id) && !meshes.is_sheet(mesh_id) && num_triangles > 0 && num_triangles <= SmallMesh::kMostTriangles;
+  return !meshes.is_moving(mesh_id) && !meshes.is_sheet(mesh_id) && num_triangles > 0 &&
+         num_triangles <= SmallMesh::kMostTriangles;
 }
 
 std::vector<SmallMesh> small_meshes(const EmbreeMeshes& meshes, const std::vector<uint8_t>& is_one) {

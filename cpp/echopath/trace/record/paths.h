@@ -32,7 +32,7 @@ struct Hit {  // 16 bytes
 static_assert(sizeof(Hit) == 16);
 
 // Names where a path goes through a sheet (Material::layers), which is no bounce.
-struct Pass {  // 20 bytes
+struct Pass {    // 20 bytes
   Hit hit;       // at the trace; the point of passing is met anew at other times and for other antennas
   uint32_t leg;  // of the path on which it lies: leg k ends at hit k, the last one at the receiver
 };
@@ -82,8 +82,8 @@ struct TraceStatistics {
   int64_t num_false_hits = 0;     // Embree hits that double precision did not confirm
   int64_t num_unaimed = 0;        // objects and images that no rays aim at, because there are too many of them
   int64_t num_unfollowed_beams = 0;  // sequences of mirrors whose further mirrors were not looked for (kMaxFrusta)
-  int64_t num_unsplit_rays = 0;    // rays that only went on at a sheet, because they had split at too many before
-  int64_t num_stopped_passes = 0;  // legs of paths that are taken to end at a sheet, behind kMostPasses others
+  int64_t num_unsplit_rays = 0;      // rays that only went on at a sheet, because they had split at too many before
+  int64_t num_stopped_passes = 0;    // legs of paths that are taken to end at a sheet, behind kMostPasses others
 };
 
 // Holds the values to which a path's amplitude and length refer.

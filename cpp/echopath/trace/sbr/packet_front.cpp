@@ -99,7 +99,8 @@ void PacketFront::draw_samples(FirstHits& first) const {
   const uint64_t seed = context_.settings.seed;
   if (!first.points) return first.samples.draw(seed, first.index(0), first.count, first.places.batches.data());
   std::array<int64_t, kPacketSize> keys;
-  for (int lane = 0; lane < kPacketSize; ++lane) keys[static_cast<size_t>(lane)] = first.index(std::min(lane, first.count - 1));
+  for (int lane = 0; lane < kPacketSize; ++lane)
+    keys[static_cast<size_t>(lane)] = first.index(std::min(lane, first.count - 1));
   first.samples.draw_by_keys(seed, keys.data(), first.count);
 }
 

@@ -12,6 +12,7 @@ namespace {
 
 constexpr int64_t kPathsTogether = 1 << 12;
 constexpr double kLiftAbsolute = 1e-6, kLiftRelative = 0x1.0p-21;  // m, and of the coordinates: single precision
+constexpr double kLeastSine = 1e-9;                                // of incidence: both modes pass alike below
 
 using Matrix2 = Eigen::Matrix2cd;
 
@@ -32,7 +33,8 @@ class SheetScene {
 
   // Finds the next sheet at `begin` (m) or farther along the ray, with its own mesh ID.
   bool meets(const Vec3& from, const Vec3& direction, double begin, RayHit& met) const {
-    if (geometry_.intersect_from_surface(from, direction, met, Sees::kSheets, begin) != EmbreeScene::Verdict::kHit) return false;
+    if (geometry_.intersect_from_surface(from, direction, met, Sees::kSheets, begin) != EmbreeScene::Verdict::kHit)
+      return false;
     met.hit.mesh_id = ids_[met.hit.mesh_id];
     return true;
   }
@@ -54,7 +56,8 @@ struct PassBlock {
 class PassFinder {
  public:
   PassFinder(Paths& paths, const SheetScene& sheets)
-      : paths_(paths), sheets_(sheets), pose_(*paths.scene, paths.frame.trace_time), origin_(paths.frame.transmitter) {
+      : paths_(paths), sheets_(sheets), pose_(*paths.scene, paths.frame.trace_time), origin_(paths.frame.transmitter),
+        polarization_(sheet_polarization(paths)) {
     for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) {
       const Material& material = *paths.scene->node_of(id).material;
       if (material.is_sheet()) models_.emplace(id, SheetModel(material, paths.radar.waveform.start_frequency));
@@ -73,8 +76,8 @@ class PassFinder {
 
  private:
   struct LegEnd {
-    Vec3 at;       // relative to the transmitter
-    Vec3 normal;   // of the sheet on which it lies, else zero
+    Vec3 at;      // relative to the transmitter
+    Vec3 normal;  // of the sheet on which it lies, else zero
   };
 
   LegEnd end_of(const Hit& hit) const {
@@ -122,16 +125,19 @@ class PassFinder {
     }
   }
 
-  // Puts the passage of both modes, over that of the TE mode, to the end of the matrix at which the leg lies.
+  // Puts the passage of both modes, over what they make of the first transmitter's polarisation, to the end of the matrix at
+  // which the leg lies.
   void polarize(size_t path, const LegPlace& leg, const Vec3& direction, const RayHit& met) const {
     const SheetPassage passage = models_.at(met.hit.mesh_id).passage(std::min(1.0, std::abs(direction.dot(met.normal))));
     const bool is_reversed = (paths_.flags[path] & kReversedPath) != 0;
     const TransverseBasis basis = transverse_basis(is_reversed ? Vec3(-direction) : direction);
     const Vec3 across = direction.cross(met.normal);
-    if (across.norm() < 1e-9 || passage.te == 0.0) return;
+    const std::complex<double> co_polar = sheet_factor(passage, te_share(polarization_, direction, met.normal)).field;
+    if (across.norm() < kLeastSine || co_polar == 0.0) return;
     const Vec3 te = across.normalized();
     const Eigen::Vector2cd axis(te.dot(basis.horizontal), te.dot(basis.vertical));
-    const Matrix2 of_te = axis * axis.transpose(), through = of_te + passage.tm / passage.te * (Matrix2::Identity() - of_te);
+    const Matrix2 of_te = axis * axis.transpose(), of_tm = Matrix2::Identity() - of_te;
+    const Matrix2 through = passage.te / co_polar * of_te + passage.tm / co_polar * of_tm;
     JonesMatrix& entries = paths_.jones[path];
     Matrix2 matrix;
     for (int i = 0; i < 4; ++i) matrix(i / 2, i % 2) = std::complex<double>(entries[static_cast<size_t>(i)]);
@@ -143,7 +149,7 @@ class PassFinder {
   Paths& paths_;  // each task changes its own paths
   const SheetScene& sheets_;
   PosedScene pose_;
-  Vec3 origin_;
+  Vec3 origin_, polarization_;
   std::map<uint32_t, SheetModel> models_;  // by mesh ID
 };
 

@@ -72,8 +72,7 @@ FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, CheckTimes times,
     : paths_(paths), times_(std::move(times)), probe_radar_(probe_radar(paths, radar)),
       first_radar_(with_first_antennas(radar)), preparer_(paths, whole_patches(*paths.scene)),
       walk_(*paths.scene, preparer_.smooth_normals()), radio_(radio_constants(paths, radar)),
-      sheets_(preparer_, radio_.wavelength), specular_(specular),
-      mesh_moves_(moving_meshes(*paths.scene)) {
+      sheets_(preparer_, radio_.wavelength), specular_(specular), mesh_moves_(moving_meshes(*paths.scene)) {
   sheets_move_ = std::any_of(paths.passes.begin(), paths.passes.end(),
                              [&](const Pass& pass) { return mesh_moves_[pass.hit.mesh_id] != 0; });
   is_geometry_still_ = std::count(mesh_moves_.begin(), mesh_moves_.end(), 1) == 0;

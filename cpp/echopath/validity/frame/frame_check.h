@@ -86,7 +86,7 @@ class FrameCheck {
   RadioConstants radio_;
   SheetPassages sheets_;
   SpecularPoints specular_;
-  bool sheets_move_ = false;  // that paths go through
+  bool sheets_move_ = false;         // that paths go through
   std::vector<uint8_t> mesh_moves_;  // by mesh ID
   bool is_geometry_still_, is_still_;
   Vec3 origin_;

@@ -1,5 +1,6 @@
 #include "echopath/validity/legs/leg_shadows.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace echopath {
@@ -93,6 +94,7 @@ bool LegTester::place_images(const Vec3& from, int first, int last, const Vec3& 
 // `image` is the mirror on which `to` should lie, -1 for none. For a leg to a mirror, what it meets first is asked for.
 bool LegTester::is_blocked(const Vec3& from, const Vec3& to, int image) {
   if (image < 0) return geometry_.occluded(from, to);
+  if (geometry_.is_sheet(path_.hits[image].mesh_id)) return is_blocked_before_sheet(from, to, image);
   const double length = (to - from).norm();
   RayHit met;
   const EmbreeScene::Verdict verdict = geometry_.intersect(from, (to - from) / length, met);
@@ -104,6 +106,19 @@ bool LegTester::is_blocked(const Vec3& from, const Vec3& to, int image) {
   if (is_there && std::abs(met.distance - length) < slack) return false;
   if (is_there && met.distance < length) return true;
   shadows_.off_mirror |= uint64_t{1} << image;
+  return false;
+}
+
+// Looks at the sheet from right before it, because others may lie on the way.
+bool LegTester::is_blocked_before_sheet(const Vec3& from, const Vec3& to, int image) {
+  const double length = (to - from).norm(), slack = kOnMirrorAbsolute + kOnMirrorRelative * length;
+  const Vec3 direction = (to - from) / length, start = from + std::max(0.0, length - 2.0 * slack) * direction;
+  if (geometry_.occluded(from, start)) return true;
+  RayHit met;
+  const bool is_there =
+      geometry_.intersect_from_surface(start, direction, met, Sees::kSheets) == EmbreeScene::Verdict::kHit &&
+      met.hit.mesh_id == path_.hits[image].mesh_id && met.distance < 4.0 * slack;
+  if (!is_there) shadows_.off_mirror |= uint64_t{1} << image;
   return false;
 }
 

@@ -47,6 +47,7 @@ class LegTester {
   Vec3 lifted_end(const End& end, const Vec3& point, const Vec3& toward) const;
   Vec3 lifted_image(int image, int first, int last, const Vec3& toward) const;
   bool is_blocked(const Vec3& from, const Vec3& to, int image);
+  bool is_blocked_before_sheet(const Vec3& from, const Vec3& to, int image);
   bool is_known_blocked(int first, int last) const;
   void block(int leg);
 

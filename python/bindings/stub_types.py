@@ -41,6 +41,7 @@ RETURNS = {
     ("Paths", "amplitudes"): COMPLEX, ("Paths", "lengths"): REAL,
     ("Paths", "partition"): "dict[str, Paths]", ("Paths", "points"): REAL, ("Paths", "amplitude"): COMPLEX,
     ("Paths", "curved_cell"): "numpy.typing.NDArray[numpy.float32]", ("Paths", "effects"): "list[Effect]",
+    ("Material", "layers"): "tuple[Layer, ...]", ("Paths", "passes"): "numpy.typing.NDArray[numpy.void]",
     ("Paths", "hits"): "numpy.typing.NDArray[numpy.void]", ("Paths", "jones"): "numpy.typing.NDArray[numpy.complex64]",
     ("Paths", "power"): REAL,
     ("Validity", "_repr_html_"): "str", ("Validity", "objects"): "dict[str, ObjectValidity]",

@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 
 from . import _core
-from .checks import an, array, checked, flag, positive
+from .checks import an, anything, array, checked, flag, positive, real
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -28,8 +28,13 @@ class SheetCoefficients:
     te_delay: np.ndarray
     tm_delay: np.ndarray
 
+    @checked(self=anything, te_share=real(0.0, 1.0))
     def passed_power(self, te_share: float = 0.5) -> np.ndarray:
-        """Share of the power that passes [N], for a wave of which `te_share` in [0, 1] of the power is TE."""
+        """Share of the power that passes [N].
+
+        te_share: of the wave's power that is TE, in [0, 1]
+        Raises TypeError or ValueError naming the argument.
+        """
         te, tm = np.abs(self.te_transmission) ** 2, np.abs(self.tm_transmission) ** 2
         return te_share * te + (1.0 - te_share) * tm
 

@@ -6,7 +6,7 @@
 namespace echopath {
 namespace {
 
-constexpr double kTurn = 0.02;  // rad, of the phases within the sheet from row to row
+constexpr double kTurn = 0.01;  // rad, of the phases within the sheet from row to row
 constexpr double kFewestRows = 512.0, kMostRows = 65536.0;
 
 }  // namespace

@@ -7,8 +7,8 @@
 
 namespace echopath {
 
-// Interpolates by cubics over the cosine of incidence, in steps in which phases within the sheet turn by 0.02 rad: it
-// differs from the model by some 1e-9 of the field.
+// Interpolates by cubics over the cosine of incidence, in steps in which phases within the sheet turn by 0.01 rad: it
+// differs from the model by less than 1e-6 of the field.
 class SheetTable {
  public:
   explicit SheetTable(const SheetModel& model);

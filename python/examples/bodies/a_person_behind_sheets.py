@@ -2,7 +2,7 @@
 A person behind sheets
 ======================
 
-A person stands still 8 m ahead, behind panes, walls and cloth that are turned from 0 to 75 degrees. Waves pass each sheet on
+A person is 8 m ahead, behind panes, walls and cloth that are turned from 0 to 75 degrees. Waves pass each sheet on
 the way out and on the way back: lines are Airy's formula, dots are traced. With vertical polarisation and an upright sheet, the
 electric field lies across the plane of incidence (TE).
 """
@@ -21,7 +21,7 @@ sheets = {"glass pane, 4 mm": "glass_pane", "painted bumper, 3 mm": "painted_bum
 def level(material, turn):
     """Power of the straight echo of the person in dBW."""
     scene = ep.Scene()
-    scene.add(ep.actors.pedestrian(speed=0.0), name="person", position=(8, 0, 0), yaw=np.pi)
+    scene.add(ep.actors.pedestrian(), name="person", position=(8, 0, 0), yaw=np.pi)
     if material is not None:
         scene.add(ep.actors.plate(12, 6), name="sheet", material=material, position=(4, 0, 0), yaw=turn)
     paths = ep.trace(scene, radar, num_rays=30_000, max_bounces=1)
@@ -29,7 +29,7 @@ def level(material, turn):
 
 
 # %%
-# Thin glass passes least: between its two faces waves add up or cancel, by thickness, angle and frequency.
+# Between faces waves add up or cancel, by thickness, angle and frequency: the two boards of a wall do so every few degrees.
 free = level(None, 0.0)
 turns = np.radians([0, 15, 30, 45, 60, 75])
 angles = np.radians(np.linspace(0, 80, 401))
@@ -41,6 +41,6 @@ for name, key in sheets.items():
     axes.plot(np.degrees(turns), found, "o", color=line.get_color())
 axes.set(xlabel="angle of incidence (degrees)", ylabel="echo of the person over that in the open (dB)", ylim=(-40, 1),
          title="Lines: both ways through the sheet by Airy's formula. Dots: traced")
-axes.legend(loc="lower left")
+axes.legend(loc=(0.02, 0.37))
 axes.grid(alpha=0.4)
 plt.show()

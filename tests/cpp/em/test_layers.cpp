@@ -15,6 +15,8 @@ namespace {
 using Complex = std::complex<double>;
 constexpr double kFrequency = 77e9;  // Hz
 constexpr double kRounding = 1e-12;
+constexpr double kGrazingRounding = 1e-10;  // of differences of cosines as small as 1e-3
+constexpr double kInterpolated = 1e-6;
 constexpr double kDifference = 1e-6;  // m, of delays by finite differences of a phase
 const double kWavenumber = kTwoPi * kFrequency / kSpeedOfLight;
 const std::vector<double> kCosines = {1.0, 0.9, 0.6, 0.3, 0.05, 0.001};
@@ -109,9 +111,9 @@ TEST(LayerStack, HalfAWavelengthIsAWindow) {
 TEST(LayerStack, AirChangesNothing) {
   const LayerStack stack(std::vector<Layer>{{0.3, 1.0}}, kFrequency);
   for (const double cosine : kCosines) {
-    expect_near(stack.over_free_space(cosine).te, 1.0);
-    expect_near(stack.reflection(cosine).tm, 0.0);
-    EXPECT_NEAR(stack.offset(cosine), 0.0, kRounding);
+    EXPECT_LT(std::abs(stack.over_free_space(cosine).te - 1.0), kGrazingRounding);
+    EXPECT_LT(std::abs(stack.reflection(cosine).tm), kGrazingRounding);
+    EXPECT_NEAR(stack.offset(cosine), 0.0, kGrazingRounding);
   }
 }
 
@@ -172,7 +174,7 @@ TEST(SheetTable, AgreesWithTheModelBetweenItsRows) {
     const SheetPassage expected = model.passage(cosine), found = table.passage(cosine);
     worst = std::max({worst, std::abs(found.te - expected.te), std::abs(found.tm - expected.tm)});
   }
-  EXPECT_LT(worst, 1e-8);
+  EXPECT_LT(worst, kInterpolated);
   EXPECT_LT(std::abs(table.passage(1.0).te - model.passage(1.0).te), kRounding);
 }
 

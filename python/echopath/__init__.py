@@ -49,9 +49,8 @@ from .resolution import Interval, Unresolved, unresolved
 from .scene import Scene
 from .scene_file import SceneFile, load_scene
 from .scene_node import SceneNode
-from .selections import first, hits, last, num_bounces, power
-from .sensor_files import SensorConfig, load_radar, load_sensor, save_raw
 from .selections import first, hits, last, num_bounces, passes, power
+from .sensor_files import SensorConfig, load_radar, load_sensor, save_raw
 from .sequence import SavedFrame, Sequence, StoredSequence, load_sequence
 from .settings import LabelSettings, SignalSettings, TraceSettings
 from .sheets import SheetCoefficients, sheet_coefficients

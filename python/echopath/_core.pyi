@@ -19,7 +19,7 @@ import numpy.typing
 import os
 import typing
 bench: types.ModuleType
-__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Curve', 'CurveMotion', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'LinearMotion', 'LiveTrace', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'MorphTargets', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'PartPass', 'Paths', 'Power', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'are_clear', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'coherent_meshes', 'coherent_share', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'load_mesh', 'load_meshes', 'load_surfaces', 'looks_for_signals', 'may_appear_in_frame', 'mean_power', 'meant_name', 'mesh_names', 'mesh_traits', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'object_sizes', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'renew', 'set_num_threads', 'share_errors', 'speed_of_light', 'strongest_part', 'synthesize', 'synthesize_echoes', 'tessellation', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'warn_of_turns', 'window']
+__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Curve', 'CurveMotion', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'Layer', 'LinearMotion', 'LiveTrace', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'MorphTargets', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'PartPass', 'Paths', 'Power', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'are_clear', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'coherent_meshes', 'coherent_share', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'load_mesh', 'load_meshes', 'load_surfaces', 'looks_for_signals', 'may_appear_in_frame', 'mean_power', 'meant_name', 'mesh_names', 'mesh_traits', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'object_sizes', 'partition_groups', 'power', 'power_and_length', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'renew', 'set_num_threads', 'share_errors', 'speed_of_light', 'strongest_part', 'synthesize', 'synthesize_echoes', 'tessellation', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'warn_of_turns', 'window']
 class Motion:
     """
     Time -> rigid transform, in the axes of the node's parent about the node's own origin.
@@ -397,6 +397,43 @@ class MorphTargets(Deformation):
         """
         Curve of [T, K]
         """
+class Layer:
+    """
+    One layer of a sheet (Material.layers). Cannot be changed.
+
+    thickness: m; permittivity: complex, relative, eps' - j eps'' (imaginary part <= 0); conductivity: S/m, adds to the
+    permittivity
+    Raises TypeError or ValueError naming the field, the rule and the value.
+    """
+    def __eq__(self, other: object) -> bool:
+        """
+        Whether the other one is made of the same values.
+        """
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
+    def __hash__(self) -> int:
+        ...
+    def __init__(self, thickness: float, permittivity: complex, conductivity: float = 0.0) -> None:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: typing.Any) -> None:
+        ...
+    @property
+    def conductivity(self) -> float:
+        """
+        S/m
+        """
+    @property
+    def permittivity(self) -> complex:
+        """
+        complex, relative
+        """
+    @property
+    def thickness(self) -> float:
+        """
+        m
+        """
 class Material:
     """
     What a surface does to a wave. Cannot be changed.
@@ -405,6 +442,7 @@ class Material:
     conductor: True for a perfect conductor
     permittivity: complex, relative, eps' - j eps'' (imaginary part <= 0)
     reflectivity: share of power in [0, 1] that is reflected at every angle
+    layers: [K] ep.Layer of a sheet, from the side of the surface's normals on, through which waves pass; `mirror` must be False
     and further
     conductivity: S/m, adds to the permittivity
     roughness_height: rms height in m (Ament), or scattering: S in [0, 1], S^2 is the diffuse share of power
@@ -431,7 +469,7 @@ class Material:
         ...
     def __hash__(self) -> int:
         ...
-    def __init__(self, *, conductor: bool = False, permittivity: complex | None = None, conductivity: float = 0.0, reflectivity: float | None = None, roughness_height: float = 0.0, scattering: float | None = None, cross_polarization: float = 0.0, mirror: bool = False, lobe_exponent: int = 0, backscatter_share: float = 0.0, backscatter_exponent: int = 0) -> None:
+    def __init__(self, *, conductor: bool = False, permittivity: complex | None = None, conductivity: float = 0.0, reflectivity: float | None = None, layers: typing.Sequence[Layer] = (), roughness_height: float = 0.0, scattering: float | None = None, cross_polarization: float = 0.0, mirror: bool = False, lobe_exponent: int = 0, backscatter_share: float = 0.0, backscatter_exponent: int = 0) -> None:
         ...
     def __repr__(self) -> str:
         ...
@@ -444,7 +482,7 @@ class Material:
         grazing: [N] rad in [0, pi/2], from the surface; frequency: Hz
         Raises TypeError or ValueError naming the argument.
         """
-    def replace(self, *, conductor: bool = ..., permittivity: complex | None = ..., conductivity: float = ..., reflectivity: float | None = ..., roughness_height: float = ..., scattering: float | None = ..., cross_polarization: float = ..., mirror: bool = ..., lobe_exponent: int = ..., backscatter_share: float = ..., backscatter_exponent: int = ...) -> Material:
+    def replace(self, *, conductor: bool = ..., permittivity: complex | None = ..., conductivity: float = ..., reflectivity: float | None = ..., layers: typing.Sequence[Layer] = ..., roughness_height: float = ..., scattering: float | None = ..., cross_polarization: float = ..., mirror: bool = ..., lobe_exponent: int = ..., backscatter_share: float = ..., backscatter_exponent: int = ...) -> Material:
         """
         A copy with other values of some arguments.
 
@@ -475,6 +513,11 @@ class Material:
     def cross_polarization(self) -> float:
         """
         K in [0, 0.5]
+        """
+    @property
+    def layers(self) -> tuple[Layer, ...]:
+        """
+        tuple [K] of ep.Layer, empty unless a sheet
         """
     @property
     def lobe_exponent(self) -> int:
@@ -2029,7 +2072,7 @@ class TraceStatistics:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
         ...
-    def __init__(self, *, num_rays: int = 0, num_queries: int = 0, num_hits: int = 0, num_paths: int = 0, num_near_antenna: int = 0, num_grazing: int = 0, num_small_mirrors: int = 0, num_false_hits: int = 0, num_unaimed: int = 0, num_unfollowed_beams: int = 0) -> None:
+    def __init__(self, *, num_rays: int = 0, num_queries: int = 0, num_hits: int = 0, num_paths: int = 0, num_near_antenna: int = 0, num_grazing: int = 0, num_small_mirrors: int = 0, num_false_hits: int = 0, num_unaimed: int = 0, num_unfollowed_beams: int = 0, num_unsplit_rays: int = 0, num_stopped_passes: int = 0) -> None:
         ...
     def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
@@ -2074,6 +2117,11 @@ class TraceStatistics:
         rays without a field ended behind an unflagged mirror of less than half its Fresnel zone
         """
     @property
+    def num_stopped_passes(self) -> int:
+        """
+        legs that are taken to end at a sheet, behind 64 others
+        """
+    @property
     def num_unaimed(self) -> int:
         """
         objects and images that no rays aim at, because there are too many of them
@@ -2082,6 +2130,11 @@ class TraceStatistics:
     def num_unfollowed_beams(self) -> int:
         """
         sequences of mirrors whose further mirrors were not looked for, for want of memory
+        """
+    @property
+    def num_unsplit_rays(self) -> int:
+        """
+        rays that only went on at a sheet, because they had split at too many before
         """
 class TraceFrame:
     """
@@ -2189,12 +2242,12 @@ class Paths:
     share hits; selections share all hits of their trace.
     """
     @staticmethod
-    def from_arrays(*, hits: ArrayLike, offsets: ArrayLike, num_bounces: ArrayLike, diffuse: ArrayLike, weight: ArrayLike, stratum: ArrayLike, batch: ArrayLike, flags: ArrayLike, curved_cell: ArrayLike | None = None, jones: ArrayLike | None = None, scene: Scene, radar: Radar, frame: TraceFrame) -> Paths:
+    def from_arrays(*, hits: ArrayLike, offsets: ArrayLike, num_bounces: ArrayLike, diffuse: ArrayLike, weight: ArrayLike, stratum: ArrayLike, batch: ArrayLike, flags: ArrayLike, curved_cell: ArrayLike | None = None, jones: ArrayLike | None = None, passes: ArrayLike | None = None, pass_offsets: ArrayLike | None = None, scene: Scene, radar: Radar, frame: TraceFrame) -> Paths:
         """
         Paths of arrays as the properties give them.
 
         hits: [H] structured; offsets, num_bounces, diffuse, weight, stratum, batch, flags: [P]; curved_cell: [P, 7] or None; jones:
-        [P, 2, 2] complex or None
+        [P, 2, 2] complex or None; passes: [N] structured and pass_offsets: [P + 1], or None
         scene, radar, frame: what they belong to
         Raises ValueError where an index leads nowhere.
         """
@@ -2349,6 +2402,16 @@ class Paths:
     def offsets(self) -> numpy.typing.NDArray[numpy.int64]:
         """
         [P] first hit
+        """
+    @property
+    def pass_offsets(self) -> numpy.typing.NDArray[numpy.int64]:
+        """
+        [P + 1] or [0]: path i has the passes pass_offsets[i] to pass_offsets[i + 1]
+        """
+    @property
+    def passes(self) -> numpy.typing.NDArray[numpy.void]:
+        """
+        [N] structured: mesh_id, triangle_id, u, v and leg of each pass through a sheet, in order of travel, path by path; leg k ends at hit k, the last one at the receiver
         """
     @property
     def power(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -3063,6 +3126,8 @@ def Isotropic(gain: float = 1.0) -> AntennaPattern:
     gain: linear, at most 1 (1.02 for rounding): without a direction to prefer it is the efficiency of the antenna
     Raises TypeError or ValueError naming the argument.
     """
+def _sheet_coefficients(material: Material, frequency: float, incidence: ArrayLike, from_behind: bool = False) -> numpy.typing.NDArray[numpy.complex128]:
+    ...
 def _wait(seconds: float, progress: typing.Any = None) -> None:
     ...
 def add_noise(cube: typing.Any, radar: Radar, *, seed: int, start_time: float) -> numpy.ndarray[typing.Any, typing.Any]:
@@ -3236,6 +3301,10 @@ def partition_groups(paths: typing.Any, parts: collections.abc.Sequence[tuple[st
     parts: [(name, selection), ...]; the first that takes a path has it
     Returns the names with "other" last, and uint32 [P], indices into them. Raises ValueError for names that are empty,
     "other" or given twice.
+    """
+def power_and_length(paths: Paths) -> tuple[typing.Any, ...]:
+    """
+    (power in W, length in m) of each path, [P], at the trace time for the first antennas.
     """
 def power_shares(power: typing.Any) -> numpy.ndarray[typing.Any, typing.Any]:
     """

@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from ..checks import Rule, array, count, flag, optional, real, refused
-from ..settings import Settings, _settings
+from ..settings import Settings, settings_class
 
 Row = tuple[float, ...]
 Table = tuple[Row, ...]
@@ -48,7 +48,7 @@ def _value(kind: type) -> Rule:
     return check
 
 
-@_settings
+@settings_class
 class PhaseNoise(Settings):
     """Phase noise of the oscillator that transmitters and mixers share, by a mask.
 
@@ -79,7 +79,7 @@ class PhaseNoise(Settings):
         return 10.0 ** (np.interp(log, np.log10(self.offsets), self.levels) / 10.0)
 
 
-@_settings
+@settings_class
 class Adc(Settings):
     """The converter of the receiver, and the amplifier before it.
 
@@ -104,7 +104,7 @@ class Adc(Settings):
         "headroom_db": real(0.0, unit="dB"), "gain_step_db": real(0.0, unit="dB"), "clock_jitter": real(0.0, unit="s")}
 
 
-@_settings
+@settings_class
 class Receiver(Settings):
     """Faults of a receiver; what is not given is ideal. `echopath.receiver` has the order of the stages.
 

@@ -41,7 +41,7 @@ thickness: m; permittivity: complex, relative, eps' - j eps'' (imaginary part <=
 permittivity
 Raises TypeError or ValueError naming the field, the rule and the value.)");
   define_init(type, &layer, py::arg("thickness"), py::arg("permittivity"), py::arg("conductivity") = 0.0)
-      .def_readonly("thickness", &Layer::thickness, "m")
+      .def_readonly("thickness", &Layer::thickness, "m, across the layer")
       .def_readonly("permittivity", &Layer::permittivity, "complex, relative")
       .def_readonly("conductivity", &Layer::conductivity, "S/m")
       .def("__repr__", &layer_text);

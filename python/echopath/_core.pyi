@@ -432,7 +432,7 @@ class Layer:
     @property
     def thickness(self) -> float:
         """
-        m
+        m, across the layer
         """
 class Material:
     """

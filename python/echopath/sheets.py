@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 
 from . import _core
-from .checks import an, anything, array, checked, flag, positive, real
+from .checks import ArrayLike, an, anything, array, checked, flag, positive, real
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -40,7 +40,7 @@ class SheetCoefficients:
 
 
 @checked(material=an(_core.Material), frequency=positive("Hz"), incidence=array("[]", "[N]", finite=True), from_behind=flag)
-def sheet_coefficients(material: _core.Material, *, frequency: float, incidence,
+def sheet_coefficients(material: _core.Material, *, frequency: float, incidence: ArrayLike,
                        from_behind: bool = False) -> SheetCoefficients:
     """What a sheet reflects and lets pass: Airy's sums over all bounces within its layers.
 

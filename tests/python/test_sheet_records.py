@@ -1,0 +1,107 @@
+"""Records of paths through sheets: expressions, tables, files, live scenes, labels and effects."""
+import pickle
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from support.behind_sheets import GLASS, echo_of_ball, make_radar, make_scene, over_free
+
+
+# --- expressions, tables, files ---
+
+def test_expressions_see_passes_only_where_they_name_them():
+    paths = ep.trace(make_scene(), make_radar(), num_rays=4000, max_bounces=2)
+    everything = paths.select("T 'ball' R")
+    assert everything.num_paths > 0
+    for text in ("T P'pane' 'ball' P'pane' R", "T P . P R", "T 'pane' 'ball' P R", "T P S P R & T 'ball' R"):
+        assert paths.select(text).num_paths == everything.num_paths, text
+    assert paths.select("T P'ball' .* R").num_paths == 0
+    assert paths.select("T S'ball' R & T P . P R").num_paths == everything.num_paths
+    assert (everything.num_bounces == 1).all() and paths.select(ep.passes("pane") & ep.hits("ball")).num_paths > 0
+    parts = paths.partition({"seen": "T P'pane' 'ball' P'pane' R"})
+    assert parts["seen"].num_paths + parts["other"].num_paths == paths.num_paths
+
+
+def test_passes_lie_on_the_legs_and_on_the_pane():
+    paths = echo_of_ball(make_scene(), make_radar(), num_rays=500)
+    assert len(paths.pass_offsets) == paths.num_paths + 1 and paths.pass_offsets[-1] == len(paths.passes)
+    assert np.array_equal(paths.passes["leg"], np.tile([0, 1], paths.num_paths))
+    corners = paths.scene.world_vertices(1, paths.frame.trace_time)[paths.scene.meshes[1].triangles[paths.passes["triangle_id"]]]
+    u, v = paths.passes["u"][:, None], paths.passes["v"][:, None]
+    met = (1 - u - v) * corners[:, 0] + u * corners[:, 1] + v * corners[:, 2]
+    ball = np.repeat(paths.points(paths.frame.trace_time)[paths.offsets], 2, axis=0)
+    antenna = np.tile([paths.frame.transmitter, paths.frame.receiver], (paths.num_paths, 1))
+    across = np.cross(met - antenna, ball - antenna) / np.linalg.norm(ball - antenna, axis=1, keepdims=True)
+    assert np.max(np.linalg.norm(across, axis=1)) < 1e-3
+
+
+def test_records_with_passes_travel(tmp_path):
+    paths = ep.trace(make_scene(yaw=0.4), make_radar(), num_rays=2000)
+    paths.save(tmp_path / "frame.h5")
+    for other in (ep.Paths.load(tmp_path / "frame.h5"), pickle.loads(pickle.dumps(paths))):
+        assert np.array_equal(other.passes, paths.passes) and np.array_equal(other.pass_offsets, paths.pass_offsets)
+        assert np.array_equal(other.amplitude, paths.amplitude)
+        assert other.scene.meshes[1].material == GLASS
+    loud = paths.select(paths.power >= np.median(paths.power))
+    assert loud.pass_offsets[-1] == len(loud.passes) < len(paths.passes)
+    assert np.array_equal(loud.amplitude, paths.amplitude[paths.power >= np.median(paths.power)])
+    assert set(paths.to_dataframe()["passes"]) >= {"pane > pane", ""}
+
+
+def test_the_same_bits_for_any_number_of_threads():
+    signals = []
+    for count in (1, 2):
+        before = ep.num_threads()
+        ep.set_num_threads(count)
+        try:
+            signals.append(ep.synthesize(ep.trace(make_scene(yaw=0.4), make_radar(), num_rays=2000), make_radar()))
+        finally:
+            ep.set_num_threads(before)
+    assert np.array_equal(signals[0], signals[1])
+
+
+def test_scene_files_have_layers(tmp_path):
+    (tmp_path / "scene.toml").write_text("""
+[radar]
+waveform = {start_frequency = 77e9, bandwidth = 1e9, num_samples = 64, sampling_rate = 2e7, num_chirps = 4, chirp_interval = 1e-4}
+transmitters = [{position = [0, 0, 1]}]
+receivers = [{position = [0, 0.01, 1]}]
+[[objects]]
+name = "pane"
+actor = "plate"
+parameters = {width = 2.0, height = 2.0}
+position = [3, 0, 1]
+material = {layers = [{thickness = 0.004, permittivity = [6.3, 0.3]}]}
+""", encoding="utf-8")
+    assert ep.load_scene(tmp_path / "scene.toml").scene.meshes[0].material == GLASS
+
+
+# --- around it ---
+
+def test_live_scenes_follow_a_pane():
+    live = ep.Live(make_scene(), make_radar(), num_rays=3000)
+    live.update()
+    live.scene["pane"].yaw = 0.5
+    view = live.update()
+    fresh = ep.synthesize(ep.trace(make_scene(yaw=0.5), make_radar(), num_rays=3000), make_radar())
+    assert np.max(np.abs(np.asarray(view.cube) - fresh)) < 1e-9 * np.max(np.abs(fresh))
+
+
+def test_who_stands_behind_a_pane_is_visible_and_a_wall_hides_it():
+    def share(material):
+        return {seen.name: seen for seen in ep.visibility(make_scene(material), make_radar())}["ball"].visible_share
+    assert share(GLASS) == pytest.approx(1.0) and share(ep.Material.metal()) == pytest.approx(0.0)
+
+
+def test_one_trace_serves_a_frame_behind_a_pane_at_rest():
+    scene = make_scene(ball_motion=ep.LinearMotion(velocity=(-1, 0, 0)))
+    paths = ep.trace(scene, make_radar(), num_rays=4000)
+    assert ep.validity(paths, make_radar()).shares.new_surface < 0.01
+
+
+def test_effects_name_sheets_and_what_passes():
+    effects = {effect.name: effect for effect in ep.trace(make_scene(), make_radar(), num_rays=2000).effects}
+    effect = effects["transmission through sheets"]
+    share = 20.0 * np.log10(abs(over_free(0.0)[0]))
+    assert effect.modelled and "pane" in effect.reason and f"{share:.1f} dB" in effect.reason

@@ -22,6 +22,7 @@ from ._core import (
 from .actors import Actor, Part
 from .angles import angle_fft, beamform, compensate_tdm, estimate_angles, range_azimuth, virtual_array
 from .antennas import load_antenna
+from .clutter_removal import remove_clutter
 from .detections import Detections, detect, detect_frame
 from .effects import Effect, effects
 from .families import Families, families
@@ -40,6 +41,7 @@ from .live import Live, LiveView, Watch
 from .materials import materials
 from .measures import power_by_chirp
 from .meshes import load_mesh, load_meshes
+from .music import music
 from .parts import Parts, decompose
 from .path_cells import PathCells, path_cells
 from .powers import received_power, received_powers
@@ -85,12 +87,12 @@ __all__ = [
     "check_rays", "check_signal", "compensate_tdm", "decompose", "demultiplex", "detect", "detect_frame", "effects",
     "estimate_angles", "families", "first", "foreign_materials", "hits", "interference", "interference_radar", "last",
     "load_antenna", "load_frame", "load_labels", "load_mesh", "load_meshes", "load_model", "load_radar", "load_scene",
-    "load_sensor", "load_sequence", "materials", "mesh_from", "mie_rcs", "num_bounces", "num_threads", "passes",
+    "load_sensor", "load_sequence", "materials", "mesh_from", "mie_rcs", "music", "num_bounces", "num_threads", "passes",
     "path_cells", "plot_rays", "plots", "power", "power_by_chirp", "range_azimuth", "range_doppler", "range_time", "rcs",
-    "read_trajectories", "receive", "received_power", "received_powers", "renew", "save_frame", "save_label_images",
-    "save_labels", "save_raw", "set_num_threads", "sheet_coefficients", "simulate", "spectrogram", "spectrogram_labels",
-    "speed_of_light", "synthesize", "trace", "track", "truth", "unresolved", "validity", "view", "virtual_array",
-    "visibility",
+    "read_trajectories", "receive", "received_power", "received_powers", "remove_clutter", "renew", "save_frame",
+    "save_label_images", "save_labels", "save_raw", "set_num_threads", "sheet_coefficients", "simulate", "spectrogram",
+    "spectrogram_labels", "speed_of_light", "synthesize", "trace", "track", "truth", "unresolved", "validity", "view",
+    "virtual_array", "visibility",
 ]
 
 

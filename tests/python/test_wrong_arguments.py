@@ -73,6 +73,7 @@ def good(tmp_path_factory) -> dict:
         "save_labels": {"labels": frame.labels, "path": folder / "labels.h5"}, "set_num_threads": {"num_threads": 0},
         "interference": {"radar": radar, "other": radar.replace(position=(9, 0, 0))},
         "interference_radar": {"radar": radar, "other": radar},
+        "music": of_map | {"azimuth": [0.0, 0.1], "cells": [[0, 1]], "num_sources": 1}, "remove_clutter": {"cube": cube},
         "save_raw": {"frames": frame, "path": folder / "saved.bin"},
         "sheet_coefficients": {"material": ep.materials["glass_pane"], "frequency": 77e9, "incidence": 0.3},
         "simulate": {"scene": scene, "radar": radar, "num_rays": 200, "guard": False}, "synthesize": {"paths": paths},

@@ -106,6 +106,28 @@ class Detections:
         columns = [*(getattr(self, name) for name in _FIELDS), *flags, *self.cells.T, *seeds]
         write_csv(path, dict(zip(COLUMNS, columns)))
 
+    def to_pcd(self, path: str | os.PathLike[str]) -> None:
+        """Writes a point cloud as the Point Cloud Library reads it (PCD 0.7, binary, float32), whole or not at all.
+
+        path: of the file. Fields: x, y, z in m in the radar's frame (NaN where no azimuth is known), intensity in dB over the
+        noise, velocity in m/s, range in m, azimuth and elevation in rad. Raises ep.FileError.
+        """
+        from .point_cloud import write_pcd
+
+        write_pcd(self, path)
+
+    def to_las(self, path: str | os.PathLike[str]) -> int:
+        """Writes a point cloud as LAS 1.4, whole or not at all.
+
+        path: of the file, .las or .laz. Coordinates in m in the radar's frame, to 0.1 mm; intensity in 1/100 dB over the
+        noise; velocity (m/s), range (m), azimuth, elevation (rad) and snr_db as extra dimensions. Needs laspy.
+        Returns how many detections are left out because no azimuth of them is known. Raises ep.FileError, and
+        ModuleNotFoundError without laspy.
+        """
+        from .point_cloud import write_las
+
+        return write_las(self, path)
+
     def to_dataframe(self) -> DataFrame:
         """A pandas.DataFrame with a row for each detection.
 

@@ -1,0 +1,43 @@
+"""Detections as files of points that tools for lidar read: PCD 0.7 of the Point Cloud Library, and LAS 1.4."""
+from __future__ import annotations
+
+import numpy as np
+
+from ..files import written_whole
+from ..optional import needed_module
+
+# Name in the file, what it is of the detections; LAS has them as extra dimensions.
+_EXTRA = {"velocity": "velocity", "range": "range", "azimuth": "azimuth", "elevation": "elevation", "snr_db": "snr_db"}
+_LAS_STEP = 1e-4  # m
+
+
+def write_pcd(detections, path) -> None:
+    """Binary, float32: x, y, z (m, in the radar's frame), intensity (dB over the noise), velocity, range, azimuth, elevation."""
+    columns = {**dict(zip("xyz", detections.points.T)), "intensity": detections.snr_db}
+    columns |= {name: getattr(detections, _EXTRA[name]) for name in ("velocity", "range", "azimuth", "elevation")}
+    table = np.stack([np.asarray(column, "<f4") for column in columns.values()], axis=-1).astype("<f4")
+    head = ["# .PCD v0.7 - Point Cloud Data file format", "VERSION 0.7", "FIELDS " + " ".join(columns),
+            *(f"{word} " + " ".join([value] * len(columns)) for word, value in (("SIZE", "4"), ("TYPE", "F"), ("COUNT", "1"))),
+            f"WIDTH {len(table)}", "HEIGHT 1", "VIEWPOINT 0 0 0 1 0 0 0", f"POINTS {len(table)}", "DATA binary"]
+    with written_whole(path) as temporary:
+        temporary.write_bytes(("\n".join(head) + "\n").encode("ascii") + table.tobytes())
+
+
+def write_las(detections, path) -> int:
+    """What stands somewhere, with the fields of _EXTRA as extra dimensions; returns how many detections have no azimuth and are
+    left out."""
+    laspy = needed_module("laspy", "Detections.to_las")
+    is_placed = np.isfinite(detections.points).all(axis=1)
+    points = detections.points[is_placed]
+    header = laspy.LasHeader(point_format=6, version="1.4")
+    header.offsets, header.scales = np.zeros(3), np.full(3, _LAS_STEP)
+    header.add_extra_dims([laspy.ExtraBytesParams(name=name, type=np.float64) for name in _EXTRA])
+    cloud = laspy.LasData(header)
+    cloud.x, cloud.y, cloud.z = points.T
+    snr = np.nan_to_num(detections.snr_db[is_placed], posinf=655.35, neginf=0.0)
+    cloud.intensity = np.clip(np.rint(100.0 * snr), 0, 65535).astype(np.uint16)
+    for name, field in _EXTRA.items():
+        cloud[name] = getattr(detections, field)[is_placed]
+    with written_whole(path) as temporary:
+        cloud.write(str(temporary))
+    return int(np.sum(~is_placed))

@@ -1,0 +1,93 @@
+"""Clutter removal, MUSIC, and detections as point clouds."""
+import numpy as np
+import pytest
+from support.radars import build_radar
+
+import echopath as ep
+
+C = ep.speed_of_light
+HALF = 0.5 * C / 77.5e9
+
+
+def moving(cycles, num_chirps=64):
+    """A cube whose phase turns by so many cycles a chirp, beside something that stands still."""
+    turn = np.exp(2j * np.pi * cycles * np.arange(num_chirps))
+    return (turn + 100.0)[None, None, :, None] * np.ones((1, 1, 1, 4))
+
+
+def test_the_mean_takes_away_what_stands_still_and_nothing_else():
+    cube = ep.remove_clutter(moving(5 / 64))
+    np.testing.assert_allclose(cube[0, 0, :, 0], np.exp(2j * np.pi * 5 / 64 * np.arange(64)), atol=1e-12)
+
+
+@pytest.mark.parametrize("order", [1, 2, 3])
+@pytest.mark.parametrize("cycles", [0.02, 0.25, 0.5])
+def test_cancellers_have_the_response_of_their_pulses(order, cycles):
+    cube = ep.remove_clutter(moving(cycles), method="mti", order=order)[0, 0, :, 0]
+    assert not cube[:order].any()
+    np.testing.assert_allclose(np.abs(cube[order:]), abs(2 * np.sin(np.pi * cycles)) ** order, rtol=1e-9)
+
+
+def test_a_canceller_needs_its_pulses():
+    with pytest.raises(ValueError, match="^order: must be below 2"):
+        ep.remove_clutter(np.zeros((1, 1, 2, 4)), method="mti", order=2)
+
+
+def array_map(azimuths, seed=1):
+    """Plane waves of independent phases in each cell, on 8 elements, with little noise."""
+    radar = build_radar(receivers=[(0, n * HALF, 0) for n in range(8)], num_chirps=16, num_samples=32)
+    generator = np.random.default_rng(seed)
+    places = np.arange(8) * HALF
+    cube = 1e-6 * (generator.standard_normal((8, 16, 32)) + 1j * generator.standard_normal((8, 16, 32)))
+    for azimuth in azimuths:
+        wave = np.exp(-2j * np.pi * places * np.sin(azimuth) / radar.waveform.wavelength)
+        cube += 1e-3 * wave[:, None, None] * np.exp(2j * np.pi * generator.random((1, 16, 32)))
+    return radar, ep.range_doppler(cube[None], radar, window="rect")
+
+
+def test_music_parts_waves_closer_than_a_beam():
+    """8 elements half a wavelength apart have a beam of 13 degrees; the waves are 6 degrees apart."""
+    wanted = np.radians([-2.0, 4.0])
+    radar, spectrum = array_map(wanted)
+    azimuth = np.radians(np.arange(-20.0, 20.0, 0.1))
+    found = ep.music(spectrum, radar, azimuth, cells=[(8, 10)], num_sources=2)[0]
+    peaks = np.flatnonzero((found[1:-1] > found[:-2]) & (found[1:-1] > found[2:])) + 1
+    strongest = np.sort(azimuth[peaks[np.argsort(found[peaks])[-2:]]])
+    assert np.degrees(strongest) == pytest.approx(np.degrees(wanted), abs=0.3)
+    assert found.min() >= 1.0 - 1e-9
+    with pytest.raises(IndexError, match="^cells: must lie within"):
+        ep.music(spectrum, radar, azimuth, cells=[(16, 0)])
+    with pytest.raises(ValueError, match="^num_sources: must be fewer than the 8 channels"):
+        ep.music(spectrum, radar, azimuth, cells=[(1, 0)], num_sources=8)
+
+
+@pytest.fixture(scope="module")
+def detections():
+    radar = build_radar(receivers=[(0, n * HALF, 0) for n in range(8)], num_chirps=32, transmit_power=1.0)
+    scene = ep.Scene()
+    for name, place in (("left", (5.0, 1.0, 0)), ("right", (7.0, -2.0, 0))):
+        scene.add(ep.actors.sphere(0.2), name=name, material=ep.Material.metal(), smooth=True, position=place)
+    frame = ep.simulate(scene, radar, num_rays=2000, max_bounces=1, detections=True, guard=False)
+    assert len(frame.detections) >= 2
+    return frame.detections
+
+
+def test_pcd_files_hold_the_points_as_their_head_says(detections, tmp_path):
+    detections.to_pcd(tmp_path / "points.pcd")
+    head, _, data = (tmp_path / "points.pcd").read_bytes().partition(b"DATA binary\n")
+    lines = dict(line.split(" ", 1) for line in head.decode("ascii").splitlines() if not line.startswith("#"))
+    fields = lines["FIELDS"].split()
+    table = np.frombuffer(data, "<f4").reshape(int(lines["POINTS"]), len(fields))
+    assert lines["WIDTH"] == lines["POINTS"] == str(len(detections)) and lines["VERSION"] == "0.7"
+    np.testing.assert_allclose(table[:, :3], detections.points, rtol=1e-6)
+    np.testing.assert_allclose(table[:, fields.index("velocity")], detections.velocity, rtol=1e-6)
+    assert set(lines["SIZE"].split()) == {"4"} and set(lines["TYPE"].split()) == {"F"}
+
+
+def test_las_files_are_read_by_their_library(detections, tmp_path):
+    laspy = pytest.importorskip("laspy")
+    assert detections.to_las(tmp_path / "points.las") == 0
+    cloud = laspy.read(tmp_path / "points.las")
+    np.testing.assert_allclose(np.asarray(cloud.xyz), detections.points, atol=1e-4)
+    np.testing.assert_allclose(cloud["velocity"], detections.velocity)
+    np.testing.assert_allclose(cloud.intensity / 100.0, detections.snr_db, atol=0.01)

@@ -190,3 +190,27 @@ def test_what_cannot_be_taken_apart_is_refused():
     real = array_radar("ddm", real=True)
     with pytest.raises(ValueError, match="^waveform.real: must be False"):
         ep.synthesize(plates(0.0, radar=real), real)
+
+
+def test_frames_of_codes_and_faults_come_back_from_files_and_alone(tmp_path):
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.2), name="ball", material=ep.Material.metal(), smooth=True, position=(5, 0.5, 0),
+              motion=ep.LinearMotion(velocity=(3.0, 0, 0)))
+    faults = ep.Receiver(phase_noise=dict(offsets=[1e4, 1e6], levels=[-70, -90]), transmitter_gain_db=[0, 1.0, -1.0],
+                         leakage_db=np.full((NUM_TX, NUM_RX), -50.0), leakage_delay=1e-9, adc=dict(bits=12, automatic_gain=True))
+    radar = array_radar("bpm", num_chirps=8, receiver=faults)
+    sequence = ep.Sequence(scene, radar, frames=2, interval=0.05, num_rays=1000, max_bounces=1, guard=False)
+    first, second = list(sequence)
+    np.testing.assert_array_equal(sequence[1].noisy_cube, second.noisy_cube)
+    assert not np.array_equal(first.noisy_cube, second.noisy_cube)
+    ep.save_frame(second, tmp_path / "second.h5")
+    back = ep.load_frame(tmp_path / "second.h5")
+    assert back.radar == radar
+    np.testing.assert_array_equal(back.coded_cube, second.coded_cube)
+    np.testing.assert_array_equal(back.received.codes, second.received.codes)
+    np.testing.assert_array_equal(back.spectrum.values, second.spectrum.values)
+    # The error of a transmitter's gain is there after its code is undone, and the ideal signal has none.
+    quiet = ep.receive(second.coded_cube, radar.replace(receiver=None), seed=None).cube
+    apart = ep.demultiplex(quiet, radar)
+    ratio = np.sum(np.abs(apart) ** 2, axis=(1, 2, 3)) / np.sum(np.abs(second.cube) ** 2, axis=(1, 2, 3))
+    assert 10 * np.log10(ratio) == pytest.approx([0.0, 1.0, -1.0], abs=0.1)

@@ -12,10 +12,7 @@ inline ChirpSequence reference_waveform() {
           .sampling_rate = 20e6,
           .num_chirps = 128,
           .chirp_interval = 30e-6,
-          .real = false,
-          .extra_idle = {},
-          .frequency_steps = {},
-          .bandwidth_steps = {}};
+          .real = false};
 }
 
 // A frame that is small enough for slow sums, of the same carrier and chirp interval. bandwidth, sampling_rate: Hz

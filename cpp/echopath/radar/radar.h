@@ -15,16 +15,16 @@ namespace echopath {
 // each, may differ: slot i takes entry i modulo the length of each of the three last lists, which are empty where all are
 // alike.
 struct ChirpSequence {
-  double start_frequency = 77e9;        // Hz, at the first sample
-  double bandwidth = 1e9;               // Hz, sampled
-  int num_samples = 512;                // per chirp
-  double sampling_rate = 20e6;          // Hz
-  int num_chirps = 128;                 // per transmitter
-  double chirp_interval = 60e-6;        // s, between neighbouring slots
-  bool real = false;                    // real IF samples instead of complex
-  std::vector<double> extra_idle;       // s, >= 0, by which the slot after this one begins later
-  std::vector<double> frequency_steps;  // Hz, added to the start frequency
-  std::vector<double> bandwidth_steps;  // Hz, added to the bandwidth
+  double start_frequency = 77e9;             // Hz, at the first sample
+  double bandwidth = 1e9;                    // Hz, sampled
+  int num_samples = 512;                     // per chirp
+  double sampling_rate = 20e6;               // Hz
+  int num_chirps = 128;                      // per transmitter
+  double chirp_interval = 60e-6;             // s, between neighbouring slots
+  bool real = false;                         // real IF samples instead of complex
+  std::vector<double> extra_idle = {};       // s, >= 0, by which the slot after this one begins later
+  std::vector<double> frequency_steps = {};  // Hz, added to the start frequency
+  std::vector<double> bandwidth_steps = {};  // Hz, added to the bandwidth
 
   void validate() const;  // raises invalid_argument naming the field, the rule and the value
   double slope() const { return bandwidth * sampling_rate / num_samples; }          // Hz/s
@@ -97,8 +97,8 @@ struct Radar {
   double yaw = 0.0, pitch = 0.0;         // rad, of the radar's frame in the world, see `turned`
   std::shared_ptr<const Motion> motion;  // moves the placed radar (see `moved`); null: at rest
   int empty_slots = 1;                   // of kDdm, at least 1: shares of the Doppler axis that no transmitter is moved to
-  std::vector<std::vector<double>> code_phases;  // rad, [tx, slots], of kCdm, repeated; empty for others
-  std::shared_ptr<const void> receiver;          // what follows the ideal signal, for those who know it; null: nothing
+  std::vector<std::vector<double>> code_phases = {};  // rad, [tx, slots], of kCdm, repeated; empty for others
+  std::shared_ptr<const void> receiver = {};          // what follows the ideal signal, for those who know it; null: nothing
 
   void validate() const;
   bool takes_turns() const { return multiplexing == Multiplexing::kTdm; }

@@ -78,9 +78,7 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--truth", action="store_true",
                      help="also place, motion, box, visible share and cross section of each object, in frame.h5 and truth.csv "
                           "(default: as [truth] of the scene file says)")
-    run.add_argument("--raw", metavar="OUT.bin",
-                     help="also what the sensor's converter gives, frame after frame as a DCA1000 writes it: signed 16-bit "
-                          "words, I0 I1 Q0 Q1")
+    run.add_argument("--raw", metavar="OUT.bin", help="also what the converter gives, frame after frame as a DCA1000 writes it")
     _add_sequence_options(run)
     run.set_defaults(command=_run)
 

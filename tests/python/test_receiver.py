@@ -188,6 +188,13 @@ def test_filters_have_their_response(frequency):
     assert db(levels(out)[cell]) == pytest.approx(db(high * low), abs=1e-6)
 
 
+def test_high_pass_filters_lead():
+    cell = 20
+    out = received(tone(cell), high_pass=[350e3, 700e3]).cube
+    f = cell * RATE / COUNT
+    assert np.angle(out / tone(cell)) == pytest.approx(np.arctan(350e3 / f) + np.arctan(700e3 / f), abs=1e-9)
+
+
 def test_filters_of_real_samples_have_the_response_of_complex_ones():
     radar = one_channel(real=True, receiver=ep.Receiver(high_pass=[350e3], low_pass=3e6, low_pass_poles=2))
     cube = np.sqrt(2.0) * tone(37).real

@@ -12,9 +12,17 @@ constexpr double kLastDigit = 1e-6;  // rad, as printed
 
 TEST(Tdm, TenMetresPerSecondTurnASlotByItsPublishedPhase) {
   Radar radar = testing::line_radar(1);
+  radar.transmitters.resize(3, radar.transmitters.front());
   const auto phasors = slot_phasors(radar, {10.0});
   EXPECT_NEAR(std::arg(phasors[1]), -0.974568, kLastDigit);
   EXPECT_NEAR(std::arg(phasors[2]), -2 * 0.974568, 2 * kLastDigit);
+}
+
+TEST(Tdm, TransmittersThatSendAtOnceHaveNoPhaseBetweenThem) {
+  Radar radar = testing::line_radar(1);
+  radar.transmitters.resize(3, radar.transmitters.front());
+  radar.multiplexing = Multiplexing::kDdm;
+  for (const Complex phasor : slot_phasors(radar, {10.0, -3.0})) EXPECT_EQ(phasor, Complex(1.0));
 }
 
 TEST(Tdm, CompensationLeavesThePhaseOfDirectionOnly) {

@@ -8,13 +8,19 @@
 namespace echopath {
 namespace {
 
-constexpr double kLeastAcross = 1e-3;       // sine of the angle between a wave and the edge
+constexpr double kLeastAcross = 1e-3;  // sine of the angle between a wave and the edge
+constexpr double kLargeArgument = 2.0;
 constexpr double kLeastOffBoundary = 1e-6;  // rad: nearer to a boundary counts as that far off it
 
 // Returns what remains of a coefficient in the transition, where `within` half Fresnel zones lie between the boundary and the
-// direction. Uses the auxiliary functions of Fresnel's integrals to 2e-3: Abramowitz and Stegun (1964), 7.3.32 and 7.3.33.
+// direction. Uses the auxiliary functions f and g of Fresnel's integrals, times pi x: Abramowitz and Stegun (1964), 7.3.27 and
+// 7.3.28 where x is large, else 7.3.32 and 7.3.33, to 1e-2.
 std::complex<double> transition(double within) {
   const double x = std::sqrt(2.0) * within;
+  if (x > kLargeArgument) {
+    const double inverse = 1.0 / (kPi * x * x), square = inverse * inverse;
+    return {1.0 - square * (3.0 - 105.0 * square), inverse * (1.0 - square * (15.0 - 945.0 * square))};
+  }
   const double f = (1.0 + 0.926 * x) / (2.0 + x * (1.792 + x * 3.104));
   const double g = 1.0 / (2.0 + x * (4.142 + x * (3.492 + x * 6.670)));
   return kPi * x * std::complex<double>(f, g);
@@ -53,7 +59,8 @@ Eigen::Matrix3cd diffraction_matrix(const Wedge& wedge, const Vec3& in, const Ve
   const Vec3 phi_in = across_in / sine, phi_out = across_out.normalized();
   const Mat3 along = phi_out.cross(out) * phi_in.cross(in).transpose(), around = phi_out * phi_in.transpose();
   return ((reflection - shadow) * along.cast<std::complex<double>>() -
-          (reflection + shadow) * around.cast<std::complex<double>>()) / n;
+          (reflection + shadow) * around.cast<std::complex<double>>()) /
+         n;
 }
 
 }  // namespace echopath

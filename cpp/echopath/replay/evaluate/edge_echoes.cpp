@@ -66,7 +66,8 @@ class EdgeEchoes {
     const auto seen = [&](const WayToEdge& way, const Vec3& direction) {
       return is_polarized_ ? way.field : FieldVector(part_across(polarization, direction).cast<std::complex<double>>());
     };
-    const std::complex<double> coupled = seen(out, departure).transpose() * diffracted(seen(in, in.direction), in, departure);
+    const std::complex<double> coupled =
+        seen(out, departure).transpose() * diffracted(seen(in, in.direction), in, departure);
     const double filter = edge_filter(radio_.wavenumber * (in.direction - departure).dot(piece_));
     const double size = radio_.coherent_scale() * in.root_gain * out.root_gain * piece_.norm() * filter /
                         (2.0 * radio_.wavenumber * in.length * out.length);

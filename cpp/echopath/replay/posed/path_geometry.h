@@ -45,7 +45,7 @@ struct LocalPath {
   uint64_t sliding = 0;  // bit per hit: other specular hits, whose point of reflection slides over the surface
 
   bool is_past_edge = false;  // kPastEdge
-  int edge = -1;  // the hit on an edge, the material point of its path
+  int edge = -1;              // the hit on an edge, the material point of its path
 
   bool is_image(int hit) const { return image >> hit & 1; }
   bool is_diffuse(int hit) const { return diffuse >> hit & 1; }

@@ -24,7 +24,7 @@ struct LitEdge {
   uint32_t mesh_id;
   SharpEdge edge;
   Wedge wedge;
-  Vec3 from, to;                               // m, along the side of the triangle
+  Vec3 from, to;  // m, along the side of the triangle
   std::vector<const LitPlane*> transmit, receive;
 };
 
@@ -126,8 +126,8 @@ class LitEdgeTracer {
       return 1.0 / std::max(distance_to_segment(antenna, edge_.from, edge_.to), kNearAntenna);
     };
     const double bend = wavenumber * (inverse(query_.settings.transmitter) + inverse(query_.settings.receiver));
-    const double piece = std::min(std::sqrt(8.0 * kFlatFrontOverPlanes / bend),
-                                  std::max(kOfLitEdge * length, kOfWave * kTwoPi / wavenumber));
+    const double piece =
+        std::min(std::sqrt(8.0 * kFlatFrontOverPlanes / bend), std::max(kOfLitEdge * length, kOfWave * kTwoPi / wavenumber));
     return static_cast<int>(std::clamp(std::ceil(length / piece), 1.0, double{kMostPieces}));
   }
 
@@ -181,8 +181,8 @@ class LitEdgeTracer {
       way.share = leg->share;
       way.orders = kept_orders(*leg, *over, other);
       if (is_end && way.orders.opposite < 1.0) {
-        way.past_edge = (1.0 - way.orders.opposite) *
-                        planes_.field_beside_rims(point_, antenna, *leg, block_.statistics.num_queries);
+        way.past_edge =
+            (1.0 - way.orders.opposite) * planes_.field_beside_rims(point_, antenna, *leg, block_.statistics.num_queries);
       }
     }
     return ways;
@@ -195,7 +195,8 @@ class LitEdgeTracer {
     block_.statistics.num_queries += std::exchange(search_.num_queries, 0);
     std::vector<Way> ways;
     for (const Leg& leg : legs_) {
-      if (leg.length >= kNearAntenna && is_outside(edge_.wedge, leg.to_antenna)) ways.push_back({{}, leg.to_antenna, leg.gain});
+      if (leg.length >= kNearAntenna && is_outside(edge_.wedge, leg.to_antenna))
+        ways.push_back({{}, leg.to_antenna, leg.gain});
     }
     return ways;
   }
@@ -222,8 +223,9 @@ class LitEdgeTracer {
       return {};
     const Vec3 line = face.position - other;
     const double behind = (leg.bounces.front().position - face.position).norm();
-    return order_shares(leg.first_cover, std::max(planes_.cover_of(face, line.normalized(), line.norm(), behind,
-                                                                  block_.statistics.num_queries), 1e-9));
+    return order_shares(
+        leg.first_cover,
+        std::max(planes_.cover_of(face, line.normalized(), line.norm(), behind, block_.statistics.num_queries), 1e-9));
   }
 
   // Returns whether the lit face goes on from the edge to the plane that is next to it, as in a corner.
@@ -279,7 +281,7 @@ class LitEdgeTracer {
   LegSearch search_;
   std::map<const LitPlane*, OrderShares> orders_;  // by what is lit
   int num_pieces_ = 1;
-  Hit hit_;      // of the piece at hand
+  Hit hit_;     // of the piece at hand
   Vec3 point_;  // m, likewise
 };
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "echopath/base/plane.h"
-#include "echopath/trace/record/path_block.h"
 #include "echopath/trace/geometry/embree_scene.h"
+#include "echopath/trace/record/path_block.h"
 
 namespace echopath {
 

@@ -13,14 +13,14 @@ namespace {
 constexpr double kLeastOffPlane = 1e-4;  // m: a point this near a plane has no leg over it
 constexpr double kPointAside = 1e-5;     // m: a leg is that of points so far to either side, half of each
 constexpr double kMirrorsAll = 0.5;      // share of the Fresnel zone with which a plane mirrors the whole field
-constexpr double kZonesToRim = 4.0;  // half Fresnel zones: rims farther off count as so far
+constexpr double kZonesToRim = 4.0;      // half Fresnel zones: rims farther off count as so far
 // No scene is likely to be built along this direction.
 const Vec3 kShiftOfPoint = Vec3(0.5320508076, -0.4515026222, 0.7163118961).normalized();
 
 }  // namespace
 
-std::optional<PlaneLeg> PlaneLegFinder::find(const Vec3& point, const Vec3& outward, const Vec3& antenna, const LitPlane& over,
-                                             int64_t& num_queries) const {
+std::optional<PlaneLeg> PlaneLegFinder::find(const Vec3& point, const Vec3& outward, const Vec3& antenna,
+                                             const LitPlane& over, int64_t& num_queries) const {
   std::vector<Vec3> images = {antenna};
   for (const int mirror : over.mirrors) images.push_back(plane(mirror).image(images.back()));
   const Plane& face = plane(over.plane);

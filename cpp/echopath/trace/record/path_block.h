@@ -100,7 +100,7 @@ class PathBlock {
               static_cast<uint8_t>(count), current_batch});
   }
 
-  size_t first_of_ray_ = 0;        // first path of the current ray
+  size_t first_of_ray_ = 0;                                     // first path of the current ray
   size_t first_chain_of_ray_ = 0, first_lit_chain_of_ray_ = 0;  // likewise
   int used_depth_ = 0;  // hits of the ray that such paths use; the offset of these paths is kOfRay until the ray ends
   size_t num_fan_paths_ = 0, num_fan_hits_ = 0;

@@ -1,0 +1,84 @@
+// The diffracted field of edges in the uniform theory, against Sommerfeld's half plane and Keller's wedge.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+
+#include "echopath/base/constants.h"
+#include "echopath/em/edge_shadow.h"
+
+namespace echopath::test_edge_shadow {
+namespace {
+
+using Complex = std::complex<double>;
+constexpr double kFarPhase = 1e6;    // rad: no transition reaches the angles tested
+constexpr double kOfFresnel = 5e-3;  // the transition that is left
+
+// The edge lies along z; angles count from the first face, along x.
+Vec3 across(double angle) { return {std::cos(angle), std::sin(angle), 0.0}; }
+Wedge wedge_of(double exterior) {
+  return {{{across(0.0), across(0.5 * kPi)}, {across(exterior), across(exterior - 0.5 * kPi)}}, exterior};
+}
+struct Coefficients {
+  Complex electric, magnetic;  // for fields along the edge
+};
+Coefficients coefficients(const Wedge& wedge, double source, double at, double phase) {
+  const Vec3 in = -across(source), out = across(at);
+  const Eigen::Matrix3cd m = diffraction_matrix(wedge, in, out, phase);
+  const Vec3 z = Vec3::UnitZ();
+  // A magnetic field along z belongs to the electric field H x k.
+  const Complex magnetic = (z.cross(out).cast<Complex>().transpose() * m * z.cross(in).cast<Complex>()).value();
+  return {m(2, 2), magnetic};
+}
+
+TEST(EdgeShadow, IsKellersCoefficientOffTheBoundaries) {
+  for (const double exterior : {2.0 * kPi, 1.5 * kPi}) {
+    const double n = exterior / kPi, scale = std::sin(kPi / n) / n, source = 1.0;
+    for (const double at : {0.3, 1.1, 2.9, 4.5}) {
+      const double minus = scale / (std::cos(kPi / n) - std::cos((at - source) / n));
+      const double plus = scale / (std::cos(kPi / n) - std::cos((at + source) / n));
+      const Coefficients found = coefficients(wedge_of(exterior), source, at, kFarPhase);
+      EXPECT_NEAR(std::abs(found.electric - 2.0 * (minus - plus)), 0.0, kOfFresnel) << at;
+      EXPECT_NEAR(std::abs(found.magnetic - 2.0 * (minus + plus)), 0.0, kOfFresnel) << at;
+    }
+  }
+}
+
+TEST(EdgeShadow, TakesHalfOfTheWaveAtTheBoundaryOfShadow) {
+  const double source = 0.8, phase = 60.0;
+  for (const double beside : {1e-4, -1e-4}) {
+    const Complex field = 0.5 * coefficients(wedge_of(2.0 * kPi), source, source + kPi + beside, phase).electric *
+                          std::polar(1.0 / std::sqrt(2.0 * kPi * phase), -0.25 * kPi);
+    // Beyond the boundary the wave is missing, before it half of it is too much.
+    EXPECT_NEAR(field.real(), beside > 0 ? 0.5 : -0.5, 0.03);
+    EXPECT_NEAR(field.imag(), 0.0, 0.03);
+  }
+}
+
+TEST(EdgeShadow, HasNoStepAtTheBoundaryOfReflection) {
+  const auto at = [](double beside) { return coefficients(wedge_of(2.0 * kPi), 0.8, kPi - 0.8 + beside, 60.0).magnetic; };
+  EXPECT_NEAR(std::abs(at(1e-5) - at(-1e-5)), 0.0, 1e-2);
+  EXPECT_GT(std::abs(at(0.6) - at(-0.6)), 0.5);
+}
+
+TEST(EdgeShadow, IsReciprocal) {
+  const Wedge wedge = wedge_of(1.5 * kPi);
+  const auto on_cone = [](double angle) -> Vec3 { return 0.8 * across(angle) + Vec3(0.0, 0.0, 0.6); };
+  const Vec3 in = on_cone(0.9 + kPi), out = on_cone(2.1);
+  const Eigen::Matrix3cd there = diffraction_matrix(wedge, in, out, 40.0), back = diffraction_matrix(wedge, -out, -in, 40.0);
+  const Vec3 beside = in.unitOrthogonal(), beyond = out.cross(Vec3::UnitX()).normalized();
+  const auto element = [](const Eigen::Matrix3cd& m, const Vec3& to, const Vec3& from) {
+    return (to.cast<Complex>().transpose() * m * from.cast<Complex>()).value();
+  };
+  for (const Vec3& field : {beside, Vec3(in.cross(beside))})
+    EXPECT_NEAR(std::abs(element(there, beyond, field) - element(back, field, beyond)), 0.0, 1e-12);
+}
+
+TEST(EdgeShadow, VanishesInsideOfTheWedgeAndAlongTheEdge) {
+  const Wedge wedge = wedge_of(1.5 * kPi);
+  EXPECT_EQ(diffraction_matrix(wedge, -across(1.0), across(1.8 * kPi), 10.0).norm(), 0.0);
+  EXPECT_EQ(diffraction_matrix(wedge, Vec3::UnitZ(), across(1.0), 10.0).norm(), 0.0);
+}
+
+}  // namespace
+}  // namespace echopath::test_edge_shadow

@@ -17,6 +17,8 @@ TRUE_RAYS, QUICK_TRUE_RAYS = 2 ** 22, 2 ** 16
 BATCHES = 8
 WANTED = (0.90, 0.98)
 FIRST_SEED = 1000
+# centre and semi-axes of the ellipsoids, m
+FLANK_AND_BALL = {"ball": (np.array([10.0, 0.0, 0.0]), np.full(3, 0.2)), "flank": (np.array([8.5, 2.2, 0.0]), np.array([3.0, 0.6, 0.8]))}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -43,8 +45,8 @@ def all_echoes() -> list[Echo]:
             Echo("diffuse, patch far away", _far_patch, "T 'pair/patch' R", "T 'pair/patch' R"),
             Echo("ghost, patch then wall", _ghost, "T 'patch' 'mirror' R", "T 'patch' 'mirror' R", 2),
             Echo("ghost, wall then patch", _ghost, "T 'mirror' 'patch' R", "T 'patch' 'mirror' R", 2),
-            Echo("two bounces, ball then flank", _flank_and_ball, "T 'ball' 'flank' R", "T 'ball' 'flank' R", 2),
-            Echo("two bounces, flank then ball", _flank_and_ball, "T 'flank' 'ball' R", "T 'ball' 'flank' R", 2)]
+            Echo("two bounces, ball then flank", flank_and_ball, "T 'ball' 'flank' R", "T 'ball' 'flank' R", 2),
+            Echo("two bounces, flank then ball", flank_and_ball, "T 'flank' 'ball' R", "T 'ball' 'flank' R", 2)]
 
 
 def measure_coverage(*, quick: bool) -> dict:
@@ -97,10 +99,11 @@ def _ghost():
     return scene
 
 
-def _flank_and_ball():
+def flank_and_ball():
     """A metal ball beside the long curved flank of a body, both smooth."""
     scene = ep.Scene()
+    (ball, ball_axes), (flank, flank_axes) = FLANK_AND_BALL["ball"], FLANK_AND_BALL["flank"]
     metal = ep.Material.metal()
-    scene.add(shapes.sphere(0.2, edge=0.02), name="ball", material=metal, position=(10.0, 0.0, 0.0), smooth=True)
-    scene.add(shapes.ellipsoid((3.0, 0.6, 0.8), edge=0.05), name="flank", material=metal, position=(8.5, 2.2, 0.0), smooth=True)
+    scene.add(shapes.sphere(ball_axes[0], edge=0.02), name="ball", material=metal, position=tuple(ball), smooth=True)
+    scene.add(shapes.ellipsoid(flank_axes, edge=0.05), name="flank", material=metal, position=tuple(flank), smooth=True)
     return scene

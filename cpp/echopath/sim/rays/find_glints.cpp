@@ -12,6 +12,7 @@
 #include "echopath/base/plane.h"
 #include "echopath/replay/replay.h"
 #include "echopath/scene/mesh/reflection_point.h"
+#include "echopath/sim/rays/chain_glints.h"
 
 namespace echopath {
 namespace {
@@ -40,17 +41,6 @@ struct SeenPath {
   int64_t path;
   double amplitude = 0.0;
 };
-
-// Returns the radar with one antenna each, where rays start and end.
-Radar radar_of_rays(const Radar& radar) {
-  Radar one = radar;
-  for (std::vector<Antenna>* antennas : {&one.transmitters, &one.receivers}) {
-    const Vec3 mean = mean_position(*antennas, Transform::Identity());
-    antennas->resize(1);
-    antennas->front().position = mean;
-  }
-  return one;
-}
 
 class GlintSearch {
  public:
@@ -221,14 +211,26 @@ class GlintSearch {
 
 // Neighbouring triangles, and several records of one way, find the same point.
 bool is_same(const Glint& a, const Glint& b) {
-  const double reach = kSamePoint * std::min(a.narrow, b.narrow);
+  if (a.is_chain != b.is_chain) return false;
+  const double reach = std::max(kSamePoint * std::min(a.narrow, b.narrow), a.blur + b.blur);
   return (a.direction - b.direction).squaredNorm() < reach * reach;
 }
 
 }  // namespace
 
+Radar radar_of_rays(const Radar& radar) {
+  Radar one = radar;
+  for (std::vector<Antenna>* antennas : {&one.transmitters, &one.receivers}) {
+    const Vec3 mean = mean_position(*antennas, Transform::Identity());
+    antennas->resize(1);
+    antennas->front().position = mean;
+  }
+  return one;
+}
+
 std::vector<Glint> find_glints(const Paths& paths, Job* job) {
-  std::vector<Glint> glints = GlintSearch(paths, job).find(job), kept;
+  std::vector<Glint> glints = GlintSearch(paths, job).find(job), chains = find_chain_glints(paths, job), kept;
+  std::move(chains.begin(), chains.end(), std::back_inserter(glints));
   std::stable_sort(glints.begin(), glints.end(), [](const Glint& a, const Glint& b) { return a.power > b.power; });
   std::vector<std::vector<Glint>> of_stratum(paths.frame.strata.size());
   for (const Glint& glint : glints) {

@@ -13,13 +13,18 @@ struct Glint {
   Vec3 direction;                   // unit, world axes
   double power = 0.0;               // W, by stationary phase
   double narrow = 0.0, wide = 0.0;  // rad, half widths of the Fresnel zone, where the phase turns by half a cycle
+  bool is_chain = false;            // of paths over several surfaces (chain_glints.h)
+  double blur = 0.0;                // rad, by how much the direction may be off
 };
 
 // Finds the points where one-bounce paths, over any number of flagged mirrors before and behind, are stationary
-// (reflection_point.h). Only those count beside which the record has such a path, since they are seen. Facets of a curved
-// body are taken as the curved surface that they stand for. Returns each point once, strongest first, and at most
-// kMaxGlints of a stratum. Raises Cancelled.
+// (reflection_point.h), and those where paths over several surfaces are (chain_glints.h). Only those count beside which the
+// record has such a path, since they are seen. Facets of a curved body are taken as the curved surface that they stand for.
+// Returns each point once, strongest first, and at most kMaxGlints of a stratum. Raises Cancelled.
 std::vector<Glint> find_glints(const Paths& paths, Job* job = nullptr);
 inline constexpr size_t kMaxGlints = 64;
+
+// Returns the radar with one antenna each, where rays start and end.
+Radar radar_of_rays(const Radar& radar);
 
 }  // namespace echopath

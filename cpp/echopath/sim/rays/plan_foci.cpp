@@ -19,25 +19,41 @@ constexpr size_t kMaxFoci = 12;        // in a stratum
 constexpr double kLargestPart = 0.25;  // of the stratum's solid angle
 constexpr double kLargestShare = 0.5;  // of the stratum's rays, for all its foci
 constexpr double kMinGain = 1.5;       // of the density of rays in a focus, over that without it
+// Glints behind several bounces send little, but in phase or out of it with all the rest, so that they get what resolves
+// them before the power would earn it them.
+constexpr double kChainShare = 0.25;  // of the stratum's rays, at most
+constexpr double kCellsInZone = 1.5;  // of a focus, in the half width of a Fresnel zone, which resolve it
+
+// Describes a glint behind several bounces with the focus that it needs, whose share is in rays.
+struct ChainFocus {
+  LaunchFocus focus;
+  double power = 0.0;  // W
+
+  double field_per_ray() const { return std::sqrt(power) / focus.share; }
+};
 
 // Describes a stratum of the trace to come.
 struct StratumPlan {
   std::string name;
-  double rays = 0.0;         // including those of its foci
+  double rays = 0.0;  // including those of its foci
+  int num_batches = 1;
   double solid_angle = 0.0;  // sr
   double cell = 0.0;         // rad, side of the stratum's own launch cells when foci have their rays
   KnownEcho echo;
   double of_glints = 0.0, of_foci = 0.0;  // W, powers of all glints added up, and of those in a focus
   double power() const { return std::max(echo.power, of_glints); }
   std::vector<LaunchFocus> foci;
+  std::vector<ChainFocus> chains;
 };
+
+double size_of(const LaunchFocus& focus) { return kTwoPi * focus.versine; }  // sr
 
 // Returns the cone about a glint in which rays are to lie closer. Its share is relative to other foci of the stratum.
 LaunchFocus focus_on(const Glint& glint, double power, const StratumPlan& plan) {
   LaunchFocus focus;
   focus.of = plan.name;
   focus.axis = glint.direction;
-  focus.versine = versine_of(std::min((kZones * glint.wide + kCells * plan.cell) / kFocusCore, kWidest));
+  focus.versine = versine_of(std::min((kZones * glint.wide + kCells * plan.cell + glint.blur) / kFocusCore, kWidest));
   // Zones narrower than the cells of all those rays together stay unresolved anyway.
   const double finest = kTwoPi * focus.versine / (kLargestShare * std::max(plan.rays, 1.0));
   focus.share = focus.versine / std::max(glint.narrow * glint.narrow, finest) * std::sqrt(power);
@@ -83,6 +99,42 @@ void add_glint(const Glint& glint, StratumPlan& plan) {
   else *shared = around(*shared, focus);
 }
 
+void add_chain(const Glint& glint, StratumPlan& plan) {
+  LaunchFocus focus = focus_on(glint, glint.power, plan);
+  const double cell = glint.narrow / kCellsInZone;
+  focus.share = size_of(focus) * plan.num_batches / (cell * cell);
+  plan.chains.push_back({focus, std::min(glint.power, plan.echo.high)});
+}
+
+// Sets a focus about a glint behind several bounces with the rays that it needs, or with those that are `left` of those for
+// such glints, unless they would lie hardly closer than without it. One that another focus would cut shares a focus with it,
+// if that is still small and has rays as close as before. Returns the rays that it takes.
+double serve_chain(const LaunchFocus& wanted, double left, StratumPlan& plan) {
+  const auto fits = [&](const LaunchFocus& focus) { return size_of(focus) <= kLargestPart * plan.solid_angle; };
+  const auto shared =
+      std::find_if(plan.foci.begin(), plan.foci.end(), [&](const LaunchFocus& other) { return cuts(other, wanted); });
+  const bool is_new = shared == plan.foci.end();
+  LaunchFocus focus = is_new ? wanted : around(*shared, wanted);
+  if (!fits(focus) || (is_new && plan.foci.size() == kMaxFoci)) return 0.0;
+  const double before = is_new ? 0.0 : shared->share;
+  focus.share = std::min(focus.share, before + left);
+  const double least = is_new ? kMinGain * plan.rays / plan.solid_angle : shared->share / size_of(*shared);  // rays per sr
+  if (!(focus.share > least * size_of(focus))) return 0.0;
+  if (is_new) plan.foci.push_back(focus);
+  else *shared = focus;
+  return focus.share - before;
+}
+
+// Serves those first that make most of the field known for a ray.
+void serve_chains(StratumPlan& plan) {
+  std::stable_sort(plan.chains.begin(), plan.chains.end(),
+                   [](const ChainFocus& a, const ChainFocus& b) { return a.field_per_ray() > b.field_per_ray(); });
+  double left = kChainShare * plan.rays;
+  for (const ChainFocus& chain : plan.chains) {
+    if (chain.power >= kFaintest * plan.power()) left -= serve_chain(chain.focus, left, plan);
+  }
+}
+
 // Shares rays among the foci and drops those whose rays would lie hardly closer than without them.
 void give_rays(StratumPlan& plan) {
   const double part = std::sqrt(plan.of_foci / std::max(plan.power(), 1e-300));
@@ -108,12 +160,16 @@ void set_foci(const TraceFrame& frame, const std::vector<KnownEcho>& echoes, con
     plan.solid_angle = stratum.solid_angle();
     const double of_each_batch = (1.0 - kLargestShare) * std::max(plan.rays, 1.0) / frame.num_batches;
     plan.cell = std::sqrt(plan.solid_angle / of_each_batch);
+    plan.num_batches = frame.num_batches;
     plan.echo = echoes[k];
   }
-  for (const Glint& glint : glints) add_glint(glint, plans[static_cast<size_t>(glint.stratum)]);
+  for (const Glint& glint : glints) {
+    StratumPlan& plan = plans[static_cast<size_t>(glint.stratum)];
+    glint.is_chain ? add_chain(glint, plan) : add_glint(glint, plan);
+  }
   for (StratumPlan& plan : plans) {
-    if (plan.foci.empty()) continue;
-    give_rays(plan);
+    if (!plan.foci.empty()) give_rays(plan);
+    serve_chains(plan);
     for (const LaunchFocus& focus : plan.foci) guide.shares.at(plan.name) -= focus.share;
     std::move(plan.foci.begin(), plan.foci.end(), std::back_inserter(guide.foci));
   }

@@ -109,7 +109,7 @@ class Attribution:
         family, *words = key
         on_way = [name for name, word in zip(mirrors, words) if word == name]
         touched = {family.object, *family.via} if family.object else set(on_way)
-        name = str(family) if family.object else f"{BACKGROUND} over {' + '.join(on_way)}" if on_way else BACKGROUND
+        name = name_of(family) if family.object else f"{BACKGROUND} over {' + '.join(on_way)}" if on_way else BACKGROUND
         return EchoGroup(name, frozenset(touched), *self._peak(cube), family)
 
     def _peak(self, cube) -> tuple:
@@ -158,6 +158,13 @@ class Attribution:
         without = [(thing, _change_db(value, sum(part for group, part in zip(self.groups, values) if thing in group.touched)))
                    for thing in self.things]
         return CellAttribution(value, tuple(contributions), tuple(sorted(without, key=lambda one: one[1])))
+
+
+def name_of(family) -> str:
+    """Of an object or its ghost, short: "pedestrian via floor (2/3)", type and order in brackets."""
+    if not family.is_ghost:
+        return f"{family.object} itself"
+    return f"{family.object} via {' + '.join(family.via)} ({family.ghost_type}/{family.order})"
 
 
 def cell_weights(waveform, range_index: int, velocity_index: int, *, window="hann", zero_pad: int = 1) -> tuple:

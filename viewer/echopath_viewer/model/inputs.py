@@ -9,6 +9,7 @@ import echopath as ep
 from echopath.path_subset import part_of_path
 from echopath.same_radar import difference
 
+from .layers import Known
 from .part_set import WHOLE, Part, PartSet
 from .signals import Signals, all_paths, selections_of
 
@@ -17,6 +18,7 @@ from .signals import Signals, all_paths, selections_of
 class ViewInput:
     """Paths and parts.
 
+    known: what the frame knows beside its signals, None for paths alone
     signals: how theirs are made; cube: the whole [tx, rx, chirp, sample] in sqrt(W); title: of the window
     """
 
@@ -25,6 +27,7 @@ class ViewInput:
     signals: Signals
     cube: np.ndarray
     title: str = ""
+    known: Known | None = None
 
 
 def from_file(path) -> ViewInput:
@@ -45,7 +48,14 @@ def from_frame(frame, title: str = "") -> ViewInput:
              for index, (name, selection) in enumerate(zip(cubes, selections_of(frame.selections[partition])))]
     signals = Signals(frame.paths, dict(frame.spectrum_settings), frame.evaluate, frame.retrace,
                       getattr(frame, "keyframes", 0))
-    return ViewInput(frame.paths, PartSet(whole_part(frame.spectrum), parts), signals, frame.cube, title)
+    return ViewInput(frame.paths, PartSet(whole_part(frame.spectrum), parts), signals, frame.cube, title, _known(frame))
+
+
+def _known(frame) -> Known:
+    """Taken from the frame where it has it, else made when it is asked for."""
+    return Known(labels=lambda progress: frame.labels or ep.annotate_frame(frame, progress=progress),
+                 detections=lambda progress: frame.detections or ep.detect_frame(frame, progress=progress),
+                 truth=lambda progress: frame.truth)
 
 
 def from_paths(scene, paths, parts=None, *, window="hann", zero_pad=1, evaluate="interpolated", retrace="never",

@@ -15,7 +15,18 @@ from .cell_index import CellBox, CellIndex
 from .colours import COLOUR_MODES, colour_rays
 from .columns import read_columns
 from .filters import Filters
-from .palette import mesh_palette
+from .layers import (
+    DETECTIONS,
+    LABELS,
+    LAYERS,
+    OBJECTS,
+    TRUTH,
+    detection_markers,
+    label_image,
+    label_markers,
+    truth_markers,
+)
+from .palette import mesh_palette, objects_of
 from .part_set import MESH_GROUP, OWN_GROUP, WHOLE, Part
 from .ray_sample import SAMPLINGS, RaySampler
 from .segments import RayBundle
@@ -33,7 +44,7 @@ MAX_KEPT_BUNDLES = 3     # of rays: those that are shown, lit and chosen
 class Session:
     """One view of one frame. Setters return nothing and tell the listeners what has changed.
 
-    Topics: "rays" (which are shown), "colours", "selection" (cell or ray), "maps", "time", "meshes" (looks, choice).
+    Topics: "rays" (which are shown), "colours", "selection" (cell or ray), "maps", "time", "meshes" (looks, choice), "layers".
     """
 
     def __init__(self, view_input):
@@ -41,6 +52,7 @@ class Session:
         self.scene, self.radar = self.paths.scene, self.paths.radar
         self.title, self.cube = view_input.title, view_input.cube
         self.signals = view_input.signals
+        self.known, self.layers, self._known_data = view_input.known, set(), {}
         self.mesh_names = [mesh.name for mesh in self.scene.meshes]
         self.palette = mesh_palette(self.scene)
         self.hidden_meshes: set[int] = set()
@@ -53,7 +65,7 @@ class Session:
         self.box: CellBox | None = None
         self.cell: tuple | None = None  # (range index, velocity index) whose contributions are told
         self.attribution = None         # Attribution of the frame, once somebody has made it
-        self.family = self._family_mask = None  # EchoGroup whose paths are lit, wherever they lie
+        self.lit_by, self._lit_mask = "", None  # the family or detection whose paths are lit, wherever they lie
         self.ray: int | None = None
         self.node: str | None = None
         self.node_base = WHOLE, WHOLE  # the part whose paths the map of the node is made of
@@ -168,7 +180,7 @@ class Session:
         if self.box is None:
             return None
         if self._lit is None:
-            is_there = self.index.mask_of(self.box) if self.family is None else self._family_mask
+            is_there = self.index.mask_of(self.box) if self._lit_mask is None else self._lit_mask
             self._lit = self.visible & is_there
         return self._lit
 
@@ -274,8 +286,7 @@ class Session:
         spectrum = self.parts.whole.spectrum
         self.box = None if box is None else box.within(len(spectrum.range), len(spectrum.velocity))
         self.cell = self._highest_cell() if cell is None and self.box is not None else cell
-        self._lit = self._lit_rays = self.ray = self.family = self._family_mask = None
-        self._tell("selection")
+        self._light("", None)
 
     def _highest_cell(self) -> tuple | None:
         box, level = self.box, self.parts.whole.level(*self.channel)
@@ -285,12 +296,69 @@ class Session:
         velocity, distance = np.unravel_index(inside.argmax(), inside.shape)
         return int(distance) + box.first_range, int(velocity) + box.first_velocity
 
-    def select_family(self, group) -> None:
-        """Lights the paths of an EchoGroup of the attribution, wherever they lie; None: those of the selected cells again."""
-        self.family = group
-        self._family_mask = None if group is None else self.attribution.paths_of(group)
+    def set_layer(self, layer: str, is_shown: bool, progress=None) -> None:
+        """Shows or hides a layer, a name of LAYERS; what it shows is made the first time.
+
+        Raises ValueError for another name, and where the frame does not know that.
+        """
+        if layer not in LAYERS:
+            raise ValueError(f"layer: must be one of {', '.join(LAYERS)}, got {layer!r}")
+        if is_shown:
+            self._make_known(layer, progress)
+        self.layers = self.layers | {layer} if is_shown else self.layers - {layer}
+        self._tell("layers")
+
+    def _make_known(self, layer: str, progress) -> None:
+        name = LABELS if layer == OBJECTS else layer
+        if name in self._known_data:
+            return
+        if self.known is None:
+            raise ValueError(f"{layer}: only frames have them, got paths alone")
+        self._known_data[name] = getattr(self.known, name)(progress)
+
+    def known_data(self, layer: str):
+        """What a layer shows: ep.Labels of the partition on display, ep.Detections or ep.Truth."""
+        if layer not in (LABELS, OBJECTS):
+            return self._known_data[layer]
+        labels = self._known_data[LABELS]
+        return labels.get(self.partition, next(iter(labels.values())))
+
+    def object_colours(self) -> dict:
+        """{object: rgb}, the mean of the shades of its meshes."""
+        names, object_of_mesh = objects_of(self.scene)
+        return {name: tuple(int(value) for value in self.palette[object_of_mesh == number].mean(axis=0))
+                for number, name in enumerate(names)}
+
+    def map_layers(self) -> tuple:
+        """(RGBA image u8 [V, R, 4] or None, legend rows, markers) over the maps, by the layers that are shown."""
+        image, rows, markers, spectrum = None, (), [], self.parts.whole.spectrum
+        for layer in LAYERS[:2]:  # objects and ghosts hide the parts below
+            if layer in self.layers:
+                image, rows = label_image(self.known_data(layer), layer)
+        if OBJECTS in self.layers:
+            markers += label_markers(self.known_data(OBJECTS))
+        if TRUTH in self.layers:
+            markers += truth_markers(self.known_data(TRUTH))
+        if DETECTIONS in self.layers:
+            markers += detection_markers(self.known_data(DETECTIONS), spectrum, self.object_colours())
+        return image, rows, markers
+
+    def select_detection(self, index: int, reach: int = 0) -> None:
+        """Selects the cell of a detection; where its paths are known, those are lit, else all within `reach` cells."""
+        detections = self.known_data(DETECTIONS)
+        velocity, distance = (int(value) for value in detections.cells[index])
+        self.select_cells(CellBox.around(distance, velocity, reach), (distance, velocity))
+        if detections.echoes is not None and not detections.is_noise[index]:
+            self._light(f"detection {index}", np.isin(np.arange(self.paths.num_paths), detections.paths(index)[0]))
+
+    def _light(self, name: str, mask) -> None:
+        self.lit_by, self._lit_mask = name, mask
         self._lit = self._lit_rays = self.ray = None
         self._tell("selection")
+
+    def select_family(self, group) -> None:
+        """Lights the paths of an EchoGroup of the attribution, wherever they lie; None: those of the selected cells again."""
+        self._light("" if group is None else group.name, None if group is None else self.attribution.paths_of(group))
 
     def cell_attribution(self):
         """CellAttribution of the selected cell at the channel on display; None where there is no cell or no attribution."""

@@ -2,10 +2,12 @@
 from __future__ import annotations
 
 import numpy as np
+import pyvista as pv
 
 from ..model.antennas import world_from_antenna
 from .antenna_layer import AntennaLayer
 from .camera import look
+from .known_layer import KnownLayer
 from .legend import LegendLayer
 from .mesh_layer import MeshLayer
 from .ray_layer import RayLayer
@@ -13,7 +15,9 @@ from .ray_layer import RayLayer
 BACKGROUND = "white"
 RAY_WIDTH, LIT_WIDTH, CHOSEN_WIDTH = 1.0, 2.0, 4.0  # pixels
 RAY_OPACITY = 0.5
-UNLIT_COLOUR, CHOSEN_COLOUR, CHOSEN_HIT_COLOUR = (208, 208, 208), (20, 20, 20), (230, 159, 0)
+# Of rays that are not lit and of the chosen one, before a light and a dark background.
+UNLIT_COLOURS, CHOSEN_COLOURS = ((208, 208, 208), (72, 74, 78)), ((20, 20, 20), (245, 245, 245))
+CHOSEN_HIT_COLOUR = (230, 159, 0)
 MAX_RAYS_MOVING = 300
 ANTENNA_SIZE = 0.02  # length of the axes, of the size of the picture
 
@@ -21,19 +25,22 @@ ANTENNA_SIZE = 0.02  # length of the axes, of the size of the picture
 class SceneBuilder:
     """Draws meshes, antennas, rays, lit rays and the chosen ray of a session, and follows its changes."""
 
-    def __init__(self, plotter, session, *, show_hits: bool = False, show_legend: bool = True, legend=None, cmap=None, clim=None):
+    def __init__(self, plotter, session, *, show_hits: bool = False, show_legend: bool = True, legend=None, background=BACKGROUND,
+                 cmap=None, clim=None):
         """plotter: any pyvista.Plotter; cmap, clim: of the colour scale of rays, None: by what is shown.
 
-        legend: what shows legends in place of a layer in the picture: an object with show(model.Legend) and place()
+        background: colour behind everything; legend: what shows legends in place of a layer in the picture, an object with
+            show(model.Legend) and place()
         """
         self.plotter, self.session = plotter, session
         self.show_hits = show_hits
         self._scale = {"cmap": cmap, "clim": clim}
-        plotter.set_background(BACKGROUND)
+        self.set_background(background)
         self.meshes = MeshLayer(plotter, session.scene, session.palette, session.time)
         self.rays = RayLayer(plotter, "all", width=RAY_WIDTH, opacity=RAY_OPACITY)
         self.lit = RayLayer(plotter, "lit", width=LIT_WIDTH, in_front=True)
         self.chosen = RayLayer(plotter, "chosen", width=CHOSEN_WIDTH, in_front=True)
+        self.known = KnownLayer(plotter)
         self.legend = legend if legend is not None else LegendLayer(plotter) if show_legend else None
         self.update({"meshes"})
         self._draw_rays()
@@ -51,9 +58,16 @@ class SceneBuilder:
             self._draw_rays()
         elif "colours" in topics:
             self._colour_rays()
+        if "layers" in topics:
+            self.known.show(self.session)
         if "meshes" in topics:
             self.meshes.colour(self.session.palette)
             self.meshes.show(self.session.hidden_meshes, self.session.meshes_of_node())
+
+    def set_background(self, colour) -> None:
+        """Behind everything; rays that are not lit and the chosen one stand out of it, dark or light."""
+        self.plotter.set_background(colour)
+        self._is_dark = sum(pv.Color(colour).int_rgb) < 3 * 128
 
     def set_show_hits(self, is_shown: bool) -> None:
         self.show_hits = is_shown
@@ -95,7 +109,7 @@ class SceneBuilder:
         is_selected = session.box is not None
         shown, lit = session.segments(session.shown_rays()), session.segments(session.lit_rays())
         main = session.colouring(lit if is_selected else shown, **self._scale)
-        unlit = np.broadcast_to(np.uint8(UNLIT_COLOUR), (shown.num_segments, 3))
+        unlit = np.broadcast_to(np.uint8(UNLIT_COLOURS[self._is_dark]), (shown.num_segments, 3))
         hit_rgb = session.palette[shown.hit_mesh] if self.show_hits and not is_selected else None
         self.rays.show(shown, unlit if is_selected else main.rgb, hit_rgb=hit_rgb)
         lit_hits = session.palette[lit.hit_mesh] if self.show_hits else None
@@ -112,7 +126,7 @@ class SceneBuilder:
     def _draw_chosen(self) -> None:
         session = self.session
         segments = session.segments([] if session.ray is None else [session.ray])
-        rgb = np.broadcast_to(np.uint8(CHOSEN_COLOUR), (segments.num_segments, 3))
+        rgb = np.broadcast_to(np.uint8(CHOSEN_COLOURS[self._is_dark]), (segments.num_segments, 3))
         self.chosen.show(segments, rgb, hit_rgb=np.uint8(CHOSEN_HIT_COLOUR))
         self.plotter.remove_actor("chosen names", render=False)
         if len(segments.hits):

@@ -11,7 +11,7 @@ from .phasors import COLOURS, MAX_ARROWS, PhasorDiagram
 from .qt import Qt, QtGui, QtWidgets
 
 HINT = "Click a cell: which echoes make it, and what its level would be without each object or wall."
-COLUMNS = ("Echoes", "dBm", "Phase", "Without", "Own peak at")
+COLUMNS = ("Echoes (ghost type/order)", "dBm", "Without", "Own peak at")
 SHOWN_BELOW_DB = 60.0   # the strongest: weaker rows are told as one
 LEAST_CHANGE_DB = 0.05  # of a level, that is told
 MOST_ROWS = 40
@@ -22,7 +22,7 @@ class ContributionsPanel(QtWidgets.QWidget):
 
     def __init__(self, parent=None):
         super().__init__(parent)
-        self.session, self._rows = None, []
+        self.session, self._rows, self._cell = None, [], None
         self.title, self.without = QtWidgets.QLabel(HINT, wordWrap=True), QtWidgets.QLabel(wordWrap=True)
         for label in (self.title, self.without):
             label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
@@ -48,7 +48,7 @@ class ContributionsPanel(QtWidgets.QWidget):
         header.setSectionResizeMode(QtWidgets.QHeaderView.ResizeMode.ResizeToContents)
         header.setSectionResizeMode(0, QtWidgets.QHeaderView.ResizeMode.Stretch)
         both = QtWidgets.QHBoxLayout()
-        both.addWidget(self.table, 3)
+        both.addWidget(self.table, 4)
         both.addWidget(self.phasors, 1)
         column = QtWidgets.QVBoxLayout(self)
         column.setContentsMargins(2, 2, 2, 2)
@@ -65,7 +65,7 @@ class ContributionsPanel(QtWidgets.QWidget):
     def refresh(self) -> None:
         """Tells of the cell that is selected now, if anyone looks."""
         session = self.session
-        if session is None or not self.isVisible() or (session.family is not None and self._rows):
+        if session is None or not self.isVisible() or (session.lit_by and session.cell == self._cell):
             return
         if session.cell is None:
             self._show_nothing(HINT)
@@ -92,6 +92,7 @@ class ContributionsPanel(QtWidgets.QWidget):
         self._show_nothing(text)
 
     def _show_nothing(self, text: str) -> None:
+        self._cell = None
         self.title.setText(text)
         self.without.setText("")
         self._fill([])
@@ -102,8 +103,9 @@ class ContributionsPanel(QtWidgets.QWidget):
         spectrum, (distance, velocity) = self.session.parts.whole.spectrum, self.session.cell
         place = f"{spectrum.range[distance]:.2f} m, {spectrum.velocity[velocity]:+.2f} m/s"
         self.title.setText(for_pictures(f"<b>{place}: {cell.level_dbm:.1f} dBm</b>, the sum of"))
-        told = [f"without {name}: <b>{change:+.1f} dB</b>" for name, change in cell.without if abs(change) >= LEAST_CHANGE_DB]
-        self.without.setText(for_pictures("   ".join(told)))
+        told = [f"without {name} <b>{change:+.1f} dB</b>" for name, change in cell.without if abs(change) >= LEAST_CHANGE_DB]
+        self.without.setText(for_pictures(" &nbsp;&#183;&nbsp; ".join(told)))
+        self._cell = self.session.cell
         self._fill(self._chosen(cell))
         self.phasors.show_values([one.value for one in sorted(cell.contributions, key=lambda one: -abs(one.value))], cell.value)
 
@@ -122,15 +124,15 @@ class ContributionsPanel(QtWidgets.QWidget):
         self.table.setRowCount(len(rows))
         for number, (one, phase) in enumerate(rows):
             level = float(in_dbm(abs(one.value) ** 2, SMALLEST_POWER))
-            peak = "" if one.group is None else f"{one.group.peak_range:.2f} m, {one.group.peak_velocity:+.2f} m/s"
-            texts = (one.name, f"{level:.1f}", f"{phase:+.0f}°", f"{one.without_db:+.2f} dB", peak)
+            peak = "" if one.group is None else f"{one.group.peak_range:.1f} m, {one.group.peak_velocity:+.1f} m/s"
+            texts = (one.name, f"{level:.1f}", f"{one.without_db:+.1f} dB", peak)
             for column, text in enumerate(texts):
                 item = QtWidgets.QTableWidgetItem(text if column == 0 else for_pictures(text))
                 if column:
                     item.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
                 self.table.setItem(number, column, item)
             self.table.item(number, 0).setIcon(_swatch(COLOURS[min(number, MAX_ARROWS - 1)]))
-            self.table.item(number, 0).setToolTip(one.name)
+            self.table.item(number, 0).setToolTip(f"{one.name}: {phase:+.0f}° from the sum")
         self.table.blockSignals(False)
 
     def _row_chosen(self) -> None:

@@ -150,7 +150,8 @@ class FilterBox(QtWidgets.QWidget):
             return
         text = f"{visible:,} of {session.paths.num_paths:,} paths"
         if session.box is not None:
-            text += f", {int(session.lit.sum()):,} of them in the selected cells"
+            where = "in the selected cells" if not session.lit_by else f"of {session.lit_by}"
+            text += f", {int(session.lit.sum()):,} of them {where}"
         drawn = len(session.shown_rays() if session.box is None else session.lit_rays())
         why = session.why_no_rays()
         self.count_label.setText(f"{text}; {why}" if why else f"{text}; {drawn:,} are drawn")

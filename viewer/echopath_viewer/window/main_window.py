@@ -11,6 +11,7 @@ from echopath.files import written_whole
 from echopath.origin import origin_texts
 
 from ..model import COLOUR_MODES, Session, from_file, from_frame
+from ..model.layers import DETECTIONS, LABELS, LAYERS, OBJECTS, TRUTH
 from ..model.view_state import apply_state, load_state, save_state, state_of
 from ..scene_builder import VIEWS, export_meshes, export_rays
 from .busy import run_with_progress
@@ -29,6 +30,9 @@ from .view3d import View3D
 TITLE = "Echopath"
 SIZE = (1600, 960)
 VIEW_TITLES = {"radar": "Radar's eye", "top": "Top", "side": "Side", "fit": "Fit"}
+LAYER_WORDS = {LABELS: "Cells of the map by the part that dominates", OBJECTS: "Cells of objects and of their ghosts",
+               DETECTIONS: "Detections in the map and, with directions, in the scene",
+               TRUTH: "True centres in the map, true boxes in the scene"}
 CONTENT_PAGE, EMPTY_PAGE = 0, 1
 SIGNAL_PAUSE_MS = 250  # without changes, before signals of what is chosen are made: longer work than a step of a box
 
@@ -78,6 +82,7 @@ class MainWindow(QtWidgets.QMainWindow):
         self.view3d.builder.set_show_hits(self.filter_box.hits_check.isChecked())
         self.table.show_session(self.session)
         self.contributions.show_session(self.session)
+        self._show_layer_checks()
         self._show_slow_time()
         self.session.listen(self._changed)
         self.setWindowTitle(f"{self.session.title or 'paths'} - {TITLE}")
@@ -327,8 +332,34 @@ class MainWindow(QtWidgets.QMainWindow):
         for name in ("look_fit", "look_radar", "look_top", "look_side", "toggle_hits", "next_colour", "toggle_layout",
                      "toggle_play", "previous_chirp", "next_chirp", "remove_part", "clear_selection"):
             look_menu.addAction(actions[name])
+        self._add_layers()
         self.menuBar().addMenu("Help").addAction(actions["show_help"])
         self._fill_bar(bar, actions)
+
+    def _add_layers(self) -> None:
+        """A toggle for each layer, in a menu of its own."""
+        self.layer_actions, menu = {}, self.menuBar().addMenu("Layers")
+        for number, layer in enumerate(LAYERS):
+            action = QtGui.QAction(layer.capitalize(), self, checkable=True)
+            action.setShortcut(QtGui.QKeySequence(str(number + 1)))
+            action.setToolTip(f"{LAYER_WORDS[layer]} ({number + 1})")
+            action.toggled.connect(lambda is_on, layer=layer: self._toggle_layer(layer, is_on))
+            menu.addAction(action)
+            self.addAction(action)
+            self.layer_actions[layer] = action
+            self._needs_frame.append(action)
+        menu.setToolTipsVisible(True)
+
+    def _toggle_layer(self, layer: str, is_on: bool) -> None:
+        if self.session is None or (layer in self.session.layers) == is_on:
+            return
+        self._work_on_node(layer.capitalize(), lambda progress: self.session.set_layer(layer, is_on, progress))
+        self._show_layer_checks()
+
+    def _show_layer_checks(self) -> None:
+        for layer, action in self.layer_actions.items():
+            with QtCore.QSignalBlocker(action):
+                action.setChecked(layer in self.session.layers)
 
     def _fill_bar(self, bar, actions: dict) -> None:
         for name, text in (("open_dialog", "Open"), ("save_view_dialog", "Save view"), ("load_view_dialog", "Load view"),

@@ -12,6 +12,8 @@ from .qt import Qt, QtCore, QtGui, QtWidgets
 from .ticks import nice_ticks, tick_text
 
 MIN_DYNAMIC_RANGE_DB, MAX_DYNAMIC_RANGE_DB = 10, 140
+MARKER_WORDS = {"object": "&#9679;&nbsp;object", "ghost": "&#9675;&nbsp;ghost", "truth": "+&nbsp;true centre",
+                "detection": "detections: &#9679;&nbsp;echo, &#9675;&nbsp;ghost, by object"}
 HINT = ("Click a cell or drag a rectangle: the rays behind it light up. Wheel: zoom, right button: move, double click: what "
         "moves or everything.")
 
@@ -34,6 +36,7 @@ class MapArea(QtWidgets.QWidget):
         self.range_slider.setToolTip("Dynamic range of the colours, below the peak that is in view.")
         self.range_slider.setRange(MIN_DYNAMIC_RANGE_DB, MAX_DYNAMIC_RANGE_DB)
         self.range_label, self.read_out = QtWidgets.QLabel(), QtWidgets.QLabel(HINT)
+        self.layer_legend = QtWidgets.QLabel(wordWrap=True, visible=False)
         self.colour_bar = ColourBar()
         self._arrange()
         self._connect()
@@ -61,6 +64,7 @@ class MapArea(QtWidgets.QWidget):
         column.setContentsMargins(2, 2, 2, 2)
         for layout, stretch in ((first, 0), (second, 0), (maps, 1)):
             column.addLayout(layout, stretch)
+        column.addWidget(self.layer_legend)
         column.addWidget(self.read_out)
 
     def _connect(self) -> None:
@@ -85,7 +89,7 @@ class MapArea(QtWidgets.QWidget):
         self.rebuild()
 
     def update_topics(self, topics: set) -> None:
-        if "maps" in topics:
+        if topics & {"maps", "layers"}:
             self.rebuild()
         elif "selection" in topics:
             self._show_marks()
@@ -117,7 +121,19 @@ class MapArea(QtWidgets.QWidget):
             self.panels[part.key].show_map(title_of(part), level, part.spectrum, limits, self.view,
                                            is_current=part.key == self.session.part_key)
         self.colour_bar.show_limits(*limits)
+        self._show_layers()
         self._show_marks()
+
+    def _show_layers(self) -> None:
+        """Over the map of everything, or over the only one there is; the legend stands below."""
+        image, rows, markers = self.session.map_layers()
+        for key, panel in self.panels.items():
+            has_layers = key == (WHOLE, WHOLE) or len(self.panels) == 1
+            panel.show_layers(image if has_layers else None, markers if has_layers else [])
+        words = [f"<span style='color:{QtGui.QColor(*map(int, rgb)).name()}'>&#9632;</span>&nbsp;{name}" for name, rgb in rows]
+        kinds = [text for kind, text in MARKER_WORDS.items() if any(marker.kind == kind for marker in markers)]
+        self.layer_legend.setText(" &nbsp; ".join(words + kinds))
+        self.layer_legend.setVisible(bool(words or kinds))
 
     def _fill_boxes(self) -> None:
         session = self.session
@@ -147,6 +163,7 @@ class MapArea(QtWidgets.QWidget):
     def _new_panel(self, key: tuple) -> MapPanel:
         panel = MapPanel()
         panel.cell_clicked.connect(lambda *cell: self._pick(key, CellBox.around(*cell, self.reach_box.value()), cell))
+        panel.detection_clicked.connect(lambda index: self._pick_detection(key, index))
         panel.click_undone.connect(self._undo_pick)
         panel.box_dragged.connect(lambda box: self._pick(key, box))
         panel.hovered.connect(lambda *at: self._read(key, *at))
@@ -160,6 +177,12 @@ class MapArea(QtWidgets.QWidget):
         if key != self.session.part_key:
             self.session.set_part(key)
         self.session.select_cells(box, cell)
+
+    def _pick_detection(self, key: tuple, index: int) -> None:
+        self._before_pick = self.session, self.session.part_key, self.session.box, self.session.ray
+        if key != self.session.part_key:
+            self.session.set_part(key)
+        self.session.select_detection(index, self.reach_box.value())
 
     def _undo_pick(self) -> None:
         session, key, box, ray = self._before_pick

@@ -12,6 +12,7 @@ from .ticks import nice_ticks, tick_text
 
 LEFT, RIGHT, TOP, BOTTOM = 46, 8, 20, 32  # pixels around the map
 CLICK_REACH = 4                           # pixels that a click may move
+MARKER_REACH, MARKER_RADIUS = 8, 4.0     # pixels
 ZOOM_STEP = 1.25
 BOX_COLOUR, RAY_COLOUR = QtGui.QColor("#56b4e9"), QtGui.QColor("#7bff7b")
 RANGE_LABEL, VELOCITY_LABEL = "Range in m", "Radial velocity in m/s"
@@ -27,6 +28,7 @@ class MapPanel(QtWidgets.QWidget):
     left = Signal()
     view_changed = Signal(object)        # QRectF: range, velocity
     view_reset = Signal()
+    detection_clicked = Signal(int)
 
     def __init__(self, parent=None):
         super().__init__(parent)
@@ -34,6 +36,7 @@ class MapPanel(QtWidgets.QWidget):
         self.setMinimumSize(140, 110)
         self.title, self.is_current = "", False
         self.box, self.ray_cell = None, None
+        self.markers, self._overlay = [], None
         self.level = self.image = None
         self.range_axis = self.velocity_axis = np.zeros(1)
         self.view = QtCore.QRectF()
@@ -50,6 +53,23 @@ class MapPanel(QtWidgets.QWidget):
         self.image = QtGui.QImage(self._pixels.data, width, height, width, QtGui.QImage.Format.Format_Indexed8)
         self.image.setColorTable([QtGui.qRgb(*map(int, rgb)) for rgb in colour_table(MAP_COLOURS)])
         self.update()
+
+    def show_layers(self, image, markers: list) -> None:
+        """image: RGBA u8 [velocity, range, 4] over the map or None; markers: model.layers.Marker"""
+        self.markers, self._overlay = markers, None
+        if image is not None:
+            self._overlay_pixels = np.ascontiguousarray(image[::-1])
+            height, width = image.shape[:2]
+            self._overlay = QtGui.QImage(self._overlay_pixels.data, width, height, 4 * width,
+                                         QtGui.QImage.Format.Format_RGBA8888)
+        self.update()
+
+    def marker_at(self, at: QtCore.QPointF):
+        """The marker nearest to a pixel, None where none is near."""
+        near = [((self.to_pixel(marker.range, marker.velocity) - at).manhattanLength(), number)
+                for number, marker in enumerate(self.markers)]
+        distance, number = min(near, default=(MARKER_REACH + 1, 0))
+        return self.markers[number] if distance <= MARKER_REACH else None
 
     def show_marks(self, box, ray_cell) -> None:
         """box: CellBox or None; ray_cell: (range index, velocity index) or None."""
@@ -100,10 +120,32 @@ class MapPanel(QtWidgets.QWidget):
         painter.fillRect(rect, QtGui.QColor(*map(int, colour_table(MAP_COLOURS)[0])))
         painter.save()
         painter.setClipRect(rect)
-        painter.drawImage(self._rect_of(CellBox(0, len(self.range_axis) - 1, 0, len(self.velocity_axis) - 1)), self.image)
+        everything = self._rect_of(CellBox(0, len(self.range_axis) - 1, 0, len(self.velocity_axis) - 1))
+        painter.drawImage(everything, self.image)
+        if self._overlay is not None:
+            painter.drawImage(everything, self._overlay)
+        self._paint_markers(painter)
         self._paint_marks(painter)
         painter.restore()
         self._paint_axes(painter, rect)
+
+    def _paint_markers(self, painter) -> None:
+        painter.setRenderHint(QtGui.QPainter.RenderHint.Antialiasing)
+        for marker in self.markers:
+            at, colour = self.to_pixel(marker.range, marker.velocity), QtGui.QColor(*map(int, marker.rgb))
+            painter.setBrush(colour if marker.is_filled else Qt.BrushStyle.NoBrush)
+            rim = QtGui.QColor("white") if marker.is_filled else colour
+            for pen_colour, width in ((QtGui.QColor("black"), 3.5), (rim, 1.5)):
+                painter.setPen(QtGui.QPen(pen_colour, width))
+                if marker.kind == "truth":
+                    painter.drawLine(at + QtCore.QPointF(-6, 0), at + QtCore.QPointF(6, 0))
+                    painter.drawLine(at + QtCore.QPointF(0, -6), at + QtCore.QPointF(0, 6))
+                else:
+                    painter.drawEllipse(at, MARKER_RADIUS, MARKER_RADIUS)
+            if marker.kind == "object":
+                painter.setPen(QtGui.QColor("white"))
+                painter.drawText(at + QtCore.QPointF(8, 14), marker.text)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
 
     def _paint_marks(self, painter) -> None:
         if self.box is not None:
@@ -172,6 +214,8 @@ class MapPanel(QtWidgets.QWidget):
         if not self.plot_rect().contains(event.position()):
             self.left.emit()
             return
+        marker = self.marker_at(event.position())
+        self.setToolTip("" if marker is None else marker.text)
         range_index, velocity_index = self.cell_at(event.position())
         self.hovered.emit(float(self.range_axis[range_index]), float(self.velocity_axis[velocity_index]),
                           float(self.level[velocity_index, range_index]))
@@ -182,7 +226,11 @@ class MapPanel(QtWidgets.QWidget):
             return
         if (event.position() - press).manhattanLength() <= CLICK_REACH:
             self._is_clicked = True
-            self.cell_clicked.emit(*self.cell_at(press))
+            marker = self.marker_at(press)
+            if marker is not None and marker.detection is not None:
+                self.detection_clicked.emit(marker.detection)
+            else:
+                self.cell_clicked.emit(*self.cell_at(press))
             return
         first, last = self.cell_at(press), self.cell_at(event.position())
         (near, far), (slow, fast) = sorted((first[0], last[0])), sorted((first[1], last[1]))

@@ -7,7 +7,7 @@ from .qt import Qt, QtCore, QtGui, QtWidgets
 
 MAX_ARROWS = 8
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6d1f", "#7f7f7f")  # Okabe and Ito
-MARGIN, HEAD = 26, 7.0  # pixels
+MARGIN, HEAD = 12, 7.0  # pixels
 
 
 class PhasorDiagram(QtWidgets.QWidget):
@@ -15,7 +15,7 @@ class PhasorDiagram(QtWidgets.QWidget):
 
     def __init__(self, parent=None):
         super().__init__(parent)
-        self.setMinimumSize(150, 110)
+        self.setMinimumSize(110, 90)
         self.setToolTip("Complex contributions, head to tail, strongest first; the thick arrow is their sum, the cell's value.")
         self.steps = np.zeros(0, complex)
 

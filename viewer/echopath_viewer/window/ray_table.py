@@ -113,7 +113,8 @@ class RayTable(QtWidgets.QWidget):
         if session.box is None:
             self.title.setText(f"the {len(self.model.rays):,} rays that are drawn, of {total:,}")
         else:
-            self.title.setText(f"{len(self.model.rays):,} strongest of {total:,} rays in the selected cells")
+            where = "in the selected cells" if not session.lit_by else f"of {session.lit_by}"
+            self.title.setText(f"{len(self.model.rays):,} strongest of {total:,} rays {where}")
         self._show_chosen(session)
 
     def _show_chosen(self, session) -> None:

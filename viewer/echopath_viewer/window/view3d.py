@@ -38,9 +38,20 @@ class View3D(QtInteractor):
     def show_session(self, session) -> None:
         """Replaces what is drawn."""
         self.clear()
-        self.builder = SceneBuilder(self, session, legend=self.legend_box)
+        self.builder = SceneBuilder(self, session, legend=self.legend_box, background=self._background())
         self._is_fresh = True
         QtCore.QTimer.singleShot(0, self._first_look)
+
+    def _background(self) -> str:
+        """White, or near black in a dark theme."""
+        return "white" if self.palette().base().color().lightness() >= 128 else "#17181a"
+
+    def changeEvent(self, event):
+        super().changeEvent(event)
+        if event.type() == QtCore.QEvent.Type.PaletteChange and self.builder is not None:
+            self.builder.set_background(self._background())
+            self.builder.update({"rays"})
+            self.render_soon()
 
     def _first_look(self) -> None:
         """Once the window has its size."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 import gc
 import os
 import sys
+import tempfile
 
 import pytest
 
@@ -11,6 +12,11 @@ import echopath as ep
 from support import shapes
 
 NEEDS_SCREEN = "test_window_"  # how their files' names begin
+
+
+def pytest_configure():
+    """Settings that windows remember are not those of the person who runs the tests."""
+    os.environ["XDG_CONFIG_HOME"] = tempfile.mkdtemp(prefix="echopath-settings-")
 
 
 def pytest_collection_modifyitems(items):

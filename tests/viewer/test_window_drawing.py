@@ -69,6 +69,7 @@ def test_a_step_in_time_selects_no_paths_anew(qtbot, window, monkeypatch):
     assert not copied
 
 
+@pytest.mark.filterwarnings("ignore:.*QDragEnterEvent:DeprecationWarning")
 def test_a_file_dropped_on_the_scene_is_opened_by_the_window(qtbot, window, monkeypatch, tmp_path):
     opened = []
     monkeypatch.setattr(window, "open_file", lambda path: opened.append(path))

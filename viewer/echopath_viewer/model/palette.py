@@ -6,7 +6,7 @@ import colorsys
 import numpy as np
 
 # Paul Tol's "muted" and "light" colours without the greys: told apart with most colour vision.
-_PALETTE = ("#332288", "#88ccee", "#44aa99", "#117733", "#999933", "#ddcc77", "#cc6677", "#882255", "#aa4499",
+_PALETTE = ("#cc6677", "#44aa99", "#aa4499", "#999933", "#88ccee", "#117733", "#ddcc77", "#882255", "#332288",
             "#77aadd", "#ee8866", "#eedd88", "#ffaabb", "#99ddff", "#bbcc33", "#aaaa00")
 _MIRROR_PALETTE = ("#8ca6cc", "#9cb8a5", "#c4b08c", "#b3a0c4")  # pale: large planes lie behind everything
 _SHADE_SPAN = 0.26             # of lightness, between the darkest and the lightest mesh of an object

@@ -34,7 +34,9 @@ def apply_state(session, state: dict) -> list[str]:
     has changed nothing then."""
     check_state(state)
     misfits = []
-    session.set_channel(*_channel(session, state, misfits))
+    channel = _channel(session, state, misfits)
+    if channel != session.channel:
+        session.set_channel(*channel)
     _attempt(misfits, "partition", lambda: _set_partition(session, state.get("partition")))
     for name, recipe in state.get("own_parts", {}).items():
         _attempt(misfits, f"part '{name}'", lambda: _add_part(session, name, recipe))

@@ -15,6 +15,7 @@ COLUMNS = ("Echoes (ghost type/order)", "dBm", "Without", "Own peak at")
 SHOWN_BELOW_DB = 60.0   # the strongest: weaker rows are told as one
 LEAST_CHANGE_DB = 0.05  # of a level, that is told
 MOST_ROWS = 40
+WIDE = 540              # pixels, from which on there is room for the last column, whose text the tool tips have, too
 
 
 class ContributionsPanel(QtWidgets.QWidget):
@@ -78,6 +79,10 @@ class ContributionsPanel(QtWidgets.QWidget):
             signals = session.signals
             self.work.start(lambda progress: Attribution(signals, progress=progress))
 
+    def resizeEvent(self, event):
+        super().resizeEvent(event)
+        self.table.setColumnHidden(len(COLUMNS) - 1, self.width() < WIDE)
+
     def showEvent(self, event):
         super().showEvent(event)
         self.refresh()
@@ -132,7 +137,7 @@ class ContributionsPanel(QtWidgets.QWidget):
                     item.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
                 self.table.setItem(number, column, item)
             self.table.item(number, 0).setIcon(_swatch(COLOURS[min(number, MAX_ARROWS - 1)]))
-            self.table.item(number, 0).setToolTip(f"{one.name}: {phase:+.0f}° from the sum")
+            self.table.item(number, 0).setToolTip(f"{one.name}: {phase:+.0f}° from the sum; own peak at {peak or 'no place'}")
         self.table.blockSignals(False)
 
     def _row_chosen(self) -> None:

@@ -10,6 +10,9 @@ KEYS = (
     ("Ctrl+L", "load_view_dialog", "Load a view"),
     ("Ctrl+P", "screenshot_dialog", "Save a picture of the window"),
     ("Ctrl+E", "export_rays_dialog", "Export the rays (VTK)"),
+    ("Ctrl+Z", "undo", "Undo what the view shows"),
+    ("Ctrl+Shift+Z", "redo", "Redo it"),
+    ("Ctrl+Q", "quit", "Close the window"),
     ("F", "look_fit", "Look at everything"),
     ("R", "look_radar", "The radar's eye"),
     ("T", "look_top", "From above"),
@@ -25,6 +28,8 @@ KEYS = (
     ("?", "show_help", "This list"),
 )
 MOUSE = (
+    ("1, 2, 3, 4", "layers: labels, objects and ghosts, detections, truth"),
+    ("Map: click a detection", "its paths"), ("Legend: click an object", "shows it alone, or all again"),
     ("Map: click, drag", "the rays of a cell, of a rectangle"),
     ("Map: wheel, right button, double click", "zoom, move, what moves or everything"),
     ("Scene: drag, wheel, middle button", "turn, zoom, move"), ("Scene: click", "a ray, or the body under the cursor"),
@@ -33,12 +38,11 @@ MOUSE = (
 )
 
 
-_ARROWS = frozenset({Qt.Key.Key_Left, Qt.Key.Key_Right})
 _KEYS_OF_WIDGETS = (
     (QtWidgets.QAbstractButton, frozenset({Qt.Key.Key_Space})),
     (QtWidgets.QComboBox, frozenset({Qt.Key.Key_Space})),
-    (QtWidgets.QAbstractItemView, _ARROWS | {Qt.Key.Key_Space}),
-    (QtWidgets.QAbstractSlider, _ARROWS),
+    (QtWidgets.QAbstractItemView, frozenset({Qt.Key.Key_Space})),
+    (QtWidgets.QAbstractSlider, frozenset({Qt.Key.Key_Left, Qt.Key.Key_Right})),
 )
 
 

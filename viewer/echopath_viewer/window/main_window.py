@@ -11,6 +11,7 @@ from echopath.files import written_whole
 from echopath.origin import origin_texts
 
 from ..model import COLOUR_MODES, Session, from_file, from_frame
+from ..model.history import History
 from ..model.layers import DETECTIONS, LABELS, LAYERS, OBJECTS, TRUTH
 from ..model.view_state import apply_state, load_state, save_state, state_of
 from ..scene_builder import VIEWS, export_meshes, export_rays
@@ -23,6 +24,7 @@ from .keys import KEYS, help_dialog, uses_key
 from .map_area import MapArea
 from .qt import Qt, QtCore, QtGui, QtWidgets
 from .ray_table import RayTable
+from .remembered import recent_files, remember_file, remember_layout, restore_layout
 from .scene_tree import SceneTree
 from .time_bar import TimeBar
 from .view3d import View3D
@@ -58,6 +60,7 @@ class MainWindow(QtWidgets.QMainWindow):
         self._add_actions()
         self._connect()
         self._set_content_shown(False)
+        restore_layout(self, self._splitters)
 
     # --- frames ---
 
@@ -68,11 +71,12 @@ class MainWindow(QtWidgets.QMainWindow):
         except (ep.FileError, ValueError) as error:
             self.show_message(str(error))
             return False
+        remember_file(path)
         return True
 
     def show_input(self, view_input) -> None:
         """Shows what `model.inputs` has read, and the window: there is no drawing into one that was never shown."""
-        self.session = Session(view_input)
+        self.session, self.history = Session(view_input), History()
         self.show_message("")
         self._set_content_shown(True)
         self.show()
@@ -83,8 +87,10 @@ class MainWindow(QtWidgets.QMainWindow):
         self.table.show_session(self.session)
         self.contributions.show_session(self.session)
         self._show_layer_checks()
+        self.view3d.setFocus()  # so that the arrow keys step through the chirps
         self._show_slow_time()
         self.session.listen(self._changed)
+        self.history.record(state_of(self.session))
         self.setWindowTitle(f"{self.session.title or 'paths'} - {TITLE}")
 
     def show_message(self, text: str) -> None:
@@ -120,6 +126,8 @@ class MainWindow(QtWidgets.QMainWindow):
             self.filter_box.show_counts()
         if stale & {"selection", "rays"}:
             self._pause.start()
+        if not self.time_bar.play_button.isChecked():
+            self.history.record(state_of(self.session))
 
     def _refresh_signals(self) -> None:
         """What takes synthesis: the map of the selected mesh, and the slow-time signal where it is of other rays now."""
@@ -219,8 +227,27 @@ class MainWindow(QtWidgets.QMainWindow):
         if self.session.node is not None:
             self.session.select_node(None)
 
+    def undo(self) -> None:
+        self._restore(self.history.back())
+
+    def redo(self) -> None:
+        self._restore(self.history.forward())
+
+    def _restore(self, state: dict | None) -> None:
+        if state is None:
+            return
+        try:
+            misfits = apply_state(self.session, state)
+        except ValueError as error:
+            misfits = [str(error)]
+        self.filter_box.read(self.session)
+        self.show_message("; ".join(misfits))
+
     def show_help(self) -> None:
         help_dialog(self).show()
+
+    def quit(self) -> None:
+        self.close()
 
     def open_dialog(self) -> None:
         self._ask(QtWidgets.QFileDialog.getOpenFileName, "Open a frame", "frame.h5", "Frames (*.h5 *.hdf5)", self.open_file)
@@ -299,6 +326,7 @@ class MainWindow(QtWidgets.QMainWindow):
         right = _splitter(Qt.Orientation.Vertical, (self.map_area, 3), (self.tabs, 1))
         self.content = _splitter(Qt.Orientation.Horizontal, (left, 0), (middle, 3), (right, 2))
         self.content.setSizes([300, 690, 610])
+        self._splitters = {"columns": self.content, "left": left, "right": right}
         right.setSizes([600, 280])
         self.pages = QtWidgets.QStackedWidget()
         self.pages.addWidget(self.content)
@@ -322,19 +350,27 @@ class MainWindow(QtWidgets.QMainWindow):
             self.addAction(action)
             actions[method] = action
         meshes = QtGui.QAction("Export the meshes (VTK)", self, triggered=lambda: self.export_meshes_dialog())
-        self._needs_frame = [action for method, action in actions.items() if method not in ("open_dialog", "show_help")]
+        self._needs_frame = [action for method, action in actions.items() if method not in ("open_dialog", "show_help", "quit")]
         self._needs_frame.append(meshes)
         file_menu = self.menuBar().addMenu("File")
         for name in ("open_dialog", "save_view_dialog", "load_view_dialog", "screenshot_dialog", "export_rays_dialog"):
             file_menu.addAction(actions[name])
         file_menu.addAction(meshes)
+        self.recent_menu = file_menu.addMenu("Recent frames")
+        self.recent_menu.aboutToShow.connect(self._fill_recent)
+        file_menu.addAction(actions["quit"])
         look_menu = self.menuBar().addMenu("View")
-        for name in ("look_fit", "look_radar", "look_top", "look_side", "toggle_hits", "next_colour", "toggle_layout",
-                     "toggle_play", "previous_chirp", "next_chirp", "remove_part", "clear_selection"):
+        for name in ("undo", "redo", "look_fit", "look_radar", "look_top", "look_side", "toggle_hits", "next_colour",
+                     "toggle_layout", "toggle_play", "previous_chirp", "next_chirp", "remove_part", "clear_selection"):
             look_menu.addAction(actions[name])
         self._add_layers()
         self.menuBar().addMenu("Help").addAction(actions["show_help"])
         self._fill_bar(bar, actions)
+
+    def _fill_recent(self) -> None:
+        self.recent_menu.clear()
+        for name in recent_files():
+            self.recent_menu.addAction(name, lambda name=name: self.open_file(name))
 
     def _add_layers(self) -> None:
         """A toggle for each layer, in a menu of its own."""
@@ -418,6 +454,7 @@ class MainWindow(QtWidgets.QMainWindow):
         self.open_file(event.mimeData().urls()[0].toLocalFile())
 
     def closeEvent(self, event):
+        remember_layout(self, self._splitters)
         self.time_bar.stop()
         self.contributions.work.stop()
         self._listing.stop()

@@ -58,6 +58,8 @@ class MapPanel(QtWidgets.QWidget):
         """image: RGBA u8 [velocity, range, 4] over the map or None; markers: model.layers.Marker"""
         self.markers, self._overlay = markers, None
         if image is not None:
+            # Grey, below colours that mean other things.
+            self.image.setColorTable([QtGui.qRgb(level, level, level) for level in range(256)])
             self._overlay_pixels = np.ascontiguousarray(image[::-1])
             height, width = image.shape[:2]
             self._overlay = QtGui.QImage(self._overlay_pixels.data, width, height, 4 * width,

@@ -1,0 +1,77 @@
+"""Undo, recent files, remembered sizes."""
+from __future__ import annotations
+
+import echopath as ep
+from echopath_viewer.model import CellBox
+from echopath_viewer.model.history import MOST_STATES, History
+from echopath_viewer.window import MainWindow
+from echopath_viewer.window.qt import Qt
+from echopath_viewer.window.remembered import recent_files, settings
+from support.window import settle
+
+CONTROL, SHIFT = Qt.KeyboardModifier.ControlModifier, Qt.KeyboardModifier.ShiftModifier
+
+
+def test_what_was_shown_comes_back_and_goes_again(qtbot, window):
+    session = window.session
+    steps = [lambda: session.set_color_by("power"), lambda: session.select_cells(CellBox(3, 5, 4, 6)),
+             lambda: window.filter_box.from_box.setValue(2), lambda: session.set_mesh_visible([2], False)]
+    for step in steps:
+        step()
+        settle(qtbot)
+    told = [lambda: sorted(session.hidden_meshes) == [2], lambda: session.filters.min_bounces == 2,
+            lambda: session.box == CellBox(3, 5, 4, 6), lambda: session.color_by == "power"]
+    for is_shown in told:
+        assert is_shown()
+        qtbot.keyClick(window, Qt.Key.Key_Z, CONTROL)
+        settle(qtbot)
+        assert not is_shown()
+    assert window.filter_box.from_box.value() == 0
+    for is_shown in reversed(told):
+        qtbot.keyClick(window, Qt.Key.Key_Z, CONTROL | SHIFT)
+        settle(qtbot)
+        assert is_shown()
+
+
+def test_a_history_forgets_what_was_undone_and_what_is_long_ago():
+    history = History()
+    assert history.back() is None and history.forward() is None
+    for number in range(MOST_STATES + 5):
+        history.record({"number": number})
+        history.record({"number": number})
+    assert history.back() == {"number": MOST_STATES + 3}
+    history.record({"number": -1})
+    assert history.forward() is None and history.back() == {"number": MOST_STATES + 3}
+    steps = 0
+    while history.back() is not None:
+        steps += 1
+    assert steps == MOST_STATES - 2
+
+
+def test_opened_frames_are_remembered_latest_first(qtbot, window, frame, tmp_path):
+    settings().remove("recent")
+    for name in ("a.h5", "b.h5", "a.h5"):
+        ep.save_frame(frame, tmp_path / name)
+        assert window.open_file(tmp_path / name)
+    assert not window.open_file(tmp_path / "none.h5")
+    assert recent_files() == [str((tmp_path / name).resolve()) for name in ("a.h5", "b.h5")]
+    window._fill_recent()
+    assert [action.text() for action in window.recent_menu.actions()] == recent_files()
+    (tmp_path / "a.h5").unlink()
+    assert recent_files() == [str((tmp_path / "b.h5").resolve())]
+
+
+def test_sizes_are_remembered(qtbot):
+    first = MainWindow()
+    first.resize(1010, 640)
+    first.content.setSizes([200, 500, 310])
+    sizes = first.content.sizes()
+    first.show()
+    first.close()
+    second = MainWindow()
+    assert (second.width(), second.height()) == (1010, 640)
+    second.show()
+    qtbot.wait(20)
+    assert sum(second.content.sizes()) > 0 and second.content.sizes()[0] <= max(sizes[0], 320)
+    second.close()
+    settings().clear()

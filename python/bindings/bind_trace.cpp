@@ -12,6 +12,7 @@
 #include "array.h"
 #include "choice.h"
 #include "echopath/sim/rays/ray_allocation.h"
+#include "echopath/trace/edges/edge_power.h"
 #include "echopath/trace/geometry/embree_scene.h"
 #include "echopath/trace/geometry/kept_geometry.h"
 #include "echopath/trace/trace.h"
@@ -102,6 +103,8 @@ void bind_trace(py::module_& m) {
       },
       py::arg("scene"), py::arg("time"), py::arg("origin"), py::arg("points"),
       "Whether nothing of the scene lies between `origin` [3] and each of `points` [N, 3], m at `time` in s; [N].");
+  m.def("strongest_edge", &strongest_edge, py::arg("scene"), py::arg("radar"), py::arg("time"),
+        "What edges=\"auto\" compares with the noise: W that the strongest sharp edge would carry at a time in s.");
   m.attr("DEFAULT_MAX_RAYS") = kMaxRays;
   m.attr("MOST_RAYS") = kMostRays;
 }

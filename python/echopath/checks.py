@@ -118,6 +118,15 @@ def flag(argument: str, value) -> bool:
     return bool(value)
 
 
+def flag_or_auto(argument: str, value) -> bool | Literal["auto"]:
+    """True or False, NumPy's too, or "auto"."""
+    if isinstance(value, str) and value == "auto":
+        return "auto"
+    if not isinstance(value, (bool, np.bool_)):
+        raise refused(ValueError if isinstance(value, str) else TypeError, argument, "True, False or 'auto'", value)
+    return bool(value)
+
+
 def choice(*names: str) -> Rule:
     """One of some words."""
     quoted = [f"'{name}'" for name in names]

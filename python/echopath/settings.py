@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from typing import Any, ClassVar, Literal, TypeVar, dataclass_transform
 
 from . import _core
-from .checks import LARGEST_COUNT, Rule, Window, count, flag, one_of, optional, positive, real
+from .checks import LARGEST_COUNT, Rule, Window, count, flag, flag_or_auto, one_of, optional, positive, real
 from .checks import seed as seed_rule
 from .checks import window as window_rule
 from .effect_choices import Choices, effects_rule
@@ -23,6 +23,7 @@ Polarization = Literal["auto", "scalar", "jones"]
 Footprint = Literal["none", "first_order", "second_order", "edges"]
 Sampler = Literal["lattice", "fibonacci", "r2", "random"]
 Scatterers = Literal["auto", "rays", "surface"]
+Edges = bool | Literal["auto"]
 Method = Literal["auto", "direct", "recurrence", "nufft"]
 Replay = Literal["material", "fermat"]
 Evaluate = Literal["interpolated", "chirps", "samples"]
@@ -69,7 +70,7 @@ class TraceSettings(Settings):
     seed: of the directions and random phases, 0 or more; start_time: s, first sample of the frame
     polarization, footprint, sampler: words; batches: 1 to 64 independent parts of the rays, None: 1
     target_error_db: dB, error of each echo until which rays are added, at most max_rays
-    scatterers: of rough surfaces, a word; edges: whether echoes of sharp edges are looked for
+    scatterers: of rough surfaces, a word; edges: whether echoes of sharp edges are looked for, or "auto"
     effects: {name of an effect of the weather: True, False or "auto"}, as pairs
     Raises TypeError or ValueError naming the keyword. Values are frozen; two with equal values are equal.
     """
@@ -85,7 +86,7 @@ class TraceSettings(Settings):
     target_error_db: float | None = None
     max_rays: int | float = _core.DEFAULT_MAX_RAYS
     scatterers: Scatterers = "auto"
-    edges: bool = False
+    edges: Edges = False
     effects: Choices = ()
 
     RULES: ClassVar[Mapping[str, Rule]] = {
@@ -93,7 +94,7 @@ class TraceSettings(Settings):
         "start_time": real(unit="s"), "polarization": one_of(Polarization), "footprint": one_of(Footprint),
         "sampler": one_of(Sampler), "batches": optional(count(1, MOST_BATCHES)),
         "target_error_db": optional(positive("dB")), "max_rays": count(1, MOST_RAYS),
-        "scatterers": one_of(Scatterers), "edges": flag, "effects": effects_rule}
+        "scatterers": one_of(Scatterers), "edges": flag_or_auto, "effects": effects_rule}
 
 
 @settings_class

@@ -11,7 +11,7 @@ from .frame import Frame
 from .frame_run import FrameRun
 from .guard import warn_of
 from .settings import (
-    Evaluate, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings,
+    Edges, Evaluate, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings,
     TraceSettings,
 )
 from .tracing import trace as trace_scene
@@ -25,7 +25,8 @@ def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | 
              footprint: Footprint = TraceSettings.footprint, sampler: Sampler = TraceSettings.sampler,
              batches: int | None = TraceSettings.batches, target_error_db: float | None = TraceSettings.target_error_db,
              max_rays: int | float = TraceSettings.max_rays, scatterers: Scatterers = TraceSettings.scatterers,
-             edges: bool = TraceSettings.edges, effects: Choices = TraceSettings.effects, parts: Mapping[str, Any] | None = None,
+             edges: Edges = TraceSettings.edges, effects: Choices = TraceSettings.effects,
+             parts: Mapping[str, Any] | None = None,
              tolerance: float = SignalSettings.tolerance, method: Method = SignalSettings.method,
              replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,
              phase_tolerance: float = SignalSettings.phase_tolerance, retrace: Retrace = SignalSettings.retrace,

@@ -74,7 +74,7 @@ def _chains(paths) -> tuple:
     within = (np.uint64(1) << bounces.astype(np.uint64)) - np.uint64(1)  # of 64: all
     edge = edge_hits(paths).astype(np.uint64)
     marks, mark_of_path = _distinct(np.stack([paths.diffuse & within, bounces.astype(np.uint64), edge], axis=1))
-    events = ["".join(event(int(bits), int(at), hit) for hit in range(int(count))) for bits, count, at in marks]
+    events = ["".join(event(int(bits), int(on), hit) for hit in range(int(count))) for bits, count, on in marks]
     return (chain_of_path, meshes), (mark_of_path, events)
 
 
@@ -93,14 +93,16 @@ def _passes(paths) -> tuple:
 
 
 def edge_hits(paths) -> np.ndarray:
-    """[P] which hit of each path lies on an edge; 64: none."""
-    flags = np.asarray(paths.flags)
-    return np.where(flags & _EDGE, flags >> 8 & 63, 64)
+    """[P] uint64, bit k: hit k of the path lies on an edge; up to four in a row do."""
+    flags = np.asarray(paths.flags).astype(np.uint64)
+    one, count, first = np.uint64(1), (flags >> np.uint64(3) & np.uint64(3)) + np.uint64(1), flags >> np.uint64(8) & np.uint64(63)
+    return np.where(flags & np.uint64(_EDGE), ((one << count) - one) << first, np.uint64(0))
 
 
-def event(diffuse: int, edge: int, hit: int) -> str:
-    """The letter of a hit of a path, as expressions have it: D where its bit of `diffuse` is set, E on an edge, else S."""
-    return "E" if hit == edge else "SD"[diffuse >> hit & 1]
+def event(diffuse: int, edges: int, hit: int) -> str:
+    """The letter of a hit of a path, as expressions have it: E where its bit of `edges` is set, D where that of `diffuse` is,
+    else S."""
+    return "E" if edges >> hit & 1 else "SD"[diffuse >> hit & 1]
 
 
 def _distinct(rows) -> tuple:

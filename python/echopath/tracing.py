@@ -12,7 +12,8 @@ from .checks import ArrayLike, Progress, array, checked, flag, one_of, optional,
 from .effect_choices import Choices
 from .lost_rays import warn_of_lost_rays, warn_of_unaimed, warn_of_unfollowed_beams
 from .polarization import FIELD_VECTORS, SCALAR, antennas_of, chosen_model
-from .settings import Footprint, Polarization, Sampler, Scatterers, TraceSettings
+from .edges import looks_for_edges
+from .settings import Edges, Footprint, Polarization, Sampler, Scatterers, TraceSettings
 from .sizes import warn_of_sizes
 from .tessellation import warn_of_coarse_meshes
 from .weather.weather import attenuation_of
@@ -31,7 +32,7 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
           footprint: Footprint = TraceSettings.footprint, sampler: Sampler = TraceSettings.sampler,
           batches: int | None = TraceSettings.batches, target_error_db: float | None = TraceSettings.target_error_db,
           max_rays: int | float = TraceSettings.max_rays, scatterers: Scatterers = TraceSettings.scatterers,
-          edges: bool = TraceSettings.edges, effects: Choices = TraceSettings.effects,
+          edges: Edges = TraceSettings.edges, effects: Choices = TraceSettings.effects,
           settings: TraceSettings | None = None, progress: Progress = None) -> _core.Paths:
     """Shoots rays from the radar through the scene at mid-frame and records what they hit.
 
@@ -63,8 +64,10 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
         mean power of a body to 0.5 %, as many rays to 0.1 %. What rays meet straight from the transmitter persists; second
         and further diffuse hits are drawn from there, and places that only flagged mirrors show are left to rays
     edges: whether the echoes of sharp edges are looked for, too: what physical optics leaves out where two faces of a conductor
-        meet at 30 degrees or more, and at rims (`E` in path expressions). They are of first order, directly from the radar or
-        over flagged mirrors; dielectrics, and meshes that deform or change their scale, have none
+        meet at 30 degrees or more, and at rims (`E` in path expressions), directly from the radar, over flagged mirrors and
+        over unflagged planes that rays found, and on from edge to edge over flat faces of up to 40 wavelengths (`E E`).
+        Dielectrics, and meshes that deform or change their scale, have none. "auto": where the strongest edge, were nothing
+        in its way, stands out of the noise of a cell of the map; `paths.effects` says how strong it is
     effects: {name: True, False or "auto"} of effects that `Scene.weather` asks for: "attenuation by weather", "echoes of rain"
         (of `simulate`); those that are left out are "auto", on where the weather has them
     settings: TraceSettings that give the keywords which the call leaves out, or None
@@ -86,7 +89,8 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
     paths = _core.trace(scene, radar, num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
                         polarization=model, footprint=footprint, sampler=sampler, batches=batches,
                         target_error_db=target_error_db, max_rays=max_rays,
-                        scatterers="rays" if scatterers == "auto" else scatterers, edges=edges,
+                        scatterers="rays" if scatterers == "auto" else scatterers,
+                        edges=looks_for_edges(edges, scene, radar, start_time),
                         attenuation=attenuation_of(scene, radar, effects), progress=progress, kept=geometry)
     for warn in (warn_of_lost_rays, warn_of_unfollowed_beams, warn_of_unaimed):
         warn(paths.frame.statistics, stacklevel=_CALLER)
@@ -108,13 +112,13 @@ _FREQUENCY = real(above=0.0, high=HIGHEST_FREQUENCY, unit="Hz")
 
 @checked(**TraceSettings.RULES | {
     "frequency": _FREQUENCY, "incidence": _DIRECTIONS, "observation": optional(_DIRECTIONS), "polarization": _polarization,
-    "model": one_of(Polarization), "components": flag, "return_error": flag})
+    "model": one_of(Polarization), "edges": flag, "components": flag, "return_error": flag})
 def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observation: ArrayLike | None = None,
         polarization: ArrayLike | Channel | Sequence[Channel] = (0.0, 0.0, 1.0), model: Polarization = "auto",
         num_rays: int | float | None = None, max_bounces: int = TraceSettings.max_bounces, seed: int = TraceSettings.seed,
         footprint: Footprint = TraceSettings.footprint, sampler: Sampler = TraceSettings.sampler, batches: int | None = None,
         target_error_db: float | None = None, max_rays: int | float = TraceSettings.max_rays,
-        edges: bool = TraceSettings.edges, components: bool = False,
+        edges: bool = False, components: bool = False,
         return_error: bool = False, progress: Progress = None
         ) -> CrossSections | dict[str, CrossSections] | tuple[CrossSections | dict[str, CrossSections], ...]:
     """Radar cross section of a scene in m^2, far field, at time 0.
@@ -131,7 +135,7 @@ def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observati
     model: with a polarization of [3], "scalar" (one coefficient a hit), "jones" (field vectors) or "auto", as in `trace`
     num_rays: rays per direction and transmit polarization, for all batches together; 131 072 for each batch unless given;
         max_bounces: 1 to 64
-    seed, footprint, sampler, edges: as in `trace`
+    seed, footprint, sampler, edges: as in `trace`; edges is not "auto", because there is no noise
     batches: as in `trace`; None: 8 for return_error, else 1
     target_error_db: dB; doubles the rays, from num_rays (16 384 unless given) to at most max_rays, as `trace` does, until
         each cross section, of a list of polarizations the first with each transmitter, is known that well

@@ -1,4 +1,4 @@
-"""Rays lie closer about points of reflection behind bounces off curved surfaces: echoes over two bodies against geometrical optics."""
+"""Rays lie closer about points of reflection behind bounces off curved surfaces: two bodies against geometrical optics."""
 import numpy as np
 import pytest
 from scipy.optimize import least_squares

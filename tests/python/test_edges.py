@@ -13,8 +13,11 @@ FREQUENCY = 10.24e9
 WAVENUMBER = 2.0 * math.pi * FREQUENCY / 299792458.0
 WIDTH, HEIGHT = 10.5 * INCH, 6.0 * INCH  # across and along the axis about which the plate turns
 FEW_RAYS = 2 ** 12
+WEAK_CHAINS = 0.03    # waves from edge to edge that count as none for one polarisation and not for both
 SAME = 1e-6           # single precision of weights and barycentric coordinates
-FIRST_ORDER_DB = 0.1  # the rays' own physical optics
+FIRST_ORDER_DB = 0.2  # the rays' own physical optics
+HIGHER_ORDER_DB = 0.5  # near the edges' own transitions, which the closed form leaves out
+THIN_PLATE_DB = 1.5    # the theory; without waves from edge to edge 3 dB
 
 
 def sheet(width: float = WIDTH, height: float = HEIGHT) -> ep.Mesh:
@@ -63,15 +66,47 @@ def on_edges(paths):
 
 # --- against theory ---
 
-@pytest.mark.parametrize("channel", ["vv", "hh"])
-def test_a_plate_returns_what_the_first_order_of_edge_theory_has(channel):
-    """Both edges along the axis in closed form (Ross 1966, first order), in the plane across them."""
-    angles = np.radians([35.0, 50.0, 62.0, 75.0, 86.0, 90.0])
-    found = ep.rcs(scene_of(sheet()), frequency=FREQUENCY, incidence=directions(angles), polarization=[channel],
-                   num_rays=2 ** 15, edges=True)[:, 0]
+def first_order(angles, sign: float):
+    """Both edges along the axis of a plate, in the plane across them (Ross 1966); sign: +1 VV, -1 HH, where lengths count as
+    e^{-jkr}. Over the height / sqrt(pi)."""
     x, sine = WAVENUMBER * WIDTH * np.sin(angles), np.sin(angles)
-    expected = HEIGHT ** 2 / math.pi * np.abs(np.cos(x) - 1j * np.sin(x) / sine) ** 2
+    return np.cos(x) + sign * 1j * np.sin(x) / sine
+
+
+def test_a_plate_returns_what_the_first_order_of_edge_theory_has():
+    """VV, whose field vanishes along the faces between the edges; the sheet is too high for waves between the other two."""
+    angles, height = np.radians([35.0, 50.0, 62.0, 75.0, 86.0, 90.0]), 1.3
+    found = ep.rcs(scene_of(sheet(height=height)), frequency=FREQUENCY, incidence=directions(angles), polarization=["vv"],
+                   num_rays=2 ** 16, edges=True)[:, 0]
+    expected = height ** 2 / math.pi * np.abs(first_order(angles, 1.0)) ** 2
     assert np.abs(10.0 * np.log10(found / expected)).max() < FIRST_ORDER_DB
+
+
+def test_a_plate_returns_what_edge_after_edge_has():
+    """HH: the wave along the face from edge to edge, and back (Ross 1966; Knott, Shaeffer and Tuley 2004, section 5.5)."""
+    angles = np.radians([38.0, 45.0, 52.0, 60.0])
+    found = ep.rcs(scene_of(sheet()), frequency=FREQUENCY, incidence=directions(angles), polarization=["hh"],
+                   num_rays=2 ** 15, edges=True)[:, 0]
+    expected = HEIGHT ** 2 / math.pi * np.abs(first_order(angles, -1.0) + higher_orders(angles)) ** 2
+    assert np.abs(10.0 * np.log10(found / expected)).max() < HIGHER_ORDER_DB
+    assert np.abs(10.0 * np.log10(np.abs(first_order(angles, -1.0)) ** 2 * HEIGHT ** 2 / math.pi / expected)).max() > 2.0
+
+
+def higher_orders(angles):
+    """Of a strip whose edges lie along the magnetic field, over HEIGHT / sqrt(pi)."""
+    ka, x, sine = WAVENUMBER * WIDTH, WAVENUMBER * WIDTH * np.sin(angles), np.sin(angles)
+    along = np.exp(-1j * (ka + math.pi / 4.0)) / math.sqrt(2.0 * math.pi * ka)
+    back = np.exp(1j * x) / (1.0 - sine) + np.exp(-1j * x) / (1.0 + sine)
+    return -4.0 * along * (1.0 / np.cos(angles) - 0.5 * along * back)
+
+
+def test_a_thin_plate_returns_what_the_method_of_moments_has():
+    """HH at 10.24 GHz of a plate of 64 mil; levels in dBsm of the Austin RCS Benchmark Suite (data/reference)."""
+    levels = {30: -18.67, 38: -17.44, 44: -23.76, 50: -21.82, 58: -18.05, 64: -23.46, 70: -18.71, 76: -17.0, 82: -22.37,
+              86: -28.29, 90: -32.05}
+    found = 10.0 * np.log10(ep.rcs(scene_of(box((0.064 * INCH, WIDTH, HEIGHT))), frequency=FREQUENCY, polarization=["hh"],
+                                   incidence=directions(np.radians(list(levels))), num_rays=2 ** 14, edges=True)[:, 0])
+    assert np.abs(found - list(levels.values())).mean() < THIN_PLATE_DB
 
 
 @pytest.mark.parametrize("model", ["scalar", "jones"])
@@ -79,7 +114,7 @@ def test_both_models_of_polarisation_agree_where_nothing_turns_it(model):
     angles = np.radians([40.0, 70.0])
     both = [ep.rcs(scene_of(sheet()), frequency=FREQUENCY, incidence=directions(angles), polarization=(0.0, 0.0, 1.0),
                    model=one, num_rays=FEW_RAYS, edges=True) for one in (model, "jones")]
-    assert both[0] == pytest.approx(both[1], rel=1e-4, abs=0)
+    assert both[0] == pytest.approx(both[1], rel=WEAK_CHAINS, abs=0)
 
 
 def test_a_plate_is_reciprocal_across_its_edges():
@@ -104,7 +139,8 @@ def test_a_wave_over_a_metal_ground_comes_from_the_image_of_the_antenna():
         waveform = radar_at().waveform
         free = ep.Radar(waveform, transmitters=[ep.Antenna((8.0, 0.5, -1.0), polarization=image)],
                         receivers=[ep.Antenna((8.0, 0.5, 1.0), polarization=polarization)])
-        expected = fields(on_edges(trace(scene_of(sheet(), position=(0, 0, 1.5), yaw=0.4), free, polarization="jones")))
+        alone = trace(scene_of(sheet(), position=(0, 0, 1.5), yaw=0.4), free, polarization="jones")
+        expected = fields(alone.select("T E R"))
         assert there == pytest.approx(expected, rel=1e-5, abs=np.abs(expected).max() * SAME)
         back, twice = (fields(both.select(way)) for way in ("T E'plate' 'ground' R", "T 'ground' E'plate' 'ground' R"))
         assert len(back) == len(twice) == len(there)
@@ -125,8 +161,7 @@ def test_edges_of_a_turning_plate_are_those_of_a_new_trace():
     spin = 10.0  # rad/s
     scene = scene_of(sheet(), motion=ep.LinearMotion(velocity=(1.0, -2.0, 0.5), angular_velocity=(0.0, 0.3, spin)))
     radar = radar_at(num_chirps=128)
-    paths = on_edges(trace(scene, radar, start_time=0.0))
-    later = on_edges(trace(scene, radar, start_time=0.01))
+    paths, later = (trace(scene, radar, start_time=start).select("T E R") for start in (0.0, 0.01))
     assert later.num_paths == paths.num_paths
     assert fields(paths, later.frame.trace_time) == pytest.approx(fields(later), rel=1e-5)
     assert np.abs(fields(paths) - fields(later)).max() > 0.1 * np.abs(fields(later)).max()
@@ -158,7 +193,7 @@ def of_a_box():
 
 
 def test_paths_name_a_point_on_an_edge(of_a_box):
-    edges = on_edges(of_a_box)
+    edges = of_a_box.select("T E R")
     assert edges.num_paths > 0 and set(edges.num_bounces) == {1}
     first = np.asarray(edges.offsets)
     u, v = np.asarray(edges.u)[first], np.asarray(edges.v)[first]
@@ -181,10 +216,10 @@ def test_expressions_and_partitions_know_them(of_a_box):
     edges = of_a_box.select("T E R")
     assert edges.num_paths == of_a_box.select("T E'plate' R").num_paths == of_a_box.select("T ['plate'] R & T E R").num_paths
     assert (of_a_box.select("T S R").num_paths + edges.num_paths == of_a_box.select("T . R").num_paths
-            == of_a_box.num_paths)
-    assert of_a_box.select("T D R").num_paths == of_a_box.select("T E E R").num_paths == 0
+            == of_a_box.num_paths - of_a_box.select("T E E+ R").num_paths)
+    assert of_a_box.select("T D R").num_paths == of_a_box.select("T E S R").num_paths == 0
     radar = of_a_box.radar
-    parts = ep.decompose(of_a_box, radar, {"edges": "T .* E .* R"})
+    parts = ep.decompose(of_a_box, radar, {"edges": "T E R"})
     assert parts["edges"] == pytest.approx(ep.synthesize(edges, radar, tolerance=1e-9), abs=1e-6 * np.abs(parts["edges"]).max())
     assert list(of_a_box.to_dataframe()["events"]).count("E") == edges.num_paths
 
@@ -212,6 +247,82 @@ def test_the_frame_stays_valid_while_nothing_moves(of_a_box):
     report = ep.validity(of_a_box, of_a_box.radar)
     assert report.ok
     assert report.occluded_share == report.turned_share == report.left_share == 0.0
+
+
+# --- from edge to edge ---
+
+@pytest.fixture(scope="module")
+def of_a_small_sheet():
+    motion = ep.LinearMotion(velocity=(1.0, -2.0, 0.5), angular_velocity=(0.0, 0.3, 10.0))
+    return trace(scene_of(sheet(0.3, 0.4), yaw=1.0, motion=motion), radar_at(polarization=(0.0, 1.0, 0.0), num_chirps=64))
+
+
+def test_paths_from_edge_to_edge_name_all_their_points(of_a_small_sheet, tmp_path):
+    chains = of_a_small_sheet.select("T E E+ R")
+    assert chains.num_paths == of_a_small_sheet.select("T E{2,4} R").num_paths > 0
+    assert set(chains.num_bounces) <= {2, 3, 4} and set(chains.to_dataframe()["events"]) <= {"EE", "EEE", "EEEE"}
+    first, second = (chains.points(chains.frame.trace_time)[np.asarray(chains.offsets) + k] for k in (0, 1))
+    assert np.linalg.norm(first - second, axis=1).max() < 0.5
+    chains.save(tmp_path / "chains.h5")
+    assert np.array_equal(ep.Paths.load(tmp_path / "chains.h5").amplitude, chains.amplitude)
+
+
+def test_waves_from_edge_to_edge_follow_a_turning_plate(of_a_small_sheet):
+    """The points stay where they are on the plate; new ones lie where the cone is by then."""
+    later = trace(of_a_small_sheet.scene, of_a_small_sheet.radar, start_time=0.003)
+    there = [fields(paths.select("T E E R"), later.frame.trace_time).sum() for paths in (of_a_small_sheet, later)]
+    assert abs(there[0] - there[1]) < 0.1 * abs(there[1])
+
+
+def test_only_faces_of_few_wavelengths_carry_waves_from_edge_to_edge():
+    """From one edge to the other across a sheet that is wider than 40 wavelengths there is none."""
+    wavelength = 299792458.0 / FREQUENCY
+    for size, has_some in ((1.1, True), (1.3, False)):
+        chains = trace(scene_of(sheet(2.0, size)), radar_at((2.0, 0.0, 7.5), polarization=(1.0, 0.0, 0.0))).select("T E E R")
+        first, second = (chains.points(0.0)[np.asarray(chains.offsets) + k] for k in (0, 1))
+        ways = np.linalg.norm(first - second, axis=1)
+        assert ways.max(initial=0.0) < 40.0 * wavelength and bool(np.any(ways > 35.0 * wavelength)) == has_some
+
+
+# --- seams ---
+
+def faces_of(mesh: ep.Mesh) -> list[ep.Mesh]:
+    """A mesh for each pair of triangles."""
+    vertices, triangles = np.asarray(mesh.vertices), np.asarray(mesh.triangles)
+    return [ep.Mesh(vertices[pair].reshape(-1, 3), np.arange(6).reshape(2, 3)) for pair in triangles.reshape(-1, 2, 3)]
+
+
+def parts_scene(mesh, motions=None, **keywords) -> ep.Scene:
+    scene = ep.Scene()
+    for k, face in enumerate(faces_of(mesh)):
+        motion = {"motion": motions[k]} if motions and motions[k] else {}
+        scene.add(face, name=f"face_{k}", material=ep.Material.metal(), **motion, **keywords)
+    return scene
+
+
+def test_a_box_of_six_meshes_is_one_box():
+    whole, parts = (fields(on_edges(trace(scene, radar_at(), polarization="jones"))) for scene in (
+        scene_of(box((0.4, 0.5, 0.6)), yaw=0.4), parts_scene(box((0.4, 0.5, 0.6)), yaw=0.4)))
+    assert len(whole) == len(parts)
+    assert parts.sum() == pytest.approx(whole.sum(), rel=SAME)
+
+
+def test_a_sheet_cut_in_two_has_no_rim_where_it_is_cut():
+    cut = [ep.Mesh(np.array(corners) @ np.diag([1.0, 0.5, 0.5]), np.array([(0, 1, 3), (0, 3, 2)])) for corners in (
+        [(0, y, z) for y in (-1, 0) for z in (-1, 1)], [(0, y, z) for y in (0, 1) for z in (-1, 1)])]
+    scene = ep.Scene()
+    for name, half in zip("ab", cut):
+        scene.add(half, name=name, material=ep.Material.metal())
+    points = on_edges(trace(scene, radar_at(), max_bounces=1))
+    middle = np.abs(points.points(0.0)[np.asarray(points.offsets)][:, 1])
+    assert len(middle) > 0 and not np.any((middle < 1e-6) & (middle == middle.min()))
+
+
+def test_meshes_that_move_apart_have_rims_of_their_own():
+    motions = [ep.LinearMotion(velocity=(0.0, 0.0, 1.0)), *[None] * 5]
+    one, apart = (on_edges(trace(parts_scene(box((0.4, 0.5, 0.6)), motions), radar_at(), max_bounces=1)).num_paths
+                  for motions in (None, motions))
+    assert apart > one
 
 
 # --- what has none ---
@@ -242,12 +353,38 @@ def test_without_the_keyword_nothing_is_looked_for():
 def test_effects_say_with_what_power():
     off, on = ({effect.name: effect for effect in trace(scene_of(sheet()), radar_at(), edges=edges).effects}
                for edges in (False, True))
-    assert not off["edge diffraction"].modelled and "edges = False" in off["edge diffraction"].reason
+    assert not off["edge diffraction"].modelled and "edges = False: the strongest would carry" in off["edge diffraction"].reason
     assert on["edge diffraction"].modelled and "dBm" in on["edge diffraction"].reason
+
+
+def test_auto_looks_for_edges_where_they_stand_out_of_the_noise():
+    near, far = (radar_at((x, 0.5, 0.0)) for x in (8.0, 8e4))
+    for radar, is_on in ((near, True), (far, False)):
+        paths = trace(scene_of(sheet(), yaw=0.5), radar, edges="auto")
+        assert paths.frame.edges == is_on
+        effect, = (one for one in ep.effects(scene_of(sheet(), yaw=0.5), radar, edges="auto") if one.name == "edge diffraction")
+        assert effect.modelled == is_on and "edges = 'auto': the strongest would carry" in effect.reason
+    off = trace(scene_of(sheet()), far, edges=False)
+    assert np.array_equal(off.weight, trace(scene_of(sheet()), far, edges="auto").weight)
+
+
+def test_the_estimate_is_near_the_strongest_edge():
+    """Of a plate seen across two of its edges, whose echo is about that of both."""
+    radar = radar_at((6.0, 6.0, 0.0))
+    reason = next(one.reason for one in ep.effects(scene_of(sheet()), radar) if one.name == "edge diffraction")
+    power = ep.received_power(on_edges(trace(scene_of(sheet()), radar))).power
+    assert float(reason.split("carry ")[1].split(" dBm")[0]) == pytest.approx(10.0 * math.log10(power / 1e-3), abs=4.0)
+
+
+def test_effects_name_those_without_edges():
+    scene = scene_of(sheet())
+    scene.add(sheet(), name="board", material=ep.Material(permittivity=4.0 - 0.2j), position=(1.0, 0.0, 0.0))
+    reason = next(one.reason for one in ep.effects(scene, radar_at(), edges=True) if one.name == "edge diffraction")
+    assert "left out: those of 1 mesh: board, of dielectrics" in reason
 
 
 def test_frames_take_the_keyword():
     frame = ep.simulate(scene_of(sheet(), yaw=0.5), radar_at(num_chirps=4), num_rays=500, edges=True, guard=False)
     assert on_edges(frame.paths).num_paths > 0
-    with pytest.raises(TypeError, match="edges"):
+    with pytest.raises(ValueError, match="edges: must be True, False or 'auto'"):
         ep.simulate(scene_of(sheet()), radar_at(), edges="yes")

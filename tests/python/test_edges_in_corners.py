@@ -91,7 +91,8 @@ def test_faces_of_two_meshes_have_the_same_paths(of_a_corner):
     sums = [fields(paths)[over_planes(paths)].sum() for paths in (of_a_corner, apart)]
     assert sums[1] == pytest.approx(sums[0], rel=SAME)
     assert over_planes(apart).sum() == over_planes(of_a_corner).sum()
-    left, right = (apart.select(way).num_paths for way in ("T 'corner/left' E'corner/right' R", "T 'corner/right' E'corner/left' R"))
+    ways = ("T 'corner/left' E'corner/right' R", "T 'corner/right' E'corner/left' R")
+    left, right = (apart.select(way).num_paths for way in ways)
     assert left > 0 and right > 0
 
 

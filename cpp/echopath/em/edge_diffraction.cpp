@@ -29,9 +29,12 @@ struct AtAngle {
 
 AtAngle at_angle(double c, double n, double& angle) {
   if (c > 1.0) {
-    const double w = std::acosh(c), sine = std::sinh(w);
-    const double ratio = sine > 0 ? std::sinh(w / n) / sine : 1.0 / n;
-    return {ratio, std::cos(angle / n) - std::cosh(w / n), std::cos(angle) - c};
+    const double w = std::max(std::acosh(c), kLeastApart);
+    const auto difference = [&](double part) {
+      const double real = std::sin(0.5 * angle / part), imaginary = std::sinh(0.5 * w / part);
+      return -2.0 * (real * real + imaginary * imaginary);
+    };
+    return {std::sinh(w / n) / std::sinh(w), difference(n), difference(1.0)};
   }
   const double w = std::acos(std::max(c, -1.0));
   if (std::abs(w - angle) < kLeastApart) angle = w < 0.5 ? w + kLeastApart : w - kLeastApart;
@@ -43,13 +46,13 @@ AtAngle at_angle(double c, double n, double& angle) {
 }
 
 // Returns the part of the matrix that one face makes. `angle` is that of the source, from this face; `n` is the exterior
-// angle over pi. The integrals of a current's two components along the strip are those of the exact solution less those of
-// physical optics, as far as the face is lit; `at_edge` is what the current across the edge leaves there.
-Mat3 fringe_of_face(const WedgeFace& face, double n, double angle, const Vec3& in, const Vec3& out) {
+// angle over pi. The integrals of a current's two components along the strip are those of the exact solution less `lit`
+// times those of the incident field: 2 for physical optics on a lit face. `at_edge` is what the current across the edge
+// leaves there.
+Mat3 currents_of_face(const WedgeFace& face, double n, double angle, double lit, const Vec3& in, const Vec3& out) {
   const Vec3 edge = face.inward.cross(face.normal);
   const double cosine = in.dot(edge), sine = std::sqrt(1.0 - cosine * cosine);
   const double mu = (out.dot(sine * face.inward + cosine * edge) - cosine * cosine) / (sine * sine);
-  const double lit = angle < kPi ? 2.0 : 0.0;
   const AtAngle at = at_angle(-mu, n, angle);
   const double across = (2.0 * at.ratio / (n * at.difference_of_parts) - lit / at.difference) / sine;
   const double along =
@@ -89,14 +92,49 @@ Mat3 fringe_matrix(const Wedge& wedge, const Vec3& in, const Vec3& toward) {
   const double n = wedge.exterior_angle / kPi;
   const double first = std::min(angle_from(wedge.faces[0], -in), wedge.exterior_angle),
                second = wedge.exterior_angle - first;
-  const Mat3 currents =
-      fringe_of_face(wedge.faces[0], n, first, in, out) + fringe_of_face(wedge.faces[1], n, second, in, out);
+  const auto lit = [](double angle) { return angle < kPi ? 2.0 : 0.0; };
+  const Mat3 currents = currents_of_face(wedge.faces[0], n, first, lit(first), in, out) +
+                        currents_of_face(wedge.faces[1], n, second, lit(second), in, out);
   return currents - out * (out.transpose() * currents);
 }
 
-double edge_filter(double phase) {
-  const double half = 0.5 * phase;
-  return std::abs(half) < 1e-4 ? 1.0 - half * half / 6.0 : std::sin(half) / half;
+Vec3 field_of_grazing_wave(const Wedge& wedge, int face, const Vec3& along, const Vec3& toward) {
+  const Vec3 out = off_faces(wedge, toward);
+  const double sine = wedge.faces[0].inward.cross(wedge.faces[0].normal).cross(along).norm();
+  if (sine < kLeastSine || !is_outside(wedge, out)) return Vec3::Zero();
+  const double n = wedge.exterior_angle / kPi;
+  const Mat3 fringe = currents_of_face(wedge.faces[face], n, 0.0, 2.0, along, out) +
+                      currents_of_face(wedge.faces[1 - face], n, wedge.exterior_angle, 0.0, along, out);
+  // The current of the wave itself is twice its magnetic field, and ends at the edge.
+  const Vec3 currents = fringe * wedge.faces[face].normal + 2.0 * sine / (1.0 - along.dot(out)) * along;
+  return currents - out * out.dot(currents);
+}
+
+double grazing_coefficient(double exterior_angle, double source, double at) {
+  const double n = exterior_angle / kPi, at_shadow = std::cos(kPi / n);
+  return std::sin(kPi / n) / n *
+         (1.0 / (at_shadow - std::cos((at - source) / n)) + 1.0 / (at_shadow - std::cos((at + source) / n)));
+}
+
+double angle_about(const Wedge& wedge, const Vec3& direction) {
+  return std::min(angle_from(wedge.faces[0], direction), wedge.exterior_angle);
+}
+
+std::complex<double> edge_filter(double phase, double bend) {
+  const double x = std::abs(0.5 * phase), x2 = x * x;
+  // The means of s^0, s^2 and s^4 times cos(xs) over s in [0, 1].
+  double mean0, mean2, mean4;
+  if (x < 0.2) {
+    mean0 = 1.0 - x2 / 6.0 + x2 * x2 / 120.0;
+    mean2 = 1.0 / 3.0 - x2 / 10.0 + x2 * x2 / 168.0;
+    mean4 = 1.0 / 5.0 - x2 / 14.0 + x2 * x2 / 216.0;
+  } else {
+    const double sine = std::sin(x) / x, cosine = std::cos(x);
+    mean0 = sine;
+    mean2 = sine + 2.0 * (cosine - sine) / x2;
+    mean4 = sine + 4.0 * (cosine - 3.0 * mean2) / x2;
+  }
+  return {mean0 - 0.5 * bend * bend * mean4, -bend * mean2};
 }
 
 }  // namespace echopath

@@ -6,9 +6,11 @@
 // does not end. Physical optics and the fringe of all edges then count no current twice, and their sum is Keller's
 // diffracted field on the cone, in every direction about the edge. It stays finite at the boundaries of shadow and
 // reflection. It is not finite along the grazing ray itself (Ufimtsev's singularity), which no backscatter reaches but that
-// from the plane of a face. Higher orders are not modelled: the field of one edge is not cut off where another edge ends the
-// face. Sources: Michaeli 1986, "Elimination of infinities in equivalent edge currents, part I: fringe current components";
+// from the plane of a face. The field of one edge is not cut off where another edge ends the face; em/edge_chain.h has what
+// then goes on from edge to edge. Sources: Michaeli 1986, "Elimination of infinities in equivalent edge currents, part I: fringe current components";
 // Mitzner 1974 integrates across the edge instead; both agree on the cone (Knott 1985).
+#include <complex>
+
 #include "echopath/base/geometry.h"
 
 namespace echopath {
@@ -39,7 +41,23 @@ bool is_outside(const Wedge& wedge, const Vec3& direction);
 // wedge, and within 1e-3 rad of the edge's own direction, along which the coefficient is not defined.
 Mat3 fringe_matrix(const Wedge& wedge, const Vec3& in, const Vec3& out);
 
-// Returns the share of a straight piece of an edge: the mean of e^{-jx} over phases that grow by `phase` (rad) along it.
-double edge_filter(double phase);
+// Returns the vector V of what the wedge makes of a wave that travels along one of its faces (0 or 1) toward the edge, in the
+// direction `along`, with a field of unit strength across the face. Its field -j/(2 k) V per metre of the edge is the whole
+// diffracted field: the wave ends at the edge, and physical optics knows nothing of it. V is not finite where `out` is the
+// wave's own direction.
+Vec3 field_of_grazing_wave(const Wedge& wedge, int face, const Vec3& along, const Vec3& out);
+
+// Returns Keller's coefficient of a wedge for a magnetic field along the edge, over e^{-j pi/4}/sqrt(2 pi k), from the angle
+// of the source to another one about the edge (rad, from its first face). It is not finite at the boundaries of shadow and
+// of reflection.
+double grazing_coefficient(double exterior_angle, double source, double at);
+
+// Returns the angle about the edge from the first face to a direction outside, in [0, exterior_angle] rad.
+double angle_about(const Wedge& wedge, const Vec3& direction);
+
+// Returns the share of a straight piece of an edge: the mean of e^{-j(x s + b s^2)} over s in [-1, 1], where phases grow by
+// `phase` = 2x (rad) along the piece and are `bend` = b (rad) ahead at its ends, as of spherical waves. It is exact to the
+// second order in b: within 1 % of a piece where b is at most 0.8.
+std::complex<double> edge_filter(double phase, double bend);
 
 }  // namespace echopath

@@ -165,8 +165,8 @@ def _route(paths, path: int) -> str:
     """The hits of a path as an expression that takes it, and its length."""
     first, count = paths.offsets[path], int(paths.num_bounces[path])
     names = [mesh.name for mesh in paths.scene.meshes]
-    diffuse, edge = int(paths.diffuse[path]), int(edge_hits(paths)[path])
-    hits = [f"{event(diffuse, edge, k)}'{names[paths.mesh_id[first + k]]}'" for k in range(count)]
+    diffuse, edges = int(paths.diffuse[path]), int(edge_hits(paths)[path])
+    hits = [f"{event(diffuse, edges, k)}'{names[paths.mesh_id[first + k]]}'" for k in range(count)]
     one = np.zeros(paths.num_paths, bool)
     one[path] = True
     length = paths.select(one).lengths([paths.frame.trace_time])[0, 0]

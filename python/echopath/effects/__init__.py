@@ -4,13 +4,15 @@ from __future__ import annotations
 from .. import _core
 from ..checks import checked
 from ..effect_choices import Choices
-from ..settings import Evaluate, Footprint, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings, TraceSettings
+from ..settings import (
+    Edges, Evaluate, Footprint, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings, TraceSettings,
+)
 from . import surfaces, motion, weather, radar, sampling  # each adds its rules, in this order
 from .rules import RULES, Case, Effect, Settings
 
 # What no scene and no setting can ask for.
 OUT_OF_SCOPE = [
-    Effect("creeping waves, edge diffraction of higher order", False, "out of scope"),
+    Effect("creeping waves, diffraction into shadows", False, "out of scope"),
     Effect("phase noise, quantisation", False, "not modelled"),
     Effect("interference", False, "not modelled"),
 ]
@@ -30,7 +32,7 @@ def effects(scene: _core.Scene, radar: _core.Radar, *, max_bounces: int = TraceS
             footprint: Footprint = TraceSettings.footprint, polarization: Polarization = TraceSettings.polarization,
             sampler: Sampler = TraceSettings.sampler, batches: int | None = TraceSettings.batches,
             target_error_db: float | None = TraceSettings.target_error_db,
-            scatterers: Scatterers = TraceSettings.scatterers, edges: bool = TraceSettings.edges,
+            scatterers: Scatterers = TraceSettings.scatterers, edges: Edges = TraceSettings.edges,
             replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,
             retrace: Retrace = SignalSettings.retrace, noise_seed: int | None = None,
             effects: Choices = TraceSettings.effects) -> Effects:

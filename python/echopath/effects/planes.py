@@ -30,7 +30,7 @@ def _unflagged_hits(paths):
     counts = np.asarray(paths.num_bounces)[images].astype(np.int64)
     within = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
     hits = np.repeat(np.asarray(paths.offsets)[images], counts) + within
-    hits = hits[within != np.repeat(edge_hits(paths)[images], counts)]
+    hits = hits[np.repeat(edge_hits(paths)[images], counts) >> within.astype(np.uint64) & np.uint64(1) == 0]
     found = np.unique(np.stack([np.asarray(paths.mesh_id)[hits], np.asarray(paths.triangle_id)[hits]], axis=1), axis=0)
     materials, of_mesh, *_ = _core.mesh_traits(paths.scene)
     is_mirror = np.array([material.mirror for material in materials], bool)[of_mesh]

@@ -12,6 +12,7 @@ from .. import _core
 from ..effect_choices import Choices
 from ..names import MOST_NAMES, first_names
 from ..polarization import COHERENT_SHARE, antennas_of, chosen_model, coherent_share
+from ..settings import Edges
 from ..weather.weather import weather_of
 
 
@@ -35,7 +36,7 @@ class Settings:
     batches: int
     target_error_db: float | None
     scatterers: str
-    edges: bool
+    edges: Edges
     replay: str
     evaluate: str
     retrace: str

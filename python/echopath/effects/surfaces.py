@@ -3,8 +3,11 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from .. import _core
 from .._core import speed_of_light
+from ..edges import edges_matter, strongest_edge
 from ..lost_rays import unfollowed_beams, unfollowed_sheets
 from ..measures import in_dbm
 from ..sheets import sheet_coefficients
@@ -143,17 +146,36 @@ def _edges(case: Case):
                                   and not material.mirror)
     if len(conductors) == 0:
         return False, "no material reflects like a conductor but flagged mirrors"
-    if not case.settings.edges:
-        return False, "edges = False: deep sidelobes of plates and boxes are wrong, main lobes within 1 dB"
-    return True, "edges = True" if case.paths is None else _found_edges(case.paths)
+    time = case.paths.frame.trace_time if case.paths else 0.5 * case.radar.frame_duration
+    power, noise = strongest_edge(case.scene, case.radar, time)
+    asked = case.settings.edges
+    is_on = edges_matter(power, noise) if asked == "auto" else asked
+    found = _found_edges(case.paths) if is_on and case.paths else _expected_edge(power, noise)
+    beside = "" if is_on else "; without them deep sidelobes of plates and boxes are wrong, main lobes within 1 dB"
+    return is_on, f"edges = {asked!r}: {found}{beside}{_without_edges(case, conductors)}"
 
 
 def _found_edges(paths) -> str:
     on_edges = paths.select("T .* E .* R")
     if on_edges.num_paths == 0:
-        return "edges = True, but the radar sees none"
+        return "the radar sees none"
     power = _core.received_power(on_edges).power
-    return f"edges = True: {on_edges.num_paths} pieces of edges, {in_dbm(power):.1f} dBm in all"
+    return f"{on_edges.num_paths} pieces of edges, {in_dbm(power):.1f} dBm in all"
+
+
+def _expected_edge(power: float, noise: float) -> str:
+    if power <= 0.0:
+        return "no sharp edge lies in the pattern"
+    return f"the strongest would carry {in_dbm(power):.1f} dBm, the noise of a cell is {in_dbm(noise):.1f} dBm"
+
+
+def _without_edges(case: Case, conductors) -> str:
+    """Whose edges are left out."""
+    deforming = np.intersect1d(conductors, case.deforming)
+    dielectric = np.setdiff1d(case.coherent, conductors)
+    texts = [f"; left out: those of {case.named(meshes)}, {why}"
+             for meshes, why in ((deforming, "which deform"), (dielectric, "of dielectrics")) if len(meshes)]
+    return "".join(texts)
 
 
 @rule("speckle that goes on from frame to frame", "trace.scatterers")

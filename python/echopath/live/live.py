@@ -9,8 +9,9 @@ from contextlib import contextmanager
 from .. import _core
 from ..checks import Progress, Window, an, anything, checked, count, positive, refused
 from ..scene import Scene
+from ..edges import looks_for_edges
 from ..settings import (
-    MOST_RAYS, Evaluate, Footprint, Method, Polarization, Replay, Sampler, Scatterers, SignalSettings, TraceSettings,
+    MOST_RAYS, Edges, Evaluate, Footprint, Method, Polarization, Replay, Sampler, Scatterers, SignalSettings, TraceSettings,
 )
 from ..tessellation import warn_of_coarse_meshes
 from .changes import Changes
@@ -34,7 +35,7 @@ class Live:
     scene: is copied; radar: that looks at it, which may be set to another one at any time
     num_rays: 1 to 1e10, shared evenly among objects, their images and the field of view, half of them at least to what moves:
         the shares do not go by errors as those of `trace` do, because these change with every change of the scene
-    max_bounces, seed, start_time (s), polarization, footprint, sampler, edges: as in `trace`
+    max_bounces, seed, start_time (s), polarization, footprint, sampler, edges: as in `trace`; "auto" edges as the scene is at first
     scatterers: "rays" (also for "auto"), or "surface" as in `trace`, so that the speckle of what is moved goes on; most rays
         are then shot again
     tolerance, replay, evaluate, phase_tolerance (rad): as in `synthesize`; method: likewise, where "auto" is "nufft" whatever
@@ -48,14 +49,15 @@ class Live:
                  max_bounces: int = TraceSettings.max_bounces, seed: int = TraceSettings.seed,
                  start_time: float = TraceSettings.start_time, polarization: Polarization = TraceSettings.polarization,
                  footprint: Footprint = TraceSettings.footprint, sampler: Sampler = TraceSettings.sampler,
-                 scatterers: Scatterers = TraceSettings.scatterers, edges: bool = TraceSettings.edges,
+                 scatterers: Scatterers = TraceSettings.scatterers, edges: Edges = TraceSettings.edges,
                  tolerance: float = SignalSettings.tolerance,
                  method: Method = SignalSettings.method, replay: Replay = SignalSettings.replay,
                  evaluate: Evaluate = SignalSettings.evaluate, phase_tolerance: float = SignalSettings.phase_tolerance,
                  window: Window = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad):
         self._trace = {"max_bounces": max_bounces, "seed": seed, "start_time": start_time, "polarization": polarization,
                        "footprint": footprint, "sampler": sampler,
-                       "scatterers": "rays" if scatterers == "auto" else scatterers, "edges": edges}
+                       "scatterers": "rays" if scatterers == "auto" else scatterers,
+                       "edges": looks_for_edges(edges, scene, radar, start_time)}
         self._signal = {"tolerance": tolerance, "method": "nufft" if method == "auto" else method, "replay": replay,
                         "evaluate": evaluate, "phase_tolerance": phase_tolerance}
         self._window, self._zero_pad = window, zero_pad

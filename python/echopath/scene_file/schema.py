@@ -19,7 +19,8 @@ from ..gates import gate
 from ..parts import are_tables
 from ..receiver.settings import receiver_rule
 from ..settings import (
-    MOST_BATCHES, MOST_BOUNCES, MOST_RAYS, Evaluate, Footprint, LabelSettings, Plane, Polarization, Replay, Retrace, Sampler,
+    MOST_BATCHES, MOST_BOUNCES, MOST_RAYS, Edges, Evaluate, Footprint, LabelSettings, Plane, Polarization, Replay, Retrace,
+    Sampler,
     Scatterers, SignalSettings, TraceSettings,
 )
 from ..shown import writable
@@ -358,7 +359,8 @@ class TraceTable(Table):
     scatterers: Scatterers = Field(
         TraceSettings.scatterers, description="of rough surfaces: where rays meet them, points that are the same in every frame, "
                                               "or these for frames in a row alone")
-    edges: bool = Field(TraceSettings.edges, description="also find the echoes of sharp edges")
+    edges: Edges = Field(
+        TraceSettings.edges, description="also find the echoes of sharp edges, or where they stand out of the noise")
     effects: Annotated[Any, by_check(effects_rule)] = Field(
         TraceSettings.effects, description="name of an effect of the weather = true, false or \"auto\"")
 

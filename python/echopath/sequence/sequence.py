@@ -19,7 +19,7 @@ from ..guard import warn_of
 from ..progress import automatic_bars
 from ..scene import Scene
 from ..settings import (
-    Evaluate, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings,
+    Edges, Evaluate, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings,
     TraceSettings,
 )
 from ..tracing import keep_geometry
@@ -65,7 +65,7 @@ class Sequence(Row[Frame]):
                  sampler: Sampler = TraceSettings.sampler, batches: int | None = TraceSettings.batches,
                  target_error_db: float | None = TraceSettings.target_error_db,
                  max_rays: int | float = TraceSettings.max_rays, scatterers: Scatterers = TraceSettings.scatterers,
-                 edges: bool = TraceSettings.edges, effects: Choices = TraceSettings.effects,
+                 edges: Edges = TraceSettings.edges, effects: Choices = TraceSettings.effects,
                  parts: Mapping[str, Any] | None = None,
                  tolerance: float = SignalSettings.tolerance, method: Method = SignalSettings.method,
                  replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,

@@ -266,12 +266,34 @@ TEST(EdgeDiffraction, ItsOwnPlaneIsNoException) {
   EXPECT_GT(std::abs(in_plane(1, 1)), 1.0);
 }
 
-// By the integral of e^{-jx} over a piece around its middle.
+// By the integral of e^{-j(xs + bs^2)} over a piece around its middle.
 TEST(EdgeDiffraction, FilterIsTheMeanOfThePhases) {
-  for (const double phase : {0.0, 1e-5, 0.3, 2.0, 9.0}) {
-    Complex sum = 0.0;
-    for (int i = 0; i < 10000; ++i) sum += std::exp(-kJ * phase * ((i + 0.5) / 10000.0 - 0.5)) / 10000.0;
-    EXPECT_NEAR(edge_filter(phase), sum.real(), 1e-7);
+  for (const double phase : {0.0, 1e-5, 0.3, 0.399, 0.401, 2.0, -3.0, 9.0}) {
+    for (const double bend : {0.0, 0.05, 0.8}) {
+      Complex sum = 0.0;
+      for (int i = 0; i < 10000; ++i) {
+        const double s = 2.0 * (i + 0.5) / 10000.0 - 1.0;
+        sum += std::exp(-kJ * (0.5 * phase * s + bend * s * s)) / 10000.0;
+      }
+      EXPECT_LT(std::abs(edge_filter(phase, bend) - sum), 1e-7 + bend * bend * bend / 40.0) << phase << " " << bend;
+    }
+  }
+}
+
+// On the cone, what a wedge makes of a wave along its face is Keller's coefficient.
+TEST(EdgeDiffraction, GrazingWaveHasKellersCoefficientOnTheCone) {
+  for (const double exterior : {1.2 * kPi, 1.5 * kPi, kTwoPi}) {
+    for (const double cosine : {0.0, 0.4, -0.6}) {
+      for (double at = 0.2; at < exterior; at += 0.37) {
+        if (std::abs(at - kPi) < 0.05) continue;  // the wave's own direction
+        const Wedge wedge = wedge_of(exterior);
+        const Vec3 along = -direction(0.0, -cosine), out = direction(at, cosine), edge = Vec3::UnitZ();
+        const Vec3 field = field_of_grazing_wave(wedge, 0, along, out);
+        const double magnetic = edge.dot(along.cross(wedge.faces[0].normal));
+        EXPECT_NEAR(edge.dot(out.cross(field)), 2.0 * grazing_coefficient(exterior, 0.0, at) * magnetic, 1e-4 / std::abs(at - kPi))
+            << exterior << " " << cosine << " " << at;
+      }
+    }
   }
 }
 

@@ -508,8 +508,8 @@ class Session:
     def explain(self, path: int) -> list[tuple]:
         """What a path is, in (label, text) lines."""
         cells, columns = self.columns.cells, self.columns
-        diffuse, edge = int(self.paths.diffuse[path]), int(edge_hits(self.paths)[path])
-        events = [_EVENTS[event(diffuse, edge, hit)] for hit in range(int(columns.num_bounces[path]))]
+        diffuse, edges = int(self.paths.diffuse[path]), int(edge_hits(self.paths)[path])
+        events = [_EVENTS[event(diffuse, edges, hit)] for hit in range(int(columns.num_bounces[path]))]
         hits = [(f"hit {number + 1}", f"{self.mesh_names[mesh]} ({kind})")
                 for number, (mesh, kind) in enumerate(zip(columns.meshes_of(path), events))]
         return [("path", f"{path:,}"), *hits, ("range", f"{cells.range[path]:.3f} m"),

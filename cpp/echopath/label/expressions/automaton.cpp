@@ -261,7 +261,7 @@ Automaton::Automaton(const PathExpression& expression, const std::vector<std::st
   find_needed_bits();
 }
 
-bool Automaton::takes_with_passes(const Hit* hits, int num_hits, uint64_t diffuse, int edge,
+bool Automaton::takes_with_passes(const Hit* hits, int num_hits, uint64_t diffuse, int first_edge, int end_edge,
                                   std::span<const Pass> passes) const {
   uint32_t row = 0;
   size_t next = 0;
@@ -270,7 +270,8 @@ bool Automaton::takes_with_passes(const Hit* hits, int num_hits, uint64_t diffus
     for (; next < passes.size() && passes[next].leg == static_cast<uint32_t>(k); ++next) {
       read(passes[next].hit.mesh_id, kPassSymbol);
     }
-    if (k < num_hits) read(hits[k].mesh_id, k == edge ? kEdgeSymbol : static_cast<uint32_t>(diffuse >> k & 1u));
+    const bool is_edge = k >= first_edge && k < end_edge;
+    if (k < num_hits) read(hits[k].mesh_id, is_edge ? kEdgeSymbol : static_cast<uint32_t>(diffuse >> k & 1u));
   }
   return table_[row + accept_column_] != 0;
 }
@@ -346,12 +347,13 @@ void narrow(const Automaton& automaton, const Paths& paths, std::vector<uint8_t>
       const int64_t first = paths.offsets[path];
       const int num_hits = paths.num_bounces[path];
       const int edge = paths.frame.edges ? edge_hit(paths.flags[path]) : -1;
+      const int edges_end = edge < 0 ? -1 : edge + num_edge_hits(paths.flags[path]);
       if (const auto passes = paths.passes_of(path); automaton.sees_passes() && !passes.empty()) {
-        candidates[path] = automaton.takes_with_passes(hits + first, num_hits, paths.diffuse[path], edge, passes);
+        candidates[path] = automaton.takes_with_passes(hits + first, num_hits, paths.diffuse[path], edge, edges_end, passes);
         continue;
       }
       if (edge >= 0) {
-        candidates[path] = automaton.takes_with_edge(hits + first, num_hits, edge);
+        candidates[path] = automaton.takes_with_edges(hits + first, num_hits, edge, edges_end);
         continue;
       }
       candidates[path] = first + num_hits + Automaton::kOverread <= paths.num_hits()

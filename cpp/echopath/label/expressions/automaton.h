@@ -36,17 +36,21 @@ class Automaton {
     return table_[row + accept_column_] != 0;
   }
 
-  // Returns the same of a path whose hit `edge` lies on an edge.
-  bool takes_with_edge(const Hit* hits, int num_hits, int edge) const {
+  // Returns the same of a path whose hits [first_edge, end_edge) lie on edges.
+  bool takes_with_edges(const Hit* hits, int num_hits, int first_edge, int end_edge) const {
     uint32_t row = 0;
-    for (int k = 0; k < num_hits; ++k) row = table_[row + symbols_[hits[k].mesh_id + 1] + (k == edge ? kEdgeSymbol : 0)];
+    for (int k = 0; k < num_hits; ++k) {
+      const bool is_edge = k >= first_edge && k < end_edge;
+      row = table_[row + symbols_[hits[k].mesh_id + 1] + (is_edge ? kEdgeSymbol : 0)];
+    }
     return table_[row + accept_column_] != 0;
   }
 
   // Returns whether the expression names passes through sheets, which are hits to it then.
   bool sees_passes() const { return num_events_ > kPassSymbol; }
-  // Returns the same of a path with passes, for an expression that sees them; `edge` is -1 where no hit lies on one.
-  bool takes_with_passes(const Hit* hits, int num_hits, uint64_t diffuse, int edge, std::span<const Pass> passes) const;
+  // Returns the same of a path with passes, for an expression that sees them; both are -1 where no hit lies on an edge.
+  bool takes_with_passes(const Hit* hits, int num_hits, uint64_t diffuse, int first_edge, int end_edge,
+                         std::span<const Pass> passes) const;
 
   // Returns the same as `takes` faster, but may read up to kOverread hits beyond the path's own, which must be there. It
   // steps in fours, past the end with the symbol that changes nothing: most paths have one to four hits, and a branch on the

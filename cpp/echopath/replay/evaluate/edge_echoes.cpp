@@ -1,9 +1,11 @@
 #include "echopath/replay/evaluate/edge_echoes.h"
 
 #include <cmath>
+#include <optional>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/plane.h"
+#include "echopath/em/edge_chain.h"
 #include "echopath/em/edge_diffraction.h"
 #include "echopath/em/edge_shadow.h"
 #include "echopath/em/surface_response.h"
@@ -41,12 +43,16 @@ class EdgeEchoes {
   // Sets the path that is looked at, at a node.
   void pose(const LocalPath& path, const PosedScene& scene) {
     pose_hits(path, scene, hits_.data());
+    edges_.clear();
+    for (int k = path.edge; k < path.edge + path.num_edges; ++k)
+      edges_.push_back({posed_wedge(*path.hits[k].edge, scene, path.hits[k].mesh_id), hits_[static_cast<size_t>(k)].point});
     const LocalHit& hit = path.hits[path.edge];
-    point_ = hits_[static_cast<size_t>(path.edge)].point;
-    wedge_ = posed_wedge(*hit.edge, scene, hit.mesh_id);
     const Vec3 corners[] = {hit.corner, hit.corner + hit.edge_u, hit.corner + hit.edge_v};
     const Vec3 side = scene.linear(hit.mesh_id) * (corners[(hit.edge->side + 1) % 3] - corners[hit.edge->side]);
     piece_ = (hit.edge->end - hit.edge->begin) / hit.num_pieces * side;
+    if (path.num_edges > 1) chain_ = EdgeChain::over(edges_, radio_.wavenumber);
+    else chain_.reset();
+    if (chain_) piece_ = chain_->last_piece(piece_);
     is_reversed_ = path.is_reversed;
     is_past_edge_ = path.is_past_edge;
     find_ways(path, scene.antennas(is_reversed_), true, in_);
@@ -54,24 +60,26 @@ class EdgeEchoes {
   }
 
   double length(size_t transmitter, size_t receiver) const {
-    return way_in(transmitter, receiver).length + way_out(transmitter, receiver).length;
+    const WayToEdge& in = way_in(transmitter, receiver);
+    const double over_faces = chain_ ? chain_->length() + chain_->detour(in.direction, in.length) : 0.0;
+    return in.length + over_faces + way_out(transmitter, receiver).length;
   }
 
   // `polarization` is that of the transmitter.
   std::complex<double> amplitude(size_t transmitter, size_t receiver, const Vec3& polarization,
                                  std::complex<double> weight) const {
     const WayToEdge &in = way_in(transmitter, receiver), &out = way_out(transmitter, receiver);
-    if (in.length < kNearAntenna || out.length < kNearAntenna) return 0.0;
+    if (in.length < kNearAntenna || out.length < kNearAntenna || is_broken()) return 0.0;
     const Vec3 departure = -out.direction;
     const auto seen = [&](const WayToEdge& way, const Vec3& direction) {
       return is_polarized_ ? way.field : FieldVector(part_across(polarization, direction).cast<std::complex<double>>());
     };
     const std::complex<double> coupled =
-        seen(out, departure).transpose() * diffracted(seen(in, in.direction), in, departure);
-    const double filter = edge_filter(radio_.wavenumber * (in.direction - departure).dot(piece_));
-    const double size = radio_.coherent_scale() * in.root_gain * out.root_gain * piece_.norm() * filter /
+        seen(out, departure).transpose() * diffracted(seen(in, in.direction), in, departure, out.length);
+    const double size = radio_.coherent_scale() * in.root_gain * out.root_gain * piece_.norm() /
                         (2.0 * radio_.wavenumber * in.length * out.length);
-    const std::complex<double> factor = size * coupled * std::polar(1.0, in.phase + out.phase);
+    const std::complex<double> factor =
+        size * coupled * filter(in, departure, out.length) * std::polar(1.0, in.phase + out.phase);
     const ComplexOf<double> found =
         amplitude_of<ScalarMath>(ComplexOf<double>{weight.real(), weight.imag()},
                                  ComplexOf<double>{factor.real(), factor.imag()}, in.length + out.length);
@@ -83,33 +91,48 @@ class EdgeEchoes {
   const WayToEdge& way_in(size_t transmitter, size_t receiver) const { return in_[is_reversed_ ? receiver : transmitter]; }
   const WayToEdge& way_out(size_t transmitter, size_t receiver) const { return out_[is_reversed_ ? transmitter : receiver]; }
 
-  FieldVector diffracted(const FieldVector& field, const WayToEdge& in, const Vec3& departure) const {
-    if (!is_past_edge_) return fringe_matrix(wedge_, in.direction, departure) * field;
+  // Returns whether the points of several edges no longer lie on flat faces that connect them.
+  bool is_broken() const { return edges_.size() > 1 && !chain_; }
+
+  // Returns what leaves the last edge toward an antenna that is `distance` (m) away.
+  FieldVector diffracted(const FieldVector& field, const WayToEdge& in, const Vec3& departure, double distance) const {
+    if (chain_) return chain_->leave(departure, distance) * chain_->enter(in.direction, field, in.length);
+    const ChainEdge& edge = edges_.front();
+    if (!is_past_edge_) return fringe_matrix(edge.wedge, in.direction, departure) * field;
     // `mirrors_` are those at the end of the path, of which the last one is next to the edge.
     const PosedHit& next = mirrors_.hits.back();
-    const double behind = next.normal.dot(next.point - point_) / next.normal.dot(departure);
+    const double behind = next.normal.dot(next.point - edge.point) / next.normal.dot(departure);
     const double phase = radio_.wavenumber * in.length * behind / (in.length + behind);
-    return diffraction_matrix(wedge_, in.direction, departure, std::max(phase, 0.0)) * field;
+    return diffraction_matrix(edge.wedge, in.direction, departure, std::max(phase, 0.0)) * field;
   }
 
-  // Sets the ways between the edge and the antennas at the start of the path as it was traced, or at its end.
+  // A chain's waves run along one ray of Keller's cone to each point of the last edge.
+  std::complex<double> filter(const WayToEdge& in, const Vec3& departure, double distance) const {
+    const Vec3 arrival = chain_ ? chain_->arrival() : in.direction;
+    const auto curvature = [&](const Vec3& direction, double radius) { return direction.cross(piece_).squaredNorm() / radius; };
+    const double bend = 0.125 * radio_.wavenumber * (curvature(arrival, in.length) + curvature(departure, distance));
+    return edge_filter(radio_.wavenumber * (arrival - departure).dot(piece_), bend);
+  }
+
+  // Sets the ways between the edges and the antennas at the start of the path as it was traced, or at its end.
   void find_ways(const LocalPath& path, const std::vector<PosedAntenna>& antennas, bool of_start,
                  std::vector<WayToEdge>& ways) {
     mirrors_.hits.clear();
     mirrors_.materials.clear();
-    const int count = of_start ? path.edge : path.count - 1 - path.edge;
+    const int count = of_start ? path.edge : path.count - path.edge - path.num_edges;
     for (int k = 0; k < count; ++k) {
       const int at = of_start ? k : path.count - 1 - k;
       mirrors_.hits.push_back(hits_[static_cast<size_t>(at)]);
       mirrors_.materials.push_back(paths_.scene->node_of(path.hits[at].mesh_id).material.get());
     }
     ways.clear();
-    for (const PosedAntenna& antenna : antennas) ways.push_back(way_from(antenna));
+    const Vec3& point = of_start ? edges_.front().point : edges_.back().point;
+    for (const PosedAntenna& antenna : antennas) ways.push_back(way_from(antenna, point));
   }
 
-  WayToEdge way_from(const PosedAntenna& antenna) const {
+  WayToEdge way_from(const PosedAntenna& antenna, const Vec3& point) const {
     const int count = static_cast<int>(mirrors_.hits.size());
-    const UnfoldedLeg leg = unfolded_leg(mirrors_.hits.data(), antenna.position, 0, count, point_);
+    const UnfoldedLeg leg = unfolded_leg(mirrors_.hits.data(), antenna.position, 0, count, point);
     const AntennaGain gain = antenna.toward(leg.departure);
     FieldVector field = FieldVector::Zero();
     if (is_polarized_) field = over_mirrors(part_across(antenna.polarization, leg.departure), leg.departure);
@@ -137,8 +160,9 @@ class EdgeEchoes {
   std::vector<PosedHit> hits_;
   MirrorsToEdge mirrors_;
   std::vector<WayToEdge> in_, out_;
-  Wedge wedge_;
-  Vec3 point_, piece_;  // m
+  std::vector<ChainEdge> edges_;    // of the path
+  std::optional<EdgeChain> chain_;  // over them, where there are several
+  Vec3 piece_;                      // m, of the last one
 };
 
 }  // namespace

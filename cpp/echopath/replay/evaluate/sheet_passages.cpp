@@ -33,7 +33,8 @@ class SheetPassages::OfPath {
     for (int k = 0; k < count_; ++k) {
       const Hit& hit = paths_.hits_of(path)[k];
       hits_.push_back(shared.preparer_.hit(hit, normals_));
-      const bool is_edge = k == edge_hit(paths_.flags[p]);
+      const int edge = edge_hit(paths_.flags[p]);
+      const bool is_edge = edge >= 0 && k >= edge && k < edge + num_edge_hits(paths_.flags[p]);
       const bool is_diffuse = (paths_.diffuse[p] >> k & 1) != 0;
       is_image_.push_back(!is_edge && !is_diffuse && shared.preparer_.is_image(hit.mesh_id, paths_.stratum[p]));
     }

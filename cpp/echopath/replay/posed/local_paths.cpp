@@ -7,7 +7,6 @@
 
 #include "echopath/replay/kernels/cell_formula.h"
 #include "echopath/scene/mesh/kept_normals.h"
-#include "echopath/scene/mesh/sharp_edges.h"
 #include "echopath/scene/mesh/smooth.h"
 
 namespace echopath {
@@ -29,7 +28,7 @@ std::vector<DiffuseLobe> lobes_of(const Scene& scene) {
 uint64_t sliding_hits(const LocalPath& path) {
   uint64_t sliding = 0;
   for (int k = 0; k < path.last_material; ++k) {
-    if (!path.is_image(k) && !path.is_diffuse(k)) sliding |= uint64_t{1} << k;
+    if (!path.is_image(k) && !path.is_diffuse(k) && !path.is_edge(k)) sliding |= uint64_t{1} << k;
   }
   return sliding;
 }
@@ -39,6 +38,7 @@ uint64_t sliding_hits(const LocalPath& path) {
 PathPreparer::PathPreparer(const Paths& paths, std::vector<SurfacePatch> patches)
     : paths_(paths), patches_(std::move(patches)),
       at_trace_(*paths.scene, paths.radar, patches_, paths.frame.transmitter, paths.frame.trace_time) {
+  if (paths.frame.edges) edges_.emplace(*paths.scene);
   for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) {
     mesh_is_mirror_.push_back(paths.scene->node_of(id).material->mirror);
     mesh_may_stretch_.push_back(paths.scene->may_stretch(id));
@@ -110,7 +110,7 @@ LocalHit PathPreparer::hit(const Hit& hit, std::deque<std::array<Vec3, 3>>& norm
 
 LocalHit PathPreparer::edge_hit(const Hit& hit, int num_pieces) const {
   LocalHit local = this->hit(hit);
-  local.edge = sharp_edge_at(paths_.scene->node_of(hit.mesh_id).mesh->sharp_edges(), hit.triangle_id, local.u, local.v);
+  local.edge = sharp_edge_at(edges_->of(hit.mesh_id), hit.triangle_id, local.u, local.v);
   local.num_pieces = num_pieces;
   return local;
 }
@@ -144,15 +144,17 @@ LocalPath PathPreparer::local_path(int64_t index, LocalPaths& block) const {
   path.count = paths_.num_bounces[p];
   path.is_reversed = (paths_.flags[p] & kReversedPath) != 0;
   path.edge = echopath::edge_hit(paths_.flags[p]);
-  if (path.edge >= 0 && path.is_reversed) path.edge = path.count - 1 - path.edge;
+  path.num_edges = num_edge_hits(paths_.flags[p]);
+  if (path.edge >= 0 && path.is_reversed) path.edge = path.count - path.edge - path.num_edges;
   path.is_past_edge = (paths_.flags[p] & kPastEdge) != 0;
   for (int k = 0; k < path.count; ++k) {
     const int recorded = path.is_reversed ? path.count - 1 - k : k;
     const Hit& hit = paths_.hits_of(index)[recorded];
     path.diffuse |= (paths_.diffuse[p] >> recorded & 1) << k;
-    if (k == path.edge) {
+    if (path.is_edge(k)) {
       block.hits.push_back(edge_hit(hit, num_edge_pieces(paths_.flags[p])));
-      path.first_material = path.last_material = k;
+      path.first_material = path.edge;
+      path.last_material = k;
       continue;
     }
     block.hits.push_back(this->hit(hit, block.normals));

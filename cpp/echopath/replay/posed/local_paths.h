@@ -2,12 +2,14 @@
 // Holds a block of a record's paths with all that does not depend on time: its hits stand in the frames of their meshes.
 #include <array>
 #include <deque>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "echopath/em/diffuse_lobe.h"
 #include "echopath/replay/posed/hit_patches.h"
 #include "echopath/replay/posed/path_geometry.h"
+#include "echopath/scene/scene_edges.h"
 
 namespace echopath {
 
@@ -74,6 +76,7 @@ class PathPreparer {
   std::vector<std::vector<Vec3>> smooth_normals_;
   std::vector<double> facet_area_;  // by mesh ID
   std::vector<DiffuseLobe> lobes_;
+  std::optional<SceneEdges> edges_;  // where the trace looked for them
 };
 
 }  // namespace echopath

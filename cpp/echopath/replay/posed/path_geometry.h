@@ -44,11 +44,12 @@ struct LocalPath {
   uint64_t image = 0;    // bit per hit: specular on a flagged mirror, replayed by images
   uint64_t sliding = 0;  // bit per hit: other specular hits, whose point of reflection slides over the surface
 
-  bool is_past_edge = false;  // kPastEdge
-  int edge = -1;              // the hit on an edge, the material point of its path
+  bool is_past_edge = false;     // kPastEdge
+  int edge = -1, num_edges = 0;  // the first hit on an edge, and how many there are in a row: the material points of the path
 
   bool is_image(int hit) const { return image >> hit & 1; }
   bool is_diffuse(int hit) const { return diffuse >> hit & 1; }
+  bool is_edge(int hit) const { return edge >= 0 && hit >= edge && hit < edge + num_edges; }
   bool is_sliding(int hit) const { return sliding >> hit & 1; }
   // First and last hit that are not images; they are -1 where the path has mirrors only. The last one is a material point.
   int first_material = -1, last_material = -1;

@@ -18,6 +18,8 @@ Wedge posed_wedge(const SharpEdge& edge, const PosedScene& scene, uint32_t mesh_
   return wedge_between(posed_face(edge, 0, scene, mesh_id), posed_face(edge, 1, scene, mesh_id));
 }
 
+Vec3 axis_of(const Wedge& wedge) { return wedge.faces[0].inward.cross(wedge.faces[0].normal); }
+
 Vec3 outward_of(const Wedge& wedge) {
   return (wedge.faces[0].normal + wedge.faces[1].normal - wedge.faces[0].inward - wedge.faces[1].inward).normalized();
 }

@@ -9,6 +9,17 @@ namespace echopath {
 // Returns the wedge in the axes of the world, at the time of the scene.
 Wedge posed_wedge(const SharpEdge& edge, const PosedScene& scene, uint32_t mesh_id);
 
+// Holds an edge in the world, relative to the origin of a trace.
+struct PosedEdge {
+  uint32_t mesh_id;
+  SharpEdge edge;  // in the frame of its mesh
+  Wedge wedge;
+  Vec3 from, to;  // m, the ends of its stretch in the direction of the triangle's side
+};
+
+// Returns the unit vector along an edge about which the angles of its wedge count.
+Vec3 axis_of(const Wedge& wedge);
+
 // Returns the unit vector across an edge that leads away from both faces.
 Vec3 outward_of(const Wedge& wedge);
 

@@ -66,8 +66,10 @@ class PathBlock {
   // Adds the matrix of the next pair of a polarised fan, by way in and then by way out.
   void add_pair_jones(const JonesMatrix& matrix) { fan_jones.push_back(matrix); }
   void end_fan();
-  // Marks the last path added as one with an edge (edge_flags in paths.h).
-  void set_edge(int hit, int num_pieces) { rows.flags[rows.size() - 1] |= edge_flags(hit, num_pieces); }
+  // Marks the last path added as one with an edge, or several (edge_flags in paths.h).
+  void set_edge(int hit, int num_pieces, int num_edges = 1) {
+    rows.flags[rows.size() - 1] |= edge_flags(hit, num_pieces, num_edges);
+  }
   // Give the last path added its matrix (Paths::jones) or a launch cell of its own (Paths::curved_cell).
   void set_jones(const JonesMatrix& matrix);
   void set_curved_cell(const std::array<float, 7>& cell);

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
-#include "echopath/scene/mesh/sharp_edges.h"
+#include "echopath/scene/scene_edges.h"
 
 namespace echopath {
 namespace {
@@ -62,18 +63,20 @@ void validate_hit(const Hit& hit, const Scene& scene) {
           "must not be negative, their sum at most 1", hit.u + hit.v);
 }
 
-void validate_edge(const Paths& paths, size_t path) {
-  const int at = edge_hit(paths.flags[path]);
+void validate_edges(const Paths& paths, size_t path, const SceneEdges* edges) {
+  const int at = edge_hit(paths.flags[path]), end = at + num_edge_hits(paths.flags[path]);
   if (at < 0) return;
-  require(at < paths.num_bounces[path] && paths.diffuse[path] == 0, "flags",
+  require(edges != nullptr, "flags", "must name no edges in a frame without edges, path", path);
+  require(end <= paths.num_bounces[path] && paths.diffuse[path] == 0, "flags",
           "must name a hit of a coherent path as its edge, hit", at);
   require(paths.stratum[path] == kNoStratum, "stratum", "must be 65535 where a path has an edge", int{paths.stratum[path]});
   require(num_edge_pieces(paths.flags[path]) > 0, "flags", "must hold how many pieces an edge has", 0);
-  const Hit& hit = paths.hits_of(static_cast<int64_t>(path))[at];
-  validate_hit(hit, *paths.scene);
-  const std::vector<SharpEdge>& edges = paths.scene->node_of(hit.mesh_id).mesh->sharp_edges();
-  require(sharp_edge_at(edges, hit.triangle_id, double{hit.u}, double{hit.v}) != nullptr, "flags",
-          "must name hits on sharp edges, path", path);
+  for (int k = at; k < end; ++k) {
+    const Hit& hit = paths.hits_of(static_cast<int64_t>(path))[k];
+    validate_hit(hit, *paths.scene);
+    require(sharp_edge_at(edges->of(hit.mesh_id), hit.triangle_id, double{hit.u}, double{hit.v}) != nullptr, "flags",
+            "must name hits on sharp edges, path", path);
+  }
 }
 
 void validate_passes(const Paths& paths) {
@@ -145,7 +148,12 @@ void Paths::validate() const {
   require(size == 0 || !jones.empty() == (frame.polarization == PolarizationModel::kJones), "jones",
           "must be given for a frame that follows field vectors, and for no other, matrices", jones.size());
   validate_foci(frame.strata);
-  for (size_t path = 0; path < size; ++path) validate_path(path);
+  std::optional<SceneEdges> edges;
+  if (frame.edges) edges.emplace(*scene);
+  for (size_t path = 0; path < size; ++path) {
+    validate_path(path);
+    validate_edges(*this, path, edges ? &*edges : nullptr);
+  }
   for (const Hit& hit : *hits) validate_hit(hit, *scene);
   validate_passes(*this);
 }
@@ -168,7 +176,6 @@ void Paths::validate_path(size_t path) const {
   if (!jones.empty()) {
     require(std::all_of(jones[path].begin(), jones[path].end(), is_finite), "jones", "must be finite, path", path);
   }
-  validate_edge(*this, path);
 }
 
 Paths Paths::select(const std::vector<uint8_t>& keep, Job* job) const {

@@ -52,17 +52,21 @@ inline constexpr uint32_t kReversedPath = 1;
 inline constexpr uint32_t kSecondHalf = 2;
 // Marks a path with a point on a sharp edge (scene/mesh/sharp_edges.h), one of its hits. Its flags also hold which hit that
 // is and into how many pieces of one length the edge is parted: the path stands for the piece around its point. All its
-// other hits are images. Its weight holds the coefficients of the scalar model and what the faces keep in phase.
+// other hits are images. Its weight holds the coefficients of the scalar model and what the faces keep in phase. A path may
+// go on from edge to edge over flat faces (em/edge_chain.h): then its next hits, up to kMostEdges in all, lie on edges too,
+// and the pieces are those of the first edge.
 inline constexpr uint32_t kEdgePath = 4;
 // Marks, beside that, a path whose edge sends on only what it makes of the wave that goes by (em/edge_shadow.h), toward a
 // mirror.
 inline constexpr uint32_t kPastEdge = 32;
-inline constexpr int kMostPieces = 65535;
-constexpr uint32_t edge_flags(int hit, int num_pieces) {
-  return kEdgePath | static_cast<uint32_t>(hit) << 8 | static_cast<uint32_t>(num_pieces) << 16;
+inline constexpr int kMostPieces = 65535, kMostEdges = 4;
+constexpr uint32_t edge_flags(int hit, int num_pieces, int num_edges = 1) {
+  return kEdgePath | static_cast<uint32_t>(num_edges - 1) << 3 | static_cast<uint32_t>(hit) << 8 |
+         static_cast<uint32_t>(num_pieces) << 16;
 }
-// Return the hit on an edge, -1 where there is none, and the number of pieces.
+// Return the first hit on an edge, -1 where there is none, the number of such hits, and that of pieces.
 constexpr int edge_hit(uint32_t flags) { return flags & kEdgePath ? static_cast<int>(flags >> 8 & 63u) : -1; }
+constexpr int num_edge_hits(uint32_t flags) { return flags & kEdgePath ? static_cast<int>(flags >> 3 & 3u) + 1 : 0; }
 constexpr int num_edge_pieces(uint32_t flags) { return static_cast<int>(flags >> 16); }
 // Returns the flag of a ray's paths by its index: 0 or kSecondHalf. It is the parity of the index's digits (Thue and Morse),
 // so that both halves of any few rays in a row have as many of them, and no digit of the nets that rays share tells them

@@ -1,0 +1,110 @@
+#include "echopath/trace/edges/edge_chains.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace echopath {
+namespace {
+
+constexpr double kSamePlane = 1e-6;   // of the extent of all edges, and rad
+constexpr double kLeastSlope = 1e-2;  // sine of the angle at which a wave meets an edge, or leaves it
+constexpr double kRim = 6.2831;       // rad: the exterior angle of a rim is larger
+
+bool is_rim(const PosedEdge& edge) { return edge.wedge.exterior_angle > kRim; }
+
+}  // namespace
+
+EdgeChains::EdgeChains(std::span<const PosedEdge> edges, double wavelength)
+    : edges_(edges), longest_(kLongestFace * wavelength), plane_(edges.size()) {
+  find_planes();
+}
+
+void EdgeChains::find_planes() {
+  struct Face {
+    double key;  // faces on one plane have nearly the same
+    size_t edge;
+    int face;
+  };
+  Eigen::AlignedBox3d box;
+  for (const PosedEdge& edge : edges_) box.extend(edge.from).extend(edge.to);
+  if (edges_.empty()) return;
+  const double extent = std::max(box.diagonal().norm(), 1e-9);
+  const Vec3 middle = box.center();
+  const auto normal = [&](const Face& one) { return edges_[one.edge].wedge.faces[one.face].normal; };
+  const auto offset = [&](const Face& one) { return normal(one).dot(edges_[one.edge].from - middle); };
+  std::vector<Face> faces;
+  for (size_t i = 0; i < edges_.size(); ++i) {
+    for (int f = 0; f < 2; ++f) {
+      Face one{0.0, i, f};
+      // Any combination serves in which planes seldom agree by chance.
+      one.key = offset(one) + extent * normal(one).dot(Vec3(0.7193, 0.5271, 0.4526));
+      faces.push_back(one);
+    }
+  }
+  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
+    return std::tie(a.key, a.edge, a.face) < std::tie(b.key, b.edge, b.face);
+  });
+  std::vector<bool> is_taken(faces.size());
+  for (size_t i = 0; i < faces.size(); ++i) {
+    if (is_taken[i]) continue;
+    std::vector<OnPlane>& plane = planes_.emplace_back();
+    for (size_t k = i; k < faces.size() && faces[k].key <= faces[i].key + 4.0 * kSamePlane * extent; ++k) {
+      const bool is_one = (normal(faces[k]) - normal(faces[i])).norm() < kSamePlane &&
+                          std::abs(offset(faces[k]) - offset(faces[i])) < kSamePlane * extent;
+      if (is_taken[k] || !is_one) continue;
+      is_taken[k] = true;
+      plane.push_back({faces[k].edge, faces[k].face});
+      plane_[faces[k].edge][static_cast<size_t>(faces[k].face)] = planes_.size() - 1;
+    }
+  }
+}
+
+// Finds the nearest edge that ends the face toward the direction.
+bool EdgeChains::find_next(size_t edge, int face, const Vec3& position, const Vec3& direction, Met& met) const {
+  double nearest = longest_;
+  bool is_found = false;
+  for (const OnPlane& one : planes_[plane_[edge][static_cast<size_t>(face)]]) {
+    const PosedEdge& other = edges_[one.edge];
+    const Vec3& inward = other.wedge.faces[one.face].inward;
+    const double slope = direction.dot(inward), height = inward.dot(position - other.from);
+    if (one.edge == edge || slope > -kLeastSlope || height <= 0 || height >= -slope * nearest) continue;
+    const Vec3 stretch = other.to - other.from, at = position - height / slope * direction - other.from;
+    const double along = at.dot(stretch) / stretch.squaredNorm();
+    if (along < 0.0 || along > 1.0) continue;
+    nearest = -height / slope;
+    met = {one.edge, along};
+    is_found = true;
+  }
+  // Both sides of a sheet carry one wave (EdgeChain).
+  return is_found && !(face == 1 && is_rim(edges_[edge]) && is_rim(edges_[met.edge]));
+}
+
+void EdgeChains::follow(size_t edge, const Hit& point, const Vec3& position, const Vec3& in, int most,
+                        const Visit& visit) const {
+  EdgeWay way{{{edges_[edge].wedge, position}}, {point}};
+  extend(way, edge, in, most, visit);
+}
+
+void EdgeChains::extend(EdgeWay& way, size_t edge, const Vec3& in, int most, const Visit& visit) const {
+  if (std::ssize(way.edges) >= most) return;
+  const Wedge& wedge = edges_[edge].wedge;
+  const Vec3 axis = axis_of(wedge), position = way.edges.back().point;
+  const double cosine = in.dot(axis), sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0));
+  if (sine < kLeastSlope) return;
+  for (int face = 0; face < 2; ++face) {
+    const Vec3 direction = cosine * axis + sine * wedge.faces[face].inward;
+    Met met;
+    if (!find_next(edge, face, position, direction, met)) continue;
+    const PosedEdge& next = edges_[met.edge];
+    const double along = next.edge.begin + (next.edge.end - next.edge.begin) * met.along;
+    const PointOnSide at = point_on_side(next.edge.side, along);
+    way.edges.push_back({next.wedge, next.from + met.along * (next.to - next.from)});
+    way.hits.emplace_back(next.mesh_id, next.edge.triangle, at.u, at.v);
+    if (visit(way, met.edge)) extend(way, met.edge, direction, most, visit);
+    way.edges.pop_back();
+    way.hits.pop_back();
+  }
+}
+
+}  // namespace echopath

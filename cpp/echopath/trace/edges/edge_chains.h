@@ -1,0 +1,54 @@
+#pragma once
+// Finds the ways from edge to edge over flat faces (em/edge_chain.h).
+#include <array>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "echopath/em/edge_chain.h"
+#include "echopath/trace/edges/posed_edge.h"
+#include "echopath/trace/record/paths.h"
+
+namespace echopath {
+
+// Faces longer than this carry no waves from edge to edge: those that an edge sends over them are 26 dB weaker than its own
+// echo, and most faces of a street are longer.
+inline constexpr double kLongestFace = 40.0;  // wavelengths
+
+// Holds a way over edges that is under way.
+struct EdgeWay {
+  std::vector<ChainEdge> edges;
+  std::vector<Hit> hits;  // the points on the edges
+};
+
+class EdgeChains {
+ public:
+  // The edges must outlive it.
+  EdgeChains(std::span<const PosedEdge> edges, double wavelength);
+  // Takes a way and the index of its last edge, and returns whether it is to be followed farther.
+  using Visit = std::function<bool(const EdgeWay&, size_t last_edge)>;
+  // Calls visit for each way of two edges or more, up to `most`, that a wave takes which arrives along the unit vector `in` at a
+  // point of an edge (its index). `point` is the hit there.
+  void follow(size_t edge, const Hit& point, const Vec3& position, const Vec3& in, int most, const Visit& visit) const;
+
+ private:
+  struct OnPlane {
+    size_t edge;
+    int face;
+  };
+  struct Met {
+    size_t edge;
+    double along;  // in [0, 1] of its stretch
+  };
+
+  void find_planes();
+  bool find_next(size_t edge, int face, const Vec3& position, const Vec3& direction, Met& met) const;
+  void extend(EdgeWay& way, size_t edge, const Vec3& in, int most, const Visit& visit) const;
+
+  std::span<const PosedEdge> edges_;
+  double longest_;                             // m
+  std::vector<std::vector<OnPlane>> planes_;   // the faces that end at edges and lie on one plane
+  std::vector<std::array<size_t, 2>> plane_;   // by edge and face
+};
+
+}  // namespace echopath

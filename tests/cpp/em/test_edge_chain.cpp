@@ -1,0 +1,110 @@
+// Waves that run from edge to edge over flat faces.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <complex>
+
+#include "echopath/base/constants.h"
+#include "echopath/em/edge_chain.h"
+
+namespace echopath::test_edge_chain {
+namespace {
+
+using Complex = std::complex<double>;
+constexpr Complex kJ{0.0, 1.0};
+constexpr double kWavenumber = 200.0;  // rad/m
+
+// A strip in the plane y = 0 between x = 0 and x = width, whose edges lie along z.
+std::array<ChainEdge, 2> strip(double width) {
+  const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY();
+  return {ChainEdge{{{{x, y}, {x, -y}}, kTwoPi}, Vec3::Zero()}, ChainEdge{{{{-x, y}, {-x, -y}}, kTwoPi}, width * x}};
+}
+
+// The direction across z at an angle from the x-axis.
+Vec3 across(double angle) { return {std::cos(angle), std::sin(angle), 0.0}; }
+
+// Returns the magnetic field that a chain sends toward an angle from a wave of a unit magnetic field that comes from another
+// angle, in units of c^2, c = e^{-j pi/4} / (2 sqrt(2 pi k)), over e^{-jka}/sqrt(a).
+Complex sent(std::span<const ChainEdge> edges, double source, double at, double width) {
+  const EdgeChain chain = *EdgeChain::over(edges, kWavenumber);
+  const Vec3 in = -across(source), out = across(at), edge = Vec3::UnitZ(), electric = edge.cross(-in);
+  const Complex entered = chain.enter(in, electric.cast<Complex>(), 1e9);
+  const FieldVector left = chain.leave(out, 1e9) * entered;
+  const Complex magnetic = out.cast<Complex>().cross(left).dot(edge.cast<Complex>()) * edge.dot(in.cross(electric));
+  return std::conj(magnetic) / 0.25 * std::sqrt(kTwoPi * kWavenumber * width) * std::polar(1.0, 0.25 * kPi) / 2.0;
+}
+
+// By its integral along the line from sqrt(x) on, turned into one of e^{-s}.
+TEST(EdgeChain, TransitionIsTheIntegralOfKouyoumjianAndPathak) {
+  for (const double x : {0.0, 1e-3, 0.1, 1.0, 3.0, 10.0, 100.0}) {
+    Complex sum = 0.0;  // int_0^inf e^{-s} / (2 sqrt(x - js)) ds, after t^2 = x - js
+    const int count = 400000;
+    for (int i = 0; i < count; ++i) {
+      const double r = (i + 0.5) * 6.0 / count, s = r * r;
+      sum += std::exp(-s) * 2.0 * r / (2.0 * std::sqrt(Complex(x, -s))) * 6.0 / static_cast<double>(count);
+    }
+    const Complex expected = 2.0 * kJ * std::sqrt(x) * sum * Complex(0.0, -1.0);
+    EXPECT_LT(std::abs(transition(x) - expected), 3e-3) << x;
+  }
+}
+
+// Ross 1966: 4 / (cos(source/2) cos(at'/2)), at' from the second edge, where no transition is near.
+TEST(EdgeChain, AStripHasKellersDoubleDiffraction) {
+  constexpr double kWidth = 20.0;
+  const auto edges = strip(kWidth);
+  for (const double source : {0.6, 1.2, 1.9}) {
+    for (const double at : {1.3, 2.0, 2.5}) {
+      const double expected = 4.0 / (std::cos(0.5 * source) * std::cos(0.5 * (kPi - at)));
+      EXPECT_NEAR(std::abs(sent(edges, source, at, kWidth)), expected, 0.01 * expected) << source << " " << at;
+    }
+  }
+}
+
+// The way back of a wave from another direction is the same.
+TEST(EdgeChain, IsReciprocal) {
+  const auto edges = strip(0.3);
+  const std::array<ChainEdge, 2> back = {edges[1], edges[0]};
+  const std::array<ChainEdge, 3> there_and_back = {edges[0], edges[1], edges[0]};
+  for (const double source : {0.4, 1.5, 2.9}) {
+    for (const double at : {0.3, 1.2, 2.2, 3.0}) {
+      EXPECT_LT(std::abs(sent(edges, source, at, 0.3) - sent(back, at, source, 0.3)), 1e-6) << source << " " << at;
+      EXPECT_LT(std::abs(sent(there_and_back, source, at, 0.3) - sent(there_and_back, at, source, 0.3)), 1e-6)
+          << source << " " << at;
+    }
+  }
+}
+
+// Along the sheet nothing stands in the way of a wave whose electric field is across it: what the far edge alone sends back
+// is taken away by the wave that the near edge sends there, in the limit of the lit side.
+TEST(EdgeChain, SeenAlongItselfAStripSendsNothingForward) {
+  const auto edges = strip(0.5);
+  const EdgeChain chain = *EdgeChain::over(edges, kWavenumber);
+  const Vec3 in = -across(kPi - 1e-6), electric = Vec3::UnitZ().cross(-in);
+  EXPECT_NEAR(std::abs(chain.enter(in, electric.cast<Complex>(), 1e9)), 2.0, 0.02);  // twice, as on the lit face
+}
+
+// Against the shortest way over the edge by search.
+TEST(EdgeChain, DetourIsThatOfTheShortestWay) {
+  const auto edges = strip(0.5);
+  const EdgeChain chain = *EdgeChain::over(edges, kWavenumber);
+  const Vec3 antenna(-3.0, 2.0, 0.05);
+  double shortest = 1e9;
+  for (double z = -0.1; z < 0.1; z += 1e-5) {
+    const Vec3 point(0.0, 0.0, z);
+    shortest = std::min(shortest, (antenna - point).norm() + (edges[1].point - point).norm());
+  }
+  const double direct = antenna.norm() + chain.length();
+  EXPECT_NEAR(chain.detour(-antenna.normalized(), antenna.norm()), shortest - direct, 0.01 * (direct - shortest));
+}
+
+TEST(EdgeChain, NeedsAFaceBetweenTheEdges) {
+  auto edges = strip(0.5);
+  edges[1].point += 0.1 * Vec3::UnitY();
+  EXPECT_FALSE(EdgeChain::over(edges, kWavenumber).has_value());
+  edges = strip(0.5);
+  std::swap(edges[0].point, edges[1].point);
+  EXPECT_FALSE(EdgeChain::over(edges, kWavenumber).has_value());
+}
+
+}  // namespace
+}  // namespace echopath::test_edge_chain

@@ -8,10 +8,10 @@
 namespace echopath {
 namespace {
 
-constexpr double kInFace = 1e-3;   // rad: a way between two points on a face leaves its plane by less
+constexpr double kInFace = 1e-3;    // rad: a way between two points on a face leaves its plane by less
 constexpr double kSameFace = 1e-6;  // of the cosine between normals of one face
-constexpr double kBeside = 1e-4;   // rad: directions nearer to the way itself count as that far off its face
-constexpr double kRim = 1e-6;      // rad: the rim of a sheet has an exterior angle of 2 pi within that
+constexpr double kBeside = 1e-4;    // rad: directions nearer to the way itself count as that far off its face
+constexpr double kRim = 1e-6;       // rad: the rim of a sheet has an exterior angle of 2 pi within that
 
 bool is_rim(const Wedge& wedge) { return wedge.exterior_angle > kTwoPi - kRim; }
 
@@ -35,12 +35,22 @@ double angle_of_face(const Wedge& wedge, int face) { return face == 0 ? 0.0 : we
 
 }  // namespace
 
-// By f and g of Abramowitz and Stegun 7.3.32, 7.3.33: the integral beyond u is their combination.
+// It is sqrt(pi) z e^{z^2} erfc(z) with z^2 = jx: by the power series of erf, or by the continued fraction of erfc
+// (Abramowitz and Stegun 7.1.5, 7.1.14).
 std::complex<double> transition(double x) {
-  const double u = std::sqrt(2.0 / kPi * std::max(x, 0.0));
-  const double f = (1.0 + 0.926 * u) / (2.0 + 1.792 * u + 3.104 * u * u);
-  const double g = 1.0 / (2.0 + 4.142 * u + 3.492 * u * u + 6.670 * u * u * u);
-  return std::complex<double>(0.0, 2.0) * std::sqrt(std::max(x, 0.0)) * std::sqrt(0.5 * kPi) * std::complex<double>(g, -f);
+  const std::complex<double> square(0.0, std::max(x, 0.0));
+  if (x < 2.0) {
+    const std::complex<double> z = std::sqrt(square);
+    std::complex<double> power = z, sum = z;
+    for (int n = 1; n <= 20; ++n) {
+      power *= -square / static_cast<double>(n);
+      sum += power / (2.0 * n + 1.0);
+    }
+    return z * std::exp(square) * (std::sqrt(kPi) - 2.0 * sum);
+  }
+  std::complex<double> fraction = 1.0;
+  for (int k = static_cast<int>(8.0 + 60.0 / x); k > 0; --k) fraction = 1.0 + 0.5 * k / (square * fraction);
+  return 1.0 / fraction;
 }
 
 std::optional<EdgeChain> EdgeChain::over(std::span<const ChainEdge> edges, double wavenumber) {
@@ -79,12 +89,13 @@ std::complex<double> EdgeChain::spread(const Link& link) const {
 std::complex<double> EdgeChain::turn(size_t link) const {
   const Link &before = links_[link - 1], &behind = links_[link];
   const Wedge& wedge = edges_[link].wedge;
-  const double coefficient = grazing_coefficient(wedge.exterior_angle, angle_of_face(wedge, before.to),
-                                                 angle_of_face(wedge, behind.from));
+  const double coefficient =
+      grazing_coefficient(wedge.exterior_angle, angle_of_face(wedge, before.to), angle_of_face(wedge, behind.from));
   // The next face may lie nearly in the wave's own direction.
   const double apart = before.length * behind.length / (before.length + behind.length);
   const std::complex<double> shadow = transition(wavenumber_ * apart * (1.0 - before.along.dot(behind.along)));
-  return before.share * shadow * strength_row(wedge, before.along, behind.along, behind.normal, coefficient).dot(before.normal);
+  return before.share * shadow *
+         strength_row(wedge, before.along, behind.along, behind.normal, coefficient).dot(before.normal);
 }
 
 Vec3 EdgeChain::last_piece(const Vec3& first_piece) const {
@@ -106,8 +117,8 @@ std::complex<double> EdgeChain::enter(const Vec3& in, const FieldVector& field, 
   const Link& link = links_.front();
   const Wedge& wedge = edges_.front().wedge;
   const Vec3 travel = beside(in, link.along, -link.normal);
-  const double coefficient = grazing_coefficient(wedge.exterior_angle, angle_about(wedge, -travel),
-                                                 angle_of_face(wedge, link.from));
+  const double coefficient =
+      grazing_coefficient(wedge.exterior_angle, angle_about(wedge, -travel), angle_of_face(wedge, link.from));
   const Vec3 row = strength_row(wedge, travel, link.along, link.normal, coefficient);
   const double apart = link.length * distance / (link.length + distance);
   const std::complex<double> shadow = transition(wavenumber_ * apart * (1.0 - travel.dot(link.along)));

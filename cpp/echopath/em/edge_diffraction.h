@@ -7,8 +7,8 @@
 // diffracted field on the cone, in every direction about the edge. It stays finite at the boundaries of shadow and
 // reflection. It is not finite along the grazing ray itself (Ufimtsev's singularity), which no backscatter reaches but that
 // from the plane of a face. The field of one edge is not cut off where another edge ends the face; em/edge_chain.h has what
-// then goes on from edge to edge. Sources: Michaeli 1986, "Elimination of infinities in equivalent edge currents, part I: fringe current components";
-// Mitzner 1974 integrates across the edge instead; both agree on the cone (Knott 1985).
+// then goes on from edge to edge. Sources: Michaeli 1986, "Elimination of infinities in equivalent edge currents, part I:
+// fringe current components"; Mitzner 1974 integrates across the edge instead; both agree on the cone (Knott 1985).
 #include <complex>
 
 #include "echopath/base/geometry.h"
@@ -41,10 +41,10 @@ bool is_outside(const Wedge& wedge, const Vec3& direction);
 // wedge, and within 1e-3 rad of the edge's own direction, along which the coefficient is not defined.
 Mat3 fringe_matrix(const Wedge& wedge, const Vec3& in, const Vec3& out);
 
-// Returns the vector V of what the wedge makes of a wave that travels along one of its faces (0 or 1) toward the edge, in the
-// direction `along`, with a field of unit strength across the face. Its field -j/(2 k) V per metre of the edge is the whole
-// diffracted field: the wave ends at the edge, and physical optics knows nothing of it. V is not finite where `out` is the
-// wave's own direction.
+// Returns the vector V of what the wedge makes of a wave that travels along one of its faces (0 or 1) toward the edge, in
+// the direction `along`, with a field of unit strength across the face. Its field -j/(2 k) V per metre of the edge is the
+// whole diffracted field: the wave ends at the edge, and physical optics knows nothing of it. V is not finite where `out` is
+// the wave's own direction.
 Vec3 field_of_grazing_wave(const Wedge& wedge, int face, const Vec3& along, const Vec3& out);
 
 // Returns Keller's coefficient of a wedge for a magnetic field along the edge, over e^{-j pi/4}/sqrt(2 pi k), from the angle

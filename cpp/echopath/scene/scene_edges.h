@@ -22,8 +22,8 @@ class SceneEdges {
   SceneEdges(const SceneEdges&) = delete;
   // Returns the edges of a mesh in its own frame, ascending as find_sharp_edges has them; none where they make no echoes.
   std::span<const SharpEdge> of(uint32_t mesh_id) const { return edges_[mesh_id]; }
-  // Returns the meshes whose edges and seams connect them with this one: the body that they are parts of, named by its lowest
-  // ID.
+  // Returns the meshes whose edges and seams connect them with this one: the body that they are parts of, named by its
+  // lowest ID.
   uint32_t body_of(uint32_t mesh_id) const { return body_[mesh_id]; }
 
  private:

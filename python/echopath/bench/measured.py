@@ -182,6 +182,7 @@ def _verdicts(found: list[Pattern]) -> list[str]:
             continue
         beside = "measurement" if one.target == "plate" else "method of moments"
         error = one.error(one.with_edges, one.measured if one.target == "plate" else one.moments)
-        lines.append(f"  {one.target} {one.frequency_ghz:g} GHz {one.polarization} beside {beside}: at most {limit:.1f} dB, {error:.2f}  "
+        lines.append(f"  {one.target} {one.frequency_ghz:g} GHz {one.polarization} beside {beside}: at most {limit:.1f} dB, "
+                     f"{error:.2f}  "
                      f"{'holds' if error <= limit else 'MISSED'}")
     return lines

@@ -35,7 +35,8 @@ class Live:
     scene: is copied; radar: that looks at it, which may be set to another one at any time
     num_rays: 1 to 1e10, shared evenly among objects, their images and the field of view, half of them at least to what moves:
         the shares do not go by errors as those of `trace` do, because these change with every change of the scene
-    max_bounces, seed, start_time (s), polarization, footprint, sampler, edges: as in `trace`; "auto" edges as the scene is at first
+    max_bounces, seed, start_time (s), polarization, footprint, sampler, edges: as in `trace`; "auto" edges as the
+        scene is at first
     scatterers: "rays" (also for "auto"), or "surface" as in `trace`, so that the speckle of what is moved goes on; most rays
         are then shot again
     tolerance, replay, evaluate, phase_tolerance (rad): as in `synthesize`; method: likewise, where "auto" is "nufft" whatever

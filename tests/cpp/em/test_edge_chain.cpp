@@ -36,7 +36,7 @@ Complex sent(std::span<const ChainEdge> edges, double source, double at, double 
 
 // By its integral along the line from sqrt(x) on, turned into one of e^{-s}.
 TEST(EdgeChain, TransitionIsTheIntegralOfKouyoumjianAndPathak) {
-  for (const double x : {0.0, 1e-3, 0.1, 1.0, 3.0, 10.0, 100.0}) {
+  for (const double x : {0.0, 1e-3, 0.1, 1.0, 1.99, 2.01, 3.0, 10.0, 100.0}) {
     Complex sum = 0.0;  // int_0^inf e^{-s} / (2 sqrt(x - js)) ds, after t^2 = x - js
     const int count = 400000;
     for (int i = 0; i < count; ++i) {
@@ -44,7 +44,7 @@ TEST(EdgeChain, TransitionIsTheIntegralOfKouyoumjianAndPathak) {
       sum += std::exp(-s) * 2.0 * r / (2.0 * std::sqrt(Complex(x, -s))) * 6.0 / static_cast<double>(count);
     }
     const Complex expected = 2.0 * kJ * std::sqrt(x) * sum * Complex(0.0, -1.0);
-    EXPECT_LT(std::abs(transition(x) - expected), 3e-3) << x;
+    EXPECT_LT(std::abs(transition(x) - expected), 1e-4) << x;
   }
 }
 
@@ -74,13 +74,13 @@ TEST(EdgeChain, IsReciprocal) {
   }
 }
 
-// Along the sheet nothing stands in the way of a wave whose electric field is across it: what the far edge alone sends back
-// is taken away by the wave that the near edge sends there, in the limit of the lit side.
-TEST(EdgeChain, SeenAlongItselfAStripSendsNothingForward) {
+// Along a sheet with its electric field across it a wave passes as if nothing were there. Physical optics doubles it on the
+// lit side, in the limit; what the near edge sends over the face is the wave itself, and takes that away.
+TEST(EdgeChain, SeenAlongItselfAnEdgeSendsAsMuchAsTheWave) {
   const auto edges = strip(0.5);
   const EdgeChain chain = *EdgeChain::over(edges, kWavenumber);
   const Vec3 in = -across(kPi - 1e-6), electric = Vec3::UnitZ().cross(-in);
-  EXPECT_NEAR(std::abs(chain.enter(in, electric.cast<Complex>(), 1e9)), 2.0, 0.02);  // twice, as on the lit face
+  EXPECT_NEAR(std::abs(chain.enter(in, electric.cast<Complex>(), 1e9)), 1.0, 0.01);
 }
 
 // Against the shortest way over the edge by search.

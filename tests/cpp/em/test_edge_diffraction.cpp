@@ -290,7 +290,8 @@ TEST(EdgeDiffraction, GrazingWaveHasKellersCoefficientOnTheCone) {
         const Vec3 along = -direction(0.0, -cosine), out = direction(at, cosine), edge = Vec3::UnitZ();
         const Vec3 field = field_of_grazing_wave(wedge, 0, along, out);
         const double magnetic = edge.dot(along.cross(wedge.faces[0].normal));
-        EXPECT_NEAR(edge.dot(out.cross(field)), 2.0 * grazing_coefficient(exterior, 0.0, at) * magnetic, 1e-4 / std::abs(at - kPi))
+        EXPECT_NEAR(edge.dot(out.cross(field)), 2.0 * grazing_coefficient(exterior, 0.0, at) * magnetic,
+                    1e-4 / std::abs(at - kPi))
             << exterior << " " << cosine << " " << at;
       }
     }

@@ -112,8 +112,8 @@ TEST_F(SceneEdgesTest, OtherMaterialsTakeNoPart) {
 
 // Parts of one whole have its edges, wherever another mesh touches them.
 TEST_F(SceneEdgesTest, PartsOfAWholeMeetOthers) {
-  const auto whole = std::make_shared<const Mesh>(
-      std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}});
+  const auto whole = std::make_shared<const Mesh>(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
+                                                  std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}});
   add("lower", Mesh::part(whole, {0}));
   add("upper", Mesh::part(whole, {1}));
   add("wall", quad({0, 0, 0}, {0, 1, 0}, {0, 1, 1}, {0, 0, 1}));

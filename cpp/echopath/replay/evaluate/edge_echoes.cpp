@@ -109,7 +109,9 @@ class EdgeEchoes {
   // A chain's waves run along one ray of Keller's cone to each point of the last edge.
   std::complex<double> filter(const WayToEdge& in, const Vec3& departure, double distance) const {
     const Vec3 arrival = chain_ ? chain_->arrival() : in.direction;
-    const auto curvature = [&](const Vec3& direction, double radius) { return direction.cross(piece_).squaredNorm() / radius; };
+    const auto curvature = [&](const Vec3& direction, double radius) {
+      return direction.cross(piece_).squaredNorm() / radius;
+    };
     const double bend = 0.125 * radio_.wavenumber * (curvature(arrival, in.length) + curvature(departure, distance));
     return edge_filter(radio_.wavenumber * (arrival - departure).dot(piece_), bend);
   }

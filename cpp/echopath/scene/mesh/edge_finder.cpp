@@ -181,7 +181,8 @@ class SharpEdgeFinder {
 
   static std::pair<double, double> stretch_of(const EdgeSide& side, double low, double high) {
     const double length = side.high - side.low;
-    const double begin = std::clamp((low - side.low) / length, 0.0, 1.0), end = std::clamp((high - side.low) / length, 0.0, 1.0);
+    const double begin = std::clamp((low - side.low) / length, 0.0, 1.0),
+                 end = std::clamp((high - side.low) / length, 0.0, 1.0);
     return side.runs_along() ? std::pair(begin, end) : std::pair(1.0 - end, 1.0 - begin);
   }
 

@@ -9,9 +9,9 @@ namespace {
 
 constexpr double kSamePlane = 1e-6;   // of the extent of all edges, and rad
 constexpr double kLeastSlope = 1e-2;  // sine of the angle at which a wave meets an edge, or leaves it
-constexpr double kRim = 6.2831;       // rad: the exterior angle of a rim is larger
+constexpr double kRimAngle = 6.2831;       // rad: the exterior angle of a rim is larger
 
-bool is_rim(const PosedEdge& edge) { return edge.wedge.exterior_angle > kRim; }
+bool is_rim(const PosedEdge& edge) { return edge.wedge.exterior_angle > kRimAngle; }
 
 }  // namespace
 
@@ -20,41 +20,39 @@ EdgeChains::EdgeChains(std::span<const PosedEdge> edges, double wavelength)
   find_planes();
 }
 
-void EdgeChains::find_planes() {
-  struct Face {
-    double key;  // faces on one plane have nearly the same
-    size_t edge;
-    int face;
-  };
-  Eigen::AlignedBox3d box;
-  for (const PosedEdge& edge : edges_) box.extend(edge.from).extend(edge.to);
-  if (edges_.empty()) return;
-  const double extent = std::max(box.diagonal().norm(), 1e-9);
-  const Vec3 middle = box.center();
-  const auto normal = [&](const Face& one) { return edges_[one.edge].wedge.faces[one.face].normal; };
-  const auto offset = [&](const Face& one) { return normal(one).dot(edges_[one.edge].from - middle); };
-  std::vector<Face> faces;
+// Sorts the faces at all edges by a key, so that those on one plane are neighbours.
+std::vector<EdgeChains::OnPlane> EdgeChains::sorted_faces(const Vec3& middle, double extent) const {
+  std::vector<OnPlane> faces;
   for (size_t i = 0; i < edges_.size(); ++i) {
-    for (int f = 0; f < 2; ++f) {
-      Face one{0.0, i, f};
+    for (int face = 0; face < 2; ++face) {
+      const Vec3& normal = edges_[i].wedge.faces[face].normal;
+      const double offset = normal.dot(edges_[i].from - middle);
       // Any combination serves in which planes seldom agree by chance.
-      one.key = offset(one) + extent * normal(one).dot(Vec3(0.7193, 0.5271, 0.4526));
-      faces.push_back(one);
+      faces.push_back({i, face, offset, offset + extent * normal.dot(Vec3(0.7193, 0.5271, 0.4526))});
     }
   }
-  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
+  std::sort(faces.begin(), faces.end(), [](const OnPlane& a, const OnPlane& b) {
     return std::tie(a.key, a.edge, a.face) < std::tie(b.key, b.edge, b.face);
   });
+  return faces;
+}
+
+void EdgeChains::find_planes() {
+  Eigen::AlignedBox3d box;
+  for (const PosedEdge& edge : edges_) box.extend(edge.from).extend(edge.to);
+  const double extent = edges_.empty() ? 0.0 : box.diagonal().norm();
+  const std::vector<OnPlane> faces = sorted_faces(edges_.empty() ? Vec3(Vec3::Zero()) : Vec3(box.center()), extent);
+  const auto normal = [&](const OnPlane& one) { return edges_[one.edge].wedge.faces[one.face].normal; };
   std::vector<bool> is_taken(faces.size());
   for (size_t i = 0; i < faces.size(); ++i) {
     if (is_taken[i]) continue;
     std::vector<OnPlane>& plane = planes_.emplace_back();
     for (size_t k = i; k < faces.size() && faces[k].key <= faces[i].key + 4.0 * kSamePlane * extent; ++k) {
       const bool is_one = (normal(faces[k]) - normal(faces[i])).norm() < kSamePlane &&
-                          std::abs(offset(faces[k]) - offset(faces[i])) < kSamePlane * extent;
+                          std::abs(faces[k].offset - faces[i].offset) < kSamePlane * extent;
       if (is_taken[k] || !is_one) continue;
       is_taken[k] = true;
-      plane.push_back({faces[k].edge, faces[k].face});
+      plane.push_back(faces[k]);
       plane_[faces[k].edge][static_cast<size_t>(faces[k].face)] = planes_.size() - 1;
     }
   }

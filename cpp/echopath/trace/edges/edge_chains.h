@@ -27,28 +27,31 @@ class EdgeChains {
   EdgeChains(std::span<const PosedEdge> edges, double wavelength);
   // Takes a way and the index of its last edge, and returns whether it is to be followed farther.
   using Visit = std::function<bool(const EdgeWay&, size_t last_edge)>;
-  // Calls visit for each way of two edges or more, up to `most`, that a wave takes which arrives along the unit vector `in` at a
-  // point of an edge (its index). `point` is the hit there.
+  // Calls visit for each way of two edges or more, up to `most`, that a wave takes which arrives along the unit vector `in`
+  // at a point of an edge (its index). `point` is the hit there.
   void follow(size_t edge, const Hit& point, const Vec3& position, const Vec3& in, int most, const Visit& visit) const;
 
  private:
+  // A face at an edge.
   struct OnPlane {
     size_t edge;
     int face;
+    double offset, key;  // m: of its plane; faces on one plane have nearly the same
   };
   struct Met {
     size_t edge;
     double along;  // in [0, 1] of its stretch
   };
 
+  std::vector<OnPlane> sorted_faces(const Vec3& middle, double extent) const;
   void find_planes();
   bool find_next(size_t edge, int face, const Vec3& position, const Vec3& direction, Met& met) const;
   void extend(EdgeWay& way, size_t edge, const Vec3& in, int most, const Visit& visit) const;
 
   std::span<const PosedEdge> edges_;
-  double longest_;                             // m
-  std::vector<std::vector<OnPlane>> planes_;   // the faces that end at edges and lie on one plane
-  std::vector<std::array<size_t, 2>> plane_;   // by edge and face
+  double longest_;                            // m
+  std::vector<std::vector<OnPlane>> planes_;  // the faces that end at edges and lie on one plane
+  std::vector<std::array<size_t, 2>> plane_;  // by edge and face
 };
 
 }  // namespace echopath

@@ -14,9 +14,9 @@ namespace echopath {
 namespace {
 
 constexpr size_t kEdgesPerBlock = 64;
-constexpr double kBentFront = 0.8;     // rad, of the wave fronts over half a piece (edge_filter)
-constexpr double kOfBody = 1.0 / 16;   // of the extent of a body, a piece at most where a part of the edge is hidden
-constexpr double kLeastChain = 0.03;   // of what the edge of a half plane sends
+constexpr double kBentFront = 0.8;    // rad, of the wave fronts over half a piece (edge_filter)
+constexpr double kOfBody = 1.0 / 16;  // of the extent of a body, a piece at most where a part of the edge is hidden
+constexpr double kLeastChain = 0.03;  // of what the edge of a half plane sends
 
 AntennaView view_for_edges(const Vec3& antenna, const MirrorFrusta& found, const EdgeQuery& query) {
   if (!query.frusta.serve_legs) return {antenna, {}, {}};
@@ -62,7 +62,7 @@ class EdgeTracer {
   struct Scratch {
     std::vector<Leg> in, out, behind;
     LegSearch search;
-    std::vector<Hit> hits;    // of the pieces of one edge
+    std::vector<Hit> hits;     // of the pieces of one edge
     std::vector<Vec3> points;  // likewise
     std::vector<ShadowState> to_transmitter, to_receiver;
     std::vector<Segment> segments;
@@ -128,8 +128,8 @@ class EdgeTracer {
   }
 
   // Finds the legs from a point to an antenna that leave into the space around the edge.
-  void find_legs(const Vec3& point, const Wedge& wedge, const AntennaView& antenna, ShadowState direct, std::vector<Leg>& legs,
-                 LegSearch& search) const {
+  void find_legs(const Vec3& point, const Wedge& wedge, const AntennaView& antenna, ShadowState direct,
+                 std::vector<Leg>& legs, LegSearch& search) const {
     LegQuery query{point, outward_of(wedge), std::min(query_.settings.max_bounces - 1, most_leg_mirrors(query_.settings))};
     query.faces_all = true;
     query.direct = direct;

@@ -13,6 +13,7 @@ namespace echopath {
 namespace {
 
 constexpr int64_t kLanes = 32;              // chirps side by side
+constexpr int64_t kApart = 8;               // between rows of lanes: powers of two would share few sets of the cache
 constexpr int64_t kLongestTable = 1 << 16;  // of responses
 constexpr int64_t kMostProducts = 60000;    // of cells and columns, above which the samples are quicker
 
@@ -40,14 +41,16 @@ ECHOPATH_INLINE void find_largest_squares(const double* re, const double* im, in
   }
 }
 
-// Adds up the cells of a band, each times a complex factor: lanes [count, re/im, num_lanes] to out [re/im, num_lanes].
+// Adds up the cells of a band, each times a complex factor: lanes [count, re/im, num_lanes + kApart] to out [re/im,
+// num_lanes].
 ECHOPATH_INLINE void combine_cells(const double* lanes, int64_t num_lanes, int64_t count, const double* factor,
                                    double* __restrict out) {
+  const int64_t stride = num_lanes + kApart;
   for (int64_t first = 0; first < num_lanes; first += kLanes) {
     double re[kLanes] = {}, im[kLanes] = {};
     for (int64_t i = 0; i < count; ++i) {
-      const double* const cell_re = lanes + 2 * i * num_lanes + first;
-      const double* const cell_im = cell_re + num_lanes;
+      const double* const cell_re = lanes + 2 * i * stride + first;
+      const double* const cell_im = cell_re + stride;
       const double factor_re = factor[2 * i], factor_im = factor[2 * i + 1];
       for (int64_t c = 0; c < kLanes; ++c) {
         re[c] += factor_re * cell_re[c] - factor_im * cell_im[c];
@@ -64,14 +67,15 @@ ECHOPATH_INLINE void combine_cells(const double* lanes, int64_t num_lanes, int64
 // Adds to out [2] the sum over lanes and cells i of g_{i + distance} conj(g_i).
 ECHOPATH_INLINE void correlate_cells(const double* lanes, int64_t num_lanes, int64_t count, int64_t distance,
                                      double* __restrict out) {
+  const int64_t stride = num_lanes + kApart;
   double re[kLanes] = {}, im[kLanes] = {};
   for (int64_t i = 0; i + distance < count; ++i) {
-    const double* const near = lanes + 2 * i * num_lanes;
-    const double* const far = near + 2 * distance * num_lanes;
+    const double* const near = lanes + 2 * i * stride;
+    const double* const far = near + 2 * distance * stride;
     for (int64_t first = 0; first < num_lanes; first += kLanes) {
       for (int64_t c = first; c < first + kLanes; ++c) {
-        re[c - first] += far[c] * near[c] + far[num_lanes + c] * near[num_lanes + c];
-        im[c - first] += far[num_lanes + c] * near[c] - far[c] * near[num_lanes + c];
+        re[c - first] += far[c] * near[c] + far[stride + c] * near[stride + c];
+        im[c - first] += far[stride + c] * near[c] - far[c] * near[stride + c];
       }
     }
   }
@@ -176,18 +180,19 @@ std::vector<int64_t> BandMap::columns_of(const Band& band, double least, const s
   return columns;
 }
 
-// Sorts the cells of the band of all chirps to [cell, re/im, chirp].
+// Sorts the cells of the band of all chirps to [cell, re/im, num_lanes + kApart].
 void BandMap::gather(const SummedGroups& of, int channel, const Band& band, std::vector<double>& lanes) const {
-  lanes.assign(static_cast<size_t>(2 * band.count * num_lanes_), 0.0);
+  const int64_t stride = num_lanes_ + kApart;
+  lanes.assign(static_cast<size_t>(2 * band.count * stride), 0.0);
   for (const int group : of.groups) {
     for (int chirp = 0; !of.signals->is_still(channel, group) && chirp < num_chirps_; ++chirp) {
       const RowCells cells = of.signals->moving_cells(channel, group, chirp);
       const int64_t begin = std::max(cells.first, band.first);
       const int64_t end = std::min(cells.first + cells.count, band.first + band.count);
-      double* lane = lanes.data() + 2 * (begin - band.first) * num_lanes_ + chirp;
-      for (int64_t i = begin - cells.first; i < end - cells.first; ++i, lane += 2 * num_lanes_) {
+      double* lane = lanes.data() + 2 * (begin - band.first) * stride + chirp;
+      for (int64_t i = begin - cells.first; i < end - cells.first; ++i, lane += 2 * stride) {
         lane[0] += cells.re[i];
-        lane[num_lanes_] += cells.im[i];
+        lane[stride] += cells.im[i];
       }
     }
   }

@@ -73,8 +73,8 @@ Cube PartPass::whole(Job* job) const {
   return cube;
 }
 
-// The groups of a set have one signal, or each its own where they are kept `apart`; then sets whose signals are known have no
-// paths.
+// The groups of a set have one signal, or each its own where they are kept `apart`; then sets whose signals are known have
+// no paths.
 PartPass::Sorted PartPass::sorted(const Sets& sets, bool apart) const {
   Sorted sorted{std::vector<uint32_t>(num_groups_, kNotAsked), {}, static_cast<int>(sets.size()), 0};
   sorted.num_signals = sorted.num_sets;

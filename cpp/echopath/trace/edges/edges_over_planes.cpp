@@ -6,6 +6,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/parallel.h"
+#include "echopath/scene/scene_edges.h"
 #include "echopath/trace/connect/mirror_orders.h"
 #include "echopath/trace/edges/posed_edge.h"
 #include "echopath/trace/mirrors/legs.h"
@@ -75,9 +76,10 @@ class EdgesOnPlanes {
 
 std::vector<LitEdge> lit_edges(const EdgeQuery& query, const LitPlanes& lit) {
   std::vector<LitEdge> found;
+  const SceneEdges edges(query.scene);
   const EdgesOnPlanes transmit(lit, lit.from_transmitter()), receive(lit, lit.from_receiver());
   for (uint32_t id = 0; id < query.scene.meshes().size(); ++id) {
-    for (const SharpEdge& edge : echoing_edges(query.scene, id)) {
+    for (const SharpEdge& edge : edges.of(id)) {
       const auto corners = query.geometry.corners(id, edge.triangle);
       const Vec3 &from = corners[edge.side], line = corners[(edge.side + 1) % 3] - from;
       LitEdge one{id, edge, posed_wedge(edge, query.pose, id), from + edge.begin * line, from + edge.end * line, {}, {}};

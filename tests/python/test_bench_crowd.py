@@ -1,5 +1,4 @@
 """The benchmark of crowded scenes: its scenes are what it says, its truths and verdicts hold, its files."""
-import dataclasses
 import json
 
 import numpy as np
@@ -10,6 +9,7 @@ from echopath.bench import crowd, crowd_coverage
 from echopath.bench import crowd_scenes as scenes
 from echopath.bench.closed_forms import FREQUENCY
 from echopath.cli import main
+from echopath.resolution import Interval
 from echopath.tessellation import coarse_meshes
 
 MID_FRAME = 0.0128   # s
@@ -93,20 +93,21 @@ def test_verdicts(error, flagged, verdict):
     assert crowd.judged(error, flagged) == verdict
 
 
-@dataclasses.dataclass
-class Claim:
-    power: float
-    low: float
-    high: float
-    interval_db: float = 0.2
-    resolved: bool = True
-
-
 def test_gaussian_claims_cover_as_often_as_two_sigma_do():
     draw = np.random.default_rng(3)
-    claims = [Claim(power, power - 0.2, power + 0.2) for power in 5.0 + 0.1 * draw.standard_normal(20_000)]
-    assert crowd_coverage.covered(claims, 5.0)["coverage"] == pytest.approx(0.9545, abs=0.005)
-    assert crowd_coverage.covered(claims, 6.0)["coverage"] == 0.0
+    claims = [(Interval(power, power - 0.2, power + 0.2), 0.2) for power in 5.0 + 0.1 * draw.standard_normal(20_000)]
+    found = crowd_coverage.covered(claims, [5.0] * len(claims))
+    assert found["coverage"] == pytest.approx(0.9545, abs=0.005)
+    assert found["coverage_error"] == pytest.approx(np.sqrt(0.9545 * 0.0455 / 20_000), rel=0.05)
+    assert crowd_coverage.covered(claims, [6.0] * len(claims))["coverage"] == 0.0
+
+
+def test_intervals_of_what_no_ray_has_met_count_too():
+    """A patch beside a board gets no ray at 64: its interval is what ep.unresolved says."""
+    patch = next(echo for echo in crowd_coverage.all_echoes() if echo.kind == "diffuse, patch far away")
+    scene, _ = patch.draw(1)
+    interval, half_db = crowd_coverage.power_of(patch, scene, num_rays=64, seed=1)
+    assert interval.power == 0.0 < interval.high and half_db == np.inf
 
 
 def test_command_writes_numbers_and_picture(tmp_path, capsys, monkeypatch):

@@ -223,8 +223,9 @@ def describe(results: dict) -> list[str]:
               f"{row['processor_s']:.2f} s of processor time, {row['unfollowed']} sequences not followed"
               for row in results["mirrors"]]
     lines += ["", f"coverage of the true value by the 95 % interval, {results['coverage']['seeds']} seeds",
-              f"  {'':<30}{'rays':>9}{'coverage':>10}{'mean error, dB':>16}{'claimed, dB':>13}{'unresolved':>12}"]
-    lines += [f"  {row['kind']:<30}{row['rays']:>9,}{row['coverage']:>10.2f}{row['mean_error_db']:>+16.3f}"
+              f"  {'':<30}{'rays':>9}{'coverage':>10} {'+-':>5}{'mean error, dB':>16}{'claimed, dB':>13}{'unresolved':>12}"]
+    lines += [f"  {row['kind']:<30}{row['rays']:>9,}{row['coverage']:>10.2f} {row['coverage_error']:>5.2f}"
+              f"{row['mean_error_db']:>+16.3f}"
               f"{row['claimed_db']:>13.3f}{row['unresolved']:>12}" for row in results["coverage"]["rows"]]
     lines += ["", f"{'must reach':<82}limit  measured"]
     lines += [f"  {row['what']:<78} {row['limit']:6.4g} {row['measured']:9.4g}  {'holds' if row['holds'] else 'MISSED'}"

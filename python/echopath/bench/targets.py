@@ -57,8 +57,13 @@ def _spheres():
 
 def _ellipsoid():
     elevation, azimuth = np.radians([ELEVATION, AZIMUTH])
-    to_radar = np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
-    mesh = shapes.ellipsoid(CAR, edge=CAR_EDGE)
+    return ellipsoid_seen_along(np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth),
+                                          np.sin(elevation)]))
+
+
+def ellipsoid_seen_along(to_radar, edge: float = CAR_EDGE) -> Target:
+    """A smooth metal ellipsoid of a car's size, 40 km away; to_radar: unit, in its own axes; edge: of its triangles, m."""
+    mesh = shapes.ellipsoid(CAR, edge=edge)
     return _in_far_field("ellipsoid", "ellipsoid of a car's size", mesh, 4e4, exact.ellipsoid_rcs(CAR, to_radar),
                          smooth=True, to_radar=to_radar)
 

@@ -118,7 +118,8 @@ class ChainGlintSearch {
   const double wavenumber_;
 };
 
-// Returns whether the path has been traced as a wave over curved surfaces to another, which radiates straight to the receiver.
+// Returns whether the path has been traced as a wave over curved surfaces to another, which radiates straight to the
+// receiver.
 bool is_chain(const Paths& paths, int64_t path) {
   const auto p = static_cast<size_t>(path);
   if (paths.diffuse[p] != 0 || paths.stratum[p] == kNoStratum || paths.num_bounces[p] < 2) return false;

@@ -113,6 +113,7 @@ class Sums {
     sums.field[batch_of(path)] += arriving[kAsLaunched * stride];
     CoherentKind& of_kind = sums.kinds[kinds_[group].index_of(kind, sums.kinds)];
     const bool has_cell = paths_.stratum[static_cast<size_t>(path)] != kNoStratum;  // others hold nothing between rays
+    of_kind.has_cells = of_kind.has_cells || has_cell;
     const size_t num_views = has_cell ? kNumCellViews : kPoints;
     for (size_t view = 0; view < num_views; ++view) {
       const std::complex<double> field = arriving[view * stride];

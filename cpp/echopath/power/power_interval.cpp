@@ -10,6 +10,7 @@ constexpr double kNormal = 1.959964;  // two-sided 95 % quantile
 constexpr double kOfHalving = 1.2, kOfHalvingMore = 12.0, kMostOfHalving = 5.0;
 constexpr double kAliases = 0.007, kOfFiner = 4.0;
 constexpr double kGone = 0.3, kOfBetween = 1.25;
+constexpr double kOfSurface = 0.0025;
 constexpr double kOfAHit = 0.5;
 constexpr double kEdgeCells = 8.0;  // twice the outline of a square, 4 sqrt(n) of n cells
 constexpr double kOutline = 0.6, kOutlineOfFields = 0.29;
@@ -42,10 +43,11 @@ class SumOfChanges {
 
 FieldBias field_bias(const PowerEvidence& evidence) {
   SumOfChanges above, below;
-  double finer = 0.0, gone = 0.0;  // W
+  double finer = 0.0, gone = 0.0, surface = 0.0;  // W
   for (const CoherentKind& kind : evidence.kinds) {
     const double size = std::abs(kind.field[kAsLaunched]);
     const double between = squared(kOfBetween) * power_between_rays(kind, evidence.num_batches);
+    if (kind.has_cells) surface += squared(kOfSurface * size);
     if (size == 0.0) {
       gone += between;
       continue;
@@ -59,7 +61,8 @@ FieldBias field_bias(const PowerEvidence& evidence) {
     gone += squared(squared(std::min(halving / kGone, 1.0))) * between;
   }
   const double of_finer = std::sqrt(finer);
-  return {std::hypot(above.size() + of_finer, std::sqrt(gone)), below.size() + of_finer};
+  return {std::hypot(above.size() + of_finer, std::sqrt(gone + surface)),
+          std::hypot(below.size() + of_finer, std::sqrt(surface))};
 }
 
 std::complex<double> field_of(const PowerEvidence& evidence) {

@@ -23,6 +23,7 @@ struct CoherentKind {
   std::complex<double> field[kNumCellViews];  // sqrt(W)
   double power[kNumCellViews] = {};           // W, sum of |a|^2
   double edge_squares = 0.0;                  // W^2, sum of |a|^4 of kEdges
+  bool has_cells = false;                     // else its paths are images, which are exact
 };
 
 // Holds what the record tells of the power of a set of paths, with all rays.
@@ -57,7 +58,8 @@ double power_between_rays(const CoherentKind& kind, int num_batches);
 // larger by kOfBetween times what power_between_rays allows, in full where d reaches kGone. Cells a little finer tell where
 // the filter takes edges for a surface without end; a change below kAliases there is the lattice showing through. The
 // changes of all kinds add up as fields, but to no less than their root sum of squares, and the powers between rays add up:
-// kinds whose echoes cancel are known as well as they are one by one.
+// kinds whose echoes cancel are known as well as they are one by one. No field of a kind is known better than to kOfSurface,
+// however fine the cells: that is what the lattice and interpolated normals leave.
 // Without a footprint filter nothing tells how coarse the rays are for the phases of a surface: its waves may cancel, or add
 // up as coherent_at_most has them.
 // Chance: with batches it is Student's t of these, and no less than half a hit in each of them, which errs by itself. For

@@ -234,6 +234,20 @@ def test_weather_travels_with_its_scene(tmp_path):
         scene.weather = {"rain": 3}
 
 
+def test_sequences_have_rain_of_each_frame_and_folders_of_one_weather(tmp_path):
+    radar = build_radar(num_chirps=4, bandwidth=100e6)
+    scene = ball_scene(WET)
+    frames = ep.Sequence(scene, radar, frames=2, interval=0.05, num_rays=200)
+    frames.save(tmp_path, keep="all")
+    stored = ep.load_sequence(tmp_path)
+    for one, again in zip(frames, stored):
+        assert np.array_equal(one.rain_cube, again.rain_cube)
+    assert not np.array_equal(stored[0].rain_cube, stored[1].rain_cube)
+    scene.weather = WET.replace(rain_mm_per_hour=5.0)
+    with pytest.raises((ValueError, ep.FileError), match="weather"):
+        ep.Sequence(scene, radar, frames=2, interval=0.05, num_rays=200).save(tmp_path, keep="all")
+
+
 def test_scene_files_have_weather(tmp_path):
     (tmp_path / "wet.toml").write_text(WAVEFORM + ANTENNAS + "\n[weather]\nrain_mm_per_hour = 12\nwind = [1, 2, 0]\n[trace]\n"
                                        'effects = {"echoes of rain" = false}\n', encoding="utf-8")

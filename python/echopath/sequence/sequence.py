@@ -23,6 +23,7 @@ from ..settings import (
     TraceSettings,
 )
 from ..tracing import keep_geometry
+from ..weather.weather import weather_of
 from .ahead import one_ahead
 from .contents import Contents
 from .keep import Keep
@@ -163,12 +164,12 @@ class Sequence(Row[Frame]):
 
     def _settings(self) -> dict[str, Any]:
         """{keyword: value} of what makes the frames, and which of them are taken."""
-        run, labels = self._run, self._run.label_settings
+        run, labels, weather = self._run, self._run.label_settings, weather_of(self._run.scene)
         return {"frames": len(self), "interval": self._interval, "first_number": self._numbers.start,
                 "number_step": self._numbers.step} | run.trace.keywords() | run.signal.keywords() | {
                     "parts": run.selections, "angles": run.angle_settings, "guard": run.guard,
                     "labels": None if labels is None else labels.keywords(), "detections": run.detect_keywords,
-                    "truth": run.truth_keywords}
+                    "truth": run.truth_keywords, "weather": None if weather is None else weather.keywords()}
 
     def __repr__(self) -> str:
         return f"Sequence({len(self)} frames {self._span()}, every {self.interval:.6g} s)"

@@ -91,9 +91,8 @@ def test_faces_of_two_meshes_have_the_same_paths(of_a_corner):
     sums = [fields(paths)[over_planes(paths)].sum() for paths in (of_a_corner, apart)]
     assert sums[1] == pytest.approx(sums[0], rel=SAME)
     assert over_planes(apart).sum() == over_planes(of_a_corner).sum()
-    ways = ("T 'corner/left' E'corner/right' R", "T 'corner/right' E'corner/left' R")
-    left, right = (apart.select(way).num_paths for way in ways)
-    assert left > 0 and right > 0
+    for first, last in (("left", "right"), ("right", "left")):
+        assert apart.select(f"T 'corner/{first}' E'corner/{last}' R").num_paths > 0
 
 
 def test_they_are_the_same_for_any_number_of_threads(of_a_corner):

@@ -12,9 +12,9 @@ constexpr double kLeastAcross = 1e-3;  // sine of the angle between a wave and t
 constexpr double kLargeArgument = 2.0;
 constexpr double kLeastOffBoundary = 1e-6;  // rad: nearer to a boundary counts as that far off it
 
-// Returns what remains of a coefficient in the transition, where `within` half Fresnel zones lie between the boundary and the
-// direction. Uses the auxiliary functions f and g of Fresnel's integrals, times pi x: Abramowitz and Stegun (1964), 7.3.27 and
-// 7.3.28 where x is large, else 7.3.32 and 7.3.33, to 1e-2.
+// Returns what remains of a coefficient in the transition, where `within` half Fresnel zones lie between the boundary and
+// the direction. Uses the auxiliary functions f and g of Fresnel's integrals, times pi x: Abramowitz and Stegun (1964),
+// 7.3.27 and 7.3.28 where x is large, else 7.3.32 and 7.3.33, to 1e-2.
 std::complex<double> transition(double within) {
   const double x = std::sqrt(2.0) * within;
   if (x > kLargeArgument) {

@@ -12,8 +12,8 @@ namespace echopath {
 
 // Returns the matrix M of the edge, with which it counts as fringe_matrix does. `phase` is k s s'/(s + s') in rad, with the
 // lengths s' before the edge and s behind it over which the transitions develop. The field has no sign at a boundary of
-// reflection, where what the faces reflect ends: within half a Fresnel zone of it that part fades to zero. M is zero inside of
-// the wedge and within 1e-3 rad of the edge's own direction.
+// reflection, where what the faces reflect ends: within half a Fresnel zone of it that part fades to zero. M is zero inside
+// of the wedge and within 1e-3 rad of the edge's own direction.
 Eigen::Matrix3cd diffraction_matrix(const Wedge& wedge, const Vec3& in, const Vec3& out, double phase);
 
 }  // namespace echopath

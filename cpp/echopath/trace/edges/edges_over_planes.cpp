@@ -197,8 +197,10 @@ class LitEdgeTracer {
     block_.statistics.num_queries += std::exchange(search_.num_queries, 0);
     std::vector<Way> ways;
     for (const Leg& leg : legs_) {
-      if (leg.length >= kNearAntenna && is_outside(edge_.wedge, leg.to_antenna))
-        ways.push_back({{}, leg.to_antenna, leg.gain});
+      if (leg.length < kNearAntenna || !is_outside(edge_.wedge, leg.to_antenna)) continue;
+      Way& way = ways.emplace_back();
+      way.to_antenna = leg.to_antenna;
+      way.gain = leg.gain;
     }
     return ways;
   }

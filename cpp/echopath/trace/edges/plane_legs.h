@@ -33,8 +33,8 @@ class PlaneLegFinder {
   // Returns the share of its Fresnel zone that a surface covers as a mirror, for a wave that arrives along `arrival`.
   double cover_of(const RayHit& point, const Vec3& arrival, double before, double behind, int64_t& num_queries) const;
 
-  // Returns the field that a wave from the point has behind the first bounce, over that of an endless plane: what the rims of the
-  // surface leave of it, where the inside of a corner counts as a rim too.
+  // Returns the field that a wave from the point has behind the first bounce, over that of an endless plane: what the rims
+  // of the surface leave of it, where the inside of a corner counts as a rim too.
   std::complex<double> field_beside_rims(const Vec3& point, const Vec3& antenna, const PlaneLeg& leg,
                                          int64_t& num_queries) const;
 

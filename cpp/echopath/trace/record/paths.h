@@ -56,8 +56,7 @@ inline constexpr uint32_t kSecondHalf = 2;
 // go on from edge to edge over flat faces (em/edge_chain.h): then its next hits, up to kMostEdges in all, lie on edges too,
 // and the pieces are those of the first edge.
 inline constexpr uint32_t kEdgePath = 4;
-// Marks, beside that, a path whose edge sends on only what it makes of the wave that goes by (em/edge_shadow.h), toward a
-// mirror.
+// Marks, beside that, a path whose edge sends the field of the uniform theory of diffraction to a mirror (em/edge_shadow.h).
 inline constexpr uint32_t kPastEdge = 32;
 inline constexpr int kMostPieces = 65535, kMostEdges = 4;
 constexpr uint32_t edge_flags(int hit, int num_pieces, int num_edges = 1) {

@@ -22,8 +22,8 @@ struct Material {
   std::optional<std::complex<double>> permittivity;  // relative, eps' - j eps'', imaginary part <= 0
   double conductivity = 0.0;                         // S/m, adds -j sigma/(w eps0)
   std::optional<double> reflectivity;  // power reflectivity in [0, 1] at every angle (reflects like a conductor)
-  // Of a sheet in air, through which waves pass (em/layer_stack.h), from the side of the surface's normals on. The surface is
-  // the face that the wave meets first.
+  // Of a sheet in air, through which waves pass (em/layer_stack.h), from the side of the surface's normals on. The surface
+  // is the face that the wave meets first.
   std::vector<Layer> layers;
   double roughness_height = 0.0;       // rms height in m (Ament)
   std::optional<double> scattering;    // S in [0, 1], S^2 is the diffuse share of power (Degli-Esposti 2007)

@@ -7,7 +7,7 @@
 //   repeat     := atom [ '*' | '+' | '?' | '{' m '}' | '{' m ',' '}' | '{' m ',' n '}' ]
 //   atom       := hit | '(' choice ')'
 //   hit        := '.' | event | [ event ] meshes
-//   event      := 'S' | 'D' | 'E' | 'P'          specular or diffuse: the bit in Paths::diffuse; on an edge: edge_hit; a pass
+//   event      := 'S' | 'D' | 'E' | 'P'    specular or diffuse: the bit in Paths::diffuse; on an edge: edge_hit; a pass
 //   meshes     := glob | '[' [ '^' ] glob { glob } ']'
 //   glob       := "'" characters other than "'" "'"
 //

@@ -10,9 +10,9 @@ namespace echopath {
 class PathEvaluator {
  public:
   using Wanted = SingleBounceEvaluation::Wanted;
-  // Sets the record whose blocks are evaluated from now on, the `radar` to which it is played back, and what its sheets do. All
-  // must outlive this use. With SpecularPoints::kFermat, lengths, cosines, gains and spreading are those over the moved points, for each
-  // antenna at which a path begins; reflection coefficients and launch cells stay those of the trace.
+  // Sets the record whose blocks are evaluated from now on, the `radar` to which it is played back, and what its sheets do.
+  // All must outlive this use. With SpecularPoints::kFermat, lengths, cosines, gains and spreading are those over the moved
+  // points, for each antenna at which a path begins; reflection coefficients and launch cells stay those of the trace.
   void begin(const PathPreparer& preparer, const Radar& radar, const SheetPassages& sheets, SpecularPoints specular);
   // Plans the paths that are evaluated next; the indices must outlive that evaluation.
   void plan(std::span<const int64_t> indices) {

@@ -3,8 +3,8 @@
 // there were no sheets.
 //
 // A leg crosses the plane of the triangle in which it was recorded wherever that is at the time, or the curved surface that
-// this stands for. The amplitude takes the transmission of the sheet (em/sheet_model.h), and the length its delay: the phase of
-// the transmission at the start frequency belongs to both together.
+// this stands for. The amplitude takes the transmission of the sheet (em/sheet_model.h), and the length its delay: the phase
+// of the transmission at the start frequency belongs to both together.
 #include <optional>
 #include <vector>
 

@@ -10,8 +10,8 @@ namespace echopath {
 // Joins the parts: PacketFront takes a packet of rays to its first hits, Scatterer and Arrivals take each ray to its next
 // hits, and Connector joins each hit to the receiver.
 //
-// A ray that meets sheets (Material::layers) is split: one ray is reflected at each sheet, and one goes on through all of them
-// to what lets nothing pass. Beyond kMostSplits sheets behind its first hit, a ray only goes on. What sheets do to what
+// A ray that meets sheets (Material::layers) is split: one ray is reflected at each sheet, and one goes on through all of
+// them to what lets nothing pass. Beyond kMostSplits sheets behind its first hit, a ray only goes on. What sheets do to what
 // passes is added to the record at its end (sheets/passes.h).
 template <class Weight>
 class RayWalk {

@@ -23,10 +23,9 @@ DOCS, EXAMPLES = ROOT / "python" / "docs", ROOT / "python" / "examples"
 PAGES = sorted((DOCS / "how_do_i").glob("*.md"))
 SCRIPTS = sorted(EXAMPLES.glob("*/*.py"))
 NOTEBOOKS = sorted((EXAMPLES / "notebooks").glob("*.ipynb"))
-TASKS = ("own_mesh", "foreign_scene", "car_with_speed", "trajectories", "antenna_pattern", "angle_map", "frames_in_time",
-         "transmit_codes", "receiver_faults", "sensor_file", "live_scene", "spectrogram", "arms_only", "rcs_over_angle", "snr",
-         "label_masks", "detections", "truth_and_tracks", "ego_motion", "several_processes",
-         "dataset")
+TASKS = ("own_mesh", "through_a_pane", "foreign_scene", "car_with_speed", "trajectories", "antenna_pattern", "angle_map",
+         "frames_in_time", "transmit_codes", "receiver_faults", "sensor_file", "live_scene", "spectrogram", "arms_only",
+         "rcs_over_angle", "snr", "label_masks", "detections", "truth_and_tracks", "ego_motion", "several_processes", "dataset")
 LARGEST_FILE = 200_000  # bytes
 
 

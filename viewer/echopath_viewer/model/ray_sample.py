@@ -16,8 +16,13 @@ class RaySampler:
     def __init__(self, groups: TouchGroups, amplitude, cell, num_meshes: int):
         """amplitude: complex [P] in sqrt(W); cell: [P] any number of the cell where a path is seen."""
         self._groups, self._touches = groups, groups.touching(num_meshes)
-        self._power = (np.abs(amplitude) ** 2)[groups.order]
-        self.coherent_power = self._peaks(amplitude[groups.order], cell[groups.order])
+        power = np.abs(amplitude) ** 2
+        self._order = groups.order.copy()  # group by group, each strongest first: filters need no sorting then
+        for rows in groups.slices():
+            within = self._order[rows]
+            self._order[rows] = within[np.argsort(-power[within], kind="stable")]
+        self._power = power[self._order]
+        self.coherent_power = self._peaks(amplitude[self._order], cell[self._order])
 
     def _peaks(self, amplitude, cell):
         """W, the largest power of a cell of each group, its paths added with their phases: [G]."""
@@ -35,18 +40,14 @@ class RaySampler:
         """
         if count <= 0:
             return np.zeros(0, np.int64)
-        rows = [self._strongest_rows(mask, group, rows) for group, rows in enumerate(self._groups.slices())]
+        is_there = mask[self._order] & (self._power > 0.0)
+        rows = [rows.start + np.flatnonzero(is_there[rows]) for rows in self._groups.slices()]
         sizes = np.array([len(found) for found in rows], np.int64)
         quotas = self._quotas(sizes, count, rows)
         rank = np.concatenate([[], *(np.arange(quota) for quota in quotas)])
         chosen = np.concatenate([np.zeros(0, np.int64), *(found[:quota] for found, quota in zip(rows, quotas))])
         chosen = chosen[np.lexsort((-self._power[chosen], rank))]
-        return self._with_parts(self._groups.order[chosen], mask, count, parts)
-
-    def _strongest_rows(self, mask, group: int, rows: slice):
-        """Rows of `order` of the visible paths of a group, strongest first."""
-        found = rows.start + np.flatnonzero(mask[self._groups.order[rows]] & (self._power[rows] > 0.0))
-        return found[np.argsort(-self._power[found], kind="stable")]
+        return self._with_parts(self._order[chosen], mask, count, parts)
 
     def _quotas(self, sizes, count: int, rows):
         """How many paths of each group: by decibels over the weakest that counts, and a few for every mesh."""
@@ -73,7 +74,7 @@ class RaySampler:
         firsts = []
         for part in parts:
             if len(chosen) and not part[chosen].any():
-                own = self._groups.order[np.flatnonzero((part & mask)[self._groups.order] & (self._power > 0.0))]
+                own = self._order[np.flatnonzero((part & mask)[self._order] & (self._power > 0.0))]
                 firsts += own[:1].tolist()
         return np.concatenate([np.array(firsts, np.int64), chosen])[:count]
 

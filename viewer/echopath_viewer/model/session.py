@@ -197,15 +197,20 @@ class Session:
         return self._sample
 
     @property
-    def sampler(self) -> RaySampler:
-        """Made when it is first asked for."""
+    def groups(self) -> TouchGroups:
+        """The paths by the meshes that they touch; made when they are first asked for."""
         if self._groups is None:
             columns = self.columns
             self._groups = TouchGroups(columns.offsets, columns.num_bounces, columns.mesh_id, len(self.mesh_names))
+        return self._groups
+
+    @property
+    def sampler(self) -> RaySampler:
+        """Made when it is first asked for."""
         if self._sampler is None:
             cells = self.columns.cells
             cell = cells.velocity_index.astype(np.int64) * len(self.parts.whole.spectrum.range) + cells.range_index
-            self._sampler = RaySampler(self._groups, self.columns.amplitude, cell, len(self.mesh_names))
+            self._sampler = RaySampler(self.groups, self.columns.amplitude, cell, len(self.mesh_names))
         return self._sampler
 
     def set_sampling(self, sampling: str) -> None:
@@ -233,7 +238,9 @@ class Session:
 
     def mesh_counts(self):
         """How many visible paths hit each mesh: [M]."""
-        return self.columns.count_by_mesh(self.visible, len(self.mesh_names))
+        groups = self.groups
+        counts = np.bincount(groups.group_of_path[self.visible], minlength=len(groups))
+        return counts @ groups.touching(len(self.mesh_names)).astype(np.int64)
 
     def set_max_rays(self, count: int) -> None:
         self.max_rays, self._sample, self._lit_rays = int(count), None, None

@@ -82,6 +82,12 @@ class ContributionsPanel(QtWidgets.QWidget):
     def resizeEvent(self, event):
         super().resizeEvent(event)
         self.table.setColumnHidden(len(COLUMNS) - 1, self.width() < WIDE)
+        self._fit()
+
+    def _fit(self) -> None:
+        """All lines of the text: layouts give a label that wraps too few."""
+        for label in (self.title, self.without):
+            label.setFixedHeight(max(label.heightForWidth(max(self.width() - 8, 1)), 0))
 
     def showEvent(self, event):
         super().showEvent(event)
@@ -100,6 +106,7 @@ class ContributionsPanel(QtWidgets.QWidget):
         self._cell = None
         self.title.setText(text)
         self.without.setText("")
+        self._fit()
         self._fill([])
         self.phasors.show_values([], 1.0)
 
@@ -110,6 +117,7 @@ class ContributionsPanel(QtWidgets.QWidget):
         self.title.setText(for_pictures(f"<b>{place}: {cell.level_dbm:.1f} dBm</b>, the sum of"))
         told = [f"without {name} <b>{change:+.1f} dB</b>" for name, change in cell.without if abs(change) >= LEAST_CHANGE_DB]
         self.without.setText(for_pictures(" &nbsp;&#183;&nbsp; ".join(told)))
+        self._fit()
         self._cell = self.session.cell
         self._fill(self._chosen(cell))
         self.phasors.show_values([one.value for one in sorted(cell.contributions, key=lambda one: -abs(one.value))], cell.value)

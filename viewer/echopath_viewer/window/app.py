@@ -29,7 +29,7 @@ def view(*what, parts=None, block=True, state=None, picture=None, **settings):
         load_state(state)
     require_screen()
     application = QtWidgets.QApplication.instance() or QtWidgets.QApplication(["echopath"])
-    window = _opened(view_input, state)
+    window = _opened(view_input, state, picture is None)
     if picture is not None:
         return _save_picture(window, picture)
     if not block:
@@ -39,8 +39,9 @@ def view(*what, parts=None, block=True, state=None, picture=None, **settings):
     return None
 
 
-def _opened(view_input, state) -> MainWindow:
-    window = MainWindow()
+def _opened(view_input, state, remembers: bool) -> MainWindow:
+    """Pictures are the same on every machine: their window remembers nothing."""
+    window = MainWindow(remembers)
     if view_input is not None:
         window.show_input(view_input)
     window.show()

@@ -23,9 +23,10 @@ class ContributionsPanel(QtWidgets.QWidget):
 
     def __init__(self, parent=None):
         super().__init__(parent)
-        self.session, self._rows, self._cell = None, [], None
-        self.title, self.without = QtWidgets.QLabel(HINT, wordWrap=True), QtWidgets.QLabel(wordWrap=True)
+        self.session, self._rows, self._cell, self._told = None, [], None, []
+        self.title, self.without = QtWidgets.QLabel(HINT), QtWidgets.QLabel()
         for label in (self.title, self.without):
+            label.setSizePolicy(QtWidgets.QSizePolicy.Policy.Ignored, QtWidgets.QSizePolicy.Policy.Fixed)
             label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.bar = QtWidgets.QProgressBar(textVisible=False, maximum=1000, visible=False)
         self.bar.setFixedHeight(4)
@@ -82,12 +83,19 @@ class ContributionsPanel(QtWidgets.QWidget):
     def resizeEvent(self, event):
         super().resizeEvent(event)
         self.table.setColumnHidden(len(COLUMNS) - 1, self.width() < WIDE)
-        self._fit()
+        self._break_lines()
 
-    def _fit(self) -> None:
-        """All lines of the text: layouts give a label that wraps too few."""
-        for label in (self.title, self.without):
-            label.setFixedHeight(max(label.heightForWidth(max(self.width() - 8, 1)), 0))
+    def _break_lines(self) -> None:
+        """What is told of the level, in lines as wide as the panel: a layout gives a label that wraps by itself too few."""
+        lines, room = [""], self.width() - 16
+        for item in self._told:
+            joined = f"{lines[-1]} \u00b7 {item}" if lines[-1] else item
+            if lines[-1] and self.fontMetrics().horizontalAdvance(joined) > room:
+                lines.append(item)
+            else:
+                lines[-1] = joined
+        self.without.setText("\n".join(lines))
+        self.without.setVisible(bool(self._told))
 
     def showEvent(self, event):
         super().showEvent(event)
@@ -105,8 +113,8 @@ class ContributionsPanel(QtWidgets.QWidget):
     def _show_nothing(self, text: str) -> None:
         self._cell = None
         self.title.setText(text)
-        self.without.setText("")
-        self._fit()
+        self._told = []
+        self._break_lines()
         self._fill([])
         self.phasors.show_values([], 1.0)
 
@@ -115,9 +123,9 @@ class ContributionsPanel(QtWidgets.QWidget):
         spectrum, (distance, velocity) = self.session.parts.whole.spectrum, self.session.cell
         place = f"{spectrum.range[distance]:.2f} m, {spectrum.velocity[velocity]:+.2f} m/s"
         self.title.setText(for_pictures(f"<b>{place}: {cell.level_dbm:.1f} dBm</b>, the sum of"))
-        told = [f"without {name} <b>{change:+.1f} dB</b>" for name, change in cell.without if abs(change) >= LEAST_CHANGE_DB]
-        self.without.setText(for_pictures(" &nbsp;&#183;&nbsp; ".join(told)))
-        self._fit()
+        self._told = [for_pictures(f"without {name} {change:+.1f} dB") for name, change in cell.without
+                      if abs(change) >= LEAST_CHANGE_DB]
+        self._break_lines()
         self._cell = self.session.cell
         self._fill(self._chosen(cell))
         self.phasors.show_values([one.value for one in sorted(cell.contributions, key=lambda one: -abs(one.value))], cell.value)

@@ -42,9 +42,10 @@ SIGNAL_PAUSE_MS = 250  # without changes, before signals of what is chosen are m
 class MainWindow(QtWidgets.QMainWindow):
     """Scene tree and filters, 3-D view with its time bar, maps and table: all views of one session."""
 
-    def __init__(self):
+    def __init__(self, remembers: bool = True):
+        """remembers: whether its sizes are those of the last time, and those of the next."""
         super().__init__()
-        self.session = None
+        self.session, self._remembers = None, remembers
         self.setWindowTitle(TITLE)
         self.resize(*SIZE)
         self.setAcceptDrops(True)
@@ -60,7 +61,8 @@ class MainWindow(QtWidgets.QMainWindow):
         self._add_actions()
         self._connect()
         self._set_content_shown(False)
-        restore_layout(self, self._splitters)
+        if remembers:
+            restore_layout(self, self._splitters)
 
     # --- frames ---
 
@@ -454,7 +456,8 @@ class MainWindow(QtWidgets.QMainWindow):
         self.open_file(event.mimeData().urls()[0].toLocalFile())
 
     def closeEvent(self, event):
-        remember_layout(self, self._splitters)
+        if self._remembers:
+            remember_layout(self, self._splitters)
         self.time_bar.stop()
         self.contributions.work.stop()
         self._listing.stop()

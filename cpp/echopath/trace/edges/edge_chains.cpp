@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kSamePlane = 1e-6;   // of the extent of all edges, and rad
 constexpr double kLeastSlope = 1e-2;  // sine of the angle at which a wave meets an edge, or leaves it
-constexpr double kRimAngle = 6.2831;       // rad: the exterior angle of a rim is larger
+constexpr double kRimAngle = 6.2831;  // rad: the exterior angle of a rim is larger
 
 bool is_rim(const PosedEdge& edge) { return edge.wedge.exterior_angle > kRimAngle; }
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kStep = 1e-4;          // of the frequency, to either side
 constexpr double kLeastOffset = 0.1;    // wavelengths
-constexpr double kLeastAcross = 1e-12;  // of a polarisation's square: what lies along the direction has no mode
+constexpr double kLeastField = 1e-12;  // of a polarisation's square: what lies along the direction has no mode
 
 }  // namespace
 
@@ -31,7 +31,7 @@ SheetPassage SheetModel::passage(double cos_incidence) const {
 double te_share(const Vec3& polarization, const Vec3& direction, const Vec3& normal) {
   const Vec3 across = direction.cross(normal), field = polarization - direction.dot(polarization) * direction;
   const double sine = across.squaredNorm(), size = field.squaredNorm();
-  if (sine < kMinSine * kMinSine || size < kLeastAcross) return 1.0;
+  if (sine < kMinSine * kMinSine || size < kLeastField) return 1.0;
   const double along = across.dot(field);
   return std::min(1.0, along * along / (sine * size));
 }

@@ -19,8 +19,8 @@ class JoinRule {
 
   // Returns for each path whether it makes one echo with the path before it (the first never does). Two paths do when they
   // have the same hits, the same images in mirrors, the same ray and the same end at which they began, and no sheets on
-  // their ways. Paths with a lobe (lobe_factors.h) stay apart, because their amplitudes are multiplied by it. No paths are joined
-  // where specular hits move with the point of reflection, because the hits do not tell where that lies.
+  // their ways. Paths with a lobe (lobe_factors.h) stay apart, because their amplitudes are multiplied by it. No paths are
+  // joined where specular hits move with the point of reflection, because the hits do not tell where that lies.
   std::vector<uint8_t> operator()(std::span<const int64_t> paths) const;
 
  private:

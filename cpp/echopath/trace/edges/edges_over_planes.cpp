@@ -134,8 +134,7 @@ class LitEdgeTracer {
   }
 
   void add_piece(double at) {
-    const bool is_lit = is_within(edge_.transmit, at) || is_within(edge_.receive, at);
-    if (!is_lit) return;
+    if (!is_within(edge_.transmit, at) && !is_within(edge_.receive, at)) return;
     const Vec3 &transmitter = query_.settings.transmitter, &receiver = query_.settings.receiver;
     const std::vector<Way> in_direct = direct(transmitter), out_direct = direct(receiver);
     const std::vector<Way> in = over_planes(edge_.transmit, {transmitter, receiver, at, false}),
@@ -207,8 +206,7 @@ class LitEdgeTracer {
 
   // Returns the shares of the orders, which the pieces of one edge have in common.
   OrderShares kept_orders(const PlaneLeg& leg, const LitPlane& over, const Vec3& other) {
-    const auto known = orders_.find(&over);
-    if (known != orders_.end()) return known->second;
+    if (const auto known = orders_.find(&over); known != orders_.end()) return known->second;
     OrderShares orders = orders_of(leg, over, other);
     if (meets_next_plane(over)) orders.opposite = 0.0;
     return orders_[&over] = orders;
@@ -296,8 +294,7 @@ std::vector<PathBlock> find_edges_over_planes(const EdgeQuery& query, const LitP
   std::vector<PathBlock> blocks(edges.size());
   Job own(job);
   parallel_for(std::ssize(blocks), [&](int64_t i) {
-    const auto at = static_cast<size_t>(i);
-    LitEdgeTracer(query, lit, edges[at], blocks[at]).trace();
+    LitEdgeTracer(query, lit, edges[static_cast<size_t>(i)], blocks[static_cast<size_t>(i)]).trace();
   }, &own);
   return blocks;
 }

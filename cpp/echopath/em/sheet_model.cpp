@@ -9,8 +9,8 @@
 namespace echopath {
 namespace {
 
-constexpr double kStep = 1e-4;          // of the frequency, to either side
-constexpr double kLeastOffset = 0.1;    // wavelengths
+constexpr double kStep = 1e-4;         // of the frequency, to either side
+constexpr double kLeastOffset = 0.1;   // wavelengths
 constexpr double kLeastField = 1e-12;  // of a polarisation's square: what lies along the direction has no mode
 
 }  // namespace

@@ -20,7 +20,7 @@ struct WayThroughPane {
   bool is_taken_by(const char* text) const {
     const Automaton automaton(parse_path_expression(text), kNames);
     const uint64_t diffuse = 1;  // the ball
-    if (automaton.sees_passes()) return automaton.takes_with_passes(hits.data(), 2, diffuse, -1, passes);
+    if (automaton.sees_passes()) return automaton.takes_with_passes(hits.data(), 2, diffuse, -1, -1, passes);
     return automaton.takes(hits.data(), 2, diffuse);
   }
 };

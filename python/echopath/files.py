@@ -44,22 +44,20 @@ def _written(path: Path):
 def require_writable(folder, argument: str) -> None:
     """Raises ep.FileError naming `argument` unless files can be written into `folder`: before long work whose end they are.
 
-    folder: need not exist yet; what is made on trial is removed again.
+    folder: need not exist yet. It is tried in a folder of its own within the nearest one that exists, which is removed again,
+    so that processes that begin at once do not take theirs away from each other.
     """
     folder = Path(folder).absolute()
-    missing = [one for one in (folder, *folder.parents) if not os.path.lexists(one)]
-    made = []
+    there = next(one for one in (folder, *folder.parents) if os.path.lexists(one))
     try:
-        for one in reversed(missing):
-            one.mkdir()
-            made.append(one)
-        tempfile.TemporaryFile(dir=folder).close()
+        if there == folder:
+            tempfile.TemporaryFile(dir=folder).close()
+            return
+        with tempfile.TemporaryDirectory(dir=there) as trial:
+            (Path(trial) / folder.relative_to(there)).mkdir(parents=True)
     except (OSError, ValueError) as error:  # ValueError: NUL in the name
         reason = getattr(error, "strerror", None) or error
         raise _core.FileError(f"{argument}: must be a folder that can be written, got {str(folder)!r} ({reason})") from None
-    finally:
-        for one in reversed(made):
-            one.rmdir()
 
 
 def write_texts(folder, texts: dict) -> None:

@@ -183,6 +183,5 @@ def _verdicts(found: list[Pattern]) -> list[str]:
         beside = "measurement" if one.target == "plate" else "method of moments"
         error = one.error(one.with_edges, one.measured if one.target == "plate" else one.moments)
         lines.append(f"  {one.target} {one.frequency_ghz:g} GHz {one.polarization} beside {beside}: at most {limit:.1f} dB, "
-                     f"{error:.2f}  "
-                     f"{'holds' if error <= limit else 'MISSED'}")
+                     f"{error:.2f}  {'holds' if error <= limit else 'MISSED'}")
     return lines

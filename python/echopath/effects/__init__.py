@@ -13,8 +13,7 @@ from .rules import RULES, Case, Effect, Settings
 # What no scene and no setting can ask for.
 OUT_OF_SCOPE = [
     Effect("creeping waves, diffraction into shadows", False, "out of scope"),
-    Effect("phase noise, quantisation", False, "not modelled"),
-    Effect("interference", False, "not modelled"),
+    Effect("interference", False, "not modelled in a frame: ep.interference makes the signal of another radar"),
 ]
 
 

@@ -232,12 +232,23 @@ def test_files_and_pickles_keep_them(of_a_box, tmp_path):
         assert np.array_equal(on_edges(again).amplitude, on_edges(of_a_box).amplitude)
 
 
-def test_a_record_whose_edge_is_none_is_refused(of_a_box):
+def arrays_of(paths) -> tuple[np.ndarray, dict]:
+    """(hits, {name: column}) of paths, which a test may change."""
     names = ("offsets", "num_bounces", "diffuse", "weight", "stratum", "batch", "flags", "curved_cell", "jones")
-    columns = {name: np.array(getattr(of_a_box, name)) for name in names}
-    columns = {name: value for name, value in columns.items() if len(value)}
+    columns = {name: np.array(getattr(paths, name)) for name in names}
+    return np.array(paths.hits), {name: value for name, value in columns.items() if len(value)}
+
+
+def test_a_record_whose_edge_has_no_mirror_behind_it_is_refused(of_a_box):
+    hits, columns = arrays_of(of_a_box)
+    columns["flags"][np.flatnonzero(columns["flags"] & 4)[0]] |= 32
+    with pytest.raises(ValueError, match="flags: must name an edge before a mirror"):
+        ep.Paths.from_arrays(hits=hits, **columns, scene=of_a_box.scene, radar=of_a_box.radar, frame=of_a_box.frame)
+
+
+def test_a_record_whose_edge_is_none_is_refused(of_a_box):
+    hits, columns = arrays_of(of_a_box)
     edge = int(np.flatnonzero(columns["flags"] & 4)[0])
-    hits = np.array(of_a_box.hits)
     hits["u"][columns["offsets"][edge]] = hits["v"][columns["offsets"][edge]] = 0.25
     with pytest.raises(ValueError, match="flags: must name hits on sharp edges"):
         ep.Paths.from_arrays(hits=hits, **columns, scene=of_a_box.scene, radar=of_a_box.radar, frame=of_a_box.frame)

@@ -106,6 +106,19 @@ def test_settings_are_kept_through_changes(keywords):
     assert difference(live.update(), fresh_view(live, **keywords)) < ROUNDING
 
 
+def test_edges_of_faces_that_come_apart_are_those_of_a_fresh_scene():
+    """Two faces of two meshes have one edge where they touch; behind it are the neighbours that did not change."""
+    scene, radar, _ = crowded_street()
+    metal = ep.Material.metal()
+    for name, yaw, place in (("front", 0.0, (9.0, 1.0, 1.0)), ("side", np.pi / 2, (9.2, 1.2, 1.0))):
+        scene.add(ep.actors.plate(0.4, 0.4), name=name, material=metal, position=place, yaw=yaw)
+    live = ep.Live(scene, radar.replace(waveform=radar.waveform.replace(num_chirps=8)), num_rays=RAYS, edges=True)
+    live.update()
+    for step in ((0.05, 0.02, 0.0), (-0.05, -0.02, 0.0)):  # apart, and together again
+        live.scene["side"].position += step
+        assert difference(live.update(), fresh_view(live, edges=True)) < ROUNDING
+
+
 def test_a_scene_in_motion_is_followed(live):
     live.scene["car_smooth_15"].motion = ep.LinearMotion(velocity=(12.0, 0.0, 0.0))
     view = live.update()

@@ -312,6 +312,7 @@ class ValidityCheck {
     const int count = paths.num_bounces[path];
     const bool is_reversed = (paths.flags[path] & kReversedPath) != 0;
     int last = edge_hit(paths.flags[path]);
+    if (last >= 0 && !is_reversed) last += num_edge_hits(paths.flags[path]) - 1;
     for (int k = 0; k < count && last < 0; ++k) {
       const int hit = is_reversed ? k : count - 1 - k;
       const bool is_image =

@@ -264,8 +264,9 @@ class LitEdgeTracer {
     const int at = static_cast<int>(hits.size());
     hits.push_back(hit_);
     hits.insert(hits.end(), out.hits.begin(), out.hits.end());
+    const Way& first = (flag & kReversedPath) != 0 ? out : in;  // from which the wave comes
     const std::complex<double> over_mirrors = query_.settings.is_polarized ? 1.0 : in.gain * out.gain;
-    const std::complex<double> weight = share * in.share * out.share * kept_share(in.to_antenna) * over_mirrors;
+    const std::complex<double> weight = share * in.share * out.share * kept_share(first.to_antenna) * over_mirrors;
     block_.add(hits.data(), static_cast<int>(hits.size()), 0, std::complex<float>(weight), kNoStratum);
     block_.set_edge(at, num_pieces_);
     block_.rows.flags[block_.rows.size() - 1] |= flag;

@@ -7,6 +7,7 @@
 
 #include "echopath/base/bit_sum.h"
 #include "echopath/base/parallel.h"
+#include "echopath/scene/scene_edges.h"
 
 namespace echopath {
 namespace {
@@ -39,6 +40,7 @@ class PathSums {
 
  private:
   uint64_t sum_of(size_t path) const {
+    if (has_changed_edges_ && edge_hit(paths_.flags[path]) >= 0) return kUnlike;  // the wedge may be one with a changed mesh
     const uint16_t stratum = paths_.stratum[path];
     if (stratum != kNoStratum && !same_strata_[stratum]) return kUnlike;
     BitSum bits;
@@ -61,9 +63,17 @@ class PathSums {
     return std::max(bits.value(), kUnlike + 1);
   }
 
+  bool finds_changed_edges() const {
+    for (uint32_t id = 0; paths_.frame.edges && id < paths_.scene->meshes().size(); ++id) {
+      if (changed_[id] && has_echoing_edges(*paths_.scene, id)) return true;
+    }
+    return false;
+  }
+
   const Paths& paths_;
   const ChangedMeshes& changed_;
   const std::vector<bool>& same_strata_;
+  const bool has_changed_edges_ = finds_changed_edges();
 };
 
 std::vector<size_t> sorted_by(const std::vector<uint64_t>& sums) {
@@ -98,6 +108,9 @@ Paths with_own_meshes(const Paths& paths, Job* job) {
   std::vector<bool> is_met(paths.scene->meshes().size());
   for (const Hit& hit : *out.hits) is_met[hit.mesh_id] = true;
   for (const Pass& pass : out.passes) is_met[pass.hit.mesh_id] = true;
+  for (uint32_t id = 0; paths.frame.edges && id < is_met.size(); ++id) {
+    if (has_echoing_edges(*paths.scene, id)) is_met[id] = true;  // an edge may be one with those of its neighbours
+  }
   std::vector<uint32_t> place(is_met.size());
   for (size_t id = 0, count = 0; id < is_met.size(); ++id) place[id] = static_cast<uint32_t>(is_met[id] ? count++ : count);
   auto hits = std::make_shared<std::vector<Hit>>(*out.hits);

@@ -23,7 +23,7 @@ struct RayWalk<Weight>::Scratch {
   SurfaceHit surface;
   HitLegs legs;
   HitFields fields;
-  int64_t num_branches = 0;  // of the launch ray that is followed
+  int64_t launch_index = 0, num_branches = 0;  // of the launch ray that is followed
 };
 
 template <class Weight>
@@ -129,6 +129,7 @@ void RayWalk<Weight>::shoot_lane_among_sheets(int lane, Scratch& scratch, PathBl
   scratch.num_branches = 0;
   if (has_plain_hit) add_plain_echoes(lane, scratch, block);
   start(lane, scratch);
+  scratch.launch_index = scratch.ray.index;
   if (!has_plain_hit) connect(scratch, block);
   if (scratch.first.goes_on[static_cast<size_t>(lane)]) go_on_among_sheets(scratch.first.sample(lane), scratch, block);
   block.end_ray(scratch.ray.hits.data());
@@ -172,7 +173,7 @@ template <class Weight>
 void RayWalk<Weight>::reflect_at_sheet(const RayHit& met, Scratch& scratch, PathBlock& block) const {
   const Ray ray = scratch.ray;
   const SurfaceHit surface = scratch.surface;
-  scratch.ray.index += kBranchOfWalk * ++scratch.num_branches;
+  scratch.ray.index = scratch.launch_index + kBranchOfWalk * ++scratch.num_branches;
   ++scratch.ray.num_splits;
   if (arrive(met, scratch, block)) follow_among_sheets(scratch, block);
   block.end_ray(scratch.ray.hits.data());

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "echopath/base/kept_memory.h"
+#include "echopath/replay/evaluate/attenuation.h"
 
 namespace echopath {
 namespace {
@@ -174,6 +175,8 @@ std::vector<Echo> FrameCheck::echoes_at(std::span<const int64_t> paths, const Po
   evaluator->plan(paths);
   evaluator->evaluate(nodes, radio_, {0, {&all, 1}});
   KeptMemory::of_process().leave(std::move(evaluator));
+  const double attenuation = preparer_.paths().frame.attenuation;
+  if (attenuation > 0.0) attenuate({0, {&all, 1}}, paths.size(), num_times, attenuation);
   std::vector<Echo> echoes(lengths.size());
   for (size_t i = 0; i < lengths.size(); ++i) {
     Echo& echo = echoes[i % paths.size() * num_times + i / paths.size()];

@@ -96,6 +96,15 @@ __all__ = [
 ]
 
 
+def __getattr__(name: str):
+    """`ep.dataset`, which takes its time to import, when it is asked for."""
+    if name == "dataset":
+        from importlib import import_module
+
+        return import_module(".dataset", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
 def __dir__() -> list[str]:
     """What users need; the modules behind it are there, but do not show."""
     return [*__all__, "__version__"]

@@ -236,7 +236,8 @@ def test_a_worker_that_is_killed_is_replaced(whole, tmp_path):
     assert workers and running.returncode == 0 and bytes_of(tmp_path) == bytes_of(folder)
 
 
-def test_damaged_and_missing_frames_are_made_again(whole, tmp_path):
+@pytest.mark.parametrize("workers", [1, 2])
+def test_damaged_and_missing_frames_are_made_again(whole, tmp_path, workers):
     path, folder = whole
     copied = tmp_path / "copy"
     shutil.copytree(folder, copied)
@@ -246,8 +247,28 @@ def test_damaged_and_missing_frames_are_made_again(whole, tmp_path):
     content[len(content) // 2] ^= 1
     damaged.write_bytes(content)
     missing.unlink()
-    made = [one.scene for one in make(path, copied) if not one.was_there]
-    assert made == [1, 4] and bytes_of(copied) == bytes_of(folder)
+    (scene_folder(copied, 2) / "drawn.json").unlink()
+    (scene_folder(copied, 5) / "sequence.h5").write_bytes(b"")
+    made = [one.scene for one in make(path, copied, workers=workers) if not one.was_there]
+    assert sorted(made) == [1, 2, 4, 5] and bytes_of(copied) == bytes_of(folder)
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_scene_that_names_a_file_that_is_gone_fails_alone(tmp_path, workers):
+    mesh = ('[[objects]]\nname = "car"\nmesh = {choice = ["car.obj", "car.obj", "gone.obj"]}\nmaterial = "metal"\n'
+            'position = [4.0, 0.0, 1.0]\n')
+    (tmp_path / "car.obj").write_text("v 0 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n")
+    (tmp_path / "gone.obj").write_text("v 0 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n")
+    path = written(tmp_path, HEAD + SCENE.replace("[trace]", mesh + "[trace]"))
+    run = dataset.make(path, tmp_path / "out", workers=workers)
+    (tmp_path / "gone.obj").unlink()
+    template = dataset.Template(path)
+    bad = {number for number in range(6) if "gone.obj" in str(template.draw(number).table)}
+    if 0 in bad:
+        pytest.fail("scene 0 is that of the forecast")
+    records = {one.scene: one.record for one in run if isinstance(one, dataset.MadeScene)}
+    assert {scene for scene, record in records.items() if record.state == "failed"} == bad != set()
+    assert all("gone.obj" in records[scene].reason for scene in bad)
 
 
 def test_a_scene_that_fails_is_told_and_tried_again_on_request(whole, tmp_path, monkeypatch):

@@ -22,7 +22,7 @@ _BLOCK = 1 << 20  # bytes that are hashed at a time
 class SceneRecord(NamedTuple):
     """What a dataset has of a scene.
 
-    state: "done", "failed" or "to do"; files: {name of a frame's file: SHA-256 in hexadecimal digits} of a scene that is done
+    state: "done", "failed" or "to do"; files: {name: SHA-256 in hexadecimal digits} of all files of a scene that is done
     reason: in words, why it failed
     """
 

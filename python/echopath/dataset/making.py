@@ -84,8 +84,7 @@ def make(template: str | os.PathLike[str], folder: str | os.PathLike[str], *, wo
     scenes = _chosen(plan, shard, frames)
     _look_at(plan, scenes)
     prepare_folder(folder, plan)
-    chosen = forget_failures(folder, scenes) if only_failed else scenes
-    return _made(plan, folder, chosen, workers)
+    return _made(plan, folder, scenes, workers, only_failed)
 
 
 def _chosen(plan: Template, shard: Shard | None, frames: tuple[int, int] | None) -> list[int]:
@@ -105,7 +104,9 @@ def _look_at(plan: Template, scenes: list[int]) -> None:
         plan.sequence(scene)
 
 
-def _made(plan: Template, folder: Path, scenes: list[int], workers: int) -> Iterator[Forecast | MadeScene]:
+def _made(plan: Template, folder: Path, scenes: list[int], workers: int, only_failed: bool) -> Iterator[Forecast | MadeScene]:
+    if only_failed:
+        scenes = forget_failures(folder, scenes)
     missing = [scene for scene in scenes if _is_missing(folder, scene)]
     forecast = _forecast(plan, folder, missing, workers) if missing else Forecast(0, 0.0, 0)
     yield forecast

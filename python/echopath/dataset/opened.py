@@ -74,6 +74,11 @@ class Dataset:
         return Dataset(self.folder, self.template, [number for number in self.numbers
                                                     if self.template.split_of(number // per_scene) == name])
 
+    def of_scene(self, scene: int) -> Dataset:
+        """The frames here of the scene with that number; none where there are none."""
+        per_scene = self.template.settings.frames
+        return Dataset(self.folder, self.template, [number for number in self.numbers if number // per_scene == scene])
+
     @cached_property
     def scenes(self) -> list[int]:
         """The numbers of the scenes that have a frame here."""

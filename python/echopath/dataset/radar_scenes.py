@@ -65,10 +65,15 @@ def write_radar_scenes(dataset: Dataset, folder: str | os.PathLike[str]) -> None
     noise), label_id; and behind them ghost_label, the label of the Radar Ghost Dataset (Kraus et al. 2021): 1000 times its class
     and 111 for real echoes, 112, 122, 124 for ghosts, 0 for the background. A ghost has the track and the label_id of its object.
     odometry has timestamp, x_seq, y_seq, yaw_seq, vx (m/s), yaw_rate (rad/s), a row for each frame.
-    Raises ValueError naming `dataset` where it has no detections with azimuths, ep.FileError where files cannot be written.
+    Raises ValueError naming `dataset` where it has no frames, or no detections with azimuths, and naming `folder` where that has
+    a folder data; ep.FileError where files cannot be written.
     """
     require_writable(folder, "folder")
     data = Path(folder) / "data"
+    if data.exists():
+        raise refused(ValueError, "folder", "one that has no folder 'data' yet", str(folder))
+    if len(dataset) == 0:
+        raise refused(ValueError, "dataset", "one with a frame at least", dataset)
     sequences = {}
     for number, scene in enumerate(dataset.scenes, 1):
         name = f"sequence_{number}"
@@ -82,7 +87,7 @@ def _write_sequence(dataset: Dataset, scene: int, folder: Path, name: str) -> di
     stored, template = dataset.sequence(scene), dataset.template
     radar = stored.radar
     classes = classes_of(template.draw(scene).table["objects"], template.settings.classes)
-    frames = [one for one in dataset if one.scene == scene]
+    frames = list(dataset.of_scene(scene))
     points, odometry = [], np.zeros(len(frames), ODOMETRY)
     for row, one in enumerate(frames):
         if not isinstance(one.frame.detections, Detections):

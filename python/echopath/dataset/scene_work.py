@@ -11,8 +11,9 @@ from pathlib import Path
 
 from .. import _core
 from ..files import write_texts
+from ..sequence.contents import NAME as CONTENTS
 from ..sequence.contents import frame_path
-from .folder import DRAWN, SceneRecord, checksum, damaged_files, read_record, scene_folder, write_record
+from .folder import DRAWN, RECORD, SceneRecord, checksum, damaged_files, read_record, scene_folder, write_record
 from .template import Template
 
 _CLAIM, _BEGUN = ".claim", ".begun"
@@ -37,11 +38,15 @@ def claimed(folder: Path, scene: int) -> Iterator[bool]:
 
 
 def is_done(folder: Path, scene: int) -> bool:
-    """Whether all frames of a scene are there as they were written; those that are damaged are removed, to be made again."""
+    """Whether all files of a scene are there as they were written; what is damaged is removed, and the scene is to do again."""
     record = read_record(folder, scene)
     damaged = damaged_files(folder, scene, record)
+    if any(path.name == CONTENTS for path in damaged):  # without it, nobody knows of what the frames are
+        damaged = [scene_folder(folder, scene) / name for name in record.files]
     for path in damaged:
         path.unlink(missing_ok=True)
+    if damaged:
+        (scene_folder(folder, scene) / RECORD).unlink(missing_ok=True)
     return record.state == "done" and not damaged
 
 
@@ -63,17 +68,25 @@ def make_scene(template: Template, folder: Path, scene: int, run: str) -> SceneR
 def _made(template: Template, folder: Path, scene: int) -> SceneRecord:
     own, frames = scene_folder(folder, scene), template.settings.frames
     try:
-        drawn = template.draw(scene)
-        write_texts(own, {DRAWN: json.dumps(drawn.values, indent=1) + "\n"})
+        drawn, sequence = template.draw(scene), template.sequence(scene)
+    except (ValueError, RuntimeError, _core.FileError, MemoryError) as error:  # files: those that the scene names
+        return _failed(error)
+    write_texts(own, {DRAWN: json.dumps(drawn.values, indent=1) + "\n"})
+    try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # what a frame warns of is in its labels and checks
-            for _ in template.sequence(scene).save_frames(own, keep=template.settings.keep):
+            for _ in sequence.save_frames(own, keep=template.settings.keep):
                 pass
-    except (ValueError, RuntimeError, _core.FileError, MemoryError) as error:
-        if isinstance(error, _core.FileError):
-            raise  # a disk that is full or away is no fault of the scene
-        return SceneRecord("failed", reason=f"{type(error).__name__}: {error}")
-    return SceneRecord("done", {path.name: checksum(path) for path in (frame_path(own, place) for place in range(frames))})
+    except _core.FileError:
+        raise  # a disk that is full or away is no fault of the scene
+    except (ValueError, RuntimeError, MemoryError) as error:
+        return _failed(error)
+    paths = [own / CONTENTS, own / DRAWN, *(frame_path(own, place) for place in range(frames))]
+    return SceneRecord("done", {path.name: checksum(path) for path in paths})
+
+
+def _failed(error: Exception) -> SceneRecord:
+    return SceneRecord("failed", reason=f"{type(error).__name__}: {error}")
 
 
 def _note_begin(folder: Path, scene: int, run: str) -> int:

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from .. import _core
 from ..threads import set_num_threads
 from .folder import RECORD, SceneRecord, read_record, scene_folder
 from .scene_work import claimed, is_done, make_scene
@@ -44,21 +45,22 @@ def in_this_process(template: Template, folder: Path, scenes: Sequence[int], run
 def in_processes(path: Path, folder: Path, scenes: Sequence[int], run: str, count: int) -> Iterator[Done]:
     """The same by `count` processes with an equal share of the processors each. One that dies is replaced.
 
-    path: of the template. Raises ChildProcessError where processes that make no scene go on dying.
+    path: of the template. Raises ep.FileError where one of them cannot write a file, ChildProcessError where they go on dying.
     """
     context = multiprocessing.get_context("spawn")
     threads = max(1, (os.cpu_count() or 1) // count)
+    unwritten = context.SimpleQueue()  # what is said of files that cannot be written
 
     def start(index: int) -> Any:
         # Each begins elsewhere, so that they meet no sooner than they must.
         turned = [*scenes[index::count], *(scene for other in range(count) if other != index for scene in scenes[other::count])]
-        process = context.Process(target=_work, args=(str(path), str(folder), turned, run, threads), daemon=True)
+        process = context.Process(target=_work, args=(str(path), str(folder), turned, run, threads, unwritten), daemon=True)
         process.start()
         return process
 
     processes = [start(index) for index in range(count)]
     try:
-        yield from _watched(folder, scenes, processes, start)
+        yield from _watched(folder, scenes, processes, start, unwritten)
     finally:
         for process in processes:
             process.terminate()
@@ -66,12 +68,15 @@ def in_processes(path: Path, folder: Path, scenes: Sequence[int], run: str, coun
             process.join()
 
 
-def _watched(folder: Path, scenes: Sequence[int], processes: list[Any], start: Callable[[int], Any]) -> Iterator[Done]:
+def _watched(folder: Path, scenes: Sequence[int], processes: list[Any], start: Callable[[int], Any],
+             unwritten: Any) -> Iterator[Done]:
     """What the processes make, as it comes."""
     missing, deaths = list(scenes), 0
     most_deaths = 3 * len(processes) + len(scenes)
     while missing:
         time.sleep(PAUSE)
+        if not unwritten.empty():
+            raise _core.FileError(unwritten.get())
         ended = [process.exitcode is not None for process in processes]
         for scene in list(missing):
             record = read_record(folder, scene)
@@ -86,13 +91,16 @@ def _watched(folder: Path, scenes: Sequence[int], processes: list[Any], start: C
                 processes[index] = start(index)
 
 
-def _work(path: str, folder: str, scenes: list[int], run: str, threads: int) -> None:
+def _work(path: str, folder: str, scenes: list[int], run: str, threads: int, unwritten: Any) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that started this one
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     set_num_threads(threads)
-    for _ in in_this_process(Template(Path(path)), Path(folder), scenes, run):
-        if os.getppid() == 1:  # the command was killed
-            return
+    try:
+        for _ in in_this_process(Template(Path(path)), Path(folder), scenes, run):
+            if os.getppid() == 1:  # the command was killed
+                return
+    except _core.FileError as error:
+        unwritten.put(str(error))
 
 
 def forget_failures(folder: Path, scenes: Sequence[int]) -> list[int]:

@@ -15,6 +15,7 @@ from ..frame import Frame
 from ..frame_maps import FrameMaps
 from ..scene import Scene
 from ..truth import Truth
+from ..weather import Weather
 from .arrays import dataset_of, truth_of_files
 from .contents import NAME, frame_path, read_contents
 from .keep import Keep, read_frame
@@ -63,8 +64,9 @@ class StoredSequence(Row[Frame | FrameMaps]):
 
     @property
     def scene(self) -> Scene:
-        """A copy of the scene that was simulated."""
-        return Scene(self._scene)
+        """A copy of the scene that was simulated, in its weather."""
+        weather = self.settings.get("weather")
+        return Scene(self._scene, weather=None if weather is None else Weather(**weather))
 
     @property
     def paths_of_files(self) -> list[Path]:

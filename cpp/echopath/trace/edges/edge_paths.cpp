@@ -7,6 +7,7 @@
 #include "echopath/base/parallel.h"
 #include "echopath/scene/scene_edges.h"
 #include "echopath/trace/edges/edge_chains.h"
+#include "echopath/trace/edges/posed_edge.h"
 #include "echopath/trace/mirrors/legs.h"
 #include "echopath/trace/near_antenna.h"
 
@@ -202,14 +203,6 @@ class EdgeTracer {
     return entered * taken > kOfHalfPlane * kLeastChain;
   }
 
-  // Returns the share of a field that the faces keep in phase: as they would mirror it, the one that faces it more.
-  double share_of(const Leg& in, const Wedge& wedge, uint32_t mesh_id) const {
-    const double cos_in = std::max(in.to_antenna.dot(wedge.faces[0].normal), in.to_antenna.dot(wedge.faces[1].normal));
-    const SurfaceResponse response = respond(*query_.scene.node_of(mesh_id).material, query_.settings.frequency,
-                                             std::clamp(cos_in, 0.0, 1.0), PolarizationMode::kTe);
-    return std::abs(response.gamma) * response.coherent;
-  }
-
   // `wedge` is that of the last edge; the share of the field that stays in phase is taken from it.
   void add_path(const Leg& in, std::span<const Hit> on_edges, const Leg& out, const Wedge& wedge, int num_pieces,
                 PathBlock& block) const {
@@ -221,7 +214,9 @@ class EdgeTracer {
     for (const Hit& hit : on_edges) hits[static_cast<size_t>(count++)] = hit;
     for (int k = 0; k < out.num_bounces; ++k) hits[static_cast<size_t>(count++)] = out.bounces[static_cast<size_t>(k)].hit;
     const std::complex<double> over_mirrors = query_.settings.is_polarized ? 1.0 : in.gain * out.gain;
-    const std::complex<double> weight = share_of(in, wedge, on_edges.back().mesh_id) * over_mirrors;
+    const Material& material = *query_.scene.node_of(on_edges.back().mesh_id).material;
+    const double kept = kept_share(material, query_.settings.frequency, wedge, in.to_antenna);
+    const std::complex<double> weight = kept * over_mirrors;
     block.add(hits.data(), count, 0, std::complex<float>(weight), kNoStratum);
     block.set_edge(at, num_pieces, static_cast<int>(on_edges.size()));
     if (query_.settings.is_polarized) block.set_jones({1.0f, 0.0f, 0.0f, 1.0f});

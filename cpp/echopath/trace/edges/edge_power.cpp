@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
-#include "echopath/em/surface_response.h"
 #include "echopath/scene/scene_edges.h"
 #include "echopath/trace/edges/posed_edge.h"
 #include "echopath/trace/near_antenna.h"
@@ -47,18 +46,12 @@ class EdgeEstimate {
     const double slope = wavenumber_ * std::abs((in.toward - departure).dot(line)) / length;
     const double zone = 2.0 * std::sqrt(kPi / (wavenumber_ * (1.0 / in.length + 1.0 / out.length)));
     const double effective = std::min({length, zone, 2.0 / std::max(slope, 1e-9)});
-    const double field = coupled * effective * share(material, edge.wedge, -in.toward) /
+    const double field = coupled * effective * kept_share(material, frequency_, edge.wedge, -in.toward) /
                          (4.0 * kPi * 2.0 * wavenumber_ * in.length * out.length);
     return transmit_power_ * in.gain * out.gain * field * field;
   }
 
  private:
-  double share(const Material& material, const Wedge& wedge, const Vec3& to_antenna) const {
-    const double cos_in = std::max(to_antenna.dot(wedge.faces[0].normal), to_antenna.dot(wedge.faces[1].normal));
-    const SurfaceResponse found = respond(material, frequency_, std::clamp(cos_in, 0.0, 1.0), PolarizationMode::kTe);
-    return std::abs(found.gamma) * found.coherent;
-  }
-
   double frequency_, wavenumber_, transmit_power_;  // Hz, rad/m, W
   PosedAntenna transmitter_, receiver_;
 };

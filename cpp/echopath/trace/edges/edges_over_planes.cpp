@@ -250,14 +250,6 @@ class LitEdgeTracer {
     return false;
   }
 
-  // Returns the share of a field that the faces keep in phase: as they would mirror it, the one that faces it more.
-  double kept_share(const Vec3& to_antenna) const {
-    const double cosine = std::max(to_antenna.dot(edge_.wedge.faces[0].normal), to_antenna.dot(edge_.wedge.faces[1].normal));
-    const SurfaceResponse response = respond(*query_.scene.node_of(edge_.mesh_id).material, query_.settings.frequency,
-                                             std::clamp(cosine, 0.0, 1.0), PolarizationMode::kTe);
-    return std::abs(response.gamma) * response.coherent;
-  }
-
   void add_path(const Way& in, const Way& out, std::complex<double> share, uint32_t flag) {
     if (share == 0.0 || std::ssize(in.hits) + 1 + std::ssize(out.hits) > query_.settings.max_bounces) return;
     std::vector<Hit> hits(in.hits.rbegin(), in.hits.rend());
@@ -266,7 +258,9 @@ class LitEdgeTracer {
     hits.insert(hits.end(), out.hits.begin(), out.hits.end());
     const Way& first = (flag & kReversedPath) != 0 ? out : in;  // from which the wave comes
     const std::complex<double> over_mirrors = query_.settings.is_polarized ? 1.0 : in.gain * out.gain;
-    const std::complex<double> weight = share * in.share * out.share * kept_share(first.to_antenna) * over_mirrors;
+    const Material& material = *query_.scene.node_of(edge_.mesh_id).material;
+    const double kept = kept_share(material, query_.settings.frequency, edge_.wedge, first.to_antenna);
+    const std::complex<double> weight = share * in.share * out.share * kept * over_mirrors;
     block_.add(hits.data(), static_cast<int>(hits.size()), 0, std::complex<float>(weight), kNoStratum);
     block_.set_edge(at, num_pieces_);
     block_.rows.flags[block_.rows.size() - 1] |= flag;

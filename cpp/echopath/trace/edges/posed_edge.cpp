@@ -1,5 +1,9 @@
 #include "echopath/trace/edges/posed_edge.h"
 
+#include <algorithm>
+
+#include "echopath/em/surface_response.h"
+
 namespace echopath {
 namespace {
 
@@ -19,6 +23,12 @@ Wedge posed_wedge(const SharpEdge& edge, const PosedScene& scene, uint32_t mesh_
 }
 
 Vec3 axis_of(const Wedge& wedge) { return wedge.faces[0].inward.cross(wedge.faces[0].normal); }
+
+double kept_share(const Material& material, double frequency, const Wedge& wedge, const Vec3& to_antenna) {
+  const double cosine = std::max(to_antenna.dot(wedge.faces[0].normal), to_antenna.dot(wedge.faces[1].normal));
+  const SurfaceResponse response = respond(material, frequency, std::clamp(cosine, 0.0, 1.0), PolarizationMode::kTe);
+  return std::abs(response.gamma) * response.coherent;
+}
 
 Vec3 outward_of(const Wedge& wedge) {
   return (wedge.faces[0].normal + wedge.faces[1].normal - wedge.faces[0].inward - wedge.faces[1].inward).normalized();

@@ -1,6 +1,7 @@
 #pragma once
 // Poses a sharp edge of a mesh: the wedge that its faces make in the world.
 #include "echopath/em/edge_diffraction.h"
+#include "echopath/em/material.h"
 #include "echopath/posed/posed_scene.h"
 #include "echopath/scene/mesh/sharp_edges.h"
 
@@ -19,6 +20,10 @@ struct PosedEdge {
 
 // Returns the unit vector along an edge about which the angles of its wedge count.
 Vec3 axis_of(const Wedge& wedge);
+
+// Returns the share of a field that the faces keep in phase: as they would mirror it at a frequency in Hz, the one that faces
+// the antenna more.
+double kept_share(const Material& material, double frequency, const Wedge& wedge, const Vec3& to_antenna);
 
 // Returns the unit vector across an edge that leads away from both faces.
 Vec3 outward_of(const Wedge& wedge);

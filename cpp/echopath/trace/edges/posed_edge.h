@@ -21,8 +21,8 @@ struct PosedEdge {
 // Returns the unit vector along an edge about which the angles of its wedge count.
 Vec3 axis_of(const Wedge& wedge);
 
-// Returns the share of a field that the faces keep in phase: as they would mirror it at a frequency in Hz, the one that faces
-// the antenna more.
+// Returns the share of a field that the faces keep in phase: as the one that faces the antenna more would mirror it at a
+// frequency in Hz.
 double kept_share(const Material& material, double frequency, const Wedge& wedge, const Vec3& to_antenna);
 
 // Returns the unit vector across an edge that leads away from both faces.

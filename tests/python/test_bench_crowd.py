@@ -111,12 +111,15 @@ def test_intervals_of_what_no_ray_has_met_count_too():
 
 
 def test_command_writes_numbers_and_picture(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(crowd, "QUICK_RAYS", 4_000)
-    monkeypatch.setattr(crowd, "QUICK_ALONE_RAYS", 2_000)
+    names = ["car_smooth_15", "pole_20", "pedestrian_10", "wall_left"]
+    assert set(names) <= set(scenes.street_names())
+    monkeypatch.setattr(scenes, "street_names", lambda: names)
+    for limit, rays in (("QUICK_RAYS", 4_000), ("QUICK_ALONE_RAYS", 2_000), ("QUICK_PERSON_RAYS", 2_000)):
+        monkeypatch.setattr(crowd, limit, rays)
     assert main(["bench", "crowd", "--quick", "--out", str(tmp_path / "b")]) == 0
     results = json.loads((tmp_path / "b" / "crowd.json").read_text())
     assert (tmp_path / "b" / "crowd.png").stat().st_size > 10_000
-    assert [len(street["rows"]) for street in results["streets"]] == [21, 21]
+    assert [len(street["rows"]) for street in results["streets"]] == [len(names)] * 2
     assert {row["kind"] for row in results["coverage"]["rows"]} == {echo.kind for echo in crowd_coverage.all_echoes()}
     assert [row["mirrors"] for row in results["mirrors"]] == [51] and sum(results["mirrors"][0]["paths"]) > 0
     told = capsys.readouterr().out

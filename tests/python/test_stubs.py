@@ -37,15 +37,44 @@ def test_package_says_that_it_is_typed():
     assert (Path(echopath.__file__).parent / "py.typed").exists()
 
 
-def _complaints(path) -> str:
-    """What mypy --strict says of a file that uses echopath."""
+# What a user may write wrong, by the name of a file. The type checker would be content with anything if it did not find
+# the stubs.
+WRONG = {
+    "keyword.py": "import echopath as ep\nep.ChirpSequence(num_sample=5)\nep.ChirpSequence(num_samples='5')\n",
+    "replaced.py": "import echopath as ep\nep.ChirpSequence().replace(num_chirp=4)\n"
+                   "chirps: ep.ChirpSequence = ep.ChirpSequence().replace(num_chirps=4)\nchirps.num_chirps = 5\n",
+    "foreign.py": """import echopath as ep
+def look(map: ep.RangeDoppler, film: ep.Spectrogram, labels: ep.Labels, truth: ep.Truth, stored: ep.StoredSequence) -> None:
+    for axes in (map.plot(vmin=-120.0), film.plot(ax=map.plot()), labels.plot("objects")):
+        axes.set_title("right")
+        axes.set_titel("wrong")
+    array: int = map.to_xarray().sel(range=3.0, method="nearest")
+    dataset: int = stored.to_xarray()
+    truth.to_xarray().data_vars
+    film.plot(ax=3)
+    labels.plot("ghosts")
+"""}
+
+
+@pytest.fixture(scope="module")
+def complaints(tmp_path_factory):
+    """What mypy --strict says of files that use echopath, and of the stubs, by the name of the file: all in one run, since
+    it reads the libraries for seconds."""
     pytest.importorskip("mypy", reason="mypy, of the extra 'test', is not installed")
-    command = [sys.executable, "-m", "mypy", "--strict", "--follow-imports=silent", "--cache-dir", os.devnull, path]
-    return subprocess.run(command, capture_output=True, text=True, cwd=ROOT, env=os.environ | {"MYPYPATH": "python"}).stdout
+    folder = tmp_path_factory.mktemp("typing")
+    for name, text in WRONG.items():
+        (folder / name).write_text(text)
+    files = [ROOT / "tests" / "typing" / "first_experiment.py", ROOT / "python" / "echopath" / "_core.pyi",
+             *(folder / name for name in WRONG)]
+    command = [sys.executable, "-m", "mypy", "--strict", "--follow-imports=silent", "--cache-dir", os.devnull, *files]
+    told = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, env=os.environ | {"MYPYPATH": "python"})
+    assert told.stdout.rstrip().endswith(f"(checked {len(files)} source files)"), told.stdout + told.stderr
+    errors = [line for line in told.stdout.splitlines() if ": error:" in line]
+    return {file.name: [line for line in errors if Path(line.split(":")[0]).name == file.name] for file in files}
 
 
-def test_type_checker_is_content_with_what_a_user_writes():
-    assert _complaints(ROOT / "tests" / "typing" / "first_experiment.py").startswith("Success")
+def test_type_checker_is_content_with_what_a_user_writes(complaints):
+    assert complaints["first_experiment.py"] == []
 
 
 def test_the_first_experiment_sees_its_ball():
@@ -57,11 +86,8 @@ def test_the_first_experiment_sees_its_ball():
     assert "ball" in experiment["found"].object
 
 
-def test_type_checker_is_content_with_the_stubs_themselves():
-    pytest.importorskip("mypy", reason="mypy, of the extra 'test', is not installed")
-    command = [sys.executable, "-m", "mypy", "--strict", "-p", "echopath._core", "--cache-dir", os.devnull]
-    told = subprocess.run(command, capture_output=True, text=True, cwd=ROOT / "python").stdout
-    assert told.startswith("Success"), told
+def test_type_checker_is_content_with_the_stubs_themselves(complaints):
+    assert complaints["_core.pyi"] == []
 
 
 def test_stubs_know_the_types_of_what_users_hold():
@@ -76,35 +102,17 @@ def test_stubs_know_the_types_of_what_users_hold():
     assert not left, "\n".join(left)
 
 
-def test_type_checker_knows_axes_and_arrays_of_other_libraries(tmp_path):
-    wrong = tmp_path / "wrong.py"
-    wrong.write_text("""import echopath as ep
-def look(map: ep.RangeDoppler, film: ep.Spectrogram, labels: ep.Labels, truth: ep.Truth, stored: ep.StoredSequence) -> None:
-    for axes in (map.plot(vmin=-120.0), film.plot(ax=map.plot()), labels.plot("objects")):
-        axes.set_title("right")
-        axes.set_titel("wrong")
-    array: int = map.to_xarray().sel(range=3.0, method="nearest")
-    dataset: int = stored.to_xarray()
-    truth.to_xarray().data_vars
-    film.plot(ax=3)
-    labels.plot("ghosts")
-""")
-    told = _complaints(wrong)
+def test_type_checker_knows_axes_and_arrays_of_other_libraries(complaints):
+    told = "\n".join(complaints["foreign.py"])
     assert '"Axes" has no attribute "set_titel"' in told and 'has type "DataArray"' in told and 'has type "Dataset"' in told, told
     assert told.count("error:") == 5, told
 
 
-def test_replace_has_the_arguments_of_the_constructor(tmp_path):
-    wrong = tmp_path / "wrong.py"
-    wrong.write_text("import echopath as ep\nep.ChirpSequence().replace(num_chirp=4)\n"
-                     "chirps: ep.ChirpSequence = ep.ChirpSequence().replace(num_chirps=4)\nchirps.num_chirps = 5\n")
-    told = _complaints(wrong)
+def test_replace_has_the_arguments_of_the_constructor(complaints):
+    told = "\n".join(complaints["replaced.py"])
     assert 'Unexpected keyword argument "num_chirp"' in told and "read-only" in told and told.count("error:") == 2
 
 
-def test_type_checker_finds_what_is_wrong(tmp_path):
-    """It would be content with anything if it did not find the stubs."""
-    wrong = tmp_path / "wrong.py"
-    wrong.write_text("import echopath as ep\nep.ChirpSequence(num_sample=5)\nep.ChirpSequence(num_samples='5')\n")
-    told = _complaints(wrong)
+def test_type_checker_finds_what_is_wrong(complaints):
+    told = "\n".join(complaints["keyword.py"])
     assert 'Unexpected keyword argument "num_sample"' in told and told.count("error:") == 2

@@ -32,6 +32,10 @@ struct WayToEdge {
 struct MirrorsToEdge {
   std::vector<PosedHit> hits;
   std::vector<const Material*> materials;
+  bool is_forward;  // the antenna is at the transmitter's end of the record
+  int last_leg;     // of the path
+
+  int leg(size_t mirror) const { return is_forward ? static_cast<int>(mirror) : last_leg - static_cast<int>(mirror); }
 };
 
 class EdgeEchoes {
@@ -40,8 +44,10 @@ class EdgeEchoes {
       : paths_(preparer.paths()), radio_(radio), frequency_(kSpeedOfLight / radio.wavelength),
         is_polarized_(!paths_.jones.empty()), hits_(64) {}
 
-  // Sets the path that is looked at, at a node.
-  void pose(const LocalPath& path, const PosedScene& scene) {
+  // Sets the path that is looked at, at a node. `sheets` are those on its way that turn polarisations, or null.
+  void pose(const LocalPath& path, const PosedScene& scene, PathPassages* sheets) {
+    sheets_ = sheets;
+    if (sheets_) sheets_->pose(scene);
     pose_hits(path, scene, hits_.data());
     edges_.clear();
     for (int k = path.edge; k < path.edge + path.num_edges; ++k)
@@ -127,6 +133,8 @@ class EdgeEchoes {
       mirrors_.hits.push_back(hits_[static_cast<size_t>(at)]);
       mirrors_.materials.push_back(paths_.scene->node_of(path.hits[at].mesh_id).material.get());
     }
+    mirrors_.is_forward = of_start != path.is_reversed;
+    mirrors_.last_leg = path.count;
     ways.clear();
     const Vec3& point = of_start ? edges_.front().point : edges_.back().point;
     for (const PosedAntenna& antenna : antennas) ways.push_back(way_from(antenna, point));
@@ -137,13 +145,17 @@ class EdgeEchoes {
     const UnfoldedLeg leg = unfolded_leg(mirrors_.hits.data(), antenna.position, 0, count, point);
     const AntennaGain gain = antenna.toward(leg.departure);
     FieldVector field = FieldVector::Zero();
-    if (is_polarized_) field = over_mirrors(part_across(antenna.polarization, leg.departure), leg.departure);
+    if (is_polarized_) field = over_mirrors(antenna, leg.departure);
     return {leg.length, std::sqrt(gain.power), gain.phase, leg.arrival, field};
   }
 
-  FieldVector over_mirrors(const Vec3& polarization, Vec3 direction) const {
-    FieldVector field = polarization.cast<std::complex<double>>();
+  FieldVector over_mirrors(const PosedAntenna& antenna, Vec3 direction) const {
+    FieldVector field = part_across(antenna.polarization, direction).cast<std::complex<double>>();
+    const auto pass = [&](size_t leg) {
+      if (sheets_) field = sheets_->through({mirrors_.leg(leg), antenna.position, mirrors_.is_forward}, field);
+    };
     for (size_t k = 0; k < mirrors_.hits.size(); ++k) {
+      pass(k);
       const Vec3& facet = mirrors_.hits[k].normal;
       const Vec3 normal = facet.dot(direction) < 0 ? facet : Vec3(-facet);
       const SurfaceModel model(*mirrors_.materials[k], frequency_);
@@ -152,6 +164,7 @@ class EdgeEchoes {
       field = coherent * reflected_field(field, direction, normal, model.modes(cos_in));
       direction = mirrored(direction, normal);
     }
+    pass(mirrors_.hits.size());
     return field;
   }
 
@@ -161,33 +174,54 @@ class EdgeEchoes {
   bool is_polarized_, is_reversed_ = false, is_past_edge_ = false;
   std::vector<PosedHit> hits_;
   MirrorsToEdge mirrors_;
+  PathPassages* sheets_ = nullptr;
   std::vector<WayToEdge> in_, out_;
   std::vector<ChainEdge> edges_;    // of the path
   std::optional<EdgeChain> chain_;  // over them, where there are several
   Vec3 piece_;                      // m, of the last one
 };
 
+// Holds the sheets on the ways of edge paths whose fields are followed through them, null for the others.
+class SheetsOnWays {
+ public:
+  SheetsOnWays(const RecordSheets& sheets, std::span<const int64_t> paths) : of_path_(paths.size()) {
+    const Paths& record = sheets.preparer.paths();
+    if (record.jones.empty() || record.passes.empty()) return;
+    for (size_t i = 0; i < paths.size(); ++i) {
+      if (!record.passes_of(static_cast<size_t>(paths[i])).empty()) of_path_[i] = &all_.emplace_back(sheets, paths[i]);
+    }
+  }
+  PathPassages* of(size_t place) const { return of_path_[place]; }
+
+ private:
+  std::deque<PathPassages> all_;
+  std::vector<PathPassages*> of_path_;
+};
+
 }  // namespace
 
-void evaluate_edges(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes,
-                    const RadioConstants& radio, const ChannelSpan& channels) {
+void evaluate_edges(const SharedLegPlan& plan, const RecordSheets& sheets, const PosedNodes& nodes,
+                    const RadioConstants& radio, const ChannelSpan& channels, bool with_amplitudes) {
   if (plan.edge_paths.empty()) return;
   std::vector<int64_t> indices;
   for (const SharedLegPlan::EdgePath& path : plan.edge_paths) indices.push_back(path.path);
+  const PathPreparer& preparer = sheets.preparer;
   const LocalPaths local = preparer(indices);
+  const SheetsOnWays on_ways(sheets, indices);
   EdgeEchoes echoes(preparer, radio);
   for (size_t node = 0; node < nodes.size(); ++node) {
     const PosedScene& scene = nodes.at(node);
     const size_t num_receivers = scene.receivers.size();
     for (size_t i = 0; i < indices.size(); ++i) {
       const std::complex<double> weight(preparer.paths().weight[static_cast<size_t>(indices[i])]);
-      echoes.pose(local.paths[i], scene);
+      echoes.pose(local.paths[i], scene, on_ways.of(i));
       for (size_t channel = 0; channel < channels.nodes.size(); ++channel) {
         const size_t of_all = channels.first + channel, transmitter = of_all / num_receivers,
                      receiver = of_all % num_receivers;
         const Vec3& polarization = scene.transmitters[transmitter].polarization;
-        channels.nodes[channel].set(node, plan.edge_paths[i].place, echoes.length(transmitter, receiver),
-                                    echoes.amplitude(transmitter, receiver, polarization, weight));
+        const std::complex<double> amplitude =
+            with_amplitudes ? echoes.amplitude(transmitter, receiver, polarization, weight) : 0.0;
+        channels.nodes[channel].set(node, plan.edge_paths[i].place, echoes.length(transmitter, receiver), amplitude);
       }
     }
   }

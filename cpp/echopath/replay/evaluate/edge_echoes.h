@@ -9,13 +9,16 @@
 // in which the wave arrives at the edge and leaves it, and M is the fringe_matrix of its faces. e_t and e_r are the
 // polarisations of both antennas across these directions, as they have come over the mirrors between: in a polarised trace
 // by the coefficients that the materials have at that time. In the scalar model the coefficients are those of the trace, in
-// the weight, and the receiver has the polarisation of the transmitter.
+// the weight, and the receiver has the polarisation of the transmitter. Sheets on the way pass, in a polarised trace, both
+// modes of each antenna's own field; in the scalar model they are no part of this (sheet_passages.h).
+#include "echopath/replay/evaluate/path_passages.h"
 #include "echopath/replay/evaluate/shared_legs.h"
 
 namespace echopath {
 
-// Writes the edge paths of the plan.
-void evaluate_edges(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes,
-                    const RadioConstants& radio, const ChannelSpan& channels);
+// Writes the edge paths of the plan, of the record whose sheets these are; without their amplitudes where these are not
+// wanted.
+void evaluate_edges(const SharedLegPlan& plan, const RecordSheets& sheets, const PosedNodes& nodes,
+                    const RadioConstants& radio, const ChannelSpan& channels, bool with_amplitudes);
 
 }  // namespace echopath

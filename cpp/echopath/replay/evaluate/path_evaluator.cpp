@@ -16,9 +16,9 @@ void PathEvaluator::evaluate(const PosedNodes& nodes, const RadioConstants& radi
                              const Wanted& wanted) {
   shared_legs_(*plan_, *preparer_, nodes, radio, channels);
   single_bounces_(*plan_, *preparer_, nodes, radio, channels, wanted);
-  evaluate_edges(*plan_, *preparer_, nodes, radio, channels);
+  evaluate_edges(*plan_, sheets_->sheets(), nodes, radio, channels, wanted.with_amplitudes);
   if (wanted.with_amplitudes) apply_lobes(*plan_, *preparer_, nodes, channels);
-  if (!preparer_->paths().passes.empty()) sheets_->apply(indices_, nodes, channels);
+  if (!preparer_->paths().passes.empty()) sheets_->apply(indices_, nodes, channels, wanted.with_amplitudes);
   if (wanted.turned) shared_legs_.mark_turned(*plan_, wanted.turned);
   if (wanted.unfiltered) shared_legs_.mark_unfiltered(*plan_, radio, wanted.unfiltered);
 }

@@ -25,13 +25,12 @@ struct ChannelNodes {
     length[at] = scale * length_there;
     amplitude[at] = echo_of ? amplitude[at] + amplitude_there : amplitude_there;
   }
-  void scale_amplitude(size_t node, size_t place, double factor) const { amplitude[node * stride + echo(place)] *= factor; }
-  // Lengthens an echo, which is that of one path alone, by `longer` (m) and multiplies its amplitude.
-  void pass(size_t node, size_t place, double longer, std::complex<double> factor) const {
-    const size_t at = node * stride + echo(place);
-    length[at] += scale * longer;
-    amplitude[at] *= factor;
+  // Change an echo that is that of one path alone. `longer` is in m.
+  template <class Factor>
+  void scale_amplitude(size_t node, size_t place, Factor factor) const {
+    amplitude[node * stride + echo(place)] *= factor;
   }
+  void lengthen(size_t node, size_t place, double longer) const { length[node * stride + echo(place)] += scale * longer; }
 };
 
 // Names some channels [tx * num_rx + rx] for the antennas of the nodes, one after the other from `first` on.

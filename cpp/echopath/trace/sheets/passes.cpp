@@ -121,7 +121,8 @@ class PassFinder {
         return;
       }
       block.passes.push_back({met.hit, leg.index});
-      if (!paths_.jones.empty() && (leg.is_first || leg.is_last)) polarize(path, leg, direction, met);
+      const bool is_edge = (paths_.flags[path] & kEdgePath) != 0;
+      if (!paths_.jones.empty() && !is_edge && (leg.is_first || leg.is_last)) polarize(path, leg, direction, met);
     }
   }
 

@@ -18,6 +18,7 @@ using namespace testing;
 
 constexpr double kSphereTolerance = 0.005;  // relative
 constexpr double kDihedralTolerance = 0.2;  // dB, of the mean of 32 seeds
+constexpr double kSinglePrecision = 1e-6;   // relative, of the weights in a record
 constexpr int kSeeds = 32;
 constexpr double kHemisphereTolerance = 0.01;   // relative: three standard errors and 0.2 % of facets
 constexpr double kEnhancementTolerance = 0.05;  // three standard deviations over seeds, by interference of different legs
@@ -125,6 +126,15 @@ std::complex<double> double_bounce(double scattering, double specular_probabilit
   std::vector<uint8_t> keep;
   for (size_t i = 0; i < paths.offsets.size(); ++i) keep.push_back(paths.num_bounces[i] == 2 && paths.diffuse[i] == 0);
   return coherent_sum(paths.select(keep));
+}
+
+// What a face mirrors is followed whatever chance does to what it scatters: a field that leaves 1/sqrt(2) at either face has
+// no noise of its own.
+TEST(WeightRules, HalfDiffuseDihedralHasHalfTheFieldOfASmoothOneForEachSeed) {
+  for (uint64_t seed = 1; seed <= 3; ++seed) {
+    const std::complex<double> ratio = double_bounce(std::sqrt(0.5), 0.0, seed) / double_bounce(0.0, 0.0, seed);
+    EXPECT_NEAR(std::abs(ratio - 0.5), 0.0, kSinglePrecision) << seed;
+  }
 }
 
 // Half of the power scattered at each face leaves the field 1/sqrt(2) per face: -6.02 dB, however the ray chose.

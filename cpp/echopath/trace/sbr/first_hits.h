@@ -34,7 +34,9 @@ struct FirstHits {
   LaneValues specular_probability, diffuse_probability;     // of going on that way, if it does
   LaneValues receiver_reach;  // m^2: positive where the reflected ray meets the sphere around the receiver (plane_images.h)
   LaneVectors out;            // the direction in which it goes on
-  std::array<bool, kPacketSize> goes_on;  // whether the ray goes on at all
+  LaneVectors mirrored;       // the direction in which the surface mirrors it
+  std::array<bool, kPacketSize> goes_both_ways;  // mirrored always, scattered by chance
+  std::array<bool, kPacketSize> goes_on;         // whether the ray goes on at all
 
   // Returns the index of the lane's ray, and that in the random numbers of its hits: behind each sheet these are others,
   // unless they belong to the point at which the ray is aimed.
@@ -53,6 +55,18 @@ struct FirstHits {
   SurfaceResponse response(int lane) const {
     return {{gamma_re[lane], gamma_im[lane]}, coherent[lane], diffuse[lane], facet[lane]};
   }
+  // Returns whether the ray of a lane is both scattered, which is what `sample` tells, and mirrored.
+  bool is_split(int lane) const {
+    const auto k = static_cast<size_t>(lane);
+    return goes_on[k] && goes_both_ways[k] && !sample(lane).is_specular;
+  }
+  ScatterSample mirrored_sample(int lane) const {
+    ScatterSample sample;
+    sample.from = lifted[lane];
+    sample.direction = mirrored[lane];
+    sample.is_specular = true;
+    return sample;
+  }
   // Returns how the ray of a lane goes on.
   ScatterSample sample(int lane) const {
     static_assert(kRouletteBounce > 1, "first hits know of no roulette");
@@ -61,6 +75,7 @@ struct FirstHits {
     sample.direction = out[lane];
     sample.is_specular = samples.lobe_sample[lane] < specular_probability[lane];
     sample.lobe_probability = sample.is_specular ? specular_probability[lane] : diffuse_probability[lane];
+    if (sample.is_specular && goes_both_ways[static_cast<size_t>(lane)]) sample.lobe_probability = 1.0;
     return sample;
   }
 };

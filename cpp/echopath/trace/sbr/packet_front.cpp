@@ -35,6 +35,7 @@ ECHOPATH_INLINE void leave_lanes(FirstHits* first, VectorOf<double> receiver) {
     const VectorOf<double> to_receiver = receiver - first->hits.position.at(lane);
     first->receiver_reach[lane] = reach_of(to_receiver, specular, first->hits.distance[lane], first->densities[lane]);
     const VectorOf<double> diffuse = over_surface(normal, first->samples.lobe.at(lane));
+    first->mirrored.set(lane, specular);
     const double sample = first->samples.lobe_sample[lane], probability = first->specular_probability[lane];
     first->out.x[lane] = sample < probability ? specular.x : diffuse.x;
     first->out.y[lane] = sample < probability ? specular.y : diffuse.y;
@@ -168,11 +169,12 @@ bool PacketFront::meets_point(const FirstHits& first, int lane) const {
          (first.hits[lane].position - point.position).norm() <= context_.geometry.lift();
 }
 
-// Leaves the ray its part of the echo and of the ways on.
+// Leaves the ray its part of the echo and of the ways on: a ray of a lattice is mirrored, one aimed at a point scattered.
 void PacketFront::share_out(FirstHits& first, int lane) const {
   const auto k = static_cast<size_t>(lane);
   if (!context_.plan.has_aimed_points() || !first.is_owned[k]) return;
   (first.points ? first.coherent : first.diffuse)[lane] = 0.0;
+  if (first.goes_both_ways[k]) first.samples.lobe_sample[lane] = 0.0;
   const bool is_specular = first.samples.lobe_sample[lane] < first.specular_probability[lane];
   first.goes_on[k] = first.goes_on[k] && is_specular != (first.points != nullptr);
 }
@@ -185,7 +187,9 @@ void PacketFront::find_response(FirstHits& first, int lane) const {
                        ? PolarizationMode::kTe
                        : mode_along(model, context_.settings.polarization, first.directions[lane], first.hits.normal[lane]);
   const SurfaceResponse response = model.respond(first.cos_incidence[lane], first.modes[k]);
-  first.set_response(lane, response, first.is_owned[k] ? context_.probabilities(model, response) : kPassingOn);
+  const LobeProbabilities lobes = first.is_owned[k] ? context_.probabilities(model, response) : kPassingOn;
+  first.set_response(lane, response, lobes);
+  first.goes_both_ways[k] = !first.points && context_.goes_both_ways(model, lobes);
   first.goes_on[k] = context_.settings.max_bounces > 1 && response.gamma != 0.0;
   share_out(first, lane);
 }

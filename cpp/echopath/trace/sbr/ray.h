@@ -97,6 +97,7 @@ struct SurfaceHit {
 struct ScatterSample {
   Vec3 from, direction;
   bool is_specular = false;
+  bool is_split = false;              // it is scattered, and another ray is mirrored beside it
   double lobe_probability = 1.0;      // of leaving that way, where the ray goes on
   double survival_probability = 1.0;  // of going on
   bool ends = false;

@@ -49,16 +49,41 @@ void RayWalk<Weight>::shoot_lane(int lane, Scratch& scratch, PathBlock& block) c
   const FirstHits& first = scratch.first;
   block.current_batch = static_cast<uint8_t>(first.places.batches[k]);
   block.current_half = half_of_ray(first.ray(lane));
+  scratch.launch_index = first.index(lane);
+  scratch.num_branches = 0;
   if (context_.geometry.has_sheets()) return shoot_lane_among_sheets(lane, scratch, block);
-  RayHit met;
+  RayHit met, met_mirrored;
   const bool goes_on = first.goes_on[k] && meets(first.lifted[lane], first.out[lane], met, block);
+  const bool is_split = first.is_split(lane) && meets(first.lifted[lane], first.mirrored[lane], met_mirrored, block);
   const bool has_plain_hit = has_straight_legs_ && is_plain(first, lane);
   if (has_plain_hit) add_plain_echoes(lane, scratch, block);
-  if (has_plain_hit && !goes_on) return block.end_ray(&first.hits.met[k]);
+  if (has_plain_hit && !goes_on && !is_split) return block.end_ray(&first.hits.met[k]);
   start(lane, scratch);
   if (!has_plain_hit) connect(scratch, block);
-  if (goes_on && travel(first.sample(lane), met, scratch, block)) follow(scratch, block);
+  const auto go_on = [&] {
+    if (goes_on && travel(first.sample(lane), met, scratch, block)) follow(scratch, block);
+  };
+  if (!is_split) {
+    go_on();
+  } else {
+    take_beside(scratch, block, go_on);
+    if (travel(first.mirrored_sample(lane), met_mirrored, scratch, block)) follow(scratch, block);
+  }
   block.end_ray(scratch.ray.hits.data());
+}
+
+// Follows the ray that a surface scatters to its end, and goes back to the hit for the one that it mirrors, which has random
+// numbers of its own.
+template <class Weight>
+template <class GoOn>
+void RayWalk<Weight>::take_beside(Scratch& scratch, PathBlock& block, const GoOn& go_on) const {
+  const Ray ray = scratch.ray;
+  const SurfaceHit surface = scratch.surface;
+  go_on();
+  block.end_ray(scratch.ray.hits.data());
+  scratch.ray = ray;
+  scratch.surface = surface;
+  scratch.ray.index = scratch.launch_index + kBranchOfWalk * ++scratch.num_branches;
 }
 
 template <class Weight>
@@ -84,8 +109,17 @@ void RayWalk<Weight>::follow(Scratch& scratch, PathBlock& block) const {
   for (RayHit met;;) {
     connect(scratch, block);
     if (scratch.ray.depth == context_.settings.max_bounces) return;
-    const ScatterSample sample = scatterer_.sample(scratch.ray, scratch.surface, block.current_batch);
-    if (sample.ends || !meets(sample.from, sample.direction, met, block)) return;
+    ScatterSample sample = scatterer_.sample(scratch.ray, scratch.surface, block.current_batch);
+    if (sample.ends) return;
+    if (sample.is_split) {
+      if (meets(sample.from, sample.direction, met, block)) {
+        take_beside(scratch, block, [&] {
+          if (travel(sample, met, scratch, block)) follow(scratch, block);
+        });
+      }
+      sample = scatterer_.mirrored_beside(scratch.ray, scratch.surface, sample);
+    }
+    if (!meets(sample.from, sample.direction, met, block)) return;
     if (!travel(sample, met, scratch, block)) return;
   }
 }
@@ -126,12 +160,17 @@ bool RayWalk<Weight>::arrive(const RayHit& met, Scratch& scratch, PathBlock& blo
 template <class Weight>
 void RayWalk<Weight>::shoot_lane_among_sheets(int lane, Scratch& scratch, PathBlock& block) const {
   const bool has_plain_hit = has_straight_legs_ && is_plain(scratch.first, lane);
-  scratch.num_branches = 0;
   if (has_plain_hit) add_plain_echoes(lane, scratch, block);
   start(lane, scratch);
-  scratch.launch_index = scratch.ray.index;
   if (!has_plain_hit) connect(scratch, block);
-  if (scratch.first.goes_on[static_cast<size_t>(lane)]) go_on_among_sheets(scratch.first.sample(lane), scratch, block);
+  const FirstHits& first = scratch.first;
+  const auto go_on = [&] { go_on_among_sheets(first.sample(lane), scratch, block); };
+  if (first.is_split(lane)) {
+    take_beside(scratch, block, go_on);
+    go_on_among_sheets(first.mirrored_sample(lane), scratch, block);
+  } else if (first.goes_on[static_cast<size_t>(lane)]) {
+    go_on();
+  }
   block.end_ray(scratch.ray.hits.data());
 }
 
@@ -139,8 +178,13 @@ template <class Weight>
 void RayWalk<Weight>::follow_among_sheets(Scratch& scratch, PathBlock& block) const {
   connect(scratch, block);
   if (scratch.ray.depth == context_.settings.max_bounces) return;
-  const ScatterSample sample = scatterer_.sample(scratch.ray, scratch.surface, block.current_batch);
-  if (!sample.ends) go_on_among_sheets(sample, scratch, block);
+  ScatterSample sample = scatterer_.sample(scratch.ray, scratch.surface, block.current_batch);
+  if (sample.ends) return;
+  if (sample.is_split) {
+    take_beside(scratch, block, [&] { go_on_among_sheets(sample, scratch, block); });
+    sample = scatterer_.mirrored_beside(scratch.ray, scratch.surface, sample);
+  }
+  go_on_among_sheets(sample, scratch, block);
 }
 
 // Has the ray reflected at each sheet on its way, and carries it on behind the last one.

@@ -10,6 +10,8 @@ namespace echopath {
 // Joins the parts: PacketFront takes a packet of rays to its first hits, Scatterer and Arrivals take each ray to its next
 // hits, and Connector joins each hit to the receiver.
 //
+// A coherent ray that meets a surface that mirrors and scatters goes on both ways (goes_both_ways).
+//
 // A ray that meets sheets (Material::layers) is split: one ray is reflected at each sheet, and one goes on through all of
 // them to what lets nothing pass. Beyond kMostSplits sheets behind its first hit, a ray only goes on. What sheets do to what
 // passes is added to the record at its end (sheets/passes.h).
@@ -27,6 +29,8 @@ class RayWalk {
   void shoot_lane(int lane, Scratch& scratch, PathBlock& block) const;
   void add_plain_echoes(int lane, const Scratch& scratch, PathBlock& block) const;
   void start(int lane, Scratch& scratch) const;
+  template <class GoOn>
+  void take_beside(Scratch& scratch, PathBlock& block, const GoOn& go_on) const;
   void follow(Scratch& scratch, PathBlock& block) const;
   void connect(Scratch& scratch, PathBlock& block) const;
   bool meets(const Vec3& from, const Vec3& direction, RayHit& met, PathBlock& block, Sees sees = Sees::kOpaque,

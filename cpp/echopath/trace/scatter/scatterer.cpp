@@ -13,6 +13,10 @@ namespace {
 // A ray ends beyond this product of material areas (m^2 each), whose square root is part of the weight, in single precision.
 constexpr double kLargestArea = 1e60;
 
+Vec3 mirrored_direction(const Ray& ray, const SurfaceHit& surface) {
+  return packed(mirrored(unpacked(surface.point.normal), unpacked(ray.direction), surface.cos_incidence));
+}
+
 }  // namespace
 
 template <class Weight>
@@ -23,12 +27,23 @@ ScatterSample Scatterer<Weight>::sample(const Ray& ray, const SurfaceHit& surfac
   sample.survival_probability = survival_probability(response, ray.coherent ? ray.depth : ray.depth - ray.chain.first);
   sample.ends = surface.samples.survival_sample >= sample.survival_probability || std::norm(response.gamma) == 0;
   if (sample.ends) return sample;
+  const bool goes_both_ways = ray.coherent && context_.goes_both_ways(*surface.model, lobes);
   sample.is_specular = surface.samples.lobe_sample < lobes.specular;
-  sample.lobe_probability = sample.is_specular ? lobes.specular : lobes.diffuse;
-  const Vec3& normal = surface.point.normal;
-  sample.from = context_.geometry.lifted(surface.point.position, normal);
-  sample.direction = packed(sample.is_specular ? mirrored(unpacked(normal), unpacked(ray.direction), surface.cos_incidence)
-                                               : unpacked(lobe_direction(ray, surface, batch)));
+  sample.is_split = goes_both_ways && !sample.is_specular;
+  sample.lobe_probability = !sample.is_specular ? lobes.diffuse : goes_both_ways ? 1.0 : lobes.specular;
+  sample.from = context_.geometry.lifted(surface.point.position, surface.point.normal);
+  sample.direction = sample.is_specular ? mirrored_direction(ray, surface) : lobe_direction(ray, surface, batch);
+  return sample;
+}
+
+template <class Weight>
+ScatterSample Scatterer<Weight>::mirrored_beside(const Ray& ray, const SurfaceHit& surface,
+                                                 const ScatterSample& scattered) const {
+  ScatterSample sample = scattered;
+  sample.is_specular = true;
+  sample.is_split = false;
+  sample.lobe_probability = 1.0;
+  sample.direction = mirrored_direction(ray, surface);
   return sample;
 }
 

@@ -12,6 +12,8 @@ class Scatterer {
       : context_(context), legs_(legs), chains_(context), weight_(context) {}
   // Draws whether and where a ray goes on.
   ScatterSample sample(const Ray& ray, const SurfaceHit& surface, int batch) const;
+  // Returns how the ray goes on that the hit mirrors beside `scattered`, which is split.
+  ScatterSample mirrored_beside(const Ray& ray, const SurfaceHit& surface, const ScatterSample& scattered) const;
   // Turns the ray into the one that leaves the hit; returns false where that does not count. It is called only where the ray
   // meets something behind, because most rays meet nothing. `legs` are those of the hit.
   bool leave(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample, HitLegs& legs) const;

@@ -52,7 +52,7 @@ py::array mean_power_of(const RangeDoppler& map) {
 
 double noise_of_a_cell(const Radar& radar, const py::object& window) {
   const double sample_power = noise_power(radar) * (radar.waveform.real ? 2.0 : 1.0);
-  return cell_noise_power(sample_power, radar.waveform, as_window(window));
+  return cell_noise_power(sample_power, radar.waveform, as_map_windows(window));
 }
 
 py::array shares_of(const py::object& power) {

@@ -112,7 +112,7 @@ std::unique_ptr<PartPass> part_pass(const Paths& paths, const Radar& radar, cons
 
 py::list powers_of_pass(PartPass& pass, const PartPass::Sets& sets, const py::object& window, int zero_pad, double least,
                         const py::object& progress, const PartPass::Ranges& ranges) {
-  const Window taper = as_window(window);
+  const MapWindows taper = as_map_windows(window);
   py::list out;
   for (SetPower& of_set :
        run_job("families", progress, [&](Job& job) { return pass.powers(sets, taper, zero_pad, least, &job, ranges); })) {
@@ -131,7 +131,7 @@ py::list cubes_of_pass(PartPass& pass, const PartPass::Sets& sets, const py::obj
 
 py::array bounds_of_pass(PartPass& pass, const std::vector<uint32_t>& groups, const py::object& window, int zero_pad,
                          const py::object& progress) {
-  const Window taper = as_window(window);
+  const MapWindows taper = as_map_windows(window);
   std::vector<double> bounds =
       run_job("families", progress, [&](Job& job) { return pass.bounds(groups, taper, zero_pad, &job); });
   const auto rows = static_cast<py::ssize_t>(groups.size());

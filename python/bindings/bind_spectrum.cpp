@@ -19,7 +19,7 @@ namespace {
 
 RangeDoppler range_doppler_map(const py::object& cube, const Radar& radar, const py::object& window, int zero_pad) {
   const std::vector<std::complex<double>> values = as_cube(cube, radar);
-  const Window taper = as_window(window);
+  const MapWindows taper = as_map_windows(window);
   return run_job("range_doppler", py::none(), [&](Job& job) { return range_doppler(values, radar, taper, zero_pad, &job); });
 }
 
@@ -59,8 +59,9 @@ void bind_spectrum(py::module_& m) {
           "[range] in m, ascending from 0")
       .def_readonly("zero_pad", &RangeDoppler::zero_pad, "of both axes")
       .def_property_readonly(
-          "window", [](const RangeDoppler& self) { return window_value(self.window); },
-          "of both axes, as range_doppler takes it: a name, or (\"chebyshev\", sidelobe level in dB)")
+          "window", [](const RangeDoppler& self) { return map_windows_value(self.window); },
+          "as range_doppler takes it: a name or (\"chebyshev\", sidelobe level in dB) of both axes, or those of (range, "
+          "velocity)")
       .def_readonly("is_tdm_compensated", &RangeDoppler::is_tdm_compensated,
                     "whether compensate_tdm took out the phase between transmit slots")
       .def("__repr__", [](const RangeDoppler& self) { return text_of(self); });

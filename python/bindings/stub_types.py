@@ -6,7 +6,7 @@ import re
 REAL = "numpy.typing.NDArray[numpy.float64]"
 COMPLEX = "numpy.typing.NDArray[numpy.complex128]"
 INDEX = "numpy.typing.NDArray[numpy.int64]"
-WINDOW = "str | tuple[str, float]"
+WINDOW = "str | tuple[str, float] | tuple[str | tuple[str, float], str | tuple[str, float]]"
 PAIR = "tuple[float, float]"
 PATH = "str | os.PathLike[str]"
 REPLAY = "Literal['material', 'fermat']"

@@ -52,9 +52,11 @@ struct Codec<std::vector<Vec3>> {
 };
 
 template <>
-struct Codec<Window> {
-  static py::object state(const Window& window) { return window_value(window); }
-  static Window value(py::handle state, const char*) { return as_window(py::reinterpret_borrow<py::object>(state)); }
+struct Codec<MapWindows> {
+  static py::object state(const MapWindows& windows) { return map_windows_value(windows); }
+  static MapWindows value(py::handle state, const char*) {
+    return as_map_windows(py::reinterpret_borrow<py::object>(state));
+  }
 };
 
 template <class Number>

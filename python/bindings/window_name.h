@@ -27,4 +27,19 @@ inline py::object window_value(const Window& window) {
   return py::make_tuple(window.name(), window.sidelobe_db);
 }
 
+// The windows of a map: one for both axes, or a pair of them, (range, velocity).
+inline MapWindows as_map_windows(const py::object& value) {
+  const bool pair = (py::isinstance<py::tuple>(value) || py::isinstance<py::list>(value)) && py::len(value) == 2;
+  if (!pair) return as_window(value);
+  const py::sequence parts = value;
+  if (py::isinstance<py::float_>(parts[1]) || py::isinstance<py::int_>(parts[1])) return as_window(value);
+  return {as_window(parts[0]), as_window(parts[1])};
+}
+
+// The same back.
+inline py::object map_windows_value(const MapWindows& windows) {
+  if (windows.range == windows.velocity) return window_value(windows.range);
+  return py::make_tuple(window_value(windows.range), window_value(windows.velocity));
+}
+
 }  // namespace echopath::bindings

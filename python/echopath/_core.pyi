@@ -1513,9 +1513,9 @@ class RangeDoppler:
         [velocity] in m/s, ascending, receding positive
         """
     @property
-    def window(self) -> str | tuple[str, float]:
+    def window(self) -> str | tuple[str, float] | tuple[str | tuple[str, float], str | tuple[str, float]]:
         """
-        of both axes, as range_doppler takes it: a name, or ("chebyshev", sidelobe level in dB)
+        as range_doppler takes it: a name or ("chebyshev", sidelobe level in dB) of both axes, or those of (range, velocity)
         """
     @property
     def zero_pad(self) -> int:

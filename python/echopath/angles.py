@@ -5,6 +5,7 @@ from typing import Literal
 
 from . import _core
 from .checks import LARGEST_COUNT, ArrayLike, Progress, Window, array, checked, count, flag, one_of, optional, real
+from .checks import window as window_rule
 from .gates import gate
 
 BeamMethod = Literal["bartlett", "capon"]
@@ -16,7 +17,7 @@ _CELLS = array("[N, 2]", kind="whole")
 _BEAM_RULES = {
     "azimuth": _ANGLES, "elevation": _ANGLES, "method": one_of(BeamMethod), "overlaps": one_of(Overlaps), "compensate": flag,
     "diagonal_loading": real(1e-9, 1e3), "velocity_neighbours": count(0, 64), "range_neighbours": count(0, 64),
-    "forward_backward": flag}
+    "forward_backward": flag, "window": window_rule}
 
 
 @checked()
@@ -48,7 +49,7 @@ def compensate_tdm(spectrum: _core.RangeDoppler, radar: _core.Radar, fold: int =
     return _core.compensate_tdm(spectrum, radar, fold)
 
 
-@checked(overlaps=one_of(Overlaps), compensate=flag)
+@checked(overlaps=one_of(Overlaps), compensate=flag, window=window_rule)
 def angle_fft(spectrum: _core.RangeDoppler, radar: _core.Radar, *, window: Window = "hann", zero_pad: int = 4,
               overlaps: Overlaps = "average", compensate: bool = True, progress: Progress = None) -> _core.AngleSpectrum:
     """Angle spectra of a uniform array: a Fourier transform over its rows and columns.

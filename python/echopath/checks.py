@@ -27,6 +27,7 @@ Rule = Callable[[str, Any], Any]
 Progress = Callable[[str, float], object] | bool | None            # (stage, fraction from 0 to 1); True: bars
 WindowName = Literal["rect", "hann", "hamming", "blackman_harris"]
 Window = WindowName | tuple[Literal["chebyshev"], float]           # a name, or with its sidelobe level in dB
+MapWindow = Window | tuple[Window, Window]                         # of both axes of a map, or those of (range, velocity)
 
 LARGEST_SEED = 2**64 - 1
 LONGEST_NAME, LONGEST_PATH = 255, 4096  # bytes of the name of a file and of all folders with it
@@ -201,6 +202,14 @@ def window(argument: str, value):
     return str(value[0]), float(value[1])
 
 
+def map_window(argument: str, value):
+    """The windows of a map: one for both of its axes, or a pair of them, (of range, of velocity)."""
+    if not (isinstance(value, (tuple, list)) and len(value) == 2 and not _is_number(value[1])):
+        return window(argument, value)
+    of_range, of_velocity = (window(f"{argument}[{axis}]", one) for axis, one in enumerate(value))
+    return of_range if of_range == of_velocity else (of_range, of_velocity)
+
+
 # --- objects ---
 
 def an(*kinds: type, called: str = "") -> Rule:
@@ -321,7 +330,7 @@ def row_of_channel(paths_or_radar, tx: int, rx: int) -> None:
 # Rules of arguments that are the same wherever they are asked for.
 COMMON: dict[str, Rule] = {
     "radar": an(_core.Radar), "paths": an(_core.Paths), "scene": an(_core.Scene), "spectrum": an(_core.RangeDoppler),
-    "cube": array("[T, R, C, S]", kind="complex"), "window": window, "zero_pad": count(1, 64), "progress": progress,
+    "cube": array("[T, R, C, S]", kind="complex"), "window": map_window, "zero_pad": count(1, 64), "progress": progress,
     "seed": seed, "tx": count(0, LARGEST_COUNT), "rx": count(0, LARGEST_COUNT), "path": file,
 }
 
@@ -363,6 +372,6 @@ def _spread(argument: str, kind: type, given: dict, known: tuple) -> dict:
     return {name: getattr(holder, name) for name in holder.__dataclass_fields__ if name in known} | given
 
 
-__all__ = ["ArrayLike", "COMMON", "Progress", "Rule", "Window", "an", "anything", "array", "checked", "choice", "count",
-           "file", "flag", "is_writable", "keywords", "one_of", "optional", "path", "positive", "progress", "real", "refused",
-           "row_of_channel", "seed", "shown", "text", "vector", "window"]
+__all__ = ["ArrayLike", "COMMON", "MapWindow", "Progress", "Rule", "Window", "an", "anything", "array", "checked", "choice",
+           "count", "file", "flag", "is_writable", "keywords", "map_window", "one_of", "optional", "path", "positive",
+           "progress", "real", "refused", "row_of_channel", "seed", "shown", "text", "vector", "window"]

@@ -12,9 +12,9 @@ from collections.abc import Mapping
 from typing import Any, ClassVar, Literal, TypeVar, dataclass_transform
 
 from . import _core
-from .checks import LARGEST_COUNT, Rule, Window, count, flag, flag_or_auto, one_of, optional, positive, real
+from .checks import LARGEST_COUNT, MapWindow, Rule, count, flag, flag_or_auto, one_of, optional, positive, real
 from .checks import seed as seed_rule
-from .checks import window as window_rule
+from .checks import map_window as window_rule
 from .effect_choices import Choices, effects_rule
 from .families import Objects, objects_rule
 from .keywords import known_keywords, refuse_unknown
@@ -117,7 +117,7 @@ class SignalSettings(Settings):
     retrace: Retrace = "never"
     keyframes: int = 0
     noise_seed: int | None = 1
-    window: Window = "hann"
+    window: MapWindow = "hann"
     zero_pad: int = 1
 
     RULES: ClassVar[Mapping[str, Rule]] = {

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from . import _core
-from .checks import Progress, Window, anything, checked, flag
+from .checks import MapWindow, Progress, anything, checked, flag
 from .effect_choices import Choices
 from .frame import Frame
 from .frame_run import FrameRun
@@ -31,7 +31,7 @@ def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | 
              replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,
              phase_tolerance: float = SignalSettings.phase_tolerance, retrace: Retrace = SignalSettings.retrace,
              keyframes: int = SignalSettings.keyframes, noise_seed: int | None = SignalSettings.noise_seed,
-             window: Window = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad,
+             window: MapWindow = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad,
              angles: Mapping[str, Any] | None = None, labels: bool | LabelSettings | Mapping[str, Any] | None = None,
              detections: bool | Mapping[str, Any] | None = None, truth: bool | Mapping[str, Any] | None = None,
              guard: bool = True, trace: TraceSettings | None = None, signal: SignalSettings | None = None,

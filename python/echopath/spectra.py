@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import Literal
 
 from . import _core
-from .checks import LARGEST_COUNT, ArrayLike, Progress, Window, checked, count, one_of, optional, real
+from .checks import LARGEST_COUNT, ArrayLike, MapWindow, Progress, checked, count, one_of, optional, real
 from .settings import SignalSettings
 
 CfarMethod = Literal["ca", "os"]
@@ -18,13 +18,14 @@ FALSE_ALARM_RATE, RANK = 1e-6, 0.75
 
 
 @checked()
-def range_doppler(cube: ArrayLike, radar: _core.Radar, window: Window = SignalSettings.window,
+def range_doppler(cube: ArrayLike, radar: _core.Radar, window: MapWindow = SignalSettings.window,
                   zero_pad: int = SignalSettings.zero_pad) -> _core.RangeDoppler:
     """Range-Doppler maps of a cube, calibrated so that |value|^2 of a peak is received power in W.
 
     cube: [tx, rx, chirp, sample] in sqrt(W), of that radar
     radar: that of the cube
-    window: "rect", "hann", "hamming", "blackman_harris" or ("chebyshev", sidelobe level in dB), on both axes
+    window: "rect", "hann", "hamming", "blackman_harris" or ("chebyshev", sidelobe level in dB), on both axes; or a pair of
+        these, that of range and that of velocity, such as ("hann", ("chebyshev", 60))
     zero_pad: 1 to 64, transforms of so many times the samples and chirps
     Returns RangeDoppler with values [tx, rx, velocity, range]. The phase between transmit slots is left in.
     Raises TypeError or ValueError naming the argument.

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, Literal
 
 from . import _core
-from .checks import Window, an, anything, array, checked, count, flag, one_of, optional, path, refused, text, window
+from .checks import MapWindow, an, anything, array, checked, count, flag, map_window, one_of, optional, path, refused, text
 from .families import listed
 from .frame import Frame
 from .parts import Views, selection_rule
@@ -26,10 +26,10 @@ def _what(argument: str, value):
     raise refused(TypeError, argument, "a frame file or a Frame to view, or the scene of paths", value)
 
 
-@checked(what=_what, paths=optional(an(_core.Paths)), parts=optional(an(Mapping, called="a dict")), window=optional(window),
+@checked(what=_what, paths=optional(an(_core.Paths)), parts=optional(an(Mapping, called="a dict")), window=optional(map_window),
          **_REPLAY, state=optional(path), picture=optional(path), block=flag)
 def view(what: str | os.PathLike[str] | Frame | _core.Scene | None = None, paths: _core.Paths | None = None,
-         parts: Views = None, *, window: Window | None = None, zero_pad: int | None = None, evaluate: Evaluate | None = None,
+         parts: Views = None, *, window: MapWindow | None = None, zero_pad: int | None = None, evaluate: Evaluate | None = None,
          retrace: Retrace | None = None, keyframes: int | None = None, state: str | os.PathLike[str] | None = None,
          picture: str | os.PathLike[str] | None = None, block: bool = True) -> Any:
     """Opens the viewer: view(scene, paths, parts), view(frame) or view("frame.h5"); view() is an empty window.

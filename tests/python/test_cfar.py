@@ -15,7 +15,7 @@ METHODS = 0.1              # relative: the two statistics ask for nearly the sam
 
 @pytest.mark.parametrize("of_map", [
     NoiseMap("rect"), NoiseMap("hann"), NoiseMap(("chebyshev", 60)), NoiseMap("hann", receivers=3),
-    NoiseMap("hann", receivers=2, transmitters=2), NoiseMap("hann", real=True)], ids=str)
+    NoiseMap("hann", receivers=2, transmitters=2), NoiseMap("hann", real=True), NoiseMap(("hann", ("chebyshev", 60)))], ids=str)
 def test_false_alarms_come_at_the_rate_asked_for(of_map):
     """A million cells of noise; ten times as many in the benchmark. Also of real samples, and of antennas that take
     turns."""

@@ -220,7 +220,8 @@ def movers():
     return radar, paths, ep.synthesize(paths, radar)
 
 
-@pytest.mark.parametrize("window, zero_pad", [("hann", 1), ("rect", 1), ("hann", 2)])
+@pytest.mark.parametrize("window, zero_pad", [("hann", 1), ("rect", 1), ("hann", 2),
+                                              ((("chebyshev", 50), "rect"), 1)])
 def test_the_paths_behind_limbs_and_folded_speeds_are_found(movers, window, zero_pad):
     radar, paths, cube = movers
     spectrum = ep.range_doppler(ep.add_noise(cube, radar, seed=2), radar, window=window, zero_pad=zero_pad)

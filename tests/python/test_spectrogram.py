@@ -32,7 +32,8 @@ def random_cube(radar, seed=1):
 # --- against the map of one frame ---
 
 @pytest.mark.parametrize("real", [False, True])
-@pytest.mark.parametrize("window, bandwidth", [("hann", 1.5), ("rect", 1.0)])  # Harris 1978, table 1
+@pytest.mark.parametrize("window, bandwidth", [  # Harris 1978, table 1; that of range counts
+    ("hann", 1.5), ("rect", 1.0), (("rect", "hann"), 1.0), (("hann", "rect"), 1.5)])
 def test_a_window_over_the_whole_frame_is_the_map_of_the_frame(real, window, bandwidth):
     radar = build_radar(((0, 0, 0), (0, 0.01, 0)), ((0, 0, 0), (0, 0.02, 0)), num_chirps=25, real=real)
     cube = random_cube(radar)
@@ -46,7 +47,7 @@ def test_a_window_over_the_whole_frame_is_the_map_of_the_frame(real, window, ban
     assert finer.velocity[1::2] == pytest.approx(map.velocity) and finer.power[0, 1::2] == pytest.approx(expected, rel=ROUNDING)
 
 
-@pytest.mark.parametrize("window", ["hann", "rect", "blackman_harris"])
+@pytest.mark.parametrize("window", ["hann", "rect", "blackman_harris", ("hann", "rect"), ("rect", ("chebyshev", 60))])
 def test_a_point_gives_its_received_power(window):
     radar = build_radar(num_chirps=64)
     cell = ep.range_doppler(random_cube(radar), radar)

@@ -1,3 +1,5 @@
+import pickle
+
 import numpy as np
 import pytest
 
@@ -70,6 +72,33 @@ def test_map_equals_numpy():
     spacing = C / (2 * 77.5e9 * 32 * 2 * 30e-6)
     np.testing.assert_allclose(result.velocity, (np.arange(32) - 16) * spacing, rtol=ROUNDING, atol=ROUNDING)
     np.testing.assert_allclose(result.range, np.arange(1024) * C / 4e9, rtol=ROUNDING)
+
+
+PAIR = ("hann", ("chebyshev", 60))  # of range, of velocity
+
+
+def test_each_axis_may_have_its_own_window():
+    """The map is the two transforms of the cube times both tapers, written out; its noise has both bandwidths."""
+    radar = radar_of(num_chirps=32)
+    cube = np.random.default_rng(0).standard_normal((1, 1, 32, 512)) + 0j
+    tapers = [samples / samples.sum() for samples in (_core.window("chebyshev", 32, 60), _core.window("hann", 512))]
+    expected = np.fft.fftshift(np.fft.fft2(cube[0, 0] * np.outer(*tapers)), axes=0)
+    result = ep.range_doppler(cube, radar, window=PAIR)
+    np.testing.assert_allclose(result.values[0, 0], expected, atol=ROUNDING * np.abs(expected).max())
+    assert result.window == ("hann", ("chebyshev", 60.0))
+    assert ep.range_doppler(cube, radar, window=["hann", "hann"]).window == "hann"
+    bandwidths = [len(taper) * np.sum(taper**2) for taper in tapers]
+    noise = _core.noise_power(radar) * np.prod(bandwidths) / (32 * 512)
+    assert _core.cell_noise_power(radar, PAIR) == pytest.approx(noise, rel=ROUNDING)
+    assert pickle.loads(pickle.dumps(result)) == result
+
+
+@pytest.mark.parametrize("window, told", [
+    (("hann", "han"), r"window\[1\]: must be .* \(nearest: hann\), got 'han'"),
+    (("hann", "hann", "hann"), "window: must be"), ((("chebyshev", -3), "hann"), r"window\[0\]: must be")])
+def test_pairs_of_windows_are_checked(window, told):
+    with pytest.raises((TypeError, ValueError), match=told):
+        ep.range_doppler(np.zeros((1, 1, 128, 512)), radar_of(), window=window)
 
 
 def test_window_names():

@@ -128,12 +128,12 @@ struct MapTransform::Plan {
   std::vector<std::complex<double>> at_rest;  // [V], of chirps that are all 1
 };
 
-MapTransform::MapTransform(const Radar& radar, const Window& window, int zero_pad) {
+MapTransform::MapTransform(const Radar& radar, const MapWindows& window, int zero_pad) {
   check_map(radar, zero_pad);
   const ChirpSequence& waveform = radar.waveform;
   const int range_size = waveform.num_samples * zero_pad;
-  Plan plan{range_taper_of(waveform, window),
-            make_taper(window, waveform.num_chirps),
+  Plan plan{range_taper_of(waveform, window.range),
+            make_taper(window.velocity, waveform.num_chirps),
             Fft(range_size, FftDirection::kForward),
             Fft(waveform.num_chirps * zero_pad, FftDirection::kForward),
             static_cast<int64_t>(range_axis(waveform, range_size).size()),
@@ -178,7 +178,7 @@ void MapTransform::transform_still(const std::complex<double>* samples, std::vec
   }
 }
 
-RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const Radar& radar, const Window& window,
+RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const Radar& radar, const MapWindows& window,
                            int zero_pad, Job* job) {
   check_map(radar, zero_pad);
   const ChirpSequence& waveform = radar.waveform;
@@ -197,14 +197,14 @@ RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const
   map.velocity = velocity_axis(waveform, radar.num_slots(), doppler_size);
 
   const int64_t num_ranges = static_cast<int64_t>(map.range.size());
-  const Taper range_taper = range_taper_of(waveform, window);
-  const Taper doppler_taper = make_taper(window, waveform.num_chirps);
+  const Taper range_taper = range_taper_of(waveform, window.range);
+  const Taper doppler_taper = make_taper(window.velocity, waveform.num_chirps);
   const auto profiles = range_transform(cube, num_rows, range_taper, range_size, num_ranges, job);
   map.values = doppler_transform(profiles, num_maps, doppler_taper, doppler_size, num_ranges, job);
   return map;
 }
 
-RangeDoppler range_doppler(const std::vector<std::complex<double>>& cube, const Radar& radar, const Window& window,
+RangeDoppler range_doppler(const std::vector<std::complex<double>>& cube, const Radar& radar, const MapWindows& window,
                            int zero_pad, Job* job) {
   return range_doppler(cube.data(), static_cast<int64_t>(cube.size()), radar, window, zero_pad, job);
 }
@@ -225,10 +225,10 @@ std::vector<double> mean_power(const RangeDoppler& map, Job* job) {
   return power;
 }
 
-double cell_noise_power(double sample_power, const ChirpSequence& waveform, const Window& window) {
+double cell_noise_power(double sample_power, const ChirpSequence& waveform, const MapWindows& window) {
   const int num_samples = waveform.num_samples, num_chirps = waveform.num_chirps;
-  const double range_bandwidth = equivalent_noise_bandwidth(window_samples(window, num_samples));
-  const double doppler_bandwidth = equivalent_noise_bandwidth(window_samples(window, num_chirps));
+  const double range_bandwidth = equivalent_noise_bandwidth(window_samples(window.range, num_samples));
+  const double doppler_bandwidth = equivalent_noise_bandwidth(window_samples(window.velocity, num_chirps));
   return sample_power * range_bandwidth * doppler_bandwidth / (static_cast<double>(num_samples) * num_chirps);
 }
 

@@ -19,9 +19,9 @@ struct RangeDoppler {
   std::vector<double> velocity;              // [V] m/s, ascending, receding positive
   std::vector<double> range;                 // [R] m, ascending from 0
   std::vector<std::complex<double>> values;  // [tx, rx, V, R] sqrt(W): |peak|^2 is received power
-  Window window;                             // on both axes
-  int zero_pad = 1;                          // 1 to kMaxZeroPad
-  bool is_tdm_compensated = false;           // whether the phase between TDM slots has been taken out
+  MapWindows window;
+  int zero_pad = 1;                 // 1 to kMaxZeroPad
+  bool is_tdm_compensated = false;  // whether the phase between TDM slots has been taken out
 };
 
 // Returns the range of each bin for `num_bins` samples after padding, R = c f_b / (2 slope): all bins, or the lower half
@@ -35,9 +35,9 @@ std::vector<double> velocity_axis(const ChirpSequence& waveform, int num_slots, 
 // zero_pad times their number, and divides by the window sums (real samples: times sqrt 2, positive beat frequencies
 // only). The Doppler phase between TDM slots is left in. Runs in parallel over rows; the result does not depend on the
 // threads. Raises invalid_argument on a cube of another size than the radar's, or unless 1 <= zero_pad <= 64.
-RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const Radar& radar, const Window& window = {},
+RangeDoppler range_doppler(const std::complex<double>* cube, int64_t size, const Radar& radar, const MapWindows& window = {},
                            int zero_pad = 1, Job* job = nullptr);
-RangeDoppler range_doppler(const std::vector<std::complex<double>>& cube, const Radar& radar, const Window& window = {},
+RangeDoppler range_doppler(const std::vector<std::complex<double>>& cube, const Radar& radar, const MapWindows& window = {},
                            int zero_pad = 1, Job* job = nullptr);
 
 // Transforms the samples of one channel after the other, as range_doppler does those of all: with plans and tapers that
@@ -45,7 +45,7 @@ RangeDoppler range_doppler(const std::vector<std::complex<double>>& cube, const 
 class MapTransform {
  public:
   // Raises as range_doppler.
-  MapTransform(const Radar& radar, const Window& window, int zero_pad);
+  MapTransform(const Radar& radar, const MapWindows& window, int zero_pad);
   ~MapTransform();
   MapTransform(MapTransform&&) noexcept;
   int64_t num_velocities() const;
@@ -67,9 +67,9 @@ class MapTransform {
 std::vector<double> mean_power(const RangeDoppler& map, Job* job = nullptr);
 
 // Returns the mean power of white noise in a cell of a map, W: sample_power ENBW_range ENBW_velocity/(num_samples
-// num_chirps) with the equivalent noise bandwidths of the window (Harris 1978); padding does not change it. sample_power
+// num_chirps) with the equivalent noise bandwidths of the windows (Harris 1978); padding does not change it. sample_power
 // (W) is that of complex samples; give twice that of real ones, because a map holds their positive frequencies times sqrt
 // 2.
-double cell_noise_power(double sample_power, const ChirpSequence& waveform, const Window& window);
+double cell_noise_power(double sample_power, const ChirpSequence& waveform, const MapWindows& window);
 
 }  // namespace echopath

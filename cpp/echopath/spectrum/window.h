@@ -19,6 +19,16 @@ struct Window {
   bool operator==(const Window&) const = default;
 };
 
+// The windows along the two axes of a map. One window stands for both.
+struct MapWindows {
+  Window range, velocity;
+
+  MapWindows() = default;
+  MapWindows(const Window& both) : range(both), velocity(both) {}
+  MapWindows(const Window& of_range, const Window& of_velocity) : range(of_range), velocity(of_velocity) {}
+  bool operator==(const MapWindows&) const = default;
+};
+
 // Returns the samples [n], at most 1; {1} for n = 1. Cosine windows are periodic (w[i] = w[n - i] with period n: a DFT bin
 // grid sees exact gains such as 0.5 and 1.5 for Hann); Dolph-Chebyshev is symmetric (w[i] = w[n - 1 - i]), which its equal
 // sidelobes require. Raises invalid_argument unless n >= 1 and 20 <= sidelobe_db <= 300.

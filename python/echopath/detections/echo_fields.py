@@ -7,6 +7,7 @@ import numpy as np
 
 from .. import _core
 from ..path_cells import OUTSIDE, path_cells
+from ..windows import of_range, of_velocity, samples_of
 
 FLOOR_DB = 60.0        # below its peak, a window's response is followed so far
 STEPS_PER_BIN = 16     # of the table of responses, linear between them: 0.5 % of the peak
@@ -30,7 +31,7 @@ class Response:
     """
 
     def __init__(self, window, n: int, largest_sweep: float = 0.0, segments: int = 1):
-        samples = _window_samples(window, n)
+        samples = samples_of(window, n)
         self._n = n
         self._step = SWEEP_STEP * segments ** 2
         self._largest = min(largest_sweep, MAX_SWEEP)
@@ -159,11 +160,11 @@ class EchoFields:
     def _velocity_response(self) -> Response:
         num_chirps = self._paths.radar.waveform.num_chirps
         segments = int(np.clip(np.ceil(SEGMENTS_PER_BIN * self._largest("travel")), 1, min(MAX_SEGMENTS, num_chirps)))
-        return Response(self._spectrum.window, num_chirps, self._largest("sweep"), segments)
+        return Response(of_velocity(self._spectrum.window), num_chirps, self._largest("sweep"), segments)
 
     @cached_property
     def _range_response(self) -> Response:
-        return Response(self._spectrum.window, self._paths.radar.waveform.num_samples)
+        return Response(of_range(self._spectrum.window), self._paths.radar.waveform.num_samples)
 
     def _largest(self, name: str) -> float:
         return float(np.abs(self._echoes[name]).max(initial=0.0))
@@ -178,11 +179,6 @@ class EchoFields:
         first = np.searchsorted(number, rows + max(distance - far, 0))
         last = np.searchsorted(number, rows + min(distance + far, num_ranges - 1), side="right")
         return np.concatenate([np.arange(*pair) for pair in zip(first, last)])
-
-
-def _window_samples(window, n: int):
-    name, *level = (window,) if isinstance(window, str) else window
-    return _core.window(name, n, *level)
 
 
 def _reach(samples) -> int:

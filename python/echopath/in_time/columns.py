@@ -9,9 +9,10 @@ import numpy as np
 from .. import _core
 from ..angles import Combine, range_azimuth
 from ..azimuth_map import checked_settings, sees_azimuth
-from ..checks import ArrayLike, Window, anything, checked, one_of
+from ..checks import ArrayLike, MapWindow, anything, checked, one_of
 from ..gates import gate, in_gate
 from ..settings import SignalSettings
+from ..windows import of_range, of_velocity
 from .bursts import Burst, Channel, Frames, Part, bursts, chirp_period, text_of_part
 from .maps import AngleTime, RangeTime
 from .spectrogram import IN_TIME_RULES
@@ -24,7 +25,7 @@ _RULES = IN_TIME_RULES | {"combine": one_of(Combine)}
 @checked(**_RULES, velocity_gate=gate)
 def range_time(frames: Frames, radar: _core.Radar | None = None, *, combine: Combine = "sum",
                velocity_gate: ArrayLike | None = None, window_length: int | None = None, hop: int | None = None,
-               window: Window = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad, part: Part = None,
+               window: MapWindow = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad, part: Part = None,
                channel: Channel = None, start_times: ArrayLike | None = None) -> RangeTime:
     """Received power by time and range: of each frame's range-Doppler map, all velocities as one.
 
@@ -37,7 +38,7 @@ def range_time(frames: Frames, radar: _core.Radar | None = None, *, combine: Com
     Returns a RangeTime with power [times, range] in W. Raises TypeError, ValueError or IndexError naming the argument.
     """
     columns = _Columns(bursts(frames, radar, part=part, channel=channel, start_times=start_times), window_length, hop)
-    spread = noise_bandwidth(window, columns.length) * zero_pad
+    spread = noise_bandwidth(of_velocity(window), columns.length) * zero_pad
     empty = columns.one_map(np.zeros, window, zero_pad)
     inside = in_gate("velocity_gate", empty.velocity, velocity_gate, "m/s")
 
@@ -56,7 +57,7 @@ def range_time(frames: Frames, radar: _core.Radar | None = None, *, combine: Com
 def angle_time(frames: Frames, radar: _core.Radar | None = None, *, combine: Combine = "sum",
                range_gate: ArrayLike | None = None, velocity_gate: ArrayLike | None = None,
                angles: dict[str, Any] | None = None, window_length: int | None = None, hop: int | None = None,
-               window: Window = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad,
+               window: MapWindow = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad,
                part: Part = None, start_times: ArrayLike | None = None) -> AngleTime:
     """Received power by time and azimuth: of each frame's range-azimuth map, all ranges as one.
 
@@ -73,7 +74,7 @@ def angle_time(frames: Frames, radar: _core.Radar | None = None, *, combine: Com
     if not sees_azimuth(columns.radar):
         raise ValueError("frames: angle_time needs antennas side by side, got a radar that sees no azimuth")
     settings = checked_settings(columns.radar, angles, velocity_gate)
-    spread = noise_bandwidth(window, columns.radar.waveform.num_samples) * zero_pad
+    spread = noise_bandwidth(of_range(window), columns.radar.waveform.num_samples) * zero_pad
 
     def map_of(spectrum, one):
         return range_azimuth(spectrum, one, **settings)

@@ -6,9 +6,10 @@ from typing import Literal
 import numpy as np
 
 from .. import _core
-from ..checks import ArrayLike, Window, an, array, checked, count, flag, optional, refused
+from ..checks import ArrayLike, MapWindow, an, array, checked, count, flag, optional, refused
 from ..gates import gate, in_gate
 from ..settings import SignalSettings
+from ..windows import of_range
 from .bursts import Channel, Frames, Part, bursts, channel_rule, chirp_period, frames_rule, part_rule, text_of_part
 from .maps import Spectrogram
 from .stft import axes_of, noise_bandwidth, range_profiles, velocity_powers, with_chirps
@@ -35,7 +36,7 @@ def _span_rule(argument: str, value) -> SpanFrames:
 
 @checked(**IN_TIME_RULES, range_gate=gate, span_frames=_span_rule)
 def spectrogram(frames: Frames, radar: _core.Radar | None = None, *, window_length: int | None = None, hop: int | None = None,
-                window: Window = SignalSettings.window, range_gate: ArrayLike | None = None, part: Part = None,
+                window: MapWindow = SignalSettings.window, range_gate: ArrayLike | None = None, part: Part = None,
                 channel: Channel = None, zero_pad: int = SignalSettings.zero_pad, span_frames: SpanFrames = "auto",
                 start_times: ArrayLike | None = None) -> Spectrogram:
     """Micro-Doppler: received power by time and radial velocity, by short Fourier transforms over the chirps.
@@ -113,7 +114,7 @@ class _Stft:
         self._axes = axes_of(self._radar, self._length, self._zero_pad)
         self._inside = in_gate("range_gate", self._axes.range, self._gate, "m")
         waveform = self._radar.waveform
-        self._spread = noise_bandwidth(self._window, waveform.num_samples)
+        self._spread = noise_bandwidth(of_range(self._window), waveform.num_samples)
 
     def _end_train(self) -> None:
         profiles = np.concatenate(self._profiles, axis=2)

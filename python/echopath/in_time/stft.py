@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import _core
+from ..windows import of_range, of_velocity, samples_of
 
 _VALUES_AT_A_TIME = 1 << 22  # complex, of the transforms of some windows: 64 MiB
 
@@ -30,20 +31,15 @@ def axes_of(radar, num_chirps: int, zero_pad: int = 1) -> Axes:
     return Axes(velocity.copy(), _core.range_doppler(np.zeros(shape), one, "rect", 1).range.copy())
 
 
-def taper(window, count: int):
-    """Samples [count] of a window as `range_doppler` takes it."""
-    return _core.window(window, count) if isinstance(window, str) else _core.window(window[0], count, window[1])
-
-
 def noise_bandwidth(window, count: int) -> float:
-    """Equivalent noise bandwidth of a window in cells (Harris 1978, eq. 11): a point's power over all cells by its peak."""
-    weights = taper(window, count)
+    """Equivalent noise bandwidth of one window in cells (Harris 1978, eq. 11): a point's power over all cells by its peak."""
+    weights = samples_of(window, count)
     return count * float(np.sum(weights**2)) / float(np.sum(weights)) ** 2
 
 
 def range_profiles(cube, radar, window, inside):
     """The range stage of `range_doppler`, [tx, rx, chirp, N] complex in sqrt(W), of the ranges that `inside` [R] takes."""
-    weights = taper(window, cube.shape[-1])
+    weights = samples_of(of_range(window), cube.shape[-1])
     bins = np.fft.fft(cube * weights, axis=-1)[..., :len(inside)][..., inside]
     return bins * ((np.sqrt(2.0) if radar.waveform.real else 1.0) / np.sum(weights))
 
@@ -53,7 +49,7 @@ def velocity_powers(profiles, starts, window_length: int, window, zero_pad: int)
 
     starts: [T] indices of the first chirps of the windows
     """
-    weights, size = taper(window, window_length), window_length * zero_pad
+    weights, size = samples_of(of_velocity(window), window_length), window_length * zero_pad
     weights = weights / np.sum(weights)
     channels = profiles.reshape(-1, *profiles.shape[2:])
     power = np.zeros((len(starts), size))

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from .. import _core
-from ..checks import Progress, Window, an, anything, checked, count, positive, refused
+from ..checks import MapWindow, Progress, an, anything, checked, count, positive, refused
 from ..scene import Scene
 from ..edges import looks_for_edges
 from ..settings import (
@@ -54,7 +54,7 @@ class Live:
                  tolerance: float = SignalSettings.tolerance,
                  method: Method = SignalSettings.method, replay: Replay = SignalSettings.replay,
                  evaluate: Evaluate = SignalSettings.evaluate, phase_tolerance: float = SignalSettings.phase_tolerance,
-                 window: Window = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad):
+                 window: MapWindow = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad):
         self._trace = {"max_bounces": max_bounces, "seed": seed, "start_time": start_time, "polarization": polarization,
                        "footprint": footprint, "sampler": sampler,
                        "scatterers": "rays" if scatterers == "auto" else scatterers,
@@ -110,7 +110,7 @@ class Live:
             function(scene)
 
     @checked(self=anything, window=_RULES["window"], zero_pad=_RULES["zero_pad"])
-    def set_map(self, *, window: Window = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad) -> None:
+    def set_map(self, *, window: MapWindow = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad) -> None:
         """Has the next views use this window and zero_pad, as in `range_doppler`; neither rays nor signals change.
 
         Raises TypeError or ValueError naming the argument.

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import _core
-from ..checks import LARGEST_COUNT, Progress, Window, anything, checked, count, flag, one_of, real, refused
+from ..checks import LARGEST_COUNT, MapWindow, Progress, anything, checked, count, flag, one_of, real, refused
 from ..checks import path as folder_rule
 from ..effect_choices import Choices
 from ..frame import Frame
@@ -72,7 +72,7 @@ class Sequence(Row[Frame]):
                  replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,
                  phase_tolerance: float = SignalSettings.phase_tolerance, retrace: Retrace = SignalSettings.retrace,
                  keyframes: int = SignalSettings.keyframes, noise_seed: int | None = SignalSettings.noise_seed,
-                 window: Window = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad,
+                 window: MapWindow = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad,
                  angles: Mapping[str, Any] | None = None, labels: bool | LabelSettings | Mapping[str, Any] | None = None,
                  detections: bool | Mapping[str, Any] | None = None, truth: bool | Mapping[str, Any] | None = None,
                  guard: bool = True, trace: TraceSettings | None = None, signal: SignalSettings | None = None):

@@ -54,7 +54,7 @@ inline Radar line_radar(int count, int num_chirps = 8, int num_samples = 4) {
 // A map of zeros with the axes of the radar's.
 inline RangeDoppler empty_map(const Radar& radar) {
   RangeDoppler map;
-  map.window = {WindowKind::kRect};
+  map.window = Window{WindowKind::kRect};
   map.num_transmitters = static_cast<int>(radar.transmitters.size());
   map.num_receivers = static_cast<int>(radar.receivers.size());
   map.velocity = velocity_axis(radar.waveform, radar.num_slots(), radar.waveform.num_chirps);

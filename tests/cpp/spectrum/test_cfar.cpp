@@ -122,8 +122,8 @@ double exact_rate(const CfarDesign& design, int range, double factor) {
   const auto cells = training_cells(design.cells, range, noise.num_samples * noise.zero_pad);
   std::vector<Place> all = {{0, range}};
   all.insert(all.end(), cells.begin(), cells.end());
-  const auto velocity = window_samples(noise.window, noise.num_chirps);
-  const auto distance = window_samples(noise.window, noise.num_samples);
+  const auto velocity = window_samples(noise.window.velocity, noise.num_chirps);
+  const auto distance = window_samples(noise.window.range, noise.num_samples);
   const Eigen::Index n = static_cast<Eigen::Index>(all.size());
   Eigen::MatrixXcd covariance(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -323,9 +323,9 @@ TEST(Cfar, DoesNotDependOnTheNumberOfThreads) {
 TEST(Cfar, DefaultsFollowTheWindowAndFitTheMap) {
   Radar radar = radar_of(1);
   RangeDoppler map = testing::empty_map(radar);
-  map.window = {WindowKind::kHann};
+  map.window = Window{WindowKind::kHann};
   EXPECT_EQ(cfar_design(map, radar, {}).cells, (CfarWindow{2, 2, 4, 8}));
-  map.window = {WindowKind::kRect};
+  map.window = Window{WindowKind::kRect};
   EXPECT_EQ(cfar_design(map, radar, {}).cells, (CfarWindow{1, 1, 4, 8}));
   radar = testing::line_radar(1, 1, 40);
   EXPECT_EQ(cfar_design(testing::empty_map(radar), radar, {}).cells, (CfarWindow{0, 1, 0, 8}));
@@ -365,7 +365,7 @@ TEST(Cfar, BadInputNamesTheArgument) {
     test::expect_error<std::invalid_argument>([&] { cfar(map, radar, options); }, {name});
   }
   test::expect_error<std::invalid_argument>([&] { cfar(map, radar_of(2), {}); }, {"spectrum"});
-  map.window = {WindowKind::kHann};
+  map.window = Window{WindowKind::kHann};
   test::expect_error<std::invalid_argument>([&] { cfar(map, radar, small_options(CfarMethod::kCellAveraging)); },
                                             {"guard_velocity"});
   test::expect_error<std::invalid_argument>([&] { cfar_factors(design_of(WindowKind::kHann, 1, {2, 2, 20, 30}, 1e-3)); },

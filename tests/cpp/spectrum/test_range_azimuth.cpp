@@ -55,7 +55,7 @@ TEST(RangeAzimuth, PointsOfSeveralVelocitiesAddTheirPowersOrGiveTheLargest) {
   std::vector<Complex> cube(6 * kChirps * kSamples);
   add_tone(cube, radar, 7.0, 2.0, kLeft, 3.0);
   add_tone(cube, radar, 7.0, -5.0, kLeft, 1.0);
-  const RangeDoppler map = range_doppler(cube, radar, {WindowKind::kHann});
+  const RangeDoppler map = range_doppler(cube, radar, Window{WindowKind::kHann});
   EXPECT_NEAR(range_azimuth(map, radar, kGrid).power[2 * kSamples + 7], 10.0, kPower);
   BeamformOptions capon;
   capon.method = BeamMethod::kCapon;
@@ -71,7 +71,7 @@ TEST(RangeAzimuth, AGateTakesPointsOfItsVelocitiesAlone) {
   std::vector<Complex> cube(6 * kChirps * kSamples);
   add_tone(cube, radar, 7.0, 2.0, kLeft, 3.0);
   add_tone(cube, radar, 7.0, -5.0, kLeft, 1.0);
-  const RangeDoppler map = range_doppler(cube, radar, {WindowKind::kHann});
+  const RangeDoppler map = range_doppler(cube, radar, Window{WindowKind::kHann});
   const auto velocity = [&](int bin) { return map.velocity[kChirps / 2 + bin]; };
   BeamformOptions capon;
   capon.method = BeamMethod::kCapon;
@@ -97,7 +97,7 @@ TEST(RangeAzimuth, BothMethodsGiveTheMeanOverChirps) {
   const Radar radar = testing::line_radar(4, kChirps, kSamples);
   std::vector<Complex> cube(4 * kChirps * kSamples);
   for (size_t i = 0; i < cube.size(); ++i) cube[i] = std::polar(1.0, 0.7 * static_cast<double>(i * i % 101));
-  const RangeDoppler map = range_doppler(cube, radar, {WindowKind::kRect}, 2);
+  const RangeDoppler map = range_doppler(cube, radar, Window{WindowKind::kRect}, 2);
   const RangeAzimuth all = range_azimuth(map, radar, {{kLeft}, {0.0}});
   for (const int r : {0, 11, 50, 79}) {
     double mean = 0.0;
@@ -133,7 +133,7 @@ TEST(RangeAzimuth, CaponResolvesWhatBartlettDoesNot) {
   const double apart = 2.5 * testing::kDegree;
   add_tone(cube, radar, 7.0, 2.0, apart, 1.0);
   add_tone(cube, radar, 7.0, -4.0, -apart, 1.0);
-  const RangeDoppler map = range_doppler(cube, radar, {WindowKind::kHann});
+  const RangeDoppler map = range_doppler(cube, radar, Window{WindowKind::kHann});
   const AngleGrid grid{{-apart, 0.0, apart}, {0.0}};
   BeamformOptions options;
   const auto row = [&] {

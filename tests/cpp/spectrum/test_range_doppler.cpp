@@ -88,7 +88,7 @@ TEST(RangeDoppler, PeakIsReceivedPowerInEveryChannelAndWindow) {
 TEST(RangeDoppler, RealSamplesKeepHalfTheRangesAndThePower) {
   Radar radar = small_radar();
   radar.waveform.real = true;
-  const RangeDoppler map = range_doppler(tones(radar, 4.0, -3.0), radar, {WindowKind::kRect});
+  const RangeDoppler map = range_doppler(tones(radar, 4.0, -3.0), radar, Window{WindowKind::kRect});
   ASSERT_EQ(map.range.size(), 16u);
   EXPECT_NEAR(std::norm(map.values[(8 - 3) * 16 + 4]), 1.0, 10 * kRounding);
   EXPECT_LT(map.range.back(), radar.waveform.max_range());

@@ -9,6 +9,7 @@ import numpy as np
 import echopath as ep
 from echopath import _core
 from echopath.measures import SMALLEST_POWER, in_dbm
+from echopath.windows import of_range, of_velocity, samples_of
 
 MAX_BYTES = 2 << 30     # of the signals of all families, while they are made
 MAX_MIRRORS = 16        # told apart in the background: those that most paths touch
@@ -175,13 +176,12 @@ def cell_weights(waveform, range_index: int, velocity_index: int, *, window="han
     num_chirps, num_samples = waveform.num_chirps, waveform.num_samples
     doppler = velocity_index - num_chirps * zero_pad // 2
     scale = np.sqrt(2.0) if waveform.real else 1.0  # a real sample has half of its amplitude at positive frequencies
-    return (_taper(window, num_chirps) * _tone(doppler, num_chirps, zero_pad),
-            scale * _taper(window, num_samples) * _tone(range_index, num_samples, zero_pad))
+    return (_taper(of_velocity(window), num_chirps) * _tone(doppler, num_chirps, zero_pad),
+            scale * _taper(of_range(window), num_samples) * _tone(range_index, num_samples, zero_pad))
 
 
 def _taper(window, count: int):
-    name, *side_lobes = (window,) if isinstance(window, str) else window
-    samples = np.asarray(_core.window(name, count, *side_lobes))
+    samples = samples_of(window, count)
     return samples / samples.sum()
 
 

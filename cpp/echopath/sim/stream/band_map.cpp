@@ -87,17 +87,17 @@ ECHOPATH_INLINE void correlate_cells(const double* lanes, int64_t num_lanes, int
 
 }  // namespace
 
-BandMap::BandMap(const Radar& radar, const Window& window, int zero_pad, const SpreadMethod* spread)
+BandMap::BandMap(const Radar& radar, const MapWindows& window, int zero_pad, const SpreadMethod* spread)
     : spread_(spread), num_chirps_(radar.waveform.num_chirps), num_lanes_((num_chirps_ + kLanes - 1) / kLanes * kLanes),
       num_ranges_(static_cast<int64_t>(range_axis(radar.waveform, radar.waveform.num_samples * zero_pad).size())),
       num_bins_(int64_t{zero_pad} * radar.waveform.num_samples),
-      doppler_taper_(unit_taper(window, radar.waveform.num_chirps)),
+      doppler_taper_(unit_taper(window.velocity, radar.waveform.num_chirps)),
       doppler_fft_(radar.waveform.num_chirps * zero_pad, FftDirection::kForward) {
   if (!spread || radar.waveform.real) return;  // a real sample is not linear in the grid
   const SpreadGrid grid = spread->grid();
   const int64_t size = std::lcm(grid.size, num_bins_);
   if (size > kLongestTable) return;
-  std::vector<double> factor = unit_taper(window, radar.waveform.num_samples), square = grid.correction;
+  std::vector<double> factor = unit_taper(window.range, radar.waveform.num_samples), square = grid.correction;
   for (size_t n = 0; n < factor.size(); ++n) {
     factor[n] *= grid.correction[n];
     square[n] *= grid.correction[n];

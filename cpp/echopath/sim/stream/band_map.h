@@ -34,7 +34,7 @@ struct SummedGroups {
 class BandMap {
  public:
   // Raises as MapTransform. `spread` must outlive it; null: no signal is a band.
-  BandMap(const Radar& radar, const Window& window, int zero_pad, const SpreadMethod* spread);
+  BandMap(const Radar& radar, const MapWindows& window, int zero_pad, const SpreadMethod* spread);
 
   // Writes the power of some groups together, and returns true, where their rows set so few cells that this is quicker than
   // their samples. Cells of columns that can show no more than `least` W are 0, and so are those that are not `asked` for

@@ -135,7 +135,7 @@ void PartPass::run(const Sorted& sorted, bool as_one, Synthesizer* out, CellBoun
   stream_.set_job(nullptr);
 }
 
-std::vector<double> PartPass::bounds(std::span<const uint32_t> groups, const Window& window, int zero_pad, Job* job) {
+std::vector<double> PartPass::bounds(std::span<const uint32_t> groups, const MapWindows& window, int zero_pad, Job* job) {
   Sets alone;
   for (const uint32_t group : groups) alone.push_back({group});
   Sorted some = sorted(alone, false);
@@ -145,7 +145,7 @@ std::vector<double> PartPass::bounds(std::span<const uint32_t> groups, const Win
   run(some, true, adds_up_ ? &whole_ : nullptr, &bounds, job);
   std::vector<uint32_t> local;
   for (const uint32_t group : group_) local.push_back(some.local[group]);
-  return bounds.bounds(local, static_cast<uint32_t>(some.num_sets), window, zero_pad);
+  return bounds.bounds(local, static_cast<uint32_t>(some.num_sets), window.range, zero_pad);
 }
 
 std::vector<Cube> PartPass::cubes(const Sets& sets, Job* job) {
@@ -161,7 +161,7 @@ std::vector<Cube> PartPass::cubes(const Sets& sets, Job* job) {
   return cubes;
 }
 
-std::vector<SetPower> PartPass::powers(const Sets& sets, const Window& window, int zero_pad, double least, Job* job,
+std::vector<SetPower> PartPass::powers(const Sets& sets, const MapWindows& window, int zero_pad, double least, Job* job,
                                        const Ranges& ranges) {
   const MapTransform map(radar_, window, zero_pad);
   require(ranges.empty() || ranges.size() == sets.size(), "ranges", "must have one entry for each set", ranges.size());

@@ -39,13 +39,13 @@ class PartPass {
   // alone. Raises invalid_argument where the ranges do not match the sets and the map.
   static constexpr size_t kKeptSignals = size_t{64} << 20;  // bytes
   using Ranges = std::vector<std::vector<uint8_t>>;
-  std::vector<SetPower> powers(const Sets& sets, const Window& window, int zero_pad, double least, Job* job,
+  std::vector<SetPower> powers(const Sets& sets, const MapWindows& window, int zero_pad, double least, Job* job,
                                const Ranges& ranges = {});
   // Returns the signal of each set.
   std::vector<Cube> cubes(const Sets& sets, Job* job);
   // Adds some groups as one to the whole, where that is wanted, and returns bounds of what each can show (CellBounds):
   // [group, R] in W.
-  std::vector<double> bounds(std::span<const uint32_t> groups, const Window& window, int zero_pad, Job* job);
+  std::vector<double> bounds(std::span<const uint32_t> groups, const MapWindows& window, int zero_pad, Job* job);
   size_t group_bytes() const;
 
  private:

@@ -12,7 +12,7 @@ namespace {
 
 // Returns the ratio of a point's power to its sum over the velocities.
 double share_of_sum(const RangeDoppler& map, int num_chirps) {
-  const double bandwidth = equivalent_noise_bandwidth(window_samples(map.window, num_chirps));
+  const double bandwidth = equivalent_noise_bandwidth(window_samples(map.window.velocity, num_chirps));
   return num_chirps / (bandwidth * static_cast<double>(map.velocity.size()));
 }
 

@@ -112,8 +112,8 @@ CfarDesign cfar_design(const RangeDoppler& map, const Radar& radar, const CfarOp
       options.rank,
       {},
       {map.window, waveform.num_chirps, waveform.num_samples, map.zero_pad, map.num_transmitters * map.num_receivers}};
-  const int velocity_lobe = main_lobe_cells(map.window, waveform.num_chirps, map.zero_pad);
-  const int range_lobe = main_lobe_cells(map.window, waveform.num_samples, map.zero_pad);
+  const int velocity_lobe = main_lobe_cells(map.window.velocity, waveform.num_chirps, map.zero_pad);
+  const int range_lobe = main_lobe_cells(map.window.range, waveform.num_samples, map.zero_pad);
   const auto velocity = half_widths(options.guard_velocity, options.training_velocity, velocity_lobe,
                                     kTrainingVelocity * map.zero_pad, static_cast<int64_t>(map.velocity.size()));
   const auto range = half_widths(options.guard_range, options.training_range, range_lobe, kTrainingRange * map.zero_pad,

@@ -229,9 +229,9 @@ void CfarDesign::validate() const {
   require(num_cells <= kMaxCells, "training_range",
           "guard and training cells about one under test must be at most 2000 of an unpadded map, with training_velocity",
           num_cells);
-  require_guard(cells.guard_velocity, cells.training_velocity, main_lobe_cells(noise.window, noise.num_chirps, zero_pad),
-                "guard_velocity");
-  require_guard(cells.guard_range, cells.training_range, main_lobe_cells(noise.window, noise.num_samples, zero_pad),
+  require_guard(cells.guard_velocity, cells.training_velocity,
+                main_lobe_cells(noise.window.velocity, noise.num_chirps, zero_pad), "guard_velocity");
+  require_guard(cells.guard_range, cells.training_range, main_lobe_cells(noise.window.range, noise.num_samples, zero_pad),
                 "guard_range");
 }
 

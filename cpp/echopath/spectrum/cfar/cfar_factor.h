@@ -13,7 +13,7 @@ enum class CfarMethod { kCellAveraging, kOrderedStatistic };
 // Models the noise of a map: circular Gaussian cells, independent between channels, whose correlation is the product of
 // those along the axes.
 struct MapNoise {
-  Window window;
+  MapWindows window;
   int num_chirps = 1, num_samples = 1;
   int zero_pad = 1;
   int num_channels = 1;  // their powers are summed

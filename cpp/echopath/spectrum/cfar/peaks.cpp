@@ -18,8 +18,8 @@ class PeakFinder {
   PeakFinder(const RangeDoppler& map, const ChirpSequence& waveform, const std::vector<double>& power)
       : map_(map), power_(power), num_velocities_(static_cast<int64_t>(map.velocity.size())),
         num_ranges_(static_cast<int64_t>(map.range.size())), ranges_are_a_circle_(!waveform.real),
-        velocity_(window_samples(map.window, waveform.num_chirps), map.zero_pad),
-        range_(window_samples(map.window, waveform.num_samples), map.zero_pad) {}
+        velocity_(window_samples(map.window.velocity, waveform.num_chirps), map.zero_pad),
+        range_(window_samples(map.window.range, waveform.num_samples), map.zero_pad) {}
 
   bool is_top(const Cell& cell) const {
     for (int64_t v = -1; v <= 1; ++v) {

@@ -82,13 +82,14 @@ std::vector<double> noise_correlation(const std::vector<double>& samples, int ze
 TrainingNoise::TrainingNoise(const CfarDesign& design) : cells_(design.cells) {
   const MapNoise& noise = design.noise;
   const int rows = cells_.num_rows(), columns = cells_.num_columns();
-  const MatrixXd along_velocity = correlation_of(window_samples(noise.window, noise.num_chirps), noise.zero_pad, rows);
+  const MatrixXd along_velocity =
+      correlation_of(window_samples(noise.window.velocity, noise.num_chirps), noise.zero_pad, rows);
   const MatrixXd even = factor_of(along_velocity, symmetric_columns(rows, 1.0));
   const MatrixXd odd = factor_of(along_velocity, symmetric_columns(rows, -1.0));
   num_even_ = even.cols();
   velocity_factor_.resize(rows, even.cols() + odd.cols());
   velocity_factor_ << even, odd;
-  range_factor_ = factor_of(correlation_of(window_samples(noise.window, noise.num_samples), noise.zero_pad, columns),
+  range_factor_ = factor_of(correlation_of(window_samples(noise.window.range, noise.num_samples), noise.zero_pad, columns),
                             MatrixXd::Identity(columns, columns));
   inner_rows_ = form_of(velocity_factor_, {cells_.training_velocity, 2 * cells_.guard_velocity + 1});
   outer_rows_ = form_of(velocity_factor_, {0, rows}) - inner_rows_;

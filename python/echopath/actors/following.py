@@ -8,10 +8,10 @@ import numpy as np
 
 from .. import _core
 from ..checks import an, optional, refused
+from ..rotations import quaternions
 from ..trajectories.knots import curve_through
 from ..trajectories.profile import Profile
 from ..trajectories.trajectory import Trajectory
-from .human.rotations import quaternions
 
 WHEEL_TOLERANCE = 5e-6      # of quaternions: a tread 0.33 m from the axle errs by 3 micrometres
 STEERING_WAY = 1.5          # m before and behind, over which the curvature that a wheel steers by is averaged

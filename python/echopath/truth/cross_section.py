@@ -4,6 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
+from ..rotations import matrices
 
 
 def isotropic_power(radar, points, time: float):
@@ -25,13 +26,5 @@ def _leg(antenna, points) -> tuple:
     """(power gain, distance in m) [N] each, of an antenna toward points in the radar's frame."""
     ways = points - antenna.position
     distance = np.linalg.norm(ways, axis=1)
-    directions = ways / distance[:, None] @ _matrix(antenna.orientation)  # in the antenna's frame
+    directions = ways / distance[:, None] @ matrices(antenna.orientation)  # in the antenna's frame
     return (np.abs(antenna.pattern.field(directions)) ** 2 if len(points) else np.zeros(0)), distance
-
-
-def _matrix(quaternion):
-    """Rotation [3, 3] of a unit quaternion (w, x, y, z)."""
-    w, x, y, z = quaternion
-    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])

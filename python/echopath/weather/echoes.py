@@ -8,6 +8,7 @@ import numpy as np
 from .. import _core
 from ..effect_choices import RAIN_ECHOES, Choices, is_on
 from ..path_subset import HIT
+from ..rotations import matrices
 from ..signals import synthesize
 from ..transmit import signal_shape
 from .drops import DIAMETERS, fall_speeds, reflectivities
@@ -91,16 +92,8 @@ def _places(radar, time: float, origin, random):
 
 def _gains(radar, antenna, directions, time: float):
     """Power gain of an antenna toward directions [N, 3] in world axes."""
-    own = directions @ radar.world_from_radar(time)[:3, :3] @ _rotation(antenna.orientation)
+    own = directions @ radar.world_from_radar(time)[:3, :3] @ matrices(antenna.orientation)
     return np.abs(antenna.pattern.field(own))**2
-
-
-def _rotation(quaternion):
-    """[3, 3] of a unit quaternion (w, x, y, z)."""
-    w, x, y, z = quaternion
-    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
 
 
 def _mean_position(radar, antennas, time: float):

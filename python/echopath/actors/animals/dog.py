@@ -5,12 +5,12 @@ import numpy as np
 
 from ... import _core
 from ...checks import checked, positive, real, refused
+from ...rotations import about_y, about_z, quaternions
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
 from ..following import key_times, refuse_beside_trajectory, trajectory_rule, with_rates
 from ..human.gait import Frames
 from ..human.pedestrian import keyframe_times
-from ..human.rotations import about_y, about_z, quaternions
 from ..laid_line import LaidLine, usual_speed
 from ..shapes import capsule, ellipsoid
 

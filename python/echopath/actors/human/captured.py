@@ -9,6 +9,7 @@ import numpy as np
 from ... import _core
 from ...checks import checked, choice, optional, positive, real
 from ...meshes import UNIT
+from ...rotations import about_z, quaternions
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
 from ..following import key_times, refuse_beside_trajectory, trajectory_rule, with_rates
@@ -20,7 +21,6 @@ from .captured_joints import find_joints, missing_joints
 from .gait import Frames
 from .motion_capture import read_capture
 from .pedestrian import HEIGHTS, SKIN_PARTS, material_rule
-from .rotations import about_z, quaternions
 
 UNITS = (1.0, 0.01, 0.0254, 0.3048, 0.001, 0.0254 / 0.45)  # m: metre, cm, inch, foot, mm, that of the CMU conversions
 TYPICAL_HEIGHT = 1.75   # m

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ... import _core
+from ...rotations import about_z, matrices, product, quaternions
 from ...trajectories.path import second_derivatives
 from .gait import Frames
-from .rotations import about_z, quaternions
 
 MOST_FRAMES = 400        # that are held against each other
 SHORTEST = 0.4           # s, of a cycle
@@ -35,7 +35,7 @@ class CapturedCycle:
         """Frames of every part at shares [T] of a cycle, beyond 1 of the next ones."""
         origins, turns = (_periodic(values, shares) for values in (self.origins, self.turns))
         turns /= np.linalg.norm(turns, axis=-1, keepdims=True)
-        return {name: Frames(origins[:, index], _matrices(turns[:, index])) for index, name in enumerate(self.names)}
+        return {name: Frames(origins[:, index], matrices(turns[:, index])) for index, name in enumerate(self.names)}
 
 
 class CaptureAlong:
@@ -61,7 +61,7 @@ def cycle_of(frames: dict[str, Frames], times, path) -> CapturedCycle:
     shares = np.linspace(0.0, 1.0, len(origins))
     going = origins[0, :1] + shares[:, None, None] * (_level(origins[-1:, :1]) - _level(origins[:1, :1]))
     origins = (origins - _level(going)) @ ahead.T
-    turns = _product(quaternions(ahead[None])[0], turns)
+    turns = product(quaternions(ahead[None])[0], turns)
     origins = origins - shares[:, None, None] * (origins[-1] - origins[0])      # what is left between both ends is spread
     turns = turns * np.where(np.sum(turns[:1] * turns, axis=-1, keepdims=True) < 0.0, -1.0, 1.0)
     turns = turns - shares[:, None, None] * (turns[-1] - turns[0])
@@ -106,17 +106,3 @@ def _periodic(values, shares):
     a, k = 1.0 - b, k + OVERLAP
     found = a * table[k] + b * table[k + 1] + ((a**3 - a) * bends[k] + (b**3 - b) * bends[k + 1]) / 6.0
     return found.reshape(len(found), *values.shape[1:])
-
-
-def _product(p, q):
-    """Of quaternions [4] and [..., 4]."""
-    a, u, w, v = p[0], p[1:], q[..., :1], q[..., 1:]
-    return np.concatenate([a * w - np.sum(u * v, axis=-1, keepdims=True), a * v + w * u + np.cross(u, v)], axis=-1)
-
-
-def _matrices(q):
-    """[T, 3, 3] of unit quaternions [T, 4]."""
-    w, x, y, z = q.T
-    return np.stack([np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)], -1),
-                     np.stack([2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)], -1),
-                     np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], -1)], axis=-2)

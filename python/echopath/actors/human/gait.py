@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...rotations import about_x, about_y, about_z
 from .boulic import LIMIT, Cycle, Walk
 from .foot import Sole
-from .rotations import about_x, about_y, about_z
 from .steps import Steps
 
 MIN_KNEE = np.radians(7.0)     # least bend of a knee: near a straight leg its rate has no bound

@@ -6,9 +6,9 @@ from one to the next, and the legs are bent to reach it. A stop is reached with 
 """
 import numpy as np
 
+from ...rotations import about_y, about_z
 from ..laid_line import LaidLine
 from .gait import MIN_KNEE, Frames, bend_leg
-from .rotations import about_y, about_z
 
 LEAST_ROOM = 0.3        # m, of a leg under a hip
 

@@ -5,6 +5,7 @@ import numpy as np
 
 from ... import _core
 from ...checks import an, checked, positive, real, refused
+from ...rotations import quaternions
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
 from ..following import key_times, refuse_beside_trajectory, trajectory_rule, with_rates
@@ -14,7 +15,6 @@ from .anthropometry import Proportions
 from .body import surface
 from .gait import Frames, Gait, relative_speed_limit
 from .gait_along import GaitAlong
-from .rotations import quaternions
 
 LONGEST = 1e9                 # s
 MOST_KEYS = 200_000           # of a part

@@ -4,8 +4,8 @@ Frames are those of gait.py: T instants, axes x forward, y left, z up.
 """
 import numpy as np
 
+from ...rotations import about_x, about_y, about_z
 from .gait import ARM_ABDUCTION, Frames, bend_leg
-from .rotations import about_x, about_y, about_z
 
 STANDING_KNEE = np.radians(8.0)
 STANDING_ELBOW = np.radians(12.0)

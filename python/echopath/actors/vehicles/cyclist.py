@@ -7,6 +7,7 @@ import numpy as np
 
 from ... import _core
 from ...checks import checked, positive, real
+from ...rotations import about_y, quaternions
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
 from ..following import key_times, refuse_beside_trajectory, trajectory_rule, with_rates
@@ -15,7 +16,6 @@ from ..human.foot import Sole
 from ..human.gait import Frames
 from ..human.pedestrian import MIN_KEYFRAME_RATE, body_arrays, keyframe_times, material_rule
 from ..human.posture import leg, reaching_arm, trunk
-from ..human.rotations import about_y, quaternions
 from ..solids import block
 from ..surfaces import edge_length
 from .bicycle import CRANK, DEVELOPMENT, GRIP, PEDAL, Ride, bicycle_parts, pedal_corners, seat_point

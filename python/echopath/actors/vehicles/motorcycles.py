@@ -7,6 +7,7 @@ import numpy as np
 
 from ... import _core
 from ...checks import checked, flag, real
+from ...rotations import about_y
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, Part
 from ..following import trajectory_rule
@@ -14,7 +15,6 @@ from ..human.anthropometry import Proportions
 from ..human.gait import Frames
 from ..human.pedestrian import body_arrays
 from ..human.posture import leg, reaching_arm, trunk
-from ..human.rotations import about_y
 from ..lattice import rounded_box, rounded_parts
 from ..shapes import ellipsoid
 from ..solids import tube

@@ -4,8 +4,9 @@ from __future__ import annotations
 import numpy as np
 
 from ... import _core
+from ...rotations import matrices, product
 from .animations import Animation
-from .nodes import Nodes, matrix_of
+from .nodes import Nodes
 
 SMALLEST_VOLUME = 1e-300  # below, determinants are rounding
 MOVING = ("translation", "rotation", "scale")
@@ -55,7 +56,7 @@ class Motions:
             return rest, None
         place, turn, scale = self._nodes.parts(node)
         placement = np.eye(4)
-        placement[:3, :3] = matrix_of(turn) * scale
+        placement[:3, :3] = matrices(turn) * scale
         placement[:3, 3] = place
         if rotation is not None:
             back = turn * (1.0, -1.0, -1.0, -1.0)
@@ -125,11 +126,3 @@ def _is_flat(transform: np.ndarray) -> bool:
 
 def _changes(motion) -> bool:
     return any(curve is not None and len(curve.times) > 1 for curve in (motion.translation, motion.rotation, motion.scale))
-
-
-def product(p: np.ndarray, q: np.ndarray) -> np.ndarray:
-    """Quaternions p q, (w, x, y, z), row by row."""
-    w, x, y, z = np.moveaxis(p, -1, 0)
-    a, b, c, d = np.moveaxis(q, -1, 0)
-    return np.stack([w * a - x * b - y * c - z * d, w * b + x * a + y * d - z * c,
-                     w * c - x * d + y * a + z * b, w * d + x * c - y * b + z * a], axis=-1)

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...actors.human.rotations import quaternions
+from ...rotations import matrices, quaternions
 from ..axes import Axes
 from ..names import fit_name
 from .document import Document
@@ -95,7 +95,7 @@ class Nodes:
             return self.axes.matrices(matrix)
         translation, rotation, scale = self.parts(node)
         made = np.eye(4)
-        made[:3, :3] = matrix_of(rotation) * scale
+        made[:3, :3] = matrices(rotation) * scale
         made[:3, 3] = translation
         return made
 
@@ -133,11 +133,3 @@ class Nodes:
         if np.abs(matrices[:, 3] - (0.0, 0.0, 0.0, 1.0)).max() > 1e-4:
             item.fail("must hold matrices whose columns end with 0, 0, 0 and 1")
         return self.axes.matrices(matrices)
-
-
-def matrix_of(q: np.ndarray) -> np.ndarray:
-    """[3, 3] of a unit quaternion (w, x, y, z)."""
-    w, x, y, z = q
-    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])

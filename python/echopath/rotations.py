@@ -1,23 +1,28 @@
-"""Rotation matrices [T, 3, 3] about the axes, and their unit quaternions."""
+"""Rotations: matrices about the axes, unit quaternions (w, x, y, z), and the ways between both."""
+from __future__ import annotations
+
 import numpy as np
 
 
-def about_x(angle):
+def about_x(angle) -> np.ndarray:
+    """[T, 3, 3] about +x by angles [T] in rad."""
     c, s, zero, one = _entries(angle)
     return _matrix([[one, zero, zero], [zero, c, -s], [zero, s, c]])
 
 
-def about_y(angle):
+def about_y(angle) -> np.ndarray:
+    """[T, 3, 3] about +y by angles [T] in rad."""
     c, s, zero, one = _entries(angle)
     return _matrix([[c, zero, s], [zero, one, zero], [-s, zero, c]])
 
 
-def about_z(angle):
+def about_z(angle) -> np.ndarray:
+    """[T, 3, 3] about +z by angles [T] in rad."""
     c, s, zero, one = _entries(angle)
     return _matrix([[c, -s, zero], [s, c, zero], [zero, zero, one]])
 
 
-def quaternions(rotations):
+def quaternions(rotations) -> np.ndarray:
     """Unit quaternions [T, 4] (w, x, y, z) of rotations [T, 3, 3], without jumps of sign from one to the next."""
     r = np.asarray(rotations, dtype=float)
     # The columns below are those of 4 q q^T, written in the entries of the matrix (after Bar-Itzhack 2000): each is the
@@ -32,6 +37,22 @@ def quaternions(rotations):
     q = q / np.linalg.norm(q, axis=1)[:, None]
     flips = np.concatenate([[1.0 if q[0, 0] >= 0 else -1.0], np.sign(np.sum(q[1:] * q[:-1], axis=1))])
     return q * np.cumprod(flips)[:, None]
+
+
+def matrices(q) -> np.ndarray:
+    """Rotations [..., 3, 3] of unit quaternions [..., 4]."""
+    w, x, y, z = np.moveaxis(np.asarray(q, dtype=float), -1, 0)
+    return _matrix([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                    [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                    [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
+
+
+def product(p, q) -> np.ndarray:
+    """Quaternions p q, [..., 4], of p and q [..., 4]: the turn q, then p."""
+    w, x, y, z = np.moveaxis(p, -1, 0)
+    a, b, c, d = np.moveaxis(q, -1, 0)
+    return np.stack([w * a - x * b - y * c - z * d, w * b + x * a + y * d - z * c,
+                     w * c - x * d + y * a + z * b, w * d + x * c - y * b + z * a], axis=-1)
 
 
 def _entries(angle):

@@ -11,21 +11,24 @@ from .interrupts import heed, interrupts_are_kept
 
 
 @contextmanager
-def written_whole(path):
+def written_whole(path, suffix: str | None = None):
     """Yields the path of a temporary file beside `path` that takes its place when the block ends well.
 
-    Whatever ends the block early, Ctrl-C too, the temporary file is removed and `path` is left as it was. Both have the
-    same suffix. Raises ep.FileError when the folder or the file cannot be written.
+    Whatever ends the block early, Ctrl-C too, the temporary file is removed and `path` is left as it was. Only what ends the
+    process at once leaves it there.
+    suffix: of the temporary file, None: that of `path`
+    Raises ep.FileError when the folder or the file cannot be written.
     """
     with interrupts_are_kept():
-        yield from _written(Path(path))
+        yield from _written(Path(path), suffix)
 
 
-def _written(path: Path):
+def _written(path: Path, suffix: str | None):
     temporary = None
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix, dir=path.parent)
+        handle, temporary = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix if suffix is None else suffix,
+                                             dir=path.parent)
         os.close(handle)
         os.chmod(temporary, 0o666 & ~_umask())
         yield Path(temporary)

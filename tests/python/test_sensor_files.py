@@ -1,4 +1,7 @@
 """Configurations and raw data of TI sensors, read back by a tool of theirs (OpenRadar 1.0.1, unchanged)."""
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -51,7 +54,7 @@ def test_a_configuration_sets_up_its_radar(written):
 
 def test_what_says_nothing_of_the_signal_is_named_and_left_alone(written):
     sensor = ep.load_sensor(written())
-    assert sensor.ignored == ("adcbufCfg", "guiMonitor", "sensorStart")
+    assert sensor.ignored == ("guiMonitor", "sensorStart")
     assert (sensor.interval, sensor.num_frames, sensor.board, sensor.start_times) == (0.05, 0, "IWR6843ISK", (0.0,))
 
 
@@ -69,7 +72,7 @@ def virtual_places(board, tx, rx, written):
     lines += [f"chirpCfg {i} {i} 0 0 0 0 0 {1 << i}" for i in range(tx)] + [f"frameCfg 0 {tx - 1} 4 0 100 1 0"]
     radar = ep.load_radar(written("\n".join(lines)), board)
     places = np.array([[t.position + r.position for r in radar.receivers] for t in radar.transmitters])
-    return places / (0.5 * C / {"AWR2243_cascade": 76.8e9}.get(board, 62e9))
+    return places / (0.5 * C / {"AWR2243_cascade": 76.8e9, "AWR1843": 79e9, "IWR1443": 79e9}.get(board, 62e9))
 
 
 def test_virtual_elements_are_those_that_ti_publishes(written):
@@ -80,6 +83,11 @@ def test_virtual_elements_are_those_that_ti_publishes(written):
     aop = virtual_places("IWR6843AOP", 3, 4, written).reshape(12, 3)
     np.testing.assert_allclose(-aop[:, 1], [-1, -1, 0, 0, -3, -3, -2, -2, -1, -1, 0, 0], atol=1e-9)
     np.testing.assert_allclose(aop[:, 2], [-1, 0, -1, 0, -3, -2, -3, -2, -3, -2, -3, -2], atol=1e-9)
+    for board in ("AWR1843", "IWR1443"):  # gAntDef_default of the mmWave SDK counts downward
+        sent, heard = np.array([(0, 1), (2, 0), (4, 1)]), np.array([(0, 0), (1, 0), (2, 0), (3, 0)])
+        places = virtual_places(board, 3, 4, written)
+        np.testing.assert_allclose(places[..., 1], sent[:, None, 0] + heard[None, :, 0], atol=1e-9)
+        np.testing.assert_allclose(places[..., 2] - 1, -(sent[:, None, 1] + heard[None, :, 1]), atol=1e-9)
     cascade = virtual_places("AWR2243_cascade", 12, 16, written).reshape(-1, 3)
     level = np.round(cascade[np.abs(cascade[:, 2]) < 0.5, 1]).astype(int)
     assert len(set(level)) == 86
@@ -122,6 +130,7 @@ def test_signs_of_two_transmitters_are_bpm(written):
     (dict(channelCfg="channelCfg 15 1 0"), "sensor.cfg:8: chirpCfg: transmitters: 3 is not enabled"),
     (dict(channelCfg="channelCfg 31 5 0"), "sensor.cfg:3: channelCfg: receivers: must be a mask of the 4"),
     (dict(adcCfg="adcCfg 5 1"), "sensor.cfg:4: adcCfg: bits: must be 0, 1 or 2"),
+    (dict(adcbufCfg="adcbufCfg -1 0 x 1 1"), "sensor.cfg:5: adcbufCfg: swap: must be a number"),
     (dict(adcCfg="adcCfg 2.5 1"), "sensor.cfg:4: adcCfg: bits: must be a whole number"),
     (dict(frameCfg="frameCfg 0 2 32 0 50 1 0"), "sensor.cfg:9: frameCfg: chirp 2: has no chirpCfg"),
     (dict(frameCfg="sensorStop"), "sensor.cfg: has no frameCfg"),
@@ -196,6 +205,32 @@ def test_words_are_real_real_imaginary_imaginary_slot_by_slot(written, tmp_path)
         np.testing.assert_array_equal(words[:, tx, ..., 2:].reshape(32, 4, COUNT), expected[..., 1])
 
 
+def test_four_lanes_are_those_that_ti_reads(written, tmp_path):
+    """Eight words a sample: rows 1 to 4 are the real parts of the receivers, 5 to 8 their imaginary ones (SWRA581, xWR14xx)."""
+    radar = ep.load_radar(written(channelCfg="channelCfg 7 5 0"), "IWR1443")
+    assert radar.receiver.adc.lanes == 4
+    frame = frame_of(radar)
+    frame.save_raw(tmp_path / "one.bin")
+    rows = np.fromfile(tmp_path / "one.bin", "<i2").astype(float).reshape(-1, 8).T
+    samples = (rows[:4] + 1j * rows[4:]).reshape(4, 32, 2, COUNT)
+    codes = frame.received.codes.astype(float)
+    np.testing.assert_array_equal(np.moveaxis(samples[:3], 2, 0), np.moveaxis(codes[..., 0] + 1j * codes[..., 1], 1, 1))
+    assert not samples[3].any()
+
+
+def test_sensors_that_stream_by_themselves_may_have_q_first(written, tmp_path):
+    """SampleSwap 1 of adcbufCfg: the lower word is Q (RadarML/xwr reads QQII); it counts where lvdsStreamCfg streams samples."""
+    one, other = (ep.load_radar(written(CONFIGURATION + line)) for line in ("", "lvdsStreamCfg -1 0 1 0\n"))
+    assert not one.receiver.adc.q_first and other.receiver.adc.q_first
+    assert not ep.load_radar(written(CONFIGURATION + "lvdsStreamCfg -1 0 0 0\n")).receiver.adc.q_first
+    assert not ep.load_radar(written(CONFIGURATION + "lvdsStreamCfg -1 0 1 0\n", adcbufCfg="adcbufCfg 0 0 1 1")
+                             ).receiver.adc.q_first
+    for name, sensor in (("i.bin", one), ("q.bin", other)):
+        frame_of(sensor).save_raw(tmp_path / name)
+    first, second = (np.fromfile(tmp_path / name, "<i2").reshape(-1, 2, 2) for name in ("i.bin", "q.bin"))
+    np.testing.assert_array_equal(first, second[:, ::-1])
+
+
 def test_frames_follow_each_other_and_a_file_that_fails_is_not_written(written, tmp_path):
     sensor = ep.load_radar(written())
     scene = ep.Scene()
@@ -216,6 +251,42 @@ def test_frames_follow_each_other_and_a_file_that_fails_is_not_written(written, 
         ep.save_raw(failing(), tmp_path / "half.bin")
     assert sorted(one.name for one in tmp_path.glob("*.bin")) == ["second.bin", "two.bin"]
     assert not list(tmp_path.glob(".half*"))
+
+
+def run_alone(code, folder):
+    """The end of a process of its own, which writes frames of a radar into the folder."""
+    return subprocess.run([sys.executable, "-c", SETUP + code], cwd=folder, capture_output=True, text=True, timeout=60)
+
+
+SETUP = """
+import os, resource, signal
+import echopath as ep
+radar = ep.Radar(ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=64, sampling_rate=10e6, num_chirps=16,
+                                  chirp_interval=20e-6), transmitters=[ep.Antenna()], receivers=[ep.Antenna()])
+frame = ep.simulate(ep.Scene(), radar, num_rays=100)
+"""
+KILLED = """
+def frames():
+    yield frame
+    os.kill(os.getpid(), signal.SIGKILL)
+ep.save_raw(frames(), "two.bin")
+"""
+FULL = """
+resource.setrlimit(resource.RLIMIT_FSIZE, (5000, 5000))
+try:
+    ep.save_raw([frame, frame], "two.bin")
+except ep.FileError as error:
+    print(error)
+"""
+
+
+def test_processes_that_die_and_disks_that_are_full_leave_no_truncated_file(tmp_path):
+    """One frame has 4096 bytes: the second does not fit, or never comes."""
+    assert run_alone(KILLED, tmp_path).returncode == -9
+    assert not list(tmp_path.glob("*.bin")) and not list(tmp_path.glob(".*.bin"))
+    told = run_alone(FULL, tmp_path)
+    assert "two.bin: cannot be written (File too large)" in told.stdout, told.stderr
+    assert not list(tmp_path.glob("*.bin")) and len(list(tmp_path.glob(".*"))) == 1  # what the killed one left
 
 
 SCENE = """[radar]

@@ -88,6 +88,8 @@ class Adc(Settings):
     gain_db: dB from the antenna to the converter; automatic_gain: chosen anew for each frame instead, so that its largest
         sample stays headroom_db (dB, 0 or more) below full scale, in steps of gain_step_db (dB, 0: any gain)
     clock_jitter: s, rms deviation of the sampling instants
+    lanes: 2 or 4, of the sensor's serial port, which order the words of raw files; q_first: whether Q stands before I there
+        (see `sensor_files/raw.py`)
     Raises TypeError or ValueError naming the keyword. Values are frozen; two with equal values are equal.
     """
 
@@ -98,10 +100,18 @@ class Adc(Settings):
     headroom_db: float = 6.0
     gain_step_db: float = 2.0
     clock_jitter: float = 0.0
+    lanes: int = 2
+    q_first: bool = False
 
     RULES: ClassVar[Mapping[str, Rule]] = {
         "bits": count(2, 16), "full_scale_dbm": real(unit="dBm"), "gain_db": real(unit="dB"), "automatic_gain": flag,
-        "headroom_db": real(0.0, unit="dB"), "gain_step_db": real(0.0, unit="dB"), "clock_jitter": real(0.0, unit="s")}
+        "headroom_db": real(0.0, unit="dB"), "gain_step_db": real(0.0, unit="dB"), "clock_jitter": real(0.0, unit="s"),
+        "lanes": count(2, 4), "q_first": flag}
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.lanes == 3:
+            raise refused(ValueError, "lanes", "2 or 4", self.lanes)
 
 
 @settings_class

@@ -13,7 +13,7 @@ class Board(NamedTuple):
     """A board.
 
     name: of its file; transmitters, receivers: Antenna, in the order of its channels; transmit_power: W; noise_figure_db: dB
-    platforms: what configurations call it
+    platforms: what configurations call it; lanes: of its serial port
     """
 
     name: str
@@ -22,6 +22,7 @@ class Board(NamedTuple):
     transmit_power: float
     noise_figure_db: float
     platforms: tuple
+    lanes: int
 
 
 def board_names() -> list[str]:
@@ -36,7 +37,7 @@ def read_board(name: str) -> Board:
     table = tomllib.loads((data_folder("radars") / f"{name}.toml").read_text(encoding="utf-8"))
     step = 0.5 * _core.speed_of_light / table["design_frequency"]
     return Board(name, *(_antennas(table[side], step) for side in ("transmitters", "receivers")),
-                 table["transmit_power"], table["noise_figure_db"], tuple(table["platforms"]))
+                 table["transmit_power"], table["noise_figure_db"], tuple(table["platforms"]), table["lanes"])
 
 
 def board_of_platform(platform: str) -> Board | None:

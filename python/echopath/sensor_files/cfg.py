@@ -12,6 +12,8 @@ ARGUMENTS = {
     "dfeDataOutputMode": ("mode",),
     "channelCfg": ("receivers", "transmitters", "cascading"),
     "adcCfg": ("bits", "format"),
+    "adcbufCfg": ("subframe", "format", "swap", "interleave", "threshold"),
+    "lvdsStreamCfg": ("subframe", "header", "data", "software"),
     "profileCfg": ("profile", "start_ghz", "idle_us", "adc_start_us", "ramp_end_us", "power_backoff", "phase_shifter",
                    "slope_mhz_us", "tx_start_us", "num_samples", "rate_ksps", "high_pass_1", "high_pass_2", "gain_db"),
     "chirpCfg": ("first", "last", "profile", "start_hz", "slope_khz_us", "idle_us", "adc_start_us", "transmitters"),
@@ -23,9 +25,9 @@ ARGUMENTS = {
 }
 _WHOLE = {"mode", "receivers", "transmitters", "cascading", "bits", "format", "profile", "num_samples", "high_pass_1",
           "high_pass_2", "first", "last", "num_loops", "num_frames", "num_subframes", "subframe", "num_chirps", "num_bursts",
-          "num_burst_loops", "second", "enabled", "forced_profile", "first_offset"}
+          "num_burst_loops", "second", "enabled", "forced_profile", "first_offset", "swap", "header", "data"}
 # Of newer firmware a period may be missing behind the loops, and some of the last ones may be left out.
-_OPTIONAL = {"frameCfg": 5, "advFrameCfg": 3, "channelCfg": 2}
+_OPTIONAL = {"frameCfg": 5, "advFrameCfg": 3, "channelCfg": 2, "adcbufCfg": 4, "lvdsStreamCfg": 3}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -91,6 +93,8 @@ def _values(words: list[str], line: int, path: Path) -> dict:
     least = _OPTIONAL.get(name, len(names))
     if len(words) - 1 < least:
         raise command.error(f"must have {least} arguments ({', '.join(names)}), got {len(words) - 1}")
+    if name == "adcbufCfg" and len(words) - 1 == least:  # of the first firmware: of all sub-frames
+        words = [name, "-1", *words[1:]]
     values = {}
     for argument, word in zip(names, words[1:]):
         values[argument] = _number(argument, word, command)

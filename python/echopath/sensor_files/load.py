@@ -10,7 +10,7 @@ from ..checks import checked, flag, optional, refused, text
 from ..checks import count as count_rule
 from ..receiver import Adc, Receiver
 from .boards import Board, board_names, board_of_platform, read_board
-from .cfg import Lines, read_lines
+from .cfg import Command, Lines, read_lines
 from .frames import FramePlan, plans_of
 from .slots import SlotTable
 
@@ -43,7 +43,8 @@ def load_sensor(path: str | os.PathLike[str], board: str | None = None, *, ideal
     """Reads the configuration of a TI mmWave sensor (.cfg): all of its sub-frames.
 
     The commands profileCfg, chirpCfg, frameCfg, advFrameCfg, subFrameCfg, channelCfg, adcCfg, bpmCfg and dfeDataOutputMode
-    count; `ignored` names the others. Transmitters that take turns make "tdm", two by bpmCfg "bpm". start_frequency is that of
+    count, and of adcbufCfg and lvdsStreamCfg which of I and Q comes first where the sensor streams its samples itself; `ignored`
+    names the others. Transmitters that take turns make "tdm", two by bpmCfg "bpm". start_frequency is that of
     the first sample. Chirps that differ in start frequency, slope or idle time become steps of the waveform.
     path: of the file
     board: "IWR1443", "AWR1843", "IWR6843ISK", "IWR6843AOP" or "AWR2243_cascade"; None: as the file's line "Platform" says
@@ -95,7 +96,7 @@ def _radar(lines: Lines, board: Board, plan: FramePlan, ideal: bool) -> _core.Ra
         return _core.Radar(waveform, transmitters=[board.transmitters[i] for i in code.order], receivers=antennas,
                            transmit_power=board.transmit_power, noise_figure_db=board.noise_figure_db,
                            multiplexing=code.kind, code_phases=code.phases,
-                           receiver=None if ideal else _receiver(lines, slots))
+                           receiver=None if ideal else _receiver(lines, slots, plan, board))
     except ValueError as error:
         raise slots.error(str(error)) from None
 
@@ -109,7 +110,7 @@ def _antennas_of(lines: Lines, board: Board) -> list:
     return [board.receivers[i] for i in chosen]
 
 
-def _receiver(lines: Lines, slots: SlotTable):
+def _receiver(lines: Lines, slots: SlotTable, plan: FramePlan, board: Board):
     profile, adc = slots.profile, lines.one("adcCfg")
     corners = []
     for name, known in (("high_pass_1", HIGH_PASS_1), ("high_pass_2", HIGH_PASS_2)):
@@ -119,7 +120,19 @@ def _receiver(lines: Lines, slots: SlotTable):
     if not 0 <= adc["bits"] < len(BITS):
         raise adc.error(f"bits: must be 0, 1 or 2 for {BITS} bits, got {adc['bits']}")
     gain_db = float(int(profile["gain_db"]) & _RF_GAIN_BITS)
-    return Receiver(high_pass=corners, adc=Adc(bits=BITS[adc["bits"]], gain_db=gain_db))
+    return Receiver(high_pass=corners, adc=Adc(bits=BITS[adc["bits"]], gain_db=gain_db, lanes=board.lanes,
+                                               q_first=_is_q_first(lines, plan.subframe)))
+
+
+def _is_q_first(lines: Lines, subframe: int) -> bool:
+    """Whether the sensor streams Q before I: by adcbufCfg, where lvdsStreamCfg has it stream its samples (data format 1)."""
+    streams, buffers = (_of_subframe(lines, name, subframe) for name in ("lvdsStreamCfg", "adcbufCfg"))
+    return streams is not None and streams["data"] == 1 and buffers is not None and buffers["swap"] == 1
+
+
+def _of_subframe(lines: Lines, name: str, subframe: int) -> Command | None:
+    found = [command for command in lines.of(name) if command["subframe"] in (-1, subframe)]
+    return found[-1] if found else None
 
 
 def _is_real(lines: Lines) -> bool:

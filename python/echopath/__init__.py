@@ -36,6 +36,7 @@ from .in_time import (
     AngleTime, RangeTime, Spectrogram, SpectrogramLabels, angle_time, range_time, spectrogram, spectrogram_labels,
 )
 from .interference import interference, interference_radar
+from .interferers import Interferer
 from .labels import GhostLabel, Labels, ObjectLabel, annotate, annotate_frame, save_label_images
 from .live import Live, LiveView, Watch
 from .materials import materials
@@ -75,24 +76,25 @@ __all__ = [
     "Actor", "Adc", "AngleEstimates", "AngleSpectrum", "AngleTime", "Antenna", "AntennaPattern", "BeamPower",
     "CfarResult", "Check", "ChirpSequence", "CoplanarOverlap", "CosinePower", "Curve", "CurveMotion", "Deformation",
     "Detections", "DeviceError", "Effect", "Families", "Family", "FileError", "Frame", "FrameMaps", "GainTable",
-    "GhostLabel", "GuardWarning", "Interval", "Isotropic", "Joint", "KeyframeMotion", "LabelSettings", "Labels", "Lane",
-    "Layer", "LinearMotion", "Live", "LiveView", "Material", "Mesh", "Model", "ModelNode", "MorphTargets", "Motion",
-    "ObjectLabel", "ObjectValidity", "ObjectVisibility", "Part", "Parts", "PathCells", "Paths", "PhaseNoise", "Radar",
-    "RangeAzimuth", "RangeDoppler", "RangeTime", "ReceivedPower", "Receiver", "Reception", "Renewal", "SavedFrame",
-    "Scene", "SceneFile", "SceneNode", "Selection", "SensorConfig", "Sequence", "SheetCoefficients", "Sight",
-    "SignalProbe", "SignalSettings", "Skin", "Spectrogram", "SpectrogramLabels", "StoredSequence", "Stratum",
-    "TessellationWarning", "TraceFrame", "TraceSettings", "TraceStatistics", "Tracks", "Traffic", "Trajectory", "Truth",
-    "Unresolved", "Validity", "ValidityShares", "VertexSequence", "VirtualArray", "Watch", "Weather", "actors",
-    "add_noise", "add_traffic", "angle_fft", "angle_time", "annotate", "annotate_frame", "beamform", "boltzmann", "cfar",
-    "check_rays", "check_signal", "compensate_tdm", "decompose", "demultiplex", "detect", "detect_frame", "effects",
-    "estimate_angles", "families", "first", "foreign_materials", "hits", "interference", "interference_radar", "last",
-    "load_antenna", "load_frame", "load_labels", "load_mesh", "load_meshes", "load_model", "load_radar", "load_scene",
-    "load_sensor", "load_sequence", "materials", "mesh_from", "mie_rcs", "music", "num_bounces", "num_threads", "passes",
-    "path_cells", "plot_rays", "plots", "power", "power_by_chirp", "range_azimuth", "range_doppler", "range_time", "rcs",
-    "read_trajectories", "receive", "received_power", "received_powers", "remove_clutter", "renew", "save_frame",
-    "save_label_images", "save_labels", "save_raw", "set_num_threads", "sheet_coefficients", "simulate", "spectrogram",
-    "spectrogram_labels", "speed_of_light", "synthesize", "trace", "track", "truth", "unresolved", "validity", "view",
-    "virtual_array", "visibility",
+    "GhostLabel", "GuardWarning", "Interferer", "Interval", "Isotropic", "Joint", "KeyframeMotion", "LabelSettings",
+    "Labels", "Lane", "Layer", "LinearMotion", "Live", "LiveView", "Material", "Mesh", "Model", "ModelNode",
+    "MorphTargets", "Motion", "ObjectLabel", "ObjectValidity", "ObjectVisibility", "Part", "Parts", "PathCells",
+    "Paths", "PhaseNoise", "Radar", "RangeAzimuth", "RangeDoppler", "RangeTime", "ReceivedPower", "Receiver",
+    "Reception", "Renewal", "SavedFrame", "Scene", "SceneFile", "SceneNode", "Selection", "SensorConfig", "Sequence",
+    "SheetCoefficients", "Sight", "SignalProbe", "SignalSettings", "Skin", "Spectrogram", "SpectrogramLabels",
+    "StoredSequence", "Stratum", "TessellationWarning", "TraceFrame", "TraceSettings", "TraceStatistics", "Tracks",
+    "Traffic", "Trajectory", "Truth", "Unresolved", "Validity", "ValidityShares", "VertexSequence", "VirtualArray",
+    "Watch", "Weather", "actors", "add_noise", "add_traffic", "angle_fft", "angle_time", "annotate", "annotate_frame",
+    "beamform", "boltzmann", "cfar", "check_rays", "check_signal", "compensate_tdm", "decompose", "demultiplex",
+    "detect", "detect_frame", "effects", "estimate_angles", "families", "first", "foreign_materials", "hits",
+    "interference", "interference_radar", "last", "load_antenna", "load_frame", "load_labels", "load_mesh",
+    "load_meshes", "load_model", "load_radar", "load_scene", "load_sensor", "load_sequence", "materials", "mesh_from",
+    "mie_rcs", "music", "num_bounces", "num_threads", "passes", "path_cells", "plot_rays", "plots", "power",
+    "power_by_chirp", "range_azimuth", "range_doppler", "range_time", "rcs", "read_trajectories", "receive",
+    "received_power", "received_powers", "remove_clutter", "renew", "save_frame", "save_label_images", "save_labels",
+    "save_raw", "set_num_threads", "sheet_coefficients", "simulate", "spectrogram", "spectrogram_labels",
+    "speed_of_light", "synthesize", "trace", "track", "truth", "unresolved", "validity", "view", "virtual_array",
+    "visibility",
 ]
 
 

@@ -6,8 +6,8 @@ from typing import Literal
 
 from .checks import refused, shown
 
-ATTENUATION, RAIN_ECHOES = "attenuation by weather", "echoes of rain"
-SWITCHED = (ATTENUATION, RAIN_ECHOES)
+ATTENUATION, RAIN_ECHOES, INTERFERENCE = "attenuation by weather", "echoes of rain", "interference"
+SWITCHED = (ATTENUATION, RAIN_ECHOES, INTERFERENCE)
 Choice = bool | Literal["auto"]
 Choices = Mapping[str, Choice] | tuple[tuple[str, Choice], ...]
 
@@ -17,7 +17,7 @@ def effects_rule(argument: str, value) -> tuple[tuple[str, Choice], ...]:
     pairs = _pairs(argument, value)
     for name, choice in pairs.items():
         if name not in SWITCHED:
-            raise ValueError(f"{argument}: has no {shown(name)}, it takes {' and '.join(map(repr, SWITCHED))}; other effects "
+            raise ValueError(f"{argument}: has no {shown(name)}, it takes {', '.join(map(repr, SWITCHED))}; other effects "
                              "have keywords of their own or follow from the scene")
         if not (choice is True or choice is False or choice == "auto"):
             raise refused(ValueError, f"{argument}[{name!r}]", 'True, False or "auto"', choice)

@@ -11,6 +11,7 @@ import numpy as np
 from . import _core
 from .angles import range_azimuth
 from .azimuth_map import sees_azimuth
+from .beside import cubes_beside
 from .effects import of_paths
 from .families import families as find_families
 from .receiver import receive
@@ -38,6 +39,7 @@ class Frame:
     part_of_path: {partition: u16 [P]}, index of the part of each path in the order of `parts`
     rain_cube: as coded_cube where there is one, else as cube, of the rain in the scene's weather, which only the map of the
         whole gets, as it gets the noise; None: none
+    interference_cube: likewise, of the other radars of the scene (`Scene.interferers`); None: none
     noise_seed: of the thermal noise, which is drawn from it and the start time of the frame (s); None: no noise
     replay, evaluate, retrace, keyframes: how the signal follows moving echoes, as in `synthesize`
     effect_choices: pairs (name, True, False or "auto") of `effects` as in `trace`
@@ -61,6 +63,7 @@ class Frame:
     noise_seed: int | None
     spectrum_settings: dict
     rain_cube: object = None
+    interference_cube: object = None
     coded_cube: object = None
     spectrum: object = None
     part_spectra: dict = dataclasses.field(default_factory=dict)
@@ -78,8 +81,8 @@ class Frame:
 
     @property
     def noisy_cube(self):
-        """The cube with rain, thermal noise and the faults of the receiver, complex [tx, rx, chirp, sample], sqrt(W): the same
-        bits at every call. Codes of transmitters are undone (`demultiplex`).
+        """The cube with rain, interference, thermal noise and the faults of the receiver, complex [tx, rx, chirp, sample],
+        sqrt(W): the same bits at every call. Codes of transmitters are undone (`demultiplex`).
 
         The noise is drawn from the noise seed and the start time of the frame (s): frames in a row differ.
         """
@@ -92,9 +95,11 @@ class Frame:
 
     @property
     def _arriving_cube(self):
-        """What comes to the receivers, with the rain and without noise: of transmitters that send at once their sum."""
+        """What comes to the receivers, without noise: of transmitters that send at once their sum."""
         cube = self.cube if self.coded_cube is None else self.coded_cube
-        return cube if self.rain_cube is None else cube + self.rain_cube
+        for other in (self.rain_cube, self.interference_cube):
+            cube = cube if other is None else cube + other
+        return cube
 
     def save_raw(self, path: str | os.PathLike[str]) -> int:
         """Writes what the converter gives as a DCA1000 would: signed 16-bit words, I0 I1 Q0 Q1, slot by slot.
@@ -129,7 +134,14 @@ class Frame:
         """Which effects the frame models, which not, and why: list [E] of Effect, those of the paths and of the signal."""
         return of_paths(self.paths, replay=self.replay, evaluate=self.evaluate, retrace=self.retrace,
                         noise_seed=self.noise_seed, effects=self.effect_choices, surroundings=self.scene,
-                        rain_cube=self.rain_cube)
+                        rain_cube=self.rain_cube, interference_cube=self.interference_cube)
+
+    @cached_property
+    def beside_spectra(self) -> dict:
+        """Range-Doppler maps of what no path makes, without noise: {"interference", "rain" or "leakage" (of the transmitters
+        into the receivers): RangeDoppler}, values in sqrt(W); {} where there is nothing of it."""
+        return {name: _core.range_doppler(cube, self.radar, **self.spectrum_settings)
+                for name, cube in cubes_beside(self).items()}
 
     @cached_property
     def path_power(self):

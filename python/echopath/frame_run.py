@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from . import _core
 from .azimuth_map import checked_settings, sees_azimuth
+from .beside import cubes_beside, require_names
 from .checks import refused
 from .detections.checks import checked_keywords
 from .detections.of_frame import detect_frame
@@ -13,6 +14,7 @@ from .families import check_objects
 from .families import families as find_families
 from .frame import Frame, with_spectra
 from .guard import check_rays, check_signal
+from .interferers import has_interference, interference_cube
 from .labels.annotate import as_label_settings, label_frame, make_request, owners_of_cubes
 from .labels.family_pass import FamilyPass
 from .parts import ONLY_PARTITION, as_partitions, check_partitions, decompose
@@ -51,7 +53,9 @@ class FrameRun:
         _check_radar(radar, labels)
         self.partitions, self.angle_settings = as_partitions(parts), checked_settings(radar, angles)
         check_partitions(self.partitions, scene)
-        has_rain_echoes(scene, trace.effects)  # raises
+        require_names(self.partitions)
+        for is_asked_for in (has_rain_echoes, has_interference):
+            is_asked_for(scene, trace.effects)  # raises
         self._of_map = {"window": signal.window, "zero_pad": signal.zero_pad}
         self.label_settings = as_label_settings(labels)
         self._request = _label_request(scene, radar, self.label_settings, trace.batches or 1, self._of_map,
@@ -83,6 +87,7 @@ class FrameRun:
             groups = {partition: part_of_path(paths, group) for partition, group in self.partitions.items()}
         frame = self._bare_frame(paths, whole, cubes, groups, probe, clock.stages)
         frame.rain_cube = self._rain_cube(paths, clock)
+        frame.interference_cube = self._interference_cube(paths, clock, progress)
         if is_coded(self.radar):
             with clock("code of the transmitters"):
                 frame.coded_cube = coded_cube(paths, self.radar, whole, code=transmitted_code(self.radar),
@@ -95,7 +100,8 @@ class FrameRun:
         if self._request:
             with clock("labels of cells"):
                 parts_of = cubes or {ONLY_PARTITION: {"other": whole}}
-                frame.labels = label_frame(self._request, paths, families, parts_of, owners, self.partitions, settings)
+                frame.labels = label_frame(self._request, paths, families, parts_of, owners, self.partitions, settings,
+                                           cubes_beside(frame))
         if self.detect_keywords is not None:
             with clock("detections"):
                 frame.detections = detect_frame(frame, progress=progress, **self.detect_keywords)
@@ -121,6 +127,13 @@ class FrameRun:
         with clock("rain"):
             return rain_cube(self.scene, self.radar, start_time=paths.frame.start_time, seed=self.trace.seed,
                              effects=self.trace.effects, polarization=paths.frame.polarization)
+
+    def _interference_cube(self, paths, clock, progress):
+        """The signal of the other radars of the scene, None where it has none."""
+        if not has_interference(self.scene, self.trace.effects):
+            return None
+        with clock("interference"):
+            return interference_cube(self.scene, self.radar, self.trace.replace(start_time=paths.frame.start_time), progress)
 
     @property
     def selections(self) -> dict:

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import product as product_of
 from typing import NamedTuple
 
 import numpy as np
@@ -9,19 +10,13 @@ from numpy.typing import NDArray
 
 from . import _core
 from .checks import an, checked, optional, real
+from .rotations import matrices, product, quaternions
 from .selections import power
 from .transmit import code_of, radar_of_noise
 
 _FINE = 4       # times the sampling rate, at which crossings are made before the filter
 _MARGIN = 1.9   # of the sampling rate: differences of frequency beyond which nothing of a crossing is left in the band
 MOST_PATHS = 64  # of a trace, the strongest: each is a crossing of its own in every chirp
-
-
-class _Route(NamedTuple):
-    """One way from the antennas of the other radar to a receiver: delay [T] s and amplitude [T] sqrt(W) at times [T] s."""
-
-    delay: np.ndarray
-    amplitude: np.ndarray
 
 
 @checked(other=an(_core.Radar), paths=optional(an(_core.Paths)), start_time=real(unit="s"), offset=real(unit="s"))
@@ -42,17 +37,23 @@ def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | No
     beside the others, {"interference": cube}, it is named by labels of detections. Raises TypeError or ValueError naming the
     argument.
     """
-    paths = None if paths is None else _strongest(paths)
     slots = radar_of_noise(radar)
-    waveform = slots.waveform
-    cube = np.zeros((len(slots.transmitters), len(radar.receivers), waveform.num_chirps, waveform.num_samples), complex)
-    begins = np.array([[waveform.slot_start(chirp * slots.num_slots + tx) for chirp in range(waveform.num_chirps)]
-                       for tx in range(len(slots.transmitters))])
-    for tx, chirp in np.ndindex(begins.shape):
-        begin = start_time + begins[tx, chirp]
+    waveform, num_rx = slots.waveform, len(radar.receivers)
+    begins = start_time + np.array([waveform.slot_start(slot) for slot in range(waveform.num_chirps * slots.num_slots)])
+    ways = _Ways(radar, other, None if paths is None else _strongest(paths), begins)
+    cube = np.zeros((len(begins), num_rx, waveform.num_samples), complex)
+    for place, begin in enumerate(begins):
+        fine = np.zeros((num_rx, _FINE * waveform.num_samples), complex)
         for slot in _slots_under_way(other, begin - offset, waveform.chirp_duration):
-            for rx, route in _routes(radar, other, paths, slot.transmitters, begin + 0.5 * waveform.chirp_duration):
-                cube[tx, rx, chirp] += _crossing(waveform, other.waveform, begin, slot.begin + offset, route)
+            pair = _Chirps(waveform, *_chirp(waveform, place), *_chirp(other.waveform, slot.index), other.waveform.chirp_duration,
+                           begin - slot.begin - offset)
+            for rx, (tx, code) in product_of(range(num_rx), slot.transmitters):
+                delay, amplitude = ways.of(tx, rx)
+                _add_crossing(fine[rx], pair, delay[place], np.conj(code) * amplitude[place])
+        cube[place] = _filtered(fine, waveform)
+    # [slot, rx, sample] -> [tx, rx, chirp, sample]
+    cube = np.moveaxis(cube.reshape(waveform.num_chirps, slots.num_slots, num_rx, -1), (1, 2), (0, 1))
+    cube = np.ascontiguousarray(cube)
     return np.sqrt(2.0) * cube.real + 0j if waveform.real else cube
 
 
@@ -71,26 +72,9 @@ def interference_radar(radar: _core.Radar, other: _core.Radar, *, time: float = 
 
 def _placed(antennas, radar, time: float) -> list:
     place = radar.world_from_radar(time)
-    turn = _core.Antenna(orientation=_quaternion(place[:3, :3]))
+    turn = quaternions(place[None, :3, :3])[0]
     return [one.replace(position=place[:3, :3] @ one.position + place[:3, 3],
-                        orientation=_product(turn.orientation, one.orientation)) for one in antennas]
-
-
-def _quaternion(rotation) -> np.ndarray:
-    """(w, x, y, z) of a rotation [3, 3], by the eigenvector of its largest eigenvalue (Bar-Itzhack 2000)."""
-    r = rotation
-    k = np.array([[r[0, 0] - r[1, 1] - r[2, 2], r[1, 0] + r[0, 1], r[2, 0] + r[0, 2], r[2, 1] - r[1, 2]],
-                  [r[1, 0] + r[0, 1], r[1, 1] - r[0, 0] - r[2, 2], r[2, 1] + r[1, 2], r[0, 2] - r[2, 0]],
-                  [r[2, 0] + r[0, 2], r[2, 1] + r[1, 2], r[2, 2] - r[0, 0] - r[1, 1], r[1, 0] - r[0, 1]],
-                  [r[2, 1] - r[1, 2], r[0, 2] - r[2, 0], r[1, 0] - r[0, 1], np.trace(r)]])
-    x, y, z, w = np.linalg.eigh(k)[1][:, -1]
-    return np.array([w, x, y, z])
-
-
-def _product(a, b) -> np.ndarray:
-    """Of quaternions (w, x, y, z)."""
-    vector = a[0] * b[1:] + b[0] * a[1:] + np.cross(a[1:], b[1:])
-    return np.array([a[0] * b[0] - a[1:] @ b[1:], *vector])
+                        orientation=product(turn, one.orientation)) for one in antennas]
 
 
 def _strongest(paths):
@@ -101,8 +85,9 @@ def _strongest(paths):
 
 
 class _Slot(NamedTuple):
-    """A chirp of the other radar. begin: s; transmitters: [(index, complex code)] of those that send"""
+    """A chirp of the other radar. index: within its frame; begin: s; transmitters: [(index, complex code)] of those that send"""
 
+    index: int
     begin: float
     transmitters: list
 
@@ -115,60 +100,97 @@ def _slots_under_way(other, begin: float, duration: float) -> Iterator[_Slot]:
     for frame in range(int(np.floor((begin - longest) / period)), int(np.floor((begin + duration) / period)) + 1):
         for slot in np.flatnonzero((frame * period + starts > begin - longest) & (frame * period + starts < begin + duration)):
             senders = np.flatnonzero(code[:, slot])
-            yield _Slot(frame * period + starts[slot], [(int(tx), code[tx, slot]) for tx in senders])
+            yield _Slot(int(slot), frame * period + starts[slot], [(int(tx), code[tx, slot]) for tx in senders])
 
 
-def _routes(radar, other, paths, senders, time: float) -> Iterator[tuple[int, _Route]]:
-    """(receiver, way) of each way into each receiver, at three times about `time` (s)."""
-    times = time + np.array([-1.0, 0.0, 1.0]) * 0.5 * radar.waveform.chirp_duration
-    for rx in range(len(radar.receivers)):
-        for tx, code in senders:
-            if paths is None:
-                delay, amplitude = _direct(radar, other, rx, tx, times)
-                yield rx, _Route(delay, np.conj(code) * amplitude)
-            else:
-                delay, amplitude = paths.lengths(times, tx, rx) / _core.speed_of_light, paths.amplitudes(times, tx, rx)
-                for path in np.flatnonzero(amplitude.any(axis=0)):
-                    yield rx, _Route(delay[:, path], np.conj(code) * amplitude[:, path])
+class _Ways:
+    """Delays and amplitudes of all ways from a transmitter of the other radar to a receiver, for each chirp.
+
+    paths: of a trace, None: the direct way; begins: [N] s, of the chirps
+    """
+
+    def __init__(self, radar, other, paths, begins):
+        self._radar, self._other, self._paths, self._kept = radar, other, paths, {}
+        self._times = (begins[:, None] + radar.waveform.chirp_duration * np.array([0.0, 0.5, 1.0])).ravel()
+
+    def of(self, tx: int, rx: int) -> tuple:
+        """(delay [N, 3, P] in s at the begin, the middle and the end of each chirp, amplitude [N, P] in sqrt(W) in the middle)"""
+        if (tx, rx) not in self._kept:
+            delay, amplitude = self._direct(tx, rx) if self._paths is None else self._traced(tx, rx)
+            shape = (-1, 3, delay.shape[-1])
+            self._kept[tx, rx] = delay.reshape(shape), amplitude.reshape(shape)[:, 1]
+        return self._kept[tx, rx]
+
+    def _traced(self, tx: int, rx: int):
+        return (self._paths.lengths(self._times, tx, rx) / _core.speed_of_light,
+                self._paths.amplitudes(self._times, tx, rx))
+
+    def _direct(self, tx: int, rx: int):
+        other, wavelength = self._other, _core.speed_of_light / self._other.waveform.start_frequency
+        (here, turned), (there, turned_there) = (_placed_at(one, antenna, self._times) for one, antenna in
+                                                 ((self._radar, self._radar.receivers[rx]), (other, other.transmitters[tx])))
+        apart = here - there
+        distance = np.linalg.norm(apart, axis=1)
+        ahead = apart / distance[:, None]
+        fields = [antenna.pattern.field(np.einsum("tij,ti->tj", turn, way)) for antenna, turn, way in
+                  ((other.transmitters[tx], turned_there, ahead), (self._radar.receivers[rx], turned, -ahead))]
+        amplitude = np.sqrt(other.transmit_power) * fields[0] * fields[1] * wavelength / (4.0 * np.pi * distance)
+        return distance[:, None] / _core.speed_of_light, amplitude[:, None]
 
 
-def _direct(radar, other, rx: int, tx: int, times):
-    delay, amplitude = np.empty(3), np.empty(3, complex)
-    wavelength = _core.speed_of_light / other.waveform.start_frequency
-    for i, time in enumerate(times):
-        one, two = _placed([other.transmitters[tx]], other, time)[0], _placed([radar.receivers[rx]], radar, time)[0]
-        apart = two.position - one.position
-        distance = np.linalg.norm(apart)
-        fields = [antenna.pattern.field([_seen_from(antenna, way / distance)])[0]
-                  for antenna, way in ((one, apart), (two, -apart))]
-        delay[i] = distance / _core.speed_of_light
-        amplitude[i] = np.sqrt(other.transmit_power) * fields[0] * fields[1] * wavelength / (4.0 * np.pi * distance)
-    return delay, amplitude
+def _placed_at(radar, antenna, times) -> tuple:
+    """Places [N, 3] in m and rotations [N, 3, 3] of an antenna of a radar in the world."""
+    placed = np.array([radar.world_from_radar(time) for time in times])
+    return placed[:, :3, :3] @ antenna.position + placed[:, :3, 3], placed[:, :3, :3] @ matrices(antenna.orientation)
 
 
-def _seen_from(antenna, direction) -> np.ndarray:
-    """A direction [3] in the antenna's frame, unit."""
-    w, *vector = antenna.orientation
-    turned = direction - 2.0 * w * np.cross(vector, direction) + 2.0 * np.cross(vector, np.cross(vector, direction))
-    return turned / np.linalg.norm(turned)
+class _Chirps(NamedTuple):
+    """A chirp of this radar and one of the other: frequencies of their first samples in Hz, slopes in Hz/s.
+
+    waveform: of this radar; sent_duration: s; late: s, by which the chirp of this radar begins later
+    """
+
+    waveform: _core.ChirpSequence
+    start: float
+    slope: float
+    sent_start: float
+    sent_slope: float
+    sent_duration: float
+    late: float
 
 
-def _crossing(waveform, sent, begin: float, sent_begin: float, route: _Route) -> np.ndarray:
-    """One chirp of the other radar in one chirp of this one: [sample] in sqrt(W), behind the filter."""
-    count, rate = waveform.num_samples, waveform.sampling_rate
-    time = np.arange(_FINE * count) / (_FINE * rate)
-    weights = np.polyfit(np.linspace(0.0, waveform.chirp_duration, 3), route.delay, 2)
-    delay = np.polyval(weights, time)
-    late = (begin - sent_begin) + time - delay
-    difference = waveform.start_frequency + waveform.slope * time - sent.start_frequency - sent.slope * late
-    heard = (late >= 0.0) & (late < sent.chirp_duration) & (np.abs(difference) < _MARGIN * rate)
-    if not heard.any():
-        return np.zeros(count)
-    t, u = time[heard], late[heard]
-    cycles = (waveform.start_frequency - sent.start_frequency) * t + sent.start_frequency * (t - u) \
-        + 0.5 * waveform.slope * t ** 2 - 0.5 * sent.slope * u ** 2
-    signal = np.zeros(_FINE * count, complex)
-    signal[heard] = np.conj(route.amplitude[1]) * np.exp(2j * np.pi * np.mod(cycles, 1.0))
-    spectrum = np.fft.fft(signal)
-    spectrum[count // 2 if waveform.real else count:] = 0.0
-    return np.fft.ifft(spectrum)[::_FINE]
+def _chirp(waveform, slot: int) -> tuple:
+    """(Hz, Hz/s) of the chirp of a slot, with its steps."""
+    step, wider = (steps[slot % len(steps)] if steps else 0.0
+                   for steps in (waveform.frequency_steps, waveform.bandwidth_steps))
+    slope = waveform.slope + wider * waveform.sampling_rate / waveform.num_samples
+    return waveform.start_frequency + step, slope
+
+
+def _add_crossing(fine, chirps: _Chirps, delay, amplitude) -> None:
+    """Adds one chirp of the other radar, over all ways, to one chirp of this one: fine [_FINE x sample] in sqrt(W).
+
+    delay: [3, P] s; amplitude: [P] sqrt(W)
+    """
+    waveform, start, slope, sent_start, sent_slope, sent_duration, late = chirps
+    time = np.arange(len(fine)) / (_FINE * waveform.sampling_rate)
+    share = time / waveform.chirp_duration
+    # The parabola through the delays at the begin, the middle and the end.
+    curve = (1.0 - share) * (1.0 - 2.0 * share), 4.0 * share * (1.0 - share), share * (2.0 * share - 1.0)
+    for way in np.flatnonzero(amplitude):
+        sent_time = late + time - sum(weight * one for weight, one in zip(curve, delay[:, way]))
+        difference = start + slope * time - sent_start - sent_slope * sent_time
+        heard = np.flatnonzero((sent_time >= 0.0) & (sent_time < sent_duration)
+                               & (np.abs(difference) < _MARGIN * waveform.sampling_rate))
+        t, u = time[heard], sent_time[heard]
+        cycles = (start - sent_start) * t + sent_start * (t - u) + 0.5 * slope * t ** 2 - 0.5 * sent_slope * u ** 2
+        fine[heard] += np.conj(amplitude[way]) * np.exp(2j * np.pi * np.mod(cycles, 1.0))
+
+
+def _filtered(fine, waveform):
+    """[rx, sample] of signals [rx, _FINE x sample]: what the filter before the converter leaves of them."""
+    if not fine.any():
+        return fine[:, ::_FINE]
+    spectrum = np.fft.fft(fine)
+    spectrum[:, waveform.num_samples // 2 if waveform.real else waveform.num_samples:] = 0.0
+    return np.fft.ifft(spectrum)[:, ::_FINE]

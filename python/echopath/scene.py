@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from . import _core
 from .actors import Actor
 from .checks import an, anything, checked, flag, optional, real, refused, text, vector
+from .interferers import Interferer, interferers_of, interferers_rule
 from .materials import known_material, materials
 from .placements import ORIGIN, motion_ahead, placement
 from .readers.model import Model
@@ -32,11 +33,14 @@ class Scene(_core.Scene):
     not. Paths keep the scene that they were traced in, with its mesh IDs.
     scene: another Scene to copy, such as `paths.scene`; None: empty
     weather: the Weather in which it is; None: that of the scene that is copied, or empty space
+    interferers: list of Interferer, other radars that send into the receivers; None: those of the scene that is copied, or none
     Raises TypeError for anything else.
     """
 
-    def __init__(self, scene: _core.Scene | None = None, *, weather: Weather | None = None):
+    def __init__(self, scene: _core.Scene | None = None, *, weather: Weather | None = None,
+                 interferers: Sequence[Interferer] | None = None):
         self.weather = getattr(scene, "weather", None) if weather is None else weather
+        self.interferers = interferers_of(scene) if interferers is None else interferers
         if scene is None:
             super().__init__()
         elif isinstance(scene, _core.Scene):
@@ -53,13 +57,22 @@ class Scene(_core.Scene):
     def weather(self, weather: Weather | None) -> None:
         self._weather = _WEATHER("weather", weather)
 
+    @property
+    def interferers(self) -> tuple[Interferer, ...]:
+        """Other radars, whose signals the maps of `simulate` and `Sequence` have, labelled "interference": a tuple."""
+        return self._interferers
+
+    @interferers.setter
+    def interferers(self, interferers: Sequence[Interferer]) -> None:
+        self._interferers = interferers_rule("interferers", interferers)
+
     def __getstate__(self):
-        return super().__getstate__(), self.weather
+        return super().__getstate__(), self.weather, self.interferers
 
     def __setstate__(self, state) -> None:
-        nodes, weather = state
+        nodes, weather, interferers = state
         super().__setstate__(nodes)
-        self.weather = weather
+        self.weather, self.interferers = weather, interferers
 
     @checked(self=anything, mesh_or_actor=anything, name=text, material=anything, motion=anything,
              speed=optional(real(unit="m/s")), position=vector, yaw=real(unit="rad"), transform=anything,

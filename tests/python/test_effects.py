@@ -111,6 +111,7 @@ CASES = {
     "directive lobes and backscatter": (dict(scene=make_scene(LOBED)), "plate", dict(scene=make_scene(ROUGH))),
     "attenuation by weather": (dict(scene=rainy()), "rain 5.8", {}),
     "echoes of rain": (dict(scene=rainy()), "nothing hides it", dict(scene=rainy(), effects={"echoes of rain": False})),
+    "interference": (dict(scene=ep.Scene(make_scene(), interferers=[ep.Interferer(radar=make_radar())])), "another radar", {}),
     "transmission through sheets": (dict(scene=make_scene(ep.materials["glass_pane"])), "-6.3 dB", {}),
     "edge diffraction": (dict(edges=True), "edges = True", {}),
     "even spread of the rays": (dict(sampler="r2"), "r2", dict(sampler="random")),
@@ -181,7 +182,7 @@ def test_a_scalar_trace_says_that_it_does_not_tell_antennas_apart():
 
 def test_what_is_never_modelled_is_said():
     never = [effect for effect in found().values() if effect.reason.startswith(("not modelled", "out of scope"))]
-    assert len(never) >= 2 and not any(effect.modelled for effect in never)
+    assert never and not any(effect.modelled for effect in never)
 
 
 def without_planes(effects) -> list:

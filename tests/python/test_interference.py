@@ -1,4 +1,7 @@
 """Other FMCW radars in the receivers of a radar."""
+import copy
+import pickle
+
 import numpy as np
 import pytest
 from support.radars import build_radar
@@ -102,3 +105,172 @@ def test_labels_name_it_as_a_part():
     assert {"ball", "interference"} <= set(found.part)
     strongest = found.power.argmax()
     assert found.part[strongest] == "interference" and found.range[strongest] == pytest.approx(20.0, abs=0.3)
+
+
+# --- other radars of a scene ---
+
+def street(*others, wall=None, **settings):
+    """A ball ahead of the radar, and other radars."""
+    scene = ep.Scene(interferers=others, **settings)
+    scene.add(ep.actors.sphere(0.2), name="ball", material=ep.Material.metal(), smooth=True, position=(8, 3, 0))
+    if wall is not None:
+        scene.add(ep.actors.plate(*wall["size"]), name="wall", material=ep.Material.metal(mirror=True),
+                  position=wall["position"], yaw=wall["yaw"])
+    return scene
+
+
+SLOW = {"num_chirps": 32, "transmit_power": 1.0}
+TONE = build_radar(num_samples=COUNT, position=(40, 3, 0), num_chirps=32)  # parallel chirps: one line at half the distance
+IN_THE_WAY = {"size": (2.0, 2.0), "position": (20, 1.5, 0), "yaw": np.pi}
+ASIDE = {"size": (40.0, 40.0), "position": (20, 8, 0), "yaw": -np.pi / 2}
+
+
+def frame_of(scene, radar=None, **settings):
+    return ep.simulate(scene, victim(**SLOW) if radar is None else radar, num_rays=2000, **{"max_bounces": 2} | settings)
+
+
+def test_frames_have_what_other_radars_send():
+    radar = victim(**SLOW)
+    frame = frame_of(street(ep.Interferer(radar=TONE, offset=1e-7, over="direct")), start_time=0.3, noise_seed=None)
+    expected = ep.interference(radar, TONE, start_time=0.3, offset=1e-7)
+    np.testing.assert_array_equal(frame.interference_cube, expected)
+    np.testing.assert_allclose(frame.noisy_cube, frame.cube + expected, rtol=1e-12)
+    assert {one.name: one.modelled for one in frame.effects}["interference"]
+    alone = frame_of(street(), start_time=0.3, noise_seed=None)
+    np.testing.assert_array_equal(frame.cube, alone.cube)
+    assert alone.interference_cube is None and alone.beside_spectra == {}
+
+
+def test_effects_switch_it_off_and_need_it_to_force_it_on():
+    off = frame_of(street(ep.Interferer(radar=TONE)), effects={"interference": False})
+    assert off.interference_cube is None
+    with pytest.raises(ValueError, match="interference.*needs Scene.interferers"):
+        frame_of(street(), effects={"interference": True})
+
+
+def test_what_stands_in_the_direct_way_hides_it():
+    both = [frame_of(street(ep.Interferer(radar=TONE, over="direct"), wall=wall)).interference_cube
+            for wall in (IN_THE_WAY, None)]
+    assert not both[0].any() and both[1].any()
+
+
+def test_a_wall_brings_another_radar_from_its_image_into_a_frame():
+    """A conductor 8 m aside: over the paths of the scene as direct from the image, 13 m beyond it."""
+    over = frame_of(street(ep.Interferer(radar=TONE, over="paths"), wall=ASIDE), max_bounces=1).interference_cube
+    image = ep.interference(victim(**SLOW), TONE.replace(position=(40, 13, 0)))
+    assert 10 * np.log10(np.mean(np.abs(over) ** 2) / np.mean(np.abs(image) ** 2)) == pytest.approx(0.0, abs=LEVEL)
+    both = frame_of(street(ep.Interferer(radar=TONE), wall=ASIDE), max_bounces=1).interference_cube
+    np.testing.assert_allclose(both, over + ep.interference(victim(**SLOW), TONE), atol=1e-12 * np.abs(both).max())
+
+
+def test_labels_and_detections_of_frames_name_it(tmp_path):
+    """The line of a parallel chirp stands at half the distance: one way instead of there and back."""
+    scene = street(ep.Interferer(radar=TONE, over="direct"))
+    frame = frame_of(scene, parts={"ball": "T 'ball' R"}, labels=True, detections=True)
+    labels = frame.labels["parts"]
+    assert labels.part_names == ["ball", "other", "interference"] and len(labels.part_received) == 3
+    at = np.abs(labels.range - np.hypot(40, 3) / 2).argmin()
+    line = labels.mask[:, at] & (labels.dominant[:, at] == 2)
+    assert line.any() and np.all(labels.object_map[:, at][line] == -1)
+    assert labels.part_received[2].power == pytest.approx(np.mean(np.abs(frame.interference_cube) ** 2), rel=1e-12)
+    found = frame.detections
+    strongest = found.power.argmax()
+    assert (found.part[strongest], found.object[strongest], bool(found.is_noise[strongest])) == ("interference", "", False)
+    assert "ball" in found.part and set(found.object[found.part == "ball"]) == {"ball"}
+    assert ep.annotate_frame(frame)["parts"] == labels
+    ep.save_frame(frame, tmp_path / "frame.h5")
+    again = ep.load_frame(tmp_path / "frame.h5")
+    np.testing.assert_array_equal(again.interference_cube, frame.interference_cube)
+    np.testing.assert_array_equal(again.noisy_cube, frame.noisy_cube)
+    assert again.labels["parts"] == labels and again.detections == found
+    assert again.scene.interferers == scene.interferers
+
+
+def test_detections_without_parts_name_it_too():
+    found = frame_of(street(ep.Interferer(radar=TONE, over="direct")), detections=True).detections
+    strongest = found.power.argmax()
+    assert found.part[strongest] == "interference" and found.object[strongest] == "" and not found.is_noise[strongest]
+    assert set(found.object) == {"", "ball"} and set(found.part[found.object == "ball"]) == {""}
+
+
+def test_leakage_and_rain_are_parts_of_their_own():
+    leaky = victim(**SLOW, receiver=ep.Receiver(leakage_db=[[-60.0]], leakage_delay=2e-9))
+    frame = frame_of(street(weather=ep.Weather(rain_mm_per_hour=50.0)), leaky, labels=True, detections=True)
+    assert frame.labels["parts"].part_names == ["other", "rain", "leakage"]
+    found = frame.detections
+    nearest = found.range.argmin()
+    assert found.part[nearest] == "leakage" and found.range[nearest] == pytest.approx(0.3, abs=0.15)  # c 2 ns / 2
+    with pytest.raises(ValueError, match="^parts: must not be named 'rain'"):
+        frame_of(street(), parts={"rain": "T . R"})
+
+
+def test_errors_of_shares_know_what_no_path_makes():
+    frame = frame_of(street(ep.Interferer(radar=TONE, over="direct")), labels={"errors": True}, batches=4)
+    labels = frame.labels["parts"]
+    np.testing.assert_allclose(labels.mean_power[1], labels.power[1], rtol=1e-9)
+    assert not labels.power_error[1].any() and labels.mean_share[1].max() > 0.9
+
+
+def test_sequences_and_files_keep_it(tmp_path):
+    moving = TONE.replace(motion=ep.LinearMotion(velocity=(-10, 0, 0)))
+    scene = street(ep.Interferer(radar=moving, offset=2e-7))
+    sequence = ep.Sequence(scene, victim(**SLOW), frames=2, interval=0.1, num_rays=500, labels=True, detections=True)
+    first, second = sequence
+    assert not np.array_equal(first.interference_cube, second.interference_cube)
+    sequence.save(tmp_path / "all")
+    stored = ep.load_sequence(tmp_path / "all")
+    assert stored.scene.interferers == scene.interferers
+    np.testing.assert_array_equal(stored[1].interference_cube, second.interference_cube)
+    other = ep.Sequence(street(ep.Interferer(radar=moving)), victim(**SLOW), frames=2, interval=0.1, num_rays=500, labels=True,
+                        detections=True)
+    with pytest.raises(ValueError, match="folder: must be new, or of this sequence .interferers/0 offset differs"):
+        other.save(tmp_path / "all")
+
+
+CHIRPS = "{start_frequency = 77e9, num_samples = 64, sampling_rate = 20e6, num_chirps = 8, chirp_interval = 2e-5, bandwidth = "
+SCENE_FILE = f"""[radar]
+waveform = {CHIRPS} 1e9}}
+transmitters = [{{position = [0, 0, 0]}}]
+receivers = [{{position = [0, 0, 0]}}]
+
+[[interferers]]
+waveform = {CHIRPS} 9e8}}
+transmitters = [{{position = [0, 0, 0]}}]
+position = [20, 0, 0]
+yaw_deg = 180
+speed = 3
+offset = 1e-6
+over = "direct"
+"""
+
+
+def test_scene_files_have_other_radars(tmp_path):
+    path = tmp_path / "scene.toml"
+    path.write_text(SCENE_FILE)
+    scene = ep.load_scene(path).scene
+    one, = scene.interferers
+    assert (one.offset, one.over, one.radar.waveform.bandwidth) == (1e-6, "direct", 9e8)
+    np.testing.assert_allclose(one.radar.world_from_radar(1.0)[:3, 3], [17, 0, 0], atol=1e-9)
+    path.write_text(SCENE_FILE.replace('over = "direct"', 'over = "all"'))
+    with pytest.raises(ValueError, match=r"interferers\[0\].over"):
+        ep.load_scene(path)
+
+
+def test_scenes_hold_other_radars_as_values():
+    one = ep.Interferer(radar=TONE, offset=1e-6)
+    scene = street(one)
+    for copied in (scene.copy(), pickle.loads(pickle.dumps(scene)), copy.deepcopy(scene)):
+        assert copied.interferers == (one,)
+    with pytest.raises(TypeError, match="^interferers: must be a list of Interferer"):
+        scene.interferers = TONE
+    with pytest.raises(TypeError, match="^radar: must be"):
+        ep.Interferer(radar="other.cfg")
+
+
+def test_chirps_that_hop_meet_as_their_steps_say():
+    """Every other chirp of the other radar lies 2 GHz higher, outside the band: half of the crossings are left."""
+    hopping = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=COUNT, sampling_rate=RATE, num_chirps=32,
+                               chirp_interval=60e-6, frequency_steps=(0.0, 2e9))
+    cube = ep.interference(victim(num_chirps=32), TONE.replace(waveform=hopping))
+    heard = np.abs(cube[0, 0]).max(axis=1) > 0
+    np.testing.assert_array_equal(heard, np.arange(32) % 2 == 0)

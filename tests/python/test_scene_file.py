@@ -144,14 +144,14 @@ def test_settings_are_those_of_the_file_or_the_defaults(write):
 [trace]
 num_rays = 1234
 [spectrum]
-window = ["chebyshev", 80]
+window = ["hann", ["chebyshev", 80]]
 [parts.route]
 direct = "T . R"
 [parts.body]
 quad = "T 'quad' R"
 """))
     assert scene_file.trace == ep.TraceSettings(num_rays=1234)
-    assert scene_file.signal == ep.SignalSettings(window=("chebyshev", 80))
+    assert scene_file.signal == ep.SignalSettings(window=("hann", ("chebyshev", 80)))
     assert scene_file.partitions() == {"route": {"direct": "T . R"}, "body": {"quad": "T 'quad' R"}}
 
 

@@ -52,12 +52,13 @@ _ANGLES = keywords("estimate_angles", parameters_of(estimate_angles)[2:])  # all
 
 
 @checked(**CFAR_RULES, angles=optional(_ANGLES), paths=optional(an(_core.Paths)), parts=optional(_parts),
-         labels=optional(an(Labels, called="Labels")), objects=objects_rule)
+         labels=optional(an(Labels, called="Labels")), beside=optional(_parts), objects=objects_rule)
 def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMethod = "ca",
            false_alarm_rate: float = FALSE_ALARM_RATE, guard_velocity: int | None = None, guard_range: int | None = None,
            training_velocity: int | None = None, training_range: int | None = None, rank: float = RANK,
            angles: Mapping[str, Any] | None = None, paths: _core.Paths | None = None, parts: Mapping | None = None,
-           labels: Labels | None = None, objects: Objects = None, progress: Progress = None) -> Detections:
+           labels: Labels | None = None, beside: Mapping | None = None, objects: Objects = None,
+           progress: Progress = None) -> Detections:
     """Echoes that stand out of the noise of a range-Doppler map, with what made them.
 
     Cells above the threshold of `cfar` that are local maxima, their place between the cells by the known response of the
@@ -72,6 +73,8 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     parts: {name: cube or RangeDoppler} without noise, of `decompose` or `Frame.part_spectra[view]`; or, with paths, {name:
         selection} as `decompose` takes them
     labels: Labels of the map instead of parts; without paths their objects and ghosts too
+    beside: {name: cube or RangeDoppler} of what no path makes, such as `Frame.beside_spectra`: a detection in whose cell one of
+        these has the largest power has its name as part, and is of no object
     objects: of `families`, with paths
     progress: callable (stage, fraction), True for bars, or None
     Returns Detections: range in m, velocity in m/s and the rest. Raises ValueError naming the argument, KeyboardInterrupt on
@@ -89,32 +92,29 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     peaks = _core.find_peaks(spectrum, radar, found, progress)
     cells, power = peaks["cells"], found.power[tuple(peaks["cells"].T)]
     echoes = None if paths is None else EchoFields(paths, spectrum)
-    columns = _labels_of(spectrum, radar, cells, power, paths, parts, labels, objects, echoes)
+    columns = _labels_of(spectrum, radar, cells, power, paths, parts, labels, beside or {}, objects, echoes)
     found = _joined(radar, peaks, power, directions_of(spectrum, radar, cells, angles or {}, progress), columns, echoes)
     return found if paths is None else dataclasses.replace(found, seed=paths.frame.seed)
 
 
-def _labels_of(spectrum, radar, cells, power, paths, parts, labels, objects, echoes) -> dict:
+def _labels_of(spectrum, radar, cells, power, paths, parts, labels, beside: dict, objects, echoes) -> dict:
     """part, share, object, ghost_type, order and class_code [N] of cells [N, 2]."""
-    part, share = np.full(len(cells), "", dtype=str), np.full(len(cells), np.nan)
-    families, whole, measured, resolved = [None] * len(cells), None, power, set()
+    found = labelling.CellLabels(len(cells))
     if paths is not None:
-        measured = echoes.measured(cells)
         of_paths = find_families(paths, objects)
-        families, whole = labelling.families_of_cells(paths, of_paths, echoes, cells)
-        resolved = labelling.resolved_families(paths, of_paths)
+        found.take_families(*labelling.families_of_cells(paths, of_paths, echoes, cells), echoes.measured(cells),
+                            labelling.resolved_families(paths, of_paths))
     elif labels is not None:
-        families, resolved = labelling.families_of_labels(labels, cells), labelling.resolved_labels(labels)
-    if parts is not None or labels is not None:
-        measured = power
-        names, powers, whole = (labelling.label_powers(spectrum, labels, cells) if parts is None else
-                                labelling.part_powers(spectrum, radar, parts, cells))
-        part, share = labelling.strongest_part(names, powers)
-    is_noise = np.zeros(len(cells), bool) if whole is None else labelling.noise_cells(whole, measured)
-    part, share = labelling.with_noise(part, share, is_noise)
-    return {"part": part, "share": share, "is_noise": is_noise,
-            "is_resolved": np.array([family in resolved for family in families], bool) & ~is_noise,
-            } | labelling.as_columns(families, is_noise)
+        found.families = labelling.families_of_labels(labels, cells)
+        found.resolved = labelling.resolved_labels(labels)
+    if labels is not None:
+        found.take_parts(*labelling.label_powers(spectrum, labels, cells), power)
+    elif parts is not None:
+        found.take_parts(*labelling.part_powers(spectrum, radar, parts | beside, cells), power)
+    elif beside:
+        found.take_beside(*labelling.part_powers(spectrum, radar, beside, cells)[:2])
+    found.leave(tuple(beside) if labels is None else ())
+    return found.columns()
 
 
 def _joined(radar, peaks: dict, power, directions: dict, columns: dict, echoes) -> Detections:

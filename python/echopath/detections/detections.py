@@ -33,13 +33,14 @@ class Detections:
     velocity: [D] m/s, receding positive, folded as in the map unless `folds` were tried
     azimuth, elevation: [D] rad, left and up positive, in the radar's frame; NaN where the antennas cannot tell
     power: [D] W, received, what windows lose between cells put back; noise: [D] W, mean about the cell
-    part: [D] text, of the largest power in the cell; "noise" where is_noise; "" where nobody asked
-    is_noise: bool [D], no echo made it
+    part: [D] text, of the largest power in the cell; "noise" where is_noise; "" where nobody asked. In frames also what no path
+        makes: "interference", "rain", "leakage"
+    is_noise: bool [D], neither an echo nor another signal made it
     is_resolved: bool [D], the rays know the mean received power of the object or ghost that made it to 0.3 dB (`ep.unresolved`);
         False where nobody knows
     share: [D] of that part in the sum of the powers of all parts, NaN without one
-    object: [D] text, whose echo it is, "" for the surroundings and noise; ghost_type, order, class_code: i32 [D], as of
-        `families`, 0 without an object
+    object: [D] text, whose echo it is, "" for the surroundings, noise and what no path makes; ghost_type, order, class_code:
+        i32 [D], as of `families`, 0 without an object
     echoes: which paths make which cell, None without paths
     centre: [3] m, in the radar's frame, from which points are counted: half-way between transmitters and receivers
     seed, noise_seed: of the rays and of the noise in the map, None: not known

@@ -45,14 +45,6 @@ def label_powers(spectrum, labels, cells) -> tuple:
     return list(labels.part_names), labels.power[:, velocity, distance], labels.whole[velocity, distance]
 
 
-def strongest_part(names, powers):
-    """(part text [N], share [N]) of the largest of powers [K, N] in W; "" and NaN where all are zero."""
-    total = powers.sum(axis=0)
-    best = powers.argmax(axis=0)
-    share = np.divide(powers.max(axis=0), total, out=np.full(len(total), np.nan), where=total > 0.0)
-    return np.where(total > 0.0, np.array(names, dtype=str)[best], ""), share
-
-
 def families_of_cells(paths, families, echoes, cells) -> tuple:
     """The family of the largest power in each of cells [N, 2], None without echoes, and power [N] of all as fields, W.
 
@@ -99,19 +91,56 @@ def resolved_labels(labels) -> set:
     return {family for family, interval in (objects | ghosts).items() if interval is not None and interval.resolved}
 
 
-def as_columns(families, is_noise) -> dict:
+class CellLabels:
+    """What made each of N detected cells, as far as paths, parts and labels tell.
+
+    families: list [N] of Family or None; resolved: set of the families whose power the rays know
+    """
+
+    def __init__(self, count: int):
+        self.families, self.resolved = [None] * count, set()
+        self._part, self._share = np.full(count, "", dtype=str), np.full(count, np.nan)
+        self._echoes, self._measured = None, None
+
+    def take_families(self, families, echoes, measured, resolved) -> None:
+        """families: [N]; echoes, measured: [N] W, power of all echoes as one field and that of the map, of the same channels"""
+        self.families, self.resolved, self._echoes, self._measured = families, resolved, echoes, measured
+
+    def take_parts(self, names, powers, whole, measured) -> None:
+        """names: [K] of parts; powers: [K, N] W; whole: [N] W, of their sum as fields; measured: [N] W, of the map."""
+        self._part, self._share = _strongest_part(names, powers)
+        self._echoes, self._measured = whole, measured
+
+    def take_beside(self, names, powers) -> None:
+        """names: [K] of what no path makes; powers: [K, N] W: beside the echoes of paths, which have no part's name."""
+        echoes = np.zeros(powers.shape[1]) if self._echoes is None else self._echoes
+        self._part, self._share = _strongest_part(["", *names], np.concatenate([echoes[None], powers]))
+        self._share = np.where(self._part == "", np.nan, self._share)
+        self._echoes = None if self._echoes is None else echoes + powers.sum(axis=0)
+
+    def leave(self, names) -> None:
+        """Cells of parts of these names are of no family."""
+        self.families = [None if part in names else family for part, family in zip(self._part, self.families)]
+
+    def columns(self) -> dict:
+        """{name of a field of Detections: [N]}; cells of which echoes hold less than half are of noise."""
+        is_noise = np.zeros(len(self.families), bool) if self._echoes is None else self._echoes < HALF * self._measured
+        is_resolved = np.array([family in self.resolved for family in self.families], bool) & ~is_noise
+        return {"part": np.where(is_noise, NOISE, self._part), "share": np.where(is_noise, np.nan, self._share),
+                "is_noise": is_noise, "is_resolved": is_resolved} | _as_columns(self.families, is_noise)
+
+
+def _strongest_part(names, powers):
+    """(part text [N], share [N]) of the largest of powers [K, N] in W; "" and NaN where all are zero."""
+    total = powers.sum(axis=0)
+    best = powers.argmax(axis=0)
+    share = np.divide(powers.max(axis=0), total, out=np.full(len(total), np.nan), where=total > 0.0)
+    return np.where(total > 0.0, np.array(names, dtype=str)[best], ""), share
+
+
+def _as_columns(families, is_noise) -> dict:
     """object, ghost_type, order, class_code [N] of families, empty and 0 for None and noise [N]."""
     known = [None if noise else family for family, noise in zip(families, is_noise)]
     columns = {"object": np.array([family.object if family else "" for family in known], dtype=str)}
     return columns | {name: np.array([getattr(family, name) if family else 0 for family in known], np.int32)
                       for name in ("ghost_type", "order", "class_code")}
-
-
-def noise_cells(whole, power):
-    """Which cells noise made: bool [N] from the power of echoes without noise and of the cell, [N] W."""
-    return whole < HALF * power
-
-
-def with_noise(part, share, is_noise) -> tuple:
-    """part and share, "noise" and NaN where noise made the cell."""
-    return np.where(is_noise, NOISE, part), np.where(is_noise, np.nan, share)

@@ -34,6 +34,6 @@ def detect_frame(frame: Frame, *, method: CfarMethod = "ca", false_alarm_rate: f
     settings = {"max_peaks": max_peaks} if len(_core.virtual_array(frame.radar).elements) > 1 else None
     found = detect(frame.spectrum, frame.radar, method=method, false_alarm_rate=false_alarm_rate,
                    guard_velocity=guard_velocity, guard_range=guard_range, training_velocity=training_velocity,
-                   training_range=training_range, rank=rank, paths=frame.paths, parts=parts, objects=objects,
-                   angles=settings, progress=progress)
+                   training_range=training_range, rank=rank, paths=frame.paths, parts=parts,
+                   beside=frame.beside_spectra or None, objects=objects, angles=settings, progress=progress)
     return dataclasses.replace(found, noise_seed=frame.noise_seed)

@@ -7,13 +7,12 @@ from ..effect_choices import Choices
 from ..settings import (
     Edges, Evaluate, Footprint, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings, TraceSettings,
 )
-from . import surfaces, motion, weather, radar, sampling  # each adds its rules, in this order
+from . import surfaces, motion, weather, interference, radar, sampling  # each adds its rules, in this order
 from .rules import RULES, Case, Effect, Settings
 
 # What no scene and no setting can ask for.
 OUT_OF_SCOPE = [
     Effect("creeping waves, diffraction into shadows", False, "out of scope"),
-    Effect("interference", False, "not modelled in a frame: ep.interference makes the signal of another radar"),
 ]
 
 
@@ -48,14 +47,17 @@ def effects(scene: _core.Scene, radar: _core.Radar, *, max_bounces: int = TraceS
 
 
 def of_paths(paths, *, replay: str = "material", evaluate: str = "interpolated", retrace: str = "never",
-             noise_seed: int | None = None, effects: Choices = (), surroundings=None, rain_cube=None) -> Effects:
+             noise_seed: int | None = None, effects: Choices = (), surroundings=None, rain_cube=None,
+             interference_cube=None) -> Effects:
     """The effects of a trace, from the scene, radar and settings that it recorded and what it left out; replay, evaluate,
-    retrace, noise_seed, rain_cube: of later stages; surroundings: the scene whose weather they had."""
+    retrace, noise_seed, rain_cube, interference_cube: of later stages; surroundings: the scene whose weather and other radars
+    they had."""
     frame = paths.frame
     settings = Settings(frame.max_bounces, frame.footprint, frame.polarization, frame.sampler, frame.num_batches,
                         frame.target_error_db or None, frame.scatterers, frame.edges, replay, evaluate, retrace, noise_seed,
                         effects)
-    return _of_case(Case(paths.scene, paths.radar, settings, paths=paths, surroundings=surroundings, rain_cube=rain_cube))
+    return _of_case(Case(paths.scene, paths.radar, settings, paths=paths, surroundings=surroundings, rain_cube=rain_cube,
+                         interference_cube=interference_cube))
 
 
 def _of_case(case: Case) -> Effects:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..effect_choices import Choices
+from ..interferers import interferers_of
 from ..names import MOST_NAMES, first_names
 from ..polarization import COHERENT_SHARE, antennas_of, chosen_model, coherent_share
 from ..settings import Edges
@@ -48,11 +49,14 @@ class Case:
     """A scene, a radar and settings, and the IDs [N] of the meshes that several rules ask for, ascending.
 
     paths: the trace that was made, None: none yet; statistics: its own, unless given; surroundings: the scene whose weather
-    counts, unless `scene` has it; rain_cube: the signal of the rain, None: none or none yet
+    and other radars count, unless `scene` has them; rain_cube, interference_cube: their signals, None: none or none yet
     """
 
-    def __init__(self, scene, radar, settings: Settings, statistics=None, *, paths=None, surroundings=None, rain_cube=None):
-        self.weather, self.rain_cube = weather_of(scene if surroundings is None else surroundings), rain_cube
+    def __init__(self, scene, radar, settings: Settings, statistics=None, *, paths=None, surroundings=None, rain_cube=None,
+                 interference_cube=None):
+        around = scene if surroundings is None else surroundings
+        self.weather, self.rain_cube = weather_of(around), rain_cube
+        self.interferers, self.interference_cube = interferers_of(around), interference_cube
         self.scene, self.radar, self.settings, self.paths = scene, radar, settings, paths
         self.statistics = statistics or (paths.frame.statistics if paths else None)
         self.wavelength = _core.speed_of_light / radar.waveform.start_frequency

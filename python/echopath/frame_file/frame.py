@@ -18,6 +18,7 @@ from ..frame import Frame, with_spectra
 from ..interrupts import interrupts_are_kept
 from ..keywords import parameters_of
 from ..labels.labels import Labels
+from ..scene import Scene
 from ..settings import Evaluate, Replay, Retrace
 from ..transmit import is_coded, signal_shape
 from .checks import read_checks, write_checks
@@ -25,6 +26,7 @@ from .container import file_with_paths, new_file, our_file
 from .detections import read_detections, write_detections
 from .h5 import (blames_group, blaming, length_of, read_array, read_attribute, read_group, read_texts, write_array,
                  write_attribute, write_stack, write_texts)
+from .interferers import read_interferers, write_interferers
 from .labels import read_all_labels, write_all_labels
 from .paths import read_paths, write_paths
 from .radar import read_radar, write_radar
@@ -34,6 +36,7 @@ from .truth import truth_in, write_truth
 # Settings of a signal and the values that each may have.
 SIGNAL_SETTINGS = {"replay": get_args(Replay), "evaluate": get_args(Evaluate), "retrace": get_args(Retrace)}
 SPECTRUM_KEYS = ("window", "zero_pad")
+BESIDE = ("rain_cube", "interference_cube")  # signals that no path makes
 ANGLE_KEYS = parameters_of(range_azimuth)[2:-1]  # all but spectrum, radar and progress
 
 
@@ -85,6 +88,7 @@ def save_frame(frame: Frame, path: str | os.PathLike[str], min_power: float = 0.
         raise refused(ValueError, "frame", "a frame with its signals (frame.paths.save writes the record alone)", frame)
     with new_file(path) as file:
         missing, is_kept = _write_record(file, frame.paths, frame.effects, min_power, frame.path_power)
+        write_interferers(file, frame.scene)
         _write_signal(file, frame)
         write_checks(file.create_group("checks"), frame.checks)
         _write_spectra(file, frame)
@@ -113,6 +117,8 @@ def load_frame(path: str | os.PathLike[str]) -> Frame:
         if "signal" not in file:
             return frame
         _read_signal(file, frame)
+        others = read_interferers(file)
+        frame.scene = Scene(frame.scene, interferers=others) if others else frame.scene
         frame.checks = read_checks(read_group(file, "checks"))
         _read_partitions(file, frame)
         with blaming(read_group(file, "spectra")):
@@ -185,8 +191,9 @@ def _write_signal(file, frame: Frame) -> None:
     group = file.create_group("signal")
     write_array(group, "cube", frame.cube, unit="sqrt(W)")
     write_array(group, "noisy_cube", frame.noisy_cube, unit="sqrt(W)")
-    if frame.rain_cube is not None:
-        write_array(group, "rain_cube", frame.rain_cube, unit="sqrt(W)")
+    for name in BESIDE:
+        if getattr(frame, name) is not None:
+            write_array(group, name, getattr(frame, name), unit="sqrt(W)")
     if frame.coded_cube is not None:
         write_array(group, "coded_cube", frame.coded_cube, unit="sqrt(W)")
     for name in SIGNAL_SETTINGS:
@@ -233,8 +240,9 @@ def _write_partitions(file, frame: Frame, is_kept) -> None:
 def _read_signal(file, frame: Frame) -> None:
     group = read_group(file, "signal")
     frame.cube = read_array(group, "cube", np.complex128, _cube_shape(frame.radar))
-    if "rain_cube" in group:
-        frame.rain_cube = read_array(group, "rain_cube", np.complex128, signal_shape(frame.radar))
+    for name in BESIDE:
+        if name in group:
+            setattr(frame, name, read_array(group, name, np.complex128, signal_shape(frame.radar)))
     if is_coded(frame.radar):
         frame.coded_cube = read_array(group, "coded_cube", np.complex128, signal_shape(frame.radar))
     frame.noise_seed = read_attribute(group, "noise_seed", int) if "noise_seed" in group.attrs else None
@@ -260,8 +268,12 @@ def _read_settings(group, known: tuple) -> dict:
     settings = json.loads(read_attribute(group, "settings", str))
     if not isinstance(settings, dict) or not set(settings) <= set(known):
         raise _core.FileError(f"{group.name}: attribute 'settings' must have no keys but {', '.join(known)}, is {settings!r}")
-    window = settings.get("window")
-    return settings | {"window": tuple(window)} if isinstance(window, list) else settings
+    return settings | {"window": _without_lists(settings["window"])} if "window" in settings else settings
+
+
+def _without_lists(value):
+    """Lists of JSON as the tuples that they were."""
+    return tuple(map(_without_lists, value)) if isinstance(value, list) else value
 
 
 @blames_group

@@ -7,13 +7,13 @@ from collections.abc import Mapping
 import numpy as np
 
 from .. import _core, same_radar
-from ..checks import Progress, Window, an, anything, checked, optional, refused, text
+from ..checks import MapWindow, Progress, an, anything, checked, optional, refused, text
 from ..families import Objects
 from ..families import families as find_families
 from ..keywords import refuse_unknown
 from ..parts import selection_rule
 from ..path_subset import part_of_path
-from ..resolution import interval_of, mean_powers
+from ..resolution import Interval, interval_of, mean_powers
 from ..settings import Evaluate, LabelSettings, Method, Plane, Replay, Retrace, SignalSettings
 from ..visibility import appearing_in_frame, visibility_in_trace
 from .family_pass import FamilyPass, owners_of_views
@@ -30,7 +30,7 @@ _PARTS, _FAMILIES = "parts", "families"
          radar=optional(an(_core.Radar)), parts=anything, angles=anything)
 def annotate(paths: _core.Paths, parts: Mapping | None = None, radar: _core.Radar | None = None, *,
              objects: Objects = LabelSettings.objects, plane: Plane = LabelSettings.plane,
-             window: Window = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad, angles: Mapping | None = None,
+             window: MapWindow = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad, angles: Mapping | None = None,
              noise: bool = LabelSettings.noise, noise_margin_db: float = LabelSettings.noise_margin_db,
              dynamic_range_db: float | None = LabelSettings.dynamic_range_db, errors: bool = LabelSettings.errors,
              tolerance: float = SignalSettings.tolerance, method: Method = SignalSettings.method,
@@ -162,24 +162,32 @@ def make_request(radar, num_batches: int, settings: LabelSettings, *, window=Sig
     return Request(radar, settings.objects, made, settings.noise, settings.noise_margin_db, dynamic_range_db, settings.errors)
 
 
-def label_partitions(request: Request, paths, families, owners, powers: dict, selections: dict, settings: dict) -> dict:
+def label_partitions(request: Request, paths, families, owners, powers: dict, selections: dict, settings: dict,
+                     beside=()) -> dict:
     """{partition: Labels} from {partition: ViewPowers}; objects and ghosts are the same in all.
+
+    beside: names of the parts, last in each view, that no path makes
 
     owners: callable (power of the whole [V, R] in W, {Family: Interval}) that gives CellOwners of the families
     selections: {partition: {name: selection}}; settings: signal settings
     """
-    whole = next(iter(powers.values())).whole
+    first = next(iter(powers.values()))
+    whole = first.whole
     groups = {}  # of the partitions whose parts are those of selections
     for partition, of_parts in powers.items():
         chosen = selections.get(partition, {})
-        if [*chosen, "other"] == list(of_parts.cells):
-            groups[partition] = part_of_path(paths, chosen), len(of_parts.cells)
+        if [*chosen, "other", *beside] == list(of_parts.cells):
+            groups[partition] = part_of_path(paths, chosen), len(chosen) + 1
     mean = mean_powers(paths, families, groups)
-    received = {partition: [interval_of(power) for power in found] for partition, found in mean.of_parts.items()}
+    known = [Interval(power, power, power) for power in (first.received[name] for name in beside)]
+    received = {partition: [*map(interval_of, found), *known] for partition, found in mean.of_parts.items()}
     intervals = dict(zip(families.families, map(interval_of, mean.of_families)))
-    scene_labels = _label_scene(request, paths, families, owners(whole, intervals), intervals, whole, settings.get("progress"))
+    owned = owners(whole, intervals)
+    for name in beside:
+        owned.leave(first.cells[name])
+    scene_labels = _label_scene(request, paths, families, owned, intervals, whole, settings.get("progress"))
     return {partition: _label_parts(request, paths, of_parts, selections.get(partition, {}), received.get(partition),
-                                    scene_labels, settings)
+                                    scene_labels, settings, beside)
             for partition, of_parts in powers.items()}
 
 
@@ -200,7 +208,8 @@ def _label_scene(request: Request, paths, families, owners, intervals: dict, who
             "left_out": owners.left_out}
 
 
-def _label_parts(request: Request, paths, powers, selections: dict, received, scene_labels: dict, settings: dict) -> Labels:
+def _label_parts(request: Request, paths, powers, selections: dict, received, scene_labels: dict, settings: dict,
+                 beside) -> Labels:
     """Labels of a partition.
 
     powers: its ViewPowers; received: Interval in W of each part, None where the parts are not those of selections
@@ -215,20 +224,24 @@ def _label_parts(request: Request, paths, powers, selections: dict, received, sc
                     noise_power=plane.noise_power, noise_margin_db=request.noise_margin_db,
                     dynamic_range_db=request.dynamic_range_db, above_noise=above_noise, mask=mask, seed=paths.frame.seed,
                     part_received=received, **scene_labels)
-    return _with_errors(labels, request, paths, selections, settings) if request.errors else labels
+    return _with_errors(labels, request, paths, selections, settings, beside) if request.errors else labels
 
 
-def label_frame(request: Request, paths, families, cubes: dict, owners, selections: dict, settings: dict) -> dict:
+def label_frame(request: Request, paths, families, cubes: dict, owners, selections: dict, settings: dict,
+                beside: dict) -> dict:
     """{partition: Labels} from {partition: {part: cube}}, cubes [tx, rx, chirp, sample] in sqrt(W).
 
-    owners: as in `label_partitions`; selections: {partition: {name: selection}}; settings: signal settings.
+    owners: as in `label_partitions`; selections: {partition: {name: selection}}; settings: signal settings; beside: {name:
+    cube} of what no path makes, which every partition gets as parts.
     """
-    powers = add_powers([CubeSet(request.radar, 1.0, cubes)], request.plane)
-    return label_partitions(request, paths, families, owners, powers, selections, settings)
+    views = {partition: {**parts, **beside} for partition, parts in cubes.items()}
+    powers = add_powers([CubeSet(request.radar, 1.0, views)], request.plane)
+    return label_partitions(request, paths, families, owners, powers, selections, settings, tuple(beside))
 
 
-def _with_errors(labels: Labels, request: Request, paths, selections: dict, settings: dict) -> Labels:
-    found = share_errors(paths, request.radar, selections, labels.part_names, labels.dominant, request.plane, settings)
+def _with_errors(labels: Labels, request: Request, paths, selections: dict, settings: dict, beside) -> Labels:
+    known = {name: labels.power[labels.part_names.index(name)] for name in beside}
+    found = share_errors(paths, request.radar, selections, labels.part_names, labels.dominant, request.plane, settings, known)
     names = ("mean_power", "power_error", "mean_share", "share_error", "certain")
     return dataclasses.replace(labels, **dict(zip(names, found)))
 

@@ -46,6 +46,11 @@ class CellOwners:
         self.family, self.own = np.where(mask, first[self._rival], NONE), np.where(mask, self.best, 0.0)
         return [rival for rival in np.unique(self._rival[mask]).tolist() if rival != NONE and len(self.rivals[rival]) > 1]
 
+    def leave(self, power) -> None:
+        """Takes the cells from their families where what no path makes has more power, [V, R] W; last of all."""
+        stronger = power > self.best
+        self.family[stronger], self.own[stronger] = NONE, 0.0
+
     def ranges_of(self, rival: int) -> list:
         """[R] 1 at the ranges where a rival has cells, else 0; after `give`."""
         return np.any(self._mask & (self._rival == rival), axis=0).astype(np.uint8).tolist()

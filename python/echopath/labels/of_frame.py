@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from ..beside import cubes_beside
 from ..checks import Progress, an, anything, checked
 from ..families import Objects
 from ..families import families as find_families
@@ -11,7 +12,7 @@ from ..parts import ONLY_PARTITION, as_partitions, check_partitions
 from ..settings import LabelSettings, Plane
 from .annotate import label_partitions, make_request, owners_and_powers
 from .labels import Labels
-from .powers import CubeSet, add_powers
+from .powers import CubeSet, add_powers, join
 
 SIGNAL_SETTINGS = ("replay", "evaluate", "retrace", "keyframes")  # of a frame, as `decompose` takes them
 
@@ -45,7 +46,10 @@ def annotate_frame(frame: Frame, parts: Mapping | None = None, *, plane: Plane =
     powers |= add_powers([CubeSet(frame.radar, 1.0, kept)], request.plane)
     selections = frame.selections | chosen
     powers = {partition: powers[partition] for partition in selections}
-    return label_partitions(request, paths, families, owners, powers, selections, replayed)
+    beside = cubes_beside(frame)
+    if beside:
+        join(powers.values(), beside, frame.cube, frame.radar, request.plane)
+    return label_partitions(request, paths, families, owners, powers, selections, replayed, tuple(beside))
 
 
 def _as_new_partitions(parts, frame) -> dict:

@@ -82,6 +82,17 @@ def add_powers(cube_sets, plane) -> dict:
     return powers
 
 
+def join(views, beside: dict, whole, radar, plane) -> None:
+    """Gives ViewPowers what no path makes as further parts: {part: cube}; whole: cube of all paths, likewise."""
+    cells = {part: plane.power(cube, radar) for part, cube in beside.items()}
+    received = {part: mean_square(cube) for part, cube in beside.items()}
+    power = plane.power(whole + sum(beside.values()), radar)
+    for view in views:
+        view.cells |= cells
+        view.received |= received
+        view.whole = power
+
+
 def decomposed(paths, radar, views: dict, num_parts: int, plane, settings: dict) -> Iterator[CubeSet]:
     """Cubes of all parts of some views, set by set of receivers: few enough at a time that the memory holds them.
 

@@ -53,10 +53,11 @@ def require_batches(num_batches: int) -> None:
         raise ValueError("errors: need independent batches of rays, trace(batches=8) (2 at least), got a trace with one")
 
 
-def share_errors(paths, radar, selections: dict, part_names, dominant, plane, settings: dict):
+def share_errors(paths, radar, selections: dict, part_names, dominant, plane, settings: dict, known: dict):
     """(mean_power, power_error, mean_share, share_error [K, V, R], certain [V, R]) of the parts of a partition.
 
-    selections: {name: selection}; dominant: i16 [V, R], the part that each label names.
+    selections: {name: selection}; dominant: i16 [V, R], the part that each label names; known: {part: power [V, R] in W} of
+    those that no path makes, which have no error.
     """
     num_batches = paths.frame.num_batches
     grouping = _core.Grouping
@@ -65,4 +66,6 @@ def share_errors(paths, radar, selections: dict, part_names, dominant, plane, se
     num_parts = len(part_names) * (2 * num_batches + 1)
     for cube_set in decomposed(paths, radar, {"batches": view}, num_parts, plane, settings):
         sums.add(cube_set.views["batches"], cube_set.radar, cube_set.weight)
+    for name, power in known.items():
+        sums.diffuse[part_names.index(name)] = power
     return _core.share_errors(sums.cross, sums.coherent, sums.diffuse, dominant)

@@ -9,6 +9,7 @@ from .. import _core
 from ..antennas import load_antenna
 from ..azimuth_map import checked_settings
 from ..families import named_globs
+from ..interferers import Interferer
 from ..parts import check_partitions
 from ..readers.load import is_foreign
 from ..sensor_files import load_radar
@@ -36,7 +37,9 @@ def scene_file_of(table: dict, path: Path) -> SceneFile:
     try:
         settings = validated(SceneTable, table)
         trajectories = Trajectories(path.parent)
-        scene_file = SceneFile(path=path, title=settings.title, scene=build_scene(settings, path.parent, trajectories),
+        scene = build_scene(settings, path.parent, trajectories)
+        scene.interferers = _build_interferers(settings, path.parent, trajectories)
+        scene_file = SceneFile(path=path, title=settings.title, scene=scene,
                                radar=_build_radar(settings.radar, path.parent, trajectories), trace=_trace(settings),
                                signal=_signal(settings), angle=settings.angle, parts=dict(settings.parts),
                                labels=_labels(settings), detections=settings.detections, guard=settings.guard,
@@ -102,30 +105,38 @@ def parse(path: Path) -> dict:
         raise ValueError(f"{path}: {error}") from None
 
 
-def _build_radar(table: RadarTable, folder: Path, trajectories: Trajectories):
+def _build_radar(table: RadarTable, folder: Path, trajectories: Trajectories, key: str = "radar"):
     if table.sensor is not None:
-        with blamed("radar"):
+        with blamed(key):
             radar = load_radar(folder / table.sensor, table.board)
             radar = radar if table.receiver is None else radar.replace(receiver=table.receiver)
-            return radar.replace(**_place(table, trajectories))
-    with blamed("radar.waveform"):
+            return radar.replace(**_place(table, trajectories, key))
+    with blamed(f"{key}.waveform"):
         waveform = _core.ChirpSequence(**table.waveform.model_dump())
     antennas = {}
     for side in ("transmitters", "receivers"):
         antennas[side] = []
         for index, antenna in enumerate(getattr(table, side)):
-            with blamed(f"radar.{side}[{index}]"):
+            with blamed(f"{key}.{side}[{index}]"):
                 antennas[side].append(_antenna(antenna, table, folder))
-    with blamed("radar"):
+    with blamed(key):
         return _core.Radar(waveform, **antennas, transmit_power=table.transmit_power,
                            noise_figure_db=table.noise_figure_db, multiplexing=table.multiplexing,
                            empty_slots=table.empty_slots, code_phases=table.code_phases, receiver=table.receiver,
-                           **_place(table, trajectories))
+                           **_place(table, trajectories, key))
 
 
-def _place(table: RadarTable, trajectories: Trajectories) -> dict:
+def _build_interferers(settings: SceneTable, folder: Path, trajectories: Trajectories) -> list[Interferer]:
+    found = []
+    for index, table in enumerate(settings.interferers):
+        radar = _build_radar(table, folder, trajectories, f"interferers[{index}]")
+        found.append(Interferer(radar=radar, offset=table.offset, over=table.over))
+    return found
+
+
+def _place(table: RadarTable, trajectories: Trajectories, key: str) -> dict:
     """Keywords of Radar that say where it is and how it moves."""
-    motion = motion_of(table.motion, "radar.motion") or trajectories.of(table, "radar")
+    motion = motion_of(table.motion, f"{key}.motion") or trajectories.of(table, key)
     return {"position": tuple(table.position), "yaw": math.radians(table.yaw_deg), "pitch": math.radians(table.pitch_deg),
             "motion": motion} | ({} if table.speed is None else {"speed": table.speed})
 

@@ -13,7 +13,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field
 from pydantic_core import PydanticCustomError
 
 from .. import _core
-from ..checks import Rule, positive, window
+from ..checks import Rule, map_window, positive, window
 from ..effect_choices import effects_rule
 from ..gates import gate
 from ..parts import are_tables
@@ -27,6 +27,7 @@ from ..shown import writable
 from ..spectra import FALSE_ALARM_RATE, RANK, CfarMethod
 from ..trajectories.arguments import checked_points, checked_stops, checked_times
 from ..trajectories.trajectory import ACCELERATION, DECELERATION
+from ..interferers import Over
 from ..weather import Weather
 
 Number = Annotated[float, Field(allow_inf_nan=False)]
@@ -73,6 +74,7 @@ def by_check(check: Rule) -> AfterValidator:
 
 Permittivity = Annotated[Any, AfterValidator(_permittivity)]
 Window = Annotated[Any, by_check(window)]
+MapWindow = Annotated[Any, by_check(map_window)]
 
 
 class Table(BaseModel):
@@ -253,6 +255,20 @@ class RadarTable(Table):
         return self
 
 
+class InterfererTable(RadarTable):
+    """A radar that sends: its receivers, where it has none, are its transmitters."""
+
+    offset: Number = Field(0.0, description="s, by which its frames begin later than at time 0")
+    over: Over = Field("both", description="the direct way, the paths of the scene, or both")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _receivers(cls, table):
+        if isinstance(table, dict) and "sensor" not in table and "receivers" not in table and "transmitters" in table:
+            return table | {"receivers": table["transmitters"]}
+        return table
+
+
 class LayerTable(Table):
     thickness: Positive = Field(description="m")
     permittivity: Permittivity = Field(description="relative; eps' or [eps', eps''] for eps' - j eps''")
@@ -387,7 +403,8 @@ class ReplayTable(Table):
 
 
 class SpectrumTable(Table):
-    window: Window = Field(SignalSettings.window, description="a name, or [\"chebyshev\", sidelobe level in dB]")
+    window: MapWindow = Field(SignalSettings.window, description="a name or [\"chebyshev\", sidelobe level in dB] of both "
+                                                                 "axes, or those of [range, velocity]")
     zero_pad: int = Field(SignalSettings.zero_pad, ge=1, description="length of the transforms over that of the data")
 
 
@@ -490,6 +507,7 @@ class SceneTable(Table):
     radar: RadarTable
     objects: list[ObjectTable] = Field([], description="in the order of their mesh IDs")
     weather: WeatherTable | None = Field(None, description="air, fog and rain; none: empty space")
+    interferers: list[InterfererTable] = Field([], description="other radars that send into the receivers")
     trace: TraceTable = TraceTable()
     replay: ReplayTable = ReplayTable()
     spectrum: SpectrumTable = SpectrumTable()

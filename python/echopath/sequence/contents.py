@@ -12,8 +12,10 @@ from ..checks import refused
 from ..files import written_whole
 from ..frame_file.container import our_file, write_head
 from ..frame_file.h5 import blames_group, read_attribute, read_group, write_attribute, writing
+from ..frame_file.interferers import read_interferers, write_interferers
 from ..frame_file.radar import read_radar, write_radar
 from ..frame_file.scene import read_scene, write_scene
+from ..scene import Scene
 from ..shown import shown
 
 KIND, NAME = "sequence", "sequence.h5"
@@ -45,6 +47,7 @@ def write_contents(folder: Path, contents: Contents) -> None:
             write_head(file, KIND)
             write_scene(file.create_group("scene"), contents.scene)
             write_radar(file.create_group("radar"), contents.radar)
+            write_interferers(file, contents.scene)
             group = file.create_group("settings")
             for name, value in contents.settings.items():
                 write_attribute(group, name, json.dumps(value, default=_plain))
@@ -56,8 +59,8 @@ def write_contents(folder: Path, contents: Contents) -> None:
 def read_contents(folder: Path) -> Contents:
     """What `write_contents` wrote. Raises ep.FileError."""
     with our_file(folder / NAME, KIND) as file:
-        return Contents(read_scene(read_group(file, "scene")), read_radar(read_group(file, "radar")),
-                        _read_settings(read_group(file, "settings")))
+        scene = Scene(read_scene(read_group(file, "scene")), interferers=read_interferers(file))
+        return Contents(scene, read_radar(read_group(file, "radar")), _read_settings(read_group(file, "settings")))
 
 
 @blames_group

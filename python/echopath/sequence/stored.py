@@ -64,7 +64,7 @@ class StoredSequence(Row[Frame | FrameMaps]):
 
     @property
     def scene(self) -> Scene:
-        """A copy of the scene that was simulated, in its weather."""
+        """A copy of the scene that was simulated, in its weather and with its other radars."""
         weather = self.settings.get("weather")
         return Scene(self._scene, weather=None if weather is None else Weather(**weather))
 

@@ -1,0 +1,33 @@
+"""Other radars of a scene in HDF5 groups (layout: data/README.md)."""
+from __future__ import annotations
+
+from ..interferers import Interferer, interferers_of
+from .h5 import blames_group, read_attribute, read_group, write_attribute
+from .radar import read_radar, write_radar
+
+NAME = "interferers"
+
+
+def write_interferers(file, scene) -> None:
+    """Writes a group for each of a scene that has some; file: or the group above."""
+    found = interferers_of(scene)
+    folder = file.create_group(NAME) if found else None
+    for index, one in enumerate(found):
+        group = folder.create_group(str(index))
+        write_radar(group.create_group("radar"), one.radar)
+        write_attribute(group, "offset", one.offset)
+        write_attribute(group, "over", one.over)
+
+
+def read_interferers(file) -> tuple[Interferer, ...]:
+    """Those of a file, () where it has none."""
+    if NAME not in file:
+        return ()
+    folder = read_group(file, NAME)
+    return tuple(_one(read_group(folder, str(index))) for index in range(len(folder)))
+
+
+@blames_group
+def _one(group) -> Interferer:
+    return Interferer(radar=read_radar(read_group(group, "radar")), offset=read_attribute(group, "offset", float),
+                      over=read_attribute(group, "over", str))

@@ -217,6 +217,10 @@ def test_sequences_and_files_keep_it(tmp_path):
     sequence = ep.Sequence(scene, victim(**SLOW), frames=2, interval=0.1, num_rays=500, labels=True, detections=True)
     first, second = sequence
     assert not np.array_equal(first.interference_cube, second.interference_cube)
+    spectrogram = ep.spectrogram(sequence, part="interference", window_length=16)
+    cubes = ep.spectrogram([first.interference_cube, second.interference_cube], victim(**SLOW), window_length=16,
+                           start_times=[0.0, 0.1])
+    np.testing.assert_array_equal(spectrogram.power, cubes.power)
     sequence.save(tmp_path / "all")
     stored = ep.load_sequence(tmp_path / "all")
     assert stored.scene.interferers == scene.interferers

@@ -1,6 +1,7 @@
 """Configurations and raw data of TI sensors, read back by a tool of theirs (OpenRadar 1.0.1, unchanged)."""
 import subprocess
 import sys
+from itertools import chain
 
 import numpy as np
 import pytest
@@ -20,6 +21,10 @@ frameCfg 0 1 32 0 50 1 0
 guiMonitor -1 1 1 0 0 0 1
 sensorStart
 """
+ADVANCED = CONFIGURATION.replace("dfeDataOutputMode 1", "dfeDataOutputMode 3").replace(
+    "profileCfg 0", "profileCfg 1 60.5 7 6 50 0 0 40 1 64 4000 0 0 30\nprofileCfg 0").replace(
+    "frameCfg 0 1 32 0 50 1 0", "chirpCfg 2 2 1 0 0 0 0 1\nadvFrameCfg 2 0 0 1 0\nsubFrameCfg 0 -1 0 2 16 20 0 1 1 20\n"
+    "subFrameCfg 1 -1 2 1 64 30 0 1 1 30")
 RATE, COUNT, SLOPE, INTERVAL = 5e6, 128, 70e12, 47e-6
 START = 60e9 + SLOPE * 6e-6
 
@@ -94,10 +99,7 @@ def test_virtual_elements_are_those_that_ti_publishes(written):
 
 
 def test_sub_frames_are_radars_that_begin_one_after_the_other(written):
-    text = CONFIGURATION.replace("dfeDataOutputMode 1", "dfeDataOutputMode 3").replace(
-        "profileCfg 0", "profileCfg 1 60.5 7 6 50 0 0 40 1 64 4000 0 0 30\nprofileCfg 0").replace(
-        "frameCfg 0 1 32 0 50 1 0", "chirpCfg 2 2 1 0 0 0 0 1\nadvFrameCfg 2 0 0 1 0\nsubFrameCfg 0 -1 0 2 16 20 0 1 1 20\n"
-        "subFrameCfg 1 -1 2 1 64 30 0 1 1 30")
+    text = ADVANCED
     sensor = ep.load_sensor(written(text))
     assert sensor.start_times == (0.0, pytest.approx(0.02)) and sensor.interval == pytest.approx(0.05)
     first, second = sensor.radars
@@ -121,7 +123,43 @@ def test_signs_of_two_transmitters_are_bpm(written):
     assert (radar.multiplexing, radar.num_slots, radar.waveform.num_chirps) == ("bpm", 2, 32)
 
 
+def test_back_off_and_phase_shifters_are_gains_and_phases_of_the_transmitters(written):
+    """A byte for each transmitter: 10 dB is 0x0A; a quarter turn is 16 of 64 steps, in the upper six bits."""
+    path = written(profileCfg=f"profileCfg 0 60 7 6 40 {0x0A0003} {0x400000} 70 1 128 5000 0 0 30")
+    for receiver in (ep.load_radar(path).receiver, ep.load_radar(path, ideal=True).receiver):
+        assert receiver.transmitter_gain_db == (-3.0, -10.0)  # of TX1 and TX3
+        assert receiver.transmitter_phase == pytest.approx((0.0, np.pi / 2))
+    radar = ep.load_radar(path, ideal=True)
+    plain, shifted = (ep.simulate(*args, num_rays=500, noise_seed=None).noisy_cube for args in (
+        (corner(), radar.replace(receiver=None)), (corner(), radar)))
+    np.testing.assert_allclose(shifted[0], plain[0] * 10 ** (-3 / 20), rtol=1e-12)
+    np.testing.assert_allclose(shifted[1], plain[1] * 1j * 10 ** (-10 / 20), rtol=1e-9)
+
+
+def test_sub_frames_are_sequences_and_one_file(written, tmp_path):
+    """A plate that recedes at 4 m/s is where each sub-frame finds it; the file has them in turn, frame by frame."""
+    sensor = ep.load_sensor(written(ADVANCED)).replace(position=(0, 0, 1))
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.3, 0.3), name="plate", material="metal", position=(3, 0, 1), yaw=np.pi,
+              motion=ep.LinearMotion(velocity=(4, 0, 0)))
+    sequences = sensor.sequences(scene, frames=2, start_time=0.1, num_rays=500)
+    np.testing.assert_allclose([one.times for one in sequences], [[0.1, 0.15], [0.12, 0.17]])
+    frames = list(chain.from_iterable(zip(*sequences)))
+    for frame in frames:
+        peak = frame.spectrum.range[np.abs(frame.spectrum.values).max(axis=(0, 1, 2)).argmax()]
+        middle = frame.paths.frame.start_time + 0.5 * frame.radar.frame_duration
+        shift = frame.radar.waveform.centre_frequency * 4.0 / frame.radar.waveform.slope
+        assert peak == pytest.approx(3.0 + 4.0 * middle + shift, abs=frame.radar.waveform.range_resolution)
+    size = ep.save_raw(frames, tmp_path / "two.bin")
+    of_frame = 4 * 4 * (2 * 16 * 128 + 64 * 64)
+    assert size == 2 * of_frame
+    second = np.fromfile(tmp_path / "two.bin", np.uint8)[of_frame + 4 * 4 * 2 * 16 * 128:]
+    assert frames[3].save_raw(tmp_path / "last.bin") == len(second)
+    np.testing.assert_array_equal(second, np.fromfile(tmp_path / "last.bin", np.uint8))
+
+
 @pytest.mark.parametrize("lines, told", [
+    (dict(profileCfg="profileCfg 0 60 7 6 40 -1 0 70 1 128 5000 0 0 30"), "sensor.cfg:6: profileCfg: power_backoff: must not be"),
     (dict(profileCfg="profileCfg 0 60 7 6 40 0 0 70 1 128"), r"sensor.cfg:6: profileCfg: must have 14 arguments"),
     (dict(profileCfg="profileCfg 0 60 x 6 40 0 0 70 1 128 5000 0 0 30"), "sensor.cfg:6: profileCfg: idle_us: must be a number"),
     (dict(profileCfg="profileCfg 0 60 7 6 30 0 0 70 1 128 5000 0 0 30"), "sensor.cfg:6: profileCfg: ramp_end_us: must be at"),
@@ -146,6 +184,12 @@ def test_boards_that_nobody_names_are_asked_for(written):
         ep.load_radar(written(CONFIGURATION.replace("% Platform : xWR68xx\n", "")))
     with pytest.raises(ValueError, match="^board: must be one of AWR1843"):
         ep.load_radar(written(), "AWR")
+
+
+def corner():
+    scene = ep.Scene()
+    scene.add(ep.actors.trihedral(0.1), name="corner", material=ep.Material.metal(), position=(2, 0, 0))
+    return scene
 
 
 def frame_of(sensor, azimuth=0.0, distance=2.0, speed=0.0, **keywords):

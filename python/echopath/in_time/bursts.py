@@ -8,6 +8,7 @@ import numpy as np
 
 from .. import _core
 from .._core import Selection
+from ..beside import NAMES, cubes_beside
 from ..checks import ArrayLike, array, refused, row_of_channel, shown
 from ..frame import Frame
 from ..iterables import iterable
@@ -178,11 +179,16 @@ def _followed(before: Burst | None, burst: Burst) -> Burst:
 
 
 def part_cube(frame, part):
-    """The noise-free cube [tx, rx, chirp, sample] of a part: of `frame.parts`, an object of the scene, or a selection."""
+    """The noise-free cube [tx, rx, chirp, sample] of a part: of `frame.parts`, an object of the scene, what no path makes, such
+    as "interference", or a selection."""
     for partition, cubes in frame.parts.items():
         for name, cube in cubes.items():
             if part == name or part == f"{partition}/{name}":
                 return cube
+    if isinstance(part, str) and part in NAMES and part not in frame.paths.scene:
+        beside = cubes_beside(frame)
+        if part in beside:
+            return beside[part]
     return _selected_cube(frame, _selection(frame, part))
 
 

@@ -108,7 +108,7 @@ def parse(path: Path) -> dict:
 def _build_radar(table: RadarTable, folder: Path, trajectories: Trajectories, key: str = "radar"):
     if table.sensor is not None:
         with blamed(key):
-            radar = load_radar(folder / table.sensor, table.board)
+            radar = load_radar(folder / table.sensor, table.board, subframe=table.subframe)
             radar = radar if table.receiver is None else radar.replace(receiver=table.receiver)
             return radar.replace(**_place(table, trajectories, key))
     with blamed(f"{key}.waveform"):

@@ -219,6 +219,7 @@ def one_motion(table):
 class RadarTable(Table):
     sensor: str | None = Field(None, description="configuration of a TI sensor, instead of waveform and antennas")
     board: str | None = Field(None, description="whose antennas the sensor has; none: as its file says")
+    subframe: int = Field(0, ge=0, description="of the sensor")
     waveform: WaveformTable | None = Field(None, description="none: that of the sensor")
     transmitters: list[AntennaTable] | None = Field(None, min_length=1, description="at least one")
     receivers: list[AntennaTable] | None = Field(None, min_length=1, description="at least one")

@@ -25,7 +25,8 @@ ARGUMENTS = {
 }
 _WHOLE = {"mode", "receivers", "transmitters", "cascading", "bits", "format", "profile", "num_samples", "high_pass_1",
           "high_pass_2", "first", "last", "num_loops", "num_frames", "num_subframes", "subframe", "num_chirps", "num_bursts",
-          "num_burst_loops", "second", "enabled", "forced_profile", "first_offset", "swap", "header", "data"}
+          "num_burst_loops", "second", "enabled", "forced_profile", "first_offset", "swap", "header", "data", "power_backoff",
+          "phase_shifter"}
 # Of newer firmware a period may be missing behind the loops, and some of the last ones may be left out.
 _OPTIONAL = {"frameCfg": 5, "advFrameCfg": 3, "channelCfg": 2, "adcbufCfg": 4, "lvdsStreamCfg": 3}
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 import dataclasses
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from .. import _core
 from ..checks import checked, flag, optional, refused, text
@@ -13,6 +14,10 @@ from .boards import Board, board_names, board_of_platform, read_board
 from .cfg import Command, Lines, read_lines
 from .frames import FramePlan, plans_of
 from .slots import SlotTable
+from .transmitters import chain_settings
+
+if TYPE_CHECKING:
+    from ..sequence.sequence import Sequence
 
 # kHz, corners of the two high-pass filters by their codes (mmWave SDK, profileCfg).
 HIGH_PASS_1, HIGH_PASS_2 = (175e3, 235e3, 350e3, 700e3), (350e3, 700e3, 1.4e6, 2.8e6)
@@ -37,6 +42,26 @@ class SensorConfig:
     board: str
     ignored: tuple[str, ...]
 
+    def replace(self, **changes: Any) -> SensorConfig:
+        """A copy whose radars have other values. changes: keywords of Radar, such as position in m, for all of them.
+
+        Raises TypeError or ValueError naming the keyword.
+        """
+        return dataclasses.replace(self, radars=tuple(radar.replace(**changes) for radar in self.radars))
+
+    def sequences(self, scene: _core.Scene, *, frames: int, start_time: float = 0.0, **settings: Any) -> tuple[Sequence, ...]:
+        """A Sequence of each sub-frame, one of a plain frame: frame after frame at the sensor's interval.
+
+        scene: of the frames; frames: their number; start_time: s, of the first
+        settings: other keywords of Sequence, the same for all
+        `ep.save_raw(itertools.chain.from_iterable(zip(*sequences)), path)` writes them as the sensor sends them. Raises what
+        Sequence raises.
+        """
+        from ..sequence.sequence import Sequence
+
+        return tuple(Sequence(scene, radar, frames=frames, interval=self.interval, start_time=start_time + begin, **settings)
+                     for radar, begin in zip(self.radars, self.start_times))
+
 
 @checked(board=optional(text), ideal=flag)
 def load_sensor(path: str | os.PathLike[str], board: str | None = None, *, ideal: bool = False) -> SensorConfig:
@@ -45,7 +70,8 @@ def load_sensor(path: str | os.PathLike[str], board: str | None = None, *, ideal
     The commands profileCfg, chirpCfg, frameCfg, advFrameCfg, subFrameCfg, channelCfg, adcCfg, bpmCfg and dfeDataOutputMode
     count, and of adcbufCfg and lvdsStreamCfg which of I and Q comes first where the sensor streams its samples itself; `ignored`
     names the others. Transmitters that take turns make "tdm", two by bpmCfg "bpm". start_frequency is that of
-    the first sample. Chirps that differ in start frequency, slope or idle time become steps of the waveform.
+    the first sample. Chirps that differ in start frequency, slope or idle time become steps of the waveform; back-off and phase
+    shifters of the profiles become gains and phases of the transmitters.
     path: of the file
     board: "IWR1443", "AWR1843", "IWR6843ISK", "IWR6843AOP" or "AWR2243_cascade"; None: as the file's line "Platform" says
     ideal: without the filters and the converter that the file describes
@@ -96,7 +122,7 @@ def _radar(lines: Lines, board: Board, plan: FramePlan, ideal: bool) -> _core.Ra
         return _core.Radar(waveform, transmitters=[board.transmitters[i] for i in code.order], receivers=antennas,
                            transmit_power=board.transmit_power, noise_figure_db=board.noise_figure_db,
                            multiplexing=code.kind, code_phases=code.phases,
-                           receiver=None if ideal else _receiver(lines, slots, plan, board))
+                           receiver=_receiver(lines, slots, plan, board, ideal, chain_settings(slots, code)))
     except ValueError as error:
         raise slots.error(str(error)) from None
 
@@ -110,7 +136,7 @@ def _antennas_of(lines: Lines, board: Board) -> list:
     return [board.receivers[i] for i in chosen]
 
 
-def _receiver(lines: Lines, slots: SlotTable, plan: FramePlan, board: Board):
+def _receiver(lines: Lines, slots: SlotTable, plan: FramePlan, board: Board, ideal: bool, of_transmitters: dict):
     profile, adc = slots.profile, lines.one("adcCfg")
     corners = []
     for name, known in (("high_pass_1", HIGH_PASS_1), ("high_pass_2", HIGH_PASS_2)):
@@ -119,9 +145,11 @@ def _receiver(lines: Lines, slots: SlotTable, plan: FramePlan, board: Board):
         corners.append(known[profile[name]])
     if not 0 <= adc["bits"] < len(BITS):
         raise adc.error(f"bits: must be 0, 1 or 2 for {BITS} bits, got {adc['bits']}")
+    if ideal:
+        return Receiver(**of_transmitters) if of_transmitters else None
     gain_db = float(int(profile["gain_db"]) & _RF_GAIN_BITS)
     return Receiver(high_pass=corners, adc=Adc(bits=BITS[adc["bits"]], gain_db=gain_db, lanes=board.lanes,
-                                               q_first=_is_q_first(lines, plan.subframe)))
+                                               q_first=_is_q_first(lines, plan.subframe)), **of_transmitters)
 
 
 def _is_q_first(lines: Lines, subframe: int) -> bool:

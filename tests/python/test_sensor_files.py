@@ -142,7 +142,7 @@ def test_sub_frames_are_sequences_and_one_file(written, tmp_path):
     scene = ep.Scene()
     scene.add(ep.actors.plate(0.3, 0.3), name="plate", material="metal", position=(3, 0, 1), yaw=np.pi,
               motion=ep.LinearMotion(velocity=(4, 0, 0)))
-    sequences = sensor.sequences(scene, frames=2, start_time=0.1, num_rays=500)
+    sequences = sensor.sequences(scene, frames=2, start_time=0.1, settings={"num_rays": 500})
     np.testing.assert_allclose([one.times for one in sequences], [[0.1, 0.15], [0.12, 0.17]])
     frames = list(chain.from_iterable(zip(*sequences)))
     for frame in frames:

@@ -84,7 +84,8 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
         raise ValueError("labels: cannot be given beside parts")
     if paths is not None and (field := difference(radar, paths.radar, paths.frame.start_time)):
         raise ValueError(f"paths: must be traced with the radar of the spectrum, got another {field}")
-    parts = None if parts is None else _signals_of(parts, paths, radar, progress)
+    parts = None if parts is None else labelling.maps_of("parts", _signals_of(parts, paths, radar, progress), spectrum, radar)
+    beside = labelling.maps_of("beside", beside, spectrum, radar)
     found = cfar(spectrum, radar, method=method, false_alarm_rate=false_alarm_rate, guard_velocity=guard_velocity,
                  guard_range=guard_range, training_velocity=training_velocity, training_range=training_range, rank=rank,
                  progress=progress)
@@ -92,12 +93,12 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     peaks = _core.find_peaks(spectrum, radar, found, progress)
     cells, power = peaks["cells"], found.power[tuple(peaks["cells"].T)]
     echoes = None if paths is None else EchoFields(paths, spectrum)
-    columns = _labels_of(spectrum, radar, cells, power, paths, parts, labels, beside or {}, objects, echoes)
+    columns = _labels_of(spectrum, cells, power, paths, parts, labels, beside, objects, echoes)
     found = _joined(radar, peaks, power, directions_of(spectrum, radar, cells, angles or {}, progress), columns, echoes)
     return found if paths is None else dataclasses.replace(found, seed=paths.frame.seed)
 
 
-def _labels_of(spectrum, radar, cells, power, paths, parts, labels, beside: dict, objects, echoes) -> dict:
+def _labels_of(spectrum, cells, power, paths, parts, labels, beside: dict, objects, echoes) -> dict:
     """part, share, object, ghost_type, order and class_code [N] of cells [N, 2]."""
     found = labelling.CellLabels(len(cells))
     if paths is not None:
@@ -110,9 +111,9 @@ def _labels_of(spectrum, radar, cells, power, paths, parts, labels, beside: dict
     if labels is not None:
         found.take_parts(*labelling.label_powers(spectrum, labels, cells), power)
     elif parts is not None:
-        found.take_parts(*labelling.part_powers(spectrum, radar, parts | beside, cells), power)
+        found.take_parts(*labelling.part_powers(parts | beside, cells), power)
     elif beside:
-        found.take_beside(*labelling.part_powers(spectrum, radar, beside, cells)[:2])
+        found.take_beside(*labelling.part_powers(beside, cells)[:2])
     found.leave(tuple(beside) if labels is None else ())
     return found.columns()
 

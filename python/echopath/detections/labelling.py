@@ -11,28 +11,31 @@ from .detections import NOISE
 HALF = 0.5  # of a cell's power: what echoes without noise hold less of was made by noise
 
 
-def part_powers(spectrum, radar, parts: dict, cells) -> tuple:
-    """Names [K], powers [K, N] of the parts in cells [N, 2] and power [N] of their sum as fields, W, mean over channels.
-
-    parts: {name: cube or RangeDoppler} of one partition; Raises ValueError.
-    """
+def part_powers(maps: dict, cells) -> tuple:
+    """Names [K], powers [K, N] of maps of parts in cells [N, 2] and power [N] of their sum as fields, W, mean over channels."""
     velocity, distance = cells[:, 0], cells[:, 1]
     powers, whole = [], 0.0
-    for name, part in parts.items():
-        values = _map_of(name, part, spectrum, radar).values[:, :, velocity, distance]
+    for part in maps.values():
+        values = part.values[:, :, velocity, distance]
         powers.append(np.mean(np.abs(values) ** 2, axis=(0, 1)))
         whole = whole + values
-    return list(parts), np.array(powers), np.mean(np.abs(whole) ** 2, axis=(0, 1))
+    return list(maps), np.array(powers), np.mean(np.abs(whole) ** 2, axis=(0, 1))
 
 
-def _map_of(name: str, part, spectrum, radar):
+def maps_of(argument: str, parts: dict | None, spectrum, radar) -> dict:
+    """{name: RangeDoppler} of {name: cube or RangeDoppler}, as that of the spectrum. Raises TypeError or ValueError naming the
+    argument."""
+    return {name: _map_of(argument, name, part, spectrum, radar) for name, part in (parts or {}).items()}
+
+
+def _map_of(argument: str, name: str, part, spectrum, radar):
     if isinstance(part, dict):
-        raise ValueError(f"parts: must be those of one view, got several, such as {name!r}")
+        raise ValueError(f"{argument}: must be those of one view, got several, such as {name!r}")
     if not isinstance(part, _core.RangeDoppler):
-        return _core.range_doppler(array("[T, R, C, S]", kind="complex")("parts", part), radar, window=spectrum.window,
+        return _core.range_doppler(array("[T, R, C, S]", kind="complex")(argument, part), radar, window=spectrum.window,
                                    zero_pad=spectrum.zero_pad)
     if part.values.shape != spectrum.values.shape:
-        raise ValueError(f"parts: maps must be as that of the spectrum, {spectrum.values.shape}, got {part.values.shape} "
+        raise ValueError(f"{argument}: maps must be as that of the spectrum, {spectrum.values.shape}, got {part.values.shape} "
                          f"of {name!r}")
     return part
 

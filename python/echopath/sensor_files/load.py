@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -49,17 +50,19 @@ class SensorConfig:
         """
         return dataclasses.replace(self, radars=tuple(radar.replace(**changes) for radar in self.radars))
 
-    def sequences(self, scene: _core.Scene, *, frames: int, start_time: float = 0.0, **settings: Any) -> tuple[Sequence, ...]:
+    def sequences(self, scene: _core.Scene, *, frames: int, start_time: float = 0.0,
+                  settings: Mapping[str, Any] | None = None) -> tuple[Sequence, ...]:
         """A Sequence of each sub-frame, one of a plain frame: frame after frame at the sensor's interval.
 
         scene: of the frames; frames: their number; start_time: s, of the first
-        settings: other keywords of Sequence, the same for all
+        settings: {keyword of Sequence: value}, the same for all, None: as it is
         `ep.save_raw(itertools.chain.from_iterable(zip(*sequences)), path)` writes them as the sensor sends them. Raises what
         Sequence raises.
         """
         from ..sequence.sequence import Sequence
 
-        return tuple(Sequence(scene, radar, frames=frames, interval=self.interval, start_time=start_time + begin, **settings)
+        timing = {"frames": frames, "interval": self.interval}
+        return tuple(Sequence(scene, radar, start_time=start_time + begin, **timing, **(settings or {}))
                      for radar, begin in zip(self.radars, self.start_times))
 
 

@@ -1,4 +1,5 @@
 """Labelled frames by the thousand: a template, whose values are drawn for each scene, and the folder that they are kept in."""
+from .carrada import write_carrada
 from .folder import SceneRecord
 from .making import Forecast, MadeScene, make
 from .opened import Dataset, DatasetFrame, open
@@ -7,4 +8,4 @@ from .report import write_report
 from .template import DatasetTable, DrawnScene, Template
 
 __all__ = ["Dataset", "DatasetFrame", "DatasetTable", "DrawnScene", "Forecast", "MadeScene", "SceneRecord", "Template", "make",
-           "open", "write_radar_scenes", "write_report"]
+           "open", "write_carrada", "write_radar_scenes", "write_report"]

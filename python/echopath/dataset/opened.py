@@ -101,6 +101,13 @@ class Dataset:
         return f"Dataset('{self.folder}', {len(self)} frames of {len(self.scenes)} scenes, keep='{self.template.settings.keep}')"
 
 
+def dataset_rule(argument: str, value: Any) -> Dataset:
+    """A Dataset, for `checked`. Raises TypeError naming the argument for anything else."""
+    if not isinstance(value, Dataset):
+        raise refused(TypeError, argument, "a Dataset of ep.dataset.open", value)
+    return value
+
+
 @checked(folder=folder_rule)
 def open(folder: str | os.PathLike[str]) -> Dataset:
     """The dataset that `ep.dataset.make` or `echopath dataset` wrote to a folder, or has written so far.

@@ -20,7 +20,7 @@ from ..files import require_writable, write_texts, written_whole
 from ..frame_file.h5 import writing
 from ..truth.cross_section import isotropic_power
 from .classes import CODES, classes_of
-from .opened import Dataset
+from .opened import Dataset, dataset_rule
 
 SENSOR = 1
 MICRO = 1e6  # timestamps are whole microseconds
@@ -46,13 +46,7 @@ class _Pose(NamedTuple):
         return float(np.arctan2(self.world[1, 0], self.world[0, 0]))
 
 
-def _a_dataset(argument: str, value: Any) -> Dataset:
-    if not isinstance(value, Dataset):
-        raise refused(TypeError, argument, "a Dataset of ep.dataset.open", value)
-    return value
-
-
-@checked(dataset=_a_dataset, folder=folder_rule)
+@checked(dataset=dataset_rule, folder=folder_rule)
 def write_radar_scenes(dataset: Dataset, folder: str | os.PathLike[str]) -> None:
     """Writes the detections of a dataset as RadarScenes has them: data/sequences.json, data/sensors.json, and for each scene
     data/sequence_<k>/radar_data.h5 and scenes.json, k from 1.

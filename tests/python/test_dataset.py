@@ -273,19 +273,19 @@ def test_a_scene_that_names_a_file_that_is_gone_fails_alone(tmp_path, workers):
 
 def test_a_scene_that_fails_is_told_and_tried_again_on_request(whole, tmp_path, monkeypatch):
     path, folder = whole
-    sequence = dataset.Template.sequence
+    sequence_of = dataset.Template.sequence_of
 
-    def failing(self, number):
-        if number == 2:
+    def failing(self, scene):
+        if scene.number == 2:
             raise ValueError("no such luck")
-        return sequence(self, number)
+        return sequence_of(self, scene)
 
     monkeypatch.setattr("echopath.dataset.making._BUILT", 1)  # scene 0 alone is looked at before
-    monkeypatch.setattr(dataset.Template, "sequence", failing)
+    monkeypatch.setattr(dataset.Template, "sequence_of", failing)
     records = {one.scene: one.record for one in make(path, tmp_path)}
     assert records[2].state == "failed" and "no such luck" in records[2].reason and records[3].state == "done"
     assert len(dataset.open(tmp_path)) == 10 and "no such luck" in (tmp_path / "manifest.json").read_text()
-    monkeypatch.setattr(dataset.Template, "sequence", sequence)
+    monkeypatch.setattr(dataset.Template, "sequence_of", sequence_of)
     assert all(one.was_there for one in make(path, tmp_path))
     assert [one.scene for one in make(path, tmp_path, only_failed=True)] == [2]
     assert bytes_of(tmp_path) == bytes_of(folder)

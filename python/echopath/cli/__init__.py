@@ -108,7 +108,7 @@ def _parser() -> argparse.ArgumentParser:
 
     bench = commands.add_parser("bench", help="measure error and speed side by side")
     bench.add_argument("what", choices=["physics", "replay", "labels", "hard", "speed", "crowd", "certificate", "targets",
-                                           "actors", "measured", "worlds", "live", "receiver"],
+                                           "actors", "measured", "worlds", "live", "receiver", "dataset"],
                        help="physics: levels of canonical targets; replay: one record against tracing every chirp and "
                             "antenna; labels: cost of parts, rate of path expressions; hard: cases that break ray tracers "
                             "and coherent sums, each with its bound; speed: synthesis beside FINUFFT, frames, memory; "
@@ -119,7 +119,8 @@ def _parser() -> argparse.ArgumentParser:
                             "method of moments, with and without sharp edges; worlds: crowds, and cities of many walls and "
                             "meshes, their mirror paths against a search over all walls; live: scenes that change and go on in "
                             "time, a drive through a city street; receiver: faults of receivers beside closed forms, codes of "
-                            "transmitters beside turns, and what they cost")
+                            "transmitters beside turns, and what they cost; dataset: frames of datasets by second and core, what "
+                            "each stage takes, growth and memory of workers")
     bench.add_argument("--out", required=True, metavar="DIR", help="folder of its results")
     bench.add_argument("--quick", action="store_true", help="few shifts and rays, for a look; hard: without the heavy cases")
     bench.add_argument("--rays-max", type=positive, default=2**16, metavar="N",
@@ -314,9 +315,9 @@ def _dataset_report(options) -> None:
 
 
 def _bench(options) -> None:
-    from ..bench import (actors, certificate, crowd, hard, labels, live, measured, published, receiver, replay, report,
-                         run_actors, run_certificate, run_crowd, run_labels, run_live, run_measured, run_physics, run_published,
-                         run_receiver, run_replay, run_speed, run_worlds, speed, worlds)
+    from ..bench import (actors, certificate, crowd, dataset, hard, labels, live, measured, published, receiver, replay, report,
+                         run_actors, run_certificate, run_crowd, run_dataset, run_labels, run_live, run_measured, run_physics,
+                         run_published, run_receiver, run_replay, run_speed, run_worlds, speed, worlds)
     from ..progress import progress_bars
 
     works = {"physics": (run_physics, report.describe), "labels": (run_labels, labels.describe),
@@ -324,7 +325,7 @@ def _bench(options) -> None:
              "crowd": (run_crowd, crowd.describe), "speed": (run_speed, speed.describe),
              "actors": (run_actors, actors.describe), "measured": (run_measured, measured.describe),
              "worlds": (run_worlds, worlds.describe), "live": (run_live, live.describe),
-             "receiver": (run_receiver, receiver.describe),
+             "receiver": (run_receiver, receiver.describe), "dataset": (run_dataset, dataset.describe),
              "targets": (run_published, published.describe), "replay": (run_replay, replay.describe)}
     more = {"physics": {"rays_max": options.rays_max}, "certificate": {"scenes": options.scenes}}
     require_writable(options.out, "--out")

@@ -68,7 +68,8 @@ def make_scene(template: Template, folder: Path, scene: int, run: str) -> SceneR
 def _made(template: Template, folder: Path, scene: int) -> SceneRecord:
     own, frames = scene_folder(folder, scene), template.settings.frames
     try:
-        drawn, sequence = template.draw(scene), template.sequence(scene)
+        drawn = template.draw(scene)
+        sequence = template.sequence_of(drawn)
     except (ValueError, RuntimeError, _core.FileError, MemoryError) as error:  # files: those that the scene names
         return _failed(error)
     write_texts(own, {DRAWN: json.dumps(drawn.values, indent=1) + "\n"})

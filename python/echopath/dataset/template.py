@@ -112,14 +112,15 @@ class Template:
 
     def scene_file(self, number: int) -> SceneFile:
         """What scene `number` says, ready to trace. Raises as `draw`."""
-        try:
-            return scene_file_of(self.draw(number).table, self.path)
-        except ValueError as error:
-            raise self._of_scene(number, error) from None
+        return self._scene_file_of(self.draw(number))
 
     def sequence(self, number: int) -> Sequence:
         """The frames of scene `number`. Raises as `draw`, also where a motion does not cover them."""
-        scene_file, settings = self.scene_file(number), self.settings
+        return self.sequence_of(self.draw(number))
+
+    def sequence_of(self, scene: DrawnScene) -> Sequence:
+        """The frames of a scene that is drawn. Raises as `sequence`."""
+        scene_file, settings = self._scene_file_of(scene), self.settings
         assert scene_file.radar is not None  # which foreign scenes alone have not
         interval = settings.interval or scene_file.radar.frame_duration
         keywords = scene_file.keywords()
@@ -128,7 +129,13 @@ class Template:
         try:
             return Sequence(scene_file.scene, scene_file.radar, frames=settings.frames, interval=interval, **keywords)
         except ValueError as error:
-            raise self._of_scene(number, error) from None
+            raise self._of_scene(scene.number, error) from None
+
+    def _scene_file_of(self, scene: DrawnScene) -> SceneFile:
+        try:
+            return scene_file_of(scene.table, self.path)
+        except ValueError as error:
+            raise self._of_scene(scene.number, error) from None
 
 
 class _Drawing:

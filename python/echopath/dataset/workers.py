@@ -42,6 +42,11 @@ def in_this_process(template: Template, folder: Path, scenes: Sequence[int], run
             time.sleep(PAUSE)
 
 
+def turned(scenes: Sequence[int], index: int, count: int) -> list[int]:
+    """The scenes in the order of worker `index` of `count`: each begins elsewhere, so that they meet no sooner than they must."""
+    return [scene for other in range(count) for scene in scenes[(index + other) % count::count]]
+
+
 def in_processes(path: Path, folder: Path, scenes: Sequence[int], run: str, count: int) -> Iterator[Done]:
     """The same by `count` processes with an equal share of the processors each. One that dies is replaced.
 
@@ -52,9 +57,8 @@ def in_processes(path: Path, folder: Path, scenes: Sequence[int], run: str, coun
     unwritten = context.SimpleQueue()  # what is said of files that cannot be written
 
     def start(index: int) -> Any:
-        # Each begins elsewhere, so that they meet no sooner than they must.
-        turned = [*scenes[index::count], *(scene for other in range(count) if other != index for scene in scenes[other::count])]
-        process = context.Process(target=_work, args=(str(path), str(folder), turned, run, threads, unwritten), daemon=True)
+        args = (str(path), str(folder), turned(scenes, index, count), run, threads, unwritten)
+        process = context.Process(target=_work, args=args, daemon=True)
         process.start()
         return process
 

@@ -1,0 +1,22 @@
+"""`echopath bench dataset`: what frames of datasets cost, and growth with workers."""
+import json
+
+import pytest
+
+from echopath.bench import dataset
+
+
+def test_a_quick_run_writes_what_it_measured(tmp_path, monkeypatch):
+    monkeypatch.setattr(dataset.frames, "TEMPLATES", ("ghosts",))
+    monkeypatch.setattr(dataset.workers, "TEMPLATE", "ghosts")
+    monkeypatch.setattr(dataset.workers, "QUICK_SCENES", 2)
+    results = dataset.run_dataset(tmp_path, quick=True)
+    assert json.loads((tmp_path / "dataset.json").read_text()) == results
+    row, = results["rows"]["frames"]
+    assert sum(row["shares"].values()) == pytest.approx(1.0) and row["shares"]["trace"] > 0.0 and row["shares"]["writing"] > 0.0
+    assert row["frames"] == 8 and 1e4 < row["bytes"] < 1e6
+    one, two = results["rows"]["workers"]
+    assert one["frames"] == two["frames"] == 8 and one["growth"] == 1.0 and 1.0 < two["growth"] < 2.2
+    assert two["memory_holds"] and two["busiest"] <= two["seconds"]
+    lines = dataset.describe(results)
+    assert any(line.startswith("ghosts") for line in lines) and any(line.startswith("2 ") for line in lines)

@@ -66,7 +66,7 @@ def _row(name: str, template: Template, scenes: int) -> dict:
         for scene in range(scenes + 1):
             if scene == 1:  # the first warms up
                 spent, size, frames = Counter(), 0, 0
-            for number, path in enumerate(_frames(template, scene, Path(folder), spent)):
+            for path in _frames(template, scene, Path(folder), spent):
                 size, frames = size + path.stat().st_size, frames + 1
     whole = sum(spent.values())
     return {"template": name, "frames": frames, "seconds": whole / frames, "bytes": size / frames,

@@ -1,4 +1,4 @@
-"""Datasets in the layout of RadarScenes, read by its own tools as they are."""
+"""Datasets in the layouts of RadarScenes and ASAM OSI, read by their own tools as they are."""
 import json
 
 import numpy as np
@@ -11,6 +11,7 @@ from echopath import dataset
 
 RADIUS, EGO, SPEED = 0.5, 4.0, 3.0  # m of the sphere at rest, m/s of the radar, m/s of the walker's stand-in
 PLACE = np.array([12.0, 3.0, 1.0])  # m, of the sphere
+MIDDLE = 0.5 * (127 * 1e-4 + 255 / 12.5e6)  # s, between the first sample of a frame and its last
 RANGE_CELL, VELOCITY_CELL = 0.15, 0.152  # m, m/s
 TEMPLATE = f"""
 [dataset]
@@ -132,3 +133,37 @@ def test_a_dataset_without_detections_is_refused(written, tmp_path):
     assert json.loads((written / "out" / "data" / "sensors.json").read_text())["radar_1"]["x"] == 0.0
     with pytest.raises(TypeError, match="dataset: must be a Dataset"):
         dataset.write_radar_scenes("made", tmp_path)
+
+
+def test_traces_of_osi_are_read_by_its_own_tool(written):
+    reader = pytest.importorskip("osi3trace.osi_trace")
+    dataset.write_osi(dataset.open(written / "made"), written / "osi")
+    paths = sorted((written / "osi").glob("19700101T000000Z_sd_*_3_scene_*.osi"))
+    assert len(paths) == 4
+    for path in paths:
+        messages = list(reader.OSITrace(str(path), "SensorData"))
+        assert [one.timestamp.seconds + 1e-9 * one.timestamp.nanos for one in messages] == pytest.approx(
+            [0.05 * place + MIDDLE for place in range(3)], abs=1e-9)
+        for place, one in enumerate(messages):
+            _check_message(place, one)
+    with pytest.raises(ValueError, match="folder: must be one that has no traces yet"):
+        dataset.write_osi(dataset.open(written / "made"), written / "osi")
+
+
+def _check_message(place: int, message) -> None:
+    """The balls are where they are, and echoes of the walker's stand-in name it."""
+    radar, = message.feature_data.radar_sensor
+    time = 0.05 * place + MIDDLE
+    assert radar.header.cycle_counter == place and radar.header.number_of_valid_detections == len(radar.detection) > 1
+    pose = radar.header.mounting_position
+    assert [pose.position.x, pose.position.y, pose.position.z] == pytest.approx([1.0 + EGO * time, 0.0, 1.0], abs=1e-6)
+    assert [pose.orientation.yaw, pose.orientation.pitch, pose.orientation.roll] == pytest.approx([0.0] * 3, abs=1e-9)
+    ball = max((one for one in radar.detection if one.object_id.value == 2 ** 64 - 1), key=lambda one: one.rcs)
+    way = PLACE[:2] - [1.0 + EGO * time, 0.0136 / 4]
+    assert ball.position.distance == pytest.approx(np.hypot(*way) - RADIUS, abs=0.5 * RANGE_CELL)
+    assert ball.position.azimuth == pytest.approx(np.arctan2(way[1], way[0]), abs=0.03)
+    assert ball.radial_velocity == pytest.approx(-EGO * np.cos(ball.position.azimuth), abs=0.5 * VELOCITY_CELL)
+    assert ball.rcs == pytest.approx(10.0 * np.log10(np.pi * RADIUS**2), abs=1.5) and ball.snr > 10.0
+    walker = [one for one in radar.detection if one.object_id.value == 1]  # the second object of the template
+    assert walker and all(one.existence_probability == 1.0 for one in walker)
+    assert {one.classification for one in walker} <= {1, 2}  # other, invalid: a ghost

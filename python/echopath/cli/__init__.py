@@ -158,6 +158,9 @@ def _add_dataset(commands) -> None:
                          help="folder of the dataset; the same command goes on where it was stopped")
     dataset.add_argument("--workers", type=positive, default=1, metavar="N",
                          help="processes, which share the processors (default: %(default)s)")
+    dataset.add_argument("--scheduler", default=None, metavar="ADDRESS",
+                         help="of a Dask scheduler, such as tcp://host:8786, whose workers make the scenes; --out may then be an "
+                              "address of fsspec, such as s3://bucket/folder")
     dataset.add_argument("--shard", type=shard, default=None, metavar="K/N",
                          help="every N-th scene alone, from the K-th on, while others make the other shards in the same folder")
     dataset.add_argument("--frames", type=number_range, default=None, metavar="A:B",

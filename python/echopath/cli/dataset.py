@@ -15,7 +15,7 @@ def lines_of(options) -> Iterator[str]:
     counts: Counter[str] = Counter()
     try:
         for told in make(options.template, options.out, workers=options.workers, shard=options.shard, frames=options.frames,
-                         only_failed=options.only_failed):
+                         only_failed=options.only_failed, scheduler=options.scheduler):
             if isinstance(told, Forecast):
                 yield _forecast_line(told)
                 continue

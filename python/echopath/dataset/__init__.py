@@ -3,9 +3,10 @@ from .carrada import write_carrada
 from .folder import SceneRecord
 from .making import Forecast, MadeScene, make
 from .opened import Dataset, DatasetFrame, open
+from .osi import write_osi
 from .radar_scenes import write_radar_scenes
 from .report import write_report
 from .template import DatasetTable, DrawnScene, Template
 
 __all__ = ["Dataset", "DatasetFrame", "DatasetTable", "DrawnScene", "Forecast", "MadeScene", "SceneRecord", "Template", "make",
-           "open", "write_carrada", "write_radar_scenes", "write_report"]
+           "open", "write_carrada", "write_osi", "write_radar_scenes", "write_report"]

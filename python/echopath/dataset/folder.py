@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
@@ -31,24 +32,41 @@ class SceneRecord(NamedTuple):
     reason: str = ""
 
 
+def scene_name(scene: int) -> str:
+    """The name of the folder of a scene, in that of the dataset."""
+    return f"scenes/{scene:06d}"
+
+
 def scene_folder(folder: Path, scene: int) -> Path:
     """The folder of a scene."""
-    return folder / "scenes" / f"{scene:06d}"
+    return folder / scene_name(scene)
 
 
 def read_record(folder: Path, scene: int) -> SceneRecord:
     """What is written of a scene; nothing, or nothing that can be read: to do."""
     try:
-        table = json.loads((scene_folder(folder, scene) / RECORD).read_bytes())
-        return SceneRecord(table["state"], dict(table.get("files", {})), str(table.get("reason", "")))
-    except (OSError, ValueError, KeyError, TypeError):
+        return record_of((scene_folder(folder, scene) / RECORD).read_bytes())
+    except OSError:
         return SceneRecord("to do")
+
+
+def record_of(content: bytes) -> SceneRecord:
+    """What the content of a record says; nothing that can be read: to do."""
+    try:
+        table = json.loads(content)
+        return SceneRecord(table["state"], dict(table.get("files", {})), str(table.get("reason", "")))
+    except (ValueError, KeyError, TypeError):
+        return SceneRecord("to do")
+
+
+def record_text(record: SceneRecord) -> str:
+    """The content of the file of a record."""
+    return json.dumps({name: value for name, value in record._asdict().items() if value}, indent=1) + "\n"
 
 
 def write_record(folder: Path, scene: int, record: SceneRecord) -> None:
     """Writes the record of a scene, whole or not at all. Raises ep.FileError."""
-    kept = {name: value for name, value in record._asdict().items() if value}
-    write_texts(scene_folder(folder, scene), {RECORD: json.dumps(kept, indent=1) + "\n"})
+    write_texts(scene_folder(folder, scene), {RECORD: record_text(record)})
 
 
 def damaged_files(folder: Path, scene: int, record: SceneRecord) -> list[Path]:
@@ -75,28 +93,40 @@ def prepare_folder(folder: Path, template: Template) -> None:
     Raises ValueError naming `folder` where it is of another template, ep.FileError.
     """
     kept = folder / TEMPLATE
-    if kept.exists():
-        theirs = parse(kept)
-        if differing := _what_differs(theirs, template.table):
-            raise refused(ValueError, "folder", f"new, or of this template ({differing})", str(folder))
-        if theirs.get("dataset", {}).get("scenes") == template.settings.scenes:
-            return
-    elif any(folder.glob("scenes/*")):
+    theirs = parse(kept) if kept.exists() else None
+    if theirs is None and any(folder.glob("scenes/*")):
         raise refused(ValueError, "folder", f"new, or of this template (it has scenes and no {TEMPLATE})", str(folder))
-    write_texts(folder, {TEMPLATE: template.path.read_text(encoding="utf-8-sig")})
+    if takes_over(theirs, template, str(folder)):
+        write_texts(folder, {TEMPLATE: template.path.read_text(encoding="utf-8-sig")})
 
 
-def write_manifest(folder: Path, template: Template) -> dict[str, int]:
-    """Writes manifest.json: what is done, with checksums, what failed and why, what is to do. Returns {state: scenes}."""
+def takes_over(theirs: dict[str, Any] | None, template: Template, folder: str) -> bool:
+    """Whether a template is to be written to a folder: there is none, or one with fewer scenes. theirs: table of what is there
+
+    Raises ValueError naming `folder` where it is of another template.
+    """
+    if theirs is None:
+        return True
+    if differing := _what_differs(theirs, template.table):
+        raise refused(ValueError, "folder", f"new, or of this template ({differing})", folder)
+    return bool(theirs.get("dataset", {}).get("scenes") != template.settings.scenes)
+
+
+def write_manifest(folder: Path, template: Template) -> None:
+    """Writes manifest.json: what is done, with checksums, what failed and why, what is to do."""
+    write_texts(folder, {MANIFEST: manifest_text(template, lambda scene: read_record(folder, scene))})
+
+
+def manifest_text(template: Template, record_at: Callable[[int], SceneRecord]) -> str:
+    """The content of manifest.json; record_at: what is written of a scene by its number."""
     counts: dict[str, int] = {"done": 0, "failed": 0, "to do": 0}
     scenes: dict[str, Any] = {}
     for scene in range(template.settings.scenes):
-        record = read_record(folder, scene)
+        record = record_at(scene)
         counts[record.state] += 1
         entry = {name: value for name, value in record._asdict().items() if value}
         scenes[f"{scene:06d}"] = {"split": template.split_of(scene)} | entry
-    write_texts(folder, {MANIFEST: json.dumps({"count": counts, "scenes": scenes}, indent=1) + "\n"})
-    return counts
+    return json.dumps({"count": counts, "scenes": scenes}, indent=1) + "\n"
 
 
 def open_template(folder: Path) -> Template:

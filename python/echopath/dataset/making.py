@@ -7,19 +7,21 @@ import tempfile
 import time
 import uuid
 import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from .. import _core
-from ..checks import array, checked, count, flag, refused
+from ..checks import array, checked, count, flag, optional, refused, text
 from ..checks import path as file_or_folder
 from ..files import require_writable
 from ..sequence.saving import Shard, shard_rule
+from .address import Address, is_address
+from .cluster import in_dask
 from .folder import SceneRecord, prepare_folder, read_record, write_manifest
 from .scene_work import is_done
 from .template import Template
-from .workers import forget_failures, in_processes, in_this_process
+from .workers import Done, forget, in_processes, in_this_process
 
 _LOOKED_AT, _BUILT = 1000, 8  # scenes at most that are drawn, and made ready to trace, before the first frame
 _MARGIN = 1.1                 # of the disk that is asked for over what one frame takes
@@ -59,32 +61,71 @@ def _frames_rule(argument: str, value: Any) -> tuple[int, int] | None:
     return first, end
 
 
+class _LocalFolder:
+    """The folder of a dataset in the file system, as `Address` is one elsewhere."""
+
+    def __init__(self, folder: Path):
+        require_writable(folder, "folder")
+        self.folder = folder
+
+    def prepare(self, template: Template) -> None:
+        prepare_folder(self.folder, template)
+
+    def record(self, scene: int) -> SceneRecord:
+        """What is written of a scene; to do where files are damaged, which are removed."""
+        record = read_record(self.folder, scene)
+        return SceneRecord("to do") if record.state == "done" and not is_done(self.folder, scene) else record
+
+    def forget(self, scenes: list[int]) -> None:
+        forget(self.folder, scenes)
+
+    def write_manifest(self, template: Template) -> None:
+        write_manifest(self.folder, template)
+
+
 @checked(template=file_or_folder, folder=file_or_folder, workers=count(1, 1024), shard=shard_rule,
-         frames=_frames_rule, only_failed=flag)
+         frames=_frames_rule, only_failed=flag, scheduler=optional(text))
 def make(template: str | os.PathLike[str], folder: str | os.PathLike[str], *, workers: int = 1, shard: Shard | None = None,
-         frames: tuple[int, int] | None = None, only_failed: bool = False) -> Iterator[Forecast | MadeScene]:
+         frames: tuple[int, int] | None = None, only_failed: bool = False, scheduler: str | None = None
+         ) -> Iterator[Forecast | MadeScene]:
     """Makes the frames of a template that are missing in a folder; yields a Forecast, then each scene as it is there.
 
     Files are written whole or not at all, so that a run that was ended, however it was, is gone on with by the same call, and
     all frames have the same bits. Each is a function of the template's seed and its own number, for any number of workers.
     Files that are not as they were written are made again; scenes that failed are left alone without `only_failed`.
-    template: path of a TOML file (keys: data/README.md); folder: new, or of this template, with as many scenes or fewer
-    workers: number of processes, which share the processors
+    template: path of a TOML file (keys: data/README.md); folder: new, or of this template, with as many scenes or fewer; with a
+        scheduler also an address of fsspec, such as s3://bucket/folder
+    workers: number of processes, which share the processors; 1 with a scheduler
     shard: (k, n), the k-th of n shards, k from 1 to n: every n-th scene from the k-th on, while other processes or machines make
         the other shards in the same folder; None: all
     frames: (first, end), numbers of frames from 0: the scenes that one of first ... end - 1 belongs to; None: all
     only_failed: whether those scenes alone are made, again, that failed
+    scheduler: address of a Dask scheduler, such as tcp://host:8786, whose workers see the template and the folder under the
+        same names: each makes a scene at a time with each of its threads (extra `cluster`); None: this machine
     Raises TypeError or ValueError naming the argument; ValueError naming the file, the scene and the key of a fault of the
     template, before the first frame; ep.FileError where files cannot be written, and before the first frame where the disk is
-    too small.
+    too small; ModuleNotFoundError without the libraries of a scheduler or an address; ConnectionError naming `scheduler` where
+    that does not answer.
     """
-    folder = Path(folder)
-    require_writable(folder, "folder")
     plan = Template(Path(template))
     scenes = _chosen(plan, shard, frames)
+    where = os.fspath(folder)
+    if is_address(where) and scheduler is None:
+        raise refused(ValueError, "folder", "no address where there is no scheduler", where)
+    if workers > 1 and scheduler is not None:
+        raise refused(ValueError, "workers", "1 where there is a scheduler", workers)
+    place = Address(where) if is_address(where) else _LocalFolder(Path(where))
     _look_at(plan, scenes)
-    prepare_folder(folder, plan)
-    return _made(plan, folder, scenes, workers, only_failed)
+    place.prepare(plan)
+
+    def front(missing: list[int], run: str) -> Iterator[Done]:
+        if scheduler is not None:
+            return in_dask(scheduler, plan.path, where, missing, run)
+        if workers == 1:
+            return in_this_process(plan, Path(where), missing, run)
+        return in_processes(plan.path, Path(where), missing, run, min(workers, len(missing)))
+
+    return _made(plan, place, scenes, front, only_failed, workers)
 
 
 def _chosen(plan: Template, shard: Shard | None, frames: tuple[int, int] | None) -> list[int]:
@@ -104,44 +145,40 @@ def _look_at(plan: Template, scenes: list[int]) -> None:
         plan.sequence(scene)
 
 
-def _made(plan: Template, folder: Path, scenes: list[int], workers: int, only_failed: bool) -> Iterator[Forecast | MadeScene]:
+def _made(plan: Template, place: _LocalFolder | Address, scenes: list[int], front: Callable[[list[int], str], Iterator[Done]],
+          only_failed: bool, workers: int) -> Iterator[Forecast | MadeScene]:
+    records = {scene: place.record(scene) for scene in scenes}
     if only_failed:
-        scenes = forget_failures(folder, scenes)
-    missing = [scene for scene in scenes if _is_missing(folder, scene)]
-    forecast = _forecast(plan, folder, missing, workers) if missing else Forecast(0, 0.0, 0)
-    yield forecast
-    places = set(missing)
-    done = 0
-    for scene in scenes:
-        if scene not in places:
-            done += 1
-            yield MadeScene(scene, plan.split_of(scene), read_record(folder, scene), True, done, len(scenes), None)
+        scenes = [scene for scene in scenes if records[scene].state == "failed"]
+        place.forget(scenes)
+    missing = scenes if only_failed else [scene for scene in scenes if records[scene].state == "to do"]
+    yield _forecast(plan, place, missing, workers) if missing else Forecast(0, 0.0, 0)
+    there = [scene for scene in scenes if scene not in set(missing)]
+    for done, scene in enumerate(there, 1):
+        yield MadeScene(scene, plan.split_of(scene), records[scene], True, done, len(scenes), None)
+    if not missing:
+        place.write_manifest(plan)
+        return
     run, begin = uuid.uuid4().hex, time.perf_counter()
     try:
-        made = (in_this_process(plan, folder, missing, run) if workers == 1 else
-                in_processes(plan.path, folder, missing, run, min(workers, max(1, len(missing)))))
-        for number, (scene, record) in enumerate(made, 1):
+        for number, (scene, record) in enumerate(front(missing, run), 1):
             left = (time.perf_counter() - begin) / number * (len(missing) - number)
-            yield MadeScene(scene, plan.split_of(scene), record, False, done + number, len(scenes), left)
+            yield MadeScene(scene, plan.split_of(scene), record, False, len(there) + number, len(scenes), left)
     finally:
-        write_manifest(folder, plan)
+        place.write_manifest(plan)
 
 
-def _is_missing(folder: Path, scene: int) -> bool:
-    """Whether a scene is to be made; frames that are damaged are removed, and their scene is to do."""
-    record = read_record(folder, scene)
-    return record.state == "to do" or (record.state == "done" and not is_done(folder, scene))
-
-
-def _forecast(plan: Template, folder: Path, missing: list[int], workers: int) -> Forecast:
-    """By the first frame that is missing, which is made on trial. Raises ep.FileError where the disk is too small."""
+def _forecast(plan: Template, place: _LocalFolder | Address, missing: list[int], workers: int) -> Forecast:
+    """By the first frame that is missing, which is made on trial. Raises ep.FileError where the disk is too small; nobody knows
+    what room an address has."""
     begin = time.perf_counter()
     with tempfile.TemporaryDirectory(prefix="echopath-") as trial, warnings.catch_warnings():
         warnings.simplefilter("ignore")  # as when it is made in earnest
         next(iter(plan.sequence(missing[0]).save_frames(trial, keep=plan.settings.keep)))
         size = sum(path.stat().st_size for path in Path(trial).iterdir())
     frames = len(missing) * plan.settings.frames
-    needed, free = int(_MARGIN * size * frames), shutil.disk_usage(folder).free
-    if needed > free:
-        raise _core.FileError(f"folder: must have {needed >> 20} MiB for {frames} frames, got {free >> 20} MiB in '{folder}'")
+    needed = int(_MARGIN * size * frames)
+    if isinstance(place, _LocalFolder) and needed > (free := shutil.disk_usage(place.folder).free):
+        raise _core.FileError(f"folder: must have {needed >> 20} MiB for {frames} frames, got {free >> 20} MiB in "
+                              f"'{place.folder}'")
     return Forecast(frames, (time.perf_counter() - begin) * frames / min(workers, len(missing)), needed)

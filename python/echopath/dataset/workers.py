@@ -107,9 +107,7 @@ def _work(path: str, folder: str, scenes: list[int], run: str, threads: int, unw
         unwritten.put(str(error))
 
 
-def forget_failures(folder: Path, scenes: Sequence[int]) -> list[int]:
-    """Those of the scenes that failed, which are to do again."""
-    failed = [scene for scene in scenes if read_record(folder, scene).state == "failed"]
-    for scene in failed:
-        (scene_folder(folder, scene) / RECORD).unlink()
-    return failed
+def forget(folder: Path, scenes: Sequence[int]) -> None:
+    """Makes scenes that failed to do again."""
+    for scene in scenes:
+        (scene_folder(folder, scene) / RECORD).unlink(missing_ok=True)

@@ -1,0 +1,80 @@
+"""Folders of datasets at addresses of fsspec, such as s3://bucket/folder: the same files as in a folder."""
+from __future__ import annotations
+
+import hashlib
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from .. import _core
+from ..checks import refused
+from ..optional import needed_module
+from ..scene_file.load import parse
+from .folder import MANIFEST, RECORD, TEMPLATE, SceneRecord, manifest_text, record_of, record_text, scene_name, takes_over
+from .template import Template
+
+
+def is_address(folder: str) -> bool:
+    """Whether a folder is an address, such as s3://bucket/folder or file:///disk/folder."""
+    return "://" in folder
+
+
+class Address:
+    """The folder of a dataset at an address. Raises ModuleNotFoundError without fsspec, ValueError naming `folder` for one of an
+    unknown kind."""
+
+    def __init__(self, address: str):
+        try:
+            self._files, self._root = needed_module("fsspec.core", "an address as folder").url_to_fs(address)
+        except (ValueError, ImportError) as error:
+            if isinstance(error, ModuleNotFoundError) and error.name == "fsspec":
+                raise
+            raise refused(ValueError, "folder", f"a folder, or an address that fsspec knows ({error})", address) from None
+        self.address = address
+
+    def put(self, name: str, content: bytes) -> None:
+        """Writes a file. Raises ep.FileError."""
+        path = f"{self._root}/{name}"
+        try:
+            self._files.makedirs(path.rpartition("/")[0], exist_ok=True)
+            self._files.pipe_file(path, content)
+        except OSError as error:
+            raise _core.FileError(f"{self.address}/{name}: cannot be written ({error})") from None
+
+    def get(self, name: str) -> bytes:
+        """The content of a file, nothing where it is not there."""
+        try:
+            content: bytes = self._files.cat_file(f"{self._root}/{name}")
+            return content
+        except OSError:
+            return b""
+
+    def record(self, scene: int) -> SceneRecord:
+        """What is written of a scene; to do where a file of it is not as it was written."""
+        record = record_of(self.get(f"{scene_name(scene)}/{RECORD}"))
+        for name, digest in record.files.items():
+            if hashlib.sha256(self.get(f"{scene_name(scene)}/{name}")).hexdigest() != digest:
+                return SceneRecord("to do")
+        return record
+
+    def prepare(self, template: Template) -> None:
+        """As `prepare_folder`. Raises as it."""
+        if takes_over(self._table(), template, self.address):
+            self.put(TEMPLATE, template.path.read_text(encoding="utf-8-sig").encode())
+
+    def forget(self, scenes: list[int]) -> None:
+        """Makes scenes that failed to do again."""
+        for scene in scenes:
+            self.put(f"{scene_name(scene)}/{RECORD}", record_text(SceneRecord("to do")).encode())
+
+    def write_manifest(self, template: Template) -> None:
+        """As the function of that name does in a folder."""
+        self.put(MANIFEST, manifest_text(template, lambda scene: record_of(self.get(f"{scene_name(scene)}/{RECORD}"))).encode())
+
+    def _table(self) -> dict[str, Any] | None:
+        if not (content := self.get(TEMPLATE)):
+            return None
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / TEMPLATE
+            path.write_bytes(content)
+            return dict(parse(path))

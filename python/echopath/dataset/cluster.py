@@ -1,0 +1,79 @@
+"""Scenes of a dataset made by the workers of a Dask scheduler, into a folder that all see or an address of fsspec."""
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import islice
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from .. import _core
+from ..optional import needed_module
+from ..threads import set_num_threads
+from .address import Address, is_address
+from .folder import RECORD, SceneRecord, record_text, scene_folder, scene_name
+from .scene_work import make_scene
+from .template import Template
+from .workers import Done, in_this_process
+
+_AHEAD = 2       # tasks for each thread of a worker that wait at the scheduler
+_WAIT = "20s"    # for the scheduler to answer
+
+
+def in_dask(scheduler: str, path: Path, folder: str, scenes: Sequence[int], run: str) -> Iterator[Done]:
+    """Makes the scenes by the workers of a scheduler, one task each of one thread; workers may die and join.
+
+    scheduler: its address; path: of the template; folder: of the dataset, or an address: both as the workers see them
+    Raises ModuleNotFoundError without distributed, ConnectionError naming `scheduler` where that cannot be reached or goes away,
+    ep.FileError where a worker cannot write.
+    """
+    distributed = needed_module("distributed", "scheduler")
+    try:
+        with distributed.Client(scheduler, set_as_default=False, timeout=_WAIT) as client:
+            yield from _as_they_come(distributed, client, str(path.resolve()), folder, iter(scenes), run)
+    except _core.FileError:
+        raise
+    except (OSError, distributed.client.FutureCancelledError) as error:  # which a lost connection is, too
+        raise ConnectionError(f"scheduler: must answer as long as scenes are made, '{scheduler}' does not "
+                              f"({type(error).__name__}); the same call goes on") from None
+
+
+def _as_they_come(distributed: Any, client: Any, path: str, folder: str, waiting: Iterator[int], run: str) -> Iterator[Done]:
+    scene_of: dict[Any, int] = {}
+
+    def submitted(count: int) -> list[Any]:
+        futures = []
+        for scene in islice(waiting, count):
+            future = client.submit(make_as_worker, path, folder, scene, run, key=f"echopath-{run}-{scene}", pure=False)
+            scene_of[future] = scene
+            futures.append(future)
+        return futures
+
+    running = distributed.as_completed(submitted(_AHEAD * max(1, sum(client.nthreads().values()))))
+    for future in running:
+        try:
+            record = SceneRecord(*future.result())
+        except distributed.KilledWorker:
+            record = SceneRecord("failed", reason="workers died at it")
+        yield scene_of.pop(future), record
+        running.update(submitted(_AHEAD * max(1, sum(client.nthreads().values())) - len(scene_of)))
+
+
+def make_as_worker(path: str, folder: str, scene: int, run: str) -> tuple[Any, ...]:
+    """Makes a scene, with one thread; returns the fields of its record. Raises ep.FileError."""
+    set_num_threads(1)
+    template = Template(Path(path))
+    if is_address(folder):
+        return tuple(_made_at(Address(folder), template, scene, run))
+    (_, record), = in_this_process(template, Path(folder), [scene], run)
+    return tuple(record)
+
+
+def _made_at(address: Address, template: Template, scene: int, run: str) -> SceneRecord:
+    """Makes a scene in a folder of its own and puts its files to an address, the record last."""
+    with TemporaryDirectory(prefix="echopath-") as own:
+        record = make_scene(template, Path(own), scene, run)
+        for name in record.files:
+            address.put(f"{scene_name(scene)}/{name}", (scene_folder(Path(own), scene) / name).read_bytes())
+    address.put(f"{scene_name(scene)}/{RECORD}", record_text(record).encode())
+    return record

@@ -1,0 +1,136 @@
+"""Detections of datasets as messages of ASAM OSI, the Open Simulation Interface (asam.net/standards/detail/osi)."""
+from __future__ import annotations
+
+import os
+import struct
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..checks import checked, refused
+from ..checks import path as folder_rule
+from ..detections.detections import Detections
+from ..files import require_writable, written_whole
+from ..optional import needed_module
+from ..truth.cross_section import isotropic_power
+from .classes import classes_of
+from .opened import Dataset, dataset_rule
+
+SENSOR = 1
+NO_OBJECT = 2 ** 64 - 1                # as the interface has it
+_NAME = "19700101T000000Z_sd_{version}_{protobuf}_{frames}_scene_{scene:06d}.osi"
+_LENGTH = struct.Struct("<I")          # before each message of a trace file
+_OTHER, _INVALID, _CLUTTER = 1, 2, 3   # DetectionClassification of real echoes, ghosts and noise
+
+
+@checked(dataset=dataset_rule, folder=folder_rule)
+def write_osi(dataset: Dataset, folder: str | os.PathLike[str]) -> None:
+    """Writes the detections of a dataset as trace files of ASAM OSI, one for each scene: a SensorData message for each frame.
+
+    dataset: as of `open`, of a template with [detections] and an array that tells azimuths apart
+    folder: new or empty. Every file is written whole or not at all; names are those of the interface, with time 0 of the scene.
+    feature_data.radar_sensor has one sensor: header (measurement_time in the middle of the frame, cycle_counter the place of
+    the frame, mounting_position in the world at that time) and detections: position (distance m, azimuth and elevation rad, in
+    the sensor's frame), radial_velocity (m/s, as measured, receding positive), rcs (dBsm, by the radar equation with the gains
+    of the first antennas), snr (dB), object_id (place in the scene's objects; 2^64 - 1: the surroundings or noise),
+    existence_probability 0 of noise, 1 of echoes, classification OTHER of real echoes, INVALID of ghosts, CLUTTER of noise.
+    Raises ValueError naming `dataset` where it has no frames, or no detections with azimuths, and naming `folder` where that has
+    traces; ModuleNotFoundError without osi-python (extra `osi`), ep.FileError where files cannot be written.
+    """
+    messages = _module("sensordata")
+    require_writable(folder, "folder")
+    if Path(folder).is_dir() and any(Path(folder).glob("*.osi")):
+        raise refused(ValueError, "folder", "one that has no traces yet", str(folder))
+    if len(dataset) == 0:
+        raise refused(ValueError, "dataset", "one with a frame at least", dataset)
+    for scene in dataset.scenes:
+        written = [_frame(messages, dataset, scene, one) for one in dataset.of_scene(scene)]
+        name = _NAME.format(version=_version_text(written[0].version), protobuf=_protobuf(), frames=len(written), scene=scene)
+        with written_whole(Path(folder) / name) as temporary, open(temporary, "wb") as file:
+            for message in written:
+                content = message.SerializeToString(deterministic=True)
+                file.write(_LENGTH.pack(len(content)) + content)
+
+
+def _module(name: str) -> Any:
+    """A module of messages. Raises ModuleNotFoundError that says what to install."""
+    try:
+        return needed_module(f"osi3.osi_{name}_pb2", "write_osi")
+    except ModuleNotFoundError as error:
+        raise ModuleNotFoundError("write_osi needs the messages of OSI, which are not installed: pip install osi-python",
+                                  name=error.name) from None
+
+
+def _protobuf() -> str:
+    return "".join(needed_module("google.protobuf", "write_osi").__version__.split("."))
+
+
+def _version_text(version: Any) -> str:
+    return f"{version.version_major}{version.version_minor}{version.version_patch}"
+
+
+def _frame(messages: Any, dataset: Dataset, scene: int, one: Any) -> Any:
+    """The SensorData of one frame."""
+    found = one.frame.detections
+    if not isinstance(found, Detections):
+        raise refused(ValueError, "dataset", "of a template with [detections]", str(dataset.folder))
+    if len(found) and np.isnan(found.azimuth).any():
+        raise refused(ValueError, "dataset", "of a radar whose antennas tell azimuths apart", "directions that are not known")
+    stored = dataset.sequence(scene)
+    time = float(stored.times[one.place]) + 0.5 * stored.radar.frame_duration
+    message = messages.SensorData()
+    _set_version(message.version)
+    _set_time(message.timestamp, time)
+    message.sensor_id.value = SENSOR
+    radar = message.feature_data.radar_sensor.add()
+    world = np.asarray(stored.radar.world_from_radar(time))
+    for header in (message, radar.header):
+        _set_pose(header.mounting_position, world)
+    _set_time(radar.header.measurement_time, time)
+    radar.header.cycle_counter, radar.header.number_of_valid_detections = one.place, len(found)
+    radar.header.sensor_id.value = SENSOR
+    radar.header.data_qualifier = 2  # available
+    _add_detections(radar, found, world, stored.radar, time, _numbers(dataset, scene))
+    return message
+
+
+def _numbers(dataset: Dataset, scene: int) -> dict[str, int]:
+    """{name: place} of the road users among the objects of a scene."""
+    objects = dataset.template.draw(scene).table["objects"]
+    kinds = classes_of(objects, dataset.template.settings.classes)
+    return {one["name"]: place for place, one in enumerate(objects) if kinds[one["name"]] != "static"}
+
+
+def _add_detections(radar: Any, found: Detections, world: np.ndarray, simulated: Any, time: float,
+                    numbers: dict[str, int]) -> None:
+    places = found.points @ world[:3, :3].T + world[:3, 3]
+    cross_sections = 10.0 * np.log10(found.power / isotropic_power(simulated, places, time))
+    for index in range(len(found)):
+        one = radar.detection.add()
+        is_noise, is_ghost = bool(found.is_noise[index]), bool(found.ghost_type[index])
+        one.position.distance, one.position.azimuth = float(found.range[index]), float(found.azimuth[index])
+        one.position.elevation = float(np.nan_to_num(found.elevation[index]))
+        one.radial_velocity, one.rcs = float(found.velocity[index]), float(cross_sections[index])
+        one.snr = float(found.snr_db[index])
+        one.object_id.value = numbers.get(str(found.object[index]), NO_OBJECT)
+        one.existence_probability = 0.0 if is_noise else 1.0
+        one.classification = _CLUTTER if is_noise else _INVALID if is_ghost else _OTHER
+
+
+def _set_version(version: Any) -> None:
+    module = _module("version")
+    version.CopyFrom(module.DESCRIPTOR.GetOptions().Extensions[module.current_interface_version])
+
+
+def _set_time(timestamp: Any, time: float) -> None:
+    nanoseconds = round(time * 1e9)
+    timestamp.seconds, timestamp.nanos = divmod(nanoseconds, 10 ** 9)
+
+
+def _set_pose(position: Any, world: np.ndarray) -> None:
+    """Sets a MountingPosition: origin in m, and the angles of R = Rz(yaw) Ry(pitch) Rx(roll) in rad."""
+    position.position.x, position.position.y, position.position.z = (float(value) for value in world[:3, 3])
+    position.orientation.yaw = float(np.arctan2(world[1, 0], world[0, 0]))
+    position.orientation.pitch = float(np.arcsin(np.clip(-world[2, 0], -1.0, 1.0)))
+    position.orientation.roll = float(np.arctan2(world[2, 1], world[2, 2]))

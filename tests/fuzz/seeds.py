@@ -1,4 +1,4 @@
-"""Small frames that have every group and column of a frame file between them."""
+"""Small frames that have every group and column of a frame file between them: what a case costs goes by their datasets."""
 from __future__ import annotations
 
 import numpy as np
@@ -10,7 +10,7 @@ TIMES = [-1.0, 0.0, 1.0, 2.0]
 
 
 def _radar(**more):
-    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=150e6, num_samples=32, sampling_rate=5e6, num_chirps=16,
+    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=150e6, num_samples=8, sampling_rate=5e6, num_chirps=4,
                                 chirp_interval=50e-6)
     table = ep.GainTable(azimuth=[-1.0, 0.0, 1.0], elevation=[-0.5, 0.5], gain=np.ones((2, 3)), phase=np.zeros((2, 3)))
     receivers = [ep.Antenna((0, 0.002 * i, 0), pattern=table if i else ep.CosinePower(2.0)) for i in range(2)]
@@ -50,11 +50,31 @@ def _moving_scene():
     return scene
 
 
+def _coded_scene():
+    scene = ep.Scene(weather=ep.Weather(rain_mm_per_hour=10.0))
+    scene.add(quad((3, -1, -1), (3, 1, -1), (3, 1, 1), (3, -1, 1)), name="door",
+              material=ep.Material(layers=[ep.Layer(0.01, 5 - 0.3j), ep.Layer(0.02, 1.0)]))
+    scene.add(quad((5, -1, -1), (5, 1, -1), (5, 1, 1), (5, -1, 1)), name="plate", material="metal")
+    return scene
+
+
 def frames() -> list:
-    """Frames of ep.simulate: one with everything that moves, parts, labels and detections; one curved and polarised."""
+    """Frames of ep.simulate, which have all groups between them, and few paths each.
+
+    One of whatever moves, with parts; one with labels, detections and truth; one curved and polarised; one of sheets, edges,
+    weather, a receiver and a code.
+    """
     parts = {"route": {"direct": "T . R", "wall": "T .* 'wall' .* R"}, "body": {"plate": "T .* 'carrier/*' .* R"}}
-    moving = ep.simulate(_moving_scene(), _radar(motion=ep.LinearMotion(velocity=(1, 0, 0))), num_rays=600, batches=2, seed=7,
-                         parts=parts, noise_seed=3, labels={"errors": True}, window=("chebyshev", 60), truth=True,
-                         detections={"false_alarm_rate": 0.1}, angles={"azimuth": [-0.1, 0.0, 0.15]})
-    curved = ep.simulate(curved_scene(), _radar(), num_rays=3000, max_bounces=2, polarization="jones", noise_seed=None)
-    return [moving, curved]
+    moving = ep.simulate(_moving_scene(), _radar(motion=ep.LinearMotion(velocity=(1, 0, 0))), num_rays=200, batches=2, seed=7,
+                         parts=parts, noise_seed=3, window=("chebyshev", 60))
+    plate = ep.Scene()
+    plate.add(quad((5, -1, -1), (5, 1, -1), (5, 1, 1), (5, -1, 1)), name="plate", material="metal")
+    labelled = ep.simulate(plate, _radar(), num_rays=40, batches=2, seed=7, noise_seed=3, labels={"errors": True}, truth=True,
+                           detections={"false_alarm_rate": 0.1}, angles={"azimuth": [-0.1, 0.0, 0.15]})
+    curved = ep.simulate(curved_scene(), _radar(), num_rays=60, max_bounces=2, polarization="jones", noise_seed=None)
+    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=150e6, num_samples=8, sampling_rate=5e6, num_chirps=8,
+                                chirp_interval=50e-6, extra_idle=[0.0, 1e-6])
+    coded = ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 0)), ep.Antenna((0, 0.01, 0))], receivers=[ep.Antenna((0, 0, 0))],
+                     multiplexing="bpm", receiver=ep.Receiver(leakage_db=[[-30.0], [-40.0]]))
+    return [moving, labelled, curved,
+            ep.simulate(_coded_scene(), coded, num_rays=40, seed=7, noise_seed=3, edges=True)]

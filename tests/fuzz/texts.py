@@ -1,7 +1,6 @@
 """Scene files and antenna files."""
 from __future__ import annotations
 
-import warnings
 from pathlib import Path
 from random import Random
 
@@ -117,13 +116,11 @@ def _text_case(folder: Path, name: str, texts: list, random: Random) -> Path:
 
 
 def _accepts(load, path: Path, errors: tuple) -> bool:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        try:
-            load(path)
-        except errors as error:
-            assert str(error).startswith(f"{path}") or str(path.parent) in str(error), f"names no file: {error}"
-            return False
+    try:
+        load(path)
+    except errors as error:
+        assert str(error).startswith(f"{path}") or str(path.parent) in str(error), f"names no file: {error}"
+        return False
     return True
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 import dataclasses
 import json
 import os
-from collections.abc import Mapping
 from typing import get_args
 
 import numpy as np
@@ -12,17 +11,16 @@ import numpy as np
 from .. import _core
 from ..angles import range_azimuth
 from ..azimuth_map import checked_settings
-from ..checks import an, anything, checked, real, refused, text
+from ..checks import an, anything, checked, real, refused
 from ..detections.echo_fields import EchoFields
 from ..frame import Frame, with_spectra
 from ..interrupts import interrupts_are_kept
 from ..keywords import parameters_of
-from ..labels.labels import Labels
 from ..scene import Scene
 from ..settings import Evaluate, Replay, Retrace
 from ..transmit import is_coded, signal_shape
 from .checks import read_checks, write_checks
-from .container import file_with_paths, new_file, our_file
+from .container import file_with_paths, new_file
 from .detections import read_detections, write_detections
 from .h5 import (blames_group, blaming, length_of, read_array, read_attribute, read_group, read_texts, write_array,
                  write_attribute, write_stack, write_texts)
@@ -32,19 +30,13 @@ from .paths import read_paths, write_paths
 from .radar import read_radar, write_radar
 from .scene import read_scene, write_scene
 from .truth import truth_in, write_truth
+from .weather import read_effect_choices, scene_in_weather, write_weather
 
 # Settings of a signal and the values that each may have.
 SIGNAL_SETTINGS = {"replay": get_args(Replay), "evaluate": get_args(Evaluate), "retrace": get_args(Retrace)}
 SPECTRUM_KEYS = ("window", "zero_pad")
 BESIDE = ("rain_cube", "interference_cube")  # signals that no path makes
 ANGLE_KEYS = parameters_of(range_azimuth)[2:-1]  # all but spectrum, radar and progress
-
-
-def _labels(argument: str, value) -> dict:
-    """{partition: Labels}"""
-    if not isinstance(value, Mapping) or not all(isinstance(labels, Labels) for labels in value.values()):
-        raise refused(TypeError, argument, "a dict {partition: Labels}", value)
-    return {text(argument, name): labels for name, labels in value.items()}
 
 
 @dataclasses.dataclass(frozen=True)
@@ -89,6 +81,7 @@ def save_frame(frame: Frame, path: str | os.PathLike[str], min_power: float = 0.
     with new_file(path) as file:
         missing, is_kept = _write_record(file, frame.paths, frame.effects, min_power, frame.path_power)
         write_interferers(file, frame.scene)
+        write_weather(file["scene"], frame)
         _write_signal(file, frame)
         write_checks(file.create_group("checks"), frame.checks)
         _write_spectra(file, frame)
@@ -112,8 +105,10 @@ def load_frame(path: str | os.PathLike[str]) -> Frame:
     """
     with file_with_paths(path) as file:
         paths = _read_record(file)
-        frame = Frame(scene=paths.scene, radar=paths.radar, paths=paths, cube=None, parts={}, selections={},
-                      part_of_path={}, noise_seed=None, spectrum_settings={})
+        of_scene = read_group(file, "scene")
+        frame = Frame(scene=scene_in_weather(of_scene, paths.scene), radar=paths.radar, paths=paths, cube=None, parts={},
+                      selections={}, part_of_path={}, noise_seed=None, spectrum_settings={},
+                      effect_choices=read_effect_choices(of_scene))
         if "signal" not in file:
             return frame
         _read_signal(file, frame)
@@ -131,25 +126,6 @@ def load_frame(path: str | os.PathLike[str]) -> Frame:
                                                seed=paths.frame.seed, noise_seed=frame.noise_seed,
                                                echoes=EchoFields(paths, frame.spectrum))
     return frame
-
-
-@checked(labels=_labels)
-@interrupts_are_kept()
-def save_labels(labels: Mapping[str, Labels], path: str | os.PathLike[str]) -> None:
-    """Writes labels to an HDF5 file of their own, as a frame file has them.
-
-    labels: {partition: Labels}, of maps [V, R]; path: of the file, written whole or not at all. Raises ep.FileError.
-    """
-    with new_file(path) as file:
-        write_all_labels(file.create_group("labels"), labels)
-
-
-@checked()
-@interrupts_are_kept()
-def load_labels(path: str | os.PathLike[str]) -> dict[str, Labels]:
-    """{partition: Labels} of a file of `save_labels` or of a frame file at `path`: the same bits. Raises ep.FileError."""
-    with our_file(path) as file:
-        return read_all_labels(read_group(file, "labels"))
 
 
 @interrupts_are_kept()

@@ -16,8 +16,8 @@ import numpy as np
 
 from .. import _core
 from ..interrupts import heed, interrupts_are_kept
+from .h5_items import is_chunked, item_of, name_of, read_blocks, row_blocks, shape_of
 
-BLOCK_BYTES = 1 << 23   # written or read at a time: between two blocks Ctrl-C is answered
 CHUNK_BYTES = 1 << 20   # of compression
 SMALL_BYTES = 1 << 12   # up to it a dataset is not compressed
 SPARE_BYTES = 1 << 18   # kept free beyond each dataset, for what HDF5 writes about it and the groups that follow
@@ -73,7 +73,7 @@ def write_array(group, name: str, values, *, unit: str = "", compress: bool = Fa
                    "shuffle": True}
     _reserve(group, values.nbytes)
     dataset = group.create_dataset(name, shape=values.shape, dtype=values.dtype, **options)
-    _fill(dataset, ((rows, values[rows]) for rows in _row_blocks(values.shape, values.itemsize)), unit)
+    _fill(dataset, ((rows, values[rows]) for rows in row_blocks(values.shape, values.itemsize)), unit)
 
 
 def write_stack(group, name: str, arrays: list, *, unit: str = "") -> None:
@@ -93,12 +93,6 @@ def _fill(dataset, blocks, unit: str) -> None:
         heed()
     write_attribute(dataset, "unit", unit)
     write_attribute(dataset, CHECK_SUM, np.uint32(check_sum))
-
-
-def _row_blocks(shape: tuple, itemsize: int):
-    """Slices of rows of at most BLOCK_BYTES, at least one row each."""
-    step = max(1, BLOCK_BYTES // max(1, itemsize * math.prod(shape[1:])))
-    return (slice(begin, begin + step) for begin in range(0, shape[0], step))
 
 
 def _chunks(shape: tuple, itemsize: int) -> tuple:
@@ -145,7 +139,7 @@ def blaming(item):
     except _core.FileError:
         raise
     except _FAULTS as error:
-        raise _core.FileError(f"{item.name}: {_first_line(error)}") from error
+        raise _core.FileError(f"{name_of(item)}: {_first_line(error)}") from error
 
 
 def blames_group(function):
@@ -162,57 +156,60 @@ def read_array(group, name: str, dtype, shape: tuple):
 
     shape: numbers, or None where any length will do.
     """
-    dataset = _item(group, name, "Dataset")
+    dataset = _dataset(group, name)
     with blaming(dataset):
         if dataset.dtype != np.dtype(dtype):
-            raise _core.FileError(f"{dataset.name} must hold {np.dtype(dtype)}, holds {dataset.dtype}")
+            raise _core.FileError(f"{name_of(dataset)} must hold {np.dtype(dtype)}, holds {dataset.dtype}")
         if not _has_shape(dataset, shape):
             wanted = ", ".join("any" if want is None else str(want) for want in shape)
-            raise _core.FileError(f"{dataset.name} must have the shape [{wanted}], has {_shape_text(dataset)}")
+            raise _core.FileError(f"{name_of(dataset)} must have the shape [{wanted}], has {_shape_text(dataset)}")
         return _values(dataset)
 
 
 def read_texts(group, name: str, length: int | None = None) -> list[str]:
     """The [N] texts `name` of a group."""
-    dataset = _item(group, name, "Dataset")
+    dataset = _dataset(group, name)
     with blaming(dataset):
         if dataset.dtype.kind != "S":
-            raise _core.FileError(f"{dataset.name} must hold texts of fixed length, holds {dataset.dtype}")
+            raise _core.FileError(f"{name_of(dataset)} must hold texts of fixed length, holds {dataset.dtype}")
         if not _has_shape(dataset, (length,)):
             wanted = "any" if length is None else length
-            raise _core.FileError(f"{dataset.name} must have {wanted} texts, has the shape {_shape_text(dataset)}")
+            raise _core.FileError(f"{name_of(dataset)} must have {wanted} texts, has the shape {_shape_text(dataset)}")
         return [text.decode("utf-8") for text in _values(dataset)]
 
 
 def length_of(group, name: str) -> int:
     """Number of rows of the dataset `name` of a group."""
-    shape = _item(group, name, "Dataset").shape
+    shape = shape_of(_dataset(group, name))
     if not shape:
         raise _core.FileError(f"{group.name}/{name} must have rows, has none")
     return shape[0]
 
 
 def _has_shape(dataset, shape: tuple) -> bool:
-    sizes = dataset.shape
+    sizes = shape_of(dataset)
     return sizes is not None and len(sizes) == len(shape) and all(want in (None, got) for want, got in zip(shape, sizes))
 
 
 def _shape_text(dataset) -> str:
-    return "none" if dataset.shape is None else str(list(dataset.shape))
+    sizes = shape_of(dataset)
+    return "none" if sizes is None else str(list(sizes))
 
 
 def _values(dataset):
     """All values of a dataset, when they are those that its check sum was made of."""
-    stored = dataset.id.get_storage_size()
-    if dataset.nbytes > (stored if dataset.chunks is None else MOST_COMPRESSION * stored):
-        raise _core.FileError(f"{dataset.name}: damaged, {stored} bytes cannot hold its {dataset.size} values")
-    values, check_sum = np.empty(dataset.shape, dataset.dtype), 0
-    for rows in _row_blocks(dataset.shape, dataset.dtype.itemsize):
-        values[rows] = dataset[rows]
-        check_sum = zlib.crc32(values[rows], check_sum)
+    shape, dtype = shape_of(dataset), dataset.dtype
+    if shape is None or dtype.hasobject:
+        raise _core.FileError(f"{name_of(dataset)} must hold numbers or texts of fixed length")
+    num_bytes, stored = math.prod(shape) * dtype.itemsize, dataset.get_storage_size()
+    if num_bytes > stored and num_bytes > stored * (MOST_COMPRESSION if is_chunked(dataset) else 1):
+        raise _core.FileError(f"{name_of(dataset)}: damaged, {stored} bytes cannot hold its {math.prod(shape)} values")
+    values, check_sum = np.empty(shape, dtype), 0
+    for rows in read_blocks(dataset, values):
+        check_sum = zlib.crc32(rows, check_sum)
         heed()
     if check_sum != read_attribute(dataset, CHECK_SUM, int):
-        raise _core.FileError(f"{dataset.name}: damaged, its values do not have its check sum")
+        raise _core.FileError(f"{name_of(dataset)}: damaged, its values do not have its check sum")
     return values
 
 
@@ -225,34 +222,44 @@ def check_sums(group) -> None:
             if isinstance(item, h5py.Group):
                 check_sums(item)
             else:
-                _values(item)
+                _values(item.id)
 
 
 def read_attribute(item, name: str, kind):
     """The attribute `name` of a group or dataset as a `kind` (int, float, bool, complex, str)."""
-    if name not in item.attrs:
-        raise _core.FileError(f"{item.name} has no attribute '{name}'")
+    import h5py
+
+    place = item.id if isinstance(item, h5py.Group) else item
+    if not h5py.h5a.exists(place, name.encode()):
+        raise _core.FileError(f"{name_of(item)} has no attribute '{name}'")
     with blaming(item):
-        attribute = item.attrs.get_id(name)
+        attribute = h5py.h5a.open(place, name.encode())
         if attribute.shape != () or attribute.dtype.kind not in _LETTERS[kind]:
-            raise _core.FileError(f"{item.name}: attribute '{name}' must be a {kind.__name__}")
-        value = item.attrs[name]
-        return bytes(value).decode("utf-8") if kind is str else kind(value)
+            raise _core.FileError(f"{name_of(item)}: attribute '{name}' must be a {kind.__name__}")
+        value = np.empty((), attribute.dtype)
+        attribute.read(value)
+        return bytes(value[()]).decode("utf-8") if kind is str else kind(value[()])
 
 
 def read_group(group, name: str):
     """The group `name` of a group."""
-    return _item(group, name, "Group")
-
-
-def _item(group, name: str, kind: str):
-    """kind: "Group" or "Dataset" of h5py"""
     import h5py
 
+    return h5py.Group(_checked_item(group, name, "group", h5py.h5g.GroupID))
+
+
+def _dataset(group, name: str):
+    import h5py
+
+    return _checked_item(group, name, "dataset", h5py.h5d.DatasetID)
+
+
+def _checked_item(group, name: str, kind: str, identifier):
+    """kind: of the item, for messages; identifier: its class in h5py"""
     with blaming(group):
-        item = group[name] if name in group else None
-    if not isinstance(item, getattr(h5py, kind)):
-        raise _core.FileError(f"{group.name.rstrip('/')}/{name}: no such {kind.lower()}")
+        item = item_of(group, name)
+    if not isinstance(item, identifier):
+        raise _core.FileError(f"{group.name.rstrip('/')}/{name}: no such {kind}")
     return item
 
 

@@ -82,7 +82,10 @@ class ObjLines : public std::streambuf {
     const std::string_view keyword = statement.substr(0, statement.find_first_of(" \t"));
     if (keyword == "g" || keyword == "o" || keyword == "usemtl" || keyword == "mtllib") check_name(statement);
     if (keyword == "mtllib") material_files_.emplace_back(trimmed(statement.substr(keyword.size())));
-    if (statement == "g") text_ += ' ';
+    if (statement == "g") {
+      text_ += ' ';  // which may move the text away from its views
+      return;
+    }
     const bool is_vertex = keyword == "v";
     if (!is_vertex && keyword != "f") return;
     text_.resize(std::min(text_.find('#'), text_.size()));

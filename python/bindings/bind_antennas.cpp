@@ -210,7 +210,8 @@ std::string text_of(const Radar& r) {
   std::ostringstream text;
   text << "Radar(" << part_text(r.waveform) << ", " << r.transmitters.size() << " transmitters, " << r.receivers.size()
        << " receivers, at " << place_text(r.position, r.yaw, r.pitch) << ", " << r.transmit_power << " W, noise figure "
-       << r.noise_figure_db << " dB" << (r.motion ? ", moving" : "") << ")";
+       << r.noise_figure_db << " dB" << (r.takes_turns() ? "" : std::string(", ") + kMultiplexing.name_of(r.multiplexing))
+       << (r.receiver ? ", receiver with faults" : "") << (r.motion ? ", moving" : "") << ")";
   return text.str();
 }
 
@@ -272,7 +273,8 @@ multiplexing: "tdm": transmitters take turns, one slot each. With the others all
     what a receiver has, [1, rx, slots, sample], until `demultiplex` takes it apart: "bpm": signs of a Hadamard matrix over
     num_slots slots, which make one of the num_chirps; "ddm": transmitter m turns by m / (transmitters + empty_slots) of a
     cycle from chirp to chirp; "cdm": by code_phases
-empty_slots: of "ddm", at least 1: shares of the Doppler axis to which no transmitter is moved, which tell velocities apart
+empty_slots: of "ddm", at least 1: shares of the Doppler axis to which no transmitter is moved, which tell velocities apart;
+    num_chirps must be a multiple of transmitters + empty_slots
 code_phases: of "cdm", [tx, slots] rad: transmitter m turns by code_phases[m, i] in slot i, repeated
 receiver: Receiver, the faults of the front end and the converter that follow the ideal signal, or None
 Angles that are estimated count in the radar's axes. Radars of equal arguments are equal, and pickle.

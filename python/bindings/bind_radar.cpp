@@ -133,7 +133,8 @@ std::string text_of(const ChirpSequence& w) {
   std::ostringstream text;
   text << "ChirpSequence(" << w.start_frequency * 1e-9 << " GHz + " << w.bandwidth * 1e-9 << " GHz, " << w.num_samples
        << (w.real ? " real" : " complex") << " samples at " << w.sampling_rate * 1e-6 << " MHz, " << w.num_chirps
-       << " chirps every " << w.chirp_interval * 1e6 << " us)";
+       << " chirps every " << w.chirp_interval * 1e6 << " us"
+       << (w.extra_idle.empty() && w.frequency_steps.empty() && w.bandwidth_steps.empty() ? ")" : ", slots differ)");
   return text.str();
 }
 

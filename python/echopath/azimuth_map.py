@@ -51,4 +51,4 @@ def _with_one_sample(radar):
     given = radar.waveform
     waveform = _core.ChirpSequence(start_frequency=given.start_frequency, bandwidth=given.bandwidth, num_samples=1,
                                    sampling_rate=given.sampling_rate, num_chirps=1, chirp_interval=given.chirp_interval)
-    return radar.replace(waveform=waveform)
+    return radar.replace(waveform=waveform, multiplexing="tdm", code_phases=None)

@@ -24,7 +24,7 @@ from .receiver.channels import require_channels
 from .settings import LabelSettings, SignalSettings, TraceSettings
 from .stages import StageClock
 from .tracing import keep_geometry
-from .transmit import code_of, coded_cube, is_coded, synthesize_slots
+from .transmit import coded_cube, is_coded, synthesize_slots
 from .transmit.signals import has_steps
 from .truth import truth_of_frame
 from .truth.asked import truth_keywords
@@ -144,7 +144,6 @@ class FrameRun:
 
 def _check_radar(radar, labels) -> None:
     """Raises ValueError, before the long work, for what no frame of a radar can have."""
-    code_of(radar)
     if radar.receiver is not None:
         require_channels(radar.receiver, radar)
     if labels is not None and labels is not False and has_steps(radar):

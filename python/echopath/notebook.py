@@ -10,6 +10,9 @@ import html
 import numpy as np
 
 from .measures import SMALLEST_POWER, in_dbm
+from .receiver.settings import receiver_text
+from .same_radar import WAVEFORM_LISTS
+from .weather.weather import weather_of, weather_text
 
 MOST_ROWS = 20
 _LEFT = "text-align:left"
@@ -20,7 +23,9 @@ def scene_html(scene) -> str:
     meshes = list(scene.meshes)
     rows = [(mesh.name, len(mesh.triangles), _number(mesh.mesh.area), mesh.material_name or repr(mesh.material),
              "moves" if scene.is_moving(mesh.id) else "at rest") for mesh in meshes[:MOST_ROWS]]
-    return _table(f"Scene: {len(scene.nodes)} nodes, {len(meshes)} meshes, {scene.num_triangles:,} triangles",
+    weather = weather_of(scene)
+    air = "" if weather is None else f", {weather_text(weather)}"
+    return _table(f"Scene: {len(scene.nodes)} nodes, {len(meshes)} meshes, {scene.num_triangles:,} triangles{air}",
                   ("mesh", "triangles", "area in m²", "material", "motion"), rows, len(meshes))
 
 
@@ -28,11 +33,13 @@ def radar_html(radar) -> str:
     """What a radar sends, and what it can tell apart."""
     waveform = radar.waveform
     num_transmitters = len(radar.transmitters)
+    steps = ", slots differ" if any(getattr(waveform, name) for name in WAVEFORM_LISTS) else ""
     return _pairs("Radar", {
         "band": f"{1e-9 * waveform.start_frequency:.6g} GHz + {1e-6 * waveform.bandwidth:.6g} MHz",
         "chirps": f"{waveform.num_chirps} of {waveform.num_samples} samples at {1e-6 * waveform.sampling_rate:.6g} MHz, "
-                  f"every {1e6 * waveform.chirp_interval:.6g} µs",
+                  f"every {1e6 * waveform.chirp_interval:.6g} µs{steps}",
         "antennas": f"{num_transmitters} transmitters, {len(radar.receivers)} receivers, {radar.multiplexing}",
+        "receiver": receiver_text(radar),
         "range": f"cells of {waveform.range_resolution:.4g} m up to {waveform.max_range:.4g} m",
         "velocity": f"up to ±{waveform.max_velocity(radar.num_slots):.4g} m/s",
         "transmit power": f"{float(in_dbm(radar.transmit_power)):.4g} dBm a transmitter",
@@ -98,6 +105,7 @@ def frame_html(frame) -> str:
     parts = "; ".join(f"{partition}: {', '.join(map(str, cubes))}" for partition, cubes in frame.parts.items())
     facts = {"paths": f"{frame.paths.num_paths:,}", "cube (tx x rx x chirp x sample)": shape, "parts": parts or "none",
              "noise": "none" if frame.noise_seed is None else f"seed {frame.noise_seed}",
+             "weather": weather_text(weather_of(frame.scene)),
              "labels": ", ".join(map(str, frame.labels)) or "none",
              "detections": "none asked for" if frame.detections is None else len(frame.detections)}
     stages = [(stage.name, f"{stage.seconds:.3f}", f"{stage.peak_memory / 2**20:,.0f}") for stage in frame.stages]
@@ -111,6 +119,17 @@ def sequence_html(row, kind: str, facts: dict) -> str:
     if len(times):
         ends = f"{times[0]:.6g} to {times[-1]:.6g} s, every {row.interval:.6g} s"
     return _pairs(kind, {"frames": len(times), "starts": ends, "objects": len(row.scene)} | facts)
+
+
+def template_html(template) -> str:
+    """What a template makes, and what its first scene draws."""
+    made, drawn = template.settings, template.draw(0).values
+    interval = "" if made.interval is None else f", every {made.interval:.6g} s"
+    told = _pairs(f"Template {template.path.name}", {
+        "scenes": made.scenes, "frames of each": f"{made.frames}{interval}", "kept": made.keep, "seed": made.seed,
+        "split": ", ".join(f"{name} {share:.4g}" for name, share in made.split.items())})
+    rows = [(place, f"{value:.6g}" if isinstance(value, float) else value) for place, value in drawn.items()]
+    return told + _table(f"Drawn for scene 0: {len(rows)} values", ("value", "drawn"), rows[:MOST_ROWS], len(rows))
 
 
 def validity_html(report) -> str:

@@ -15,6 +15,7 @@ from .placements import ORIGIN, motion_ahead, placement
 from .readers.model import Model
 from .scene_node import SceneNode, split_motion
 from .weather import Weather
+from .weather.weather import weather_text
 
 Content = _core.Mesh | Actor | Model | Sequence[tuple[str, _core.Mesh]] | None
 
@@ -65,6 +66,9 @@ class Scene(_core.Scene):
     @interferers.setter
     def interferers(self, interferers: Sequence[Interferer]) -> None:
         self._interferers = interferers_rule("interferers", interferers)
+    def __repr__(self) -> str:
+        told = super().__repr__()
+        return told if self.weather is None else f"{told.removesuffix(')')}, {weather_text(self.weather)})"
 
     def __getstate__(self):
         return super().__getstate__(), self.weather, self.interferers

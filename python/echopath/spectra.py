@@ -3,9 +3,12 @@ from __future__ import annotations
 
 from typing import Literal
 
+import numpy as np
+
 from . import _core
-from .checks import LARGEST_COUNT, ArrayLike, MapWindow, Progress, checked, count, one_of, optional, real
+from .checks import LARGEST_COUNT, ArrayLike, MapWindow, Progress, checked, count, one_of, optional, real, refused
 from .settings import SignalSettings
+from .transmit.code import is_coded, signal_shape
 
 CfarMethod = Literal["ca", "os"]
 _CELLS = optional(count(0, LARGEST_COUNT))
@@ -30,6 +33,10 @@ def range_doppler(cube: ArrayLike, radar: _core.Radar, window: MapWindow = Signa
     Returns RangeDoppler with values [tx, rx, velocity, range]. The phase between transmit slots is left in.
     Raises TypeError or ValueError naming the argument.
     """
+    apart = (len(radar.transmitters), len(radar.receivers), radar.waveform.num_chirps, radar.waveform.num_samples)
+    if is_coded(radar) and np.shape(cube) == signal_shape(radar) != apart:
+        raise refused(ValueError, "cube", f"apart by transmitters, of the shape {apart}, as ep.demultiplex(cube, radar) gives it",
+                      cube)
     return _core.range_doppler(cube, radar, window, zero_pad)
 
 

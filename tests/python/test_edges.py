@@ -364,7 +364,7 @@ def test_without_the_keyword_nothing_is_looked_for():
 def test_effects_say_with_what_power():
     off, on = ({effect.name: effect for effect in trace(scene_of(sheet()), radar_at(), edges=edges).effects}
                for edges in (False, True))
-    assert not off["edge diffraction"].modelled and "edges = False: the strongest would carry" in off["edge diffraction"].reason
+    assert not off["edge diffraction"].modelled and "not looked for: the strongest would carry" in off["edge diffraction"].reason
     assert on["edge diffraction"].modelled and "dBm" in on["edge diffraction"].reason
 
 
@@ -375,6 +375,8 @@ def test_auto_looks_for_edges_where_they_stand_out_of_the_noise():
         assert paths.frame.edges == is_on
         effect, = (one for one in ep.effects(scene_of(sheet(), yaw=0.5), radar, edges="auto") if one.name == "edge diffraction")
         assert effect.modelled == is_on and "edges = 'auto': the strongest would carry" in effect.reason
+        recorded, = (one for one in paths.effects if one.name == "edge diffraction")  # which knows no more than what was done
+        assert recorded.modelled == is_on and recorded.reason.startswith("looked for: " if is_on else "not looked for: ")
     off = trace(scene_of(sheet()), far, edges=False)
     assert np.array_equal(off.weight, trace(scene_of(sheet()), far, edges="auto").weight)
 

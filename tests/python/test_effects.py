@@ -113,7 +113,7 @@ CASES = {
     "echoes of rain": (dict(scene=rainy()), "nothing hides it", dict(scene=rainy(), effects={"echoes of rain": False})),
     "interference": (dict(scene=ep.Scene(make_scene(), interferers=[ep.Interferer(radar=make_radar())])), "another radar", {}),
     "transmission through sheets": (dict(scene=make_scene(ep.materials["glass_pane"])), "-6.3 dB", {}),
-    "edge diffraction": (dict(edges=True), "edges = True", {}),
+    "edge diffraction": (dict(edges=True), "looked for", {}),
     "even spread of the rays": (dict(sampler="r2"), "r2", dict(sampler="random")),
     "rays aimed at objects": ({}, "a cone", dict(scene=make_scene(MIRROR))),
     "standard errors": (dict(batches=8), "batches = 8", {}),

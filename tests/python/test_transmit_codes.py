@@ -182,14 +182,35 @@ def test_bad_codes_are_refused_by_name(keywords, told):
 
 
 def test_what_cannot_be_taken_apart_is_refused():
-    radar = array_radar("ddm", num_chirps=30)
-    with pytest.raises(ValueError, match="^waveform.num_chirps: must be a multiple of .* = 4, got 30"):
-        ep.demultiplex(np.zeros((1, NUM_RX, 30, 64)), radar)
     with pytest.raises(ValueError, match="^cube: must be of the shape"):
         ep.demultiplex(np.zeros((1, NUM_RX, 31, 64)), array_radar("bpm"))
-    real = array_radar("ddm", real=True)
-    with pytest.raises(ValueError, match="^waveform.real: must be False"):
-        ep.synthesize(plates(0.0, radar=real), real)
+
+
+def test_chirps_that_do_not_fit_a_code_are_refused_when_the_radar_is_made():
+    with pytest.raises(ValueError, match="^waveform.num_chirps: must be a multiple of .* = 4, got 30"):
+        array_radar("ddm", num_chirps=30)
+    with pytest.raises(ValueError, match="^waveform.num_chirps: must be a multiple of .* = 5, got 32"):
+        array_radar("ddm").replace(empty_slots=2)
+    for code in (dict(multiplexing="ddm"), dict(multiplexing="cdm", code_phases=np.full((3, 2), 0.5))):
+        with pytest.raises(ValueError, match="^waveform.real: must be False with a code of phases"):
+            array_radar(real=True, **code)
+    assert array_radar("cdm", real=True, code_phases=np.pi * np.eye(3)).waveform.real
+    assert array_radar("bpm", num_chirps=30, real=True).num_slots == 4
+
+
+def test_a_map_of_what_receivers_have_names_what_takes_it_apart():
+    for code in ("ddm", "bpm"):
+        radar = array_radar(code, num_chirps=8)
+        cube = ep.synthesize(plates(0.0, radar=radar), radar)
+        with pytest.raises(ValueError, match=r"^cube: .* ep.demultiplex\(cube, radar\)"):
+            ep.range_doppler(cube, radar)
+        assert ep.range_doppler(ep.demultiplex(cube, radar), radar).values.shape[0] == NUM_TX
+
+
+def test_a_radar_says_what_its_transmitters_and_its_receiver_do():
+    assert "ddm" not in repr(array_radar()) and "receiver with" not in repr(array_radar())
+    told = repr(array_radar("ddm", receiver=ep.Receiver(iq_gain_db=1.0)))
+    assert ", ddm, receiver with faults" in told
 
 
 def test_frames_of_codes_and_faults_come_back_from_files_and_alone(tmp_path):

@@ -1,5 +1,6 @@
 #include "echopath/radar/radar.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -20,6 +21,8 @@ namespace {
 constexpr double kUnitTolerance = 1e-6;
 // A chirp may fill its slot: num_samples / sampling_rate may round above the interval by an ulp or two.
 constexpr double kSlotTolerance = 1e-9;
+// Of the sine of phases that are meant as signs, multiples of pi.
+constexpr double kSignRounding = 1e-12;
 
 void require_positive(double value, const std::string& argument) {
   require(std::isfinite(value) && value > 0.0, argument, "must be finite and positive", value);
@@ -60,6 +63,24 @@ double sum_of(const std::vector<double>& values, size_t count) {
   return std::accumulate(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count), 0.0);
 }
 
+bool has_complex_code(const Radar& radar) {
+  if (radar.multiplexing == Multiplexing::kDdm) return radar.transmitters.size() > 1;  // at least three phases in a turn
+  const auto is_complex = [](double phase) { return std::abs(std::sin(phase)) > kSignRounding; };
+  return std::any_of(radar.code_phases.begin(), radar.code_phases.end(),
+                     [&](const auto& row) { return std::any_of(row.begin(), row.end(), is_complex); });
+}
+
+void validate_code_fits(const Radar& radar) {
+  const ChirpSequence& waveform = radar.waveform;
+  if (radar.multiplexing == Multiplexing::kDdm) {
+    const int64_t shares = static_cast<int64_t>(radar.transmitters.size()) + radar.empty_slots;
+    require(waveform.num_chirps % shares == 0, "waveform.num_chirps",
+            "must be a multiple of transmitters + empty_slots = " + std::to_string(shares), waveform.num_chirps);
+  }
+  require(!waveform.real || !has_complex_code(radar), "waveform.real",
+          "must be False with a code of phases, which needs complex samples", "True");
+}
+
 void validate_code(const Radar& radar) {
   require(radar.empty_slots >= 1, "empty_slots", "must be at least 1", radar.empty_slots);
   const bool has_code = radar.multiplexing == Multiplexing::kCdm;
@@ -70,6 +91,7 @@ void validate_code(const Radar& radar) {
             "must have rows of one length, at least 1", row.size());
     for (const double phase : row) require(std::isfinite(phase), "code_phases", "must be finite", phase);
   }
+  validate_code_fits(radar);
 }
 
 // Replay asks for gains once per path, antenna and instant: the usual whole exponents must not cost a call of pow.

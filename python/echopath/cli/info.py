@@ -9,10 +9,14 @@ import echopath as ep
 
 from ..frame_file import left_out, load_frame
 from ..readers.load import READERS, is_foreign
+from ..dataset import Template
 from ..scene_file import load_scene
+from ..scene_file.load import parse
 from ..sequence.contents import NAME as SEQUENCE_FILE
 from ..measures import in_dbm, with_error
+from ..receiver.settings import receiver_text
 from ..tables import edge_hits, event
+from ..weather.weather import weather_of, weather_text
 from . import report
 from .model_info import describe_model
 
@@ -32,6 +36,8 @@ def describe_file(path, selections=()) -> list[str]:
     selections = [ep.Selection(selection) for selection in selections]
     if selections and suffix not in FRAME_SUFFIXES:
         raise ValueError(f"{path}: must be a frame file (.h5) for --select, which asks for its paths")
+    if suffix == ".toml" and "dataset" in parse(path):
+        return _describe_template(Template(path))
     if suffix == ".toml":
         return _describe_scene_file(load_scene(path))
     if path.name == SEQUENCE_FILE or (path / SEQUENCE_FILE).exists():
@@ -50,6 +56,19 @@ def _describe_sequence(stored) -> list[str]:
              report.line("starts", f"{stored.times[0]:.6g} to {stored.times[-1]:.6g} s, every {stored.interval:.6g} s"),
              report.line("kept", stored.keep + (", truth" if stored.settings.get("truth") is not None else ""))]
     return [*lines, *_describe_scene(stored.scene, float(stored.times[0])), *_describe_radar(stored.radar)]
+
+
+def _describe_template(template) -> list[str]:
+    made, first = template.settings, template.scene_file(0)
+    interval = "" if made.interval is None else f", every {made.interval:.6g} s"
+    drawn = template.draw(0).values
+    lines = [str(template.path), "template of scenes", report.line("scenes", str(made.scenes)),
+             report.line("frames of each", f"{made.frames}{interval}"), report.line("kept", made.keep),
+             report.line("split", ", ".join(f"{name} {share:g}" for name, share in made.split.items())),
+             f"drawn for scene 0: {len(drawn)} values"]
+    lines += [report.line(f"  {place}", f"{value:.6g}" if isinstance(value, float) else str(value))
+              for place, value in list(drawn.items())[:report.MAX_LISTED]]
+    return [*lines, "scene 0", *_describe_scene_file(first)]
 
 
 def _rays_of(trace) -> str:
@@ -81,7 +100,7 @@ def _describe_scene(scene, time: float) -> list[str]:
     lines += [report.line(f"  {mesh.name}", f"{len(mesh.mesh.triangles):,} triangles{_material(mesh)}")
               for mesh in meshes[:report.MAX_LISTED]]
     more = [f"    and {len(meshes) - report.MAX_LISTED} more"] if len(meshes) > report.MAX_LISTED else []
-    return [*lines, *more, *_describe_overlaps(scene, time)]
+    return [*lines, *more, report.line("weather", weather_text(weather_of(scene))), *_describe_overlaps(scene, time)]
 
 
 def _describe_overlaps(scene, time: float, names=None) -> list[str]:
@@ -99,6 +118,7 @@ def _describe_radar(radar) -> list[str]:
     max_range = cell * waveform.num_samples * (0.5 if waveform.real else 1.0)
     return ["radar",
             report.line("antennas", f"{len(radar.transmitters)} transmitting, {len(radar.receivers)} receiving"),
+            report.line("multiplexing", radar.multiplexing), report.line("receiver", receiver_text(radar)),
             *_describe_array(ep.virtual_array(radar)),
             report.line("place", _place(radar)),
             report.line("frequency", f"{waveform.start_frequency / 1e9:g} GHz + {waveform.bandwidth / 1e9:g} GHz"),

@@ -1,6 +1,7 @@
 """Values of a template that are drawn anew for each scene."""
 from __future__ import annotations
 
+import difflib
 import math
 from collections.abc import Callable
 from typing import Any
@@ -19,6 +20,32 @@ def is_distribution(value: Any) -> bool:
         return False
     kinds = [kind for kind in KINDS if isinstance(value.get(kind), list)]
     return len(kinds) == 1 and value.keys() <= {kinds[0]} | _MORE.get(kinds[0], set())
+
+
+def refuse_misspelt(table: dict[str, Any], place: str) -> None:
+    """Raises ValueError naming the key of a table that was to be a distribution, and what it must be.
+
+    table: of a template, no distribution; place: its dotted path. Tables whose lists are named otherwise are those of a scene.
+    """
+    known = [kind for kind in KINDS if kind in table]
+    lists = [key for key, value in table.items() if isinstance(value, list)]
+    near = {key: difflib.get_close_matches(key.lower(), KINDS, n=1, cutoff=0.7) for key in lists}
+    if len(known) > 1:
+        raise ValueError(f"{place}: must be one distribution, got {' and '.join(known)}")
+    if known and not isinstance(table[known[0]], list):
+        raise ValueError(f"{place}.{known[0]}: must be a list, got {shown(table[known[0]])}")
+    if known:
+        allowed = {known[0]} | _MORE.get(known[0], set())
+        word = next(key for key in table if key not in allowed)
+        raise ValueError(f"{place}.{word}: unknown key of a distribution; {known[0]} takes {', '.join(sorted(allowed))}")
+    for key, meant in near.items():
+        if meant and table.keys() - {key} <= _MORE.get(meant[0], set()):
+            raise ValueError(f"{place}.{key}: unknown distribution; did you mean '{meant[0]}'?")
+
+
+def with_kinds(line: str) -> str:
+    """A line of a fault of a drawn scene; where a table stands for a number, with the names of the distributions."""
+    return f"{line}; distributions are {', '.join(KINDS)}" if "must be a number, got {" in line else line
 
 
 def drawn(table: dict[str, Any], place: str, random: np.random.Generator) -> Any:

@@ -19,11 +19,12 @@ from ..sequence import Sequence
 from ..sequence.keep import Keep
 from ..shown import shown
 from .classes import ClassName
-from .distributions import drawn, is_distribution
+from .distributions import drawn, is_distribution, refuse_misspelt, with_kinds
 
 MOST_SCENES = 10 ** 6
 _MOST_PLACES = 1000          # that are tried for an object that is to stand apart from others
 _SEEDS = 2 ** 32             # of rays and noise
+_OF_NAMES = (".objects", ".materials")  # tables, beside parts, whose keys are names, which may be any
 
 
 def _shares(split: dict[str, float]) -> dict[str, float]:
@@ -78,6 +79,16 @@ class Template:
         self._objects = scene.pop("objects", [])
         self._rest = scene
 
+    def __repr__(self) -> str:
+        made = self.settings
+        frames = f"{made.frames} frames" if made.frames > 1 else "1 frame"
+        return f"Template('{self.path}', {made.scenes} scenes of {frames}, keep='{made.keep}', seed={made.seed})"
+
+    def _repr_html_(self) -> str:
+        from ..notebook import template_html
+
+        return template_html(self)
+
     def draw(self, number: int) -> DrawnScene:
         """Scene `number` (from 0). Raises ValueError naming the file, the scene and the dotted path."""
         try:
@@ -108,7 +119,7 @@ class Template:
         """The error with the file and the number of the scene before each line."""
         head = f"{self.path}: scene {number}: "
         lines = (line.removeprefix(head).removeprefix(f"{self.path}: ") for line in str(error).splitlines())
-        return ValueError("\n".join(line if line.startswith("  ") else head + line for line in lines))
+        return ValueError("\n".join(line if line.startswith("  ") else head + with_kinds(line) for line in lines))
 
     def scene_file(self, number: int) -> SceneFile:
         """What scene `number` says, ready to trace. Raises as `draw`."""
@@ -156,6 +167,8 @@ class _Drawing:
             self.values[place] = drawn(value, place, self.random(place + turn))
             return self.of(self.values[place], place, turn + "/chosen")  # a choice may be among distributions
         if isinstance(value, dict):
+            if not (place.startswith("parts") or place.endswith(_OF_NAMES)):
+                refuse_misspelt(value, place)
             return {key: self.of(one, f"{place}.{key}" if place else str(key), turn) for key, one in value.items()}
         if isinstance(value, list):
             return [self.of(one, f"{place}[{index}]", turn) for index, one in enumerate(value)]

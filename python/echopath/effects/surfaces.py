@@ -152,7 +152,8 @@ def _edges(case: Case):
     is_on = edges_matter(power, noise) if asked == "auto" else asked
     found = _found_edges(case.paths) if is_on and case.paths else _expected_edge(power, noise)
     beside = "" if is_on else "; without them deep sidelobes of plates and boxes are wrong, main lobes within 1 dB"
-    return is_on, f"edges = {asked!r}: {found}{beside}{_without_edges(case, conductors)}"
+    how = "edges = 'auto'" if asked == "auto" else "looked for" if is_on else "not looked for"
+    return is_on, f"{how}: {found}{beside}{_without_edges(case, conductors)}"
 
 
 def _found_edges(paths) -> str:

@@ -19,8 +19,9 @@ class Axes(NamedTuple):
 
 
 def with_chirps(radar, num_chirps: int):
-    """The radar with frames of so many chirps."""
-    return radar.replace(waveform=radar.waveform.replace(num_chirps=num_chirps))
+    """The radar with frames of so many chirps, whose maps have the axes of its own: shares of "ddm" need not divide them."""
+    code = {"multiplexing": "cdm", "code_phases": np.zeros((len(radar.transmitters), 1))} if radar.multiplexing == "ddm" else {}
+    return radar.replace(waveform=radar.waveform.replace(num_chirps=num_chirps), **code)
 
 
 def axes_of(radar, num_chirps: int, zero_pad: int = 1) -> Axes:

@@ -182,4 +182,11 @@ def _plain(value: Settings) -> dict:
             if one != default[name]}
 
 
+def receiver_text(radar) -> str:
+    """Which faults the receiver of a radar has, in words."""
+    if radar.receiver is None:
+        return "ideal but for its noise"
+    return "with " + (", ".join(radar.receiver.plain()) or "all faults off")
+
+
 receiver_rule = _value(Receiver)

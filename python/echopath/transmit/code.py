@@ -5,8 +5,6 @@ import numpy as np
 
 from .. import _core
 
-_ROUNDING = 1e-12  # of the imaginary part of signs
-
 
 def is_coded(radar: _core.Radar) -> bool:
     """Whether the transmitters send at once, by a code."""
@@ -26,15 +24,8 @@ def signal_shape(radar: _core.Radar) -> tuple[int, int, int, int]:
 
 
 def num_shares(radar: _core.Radar) -> int:
-    """Of "ddm": into how many shares the Doppler axis falls, with those that are empty.
-
-    Raises ValueError where they do not divide the chirps of the frame.
-    """
-    shares = len(radar.transmitters) + radar.empty_slots
-    if radar.waveform.num_chirps % shares:
-        raise ValueError(f"waveform.num_chirps: must be a multiple of transmitters + empty_slots = {shares}, got "
-                         f"{radar.waveform.num_chirps}")
-    return shares
+    """Of "ddm": into how many shares the Doppler axis falls, with those that are empty; they divide the chirps of the frame."""
+    return len(radar.transmitters) + radar.empty_slots
 
 
 def hadamard(size: int) -> np.ndarray:
@@ -46,17 +37,7 @@ def hadamard(size: int) -> np.ndarray:
 
 
 def code_of(radar: _core.Radar) -> np.ndarray:
-    """The code of a frame: complex [tx, slots], 0 where a transmitter is silent.
-
-    Raises ValueError where the chirps are no multiple of the shares of "ddm", and for phases of real samples.
-    """
-    code = _code(radar)
-    if radar.waveform.real and np.max(np.abs(code.imag)) > _ROUNDING:
-        raise ValueError(f"waveform.real: must be False with {radar.multiplexing}: a code of phases needs complex samples")
-    return code
-
-
-def _code(radar: _core.Radar) -> np.ndarray:
+    """The code of a frame: complex [tx, slots], 0 where a transmitter is silent."""
     num_tx, slots = len(radar.transmitters), np.arange(num_frame_slots(radar))
     if radar.multiplexing == "tdm":
         return (slots % num_tx == np.arange(num_tx)[:, None]).astype(np.complex128)

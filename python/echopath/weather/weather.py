@@ -82,6 +82,16 @@ def weather_of(scene) -> Weather | None:
     return getattr(scene, "weather", None)
 
 
+def weather_text(weather: Weather | None) -> str:
+    """What differs from the air of a clear day, in words."""
+    if weather is None:
+        return "none"
+    usual = Weather()
+    found = [f"{name} {value:g}" if isinstance(value, float) else f"{name} {value}"
+             for name, value in weather.keywords().items() if value != getattr(usual, name)]
+    return "weather: " + (", ".join(found) or "clear")
+
+
 def attenuation_of(scene, radar: _core.Radar, effects: Choices = ()) -> float:
     """Np/m of fields; 0 without weather, or where `effects` switch it off."""
     return attenuation_of_weather(weather_of(scene), radar, effects)

@@ -1,0 +1,83 @@
+"""What radars, scenes, templates and frames tell of themselves: their repr, in notebooks, and to `echopath info`."""
+from pathlib import Path
+
+import pytest
+
+import echopath as ep
+from echopath import dataset
+from echopath.cli.info import describe_file
+from support.radars import build_radar
+from support.shapes import quad
+
+TEMPLATE = Path(__file__).parents[2] / "data" / "datasets" / "crossing.toml"
+RAIN = ep.Weather(rain_mm_per_hour=20.0)
+
+
+def wet_scene():
+    scene = ep.Scene(weather=RAIN)
+    scene.add(quad((5, -1, -1), (5, 1, -1), (5, 1, 1), (5, -1, 1)), name="plate", material="metal")
+    return scene
+
+
+def coded_radar():
+    return build_radar([(0, 0, 0), (0, 0.01, 0)], [(0, 0, 0)], num_samples=16, num_chirps=6, multiplexing="ddm",
+                       receiver=ep.Receiver(iq_gain_db=0.5))
+
+
+def test_a_radar_tells_its_code_and_its_receiver():
+    told = coded_radar()._repr_html_()
+    assert "ddm" in told and "iq_gain_db" in told
+    assert "ideal but for its noise" in coded_radar().replace(receiver=None)._repr_html_()
+
+
+def test_slots_that_differ_are_told():
+    waveform = coded_radar().waveform
+    told = waveform.replace(extra_idle=(0.0, 1e-6))
+    assert "slots differ" in repr(told) and "slots differ" not in repr(waveform)
+    assert "slots differ" in coded_radar().replace(waveform=told)._repr_html_()
+
+
+def test_a_scene_and_a_frame_tell_their_weather():
+    scene = wet_scene()
+    frame = ep.simulate(scene, coded_radar(), num_rays=200)
+    for told in (scene._repr_html_(), frame._repr_html_(), repr(scene)):
+        assert "rain_mm_per_hour 20" in told
+    assert "weather" not in repr(ep.Scene())
+
+
+def test_info_tells_code_receiver_and_weather_of_a_frame(tmp_path):
+    ep.save_frame(ep.simulate(wet_scene(), coded_radar(), num_rays=200), tmp_path / "frame.h5")
+    told = "\n".join(describe_file(tmp_path / "frame.h5"))
+    assert "ddm" in told and "iq_gain_db" in told and "rain_mm_per_hour 20" in told
+
+
+def test_a_template_tells_what_it_makes():
+    template = dataset.Template(TEMPLATE)
+    made = template.settings
+    for told in (repr(template), template._repr_html_(), "\n".join(describe_file(TEMPLATE))):
+        assert str(made.scenes) in told and made.keep in told
+    place, _ = next(iter(template.draw(0).values.items()))
+    assert place in template._repr_html_() and place in "\n".join(describe_file(TEMPLATE))
+
+
+@pytest.mark.parametrize("written, told", [
+    ("{unifrm = [1.0, 2.0]}", "yaw_deg.unifrm: unknown distribution; did you mean 'uniform'?"),
+    ("{Uniform = [1.0, 2.0]}", "did you mean 'uniform'?"),
+    ("{chioce = [1.0, 2.0], weights = [1, 2]}", "did you mean 'choice'?"),
+    ("{normal = [0.0, 1.0], withn = [-1.0, 1.0]}", "yaw_deg.withn: unknown key of a distribution; normal takes normal, within"),
+    ("{uniform = 3.0}", "yaw_deg.uniform: must be a list, got 3.0"),
+    ("{uniform = [1.0, 2.0], normal = [0.0, 1.0]}", "yaw_deg: must be one distribution, got uniform and normal"),
+    ("{gaussian = [0.0, 1.0]}", "distributions are uniform, log_uniform, normal, integer, choice")])
+def test_a_misspelt_distribution_is_told_with_the_right_one(tmp_path, written, told):
+    path = tmp_path / "crossing.toml"
+    path.write_text("[dataset]\nscenes = 1\n[radar]\nyaw_deg = " + written + "\n")
+    with pytest.raises(ValueError) as caught:
+        dataset.Template(path).check(0)
+    assert told in str(caught.value) and str(path) in str(caught.value)
+
+
+def test_tables_of_names_are_no_distributions(tmp_path):
+    path = tmp_path / "named.toml"
+    path.write_text('[dataset]\nscenes = 1\n[labels]\nobjects = {choices = ["a"]}\n[parts.uniforms]\nnormal = "T . R"\n')
+    table = dataset.Template(path).draw(0).table
+    assert table["labels"]["objects"] == {"choices": ["a"]} and table["parts"]["uniforms"] == {"normal": "T . R"}

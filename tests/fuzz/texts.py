@@ -1,12 +1,15 @@
 """Scene files and antenna files."""
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 from random import Random
 
 import echopath as ep
+from echopath.scene_file.load import scene_file_of
 from fuzz.folder import memory_folder
 from fuzz.mutate import damaged, mistaken
+from fuzz.tables import Tables
 
 DATA = Path(__file__).parents[2] / "data"
 ANTENNA = ("# of a patch\nazimuth_deg,elevation_deg,gain_db,phase_deg\n" +
@@ -125,17 +128,27 @@ def _accepts(load, path: Path, errors: tuple) -> bool:
 
 
 def feed_scene():
-    """Cases of scene files: they load, or are refused by an error that names the file."""
+    """Cases of scene files: they load, or are refused by an error that names the file.
+
+    One in four is a text with mistakes; the others are tables with mistakes, which reach the reader behind the syntax of TOML.
+    """
     folder = memory_folder()
     base = Path(folder.name)
     (base / "wall.obj").write_text("v 0 0 0\nv 1000 0 0\nv 1000 1000 0\nv 0 1000 0\ng left\nf 1 2 3 4\n")
     (base / "antenna.csv").write_text(ANTENNA)
+    path = base / "scene.toml"
     for text in SCENES:
-        (base / "seed.toml").write_text(text)
-        ep.load_scene(base / "seed.toml")
+        path.write_text(text)
+        ep.load_scene(path)
+    tables = Tables([tomllib.loads(text) for text in SCENES])
 
     def case(number: int) -> None:
-        _accepts(ep.load_scene, _text_case(base, "scene.toml", SCENES, Random(f"scene {number}")), (ValueError, ep.FileError))
+        random = Random(f"scene {number}")
+        if random.random() < 0.25:
+            _accepts(ep.load_scene, _text_case(base, path.name, SCENES, random), (ValueError, ep.FileError))
+        else:
+            table = tables.mistaken(random)
+            _accepts(lambda path: scene_file_of(table, path), path, (ValueError, ep.FileError))
 
     case.folder = folder
     return case

@@ -7,9 +7,9 @@ from random import Random
 
 VALUES = [0, 1, -1, 2, 3, 64, 65, 1000, 10**9, 2**31, 2**63 - 1, 2**63, -2**63, 10**30, 0.0, -0.1, 0.5, 1.0, 1e-320, 1e9, 1e19,
           1e308, -1e308, float("nan"), float("inf"), -float("inf"), True, False, "", "x", "\0", "auto", "wall", "wall/ball",
-          "wall*", "metal", "T . R", "T (.{64}){64} R", "../wall.obj", "wall.obj", "antenna.csv", "a" * 300, "\u2028", [], {}, [[]],
-          [0.0, 0.0, 0.0], [0, 0, 0], [5, -0.1], [1e300, 0, 0], [1.0] * 4, [[1.0] * 4] * 4, ["x"], [1, "x"], {"kind": "linear"},
-          {"kind": "isotropic"}, {"permittivity": 3.0}, datetime.date(1979, 5, 27), datetime.time(7, 32)]
+          "wall*", "metal", "T . R", "T (.{64}){64} R", "../wall.obj", "wall.obj", "antenna.csv", "a" * 300, "\u2028", [], {},
+          [[]], [0.0, 0.0, 0.0], [0, 0, 0], [5, -0.1], [1e300, 0, 0], [1.0] * 4, [[1.0] * 4] * 4, ["x"], [1, "x"],
+          {"kind": "linear"}, {"kind": "isotropic"}, {"permittivity": 3.0}, datetime.date(1979, 5, 27), datetime.time(7, 32)]
 
 
 class Tables:
@@ -31,7 +31,7 @@ class Tables:
         return table
 
     def _mistake(self, table: dict, random: Random) -> None:
-        holder, key = random.choice(list(_places(table)) or [(table, "title")])
+        holder, key = random.choice(_places(table) or [(table, "title")])
         kind = random.randrange(10)
         if kind <= 3:
             holder[key] = _copy(random.choice(VALUES))
@@ -54,12 +54,15 @@ class Tables:
         return pickle.loads(random.choice(self._keys[key]))
 
 
-def _places(item):
+def _places(item) -> list[tuple]:
     """(table or list, key or index) of whatever stands in an item."""
-    for key, value in item.items() if isinstance(item, dict) else enumerate(item):
-        yield item, key
-        if isinstance(value, (dict, list)):
-            yield from _places(value)
+    places, left = [], [item]
+    while left:
+        holder = left.pop()
+        keys = list(holder) if isinstance(holder, dict) else range(len(holder))
+        places += [(holder, key) for key in keys]
+        left += [holder[key] for key in keys if isinstance(holder[key], (dict, list))]
+    return places
 
 
 def _copy(value):

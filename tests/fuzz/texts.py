@@ -51,7 +51,7 @@ smooth = false
 [[objects]]
 name = "ball"
 actor = "sphere"
-parameters = {radius = 0.3}
+parameters = {radius = 0.3, subdivisions = 1}
 material = "metal"
 transform = [[1.0, 0.0, 0.0, 2.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]]
 parent = "wall"
@@ -101,7 +101,7 @@ rank = 0.75
 """
 ACTORS = "".join(f'[[objects]]\nname = "{name}"\nactor = "{name}"\nmaterial = "metal"\nparameters = {{{keys}}}\n'
                  for name, keys in (
-    ("wall", "length = 1.0, height = 2.0"), ("box", "size = [1.0, 2.0, 3.0]"), ("capsule", "radius = 0.2, length = 1.0"),
+    ("wall", "length = 1.0, height = 2.0"), ("box", "size = [1.0, 2.0, 3.0]"), ("plate", "width = 0.2, height = 1.0"),
     ("trihedral", "size = 0.1, edge = 0.05")))
 SCENES = [RADAR + OBJECTS + SETTINGS, RADAR + OBJECTS,
           RADAR + ACTORS + SETTINGS.replace("wall/ball", "box"), RADAR + SETTINGS.partition("[parts")[0]]

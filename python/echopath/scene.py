@@ -66,9 +66,12 @@ class Scene(_core.Scene):
     @interferers.setter
     def interferers(self, interferers: Sequence[Interferer]) -> None:
         self._interferers = interferers_rule("interferers", interferers)
+
     def __repr__(self) -> str:
-        told = super().__repr__()
-        return told if self.weather is None else f"{told.removesuffix(')')}, {weather_text(self.weather)})"
+        told = [super().__repr__().removesuffix(")")]
+        told += [] if self.weather is None else [weather_text(self.weather)]
+        told += [f"{len(self.interferers)} other radars"] if self.interferers else []
+        return ", ".join(told) + ")"
 
     def __getstate__(self):
         return super().__getstate__(), self.weather, self.interferers

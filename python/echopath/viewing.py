@@ -7,35 +7,45 @@ from typing import Any, Literal
 
 from . import _core
 from .checks import MapWindow, an, anything, array, checked, count, flag, map_window, one_of, optional, path, refused, text
+from .dataset import Dataset
 from .families import listed
 from .frame import Frame
 from .parts import Views, selection_rule
+from .sequence import Sequence, StoredSequence
 from .settings import Evaluate, Retrace, SignalSettings
 
 ColorBy = Literal["bounces", "mesh", "power", "range", "speed"]
+Viewed = (str | os.PathLike[str] | list[str] | list[os.PathLike[str]] | tuple[str | os.PathLike[str], ...] | Frame | Sequence
+          | StoredSequence | Dataset)
 View = Literal["fit", "radar", "top", "side"]
 _REPLAY = {name: optional(SignalSettings.RULES[name]) for name in ("zero_pad", "evaluate", "retrace", "keyframes")}
 
 
 def _what(argument: str, value):
-    """A frame file, a Frame, a scene or None."""
-    if value is None or isinstance(value, (_core.Scene, Frame)):
+    """A frame file, a Frame, a scene, frames in time or None."""
+    if value is None or isinstance(value, (_core.Scene, Frame, Sequence, StoredSequence, Dataset)):
         return value
     if isinstance(value, (str, os.PathLike)):
         return path(argument, value)
-    raise refused(TypeError, argument, "a frame file or a Frame to view, or the scene of paths", value)
+    if isinstance(value, (list, tuple)) and value and all(isinstance(one, (str, os.PathLike)) for one in value):
+        return [path(argument, one) for one in value]
+    raise refused(TypeError, argument, "a frame file, a Frame, frames in time or a list of files to view, or the scene of paths",
+                  value)
 
 
 @checked(what=_what, paths=optional(an(_core.Paths)), parts=optional(an(Mapping, called="a dict")), window=optional(map_window),
          **_REPLAY, state=optional(path), picture=optional(path), block=flag)
-def view(what: str | os.PathLike[str] | Frame | _core.Scene | None = None, paths: _core.Paths | None = None,
+def view(what: Viewed | _core.Scene | None = None, paths: _core.Paths | None = None,
          parts: Views = None, *, window: MapWindow | None = None, zero_pad: int | None = None, evaluate: Evaluate | None = None,
          retrace: Retrace | None = None, keyframes: int | None = None, state: str | os.PathLike[str] | None = None,
          picture: str | os.PathLike[str] | None = None, block: bool = True) -> Any:
     """Opens the viewer: view(scene, paths, parts), view(frame) or view("frame.h5"); view() is an empty window.
 
     It needs the packages of `pip install PySide6-Essentials pyvista pyvistaqt vtk`.
-    what: a frame file, a Frame, or the scene of the paths (None: theirs); paths: of `trace`
+    what: a frame file, a Frame, or the scene of the paths (None: theirs); or frames in time, which open as one time line: a
+        Sequence (frames appear as they are simulated), a StoredSequence, a Dataset, a folder of one of these or of frame files,
+        a pattern such as "out/frame_*.h5", or a list of files
+    paths: of `trace`
     parts: of `decompose` (with their cubes), or selections {name: selection}, one partition or {partition: {name: selection}}
     window, zero_pad: of the maps of paths, as in `range_doppler`; evaluate, retrace, keyframes: of their signals, as in
         `synthesize`; None: as there

@@ -83,9 +83,29 @@ def window(qtbot, shared_window, frame):
     window.map_area.show_one(False)
     window.map_area.set_view(window.map_area.whole_view)
     window.filter_box.hits_check.setChecked(False)
-    window.tabs.setCurrentWidget(window.table)
+    window.docks["Rays"].raise_()
     window.filter_box.name_edit.clear()
     window.filter_box.show_name_error("")
     window.table.view.sortByColumn(3, Qt.SortOrder.DescendingOrder)
     open_on_screen(qtbot, window)
     return window
+
+
+@pytest.fixture(scope="session")
+def moving_sequence():
+    """A plate that drives at a radar of four receivers with 4 m/s before a wall, three frames every 0.2 s, with detections."""
+    scene = ep.Scene()
+    scene.add(shapes.plate((6.0, 0.5, 0.0), (-1.0, 0.0, 0.0), 0.6), name="plate", material=shapes.lambert(0.8),
+              motion=ep.LinearMotion(velocity=(-4.0, 0.0, 0.0)))
+    scene.add(shapes.plate((12.0, 0.0, 0.0), (-1.0, 0.0, 0.0), 6.0), name="wall", material=shapes.lambert(0.8))
+    chirps = ep.ChirpSequence(start_frequency=77e9, bandwidth=600e6, num_samples=64, sampling_rate=10e6, num_chirps=32,
+                              chirp_interval=2e-4)
+    radar = ep.Radar(chirps, transmitters=[ep.Antenna((0, 0, 0))],
+                     receivers=[ep.Antenna((0, 0.5 * index * chirps.wavelength, 0)) for index in range(4)], transmit_power=0.1)
+    return ep.Sequence(scene, radar, frames=3, interval=0.2, num_rays=3000, max_bounces=2, detections=True)
+
+
+@pytest.fixture(scope="session")
+def stored_run(moving_sequence, tmp_path_factory):
+    """The same in a folder of files."""
+    return moving_sequence.save(tmp_path_factory.mktemp("run"))

@@ -56,7 +56,7 @@ def actions(qtbot, window, frame, tmp_path):
         "map": click_map, "drag": drag_map, "key": press_key, "drop": drop, "family": choose_row,
         "scene": lambda rng: qtbot.mouseClick(window.view3d, LEFT, pos=spot(window.view3d, rng)),
         "layer": lambda rng: list(window.layer_actions.values())[rng.integers(4)].toggle(),
-        "tab": lambda rng: window.tabs.setCurrentIndex(int(rng.integers(2))),
+        "tab": lambda rng: list(window.docks.values())[3 + int(rng.integers(2))].raise_(),
         "expression": lambda rng: window.filter_box.expression_edit.setText(("", "T . R", "T (", "T 'w*' .* R")[rng.integers(4)]),
         "bounces": lambda rng: window.filter_box.from_box.setValue(int(rng.integers(4))),
         "channel": lambda rng: window.map_area.channel_box.activated.emit(int(rng.integers(4))),

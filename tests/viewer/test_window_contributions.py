@@ -15,7 +15,7 @@ WHOLE = ("whole", "whole")
 
 @pytest.fixture
 def panel(qtbot, window):
-    window.tabs.setCurrentWidget(window.contributions)
+    window.docks["What makes the cell"].raise_()
     settle(qtbot)
     assert window.contributions.title.text() == HINT
     return window.contributions

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import echopath as ep
-from echopath_viewer.model import CellBox
+from echopath_viewer.model import CellBox, from_frame
 from echopath_viewer.model.history import MOST_STATES, History
 from echopath_viewer.window import MainWindow
 from echopath_viewer.window.qt import Qt
@@ -61,17 +61,18 @@ def test_opened_frames_are_remembered_latest_first(qtbot, window, frame, tmp_pat
     assert recent_files() == [str((tmp_path / "b.h5").resolve())]
 
 
-def test_sizes_are_remembered(qtbot):
+def test_sizes_and_places_of_panels_are_remembered(qtbot, frame):
     first = MainWindow()
-    first.resize(1010, 640)
-    first.content.setSizes([200, 500, 310])
-    sizes = first.content.sizes()
-    first.show()
+    first.resize(1250, 640)
+    first.show_input(from_frame(frame))
+    first.docks["Scene"].close()
+    first.addDockWidget(Qt.DockWidgetArea.LeftDockWidgetArea, first.docks["Rays"])
+    qtbot.wait(20)
     first.close()
     second = MainWindow()
-    assert (second.width(), second.height()) == (1010, 640)
-    second.show()
-    qtbot.wait(20)
-    assert sum(second.content.sizes()) > 0 and second.content.sizes()[0] <= max(sizes[0], 320)
+    assert (second.width(), second.height()) == (1250, 640)
+    second.show_input(from_frame(frame))
+    assert second.docks["Scene"].isHidden() and not second.docks["Range-Doppler"].isHidden()
+    assert second.dockWidgetArea(second.docks["Rays"]) == Qt.DockWidgetArea.LeftDockWidgetArea
     second.close()
     settings().clear()

@@ -82,9 +82,10 @@ def _parser() -> argparse.ArgumentParser:
     _add_sequence_options(run)
     run.set_defaults(command=_run)
 
-    view = commands.add_parser("view", help="see which rays made which cell of a frame")
-    view.add_argument("frame", metavar="FRAME.h5", nargs="?",
-                      help="frame file, or a folder of frames, whose first is shown (default: an empty window)")
+    view = commands.add_parser("view", help="see which rays made which cell of a frame, or of frames in time")
+    view.add_argument("frames", metavar="FRAME.h5", nargs="*",
+                      help="frame file; several, a pattern or a folder of frames, a sequence or a dataset open as one time line "
+                           "(default: an empty window)")
     view.add_argument("--state", metavar="VIEW.json", help="show it as a saved view says")
     view.add_argument("--picture", metavar="OUT.png", help="write a picture of the window and close it")
     view.set_defaults(command=_view)
@@ -224,15 +225,10 @@ def _demo(options) -> None:
 def _view(options) -> None:
     import echopath as ep
 
-    from .run_sequence import first_frame
-
     if options.picture is not None:
         require_writable(Path(options.picture).parent, "--picture")
-    frame = options.frame
-    if frame and Path(frame).is_dir():
-        frame, said = first_frame(frame)
-        print(said)
-    ep.view(*([frame] if frame else []), state=options.state, picture=options.picture)
+    frames = options.frames[0] if len(options.frames) == 1 else options.frames
+    ep.view(*([frames] if frames else []), state=options.state, picture=options.picture)
 
 
 def _run(options) -> None:

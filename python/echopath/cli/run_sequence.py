@@ -3,10 +3,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from pathlib import Path
 
-from .. import FileError
-from ..checks import refused
 from ..progress import progress_bars
 from ..scene_file import SceneFile
 from ..sequence import Sequence, load_sequence
@@ -57,18 +54,6 @@ def run_sequence(scene_file: SceneFile, options, extra_parts: dict) -> Iterator[
     if keywords["truth"] is not None:
         stored.truth.to_csv(stored.folder / TRUTH_NAME)
         yield f"wrote {stored.folder / TRUTH_NAME}"
-
-
-def first_frame(folder) -> tuple[Path, str]:
-    """The first frame of a folder that is there, and what else there is. Raises ep.FileError where none can be viewed."""
-    stored = load_sequence(folder)
-    if stored.keep != "all":
-        raise refused(FileError, "frame", f"a folder of frames with their paths, where these keep {stored.keep} alone", folder)
-    places = stored.is_done.nonzero()[0]
-    if len(places) == 0:
-        raise refused(FileError, "frame", "a folder with a frame that is done", folder)
-    path = stored.paths_of_files[places[0]]
-    return path, f"{folder}: {len(places)} frames; this is {path.name} of {stored.times[places[0]]:.6g} s"
 
 
 def _chosen(scene_file: SceneFile, options, name: str):

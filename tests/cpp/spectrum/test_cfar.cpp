@@ -26,7 +26,7 @@ CfarDesign design_of(WindowKind kind, int zero_pad, CfarWindow cells, double rat
   CfarDesign design;
   design.false_alarm_rate = rate;
   design.cells = cells;
-  design.noise = {{kind, 80.0}, 64, 128, zero_pad, num_channels};
+  design.noise = {Window{kind, 80.0}, 64, 128, zero_pad, num_channels};
   return design;
 }
 

@@ -37,7 +37,7 @@ TEST(RangeAzimuth, APointGivesItsPowerWhateverWindowAndPadding) {
   add_tone(cube, radar, 7.0, 2.0, kLeft, 3.0);
   for (const auto kind : {WindowKind::kRect, WindowKind::kHann, WindowKind::kChebyshev}) {
     for (const int pad : {1, 3}) {
-      const RangeDoppler map = range_doppler(cube, radar, {kind, 60.0}, pad);
+      const RangeDoppler map = range_doppler(cube, radar, Window{kind, 60.0}, pad);
       const RangeAzimuth all = range_azimuth(map, radar, kGrid);
       EXPECT_NEAR(all.power[2 * map.range.size() + 7 * pad], 9.0, kPower);
       const RangeAzimuth one = range_azimuth(map, radar, kGrid, {map.velocity[(kChirps / 2 + 2) * pad]});

@@ -18,7 +18,7 @@ from .signals import Signals, all_paths, selections_of
 class ViewInput:
     """Paths and parts.
 
-    known: what the frame knows beside its signals, None for paths alone
+    known: what the frame knows beside its signals, None for paths alone; note: what it lacks, in words
     signals: how theirs are made; cube: the whole [tx, rx, chirp, sample] in sqrt(W); title: of the window
     """
 
@@ -28,6 +28,7 @@ class ViewInput:
     cube: np.ndarray
     title: str = ""
     known: Known | None = None
+    note: str = ""
 
 
 def from_file(path) -> ViewInput:

@@ -6,6 +6,7 @@ import math
 
 from .colours import COLOUR_MODES
 from .filters import MAX_BOUNCES, Filters
+from .layers import LAYERS
 from .ray_sample import SAMPLINGS
 
 FORMAT = "echopath view"
@@ -103,6 +104,7 @@ _RULES = {
     "box": (_or_none(lambda value: _is_list(value, 4, _is_index)), "null or four indices of cells"),
     "ray": (_or_none(_is_index), "null or an index"),
     "hidden_meshes": (lambda value: _is_list(value, None, _is_text), "a list of names"),
+    "layers": (lambda value: _is_list(value, None, lambda layer: layer in LAYERS), f"a list of {', '.join(LAYERS)}"),
     "mesh_colours": (_is_table_of(_is_rgb), "a table of [red, green, blue], 0 to 255"),
     "camera": (_is_camera, "position, focal_point and up of three numbers each, and view_angle in degrees"),
     "show_hits": (_is_flag, "true or false"),

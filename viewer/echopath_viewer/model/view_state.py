@@ -9,6 +9,7 @@ import echopath as ep
 from .cell_index import CellBox
 from .colours import COLOUR_MODES
 from .filters import Filters
+from .layers import LAYERS
 from .part_set import MESH_GROUP, OWN_GROUP, WHOLE
 from .view_format import FORMAT, VERSION, check_state
 
@@ -24,6 +25,7 @@ def state_of(session) -> dict:
         "color_by": session.color_by, "max_rays": session.max_rays, "sampling": session.sampling,
         "dynamic_range_db": session.dynamic_range_db,
         "chirp": session.chirp, "box": dataclasses.astuple(session.box) if session.box else None, "ray": session.ray,
+        "layers": sorted(session.layers),
         "hidden_meshes": sorted(session.mesh_names[mesh] for mesh in session.hidden_meshes),
         "mesh_colours": {name: [int(value) for value in rgb] for name, rgb in zip(session.mesh_names, session.palette)},
     }
@@ -46,6 +48,7 @@ def apply_state(session, state: dict) -> list[str]:
     _apply_looks(session, state, misfits)
     session.set_chirp(state.get("chirp", session.chirp))
     _attempt(misfits, "cells", lambda: _select_cells(session, state.get("box")))
+    _apply_layers(session, state, misfits)
     ray = state.get("ray")
     if ray is not None and ray < session.paths.num_paths and session.visible[ray]:
         session.select_ray(ray)
@@ -130,6 +133,13 @@ def _set_partition(session, partition) -> None:
     if partition is not None and partition not in session.parts.partitions:
         raise ValueError(f"there is no partition '{partition}'")
     session.set_partition(partition)
+
+
+def _apply_layers(session, state: dict, misfits: list) -> None:
+    wanted = state.get("layers")
+    for layer in LAYERS if wanted is not None else ():
+        if (layer in wanted) != (layer in session.layers):
+            _attempt(misfits, layer, lambda: session.set_layer(layer, layer in wanted))
 
 
 def _apply_looks(session, state: dict, misfits: list) -> None:

@@ -24,6 +24,10 @@ class AntennaLayer:
         for actor, kind in ((self._axes, "axes"), (self._dots, "dots")):
             plotter.add_actor(actor, name=f"antenna {kind}", reset_camera=False, pickable=False, render=False)
 
+    def set_radar(self, radar) -> None:
+        """Another one from now on."""
+        self._radar = radar
+
     def show(self, time: float, tx: int, rx: int) -> None:
         """Puts the antennas where they are at a time in s."""
         frames = [world_from_antenna(self._radar, antenna, time) for antenna in self._antennas()]

@@ -11,6 +11,7 @@ from .known_layer import KnownLayer
 from .legend import LegendLayer
 from .mesh_layer import MeshLayer
 from .ray_layer import RayLayer
+from .track_layer import TrackLayer
 
 BACKGROUND = "white"
 RAY_WIDTH, LIT_WIDTH, CHOSEN_WIDTH = 1.0, 2.0, 4.0  # pixels
@@ -40,7 +41,7 @@ class SceneBuilder:
         self.rays = RayLayer(plotter, "all", width=RAY_WIDTH, opacity=RAY_OPACITY)
         self.lit = RayLayer(plotter, "lit", width=LIT_WIDTH, in_front=True)
         self.chosen = RayLayer(plotter, "chosen", width=CHOSEN_WIDTH, in_front=True)
-        self.known = KnownLayer(plotter)
+        self.known, self.tracks = KnownLayer(plotter), TrackLayer(plotter)
         self.legend = legend if legend is not None else LegendLayer(plotter) if show_legend else None
         self.update({"meshes"})
         self._draw_rays()
@@ -63,6 +64,22 @@ class SceneBuilder:
         if "meshes" in topics:
             self.meshes.colour(self.session.palette)
             self.meshes.show(self.session.hidden_meshes, self.session.meshes_of_node())
+
+    def show_session(self, session) -> None:
+        """Another frame in the same picture: meshes that it shares with the one before are moved, the camera stays."""
+        self.session = session
+        if self.meshes.fits(session.scene):
+            self.meshes.take(session.scene, session.palette, session.time)
+        else:
+            self.meshes.remove()
+            self.meshes = MeshLayer(self.plotter, session.scene, session.palette, session.time)
+        self.antennas.set_radar(session.radar)
+        self.update({"meshes", "rays", "layers"})
+        self._draw_antennas()
+
+    def show_tracks(self, tracks) -> None:
+        """ep.Tracks of the frames of a time line, or None."""
+        self.tracks.show(tracks, float(self.session.antennas_at(self.session.time)[0][2]))
 
     def set_background(self, colour) -> None:
         """Behind everything; rays that are not lit and the chosen one stand out of it, dark or light."""

@@ -42,13 +42,35 @@ class MeshLayer:
 
     def move(self, time: float) -> None:
         """Puts all meshes where they are at a time in s."""
-        for mesh, poly in enumerate(self._polys):
-            if self._is_moving[mesh]:
-                vertices = self._scene.world_vertices(mesh, time).astype(np.float32)
-                poly.points = vertices
-                for edges in (self._outlines, self._creases):
-                    if mesh in edges:
-                        edges[mesh].mapper.dataset.points = vertices
+        for mesh, is_moving in enumerate(self._is_moving):
+            if is_moving:
+                self._place(mesh, time)
+
+    def _place(self, mesh: int, time: float) -> None:
+        vertices = self._scene.world_vertices(mesh, time).astype(np.float32)
+        self._polys[mesh].points = vertices
+        for edges in (self._outlines, self._creases):
+            if mesh in edges:
+                edges[mesh].mapper.dataset.points = vertices
+
+    def fits(self, scene) -> bool:
+        """Whether another scene has the same meshes, maybe elsewhere."""
+        ours, theirs = self._scene.meshes, scene.meshes
+        return len(ours) == len(theirs) and all(
+            one.name == other.name and one.material.mirror == other.material.mirror
+            and np.array_equal(one.triangles, other.triangles) for one, other in zip(ours, theirs))
+
+    def take(self, scene, palette, time: float) -> None:
+        """Shows the meshes of a scene that `fits`, where they are at a time in s."""
+        self._scene, self._is_moving = scene, [scene.is_moving(mesh.id) for mesh in scene.meshes]
+        for mesh in range(len(self._polys)):
+            self._place(mesh, time)
+        self.colour(palette)
+
+    def remove(self) -> None:
+        """Takes all of it out of the picture."""
+        for actor in (*self.actors, *self._outlines.values(), *self._creases.values()):
+            self._plotter.remove_actor(actor, render=False)
 
     def colour(self, palette) -> None:
         for mesh, actor in enumerate(self.actors):

@@ -7,6 +7,8 @@ import sys
 import echopath as ep
 
 from ..model import from_file, from_frame, from_paths
+from ..model.simulated_frames import SimulatedFrames
+from ..model.time_line import time_line_of
 from ..model.view_state import load_state
 from .ctrl_c import closing_on_ctrl_c
 from .main_window import MainWindow
@@ -14,7 +16,8 @@ from .qt import QtWidgets
 
 
 def view(*what, parts=None, block=True, state=None, picture=None, **settings):
-    """Opens a window on a frame file, a Frame, or `scene, paths[, parts]`; an empty one on nothing.
+    """Opens a window on a frame file, a Frame, `scene, paths[, parts]`, or on frames in time: a folder, a pattern, a list of
+    files, a Sequence, a StoredSequence or a Dataset; an empty one on nothing.
 
     parts, settings: of `model.from_paths`; block: returns when the window is closed, else at once with the window
     state: file of a saved view, which is shown; picture: PNG file of the window, which is closed then
@@ -22,14 +25,14 @@ def view(*what, parts=None, block=True, state=None, picture=None, **settings):
     ValueError for a state or a picture of nothing; KeyboardInterrupt on Ctrl-C, which closes all windows and ends what they
     compute.
     """
-    view_input = read_input(*what, parts=parts, **settings)
+    view_input, line = read_input(*what, parts=parts, **settings)
     if view_input is None and (state is not None or picture is not None):
         raise ValueError("state and picture: must come with a frame or paths, got none")
     if state is not None:
         load_state(state)
     require_screen()
     application = QtWidgets.QApplication.instance() or QtWidgets.QApplication(["echopath"])
-    window = _opened(view_input, state, picture is None)
+    window = _opened(view_input, line, state, picture is None)
     if picture is not None:
         return _save_picture(window, picture)
     if not block:
@@ -39,11 +42,11 @@ def view(*what, parts=None, block=True, state=None, picture=None, **settings):
     return None
 
 
-def _opened(view_input, state, remembers: bool) -> MainWindow:
+def _opened(view_input, line, state, remembers: bool) -> MainWindow:
     """Pictures are the same on every machine: their window remembers nothing."""
     window = MainWindow(remembers)
     if view_input is not None:
-        window.show_input(view_input)
+        window.show_input(view_input, line)
     window.show()
     if state is not None:
         window.load_view(state)
@@ -66,18 +69,29 @@ def require_screen() -> None:
                   "screenshot='rays.png') draws without one")
 
 
-def read_input(*what, parts=None, **settings):
-    """The ViewInput that the arguments of `view` describe, None for none."""
+def read_input(*what, parts=None, **settings) -> tuple:
+    """(ViewInput that the arguments of `view` describe, None for none; TimeLine whose first frame it is, None for one)."""
     if len(what) == 3:
         *what, parts = what
     if len(what) == 2:
-        return from_paths(*what, parts, **settings)
+        return from_paths(*what, parts, **settings), None
     if parts is not None or settings:
         raise TypeError("view: parts, window and zero_pad belong to scene and paths: view(scene, paths, parts=...)")
     if not what:
-        return None
-    if len(what) == 1 and isinstance(what[0], (str, os.PathLike)):
-        return from_file(what[0])
-    if len(what) == 1 and isinstance(what[0], ep.Frame):
-        return from_frame(what[0])
-    raise TypeError(f"view: takes a frame file, a Frame or (scene, paths, parts), got {what!r}")
+        return None, None
+    if len(what) > 1:
+        raise TypeError(f"view: takes a frame file, a Frame or (scene, paths, parts), got {what!r}")
+    return _read_one(what[0])
+
+
+def _read_one(what) -> tuple:
+    if isinstance(what, ep.Frame):
+        return from_frame(what), None
+    if isinstance(what, ep.Sequence):
+        require_screen()  # before the work
+        line = SimulatedFrames(what)
+    else:
+        line = time_line_of(what)
+    if line is None:
+        return from_file(what), None
+    return line.read(0), line

@@ -25,7 +25,7 @@ class BackgroundWork(QtCore.QObject):
         self._ended.connect(self._tell)  # in the thread of the window, as this object lives there
 
     def start(self, work) -> None:
-        """work: callable (progress) -> result, which may raise ValueError; progress: callable (stage, fraction)."""
+        """work: callable (progress) -> result, which may raise ValueError or OSError; progress: callable (stage, fraction)."""
         self._number += 1
         self.is_running = True
         threading.Thread(target=self._run, args=(self._number, work), daemon=True).start()
@@ -44,7 +44,7 @@ class BackgroundWork(QtCore.QObject):
             self._ended.emit(number, work(progress), "")
         except (_Stopped, RuntimeError):  # RuntimeError: the window is gone
             return
-        except (ValueError, MemoryError) as error:
+        except (ValueError, OSError, MemoryError) as error:
             self._ended.emit(number, None, str(error) or "there is not enough memory")
 
     def _tell(self, number: int, result, error: str) -> None:

@@ -10,7 +10,7 @@ from .background_work import BackgroundWork
 from .phasors import COLOURS, MAX_ARROWS, PhasorDiagram
 from .qt import Qt, QtGui, QtWidgets
 
-HINT = "Click a cell: which echoes make it, and what its level would be without each object or wall."
+HINT = "Click a cell of the map: which echoes make it?"
 COLUMNS = ("Echoes (ghost type/order)", "dBm", "Without", "Own peak at")
 SHOWN_BELOW_DB = 60.0   # the strongest: weaker rows are told as one
 LEAST_CHANGE_DB = 0.05  # of a level, that is told
@@ -24,6 +24,8 @@ class ContributionsPanel(QtWidgets.QWidget):
     def __init__(self, parent=None):
         super().__init__(parent)
         self.session, self._rows, self._cell, self._told = None, [], None, []
+        self._is_seen = False
+        self.is_playing = lambda: False  # frames: nobody reads then what takes seconds to make
         self.title, self.without = QtWidgets.QLabel(HINT), QtWidgets.QLabel()
         for label in (self.title, self.without):
             label.setSizePolicy(QtWidgets.QSizePolicy.Policy.Ignored, QtWidgets.QSizePolicy.Policy.Fixed)
@@ -61,18 +63,20 @@ class ContributionsPanel(QtWidgets.QWidget):
     def show_session(self, session) -> None:
         self.work.stop()
         self.bar.hide()
-        self.session = session
+        self.session, self._cell = session, None
         self.refresh()
 
     def refresh(self) -> None:
         """Tells of the cell that is selected now, if anyone looks."""
         session = self.session
-        if session is None or not self.isVisible() or (session.lit_by and session.cell == self._cell):
+        if session is None or not self._is_seen or (session.lit_by and session.cell == self._cell):
             return
         if session.cell is None:
             self._show_nothing(HINT)
         elif session.attribution is not None:
             self._show(session.cell_attribution())
+        elif session.note or self.is_playing():
+            self._show_nothing(session.note or "Pause the frames to see what makes the cell.")
         elif not self.work.is_running:
             self._show_nothing("The signals of all families of paths are made, once ...")
             self.bar.setValue(0)
@@ -97,8 +101,9 @@ class ContributionsPanel(QtWidgets.QWidget):
         self.without.setText("\n".join(lines))
         self.without.setVisible(bool(self._told))
 
-    def showEvent(self, event):
-        super().showEvent(event)
+    def set_seen(self, is_seen: bool) -> None:
+        """Whether anyone looks: a panel behind another one need tell nothing."""
+        self._is_seen = is_seen
         self.refresh()
 
     def _take(self, attribution) -> None:

@@ -5,7 +5,8 @@ from .qt import Qt, QtWidgets
 
 # Key, name of the method of MainWindow, what it does.
 KEYS = (
-    ("Ctrl+O", "open_dialog", "Open a frame file"),
+    ("Ctrl+O", "open_dialog", "Open a frame file, or several as a time line"),
+    ("Ctrl+Shift+O", "open_folder_dialog", "Open a folder of frames as a time line"),
     ("Ctrl+S", "save_view_dialog", "Save this view"),
     ("Ctrl+L", "load_view_dialog", "Load a view"),
     ("Ctrl+P", "screenshot_dialog", "Save a picture of the window"),
@@ -23,10 +24,23 @@ KEYS = (
     ("Space", "toggle_play", "Play or pause"),
     ("Left", "previous_chirp", "One chirp back"),
     ("Right", "next_chirp", "One chirp on"),
+    ("PgUp", "previous_frame", "The frame before, of a time line"),
+    ("PgDown", "next_frame", "The next frame"),
+    ("Shift+Space", "toggle_play_frames", "Play or pause the frames"),
     ("Del", "remove_part", "Remove the chosen part, if it was named here"),
     ("Esc", "clear_selection", "Select nothing"),
     ("?", "show_help", "This list"),
+    ("", "export_meshes_dialog", "Export the meshes (VTK)"),
 )
+NEEDS_NO_FRAME = ("open_dialog", "open_folder_dialog", "show_help", "quit")
+MENUS = {
+    "File": ("open_dialog", "open_folder_dialog", "save_view_dialog", "load_view_dialog", "screenshot_dialog",
+             "export_rays_dialog", "export_meshes_dialog"),
+    "View": ("undo", "redo", "look_fit", "look_radar", "look_top", "look_side", "toggle_hits", "next_colour", "toggle_layout",
+             "toggle_play", "previous_chirp", "next_chirp", "previous_frame", "next_frame", "toggle_play_frames", "remove_part",
+             "clear_selection"),
+    "Help": ("show_help",),
+}
 MOUSE = (
     ("1, 2, 3, 4", "layers: labels, objects and ghosts, detections, truth"),
     ("Map: click a detection", "its paths"), ("Legend: click an object", "shows it alone, or all again"),
@@ -57,7 +71,7 @@ def help_dialog(parent) -> QtWidgets.QDialog:
     """The keys and what the mouse does."""
     dialog = QtWidgets.QDialog(parent)
     dialog.setWindowTitle("Keys and mouse")
-    rows = [(key, text) for key, _, text in KEYS] + list(MOUSE)
+    rows = [(key, text) for key, _, text in KEYS if key] + list(MOUSE)
     html = "".join(f"<tr><td><b>{key}</b>&nbsp;&nbsp;</td><td>{text}</td></tr>" for key, text in rows)
     QtWidgets.QVBoxLayout(dialog).addWidget(QtWidgets.QLabel(f"<table>{html}</table>"))
     return dialog

@@ -30,13 +30,17 @@ class MapArea(QtWidgets.QWidget):
         self.layout_box.addItems(["all parts", "one map"])
         self.channel_box = QtWidgets.QComboBox()
         self.reach_box = QtWidgets.QSpinBox(minimum=0, maximum=50, prefix="± ", suffix=" cells")
+        self.layout_box.setToolTip("The maps of all parts beside each other, or a large one (M)")
+        self.partition_box.setToolTip("By which partition the signal is taken apart")
+        self.part_box.setToolTip("Whose rays and map are shown")
+        self.channel_box.setToolTip("Transmitter and receiver whose map and rays are shown")
         self.reach_box.setToolTip("How far from a clicked cell rays are taken. Half a resolution cell unless set otherwise.")
         self.range_slider = QtWidgets.QSlider(Qt.Orientation.Horizontal)
         self.range_slider.setMinimumWidth(60)
         self.range_slider.setToolTip("Dynamic range of the colours, below the peak that is in view.")
         self.range_slider.setRange(MIN_DYNAMIC_RANGE_DB, MAX_DYNAMIC_RANGE_DB)
         self.range_label, self.read_out = QtWidgets.QLabel(), QtWidgets.QLabel(HINT)
-        self.layer_legend = QtWidgets.QLabel(wordWrap=True, visible=False)
+        self.layer_legend = QtWidgets.QLabel(wordWrap=True, visible=False, textFormat=Qt.TextFormat.RichText)
         self.colour_bar = ColourBar()
         self._arrange()
         self._connect()
@@ -44,10 +48,11 @@ class MapArea(QtWidgets.QWidget):
     def _arrange(self) -> None:
         for box in (self.part_box, self.partition_box, self.channel_box):
             box.setSizeAdjustPolicy(QtWidgets.QComboBox.SizeAdjustPolicy.AdjustToContents)
+            box.setMinimumWidth(70)
             box.setMaximumWidth(190)
         first, second = QtWidgets.QHBoxLayout(), QtWidgets.QHBoxLayout()
-        for row, items in ((first, ("Maps:", self.layout_box, "by", self.partition_box, "Rays and map of", self.part_box)),
-                           (second, ("Channel:", self.channel_box, "Click:", self.reach_box, "Colours:",
+        for row, items in ((first, ("Maps:", self.layout_box, "by", self.partition_box, "Part:", self.part_box)),
+                           (second, (self.channel_box, self.reach_box,
                                      self.range_slider, self.range_label))):
             for item in items:
                 row.addWidget(QtWidgets.QLabel(item) if isinstance(item, str) else item)
@@ -86,6 +91,18 @@ class MapArea(QtWidgets.QWidget):
         self.reach_box.setValue(int(session.signals.spectrum_settings.get("zero_pad", 1)) // 2)
         self._find_views()
         self.view = QtCore.QRectF(self.near_view)
+        self.rebuild()
+
+    def follow_session(self, session) -> None:
+        """Another frame of the same time line: what is seen of the maps stays, unless their axes are others."""
+        before, view = self.session.parts.whole.spectrum, self.view
+        after = session.parts.whole.spectrum
+        if before.values.shape != after.values.shape or before.range[-1] != after.range[-1]:
+            self.show_session(session)
+            return
+        self.session = session
+        self._find_views()
+        self.view = view
         self.rebuild()
 
     def update_topics(self, topics: set) -> None:

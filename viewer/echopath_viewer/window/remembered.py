@@ -6,6 +6,7 @@ from pathlib import Path
 from .qt import QtCore
 
 MOST_FILES = 8
+LAYOUT_VERSION = 1  # grows when panels get other names
 
 
 def settings() -> QtCore.QSettings:
@@ -16,7 +17,7 @@ def settings() -> QtCore.QSettings:
 def recent_files() -> list[str]:
     """Frame files that were opened, latest first, those that are still there."""
     names = settings().value("recent", []) or []
-    return [name for name in ([names] if isinstance(names, str) else names) if Path(name).is_file()]
+    return [name for name in ([names] if isinstance(names, str) else names) if Path(name).exists()]
 
 
 def remember_file(path) -> None:
@@ -25,19 +26,17 @@ def remember_file(path) -> None:
     settings().setValue("recent", [name, *(other for other in recent_files() if other != name)][:MOST_FILES])
 
 
-def remember_layout(window, splitters: dict) -> None:
-    """Size of a window and {name: splitter} of it."""
+def remember_layout(window) -> None:
+    """Size of a window and where its panels are."""
     kept = settings()
     kept.setValue("geometry", window.saveGeometry())
-    for name, splitter in splitters.items():
-        kept.setValue(f"splitter/{name}", splitter.saveState())
+    kept.setValue("panels", window.saveState(LAYOUT_VERSION))
 
 
-def restore_layout(window, splitters: dict) -> None:
-    """As it was remembered, where it was."""
+def restore_layout(window) -> None:
+    """As it was the last time, as far as that is known."""
     kept = settings()
     if kept.value("geometry") is not None:
         window.restoreGeometry(kept.value("geometry"))
-    for name, splitter in splitters.items():
-        if kept.value(f"splitter/{name}") is not None:
-            splitter.restoreState(kept.value(f"splitter/{name}"))
+    if kept.value("panels") is not None:
+        window.restoreState(kept.value("panels"), LAYOUT_VERSION)

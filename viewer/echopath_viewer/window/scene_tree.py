@@ -45,6 +45,15 @@ class SceneTree(QtWidgets.QTreeWidget):
         self.session = session
         self.refresh()
 
+    def follow_session(self, session) -> None:
+        """Another frame: rows that are open stay so where its scene has the same."""
+        same = self.session is not None and [node.name for node in session.scene.nodes] == list(self._items)
+        if not same:
+            self.show_session(session)
+            return
+        self.session = session
+        self.refresh()
+
     def refresh(self) -> None:
         """Check marks, colours and counts as they are now."""
         session, self.session = self.session, None

@@ -34,8 +34,12 @@ class TimeBar(QtWidgets.QWidget):
         self._timer.timeout.connect(self._step)
 
     def show_session(self, session) -> None:
-        self.session = None
         self.play_button.setChecked(False)
+        self.follow_session(session)
+
+    def follow_session(self, session) -> None:
+        """Another frame of the same time line: what plays goes on."""
+        self.session = None
         self.slider.setRange(0, session.radar.waveform.num_chirps - 1)
         self.session = session
         self.read(session)

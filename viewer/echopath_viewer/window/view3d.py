@@ -42,6 +42,11 @@ class View3D(QtInteractor):
         self._is_fresh = True
         QtCore.QTimer.singleShot(0, self._first_look)
 
+    def follow_session(self, session) -> None:
+        """Another frame of the same time line: the camera stays where it is."""
+        self.builder.show_session(session)
+        self.render_soon()
+
     def _background(self) -> str:
         """White, or near black in a dark theme."""
         return "white" if self.palette().base().color().lightness() >= 128 else "#17181a"

@@ -1,0 +1,112 @@
+"""Frames in time in the window."""
+from __future__ import annotations
+
+import shutil
+
+import pytest
+
+import echopath as ep
+from echopath_viewer.model import CellBox
+from echopath_viewer.window.qt import Qt
+from support.window import PATIENCE_MS, open_on_screen
+
+LEFT = Qt.MouseButton.LeftButton
+
+
+@pytest.fixture
+def line_window(qtbot, shared_window, stored_run):
+    shared_window.open_file(stored_run.folder)
+    open_on_screen(qtbot, shared_window)
+    yield shared_window
+    shared_window.time_line.show(None)
+
+
+def wait_for(qtbot, window, place: int) -> None:
+    control = window.time_line
+    qtbot.waitUntil(lambda: control.place == place and not control.is_busy, timeout=PATIENCE_MS)
+
+
+def test_keys_and_buttons_go_from_frame_to_frame(qtbot, line_window, stored_run):
+    window = line_window
+    camera = window.view3d.camera_state()
+    for go, place in ((lambda: qtbot.keyClick(window, Qt.Key.Key_PageDown), 1),
+                      (lambda: qtbot.mouseClick(window.frame_bar.on_button, LEFT), 2),
+                      (lambda: qtbot.keyClick(window, Qt.Key.Key_PageUp), 1), (lambda: window.frame_bar.slider.setValue(0), 0)):
+        go()
+        wait_for(qtbot, window, place)
+        assert window.session.paths.frame.start_time == stored_run.times[place]
+        assert window.view3d.builder.session is window.session is window.map_area.session
+        assert f"frame {place + 1} of 3" in window.frame_bar.label.text()
+    assert window.view3d.camera_state() == camera
+
+
+def test_colours_objects_and_cells_stay_selected(qtbot, line_window):
+    window, session = line_window, line_window.session
+    session.set_mesh_colour(0, (10, 200, 30))
+    session.select_node("plate")
+    session.select_cells(CellBox(3, 9, 2, 9))
+    before = window.view3d.builder.meshes.actors[0]
+    window.next_frame()
+    wait_for(qtbot, window, 1)
+    after = window.session
+    assert after is not session and after.palette[0].tolist() == [10, 200, 30]
+    assert after.node == "plate" and after.box == session.box
+    actor = window.view3d.builder.meshes.actors[0]
+    assert actor is before and actor.prop.color.int_rgb == (10, 200, 30)
+    assert actor.mapper.dataset.center[0] == pytest.approx(6.0 - 4.0 * after.time, rel=0, abs=1e-4)
+
+
+def test_the_film_goes_round(qtbot, line_window):
+    window, seen = line_window, []
+    window.time_line.read.connect(lambda session: seen.append(window.time_line.place))
+    qtbot.keyClick(window, Qt.Key.Key_Space, Qt.KeyboardModifier.ShiftModifier)
+    qtbot.waitUntil(lambda: len(seen) >= 4, timeout=2 * PATIENCE_MS)
+    window.toggle_play_frames()
+    assert seen[:4] == [1, 2, 0, 1] and not window.time_line.is_playing
+
+
+def test_the_strip_has_all_frames_and_goes_to_one(qtbot, line_window):
+    window, strip = line_window, line_window.frame_bar.strip
+    qtbot.waitUntil(lambda: len(strip._glances) == 3, timeout=PATIENCE_MS)
+    qtbot.mouseClick(strip, LEFT, pos=strip.rect().center() + (strip.rect().topRight() - strip.rect().center()) * 0.8)
+    wait_for(qtbot, window, 2)
+    assert strip.tracks.num_tracks >= 1 and window.view3d.builder.tracks._actor.GetVisibility()
+    for number in (1, 0):
+        window.frame_bar.axis_box.setCurrentIndex(number)
+        assert strip._image is not None and not strip.grab().isNull()
+
+
+def test_new_frames_come_and_damaged_ones_are_told(qtbot, shared_window, stored_run, tmp_path):
+    window = shared_window
+    for name in ("sequence.h5", "frame_0000.h5"):
+        shutil.copy(stored_run.folder / name, tmp_path / name)
+    assert window.open_file(tmp_path)
+    window.frame_bar.follow_check.setChecked(True)
+    shutil.copy(stored_run.paths_of_files[1], tmp_path / "frame_0001.h5")
+    window.time_line.look()
+    wait_for(qtbot, window, 1)
+    window.frame_bar.follow_check.setChecked(False)
+    (tmp_path / "frame_0002.h5").write_bytes(b"no frame")
+    window.time_line.look()
+    window.next_frame()
+    qtbot.waitUntil(lambda: "frame_0002.h5" in window.banner.text(), timeout=PATIENCE_MS)
+    assert window.time_line.place == 1 and window.session.paths.frame.start_time == stored_run.times[1]
+    window.show_message("")
+    window.time_line.show(None)
+
+
+def test_one_file_has_no_frame_bar(qtbot, line_window, stored_run):
+    assert line_window.frame_bar.isVisible()
+    line_window.open_file(stored_run.paths_of_files[0])
+    assert not line_window.frame_bar.isVisible() and line_window.time_line.line is None
+    line_window.next_frame()  # there is none
+
+
+def test_a_simulated_sequence_opens(qtbot, moving_sequence):
+    window = ep.view(moving_sequence, block=False)
+    folder = window.time_line.line.moments[0].path.parent
+    try:
+        assert window.frame_bar.isVisible() and window.time_line.line.expected == 3
+    finally:
+        window.close()
+    assert not folder.exists()

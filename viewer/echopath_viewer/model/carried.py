@@ -1,0 +1,16 @@
+"""A view that goes on from one frame to the next."""
+from __future__ import annotations
+
+from .session import Session
+from .view_state import apply_state
+
+
+def session_like(state: dict | None, view_input) -> Session:
+    """A session of a frame that shows what another one did, as far as it fits: colours, filters, layers, cells, not the ray.
+
+    state: of `state_of`, None: there was none; view_input: model.ViewInput
+    """
+    session = Session(view_input)
+    if state is not None:
+        apply_state(session, state | {"ray": None, "frame": session.title})
+    return session

@@ -1,0 +1,55 @@
+"""Frames of which a file keeps maps and labels alone."""
+from __future__ import annotations
+
+import numpy as np
+
+import echopath as ep
+
+from .inputs import ViewInput, whole_part
+from .layers import Known
+from .part_set import PartSet
+from .signals import Signals
+
+NO_PATHS = "this file keeps maps and labels alone, no rays: made with keep=\"all\" it would have them"
+
+
+def from_maps(maps, stored, title: str = "") -> ViewInput:
+    """What small files keep of a frame: its map, labels, detections and truth, in the scene of its sequence, without a ray.
+
+    maps: ep.FrameMaps; stored: ep.StoredSequence that it is of, for scene and radar
+    """
+    scene, radar, settings = stored.scene, stored.radar, stored.settings
+    traced = ep.trace(scene, radar, num_rays=1, max_bounces=1, start_time=maps.start_time, seed=maps.seed)
+    paths = traced.select(np.zeros(traced.num_paths, bool))
+    spectrum_settings = {"window": _window(settings.get("window", "hann")), "zero_pad": int(settings.get("zero_pad", 1))}
+    signals = Signals(paths, spectrum_settings)
+    cube = ep.synthesize(paths)
+    parts = PartSet(whole_part(_with_power(signals.map_of(cube), maps)))
+    known = Known(labels=lambda progress: _there(maps.labels, "labels"),
+                  detections=lambda progress: _there(maps.detections, "detections"),
+                  truth=lambda progress: _there(maps.kept_truth, "truth"))
+    return ViewInput(paths, parts, signals, cube, title, known, NO_PATHS)
+
+
+def _with_power(spectrum, maps):
+    """A map of the axes of the radar that shows the mean power of the file in each channel."""
+    if maps.power is None:
+        return spectrum
+    state = spectrum.__getstate__()
+    level = np.sqrt(maps.power.astype(float)).astype(complex)
+    if level.shape != spectrum.values.shape[2:]:
+        raise ep.FileError(f"power: must have the cells {list(spectrum.values.shape[2:])} of the radar, has {list(level.shape)}")
+    state["values"] = np.broadcast_to(level, spectrum.values.shape).ravel()
+    shown = type(spectrum).__new__(type(spectrum))
+    shown.__setstate__(state)
+    return shown
+
+
+def _window(value):
+    return tuple(value) if isinstance(value, list) else value
+
+
+def _there(kept, name: str):
+    if kept is None or kept == {}:
+        raise ValueError(f"{name}: this file keeps none")
+    return kept

@@ -1,0 +1,93 @@
+"""All frames of a time line at a glance: power by velocity and by range, and tracks of what was detected."""
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+import echopath as ep
+from echopath.frame_file.container import our_file
+from echopath.frame_file.detections import read_detections
+from echopath.frame_file.h5 import read_array, read_group
+from echopath.frame_file.radar import read_radar
+from echopath.frame_maps import mean_power
+from echopath.measures import SMALLEST_POWER, in_dbm
+
+AXES = ("velocity", "range")
+
+
+@dataclasses.dataclass(frozen=True)
+class Glance:
+    """What is kept of one frame: kilobytes.
+
+    time: s, its start; velocity [V] m/s and range [R] m: axes; by_velocity [V], by_range [R]: W, f32, summed over the other
+    detections: ep.Detections without their paths, None: the file has none; radar: of the frame, None: the file has none
+    """
+
+    time: float
+    velocity: np.ndarray
+    range: np.ndarray
+    by_velocity: np.ndarray
+    by_range: np.ndarray
+    detections: object = None
+    radar: object = None
+
+
+def glance_at(moment) -> Glance:
+    """Reads the map and the detections of a frame of a time line, not its paths. Raises ep.FileError."""
+    with our_file(moment.path) as file:
+        power, axes = _power_in(file)
+        shape = len(axes["velocity"]), len(axes["range"])
+        seeds = {"seed": 0, "noise_seed": None}
+        found = read_detections(read_group(file, "detections"), shape, **seeds) if "detections" in file else None
+        radar = read_radar(read_group(file, "radar")) if "radar" in file else getattr(moment.stored, "radar", None)
+    return Glance(moment.start_time, axes["velocity"], axes["range"], power.sum(axis=1), power.sum(axis=0), found, radar)
+
+
+def _power_in(file) -> tuple:
+    """(W, f32 [V, R], mean over channels, {axis: values})"""
+    if "maps" not in file and "spectra" not in file:
+        raise ep.FileError("holds paths alone, no map")
+    group = read_group(file, "maps" if "maps" in file else "spectra")
+    axes = {name: read_array(group, name, np.float64, (None,)) for name in AXES}
+    if "maps" in file:
+        shape = len(axes["velocity"]), len(axes["range"])
+        return read_array(group, "power", np.float32, shape) if "power" in group else np.zeros(shape, np.float32), axes
+    return mean_power(read_array(group, "values", np.complex128, (None, None, None, None))), axes
+
+
+def level_image(glances, axis: str):
+    """(dBm, f32 [X, T], a column for each frame; axis values [X]) of glances of one radar; axis: a name of AXES.
+
+    Frames with another axis than the first have NaN.
+    """
+    values = getattr(glances[0], axis)
+    columns = [in_dbm(getattr(one, f"by_{axis}").astype(float), SMALLEST_POWER) if len(getattr(one, axis)) == len(values)
+               else np.full(len(values), np.nan) for one in glances]
+    return np.stack(columns, axis=1).astype(np.float32), values
+
+
+def tracks_of(glances):
+    """ep.Tracks of the detections of frames in time, in the world; None where there are none, or their times do not ascend."""
+    times = np.array([one.time for one in glances])
+    if len(glances) < 2 or any(one.detections is None or one.radar is None for one in glances) or (np.diff(times) <= 0.0).any():
+        return None
+    middles = times + 0.5 * glances[0].radar.frame_duration
+    try:
+        return ep.track([one.detections for one in glances], middles, radar=glances[0].radar)
+    except ValueError:  # antennas that see no directions
+        return None
+
+
+def track_values(tracks, radar, axis: str):
+    """[N], range in m or radial velocity in m/s from the middle of the radar of each row of tracks."""
+    frames = [np.asarray(radar.world_from_radar(float(time))) for time in tracks.time]
+    origin = np.array([frame[:3, 3] for frame in frames]).reshape(-1, 3)
+    way = tracks.state[:, :2] - origin[:, :2]
+    distance = np.linalg.norm(way, axis=1)
+    if axis == "range":
+        return distance
+    step = 1e-3
+    later = np.array([np.asarray(radar.world_from_radar(float(time) + step))[:2, 3] for time in tracks.time]).reshape(-1, 2)
+    own = (later - origin[:, :2]) / step
+    return np.einsum("ni,ni->n", way, tracks.state[:, 2:] - own) / np.maximum(distance, 1e-9)

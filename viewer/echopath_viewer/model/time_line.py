@@ -1,0 +1,153 @@
+"""Frames in time: which there are, and each of them when it is shown."""
+from __future__ import annotations
+
+import dataclasses
+import glob
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import echopath as ep
+from echopath.dataset.folder import scene_folder
+from echopath.frame_file.container import our_file
+from echopath.frame_file.h5 import read_attribute, read_group
+from echopath.frame_file.maps import load_maps
+from echopath.sequence.contents import NAME as SEQUENCE_NAME
+from echopath.sequence.contents import frame_path
+
+from .inputs import ViewInput, from_file
+from .maps_input import from_maps
+
+PATTERN_LETTERS = "*?["
+FRAMES_OF_A_FOLDER = "*.h5"
+
+
+@dataclasses.dataclass(frozen=True)
+class Moment:
+    """A frame of a time line.
+
+    name: as it is shown; start_time: s; path: of its file; stored: StoredSequence that it belongs to, None: to none
+    """
+
+    name: str
+    start_time: float
+    path: Path
+    stored: object = dataclasses.field(default=None, compare=False)
+
+    def read(self) -> ViewInput:
+        """What is shown of it. Raises ep.FileError."""
+        if self.stored is None or self.stored.keep == "all":
+            return from_file(self.path)
+        return from_maps(load_maps(self.path), self.stored, title=str(self.path))
+
+
+class TimeLine:
+    """The frames that are there, in order; `refresh` finds those that were written since. None is kept.
+
+    title: of what they are; moments: tuple of Moment; expected: how many there will be, None: nobody knows
+    """
+
+    def __init__(self, title: str, find: Callable, expected: int | None = None):
+        """find: callable () -> list of Moment that are there now"""
+        self.title, self._find, self.expected = title, find, expected
+        self.moments: tuple = ()
+        self.refresh()
+
+    def __len__(self) -> int:
+        return len(self.moments)
+
+    def refresh(self) -> bool:
+        """Whether there are other frames now than there were."""
+        found = tuple(self._find())
+        is_other, self.moments = found != self.moments, found
+        return is_other
+
+    def read(self, place: int) -> ViewInput:
+        """The frame at a place. Raises ep.FileError."""
+        return self.moments[place].read()
+
+    def close(self) -> None:
+        """Ends whatever makes further frames."""
+
+
+def time_line_of(what) -> TimeLine | None:
+    """The time line of a folder, of a pattern such as "out/*.h5", of a list of files, of a StoredSequence or of a Dataset.
+
+    None for anything else, such as one file. Raises ep.FileError where there is no frame yet or a folder is damaged.
+    """
+    if isinstance(what, ep.StoredSequence):
+        return _checked(_of_stored(what))
+    if isinstance(what, ep.dataset.Dataset):
+        return _checked(_of_dataset(what.folder, set(what.numbers)))
+    if isinstance(what, (list, tuple)):
+        files = [Path(name) for name in what]
+        return _checked(TimeLine(f"{len(files)} files", lambda: _moments_of(files)))
+    path = Path(what)
+    if path.is_dir():
+        return _checked(_of_folder(path))
+    if not path.exists() and any(letter in str(what) for letter in PATTERN_LETTERS):
+        return _checked(TimeLine(str(what), lambda: _moments_of(map(Path, glob.glob(str(what))))))
+    return None
+
+
+def _checked(line: TimeLine) -> TimeLine:
+    if not len(line):
+        raise ep.FileError(f"{line.title}: holds no frame that is done")
+    return line
+
+
+def _of_folder(folder: Path) -> TimeLine:
+    if (folder / SEQUENCE_NAME).exists():
+        return _of_stored(ep.load_sequence(folder))
+    try:
+        return _of_dataset(folder, None)
+    except ep.FileError as error:
+        if any(folder.glob(FRAMES_OF_A_FOLDER)):
+            return TimeLine(str(folder), lambda: _moments_of(folder.glob(FRAMES_OF_A_FOLDER)))
+        raise ep.FileError(f"{folder}: holds neither frames (*.h5) nor a sequence nor a dataset ({error})") from None
+
+
+def _of_stored(stored) -> TimeLine:
+    return TimeLine(str(stored.folder), lambda: written_frames(stored), len(stored))
+
+
+def written_frames(stored) -> list[Moment]:
+    """The frames of a StoredSequence that are there."""
+    return [Moment(f"frame {place}", float(time), path, stored)
+            for place, (time, path) in enumerate(zip(stored.times, stored.paths_of_files)) if path.exists()]
+
+
+def _of_dataset(folder: Path, numbers) -> TimeLine:
+    """Scene after scene; numbers: of the frames that are shown, None: all that are done, those to come too."""
+    per_scene = ep.dataset.open(folder).template.settings.frames
+
+    def find():
+        dataset = ep.dataset.open(folder)
+        shown = [number for number in dataset.numbers if numbers is None or number in numbers]
+        stored = {scene: dataset.sequence(scene) for scene in sorted({number // per_scene for number in shown})}
+        return [_moment_in(dataset, folder, number, stored) for number in shown]
+
+    def _moment_in(dataset, folder, number, stored):
+        scene, place = divmod(number, per_scene)
+        name = f"scene {scene} ({dataset.template.split_of(scene)}), frame {place}"
+        return Moment(name, float(stored[scene].times[place]), frame_path(scene_folder(folder, scene), place), stored[scene])
+
+    return TimeLine(str(folder), find)
+
+
+def _moments_of(files) -> list[Moment]:
+    """The frame files among some, by start time and name; what is no frame file, or not yet, is left out."""
+    found = []
+    for path in files:
+        try:
+            found.append(Moment(path.name, start_time_of(path), path))
+        except ep.FileError:
+            continue
+    return sorted(found, key=lambda one: (one.start_time, [int(word) if word.isdigit() else word
+                                                           for word in re.split(r"(\d+)", one.name)]))
+
+
+def start_time_of(path) -> float:
+    """Start in s of the frame in a file with paths, from its head alone. Raises ep.FileError."""
+    with our_file(path) as file:
+        return read_attribute(read_group(read_group(file, "record"), "frame"), "start_time", float)

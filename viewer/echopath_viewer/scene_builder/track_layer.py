@@ -1,0 +1,35 @@
+"""Tracks of detections in the scene."""
+from __future__ import annotations
+
+import numpy as np
+
+from echopath.plots.style import CURVE_COLOURS
+
+from ..model.palette import rgb_of
+from .polydata import actor_in_cell_colours, lines_of, set_cell_colours
+
+WIDTH = 3.0  # pixels
+
+
+class TrackLayer:
+    """Lines along which tracks went, at the height of the radar, which tells no heights; their colours are those of the strip."""
+
+    def __init__(self, plotter):
+        self._actor = actor_in_cell_colours(in_front=True)
+        self._actor.GetProperty().SetLineWidth(WIDTH)
+        self._actor.VisibilityOff()
+        plotter.add_actor(self._actor, name="tracks", reset_camera=False, pickable=False, render=False)
+
+    def show(self, tracks, height: float) -> None:
+        """tracks: ep.Tracks in the world, or None; height: m."""
+        ends, colours = [], []
+        for number in np.unique(tracks.track) if tracks is not None else []:
+            rows = np.flatnonzero(tracks.track == number)
+            ends += list(zip(rows[:-1], rows[1:]))
+            colours += [rgb_of(CURVE_COLOURS[number % len(CURVE_COLOURS)])] * (len(rows) - 1)
+        self._actor.SetVisibility(bool(ends))
+        if ends:
+            points = np.column_stack([tracks.state[:, :2], np.full(len(tracks.track), height)])
+            lines = lines_of(points, np.array(ends))
+            set_cell_colours(lines, np.array(colours, np.uint8))
+            self._actor.GetMapper().SetInputDataObject(lines)

@@ -2,28 +2,31 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Iterable, Mapping
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Union
 
 from . import _core
 from .checks import MapWindow, an, anything, array, checked, count, flag, map_window, one_of, optional, path, refused, text
-from .dataset import Dataset
 from .families import listed
 from .frame import Frame
 from .parts import Views, selection_rule
 from .sequence import Sequence, StoredSequence
 from .settings import Evaluate, Retrace, SignalSettings
 
+if TYPE_CHECKING:
+    from .dataset import Dataset  # takes its time to import
+
 ColorBy = Literal["bounces", "mesh", "power", "range", "speed"]
-Viewed = (str | os.PathLike[str] | list[str] | list[os.PathLike[str]] | tuple[str | os.PathLike[str], ...] | Frame | Sequence
-          | StoredSequence | Dataset)
+Viewed = Union[str, os.PathLike[str], list[str], list[os.PathLike[str]], tuple[str | os.PathLike[str], ...], Frame, Sequence,
+               StoredSequence, "Dataset"]
 View = Literal["fit", "radar", "top", "side"]
 _REPLAY = {name: optional(SignalSettings.RULES[name]) for name in ("zero_pad", "evaluate", "retrace", "keyframes")}
 
 
 def _what(argument: str, value):
     """A frame file, a Frame, a scene, frames in time or None."""
-    if value is None or isinstance(value, (_core.Scene, Frame, Sequence, StoredSequence, Dataset)):
+    if value is None or isinstance(value, (_core.Scene, Frame, Sequence, StoredSequence)) or _is_dataset(value):
         return value
     if isinstance(value, (str, os.PathLike)):
         return path(argument, value)
@@ -31,6 +34,11 @@ def _what(argument: str, value):
         return [path(argument, one) for one in value]
     raise refused(TypeError, argument, "a frame file, a Frame, frames in time or a list of files to view, or the scene of paths",
                   value)
+
+
+def _is_dataset(value) -> bool:
+    dataset = sys.modules.get("echopath.dataset")  # where nobody imported it, there is none of it
+    return dataset is not None and isinstance(value, dataset.Dataset)
 
 
 @checked(what=_what, paths=optional(an(_core.Paths)), parts=optional(an(Mapping, called="a dict")), window=optional(map_window),

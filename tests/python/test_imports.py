@@ -1,5 +1,7 @@
 """Imports between modules of the package and of its viewer go one way, as far as the text of the modules tells."""
 import ast
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -180,3 +182,8 @@ def test_no_class_is_patched_from_another_file():
     found = {name: lines for name, (file, _) in modules_of(PACKAGES).items()
              if (lines := list(patches_in(ast.parse(file.read_text()))))}
     assert found == {}
+
+
+def test_datasets_and_what_they_need_are_imported_when_they_are_asked_for():
+    asked = "import sys, echopath; print(*(name for name in sys.modules if name.startswith('echopath.dataset')))"
+    assert subprocess.run([sys.executable, "-c", asked], capture_output=True, text=True).stdout == "\n"

@@ -30,10 +30,11 @@ inline LobeProbabilities lobe_probabilities(const SurfaceModel& model, const Sur
   return {specular_probability, 1.0 - specular_probability};
 }
 
-// Returns whether a coherent ray goes on both ways where a surface mirrors and scatters: the wave that it mirrors always, the
-// power that it scatters by its share. If chance chose between them, the gaps that it leaves among neighbouring rays would
-// keep the phases across a point of reflection from cancelling: a person's limbs that mirror each other then err by 8 % of
-// his coherent power, however many the rays. Rays that are asked for other odds, or pass over flagged mirrors, choose one way.
+// Returns whether a coherent ray goes on both ways where a surface mirrors and scatters: the wave that it mirrors always,
+// the power that it scatters by its share. If chance chose between them, the gaps that it leaves among neighbouring rays
+// would keep the phases across a point of reflection from cancelling: a person's limbs that mirror each other then err by
+// 8 % of his coherent power, however many the rays. Rays that are asked for other odds, or pass over flagged mirrors, choose
+// one way.
 inline bool goes_both_ways(const SurfaceModel& model, const LobeProbabilities& lobes, double specular_probability) {
   return specular_probability == 0.0 && lobes.specular > 0.0 && lobes.diffuse > 0.0 && !model.material().mirror;
 }

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 from functools import cached_property
 
 import numpy as np
@@ -123,6 +123,19 @@ class Frame:
         from .plots import draw_frame
 
         return draw_frame(self, ax=ax, vmin=vmin, vmax=vmax, title=title)
+
+    def show(self, *, selection: str | _core.Selection = "", num_rays: int = 300, color_by: str = "bounces") -> Any:
+        """The scene and some rays as an interactive picture for notebooks, whose `save(path)` writes one HTML file.
+
+        The mouse turns it; rays and bodies say what they are, and a click on a ray shows all of it.
+        selection: path expression or Selection of the rays that are drawn, "": all; num_rays: at most, some of every object
+        color_by: "bounces", "mesh", "power", "range" or "speed"
+        Returns a page with `_repr_html_` and `save`. Raises ValueError naming the argument, ModuleNotFoundError where the
+        viewer or plotly is not installed.
+        """
+        from echopath_viewer import page_of
+
+        return page_of(self, selection=selection, num_rays=num_rays, color_by=color_by)
 
     def _repr_html_(self) -> str:
         from .notebook import frame_html

@@ -42,11 +42,12 @@ def _is_dataset(value) -> bool:
 
 
 @checked(what=_what, paths=optional(an(_core.Paths)), parts=optional(an(Mapping, called="a dict")), window=optional(map_window),
-         **_REPLAY, state=optional(path), picture=optional(path), block=flag)
+         **_REPLAY, state=optional(path), picture=optional(path),
+         scale=count(1, 8), block=flag)
 def view(what: Viewed | _core.Scene | None = None, paths: _core.Paths | None = None,
          parts: Views = None, *, window: MapWindow | None = None, zero_pad: int | None = None, evaluate: Evaluate | None = None,
          retrace: Retrace | None = None, keyframes: int | None = None, state: str | os.PathLike[str] | None = None,
-         picture: str | os.PathLike[str] | None = None, block: bool = True) -> Any:
+         picture: str | os.PathLike[str] | None = None, scale: int = 1, block: bool = True) -> Any:
     """Opens the viewer: view(scene, paths, parts), view(frame) or view("frame.h5"); view() is an empty window.
 
     It needs the packages of `pip install PySide6-Essentials pyvista pyvistaqt vtk`.
@@ -57,7 +58,10 @@ def view(what: Viewed | _core.Scene | None = None, paths: _core.Paths | None = N
     parts: of `decompose` (with their cubes), or selections {name: selection}, one partition or {partition: {name: selection}}
     window, zero_pad: of the maps of paths, as in `range_doppler`; evaluate, retrace, keyframes: of their signals, as in
         `synthesize`; None: as there
-    state: file of a view saved before; picture: PNG file of the window, which is closed then
+    state: file of a view saved before
+    picture: file of what it shows, whose window is closed then: .png the window, .svg or .pdf its maps, .gif or .mp4 a film
+        through its frames or, of one frame, its chirps (MP4 needs imageio-ffmpeg), .html its scene with rays to be picked
+        (needs plotly); scale: 1 to 8, times the pixels of a PNG along each axis
     block: True returns when the window is closed, False at once with the window
     Returns None, or the window with block=False. Raises TypeError or ValueError naming the argument, ep.FileError for a file
     that cannot be shown, OSError without a screen, ModuleNotFoundError where the viewer is not installed.
@@ -65,12 +69,12 @@ def view(what: Viewed | _core.Scene | None = None, paths: _core.Paths | None = N
     given = {"window": window, "zero_pad": zero_pad, "evaluate": evaluate, "retrace": retrace, "keyframes": keyframes}
     given = {name: value for name, value in given.items() if value is not None}
     if paths is not None:
-        return _viewer().view(what, paths, parts=parts, **given, state=state, picture=picture, block=block)
+        return _viewer().view(what, paths, parts=parts, **given, state=state, picture=picture, scale=scale, block=block)
     if parts is not None:
         given["parts"] = parts
     if given:
         raise TypeError(f"{next(iter(given))}: belongs to a scene and paths, view(scene, paths, parts), got no paths")
-    return _viewer().view(*([] if what is None else [what]), state=state, picture=picture, block=block)
+    return _viewer().view(*([] if what is None else [what]), state=state, picture=picture, scale=scale, block=block)
 
 
 def _selection(argument: str, value):

@@ -12,6 +12,7 @@ PACKAGES = (ROOT / "python" / "echopath", ROOT / "viewer" / "echopath_viewer")
 # Imports within functions that close a circle, and why each may.
 CLOSING = {
     ("echopath.viewing", "echopath_viewer"): "ep.view and ep.plot_rays start the viewer, which draws what echopath made",
+    ("echopath.frame", "echopath_viewer"): "Frame.show makes a page with what draws scenes in the viewer",
     ("echopath.scene", "echopath_viewer"): "Scene.to_pyvista makes blocks with what draws scenes in the viewer",
     ("echopath.labels.labels", "echopath.plots"): "Labels.plot draws with plots, which take the colours of labels",
     ("echopath.frame", "echopath.plots"): "Frame.plot draws with plots, which take the colours of labels of frames",

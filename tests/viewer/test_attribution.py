@@ -6,7 +6,7 @@ import pytest
 
 import echopath as ep
 from echopath_viewer.model import Signals
-from echopath_viewer.model.attribution import REST, Attribution, cell_weights
+from echopath_viewer.model.attribution import REST, Attribution, chirp_weights, range_profiles
 
 SUM = 1e-6       # of a cell's value, or of the largest contribution to it where they cancel
 SYNTHESIS = 1e-6  # of the peak: what the synthesis promises of the sum of all amplitudes
@@ -30,10 +30,11 @@ def test_weights_of_a_cell_are_those_of_the_map(frame, settings, real):
     rng = np.random.default_rng(5)
     cube = rng.normal(size=(2, 2, 32, 128)) + (0.0 if real else 1j * rng.normal(size=(2, 2, 32, 128)))
     values = ep.range_doppler(cube.astype(complex), radar, **settings).values
+    profiles = range_profiles(cube, radar.waveform, values.shape[3], **settings)
     for _ in range(40):
         tx, rx, velocity, distance = (int(rng.integers(0, size)) for size in values.shape)
-        chirps, samples = cell_weights(radar.waveform, distance, velocity, **settings)
-        assert chirps @ cube[tx, rx] @ samples == pytest.approx(values[tx, rx, velocity, distance], rel=1e-10, abs=1e-14)
+        found = chirp_weights(radar.waveform, velocity, **settings) @ profiles[tx, rx, :, distance]
+        assert found == pytest.approx(values[tx, rx, velocity, distance], rel=1e-10, abs=1e-14)
 
 
 @pytest.mark.parametrize("settings", [{"window": "hann", "zero_pad": 1}, {"window": ("chebyshev", 80.0), "zero_pad": 2}])

@@ -16,9 +16,9 @@ def view(*what, **keywords):
     """Opens the viewer and returns when its window is closed.
 
     what: a frame file, a Frame, `scene, paths` or `scene, paths, parts`; nothing: an empty window
-    keywords: state: file of a view saved before; picture: PNG file of the window, which is closed then; parts, window and
-    zero_pad of the maps of paths; evaluate, retrace and keyframes of their signals; parts are those of `decompose` (with
-    their cubes), or selections {name: selection}, one partition or {partition: {name: selection}}
+    keywords: state: file of a view saved before; picture: file of what it shows, whose window is closed then; scale: of a
+    PNG; parts, window and zero_pad of the maps of paths; evaluate, retrace and keyframes of their signals; parts are those of
+    `decompose` (with their cubes), or selections {name: selection}, one partition or {partition: {name: selection}}
     """
     with _told_what_to_install():
         from .window import view as open_window
@@ -37,6 +37,13 @@ def plot_rays(scene, paths, **keywords):
     with _told_what_to_install():
         from .plot import plot_rays as draw
     return draw(scene, paths, **keywords)
+
+
+def page_of(frame, **keywords):
+    """The scene of a frame with rays as a page for notebooks and files; see `echopath_viewer.plot.page_of`."""
+    with _told_what_to_install():
+        from .plot import page_of as made
+    return made(frame, **keywords)
 
 
 def blocks_of(scene, time: float):

@@ -11,8 +11,9 @@ import pyvista as pv
 import echopath as ep
 from echopath.origin import mark_png, origin_texts
 
-from .model import Filters, PartSet, Session, Signals, ViewInput, whole_part
+from .model import Filters, PartSet, Session, Signals, ViewInput, from_frame, whole_part
 from .scene_builder import SceneBuilder
+from .scene_builder.web_page import ScenePage
 
 NUM_RAYS = 300
 RENDERERS = (("libGL.so.1", "libEGL.so.1"), ("libOSMesa.so.8",))  # either draws without a screen
@@ -47,6 +48,15 @@ def plot_rays(scene, paths, *, selection="", num_rays=NUM_RAYS, color_by="bounce
     if screenshot is not None:
         mark_png(screenshot, origin_texts(paths.frame.seed))
     return target if plotter is not None or return_plotter else None
+
+
+def page_of(frame, *, selection="", num_rays=NUM_RAYS, color_by="bounces"):
+    """What `Frame.show` returns, which says what its arguments mean. Raises ValueError naming the argument."""
+    session = Session(from_frame(frame)) if frame.cube is not None else _session_of(frame.scene, frame.paths)
+    session.set_color_by(color_by)
+    session.set_max_rays(num_rays)
+    session.set_filters(Filters(expression=str(selection)))
+    return ScenePage(session)
 
 
 def _check_numbers(radar, tx, rx, num_rays, chirp) -> None:

@@ -87,7 +87,9 @@ def _parser() -> argparse.ArgumentParser:
                       help="frame file; several, a pattern or a folder of frames, a sequence or a dataset open as one time line "
                            "(default: an empty window)")
     view.add_argument("--state", metavar="VIEW.json", help="show it as a saved view says")
-    view.add_argument("--picture", metavar="OUT.png", help="write a picture of the window and close it")
+    view.add_argument("--picture", metavar="OUT.png", help="write what it shows and close it: .png the window, .svg or .pdf its "
+                      "maps, .gif or .mp4 a film through frames or chirps, .html its scene with rays to be picked")
+    view.add_argument("--scale", type=int, default=1, metavar="N", help="of a PNG: N times the pixels (default: %(default)s)")
     view.set_defaults(command=_view)
 
     info = commands.add_parser("info", help="say what is in a scene, frame, mesh or foreign file, or a folder of frames")
@@ -228,7 +230,7 @@ def _view(options) -> None:
     if options.picture is not None:
         require_writable(Path(options.picture).parent, "--picture")
     frames = options.frames[0] if len(options.frames) == 1 else options.frames
-    ep.view(*([frames] if frames else []), state=options.state, picture=options.picture)
+    ep.view(*([frames] if frames else []), state=options.state, picture=options.picture, scale=options.scale)
 
 
 def _run(options) -> None:

@@ -79,8 +79,10 @@ class Attribution:
         if size * (len(families) + len(mirrors)) > MAX_BYTES:
             raise ValueError(f"families: the signals of {len(families)} would take more than {MAX_BYTES >> 30} GiB")
         cubes = self._decomposed(families, mirrors, signals.settings, progress)
-        num_tx, num_rx, *samples = next(iter(cubes.values())).shape
-        self._cubes = np.zeros((num_tx, num_rx, len(cubes), *samples), np.complex64)  # a channel in one piece
+        num_tx, num_rx, num_chirps, _ = next(iter(cubes.values())).shape
+        self._num_ranges = signals.num_ranges
+        # What a click needs of a channel and a range is one piece.
+        self._profiles = np.zeros((num_tx, num_rx, self._num_ranges, len(cubes), num_chirps), np.complex64)
         self._families, self._mirror_names = families, mirrors
         self.groups = tuple(self._group(row, key, mirrors, cube) for row, (key, cube) in enumerate(cubes.items()))
 
@@ -106,7 +108,9 @@ class Attribution:
         return dict(_core.decompose(self._paths, None, [grouping], progress=progress, **settings)[0])
 
     def _group(self, row: int, key: tuple, mirrors, cube) -> EchoGroup:
-        self._cubes[:, :, row] = cube
+        waveform = self._paths.radar.waveform
+        profiles = range_profiles(cube, waveform, self._num_ranges, **self._settings)
+        self._profiles[:, :, :, row] = np.moveaxis(profiles, 3, 2)
         family, *words = key
         on_way = [name for name, word in zip(mirrors, words) if word == name]
         touched = {family.object, *family.via} if family.object else set(on_way)
@@ -138,13 +142,10 @@ class Attribution:
 
         weights: complex [tx, rx] of the channels: one channel, or the steering of a beam
         """
-        chirps, samples = cell_weights(self._paths.radar.waveform, range_index, velocity_index, **self._settings)
-        used = np.argwhere(np.asarray(weights) != 0.0)
+        chirps = chirp_weights(self._paths.radar.waveform, velocity_index, **self._settings)
         values = np.zeros(len(self.groups), complex)
-        for tx, rx in used:
-            of_channel = self._cubes[tx, rx]
-            profiles = of_channel.reshape(-1, len(samples)) @ samples.astype(np.complex64)
-            values += weights[tx, rx] * (profiles.reshape(len(self.groups), -1).astype(complex) @ chirps)
+        for tx, rx in np.argwhere(np.asarray(weights) != 0.0):
+            values += weights[tx, rx] * (self._profiles[tx, rx, range_index].astype(complex) @ chirps)
         return values
 
     def of_cell(self, spectrum, range_index: int, velocity_index: int, weights) -> CellAttribution:
@@ -168,16 +169,19 @@ def name_of(family) -> str:
     return f"{family.object} via {' + '.join(family.via)} ({family.ghost_type}/{family.order})"
 
 
-def cell_weights(waveform, range_index: int, velocity_index: int, *, window="hann", zero_pad: int = 1) -> tuple:
-    """(chirps [C], samples [N]), complex: the value of a cell of `range_doppler` is chirps @ cube[tx, rx] @ samples.
-
-    Model: the two windowed Fourier transforms of the map, evaluated at one frequency each.
-    """
-    num_chirps, num_samples = waveform.num_chirps, waveform.num_samples
-    doppler = velocity_index - num_chirps * zero_pad // 2
+def range_profiles(cube, waveform, num_ranges: int, *, window="hann", zero_pad: int = 1):
+    """The cube over ranges in place of samples, complex [tx, rx, chirp, range]: the first half of `range_doppler`."""
     scale = np.sqrt(2.0) if waveform.real else 1.0  # a real sample has half of its amplitude at positive frequencies
-    return (_taper(of_velocity(window), num_chirps) * _tone(doppler, num_chirps, zero_pad),
-            scale * _taper(of_range(window), num_samples) * _tone(range_index, num_samples, zero_pad))
+    num_samples = waveform.num_samples
+    windowed = np.asarray(cube) * (scale * _taper(of_range(window), num_samples))
+    return np.fft.fft(windowed, num_samples * zero_pad)[..., :num_ranges]
+
+
+def chirp_weights(waveform, velocity_index: int, *, window="hann", zero_pad: int = 1):
+    """[C], complex: the value of a cell of `range_doppler` is the sum of the profiles of its range times these."""
+    num_chirps = waveform.num_chirps
+    doppler = velocity_index - num_chirps * zero_pad // 2
+    return _taper(of_velocity(window), num_chirps) * _tone(doppler, num_chirps, zero_pad)
 
 
 def _taper(window, count: int):

@@ -21,7 +21,8 @@ class RaySampler:
         for rows in groups.slices():
             within = self._order[rows]
             self._order[rows] = within[np.argsort(-power[within], kind="stable")]
-        self._power = power[self._order]
+        self._power, self._power_of_path = power[self._order], power
+        self._has_power = self._power > 0.0
         self.coherent_power = self._peaks(amplitude[self._order], cell[self._order])
 
     def _peaks(self, amplitude, cell):
@@ -40,29 +41,34 @@ class RaySampler:
         """
         if count <= 0:
             return np.zeros(0, np.int64)
-        is_there = mask[self._order] & (self._power > 0.0)
-        rows = [rows.start + np.flatnonzero(is_there[rows]) for rows in self._groups.slices()]
-        sizes = np.array([len(found) for found in rows], np.int64)
-        quotas = self._quotas(sizes, count, rows)
-        rank = np.concatenate([[], *(np.arange(quota) for quota in quotas)])
-        chosen = np.concatenate([np.zeros(0, np.int64), *(found[:quota] for found, quota in zip(rows, quotas))])
+        found = np.flatnonzero(mask[self._order] & self._has_power)  # group by group, each strongest first
+        ends = np.searchsorted(found, self._groups.begins)
+        begins, sizes = ends[:-1], np.diff(ends)
+        quotas = self._quotas(sizes, count, self._strongest(found, begins, sizes))
+        rank = np.arange(int(quotas.sum())) - np.repeat(np.cumsum(quotas) - quotas, quotas)
+        chosen = found[np.repeat(begins, quotas) + rank]
         chosen = chosen[np.lexsort((-self._power[chosen], rank))]
         return self._with_parts(self._order[chosen], mask, count, parts)
 
-    def _quotas(self, sizes, count: int, rows):
+    def _strongest(self, found, begins, sizes):
+        """W, of each group, 0 where it has none: [G]."""
+        power = np.zeros(len(sizes))
+        power[sizes > 0] = self._power[found[begins[sizes > 0]]]
+        return power
+
+    def _quotas(self, sizes, count: int, strongest):
         """How many paths of each group: by decibels over the weakest that counts, and a few for every mesh."""
         with np.errstate(divide="ignore"):
             level = 10.0 * np.log10(np.where(sizes > 0, self.coherent_power, 0.0))
         weight = np.clip(level - (level.max(initial=-np.inf) - SPAN_DB), 0.0, SPAN_DB) if (sizes > 0).any() else 0.0 * sizes
-        sure = self._sure_of_meshes(sizes, count, rows)
+        sure = self._sure_of_meshes(sizes, count, strongest)
         return sure + _shared(np.nan_to_num(weight), sizes - sure, count - int(sure.sum()))
 
-    def _sure_of_meshes(self, sizes, count: int, rows):
+    def _sure_of_meshes(self, sizes, count: int, strongest):
         """Paths that meshes are sure of: of each mesh those of the group that shows it best."""
         sure = np.zeros(len(sizes), np.int64)
         meshes = np.flatnonzero(self._touches[sizes > 0].any(axis=0))
         each = max(1, int(MESH_SHARE * count / max(len(meshes), 1)))
-        strongest = np.array([self._power[found[0]] if len(found) else 0.0 for found in rows])
         for mesh in meshes:
             group = int(np.argmax(np.where(self._touches[:, mesh], strongest, -1.0)))
             room = count - int(sure.sum())
@@ -74,8 +80,8 @@ class RaySampler:
         firsts = []
         for part in parts:
             if len(chosen) and not part[chosen].any():
-                own = self._order[np.flatnonzero((part & mask)[self._order] & (self._power > 0.0))]
-                firsts += own[:1].tolist()
+                own = np.flatnonzero(part & mask)
+                firsts += [int(path) for path in own[self._power_of_path[own].argsort()[-1:]] if self._power_of_path[path] > 0.0]
         return np.concatenate([np.array(firsts, np.int64), chosen])[:count]
 
 

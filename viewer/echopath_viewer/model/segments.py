@@ -54,6 +54,7 @@ class RayBundle:
         self._first = self._last - num_hits - 1       # the transmitter
         self._num_points = int(self._last[-1]) + 1 if len(self._last) else 0
         self._join(row, num_hits)
+        self._asked = self._made = None
 
     def _join(self, row, num_hits) -> None:
         """Which points follow each other, and which are hits of what."""
@@ -72,7 +73,13 @@ class RayBundle:
                         "mesh_id": mesh[begin + 1], "hits": hits, "hit_mesh": hit_mesh, "hit_ray": ray_of_point[hits]}
 
     def at(self, time: float, transmitter, receiver) -> Segments:
-        """The segments at a time in s; transmitter, receiver: [3] m in the world at that time."""
+        """The segments at a time in s; transmitter, receiver: [3] m in the world at that time. The last ones are kept."""
+        asked = time, *map(float, transmitter), *map(float, receiver)
+        if self._asked != asked:
+            self._asked, self._made = asked, self._segments_at(time, transmitter, receiver)
+        return self._made
+
+    def _segments_at(self, time: float, transmitter, receiver) -> Segments:
         points = np.empty((self._num_points, 3), np.float32)
         points[self._first], points[self._last] = transmitter, receiver
         replayed = np.asarray(self._kept.points(time), np.float32).reshape(-1, 3)

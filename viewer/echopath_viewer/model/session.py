@@ -9,6 +9,7 @@ import echopath as ep
 from echopath.tables import edge_hits, event
 
 from .antennas import world_from_antenna
+from .beams import beam_values, beam_weights, paths_in_beam
 from .cell_index import CellBox, CellIndex
 from .colours import COLOUR_MODES, colour_rays
 from .columns import read_columns
@@ -50,6 +51,7 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
         self.dynamic_range_db = DYNAMIC_RANGE_DB
         self.box: CellBox | None = None
         self.cell: tuple | None = None  # (range index, velocity index) whose contributions are told
+        self.beam: tuple | None = None  # (azimuth, elevation) in rad of the cell, None: it is that of the channel
         self.attribution = None         # Attribution of the frame, once somebody has made it
         self.lit_by, self._lit_mask = "", None  # the family or detection whose paths are lit, wherever they lie
         self.ray: int | None = None
@@ -150,7 +152,7 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
 
         cell: (range index, velocity index) in it whose contributions are told, None: its highest
         """
-        spectrum = self.parts.whole.spectrum
+        spectrum, self.beam = self.parts.whole.spectrum, None
         self.box = None if box is None else box.within(len(spectrum.range), len(spectrum.velocity))
         self.cell = self._highest_cell() if cell is None and self.box is not None else cell
         self._light("", None)
@@ -168,6 +170,18 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
         self._lit = self._lit_rays = self.ray = None
         self._tell("selection")
 
+    def select_beam(self, range_index: int, azimuth: float, elevation: float, reach: int = 0) -> None:
+        """Selects the strongest velocity of a beam at a range, and lights the paths of its cells that lie in the beam.
+
+        azimuth, elevation: rad; reach: cells around it
+        """
+        values = beam_values(self.part.spectrum, self.radar, range_index, azimuth, elevation)
+        velocity_index = int(np.abs(values).argmax())
+        self.select_cells(CellBox.around(range_index, velocity_index, reach), (range_index, velocity_index))
+        self.beam = azimuth, elevation
+        inside = paths_in_beam(self.paths, self.index.mask_of(self.box), self.paths.frame.trace_time, azimuth, elevation)
+        self._light(f"the beam at {np.degrees(azimuth):+.1f}°, {np.degrees(elevation):+.1f}°", inside)
+
     def select_family(self, group) -> None:
         """Lights the paths of an EchoGroup of the attribution, wherever they lie; None: those of the selected cells again."""
         self._light("" if group is None else group.name, None if group is None else self.attribution.paths_of(group))
@@ -177,8 +191,11 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
         if self.cell is None or self.attribution is None:
             return None
         spectrum = self.parts.whole.spectrum
-        weights = np.zeros(spectrum.values.shape[:2])
-        weights[self.channel] = 1.0
+        if self.beam is None:
+            weights = np.zeros(spectrum.values.shape[:2])
+            weights[self.channel] = 1.0
+        else:
+            weights = beam_weights(self.radar, *self.beam, float(spectrum.velocity[self.cell[1]]))
         return self.attribution.of_cell(spectrum, *self.cell, weights)
 
     def select_ray(self, path: int | None) -> None:
@@ -206,6 +223,8 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
             return "the rays of these cells go over hidden meshes or have no power"
         if self.note:
             return self.note
+        if self.lit_by:
+            return f"no visible ray of {self.lit_by}"
         num_there = int(np.count_nonzero(self.index.mask_of(self.box)))
         if num_there:
             return f"{num_there:,} rays lie there, but filters or the part on display leave them out"
@@ -221,6 +240,10 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
     def slow_time_power(self, progress=None):
         """Power by chirp in dBm, [chirps]: of the rays in the selected cells, or of the whole. Raises ValueError where those
         rays have no signal of their own."""
+        if self.lit is not None and not self.lit.any():
+            raise ValueError("no ray is selected")
+        if self.note and not self.cube.any():
+            raise ValueError(self.note)
         cube = self.cube if self.box is None else self.signals.cube(self.lit, progress=progress)
         tx, rx = self.channel
         return ep.power_by_chirp(cube, tx=tx, rx=rx)

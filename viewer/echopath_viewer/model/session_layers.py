@@ -4,7 +4,19 @@ from __future__ import annotations
 import numpy as np
 
 from .cell_index import CellBox
-from .layers import DETECTIONS, LABELS, LAYERS, OBJECTS, TRUTH, detection_markers, label_image, label_markers, truth_markers
+from .ghost_twins import ghost_twins
+from .layers import (
+    DETECTIONS,
+    LABELS,
+    LAYERS,
+    OBJECTS,
+    TRUTH,
+    TWINS,
+    detection_markers,
+    label_image,
+    label_markers,
+    truth_markers,
+)
 from .palette import objects_of
 
 
@@ -27,12 +39,15 @@ class SessionLayers:
         name = LABELS if layer == OBJECTS else layer
         if name in self._known_data:
             return
+        if name == TWINS:
+            self._known_data[TWINS] = ghost_twins(self.paths, self.columns)
+            return
         if self.known is None:
             raise ValueError(f"{layer}: only frames have them, got paths alone")
         self._known_data[name] = getattr(self.known, name)(progress)
 
     def known_data(self, layer: str):
-        """What a layer shows: ep.Labels of the partition on display, ep.Detections or ep.Truth."""
+        """What a layer shows: ep.Labels of the partition on display, ep.Detections, ep.Truth or twins."""
         if layer not in (LABELS, OBJECTS):
             return self._known_data[layer]
         labels = self._known_data[LABELS]

@@ -45,6 +45,12 @@ class Signals:
         """The map of the same, RangeDoppler."""
         return self.map_of(self.cube(mask, selection, progress))
 
+    @property
+    def num_ranges(self) -> int:
+        """Of the maps."""
+        waveform, zero_pad = self.paths.radar.waveform, self.spectrum_settings.get("zero_pad", 1)
+        return waveform.num_samples * zero_pad // (2 if waveform.real else 1)
+
     def map_of(self, cube):
         """The map of a cube, RangeDoppler."""
         return ep.range_doppler(cube, self.paths.radar, **self.spectrum_settings)

@@ -12,6 +12,7 @@ from .legend import LegendLayer
 from .mesh_layer import MeshLayer
 from .ray_layer import RayLayer
 from .track_layer import TrackLayer
+from .twin_layer import TwinLayer
 
 BACKGROUND = "white"
 RAY_WIDTH, LIT_WIDTH, CHOSEN_WIDTH = 1.0, 2.0, 4.0  # pixels
@@ -41,7 +42,7 @@ class SceneBuilder:
         self.rays = RayLayer(plotter, "all", width=RAY_WIDTH, opacity=RAY_OPACITY)
         self.lit = RayLayer(plotter, "lit", width=LIT_WIDTH, in_front=True)
         self.chosen = RayLayer(plotter, "chosen", width=CHOSEN_WIDTH, in_front=True)
-        self.known, self.tracks = KnownLayer(plotter), TrackLayer(plotter)
+        self.known, self.tracks, self.twins = KnownLayer(plotter), TrackLayer(plotter), TwinLayer(plotter)
         self.legend = legend if legend is not None else LegendLayer(plotter) if show_legend else None
         self.update({"meshes"})
         self._draw_rays()
@@ -61,6 +62,7 @@ class SceneBuilder:
             self._colour_rays()
         if "layers" in topics:
             self.known.show(self.session)
+            self.twins.show(self.session)
         if "meshes" in topics:
             self.meshes.colour(self.session.palette)
             self.meshes.show(self.session.hidden_meshes, self.session.meshes_of_node())

@@ -25,8 +25,8 @@ class RayLayer:
 
     def show(self, segments, rgb, *, hit_rgb=None) -> None:
         """Replaces the rays; rgb: u8 [S, 3] of segments, hit_rgb: u8 [K, 3] of hits, None: hits are not shown."""
-        self.segments = segments
-        self._lines = lines_of(segments.points, segments.ends)
+        if segments is not self.segments:
+            self.segments, self._lines = segments, lines_of(segments.points, segments.ends)
         self.recolour(rgb)
         self._rays.GetMapper().SetInputDataObject(self._lines)
         self._rays.SetVisibility(segments.num_segments > 0)

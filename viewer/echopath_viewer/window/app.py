@@ -11,16 +11,18 @@ from ..model.simulated_frames import SimulatedFrames
 from ..model.time_line import time_line_of
 from ..model.view_state import load_state
 from .ctrl_c import closing_on_ctrl_c
+from .exporting import export
 from .main_window import MainWindow
 from .qt import QtWidgets
 
 
-def view(*what, parts=None, block=True, state=None, picture=None, **settings):
+def view(*what, parts=None, block=True, state=None, picture=None, scale=1, **settings):
     """Opens a window on a frame file, a Frame, `scene, paths[, parts]`, or on frames in time: a folder, a pattern, a list of
     files, a Sequence, a StoredSequence or a Dataset; an empty one on nothing.
 
     parts, settings: of `model.from_paths`; block: returns when the window is closed, else at once with the window
-    state: file of a saved view, which is shown; picture: PNG file of the window, which is closed then
+    state: file of a saved view, which is shown; picture: file of what it shows, by its name as in `exporting.export`, whose
+        window is closed then; scale: of a PNG
     Raises ep.FileError for a file that cannot be shown, before there is a window; OSError without a screen;
     ValueError for a state or a picture of nothing; KeyboardInterrupt on Ctrl-C, which closes all windows and ends what they
     compute.
@@ -34,7 +36,7 @@ def view(*what, parts=None, block=True, state=None, picture=None, **settings):
     application = QtWidgets.QApplication.instance() or QtWidgets.QApplication(["echopath"])
     window = _opened(view_input, line, state, picture is None)
     if picture is not None:
-        return _save_picture(window, picture)
+        return _save_picture(window, picture, scale)
     if not block:
         return window
     with closing_on_ctrl_c(application):
@@ -53,10 +55,10 @@ def _opened(view_input, line, state, remembers: bool) -> MainWindow:
     return window
 
 
-def _save_picture(window: MainWindow, path) -> None:
+def _save_picture(window: MainWindow, path, scale: int) -> None:
     try:
         window.settle()
-        window.screenshot(path)
+        export(window, path, scale)
     finally:
         window.close()
 

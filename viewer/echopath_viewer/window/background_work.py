@@ -40,12 +40,19 @@ class BackgroundWork(QtCore.QObject):
                 raise _Stopped
             self.advanced.emit(fraction)
 
+        result, told = None, ""
         try:
-            self._ended.emit(number, work(progress), "")
-        except (_Stopped, RuntimeError):  # RuntimeError: the window is gone
+            result = work(progress)
+        except _Stopped:
             return
-        except (ValueError, OSError, MemoryError) as error:
-            self._ended.emit(number, None, str(error) or "there is not enough memory")
+        except (ValueError, OSError) as error:
+            told = str(error)
+        except Exception as error:  # whatever else went wrong must not leave the window waiting
+            told = f"{type(error).__name__}: {error}"
+        try:
+            self._ended.emit(number, result, told)
+        except RuntimeError:  # the window is gone
+            return
 
     def _tell(self, number: int, result, error: str) -> None:
         if number != self._number:

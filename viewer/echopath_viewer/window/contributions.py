@@ -69,7 +69,7 @@ class ContributionsPanel(QtWidgets.QWidget):
     def refresh(self) -> None:
         """Tells of the cell that is selected now, if anyone looks."""
         session = self.session
-        if session is None or not self._is_seen or (session.lit_by and session.cell == self._cell):
+        if session is None or not self._is_seen or (session.lit_by and (session.cell, session.beam) == self._cell):
             return
         if session.cell is None:
             self._show_nothing(HINT)
@@ -127,11 +127,13 @@ class ContributionsPanel(QtWidgets.QWidget):
         """cell: CellAttribution."""
         spectrum, (distance, velocity) = self.session.parts.whole.spectrum, self.session.cell
         place = f"{spectrum.range[distance]:.2f} m, {spectrum.velocity[velocity]:+.2f} m/s"
-        self.title.setText(for_pictures(f"<b>{place}: {cell.level_dbm:.1f} dBm</b>, the sum of"))
+        if self.session.beam is not None:
+            place += ", beam at {:+.1f}\u00b0, {:+.1f}\u00b0".format(*np.degrees(self.session.beam))
+        self.title.setText(for_pictures(f"<b>{place}: {cell.level_dbm:.1f} dBm</b>"))
         self._told = [for_pictures(f"without {name} {change:+.1f} dB") for name, change in cell.without
                       if abs(change) >= LEAST_CHANGE_DB]
         self._break_lines()
-        self._cell = self.session.cell
+        self._cell = self.session.cell, self.session.beam
         self._fill(self._chosen(cell))
         self.phasors.show_values([one.value for one in sorted(cell.contributions, key=lambda one: -abs(one.value))], cell.value)
 

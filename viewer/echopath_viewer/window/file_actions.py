@@ -4,14 +4,18 @@ from __future__ import annotations
 from pathlib import Path
 
 import echopath as ep
-from echopath.files import written_whole
-from echopath.origin import origin_texts
 
 from ..model.view_state import apply_state, load_state, save_state, state_of
 from ..scene_builder import export_meshes, export_rays
+from .busy import run_with_progress
+from .exporting import export
 from .qt import QtCore, QtWidgets
 
 FRAMES, VIEWS = "Frames (*.h5 *.hdf5)", "Views (*.json)"
+# What the dialog offers: suffix, and how many times the pixels of the screen.
+PICTURES = {"Picture (*.png)": (".png", 1), "Picture, twice the resolution (*.png)": (".png", 2),
+            "Picture, 4 times the resolution (*.png)": (".png", 4), "Maps (*.svg)": (".svg", 1), "Maps (*.pdf)": (".pdf", 1),
+            "Film (*.gif)": (".gif", 1), "Film (*.mp4)": (".mp4", 1), "Page with the scene (*.html)": (".html", 1)}
 
 
 class FileActions:
@@ -34,7 +38,17 @@ class FileActions:
         self._ask(QtWidgets.QFileDialog.getOpenFileName, "Load a view", "view.json", VIEWS, self.load_view)
 
     def screenshot_dialog(self) -> None:
-        self._ask(QtWidgets.QFileDialog.getSaveFileName, "Save a picture", "echopath.png", "PNG (*.png)", self.screenshot)
+        """A picture, maps, a film or a page, by the kind that is chosen."""
+        path, kind = QtWidgets.QFileDialog.getSaveFileName(self, "Save a picture, maps, a film or a page", "echopath.png",
+                                                           ";;".join(PICTURES))
+        if not path:
+            return
+        suffix, scale = PICTURES.get(kind, (".png", 1))
+        path = path if Path(path).suffix else path + suffix
+        try:
+            run_with_progress(self, "Export", lambda progress: export(self, path, scale, progress))
+        except (ep.FileError, ValueError, ModuleNotFoundError) as error:
+            self.show_message(str(error))
 
     def export_rays_dialog(self) -> None:
         self._ask(QtWidgets.QFileDialog.getSaveFileName, "Export the rays", "rays.vtp", "VTK polydata (*.vtp)",
@@ -73,10 +87,6 @@ class FileActions:
             self.view3d.set_camera_state(state["camera"])
         self.show_message("This view is of another frame. " + "; ".join(misfits) if misfits else "")
 
-    def screenshot(self, path) -> None:
-        """Writes a picture of the window. Raises ep.FileError."""
-        picture = self.grab().toImage()
-        for keyword, text in origin_texts(self.session.paths.frame.seed if self.session else None).items():
-            picture.setText(keyword, text)
-        with written_whole(Path(path).with_suffix(".png")) as temporary:
-            picture.save(str(temporary), "PNG")
+    def screenshot(self, path, scale: int = 1) -> None:
+        """Writes a picture of the window with `scale` times its pixels along each axis. Raises ep.FileError."""
+        export(self, Path(path).with_suffix(".png"), scale)

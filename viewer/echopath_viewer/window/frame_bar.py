@@ -11,8 +11,7 @@ from .qt import Qt, QtCore, QtGui, QtWidgets, Signal
 from .ticks import nice_ticks, tick_text
 
 HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 104, 46, 8, 4, 18  # pixels
-OVER_NOISE_DB = 8.0  # over the middle level of all columns, which is noise: where there is signal
-AXIS_WORDS = {"velocity": "velocity", "range": "range"}
+OVER_NOISE_DB = 5.0  # over the middle level of all columns, which is noise: where there is signal
 UNITS = {"velocity": "m/s", "range": "m"}
 
 
@@ -28,7 +27,7 @@ class FrameBar(QtWidgets.QWidget):
         self.slider, self.label = QtWidgets.QSlider(Qt.Orientation.Horizontal), QtWidgets.QLabel()
         self.follow_check = QtWidgets.QCheckBox("Newest")
         self.axis_box = QtWidgets.QComboBox()
-        self.axis_box.addItems([f"power by {AXIS_WORDS[axis]}" for axis in AXES])
+        self.axis_box.addItems(AXES)
         self.strip = TimeStrip()
         self._arrange()
         self._connect()
@@ -41,7 +40,6 @@ class FrameBar(QtWidgets.QWidget):
                              (self.axis_box, "What the strip below has a column of for each frame, with the tracks")):
             widget.setToolTip(text)
         self.label.setSizePolicy(QtWidgets.QSizePolicy.Policy.Ignored, QtWidgets.QSizePolicy.Policy.Preferred)
-        self.axis_box.setSizeAdjustPolicy(QtWidgets.QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
         self.slider.setMinimumWidth(40)
         row = QtWidgets.QHBoxLayout()
         for widget in (self.play_button, self.back_button, self.on_button, self.follow_check, self.axis_box):

@@ -9,7 +9,7 @@ KEYS = (
     ("Ctrl+Shift+O", "open_folder_dialog", "Open a folder of frames as a time line"),
     ("Ctrl+S", "save_view_dialog", "Save this view"),
     ("Ctrl+L", "load_view_dialog", "Load a view"),
-    ("Ctrl+P", "screenshot_dialog", "Save a picture of the window"),
+    ("Ctrl+P", "screenshot_dialog", "Save a picture, maps, a film or a page"),
     ("Ctrl+E", "export_rays_dialog", "Export the rays (VTK)"),
     ("Ctrl+Z", "undo", "Undo what the view shows"),
     ("Ctrl+Shift+Z", "redo", "Redo it"),
@@ -42,7 +42,7 @@ MENUS = {
     "Help": ("show_help",),
 }
 MOUSE = (
-    ("1, 2, 3, 4", "layers: labels, objects and ghosts, detections, truth"),
+    ("1, 2, 3, 4, 5", "layers: labels, objects and ghosts, detections, truth, ghost twins"),
     ("Map: click a detection", "its paths"), ("Legend: click an object", "shows it alone, or all again"),
     ("Map: click, drag", "the rays of a cell, of a rectangle"),
     ("Map: wheel, right button, double click", "zoom, move, what moves or everything"),

@@ -90,7 +90,8 @@ class MainWindow(Panels, Menus, ViewActions, FileActions, QtWidgets.QMainWindow)
         self.show_message("")
         self.show_content(True)
         self.show()
-        for part in (self.tree, self.filter_box, self.map_area, self.time_bar, self.view3d, self.table, self.contributions):
+        for part in (self.tree, self.filter_box, self.map_area, self.time_bar, self.view3d, self.table, self.contributions,
+                     *self.side_panels.values()):
             part.show_session(self.session)
         self.view3d.builder.set_show_hits(self.filter_box.hits_check.isChecked())
         self.view3d.setFocus()  # so that the arrow keys step through the chirps
@@ -108,7 +109,7 @@ class MainWindow(Panels, Menus, ViewActions, FileActions, QtWidgets.QMainWindow)
     def _follow(self, session) -> None:
         """Another frame of the time line, which shows what the one before did."""
         self.session = session
-        for part in (self.view3d, self.map_area, self.time_bar, self.tree):
+        for part in (self.view3d, self.map_area, self.time_bar, self.tree, *self.side_panels.values()):
             part.follow_session(session)
         for part in (self.filter_box, self.table, self.contributions):
             part.show_session(session)
@@ -135,7 +136,8 @@ class MainWindow(Panels, Menus, ViewActions, FileActions, QtWidgets.QMainWindow)
     def _changed(self, topics: set) -> None:
         """At once for what moves with the mouse; lists and counts when this turn of the event loop is over."""
         self.view3d.update_topics(topics)
-        self.map_area.update_topics(topics)
+        for part in (self.map_area, *self.side_panels.values()):
+            part.update_topics(topics)
         if "time" in topics:
             self.time_bar.read(self.session)
         self._stale |= topics
@@ -263,6 +265,8 @@ class MainWindow(Panels, Menus, ViewActions, FileActions, QtWidgets.QMainWindow)
         self.time_bar.stop()
         self.time_line.stop()
         self.contributions.work.stop()
+        for panel in self.side_panels.values():
+            panel.stop()
         self._listing.stop()
         self._pause.stop()
         self.session = None

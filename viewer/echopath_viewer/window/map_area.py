@@ -272,7 +272,11 @@ class ColourBar(QtWidgets.QWidget):
         self.update()
 
     def paintEvent(self, _event):
-        painter = QtGui.QPainter(self)
+        self.paint(QtGui.QPainter(self))
+
+    def paint(self, painter) -> None:
+        """Draws the scale with a painter of the screen, or of a file."""
+        painter.fillRect(self.rect(), self.palette().window())
         bar = QtCore.QRectF(8, 20, 14, max(self.height() - 52, 1))
         gradient = QtGui.QLinearGradient(bar.bottomLeft(), bar.topLeft())
         table = colour_table(MAP_COLOURS)

@@ -7,18 +7,17 @@ from echopath.plots.style import MAP_COLOURS
 
 from ..model.cell_index import CellBox
 from ..model.colours import colour_table, levels_of
+from .map_mouse import MapMouse
 from .qt import Qt, QtCore, QtGui, QtWidgets, Signal
 from .ticks import nice_ticks, tick_text
 
 LEFT, RIGHT, TOP, BOTTOM = 46, 8, 20, 32  # pixels around the map
-CLICK_REACH = 4                           # pixels that a click may move
 MARKER_REACH, MARKER_RADIUS = 8, 4.0     # pixels
-ZOOM_STEP = 1.25
 BOX_COLOUR, RAY_COLOUR = QtGui.QColor("#56b4e9"), QtGui.QColor("#7bff7b")
 RANGE_LABEL, VELOCITY_LABEL = "Range in m", "Radial velocity in m/s"
 
 
-class MapPanel(QtWidgets.QWidget):
+class MapPanel(MapMouse, QtWidgets.QWidget):
     """Paints power in dBm over range and velocity and tells what is clicked, dragged and hovered."""
 
     cell_clicked = Signal(int, int)      # range index, velocity index
@@ -30,8 +29,10 @@ class MapPanel(QtWidgets.QWidget):
     view_reset = Signal()
     detection_clicked = Signal(int)
 
-    def __init__(self, parent=None):
+    def __init__(self, parent=None, *, x_label=RANGE_LABEL, y_label=VELOCITY_LABEL, colours=MAP_COLOURS):
+        """x_label, y_label: of the axes; colours: name of the colour map."""
         super().__init__(parent)
+        self.x_label, self.y_label, self._colours = x_label, y_label, colours
         self.setMouseTracking(True)
         self.setMinimumSize(140, 110)
         self.title, self.is_current = "", False
@@ -40,23 +41,32 @@ class MapPanel(QtWidgets.QWidget):
         self.level = self.image = None
         self.range_axis = self.velocity_axis = np.zeros(1)
         self.view = QtCore.QRectF()
+        self._changes, self._painted_looks, self._painted = 0, None, None
         self._press = self._pan_from = self._drag = None
         self._is_clicked = False
 
     def show_map(self, title: str, level, spectrum, limits, view: QtCore.QRectF, *, is_current: bool) -> None:
         """level: dBm [velocity, range]; spectrum: for its axes; limits: of the colours in dBm; view: what is seen of it."""
         self.title, self.is_current, self.view = title, is_current, view
+        self._changes += 1
         self.level, self.limits = level, limits
         self.range_axis, self.velocity_axis = np.asarray(spectrum.range), np.asarray(spectrum.velocity)
         self._pixels = np.ascontiguousarray(levels_of(level[::-1], limits))
         height, width = self._pixels.shape
         self.image = QtGui.QImage(self._pixels.data, width, height, width, QtGui.QImage.Format.Format_Indexed8)
-        self.image.setColorTable([QtGui.qRgb(*map(int, rgb)) for rgb in colour_table(MAP_COLOURS)])
+        self.image.setColorTable([QtGui.qRgb(*map(int, rgb)) for rgb in colour_table(self._colours)])
+        self.update()
+
+    def show_nothing(self) -> None:
+        """There is no map."""
+        self.image = None
+        self._changes += 1
         self.update()
 
     def show_layers(self, image, markers: list) -> None:
         """image: RGBA u8 [velocity, range, 4] over the map or None; markers: model.layers.Marker"""
         self.markers, self._overlay = markers, None
+        self._changes += 1
         if image is not None:
             # Grey, below colours that mean other things.
             self.image.setColorTable([QtGui.qRgb(level, level, level) for level in range(256)])
@@ -114,27 +124,63 @@ class MapPanel(QtWidgets.QWidget):
     # --- painting ---
 
     def paintEvent(self, _event):
+        """Marks over a picture of the map, which is painted anew only when something else has changed."""
         painter = QtGui.QPainter(self)
+        looks = self._changes, self.size(), QtCore.QRectF(self.view), self.devicePixelRatioF(), self.palette().cacheKey()
+        if looks != self._painted_looks:
+            self._painted_looks, self._painted = looks, QtGui.QPixmap(self.size() * self.devicePixelRatioF())
+            self._painted.setDevicePixelRatio(self.devicePixelRatioF())
+            base = QtGui.QPainter(self._painted)
+            base.setFont(self.font())
+            self._paint_base(base)
+            base.end()
+        painter.drawPixmap(0, 0, self._painted)
+        self._paint_over(painter)
+
+    def paint(self, painter) -> None:
+        """Draws the panel with the painter of a file."""
+        self._paint_base(painter)
+        self._paint_over(painter)
+
+    def _paint_over(self, painter) -> None:
+        if self.image is None or self.view.isEmpty():
+            return
+        painter.save()
+        painter.setClipRect(self.plot_rect())
+        self._paint_markers(painter)
+        self._paint_marks(painter)
+        painter.restore()
+
+    def _paint_base(self, painter) -> None:
         painter.fillRect(self.rect(), self.palette().window())
         if self.image is None or self.view.isEmpty():
             return
         rect = self.plot_rect()
-        painter.fillRect(rect, QtGui.QColor(*map(int, colour_table(MAP_COLOURS)[0])))
+        painter.fillRect(rect, QtGui.QColor(*map(int, colour_table(self._colours)[0])))
         painter.save()
         painter.setClipRect(rect)
-        everything = self._rect_of(CellBox(0, len(self.range_axis) - 1, 0, len(self.velocity_axis) - 1))
-        painter.drawImage(everything, self.image)
+        self._paint_image(painter, rect, self.image)
         if self._overlay is not None:
-            painter.drawImage(everything, self._overlay)
-        self._paint_markers(painter)
-        self._paint_marks(painter)
+            self._paint_image(painter, rect, self._overlay)
         painter.restore()
         self._paint_axes(painter, rect)
 
+    def _paint_image(self, painter, rect, image) -> None:
+        """What is seen of it, cut out: painters of files know no clipping."""
+        everything = self._rect_of(CellBox(0, len(self.range_axis) - 1, 0, len(self.velocity_axis) - 1))
+        seen = everything.intersected(rect)
+        across, down = image.width() / everything.width(), image.height() / everything.height()
+        source = QtCore.QRectF((seen.left() - everything.left()) * across, (seen.top() - everything.top()) * down,
+                               seen.width() * across, seen.height() * down)
+        painter.drawImage(seen, image, source)
+
     def _paint_markers(self, painter) -> None:
+        seen = self.plot_rect()
         painter.setRenderHint(QtGui.QPainter.RenderHint.Antialiasing)
         for marker in self.markers:
             at, colour = self.to_pixel(marker.range, marker.velocity), QtGui.QColor(*map(int, marker.rgb))
+            if not seen.contains(at):
+                continue
             painter.setBrush(colour if marker.is_filled else Qt.BrushStyle.NoBrush)
             rim = QtGui.QColor("white") if marker.is_filled else colour
             for pen_colour, width in ((QtGui.QColor("black"), 3.5), (rim, 1.5)):
@@ -152,7 +198,7 @@ class MapPanel(QtWidgets.QWidget):
     def _paint_marks(self, painter) -> None:
         if self.box is not None:
             painter.setPen(QtGui.QPen(BOX_COLOUR, 2))
-            painter.drawRect(self._rect_of(self.box).adjusted(-2, -2, 2, 2))
+            painter.drawRect(self._rect_of(self.box).adjusted(-2, -2, 2, 2).intersected(self.plot_rect()))
         if self.ray_cell is not None:
             at = self.to_pixel(self.range_axis[self.ray_cell[0]], self.velocity_axis[self.ray_cell[1]])
             painter.setPen(QtGui.QPen(RAY_COLOUR, 2))
@@ -177,11 +223,11 @@ class MapPanel(QtWidgets.QWidget):
             box = QtCore.QRectF(12, y - 8, rect.left() - 18, 16)
             painter.drawText(box, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter, tick_text(value))
         box = QtCore.QRectF(rect.left(), rect.bottom() + 15, rect.width(), 16)
-        painter.drawText(box, Qt.AlignmentFlag.AlignCenter, RANGE_LABEL)
+        painter.drawText(box, Qt.AlignmentFlag.AlignCenter, self.x_label)
         painter.save()
         painter.translate(8, rect.center().y())
         painter.rotate(-90)
-        painter.drawText(QtCore.QRectF(-80, -8, 160, 14), Qt.AlignmentFlag.AlignCenter, VELOCITY_LABEL)
+        painter.drawText(QtCore.QRectF(-90, -8, 180, 14), Qt.AlignmentFlag.AlignCenter, self.y_label)
         painter.restore()
         self._paint_title(painter, font, rect)
 
@@ -193,79 +239,6 @@ class MapPanel(QtWidgets.QWidget):
         painter.drawText(QtCore.QRectF(rect.left(), 2, rect.width(), 16), Qt.AlignmentFlag.AlignCenter, title)
         painter.setPen(QtGui.QPen(BOX_COLOUR if self.is_current else painter.pen().color(), 2 if self.is_current else 1))
         painter.drawRect(rect)
-
-    # --- mouse ---
-
-    def mousePressEvent(self, event):
-        self._is_clicked = False
-        if self.image is None or not self.plot_rect().contains(event.position()):
-            return
-        if event.button() == Qt.MouseButton.LeftButton:
-            self._press = event.position()
-        else:
-            self._pan_from = event.position(), QtCore.QRectF(self.view)
-
-    def mouseMoveEvent(self, event):
-        if self.image is None:
-            return
-        if self._pan_from is not None:
-            self._pan(event.position())
-        elif self._press is not None and self._is_drag(event.position()):
-            self._drag = event.position()
-            self.update()
-        if not self.plot_rect().contains(event.position()):
-            self.left.emit()
-            return
-        marker = self.marker_at(event.position())
-        self.setToolTip("" if marker is None else marker.text)
-        range_index, velocity_index = self.cell_at(event.position())
-        self.hovered.emit(float(self.range_axis[range_index]), float(self.velocity_axis[velocity_index]),
-                          float(self.level[velocity_index, range_index]))
-
-    def mouseReleaseEvent(self, event):
-        press, self._press, self._drag, self._pan_from = self._press, None, None, None
-        if press is None or self.image is None:
-            return
-        if (event.position() - press).manhattanLength() <= CLICK_REACH:
-            self._is_clicked = True
-            marker = self.marker_at(press)
-            if marker is not None and marker.detection is not None:
-                self.detection_clicked.emit(marker.detection)
-            else:
-                self.cell_clicked.emit(*self.cell_at(press))
-            return
-        first, last = self.cell_at(press), self.cell_at(event.position())
-        (near, far), (slow, fast) = sorted((first[0], last[0])), sorted((first[1], last[1]))
-        self.box_dragged.emit(CellBox(near, far, slow, fast))
-
-    def mouseDoubleClickEvent(self, event):
-        """Its first click has selected a cell at once, as no click waits for a second one: that is taken back."""
-        self._press = None
-        if self._is_clicked:
-            self.click_undone.emit()
-        if self.plot_rect().contains(event.position()):
-            self.view_reset.emit()
-
-    def leaveEvent(self, _event):
-        self.left.emit()
-
-    def wheelEvent(self, event):
-        if self.image is None:
-            return
-        factor = ZOOM_STEP ** (-event.angleDelta().y() / 120.0)
-        distance, velocity = self.to_value(event.position())
-        self.view_changed.emit(QtCore.QRectF(distance - factor * (distance - self.view.left()),
-                                             velocity - factor * (velocity - self.view.top()),
-                                             factor * self.view.width(), factor * self.view.height()))
-
-    def _is_drag(self, at) -> bool:
-        return self._drag is not None or (at - self._press).manhattanLength() > CLICK_REACH
-
-    def _pan(self, at) -> None:
-        start, view = self._pan_from
-        rect = self.plot_rect()
-        self.view_changed.emit(view.translated((start.x() - at.x()) / rect.width() * view.width(),
-                                               (at.y() - start.y()) / rect.height() * view.height()))
 
 
 def step_of(axis) -> float:

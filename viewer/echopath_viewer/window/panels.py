@@ -1,7 +1,9 @@
 """The panels around the 3-D view: docks that are moved, closed and opened again."""
 from __future__ import annotations
 
+from .compare_panel import ComparePanel
 from .qt import Qt, QtWidgets
+from .side_panels import AzimuthPanel, BeatPanel, ElevationPanel, SpectrogramPanel
 
 LEFT, RIGHT = Qt.DockWidgetArea.LeftDockWidgetArea, Qt.DockWidgetArea.RightDockWidgetArea
 CONTENT_PAGE, EMPTY_PAGE = 0, 1
@@ -21,6 +23,14 @@ class Panels:
                                    (RIGHT, "Range-Doppler", self.map_area), (RIGHT, "What makes the cell", self.contributions),
                                    (RIGHT, "Rays", self.table)):
             self.add_panel(area, name, widget)
+        self.side_panels = {"Range-azimuth": AzimuthPanel(), "Range-elevation": ElevationPanel(),
+                            "Spectrogram": SpectrogramPanel(), "Beat signal": BeatPanel(), "Compare": ComparePanel()}
+        for name, panel in self.side_panels.items():
+            self.add_panel(RIGHT, name, panel)
+            self.docks[name].visibilityChanged.connect(panel.set_seen)
+            self.tabifyDockWidget(self.docks["Range-Doppler"], self.docks[name])
+            self.docks[name].hide()
+        self.docks["Range-Doppler"].raise_()
         self.tabifyDockWidget(self.docks["What makes the cell"], self.docks["Rays"])
         self.docks["What makes the cell"].visibilityChanged.connect(self.contributions.set_seen)
         self.docks["What makes the cell"].raise_()
@@ -52,6 +62,11 @@ class Panels:
         self.addDockWidget(area, dock)
         self.window_menu.addAction(dock.toggleViewAction())
         self.docks[name] = dock
+
+    def open_panel(self, name: str) -> None:
+        """In front of those that it shares its place with."""
+        self.docks[name].show()
+        self.docks[name].raise_()
 
     def reset_sizes(self) -> None:
         docks = self.docks

@@ -38,7 +38,7 @@ class View3D(QtInteractor):
     def show_session(self, session) -> None:
         """Replaces what is drawn."""
         self.clear()
-        self.builder = SceneBuilder(self, session, legend=self.legend_box, background=self._background())
+        self.builder = SceneBuilder(self, session, legend=self.legend_box, background=self.background())
         self._is_fresh = True
         QtCore.QTimer.singleShot(0, self._first_look)
 
@@ -47,14 +47,14 @@ class View3D(QtInteractor):
         self.builder.show_session(session)
         self.render_soon()
 
-    def _background(self) -> str:
+    def background(self) -> str:
         """White, or near black in a dark theme."""
         return "white" if self.palette().base().color().lightness() >= 128 else "#17181a"
 
     def changeEvent(self, event):
         super().changeEvent(event)
         if event.type() == QtCore.QEvent.Type.PaletteChange and self.builder is not None:
-            self.builder.set_background(self._background())
+            self.builder.set_background(self.background())
             self.builder.update({"rays"})
             self.render_soon()
 

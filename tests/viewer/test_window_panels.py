@@ -1,0 +1,80 @@
+"""Panels beside the range-Doppler map: they follow the selection and select."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from echopath_viewer.model import CellBox
+from support.window import LEFT, PATIENCE_MS
+
+
+@pytest.fixture
+def panels(qtbot, window):
+    yield window.side_panels
+    for name in window.side_panels:
+        window.docks[name].hide()
+
+
+def opened(qtbot, window, name: str):
+    window.open_panel(name)
+    panel = window.side_panels[name]
+    qtbot.waitUntil(lambda: panel.map is not None and not panel.work.is_running, timeout=PATIENCE_MS)
+    return panel
+
+
+@pytest.mark.parametrize("name, axis", [("Range-azimuth", 0), ("Range-elevation", 1)])
+def test_a_click_in_a_map_of_angles_selects_its_beam(qtbot, window, panels, name, axis):
+    panel = opened(qtbot, window, name)
+    row, column = np.unravel_index(panel.map.level.argmax(), panel.map.level.shape)
+    at = panel.panel.to_pixel(panel.map.x[column], panel.map.y[row])
+    qtbot.mouseClick(panel.panel, LEFT, pos=at.toPoint())
+    beam = window.session.beam[axis]
+    assert np.degrees(beam) == pytest.approx(panel.map.y[row], rel=0, abs=3.0)
+    assert window.session.lit.any() and panel.panel.box.first_range == window.session.cell[0]
+    window.session.select_cells(None)
+    assert window.session.beam is None and panel.panel.box is None
+
+
+def test_a_click_in_the_spectrogram_goes_to_its_chirp(qtbot, window, panels):
+    panel = opened(qtbot, window, "Spectrogram")
+    panel.pick(len(panel.map.x) - 1, len(panel.map.y) // 2)
+    time = 1e3 * (window.session.time - window.session.paths.frame.start_time)
+    assert time == pytest.approx(panel.map.x[-1], rel=0, abs=0.3)
+    box = window.session.box
+    assert (box.first_range, box.last_range) == (0, 127) and box.first_velocity <= box.last_velocity
+    assert panel.panel.ray_cell[0] == len(panel.map.x) - 1
+
+
+def test_the_beat_signal_is_that_of_the_chirp(qtbot, window, panels):
+    window.open_panel("Beat signal")
+    panel = window.side_panels["Beat signal"]
+    qtbot.waitUntil(lambda: len(panel.curves.x) > 0, timeout=PATIENCE_MS)
+    window.session.set_chirp(9)
+    assert np.array_equal(panel.curves.curves["real"], window.session.cube[0, 0, 9].real)
+    assert not panel.grab().isNull()
+
+
+def test_maps_are_compared_over_channels_and_files(qtbot, window, panels, stored_run):
+    window.open_panel("Compare")
+    panel = window.side_panels["Compare"]
+    qtbot.waitUntil(lambda: panel._is_seen, timeout=PATIENCE_MS)
+    panel.keep()
+    assert not panel.change.any()
+    window.session.set_channel(1, 1)
+    levels = [window.session.parts.whole.level(*channel) for channel in ((0, 0), (1, 1))]
+    row, column = np.unravel_index(levels[0].argmax(), levels[0].shape)
+    assert panel.change[row, column] == pytest.approx(levels[1][row, column] - levels[0][row, column], rel=0, abs=1e-4)
+    window.session.select_cells(CellBox.around(int(column), int(row)), (int(column), int(row)))
+    assert f"{abs(panel.change[row, column]):.1f} dB" in panel.note.text()
+    panel.keep_file(stored_run.paths_of_files[0])
+    assert panel.kept.title == "frame_0000.h5" and panel.change.shape == levels[0].shape
+    panel.keep_file("no such file.h5")
+    assert "no such file" in panel.note.text() and panel.kept.title == "frame_0000.h5"
+
+
+def test_twins_of_ghosts_stand_in_the_scene(qtbot, window):
+    window.layer_actions["ghost twins"].setChecked(True)
+    plotter, twins = window.view3d, window.session.known_data("ghost twins")
+    assert len(twins) > 0 and all(f"twin {number}" in plotter.actors for number in range(len(twins)))
+    window.layer_actions["ghost twins"].setChecked(False)
+    assert not any(name.startswith("twin ") for name in plotter.actors)

@@ -1,0 +1,63 @@
+"""Maps beside range-Doppler: range-azimuth, range-elevation, power over the time of the frame, and the beat signal."""
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+import echopath as ep
+from echopath.measures import SMALLEST_POWER, in_dbm
+
+SPECTROGRAM_COLUMNS = 48
+SHORTEST_WINDOW = 16  # chirps
+MOST_BEAMS = 64       # over elevation
+
+
+@dataclasses.dataclass(frozen=True)
+class SideMap:
+    """A map: level f32 [Y, X] in dBm over x (m or ms) and y (degrees or m/s)."""
+
+    title: str
+    level: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+
+
+def range_azimuth_map(spectrum, radar, name: str, progress=None) -> SideMap:
+    """The strongest velocity at each range and azimuth. Raises ValueError where the antennas tell no azimuths apart."""
+    if len(ep.virtual_array(radar).default_angles()[0]) < 2:
+        raise ValueError("the antennas of this radar tell no azimuths apart")
+    found = ep.range_azimuth(spectrum, radar, combine="peak", progress=progress)
+    return SideMap(f"range-azimuth, {name}", _level(found.power), np.asarray(found.range), np.degrees(found.azimuth))
+
+
+def range_elevation_map(spectrum, radar, name: str, progress=None) -> SideMap:
+    """The strongest velocity at each range and elevation, at azimuth 0. Raises ValueError where the antennas tell none apart."""
+    elevation = np.asarray(ep.virtual_array(radar).default_angles()[1])
+    if len(elevation) < 2:
+        raise ValueError("the antennas of this radar tell no elevations apart")
+    elevation = elevation[::-(-len(elevation) // MOST_BEAMS)]
+    beams = ep.beamform(spectrum, radar, 0.0, elevation, progress=progress)
+    power = np.asarray(beams.power)[:, 0].max(axis=1)
+    return SideMap(f"range-elevation, {name}", _level(power), np.asarray(spectrum.range), np.degrees(elevation))
+
+
+def spectrogram_map(cube, radar, channel: tuple, progress=None) -> SideMap:
+    """Power by time within the frame and radial velocity, at a channel; x in ms from the start of the frame."""
+    num_chirps = radar.waveform.num_chirps
+    length = max(min(SHORTEST_WINDOW, num_chirps), num_chirps // 4)
+    hop = max(1, (num_chirps - length) // SPECTROGRAM_COLUMNS)
+    found = ep.spectrogram(cube, radar, window_length=length, hop=hop, channel=channel)
+    if len(found.times) < 2:
+        raise ValueError("this frame has too few chirps for a spectrogram")
+    return SideMap("power over the frame", _level(found.power.T), 1e3 * np.asarray(found.times), np.asarray(found.velocity))
+
+
+def beat_signal(cube, radar, channel: tuple, chirp: int) -> tuple:
+    """(s [N] from the first sample, complex [N] in sqrt(W)): what the mixer gives during a chirp, without noise."""
+    samples = np.asarray(cube)[channel[0], channel[1], chirp]
+    return np.arange(len(samples)) / radar.waveform.sampling_rate, samples
+
+
+def _level(power):
+    return in_dbm(np.asarray(power, float), SMALLEST_POWER).astype(np.float32)

@@ -1,0 +1,53 @@
+"""Ghosts in the scene, as translucent twins of the objects that make them."""
+from __future__ import annotations
+
+import numpy as np
+
+from echopath.plots.labels import CLASSES
+
+from ..model.layers import TWINS
+from .polydata import triangles_of
+
+OPACITY = 0.28
+FONT_SIZE = 11
+
+
+class TwinLayer:
+    """The object once more where its ghost seems to be, in the colour of the ghost's class, with the way as its name."""
+
+    def __init__(self, plotter):
+        self._plotter, self._names = plotter, []
+
+    def show(self, session) -> None:
+        """What the session has switched on."""
+        for name in self._names:
+            self._plotter.remove_actor(name, render=False)
+        self._names = []
+        twins = session.known_data(TWINS) if TWINS in session.layers else []
+        tops = []
+        for number, twin in enumerate(twins):
+            points, faces = _joined(session, twin.meshes)
+            points = points + twin.offset
+            tops.append(points[points[:, 2].argmax()])
+            self._add(f"twin {number}", triangles_of(points, faces), CLASSES[twin.ghost_type][1])
+        if tops:
+            self._names.append("twin names")
+            self._plotter.add_point_labels(np.array(tops), [twin.name for twin in twins], name="twin names", font_size=FONT_SIZE,
+                                           text_color="black", shape_color="white", shape_opacity=0.7, show_points=False,
+                                           always_visible=True, reset_camera=False, render=False)
+
+    def _add(self, name: str, poly, colour: str) -> None:
+        self._names.append(name)
+        self._plotter.add_mesh(poly, name=name, color=colour, opacity=OPACITY, lighting=False, pickable=False,
+                               show_scalar_bar=False, reset_camera=False, render=False)
+
+
+def _joined(session, meshes) -> tuple:
+    """(points [V, 3] m, triangles [F, 3]) of meshes at the time on display."""
+    points, faces, first = [], [], 0
+    for mesh in meshes:
+        vertices = np.asarray(session.scene.world_vertices(mesh, session.time))
+        points.append(vertices)
+        faces.append(np.asarray(session.scene.meshes[mesh].triangles, np.int64) + first)
+        first += len(vertices)
+    return np.concatenate(points), np.concatenate(faces)

@@ -1,0 +1,150 @@
+"""The scene with its rays as one HTML file that needs nothing else, turned by the mouse, its rays picked by a click."""
+from __future__ import annotations
+
+import json
+
+import numpy as np
+
+from echopath.files import written_whole
+from echopath.optional import needed_module
+from echopath.origin import origin_texts
+
+from ..model.palette import objects_of
+
+MESH_OPACITY, MIRROR_OPACITY, RAY_WIDTH, CHOSEN_WIDTH = 0.6, 0.18, 2, 7
+CHOSEN_COLOUR = "#000000"
+EYE = {"x": -1.0, "y": -1.1, "z": 0.8}  # from behind, right and above
+HINT = ("Drag: turn. Wheel: zoom. Point at a ray or body: what it is. Click a ray: all of it. Legend: click hides, double click "
+        "isolates.")
+# Shows the ray that is clicked as a thick line, and what it is below the title.
+ON_CLICK = """
+const plot = document.getElementById('{plot_id}'), rays = plot.data[RAYS], chosen = CHOSEN;
+plot.on('plotly_click', event => {
+  const at = event.points[0];
+  if (at.curveNumber !== RAYS) return;
+  const path = rays.customdata[at.pointNumber], x = [], y = [], z = [];
+  rays.customdata.forEach((other, index) => {
+    if (other === path) { x.push(rays.x[index]); y.push(rays.y[index]); z.push(rays.z[index]); }
+  });
+  Plotly.restyle(plot, {x: [x], y: [y], z: [z]}, [chosen]);
+  Plotly.relayout(plot, {'annotations[0].text': TEXTS[path]});
+});
+"""
+
+
+class ScenePage:
+    """An interactive picture of a scene with rays: notebooks show it, `save` writes it."""
+
+    def __init__(self, session):
+        """session: model.Session, of which what is drawn is taken. Raises ModuleNotFoundError without plotly."""
+        self._plotly = needed_module("plotly.graph_objects", "the scene as HTML")
+        self._session, self._seed = session, session.paths.frame.seed
+        self._traces = [*self._bodies(), self._antennas(), *self._ray_colours()]
+        self._rays = len(self._traces)
+        self._traces += [self._ray_lines(), self._chosen()]
+
+    def html(self, whole: bool = True) -> str:
+        """A page, or a piece of one; the library is inside, so that no network is needed."""
+        figure = self._plotly.Figure(self._traces, self._layout())
+        texts = {str(ray): self._text_of(int(ray)) for ray in self._session.listed_rays()}
+        script = ON_CLICK.replace("CHOSEN", str(self._rays + 1)).replace("RAYS", str(self._rays))
+        script = script.replace("TEXTS", json.dumps(texts))
+        return figure.to_html(full_html=whole, include_plotlyjs=True, post_script=script, config={"displaylogo": False})
+
+    def save(self, path) -> None:
+        """Writes the page, whole or not at all. Raises ep.FileError."""
+        notes = "".join(f'<meta name="{name.lower()}" content="{text}">' for name, text in origin_texts(self._seed).items())
+        with written_whole(path) as temporary:
+            temporary.write_text(self.html().replace("<head>", f"<head>{notes}", 1), encoding="utf-8")
+
+    def _repr_html_(self) -> str:
+        page = self.html().replace("&", "&amp;").replace('"', "&quot;")
+        return f'<iframe srcdoc="{page}" style="width: 100%; height: 620px; border: 0"></iframe>'
+
+    # --- what is drawn ---
+
+    def _bodies(self) -> list:
+        """One for each object, in the shades of its meshes."""
+        names, object_of_mesh = objects_of(self._session.scene)
+        found = []
+        for number, name in enumerate(names):
+            meshes = [mesh for mesh in np.flatnonzero(object_of_mesh == number) if mesh not in self._session.hidden_meshes]
+            if meshes:
+                found.append(self._body(name, meshes))
+        return found
+
+    def _body(self, name: str, meshes: list):
+        session, points, faces, colours, texts = self._session, [], [], [], []
+        for mesh in meshes:
+            triangles = np.asarray(session.scene.meshes[mesh].triangles, np.int64)
+            faces.append(triangles + sum(map(len, points)))
+            points.append(np.asarray(session.scene.world_vertices(int(mesh), session.time), np.float32))
+            colours += [_css(session.palette[mesh])] * len(triangles)
+            texts += [session.mesh_names[mesh]] * len(points[-1])
+        (x, y, z), (i, j, k) = np.concatenate(points).T, np.concatenate(faces).T
+        is_plane = all(session.scene.meshes[mesh].material.mirror for mesh in meshes)
+        return self._plotly.Mesh3d(x=x, y=y, z=z, i=i, j=j, k=k, facecolor=colours, hovertext=texts, hoverinfo="text", name=name,
+                                   opacity=MIRROR_OPACITY if is_plane else MESH_OPACITY, flatshading=True, showlegend=True,
+                                   showscale=False, color=_css(session.palette[meshes[0]]))
+
+    def _antennas(self):
+        x, y, z = np.array(self._session.antennas_at(self._session.time)).T
+        return self._plotly.Scatter3d(x=x, y=y, z=z, mode="markers", name="antennas", hovertext=["transmitter", "receiver"],
+                                      hoverinfo="text", marker={"size": 5, "color": ["#cc3311", "#0066cc"]})
+
+    def _ray_colours(self) -> list:
+        """What the colours of the rays mean: rows of the legend, or a scale."""
+        legend = self._session.colouring(self._session.segments(self._drawn())).legend
+        if legend.clim is not None:
+            low, high = legend.clim
+            scale = {"cmin": low, "cmax": high, "colorscale": legend.cmap if legend.cmap == "viridis" else "RdBu",
+                     "reversescale": legend.cmap != "viridis", "showscale": True, "color": [low, high], "size": 0.1,
+                     "colorbar": {"title": legend.title, "len": 0.5, "x": 0.0}}
+            return [self._plotly.Scatter3d(x=[None] * 2, y=[None] * 2, z=[None] * 2, mode="markers", marker=scale,
+                                           showlegend=False, hoverinfo="skip")]
+        return [self._plotly.Scatter3d(x=[None], y=[None], z=[None], mode="lines", name=f"rays: {label}",
+                                       line={"color": _css(rgb), "width": 4}) for label, rgb in legend.rows]
+
+    def _drawn(self):
+        session = self._session
+        return session.listed_rays()[:session.max_rays]
+
+    def _ray_lines(self):
+        """All rays as one line with gaps; each point knows its path."""
+        segments = self._session.segments(self._drawn())
+        rgb = self._session.colouring(segments).rgb
+        corners = segments.points[segments.ends].reshape(-1, 3)
+        rows = np.repeat(np.arange(segments.num_segments), 2)
+        order = np.arange(len(corners)) + np.arange(len(corners)) // 2  # a gap behind each pair
+        points = np.full((3 * segments.num_segments, 3), np.nan, np.float32)
+        points[order] = corners
+        paths = np.repeat(segments.rays[segments.ray], 3)
+        texts = self._hover_texts(segments)
+        x, y, z = points.T
+        return self._plotly.Scatter3d(x=x, y=y, z=z, mode="lines", name="rays", customdata=paths, showlegend=False,
+                                      text=np.repeat(texts, 3), hoverinfo="text",
+                                      line={"width": RAY_WIDTH, "color": [_css(rgb[row]) for row in np.repeat(rows[::2], 3)]})
+
+    def _hover_texts(self, segments):
+        texts = {int(ray): self._text_of(int(ray)) for ray in segments.rays}
+        return np.array([texts[int(ray)] for ray in segments.rays[segments.ray]], object)
+
+    def _text_of(self, path: int) -> str:
+        return "<br>".join(f"{label}: {text}" for label, text in self._session.explain(path))
+
+    def _chosen(self):
+        return self._plotly.Scatter3d(x=[None], y=[None], z=[None], mode="lines", name="chosen ray", hoverinfo="skip",
+                                      showlegend=False, line={"width": CHOSEN_WIDTH, "color": CHOSEN_COLOUR})
+
+    def _layout(self) -> dict:
+        axis = {"showbackground": False, "gridcolor": "#dddddd", "zeroline": False}
+        axes = {f"{name}axis": axis | {"title": f"{name} in m"} for name in "xyz"}
+        note = {"text": "", "xref": "paper", "yref": "paper", "x": 0.01, "y": 0.98, "xanchor": "left", "yanchor": "top",
+                "align": "left", "showarrow": False, "bgcolor": "rgba(255,255,255,.8)", "font": {"color": "black"}}
+        title = {"text": f"{self._session.title or 'Rays'}<br><sub>{HINT}</sub>", "font": {"size": 16}}
+        return {"scene": axes | {"aspectmode": "data", "camera": {"eye": EYE}}, "title": title, "annotations": [note],
+                "margin": {"l": 0, "r": 0, "b": 0, "t": 60}, "legend": {"itemsizing": "constant"}, "paper_bgcolor": "white"}
+
+
+def _css(rgb) -> str:
+    return "rgb({},{},{})".format(*map(int, rgb))

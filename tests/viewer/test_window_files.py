@@ -16,6 +16,7 @@ import echopath as ep
 from echopath.cli import main
 from echopath_viewer.model import CellBox, from_frame
 from echopath_viewer.window import MainWindow
+from echopath_viewer.window.exporting import export
 from echopath_viewer.window.keys import KEYS
 from echopath_viewer.window.qt import Qt, QtCore, QtGui, QtWidgets
 from support.window import LEFT, open_on_screen, settle
@@ -54,7 +55,7 @@ def test_keys_do_what_the_help_says(qtbot, window):
     qtbot.keyClick(window, "?")
     dialog = window.findChild(QtWidgets.QDialog)
     text = dialog.findChild(QtWidgets.QLabel).text()
-    assert dialog.isVisible() and all(key in text and what in text for key, _, what in KEYS)
+    assert dialog.isVisible() and all(key in text and what in text for key, _, what in KEYS if key)
     assert all(hasattr(window, method) for _, method, _ in KEYS)
 
 
@@ -156,9 +157,9 @@ def test_the_command_draws_a_saved_view_when_it_is_complete(qtbot, window, frame
     window.session.set_chirp(3)
     window.save_view(tmp_path / "view.json")
     ep.save_frame(frame, tmp_path / "frame.h5")
-    drawn, screenshot = [], MainWindow.screenshot
-    monkeypatch.setattr(MainWindow, "screenshot", lambda window, path: (
-        drawn.append((window, window.session, window.time_bar.strip._title)), screenshot(window, path)))
+    drawn = []
+    monkeypatch.setattr("echopath_viewer.window.app.export", lambda window, path, scale: (
+        drawn.append((window, window.session, window.time_bar.strip._title)), export(window, path, scale)))
     command = ["view", str(tmp_path / "frame.h5"), "--state", str(tmp_path / "view.json")]
     assert main([*command, "--picture", str(tmp_path / "window.png")]) == 0
     (found, session, title), = drawn

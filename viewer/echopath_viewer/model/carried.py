@@ -5,6 +5,14 @@ from .session import Session
 from .view_state import apply_state
 
 
+def ready_session(view_input) -> Session:
+    """A session that has made what its first picture needs: for a thread."""
+    session = Session(view_input)
+    session.mesh_counts()
+    session.shown_rays()
+    return session
+
+
 def session_like(state: dict | None, view_input) -> Session:
     """A session of a frame that shows what another one did, as far as it fits: colours, filters, layers, cells, not the ray.
 

@@ -19,8 +19,7 @@ def from_maps(maps, stored, title: str = "") -> ViewInput:
     maps: ep.FrameMaps; stored: ep.StoredSequence that it is of, for scene and radar
     """
     scene, radar, settings = stored.scene, stored.radar, stored.settings
-    traced = ep.trace(scene, radar, num_rays=1, max_bounces=1, start_time=maps.start_time, seed=maps.seed)
-    paths = traced.select(np.zeros(traced.num_paths, bool))
+    paths = no_paths(scene, radar, maps.start_time, maps.seed)
     spectrum_settings = {"window": _window(settings.get("window", "hann")), "zero_pad": int(settings.get("zero_pad", 1))}
     signals = Signals(paths, spectrum_settings)
     cube = ep.synthesize(paths)
@@ -35,14 +34,25 @@ def _with_power(spectrum, maps):
     """A map of the axes of the radar that shows the mean power of the file in each channel."""
     if maps.power is None:
         return spectrum
+    return with_values(spectrum, np.sqrt(maps.power.astype(float)).astype(complex))
+
+
+def with_values(spectrum, values):
+    """A map with the axes of another one. Raises ep.FileError for values [..., velocity, range] that do not fit it."""
+    if values.shape[-2:] != spectrum.values.shape[2:]:
+        cells = [list(shape[-2:]) for shape in (spectrum.values.shape, values.shape)]
+        raise ep.FileError("map: must have the cells {} of the radar, has {}".format(*cells))
     state = spectrum.__getstate__()
-    level = np.sqrt(maps.power.astype(float)).astype(complex)
-    if level.shape != spectrum.values.shape[2:]:
-        raise ep.FileError(f"power: must have the cells {list(spectrum.values.shape[2:])} of the radar, has {list(level.shape)}")
-    state["values"] = np.broadcast_to(level, spectrum.values.shape).ravel()
-    shown = type(spectrum).__new__(type(spectrum))
-    shown.__setstate__(state)
-    return shown
+    state["values"] = np.broadcast_to(values, spectrum.values.shape).ravel()
+    made = type(spectrum).__new__(type(spectrum))
+    made.__setstate__(state)
+    return made
+
+
+def no_paths(scene, radar, start_time: float, seed: int):
+    """Paths of a frame without one."""
+    traced = ep.trace(scene, radar, num_rays=1, max_bounces=1, start_time=start_time, seed=seed)
+    return traced.select(np.zeros(traced.num_paths, bool))
 
 
 def _window(value):

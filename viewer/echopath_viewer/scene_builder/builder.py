@@ -17,6 +17,8 @@ from .twin_layer import TwinLayer
 BACKGROUND = "white"
 RAY_WIDTH, LIT_WIDTH, CHOSEN_WIDTH = 1.0, 2.0, 4.0  # pixels
 RAY_OPACITY = 0.5
+QUICK_OPACITY = 0.7      # share of a ray's own colour where it is mixed with the background
+MAX_UNLIT_RAYS = 400     # around lit ones: they only show where those are
 # Of rays that are not lit and of the chosen one, before a light and a dark background.
 UNLIT_COLOURS, CHOSEN_COLOURS = ((208, 208, 208), (72, 74, 78)), ((20, 20, 20), (245, 245, 245))
 CHOSEN_HIT_COLOUR = (230, 159, 0)
@@ -28,18 +30,20 @@ class SceneBuilder:
     """Draws meshes, antennas, rays, lit rays and the chosen ray of a session, and follows its changes."""
 
     def __init__(self, plotter, session, *, show_hits: bool = False, show_legend: bool = True, legend=None, background=BACKGROUND,
-                 cmap=None, clim=None):
+                 cmap=None, clim=None, is_quick: bool = False):
         """plotter: any pyvista.Plotter; cmap, clim: of the colour scale of rays, None: by what is shown.
 
         background: colour behind everything; legend: what shows legends in place of a layer in the picture, an object with
             show(model.Legend) and place()
+        is_quick: rays are drawn opaque, in colours mixed with the background: blending takes software half of a picture's time
         """
         self.plotter, self.session = plotter, session
         self.show_hits = show_hits
         self._scale = {"cmap": cmap, "clim": clim}
         self.set_background(background)
         self.meshes = MeshLayer(plotter, session.scene, session.palette, session.time)
-        self.rays = RayLayer(plotter, "all", width=RAY_WIDTH, opacity=RAY_OPACITY)
+        self._is_quick = is_quick
+        self.rays = RayLayer(plotter, "all", width=RAY_WIDTH, opacity=1.0 if is_quick else RAY_OPACITY)
         self.lit = RayLayer(plotter, "lit", width=LIT_WIDTH, in_front=True)
         self.chosen = RayLayer(plotter, "chosen", width=CHOSEN_WIDTH, in_front=True)
         self.known, self.tracks, self.twins = KnownLayer(plotter), TrackLayer(plotter), TwinLayer(plotter)
@@ -86,7 +90,8 @@ class SceneBuilder:
     def set_background(self, colour) -> None:
         """Behind everything; rays that are not lit and the chosen one stand out of it, dark or light."""
         self.plotter.set_background(colour)
-        self._is_dark = sum(pv.Color(colour).int_rgb) < 3 * 128
+        self._behind = pv.Color(colour).int_rgb
+        self._is_dark = sum(self._behind) < 3 * 128
 
     def set_show_hits(self, is_shown: bool) -> None:
         self.show_hits = is_shown
@@ -126,11 +131,14 @@ class SceneBuilder:
     def _draw_rays(self) -> None:
         session = self.session
         is_selected = session.box is not None
-        shown, lit = session.segments(session.shown_rays()), session.segments(session.lit_rays())
+        drawn = session.shown_rays()
+        if is_selected and self._is_quick:
+            drawn = drawn[:MAX_UNLIT_RAYS]
+        shown, lit = session.segments(drawn), session.segments(session.lit_rays())
         main = session.colouring(lit if is_selected else shown, **self._scale)
         unlit = np.broadcast_to(np.uint8(UNLIT_COLOURS[self._is_dark]), (shown.num_segments, 3))
         hit_rgb = session.palette[shown.hit_mesh] if self.show_hits and not is_selected else None
-        self.rays.show(shown, unlit if is_selected else main.rgb, hit_rgb=hit_rgb)
+        self.rays.show(shown, unlit if is_selected else self._mixed(main.rgb), hit_rgb=hit_rgb)
         lit_hits = session.palette[lit.hit_mesh] if self.show_hits else None
         self.lit.show(lit, main.rgb if is_selected else np.zeros((0, 3)), hit_rgb=lit_hits)
         self._draw_chosen()
@@ -139,8 +147,15 @@ class SceneBuilder:
     def _colour_rays(self) -> None:
         layer = self.lit if self.session.box is not None else self.rays
         colouring = self.session.colouring(layer.segments, **self._scale)
-        layer.recolour(colouring.rgb)
+        layer.recolour(self._mixed(colouring.rgb) if layer is self.rays else colouring.rgb)
         self._draw_legend(colouring.legend)
+
+    def _mixed(self, rgb):
+        """Colours of rays as they look over the background, where they are drawn opaque."""
+        if not self._is_quick:
+            return rgb
+        own = QUICK_OPACITY * np.asarray(rgb, np.float32)
+        return (own + (1.0 - QUICK_OPACITY) * np.float32(self._behind)).astype(np.uint8)
 
     def _draw_chosen(self) -> None:
         session = self.session

@@ -7,6 +7,7 @@ import sys
 import echopath as ep
 
 from ..model import from_file, from_frame, from_paths
+from ..model.preview import preview_of
 from ..model.simulated_frames import SimulatedFrames
 from ..model.time_line import time_line_of
 from ..model.view_state import load_state
@@ -27,14 +28,17 @@ def view(*what, parts=None, block=True, state=None, picture=None, scale=1, **set
     ValueError for a state or a picture of nothing; KeyboardInterrupt on Ctrl-C, which closes all windows and ends what they
     compute.
     """
-    view_input, line = read_input(*what, parts=parts, **settings)
+    early = preview_of(what[0]) if picture is None and len(what) == 1 and isinstance(what[0], (str, os.PathLike)) else None
+    view_input, line = (early, None) if early is not None else read_input(*what, parts=parts, **settings)
     if view_input is None and (state is not None or picture is not None):
         raise ValueError("state and picture: must come with a frame or paths, got none")
     if state is not None:
         load_state(state)
     require_screen()
     application = QtWidgets.QApplication.instance() or QtWidgets.QApplication(["echopath"])
-    window = _opened(view_input, line, state, picture is None)
+    window = _opened(view_input, line, state if early is None else None, picture is None)
+    if early is not None:
+        _load_rest(window, what[0], state)
     if picture is not None:
         return _save_picture(window, picture, scale)
     if not block:
@@ -53,6 +57,13 @@ def _opened(view_input, line, state, remembers: bool) -> MainWindow:
     if state is not None:
         window.load_view(state)
     return window
+
+
+def _load_rest(window: MainWindow, path, state) -> None:
+    """The rays of a file whose map is on display, and then the saved view of them."""
+    window.load_rest(path)
+    if state is not None:
+        window.loading.done.connect(lambda _: window.load_view(state))
 
 
 def _save_picture(window: MainWindow, path, scale: int) -> None:

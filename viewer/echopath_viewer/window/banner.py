@@ -4,6 +4,13 @@ from __future__ import annotations
 from .qt import QtWidgets
 
 
+def thin_bar() -> QtWidgets.QProgressBar:
+    """That something is under way, without a number."""
+    bar = QtWidgets.QProgressBar(textVisible=False, minimum=0, maximum=0, visible=False)
+    bar.setFixedHeight(4)
+    return bar
+
+
 class Banner(QtWidgets.QLabel):
     """A line that says what is wrong, until it is clicked."""
 

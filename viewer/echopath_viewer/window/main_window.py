@@ -1,18 +1,20 @@
 """The window of the viewer."""
 from __future__ import annotations
 
-import dataclasses
-
 import numpy as np
 
 import echopath as ep
 
 from ..model import Session, from_file, from_frame
+from ..model.carried import ready_session
 from ..model.history import History
+from ..model.preview import preview_of
 from ..model.time_line import time_line_of
 from ..model.view_state import state_of
-from .banner import Banner
+from .background_work import BackgroundWork
+from .banner import Banner, thin_bar
 from .busy import run_with_progress
+from .choices import Choices
 from .contributions import ContributionsPanel
 from .demo import simulate_demo
 from .empty_page import EmptyPage
@@ -37,7 +39,7 @@ SIZE = (1600, 960)
 SIGNAL_PAUSE_MS = 250  # without changes, before signals of what is chosen are made: longer work than a step of a box
 
 
-class MainWindow(Panels, Menus, ViewActions, FileActions, QtWidgets.QMainWindow):
+class MainWindow(Panels, Menus, ViewActions, FileActions, Choices, QtWidgets.QMainWindow):
     """Scene tree and filters, 3-D view with its time bars, maps and tables: all views of one session."""
 
     def __init__(self, remembers: bool = True):
@@ -54,7 +56,8 @@ class MainWindow(Panels, Menus, ViewActions, FileActions, QtWidgets.QMainWindow)
         self.time_line = TimeControl(self.frame_bar, lambda: state_of(self.session), self.view3d.is_behind)
         self.contributions.is_playing = lambda: self.time_line.is_playing
         self.frame_bar.hide()
-        self.banner, self.empty_page = Banner(), EmptyPage()
+        self.banner, self.empty_page, self.loading_bar = Banner(), EmptyPage(), thin_bar()
+        self.loading = BackgroundWork(self)
         self._listing = QtCore.QTimer(self, singleShot=True, interval=0)
         self._pause = QtCore.QTimer(self, singleShot=True, interval=SIGNAL_PAUSE_MS)
         self._stale, self._signal_of = set(), None
@@ -72,11 +75,14 @@ class MainWindow(Panels, Menus, ViewActions, FileActions, QtWidgets.QMainWindow)
         what is wrong with it."""
         try:
             line = time_line_of(path)
-            view_input = from_file(path) if line is None else line.read(0)
+            early = preview_of(path) if line is None else None
+            view_input = early or (from_file(path) if line is None else line.read(0))
         except (ep.FileError, ValueError) as error:
             self.show_message(str(error))
             return False
         self.show_input(view_input, line)
+        if early is not None:
+            self.load_rest(path)
         if not isinstance(path, list):
             remember_file(path)
         return True
@@ -86,7 +92,25 @@ class MainWindow(Panels, Menus, ViewActions, FileActions, QtWidgets.QMainWindow)
 
         line: TimeLine whose first frame it is, None: it stands alone
         """
-        self.session, self.history = Session(view_input), History()
+        self.loading.stop()
+        self._show_session(Session(view_input), line)
+
+    def load_rest(self, path) -> None:
+        """Reads all of a file of which a preview is shown, in a thread."""
+        self.loading_bar.show()
+        self.loading.start(lambda progress: ready_session(from_file(path)))
+
+    def _end_loading(self, text: str = "") -> None:
+        self.loading_bar.hide()
+        if text:
+            self.show_message(text)
+
+    def _take_rest(self, session) -> None:
+        self._end_loading()
+        self._show_session(session, None)
+
+    def _show_session(self, session, line) -> None:
+        self.session, self.history = session, History()
         self.show_message("")
         self.show_content(True)
         self.show()
@@ -176,42 +200,6 @@ class MainWindow(Panels, Menus, ViewActions, FileActions, QtWidgets.QMainWindow)
         if power is not None:
             self.time_bar.show_power(power, title)
 
-    def _choose_node(self, name: str) -> None:
-        wanted = None if name == self.session.node else name
-        self._work_on_node(f"Map of {name}", lambda progress: self.session.select_node(wanted, progress))
-
-    def _work_on_node(self, title: str, work) -> None:
-        try:
-            run_with_progress(self, title, work)
-        except ValueError as error:
-            self.show_message(str(error))
-
-    def _isolate(self, name: str) -> None:
-        """Shows the object of a row of the legend alone, or everything where it is alone already."""
-        session = self.session
-        meshes = {mesh for mesh, full_name in enumerate(session.mesh_names) if f"{full_name}/".startswith(f"{name}/")}
-        others = set(range(len(session.mesh_names))) - meshes
-        if not meshes:
-            return
-        is_alone = session.hidden_meshes == others
-        session.set_mesh_visible(others, is_alone)
-        session.set_mesh_visible(meshes, True)
-
-    def _name_part(self, name: str) -> None:
-        self.filter_box.apply()
-        try:
-            part = run_with_progress(self, f"Map of {name}", lambda progress: self.session.add_part(name, progress))
-        except ValueError as error:
-            self.filter_box.show_name_error(str(error))
-            return
-        self.filter_box.show_name_error("")
-        if part is not None:
-            self.filter_box.name_edit.clear()
-
-    def _only_over(self, name: str) -> None:
-        self.session.set_filters(dataclasses.replace(self.session.filters, mesh=name))
-        self.filter_box.read(self.session)
-
     def _show_hits(self, is_shown: bool) -> None:
         if self.view3d.builder is not None:
             self.view3d.builder.set_show_hits(is_shown)
@@ -221,7 +209,7 @@ class MainWindow(Panels, Menus, ViewActions, FileActions, QtWidgets.QMainWindow)
         """Returns when lists, signals and the scene show what the session shows now."""
         QtWidgets.QApplication.processEvents()
         while (self._listing.isActive() or self._pause.isActive() or self.view3d.is_behind()
-               or self.contributions.work.is_running or self.time_line.is_busy):
+               or self.contributions.work.is_running or self.time_line.is_busy or self.loading.is_running):
             QtWidgets.QApplication.processEvents(QtCore.QEventLoop.ProcessEventsFlag.WaitForMoreEvents)
 
     def _connect(self) -> None:
@@ -236,6 +224,8 @@ class MainWindow(Panels, Menus, ViewActions, FileActions, QtWidgets.QMainWindow)
         self.view3d.mesh_clicked.connect(lambda mesh: self._choose_node(self.session.mesh_names[mesh]))
         self.view3d.legend_box.row_clicked.connect(self._isolate)
         self.table.ray_chosen.connect(lambda ray: self.session.select_ray(ray))
+        self.loading.done.connect(self._take_rest)
+        self.loading.failed.connect(self._end_loading)
         self.time_line.read.connect(self._follow)
         self.time_line.glanced.connect(self._show_tracks)
         self.time_line.failed.connect(self.show_message)
@@ -264,7 +254,8 @@ class MainWindow(Panels, Menus, ViewActions, FileActions, QtWidgets.QMainWindow)
             remember_layout(self)
         self.time_bar.stop()
         self.time_line.stop()
-        self.contributions.work.stop()
+        for work in (self.contributions.work, self.loading):
+            work.stop()
         for panel in self.side_panels.values():
             panel.stop()
         self._listing.stop()

@@ -2,14 +2,12 @@
 from __future__ import annotations
 
 from echopath.plots.maps import signal_extent
-from echopath.plots.style import MAP_COLOURS
 
 from ..model import CellBox
-from ..model.colours import colour_table
 from ..model.part_set import WHOLE
+from .colour_bar import ColourBar
 from .map_panel import MapPanel, step_of
 from .qt import Qt, QtCore, QtGui, QtWidgets
-from .ticks import nice_ticks, tick_text
 
 MIN_DYNAMIC_RANGE_DB, MAX_DYNAMIC_RANGE_DB = 10, 140
 MARKER_WORDS = {"object": "&#9679;&nbsp;object", "ghost": "&#9675;&nbsp;ghost", "truth": "+&nbsp;true centre",
@@ -257,38 +255,6 @@ class MapArea(QtWidgets.QWidget):
     def next_view(self) -> None:
         """From any view to what moves, and from there to all that is received."""
         self.set_view(self.whole_view if self.view == self.near_view else self.near_view)
-
-
-class ColourBar(QtWidgets.QWidget):
-    """The one colour scale of all maps."""
-
-    def __init__(self, parent=None):
-        super().__init__(parent)
-        self.setFixedWidth(66)
-        self.limits = (0.0, 1.0)
-
-    def show_limits(self, low: float, high: float) -> None:
-        self.limits = (low, high)
-        self.update()
-
-    def paintEvent(self, _event):
-        self.paint(QtGui.QPainter(self))
-
-    def paint(self, painter) -> None:
-        """Draws the scale with a painter of the screen, or of a file."""
-        painter.fillRect(self.rect(), self.palette().window())
-        bar = QtCore.QRectF(8, 20, 14, max(self.height() - 52, 1))
-        gradient = QtGui.QLinearGradient(bar.bottomLeft(), bar.topLeft())
-        table = colour_table(MAP_COLOURS)
-        for step in range(0, 256, 15):
-            gradient.setColorAt(step / 255.0, QtGui.QColor(*map(int, table[step])))
-        painter.fillRect(bar, gradient)
-        painter.setPen(self.palette().windowText().color())
-        low, high = self.limits
-        for value in nice_ticks(low, high, bar.height() / 30.0):
-            y = bar.bottom() - (value - low) / max(high - low, 1e-9) * bar.height()
-            painter.drawText(QtCore.QRectF(26, y - 8, 40, 16), Qt.AlignmentFlag.AlignVCenter, tick_text(value))
-        painter.drawText(QtCore.QRectF(4, 2, 60, 16), Qt.AlignmentFlag.AlignLeft, "dBm")
 
 
 def title_of(part) -> str:

@@ -50,6 +50,7 @@ class Panels:
         page = QtWidgets.QWidget()
         column = QtWidgets.QVBoxLayout(page)
         column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.loading_bar)
         column.addWidget(self.banner)
         column.addWidget(self.pages, 1)
         return page

@@ -32,7 +32,7 @@ class TimeControl(QtCore.QObject):
         self._glancing.failed.connect(self.failed)
         bar.wanted.connect(self.go)
         bar.stepped.connect(self.step)
-        bar.play_toggled.connect(lambda is_on: self._film.start() if is_on else self._film.stop())
+        bar.play_toggled.connect(self._play)
 
     @property
     def is_playing(self) -> bool:
@@ -121,6 +121,12 @@ class TimeControl(QtCore.QObject):
 
     def _show_place(self) -> None:
         self.bar.show_place(self.place, self.line.moments, self.line.expected)
+
+    def _play(self, is_on: bool) -> None:
+        if is_on and self.line is not None:
+            self._film.start()
+        else:
+            self._film.stop()
 
     def _play_on(self) -> None:
         if self._is_behind() or self.is_busy:

@@ -38,7 +38,7 @@ class View3D(QtInteractor):
     def show_session(self, session) -> None:
         """Replaces what is drawn."""
         self.clear()
-        self.builder = SceneBuilder(self, session, legend=self.legend_box, background=self.background())
+        self.builder = SceneBuilder(self, session, legend=self.legend_box, background=self.background(), is_quick=True)
         self._is_fresh = True
         QtCore.QTimer.singleShot(0, self._first_look)
 

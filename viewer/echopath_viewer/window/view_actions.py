@@ -47,7 +47,8 @@ class ViewActions:
         self.time_line.step(1)
 
     def toggle_play_frames(self) -> None:
-        self.frame_bar.play_button.toggle()
+        if self.time_line.line is not None:
+            self.frame_bar.play_button.toggle()
 
     def remove_part(self) -> None:
         try:

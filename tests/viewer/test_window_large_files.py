@@ -1,0 +1,44 @@
+"""Files whose map is shown before their rays are read."""
+from __future__ import annotations
+
+import h5py
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath_viewer.model import preview
+from echopath_viewer.model.preview import READING, preview_of
+from support.window import PATIENCE_MS
+
+
+@pytest.fixture
+def large_file(frame, tmp_path, monkeypatch):
+    ep.save_frame(frame, tmp_path / "frame.h5")
+    monkeypatch.setattr(preview, "LARGE", 1)
+    return tmp_path / "frame.h5"
+
+
+def test_a_preview_has_scene_and_map_of_the_file(frame, large_file):
+    early = preview_of(large_file)
+    assert np.array_equal(early.parts.whole.spectrum.values, frame.spectrum.values)
+    assert [mesh.name for mesh in early.paths.scene.meshes] == [mesh.name for mesh in frame.scene.meshes]
+    assert early.paths.num_paths == 0 and early.paths.frame.start_time == frame.paths.frame.start_time
+    assert early.note == READING
+
+
+def test_the_rays_come_later(qtbot, shared_window, frame, large_file):
+    window = shared_window
+    assert window.open_file(large_file)
+    assert window.session.paths.num_paths == 0 and window.loading_bar.isVisible()
+    qtbot.waitUntil(lambda: not window.loading.is_running, timeout=4 * PATIENCE_MS)
+    assert window.session.paths.num_paths == frame.paths.num_paths and not window.loading_bar.isVisible()
+    assert window.view3d.builder.session is window.session and len(window.session.parts.partitions) == 2
+
+
+def test_what_is_damaged_behind_the_map_is_told(qtbot, shared_window, large_file):
+    with h5py.File(large_file, "a") as file:
+        del file["partitions"]
+    shared_window.open_file(large_file)
+    qtbot.waitUntil(lambda: not shared_window.loading.is_running, timeout=4 * PATIENCE_MS)
+    assert "frame.h5" in shared_window.banner.text() and not shared_window.loading_bar.isVisible()
+    shared_window.show_message("")

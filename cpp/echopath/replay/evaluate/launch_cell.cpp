@@ -7,7 +7,8 @@
 namespace echopath {
 namespace {
 
-constexpr double kFlatRatio = 1e-3;      // ratio of the principal curvatures below which the lesser direction is flat
+constexpr double kFlatRatio = 5e-5;      // ratio of the principal curvatures below which the lesser direction is flat: few
+                                         // triangles of bodies that bend both ways come so near to a cylinder by chance
 constexpr double kFlatCurvature = 1e-6;  // 1/m: below it a surface is flat
 
 Flatness flatness_of(const PosedHit& hit) {

@@ -51,10 +51,12 @@ FOOT_TOP = [(0.00, 0.020, 0.016), (0.05, 0.040, 0.017), (0.16, 0.053, 0.0185), (
             (1.00, 0.0163, 0.020)]
 FOOT_CAPS = (0.016, 0.030)   # round ends of the breadth at heel and toes, in body heights
 FOOT_POWER = 2.6             # of the sections: a flat sole under a round upper
+ROUNDEST = 0.6               # longest side over the least half axis, of feet half breadth; beyond, normals turn by 30 degrees within a triangle
 
 
 def surface(part, body, edge):
-    """Vertices [V, 3] and triangles [F, 3] of a body part, e.g. "arm_left/hand", with sides of about `edge` m."""
+    """Vertices [V, 3] and triangles [F, 3] of a body part, e.g. "arm_left/hand", with sides of about `edge` m or, where it is
+    thin, as short as its roundness asks for."""
     kind = part.rsplit("/")[-1]
     if kind == "foot":
         return _foot(body, edge)
@@ -62,7 +64,7 @@ def surface(part, body, edge):
     table = np.array(stations, dtype=float)
     table[:, :5] *= body.height
     section = table_section(table, body.of(begin_cap), body.of(end_cap))
-    return swept(section, table[0, 0], table[-1, 0], edge)
+    return swept(section, table[0, 0], table[-1, 0], min(edge, ROUNDEST * table[:, 3:5].min()))
 
 
 def _foot(body, edge):
@@ -82,4 +84,5 @@ def _foot(body, edge):
         return np.stack([0 * x, (top + bottom) / 2 - sole.ankle_height, breadth, (top - bottom) / 2,
                          np.full_like(x, FOOT_POWER)], axis=-1)
 
-    return swept(section, sole.heel_end, sole.toe_end, edge, axes=(1, 2, 0))
+    finest = ROUNDEST * body.height * table[:, 2].min()
+    return swept(section, sole.heel_end, sole.toe_end, min(edge, finest), axes=(1, 2, 0))

@@ -14,7 +14,7 @@ from .azimuth_map import sees_azimuth
 from .beside import cubes_beside
 from .effects import of_paths
 from .families import families as find_families
-from .receiver import receive
+from .receiver.chain import reception
 from .resolution import mean_powers, unresolved_of
 from .stages import Stage
 from .transmit import demultiplex
@@ -86,12 +86,13 @@ class Frame:
 
         The noise is drawn from the noise seed and the start time of the frame (s): frames in a row differ.
         """
-        return demultiplex(self.received.cube, self.radar)
+        received = self.received.cube
+        return received if self.coded_cube is None else demultiplex(received, self.radar)
 
     @property
     def received(self):
         """Reception: what the converter of the receiver gives, before `demultiplex`, made anew at every call."""
-        return receive(self._arriving_cube, self.radar, seed=self.noise_seed, start_time=self.paths.frame.start_time)
+        return reception(self._arriving_cube, self.radar, self.noise_seed, self.paths.frame.start_time)
 
     @property
     def _arriving_cube(self):

@@ -172,19 +172,33 @@ def _add_crossing(fine, chirps: _Chirps, delay, amplitude) -> None:
 
     delay: [3, P] s; amplitude: [P] sqrt(W)
     """
-    waveform, start, slope, sent_start, sent_slope, sent_duration, late = chirps
-    time = np.arange(len(fine)) / (_FINE * waveform.sampling_rate)
-    share = time / waveform.chirp_duration
-    # The parabola through the delays at the begin, the middle and the end.
-    curve = (1.0 - share) * (1.0 - 2.0 * share), 4.0 * share * (1.0 - share), share * (2.0 * share - 1.0)
-    for way in np.flatnonzero(amplitude):
+    waveform, start, slope, sent_start, sent_slope, _, late = chirps
+    rate = _FINE * waveform.sampling_rate
+    first, last = _heard(chirps, delay[1], len(fine))
+    for way in np.flatnonzero((amplitude != 0.0) & (last > first)):
+        time = np.arange(first[way], last[way]) / rate
+        share = time / waveform.chirp_duration
+        # The parabola through the delays at the begin, the middle and the end.
+        curve = (1.0 - share) * (1.0 - 2.0 * share), 4.0 * share * (1.0 - share), share * (2.0 * share - 1.0)
         sent_time = late + time - sum(weight * one for weight, one in zip(curve, delay[:, way]))
-        difference = start + slope * time - sent_start - sent_slope * sent_time
-        heard = np.flatnonzero((sent_time >= 0.0) & (sent_time < sent_duration)
-                               & (np.abs(difference) < _MARGIN * waveform.sampling_rate))
-        t, u = time[heard], sent_time[heard]
-        cycles = (start - sent_start) * t + sent_start * (t - u) + 0.5 * slope * t ** 2 - 0.5 * sent_slope * u ** 2
-        fine[heard] += np.conj(amplitude[way]) * np.exp(2j * np.pi * np.mod(cycles, 1.0))
+        cycles = (start - sent_start) * time + sent_start * (time - sent_time) + 0.5 * slope * time ** 2 \
+            - 0.5 * sent_slope * sent_time ** 2
+        fine[first[way]:last[way]] += np.conj(amplitude[way]) * np.exp(2j * np.pi * np.mod(cycles, 1.0))
+
+
+def _heard(chirps: _Chirps, delay, count: int) -> tuple:
+    """First and last + 1 of the samples [count] in which each way of a delay [P] in s is heard: while the other radar sends, and
+    the difference of both frequencies is no more than the margin."""
+    waveform, start, slope, sent_start, sent_slope, sent_duration, late = chirps
+    begin, end = delay - late, delay - late + sent_duration
+    margin, difference, rate = _MARGIN * waveform.sampling_rate, start - sent_start + sent_slope * begin, slope - sent_slope
+    if rate == 0.0:
+        end = np.where(np.abs(difference) < margin, end, begin)
+    else:
+        ends = np.sort([(-margin - difference) / rate, (margin - difference) / rate], axis=0)
+        begin, end = np.maximum(begin, ends[0]), np.minimum(end, ends[1])
+    samples = _FINE * waveform.sampling_rate
+    return tuple(np.clip(np.ceil(edge * samples), 0, count).astype(int) for edge in (begin, end))
 
 
 def _filtered(fine, waveform):

@@ -45,7 +45,11 @@ def receive(cube: ArrayLike, radar: _core.Radar, *, seed: int | None, start_time
     Returns Reception. Raises TypeError or ValueError naming the argument, also where the receiver has tables of other
     antennas.
     """
-    cube = np.asarray(cube, np.complex128)
+    return reception(np.asarray(cube, np.complex128), radar, seed, start_time)
+
+
+def reception(cube: np.ndarray, radar: _core.Radar, seed: int | None, start_time: float) -> Reception:
+    """`receive` of complex128 that nobody needs to check: the signal of a frame, over which a check would go once more."""
     noisy_radar, receiver = radar_of_noise(radar), radar.receiver
     waveform = noisy_radar.waveform
     shape = (len(noisy_radar.transmitters), len(radar.receivers), waveform.num_chirps, waveform.num_samples)

@@ -23,7 +23,7 @@ FAULTS = {
 
 
 def rows(*, quick: bool) -> list[dict]:
-    """[what, seconds, seconds beyond the thermal noise] of `receive` with each fault, and of `demultiplex`."""
+    """[what, seconds, seconds beyond the thermal noise] of `receive` with each fault, of `demultiplex` and `interference`."""
     num_rays, repeats = (street.QUICK_NUM_RAYS, QUICK_REPEATS) if quick else (street.NUM_RAYS, REPEATS)
     paths, cube, found = street.paths(num_rays), street.cube(num_rays), {}
     for name, faults in FAULTS.items():
@@ -33,6 +33,10 @@ def rows(*, quick: bool) -> list[dict]:
         radar = street.radar(multiplexing=kind)
         coded = ep.synthesize(paths, radar)
         found[f"demultiplex {kind}"] = found["none"] + _seconds(lambda: ep.demultiplex(coded, radar), repeats)
+    radar, other = street.radar(), street.other()
+    between = ep.trace(street.scene(), ep.interference_radar(radar, other), num_rays=num_rays)
+    for name, ways in (("direct way", None), ("paths", between)):
+        found[f"another radar, {name}"] = found["none"] + _seconds(lambda: ep.interference(radar, other, ways), repeats)
     return [{"what": name, "seconds": value, "beyond": value - found["none"]} for name, value in found.items()]
 
 

@@ -3,6 +3,8 @@ from __future__ import annotations
 
 from functools import cache
 
+import numpy as np
+
 import echopath as ep
 
 from .. import crowd_scenes
@@ -21,10 +23,23 @@ def radar(**settings) -> ep.Radar:
     return ep.Radar(waveform, **antennas, transmit_power=0.02, **settings)
 
 
+def other() -> ep.Radar:
+    """A radar that comes the other way; its chirps are a tenth flatter."""
+    one = radar()
+    return one.replace(waveform=one.waveform.replace(bandwidth=0.9 * one.waveform.bandwidth), position=(30.0, 1.5, 0.0),
+                       yaw=np.pi, motion=ep.LinearMotion(velocity=(-8.0, 0.0, 0.0)))
+
+
+@cache
+def scene() -> ep.Scene:
+    """Its twenty objects."""
+    return crowd_scenes.street(mirrors=False)
+
+
 @cache
 def paths(num_rays: int) -> ep.Paths:
     """What its rays touch."""
-    return ep.trace(crowd_scenes.street(mirrors=False), radar(), num_rays=num_rays, start_time=0.1)
+    return ep.trace(scene(), radar(), num_rays=num_rays, start_time=0.1)
 
 
 @cache

@@ -16,7 +16,7 @@ from .transmit import code_of, radar_of_noise
 
 _FINE = 4       # times the sampling rate, at which crossings are made before the filter
 _MARGIN = 1.9   # of the sampling rate: differences of frequency beyond which nothing of a crossing is left in the band
-MOST_PATHS = 64  # of a trace, the strongest: each is a crossing of its own in every chirp
+HELD, MOST_PATHS = 0.999, 1024  # share of the power of a trace, and of its paths: each is a crossing of its own in every chirp
 
 
 @checked(other=an(_core.Radar), paths=optional(an(_core.Paths)), start_time=real(unit="s"), offset=real(unit="s"))
@@ -31,7 +31,8 @@ def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | No
     radar: that receives, its own position, motion and antennas; other: that sends, likewise, with a waveform of its own
     paths: one-way paths from the other radar to this one, instead of the direct way: those of a trace by a radar that has the
         transmitters of the other and the receivers of this one, both as they stand in the middle of the frame
-        (`interference_radar`), its 64 strongest; None: the direct way alone. A trace has no direct way: the two signals add up
+        (`interference_radar`), the strongest that hold 99.9 % of the power, 1024 at most; None: the direct way alone. A trace
+        has no direct way: the two signals add up
     start_time: s, first sample of the frame; offset: s, by which frames of the other radar begin later than at time 0
     Returns the cube before `demultiplex`, [tx, rx, chirp, sample] or [1, rx, slots, sample], in sqrt(W). As a part of its own
     beside the others, {"interference": cube}, it is named by labels of detections. Raises TypeError or ValueError naming the
@@ -78,10 +79,10 @@ def _placed(antennas, radar, time: float) -> list:
 
 
 def _strongest(paths):
-    """The MOST_PATHS strongest paths, by their power at the trace time."""
-    if paths.num_paths <= MOST_PATHS:
-        return paths
-    return paths.select(power >= float(np.sort(paths.power)[-MOST_PATHS]))
+    """The strongest paths that hold HELD of the power at the trace time, MOST_PATHS at most."""
+    powers = np.sort(paths.power)[::-1]
+    count = min(int(np.searchsorted(np.cumsum(powers), HELD * powers.sum())) + 1, MOST_PATHS)
+    return paths if count >= len(powers) else paths.select(power >= float(powers[count - 1]))
 
 
 class _Slot(NamedTuple):

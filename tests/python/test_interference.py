@@ -107,6 +107,24 @@ def test_labels_name_it_as_a_part():
     assert found.part[strongest] == "interference" and found.range[strongest] == pytest.approx(20.0, abs=0.3)
 
 
+def test_rough_walls_send_what_all_of_their_paths_do():
+    """Parallel chirps: each path is a tone at the beat of its delay, here of all paths one by one; a thousandth is left out."""
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(4.0, 4.0), name="rough", material=ep.Material(reflectivity=1.0, scattering=1.0),
+              position=(10, 6, 0), yaw=-np.pi / 2)
+    receiver = victim(num_chirps=1)
+    paths = ep.trace(scene, ep.interference_radar(receiver, TONE), num_rays=1000, max_bounces=1)
+    powers = np.sort(paths.power)[::-1]
+    assert powers[:64].sum() < 0.6 * powers.sum()  # so many are not enough
+    middle = 0.5 * COUNT / RATE
+    delay, amplitude = paths.lengths([middle], 0, 0)[0] / C, paths.amplitudes([middle], 0, 0)[0]
+    time = np.arange(COUNT) / RATE
+    cycles = 77e9 * delay + SLOPE * np.outer(time, delay) - 0.5 * SLOPE * delay ** 2
+    slow = (np.exp(2j * np.pi * np.mod(cycles, 1.0)) @ np.conj(amplitude))[64:]
+    found = ep.interference(receiver, TONE, paths)[0, 0, 0, 64:]
+    assert np.mean(np.abs(found - slow) ** 2) < 0.01 * np.mean(np.abs(slow) ** 2)
+
+
 # --- other radars of a scene ---
 
 def street(*others, wall=None, **settings):

@@ -21,7 +21,8 @@ matplotlib.use("agg")
 ROOT = Path(__file__).parents[2]
 DOCS, EXAMPLES = ROOT / "python" / "docs", ROOT / "python" / "examples"
 PAGES = sorted((DOCS / "how_do_i").glob("*.md"))
-SCRIPTS = sorted(EXAMPLES.glob("*/*.py"))
+TRAINING = EXAMPLES / "training"  # needs PyTorch, and takes minutes: no part of the gallery
+SCRIPTS = sorted(path for path in EXAMPLES.glob("*/*.py") if path.parent != TRAINING)
 NOTEBOOKS = sorted((EXAMPLES / "notebooks").glob("*.ipynb"))
 TASKS = ("own_mesh", "through_a_pane", "foreign_scene", "car_with_speed", "trajectories", "antenna_pattern", "angle_map",
          "frames_in_time", "transmit_codes", "receiver_faults", "sensor_file", "live_scene", "spectrogram", "arms_only",

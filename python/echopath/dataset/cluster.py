@@ -7,7 +7,6 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from .. import _core
 from ..optional import needed_module
 from ..threads import set_num_threads
 from .address import Address, is_address
@@ -17,7 +16,7 @@ from .template import Template
 from .workers import Done, in_this_process
 
 _AHEAD = 2       # tasks for each thread of a worker that wait at the scheduler
-_WAIT = "20s"    # for the scheduler to answer
+_WAIT = "10s"    # for the scheduler to answer
 
 
 def in_dask(scheduler: str, path: Path, folder: str, scenes: Sequence[int], run: str) -> Iterator[Done]:
@@ -29,17 +28,30 @@ def in_dask(scheduler: str, path: Path, folder: str, scenes: Sequence[int], run:
     """
     distributed = needed_module("distributed", "scheduler")
     try:
-        with distributed.Client(scheduler, set_as_default=False, timeout=_WAIT) as client:
+        client = distributed.Client(scheduler, set_as_default=False, timeout=_WAIT)
+    except (OSError, ValueError) as error:
+        raise _unreached(scheduler, error) from None
+    lost = (distributed.client.FutureCancelledError, distributed.comm.CommClosedError)
+    with client:
+        try:
             yield from _as_they_come(distributed, client, str(path.resolve()), folder, iter(scenes), run)
-    except _core.FileError:
-        raise
-    except (OSError, distributed.client.FutureCancelledError) as error:  # which a lost connection is, too
-        raise ConnectionError(f"scheduler: must answer as long as scenes are made, '{scheduler}' does not "
-                              f"({type(error).__name__}); the same call goes on") from None
+        except lost as error:
+            raise _unreached(scheduler, error) from None
+
+
+def _unreached(scheduler: str, error: Exception) -> ConnectionError:
+    reason = f"'{scheduler}' does not ({type(error).__name__}: {error}); the same call goes on"
+    return ConnectionError(f"scheduler: must answer as long as scenes are made, {reason}")
 
 
 def _as_they_come(distributed: Any, client: Any, path: str, folder: str, waiting: Iterator[int], run: str) -> Iterator[Done]:
     scene_of: dict[Any, int] = {}
+
+    def room() -> int:
+        try:
+            return _AHEAD * max(1, sum(client.nthreads().values()))
+        except OSError as error:
+            raise distributed.comm.CommClosedError(str(error)) from None
 
     def submitted(count: int) -> list[Any]:
         futures = []
@@ -49,14 +61,14 @@ def _as_they_come(distributed: Any, client: Any, path: str, folder: str, waiting
             futures.append(future)
         return futures
 
-    running = distributed.as_completed(submitted(_AHEAD * max(1, sum(client.nthreads().values()))))
+    running = distributed.as_completed(submitted(room()), loop=client.loop)
     for future in running:
         try:
             record = SceneRecord(*future.result())
         except distributed.KilledWorker:
             record = SceneRecord("failed", reason="workers died at it")
         yield scene_of.pop(future), record
-        running.update(submitted(_AHEAD * max(1, sum(client.nthreads().values())) - len(scene_of)))
+        running.update(submitted(room() - len(scene_of)))
 
 
 def make_as_worker(path: str, folder: str, scene: int, run: str) -> tuple[Any, ...]:
@@ -72,6 +84,7 @@ def make_as_worker(path: str, folder: str, scene: int, run: str) -> tuple[Any, .
 def _made_at(address: Address, template: Template, scene: int, run: str) -> SceneRecord:
     """Makes a scene in a folder of its own and puts its files to an address, the record last."""
     with TemporaryDirectory(prefix="echopath-") as own:
+        scene_folder(Path(own), scene).mkdir(parents=True)
         record = make_scene(template, Path(own), scene, run)
         for name in record.files:
             address.put(f"{scene_name(scene)}/{name}", (scene_folder(Path(own), scene) / name).read_bytes())

@@ -16,6 +16,7 @@ import pytest
 import echopath as ep
 from echopath import dataset
 from echopath.dataset.folder import scene_folder
+from echopath.frame_file.maps import load_maps
 
 HEAD = """
 [dataset]
@@ -310,6 +311,28 @@ def test_a_disk_that_is_too_small_is_told_before_the_first_frame(path, tmp_path,
     with pytest.raises(ep.FileError, match=r"folder: must have \d+ MiB for 12 frames, got 0 MiB"):
         list(dataset.make(path, tmp_path / "out"))
     assert not list((tmp_path / "out").rglob("frame_*"))
+
+
+def test_xarray_reads_the_frames_that_are_asked_for_and_no_others(tmp_path, monkeypatch):
+    pytest.importorskip("xarray")
+    folder = tmp_path / "out"
+    make(written(tmp_path, HEAD.replace('keep = "labels"', 'keep = "maps"').replace("scenes = 6", "scenes = 3") + SCENE), folder)
+    opened, read = dataset.open(folder), []
+    monkeypatch.setattr("echopath.dataset.opened.read_frame",
+                        lambda path, keep: read.append(path.name) or load_maps(path))
+    arrays = opened.to_xarray()
+    read.clear()
+    assert arrays.power.dims == ("frame", "velocity", "range") and arrays.power.shape == arrays.cell.shape == (6, 8, 32)
+    part = arrays.power.isel(frame=slice(3, 5), range=4)
+    assert read == []
+    values = part.values
+    assert read == ["frame_0001.h5", "frame_0000.h5"]
+    np.testing.assert_array_equal(values, [opened[place].frame.power[:, 4] for place in (3, 4)])
+    labels = opened[2].frame.labels["parts"]
+    np.testing.assert_array_equal(arrays.cell.sel(frame=2) > 0, labels.mask)
+    names = arrays.kind.attrs["names"]
+    assert {names[index] for index in np.unique(arrays.kind[2]) if index >= 0} == {"static"}
+    assert list(arrays.split.values) == [one.split for one in opened] and list(arrays.scene.values) == [0, 0, 1, 1, 2, 2]
 
 
 # --- what is told of it ---

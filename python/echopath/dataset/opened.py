@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterator
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple, overload
+from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
 from .. import _core
 from ..checks import checked, refused
@@ -16,8 +16,12 @@ from ..frame_maps import FrameMaps
 from ..sequence import StoredSequence, load_sequence
 from ..sequence.contents import frame_path
 from ..sequence.keep import read_frame
+from .arrays import lazy_arrays
 from .folder import DRAWN, open_template, read_record, scene_folder
 from .template import Template
+
+if TYPE_CHECKING:
+    from ..foreign_types import Dataset as XarrayDataset
 
 
 class DatasetFrame(NamedTuple):
@@ -96,6 +100,17 @@ class Dataset:
             return values
         except (OSError, ValueError) as error:
             raise _core.FileError(f"{path}: cannot be read ({error})") from None
+
+    def to_xarray(self) -> XarrayDataset:
+        """The maps of all frames as an xarray.Dataset that reads a frame when a value of it is asked for.
+
+        power: f32 [frame, velocity, range] W, mean over channels, with noise; not with keep="labels"
+        cell: i8, nothing, object or ghost; kind: i8, class of the object or of the ghost's object, -1: none; both indices of
+            `attrs["names"]`, where there are labels
+        Coordinates: frame, the numbers; scene and split of each; velocity (m/s) and range (m) of the first frame. Needs xarray,
+        raises ModuleNotFoundError without it, IndexError without frames, ValueError on reading a map of another size.
+        """
+        return lazy_arrays(self)
 
     def __repr__(self) -> str:
         return f"Dataset('{self.folder}', {len(self)} frames of {len(self.scenes)} scenes, keep='{self.template.settings.keep}')"

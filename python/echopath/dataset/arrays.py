@@ -1,0 +1,104 @@
+"""The maps of a dataset as an xarray.Dataset that reads a frame when a value of it is asked for."""
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..frame import Frame
+from ..frame_maps import FrameMaps, mean_power
+from ..xarray_maps import axis, xarray_module
+from .classes import CODES, ClassName, classes_of
+
+if TYPE_CHECKING:
+    from ..foreign_types import Dataset as XarrayDataset
+    from .opened import Dataset, DatasetFrame
+
+CELLS = ("nothing", "object", "ghost")
+KINDS = tuple(CODES)
+
+
+def lazy_arrays(dataset: Dataset) -> XarrayDataset:
+    """See `Dataset.to_xarray`."""
+    xarray = xarray_module()
+    first: Any = dataset[0].frame
+    axes: Any = first.spectrum if isinstance(first, Frame) else first
+    velocity, range_ = np.asarray(axes.velocity), np.asarray(axes.range)
+    shape = (len(dataset), len(velocity), len(range_))
+
+    def maps(read: Callable[[DatasetFrame], NDArray[Any]], dtype: str, attributes: dict[str, Any]) -> Any:
+        return ("frame", "velocity", "range"), _lazy(dataset, read, shape, dtype), attributes
+
+    variables = {}
+    if dataset.template.settings.keep != "labels":
+        variables["power"] = maps(_power, "f4", {"units": "W", "long_name": "power with noise, mean over channels"})
+    if first.labels:
+        kinds = _Kinds(dataset)
+        variables["cell"] = maps(_cells, "i1", {"names": list(CELLS)})
+        variables["kind"] = maps(kinds.of, "i1", {"names": list(KINDS)})
+    per_scene = dataset.template.settings.frames
+    scenes = np.array([number // per_scene for number in dataset.numbers])
+    splits = {scene: dataset.template.split_of(int(scene)) for scene in np.unique(scenes)}
+    coordinates = {"frame": dataset.numbers, "scene": ("frame", scenes), "split": ("frame", [splits[one] for one in scenes]),
+                   "velocity": axis("velocity", velocity), "range": axis("range", range_)}
+    return xarray.Dataset(variables, coords=coordinates)
+
+
+def _power(one: DatasetFrame) -> NDArray[np.float32]:
+    frame: Any = one.frame
+    return np.asarray(frame.power if isinstance(frame, FrameMaps) else mean_power(frame.spectrum.values))
+
+
+def _cells(one: DatasetFrame) -> NDArray[np.int8]:
+    labels = next(iter(one.frame.labels.values()))
+    return np.where(labels.ghost_map >= 0, 2, np.where(labels.object_map >= 0, 1, 0)).astype(np.int8)
+
+
+class _Kinds:
+    """Classes of the owners of cells, as indices of KINDS, -1: nothing's."""
+
+    def __init__(self, dataset: Dataset):
+        self._template = dataset.template
+        self._scene, self._known = -1, dict[str, ClassName]()
+
+    def of(self, one: DatasetFrame) -> NDArray[np.int8]:
+        if one.scene != self._scene:
+            objects = self._template.draw(one.scene).table["objects"]
+            self._scene, self._known = one.scene, classes_of(objects, self._template.settings.classes)
+        labels = next(iter(one.frame.labels.values()))
+        kinds = np.full(labels.object_map.shape, -1, np.int8)
+        for owners, names in ((labels.object_map, [one.name for one in labels.objects]),
+                              (labels.ghost_map, [one.object for one in labels.ghosts])):
+            codes = np.array([KINDS.index(self._known.get(name, "static")) for name in names], np.int8)
+            kinds[owners >= 0] = codes[owners[owners >= 0]]
+        return kinds
+
+
+def _lazy(dataset: Dataset, read: Callable[[DatasetFrame], NDArray[Any]], whole: tuple[int, ...], kind: str) -> Any:
+    """An array that xarray indexes without reading more than the frames it asks for."""
+    from xarray.backends import BackendArray
+    from xarray.core import indexing
+
+    class Maps(BackendArray):
+        shape, dtype = whole, np.dtype(kind)
+
+        def __getitem__(self, key: Any) -> Any:
+            return indexing.explicit_indexing_adapter(key, self.shape, indexing.IndexingSupport.BASIC, self._read)
+
+        def _read(self, key: tuple[Any, ...]) -> NDArray[Any]:
+            places = np.arange(self.shape[0])[key[0]]
+            if not np.ndim(places):
+                return np.asarray(self._one(int(places))[key[1:]])
+            empty = np.empty((0, *self.shape[1:]), self.dtype)[(slice(None), *key[1:])]
+            return np.stack([self._one(int(place))[key[1:]] for place in places]) if len(places) else empty
+
+        def _one(self, place: int) -> NDArray[Any]:
+            values = read(dataset[place])
+            if values.shape != self.shape[1:]:
+                raise ValueError(f"dataset: must have maps of one size, got {self.shape[1:]} and {values.shape} in frame "
+                                 f"{dataset.numbers[place]}")
+            return values
+
+    return indexing.LazilyIndexedArray(Maps())

@@ -308,9 +308,47 @@ def test_a_dataset_grows_and_is_not_mixed_with_another(whole, tmp_path):
 def test_a_disk_that_is_too_small_is_told_before_the_first_frame(path, tmp_path, monkeypatch):
     usage = shutil.disk_usage(tmp_path)
     monkeypatch.setattr("echopath.dataset.making.shutil.disk_usage", lambda folder: usage._replace(free=1000))
-    with pytest.raises(ep.FileError, match=r"folder: must have \d+ MiB for 12 frames, got 0 MiB"):
+    with pytest.raises(ep.FileError, match=r"folder: must have 0\.\d MiB for 12 frames, got 0\.0 MiB"):
         list(dataset.make(path, tmp_path / "out"))
     assert not list((tmp_path / "out").rglob("frame_*"))
+
+
+FILLED = """
+import os, sys
+from pathlib import Path
+from echopath import FileError, dataset
+
+if __name__ == "__main__":
+    path, folder, workers = Path(sys.argv[1]), Path(sys.argv[2]), int(sys.argv[3])
+    run = dataset.make(path, folder, workers=workers)
+    next(run)
+    free = os.statvfs(folder)
+    (folder / "filler").write_bytes(bytes(free.f_bavail * free.f_bsize - 500_000))
+    try:
+        for made in run:
+            assert made.record.state == "done"
+    except FileError as error:
+        print("told:", error)
+    (folder / "filler").unlink()
+"""
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_disk_that_fills_ends_the_run_and_another_goes_on(whole, tmp_path, workers):
+    path, folder = whole
+    (tmp_path / "small").mkdir()
+    (tmp_path / "fill.py").write_text(FILLED)
+    mounted = 'mount -t tmpfs -o size=4m none "$1" && "$2" "$3" "$4" "$1" "$5" && cp -a "$1/." "$6"'
+    done = subprocess.run(["unshare", "--mount", "--map-root-user", "sh", "-c", mounted, "sh", tmp_path / "small", sys.executable,
+                           tmp_path / "fill.py", path, str(workers), tmp_path], capture_output=True, text=True)
+    if "unshare" in done.stderr or "mount" in done.stderr:
+        pytest.skip("nothing may be mounted here")
+    assert "No space left" in done.stdout, done.stderr
+    (tmp_path / "fill.py").unlink()
+    assert len(list((tmp_path / "scenes").glob("*/frame_*.h5"))) < 12
+    make(path, tmp_path)
+    (tmp_path / "small").rmdir()
+    assert bytes_of(tmp_path) == bytes_of(folder)
 
 
 def test_xarray_reads_the_frames_that_are_asked_for_and_no_others(tmp_path, monkeypatch):

@@ -179,6 +179,6 @@ def _forecast(plan: Template, place: _LocalFolder | Address, missing: list[int],
     frames = len(missing) * plan.settings.frames
     needed = int(_MARGIN * size * frames)
     if isinstance(place, _LocalFolder) and needed > (free := shutil.disk_usage(place.folder).free):
-        raise _core.FileError(f"folder: must have {needed >> 20} MiB for {frames} frames, got {free >> 20} MiB in "
-                              f"'{place.folder}'")
+        raise _core.FileError(f"folder: must have {needed / 2 ** 20:.1f} MiB for {frames} frames, got "
+                              f"{free / 2 ** 20:.1f} MiB in '{place.folder}'")
     return Forecast(frames, (time.perf_counter() - begin) * frames / min(workers, len(missing)), needed)

@@ -22,10 +22,14 @@ _MOST_DEATHS = 2  # of workers of one run at one scene
 
 @contextmanager
 def claimed(folder: Path, scene: int) -> Iterator[bool]:
-    """Whether this process alone makes the scene during the block; the system ends that when the process ends."""
+    """Whether this process alone makes the scene during the block; the system ends that when the process ends.
+
+    Raises ep.FileError.
+    """
     own = scene_folder(folder, scene)
-    own.mkdir(parents=True, exist_ok=True)
-    handle = os.open(own / _CLAIM, os.O_RDWR | os.O_CREAT, 0o666)
+    with _told(own):
+        own.mkdir(parents=True, exist_ok=True)
+        handle = os.open(own / _CLAIM, os.O_RDWR | os.O_CREAT, 0o666)
     try:
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -93,7 +97,17 @@ def _failed(error: Exception) -> SceneRecord:
 def _note_begin(folder: Path, scene: int, run: str) -> int:
     """How many workers of this run have begun the scene before."""
     path = scene_folder(folder, scene) / _BEGUN
-    begun = path.read_text().split().count(run) if path.exists() else 0
-    with path.open("a") as file:
-        file.write(f"{run}\n")
+    with _told(path):
+        begun = path.read_text().split().count(run) if path.exists() else 0
+        with path.open("a") as file:
+            file.write(f"{run}\n")
     return begun
+
+
+@contextmanager
+def _told(path: Path) -> Iterator[None]:
+    """Raises ep.FileError naming a path where the block raises OSError."""
+    try:
+        yield
+    except OSError as error:
+        raise _core.FileError(f"{path}: cannot be written ({error.strerror or error})") from None

@@ -3,7 +3,7 @@
     echopath dataset data/datasets/ghosts.toml --out ghosts       # a thousand frames, minutes
     python train_ghosts.py ghosts                                 # minutes on a processor
 
-The network has three scales (16, 32 and 64 channels) and sees the map in dB with range and velocity of each cell. Power alone has
+The network has three scales (8, 16 and 32 channels) and sees the map in dB with range and velocity of each cell. Power alone has
 two thresholds, those of the best mean IoU on the training frames: nothing, ghost, object by ascending power.
 """
 import argparse
@@ -15,14 +15,14 @@ from torch import nn
 from torch.utils.data import DataLoader
 from torch_dataset import CLASSES, MapsWithGhosts
 
-BATCH, RATE = 8, 3e-3
+BATCH, RATE = 8, 5e-3
 WEIGHTS = torch.tensor([0.05, 1.0, 1.5])  # of the classes in the loss: most cells have nothing
 
 
 class Network(nn.Module):
     """Scores [N, 3, V, R] of the classes from maps [N, 1, V, R] in dB over the noise."""
 
-    def __init__(self, channels=(16, 32, 64)):
+    def __init__(self, channels=(8, 16, 32)):
         super().__init__()
         ends = [3, *channels]
         self.down = nn.ModuleList(_block(before, after) for before, after in zip(ends, channels))
@@ -112,7 +112,7 @@ def classes_by(network, maps):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("folder")
-    parser.add_argument("--epochs", type=int, default=20)
+    parser.add_argument("--epochs", type=int, default=12)
     options = parser.parse_args()
     torch.manual_seed(1)
     known, held_out = (all_of(MapsWithGhosts(options.folder, split)) for split in ("train", "test"))

@@ -1,8 +1,6 @@
 """Meshes of other libraries' objects. None of these libraries is needed: an object is known by the arrays that it has."""
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from . import _core
@@ -14,7 +12,7 @@ _NO_SURFACES = ("vertex", "line")              # left out, as lines of files are
 
 
 @checked(source=anything, unit=UNIT)
-def mesh_from(source: Any, *, unit: float = 1.0) -> _core.Mesh:
+def mesh_from(source: object, *, unit: float = 1.0) -> _core.Mesh:
     """A Mesh of an object of trimesh, meshio or pyvista, or of any that has the same arrays.
 
     source: a trimesh.Trimesh (vertices [V, 3], faces [F, 3]), a pyvista.PolyData (points, and faces as VTK has them) or a

@@ -13,6 +13,7 @@ from .signals import RULES
 from .transmit.signals import has_steps
 
 View = Mapping[str, Selection | str] | Families | Grouping
+Selections = Mapping[str, Selection | str] | Mapping[str, Mapping[str, Selection | str]]  # one partition, or several
 Views = View | Mapping[Hashable, View] | None
 _VIEWS = (Mapping, Families, Grouping)
 

@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 from . import _core
 from .checks import MapWindow, Progress, anything, checked, flag
@@ -10,6 +9,7 @@ from .effect_choices import Choices
 from .frame import Frame
 from .frame_run import FrameRun
 from .guard import warn_of
+from .parts import Selections
 from .settings import (
     Edges, Evaluate, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings,
     TraceSettings,
@@ -26,14 +26,14 @@ def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | 
              batches: int | None = TraceSettings.batches, target_error_db: float | None = TraceSettings.target_error_db,
              max_rays: int | float = TraceSettings.max_rays, scatterers: Scatterers = TraceSettings.scatterers,
              edges: Edges = TraceSettings.edges, effects: Choices = TraceSettings.effects,
-             parts: Mapping[str, Any] | None = None,
+             parts: Selections | None = None,
              tolerance: float = SignalSettings.tolerance, method: Method = SignalSettings.method,
              replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,
              phase_tolerance: float = SignalSettings.phase_tolerance, retrace: Retrace = SignalSettings.retrace,
              keyframes: int = SignalSettings.keyframes, noise_seed: int | None = SignalSettings.noise_seed,
              window: MapWindow = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad,
-             angles: Mapping[str, Any] | None = None, labels: bool | LabelSettings | Mapping[str, Any] | None = None,
-             detections: bool | Mapping[str, Any] | None = None, truth: bool | Mapping[str, Any] | None = None,
+             angles: Mapping[str, object] | None = None, labels: bool | LabelSettings | Mapping[str, object] | None = None,
+             detections: bool | Mapping[str, object] | None = None, truth: bool | Mapping[str, object] | None = None,
              guard: bool = True, trace: TraceSettings | None = None, signal: SignalSettings | None = None,
              progress: Progress = None) -> Frame:
     """Simulates one frame of a radar in a scene.

@@ -4,7 +4,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any, Literal, Union
+from typing import TYPE_CHECKING, Literal, Union
 
 from . import _core
 from .checks import MapWindow, an, anything, array, checked, count, flag, map_window, one_of, optional, path, refused, text
@@ -16,6 +16,7 @@ from .settings import Evaluate, Retrace, SignalSettings
 
 if TYPE_CHECKING:
     from .dataset import Dataset  # takes its time to import
+    from .foreign_types import Colormap, Plotter, QMainWindow
 
 ColorBy = Literal["bounces", "mesh", "power", "range", "speed"]
 Viewed = Union[str, os.PathLike[str], list[str], list[os.PathLike[str]], tuple[str | os.PathLike[str], ...], Frame, Sequence,
@@ -47,7 +48,7 @@ def _is_dataset(value) -> bool:
 def view(what: Viewed | _core.Scene | None = None, paths: _core.Paths | None = None,
          parts: Views = None, *, window: MapWindow | None = None, zero_pad: int | None = None, evaluate: Evaluate | None = None,
          retrace: Retrace | None = None, keyframes: int | None = None, state: str | os.PathLike[str] | None = None,
-         picture: str | os.PathLike[str] | None = None, scale: int = 1, block: bool = True) -> Any:
+         picture: str | os.PathLike[str] | None = None, scale: int = 1, block: bool = True) -> QMainWindow | None:
     """Opens the viewer: view(scene, paths, parts), view(frame) or view("frame.h5"); view() is an empty window.
 
     It needs the packages of `pip install PySide6-Essentials pyvista pyvistaqt vtk`.
@@ -95,11 +96,11 @@ _NUMBER = count(0)
          show_legend=flag, hidden=_hidden, plotter=anything, off_screen=optional(flag), screenshot=optional(path),
          window_size=array("[2]", kind="whole"), return_plotter=flag)
 def plot_rays(scene: _core.Scene | None, paths: _core.Paths, *, selection: str | _core.Selection = "", num_rays: int = 300,
-              color_by: ColorBy = "bounces", cmap: Any = None, clim: tuple[float, float] | None = None,
+              color_by: ColorBy = "bounces", cmap: str | Colormap | None = None, clim: tuple[float, float] | None = None,
               chirp: int | None = None, tx: int = 0, rx: int = 0, view: View = "fit", show_hits: bool = False,
-              show_legend: bool = True, hidden: Iterable[str] = (), plotter: Any = None, off_screen: bool | None = None,
-              screenshot: str | os.PathLike[str] | None = None, window_size: tuple[int, int] = (1200, 800),
-              return_plotter: bool = False) -> Any:
+              show_legend: bool = True, hidden: Iterable[str] = (), plotter: Plotter | None = None,
+              off_screen: bool | None = None, screenshot: str | os.PathLike[str] | None = None,
+              window_size: tuple[int, int] = (1200, 800), return_plotter: bool = False) -> Plotter | None:
     """Draws a scene with its strongest rays: plot_rays(scene, paths, off_screen=True, screenshot="rays.png").
 
     Needs no screen, but the packages of `pip install PySide6-Essentials pyvista pyvistaqt vtk`.

@@ -14,7 +14,7 @@ def main() -> int:
     parser.add_argument("seconds", type=float, nargs="?", default=60.0, help="for each target")
     parser.add_argument("--first", type=int, default=0, help="number of the first case")
     parser.add_argument("targets", nargs="*", help=f"of {', '.join(TARGETS)}; none: all")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     failed = False
     for target in options.targets or TARGETS:
         count, findings = run(target, range(options.first, sys.maxsize), options.seconds)

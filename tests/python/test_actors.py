@@ -129,6 +129,7 @@ def test_ground_looks_up_and_wall_towards_the_street():
     (lambda: ep.actors.sphere(1.0, edge=0.1, subdivisions=3), "must not be given together"),
     (lambda: ep.actors.capsule(0.5, 0.6), "length: must be at least twice the radius"),
     (lambda: ep.actors.ground(10.0, edge=1e-6), "edge: must be long enough"),
+    (lambda: ep.actors.trihedral(64.0, edge=0.05), "edge: must be long enough for less than 5000000 triangles"),
     (lambda: ep.actors.wall("5", 1.0), "length: must be a finite number from 1e-09 to 1000000000 m, got '5'"),
 ])
 def test_bad_sizes_name_argument_rule_and_value(make, message):

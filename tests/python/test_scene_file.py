@@ -213,6 +213,11 @@ FAULTS = [
     (RADAR + "[angle]\nmethod = 'music'", "angle.method: must be 'bartlett' or 'capon', got 'music'"),
     (RADAR + "[angle]\nazimuth_deg = [10, -10, 1]", "angle.azimuth_deg: must be [first, last, step] in degrees"),
     (RADAR + "[angle]\nazimuth_deg = [0, 10, 0]", "angle.azimuth_deg: must be [first, last, step] in degrees"),
+    (RADAR + "[angle]\nazimuth_deg = [-60, 60, 1e-12]",
+     "angle.azimuth_deg: must be [first, last, step] in degrees, -180 <= first <= last <= 180, "
+     "step > 0 and at most 36000 steps"),
+    (RADAR + "[angle]\nazimuth_deg = [-60, 60, 1e-320]", "angle.azimuth_deg: must be [first, last, step] in degrees"),
+    (RADAR + "[angle]\nazimuth_deg = [0, 10, 1" + 400 * "0" + "]", "angle.azimuth_deg: must be [first, last, step] in degrees"),
     (RADAR + "[angle]\nelevation_deg = [5, 5]", "angle.elevation_deg: must be a number or an ascending list"),
     (RADAR + "[angle]\nmethod = 'capon'\nwindow = 'hann'", "angle.window: must be \"rect\" for capon"),
     (RADAR + "[angle]\nvelocity = 10.0", "angle: velocity: must be within +-9.67"),

@@ -1,6 +1,10 @@
 """Actors: named parts, each a mesh with a material and a motion of its own."""
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 from typing import Any
+
+from .. import _core
 
 
 @dataclass(frozen=True)
@@ -15,9 +19,9 @@ class Part:
     """
 
     name: str
-    mesh: Any
-    material: Any
-    motion: Any = None
+    mesh: _core.Mesh
+    material: _core.Material | str
+    motion: _core.Motion | _core.Deformation | None = None
     position: tuple = (0.0, 0.0, 0.0)
     smooth: bool = False
 
@@ -31,8 +35,8 @@ class Actor:
     motion: of the whole, such as the Trajectory that it follows; None: Scene.add says.
     """
 
-    parts: list = field(default_factory=list)
-    motion: Any = None
+    parts: list[Part] = field(default_factory=list)
+    motion: _core.Motion | None = None
 
     def __post_init__(self):
         names = [part.name for part in self.parts]

@@ -66,7 +66,7 @@ def trihedral(size: float, *, edge: float | None = None) -> _core.Mesh:
     cross section 4 pi size^4 / (3 wavelength^2) towards -x. `edge` is as in `plate`.
     Raises TypeError or ValueError naming the argument.
     """
-    pieces = surfaces.num_pieces(np.sqrt(2.0) * size, surfaces.edge_length(edge, size))
+    pieces = surfaces.num_pieces(np.sqrt(2.0) * size, surfaces.edge_length(edge, size, 6.0))
     turn = np.radians([0.0, 120.0, 240.0])
     across = np.sqrt(2.0 / 3.0)
     tips = size * np.column_stack([np.full(3, -1.0 / np.sqrt(3.0)), across * np.sin(turn), across * np.cos(turn)])

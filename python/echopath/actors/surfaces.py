@@ -10,7 +10,7 @@ RING_SAMPLES = 256       # points that the perimeter of a section is measured wi
 MERIDIAN_SAMPLES = 600   # likewise of the length of a swept surface
 ROW_HEIGHT = 0.87        # distance of the rings of near-equilateral triangles, in edges
 WELD = 1e-9              # m: vertices nearer than that are one
-MAX_TRIANGLES = 20_000_000
+MAX_TRIANGLES = 5_000_000
 
 
 def edge_length(value, size, triangles_per_square=4.0):
@@ -55,8 +55,12 @@ def joined(*pieces):
     offsets = np.cumsum([0] + [len(vertices) for vertices, _ in pieces[:-1]])
     vertices = np.concatenate([vertices for vertices, _ in pieces])
     triangles = np.concatenate([faces + offset for (_, faces), offset in zip(pieces, offsets)])
-    _, first, same = np.unique(np.round(vertices / WELD), axis=0, return_index=True, return_inverse=True)
-    return vertices[first], same.reshape(-1)[triangles]
+    places = np.round(vertices / WELD)
+    order = np.lexsort(places.T[::-1])  # np.unique of rows takes five times as long
+    is_new = np.r_[True, np.any(np.diff(places[order], axis=0) != 0.0, axis=1)]
+    same = np.empty(len(order), np.intp)
+    same[order] = np.cumsum(is_new) - 1
+    return vertices[order[is_new]], same[triangles]
 
 
 def icosphere(radius, pieces):

@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
@@ -56,7 +55,7 @@ _ANGLES = keywords("estimate_angles", parameters_of(estimate_angles)[2:])  # all
 def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMethod = "ca",
            false_alarm_rate: float = FALSE_ALARM_RATE, guard_velocity: int | None = None, guard_range: int | None = None,
            training_velocity: int | None = None, training_range: int | None = None, rank: float = RANK,
-           angles: Mapping[str, Any] | None = None, paths: _core.Paths | None = None, parts: Mapping | None = None,
+           angles: Mapping[str, object] | None = None, paths: _core.Paths | None = None, parts: Mapping | None = None,
            labels: Labels | None = None, beside: Mapping | None = None, objects: Objects = None,
            progress: Progress = None) -> Detections:
     """Echoes that stand out of the noise of a range-Doppler map, with what made them.

@@ -1,8 +1,8 @@
 """Range and azimuth over time: a column for each frame, or for windows of its chirps."""
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import chain
-from typing import Any
 
 import numpy as np
 
@@ -56,7 +56,7 @@ def range_time(frames: Frames, radar: _core.Radar | None = None, *, combine: Com
 @checked(**_RULES, range_gate=gate, velocity_gate=gate, angles=anything)
 def angle_time(frames: Frames, radar: _core.Radar | None = None, *, combine: Combine = "sum",
                range_gate: ArrayLike | None = None, velocity_gate: ArrayLike | None = None,
-               angles: dict[str, Any] | None = None, window_length: int | None = None, hop: int | None = None,
+               angles: Mapping[str, object] | None = None, window_length: int | None = None, hop: int | None = None,
                window: MapWindow = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad,
                part: Part = None, start_times: ArrayLike | None = None) -> AngleTime:
     """Received power by time and azimuth: of each frame's range-azimuth map, all ranges as one.

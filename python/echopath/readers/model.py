@@ -2,7 +2,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
 
 if TYPE_CHECKING:
     from ..trajectories import Trajectory
@@ -23,11 +28,11 @@ class ModelNode:
 
     name: str
     parent: int = -1
-    placement: Any = None
-    motion: Any = None
-    mesh: Any = None
-    deformation: Any = None
-    material: Any = None
+    placement: NDArray[np.float64] | None = None
+    motion: _core.Motion | None = None
+    mesh: _core.Mesh | None = None
+    deformation: _core.Deformation | None = None
+    material: _core.Material | str | None = None
     foreign_material: str = ""
     smooth: bool = False
 
@@ -52,7 +57,7 @@ class Model:
     animation: str | None = None
     duration: float = 0.0
     notes: tuple[str, ...] = field(default=())
-    motion: Any = None
+    motion: _core.Motion | None = None
 
     def along(self, trajectory: Trajectory, *, way: float | None = None) -> Model:
         """The model as it goes along a trajectory: its looped animation is played by the distance, and stops with it.

@@ -6,7 +6,7 @@ degrees only where the key says so (`yaw_deg`).
 from __future__ import annotations
 
 import difflib
-import math
+import sys
 from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag, model_validator
@@ -50,7 +50,7 @@ def nearest_key(key: str, candidates) -> str:
 
 
 def _is_number(value) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
 
 
 def _permittivity(value):
@@ -86,9 +86,10 @@ class Table(BaseModel):
     @classmethod
     def _know_every_key(cls, data):
         if isinstance(data, dict):
+            known = cls.model_fields
             for key in data:
-                if key not in cls.model_fields:
-                    advice = nearest_key(key, cls.model_fields)
+                if key not in known:
+                    advice = nearest_key(key, known)
                     raise PydanticCustomError("unknown_key", "unknown key; {advice}", {"key": key, "advice": advice})
         return data
 
@@ -409,11 +410,15 @@ class SpectrumTable(Table):
     zero_pad: int = Field(SignalSettings.zero_pad, ge=1, description="length of the transforms over that of the data")
 
 
+MOST_AZIMUTH_STEPS = 36_000  # a hundredth of a degree over all around
+
+
 def _azimuths(value):
     if not (isinstance(value, list) and len(value) == 3 and all(map(_is_number, value)) and value[2] > 0
-            and -180 <= value[0] <= value[1] <= 180):
-        raise ValueError("must be [first, last, step] in degrees, -180 <= first <= last <= 180 and step > 0")
-    return value
+            and -180 <= value[0] <= value[1] <= 180 and value[1] - value[0] <= MOST_AZIMUTH_STEPS * value[2]):
+        raise ValueError("must be [first, last, step] in degrees, -180 <= first <= last <= 180, step > 0 and at most "
+                         f"{MOST_AZIMUTH_STEPS} steps")
+    return list(map(float, value))
 
 
 def _elevations(value):

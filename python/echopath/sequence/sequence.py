@@ -16,6 +16,7 @@ from ..effect_choices import Choices
 from ..frame import Frame
 from ..frame_run import FrameRun, Recorded
 from ..guard import warn_of
+from ..parts import Selections
 from ..progress import automatic_bars
 from ..scene import Scene
 from ..settings import (
@@ -67,14 +68,14 @@ class Sequence(Row[Frame]):
                  target_error_db: float | None = TraceSettings.target_error_db,
                  max_rays: int | float = TraceSettings.max_rays, scatterers: Scatterers = TraceSettings.scatterers,
                  edges: Edges = TraceSettings.edges, effects: Choices = TraceSettings.effects,
-                 parts: Mapping[str, Any] | None = None,
+                 parts: Selections | None = None,
                  tolerance: float = SignalSettings.tolerance, method: Method = SignalSettings.method,
                  replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,
                  phase_tolerance: float = SignalSettings.phase_tolerance, retrace: Retrace = SignalSettings.retrace,
                  keyframes: int = SignalSettings.keyframes, noise_seed: int | None = SignalSettings.noise_seed,
                  window: MapWindow = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad,
-                 angles: Mapping[str, Any] | None = None, labels: bool | LabelSettings | Mapping[str, Any] | None = None,
-                 detections: bool | Mapping[str, Any] | None = None, truth: bool | Mapping[str, Any] | None = None,
+                 angles: Mapping[str, object] | None = None, labels: bool | LabelSettings | Mapping[str, object] | None = None,
+                 detections: bool | Mapping[str, object] | None = None, truth: bool | Mapping[str, object] | None = None,
                  guard: bool = True, trace: TraceSettings | None = None, signal: SignalSettings | None = None):
         tracing = TraceSettings(num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
                                 polarization=polarization, footprint=footprint, sampler=sampler, batches=batches,

@@ -46,12 +46,12 @@ def _change(arguments: dict, random: Random) -> None:
         return
     array = arguments[name].copy()
     kind = random.randrange(5)
-    if kind <= 2:
+    if kind <= 2 and array.dtype.kind in "biufcV":
         _put(array, random)
-    elif kind == 3:
+    elif kind == 3 and array.ndim:
         array = random.choice([array[1:], array[:0], array[::2], np.concatenate([array, array]), array[None], array[..., None],
                                np.asfortranarray(array), array[::-1]])
-    elif not array.dtype.names:
+    elif array.dtype.kind in "biufc":
         with np.errstate(all="ignore"):
             array = array.astype(random.choice(["f4", "f8", "i1", "i4", "i8", "u1", "u8", "c16", "O", "S8", "b1", ">i8"]))
     arguments[name] = array

@@ -5,12 +5,25 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import echopath as ep
+
 TEXT = (Path(__file__).parents[2] / "README.md").read_text()
 
 
 @pytest.fixture(scope="module")
 def blocks():
     return re.findall(r"```python\n(.*?)```", TEXT, re.DOTALL)
+
+
+def test_the_table_of_packages_names_every_package_and_the_home_of_every_public_name():
+    named = set(re.findall(r"`(\w+)`", " ".join(row.split("|")[1] for row in TEXT.splitlines() if row.startswith("| `"))))
+    folder = Path(ep.__file__).parent
+    packages = {path.parent.name for path in folder.glob("*/__init__.py")}
+    homes = {getattr(ep, name).__module__.split(".")[1] for name in ep.__all__
+             if getattr(getattr(ep, name), "__module__", "").startswith("echopath.")} - {"_core"}
+    assert packages | homes <= named
+    there = {path.stem for path in folder.iterdir()} | {path.name for path in (folder.parents[1] / "cpp" / "echopath").iterdir()}
+    assert named <= there
 
 
 @pytest.fixture(scope="module")

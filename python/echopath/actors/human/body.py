@@ -51,7 +51,8 @@ FOOT_TOP = [(0.00, 0.020, 0.016), (0.05, 0.040, 0.017), (0.16, 0.053, 0.0185), (
             (1.00, 0.0163, 0.020)]
 FOOT_CAPS = (0.016, 0.030)   # round ends of the breadth at heel and toes, in body heights
 FOOT_POWER = 2.6             # of the sections: a flat sole under a round upper
-ROUNDEST = 0.6               # longest side over the least half axis, of feet half breadth; beyond, normals turn by 30 degrees within a triangle
+# Longest side over the least half axis, of feet half breadth; beyond, normals turn by 30 degrees within a triangle.
+ROUNDEST = 0.6
 
 
 def surface(part, body, edge):

@@ -18,7 +18,7 @@ def main() -> int:
     failed = False
     for target in options.targets or TARGETS:
         count, findings = run(target, range(options.first, sys.maxsize), options.seconds)
-        print(f"{target}: {count} runs, {len(findings)} findings", flush=True)
+        print(f"{target}: {count} runs, {len(findings)} findings; --first {options.first + count} goes on", flush=True)
         for finding in findings:
             print(f"  case {finding.number}: {finding.what}")
         failed = failed or bool(findings)

@@ -10,6 +10,7 @@ from . import _core
 from .checks import MapWindow, an, anything, array, checked, count, flag, map_window, one_of, optional, path, refused, text
 from .families import listed
 from .frame import Frame
+from .live import Live
 from .parts import Views, selection_rule
 from .sequence import Sequence, StoredSequence
 from .settings import Evaluate, Retrace, SignalSettings
@@ -20,14 +21,14 @@ if TYPE_CHECKING:
 
 ColorBy = Literal["bounces", "mesh", "power", "range", "speed"]
 Viewed = Union[str, os.PathLike[str], list[str], list[os.PathLike[str]], tuple[str | os.PathLike[str], ...], Frame, Sequence,
-               StoredSequence, "Dataset"]
+               StoredSequence, Live, "Dataset"]
 View = Literal["fit", "radar", "top", "side"]
 _REPLAY = {name: optional(SignalSettings.RULES[name]) for name in ("zero_pad", "evaluate", "retrace", "keyframes")}
 
 
 def _what(argument: str, value):
     """A frame file, a Frame, a scene, frames in time or None."""
-    if value is None or isinstance(value, (_core.Scene, Frame, Sequence, StoredSequence)) or _is_dataset(value):
+    if value is None or isinstance(value, (_core.Scene, Frame, Live, Sequence, StoredSequence)) or _is_dataset(value):
         return value
     if isinstance(value, (str, os.PathLike)):
         return path(argument, value)
@@ -54,7 +55,7 @@ def view(what: Viewed | _core.Scene | None = None, paths: _core.Paths | None = N
     It needs the packages of `pip install PySide6-Essentials pyvista pyvistaqt vtk`.
     what: a frame file, a Frame, or the scene of the paths (None: theirs); or frames in time, which open as one time line: a
         Sequence (frames appear as they are simulated), a StoredSequence, a Dataset, a folder of one of these or of frame files,
-        a pattern such as "out/frame_*.h5", or a list of files
+        a pattern such as "out/frame_*.h5", or a list of files; or a Live, whose objects are then dragged (Shift)
     paths: of `trace`
     parts: of `decompose` (with their cubes), or selections {name: selection}, one partition or {partition: {name: selection}}
     window, zero_pad: of the maps of paths, as in `range_doppler`; evaluate, retrace, keyframes: of their signals, as in

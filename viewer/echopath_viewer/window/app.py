@@ -7,6 +7,7 @@ import sys
 import echopath as ep
 
 from ..model import from_file, from_frame, from_paths
+from ..model.live_session import input_of_view
 from ..model.preview import preview_of
 from ..model.simulated_frames import SimulatedFrames
 from ..model.time_line import time_line_of
@@ -37,6 +38,9 @@ def view(*what, parts=None, block=True, state=None, picture=None, scale=1, **set
     require_screen()
     application = QtWidgets.QApplication.instance() or QtWidgets.QApplication(["echopath"])
     window = _opened(view_input, line, state if early is None else None, picture is None)
+    if what and isinstance(what[0], ep.Live):
+        window.open_panel("Live")
+        window.live_panel.attach(what[0], window.session)
     if early is not None:
         _load_rest(window, what[0], state)
     if picture is not None:
@@ -100,6 +104,8 @@ def read_input(*what, parts=None, **settings) -> tuple:
 def _read_one(what) -> tuple:
     if isinstance(what, ep.Frame):
         return from_frame(what), None
+    if isinstance(what, ep.Live):
+        return input_of_view(what, what.update()), None
     if isinstance(what, ep.Sequence):
         require_screen()  # before the work
         line = SimulatedFrames(what)

@@ -47,7 +47,9 @@ MOUSE = (
     ("Map: click, drag", "the rays of a cell, of a rectangle"),
     ("Map: wheel, right button, double click", "zoom, move, what moves or everything"),
     ("Scene: drag, wheel, middle button", "turn, zoom, move"), ("Scene: click", "a ray, or the body under the cursor"),
-    ("Scene: Ctrl + click", "the mesh under the cursor, walls too"), ("Tree: click, right button", "map of a mesh, more"),
+    ("Scene: Ctrl + click", "the mesh under the cursor, walls too"),
+    ("Scene: Shift + drag", "moves an object, where the panel Live is started"),
+    ("Tree: click, right button", "map of a mesh, more"),
     ("Table: click a heading, Ctrl+C", "sort, copy rows"),
 )
 

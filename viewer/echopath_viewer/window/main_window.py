@@ -22,6 +22,8 @@ from .file_actions import FileActions
 from .filter_box import FilterBox
 from .frame_bar import FrameBar
 from .keys import uses_key
+from .live_control import LiveControl
+from .live_panel import LivePanel
 from .map_area import MapArea
 from .menus import Menus
 from .panels import Panels
@@ -55,6 +57,8 @@ class MainWindow(Panels, Menus, ViewActions, FileActions, Choices, QtWidgets.QMa
         self.time_bar.is_behind = self.view3d.is_behind
         self.time_line = TimeControl(self.frame_bar, lambda: state_of(self.session), self.view3d.is_behind)
         self.contributions.is_playing = lambda: self.time_line.is_playing
+        self.live = LiveControl(lambda: state_of(self.session), self)
+        self.live_panel = LivePanel(self.live)
         self.frame_bar.hide()
         self.banner, self.empty_page, self.loading_bar = Banner(), EmptyPage(), thin_bar()
         self.loading = BackgroundWork(self)
@@ -115,7 +119,7 @@ class MainWindow(Panels, Menus, ViewActions, FileActions, Choices, QtWidgets.QMa
         self.show_content(True)
         self.show()
         for part in (self.tree, self.filter_box, self.map_area, self.time_bar, self.view3d, self.table, self.contributions,
-                     *self.side_panels.values()):
+                     *self.side_panels.values(), self.live_panel):
             part.show_session(self.session)
         self.view3d.builder.set_show_hits(self.filter_box.hits_check.isChecked())
         self.view3d.setFocus()  # so that the arrow keys step through the chirps
@@ -144,6 +148,23 @@ class MainWindow(Panels, Menus, ViewActions, FileActions, Choices, QtWidgets.QMa
     def _show_tracks(self) -> None:
         self.view3d.builder.show_tracks(self.frame_bar.strip.tracks)
         self.view3d.render_soon()
+
+    def _take_live(self, session, _view) -> None:
+        if self.live.is_on:
+            self._follow(session)
+
+    def _drag_mesh(self, mesh: int, way) -> None:
+        """way: [3] m from where the object was when it was taken hold of; [0, 0, 0] then."""
+        if not self.live.is_on:
+            self.show_message("Start the panel Live to move objects.")
+            return
+        name = self.session.mesh_names[mesh].partition("/")[0]
+        if not np.any(way):
+            self.live_panel.choose(name)
+            self._dragged_from = self.live.position(name)
+            return
+        self.live.move(name, self._dragged_from + way)
+        self.live_panel.read()
 
     def show_message(self, text: str) -> None:
         """Shows a line above everything until it is clicked away; "" takes it away."""
@@ -227,6 +248,10 @@ class MainWindow(Panels, Menus, ViewActions, FileActions, Choices, QtWidgets.QMa
         self.loading.done.connect(self._take_rest)
         self.loading.failed.connect(self._end_loading)
         self.time_line.read.connect(self._follow)
+        self.live.full.connect(self._take_live)
+        self.live.previewed.connect(lambda view: self.session.preview_map(view.map))
+        self.live.failed.connect(self.show_message)
+        self.view3d.mesh_dragged.connect(self._drag_mesh)
         self.time_line.glanced.connect(self._show_tracks)
         self.time_line.failed.connect(self.show_message)
         self.empty_page.open_wanted.connect(self.open_dialog)
@@ -254,7 +279,7 @@ class MainWindow(Panels, Menus, ViewActions, FileActions, Choices, QtWidgets.QMa
             remember_layout(self)
         self.time_bar.stop()
         self.time_line.stop()
-        for work in (self.contributions.work, self.loading):
+        for work in (self.contributions.work, self.loading, self.live_panel):
             work.stop()
         for panel in self.side_panels.values():
             panel.stop()

@@ -25,6 +25,9 @@ class Panels:
             self.add_panel(area, name, widget)
         self.side_panels = {"Range-azimuth": AzimuthPanel(), "Range-elevation": ElevationPanel(),
                             "Spectrogram": SpectrogramPanel(), "Beat signal": BeatPanel(), "Compare": ComparePanel()}
+        self.add_panel(LEFT, "Live", self.live_panel)
+        self.tabifyDockWidget(self.docks["Rays shown"], self.docks["Live"])
+        self.docks["Rays shown"].raise_()
         for name, panel in self.side_panels.items():
             self.add_panel(RIGHT, name, panel)
             self.docks[name].visibilityChanged.connect(panel.set_seen)

@@ -19,6 +19,7 @@ class View3D(QtInteractor):
     ray_clicked = Signal(int)
     mesh_clicked = Signal(int)
     nothing_clicked = Signal()
+    mesh_dragged = Signal(int, object)  # with Shift: the mesh, [3] m on the horizontal plane through where it was taken
     _in_paint = False  # of pyvistaqt, which sets it in its constructor
 
     def __init__(self, parent=None):
@@ -26,7 +27,7 @@ class View3D(QtInteractor):
         # Multisampling takes most of the time where there is no graphics card.
         self._is_behind = self._is_fresh = False
         super().__init__(parent, auto_update=False, multi_samples=0)
-        self._press, self.legend_box = None, LegendBox(self)
+        self._press, self._drag, self.legend_box = None, None, LegendBox(self)
         self.setAcceptDrops(False)  # what is dropped here is the window's: pyvistaqt would read it with VTK
         # VTK draws in paintGL alone: a drawing of its own, at each turn of the camera, would come on top of that.
         self.iren.interactor.EnableRenderOff()
@@ -165,11 +166,48 @@ class View3D(QtInteractor):
             self.builder.resized()
             self.render_soon()
 
+    def _world_at(self, at, height: float):
+        """[3] m of a pixel on the horizontal plane at a height; None where that lies behind the camera."""
+        across, up = 2.0 * at.x() / self.width() - 1.0, 1.0 - 2.0 * at.y() / self.height()
+        world = np.linalg.inv(self.clip_from_world())
+        near, far = (world @ (across, up, depth, 1.0) for depth in (-1.0, 1.0))
+        near, far = near[:3] / near[3], far[:3] / far[3]
+        share = (height - near[2]) / (far[2] - near[2]) if far[2] != near[2] else -1.0
+        return near + share * (far - near) if 0.0 < share <= 1.0 else None
+
+    def _take_hold(self, at) -> bool:
+        """Of the mesh under the cursor, to drag its object."""
+        mesh = self.mesh_at(at.x(), at.y(), False)
+        if mesh is None:
+            return False
+        height = self.builder.meshes.actors[mesh].center[2]
+        self._drag = mesh, height, self._world_at(at, height)
+        if self._drag[2] is None:
+            self._drag = None
+            return False
+        self.mesh_dragged.emit(mesh, np.zeros(3))
+        return True
+
+    def mouseMoveEvent(self, event):
+        if self._drag is None:
+            super().mouseMoveEvent(event)
+            return
+        mesh, height, begin = self._drag
+        at = self._world_at(event.position(), height)
+        if at is not None:
+            self.mesh_dragged.emit(mesh, at - begin)
+
     def mousePressEvent(self, event):
+        is_hold = event.button() == Qt.MouseButton.LeftButton and event.modifiers() & Qt.KeyboardModifier.ShiftModifier
+        if is_hold and self.builder is not None and self._take_hold(event.position()):
+            return
         self._press = event.position() if event.button() == Qt.MouseButton.LeftButton else None
         super().mousePressEvent(event)
 
     def mouseReleaseEvent(self, event):
+        if self._drag is not None:
+            self._drag = None
+            return
         super().mouseReleaseEvent(event)
         press, self._press = self._press, None
         if press is None or self.builder is None:

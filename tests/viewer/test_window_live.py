@@ -1,0 +1,89 @@
+"""Objects that are dragged in the window, while map and rays follow."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath_viewer.model import from_frame
+from echopath_viewer.model.live_session import input_of_view
+from echopath_viewer.window.qt import Qt, QtCore
+from support.window import LEFT, open_on_screen, project
+
+PATIENCE_MS = 20_000
+SAME = 1e-9  # of the largest sample, of a fresh scene
+
+
+@pytest.fixture
+def live_window(qtbot, shared_window, moving_sequence):
+    scene = moving_sequence.scene
+    scene["plate"].motion = None
+    live = ep.Live(scene, moving_sequence.radar, num_rays=3000, max_bounces=2)
+    window = shared_window
+    window.show_input(input_of_view(live, live.update()))
+    open_on_screen(qtbot, window)
+    window.live_panel.attach(live, window.session)
+    yield window
+    window.live_panel.stop()
+
+
+def settled(qtbot, window) -> None:
+    qtbot.waitUntil(window.live.is_settled, timeout=PATIENCE_MS)
+    number = window.live.live.number
+    qtbot.waitUntil(lambda: window.live_panel.state_label.text().startswith("full") and window.live.live.number == number,
+                    timeout=PATIENCE_MS)
+
+
+def test_what_is_moved_by_numbers_is_that_of_a_fresh_scene(qtbot, live_window):
+    window, panel = live_window, live_window.live_panel
+    settled(qtbot, window)
+    panel.choose("plate")
+    panel.place_boxes[0].setValue(8.0)
+    qtbot.waitUntil(lambda: abs(window.view3d.builder.meshes.actors[0].center[0] - 14.0) < 1e-3, timeout=PATIENCE_MS)
+    settled(qtbot, window)
+    fresh = ep.Live(window.live.live.scene, window.live.live.radar, num_rays=3000, max_bounces=2).update()
+    shown = window.session.parts.whole.spectrum.values
+    assert np.abs(shown - fresh.map.values).max() < SAME * np.abs(fresh.map.values).max()
+    assert window.session.paths.num_paths == window.session.columns.power.size > 0
+
+
+def test_an_object_is_dragged_with_shift(qtbot, live_window):
+    window, view = live_window, live_window.view3d
+    settled(qtbot, window)
+    window.look_fit()
+    window.settle()
+    before, middle = window.live.position("plate"), np.array(view.builder.meshes.actors[0].center)
+    at = project(window, middle)
+    at = next(spot for spot in (at + QtCore.QPoint(dx, dy) for dx in (0, 1, -1, 2, -2) for dy in (0, 3, -3, 6))
+              if view.mesh_at(spot.x(), spot.y(), False) == 0)
+    aim = project(window, middle + (2.0, 1.0, 0.0)) + (at - project(window, middle))
+    qtbot.mousePress(view, LEFT, Qt.KeyboardModifier.ShiftModifier, pos=at)
+    qtbot.mouseMove(view, aim)
+    qtbot.mouseRelease(view, LEFT, Qt.KeyboardModifier.ShiftModifier, pos=aim)
+    assert window.live.position("plate") - before == pytest.approx([2.0, 1.0, 0.0], rel=0, abs=0.15)
+    settled(qtbot, window)
+
+
+def test_radar_material_and_turns_follow(qtbot, live_window):
+    window, panel = live_window, live_window.live_panel
+    settled(qtbot, window)
+    level = window.session.parts.whole.level(0, 0).max()
+    panel.choose("wall")
+    panel.material_box.setCurrentText("metal")
+    panel.material_box.activated.emit(panel.material_box.currentIndex())
+    settled(qtbot, window)
+    assert window.session.parts.whole.level(0, 0).max() > level + 3.0
+    panel.yaw_box.setValue(5.0)
+    panel.choose("radar")
+    panel.place_boxes[1].setValue(0.5)
+    settled(qtbot, window)
+    assert window.session.radar.position[1] == 0.5 and window.live.yaw("wall") == pytest.approx(np.radians(5.0))
+
+
+def test_a_frame_becomes_live_and_another_one_ends_it(qtbot, window, frame):
+    window.live_panel.rays_box.setValue(2000)
+    window.live_panel.start_button.setChecked(True)
+    settled(qtbot, window)
+    assert window.session.title == "live" and window.live_panel.object_box.currentText() == "walker"
+    window.show_input(from_frame(frame, title="frame"))
+    assert not window.live.is_on and not window.live_panel.start_button.isChecked()

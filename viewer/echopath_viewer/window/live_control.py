@@ -1,0 +1,96 @@
+"""A live scene in the window: what is dragged is traced again, preview first, then in full quality."""
+from __future__ import annotations
+
+import numpy as np
+
+from ..model.live_session import live_of, session_of_view
+from .qt import QtCore, Signal
+
+RADAR = "radar"  # as an object that is moved
+BUDGET = 0.05    # s, that a preview may take
+
+
+class LiveControl(QtCore.QObject):
+    """Watches an ep.Live; tells sessions of full views and maps of previews in the thread of the window."""
+
+    full, previewed, failed = Signal(object, object), Signal(object), Signal(str)  # (Session, LiveView), LiveView
+
+    def __init__(self, state_now, parent=None):
+        """state_now: callable () -> state of the view, to be taken over"""
+        super().__init__(parent)
+        self._state_now, self._state, self.live, self._watch = state_now, None, None, None
+
+    @property
+    def is_on(self) -> bool:
+        """Whether a scene is live."""
+        return self.live is not None
+
+    def start(self, session, num_rays: int, live=None) -> None:
+        """Makes the scene of a session live. live: ep.Live to be watched in place of a new one. Raises ValueError."""
+        self.stop()
+        self._settings = session.signals.spectrum_settings
+        self._state = self._state_now()
+        self.live = live_of(session, num_rays) if live is None else live
+        self._watch = self.live.watch(self._show, budget=BUDGET)
+
+    def stop(self) -> None:
+        """Ends the watch; the view that was shown last stays."""
+        watch, self._watch, self.live = self._watch, None, None
+        if watch is not None:
+            try:
+                watch.stop()
+            except Exception as error:  # what had ended it before
+                self.failed.emit(str(error))
+
+    def is_settled(self) -> bool:
+        """Whether the full view of the latest change was shown."""
+        return self._watch is None or self._watch.wait(1e-3)
+
+    # --- changes ---
+
+    def objects(self) -> list[str]:
+        """What can be moved: the radar and the children of the root."""
+        return [RADAR, *dict.fromkeys(mesh.name.partition("/")[0] for mesh in self.live.scene.meshes)]
+
+    def position(self, name: str):
+        """[3] m."""
+        return np.array(self.live.radar.position if name == RADAR else self.live.scene[name].position, float)
+
+    def yaw(self, name: str) -> float:
+        """rad"""
+        return 0.0 if name == RADAR else float(self.live.scene[name].yaw)
+
+    def move(self, name: str, position) -> None:
+        """To a position in m."""
+        if name == RADAR:
+            self._try(lambda: setattr(self.live, "radar", self.live.radar.replace(position=tuple(map(float, position)))))
+        else:
+            self._change(name, "position", tuple(map(float, position)))
+
+    def turn(self, name: str, yaw: float) -> None:
+        """To a yaw in rad."""
+        self._change(name, "yaw", yaw)
+
+    def set_material(self, name: str, material) -> None:
+        """Of all meshes of an object."""
+        self._change(name, "material", material)
+
+    def _change(self, name: str, field: str, value) -> None:
+        self._try(lambda: self.live.change(lambda scene: setattr(scene[name], field, value)))
+
+    def _try(self, work) -> None:
+        self._state = self._state_now()
+        try:
+            work()
+        except (ValueError, TypeError, KeyError) as error:
+            self.failed.emit(str(error))
+
+    def _show(self, view) -> None:
+        """In the thread of the watch."""
+        live = self.live
+        if live is None:
+            return
+        if view.is_preview:
+            self.previewed.emit(view)
+        else:
+            self.full.emit(session_of_view(live, view, self._state, self._settings), view)

@@ -123,6 +123,7 @@ Radar radar(const Arg<"waveform", Instance<ChirpSequence>>& waveform,
              *empty_slots,     rows_of(*code_phases),
              *receiver};
   made.validate();
+  made.validate_code_fits();
   require(made.code_phases.empty() || made.code_phases.size() == made.transmitters.size(), "code_phases",
           "must have one row for each transmitter", made.code_phases.size());
   warn_of_turns(made.yaw);

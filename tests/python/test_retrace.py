@@ -179,3 +179,14 @@ def test_scenes_that_are_traced_once_keep_nothing():
     for is_kept in (False, True):
         ep.trace(scene, radar_of(num_chirps=2), num_rays=100)
         assert ("_geometry" in vars(scene)) == is_kept
+
+
+def test_a_trace_whose_planes_image_themselves_is_no_selection():
+    """The paths that images replace are gone from its record, and from what the record counts."""
+    scene, radar = ep.Scene(), radar_of(num_chirps=4)
+    scene.add(facing(0.5, 0.5), name="plate", position=(5, 0, 0), material=ROUGH.replace(scattering=0.5),
+              motion=ep.LinearMotion(velocity=(1, 0, 0)))
+    paths = ep.trace(scene, radar, num_rays=500)
+    assert paths.num_paths == paths.frame.statistics.num_paths > 0
+    again = ep.synthesize(paths, radar, retrace="always", keyframes=2)
+    assert np.sum(np.abs(again) ** 2) == pytest.approx(np.sum(np.abs(ep.synthesize(paths, radar)) ** 2), rel=0.1)

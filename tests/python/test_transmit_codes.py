@@ -235,3 +235,20 @@ def test_frames_of_codes_and_faults_come_back_from_files_and_alone(tmp_path):
     apart = ep.demultiplex(quiet, radar)
     ratio = np.sum(np.abs(apart) ** 2, axis=(1, 2, 3)) / np.sum(np.abs(second.cube) ** 2, axis=(1, 2, 3))
     assert 10 * np.log10(ratio) == pytest.approx([0.0, 1.0, -1.0], abs=0.1)
+
+
+@pytest.mark.parametrize("num_tx, empty, num_chirps", [(3, 1, 32), (2, 2, 16), (2, 1, 15)])
+def test_what_looks_at_one_antenna_takes_any_radar_that_sends_at_once(num_tx, empty, num_chirps, tmp_path):
+    """Its chirps are whole turns of all transmitters, and not of one."""
+    radar = build_radar([(0, 4 * m * HALF, 0) for m in range(num_tx)], [(0, 0, 0), (0, HALF, 0)], num_chirps=num_chirps,
+                        num_samples=64, multiplexing="ddm", empty_slots=empty, transmit_power=1.0)
+    in_turn = build_radar(radar.transmitters, radar.receivers, num_chirps=num_chirps, num_samples=64, transmit_power=1.0)
+    still, turns = plates(0.0, radar=radar), plates(0.0, radar=in_turn)
+    assert np.array_equal(still.power, turns.power)
+    assert ep.received_power(still).power == ep.received_power(turns).power > 0.0
+    paths = plates(3.0, radar=radar)
+    assert ep.validity(paths, radar).num_paths == paths.num_paths
+    paths.save(tmp_path / "paths.h5")
+    frame = ep.simulate(paths.scene, radar, num_rays=2000, max_bounces=1, labels=True, detections=True, truth=True,
+                        retrace="invalid", keyframes=0)
+    assert set(frame.detections.object) == {"ball0"}

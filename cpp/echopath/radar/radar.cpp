@@ -70,17 +70,6 @@ bool has_complex_code(const Radar& radar) {
                      [&](const auto& row) { return std::any_of(row.begin(), row.end(), is_complex); });
 }
 
-void validate_code_fits(const Radar& radar) {
-  const ChirpSequence& waveform = radar.waveform;
-  if (radar.multiplexing == Multiplexing::kDdm) {
-    const int64_t shares = static_cast<int64_t>(radar.transmitters.size()) + radar.empty_slots;
-    require(waveform.num_chirps % shares == 0, "waveform.num_chirps",
-            "must be a multiple of transmitters + empty_slots = " + std::to_string(shares), waveform.num_chirps);
-  }
-  require(!waveform.real || !has_complex_code(radar), "waveform.real",
-          "must be False with a code of phases, which needs complex samples", "True");
-}
-
 void validate_code(const Radar& radar) {
   require(radar.empty_slots >= 1, "empty_slots", "must be at least 1", radar.empty_slots);
   const bool has_code = radar.multiplexing == Multiplexing::kCdm;
@@ -91,7 +80,6 @@ void validate_code(const Radar& radar) {
             "must have rows of one length, at least 1", row.size());
     for (const double phase : row) require(std::isfinite(phase), "code_phases", "must be finite", phase);
   }
-  validate_code_fits(radar);
 }
 
 // Replay asks for gains once per path, antenna and instant: the usual whole exponents must not cost a call of pow.
@@ -217,6 +205,16 @@ void Radar::validate() const {
   require(std::isfinite(yaw), "yaw", "must be finite", yaw);
   require(std::abs(pitch) <= 0.5 * kPi, "pitch", "must be from -pi/2 to pi/2 rad", pitch);
   validate_code(*this);
+}
+
+void Radar::validate_code_fits() const {
+  if (multiplexing == Multiplexing::kDdm) {
+    const int64_t shares = static_cast<int64_t>(transmitters.size()) + empty_slots;
+    require(waveform.num_chirps % shares == 0, "waveform.num_chirps",
+            "must be a multiple of transmitters + empty_slots = " + std::to_string(shares), waveform.num_chirps);
+  }
+  require(!waveform.real || !has_complex_code(*this), "waveform.real",
+          "must be False with a code of phases, which needs complex samples", "True");
 }
 
 int Radar::num_slots() const {

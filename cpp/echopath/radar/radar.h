@@ -101,6 +101,9 @@ struct Radar {
   std::shared_ptr<const void> receiver = {};          // what follows the ideal signal, for those who know it; null: nothing
 
   void validate() const;
+  // Raises invalid_argument where the chirps cannot carry the code of the transmitters: of radars as their users give them.
+  // Those that a step of the work cuts to some antennas or chirps need not fit: echoes are those of each transmitter alone.
+  void validate_code_fits() const;
   bool takes_turns() const { return multiplexing == Multiplexing::kTdm; }
   // Returns how many slots make one of the num_chirps: one for each transmitter, or the length of the BPM code, or 1.
   int num_slots() const;

@@ -53,6 +53,7 @@ void PlaneDoubles::leave_out(Paths& paths, Job* job) const {
     for (size_t path = static_cast<size_t>(task * kTogether); path < end; ++path) keep[path] = !is_double(paths, path);
   }, &own);
   paths = paths.select(keep, &own);
+  paths.frame.statistics.num_paths = paths.num_paths();  // what is left is the whole record
 }
 
 }  // namespace echopath

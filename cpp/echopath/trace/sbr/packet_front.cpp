@@ -189,7 +189,7 @@ void PacketFront::find_response(FirstHits& first, int lane) const {
   const SurfaceResponse response = model.respond(first.cos_incidence[lane], first.modes[k]);
   const LobeProbabilities lobes = first.is_owned[k] ? context_.probabilities(model, response) : kPassingOn;
   first.set_response(lane, response, lobes);
-  first.goes_both_ways[k] = !first.points && context_.goes_both_ways(model, lobes);
+  first.goes_both_ways[k] = !first.points && context_.goes_both_ways(model, lobes, 1);
   first.goes_on[k] = context_.settings.max_bounces > 1 && response.gamma != 0.0;
   share_out(first, lane);
 }

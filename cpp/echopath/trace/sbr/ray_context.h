@@ -26,8 +26,8 @@ struct RayContext {
   bool is_passed(int stratum, uint32_t mesh_id) const {
     return surfaces.is_mirror(mesh_id) && !plan.is_field_of_view(stratum);
   }
-  bool goes_both_ways(const SurfaceModel& model, const LobeProbabilities& lobes) const {
-    return echopath::goes_both_ways(model, lobes, settings.specular_probability);
+  bool goes_both_ways(const SurfaceModel& model, const LobeProbabilities& lobes, int depth) const {
+    return echopath::goes_both_ways(model, lobes, settings.specular_probability, depth);
   }
   LobeProbabilities probabilities(const SurfaceModel& model, const SurfaceResponse& response) const {
     return lobe_probabilities(model, response, settings.specular_probability);

@@ -72,18 +72,18 @@ void RayWalk<Weight>::shoot_lane(int lane, Scratch& scratch, PathBlock& block) c
   block.end_ray(scratch.ray.hits.data());
 }
 
-// Follows the ray that a surface scatters to its end, and goes back to the hit for the one that it mirrors, which has random
-// numbers of its own.
+// Follows the ray that a surface scatters to its end, with random numbers of its own, and goes back to the hit for the one
+// that it mirrors, which keeps its place among its neighbours.
 template <class Weight>
 template <class GoOn>
 void RayWalk<Weight>::take_beside(Scratch& scratch, PathBlock& block, const GoOn& go_on) const {
   const Ray ray = scratch.ray;
   const SurfaceHit surface = scratch.surface;
+  scratch.ray.index = scratch.launch_index + kBranchOfWalk * ++scratch.num_branches;
   go_on();
   block.end_ray(scratch.ray.hits.data());
   scratch.ray = ray;
   scratch.surface = surface;
-  scratch.ray.index = scratch.launch_index + kBranchOfWalk * ++scratch.num_branches;
 }
 
 template <class Weight>

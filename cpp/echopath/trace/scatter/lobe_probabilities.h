@@ -34,9 +34,14 @@ inline LobeProbabilities lobe_probabilities(const SurfaceModel& model, const Sur
 // the power that it scatters by its share. If chance chose between them, the gaps that it leaves among neighbouring rays
 // would keep the phases across a point of reflection from cancelling: a person's limbs that mirror each other then err by
 // 8 % of his coherent power, however many the rays. Rays that are asked for other odds, or pass over flagged mirrors, choose
-// one way.
-inline bool goes_both_ways(const SurfaceModel& model, const LobeProbabilities& lobes, double specular_probability) {
-  return specular_probability == 0.0 && lobes.specular > 0.0 && lobes.diffuse > 0.0 && !model.material().mirror;
+// one way. So do those that would be mirrored next to never, and all behind the first hits, which bounds what one ray of the
+// launch becomes: four rays, however many bounces it may take. depth: hits so far, this one among them.
+inline bool goes_both_ways(const SurfaceModel& model, const LobeProbabilities& lobes, double specular_probability,
+                           int depth) {
+  constexpr int kDeepest = 3;
+  constexpr double kLeastMirrored = 1e-3;  // of the power that goes on
+  return depth <= kDeepest && specular_probability == 0.0 && lobes.specular > kLeastMirrored && lobes.diffuse > 0.0 &&
+         !model.material().mirror;
 }
 
 // Returns the probability that a ray survives the roulette behind so many bounces: the larger reflectivity of both lobes, so

@@ -27,7 +27,7 @@ ScatterSample Scatterer<Weight>::sample(const Ray& ray, const SurfaceHit& surfac
   sample.survival_probability = survival_probability(response, ray.coherent ? ray.depth : ray.depth - ray.chain.first);
   sample.ends = surface.samples.survival_sample >= sample.survival_probability || std::norm(response.gamma) == 0;
   if (sample.ends) return sample;
-  const bool goes_both_ways = ray.coherent && context_.goes_both_ways(*surface.model, lobes);
+  const bool goes_both_ways = ray.coherent && context_.goes_both_ways(*surface.model, lobes, ray.depth);
   sample.is_specular = surface.samples.lobe_sample < lobes.specular;
   sample.is_split = goes_both_ways && !sample.is_specular;
   sample.lobe_probability = !sample.is_specular ? lobes.diffuse : goes_both_ways ? 1.0 : lobes.specular;

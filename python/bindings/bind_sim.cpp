@@ -10,6 +10,7 @@
 #include "choice.h"
 #include "echopath/sim/decompose.h"
 #include "echopath/sim/replay_cost.h"
+#include "echopath/sim/stream/keyframes.h"
 #include "echopath/sim/stream/part_pass.h"
 #include "echopath/sim/synthesize.h"
 #include "grouping.h"
@@ -49,6 +50,15 @@ py::array cube_array(Cube&& cube) {
 // None: the radar of the trace.
 const Radar& radar_or_own(const Paths& paths, const Radar* radar) { return radar ? *radar : paths.radar; }
 
+// New surface is looked for in some of many stretches.
+void warn_of_few_searches(const CubeSettings& settings) {
+  if (settings.keyframes.retrace != Retrace::kInvalid || settings.keyframes.keyframes <= kMaxSurfaceSearches) return;
+  std::ostringstream told;
+  told << "keyframes: new surface is looked for in " << kMaxSurfaceSearches << " of " << settings.keyframes.keyframes
+       << " stretches; what shows in none of these is left out, which retrace 'always' finds";
+  warn_caller(told.str());
+}
+
 // Long work is said beforehand. What interpolates in time is quick, and says nothing.
 void warn_of_long_work(const Paths& paths, const Radar& radar, const CubeSettings& settings) {
   constexpr double kLong = 10.0;  // s
@@ -77,6 +87,7 @@ py::array synthesize_cube(const Paths& paths, const Radar* radar, double toleran
   CubeSettings settings = settings_of(tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes);
   set_probe(probe, settings);
   warn_of_long_work(paths, radar_or_own(paths, radar), settings);
+  warn_of_few_searches(settings);
   return cube_array(run_job("synthesize", progress,
                             [&](Job& job) { return synthesize(paths, radar_or_own(paths, radar), settings, &job); }));
 }
@@ -88,6 +99,7 @@ py::list decompose_cubes(const Paths& paths, const Radar* radar, const std::vect
   CubeSettings settings = settings_of(tolerance, method, replay, evaluate, phase_tolerance, retrace, keyframes);
   set_probe(probe, settings);
   warn_of_long_work(paths, radar_or_own(paths, radar), settings);
+  warn_of_few_searches(settings);
   std::vector<Grouping> rules;
   for (const KeyedGrouping& view : views) rules.push_back(view.rule);
   auto cubes = run_job("decompose", progress,
@@ -107,6 +119,7 @@ std::unique_ptr<PartPass> part_pass(const Paths& paths, const Radar& radar, cons
   CubeSettings settings = settings_of(tolerance, method, replay, evaluate, phase_tolerance, "never", 0);
   set_probe(probe, settings);
   warn_of_long_work(paths, radar, settings);
+  warn_of_few_searches(settings);
   return std::make_unique<PartPass>(paths, radar, as_vector<uint32_t>(group, "group"), num_groups, settings);
 }
 

@@ -119,7 +119,7 @@ void bind_trace_frame(py::module_& m) {
                     "rays without a field ended behind an unflagged mirror of less than half its Fresnel zone")
       .def_readonly("num_false_hits", &TraceStatistics::num_false_hits, "not confirmed in double precision")
       .def_readonly("num_unaimed", &TraceStatistics::num_unaimed,
-                    "objects and images that no rays aim at, because there are too many of them")
+                    "objects and images without a stratum, because there are too many of them")
       .def_readonly("num_unfollowed_beams", &TraceStatistics::num_unfollowed_beams,
                     "sequences of mirrors whose further mirrors were not looked for, for want of memory")
       .def_readonly("num_unsplit_rays", &TraceStatistics::num_unsplit_rays,

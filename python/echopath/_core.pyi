@@ -2125,7 +2125,7 @@ class TraceStatistics:
     @property
     def num_unaimed(self) -> int:
         """
-        objects and images that no rays aim at, because there are too many of them
+        objects and images without a stratum, because there are too many of them
         """
     @property
     def num_unfollowed_beams(self) -> int:

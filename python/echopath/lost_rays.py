@@ -23,17 +23,19 @@ def warn_of_unfollowed_beams(statistics, stacklevel: int = 2) -> None:
                       RuntimeWarning, stacklevel=stacklevel + 1)
 
 
-def warn_of_unaimed(statistics, stacklevel: int = 2) -> None:
-    """Warns (RuntimeWarning) where there are more objects and images than a record can tell strata apart."""
-    text = unaimed(statistics)
+def warn_of_unaimed(statistics, strata=(), stacklevel: int = 2) -> None:
+    """Warns (RuntimeWarning) where objects have no rays of their own: there are more than a record can tell strata apart, or
+    more than the rays reach for."""
+    text = unaimed(statistics, [stratum for stratum in strata if stratum.num_mirrors == 0])
     if text:
-        warnings.warn(f"{text}: only rays of the field of view find them. Objects put under one parent are aimed at as one",
-                      RuntimeWarning, stacklevel=stacklevel + 1)
+        warnings.warn(f"{text}: only rays of the field of view find them. More rays reach more objects, and objects put "
+                      "under one parent are aimed at as one", RuntimeWarning, stacklevel=stacklevel + 1)
 
 
-def unaimed(statistics) -> str:
-    """How many objects and images a trace did not aim at; "" for none."""
-    count = statistics.num_unaimed
+def unaimed(statistics, strata=()) -> str:
+    """How many objects and images a trace did not aim at; "" for none. strata: those of its frame"""
+    idle = sum(stratum.num_rays == 0 and stratum.object >= 0 and stratum.focus_of < 0 for stratum in strata)
+    count = statistics.num_unaimed + idle
     return f"{count:,} objects and images have no rays of their own" if count else ""
 
 

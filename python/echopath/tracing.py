@@ -77,8 +77,8 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
     Returns Paths. Raises TypeError or ValueError naming the argument, also for smooth mirrors that are not flat and motions
     that do not cover the frame. Warns (TessellationWarning, once) of curved meshes that err by more than 0.3 dB, with the
     edge length in m that would do, and (RuntimeWarning) where over 1 % of the rays are lost to a surface that the radar
-    touches, not every sequence of mirrors was tried, the scene is empty, or the lengths of an object look like those of
-    another unit.
+    touches, not every sequence of mirrors was tried, objects have no rays of their own, the scene is empty, or the lengths of
+    an object look like those of another unit.
     """
     wavelength = _core.speed_of_light / radar.waveform.start_frequency
     is_first, geometry = _remembered(scene)
@@ -92,8 +92,9 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
                         scatterers="rays" if scatterers == "auto" else scatterers,
                         edges=looks_for_edges(edges, scene, radar, start_time),
                         attenuation=attenuation_of(scene, radar, effects), progress=progress, kept=geometry)
-    for warn in (warn_of_lost_rays, warn_of_unfollowed_beams, warn_of_unaimed):
+    for warn in (warn_of_lost_rays, warn_of_unfollowed_beams):
         warn(paths.frame.statistics, stacklevel=_CALLER)
+    warn_of_unaimed(paths.frame.statistics, paths.frame.strata, stacklevel=_CALLER)
     return paths
 
 

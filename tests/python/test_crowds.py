@@ -96,3 +96,15 @@ def test_strata_fit_what_they_aim_at():
     assert pole.half_azimuth > 0 and pole.solid_angle < 1.5 * 0.1 * 3.0 / (20**2 + 3**2)
     assert ball.half_azimuth == 0 and ball.solid_angle == pytest.approx(np.pi * 0.5**2 / (20**2 + 3**2 + 1), rel=0.04)
     assert [scene.nodes[stratum.object].name for stratum in (pole, ball)] == ["pole", "ball"]
+
+
+def test_direct_power_of_a_person_hardly_depends_on_the_seed_of_the_rays():
+    """Limbs mirror each other and hide half of each other's points of reflection: .9 % over many seeds, 3.2 % where chance
+    chooses the way on from clothes."""
+    scene = ep.Scene()
+    scene.add(ep.actors.pedestrian(phase=0.3), name="person", position=(40.0, 0.0, 0.0), yaw=np.pi)
+    radar = ep.Radar(ep.ChirpSequence(num_chirps=2), transmitters=[ep.Antenna((0, 0, 0.7))],
+                     receivers=[ep.Antenna((0, 0.01, 0.7))])
+    powers = [ep.received_power(ep.trace(scene, radar, num_rays=100_000, max_bounces=2, seed=seed)).power
+              for seed in range(1, 11)]
+    assert np.std(powers, ddof=1) < 0.018 * np.mean(powers)

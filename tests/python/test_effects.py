@@ -264,3 +264,33 @@ def test_of_a_town_the_first_names_stand_for_all():
     for index in range(1000):
         scene.add(plate, name=f"house_{index}", material=SPECULAR, position=(5.0, 2.0 * index, 0.0))
     assert found(scene)["perfect conductors"].reason == "1000 meshes: house_0, house_1, house_2 and 997 more"
+
+
+def crowd_of_plates(count: int):
+    scene = ep.Scene()
+    for k in range(count):
+        scene.add(ep.actors.plate(0.1, 0.1), name=f"plate_{k}", material=SPECULAR, position=(20.0, 0.5 * k - 10.0, 0.0))
+    return scene
+
+
+def test_objects_too_many_for_the_rays_are_said():
+    with pytest.warns(RuntimeWarning, match="40 objects and images have no rays of their own"):
+        paths = ep.trace(crowd_of_plates(40), make_radar(), num_rays=64, max_bounces=1)
+    effect = next(effect for effect in paths.effects if effect.name == "rays aimed at objects")
+    assert "40 objects and images have no rays of their own" in effect.reason
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)
+        ep.trace(crowd_of_plates(4), make_radar(), num_rays=64, max_bounces=1)
+
+
+def test_new_surface_looked_for_in_some_of_many_stretches_is_said():
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.1, 0.1), name="plate", material=SPECULAR, position=(8, 0, 0),
+              motion=ep.LinearMotion(velocity=(1.0, 0.0, 0.0)))
+    radar = ep.Radar(ep.ChirpSequence(num_chirps=40), transmitters=[ep.Antenna((0, 0, 0))], receivers=[ep.Antenna((0, 0, 0))])
+    paths = ep.trace(scene, radar, num_rays=256, max_bounces=1)
+    with pytest.warns(RuntimeWarning, match="new surface is looked for in 32 of 40 stretches"):
+        ep.synthesize(paths, radar, retrace="invalid", keyframes=40)
+    frame = ep.simulate(scene, radar, num_rays=256, max_bounces=1, retrace="invalid", keyframes=2, guard=False)
+    effect = next(effect for effect in frame.effects if effect.name == "records renewed at keyframes")
+    assert effect.modelled and "in 32 of the stretches at most" in effect.reason

@@ -3,6 +3,8 @@ from __future__ import annotations
 
 from .rules import Case, rule
 
+SURFACE_SEARCHES = 32  # stretches in which new surface is looked for (sim/stream/keyframes.h)
+
 
 def _moves(case: Case) -> bool:
     return len(case.moving) > 0 or case.radar.motion is not None
@@ -31,7 +33,8 @@ def _moved_points(case: Case):
 
 @rule("records renewed at keyframes", "synthesize.retrace")
 def _renewed(case: Case):
-    what = {"never": "one record serves the frame", "invalid": "shadows, points of reflection and new surface",
+    what = {"never": "one record serves the frame",
+            "invalid": f"shadows, points of reflection and new surface, in {SURFACE_SEARCHES} of the stretches at most",
             "always": "the scene is traced anew"}[case.settings.retrace]
     return case.settings.retrace != "never", f'{what}; retrace = "{case.settings.retrace}"'
 

@@ -15,7 +15,9 @@ def _aimed(case: Case):
     if len(case.objects) == 0:
         return False, "nothing but mirrors: all rays fill the field of view"
     images = " and at their images" if len(case.mirrors) and case.settings.max_bounces > 1 else ""
-    missing = f"; {unaimed(case.statistics)}" if case.statistics and case.statistics.num_unaimed else ""
+    strata = () if case.paths is None else case.paths.frame.strata
+    lost = unaimed(case.statistics, strata) if case.statistics else ""
+    missing = f"; {lost}" if lost else ""
     return True, f"a cone or strip that fits each object{images}; the rest of the rays fills the field of view{missing}"
 
 

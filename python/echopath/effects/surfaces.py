@@ -16,6 +16,7 @@ from .planes import imaged_planes
 from .rules import Case, rule
 
 VALID_FOCK = 2.0     # cosine at the point that mirrors over the width of the shadow's edge
+MOST_AT_CORNER = 4   # bounces whose orders are told apart from images (trace/mirrors/plane_images.cpp)
 ROULETTE_BOUNCE = 3  # from which on rays end by chance (trace/scatter/lobe_probabilities.h)
 
 
@@ -208,7 +209,9 @@ def _planes(case: Case):
     count, meshes = imaged_planes(case.paths)
     if count == 0:
         return False, "no plane covers its Fresnel zone where it would mirror"
-    return True, f"{count} plane{'s' * (count > 1)} of {case.named(meshes)}; their Fresnel zones are covered"
+    corners = f"; orders of over {MOST_AT_CORNER} bounces about one corner may count twice"
+    return True, (f"{count} plane{'s' * (count > 1)} of {case.named(meshes)}; their Fresnel zones are covered"
+                  f"{corners if case.settings.max_bounces > MOST_AT_CORNER else ''}")
 
 
 @rule("legs over images")

@@ -163,6 +163,7 @@ RayTargets find_ray_targets(const Scene& scene, const EmbreeScene& geometry, con
   out.num_objects = static_cast<int>(scene_objects.size());
   out.object_of_mesh.assign(scene.meshes().size(), -1);
   out.any_unaimed = out.num_objects > settings.most_objects;
+  if (out.any_unaimed) out.num_left_out = out.num_objects;
   if (out.any_unaimed || scene_objects.empty()) return out;
   const RayTargetFinder finder(scene, mirrors, settings);
   std::vector<RayTarget> objects, images;

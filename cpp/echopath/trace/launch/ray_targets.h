@@ -35,7 +35,8 @@ struct RayTargets {
   std::vector<int> object_of_mesh;  // by mesh ID, -1: a mirror
   int num_objects = 0;
   bool any_unaimed = false;  // some object has no stratum
-  int64_t num_left_out = 0;  // objects and images beyond the number of strata that a record can tell apart
+  int64_t num_left_out =
+      0;  // beyond the strata that a record can tell apart; all objects where these are too many to aim at
 };
 
 RayTargets find_ray_targets(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,

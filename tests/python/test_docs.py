@@ -9,12 +9,14 @@ import re
 import pytest
 
 import echopath as ep
+from echopath import dataset
 
 # Parameters that are objects, names or counts: they have neither a unit nor a shape.
 NO_QUANTITY = {
     "actor", "args", "arguments", "batches", "block", "clothing", "evaluate", "exponent", "folder", "footprint", "frame",
     "function", "glob", "interpolation", "keep", "keyframes", "keywords", "kwargs", "material", "max", "max_bounces",
-    "mesh", "mesh_or_actor", "method", "min", "mirror", "modelled", "motion", "multiplexing", "name", "noise_seed",
+    "ax", "figure", "labels", "map", "mesh", "mesh_or_actor", "method", "min", "mirror", "modelled", "motion", "multiplexing",
+    "name", "noise_seed", "note", "number",
     "num_batches", "num_rays", "num_slots", "num_threads", "parent", "parts", "path", "paths", "pattern", "picture",
     "progress", "radar", "reason", "receivers", "replay", "retrace", "scene", "seed", "selection", "selections", "shard",
     "show", "skin", "smooth", "source", "spectrum", "state", "subdivisions", "tags", "text", "title", "trace",
@@ -26,8 +28,10 @@ SIGNATURE = re.compile(r"^(?:\d+\. )?\w+\((.*)\)(?: -> .*)?$", re.MULTILINE)
 
 
 def public_names() -> dict:
-    """{dotted name: object} of the package and of its actors."""
+    """{dotted name: object} of the package, of its actors, of datasets and of pictures."""
     names = {name: getattr(ep, name) for name in ep.__all__}
+    names |= {f"{module.__name__.removeprefix('echopath.')}.{name}": getattr(module, name)
+              for module in (dataset, ep.plots) for name in module.__all__}
     names |= {f"actors.{name}": getattr(ep.actors, name) for name in dir(ep.actors)
               if not name.startswith("_") and inspect.isfunction(getattr(ep.actors, name))}
     return {name: value for name, value in names.items() if not inspect.ismodule(value) and not isinstance(value, float)}
@@ -104,9 +108,9 @@ RAISES_NOTHING = {"check_rays", "check_signal", "effects"}
 
 
 def silent_functions() -> list[str]:
-    """Public functions with parameters whose docstrings do not tell what they raise."""
-    functions = [name for name, value in public_names().items() if callable(value) and not inspect.isclass(value)]
-    return [name for name in functions if parameters(PUBLIC[name]) and "Raises" not in docstring(PUBLIC[name])]
+    """Public functions and methods with parameters whose docstrings do not tell what they raise."""
+    functions = [name for name, value in PUBLIC.items() if callable(value) and not inspect.isclass(value)]
+    return [name for name in functions if parameters(PUBLIC[name]) and "raises" not in docstring(PUBLIC[name]).lower()]
 
 
 def test_functions_say_what_they_raise():

@@ -79,7 +79,7 @@ class Dataset:
                                                     if self.template.split_of(number // per_scene) == name])
 
     def of_scene(self, scene: int) -> Dataset:
-        """The frames here of the scene with that number; none where there are none."""
+        """The frames here of the scene with that number; none where there are none. Raises nothing."""
         per_scene = self.template.settings.frames
         return Dataset(self.folder, self.template, [number for number in self.numbers if number // per_scene == scene])
 

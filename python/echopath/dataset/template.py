@@ -102,14 +102,14 @@ class Template:
             raise self._of_scene(number, error) from None
 
     def split_of(self, number: int) -> str:
-        """The name of the split that scene `number` belongs to."""
+        """The name of the split that scene `number` (from 0) belongs to. Raises nothing."""
         place = _Drawing(self.settings.seed, number).random("dataset.split").random()
         names = list(self.settings.split)
         shares = np.cumsum(list(self.settings.split.values()))
         return names[min(int(np.searchsorted(shares, place, side="right")), len(names) - 1)]
 
     def check(self, number: int) -> None:
-        """Raises ValueError, as `draw` does, where what is drawn for a scene is no scene file."""
+        """Raises ValueError, as `draw` does, where what is drawn for scene `number` is no scene file."""
         try:
             validated(SceneTable, self.draw(number).table)
         except ValueError as error:

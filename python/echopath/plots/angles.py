@@ -15,7 +15,8 @@ def draw_angle_spectrum(spectrum, range=None, velocity=None, *, ax=None, title="
     """Power by direction in one cell: a curve, or a map where the array is a plane.
 
     spectrum: AngleSpectrum; range: m, velocity: m/s, of the cell, the nearest is taken; None: those of the strongest cell
-    ax: axes to draw in, None: new ones. Returns the axes: angles in degrees, power in dBm.
+    ax: axes to draw in, None: new ones; title: above the place of the cell
+    Returns the axes: angles in degrees, power in dBm. Raises TypeError naming `ax`.
     """
     row, column = _cell(spectrum, range, velocity)
     level = in_dbm(np.abs(spectrum.values[:, :, row, column]) ** 2, SMALLEST_POWER)

@@ -25,8 +25,9 @@ CLASSES = {"real": ("object itself", "#009e73"), 1: ("ghost, type 1: last bounce
 def plot_labels(labels, *, title="Which part made each cell", powers=None):
     """The map in grey, its cells coloured and outlined by the part that dominates, and the power of each part.
 
-    labels: Labels; powers: {part: ep.ReceivedPower}, None: none are drawn
+    labels: Labels; title: above the map; powers: {part: ep.ReceivedPower}, None: none are drawn
     Returns a matplotlib figure: range in m across, radial velocity in m/s (receding positive) or azimuth in degrees up.
+    Raises AttributeError for other objects.
     """
     with new_figure(13.0 if powers else 9.0, 4.8) as figure:
         panels = figure.subfigures(1, 2 if powers else 1, squeeze=False, width_ratios=(2.3, 1.0) if powers else None)[0]
@@ -39,8 +40,9 @@ def plot_labels(labels, *, title="Which part made each cell", powers=None):
 def plot_ghosts(labels, *, title="Objects and their ghosts"):
     """Cells of objects and of their ghosts in the map, and the extent of each ghost with its class and its mirrors.
 
-    labels: Labels. Returns a matplotlib figure; left as `plot_labels`, right a row for each object and each of the
-    strongest ghosts: range in m, radial velocity in m/s or azimuth in degrees, power in dBm.
+    labels: Labels; title: above the map. Returns a matplotlib figure; left as `plot_labels`, right a row for each object and
+    each of the strongest ghosts: range in m, radial velocity in m/s or azimuth in degrees, power in dBm.
+    Raises AttributeError for other objects.
     """
     rows = [label for label in labels.objects if label.peak is not None] + _strongest_ghosts(labels)
     with new_figure(14.5, max(4.8, 1.6 + 0.27 * len(rows))) as figure:
@@ -53,7 +55,9 @@ def plot_ghosts(labels, *, title="Objects and their ghosts"):
 def draw_labels(labels, *, what="parts", ax=None, title=""):
     """The map of `plot_labels` (what="parts") or of `plot_ghosts` ("objects") in given axes, or in new ones (None).
 
-    Returns the axes. Raises ValueError for other names.
+    labels: Labels; ax: axes to draw in; title: above them
+    Returns the axes: range in m across, radial velocity in m/s or azimuth in degrees up. Raises ValueError for other words,
+    TypeError naming `ax`.
     """
     areas_of = {"parts": _part_areas, "objects": _class_areas}
     if what not in areas_of:
@@ -251,7 +255,8 @@ def _row_name(label) -> str:
 def plot_part_powers(powers: dict, *, title="Received power by part"):
     """The mean received power of each part with its 95 % interval; hollow where it is not resolved to 0.3 dB.
 
-    powers: {part: ep.ReceivedPower}. Returns a matplotlib figure: power in dBm across.
+    powers: {part: ep.ReceivedPower}; title: above them. Returns a matplotlib figure: power in dBm across.
+    Raises AttributeError for other objects.
     """
     with new_figure(6.0, 0.9 + 0.38 * len(powers)) as figure:
         draw_part_powers(figure.subplots(), powers, title)

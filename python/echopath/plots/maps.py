@@ -20,13 +20,19 @@ RANGE_LABEL, VELOCITY_LABEL = "Range in m", "Radial velocity in m/s (away: +)"
 
 
 def power_dbm(spectrum):
-    """Mean power of the channels, [velocity, range] in dB re 1 mW."""
+    """Mean power of the channels, [velocity, range] in dB re 1 mW.
+
+    spectrum: RangeDoppler. Raises AttributeError for other objects.
+    """
     power = np.mean(np.abs(spectrum.values) ** 2, axis=(0, 1))
     return in_dbm(power, SMALLEST_POWER)
 
 
 def colour_limits(spectrum) -> tuple[float, float]:
-    """(lowest, highest) level in dBm of the colour scale of a map, multiples of 5."""
+    """(lowest, highest) level in dBm of the colour scale of a map, multiples of 5.
+
+    spectrum: RangeDoppler. Raises AttributeError for other objects.
+    """
     return limits_of_level(power_dbm(spectrum))
 
 
@@ -46,9 +52,10 @@ def chosen_limits(limits: tuple[float, float], vmin, vmax) -> tuple[float, float
 def plot_range_doppler(spectrum, *, title="Received power by range and radial velocity", vmin=None, vmax=None, note=""):
     """One range-Doppler map, cropped to where there is signal, at rest or moving.
 
-    spectrum: of `range_doppler`; vmin, vmax: ends of the colour scale in dBm, None: `colour_limits`.
-    note: small print below the map.
-    Returns a matplotlib figure: range in m across, radial velocity in m/s up (receding positive).
+    spectrum: of `range_doppler`; title: above the map; vmin, vmax: ends of the colour scale in dBm, None: `colour_limits`
+    note: small print below the map
+    Returns a matplotlib figure: range in m across, radial velocity in m/s up (receding positive). Raises TypeError or
+    ValueError naming vmin or vmax.
     """
     with new_figure(*MAP_SIZE) as figure:
         draw_range_doppler(spectrum, ax=figure.subplots(), vmin=vmin, vmax=vmax, title=title)
@@ -57,7 +64,12 @@ def plot_range_doppler(spectrum, *, title="Received power by range and radial ve
 
 
 def draw_range_doppler(spectrum, *, ax=None, vmin=None, vmax=None, title=""):
-    """The same in given axes, or in new ones (None); returns the axes."""
+    """One range-Doppler map in given axes, or in new ones.
+
+    spectrum: of `range_doppler`; ax: axes to draw in, None: new ones; title: above them
+    vmin, vmax: ends of the colour scale in dBm, None: `colour_limits`
+    Returns the axes, as of `plot_range_doppler`. Raises TypeError or ValueError naming ax, vmin or vmax.
+    """
     vmin, vmax = _limits(spectrum, vmin, vmax)
     with axes_or_new(ax, *MAP_SIZE) as ax:
         image = _draw_whole(ax, spectrum, vmin, vmax, title)
@@ -71,7 +83,8 @@ def plot_partition(spectra: dict, *, title="", vmin=None, vmax=None, whole=None,
 
     spectra: {part: map of `range_doppler`}; vmin, vmax: ends of the colour scale in dBm, None: those of `whole` (of
     the strongest part when there is no `whole`); powers: {part: ep.ReceivedPower} to stand above the maps, or None;
-    note: small print. Returns a matplotlib figure with the axes of `plot_range_doppler`.
+    note: small print; title: above the maps. Returns a matplotlib figure with the axes of `plot_range_doppler`. Raises TypeError
+    or ValueError naming vmin or vmax.
     """
     strongest = max(spectra.values(), key=lambda spectrum: np.abs(spectrum.values).max())
     vmin, vmax = _limits(whole if whole is not None else strongest, vmin, vmax)
@@ -93,7 +106,11 @@ def plot_partition(spectra: dict, *, title="", vmin=None, vmax=None, whole=None,
 
 def plot_overview(whole, spectra: dict, *, title="Everything that the radar receives", parts_title="", vmin=None, vmax=None,
                   powers=None, note=""):
-    """The whole map above the maps of its parts, on one colour scale; otherwise as `plot_partition`."""
+    """The whole map above the maps of its parts, on one colour scale.
+
+    whole, spectra, powers, note, vmin, vmax (dBm): as of `plot_partition`; title: above the whole; parts_title: above the parts
+    Returns a matplotlib figure with the axes of `plot_range_doppler`. Raises TypeError or ValueError naming vmin or vmax.
+    """
     vmin, vmax = _limits(whole, vmin, vmax)
     with new_figure(3.2 * max(2, len(spectra)) + 0.8, 6.8) as figure:
         upper, lower = figure.subfigures(2, 1, height_ratios=(1.0, 1.05))
@@ -131,7 +148,7 @@ def _draw_parts(panels: list, spectra: dict, vmin: float, vmax: float, powers):
 
 
 def part_title(name: str) -> str:
-    """What stands above the map of a part."""
+    """What stands above the map of a part. name: of the part. Raises nothing."""
     return name if name != "other" else "other: all the rest"
 
 

@@ -21,6 +21,7 @@ BESIDE = {"loc": "center left", "bbox_to_anchor": (1.01, 0.5), "frameon": False}
 def draw_detections(detections, *, view="range_doppler", ax=None, title=""):
     """A point for each detection, coloured by the object whose echo it is, larger where it is stronger, hollow for ghosts.
 
+    detections: Detections; title: above the axes
     view: "range_doppler", or "above" (needs azimuths); ax: axes to draw in, None: new ones
     Returns the axes: range in m and radial velocity in m/s, or metres to the left and ahead in the radar's frame.
     Raises ValueError for other views, and for a view from above without azimuths.

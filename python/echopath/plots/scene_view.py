@@ -43,7 +43,7 @@ def plot_scene(scene, paths, *, num_rays=300, time=None, power=None,
     paths: of `trace`; num_rays: drawn at most, the strongest that hit anything but mirrors (any, where none does)
     time: of the picture in s, None: the time of the trace; power: of the paths [P] in W where it is known already
     Mirrors are drawn translucent, without an edge where they go on beyond the picture; up to 12 objects bear their names.
-    Returns a matplotlib figure with three views in metres.
+    title: above them. Returns a matplotlib figure with three views in metres. Raises AttributeError for other objects.
     """
     time = paths.frame.trace_time if time is None else time
     power = paths.power if power is None else power

@@ -52,7 +52,8 @@ def axes_or_new(ax, width: float, height: float):
 def save_png(figure, path, *, seed=None, noise_seed=None) -> None:
     """Writes a figure as PNG, whole or not at all, with what made it as text chunks; the same figure gives the same bytes.
 
-    seed: of the rays, noise_seed: of the thermal noise; None: there are none
+    figure: of matplotlib; path: of the file; seed: of the rays, noise_seed: of the thermal noise; None: there are none
+    Raises OSError where the file cannot be written.
     """
     import matplotlib
 

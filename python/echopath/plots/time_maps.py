@@ -18,6 +18,7 @@ LEGEND_COLUMNS = 4
 def draw_time_map(map, *, ax=None, vmin=None, vmax=None, title=""):
     """A Spectrogram, RangeTime or AngleTime in given axes, or in new ones (None): gaps between trains of chirps stay blank.
 
+    map: as `ep.spectrogram` and its like give it; ax: axes to draw in; title: above them
     vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak
     Returns the axes: time in s across; radial velocity in m/s, range in m or azimuth in degrees up. Raises TypeError or
     ValueError naming the argument.
@@ -38,7 +39,8 @@ def draw_time_map(map, *, ax=None, vmin=None, vmax=None, title=""):
 def draw_spectrogram_labels(labels, *, ax=None, title=""):
     """The whole in grey under the cells of the mask, coloured by the part that dominates, in given axes or new ones (None).
 
-    labels: SpectrogramLabels. Returns the axes: time in s across, radial velocity in m/s up. Raises TypeError naming `ax`.
+    labels: SpectrogramLabels; title: above the axes
+    Returns the axes: time in s across, radial velocity in m/s up. Raises TypeError naming `ax`.
     """
     from matplotlib.colors import ListedColormap
 

@@ -24,9 +24,10 @@ LABEL_LOOK = {"color": "0.35", "fontsize": 7, "ha": "center", "va": "center"}
 def plot_range_azimuth(maps, *, title="Received power from above", vmin=None, vmax=None):
     """Range-azimuth maps as sectors seen from above, cropped to where there is signal, with one colour scale.
 
-    maps: of `range_azimuth`, one or {title of its panel: map}; of several the first sets the scale
+    maps: of `range_azimuth`, one or {title of its panel: map}; of several the first sets the scale; title: above them
     vmin, vmax: ends of the colour scale in dBm, None: the peak, and the noise or 70 dB less
-    Returns a matplotlib figure: metres to the left across (right negative), metres ahead up, in the radar's frame.
+    Returns a matplotlib figure: metres to the left across (right negative), metres ahead up, in the radar's frame. Raises
+    TypeError or ValueError naming vmin or vmax.
     """
     maps = maps if isinstance(maps, dict) else {"": maps}
     first = next(iter(maps.values()))
@@ -53,7 +54,11 @@ def plot_range_azimuth(maps, *, title="Received power from above", vmin=None, vm
 
 
 def draw_range_azimuth(map, *, ax=None, vmin=None, vmax=None, title=""):
-    """One map in given axes, or in new ones (None), otherwise as `plot_range_azimuth`; returns the axes."""
+    """One map in given axes, or in new ones, otherwise as `plot_range_azimuth`.
+
+    map: of `range_azimuth`; ax: axes to draw in, None: new ones; vmin, vmax: ends of the colour scale in dBm; title: above them
+    Returns the axes. Raises TypeError or ValueError naming ax, vmin or vmax.
+    """
     vmin, vmax = chosen_limits(_colour_limits(map), vmin, vmax)
     with axes_or_new(ax, LARGE * _aspect(map) + 1.6, LARGE + 0.8) as ax:
         image = _draw(ax, map, _reach(map, vmin), vmin, vmax)

@@ -12,7 +12,8 @@ X_LABEL, Y_LABEL = "x in m (ahead)", "y in m (left: +)"
 def draw_tracks(tracks, *, ax=None, title=""):
     """Tracks as lines from above, crosses where they went on without a detection, in given axes or new ones (None).
 
-    tracks: Tracks. Returns the axes: y in m across, left positive, x in m up. Raises TypeError naming `ax`.
+    tracks: Tracks; title: above the axes
+    Returns the axes: y in m across, left positive, x in m up. Raises TypeError naming `ax`.
     """
     with axes_or_new(ax, *SIZE) as ax:
         for number in np.unique(tracks.track):

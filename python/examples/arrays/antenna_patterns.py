@@ -12,7 +12,7 @@ import numpy as np
 
 import echopath as ep
 
-folder = Path(__file__).resolve().parents[3] / "data" / "antennas"
+folder = Path(ep.__file__).parents[2] / "data" / "antennas"
 azimuth = np.linspace(-np.pi, np.pi, 361)
 gain = 5 * np.cos(np.clip(2.0 * azimuth, -np.pi / 2, np.pi / 2)) ** 2
 elevation = np.radians([-40, -20, 0, 20, 40])

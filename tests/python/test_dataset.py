@@ -15,6 +15,7 @@ import pytest
 
 import echopath as ep
 from echopath import dataset
+from echopath.cli.info import describe_file
 from echopath.dataset.folder import scene_folder
 from echopath.frame_file.maps import load_maps
 
@@ -170,6 +171,11 @@ def whole(tmp_path_factory) -> tuple[Path, Path]:
     path = written(folder, HEAD + SCENE)
     make(path, folder / "out")
     return path, folder / "out"
+
+
+def test_info_tells_what_a_folder_holds(whole):
+    told = "\n".join(describe_file(whole[1]))
+    assert "6, 6 done" in told and "12, 2 of each scene" in told and "labels" in told
 
 
 def test_all_frames_are_there_and_open(whole):

@@ -92,7 +92,8 @@ def _parser() -> argparse.ArgumentParser:
     view.add_argument("--scale", type=int, default=1, metavar="N", help="of a PNG: N times the pixels (default: %(default)s)")
     view.set_defaults(command=_view)
 
-    info = commands.add_parser("info", help="say what is in a scene, frame, mesh or foreign file, or a folder of frames")
+    info = commands.add_parser("info", help="say what is in a scene, template, frame, mesh or foreign file, or in a folder of "
+                                            "frames or of a dataset")
     info.add_argument("file", metavar="FILE", help=".toml, .h5, or a file or folder that load_model reads (.usd, .xml, .obj ...)")
     info.add_argument("--select", action="append", default=[], metavar="SELECTION",
                       help="also say which paths of a frame it takes, as in \"T .* 'wall*' .* R & power > 1e-17\"; may be "

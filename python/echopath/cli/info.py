@@ -1,4 +1,4 @@
-"""What is in a file: scene, frame or mesh."""
+"""What is in a file or a folder: scene, template, frame, mesh; frames in time, dataset."""
 from __future__ import annotations
 
 from pathlib import Path
@@ -7,9 +7,10 @@ import numpy as np
 
 import echopath as ep
 
+from .. import dataset
+from ..dataset.folder import TEMPLATE as DATASET_FILE
 from ..frame_file import left_out, load_frame
 from ..readers.load import READERS, is_foreign
-from ..dataset import Template
 from ..scene_file import load_scene
 from ..scene_file.load import parse
 from ..sequence.contents import NAME as SEQUENCE_FILE
@@ -25,8 +26,8 @@ MESH_SUFFIXES = (".obj", ".ply", ".stl", ".off")
 
 
 def describe_file(path, selections=()) -> list[str]:
-    """Lines that say what is in a scene file (TOML), a frame file (HDF5), a mesh file or a foreign scene (load_model), and in
-    a folder of frames in time.
+    """Lines that say what is in a scene file or a template (TOML), a frame file (HDF5), a mesh file or a foreign scene
+    (load_model), and in a folder of frames in time or of a dataset.
 
     selections: of paths, also to be told of; of frame files
     Raises ValueError for another kind of file and for bad selections, ep.FileError when it cannot be read.
@@ -37,9 +38,11 @@ def describe_file(path, selections=()) -> list[str]:
     if selections and suffix not in FRAME_SUFFIXES:
         raise ValueError(f"{path}: must be a frame file (.h5) for --select, which asks for its paths")
     if suffix == ".toml" and "dataset" in parse(path):
-        return _describe_template(Template(path))
+        return _describe_template(dataset.Template(path))
     if suffix == ".toml":
         return _describe_scene_file(load_scene(path))
+    if (path / DATASET_FILE).exists():
+        return _describe_dataset(dataset.open(path))
     if path.name == SEQUENCE_FILE or (path / SEQUENCE_FILE).exists():
         return _describe_sequence(ep.load_sequence(path if path.is_dir() else path.parent))
     if suffix in FRAME_SUFFIXES:
@@ -56,6 +59,14 @@ def _describe_sequence(stored) -> list[str]:
              report.line("starts", f"{stored.times[0]:.6g} to {stored.times[-1]:.6g} s, every {stored.interval:.6g} s"),
              report.line("kept", stored.keep + (", truth" if stored.settings.get("truth") is not None else ""))]
     return [*lines, *_describe_scene(stored.scene, float(stored.times[0])), *_describe_radar(stored.radar)]
+
+
+def _describe_dataset(opened) -> list[str]:
+    made = opened.template.settings
+    shares = ", ".join(f"{name} {len(opened.split(name))}" for name in made.split)
+    return [str(opened.folder), "dataset", report.line("scenes", f"{made.scenes}, {len(opened.scenes)} done"),
+            report.line("frames", f"{len(opened)}, {made.frames} of each scene"), report.line("kept", made.keep),
+            report.line("frames of splits", shares)]
 
 
 def _describe_template(template) -> list[str]:

@@ -125,10 +125,11 @@ def test_ground_looks_up_and_wall_towards_the_street():
     (lambda: ep.actors.plate(-1.0, 1.0), "width: must be a finite number from 1e-09 to 1000000000 m, got -1.0"),
     (lambda: ep.actors.plate(1.0, float("nan")), "height: must be a finite number from 1e-09 to 1000000000 m, got nan"),
     (lambda: ep.actors.box((1.0, 2.0)), r"size: must be an array \[\] or \[3\] of real numbers"),
-    (lambda: ep.actors.sphere(1.0, subdivisions=0), "subdivisions: must be a whole number from 1 to 1000, got 0"),
+    (lambda: ep.actors.sphere(1.0, subdivisions=0), "subdivisions: must be a whole number from 1 to 500, got 0"),
     (lambda: ep.actors.sphere(1.0, edge=0.1, subdivisions=3), "must not be given together"),
     (lambda: ep.actors.capsule(0.5, 0.6), "length: must be at least twice the radius"),
     (lambda: ep.actors.ground(10.0, edge=1e-6), "edge: must be long enough"),
+    (lambda: ep.actors.sphere(0.3, subdivisions=501), "subdivisions: must be a whole number from 1 to 500"),
     (lambda: ep.actors.trihedral(64.0, edge=0.05), "edge: must be long enough for less than 5000000 triangles"),
     (lambda: ep.actors.wall("5", 1.0), "length: must be a finite number from 1e-09 to 1000000000 m, got '5'"),
 ])

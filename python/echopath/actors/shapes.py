@@ -14,7 +14,7 @@ from . import surfaces
 
 ROUND_PIECES = 12   # default pieces of an icosahedron edge of a sphere, and of a quarter turn of other round bodies
 FACE_EDGE = 1.33    # longest edge, in radii, of an icosahedron face once it is pushed out to the sphere
-MOST_SUBDIVISIONS = 1000
+MOST_SUBDIVISIONS = 500  # 5 million triangles
 SHORTEST, LONGEST = 1e-9, 1e9  # m, of bodies whose coordinates double precision holds
 
 _LENGTH = real(SHORTEST, LONGEST, unit="m")

@@ -10,6 +10,7 @@ def test_a_quick_run_holds_its_bounds_and_writes_them(tmp_path, monkeypatch):
     results = receiver.run_receiver(tmp_path, quick=True)
     assert json.loads((tmp_path / "receiver.json").read_text()) == results
     assert [row for row in results["rows"]["faults"] if not row["holds"]] == []
+    assert [row for row in results["rows"]["laws"] if not row["holds"]] == []
     assert [row for row in results["rows"]["codes"] if not row["holds"]] == []
     lines = receiver.describe(results)
     assert any("quantisation, 12 bits" in line for line in lines) and any("demultiplex ddm" in line for line in lines)

@@ -1,14 +1,14 @@
 """`echopath bench receiver`: faults of a receiver beside their closed forms, codes beside turns, and what they cost in a street.
 
-Levels are those of a tone; the cost is processor time of `ep.receive`, or of `ep.demultiplex`, for the cube of a street of
-some twenty objects.
+Levels are those of a tone, laws those of shifts, gains and extents in time; the cost is processor time of `ep.receive`,
+`ep.demultiplex` or `ep.interference` for the cube of a street of some twenty objects.
 """
 from __future__ import annotations
 
 from ..suite import describe_parts, run_parts
-from . import codes, cost, faults
+from . import codes, cost, faults, laws
 
-PARTS = {"faults": faults, "codes": codes, "cost": cost}
+PARTS = {"faults": faults, "laws": laws, "codes": codes, "cost": cost}
 
 
 def run_receiver(folder, *, quick: bool = False, progress=None) -> dict:

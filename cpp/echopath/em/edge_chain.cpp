@@ -11,11 +11,6 @@ namespace {
 constexpr double kInFace = 1e-3;    // rad: a way between two points on a face leaves its plane by less
 constexpr double kSameFace = 1e-6;  // of the cosine between normals of one face
 constexpr double kBeside = 1e-4;    // rad: directions nearer to the way itself count as that far off its face
-constexpr double kRim = 1e-6;       // rad: the rim of a sheet has an exterior angle of 2 pi within that
-
-bool is_rim(const Wedge& wedge) { return wedge.exterior_angle > kTwoPi - kRim; }
-
-Vec3 edge_of(const Wedge& wedge) { return wedge.faces[0].inward.cross(wedge.faces[0].normal); }
 
 // Returns a direction that is not that of the way, toward which coefficients are not finite.
 Vec3 beside(const Vec3& direction, const Vec3& along, const Vec3& normal) {
@@ -26,7 +21,7 @@ Vec3 beside(const Vec3& direction, const Vec3& along, const Vec3& normal) {
 // Returns the row that makes from an incident field the strength of the wave along a face, over the factor of its spread.
 // `coefficient` is grazing_coefficient.
 Vec3 strength_row(const Wedge& wedge, const Vec3& in, const Vec3& along, const Vec3& normal, double coefficient) {
-  const Vec3 edge = edge_of(wedge);
+  const Vec3 edge = axis_of(wedge);
   const double cosine = along.dot(edge), sine = std::sqrt(std::max(1.0 - cosine * cosine, 1e-12));
   return coefficient / (sine * along.cross(normal).dot(edge)) * edge.cross(in);
 }
@@ -34,24 +29,6 @@ Vec3 strength_row(const Wedge& wedge, const Vec3& in, const Vec3& along, const V
 double angle_of_face(const Wedge& wedge, int face) { return face == 0 ? 0.0 : wedge.exterior_angle; }
 
 }  // namespace
-
-// It is sqrt(pi) z e^{z^2} erfc(z) with z^2 = jx: by the power series of erf, or by the continued fraction of erfc
-// (Abramowitz and Stegun 7.1.5, 7.1.14).
-std::complex<double> transition(double x) {
-  const std::complex<double> square(0.0, std::max(x, 0.0));
-  if (x < 2.0) {
-    const std::complex<double> z = std::sqrt(square);
-    std::complex<double> power = z, sum = z;
-    for (int n = 1; n <= 20; ++n) {
-      power *= -square / static_cast<double>(n);
-      sum += power / (2.0 * n + 1.0);
-    }
-    return z * std::exp(square) * (std::sqrt(kPi) - 2.0 * sum);
-  }
-  std::complex<double> fraction = 1.0;
-  for (int k = static_cast<int>(8.0 + 60.0 / x); k > 0; --k) fraction = 1.0 + 0.5 * k / (square * fraction);
-  return 1.0 / fraction;
-}
 
 std::optional<EdgeChain> EdgeChain::over(std::span<const ChainEdge> edges, double wavenumber) {
   EdgeChain chain(edges, wavenumber);
@@ -101,14 +78,14 @@ std::complex<double> EdgeChain::turn(size_t link) const {
 Vec3 EdgeChain::last_piece(const Vec3& first_piece) const {
   Vec3 piece = first_piece;
   for (size_t k = 0; k < links_.size(); ++k) {
-    const Vec3 across = links_[k].normal.cross(links_[k].along), edge = edge_of(edges_[k + 1].wedge);
+    const Vec3 across = links_[k].normal.cross(links_[k].along), edge = axis_of(edges_[k + 1].wedge);
     piece = piece.dot(across) / edge.dot(across) * edge;
   }
   return piece;
 }
 
 double EdgeChain::detour(const Vec3& in, double distance) const {
-  const Vec3 edge = edge_of(edges_[0].wedge);
+  const Vec3 edge = axis_of(edges_[0].wedge);
   const double slope = (in - links_[0].along).dot(edge), sine2 = in.cross(edge).squaredNorm();
   return sine2 > 1e-6 ? -0.5 * slope * slope / (sine2 * (1.0 / distance + 1.0 / length_)) : 0.0;
 }

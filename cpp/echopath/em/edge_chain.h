@@ -15,12 +15,9 @@
 
 #include "echopath/em/edge_diffraction.h"
 #include "echopath/em/jones.h"
+#include "echopath/em/transition.h"
 
 namespace echopath {
-
-// Returns Kouyoumjian and Pathak's transition function F(x) = 2j sqrt(x) e^{jx} times the integral of e^{-jt^2} from sqrt(x)
-// on, for x >= 0; 1 far from the boundary. Its error is below 1e-4.
-std::complex<double> transition(double x);
 
 // Holds a point on an edge and the wedge there.
 struct ChainEdge {

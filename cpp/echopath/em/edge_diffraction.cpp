@@ -12,6 +12,7 @@ constexpr double kLeastSine = 1e-3;     // of the angle between a wave and the e
 constexpr double kLeastHeight = 1e-3;   // rad: directions nearer to the plane of a face count as that far off it
 constexpr double kOnFace = 1e-9;        // rad: a direction so little inside of a face lies on it
 constexpr double kLeastApart = 1e-5;    // rad: nearer to a boundary, the difference of two poles is taken from there
+constexpr double kRim = 1e-4;           // rad: the rim of a sheet has an exterior angle of 2 pi within that
 constexpr double kLeastForward = 1e-6;  // sine of the angle to the grazing ray, where a coefficient ends to grow
 
 // Returns the angle about the edge from a face to a direction, in [0, 2 pi) rad.
@@ -81,13 +82,17 @@ Wedge wedge_between(const WedgeFace& first, const WedgeFace& second) {
   return {{first, second}, angle > kOnFace ? angle : kTwoPi};
 }
 
+bool is_rim(const Wedge& wedge) { return wedge.exterior_angle > kTwoPi - kRim; }
+
+Vec3 axis_of(const Wedge& wedge) { return wedge.faces[0].inward.cross(wedge.faces[0].normal); }
+
 bool is_outside(const Wedge& wedge, const Vec3& direction) {
   return angle_from(wedge.faces[0], direction) <= wedge.exterior_angle + kOnFace;
 }
 
 Mat3 fringe_matrix(const Wedge& wedge, const Vec3& in, const Vec3& toward) {
   const Vec3 out = off_faces(wedge, toward);
-  const Vec3 edge = wedge.faces[0].inward.cross(wedge.faces[0].normal);
+  const Vec3 edge = axis_of(wedge);
   if (edge.cross(in).norm() < kLeastSine || !is_outside(wedge, -in) || !is_outside(wedge, out)) return Mat3::Zero();
   const double n = wedge.exterior_angle / kPi;
   const double first = std::min(angle_from(wedge.faces[0], -in), wedge.exterior_angle),
@@ -100,7 +105,7 @@ Mat3 fringe_matrix(const Wedge& wedge, const Vec3& in, const Vec3& toward) {
 
 Vec3 field_of_grazing_wave(const Wedge& wedge, int face, const Vec3& along, const Vec3& toward) {
   const Vec3 out = off_faces(wedge, toward);
-  const double sine = wedge.faces[0].inward.cross(wedge.faces[0].normal).cross(along).norm();
+  const double sine = axis_of(wedge).cross(along).norm();
   if (sine < kLeastSine || !is_outside(wedge, out)) return Vec3::Zero();
   const double n = wedge.exterior_angle / kPi;
   const Mat3 fringe = currents_of_face(wedge.faces[face], n, 0.0, 2.0, along, out) +

@@ -32,6 +32,12 @@ struct Wedge {
 // its rim.
 Wedge wedge_between(const WedgeFace& first, const WedgeFace& second);
 
+// Returns whether a wedge is the rim of a sheet, both of whose faces carry one wave.
+bool is_rim(const Wedge& wedge);
+
+// Returns the unit vector along the edge about which the angles of the wedge count.
+Vec3 axis_of(const Wedge& wedge);
+
 // Returns whether a unit vector from the edge leads into the space around the wedge.
 bool is_outside(const Wedge& wedge, const Vec3& direction);
 

@@ -19,19 +19,6 @@ std::complex<double> gaussian_pair(uint64_t seed, int64_t index) {
 
 }  // namespace
 
-double noise_power(const Radar& radar) {
-  const double noise_factor = std::pow(10.0, radar.noise_figure_db / 10.0);
-  const double complex_power = kBoltzmann * kReferenceTemperature * noise_factor * radar.waveform.sampling_rate;
-  const double averaged = radar.multiplexing == Multiplexing::kBpm ? radar.num_slots() : 1.0;
-  return (radar.waveform.real ? 0.5 * complex_power : complex_power) / averaged;
-}
-
-double noise_power_in_cell(const Radar& radar) {
-  const ChirpSequence& waveform = radar.waveform;
-  const double scale = waveform.real ? 2.0 : 1.0;
-  return scale * noise_power(radar) / (static_cast<double>(waveform.num_samples) * waveform.num_chirps);
-}
-
 int64_t cube_size(const Radar& radar) {
   return static_cast<int64_t>(radar.transmitters.size()) * static_cast<int64_t>(radar.receivers.size()) *
          radar.waveform.num_chirps * radar.waveform.num_samples;

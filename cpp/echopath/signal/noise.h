@@ -1,22 +1,14 @@
 #pragma once
-// Computes the thermal noise of the receiver; no other module does.
+// Draws the thermal noise of the receiver (radar/noise_power.h has its power); no other module does.
 #include <complex>
 #include <cstdint>
 #include <vector>
 
 #include "echopath/base/job.h"
+#include "echopath/radar/noise_power.h"
 #include "echopath/radar/radar.h"
 
 namespace echopath {
-
-// Returns the noise power of one IF sample in W: k T0 F fs for complex samples, half of it for real ones (single-sideband
-// noise figure, no image). A BPM code that is undone averages over its slots.
-double noise_power(const Radar& radar);
-
-// Returns the noise power in W in the range-Doppler cell that all samples of a frame make with even weights, to compare with
-// the received power of an echo there: the power of a sample over their number, twice as much for real samples, whose maps
-// hold half of their power.
-double noise_power_in_cell(const Radar& radar);
 
 // Adds circular complex Gaussian noise to the cube [tx, rx, chirp, sample] (real samples: real Gaussian noise), independent
 // from sample to sample. It is a pure function of (seed, place in the cube), so it does not depend on threads. It runs in

@@ -68,10 +68,12 @@ Tracer::Tracer(const SceneSnapshot& scene, const Radar& radar, const TraceSettin
     : empty_(empty_record(scene, radar, settings)), num_rays_to_come_(settings.num_rays_to_come),
       pose_(*empty_.scene, empty_.frame.trace_time), world_from_radar_(radar.world_from_radar(empty_.frame.trace_time)),
       loan_(kept, *empty_.scene, pose_, empty_.frame.transmitter, radar.motion != nullptr, job), geometry_(*loan_),
-      origin_(geometry_.origin()), mirrors_(find_mirrors(*empty_.scene, geometry_)), sbr_(settings_of_rays(settings)),
+      origin_(geometry_.origin()), edge_estimate_(empty_.radar, world_from_radar_, origin_),
+      mirrors_(find_mirrors(*empty_.scene, geometry_)), sbr_(settings_of_rays(settings)),
       frusta_(find_antenna_frusta(*empty_.scene, geometry_, mirrors_, sbr_, job)), plan_(plan_rays(settings, fitted)),
       shooter_(*empty_.scene, geometry_, mirrors_, plan_, sbr_, frusta_) {
   aim_at_points(settings, job);
+  pose_edges();
   empty_.frame.strata = plan_.strata;
   empty_.frame.statistics.num_rays = num_rays();
   empty_.frame.statistics.num_unaimed = plan_.num_unaimed;
@@ -111,6 +113,12 @@ void Tracer::aim_at_points(const TraceSettings& settings, Job* job) {
   plan_.first_point = num_lattice_blocks() * kRaysPerBlock;
   plan_.aimed_points =
       find_aimed_points(*empty_.scene, geometry_, plan_, {settings.seed, sbr_.frequency, sbr_.transmitter}, job);
+}
+
+void Tracer::pose_edges() {
+  if (!empty_.frame.edges) return;
+  edges_ = posed_edges(*empty_.scene, pose_, origin_);
+  least_edge_power_ = least_edge_power(strongest_of(edges_, *empty_.scene, edge_estimate_), empty_.radar);
 }
 
 int64_t Tracer::num_lattice_blocks() const { return (num_rays() + kRaysPerBlock - 1) / kRaysPerBlock; }

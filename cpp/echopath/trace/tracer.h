@@ -40,7 +40,9 @@ class Tracer {
   std::vector<PathBlock> find_edges(LitPlanes& lit, Job* job) const;
 
  private:
-  EdgeQuery edge_query() const { return {*empty_.scene, pose_, geometry_, mirrors_, sbr_, frusta_}; }
+  EdgeQuery edge_query() const {
+    return {*empty_.scene, edges_, edge_estimate_, least_edge_power_, geometry_, mirrors_, sbr_, frusta_};
+  }
   std::vector<PathBlock> shoot_ahead(int64_t step, Job* job) const;
   std::vector<const PathBlock*> shoot_wave(int64_t begin, const std::vector<PathBlock>& ahead, int64_t step,
                                            std::vector<PathBlock>& wave, Job* job) const;
@@ -48,6 +50,7 @@ class Tracer {
   LaunchPlan plan_rays(const TraceSettings& settings, FittedStrata* fitted);
   SbrSettings settings_of_rays(const TraceSettings& settings) const;
   void aim_at_points(const TraceSettings& settings, Job* job);
+  void pose_edges();
   int64_t num_lattice_blocks() const;
 
   Paths empty_;  // scene, radar and frame of the record
@@ -57,6 +60,9 @@ class Tracer {
   GeometryLoan loan_;
   EmbreeScene& geometry_;
   Vec3 origin_;
+  EdgeEstimate edge_estimate_;
+  std::vector<PosedEdge> edges_;  // none where edges are not asked for
+  double least_edge_power_ = 0.0;
   std::vector<Mirror> mirrors_;
   SbrSettings sbr_;
   AntennaFrusta frusta_;

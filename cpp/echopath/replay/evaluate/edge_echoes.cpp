@@ -86,9 +86,8 @@ class EdgeEchoes {
                         (2.0 * radio_.wavenumber * in.length * out.length);
     const std::complex<double> factor =
         size * coupled * filter(in, departure, out.length) * std::polar(1.0, in.phase + out.phase);
-    const ComplexOf<double> found =
-        amplitude_of<ScalarMath>(ComplexOf<double>{weight.real(), weight.imag()},
-                                 ComplexOf<double>{factor.real(), factor.imag()}, in.length + out.length);
+    const ComplexOf<double> found = amplitude_of<ScalarMath>(ComplexOf<double>{weight.real(), weight.imag()},
+                                                             ComplexOf<double>{factor.real(), factor.imag()});
     return {found.re, found.im};
   }
 
@@ -115,10 +114,11 @@ class EdgeEchoes {
   // A chain's waves run along one ray of Keller's cone to each point of the last edge.
   std::complex<double> filter(const WayToEdge& in, const Vec3& departure, double distance) const {
     const Vec3 arrival = chain_ ? chain_->arrival() : in.direction;
+    const double travelled = chain_ ? in.length + chain_->length() : in.length;
     const auto curvature = [&](const Vec3& direction, double radius) {
       return direction.cross(piece_).squaredNorm() / radius;
     };
-    const double bend = 0.125 * radio_.wavenumber * (curvature(arrival, in.length) + curvature(departure, distance));
+    const double bend = 0.125 * radio_.wavenumber * (curvature(arrival, travelled) + curvature(departure, distance));
     return edge_filter(radio_.wavenumber * (arrival - departure).dot(piece_), bend);
   }
 

@@ -26,15 +26,14 @@
 
 namespace echopath {
 
-// Makes every amplitude from the weight of the path and the factor of its legs. `length` is that of the whole path in m, for
-// effects that act along the way.
+// Makes every amplitude from the weight of the path and the factor of its legs.
 template <class Math, class Weight, class Real>
-ECHOPATH_INLINE ComplexOf<Real> amplitude_of(ComplexOf<Weight> weight, Real size, Real /*length*/) {
+ECHOPATH_INLINE ComplexOf<Real> amplitude_of(ComplexOf<Weight> weight, Real size) {
   return {weight.re * size, weight.im * size};
 }
 template <class Math, class Weight, class Real>
-ECHOPATH_INLINE ComplexOf<Real> amplitude_of(ComplexOf<Weight> weight, ComplexOf<Real> factor, Real length) {
-  const ComplexOf<Real> scale = amplitude_of<Math>(weight, Real{} + 1.0, length);
+ECHOPATH_INLINE ComplexOf<Real> amplitude_of(ComplexOf<Weight> weight, ComplexOf<Real> factor) {
+  const ComplexOf<Real> scale = amplitude_of<Math>(weight, Real{} + 1.0);
   return {scale.re * factor.re - scale.im * factor.im, scale.re * factor.im + scale.im * factor.re};
 }
 

@@ -110,7 +110,7 @@ void combine(const DiffusePath& diffuse, size_t stride) {
       size = diffuse_size<Math>(diffuse, at, start, end);
     }
     length = length + at.value(path.end, LegToMeasure::kLength);
-    set_path(path, at, length, amplitude_of<Math>(path.weight, size, length));
+    set_path(path, at, length, amplitude_of<Math>(path.weight, size));
   }
 }
 
@@ -120,7 +120,7 @@ void connect(const PathToCombine& path, size_t stride) {
     const At<Math> at{node, stride};
     const auto length = at.value(path.start, LegToMeasure::kLength);
     const auto size = at.value(path.start, LegToMeasure::kGain) * at.value(path.end, LegToMeasure::kGain) / length;
-    set_path(path, at, length, amplitude_of<Math>(path.weight, size, length));
+    set_path(path, at, length, amplitude_of<Math>(path.weight, size));
   }
 }
 
@@ -152,7 +152,7 @@ void reflect(const CoherentPath& coherent, size_t begin, size_t end, size_t stri
     const Real gains = at.value(path.start, LegToMeasure::kGain) * at.value(path.end, LegToMeasure::kGain);
     const ComplexOf<Real> factor = coherent_factor(waves, gains, inverse_tube, filter, is_lit(cos_in, cos_out, first, out));
     const Real length = in + out;
-    set_path(path, at, length, amplitude_of<Math>(path.weight, factor, length));
+    set_path(path, at, length, amplitude_of<Math>(path.weight, factor));
   }
 }
 

@@ -241,10 +241,10 @@ ECHOPATH_INLINE void combine_legs(const SingleBouncesToEvaluate& paths, const Le
   const Vec length = in(D::kLegLength) + out(D::kLegLength);
   set(D::kLength, length);
   const Vec diffuse = diffuse_product<LaneMath>(in(D::kLegFactor), out(D::kLegFactor));
-  put(SingleBounceSlots::kDiffuse, amplitude_of<LaneMath>(weight_of(SingleBounceSlots::kDiffuse), diffuse, length));
+  put(SingleBounceSlots::kDiffuse, amplitude_of<LaneMath>(weight_of(SingleBounceSlots::kDiffuse), diffuse));
   ComplexOf<Vec> factor{};
   if (paths.has_coherent) factor = coherent_of(paths, in, out, slot);
-  put(SingleBounceSlots::kCoherent, amplitude_of<LaneMath>(weight_of(SingleBounceSlots::kCoherent), factor, length));
+  put(SingleBounceSlots::kCoherent, amplitude_of<LaneMath>(weight_of(SingleBounceSlots::kCoherent), factor));
 }
 
 ECHOPATH_INLINE double* leg_of(const SingleBouncesToEvaluate& paths, size_t node, int end, size_t antenna, size_t slot) {

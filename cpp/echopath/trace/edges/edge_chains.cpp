@@ -9,9 +9,6 @@ namespace {
 
 constexpr double kSamePlane = 1e-6;   // of the extent of all edges, and rad
 constexpr double kLeastSlope = 1e-2;  // sine of the angle at which a wave meets an edge, or leaves it
-constexpr double kRimAngle = 6.2831;  // rad: the exterior angle of a rim is larger
-
-bool is_rim(const PosedEdge& edge) { return edge.wedge.exterior_angle > kRimAngle; }
 
 }  // namespace
 
@@ -28,7 +25,8 @@ std::vector<EdgeChains::OnPlane> EdgeChains::sorted_faces(const Vec3& middle, do
       const Vec3& normal = edges_[i].wedge.faces[face].normal;
       const double offset = normal.dot(edges_[i].from - middle);
       // Any combination serves in which planes seldom agree by chance.
-      faces.push_back({i, face, offset, offset + extent * normal.dot(Vec3(0.7193, 0.5271, 0.4526))});
+      faces.push_back({i, face, offset, offset + extent * normal.dot(Vec3(0.7193, 0.5271, 0.4526)),
+                       edges_[i].wedge.faces[face].inward, edges_[i].from, edges_[i].line()});
     }
   }
   std::sort(faces.begin(), faces.end(), [](const OnPlane& a, const OnPlane& b) {
@@ -63,19 +61,17 @@ bool EdgeChains::find_next(size_t edge, int face, const Vec3& position, const Ve
   double nearest = longest_;
   bool is_found = false;
   for (const OnPlane& one : planes_[plane_[edge][static_cast<size_t>(face)]]) {
-    const PosedEdge& other = edges_[one.edge];
-    const Vec3& inward = other.wedge.faces[one.face].inward;
-    const double slope = direction.dot(inward), height = inward.dot(position - other.from);
+    const double slope = direction.dot(one.inward), height = one.inward.dot(position - one.from);
     if (one.edge == edge || slope > -kLeastSlope || height <= 0 || height >= -slope * nearest) continue;
-    const Vec3 stretch = other.to - other.from, at = position - height / slope * direction - other.from;
-    const double along = at.dot(stretch) / stretch.squaredNorm();
+    const Vec3 at = position - height / slope * direction - one.from;
+    const double along = at.dot(one.line) / one.line.squaredNorm();
     if (along < 0.0 || along > 1.0) continue;
     nearest = -height / slope;
     met = {one.edge, along};
     is_found = true;
   }
   // Both sides of a sheet carry one wave (EdgeChain).
-  return is_found && !(face == 1 && is_rim(edges_[edge]) && is_rim(edges_[met.edge]));
+  return is_found && !(face == 1 && is_rim(edges_[edge].wedge) && is_rim(edges_[met.edge].wedge));
 }
 
 void EdgeChains::follow(size_t edge, const Hit& point, const Vec3& position, const Vec3& in, int most,

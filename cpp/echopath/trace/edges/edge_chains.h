@@ -36,7 +36,8 @@ class EdgeChains {
   struct OnPlane {
     size_t edge;
     int face;
-    double offset, key;  // m: of its plane; faces on one plane have nearly the same
+    double offset, key;       // m: of its plane; faces on one plane have nearly the same
+    Vec3 inward, from, line;  // of the face and of its edge, which are searched again and again
   };
   struct Met {
     size_t edge;

@@ -5,9 +5,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/parallel.h"
-#include "echopath/scene/scene_edges.h"
 #include "echopath/trace/edges/edge_chains.h"
-#include "echopath/trace/edges/posed_edge.h"
 #include "echopath/trace/mirrors/legs.h"
 #include "echopath/trace/near_antenna.h"
 
@@ -15,7 +13,7 @@ namespace echopath {
 namespace {
 
 constexpr size_t kEdgesPerBlock = 64;
-constexpr double kBentFront = 0.8;    // rad, of the wave fronts over half a piece (edge_filter)
+constexpr double kBentFront = 0.8;    // rad, of the wave fronts over half a piece: as much as edge_filter follows
 constexpr double kOfBody = 1.0 / 16;  // of the extent of a body, a piece at most where a part of the edge is hidden
 constexpr double kLeastChain = 0.03;  // of what the edge of a half plane sends
 
@@ -24,37 +22,28 @@ AntennaView view_for_edges(const Vec3& antenna, const MirrorFrusta& found, const
   return view_of(antenna, with_at_most(found, most_leg_mirrors(query.settings)));
 }
 
-// Returns all edges of a scene, and the extent of the body that each mesh belongs to.
-struct EdgesOfScene {
-  std::vector<PosedEdge> edges;
-  std::vector<double> extent;  // m, by mesh ID
-};
-
-EdgesOfScene edges_of(const EdgeQuery& query) {
+// Returns the extent (m) of the body that each mesh belongs to, by mesh ID.
+std::vector<double> extents_of_bodies(const EdgeQuery& query) {
   const SceneEdges found(query.scene);
-  EdgesOfScene all;
   std::vector<Eigen::AlignedBox3d> box(query.scene.meshes().size());
   for (uint32_t id = 0; id < box.size(); ++id) {
-    if (found.of(id).empty()) continue;
-    box[found.body_of(id)].extend(query.geometry.box(id));
-    for (const SharpEdge& edge : found.of(id)) {
-      const auto corners = query.geometry.corners(id, edge.triangle);
-      const Vec3 &from = corners[edge.side], line = corners[(edge.side + 1) % 3] - from;
-      all.edges.push_back({id, edge, posed_wedge(edge, query.pose, id), from + edge.begin * line, from + edge.end * line});
-    }
+    if (!found.of(id).empty()) box[found.body_of(id)].extend(query.geometry.box(id));
   }
+  std::vector<double> extent;
   for (uint32_t id = 0; id < box.size(); ++id) {
     const Eigen::AlignedBox3d& body = box[found.body_of(id)];
-    all.extent.push_back(body.isEmpty() ? 0.0 : body.diagonal().norm());
+    extent.push_back(body.isEmpty() ? 0.0 : body.diagonal().norm());
   }
-  return all;
+  return extent;
 }
+
+EdgeWayTo way_of(const Leg& leg) { return {leg.to_antenna, leg.at_antenna, leg.length}; }
 
 class EdgeTracer {
  public:
-  EdgeTracer(const EdgeQuery& query, const EdgesOfScene& all)
-      : query_(query), all_(all), wavenumber_(kTwoPi * query.settings.frequency / kSpeedOfLight),
-        chains_(all.edges, kTwoPi / wavenumber_),
+  explicit EdgeTracer(const EdgeQuery& query)
+      : query_(query), extent_(extents_of_bodies(query)), wavenumber_(kTwoPi * query.settings.frequency / kSpeedOfLight),
+        chains_(query.edges, kTwoPi / wavenumber_),
         finder_(query.geometry, query.mirrors, query.settings.frequency, query.settings.polarization),
         transmitter_(view_for_edges(query.settings.transmitter, query.frusta.transmitter, query)),
         receiver_(view_for_edges(query.settings.receiver, query.frusta.receiver, query)) {}
@@ -71,9 +60,10 @@ class EdgeTracer {
   };
 
   void add(size_t edge, Scratch& scratch, PathBlock& block) const {
-    const PosedEdge& one = all_.edges[edge];
-    const double longest = longest_piece(one);
-    set_pieces(one, std::min(longest, kOfBody * all_.extent[one.mesh_id]), scratch);
+    const PosedEdge& one = query_.edges[edge];
+    const double longest =
+        longest_piece(one, query_.settings.transmitter, query_.settings.receiver, wavenumber_, kBentFront);
+    set_pieces(one, std::min(longest, kOfBody * extent_[one.mesh_id]), scratch);
     look(one.wedge, query_.settings.transmitter, scratch, scratch.to_transmitter);
     look(one.wedge, query_.settings.receiver, scratch, scratch.to_receiver);
     const auto is_open = [](ShadowState state) { return state == ShadowState::kOpen; };
@@ -84,27 +74,15 @@ class EdgeTracer {
   }
 
  private:
-  // Returns how long a piece may be for the fronts of the waves, m.
-  double longest_piece(const PosedEdge& edge) const {
-    const auto inverse = [&](const Vec3& antenna) {
-      return 1.0 / std::max(distance_to_segment(antenna, edge.from, edge.to), kNearAntenna);
-    };
-    const double bend = wavenumber_ * (inverse(query_.settings.transmitter) + inverse(query_.settings.receiver));
-    return std::sqrt(8.0 * kBentFront / bend);
-  }
-
   void set_pieces(const PosedEdge& one, double longest, Scratch& scratch) const {
-    const SharpEdge& edge = one.edge;
-    const auto corners = query_.geometry.corners(one.mesh_id, edge.triangle);
-    const auto num_pieces =
-        static_cast<int>(std::clamp(std::ceil((one.to - one.from).norm() / longest), 1.0, double{kMostPieces}));
+    const auto corners = query_.geometry.corners(one.mesh_id, one.edge.triangle);
+    const auto num_pieces = static_cast<int>(std::clamp(std::ceil(one.line().norm() / longest), 1.0, double{kMostPieces}));
     scratch.hits.clear();
     scratch.points.clear();
     for (int piece = 0; piece < num_pieces; ++piece) {
-      const PointOnSide at = point_on_side(edge.side, edge.begin + (edge.end - edge.begin) * (piece + 0.5) / num_pieces);
-      scratch.hits.emplace_back(one.mesh_id, edge.triangle, at.u, at.v);
-      scratch.points.push_back(corners[0] + double{at.u} * (corners[1] - corners[0]) +
-                               double{at.v} * (corners[2] - corners[0]));
+      const EdgePoint at = point_on_edge(one, (piece + 0.5) / num_pieces, corners);
+      scratch.hits.push_back(at.hit);
+      scratch.points.push_back(at.position);
     }
   }
 
@@ -139,7 +117,7 @@ class EdgeTracer {
   }
 
   void add_point(size_t edge, size_t piece, Scratch& scratch, PathBlock& block) const {
-    const Wedge& wedge = all_.edges[edge].wedge;
+    const Wedge& wedge = query_.edges[edge].wedge;
     const Vec3& point = scratch.points[piece];
     ++block.statistics.num_hits;
     find_legs(point, wedge, transmitter_, scratch.to_transmitter[piece], scratch.in, scratch.search);
@@ -148,7 +126,11 @@ class EdgeTracer {
     const std::span<const Hit> hit(&scratch.hits[piece], 1);
     const int num_pieces = static_cast<int>(scratch.points.size());
     for (const Leg& in : scratch.in) {
-      for (const Leg& out : scratch.out) add_path(in, hit, out, wedge, num_pieces, block);
+      for (const Leg& out : scratch.out) {
+        const auto coupled = [&] { return fringe_matrix(wedge, -in.to_antenna, out.to_antenna).norm(); };
+        if (is_strong(wedge, way_of(in), way_of(out), over_mirrors(in, out), coupled))
+          add_path(in, hit, out, wedge, num_pieces, block);
+      }
       const auto add_way = [&](const EdgeWay& way, size_t last) {
         return add_chain(in, way, last, num_pieces, scratch, block);
       };
@@ -162,18 +144,34 @@ class EdgeTracer {
     const std::optional<EdgeChain> chain = EdgeChain::over(way.edges, wavenumber_);
     if (!chain) return false;
     const double entered = strength(*chain, in);
-    const Wedge& wedge = all_.edges[last].wedge;
+    const Wedge& wedge = query_.edges[last].wedge;
     const Vec3 point = way.edges.back().point, line = query_.settings.receiver - point;
     const bool is_lit = line.norm() > kNearAntenna && is_outside(wedge, line);
-    const bool is_strong = is_lit && matters(*chain, entered, line.normalized(), line.norm());
+    const bool is_seen = is_lit && matters(*chain, entered, line.normalized(), line.norm());
     const bool goes_on = entered > kLeastChain;
-    if (!is_strong && (receiver_.frusta.empty() || !goes_on)) return goes_on;
-    find_legs(point, wedge, receiver_, is_strong ? ShadowState::kUnknown : ShadowState::kBlocked, scratch.behind,
+    if (!is_seen && (receiver_.frusta.empty() || !goes_on)) return goes_on;
+    find_legs(point, wedge, receiver_, is_seen ? ShadowState::kUnknown : ShadowState::kBlocked, scratch.behind,
               scratch.search);
     for (const Leg& out : scratch.behind) {
-      if (matters(*chain, entered, out.to_antenna, out.length)) add_path(in, way.hits, out, wedge, num_pieces, block);
+      const auto coupled = [&] { return entered * chain->leave(out.to_antenna, out.length).norm(); };
+      const EdgeWayTo arrival{-chain->arrival(), in.at_antenna, in.length};
+      if (matters(*chain, entered, out.to_antenna, out.length) &&
+          is_strong(wedge, arrival, way_of(out), over_mirrors(in, out), coupled))
+        add_path(in, way.hits, out, wedge, num_pieces, block);
     }
     return goes_on;
+  }
+
+  std::complex<double> over_mirrors(const Leg& in, const Leg& out) const {
+    return query_.settings.is_polarized ? 1.0 : in.gain * out.gain;
+  }
+
+  // Returns whether an echo is to be kept; `coupled` returns the norm of what the edge makes of the field.
+  template <class Coupled>
+  bool is_strong(const Wedge& wedge, const EdgeWayTo& in, const EdgeWayTo& out, std::complex<double> over_mirrors,
+                 const Coupled& coupled) const {
+    return query_.least_power == 0.0 ||
+           query_.estimate.power(wedge, in, out, std::abs(over_mirrors) * coupled()) >= query_.least_power;
   }
 
   Vec3 polarization_across(const Vec3& direction) const {
@@ -213,18 +211,17 @@ class EdgeTracer {
     const int at = count;
     for (const Hit& hit : on_edges) hits[static_cast<size_t>(count++)] = hit;
     for (int k = 0; k < out.num_bounces; ++k) hits[static_cast<size_t>(count++)] = out.bounces[static_cast<size_t>(k)].hit;
-    const std::complex<double> over_mirrors = query_.settings.is_polarized ? 1.0 : in.gain * out.gain;
     const Material& material = *query_.scene.node_of(on_edges.back().mesh_id).material;
     const double kept = kept_share(material, query_.settings.frequency, wedge, in.to_antenna);
-    const std::complex<double> weight = kept * over_mirrors;
+    const std::complex<double> weight = kept * over_mirrors(in, out);
     block.add(hits.data(), count, 0, std::complex<float>(weight), kNoStratum);
     block.set_edge(at, num_pieces, static_cast<int>(on_edges.size()));
     if (query_.settings.is_polarized) block.set_jones({1.0f, 0.0f, 0.0f, 1.0f});
   }
 
   const EdgeQuery& query_;
-  const EdgesOfScene& all_;
-  double wavenumber_;  // rad/m
+  std::vector<double> extent_;  // m, by mesh ID
+  double wavenumber_;           // rad/m
   EdgeChains chains_;
   LegFinder finder_;
   AntennaView transmitter_, receiver_;
@@ -233,14 +230,14 @@ class EdgeTracer {
 }  // namespace
 
 std::vector<PathBlock> find_edge_paths(const EdgeQuery& query, Job* job) {
-  const EdgesOfScene all = edges_of(query);
-  const EdgeTracer tracer(query, all);
-  std::vector<PathBlock> blocks((all.edges.size() + kEdgesPerBlock - 1) / kEdgesPerBlock);
+  const EdgeTracer tracer(query);
+  const size_t num_edges = query.edges.size();
+  std::vector<PathBlock> blocks((num_edges + kEdgesPerBlock - 1) / kEdgesPerBlock);
   Job own(job);
   parallel_for(std::ssize(blocks), [&](int64_t i) {
     PathBlock& block = blocks[static_cast<size_t>(i)];
     EdgeTracer::Scratch scratch;
-    const size_t begin = static_cast<size_t>(i) * kEdgesPerBlock, end = std::min(all.edges.size(), begin + kEdgesPerBlock);
+    const size_t begin = static_cast<size_t>(i) * kEdgesPerBlock, end = std::min(num_edges, begin + kEdgesPerBlock);
     for (size_t edge = begin; edge < end; ++edge) tracer.add(edge, scratch, block);
     block.statistics.num_queries += scratch.search.num_queries;
   }, &own);

@@ -1,10 +1,11 @@
 #pragma once
 // Finds the echoes of sharp edges: from the transmitter, directly or over flagged mirrors, to a point on an edge, from there
 // over flat faces to other edges, and likewise on to the receiver.
+#include <span>
 #include <vector>
 
 #include "echopath/base/job.h"
-#include "echopath/posed/posed_scene.h"
+#include "echopath/trace/edges/edge_power.h"
 #include "echopath/trace/mirrors/antenna_frusta.h"
 #include "echopath/trace/record/path_block.h"
 
@@ -12,7 +13,9 @@ namespace echopath {
 
 struct EdgeQuery {
   const Scene& scene;
-  const PosedScene& pose;
+  std::span<const PosedEdge> edges;  // of the scene, as they stand
+  const EdgeEstimate& estimate;
+  double least_power;  // W: echoes that are weaker by the estimate are left out
   const EmbreeScene& geometry;
   const std::vector<Mirror>& mirrors;
   const SbrSettings& settings;
@@ -21,7 +24,8 @@ struct EdgeQuery {
 
 // Returns one path for each piece of an edge and each pair of ways to and from it that are free at the middle of the piece,
 // in the order of meshes, edges and pieces, and those of the waves that go on from there over flat faces from edge to edge,
-// up to kMostEdges, as far as they are no weaker than .03 of what the edge of a half plane sends. Pieces are so short that
+// up to kMostEdges, as far as they are no weaker than .03 of what the edge of a half plane sends; those below the least
+// power are left out. Pieces are so short that
 // wave fronts bend by at most .8 rad across half of one (edge_filter), and where a part of an edge is hidden at most a
 // sixteenth of the body long, so that shadows end near where they should. Raises Cancelled when the job is cancelled.
 std::vector<PathBlock> find_edge_paths(const EdgeQuery& query, Job* job = nullptr);

@@ -4,77 +4,73 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
-#include "echopath/scene/scene_edges.h"
-#include "echopath/trace/edges/posed_edge.h"
+#include "echopath/radar/noise_power.h"
 #include "echopath/trace/near_antenna.h"
 
 namespace echopath {
 namespace {
 
-// Holds a straight way between an antenna and a point.
-struct WayTo {
-  Vec3 toward;  // unit, from the antenna
-  double length, gain;
-  Vec3 field;  // unit, or zero
-};
+constexpr double kOfNoise = 1e-4;  // of the noise in a cell: that of the weakest echoes of edges which are kept
 
-WayTo way_to(const PosedAntenna& antenna, const Vec3& point) {
-  const Vec3 line = point - antenna.position;
-  WayTo way{line.normalized(), line.norm(), 0.0, Vec3::Zero()};
-  way.gain = antenna.toward(way.toward).power;
-  const Vec3 across = antenna.polarization - way.toward.dot(antenna.polarization) * way.toward;
-  if (across.norm() > 1e-9) way.field = across.normalized();
-  return way;
+EdgeWayTo way_to(const PosedAntenna& antenna, const Vec3& point) {
+  const Vec3 line = point - antenna.position, direction = line.normalized();
+  return {-direction, direction, line.norm()};
 }
 
-class EdgeEstimate {
- public:
-  EdgeEstimate(const Radar& radar, const Transform& world_from_radar)
-      : frequency_(radar.waveform.start_frequency), wavenumber_(kTwoPi * frequency_ / kSpeedOfLight),
-        transmit_power_(radar.transmit_power),
-        transmitter_(posed_antennas(radar.transmitters, world_from_radar, Vec3::Zero()).front()),
-        receiver_(posed_antennas(radar.receivers, world_from_radar, Vec3::Zero()).front()) {}
+Vec3 field_along(const PosedAntenna& antenna, const Vec3& direction) {
+  const Vec3 across = antenna.polarization - direction.dot(antenna.polarization) * direction;
+  return across.norm() > 1e-9 ? Vec3(across.normalized()) : Vec3(Vec3::Zero());
+}
 
-  double power(const PosedEdge& edge, const Material& material) const {
-    const Vec3 line = edge.to - edge.from, middle = 0.5 * (transmitter_.position + receiver_.position);
-    const double length = line.norm(), at = std::clamp(line.dot(middle - edge.from) / line.squaredNorm(), 0.0, 1.0);
-    const Vec3 point = edge.from + at * line;
-    const WayTo in = way_to(transmitter_, point), out = way_to(receiver_, point);
-    if (in.length < kNearAntenna || out.length < kNearAntenna) return 0.0;
-    const Vec3 departure = -out.toward;
-    const double coupled = std::abs(out.field.dot(fringe_matrix(edge.wedge, in.toward, departure) * in.field));
-    const double slope = wavenumber_ * std::abs((in.toward - departure).dot(line)) / length;
-    const double zone = 2.0 * std::sqrt(kPi / (wavenumber_ * (1.0 / in.length + 1.0 / out.length)));
-    const double effective = std::min({length, zone, 2.0 / std::max(slope, 1e-9)});
-    const double field = coupled * effective * kept_share(material, frequency_, edge.wedge, -in.toward) /
-                         (4.0 * kPi * 2.0 * wavenumber_ * in.length * out.length);
-    return transmit_power_ * in.gain * out.gain * field * field;
-  }
-
- private:
-  double frequency_, wavenumber_, transmit_power_;  // Hz, rad/m, W
-  PosedAntenna transmitter_, receiver_;
-};
+double best_gain(const std::vector<PosedAntenna>& antennas, const Vec3& direction) {
+  double best = 0.0;
+  for (const PosedAntenna& antenna : antennas) best = std::max(best, antenna.toward(direction).power);
+  return best;
+}
 
 }  // namespace
 
-double strongest_edge(const Scene& scene, const Radar& radar, double time) {
-  const SceneEdges edges(scene);
-  const PosedScene pose(scene, time);
-  const EdgeEstimate estimate(radar, radar.world_from_radar(time));
+EdgeEstimate::EdgeEstimate(const Radar& radar, const Transform& world_from_radar, const Vec3& origin)
+    : frequency_(radar.waveform.start_frequency), wavenumber_(kTwoPi * frequency_ / kSpeedOfLight),
+      transmit_power_(radar.transmit_power), transmitters_(posed_antennas(radar.transmitters, world_from_radar, origin)),
+      receivers_(posed_antennas(radar.receivers, world_from_radar, origin)) {}
+
+double EdgeEstimate::power(const PosedEdge& edge, const Material& material) const {
+  const PosedAntenna &transmitter = transmitters_.front(), &receiver = receivers_.front();
+  const Vec3 line = edge.line(), middle = 0.5 * (transmitter.position + receiver.position);
+  const Vec3 point = edge.from + std::clamp(line.dot(middle - edge.from) / line.squaredNorm(), 0.0, 1.0) * line;
+  const EdgeWayTo in = way_to(transmitter, point), out = way_to(receiver, point);
+  const Mat3 fringe = fringe_matrix(edge.wedge, in.at_antenna, out.to_antenna);
+  const double coupled =
+      std::abs(field_along(receiver, out.at_antenna).dot(fringe * field_along(transmitter, in.at_antenna)));
+  return power(edge.wedge, in, out, coupled * kept_share(material, frequency_, edge.wedge, in.to_antenna), line.norm());
+}
+
+double EdgeEstimate::power(const Wedge& wedge, const EdgeWayTo& in, const EdgeWayTo& out, double coupled,
+                           double longest) const {
+  if (in.length < kNearAntenna || out.length < kNearAntenna) return 0.0;
+  const double slope = wavenumber_ * std::abs((in.to_antenna + out.to_antenna).dot(axis_of(wedge)));
+  const double zone = 2.0 * std::sqrt(kPi / (wavenumber_ * (1.0 / in.length + 1.0 / out.length)));
+  const double effective = std::min({longest, zone, 2.0 / std::max(slope, 1e-9)});
+  const double field = coupled * effective / (4.0 * kPi * 2.0 * wavenumber_ * in.length * out.length);
+  return transmit_power_ * best_gain(transmitters_, in.at_antenna) * best_gain(receivers_, out.at_antenna) * field * field;
+}
+
+double strongest_of(std::span<const PosedEdge> edges, const Scene& scene, const EdgeEstimate& estimate) {
   double strongest = 0.0;
-  for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
-    const Mesh& mesh = *scene.node_of(id).mesh;
-    const auto corner = [&](uint32_t triangle, uint32_t index) -> Vec3 {
-      return pose.linear(id) * mesh.vertices()[mesh.triangles()[triangle][index]] + pose.world_translation(id);
-    };
-    for (const SharpEdge& edge : edges.of(id)) {
-      const Vec3 from = corner(edge.triangle, edge.side), line = corner(edge.triangle, (edge.side + 1) % 3) - from;
-      const PosedEdge posed{id, edge, posed_wedge(edge, pose, id), from + edge.begin * line, from + edge.end * line};
-      strongest = std::max(strongest, estimate.power(posed, *scene.node_of(id).material));
-    }
-  }
+  for (const PosedEdge& edge : edges)
+    strongest = std::max(strongest, estimate.power(edge, *scene.node_of(edge.mesh_id).material));
   return strongest;
+}
+
+double strongest_edge(const Scene& scene, const Radar& radar, double time) {
+  const EdgeEstimate estimate(radar, radar.world_from_radar(time), Vec3::Zero());
+  return strongest_of(posed_edges(scene, PosedScene(scene, time), Vec3::Zero()), scene, estimate);
+}
+
+double least_edge_power(double strongest, const Radar& radar) {
+  const double noise = noise_power_in_cell(radar);
+  return strongest > noise ? kOfNoise * noise : 0.0;
 }
 
 }  // namespace echopath

@@ -6,26 +6,22 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/parallel.h"
-#include "echopath/scene/scene_edges.h"
+#include "echopath/em/edge_shadow.h"
 #include "echopath/trace/connect/mirror_orders.h"
-#include "echopath/trace/edges/posed_edge.h"
 #include "echopath/trace/mirrors/legs.h"
 #include "echopath/trace/near_antenna.h"
 
 namespace echopath {
 namespace {
 
-constexpr double kFlatFrontOverPlanes = 0.1;  // rad, of the wave fronts over half a piece
-constexpr double kOfLitEdge = 1.0 / 16;       // of the edge, a piece at most
-constexpr double kCornerGap = 1.0 / 16.0;     // wavelengths: surfaces that lie so near to each other abut
-constexpr double kOfWave = 0.5;               // wavelengths, the shortest piece for that
+// Rims of mirrors and the ends of what is lit count for whole pieces, so that these are shorter than edge_filter asks for.
+constexpr double kBentOverPlanes = 0.1;    // rad, of the wave fronts over half a piece
+constexpr double kOfLitEdge = 1.0 / 16;    // of the edge, a piece at most
+constexpr double kCornerGap = 1.0 / 16.0;  // wavelengths: surfaces that lie so near to each other abut
+constexpr double kOfWave = 0.5;            // wavelengths, the shortest piece for that
 
-// An edge as it stands, and what the antennas light over planes of its faces.
-struct LitEdge {
-  uint32_t mesh_id;
-  SharpEdge edge;
-  Wedge wedge;
-  Vec3 from, to;  // m, along the side of the triangle
+// An edge, and what the antennas light over planes of its faces.
+struct LitEdge : PosedEdge {
   std::vector<const LitPlane*> transmit, receive;
 };
 
@@ -53,7 +49,7 @@ class EdgesOnPlanes {
     for (const LitPlane& one : of_antenna) by_plane_[static_cast<size_t>(one.plane)].push_back(&one);
   }
 
-  std::vector<const LitPlane*> of(const LitEdge& edge) const {
+  std::vector<const LitPlane*> of(const PosedEdge& edge) const {
     std::vector<const LitPlane*> found;
     int before = -1;
     for (const WedgeFace& face : edge.wedge.faces) {
@@ -76,17 +72,10 @@ class EdgesOnPlanes {
 
 std::vector<LitEdge> lit_edges(const EdgeQuery& query, const LitPlanes& lit) {
   std::vector<LitEdge> found;
-  const SceneEdges edges(query.scene);
   const EdgesOnPlanes transmit(lit, lit.from_transmitter()), receive(lit, lit.from_receiver());
-  for (uint32_t id = 0; id < query.scene.meshes().size(); ++id) {
-    for (const SharpEdge& edge : edges.of(id)) {
-      const auto corners = query.geometry.corners(id, edge.triangle);
-      const Vec3 &from = corners[edge.side], line = corners[(edge.side + 1) % 3] - from;
-      LitEdge one{id, edge, posed_wedge(edge, query.pose, id), from + edge.begin * line, from + edge.end * line, {}, {}};
-      one.transmit = transmit.of(one);
-      one.receive = receive.of(one);
-      if (!one.transmit.empty() || !one.receive.empty()) found.push_back(std::move(one));
-    }
+  for (const PosedEdge& edge : query.edges) {
+    LitEdge one{edge, transmit.of(edge), receive.of(edge)};
+    if (!one.transmit.empty() || !one.receive.empty()) found.push_back(std::move(one));
   }
   return found;
 }
@@ -103,10 +92,10 @@ class LitEdgeTracer {
     const auto corners = query_.geometry.corners(edge_.mesh_id, edge_.edge.triangle);
     num_pieces_ = num_pieces();
     for (int piece = 0; piece < num_pieces_; ++piece) {
-      const double at = (piece + 0.5) / num_pieces_, along = edge_.edge.begin + (edge_.edge.end - edge_.edge.begin) * at;
-      const PointOnSide side = point_on_side(edge_.edge.side, along);
-      hit_ = {edge_.mesh_id, edge_.edge.triangle, side.u, side.v};
-      point_ = corners[0] + double{side.u} * (corners[1] - corners[0]) + double{side.v} * (corners[2] - corners[0]);
+      const double at = (piece + 0.5) / num_pieces_;
+      const EdgePoint point = point_on_edge(edge_, at, corners);
+      hit_ = point.hit;
+      point_ = point.position;
       add_piece(at);
     }
   }
@@ -115,21 +104,18 @@ class LitEdgeTracer {
   // A way between the edge and an antenna: directly or over flagged mirrors, or over planes.
   struct Way {
     std::vector<Hit> hits;  // from the edge toward the antenna
-    Vec3 to_antenna;
-    std::complex<double> gain;
+    EdgeWayTo way;
+    std::complex<double> gain = 1.0;
     double share = 1.0;
     OrderShares orders;
     std::complex<double> past_edge = 0.0;  // share of what the edge sends that way to a mirror (kPastEdge)
   };
 
   int num_pieces() const {
-    const double wavenumber = kTwoPi * query_.settings.frequency / kSpeedOfLight, length = (edge_.to - edge_.from).norm();
-    const auto inverse = [&](const Vec3& antenna) {
-      return 1.0 / std::max(distance_to_segment(antenna, edge_.from, edge_.to), kNearAntenna);
-    };
-    const double bend = wavenumber * (inverse(query_.settings.transmitter) + inverse(query_.settings.receiver));
-    const double piece =
-        std::min(std::sqrt(8.0 * kFlatFrontOverPlanes / bend), std::max(kOfLitEdge * length, kOfWave * kTwoPi / wavenumber));
+    const double wavenumber = kTwoPi * query_.settings.frequency / kSpeedOfLight, length = edge_.line().norm();
+    const double bent =
+        longest_piece(edge_, query_.settings.transmitter, query_.settings.receiver, wavenumber, kBentOverPlanes);
+    const double piece = std::min(bent, std::max(kOfLitEdge * length, kOfWave * kTwoPi / wavenumber));
     return static_cast<int>(std::clamp(std::ceil(length / piece), 1.0, double{kMostPieces}));
   }
 
@@ -177,7 +163,7 @@ class LitEdgeTracer {
       if (!leg || leg->length < kNearAntenna || !is_outside(edge_.wedge, leg->to_antenna)) continue;
       Way& way = ways.emplace_back();
       for (const RayHit& bounce : leg->bounces) way.hits.push_back(bounce.hit);
-      way.to_antenna = leg->to_antenna;
+      way.way = {leg->to_antenna, leg->at_antenna, leg->length};
       way.gain = leg->gain;
       way.share = leg->share;
       way.orders = kept_orders(*leg, *over, other);
@@ -198,7 +184,7 @@ class LitEdgeTracer {
     for (const Leg& leg : legs_) {
       if (leg.length < kNearAntenna || !is_outside(edge_.wedge, leg.to_antenna)) continue;
       Way& way = ways.emplace_back();
-      way.to_antenna = leg.to_antenna;
+      way.way = {leg.to_antenna, leg.at_antenna, leg.length};
       way.gain = leg.gain;
     }
     return ways;
@@ -250,17 +236,28 @@ class LitEdgeTracer {
     return false;
   }
 
+  // Returns whether an echo is to be kept. What an edge sends to a mirror is largest where no transition weakens it.
+  bool is_strong(const Way& in, const Way& out, std::complex<double> weight, bool is_past_edge) const {
+    if (query_.least_power == 0.0) return true;
+    constexpr double kFarFromTransition = 1e6;  // rad
+    const Vec3 arrival = -in.way.to_antenna, &departure = out.way.to_antenna;
+    const double coupled = is_past_edge ? diffraction_matrix(edge_.wedge, arrival, departure, kFarFromTransition).norm()
+                                        : fringe_matrix(edge_.wedge, arrival, departure).norm();
+    return query_.estimate.power(edge_.wedge, in.way, out.way, std::abs(weight) * coupled) >= query_.least_power;
+  }
+
   void add_path(const Way& in, const Way& out, std::complex<double> share, uint32_t flag) {
     if (share == 0.0 || std::ssize(in.hits) + 1 + std::ssize(out.hits) > query_.settings.max_bounces) return;
+    const Way& first = (flag & kReversedPath) != 0 ? out : in;  // from which the wave comes
+    const std::complex<double> over_mirrors = query_.settings.is_polarized ? 1.0 : in.gain * out.gain;
+    const Material& material = *query_.scene.node_of(edge_.mesh_id).material;
+    const double kept = kept_share(material, query_.settings.frequency, edge_.wedge, first.way.to_antenna);
+    const std::complex<double> weight = share * in.share * out.share * kept * over_mirrors;
+    if (!is_strong(in, out, weight, flag == kPastEdge)) return;
     std::vector<Hit> hits(in.hits.rbegin(), in.hits.rend());
     const int at = static_cast<int>(hits.size());
     hits.push_back(hit_);
     hits.insert(hits.end(), out.hits.begin(), out.hits.end());
-    const Way& first = (flag & kReversedPath) != 0 ? out : in;  // from which the wave comes
-    const std::complex<double> over_mirrors = query_.settings.is_polarized ? 1.0 : in.gain * out.gain;
-    const Material& material = *query_.scene.node_of(edge_.mesh_id).material;
-    const double kept = kept_share(material, query_.settings.frequency, edge_.wedge, first.to_antenna);
-    const std::complex<double> weight = share * in.share * out.share * kept * over_mirrors;
     block_.add(hits.data(), static_cast<int>(hits.size()), 0, std::complex<float>(weight), kNoStratum);
     block_.set_edge(at, num_pieces_);
     block_.rows.flags[block_.rows.size() - 1] |= flag;

@@ -14,8 +14,8 @@ namespace echopath {
 // an edge, and directly on. It has the share of its order, and its reversal that of the opposite one, as the echoes of rays
 // have (connect/mirror_orders.h). On a way from an edge to a plane, where that plane is a mirror, the edge sends what the
 // uniform theory of diffraction says (kPastEdge): the mirror goes on with the face in the corner, where physical optics and
-// its fringe would have the face's current end. Waves that come and go over planes have the fringe. The blocks follow each
-// other by edges. Raises Cancelled.
+// its fringe would have the face's current end. Waves that come and go over planes have the fringe. What is
+// below the least power is left out. The blocks follow each other by edges. Raises Cancelled.
 std::vector<PathBlock> find_edges_over_planes(const EdgeQuery& query, const LitPlanes& lit, Job* job = nullptr);
 
 }  // namespace echopath

@@ -21,7 +21,7 @@ LitPlanes::LitPlanes(const Scene& scene, const EmbreeScene& geometry, double wav
 
 bool LitPlanes::may_mirror(const Hit& hit) const {
   const Node& node = scene_.node_of(hit.mesh_id);
-  return !node.deformation && !node.material->mirror;
+  return !node.deformation && !node.material->mirror && !node.material->is_sheet();
 }
 
 void LitPlanes::add_chains(const PathBlock& block) {

@@ -18,8 +18,8 @@ struct LitPlane {
   Eigen::AlignedBox3d box;  // m: where rays met it, and the space to the rays beside them
 };
 
-// The planes of facets on which rays were mirrored, or arrived. Facets that lie in one plane to a sixteenth of the
-// wavelength are one plane, whatever meshes they belong to.
+// The planes of facets on which rays were mirrored, or arrived; sheets, which queries of rays pass, are none of them. Facets
+// that lie in one plane to a sixteenth of the wavelength are one plane, whatever meshes they belong to.
 class LitPlanes {
  public:
   // All must outlive it.

@@ -38,6 +38,7 @@ std::optional<PlaneLeg> PlaneLegFinder::find(const Vec3& point, const Vec3& outw
   found.share = 0.5 * num_found;
   found.length = (images.back() - point).norm();
   found.to_antenna = (images.back() - point) / found.length;
+  found.at_antenna = (found.bounces.back().position - antenna).normalized();
   weigh(point, antenna, found, num_queries);
   if (std::abs(found.gain) == 0) return std::nullopt;
   return found;

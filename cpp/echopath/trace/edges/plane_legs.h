@@ -12,7 +12,7 @@ namespace echopath {
 struct PlaneLeg {
   std::vector<RayHit> bounces;      // from the point toward the antenna, each with its normal on the lit side
   double length = 0.0;              // m, unfolded
-  Vec3 to_antenna;                  // unit, from the point toward the image of the antenna
+  Vec3 to_antenna, at_antenna;      // unit: from the point toward the image of the antenna, and from the antenna
   std::complex<double> gain = 1.0;  // field factor: product of Gamma s of the planes, as of flagged mirrors (legs.h)
   double share = 1.0;               // of the field: half at the rim of a plane, less where a plane is smaller than its zone
   double first_cover = 1.0;         // share of the Fresnel zone that the plane next to the antenna covers

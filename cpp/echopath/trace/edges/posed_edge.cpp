@@ -1,8 +1,10 @@
 #include "echopath/trace/edges/posed_edge.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "echopath/em/surface_response.h"
+#include "echopath/trace/near_antenna.h"
 
 namespace echopath {
 namespace {
@@ -22,7 +24,36 @@ Wedge posed_wedge(const SharpEdge& edge, const PosedScene& scene, uint32_t mesh_
   return wedge_between(posed_face(edge, 0, scene, mesh_id), posed_face(edge, 1, scene, mesh_id));
 }
 
-Vec3 axis_of(const Wedge& wedge) { return wedge.faces[0].inward.cross(wedge.faces[0].normal); }
+std::vector<PosedEdge> posed_edges(const Scene& scene, const PosedScene& pose, const Vec3& origin) {
+  const SceneEdges edges(scene);
+  std::vector<PosedEdge> found;
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
+    const Mesh& mesh = *scene.node_of(id).mesh;
+    const Vec3 translation = pose.world_translation(id) - origin;
+    const auto corner = [&](uint32_t triangle, uint32_t index) -> Vec3 {
+      return pose.linear(id) * mesh.vertices()[mesh.triangles()[triangle][index]] + translation;
+    };
+    for (const SharpEdge& edge : edges.of(id)) {
+      const Vec3 from = corner(edge.triangle, edge.side), line = corner(edge.triangle, (edge.side + 1) % 3) - from;
+      found.push_back({id, edge, posed_wedge(edge, pose, id), from + edge.begin * line, from + edge.end * line});
+    }
+  }
+  return found;
+}
+
+double longest_piece(const PosedEdge& edge, const Vec3& transmitter, const Vec3& receiver, double wavenumber, double bend) {
+  const auto inverse = [&](const Vec3& antenna) {
+    return 1.0 / std::max(distance_to_segment(antenna, edge.from, edge.to), kNearAntenna);
+  };
+  return std::sqrt(8.0 * bend / (wavenumber * (inverse(transmitter) + inverse(receiver))));
+}
+
+EdgePoint point_on_edge(const PosedEdge& edge, double along, const std::array<Vec3, 3>& corners) {
+  const SharpEdge& side = edge.edge;
+  const PointOnSide at = point_on_side(side.side, side.begin + (side.end - side.begin) * along);
+  return {{edge.mesh_id, side.triangle, at.u, at.v},
+          corners[0] + double{at.u} * (corners[1] - corners[0]) + double{at.v} * (corners[2] - corners[0])};
+}
 
 double kept_share(const Material& material, double frequency, const Wedge& wedge, const Vec3& to_antenna) {
   const double cosine = std::max(to_antenna.dot(wedge.faces[0].normal), to_antenna.dot(wedge.faces[1].normal));

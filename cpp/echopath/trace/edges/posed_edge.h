@@ -1,25 +1,43 @@
 #pragma once
-// Poses a sharp edge of a mesh: the wedge that its faces make in the world.
+// Poses the sharp edges of meshes: where they are in the world, and the wedges that their faces make there.
+#include <array>
+#include <vector>
+
 #include "echopath/em/edge_diffraction.h"
 #include "echopath/em/material.h"
 #include "echopath/posed/posed_scene.h"
-#include "echopath/scene/mesh/sharp_edges.h"
+#include "echopath/scene/scene_edges.h"
+#include "echopath/trace/record/paths.h"
 
 namespace echopath {
 
 // Returns the wedge in the axes of the world, at the time of the scene.
 Wedge posed_wedge(const SharpEdge& edge, const PosedScene& scene, uint32_t mesh_id);
 
-// Holds an edge in the world, relative to the origin of a trace.
+// Holds an edge in the world, relative to an origin.
 struct PosedEdge {
   uint32_t mesh_id;
   SharpEdge edge;  // in the frame of its mesh
   Wedge wedge;
   Vec3 from, to;  // m, the ends of its stretch in the direction of the triangle's side
+
+  Vec3 line() const { return to - from; }
 };
 
-// Returns the unit vector along an edge about which the angles of its wedge count.
-Vec3 axis_of(const Wedge& wedge);
+// Returns all edges of a scene at the time of the pose, in the order of meshes and edges, relative to `origin` (m, world).
+std::vector<PosedEdge> posed_edges(const Scene& scene, const PosedScene& pose, const Vec3& origin);
+
+// Returns how long a piece of an edge may be (m) for the wave fronts to and from two antennas, so that they bend by at most
+// `bend` (rad) across half of it.
+double longest_piece(const PosedEdge& edge, const Vec3& transmitter, const Vec3& receiver, double wavenumber, double bend);
+
+// Holds a point on an edge, as a record has it.
+struct EdgePoint {
+  Hit hit;
+  Vec3 position;  // m
+};
+// Returns the point at `along` in [0, 1] of an edge. The corners are those of its triangle.
+EdgePoint point_on_edge(const PosedEdge& edge, double along, const std::array<Vec3, 3>& corners);
 
 // Returns the share of a field that the faces keep in phase: as the one that faces the antenna more would mirror it at a
 // frequency in Hz.

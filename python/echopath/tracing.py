@@ -66,6 +66,7 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
     edges: whether the echoes of sharp edges are looked for, too: what physical optics leaves out where two faces of a conductor
         meet at 30 degrees or more, and at rims (`E` in path expressions), directly from the radar, over flagged mirrors and
         over unflagged planes that rays found, and on from edge to edge over flat faces of up to 40 wavelengths (`E E`).
+        Where the strongest edge stands out of the noise of a cell of the map, those 40 dB below that noise are left out.
         Dielectrics, and meshes that deform or change their scale, have none. "auto": where the strongest edge, were nothing
         in its way, stands out of the noise of a cell of the map; `paths.effects` says how strong it is
     effects: {name: True, False or "auto"} of effects that `Scene.weather` asks for: "attenuation by weather", "echoes of rain"

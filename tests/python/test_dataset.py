@@ -311,6 +311,13 @@ def test_a_dataset_grows_and_is_not_mixed_with_another(whole, tmp_path):
     assert bytes_of(tmp_path / "out") == bytes_of(folder)
 
 
+def test_the_forecast_is_near_what_is_made(whole, tmp_path):
+    path, folder = whole
+    forecast = next(dataset.make(path, tmp_path))
+    size = sum(file.stat().st_size for file in folder.rglob("*.h5"))
+    assert forecast.frames == 12 and 0.8 * size < forecast.bytes < 1.6 * size  # scenes differ
+
+
 def test_a_disk_that_is_too_small_is_told_before_the_first_frame(path, tmp_path, monkeypatch):
     usage = shutil.disk_usage(tmp_path)
     monkeypatch.setattr("echopath.dataset.making.shutil.disk_usage", lambda folder: usage._replace(free=1000))

@@ -15,6 +15,7 @@ from .. import _core
 from ..checks import array, checked, count, flag, optional, refused, text
 from ..checks import path as file_or_folder
 from ..files import require_writable
+from ..sequence.contents import NAME as CONTENTS
 from ..sequence.saving import Shard, shard_rule
 from .address import Address, is_address
 from .cluster import in_dask
@@ -24,7 +25,7 @@ from .template import Template
 from .workers import Done, forget, in_processes, in_this_process
 
 _LOOKED_AT, _BUILT = 1000, 8  # scenes at most that are drawn, and made ready to trace, before the first frame
-_MARGIN = 1.1                 # of the disk that is asked for over what one frame takes
+_MARGIN = 1.1                 # of the disk that is asked for over what the first frame and its scene take
 
 
 class Forecast(NamedTuple):
@@ -175,9 +176,10 @@ def _forecast(plan: Template, place: _LocalFolder | Address, missing: list[int],
     with tempfile.TemporaryDirectory(prefix="echopath-") as trial, warnings.catch_warnings():
         warnings.simplefilter("ignore")  # as when it is made in earnest
         next(iter(plan.sequence(missing[0]).save_frames(trial, keep=plan.settings.keep)))
-        size = sum(path.stat().st_size for path in Path(trial).iterdir())
+        sizes = {path.name: path.stat().st_size for path in Path(trial).iterdir()}
     frames = len(missing) * plan.settings.frames
-    needed = int(_MARGIN * size * frames)
+    once = sizes.pop(CONTENTS, 0)  # for all frames of a scene
+    needed = int(_MARGIN * (once * len(missing) + sum(sizes.values()) * frames))
     if isinstance(place, _LocalFolder) and needed > (free := shutil.disk_usage(place.folder).free):
         raise _core.FileError(f"folder: must have {needed / 2 ** 20:.1f} MiB for {frames} frames, got "
                               f"{free / 2 ** 20:.1f} MiB in '{place.folder}'")

@@ -1,7 +1,7 @@
 """Trains a small network to tell ghosts from objects by cell, and reports its IoU on held-out scenes beside power alone.
 
     echopath dataset data/datasets/ghosts.toml --out ghosts       # a thousand frames, minutes
-    python train_ghosts.py ghosts                                 # minutes on a processor
+    OMP_NUM_THREADS=1 python train_ghosts.py ghosts               # minutes on a processor, also where others use it
 
 The network has three scales (8, 16 and 32 channels) and sees the map in dB with range and velocity of each cell. Power alone has
 two thresholds, those of the best mean IoU on the training frames: nothing, ghost, object by ascending power.

@@ -17,6 +17,7 @@ import echopath as ep
 from echopath import dataset
 from echopath.cli.info import describe_file
 from echopath.dataset.folder import scene_folder
+from echopath.dataset.workers import in_this_process
 from echopath.frame_file.maps import load_maps
 
 HEAD = """
@@ -241,6 +242,19 @@ def test_a_worker_that_is_killed_is_replaced(whole, tmp_path):
         os.kill(one, signal.SIGKILL)
     running.communicate(timeout=120)
     assert workers and running.returncode == 0 and bytes_of(tmp_path) == bytes_of(folder)
+
+
+def test_what_a_killed_worker_left_is_removed_by_the_next(whole, tmp_path):
+    path, folder = whole
+    make(path, tmp_path, frames=(0, 2))
+    for scene in (0, 1):  # killed behind the record of the first, and before that of the second
+        own = scene_folder(tmp_path, scene)
+        own.mkdir(exist_ok=True)
+        for name in (".begun", ".record-abc.json", ".drawn-abc.json", ".frame_0001-abc.h5"):
+            (own / name).write_text("half")
+    list(in_this_process(dataset.Template(path), tmp_path, range(6), "run"))
+    make(path, tmp_path)
+    assert bytes_of(tmp_path) == bytes_of(folder)
 
 
 @pytest.mark.parametrize("workers", [1, 2])

@@ -65,8 +65,15 @@ def make_scene(template: Template, folder: Path, scene: int, run: str) -> SceneR
     else:
         record = _made(template, folder, scene)
     write_record(folder, scene, record)
-    (scene_folder(folder, scene) / _BEGUN).unlink(missing_ok=True)
+    tidy(folder, scene)
     return record
+
+
+def tidy(folder: Path, scene: int) -> None:
+    """Removes what a worker that was killed has left beside the files of a scene; the caller has claimed it."""
+    own = scene_folder(folder, scene)
+    for left in (own / _BEGUN, *own.glob(".*-*")):  # temporary files of `written_whole`
+        left.unlink(missing_ok=True)
 
 
 def _made(template: Template, folder: Path, scene: int) -> SceneRecord:

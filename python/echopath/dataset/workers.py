@@ -12,7 +12,7 @@ from typing import Any
 from .. import _core
 from ..threads import set_num_threads
 from .folder import RECORD, SceneRecord, read_record, scene_folder
-from .scene_work import claimed, make_scene
+from .scene_work import claimed, make_scene, tidy
 from .template import Template
 
 PAUSE = 0.2  # s between looks for what others have made
@@ -36,6 +36,8 @@ def in_this_process(template: Template, folder: Path, scenes: Sequence[int], run
                 record = read_record(folder, scene)
                 if record.state == "to do":
                     record = make_scene(template, folder, scene, run)
+                else:
+                    tidy(folder, scene)
             yield scene, record
         waiting = claimed_by_others
         if waiting:

@@ -17,7 +17,6 @@ import echopath as ep
 from echopath import dataset
 from echopath.cli.info import describe_file
 from echopath.dataset.folder import scene_folder
-from echopath.dataset.workers import in_this_process
 from echopath.frame_file.maps import load_maps
 
 HEAD = """
@@ -252,7 +251,6 @@ def test_what_a_killed_worker_left_is_removed_by_the_next(whole, tmp_path):
         own.mkdir(exist_ok=True)
         for name in (".begun", ".record-abc.json", ".drawn-abc.json", ".frame_0001-abc.h5"):
             (own / name).write_text("half")
-    list(in_this_process(dataset.Template(path), tmp_path, range(6), "run"))
     make(path, tmp_path)
     assert bytes_of(tmp_path) == bytes_of(folder)
 

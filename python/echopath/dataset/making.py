@@ -20,7 +20,7 @@ from ..sequence.saving import Shard, shard_rule
 from .address import Address, is_address
 from .cluster import in_dask
 from .folder import SceneRecord, prepare_folder, read_record, write_manifest
-from .scene_work import is_done
+from .scene_work import is_done, tidy
 from .template import Template
 from .workers import Done, forget, in_processes, in_this_process
 
@@ -75,7 +75,12 @@ class _LocalFolder:
     def record(self, scene: int) -> SceneRecord:
         """What is written of a scene; to do where files are damaged, which are removed."""
         record = read_record(self.folder, scene)
-        return SceneRecord("to do") if record.state == "done" and not is_done(self.folder, scene) else record
+        if record.state != "done":
+            return record
+        if not is_done(self.folder, scene):
+            return SceneRecord("to do")
+        tidy(self.folder, scene)
+        return record
 
     def forget(self, scenes: list[int]) -> None:
         forget(self.folder, scenes)

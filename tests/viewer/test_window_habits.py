@@ -1,13 +1,17 @@
 """Undo, recent files, remembered sizes."""
 from __future__ import annotations
 
+import numpy as np
+import pytest
+
 import echopath as ep
 from echopath_viewer.model import CellBox, from_frame
 from echopath_viewer.model.history import MOST_STATES, History
 from echopath_viewer.window import MainWindow
-from echopath_viewer.window.qt import Qt
+from echopath_viewer.window.command_palette import CommandPalette
+from echopath_viewer.window.qt import Qt, QtWidgets
 from echopath_viewer.window.remembered import recent_files, settings
-from support.window import settle
+from support.window import PATIENCE_MS, project, settle
 
 CONTROL, SHIFT = Qt.KeyboardModifier.ControlModifier, Qt.KeyboardModifier.ShiftModifier
 
@@ -76,3 +80,58 @@ def test_sizes_and_places_of_panels_are_remembered(qtbot, frame):
     assert second.dockWidgetArea(second.docks["Rays"]) == Qt.DockWidgetArea.LeftDockWidgetArea
     second.close()
     settings().clear()
+
+
+def test_every_control_says_what_it_does(window):
+    kinds = (QtWidgets.QAbstractButton, QtWidgets.QComboBox, QtWidgets.QAbstractSpinBox, QtWidgets.QAbstractSlider,
+             QtWidgets.QLineEdit)
+    inner = (QtWidgets.QAbstractSpinBox, QtWidgets.QLineEdit, QtWidgets.QComboBox, QtWidgets.QTabBar, QtWidgets.QDockWidget,
+             QtWidgets.QToolBar, QtWidgets.QAbstractItemView, QtWidgets.QScrollArea)
+    silent = [widget for kind in kinds for widget in window.findChildren(kind)
+              if not widget.toolTip() and not isinstance(widget.parent(), inner) and not isinstance(widget, QtWidgets.QScrollBar)
+              and not widget.objectName().startswith("qt_")]
+    assert [(type(widget).__name__, getattr(widget, "text", str)()) for widget in silent] == []
+
+
+def test_the_window_fits_a_small_screen(window):
+    smallest = window.minimumSizeHint()
+    assert smallest.width() <= 1280 and smallest.height() <= 800
+
+
+def test_commands_are_found_by_their_letters(qtbot, window):
+    qtbot.keyClick(window, Qt.Key.Key_K, CONTROL)
+    palette = window.findChild(CommandPalette)
+    palette.edit.setText("eye rad")
+    assert [palette.list.item(row).text() for row in range(palette.list.count())] == ["The radar's eye   R"]
+    palette.edit.setText("ghost twins")
+    qtbot.keyClick(palette.edit, Qt.Key.Key_Return)
+    qtbot.waitUntil(lambda: "ghost twins" in window.session.layers)
+    window.layer_actions["ghost twins"].setChecked(False)
+    palette.deleteLater()
+
+
+def test_a_file_that_is_written_anew_is_shown_anew(qtbot, window, frame, tmp_path):
+    path = tmp_path / "frame.h5"
+    ep.save_frame(frame, path)
+    window.open_file(path)
+    window.session.set_color_by("power")
+    session = window.session
+    ep.save_frame(frame, path)
+    for _ in range(2):  # once it is at rest
+        window.file_watch.look()
+    qtbot.waitUntil(lambda: window.session is not session and not window.loading.is_running, timeout=PATIENCE_MS)
+    assert window.session.color_by == "power" and window.session.paths.num_paths == frame.paths.num_paths
+
+
+def test_names_and_axes_follow_the_scene(qtbot, window):
+    window.layer_actions["names"].setChecked(True)
+    assert any(name.startswith("object names") for name in window.view3d.actors)
+    window.layer_actions["names"].setChecked(False)
+    assert not any(name.startswith("object names") for name in window.view3d.actors)
+    window.look_top()
+    window.settle()
+    compass = window.view3d.compass
+    assert compass.isVisible() and compass.axes[0] == pytest.approx([1.0, 0.0], rel=0, abs=1e-6)  # x to the right
+    ends = [np.array([project(window, point).x(), project(window, point).y()]) for point in
+            (window.view3d.camera.focal_point, np.array(window.view3d.camera.focal_point) + (compass.metres, 0.0, 0.0))]
+    assert np.linalg.norm(ends[1] - ends[0]) == pytest.approx(compass.pixels, rel=0, abs=2.0)

@@ -12,7 +12,8 @@ from echopath.plots.labels import CLASSES
 
 from .palette import rgb_of
 
-LABELS, OBJECTS, DETECTIONS, TRUTH, TWINS = LAYERS = ("labels", "objects and ghosts", "detections", "truth", "ghost twins")
+LAYERS = ("labels", "objects and ghosts", "detections", "truth", "ghost twins", "names")
+LABELS, OBJECTS, DETECTIONS, TRUTH, TWINS, NAMES = LAYERS
 OPACITY = 140             # of 255, of cells that have a label
 NOISE_RGB, BACKGROUND_RGB = (150, 150, 150), (240, 240, 240)  # of detections that no object made
 MAX_NAMED_GHOSTS = 8

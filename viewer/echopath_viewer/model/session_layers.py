@@ -9,6 +9,7 @@ from .layers import (
     DETECTIONS,
     LABELS,
     LAYERS,
+    NAMES,
     OBJECTS,
     TRUTH,
     TWINS,
@@ -37,7 +38,7 @@ class SessionLayers:
 
     def _make_known(self, layer: str, progress) -> None:
         name = LABELS if layer == OBJECTS else layer
-        if name in self._known_data:
+        if name in self._known_data or name == NAMES:
             return
         if name == TWINS:
             self._known_data[TWINS] = ghost_twins(self.paths, self.columns)

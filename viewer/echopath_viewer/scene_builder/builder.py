@@ -10,6 +10,7 @@ from .camera import look
 from .known_layer import KnownLayer
 from .legend import LegendLayer
 from .mesh_layer import MeshLayer
+from .name_layer import NameLayer
 from .ray_layer import RayLayer
 from .track_layer import TrackLayer
 from .twin_layer import TwinLayer
@@ -47,6 +48,7 @@ class SceneBuilder:
         self.lit = RayLayer(plotter, "lit", width=LIT_WIDTH, in_front=True)
         self.chosen = RayLayer(plotter, "chosen", width=CHOSEN_WIDTH, in_front=True)
         self.known, self.tracks, self.twins = KnownLayer(plotter), TrackLayer(plotter), TwinLayer(plotter)
+        self.names = NameLayer(plotter, lambda: self.meshes)
         self.legend = legend if legend is not None else LegendLayer(plotter) if show_legend else None
         self.update({"meshes"})
         self._draw_rays()
@@ -67,6 +69,8 @@ class SceneBuilder:
         if "layers" in topics:
             self.known.show(self.session)
             self.twins.show(self.session)
+        if topics & {"layers", "time", "meshes"}:
+            self.names.show(self.session)
         if "meshes" in topics:
             self.meshes.colour(self.session.palette)
             self.meshes.show(self.session.hidden_meshes, self.session.meshes_of_node())

@@ -21,6 +21,8 @@ class EmptyPage(QtWidgets.QWidget):
         text = QtWidgets.QLabel(TEXT)
         self.open_button = QtWidgets.QPushButton("Open a frame ...")
         self.demo_button = QtWidgets.QPushButton("Simulate the street demo (seconds)")
+        self.open_button.setToolTip("A frame file, or several as a time line")
+        self.demo_button.setToolTip("A person who walks in a street between two walls")
         self.open_button.clicked.connect(self.open_wanted)
         self.demo_button.clicked.connect(self.demo_wanted)
         column = QtWidgets.QVBoxLayout(self)

@@ -52,7 +52,18 @@ class FilterBox(QtWidgets.QWidget):
         self._arrange()
         self._connect()
 
+    def _explain(self) -> None:
+        for widget, text in ((self.from_box, "Fewest hits of a ray that is shown"),
+                             (self.to_box, "Most hits of a ray that is shown"),
+                             (self.power_check, "Leave out weaker rays"), (self.power_box, "Power that a ray must have"),
+                             (self.mesh_box, "A mesh, object or pattern that a ray must hit"),
+                             (self.add_button, "Name what is shown"), (self.reset_button, "No filter"),
+                             (self.colour_box, "What the colours of rays mean (C)"), (self.limit_box, "How many rays are drawn"),
+                             (self.hits_check, "A dot at each hit (H)")):
+            widget.setToolTip(text)
+
     def _arrange(self) -> None:
+        self._explain()
         form = QtWidgets.QFormLayout(self)
         form.setContentsMargins(4, 4, 4, 4)
         form.setFieldGrowthPolicy(QtWidgets.QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)

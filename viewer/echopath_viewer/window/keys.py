@@ -11,6 +11,8 @@ KEYS = (
     ("Ctrl+L", "load_view_dialog", "Load a view"),
     ("Ctrl+P", "screenshot_dialog", "Save a picture, maps, a film or a page"),
     ("Ctrl+E", "export_rays_dialog", "Export the rays (VTK)"),
+    ("F5", "reload", "Read the file anew"),
+    ("Ctrl+K", "show_commands", "Find a command by typing"),
     ("Ctrl+Z", "undo", "Undo what the view shows"),
     ("Ctrl+Shift+Z", "redo", "Redo it"),
     ("Ctrl+Q", "quit", "Close the window"),
@@ -32,17 +34,17 @@ KEYS = (
     ("?", "show_help", "This list"),
     ("", "export_meshes_dialog", "Export the meshes (VTK)"),
 )
-NEEDS_NO_FRAME = ("open_dialog", "open_folder_dialog", "show_help", "quit")
+NEEDS_NO_FRAME = ("open_dialog", "open_folder_dialog", "show_help", "show_commands", "quit")
 MENUS = {
-    "File": ("open_dialog", "open_folder_dialog", "save_view_dialog", "load_view_dialog", "screenshot_dialog",
+    "File": ("open_dialog", "open_folder_dialog", "reload", "save_view_dialog", "load_view_dialog", "screenshot_dialog",
              "export_rays_dialog", "export_meshes_dialog"),
     "View": ("undo", "redo", "look_fit", "look_radar", "look_top", "look_side", "toggle_hits", "next_colour", "toggle_layout",
              "toggle_play", "previous_chirp", "next_chirp", "previous_frame", "next_frame", "toggle_play_frames", "remove_part",
              "clear_selection"),
-    "Help": ("show_help",),
+    "Help": ("show_help", "show_commands"),
 }
 MOUSE = (
-    ("1, 2, 3, 4, 5", "layers: labels, objects and ghosts, detections, truth, ghost twins"),
+    ("1, 2, 3, 4, 5, 6", "layers: labels, objects and ghosts, detections, truth, ghost twins, names"),
     ("Map: click a detection", "its paths"), ("Legend: click an object", "shows it alone, or all again"),
     ("Map: click, drag", "the rays of a cell, of a rectangle"),
     ("Map: wheel, right button, double click", "zoom, move, what moves or everything"),

@@ -45,7 +45,7 @@ class LivePanel(QtWidgets.QWidget):
             widget.setToolTip(text)
         form = QtWidgets.QFormLayout(self)
         form.setContentsMargins(4, 4, 4, 4)
-        place, rough = QtWidgets.QHBoxLayout(), QtWidgets.QHBoxLayout()
+        place, rough = QtWidgets.QVBoxLayout(), QtWidgets.QHBoxLayout()
         for box in self.place_boxes:
             place.addWidget(box)
         for widget in (self.rough_slider, self.rough_label):

@@ -3,22 +3,17 @@ from __future__ import annotations
 
 import numpy as np
 
-import echopath as ep
-
-from ..model import Session, from_file, from_frame
-from ..model.carried import ready_session
+from ..model import Session
 from ..model.history import History
-from ..model.preview import preview_of
-from ..model.time_line import time_line_of
 from ..model.view_state import state_of
 from .background_work import BackgroundWork
 from .banner import Banner, thin_bar
 from .busy import run_with_progress
 from .choices import Choices
 from .contributions import ContributionsPanel
-from .demo import simulate_demo
 from .empty_page import EmptyPage
 from .file_actions import FileActions
+from .file_watch import FileWatch
 from .filter_box import FilterBox
 from .frame_bar import FrameBar
 from .keys import uses_key
@@ -26,10 +21,11 @@ from .live_control import LiveControl
 from .live_panel import LivePanel
 from .map_area import MapArea
 from .menus import Menus
+from .opening import Opening
 from .panels import Panels
 from .qt import QtCore, QtWidgets
 from .ray_table import RayTable
-from .remembered import remember_file, remember_layout, restore_layout
+from .remembered import remember_layout, restore_layout
 from .scene_tree import SceneTree
 from .time_bar import TimeBar
 from .time_control import TimeControl
@@ -41,7 +37,7 @@ SIZE = (1600, 960)
 SIGNAL_PAUSE_MS = 250  # without changes, before signals of what is chosen are made: longer work than a step of a box
 
 
-class MainWindow(Panels, Menus, ViewActions, FileActions, Choices, QtWidgets.QMainWindow):
+class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWidgets.QMainWindow):
     """Scene tree and filters, 3-D view with its time bars, maps and tables: all views of one session."""
 
     def __init__(self, remembers: bool = True):
@@ -61,7 +57,7 @@ class MainWindow(Panels, Menus, ViewActions, FileActions, Choices, QtWidgets.QMa
         self.live_panel = LivePanel(self.live)
         self.frame_bar.hide()
         self.banner, self.empty_page, self.loading_bar = Banner(), EmptyPage(), thin_bar()
-        self.loading = BackgroundWork(self)
+        self.loading, self.file_watch = BackgroundWork(self), FileWatch(self)
         self._listing = QtCore.QTimer(self, singleShot=True, interval=0)
         self._pause = QtCore.QTimer(self, singleShot=True, interval=SIGNAL_PAUSE_MS)
         self._stale, self._signal_of = set(), None
@@ -74,44 +70,14 @@ class MainWindow(Panels, Menus, ViewActions, FileActions, Choices, QtWidgets.QMa
 
     # --- frames ---
 
-    def open_file(self, path) -> bool:
-        """Shows a frame file, or the time line of a folder, a pattern or a list of files, or says above what was shown before
-        what is wrong with it."""
-        try:
-            line = time_line_of(path)
-            early = preview_of(path) if line is None else None
-            view_input = early or (from_file(path) if line is None else line.read(0))
-        except (ep.FileError, ValueError) as error:
-            self.show_message(str(error))
-            return False
-        self.show_input(view_input, line)
-        if early is not None:
-            self.load_rest(path)
-        if not isinstance(path, list):
-            remember_file(path)
-        return True
-
     def show_input(self, view_input, line=None) -> None:
         """Shows what `model.inputs` has read, and the window: there is no drawing into one that was never shown.
 
         line: TimeLine whose first frame it is, None: it stands alone
         """
         self.loading.stop()
+        self.file_watch.watch(None)
         self._show_session(Session(view_input), line)
-
-    def load_rest(self, path) -> None:
-        """Reads all of a file of which a preview is shown, in a thread."""
-        self.loading_bar.show()
-        self.loading.start(lambda progress: ready_session(from_file(path)))
-
-    def _end_loading(self, text: str = "") -> None:
-        self.loading_bar.hide()
-        if text:
-            self.show_message(text)
-
-    def _take_rest(self, session) -> None:
-        self._end_loading()
-        self._show_session(session, None)
 
     def _show_session(self, session, line) -> None:
         self.session, self.history = session, History()
@@ -170,11 +136,6 @@ class MainWindow(Panels, Menus, ViewActions, FileActions, Choices, QtWidgets.QMa
         """Shows a line above everything until it is clicked away; "" takes it away."""
         self.banner.setText(text)
         self.banner.setVisible(bool(text))
-
-    def _simulate_demo(self) -> None:
-        frame = run_with_progress(self, "Street demo", simulate_demo)
-        if frame is not None:
-            self.show_input(from_frame(frame, title="street demo"))
 
     # --- following the session ---
 
@@ -245,6 +206,7 @@ class MainWindow(Panels, Menus, ViewActions, FileActions, Choices, QtWidgets.QMa
         self.view3d.mesh_clicked.connect(lambda mesh: self._choose_node(self.session.mesh_names[mesh]))
         self.view3d.legend_box.row_clicked.connect(self._isolate)
         self.table.ray_chosen.connect(lambda ray: self.session.select_ray(ray))
+        self.file_watch.changed.connect(lambda _: self.reload())
         self.loading.done.connect(self._take_rest)
         self.loading.failed.connect(self._end_loading)
         self.time_line.read.connect(self._follow)
@@ -266,18 +228,11 @@ class MainWindow(Panels, Menus, ViewActions, FileActions, Choices, QtWidgets.QMa
             return True
         return super().event(event)
 
-    def dragEnterEvent(self, event):
-        if event.mimeData().hasUrls():
-            event.acceptProposedAction()
-
-    def dropEvent(self, event):
-        names = [url.toLocalFile() for url in event.mimeData().urls()]
-        self.open_file(names[0] if len(names) == 1 else names)
-
     def closeEvent(self, event):
         if self._remembers and self._had_content:
             remember_layout(self)
         self.time_bar.stop()
+        self.file_watch.watch(None)
         self.time_line.stop()
         for work in (self.contributions.work, self.loading, self.live_panel):
             work.stop()

@@ -1,7 +1,7 @@
 """Menus, tool bar and toggles of the window."""
 from __future__ import annotations
 
-from ..model.layers import DETECTIONS, LABELS, LAYERS, OBJECTS, TRUTH, TWINS
+from ..model.layers import DETECTIONS, LABELS, LAYERS, NAMES, OBJECTS, TRUTH, TWINS
 from ..scene_builder import VIEWS
 from .keys import KEYS, MENUS, NEEDS_NO_FRAME
 from .qt import QtCore, QtGui
@@ -13,7 +13,8 @@ BAR_TITLES = {"open_dialog": "Open", "save_view_dialog": "Save view", "load_view
 LAYER_WORDS = {LABELS: "Cells of the map by the part that dominates", OBJECTS: "Cells of objects and of their ghosts",
                DETECTIONS: "Detections in the map and, with directions, in the scene",
                TRUTH: "True centres in the map, true boxes in the scene",
-               TWINS: "The strongest ghosts in the scene: objects, translucent, where their echoes seem to come from"}
+               TWINS: "The strongest ghosts in the scene: objects, translucent, where their echoes seem to come from",
+               NAMES: "Names of the objects in the scene"}
 
 
 class Menus:

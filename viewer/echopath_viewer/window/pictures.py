@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .qt import Qt, QtCore, QtGui
+from .qt import Qt, QtCore, QtGui, QtWidgets
 
 MAX_SCALE = 8
 POINTS_PER_PIXEL = 0.75  # of a PDF page, whose unit is 1/72 inch
@@ -37,8 +37,9 @@ def _paint_scene(window, image, scale: int) -> None:
     corner = view.mapTo(window, QtCore.QPoint(0, 0))
     painter.drawImage(QtCore.QRectF(QtCore.QPointF(corner), QtCore.QSizeF(view.size())), still)
     painter.end()
-    if view.legend_box.isVisible():
-        view.legend_box.render(image, view.legend_box.mapTo(window, QtCore.QPoint(0, 0)))
+    for box in (view.legend_box, view.compass):
+        if box.isVisible():
+            box.render(image, box.mapTo(window, QtCore.QPoint(0, 0)), renderFlags=QtWidgets.QWidget.RenderFlag.DrawChildren)
 
 
 def draw_maps(map_area, path: str, kind: str) -> None:

@@ -18,6 +18,8 @@ class TimeBar(QtWidgets.QWidget):
         self.is_behind = lambda: False  # whether the last step is still to be drawn: the film waits for it
         self.play_button = QtWidgets.QPushButton("Play", checkable=True)
         self.slider = QtWidgets.QSlider(Qt.Orientation.Horizontal)
+        self.play_button.setToolTip("Play or pause the chirps of the frame (Space)")
+        self.slider.setToolTip("The chirp at whose middle the scene and its rays are shown")
         self.label = QtWidgets.QLabel()
         self.strip = SlowTimeStrip()
         self._timer = QtCore.QTimer(self, interval=TICK_MS)

@@ -7,6 +7,7 @@ from vtkmodules.vtkRenderingCore import vtkCellPicker
 
 from ..model.picking import nearest_segment
 from ..scene_builder import SceneBuilder
+from .compass import Compass
 from .legend_box import LegendBox
 from .qt import Qt, QtCore, Signal
 
@@ -28,6 +29,7 @@ class View3D(QtInteractor):
         self._is_behind = self._is_fresh = False
         super().__init__(parent, auto_update=False, multi_samples=0)
         self._press, self._drag, self.legend_box = None, None, LegendBox(self)
+        self.compass = Compass(self)
         self.setAcceptDrops(False)  # what is dropped here is the window's: pyvistaqt would read it with VTK
         # VTK draws in paintGL alone: a drawing of its own, at each turn of the camera, would come on top of that.
         self.iren.interactor.EnableRenderOff()
@@ -97,6 +99,8 @@ class View3D(QtInteractor):
             super().paintGL()
         finally:
             interactor.EnableRenderOff()
+        if self.builder is not None:
+            self.compass.follow(self.camera, self.height())
 
     def camera_state(self) -> dict:
         camera = self.camera
@@ -164,6 +168,7 @@ class View3D(QtInteractor):
         super().resizeEvent(event)
         if self.builder is not None:
             self.builder.resized()
+            self.compass.place()
             self.render_soon()
 
     def _world_at(self, at, height: float):

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from ..model import COLOUR_MODES
 from ..model.view_state import apply_state
+from .command_palette import CommandPalette
 from .keys import help_dialog
 
 
@@ -80,6 +81,9 @@ class ViewActions:
 
     def show_help(self) -> None:
         help_dialog(self).show()
+
+    def show_commands(self) -> None:
+        CommandPalette(self, [*self.actions(), *self.window_menu.actions()]).show()
 
     def quit(self) -> None:
         self.close()

@@ -1,0 +1,36 @@
+"""Names of the objects in the scene."""
+from __future__ import annotations
+
+import numpy as np
+
+from ..model.layers import NAMES
+from ..model.palette import objects_of
+
+FONT_SIZE = 12
+
+
+class NameLayer:
+    """Above each object that is not hidden, where it is at the time on display."""
+
+    def __init__(self, plotter, meshes_of):
+        """meshes_of: callable () -> MeshLayer, which has the boxes."""
+        self._plotter, self._meshes_of = plotter, meshes_of
+
+    def show(self, session) -> None:
+        """What the session has switched on."""
+        self._plotter.remove_actor("object names", render=False)
+        if NAMES not in session.layers:
+            return
+        names, object_of_mesh = objects_of(session.scene)
+        tops, texts = [], []
+        for number, name in enumerate(names):
+            meshes = [int(mesh) for mesh in np.flatnonzero(object_of_mesh == number) if mesh not in session.hidden_meshes]
+            if meshes:
+                corners = np.concatenate(self._meshes_of().bounds_of(meshes))
+                low, high = corners.min(axis=0), corners.max(axis=0)
+                tops.append([*(0.5 * (low + high))[:2], high[2]])
+                texts.append(name)
+        if tops:
+            self._plotter.add_point_labels(np.array(tops), texts, name="object names", font_size=FONT_SIZE, text_color="black",
+                                           shape_color="white", shape_opacity=0.75, show_points=False, always_visible=True,
+                                           reset_camera=False, render=False)

@@ -1,0 +1,72 @@
+"""From a file, a folder or a drop to what the window shows."""
+from __future__ import annotations
+
+import echopath as ep
+
+from ..model import from_file, from_frame
+from ..model.carried import ready_session, session_like
+from ..model.preview import preview_of
+from ..model.time_line import time_line_of
+from ..model.view_state import state_of
+from .busy import run_with_progress
+from .demo import simulate_demo
+from .remembered import remember_file
+
+
+class Opening:
+    """Part of MainWindow: reads frames, large ones in a thread, and reads them anew."""
+
+    def open_file(self, path) -> bool:
+        """Shows a frame file, or the time line of a folder, a pattern or a list of files, or says above what was shown before
+        what is wrong with it."""
+        try:
+            line = time_line_of(path)
+            early = preview_of(path) if line is None else None
+            view_input = early or (from_file(path) if line is None else line.read(0))
+        except (ep.FileError, ValueError) as error:
+            self.show_message(str(error))
+            return False
+        self.show_input(view_input, line)
+        self.file_watch.watch(path if line is None else None)
+        if early is not None:
+            self.load_rest(path)
+        if not isinstance(path, list):
+            remember_file(path)
+        return True
+
+    def load_rest(self, path) -> None:
+        """Reads all of a file of which a preview is shown, in a thread."""
+        self.loading_bar.show()
+        self.loading.start(lambda progress: ready_session(from_file(path)))
+
+    def reload(self) -> None:
+        """Reads the file on display anew; what is shown stays, as far as it fits."""
+        path, state = self.file_watch.path, state_of(self.session)
+        if path is not None:
+            self.loading_bar.show()
+            self.loading.start(lambda progress: session_like(state, from_file(path)))
+
+    def _end_loading(self, text: str = "") -> None:
+        self.loading_bar.hide()
+        if text:
+            self.show_message(text)
+
+    def _take_rest(self, session) -> None:
+        self._end_loading()
+        if self.session.paths.num_paths:  # read anew
+            self._follow(session)
+        else:
+            self._show_session(session, None)
+
+    def _simulate_demo(self) -> None:
+        frame = run_with_progress(self, "Street demo", simulate_demo)
+        if frame is not None:
+            self.show_input(from_frame(frame, title="street demo"))
+
+    def dragEnterEvent(self, event):
+        if event.mimeData().hasUrls():
+            event.acceptProposedAction()
+
+    def dropEvent(self, event):
+        names = [url.toLocalFile() for url in event.mimeData().urls()]
+        self.open_file(names[0] if len(names) == 1 else names)

@@ -20,15 +20,20 @@ from pathlib import Path
 import numpy as np
 
 import echopath as ep
+from echopath.live.watch import FIRST_PREVIEW_RAYS
 from echopath.path_subset import strongest, subset
 from echopath_viewer.model import CellBox, Filters, from_file
 from echopath_viewer.model.attribution import Attribution
+from echopath_viewer.model.live_session import live_of, session_of_view
+from echopath_viewer.model.view_state import state_of
 from echopath_viewer.window import MainWindow
 from echopath_viewer.window.demo import simulate_demo
 from echopath_viewer.window.qt import QtWidgets
 
 NUM_REPETITIONS = 7
-MAX_START = 6.0  # s, promised for 200 thousand paths on two cores
+MAX_START = 2.0  # s, promised for scene and map of a file of 3 million paths, whose rays follow
+LIVE_RAYS, NUM_MOVES = 50_000, 8
+MAX_PREVIEW = 0.1  # s, promised for scene, rays and map of a dragged object
 # s of processor time from a change to its picture, promised for 3 million paths drawn by software.
 MAX_TO_PICTURE = {"filter": 0.150, "colour": 0.060, "cell": 0.100, "step in time": 0.100, "what makes": 0.100}
 START = """
@@ -39,7 +44,9 @@ window = view(sys.argv[1], block=False)
 while window.isHidden() or window.view3d._is_fresh:
     QtWidgets.QApplication.processEvents()
 window.view3d.repaint()
-print('up')
+if len(sys.argv) > 2:
+    window.settle()
+    window.view3d.repaint()
 """
 
 
@@ -74,12 +81,14 @@ def save_street(path: Path, num_paths: int) -> None:
 
 
 def bench_start(path: Path) -> None:
-    """From the start of Python to the first picture, in a process of its own; the second time, with files in the cache."""
-    for _ in range(2):
-        watch, before = Stopwatch(), children_seconds()
-        subprocess.run([sys.executable, "-c", START, str(path)], check=True, stdout=subprocess.DEVNULL)
-        wall, seconds = watch.wall(), children_seconds() - before
-    verdict(f"window up, from the command line {seconds:6.2f} s (waited {wall:.2f} s)", seconds, MAX_START)
+    """From the start of Python to the first picture, and to that with rays, each in a process of its own; the second time,
+    with files in the cache."""
+    for words, more, limit in (("scene and map", (), MAX_START), ("and rays", ("all",), None)):
+        for _ in range(2):
+            watch, before = Stopwatch(), children_seconds()
+            subprocess.run([sys.executable, "-c", START, str(path), *more], check=True, stdout=subprocess.DEVNULL)
+            wall, seconds = watch.wall(), children_seconds() - before
+        verdict(f"{words}, from the command line {seconds:6.2f} s (waited {wall:.2f} s)", seconds, limit)
 
 
 def children_seconds() -> float:
@@ -117,7 +126,31 @@ def bench_changes(path: Path) -> None:
         for name, change in changes(window.session).items():
             bench_change(window, name, change)
         bench_drawing(window)
+    bench_live(window)
     window.close()
+
+
+def bench_live(window) -> None:
+    """The first object is moved: processor time of a preview, of the full view, and of the picture of its rays."""
+    live = live_of(window.session, LIVE_RAYS)
+    live.update()
+    name = next(mesh.name.partition("/")[0] for mesh in live.scene.meshes if not mesh.material.mirror)
+    seconds = {"preview": [], "full view": [], "its picture": []}
+    for _ in range(NUM_MOVES):
+        live.scene[name].position += (0.02, 0.0, 0.0)
+        for kind, work in (("preview", lambda: live.preview(num_rays=FIRST_PREVIEW_RAYS)), ("full view", live.update)):
+            watch = Stopwatch()
+            view = work()
+            seconds[kind].append(watch.processor())
+        watch = Stopwatch()
+        window._follow(session_of_view(live, view, state_of(window.session), window.session.signals.spectrum_settings))
+        window.view3d.repaint()
+        seconds["its picture"].append(watch.processor())
+        settle(window)
+    print(f"live scene, {name} moved, {LIVE_RAYS:,} rays")
+    for kind, limit in (("preview", MAX_PREVIEW), ("full view", None), ("its picture", MAX_PREVIEW)):
+        taken = float(np.median(seconds[kind]))
+        verdict(f"  {kind:28} {1e3 * taken:7.1f} ms", taken, limit)
 
 
 def changes(session) -> dict:

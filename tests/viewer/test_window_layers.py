@@ -84,5 +84,5 @@ def test_paths_alone_know_no_detections(frame):
     session = Session(from_paths(None, frame.paths))
     with pytest.raises(ValueError, match="detections: only frames have them, got paths alone"):
         session.set_layer("detections", True)
-    with pytest.raises(ValueError, match="layer: must be one of labels, .*, detections, truth, ghost twins, got 'x'"):
+    with pytest.raises(ValueError, match="layer: must be one of labels, .*, detections, truth, ghost twins, names, got 'x'"):
         session.set_layer("x", True)

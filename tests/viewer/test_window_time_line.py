@@ -8,7 +8,7 @@ import pytest
 import echopath as ep
 from echopath_viewer.model import CellBox
 from echopath_viewer.window.qt import Qt
-from support.window import PATIENCE_MS, open_on_screen
+from support.window import PATIENCE_MS, open_on_screen, settle
 
 LEFT = Qt.MouseButton.LeftButton
 
@@ -54,6 +54,20 @@ def test_colours_objects_and_cells_stay_selected(qtbot, line_window):
     actor = window.view3d.builder.meshes.actors[0]
     assert actor is before and actor.prop.color.int_rgb == (10, 200, 30)
     assert actor.mapper.dataset.center[0] == pytest.approx(6.0 - 4.0 * after.time, rel=0, abs=1e-4)
+
+
+def test_undo_goes_back_over_frames(qtbot, line_window):
+    window = line_window
+    window.session.set_color_by("power")
+    settle(qtbot)
+    for place in (1, 2):
+        window.next_frame()
+        wait_for(qtbot, window, place)
+        settle(qtbot)
+    window.undo()
+    assert window.session.color_by == "bounces" and window.time_line.place == 2
+    window.redo()
+    assert window.session.color_by == "power"
 
 
 def test_the_film_goes_round(qtbot, line_window):

@@ -15,7 +15,8 @@ _EXTRA = ("pyvista", "pyvistaqt", "PySide6", "qtpy", "vtk", "vtkmodules")
 def view(*what, **keywords):
     """Opens the viewer and returns when its window is closed.
 
-    what: a frame file, a Frame, `scene, paths` or `scene, paths, parts`; nothing: an empty window
+    what: a frame file, a Frame, `scene, paths` or `scene, paths, parts`; frames in time: a folder, a pattern, a list of files,
+    a Sequence, a StoredSequence or a Dataset; a Live; nothing: an empty window
     keywords: state: file of a view saved before; picture: file of what it shows, whose window is closed then; scale: of a
     PNG; parts, window and zero_pad of the maps of paths; evaluate, retrace and keyframes of their signals; parts are those of
     `decompose` (with their cubes), or selections {name: selection}, one partition or {partition: {name: selection}}

@@ -97,8 +97,13 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         """Follows the session that all views show by now."""
         self.show_layer_checks()
         self.session.listen(self._changed)
-        self.history.record(state_of(self.session))
+        self.history.record(self._view_state())
         self.setWindowTitle(f"{self.session.title or 'paths'} - {TITLE}")
+
+    def _view_state(self) -> dict:
+        """What undo goes back to: the view, whatever the frame; rays are those of one frame."""
+        left_out = ("frame", "seed") if self.time_line.line is None else ("frame", "seed", "ray")
+        return {key: value for key, value in state_of(self.session).items() if key not in left_out}
 
     def _follow(self, session) -> None:
         """Another frame of the time line, which shows what the one before did."""
@@ -162,7 +167,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         if stale & {"selection", "rays"}:
             self._pause.start()
         if not self.time_bar.play_button.isChecked():
-            self.history.record(state_of(self.session))
+            self.history.record(self._view_state())
 
     def _refresh_signals(self) -> None:
         """What takes synthesis: the map of the selected mesh, and the slow-time signal where it is of other rays now."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from .. import _core
 from ..angles import estimate_angles
+from ..beside import NAMES, require_names
 from ..checks import Progress, an, checked, keywords, optional, refused, text
 from ..families import Objects
 from ..families import families as find_families
@@ -39,11 +40,20 @@ def _name(argument: str, name) -> str:
 
 def _signals_of(parts: dict, paths, radar, progress) -> dict:
     """{name: cube or RangeDoppler} of parts that may be selections of the paths."""
-    if not any(isinstance(part, (str, _core.Selection)) for part in parts.values()):
+    selected = {name: part for name, part in parts.items() if isinstance(part, (str, _core.Selection))}
+    if not selected:
         return parts
+    require_names({"parts": selected})
     if paths is None:
         raise ValueError(f"parts: selections need paths to choose from, got {', '.join(parts)} without paths")
     return decompose(paths, radar, parts, progress=progress)
+
+
+def _require_other_names(parts: dict | None, beside: dict | None) -> None:
+    """Raises ValueError for what is named in both: either would stand in the place of the other."""
+    twice = [name for name in beside or {} if name in (parts or {})]
+    if twice:
+        raise ValueError(f"beside: must have other names than parts, got {twice[0]!r} in both")
 
 
 _CALLER = 3  # of detect: behind it and the check of its arguments
@@ -70,10 +80,11 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     angles: keywords of `estimate_angles`, such as {"max_peaks": 2} for several directions of a cell
     paths: of `trace` with that radar: objects, ghosts and the paths behind each detection
     parts: {name: cube or RangeDoppler} without noise, of `decompose` or `Frame.part_spectra[view]`; or, with paths, {name:
-        selection} as `decompose` takes them
+        selection} as `decompose` takes them. Those named "interference", "rain" or "leakage", here and in labels, are what no
+        path makes: a detection of theirs is of no object
     labels: Labels of the map instead of parts; without paths their objects and ghosts too
     beside: {name: cube or RangeDoppler} of what no path makes, such as `Frame.beside_spectra`: a detection in whose cell one of
-        these has the largest power has its name as part, and is of no object
+        these has the largest power has its name as part, and is of no object; named otherwise than the parts
     objects: of `families`, with paths
     progress: callable (stage, fraction), True for bars, or None
     Returns Detections: range in m, velocity in m/s and the rest. Raises ValueError naming the argument, KeyboardInterrupt on
@@ -81,6 +92,7 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     """
     if parts is not None and labels is not None:
         raise ValueError("labels: cannot be given beside parts")
+    _require_other_names(parts, beside)
     if paths is not None and (field := difference(radar, paths.radar, paths.frame.start_time)):
         raise ValueError(f"paths: must be traced with the radar of the spectrum, got another {field}")
     parts = None if parts is None else labelling.maps_of("parts", _signals_of(parts, paths, radar, progress), spectrum, radar)
@@ -113,7 +125,7 @@ def _labels_of(spectrum, cells, power, paths, parts, labels, beside: dict, objec
         found.take_parts(*labelling.part_powers(parts | beside, cells), power)
     elif beside:
         found.take_beside(*labelling.part_powers(beside, cells)[:2])
-    found.leave(tuple(beside) if labels is None else ())
+    found.leave((*NAMES, *beside))
     return found.columns()
 
 

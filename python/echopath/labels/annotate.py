@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from .. import _core, same_radar
+from ..beside import require_names
 from ..checks import MapWindow, Progress, an, anything, checked, optional, refused, text
 from ..families import Objects
 from ..families import families as find_families
@@ -68,6 +69,7 @@ def annotate(paths: _core.Paths, parts: Mapping | None = None, radar: _core.Rada
                            dynamic_range_db=dynamic_range_db, errors=errors)
     request = make_request(radar, paths.frame.num_batches, chosen, window=window, zero_pad=zero_pad, angles=angles)
     selections, cubes = _selections_and_cubes(parts, radar, paths.frame.start_time, errors)
+    require_names({_PARTS: selections})
     replayed = {"tolerance": tolerance, "method": method, "replay": replay, "evaluate": evaluate,
                 "phase_tolerance": phase_tolerance, "retrace": retrace, "keyframes": keyframes, "progress": progress}
     families = find_families(paths, objects)

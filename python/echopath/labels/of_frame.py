@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ..beside import cubes_beside
+from ..beside import cubes_beside, require_names
 from ..checks import Progress, an, anything, checked
 from ..families import Objects
 from ..families import families as find_families
@@ -55,4 +55,5 @@ def annotate_frame(frame: Frame, parts: Mapping | None = None, *, plane: Plane =
 def _as_new_partitions(parts, frame) -> dict:
     chosen = as_partitions(parts) or ({} if frame.parts else {ONLY_PARTITION: {}})
     check_partitions(chosen, frame.scene)
+    require_names(chosen)
     return chosen

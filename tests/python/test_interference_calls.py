@@ -1,0 +1,50 @@
+"""Names, places and motions of other radars that a call must refuse or keep apart."""
+import numpy as np
+import pytest
+from support.radars import build_radar
+
+import echopath as ep
+
+SLOW = {"num_samples": 256, "num_chirps": 16, "transmit_power": 1.0}
+RADAR = build_radar(**SLOW)
+BALL_AT = np.hypot(8, 3) - 0.2  # m, the nearest point of the ball
+
+
+def scene_of(*others):
+    """A ball aside, and other radars."""
+    scene = ep.Scene(interferers=others)
+    scene.add(ep.actors.sphere(0.2), name="ball", material=ep.Material.metal(), smooth=True, position=(8, 3, 0))
+    return scene
+
+
+def direct(**settings):
+    """Another radar with parallel chirps, whose line stands where the ball's echo does, and which is 20 dB above it."""
+    radar = build_radar(**SLOW).replace(**{"position": (2 * BALL_AT, 0, 0)} | settings)
+    return ep.Interferer(radar=radar, over="direct")
+
+
+def frame_of(*others, **settings):
+    return ep.simulate(scene_of(*others), RADAR, **{"num_rays": 500, "max_bounces": 1, "guard": False} | settings)
+
+
+def test_nothing_of_paths_takes_the_name_of_what_no_path_makes():
+    frame = frame_of(direct())
+    with pytest.raises(ValueError, match="^parts: must not be named 'interference'"):
+        ep.annotate_frame(frame, {"interference": "T 'ball' R"})
+    with pytest.raises(ValueError, match="^parts: must not be named 'rain'"):
+        ep.annotate(frame.paths, {"rain": "T 'ball' R"})
+    with pytest.raises(ValueError, match="^parts: must not be named 'rain'"):
+        ep.detect(frame.spectrum, frame.radar, paths=frame.paths, parts={"rain": "T 'ball' R"})
+    with pytest.raises(ValueError, match="^beside: must have other names than parts, got 'interference' in both"):
+        ep.detect(frame.spectrum, frame.radar, parts={"interference": frame.cube}, beside=frame.beside_spectra)
+
+
+def test_detections_by_labels_and_cubes_leave_other_radars_without_an_object():
+    frame = frame_of(direct(), labels=True)
+    by_labels = {"labels": frame.labels["parts"]}
+    by_cubes = {"parts": {"ball": frame.cube, "interference": frame.interference_cube}}
+    for known in (by_labels, by_cubes):
+        found = ep.detect(frame.spectrum, frame.radar, paths=frame.paths, **known)
+        strongest = found.power.argmax()
+        assert (found.part[strongest], found.object[strongest]) == ("interference", "")
+        assert len(found.paths(int(strongest))[0]) > 0  # the ball's echoes are in the cell

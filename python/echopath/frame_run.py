@@ -14,7 +14,7 @@ from .families import check_objects
 from .families import families as find_families
 from .frame import Frame, with_spectra
 from .guard import check_rays, check_signal
-from .interferers import has_interference, interference_cube
+from .interferers import has_interference, interference_cube, require_interferers
 from .labels.annotate import as_label_settings, label_frame, make_request, owners_of_cubes
 from .labels.family_pass import FamilyPass
 from .parts import ONLY_PARTITION, as_partitions, check_partitions, decompose
@@ -54,8 +54,8 @@ class FrameRun:
         self.partitions, self.angle_settings = as_partitions(parts), checked_settings(radar, angles)
         check_partitions(self.partitions, scene)
         require_names(self.partitions)
-        for is_asked_for in (has_rain_echoes, has_interference):
-            is_asked_for(scene, trace.effects)  # raises
+        has_rain_echoes(scene, trace.effects)  # raises
+        require_interferers(scene, radar, trace.effects, (trace.start_time, trace.start_time + radar.frame_duration))
         self._of_map = {"window": signal.window, "zero_pad": signal.zero_pad}
         self.label_settings = as_label_settings(labels)
         self._request = _label_request(scene, radar, self.label_settings, trace.batches or 1, self._of_map,

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from .checks import an, checked, optional, real
+from .checks import an, checked, optional, real, refused
 from .rotations import matrices, product, quaternions
 from .selections import power
 from .transmit import code_of, radar_of_noise
@@ -71,6 +71,25 @@ def interference_radar(radar: _core.Radar, other: _core.Radar, *, time: float = 
                          motion=None, receiver=None)
 
 
+def require_apart(radar, other, times, argument: str) -> None:
+    """Raises ValueError naming the argument where a transmitter of the other radar stands in a receiver at one of times in s."""
+    for time in times:
+        sent, heard = (np.array([one.position for one in _placed(antennas, of, time)])
+                       for antennas, of in ((other.transmitters, other), (radar.receivers, radar)))
+        _require_far(np.linalg.norm(sent[:, None] - heard, axis=2), _wavelength(other), argument)
+
+
+def _require_far(distance, wavelength: float, argument: str) -> None:
+    """Nearer than a wavelength, the spreading of one way holds no longer, and makes power of nothing."""
+    if np.min(distance) < wavelength:
+        raise refused(ValueError, argument, f"at least a wavelength, {wavelength:.3g} m, from the receivers of the radar that it "
+                      "is heard by", f"{np.min(distance):.3g} m")
+
+
+def _wavelength(radar) -> float:
+    return _core.speed_of_light / radar.waveform.start_frequency
+
+
 def _placed(antennas, radar, time: float) -> list:
     place = radar.world_from_radar(time)
     turn = quaternions(place[None, :3, :3])[0]
@@ -127,11 +146,12 @@ class _Ways:
                 self._paths.amplitudes(self._times, tx, rx))
 
     def _direct(self, tx: int, rx: int):
-        other, wavelength = self._other, _core.speed_of_light / self._other.waveform.start_frequency
+        other, wavelength = self._other, _wavelength(self._other)
         (here, turned), (there, turned_there) = (_placed_at(one, antenna, self._times) for one, antenna in
                                                  ((self._radar, self._radar.receivers[rx]), (other, other.transmitters[tx])))
         apart = here - there
         distance = np.linalg.norm(apart, axis=1)
+        _require_far(distance, wavelength, "other")
         ahead = apart / distance[:, None]
         fields = [antenna.pattern.field(np.einsum("tij,ti->tj", turn, way)) for antenna, turn, way in
                   ((other.transmitters[tx], turned_there, ahead), (self._radar.receivers[rx], turned, -ahead))]

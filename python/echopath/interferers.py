@@ -9,7 +9,7 @@ import numpy as np
 from . import _core
 from .checks import Rule, an, one_of, real, refused
 from .effect_choices import INTERFERENCE, Choices, is_on
-from .interference import interference, interference_radar
+from .interference import interference, interference_radar, require_apart
 from .settings import Settings, TraceSettings, settings_class
 from .tracing import trace
 from .transmit import signal_shape
@@ -22,7 +22,8 @@ Over = Literal["both", "direct", "paths"]
 class Interferer(Settings):
     """Another FMCW radar in a scene, which sends into the receivers of the radar that is simulated (`Scene.interferers`).
 
-    radar: that sends: its waveform, code, power, transmitters, place in m and motion count
+    radar: that sends: its waveform, code, power, transmitters, place in m and motion count. Its motion covers the frames, and
+        the direct way is at least a wavelength long
     offset: s, by which its frames begin later than at time 0; they follow each other without a pause
     over: "both" the direct way, where nothing stands in it, and the paths of the scene; "direct" or "paths" alone
     Raises TypeError or ValueError naming the keyword. Values are frozen; two with equal values are equal.
@@ -50,6 +51,21 @@ def interferers_of(scene) -> tuple[Interferer, ...]:
 def has_interference(scene, effects: Choices) -> bool:
     """Whether a scene has other radars and `effects` leave them on. Raises ValueError where only the latter ask for them."""
     return is_on(effects, INTERFERENCE, bool(interferers_of(scene)), "Scene.interferers")
+
+
+def require_interferers(scene, radar: _core.Radar, effects: Choices, times) -> None:
+    """Raises ValueError, before the long work, for other radars that have no place at one of times in s, or that of the radar."""
+    if not has_interference(scene, effects):
+        return
+    for index, one in enumerate(interferers_of(scene)):
+        argument = f"interferers[{index}].radar"
+        try:
+            for time in times:
+                one.radar.world_from_radar(time)
+        except ValueError as error:
+            raise ValueError(f"{argument}: must have a motion that covers all frames: {error}") from None
+        if one.over != "paths":
+            require_apart(radar, one.radar, times, argument)
 
 
 def interference_cube(scene, radar: _core.Radar, settings: TraceSettings, progress=None) -> np.ndarray:

@@ -48,3 +48,32 @@ def test_detections_by_labels_and_cubes_leave_other_radars_without_an_object():
         strongest = found.power.argmax()
         assert (found.part[strongest], found.object[strongest]) == ("interference", "")
         assert len(found.paths(int(strongest))[0]) > 0  # the ball's echoes are in the cell
+
+
+SHORT = ep.KeyframeMotion(times=[0, 0.02], translations=[[0, 0, 0], [1, 0, 0]], rotations=[[1, 0, 0, 0]] * 2)
+LEAVES = r"^interferers\[1\].radar: must have a motion that covers all frames: .*0.02"
+
+
+def test_motions_of_other_radars_cover_the_frames_before_the_work():
+    scene = scene_of(direct(), direct(motion=SHORT))
+    ep.Sequence(scene, RADAR, frames=2, interval=0.01, num_rays=500)
+    with pytest.raises(ValueError, match=LEAVES):
+        ep.Sequence(scene, RADAR, frames=10, interval=0.01, num_rays=500)
+    with pytest.raises(ValueError, match=LEAVES):
+        ep.simulate(scene, RADAR, num_rays=500, start_time=0.1)
+    ep.Sequence(scene, RADAR, frames=10, interval=0.01, num_rays=500, effects={"interference": False})
+
+
+def test_another_radar_in_the_place_of_the_radar_is_refused():
+    nearer = r"interferers\[1\].radar: must be at least a wavelength, 0.00389 m, from the receivers .*, got '0 m'"
+    scene = scene_of(direct(), direct(position=(0, 0, 0)))
+    with pytest.raises(ValueError, match=nearer):
+        ep.simulate(scene, RADAR, num_rays=500)
+    with pytest.raises(ValueError, match=nearer):
+        ep.Sequence(scene, RADAR, frames=2, interval=0.01, num_rays=500)
+    with pytest.raises(ValueError, match="^other: must be at least a wavelength"):
+        ep.interference(RADAR, RADAR)
+    at_chirp_8 = 8 * RADAR.waveform.chirp_interval
+    passing = RADAR.replace(position=(-0.5, 0, 0), motion=ep.LinearMotion(velocity=(0.5 / at_chirp_8, 0, 0)))
+    with pytest.raises(ValueError, match="^other: must be at least a wavelength"):
+        ep.interference(RADAR, passing)

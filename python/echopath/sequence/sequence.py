@@ -16,6 +16,7 @@ from ..effect_choices import Choices
 from ..frame import Frame
 from ..frame_run import FrameRun, Recorded
 from ..guard import warn_of
+from ..interferers import require_interferers
 from ..parts import Selections
 from ..progress import automatic_bars
 from ..scene import Scene
@@ -84,7 +85,8 @@ class Sequence(Row[Frame]):
         signals = SignalSettings(tolerance=tolerance, method=method, replay=replay, evaluate=evaluate,
                                  phase_tolerance=phase_tolerance, retrace=retrace, keyframes=keyframes, noise_seed=noise_seed,
                                  window=window, zero_pad=zero_pad)
-        _check_times(scene, radar, start_time, frames, interval)
+        end = _checked_end(scene, radar, start_time, frames, interval)
+        require_interferers(scene, radar, effects, (start_time, end))
         self._run = FrameRun(Scene(scene), radar, tracing, signals, parts, angles, labels, detections, truth, guard)
         self._numbers, self._start_time, self._interval = range(frames), start_time, interval
 
@@ -181,8 +183,9 @@ class Sequence(Row[Frame]):
         return sequence_html(self, "Sequence", {})
 
 
-def _check_times(scene, radar, start_time: float, frames: int, interval: float) -> None:
-    """Raises ValueError naming the argument where frames overlap or leave the motions: before the long work."""
+def _checked_end(scene, radar, start_time: float, frames: int, interval: float) -> float:
+    """The end of the last frame in s. Raises ValueError naming the argument where frames overlap or leave the motions: before the
+    long work."""
     if interval < radar.frame_duration * (1.0 - _ROUNDING):
         raise refused(ValueError, "interval", f"at least {radar.frame_duration:.9g} s, the duration of a frame", interval)
     end = start_time_of(start_time, interval, frames - 1) + radar.frame_duration
@@ -194,3 +197,4 @@ def _check_times(scene, radar, start_time: float, frames: int, interval: float) 
             radar.world_from_radar(time)
     except ValueError as error:
         raise ValueError(f"frames: must all lie within the motions, got {frames} frames every {interval:g} s: {error}") from None
+    return end

@@ -10,13 +10,12 @@ from numpy.typing import NDArray
 
 from . import _core
 from .checks import an, checked, optional, real, refused
+from .interference_paths import few_paths
 from .rotations import matrices, product, quaternions
-from .selections import power
 from .transmit import code_of, radar_of_noise
 
 _FINE = 4       # times the sampling rate, at which crossings are made before the filter
 _MARGIN = 1.9   # of the sampling rate: differences of frequency beyond which nothing of a crossing is left in the band
-HELD, MOST_PATHS = 0.999, 1024  # share of the power of a trace, and of its paths: each is a crossing of its own in every chirp
 
 
 @checked(other=an(_core.Radar), paths=optional(an(_core.Paths)), start_time=real(unit="s"), offset=real(unit="s"))
@@ -31,8 +30,8 @@ def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | No
     radar: that receives, its own position, motion and antennas; other: that sends, likewise, with a waveform of its own
     paths: one-way paths from the other radar to this one, instead of the direct way: those of a trace by a radar that has the
         transmitters of the other and the receivers of this one, both as they stand in the middle of the frame
-        (`interference_radar`), the strongest that hold 99.9 % of the power, 1024 at most; None: the direct way alone. A trace
-        has no direct way: the two signals add up
+        (`interference_radar`): the strongest that hold 99.9 % of the power, or about 1024 drawn by the seed of the trace, which
+        have the power of all of them; None: the direct way alone. A trace has no direct way: the two signals add up
     start_time: s, first sample of the frame; offset: s, by which frames of the other radar begin later than at time 0
     Returns the cube before `demultiplex`, [tx, rx, chirp, sample] or [1, rx, slots, sample], in sqrt(W). As a part of its own
     beside the others, {"interference": cube}, it is named by labels of detections. Raises TypeError or ValueError naming the
@@ -41,7 +40,7 @@ def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | No
     slots = radar_of_noise(radar)
     waveform, num_rx = slots.waveform, len(radar.receivers)
     begins = start_time + np.array([waveform.slot_start(slot) for slot in range(waveform.num_chirps * slots.num_slots)])
-    ways = _Ways(radar, other, None if paths is None else _strongest(paths), begins)
+    ways = _Ways(radar, other, paths, begins)
     cube = np.zeros((len(begins), num_rx, waveform.num_samples), complex)
     for place, begin in enumerate(begins):
         fine = np.zeros((num_rx, _FINE * waveform.num_samples), complex)
@@ -97,13 +96,6 @@ def _placed(antennas, radar, time: float) -> list:
                         orientation=product(turn, one.orientation)) for one in antennas]
 
 
-def _strongest(paths):
-    """The strongest paths that hold HELD of the power at the trace time, MOST_PATHS at most."""
-    powers = np.sort(paths.power)[::-1]
-    count = min(int(np.searchsorted(np.cumsum(powers), HELD * powers.sum())) + 1, MOST_PATHS)
-    return paths if count >= len(powers) else paths.select(power >= float(powers[count - 1]))
-
-
 class _Slot(NamedTuple):
     """A chirp of the other radar. index: within its frame; begin: s; transmitters: [(index, complex code)] of those that send"""
 
@@ -130,20 +122,21 @@ class _Ways:
     """
 
     def __init__(self, radar, other, paths, begins):
-        self._radar, self._other, self._paths, self._kept = radar, other, paths, {}
+        self._radar, self._other, self._kept = radar, other, {}
+        self._paths, self._scale = (None, None) if paths is None else few_paths(paths)
         self._times = (begins[:, None] + radar.waveform.chirp_duration * np.array([0.0, 0.5, 1.0])).ravel()
 
     def of(self, tx: int, rx: int) -> tuple:
         """(delay [N, 3, P] in s at the begin, the middle and the end of each chirp, amplitude [N, P] in sqrt(W) in the middle)"""
         if (tx, rx) not in self._kept:
             delay, amplitude = self._direct(tx, rx) if self._paths is None else self._traced(tx, rx)
-            shape = (-1, 3, delay.shape[-1])
+            shape = (len(self._times) // 3, 3, delay.shape[-1])
             self._kept[tx, rx] = delay.reshape(shape), amplitude.reshape(shape)[:, 1]
         return self._kept[tx, rx]
 
     def _traced(self, tx: int, rx: int):
         return (self._paths.lengths(self._times, tx, rx) / _core.speed_of_light,
-                self._paths.amplitudes(self._times, tx, rx))
+                self._paths.amplitudes(self._times, tx, rx) * self._scale)
 
     def _direct(self, tx: int, rx: int):
         other, wavelength = self._other, _wavelength(self._other)

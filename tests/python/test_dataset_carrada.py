@@ -158,3 +158,26 @@ def test_what_the_layout_does_not_have_is_refused(tmp_path, before, after, told)
 def test_a_folder_that_has_one_is_refused(made):
     with pytest.raises(ValueError, match="folder: must be one that has no folder 'Carrada' yet"):
         dataset.write_carrada(dataset.open(made / "made"), made / "warehouse")
+
+
+def masks_with(folder, labels: str) -> dict:
+    """{(kind, view): mask} of the first frame, of a template with such a table [labels]."""
+    (folder / "labelled.toml").write_text(TEMPLATE.replace("frames = 3", "frames = 1") + f"[labels]\n{labels}\n")
+    list(dataset.make(folder / "labelled.toml", folder / "made", frames=(0, 1)))
+    dataset.write_carrada(dataset.open(folder / "made"), folder / "out")
+    return masks_of(folder / "out" / "Carrada")
+
+
+def masks_of(root) -> dict:
+    return {(kind, name): np.load(root / "scene_000000" / "annotations" / kind / "000000" / f"{name}.npy")
+            for kind in ("dense", "sparse") for name in ("range_doppler", "range_angle")}
+
+
+def test_masks_are_those_of_the_objects_whatever_labels_report_on(root, tmp_path):
+    for place, mask in masks_with(tmp_path, 'objects = {people = "w*", bikes = "r*"}').items():
+        np.testing.assert_array_equal(mask, masks_of(root)[place])
+
+
+def test_margins_of_labels_hold_in_both_views(tmp_path):
+    for mask in masks_with(tmp_path, "noise_margin_db = 300.0").values():
+        assert mask[0].all()  # background: no echo is 300 dB above the noise

@@ -14,6 +14,7 @@ from ..checks import checked, refused
 from ..checks import path as folder_rule
 from ..files import require_writable, write_texts, written_whole
 from ..frame import Frame
+from ..settings import LabelSettings
 from .carrada_views import NUM_ANGLES, NUM_RANGES, NUM_VELOCITIES, Instance, instances_of, one_hot, views_of
 from .classes import classes_of
 from .opened import Dataset, dataset_rule
@@ -21,6 +22,8 @@ from .opened import Dataset, dataset_rule
 FOLDER = "Carrada"
 _SPLITS = {"train": "Train", "val": "Validation", "validation": "Validation", "test": "Test"}
 _SHAPES = {"range_doppler": (NUM_RANGES, NUM_VELOCITIES), "range_angle": (NUM_RANGES, NUM_ANGLES)}
+
+_MARGINS = ("noise", "noise_margin_db", "dynamic_range_db")  # of a template's [labels], which hold here too
 
 _Annotations = dict[str, dict[str, Any]]  # {instance: {view: its cells}} of one frame
 
@@ -39,6 +42,7 @@ def write_carrada(dataset: Dataset, folder: str | os.PathLike[str]) -> None:
     annotations/dense/FRAME/range_doppler.npy and range_angle.npy: u8 [4, 256, 64 or 256], one-hot over background, pedestrian,
         cyclist (with motorcycles) and car (with vans, trucks and buses): all cells that an object has, in range_angle down to
         half the power of its strongest at that range. annotations/sparse has its strongest cell alone. Ghosts are background.
+        noise, noise_margin_db and dynamic_range_db are those of the template's [labels], for both views.
     The mean thermal noise of each view has the mean level of that view in CARRADA, and values end at its lowest and highest, from
     which training code scales: the input of a network lies within 0 and 1.
     data_seq_ref.json: split, instances and labels of each sequence; light_dataset_frame_oriented.json: the frames of each;
@@ -79,12 +83,14 @@ def _written_frames(dataset: Dataset, scene: int, folder: Path) -> Iterator[tupl
     """Writes the arrays of a scene's frames; yields the name and the annotations of each."""
     template = dataset.template
     kinds = classes_of(template.draw(scene).table["objects"], template.settings.classes)
+    told = dataset.sequence(scene).settings["labels"] or {}
+    margins = LabelSettings(**{name: told[name] for name in _MARGINS if name in told})
     for one in dataset.of_scene(scene):
         assert isinstance(one.frame, Frame)  # which all files have of keep = "all"
         name = f"{one.place:06d}"
         for view, values in views_of(one.frame).items():
             _save(folder / f"{view}_processed" / f"{name}.npy", values)
-        found = instances_of(one.frame, kinds)
+        found = instances_of(one.frame, kinds, margins)
         for view, instances in found.items():
             dense = one_hot([(one.label, one.cells) for one in instances], _SHAPES[view])
             sparse = one_hot([(one.label, one.peak[None]) for one in instances], _SHAPES[view])

@@ -19,6 +19,7 @@ from ..checks import refused
 from ..frame import Frame
 from ..labels import annotate_frame
 from ..labels.labels import Labels
+from ..settings import LabelSettings
 from .classes import ClassName
 
 NUM_RANGES, NUM_VELOCITIES, NUM_ANGLES = 256, 64, 256
@@ -78,13 +79,16 @@ def views_of(frame: Frame) -> dict[str, NDArray[np.float32]]:
             "angle_doppler": _in_db(_approaching(beams.mean(axis=2).T)[::-1], in_beam, LEVELS["angle_doppler"])}
 
 
-def instances_of(frame: Frame, kinds: dict[str, ClassName]) -> dict[str, list[Instance]]:
-    """{"range_doppler" and "range_angle": objects of CARRADA's classes that have cells there}; kinds: {name: class}."""
+def instances_of(frame: Frame, kinds: dict[str, ClassName], margins: LabelSettings) -> dict[str, list[Instance]]:
+    """{"range_doppler" and "range_angle": objects of CARRADA's classes that have cells there}.
+
+    kinds: {name of an object of the scene: class}; margins: of cells over the noise and below the peak. The objects are those of
+    the scene in both views, whatever the labels of the frame report on.
+    """
     bare = dataclasses.replace(frame, parts={}, selections={}, part_of_path={},
                                angle_settings={"azimuth": AZIMUTHS, "combine": "peak"})
-    known = next((labels for labels in frame.labels.values() if labels.plane == "range_doppler"), None)
-    in_map = known if known is not None else _only(annotate_frame(bare))
-    in_angles = _only(annotate_frame(bare, plane="range_azimuth"))
+    in_map = _only(annotate_frame(bare, settings=margins.replace(plane="range_doppler")))
+    in_angles = _only(annotate_frame(bare, settings=margins.replace(plane="range_azimuth")))
     return {"range_doppler": _instances(in_map, kinds, _approaching(in_map.object_map), _approaching(in_map.whole)),
             "range_angle": _instances(in_angles, kinds, _range_angle(_within_beams(in_angles)), _range_angle(in_angles.whole))}
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from .. import beside
 from ..checks import checked, refused
 from ..checks import path as folder_rule
 from ..detections.detections import Detections
@@ -21,7 +22,7 @@ SENSOR = 1
 NO_OBJECT = 2 ** 64 - 1                # as the interface has it
 _NAME = "19700101T000000Z_sd_{version}_{protobuf}_{frames}_scene_{scene:06d}.osi"
 _LENGTH = struct.Struct("<I")          # before each message of a trace file
-_OTHER, _INVALID, _CLUTTER = 1, 2, 3   # DetectionClassification of real echoes, ghosts and noise
+_OTHER, _INVALID, _CLUTTER = 1, 2, 3   # DetectionClassification of real echoes, ghosts, what is none
 
 
 @checked(dataset=dataset_rule, folder=folder_rule)
@@ -34,7 +35,8 @@ def write_osi(dataset: Dataset, folder: str | os.PathLike[str]) -> None:
     the frame, mounting_position in the world at that time) and detections: position (distance m, azimuth and elevation rad, in
     the sensor's frame), radial_velocity (m/s, as measured, receding positive), rcs (dBsm, by the radar equation with the gains
     of the first antennas), snr (dB), object_id (place in the scene's objects; 2^64 - 1: the surroundings or noise),
-    existence_probability 0 of noise, 1 of echoes, classification OTHER of real echoes, INVALID of ghosts, CLUTTER of noise.
+    existence_probability 0 of noise and of what comes in beside the echoes (interference, rain, leakage), 1 of echoes;
+    classification OTHER of real echoes, INVALID of ghosts, CLUTTER of what has probability 0.
     Raises ValueError naming `dataset` where it has no frames, or no detections with azimuths, and naming `folder` where that has
     traces; ModuleNotFoundError without osi-python (extra `osi`), ep.FileError where files cannot be written.
     """
@@ -108,14 +110,14 @@ def _add_detections(radar: Any, found: Detections, world: np.ndarray, simulated:
     cross_sections = 10.0 * np.log10(found.power / isotropic_power(simulated, places, time))
     for index in range(len(found)):
         one = radar.detection.add()
-        is_noise, is_ghost = bool(found.is_noise[index]), bool(found.ghost_type[index])
+        is_echo = not found.is_noise[index] and found.part[index] not in beside.NAMES
         one.position.distance, one.position.azimuth = float(found.range[index]), float(found.azimuth[index])
         one.position.elevation = float(np.nan_to_num(found.elevation[index]))
         one.radial_velocity, one.rcs = float(found.velocity[index]), float(cross_sections[index])
         one.snr = float(found.snr_db[index])
         one.object_id.value = numbers.get(str(found.object[index]), NO_OBJECT)
-        one.existence_probability = 0.0 if is_noise else 1.0
-        one.classification = _CLUTTER if is_noise else _INVALID if is_ghost else _OTHER
+        one.existence_probability = 1.0 if is_echo else 0.0
+        one.classification = _CLUTTER if not is_echo else _INVALID if found.ghost_type[index] else _OTHER
 
 
 def _set_version(version: Any) -> None:

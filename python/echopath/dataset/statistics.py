@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
+from .. import beside
 from ..detections.detections import Detections
 from .classes import ClassName, classes_of
 from .opened import Dataset, DatasetFrame
@@ -31,7 +32,7 @@ class Statistics:
     """What was counted in the frames of a dataset.
 
     frames: that were read; objects: of all of them; ghosts: cells by (class, ghost type); detections: number by what made
-    them; drawn: {dotted path: values}, one for each scene
+    them: a class, a ghost of one, noise, interference, rain or leakage; drawn: {dotted path: values}, one for each scene
     """
 
     frames: int = 0
@@ -71,9 +72,10 @@ def _count(one: DatasetFrame, kinds: dict[str, ClassName], found: Statistics) ->
             found.ghosts[kinds.get(ghost.object, "static"), ghost.ghost_type] += ghost.cells
     detections = one.frame.detections
     if isinstance(detections, Detections):
-        for name, ghost_type, is_noise in zip(detections.object, detections.ghost_type, detections.is_noise):
+        for part, name, ghost_type, is_noise in zip(detections.part, detections.object, detections.ghost_type, detections.is_noise):
             kind = kinds.get(str(name), "static")
-            found.detections["noise" if is_noise else f"ghost of {kind}" if ghost_type else kind] += 1
+            no_echo = "noise" if is_noise else str(part) if part in beside.NAMES else ""
+            found.detections[no_echo or (f"ghost of {kind}" if ghost_type else kind)] += 1
 
 
 def _objects(labels: Any, kinds: dict[str, ClassName], split: str) -> Iterator[SeenObject]:

@@ -1,0 +1,37 @@
+"""What comes in beside the echoes is no echo in the exports and the statistics of datasets."""
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath import dataset
+from echopath.dataset import osi, statistics
+
+WAVEFORM = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=512, sampling_rate=20e6, num_chirps=32,
+                            chirp_interval=60e-6)
+
+
+@pytest.fixture(scope="module")
+def frame():
+    """A ball, and a radar with the same chirps whose tone no ray has made."""
+    own, *others = (ep.Antenna((0, 0.0019 * k, 0)) for k in range(3))
+    radar = ep.Radar(WAVEFORM, transmitters=[own], receivers=others, transmit_power=1.0)
+    other = ep.Radar(WAVEFORM, transmitters=[own], receivers=[own], position=(40, 3, 0))
+    scene = ep.Scene(interferers=[ep.Interferer(radar=other, over="direct")])
+    scene.add(ep.actors.sphere(0.2), name="ball", material=ep.Material.metal(), smooth=True, position=(8, 3, 0))
+    return ep.simulate(scene, radar, num_rays=2000, max_bounces=2, detections=True)
+
+
+def test_interference_is_clutter_that_does_not_exist_in_osi(frame):
+    messages = pytest.importorskip("osi3.osi_sensordata_pb2")
+    radar = messages.SensorData().feature_data.radar_sensor.add()
+    osi._add_detections(radar, frame.detections, np.eye(4), frame.radar, 0.0, {"ball": 0})
+    told = {(str(part), one.existence_probability, one.classification)
+            for part, one in zip(frame.detections.part, radar.detection)}
+    assert told == {("interference", 0.0, 3), ("", 1.0, 1)}  # CLASSIFICATION_CLUTTER and CLASSIFICATION_OTHER
+
+
+def test_statistics_count_interference_as_such(frame):
+    found = statistics.Statistics()
+    statistics._count(dataset.DatasetFrame(0, 0, 0, "train", frame), {"ball": "car"}, found)
+    assert found.detections == {"car": 1, "interference": 1}

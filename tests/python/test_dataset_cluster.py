@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from echopath import dataset
+from echopath.cli.dataset import _forecast_line
 
 pytest.importorskip("distributed")
 TEMPLATE = """
@@ -63,7 +64,7 @@ class Cluster:
         self._workers.append(subprocess.Popen(
             [*DASK, "worker", self.address, "--nthreads", "1", "--no-nanny", "--no-dashboard", "--host", "127.0.0.1",
              "--local-directory", self._folder / "work"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-            start_new_session=True))
+            cwd=self._folder, start_new_session=True))
 
     def kill_worker(self) -> None:
         _kill(self._workers.pop(0))
@@ -113,10 +114,18 @@ def test_a_worker_that_is_killed_is_replaced_by_one_that_joins(cluster, alone, t
     path, folder = alone
     run = dataset.make(path, tmp_path / "out", scheduler=cluster.address)
     made = [next(run), next(run)]  # the forecast and a scene
+    assert made[0].frames == 4 and made[0].seconds is None  # workers join and leave
+    assert "in a time that depends on the workers" in _forecast_line(made[0])
     cluster.kill_worker()
     cluster.join()
     made += run
     assert sorted(one.scene for one in made[1:]) == list(range(4)) and bytes_of(tmp_path / "out") == bytes_of(folder)
+
+
+def test_workers_find_a_relative_folder_from_where_they_run(cluster, alone, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    assert [one.record.state for one in made_by(cluster, alone[0], "out", frames=(0, 1))] == ["done"]
+    assert len(dataset.open(tmp_path / "out")) == 1
 
 
 def test_an_address_gets_the_same_files_and_what_is_damaged_is_made_again(cluster, alone, tmp_path):

@@ -33,8 +33,8 @@ def lines_of(options) -> Iterator[str]:
 def _forecast_line(forecast: Forecast) -> str:
     if forecast.frames == 0:
         return "all frames are there"
-    return (f"{forecast.frames} frames to be made, in about {duration_words(forecast.seconds)}, "
-            f"{max(1, forecast.bytes >> 20)} MiB")
+    time = "a time that depends on the workers" if forecast.seconds is None else f"about {duration_words(forecast.seconds)}"
+    return f"{forecast.frames} frames to be made, in {time}, {max(1, forecast.bytes >> 20)} MiB"
 
 
 def _line(made: MadeScene) -> str:

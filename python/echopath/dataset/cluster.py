@@ -22,7 +22,8 @@ _WAIT = "10s"    # for the scheduler to answer
 def in_dask(scheduler: str, path: Path, folder: str, scenes: Sequence[int], run: str) -> Iterator[Done]:
     """Makes the scenes by the workers of a scheduler, one task each of one thread; workers may die and join.
 
-    scheduler: its address; path: of the template; folder: of the dataset, or an address: both as the workers see them
+    scheduler: its address; path: of the template; folder: of the dataset, or an address: the workers, wherever they run, see both
+        under the same absolute names
     Raises ModuleNotFoundError without distributed, ConnectionError naming `scheduler` where that cannot be reached or goes away,
     ep.FileError where a worker cannot write.
     """
@@ -31,10 +32,11 @@ def in_dask(scheduler: str, path: Path, folder: str, scenes: Sequence[int], run:
         client = distributed.Client(scheduler, set_as_default=False, timeout=_WAIT)
     except (OSError, ValueError) as error:
         raise _unreached(scheduler, error) from None
+    where = folder if is_address(folder) else str(Path(folder).resolve())
     lost = (distributed.client.FutureCancelledError, distributed.comm.CommClosedError)
     with client:
         try:
-            yield from _as_they_come(distributed, client, str(path.resolve()), folder, iter(scenes), run)
+            yield from _as_they_come(distributed, client, str(path.resolve()), where, iter(scenes), run)
         except lost as error:
             raise _unreached(scheduler, error) from None
 

@@ -29,10 +29,11 @@ _MARGIN = 1.1                 # of the disk that is asked for over what the firs
 
 
 class Forecast(NamedTuple):
-    """What is to be made: frames; seconds: that it takes; bytes: on the disk, by its first frame."""
+    """What is to be made: frames; seconds: that it takes, None: not known, of the workers of a scheduler; bytes: on the disk, by
+    its first frame."""
 
     frames: int
-    seconds: float
+    seconds: float | None
     bytes: int
 
 
@@ -131,7 +132,7 @@ def make(template: str | os.PathLike[str], folder: str | os.PathLike[str], *, wo
             return in_this_process(plan, Path(where), missing, run)
         return in_processes(plan.path, Path(where), missing, run, min(workers, len(missing)))
 
-    return _made(plan, place, scenes, front, only_failed, workers)
+    return _made(plan, place, scenes, front, only_failed, workers if scheduler is None else None)
 
 
 def _chosen(plan: Template, shard: Shard | None, frames: tuple[int, int] | None) -> list[int]:
@@ -152,7 +153,7 @@ def _look_at(plan: Template, scenes: list[int]) -> None:
 
 
 def _made(plan: Template, place: _LocalFolder | Address, scenes: list[int], front: Callable[[list[int], str], Iterator[Done]],
-          only_failed: bool, workers: int) -> Iterator[Forecast | MadeScene]:
+          only_failed: bool, workers: int | None) -> Iterator[Forecast | MadeScene]:
     records = {scene: place.record(scene) for scene in scenes}
     if only_failed:
         scenes = [scene for scene in scenes if records[scene].state == "failed"]
@@ -174,9 +175,9 @@ def _made(plan: Template, place: _LocalFolder | Address, scenes: list[int], fron
         place.write_manifest(plan)
 
 
-def _forecast(plan: Template, place: _LocalFolder | Address, missing: list[int], workers: int) -> Forecast:
+def _forecast(plan: Template, place: _LocalFolder | Address, missing: list[int], workers: int | None) -> Forecast:
     """By the first frame that is missing, which is made on trial. Raises ep.FileError where the disk is too small; nobody knows
-    what room an address has."""
+    what room an address has, or how fast workers are that may join and leave (workers: None)."""
     begin = time.perf_counter()
     with tempfile.TemporaryDirectory(prefix="echopath-") as trial, warnings.catch_warnings():
         warnings.simplefilter("ignore")  # as when it is made in earnest
@@ -188,4 +189,5 @@ def _forecast(plan: Template, place: _LocalFolder | Address, missing: list[int],
     if isinstance(place, _LocalFolder) and needed > (free := shutil.disk_usage(place.folder).free):
         raise _core.FileError(f"folder: must have {needed / 2 ** 20:.1f} MiB for {frames} frames, got "
                               f"{free / 2 ** 20:.1f} MiB in '{place.folder}'")
-    return Forecast(frames, (time.perf_counter() - begin) * frames / min(workers, len(missing)), needed)
+    seconds = None if workers is None else (time.perf_counter() - begin) * frames / min(workers, len(missing))
+    return Forecast(frames, seconds, needed)

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 
 CELLS = ("nothing", "object", "ghost")
 KINDS = tuple(CODES)
+_SCENES = 64  # whose classes are remembered
 
 
 def lazy_arrays(dataset: Dataset) -> XarrayDataset:
@@ -61,19 +63,20 @@ class _Kinds:
 
     def __init__(self, dataset: Dataset):
         self._template = dataset.template
-        self._scene, self._known = -1, dict[str, ClassName]()
+        self._classes = lru_cache(_SCENES)(self._of_scene)  # threads read frames of several scenes at a time
 
     def of(self, one: DatasetFrame) -> NDArray[np.int8]:
-        if one.scene != self._scene:
-            objects = self._template.draw(one.scene).table["objects"]
-            self._scene, self._known = one.scene, classes_of(objects, self._template.settings.classes)
+        known = self._classes(one.scene)
         labels = next(iter(one.frame.labels.values()))
         kinds = np.full(labels.object_map.shape, -1, np.int8)
         for owners, names in ((labels.object_map, [one.name for one in labels.objects]),
                               (labels.ghost_map, [one.object for one in labels.ghosts])):
-            codes = np.array([KINDS.index(self._known.get(name, "static")) for name in names], np.int8)
+            codes = np.array([KINDS.index(known.get(name, "static")) for name in names], np.int8)
             kinds[owners >= 0] = codes[owners[owners >= 0]]
         return kinds
+
+    def _of_scene(self, scene: int) -> dict[str, ClassName]:
+        return classes_of(self._template.draw(scene).table["objects"], self._template.settings.classes)
 
 
 def _lazy(dataset: Dataset, read: Callable[[DatasetFrame], NDArray[Any]], whole: tuple[int, ...], kind: str) -> Any:

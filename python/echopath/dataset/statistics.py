@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from .. import beside
 from ..detections.detections import Detections
 from .classes import ClassName, classes_of
@@ -72,10 +74,10 @@ def _count(one: DatasetFrame, kinds: dict[str, ClassName], found: Statistics) ->
             found.ghosts[kinds.get(ghost.object, "static"), ghost.ghost_type] += ghost.cells
     detections = one.frame.detections
     if isinstance(detections, Detections):
-        for part, name, ghost_type, is_noise in zip(detections.part, detections.object, detections.ghost_type, detections.is_noise):
+        no_echoes = np.where(detections.is_noise | np.isin(detections.part, beside.NAMES), detections.part, "")
+        for no_echo, name, ghost_type in zip(no_echoes, detections.object, detections.ghost_type):
             kind = kinds.get(str(name), "static")
-            no_echo = "noise" if is_noise else str(part) if part in beside.NAMES else ""
-            found.detections[no_echo or (f"ghost of {kind}" if ghost_type else kind)] += 1
+            found.detections[str(no_echo) or (f"ghost of {kind}" if ghost_type else kind)] += 1
 
 
 def _objects(labels: Any, kinds: dict[str, ClassName], split: str) -> Iterator[SeenObject]:

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import hashlib
 import tempfile
+import uuid
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +11,19 @@ from .. import _core
 from ..checks import refused
 from ..optional import needed_module
 from ..scene_file.load import parse
-from .folder import MANIFEST, RECORD, TEMPLATE, SceneRecord, manifest_text, record_of, record_text, scene_name, takes_over
+from .folder import (
+    MANIFEST,
+    RECORD,
+    SCENES,
+    TEMPLATE,
+    SceneRecord,
+    manifest_text,
+    record_of,
+    record_text,
+    scene_name,
+    takes_over,
+    without_template,
+)
 from .template import Template
 
 
@@ -33,21 +46,26 @@ class Address:
         self.address = address
 
     def put(self, name: str, content: bytes) -> None:
-        """Writes a file. Raises ep.FileError."""
+        """Writes a file under another name and moves it, so that one cut short is never read. Raises ep.FileError."""
         path = f"{self._root}/{name}"
+        folder, _, last = path.rpartition("/")
+        temporary = f"{folder}/.{last}-{uuid.uuid4().hex}"
         try:
-            self._files.makedirs(path.rpartition("/")[0], exist_ok=True)
-            self._files.pipe_file(path, content)
+            self._files.makedirs(folder, exist_ok=True)
+            self._files.pipe_file(temporary, content)
+            self._files.mv(temporary, path)
         except OSError as error:
             raise _core.FileError(f"{self.address}/{name}: cannot be written ({error})") from None
 
     def get(self, name: str) -> bytes:
-        """The content of a file, nothing where it is not there."""
+        """The content of a file, nothing where it is not there. Raises ep.FileError where that cannot be told."""
         try:
             content: bytes = self._files.cat_file(f"{self._root}/{name}")
             return content
-        except OSError:
+        except FileNotFoundError:
             return b""
+        except OSError as error:
+            raise _core.FileError(f"{self.address}/{name}: cannot be read ({error})") from None
 
     def record(self, scene: int) -> SceneRecord:
         """What is written of a scene; to do where a file of it is not as it was written."""
@@ -59,7 +77,10 @@ class Address:
 
     def prepare(self, template: Template) -> None:
         """As `prepare_folder`. Raises as it."""
-        if takes_over(self._table(), template, self.address):
+        theirs = self._table()
+        if theirs is None and self._has_scenes():
+            raise without_template(self.address)
+        if takes_over(theirs, template, self.address):
             self.put(TEMPLATE, template.path.read_text(encoding="utf-8-sig").encode())
 
     def forget(self, scenes: list[int]) -> None:
@@ -70,6 +91,15 @@ class Address:
     def write_manifest(self, template: Template) -> None:
         """As the function of that name does in a folder."""
         self.put(MANIFEST, manifest_text(template, lambda scene: record_of(self.get(f"{scene_name(scene)}/{RECORD}"))).encode())
+
+    def _has_scenes(self) -> bool:
+        path = f"{self._root}/{SCENES}"
+        try:
+            return any(str(one).rstrip("/") != path for one in self._files.ls(path, detail=False))
+        except FileNotFoundError:
+            return False
+        except OSError as error:
+            raise _core.FileError(f"{self.address}/{SCENES}: cannot be read ({error})") from None
 
     def _table(self) -> dict[str, Any] | None:
         if not (content := self.get(TEMPLATE)):

@@ -17,6 +17,7 @@ from .template import Template
 State = Literal["done", "failed", "to do"]
 
 TEMPLATE, MANIFEST, RECORD, DRAWN = "dataset.toml", "manifest.json", "record.json", "drawn.json"
+SCENES = "scenes"  # folder of the folders of scenes
 _BLOCK = 1 << 20  # bytes that are hashed at a time
 
 
@@ -34,7 +35,7 @@ class SceneRecord(NamedTuple):
 
 def scene_name(scene: int) -> str:
     """The name of the folder of a scene, in that of the dataset."""
-    return f"scenes/{scene:06d}"
+    return f"{SCENES}/{scene:06d}"
 
 
 def scene_folder(folder: Path, scene: int) -> Path:
@@ -94,10 +95,15 @@ def prepare_folder(folder: Path, template: Template) -> None:
     """
     kept = folder / TEMPLATE
     theirs = parse(kept) if kept.exists() else None
-    if theirs is None and any(folder.glob("scenes/*")):
-        raise refused(ValueError, "folder", f"new, or of this template (it has scenes and no {TEMPLATE})", str(folder))
+    if theirs is None and any(folder.glob(f"{SCENES}/*")):
+        raise without_template(str(folder))
     if takes_over(theirs, template, str(folder)):
         write_texts(folder, {TEMPLATE: template.path.read_text(encoding="utf-8-sig")})
+
+
+def without_template(folder: str) -> ValueError:
+    """What is raised of a folder whose scenes are of nobody knows which template."""
+    return refused(ValueError, "folder", f"new, or of this template (it has scenes and no {TEMPLATE})", folder)
 
 
 def takes_over(theirs: dict[str, Any] | None, template: Template, folder: str) -> bool:

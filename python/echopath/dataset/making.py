@@ -110,9 +110,9 @@ def make(template: str | os.PathLike[str], folder: str | os.PathLike[str], *, wo
     scheduler: address of a Dask scheduler, such as tcp://host:8786, whose workers see the template and the folder under the
         same names: each makes a scene at a time with each of its threads (extra `cluster`); None: this machine
     Raises TypeError or ValueError naming the argument; ValueError naming the file, the scene and the key of a fault of the
-    template, before the first frame; ep.FileError where files cannot be written, and before the first frame where the disk is
-    too small; ModuleNotFoundError without the libraries of a scheduler or an address; ConnectionError naming `scheduler` where
-    that does not answer.
+    template, before the first frame; ep.FileError where files cannot be written, or those of an address not be read, and before
+    the first frame where the disk is too small; ModuleNotFoundError without the libraries of a scheduler or an address;
+    ConnectionError naming `scheduler` where that does not answer.
     """
     plan = Template(Path(template))
     scenes = _chosen(plan, shard, frames)

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import tempfile
 from contextlib import contextmanager
 from pathlib import Path
@@ -42,6 +43,31 @@ def _written(path: Path, suffix: str | None):
     finally:
         if temporary is not None:
             Path(temporary).unlink(missing_ok=True)
+
+
+@contextmanager
+def folder_written_whole(path):
+    """Yields the path of a new folder beside `path` that takes its name when the block ends well; until then `path` is not there.
+
+    Whatever ends the block early, the new folder is removed; one that a process left which was ended at once is removed by the
+    next for the same `path`. Two processes must not write the same one at a time.
+    Raises ep.FileError when folders cannot be written.
+    """
+    path = Path(path)
+    begun = path.with_name(f".{path.name}-begun")
+    try:
+        if begun.exists():
+            shutil.rmtree(begun)
+        begun.mkdir(parents=True)
+        yield begun
+        os.replace(begun, path)
+        _flush(path.parent)
+    except _core.FileError:  # of a file in it, or of one that is read
+        raise
+    except OSError as error:
+        raise _core.FileError(f"{path}: cannot be written ({error.strerror or error})") from None
+    finally:
+        shutil.rmtree(begun, ignore_errors=True)
 
 
 def require_writable(folder, argument: str) -> None:

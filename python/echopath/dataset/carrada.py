@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..checks import checked, refused
 from ..checks import path as folder_rule
-from ..files import require_writable, write_texts, written_whole
+from ..files import folder_written_whole, require_writable, write_texts, written_whole
 from ..frame import Frame
 from ..settings import LabelSettings
 from .carrada_views import NUM_ANGLES, NUM_RANGES, NUM_VELOCITIES, Instance, instances_of, one_hot, views_of
@@ -34,7 +34,8 @@ def write_carrada(dataset: Dataset, folder: str | os.PathLike[str]) -> None:
 
     dataset: as of `open`, of a template with keep = "all" and splits train, val (or validation) and test alone; its radar has
         maps of 256 ranges and 64 velocities and antennas that tell azimuths apart (`data/datasets/carrada.toml`)
-    folder: new or empty, the `warehouse` of MVRSS; it gets the folder Carrada. Every file is written whole or not at all.
+    folder: new or empty, the `warehouse` of MVRSS; it gets the folder Carrada, whole or not at all: after a kill, the same call
+        writes it anew.
     For each scene, a folder scene_000000 and so on with frames 000000 and so on:
     range_doppler_processed/FRAME.npy: f32 [256, 64] dB, nearest range first, approaching positive about column 32
     range_angle_processed/FRAME.npy: f32 [256, 256] dB, farthest range first, right positive about column 128, pi / 256 rad each
@@ -56,6 +57,11 @@ def write_carrada(dataset: Dataset, folder: str | os.PathLike[str]) -> None:
     if root.exists():
         raise refused(ValueError, "folder", f"one that has no folder '{FOLDER}' yet", str(folder))
     _require(dataset)
+    with folder_written_whole(root) as begun:
+        _write(dataset, begun)
+
+
+def _write(dataset: Dataset, root: Path) -> None:
     sequences, frames = {}, {}
     for scene in dataset.scenes:
         name = f"scene_{scene:06d}"

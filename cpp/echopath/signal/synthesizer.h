@@ -88,7 +88,6 @@ class Synthesizer {
     std::vector<std::vector<double>> still;  // [group], each [re/im, row length], added to every chirp; empty likewise
   };
   using RowsOfGroups = std::vector<double*>;  // [group], null for a group without rows
-  void validate(const Echoes& block) const;
   struct Range {
     int64_t begin, end;
   };

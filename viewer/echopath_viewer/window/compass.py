@@ -41,6 +41,7 @@ class Compass(QtWidgets.QWidget):
         if not np.array_equal(axes, self.axes) or ticks[-1] * metre != self.pixels:
             self.axes, self.metres, self.pixels = axes, ticks[-1], ticks[-1] * metre
             self.update()
+        self.place()
         self.setVisible(True)
 
     def paintEvent(self, _event):

@@ -31,8 +31,8 @@ class Panels:
         for name, panel in self.side_panels.items():
             self.add_panel(RIGHT, name, panel)
             self.docks[name].visibilityChanged.connect(panel.set_seen)
-            self.tabifyDockWidget(self.docks["Range-Doppler"], self.docks[name])
             self.docks[name].hide()
+            self.docks[name].toggleViewAction().triggered.connect(lambda is_on, name=name: is_on and self.open_panel(name))
         self.docks["Range-Doppler"].raise_()
         self.tabifyDockWidget(self.docks["What makes the cell"], self.docks["Rays"])
         self.docks["What makes the cell"].visibilityChanged.connect(self.contributions.set_seen)
@@ -68,8 +68,11 @@ class Panels:
         self.docks[name] = dock
 
     def open_panel(self, name: str) -> None:
-        """In front of those that it shares its place with."""
-        self.docks[name].show()
+        """In front of those that it shares its place with; one that was never opened beside the map."""
+        dock = self.docks[name]
+        if name in self.side_panels and not dock.isFloating() and not self.tabifiedDockWidgets(dock):
+            self.tabifyDockWidget(self.docks["Range-Doppler"], dock)
+        dock.show()
         self.docks[name].raise_()
 
     def reset_sizes(self) -> None:

@@ -136,6 +136,28 @@ def test_back_off_and_phase_shifters_are_gains_and_phases_of_the_transmitters(wr
     np.testing.assert_allclose(shifted[1], plain[1] * 1j * 10 ** (-10 / 20), rtol=1e-9)
 
 
+def of_two_profiles(name, values, mask):
+    """A configuration whose two chirps have profiles that differ in one value alone; mask: of the transmitters of both."""
+    columns = {"phase_shifter": "0 {}", "power_backoff": "{} 0"}[name]
+    lines = [f"profileCfg {i} 60 7 6 40 {columns.format(value)} 70 1 128 5000 0 0 30" for i, value in enumerate(values)]
+    lines += [f"chirpCfg {i} {i} {i} 0 0 0 0 {mask}" for i in range(2)]
+    kept = [line for line in CONFIGURATION.splitlines() if not line.startswith(("profileCfg", "chirpCfg"))]
+    return "\n".join(kept).replace("frameCfg", "\n".join([*lines, "frameCfg"])) + "\n"
+
+
+@pytest.mark.parametrize("mask, name, first, second, harmless, told", [
+    (5, "phase_shifter", 0x400000, 0xC00000, 0x408002, "transmitter 3, 64, as it must not change from chirp to chirp, got 192"),
+    (5, "power_backoff", 0x000003, 0x000005, 0x000903, "transmitter 1, 3, .*, got 5"),
+    (1, "phase_shifter", 0x000000, 0x000080, 0x408003, "transmitter 1, 0, .*, got 128"),
+])
+def test_phase_shifters_and_back_off_must_not_change_from_chirp_to_chirp(written, mask, name, first, second, harmless, told):
+    """Harmless: bytes of transmitters that do not send, and the two bits below the steps of a phase."""
+    rule = rf"sensor.cfg:7: profileCfg: {name}: must be that of line 6 for {told}"
+    with pytest.raises(ep.FileError, match=rule):
+        ep.load_radar(written(of_two_profiles(name, (first, second), mask)))
+    ep.load_radar(written(of_two_profiles(name, (first, harmless), mask)))
+
+
 def test_sub_frames_are_sequences_and_one_file(written, tmp_path):
     """A plate that recedes at 4 m/s is where each sub-frame finds it; the file has them in turn, frame by frame."""
     sensor = ep.load_sensor(written(ADVANCED)).replace(position=(0, 0, 1))

@@ -74,7 +74,7 @@ def load_sensor(path: str | os.PathLike[str], board: str | None = None, *, ideal
     count, and of adcbufCfg and lvdsStreamCfg which of I and Q comes first where the sensor streams its samples itself; `ignored`
     names the others. Transmitters that take turns make "tdm", two by bpmCfg "bpm". start_frequency is that of
     the first sample. Chirps that differ in start frequency, slope or idle time become steps of the waveform; back-off and phase
-    shifters of the profiles become gains and phases of the transmitters.
+    shifters of the profiles become gains and phases of the transmitters; those that change from chirp to chirp are refused.
     path: of the file
     board: "IWR1443", "AWR1843", "IWR6843ISK", "IWR6843AOP" or "AWR2243_cascade"; None: as the file's line "Platform" says
     ideal: without the filters and the converter that the file describes

@@ -45,9 +45,9 @@ class SlotTable:
                     raise profile.error(f"{name}: must be {self.profile[name]} as that of line {self.profile.line}, with which "
                                         f"it shares a frame, got {profile[name]}")
 
-    def profile_of(self, transmitter: int) -> Command:
-        """That of the first chirp in which a transmitter, by its index, sends."""
-        return next(profile for profile, chirp in zip(self._profiles, self.chirps) if chirp["transmitters"] >> transmitter & 1)
+    def profiles_of(self, transmitter: int) -> list[Command]:
+        """Those of the chirps in which a transmitter, by its index, sends."""
+        return [profile for profile, chirp in zip(self._profiles, self.chirps) if chirp["transmitters"] >> transmitter & 1]
 
     def error(self, text: str) -> Exception:
         """What to raise about the frame."""

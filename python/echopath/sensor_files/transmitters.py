@@ -11,14 +11,26 @@ PHASE_STEP = math.tau / 64  # rad, of the six bits of a phase shifter
 
 def chain_settings(slots: SlotTable, code: TransmitCode) -> dict:
     """Keywords of Receiver for transmitters in the order of the code: back-off in dB, a byte for each, and phase, the upper six
-    bits of a byte for each, of the profile of the first chirp in which it sends. {} where both are 0."""
+    bits of a byte for each. {} where both are 0. Raises ep.FileError naming the line where those of one change from chirp to
+    chirp."""
     back_off, phase = [], []
     for transmitter in code.order:
-        profile = slots.profile_of(transmitter)
-        back_off.append(float(_byte(profile, "power_backoff", transmitter)))
-        phase.append(_byte(profile, "phase_shifter", transmitter) // 4 * PHASE_STEP)
+        profiles = slots.profiles_of(transmitter)
+        back_off.append(float(_steady(profiles, "power_backoff", transmitter)))
+        phase.append(_steady(profiles, "phase_shifter", transmitter, step=4) * PHASE_STEP)
     gain = {"transmitter_gain_db": [-one for one in back_off]} if any(back_off) else {}
     return gain | ({"transmitter_phase": phase} if any(phase) else {})
+
+
+def _steady(profiles: list[Command], name: str, transmitter: int, step: int = 1) -> int:
+    """What a transmitter's byte counts in steps, the same in all of its profiles."""
+    first, *others = profiles
+    value = _byte(first, name, transmitter) // step
+    for other in others:
+        if (found := _byte(other, name, transmitter)) // step != value:
+            raise other.error(f"{name}: must be that of line {first.line} for transmitter {transmitter + 1}, "
+                              f"{_byte(first, name, transmitter)}, as it must not change from chirp to chirp, got {found}")
+    return value
 
 
 def _byte(profile: Command, name: str, transmitter: int) -> int:

@@ -78,7 +78,7 @@ sin(azimuth) cos(elevation) and sin(elevation).)");
       .def_property_readonly("velocity", view_of(&AngleSpectrum::velocity), "[velocity] m/s, receding positive")
       .def_property_readonly("range", view_of(&AngleSpectrum::range), "[range] m")
       .def("__repr__", [](const AngleSpectrum& self) { return "AngleSpectrum(" + text_of(shape_of(self)) + ")"; });
-  define(bound, "to_xarray", from_package("xarray_maps", "angle_spectrum_array"),
+  define(bound, "to_xarray", from_package("presentation.xarray_maps", "angle_spectrum_array"),
          R"(The spectra as an xarray.DataArray, without a copy: complex values in sqrt(W).
 
 Axes: sin_elevation, sin_azimuth (direction cosines, 1), velocity (m/s, receding positive) and range (m).
@@ -145,7 +145,7 @@ void bind_range_azimuth_map(py::module_& m) {
       .def_property_readonly("elevation", view_of(&RangeAzimuth::elevation), "[elevation] rad, of the beams")
       .def_readonly("velocity", &RangeAzimuth::velocity, "m/s, of the cells taken; None: all velocities together")
       .def("__repr__", [](const RangeAzimuth& self) { return text_of(self); });
-  define(bound, "to_xarray", from_package("xarray_maps", "range_azimuth_array"),
+  define(bound, "to_xarray", from_package("presentation.xarray_maps", "range_azimuth_array"),
          R"(The map as an xarray.DataArray, without a copy: power in W.
 
 Axes: azimuth (rad, left positive) and range (m); attributes elevation (rad, of the beams) and velocity (m/s, of the cells, where

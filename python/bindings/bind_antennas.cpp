@@ -308,7 +308,7 @@ a turn, which looks like degrees.)");
                              "of its code, else 1")
       .def_property_readonly("frame_duration", &Radar::frame_duration, "s, from the first sample to the last")
       .def("__repr__", [](const Radar& self) { return text_of(self); });
-  define(type, "_repr_html_", from_package("notebook", "radar_html"), "A table for notebooks.");
+  define(type, "_repr_html_", from_package("presentation.notebook", "radar_html"), "A table for notebooks.");
   define(type, "chirp_time", &chirp_time, py::arg("tx"), py::arg("chirp"), R"(Time of the middle of a chirp.
 
 tx, chirp: indices of the transmitter and of its chirp

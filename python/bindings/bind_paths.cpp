@@ -258,7 +258,7 @@ hits: [H] structured; offsets, num_bounces, diffuse, weight, stratum, batch, fla
 [P, 2, 2] complex or None; passes: [N] structured and pass_offsets: [P + 1], or None
 scene, radar, frame: what they belong to
 Raises ValueError where an index leads nowhere.)");
-  define(type, "to_dataframe", from_package("tables", "paths_table"),
+  define(type, "to_dataframe", from_package("presentation.tables", "paths_table"),
          R"(A table with a row for each path, as a pandas.DataFrame.
 
 Columns: bounces (number of hits), meshes (their names in order of travel, "wall > walker/arm"), events (S specular,
@@ -266,13 +266,13 @@ D diffuse, E on an edge, a letter a hit), kind ("coherent" or "diffuse"), object
 objects of the scene), length in m and power in W at the trace time for the first antennas, stratum (what its ray was aimed
 at, "" for paths by images), batch (255: of all batches) and is_reversed; units in `attrs["units"]`.
 Needs pandas, raises ModuleNotFoundError without it.)");
-  define(type, "to_xarray", from_package("xarray_maps", "paths_dataset"),
+  define(type, "to_xarray", from_package("presentation.xarray_maps", "paths_dataset"),
          R"(The record as an xarray.Dataset, without a copy of its arrays.
 
 Dimensions path [P] and hit [H]; variables offsets, num_bounces, diffuse, weight, stratum, batch, flags, length (m) and
 power (W) at the trace time for the first antennas, [P] each, and mesh_id, triangle_id, u, v [H]; names of the meshes in
 attrs["mesh_names"]. Needs xarray, raises ModuleNotFoundError without it.)");
-  define(type, "_repr_html_", from_package("notebook", "paths_html"), "A table for notebooks.");
+  define(type, "_repr_html_", from_package("presentation.notebook", "paths_html"), "A table for notebooks.");
 }
 
 }  // namespace

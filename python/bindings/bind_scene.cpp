@@ -289,9 +289,9 @@ std::optional<std::array<double, 4>> tessellation_of_mesh(const std::shared_ptr<
 }
 
 void bind_surfaces(py::module_& m) {
-  m.def("tessellation", &tessellation_of_mesh, py::arg("mesh"), "What echopath.tessellation.tessellation calls.");
+  m.def("tessellation", &tessellation_of_mesh, py::arg("mesh"), "What echopath.tracing.tessellation.tessellation calls.");
   m.def("coherent_share", &coherent_share, py::arg("material"), py::arg("wavelength"),
-        "What echopath.polarization.coherent_share calls.");
+        "What echopath.tracing.polarization.coherent_share calls.");
 }
 
 void bind_readers(py::module_& m) {

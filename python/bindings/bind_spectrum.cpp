@@ -65,7 +65,7 @@ void bind_spectrum(py::module_& m) {
       .def_readonly("is_tdm_compensated", &RangeDoppler::is_tdm_compensated,
                     "whether compensate_tdm took out the phase between transmit slots")
       .def("__repr__", [](const RangeDoppler& self) { return text_of(self); });
-  define(bound, "to_xarray", from_package("xarray_maps", "range_doppler_array"),
+  define(bound, "to_xarray", from_package("presentation.xarray_maps", "range_doppler_array"),
          R"(The map as an xarray.DataArray, without a copy: complex values in sqrt(W).
 
 Axes: tx, rx, velocity (m/s, receding positive) and range (m).
@@ -86,7 +86,7 @@ ax: Matplotlib axes to draw in, None: new ones; title: what stands above the map
 vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak
 Returns the axes: range in m across, radial velocity in m/s up (receding positive). Raises TypeError or
 ValueError naming the argument.)");
-  define(bound, "_repr_html_", from_package("notebook", "range_doppler_html"), "A table for notebooks.");
+  define(bound, "_repr_html_", from_package("presentation.notebook", "range_doppler_html"), "A table for notebooks.");
   def_travel_checked(bound, &check_map, field("num_transmitters", &RangeDoppler::num_transmitters),
                      field("num_receivers", &RangeDoppler::num_receivers), field("velocity", &RangeDoppler::velocity),
                      field("range", &RangeDoppler::range), field("values", &RangeDoppler::values),

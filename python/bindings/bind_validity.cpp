@@ -185,7 +185,7 @@ over the frame is off by more than 0.5 dB, or it is seen but has no path.)");
                              "[P] largest of a cosine, linear")
       .def("__str__", &Validity::text)
       .def("__repr__", &repr_of);
-  define(bound, "_repr_html_", from_package("notebook", "validity_html"), "A table for notebooks.");
+  define(bound, "_repr_html_", from_package("presentation.notebook", "validity_html"), "A table for notebooks.");
   def_validity_travel(bound);
 }
 

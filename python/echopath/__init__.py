@@ -20,56 +20,56 @@ from ._core import (
     ValidityShares, VertexSequence, VirtualArray, __version__, boltzmann, speed_of_light,
 )
 from .actors import Actor, Part
-from .angles import angle_fft, beamform, compensate_tdm, estimate_angles, range_azimuth, virtual_array
-from .antennas import load_antenna
-from .clutter_removal import remove_clutter
+from .arguments.settings import LabelSettings, SignalSettings, TraceSettings
+from .base.threads import num_threads, set_num_threads
 from .detections import Detections, detect, detect_frame
 from .effects import Effect, effects
-from .families import Families, families
-from .foreign_meshes import mesh_from
-from .frame import Frame
+from .frame.frame import Frame
+from .frame.maps import FrameMaps
+from .frame.simulate import simulate
 from .frame_file import load_frame, load_labels, save_frame, save_labels
-from .frame_maps import FrameMaps
-from .frame_validity import renew, validity
 from .guard import Check, GuardWarning, check_rays, check_signal
 from .in_time import (
     AngleTime, RangeTime, Spectrogram, SpectrogramLabels, angle_time, range_time, spectrogram, spectrogram_labels,
 )
-from .interference import interference, interference_radar
-from .interferers import Interferer
 from .labels import GhostLabel, Labels, ObjectLabel, annotate, annotate_frame, save_label_images
 from .live import Live, LiveView, Watch
-from .materials import materials
-from .measures import power_by_chirp
-from .meshes import load_mesh, load_meshes
-from .music import music
-from .parts import Parts, decompose
-from .path_cells import PathCells, path_cells
-from .powers import received_power, received_powers
+from .paths.cells import PathCells, path_cells
+from .paths.families import Families, families
+from .paths.powers import received_power, received_powers
+from .paths.resolution import Interval, Unresolved, unresolved
+from .paths.selections import first, hits, last, num_bounces, passes, power
+from .paths.visibility import ObjectVisibility, Sight, visibility
+from .presentation.viewing import plot_rays, view
 from .readers import Model, ModelNode, foreign_materials, load_model
 from .receiver import Adc, PhaseNoise, Receiver, Reception, receive
-from .resolution import Interval, Unresolved, unresolved
-from .scene import Scene
+from .scene.foreign import mesh_from
+from .scene.materials import materials
+from .scene.meshes import load_mesh, load_meshes
+from .scene.node import SceneNode
+from .scene.scene import Scene
+from .scene.sheets import SheetCoefficients, sheet_coefficients
+from .scene.traffic import Traffic, add_traffic
 from .scene_file import SceneFile, load_scene
-from .scene_node import SceneNode
-from .selections import first, hits, last, num_bounces, passes, power
 from .sensor_files import SensorConfig, load_radar, load_sensor, save_raw
+from .sensor_files.antenna_patterns import load_antenna
 from .sequence import SavedFrame, Sequence, StoredSequence, load_sequence
-from .settings import LabelSettings, SignalSettings, TraceSettings
-from .sheets import SheetCoefficients, sheet_coefficients
-from .signals import add_noise, synthesize
-from .simulate import simulate
-from .spectra import cfar, range_doppler
-from .tessellation import TessellationWarning
-from .threads import num_threads, set_num_threads
-from .tracing import mie_rcs, rcs, trace
+from .signals.if_signal import add_noise, synthesize
+from .signals.interference import interference, interference_radar
+from .signals.interferers import Interferer
+from .signals.measures import power_by_chirp
+from .signals.parts import Parts, decompose
+from .spectra.angles import angle_fft, beamform, compensate_tdm, estimate_angles, range_azimuth, virtual_array
+from .spectra.clutter_removal import remove_clutter
+from .spectra.music import music
+from .spectra.range_doppler import cfar, range_doppler
+from .tracing.tessellation import TessellationWarning
+from .tracing.traces import mie_rcs, rcs, trace
+from .tracing.validity import renew, validity
 from .tracks import Tracks, track
-from .traffic import Traffic, add_traffic
 from .trajectories import Lane, Trajectory, read_trajectories
 from .transmit import demultiplex
 from .truth import Truth, truth
-from .viewing import plot_rays, view
-from .visibility import ObjectVisibility, Sight, visibility
 from .weather import Weather
 
 __all__ = [

@@ -6,8 +6,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from numpy.typing import ArrayLike
 import types
+from echopath.base.foreign_types import Axes, DataArray, DataFrame, Dataset
 from echopath.effects.rules import Effect
-from echopath.foreign_types import Axes, DataArray, DataFrame, Dataset
 from echopath.frame_file.frame import LeftOut
 from echopath.receiver import Receiver
 from typing import Literal
@@ -3177,7 +3177,7 @@ def coherent_meshes(scene: Scene, wavelength: float, least_share: float, without
     """
 def coherent_share(material: Material, wavelength: float) -> float:
     """
-    What echopath.polarization.coherent_share calls.
+    What echopath.tracing.polarization.coherent_share calls.
     """
 def compensate_tdm(spectrum: RangeDoppler, radar: Radar, fold: int = 0) -> RangeDoppler:
     """
@@ -3372,7 +3372,7 @@ def synthesize_echoes(waveform: ChirpSequence, delays: typing.Any, amplitudes: t
     """
 def tessellation(mesh: Mesh) -> typing.Annotated[list[float], "FixedSize(4)"] | None:
     """
-    What echopath.tessellation.tessellation calls.
+    What echopath.tracing.tessellation.tessellation calls.
     """
 def trace(scene: Scene, radar: Radar, *, num_rays: int | None = None, max_bounces: int = 4, seed: int = 1, start_time: float = 0.0, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', batches: int | None = None, target_error_db: float | None = None, max_rays: int = 16777216, scatterers: str = 'rays', edges: bool = False, attenuation: float = 0.0, progress: typing.Any = None, kept: KeptGeometry | None = None) -> Paths:
     """

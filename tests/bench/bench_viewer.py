@@ -21,7 +21,7 @@ import numpy as np
 
 import echopath as ep
 from echopath.live.watch import FIRST_PREVIEW_RAYS
-from echopath.path_subset import strongest, subset
+from echopath.paths.subset import strongest, subset
 from echopath_viewer.model import CellBox, Filters, from_file
 from echopath_viewer.model.attribution import Attribution
 from echopath_viewer.model.live_session import live_of, session_of_view

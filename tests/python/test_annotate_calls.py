@@ -43,7 +43,7 @@ def test_words_name_objects_and_ghosts(labels):
     ({"objects": ["bicycle"]}, "bicycle"),
     ({"parts": {"one": {"a": "T . R"}}}, "parts: must be one partition"),
     ({"parts": {"one": np.zeros((1, 1, 2, 2))}}, "parts: cubes must have shape"),
-    ({"parts": ep.parts.Parts({"other": np.zeros((1, 1, 64, 256))}, {}, make_radar(height=1.1)), "radar": make_radar()},
+    ({"parts": ep.signals.parts.Parts({"other": np.zeros((1, 1, 64, 256))}, {}, make_radar(height=1.1)), "radar": make_radar()},
      "parts: must be of the radar, got those of another transmitters"),
 ])
 def test_bad_settings_are_named(plates_and_wall, keywords, message):
@@ -64,7 +64,7 @@ def test_unknown_keywords_name_the_nearest(plates_and_wall):
 @pytest.mark.parametrize("objects, message", [({"x": "bicycle"}, "objects: .*'bicycle'"),
                                               ({"x": "a", "y": "a"}, "objects: must each have a mesh")])
 def test_bad_objects_of_labels_are_told_before_the_trace(plates_and_wall, monkeypatch, objects, message):
-    monkeypatch.setattr(sys.modules["echopath.simulate"], "trace_scene", None)
+    monkeypatch.setattr(sys.modules["echopath.frame.simulate"], "trace_scene", None)
     with pytest.raises(ValueError, match=message):
         ep.simulate(plates_and_wall[0].scene, make_radar(), labels={"objects": objects})
 
@@ -91,7 +91,7 @@ def test_detections_have_the_objects_of_the_labels(plates_and_wall):
     ({"objects": ["bicycle"]}, ValueError, "bicycle"),
 ])
 def test_bad_keywords_of_detections_are_told_before_the_trace(plates_and_wall, monkeypatch, keywords, error, message):
-    monkeypatch.setattr(sys.modules["echopath.simulate"], "trace_scene", None)
+    monkeypatch.setattr(sys.modules["echopath.frame.simulate"], "trace_scene", None)
     with pytest.raises(error, match=message):
         ep.simulate(plates_and_wall[0].scene, make_radar(), detections=keywords)
 

@@ -9,8 +9,8 @@ from echopath.bench import crowd, crowd_coverage
 from echopath.bench import crowd_scenes as scenes
 from echopath.bench.closed_forms import FREQUENCY
 from echopath.cli import main
-from echopath.resolution import Interval
-from echopath.tessellation import coarse_meshes
+from echopath.paths.resolution import Interval
+from echopath.tracing.tessellation import coarse_meshes
 
 MID_FRAME = 0.0128   # s
 LEAST_GAP = 0.2      # deg between neighbours as the radar sees them

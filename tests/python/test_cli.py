@@ -10,8 +10,8 @@ import time
 import pytest
 
 import echopath as ep
+from echopath.base.files import require_writable
 from echopath.cli import main
-from echopath.files import require_writable
 from echopath.scene_file import load_scene
 from support.background import heed_ctrl_c
 from support.scene_text import ANTENNAS, WAVEFORM

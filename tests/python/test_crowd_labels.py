@@ -4,11 +4,11 @@ import pytest
 
 import echopath as ep
 from echopath.actors import shapes
+from echopath.arguments.settings import LabelSettings
 from echopath.labels import family_pass
 from echopath.labels.annotate import make_request
 from echopath.labels.cell_owners import ALIKE
 from echopath.labels.powers import parts_by_rival
-from echopath.settings import LabelSettings
 
 SUM = 1e-12  # relative, of parts that add up
 PLANES = ("range_doppler", "range_azimuth")

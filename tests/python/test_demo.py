@@ -9,7 +9,7 @@ import pytest
 
 import echopath as ep
 from echopath.cli.demo import run_demo
-from echopath.measures import residual, velocity_extent
+from echopath.signals.measures import residual, velocity_extent
 
 NUM_RAYS = 20_000
 SUM_TOLERANCE = 1e-12

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.resolution import Interval
 from echopath.cli import report
 from echopath.detections.echo_fields import Response
+from echopath.paths.resolution import Interval
 from support.radars import build_radar
 from support.shapes import lambert
 

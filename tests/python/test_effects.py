@@ -9,7 +9,7 @@ import pytest
 import echopath as ep
 from echopath.cli import report
 from echopath.effects import rules
-from echopath.lost_rays import warn_of_unaimed, warn_of_unfollowed_beams
+from echopath.tracing.lost_rays import warn_of_unaimed, warn_of_unfollowed_beams
 
 SPECULAR, ROUGH = "metal", ep.Material(reflectivity=0.27, scattering=1.0)
 PHASED = ep.GainTable(azimuth=[-1, 0, 1], elevation=[-1, 1], gain=np.ones((2, 3)), phase=np.zeros((2, 3)))

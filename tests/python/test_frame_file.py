@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath import frame_file, path_subset
+from echopath import frame_file
 from echopath.frame_file import h5, paths as frame_paths
-from echopath.path_subset import power_of_strongest, strongest, subset
+from echopath.paths import subset as path_subset
+from echopath.paths.subset import power_of_strongest, strongest, subset
 from support.frame_edits import edited
 from support.radars import build_radar
 from support.shapes import curved_scene, lambert, quad

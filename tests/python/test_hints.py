@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.keywords import known_keywords
+from echopath.arguments.keywords import known_keywords
 
 RADAR = ep.Radar(ep.ChirpSequence(num_samples=16, num_chirps=4), transmitters=[ep.Antenna()], receivers=[ep.Antenna()])
 CHIRPS = RADAR.waveform

@@ -11,13 +11,13 @@ PACKAGES = (ROOT / "python" / "echopath", ROOT / "viewer" / "echopath_viewer")
 
 # Imports within functions that close a circle, and why each may.
 CLOSING = {
-    ("echopath.viewing", "echopath_viewer"): "ep.view and ep.plot_rays start the viewer, which draws what echopath made",
-    ("echopath.frame", "echopath_viewer"): "Frame.show makes a page with what draws scenes in the viewer",
-    ("echopath.scene", "echopath_viewer"): "Scene.to_pyvista makes blocks with what draws scenes in the viewer",
+    ("echopath.presentation.viewing", "echopath_viewer"): "ep.view and ep.plot_rays start the viewer",
+    ("echopath.frame.frame", "echopath_viewer"): "Frame.show makes a page with what draws scenes in the viewer",
+    ("echopath.scene.scene", "echopath_viewer"): "Scene.to_pyvista makes blocks with the viewer's code",
     ("echopath.labels.labels", "echopath.plots"): "Labels.plot draws with plots, which take the colours of labels",
-    ("echopath.frame", "echopath.plots"): "Frame.plot draws with plots, which take the colours of labels of frames",
-    ("echopath.frame", "echopath.truth"): "Frame.truth asks for the truth, which also takes rows of frames",
-    ("echopath.frame", "echopath.sensor_files"): "Frame.save_raw writes with what writes several frames",
+    ("echopath.frame.frame", "echopath.plots"): "Frame.plot draws with plots, which take the colours of labels of frames",
+    ("echopath.frame.frame", "echopath.truth"): "Frame.truth asks for the truth, which also takes rows of frames",
+    ("echopath.frame.frame", "echopath.sensor_files"): "Frame.save_raw writes with what writes several frames",
     ("echopath.readers.model", "echopath.readers.along"): "Model.along makes another model of its nodes",
     ("echopath.cli", "echopath_viewer"): "`echopath view` starts the viewer, whose demo is that of the command line",
 }

@@ -4,7 +4,7 @@ import pytest
 from support.radars import build_radar
 
 import echopath as ep
-from echopath.interference_paths import few_paths
+from echopath.signals.interference_paths import few_paths
 
 C = ep.speed_of_light
 COUNT, RATE = 256, 20e6

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 
 from echopath import plots
-from echopath.measures import for_pictures
 from echopath.plots.scene_view import _is_cut
+from echopath.signals.measures import for_pictures
 
 
 def power_of(level_dbm: float, half_db: float, resolved: bool):

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath import same_radar
+from echopath.signals import same_radar
 from support import slow_lengths
 from support.placed_radar import antennas_in_world, make_radars, quaternion, turn
 from support.radars import build_radar

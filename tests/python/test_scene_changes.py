@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath import _core, tessellation
+from echopath import _core
+from echopath.tracing import tessellation
 from support.radars import build_radar
 from support.scene_text import WAVEFORM
 from support.street import ARRAYS, NUM_RAYS, assert_same_bits, box_mesh, built, radar, street_table, traced

@@ -92,7 +92,7 @@ def test_objects_of_labels_are_values_of_their_own():
 
 
 def test_functions_that_take_settings_are_those_that_the_module_names():
-    said = (ep.settings.__doc__ or "").split("Keywords of the call")
+    said = (ep.arguments.settings.__doc__ or "").split("Keywords of the call")
     takes = {name for name in ep.__all__ if callable(getattr(ep, name)) and inspect.isfunction(getattr(ep, name))
              and any(kind.__name__ in str(parameter.annotation) for kind in KINDS
                      for parameter in inspect.signature(getattr(ep, name)).parameters.values())}

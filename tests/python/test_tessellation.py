@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath import tessellation
+from echopath.tracing import tessellation
 from support.shapes import lambert
 
 WAVELENGTH = ep.speed_of_light / 77e9

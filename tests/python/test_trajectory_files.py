@@ -165,7 +165,7 @@ def test_traffic_is_in_the_scene_while_it_is_on_its_way(tmp_path):
 
 @pytest.mark.filterwarnings("ignore:.*single position")
 def test_kinds_become_actors(tmp_path):
-    from echopath.traffic import usual_actor
+    from echopath.scene.traffic import usual_actor
 
     found = ep.read_trajectories(write(tmp_path, "fcd.xml", FCD))
     parts = {name: {part.name for part in usual_actor(name, one).parts} for name, one in found.items()}

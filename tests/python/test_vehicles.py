@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.tessellation import coarse_meshes
+from echopath.tracing.tessellation import coarse_meshes
 from support.closed import boundary_edges, extent, joined_parts, scene_of, volume_of
 
 FITTED = 0.01       # m: the middle panels alone reach the published length

@@ -7,7 +7,7 @@ import pytest
 import scipy.special
 
 import echopath as ep
-from echopath.effect_choices import ATTENUATION, RAIN_ECHOES
+from echopath.arguments.effects import ATTENUATION, RAIN_ECHOES
 from echopath.weather import drops, echoes, fog, gas, rain
 from echopath.weather.weather import DB_PER_NEPER
 from support.radars import build_radar

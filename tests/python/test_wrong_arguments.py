@@ -118,7 +118,7 @@ def test_every_public_function_is_tried(good):
 
 def test_wrong_arguments_are_named(good, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("echopath.viewing._viewer", lambda: _NoViewer)
+    monkeypatch.setattr("echopath.presentation.viewing._viewer", lambda: _NoViewer)
     total, found = 0, {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -164,7 +164,7 @@ def test_whole_floats_and_numpy_integers_are_counts(good, value):
 
 
 def test_arrays_are_not_copied_by_checks():
-    from echopath.checks import array
+    from echopath.arguments.checks import array
 
     cube = np.zeros((1, 2, 3, 4), np.complex64)
     assert array("[T, R, C, S]", kind="complex")("cube", cube) is cube

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from echopath.files import written_whole
-from echopath.optional import needed_module
+from echopath.base.files import written_whole
+from echopath.base.optional import needed_module
 
 KINDS = (".gif", ".mp4")
 

@@ -9,7 +9,7 @@ import numpy as np
 import pyvista as pv
 
 import echopath as ep
-from echopath.origin import mark_png, origin_texts
+from echopath.base.origin import mark_png, origin_texts
 
 from .model import Filters, PartSet, Session, Signals, ViewInput, from_frame, whole_part
 from .scene_builder import SceneBuilder

@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..checks import checked, count, positive, real
+from ..arguments.checks import checked, count, positive, real
 from . import solids
 from .actor import Actor, Part
 from .shapes import ellipsoid

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .. import _core
-from ..checks import an, optional, refused
-from ..rotations import quaternions
+from ..arguments.checks import an, optional, refused
+from ..base.rotations import quaternions
 from ..trajectories.knots import curve_through
 from ..trajectories.profile import Profile
 from ..trajectories.trajectory import Trajectory

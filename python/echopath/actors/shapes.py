@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from .. import _core
-from ..checks import array, checked, count, optional, real
+from ..arguments.checks import array, checked, count, optional, real
 from . import surfaces
 
 ROUND_PIECES = 12   # default pieces of an icosahedron edge of a sphere, and of a quarter turn of other round bodies

@@ -14,8 +14,8 @@ import numpy as np
 import echopath as ep
 
 from .. import actors
-from ..files import write_texts
-from ..origin import FIXED_SEEDS
+from ..base.files import write_texts
+from ..base.origin import FIXED_SEEDS
 from ..plots.style import new_figure, save_png
 from .steps import csv_text, told
 

@@ -10,7 +10,7 @@ import numpy as np
 
 import echopath as ep
 
-from ..files import write_texts
+from ..base.files import write_texts
 from .certificate_scenes import KINDS, random_scene
 from .machine import machine
 from .steps import told

@@ -10,12 +10,12 @@ import numpy as np
 
 import echopath as ep
 
-from ..files import write_texts
+from ..base.files import write_texts
 from . import crowd_scenes as scenes
 from .crowd_coverage import measure_coverage
 from .machine import machine
-from .steps import told
 from .speed_tracer import bare_share
+from .steps import told
 from .timing import processor_time
 
 RAYS, QUICK_RAYS = 300_000, 20_000

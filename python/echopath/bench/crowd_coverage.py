@@ -5,7 +5,7 @@ import numpy as np
 
 import echopath as ep
 
-from ..resolution import interval_of
+from ..paths.resolution import interval_of
 from . import targets
 from .crowd_echoes import Echo, all_echoes
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..origin import FIXED_SEEDS
+from ..base.origin import FIXED_SEEDS
 from ..plots.style import CURVE_COLOURS, new_figure, save_png
 
 LEAST_SHOWN_DB = -12.0

@@ -1,7 +1,7 @@
 """Speed against error in one picture."""
 from __future__ import annotations
 
-from ..origin import FIXED_SEEDS
+from ..base.origin import FIXED_SEEDS
 from ..plots.style import new_figure, save_png
 
 SHOWN = ("sphere_161", "sphere_3228", "ellipsoid", "plate_5", "plate_20.3", "dihedral")

@@ -10,10 +10,10 @@ import numpy as np
 
 import echopath as ep
 
-from ..files import write_texts
-from ..materials import data_folder
-from ..measures import residual
+from ..base.files import write_texts
+from ..scene.materials import data_folder
 from ..scene_file import load_scene
+from ..signals.measures import residual
 from .false_alarms import describe_false_alarms, measure_false_alarms
 from .machine import machine
 from .timing import processor_time

@@ -16,10 +16,10 @@ import numpy as np
 
 import echopath as ep
 
-from ..files import write_texts
-from ..materials import data_folder
-from ..origin import FIXED_SEEDS
+from ..base.files import write_texts
+from ..base.origin import FIXED_SEEDS
 from ..plots.style import CURVE_COLOURS, new_figure, save_png
+from ..scene.materials import data_folder
 from .steps import csv_text, told
 
 NUM_RAYS, QUICK_NUM_RAYS = 2 ** 15, 2 ** 13

@@ -13,8 +13,8 @@ import numpy as np
 import echopath as ep
 
 from ..actors import shapes
+from ..base.files import write_texts
 from ..effects.surfaces import bistatic_limit_deg
-from ..files import write_texts
 from .steps import csv_text, told
 
 FREQUENCY = 77e9                     # Hz

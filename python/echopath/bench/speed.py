@@ -10,7 +10,7 @@ import numpy as np
 
 import echopath as ep
 
-from ..files import write_texts
+from ..base.files import write_texts
 from . import replay_cases, speed_frames, speed_guard, speed_retrace, speed_synthesis, speed_tracer
 from .machine import machine
 from .steps import csv_text

@@ -1,7 +1,7 @@
 """Speed against error of synthesis, and how whole frames grow."""
 from __future__ import annotations
 
-from ..origin import FIXED_SEEDS
+from ..base.origin import FIXED_SEEDS
 from ..plots.style import new_figure, save_png
 
 OURS, OWN_SPEED, FINUFFT, SUMS, GREY = "#0072b2", "#56b4e9", "#d55e00", "#009e73", "#666666"  # Okabe and Ito

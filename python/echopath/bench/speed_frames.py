@@ -7,9 +7,9 @@ import numpy as np
 
 import echopath as ep
 
-from ..materials import data_folder
+from ..base.stages import StageClock
+from ..scene.materials import data_folder
 from ..scene_file import load_scene
-from ..stages import StageClock
 from .speed_tracer import bare_share
 from .timing import processor_time, wall_time
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from types import ModuleType
 
-from ..files import write_texts
+from ..base.files import write_texts
 from .machine import machine
 from .steps import told
 

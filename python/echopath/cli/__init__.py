@@ -8,7 +8,7 @@ from pathlib import Path
 
 from .. import DeviceError
 from .._startup import EXIT_INTERRUPTED, STOPPED, loading_is_over
-from ..files import require_writable
+from ..base.files import require_writable
 from .numbers import natural, number_range, positive, seconds, shard
 
 EXIT_BAD_INPUT = 2
@@ -210,7 +210,7 @@ def _add_part_option(parser) -> None:
 
 def _demo(options) -> None:
     from .demo import run_demo
-    from ..progress import progress_bars
+    from ..base.progress import progress_bars
 
     require_writable(options.out, "--out")
     if options.view:
@@ -236,7 +236,7 @@ def _view(options) -> None:
 
 def _run(options) -> None:
     from . import report
-    from ..progress import progress_bars
+    from ..base.progress import progress_bars
     from .run import certify, chosen_partition, raw_line, simulate_file, write_outputs
     from .run_sequence import is_sequence, run_sequence
     from ..scene_file import load_scene
@@ -287,9 +287,9 @@ def _scene(options) -> None:
 
 
 def _labels(options) -> None:
-    from ..settings import LabelSettings
+    from ..arguments.settings import LabelSettings
     from .labels import label_file, objects_of_options
-    from ..progress import progress_bars
+    from ..base.progress import progress_bars
 
     require_writable(options.out, "--out")
     settings = LabelSettings(objects=objects_of_options(options.object), plane=options.plane,
@@ -320,7 +320,7 @@ def _bench(options) -> None:
     from ..bench import (actors, certificate, crowd, dataset, hard, labels, live, measured, published, receiver, replay, report,
                          run_actors, run_certificate, run_crowd, run_dataset, run_labels, run_live, run_measured, run_physics,
                          run_published, run_receiver, run_replay, run_speed, run_worlds, speed, worlds)
-    from ..progress import progress_bars
+    from ..base.progress import progress_bars
 
     works = {"physics": (run_physics, report.describe), "labels": (run_labels, labels.describe),
              "hard": (hard.run_hard, hard.describe), "certificate": (run_certificate, certificate.describe),

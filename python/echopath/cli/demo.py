@@ -6,11 +6,11 @@ from pathlib import Path
 
 import echopath as ep
 
-from ..frame import Frame
-from ..materials import data_folder
-from ..measures import EXTENT_BELOW_PEAK_DB, residual
+from ..base.stages import StageClock
+from ..frame.frame import Frame
+from ..scene.materials import data_folder
 from ..scene_file import load_scene
-from ..stages import StageClock
+from ..signals.measures import EXTENT_BELOW_PEAK_DB, residual
 from . import report
 from .run import certify, simulate_file, write_outputs
 

@@ -10,13 +10,13 @@ import echopath as ep
 from .. import dataset
 from ..dataset.folder import TEMPLATE as DATASET_FILE
 from ..frame_file import left_out, load_frame
+from ..presentation.tables import edge_hits, event
 from ..readers.load import READERS, is_foreign
+from ..receiver.settings import receiver_text
 from ..scene_file import load_scene
 from ..scene_file.load import parse
 from ..sequence.contents import NAME as SEQUENCE_FILE
-from ..measures import in_dbm, with_error
-from ..receiver.settings import receiver_text
-from ..tables import edge_hits, event
+from ..signals.measures import in_dbm, with_error
 from ..weather.weather import weather_of, weather_text
 from . import report
 from .model_info import describe_model

@@ -6,7 +6,7 @@ from pathlib import Path
 import echopath as ep
 
 from .. import plots
-from ..parts import ONLY_PARTITION
+from ..signals.parts import ONLY_PARTITION
 
 MAPS_FOLDER = "label_maps"
 

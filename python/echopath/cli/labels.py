@@ -6,10 +6,10 @@ from pathlib import Path
 import echopath as ep
 
 from .._core import noise_power_in_cell
+from ..arguments.settings import LabelSettings
 from ..detections import detect_frame
 from ..frame_file import left_out, load_frame, save_labels
 from ..labels.of_frame import annotate_frame
-from ..settings import LabelSettings
 from . import report
 from .label_outputs import write_labels
 from .run import chosen_partition

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import argparse
 
-from ..checks import LARGEST_COUNT
+from ..arguments.checks import LARGEST_COUNT
 
 
 def positive(text: str) -> int:

@@ -6,8 +6,8 @@ import textwrap
 import numpy as np
 
 from ..labels.report import peak_words
-from ..measures import in_dbm, power_dbm, velocity_extent, with_error
-from ..resolution import FAINT, RESOLVED_DB
+from ..paths.resolution import FAINT, RESOLVED_DB
+from ..signals.measures import in_dbm, power_dbm, velocity_extent, with_error
 
 LABEL_WIDTH = 34
 MAX_WIDTH = 118  # columns

@@ -8,14 +8,14 @@ from pathlib import Path
 import echopath as ep
 
 from .. import plots
-from ..frame import Frame
+from ..base.stages import StageClock
+from ..frame.frame import Frame
+from ..frame.simulate import simulate
 from ..frame_file import LeftOut, min_power_of_budget, save_frame
-from ..measures import for_pictures, with_error
-from ..parts import parts_of_options
 from ..plots.frames import noise_words, title_of
 from ..scene_file import SceneFile
-from ..simulate import simulate
-from ..stages import StageClock
+from ..signals.measures import for_pictures, with_error
+from ..signals.parts import parts_of_options
 from .label_outputs import write_labels
 
 TRUTH_NAME = "truth.csv"

@@ -4,10 +4,10 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 
-from ..progress import progress_bars
+from ..base.progress import progress_bars
 from ..scene_file import SceneFile
-from ..sequence import Sequence, load_sequence
 from ..sensor_files import save_raw
+from ..sequence import Sequence, load_sequence
 from .numbers import duration_words
 from .run import TRUTH_NAME, keywords_of, raw_line
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from .. import _core
-from ..checks import refused
-from ..optional import needed_module
+from ..arguments.checks import refused
+from ..base.optional import needed_module
 from ..scene_file.load import parse
 from .folder import (
     MANIFEST,

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..frame import Frame
-from ..frame_maps import FrameMaps, mean_power
-from ..xarray_maps import axis, xarray_module
+from ..frame.frame import Frame
+from ..frame.maps import FrameMaps, mean_power
+from ..presentation.xarray_maps import axis, xarray_module
 from .classes import CODES, ClassName, classes_of
 
 if TYPE_CHECKING:
-    from ..foreign_types import Dataset as XarrayDataset
+    from ..base.foreign_types import Dataset as XarrayDataset
     from .opened import Dataset, DatasetFrame
 
 CELLS = ("nothing", "object", "ghost")

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import checked, refused
-from ..checks import path as folder_rule
-from ..files import folder_written_whole, require_writable, write_texts, written_whole
-from ..frame import Frame
-from ..settings import LabelSettings
+from ..arguments.checks import checked, refused
+from ..arguments.checks import path as folder_rule
+from ..arguments.settings import LabelSettings
+from ..base.files import folder_written_whole, require_writable, write_texts, written_whole
+from ..frame.frame import Frame
 from .carrada_views import NUM_ANGLES, NUM_RANGES, NUM_VELOCITIES, Instance, instances_of, one_hot, views_of
 from .classes import classes_of
 from .opened import Dataset, dataset_rule

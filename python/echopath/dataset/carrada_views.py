@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..angles import beamform
-from ..checks import refused
-from ..frame import Frame
+from ..arguments.checks import refused
+from ..arguments.settings import LabelSettings
+from ..frame.frame import Frame
 from ..labels import annotate_frame
 from ..labels.labels import Labels
-from ..settings import LabelSettings
+from ..spectra.angles import beamform
 from .classes import ClassName
 
 NUM_RANGES, NUM_VELOCITIES, NUM_ANGLES = 256, 64, 256

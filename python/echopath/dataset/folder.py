@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 from .. import _core
-from ..checks import refused
-from ..files import write_texts
+from ..arguments.checks import refused
+from ..arguments.shown import shown
+from ..base.files import write_texts
 from ..scene_file.load import parse
-from ..shown import shown
 from .template import Template
 
 State = Literal["done", "failed", "to do"]

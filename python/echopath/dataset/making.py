@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from .. import _core
-from ..checks import array, checked, count, flag, optional, refused, text
-from ..checks import path as file_or_folder
-from ..files import require_writable
+from ..arguments.checks import array, checked, count, flag, optional, refused, text
+from ..arguments.checks import path as file_or_folder
+from ..base.files import require_writable
 from ..sequence.contents import NAME as CONTENTS
 from ..sequence.saving import Shard, shard_rule
 from .address import Address, is_address

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
 from .. import _core
-from ..checks import checked, refused
-from ..checks import path as folder_rule
-from ..frame import Frame
-from ..frame_maps import FrameMaps
+from ..arguments.checks import checked, refused
+from ..arguments.checks import path as folder_rule
+from ..frame.frame import Frame
+from ..frame.maps import FrameMaps
 from ..sequence import StoredSequence, load_sequence
 from ..sequence.contents import frame_path
 from ..sequence.keep import read_frame
@@ -21,7 +21,7 @@ from .folder import DRAWN, open_template, read_record, scene_folder
 from .template import Template
 
 if TYPE_CHECKING:
-    from ..foreign_types import Dataset as XarrayDataset
+    from ..base.foreign_types import Dataset as XarrayDataset
 
 
 class DatasetFrame(NamedTuple):

@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from .. import beside
-from ..checks import checked, refused
-from ..checks import path as folder_rule
+from ..arguments.checks import checked, refused
+from ..arguments.checks import path as folder_rule
+from ..base.files import require_writable, written_whole
+from ..base.optional import needed_module
 from ..detections.detections import Detections
-from ..files import require_writable, written_whole
-from ..optional import needed_module
+from ..signals import beside
 from ..truth.cross_section import isotropic_power
 from .classes import classes_of
 from .opened import Dataset, dataset_rule

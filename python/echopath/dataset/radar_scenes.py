@@ -13,10 +13,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import checked, refused
-from ..checks import path as folder_rule
+from ..arguments.checks import checked, refused
+from ..arguments.checks import path as folder_rule
+from ..base.files import require_writable, write_texts, written_whole
 from ..detections.detections import Detections
-from ..files import require_writable, write_texts, written_whole
 from ..frame_file.h5 import writing
 from ..truth.cross_section import isotropic_power
 from .classes import CODES, classes_of

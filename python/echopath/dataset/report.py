@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import checked
-from ..checks import path as file_or_folder
-from ..files import write_texts
+from ..arguments.checks import checked
+from ..arguments.checks import path as file_or_folder
+from ..base.files import write_texts
 from ..plots.style import CURVE_COLOURS, new_figure
 from .classes import CODES
 from .folder import read_record

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from .. import _core
-from ..files import write_texts
+from ..base.files import write_texts
 from ..sequence.contents import NAME as CONTENTS
 from ..sequence.contents import frame_path
 from .folder import DRAWN, RECORD, SceneRecord, checksum, damaged_files, read_record, scene_folder, write_record

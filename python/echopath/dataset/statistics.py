@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .. import beside
 from ..detections.detections import Detections
+from ..signals import beside
 from .classes import ClassName, classes_of
 from .opened import Dataset, DatasetFrame
 

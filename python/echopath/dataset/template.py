@@ -11,13 +11,13 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 from pydantic import AfterValidator, Field
 
+from ..arguments.shown import shown
 from ..scene_file import SceneFile
 from ..scene_file.errors import validated
 from ..scene_file.load import parse, scene_file_of
 from ..scene_file.schema import Positive, SceneTable, Table
 from ..sequence import Sequence
 from ..sequence.keep import Keep
-from ..shown import shown
 from .classes import ClassName
 from .distributions import drawn, is_distribution, refuse_misspelt, with_kinds
 
@@ -85,7 +85,7 @@ class Template:
         return f"Template('{self.path}', {made.scenes} scenes of {frames}, keep='{made.keep}', seed={made.seed})"
 
     def _repr_html_(self) -> str:
-        from ..notebook import template_html
+        from ..presentation.notebook import template_html
 
         return template_html(self)
 

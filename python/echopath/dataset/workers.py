@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import _core
-from ..threads import set_num_threads
+from ..base.threads import set_num_threads
 from .folder import RECORD, SceneRecord, read_record, scene_folder
 from .scene_work import claimed, make_scene, tidy
 from .template import Template

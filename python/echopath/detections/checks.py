@@ -4,11 +4,11 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..checks import Rule, count
-from ..families import check_objects, objects_rule
-from ..keywords import refuse_unknown
+from ..arguments.checks import Rule, count
+from ..arguments.keywords import refuse_unknown
 from ..labels.planes import with_receivers
-from ..spectra import CFAR_RULES
+from ..paths.families import check_objects, objects_rule
+from ..spectra.range_doppler import CFAR_RULES
 
 # Of the keywords of `detect_frame`.
 RULES: dict[str, Rule] = {**CFAR_RULES, "objects": objects_rule, "max_peaks": count(1, 64)}

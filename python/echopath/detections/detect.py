@@ -7,17 +7,17 @@ from collections.abc import Mapping
 import numpy as np
 
 from .. import _core
-from ..angles import estimate_angles
-from ..beside import NAMES, require_names
-from ..checks import Progress, an, checked, keywords, optional, refused, text
-from ..families import Objects
-from ..families import families as find_families
-from ..families import objects_rule
-from ..keywords import parameters_of
+from ..arguments.checks import Progress, an, checked, keywords, optional, refused, text
+from ..arguments.keywords import parameters_of
 from ..labels.labels import Labels
-from ..parts import decompose
-from ..same_radar import difference
-from ..spectra import CFAR_RULES, FALSE_ALARM_RATE, RANK, CfarMethod, cfar
+from ..paths.families import Objects
+from ..paths.families import families as find_families
+from ..paths.families import objects_rule
+from ..signals.beside import NAMES, require_names
+from ..signals.parts import decompose
+from ..signals.same_radar import difference
+from ..spectra.angles import estimate_angles
+from ..spectra.range_doppler import CFAR_RULES, FALSE_ALARM_RATE, RANK, CfarMethod, cfar
 from . import labelling
 from .detections import Detections, centre_of
 from .directions import directions_of

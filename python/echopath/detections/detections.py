@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from ..checks import refused
-from ..equality import has_same_fields
-from ..tables import make_table, write_csv
+from ..arguments.checks import refused
+from ..base.equality import has_same_fields
+from ..presentation.tables import make_table, write_csv
 from .directions import toward
 from .echo_fields import EchoFields
 
 if TYPE_CHECKING:
-    from ..foreign_types import Axes, DataFrame
+    from ..base.foreign_types import Axes, DataFrame
 
 DetectionsView = Literal["range_doppler", "above"]
 NOISE = "noise"  # part of a detection that no echo made
@@ -155,7 +155,7 @@ class Detections:
         return draw_detections(self, view=view, ax=ax, title=title)
 
     def _repr_html_(self) -> str:
-        from ..notebook import detections_html
+        from ..presentation.notebook import detections_html
 
         return detections_html(self)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..angles import estimate_angles
+from ..spectra.angles import estimate_angles
 
 
 def toward(azimuth, elevation):

@@ -6,8 +6,8 @@ from functools import cached_property
 import numpy as np
 
 from .. import _core
-from ..path_cells import OUTSIDE, path_cells
-from ..windows import of_range, of_velocity, samples_of
+from ..paths.cells import OUTSIDE, path_cells
+from ..spectra.windows import of_range, of_velocity, samples_of
 
 FLOOR_DB = 60.0        # below its peak, a window's response is followed so far
 STEPS_PER_BIN = 16     # of the table of responses, linear between them: 0.5 % of the peak

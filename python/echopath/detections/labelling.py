@@ -4,8 +4,8 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..checks import array
-from ..resolution import mean_powers
+from ..arguments.checks import array
+from ..paths.resolution import mean_powers
 from .detections import NOISE
 
 HALF = 0.5  # of a cell's power: what echoes without noise hold less of was made by noise

@@ -4,10 +4,10 @@ from __future__ import annotations
 import dataclasses
 
 from .. import _core
-from ..checks import Progress, an, checked
-from ..families import Objects
-from ..frame import Frame
-from ..spectra import FALSE_ALARM_RATE, RANK, CfarMethod
+from ..arguments.checks import Progress, an, checked
+from ..frame.frame import Frame
+from ..paths.families import Objects
+from ..spectra.range_doppler import FALSE_ALARM_RATE, RANK, CfarMethod
 from .checks import RULES
 from .detect import detect
 from .detections import Detections

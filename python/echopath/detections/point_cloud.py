@@ -3,8 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..files import written_whole
-from ..optional import needed_module
+from ..base.files import written_whole
+from ..base.optional import needed_module
 
 # Name in the file, what it is of the detections; LAS has them as extra dimensions.
 _EXTRA = {"velocity": "velocity", "range": "range", "azimuth": "azimuth", "elevation": "elevation", "snr_db": "snr_db"}

@@ -2,9 +2,9 @@
 from __future__ import annotations
 
 from .. import _core
-from ..checks import checked
-from ..effect_choices import Choices
-from ..settings import (
+from ..arguments.checks import checked
+from ..arguments.effects import Choices
+from ..arguments.settings import (
     Edges, Evaluate, Footprint, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings, TraceSettings,
 )
 from . import surfaces, motion, weather, interference, radar, sampling  # each adds its rules, in this order
@@ -20,7 +20,7 @@ class Effects(list):
     """A list of Effect, which notebooks show as a table."""
 
     def _repr_html_(self) -> str:
-        from ..notebook import effects_html
+        from ..presentation.notebook import effects_html
 
         return effects_html(self)
 

@@ -3,8 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..effect_choices import INTERFERENCE, is_on
-from ..measures import in_dbm
+from ..arguments.effects import INTERFERENCE, is_on
+from ..signals.measures import in_dbm
 from .rules import Case, rule
 
 

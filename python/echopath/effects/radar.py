@@ -1,7 +1,7 @@
 """Effects of antennas, waveform and receiver."""
 from __future__ import annotations
 
-from ..polarization import FIELD_VECTORS, antennas_of, are_crossed, need_of_field_vectors
+from ..tracing.polarization import FIELD_VECTORS, antennas_of, are_crossed, need_of_field_vectors
 from .rules import Case, rule
 
 

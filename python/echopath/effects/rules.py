@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..effect_choices import Choices
-from ..interferers import interferers_of
-from ..names import MOST_NAMES, first_names
-from ..polarization import COHERENT_SHARE, antennas_of, chosen_model, coherent_share
-from ..settings import Edges
+from ..arguments.effects import Choices
+from ..arguments.names import MOST_NAMES, first_names
+from ..arguments.settings import Edges
+from ..signals.interferers import interferers_of
+from ..tracing.polarization import COHERENT_SHARE, antennas_of, chosen_model, coherent_share
 from ..weather.weather import weather_of
 
 

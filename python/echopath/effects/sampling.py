@@ -1,7 +1,7 @@
 """How the rays are spread, and what they tell of their own error."""
 from __future__ import annotations
 
-from ..lost_rays import unaimed
+from ..tracing.lost_rays import unaimed
 from .rules import Case, rule
 
 

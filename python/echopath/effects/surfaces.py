@@ -7,11 +7,11 @@ import numpy as np
 
 from .. import _core
 from .._core import speed_of_light
-from ..edges import edges_matter, strongest_edge
-from ..lost_rays import unfollowed_beams, unfollowed_sheets
-from ..measures import in_dbm
-from ..sheets import sheet_coefficients
-from ..tessellation import coarse_meshes
+from ..scene.sheets import sheet_coefficients
+from ..signals.measures import in_dbm
+from ..tracing.edges import edges_matter, strongest_edge
+from ..tracing.lost_rays import unfollowed_beams, unfollowed_sheets
+from ..tracing.tessellation import coarse_meshes
 from .planes import imaged_planes
 from .rules import Case, rule
 

@@ -3,8 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..effect_choices import ATTENUATION, RAIN_ECHOES, is_on
-from ..measures import in_dbm
+from ..arguments.effects import ATTENUATION, RAIN_ECHOES, is_on
+from ..signals.measures import in_dbm
 from ..weather.echoes import rain_power
 from ..weather.weather import DB_PER_NEPER, attenuation_of_weather
 from .rules import Case, rule

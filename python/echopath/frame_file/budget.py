@@ -1,8 +1,8 @@
 """How much of a record a file of many frames holds."""
 from __future__ import annotations
 
-from ..frame import Frame
-from ..path_subset import power_of_strongest
+from ..frame.frame import Frame
+from ..paths.subset import power_of_strongest
 
 RECORD_BYTES = 250e6  # of paths and hits in a frame file, at most
 PATH_BYTES, HIT_BYTES, JONES_BYTES, CURVED_CELL_BYTES = 31, 16, 32, 28

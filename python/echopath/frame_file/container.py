@@ -4,7 +4,7 @@ from __future__ import annotations
 from contextlib import contextmanager
 
 from .. import _core
-from ..files import written_whole
+from ..base.files import written_whole
 from .h5 import read_attribute, reading, write_attribute, writing
 
 SCHEMA_VERSION = 4  # grows when a reader of the old layout would misread the new one

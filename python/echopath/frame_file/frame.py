@@ -9,15 +9,15 @@ from typing import get_args
 import numpy as np
 
 from .. import _core
-from ..angles import range_azimuth
-from ..azimuth_map import checked_settings
-from ..checks import an, anything, checked, real, refused
+from ..arguments.checks import an, anything, checked, real, refused
+from ..arguments.keywords import parameters_of
+from ..arguments.settings import Evaluate, Replay, Retrace
+from ..base.interrupts import interrupts_are_kept
 from ..detections.echo_fields import EchoFields
-from ..frame import Frame, with_spectra
-from ..interrupts import interrupts_are_kept
-from ..keywords import parameters_of
-from ..scene import Scene
-from ..settings import Evaluate, Replay, Retrace
+from ..frame.frame import Frame, with_spectra
+from ..scene.scene import Scene
+from ..spectra.angles import range_azimuth
+from ..spectra.azimuth_map import checked_settings
 from ..transmit import is_coded, signal_shape
 from .checks import read_checks, write_checks
 from .container import file_with_paths, new_file

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from .. import _core
-from ..interrupts import heed, interrupts_are_kept
+from ..base.interrupts import heed, interrupts_are_kept
 from .h5_items import is_chunked, item_of, name_of, read_blocks, row_blocks, shape_of
 
 CHUNK_BYTES = 1 << 20   # of compression

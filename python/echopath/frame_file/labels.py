@@ -8,7 +8,7 @@ import numpy as np
 from .. import _core
 from ..labels.labels import AzimuthBox, AzimuthPeak, Box, GhostLabel, Labels, ObjectLabel, Peak
 from ..labels.left_out import LeftOut
-from ..resolution import Interval
+from ..paths.resolution import Interval
 from .h5 import blames_group, read_array, read_attribute, read_group, read_texts, write_array, write_attribute, write_texts
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 
-from ..checks import checked, refused, text
-from ..interrupts import interrupts_are_kept
+from ..arguments.checks import checked, refused, text
+from ..base.interrupts import interrupts_are_kept
 from ..labels.labels import Labels
 from .container import new_file, our_file
 from .h5 import read_group

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..frame_maps import FrameMaps
+from ..frame.maps import FrameMaps
 from .container import new_file, our_file
 from .detections import read_detections, write_detections
 from .h5 import check_sums, read_array, read_attribute, read_group, write_array, write_attribute

@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..path_subset import HIT, HIT_FIELDS, subset
+from ..paths.subset import HIT, HIT_FIELDS, subset
 from .h5 import (blames_group, length_of, read_array, read_attribute, read_group, read_texts, write_array, write_attribute,
                  write_texts)
 

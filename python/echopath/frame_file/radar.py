@@ -7,7 +7,7 @@ import numpy as np
 
 from .. import _core
 from ..receiver import Receiver
-from ..same_radar import WAVEFORM_KINDS, WAVEFORM_LISTS, table_key
+from ..signals.same_radar import WAVEFORM_KINDS, WAVEFORM_LISTS, table_key
 from .h5 import blames_group, read_array, read_attribute, read_group, read_texts, write_array, write_attribute, write_texts
 from .motion import read_motion, write_motion
 

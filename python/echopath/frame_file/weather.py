@@ -6,8 +6,8 @@ from __future__ import annotations
 
 import json
 
-from ..effect_choices import effects_rule
-from ..scene import Scene
+from ..arguments.effects import effects_rule
+from ..scene.scene import Scene
 from ..weather import Weather
 from ..weather.weather import weather_of
 from .h5 import blames_group, read_attribute, write_attribute

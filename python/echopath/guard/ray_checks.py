@@ -13,7 +13,7 @@ import math
 import numpy as np
 
 from .. import _core
-from ..checks import an, checked
+from ..arguments.checks import an, checked
 from .check import Check
 
 # Without batches a run gives no standard errors, and promises no more than this.

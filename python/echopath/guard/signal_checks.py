@@ -5,8 +5,8 @@ import numpy as np
 
 from .. import _core
 from .._core import AMPLITUDE_TOLERANCE
-from ..checks import ArrayLike, an, checked
-from ..settings import SignalSettings
+from ..arguments.checks import ArrayLike, an, checked
+from ..arguments.settings import SignalSettings
 from .check import Check
 
 LARGEST_OF_RMS = 6.0    # how much a NUFFT may err in one sample, over its rms of all samples

@@ -8,12 +8,12 @@ import numpy as np
 
 from .. import _core
 from .._core import Selection
-from ..beside import NAMES, cubes_beside
-from ..checks import ArrayLike, array, refused, row_of_channel, shown
-from ..frame import Frame
-from ..iterables import iterable
-from ..parts import decompose, selection_rule
-from ..same_radar import WAVEFORM_KINDS
+from ..arguments.checks import ArrayLike, array, refused, row_of_channel, shown
+from ..arguments.iterables import iterable
+from ..frame.frame import Frame
+from ..signals.beside import NAMES, cubes_beside
+from ..signals.parts import decompose, selection_rule
+from ..signals.same_radar import WAVEFORM_KINDS
 
 Frames = Frame | ArrayLike | Iterable[Frame] | Iterable[ArrayLike]
 Part = str | Hashable | Selection | None

@@ -7,12 +7,12 @@ from itertools import chain
 import numpy as np
 
 from .. import _core
-from ..angles import Combine, range_azimuth
-from ..azimuth_map import checked_settings, sees_azimuth
-from ..checks import ArrayLike, MapWindow, anything, checked, one_of
-from ..gates import gate, in_gate
-from ..settings import SignalSettings
-from ..windows import of_range, of_velocity
+from ..arguments.checks import ArrayLike, MapWindow, anything, checked, one_of
+from ..arguments.gates import gate, in_gate
+from ..arguments.settings import SignalSettings
+from ..spectra.angles import Combine, range_azimuth
+from ..spectra.azimuth_map import checked_settings, sees_azimuth
+from ..spectra.windows import of_range, of_velocity
 from .bursts import Burst, Channel, Frames, Part, bursts, chirp_period, text_of_part
 from .maps import AngleTime, RangeTime
 from .spectrogram import IN_TIME_RULES

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from ..checks import refused
-from ..equality import has_same_fields
-from ..xarray_maps import time_map_array
+from ..arguments.checks import refused
+from ..base.equality import has_same_fields
+from ..presentation.xarray_maps import time_map_array
 
 if TYPE_CHECKING:
-    from ..foreign_types import Axes, DataArray
+    from ..base.foreign_types import Axes, DataArray
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False, kw_only=True)

@@ -6,10 +6,10 @@ from typing import Literal
 import numpy as np
 
 from .. import _core
-from ..checks import ArrayLike, MapWindow, an, array, checked, count, flag, optional, refused
-from ..gates import gate, in_gate
-from ..settings import SignalSettings
-from ..windows import of_range
+from ..arguments.checks import ArrayLike, MapWindow, an, array, checked, count, flag, optional, refused
+from ..arguments.gates import gate, in_gate
+from ..arguments.settings import SignalSettings
+from ..spectra.windows import of_range
 from .bursts import Channel, Frames, Part, bursts, channel_rule, chirp_period, frames_rule, part_rule, text_of_part
 from .maps import Spectrogram
 from .stft import axes_of, noise_bandwidth, range_profiles, velocity_powers, with_chirps

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .. import _core
-from ..checks import an, checked, optional, refused
-from ..equality import has_same_fields, is_same
+from ..arguments.checks import an, checked, optional, refused
+from ..arguments.settings import LabelSettings
+from ..base.equality import has_same_fields, is_same
 from ..labels.part_cells import PartCells
-from ..settings import LabelSettings
-from ..xarray_maps import spectrogram_labels_dataset
+from ..presentation.xarray_maps import spectrogram_labels_dataset
 from .maps import Spectrogram
 
 if TYPE_CHECKING:
-    from ..foreign_types import Axes, Dataset
+    from ..base.foreign_types import Axes, Dataset
 
 _SAME = ("times", "velocity", "trains", "window_length", "hop", "window", "zero_pad", "range_gate", "channel")
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import _core
-from ..windows import of_range, of_velocity, samples_of
+from ..spectra.windows import of_range, of_velocity, samples_of
 
 _VALUES_AT_A_TIME = 1 << 22  # complex, of the transforms of some windows: 64 MiB
 

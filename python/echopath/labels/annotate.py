@@ -6,17 +6,18 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from .. import _core, same_radar
-from ..beside import require_names
-from ..checks import MapWindow, Progress, an, anything, checked, optional, refused, text
-from ..families import Objects
-from ..families import families as find_families
-from ..keywords import refuse_unknown
-from ..parts import selection_rule
-from ..path_subset import part_of_path
-from ..resolution import Interval, interval_of, mean_powers
-from ..settings import Evaluate, LabelSettings, Method, Plane, Replay, Retrace, SignalSettings
-from ..visibility import appearing_in_frame, visibility_in_trace
+from .. import _core
+from ..arguments.checks import MapWindow, Progress, an, anything, checked, optional, refused, text
+from ..arguments.keywords import refuse_unknown
+from ..arguments.settings import Evaluate, LabelSettings, Method, Plane, Replay, Retrace, SignalSettings
+from ..paths.families import Objects
+from ..paths.families import families as find_families
+from ..paths.resolution import Interval, interval_of, mean_powers
+from ..paths.subset import part_of_path
+from ..paths.visibility import appearing_in_frame, visibility_in_trace
+from ..signals import same_radar
+from ..signals.beside import require_names
+from ..signals.parts import selection_rule
 from .family_pass import FamilyPass, owners_of_views
 from .labels import Labels
 from .objects import family_cells, label_ghosts, label_objects, occluded_objects

@@ -1,7 +1,7 @@
 """Labels as an xarray.Dataset."""
 from __future__ import annotations
 
-from ..xarray_maps import axis, xarray_module
+from ..presentation.xarray_maps import axis, xarray_module
 from .ghost_names import ghost_name
 
 _OF_CELLS = {  # attribute of Labels: name, unit

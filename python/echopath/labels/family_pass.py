@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..settings import SignalSettings
+from ..arguments.settings import SignalSettings
 from .cell_owners import CellOwners
 from .left_out import LeftOut
 from .powers import ViewPowers, mean_square, parts_by_rival

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ..checks import an, checked, path, refused, text
-from ..files import written_whole
-from ..origin import origin_texts, png_info
+from ..arguments.checks import an, checked, path, refused, text
+from ..base.files import written_whole
+from ..base.origin import origin_texts, png_info
 from .ghost_names import ghost_name
 from .labels import Labels
 

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
-from ..equality import has_same_fields
-from ..resolution import Interval
-from ..visibility import HIDDEN_SHARE
+from ..base.equality import has_same_fields
+from ..paths.resolution import Interval
+from ..paths.visibility import HIDDEN_SHARE
 from .dataset import dataset_of
 from .left_out import LeftOut
 from .part_cells import PartCells
@@ -16,7 +16,7 @@ from .report import text_of
 from .table import table_of
 
 if TYPE_CHECKING:
-    from ..foreign_types import Axes, DataFrame, Dataset
+    from ..base.foreign_types import Axes, DataFrame, Dataset
 
 NONE = -1  # in a map of indices: no label
 COMES_INTO_VIEW = "comes into view"
@@ -221,7 +221,7 @@ class Labels(PartCells):
         return draw_labels(self, what=what, ax=ax, title=titles.get(what, "") if title is None else title)
 
     def _repr_html_(self) -> str:
-        from ..notebook import labels_html
+        from ..presentation.notebook import labels_html
 
         return labels_html(self)
 

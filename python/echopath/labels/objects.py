@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import _core
-from ..resolution import Interval, unmet_interval
+from ..paths.resolution import Interval, unmet_interval
 from .labels import COMES_INTO_VIEW, NONE, GhostLabel, ObjectLabel, is_occluded
 
 

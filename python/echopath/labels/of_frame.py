@@ -3,13 +3,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ..beside import cubes_beside, require_names
-from ..checks import Progress, an, anything, checked
-from ..families import Objects
-from ..families import families as find_families
-from ..frame import Frame
-from ..parts import ONLY_PARTITION, as_partitions, check_partitions
-from ..settings import LabelSettings, Plane
+from ..arguments.checks import Progress, an, anything, checked
+from ..arguments.settings import LabelSettings, Plane
+from ..frame.frame import Frame
+from ..paths.families import Objects
+from ..paths.families import families as find_families
+from ..signals.beside import cubes_beside, require_names
+from ..signals.parts import ONLY_PARTITION, as_partitions, check_partitions
 from .annotate import label_partitions, make_request, owners_and_powers
 from .labels import Labels
 from .powers import CubeSet, add_powers, join

@@ -4,9 +4,9 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..angles import range_azimuth
-from ..azimuth_map import checked_settings, sees_azimuth
-from ..checks import shown
+from ..arguments.checks import shown
+from ..spectra.angles import range_azimuth
+from ..spectra.azimuth_map import checked_settings, sees_azimuth
 from .labels import AzimuthBox, AzimuthPeak, Box, Peak
 
 _NOISE_SEED = 1  # of the noise whose mean in a range-azimuth map is measured

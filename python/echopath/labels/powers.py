@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import _core
-from ..parts import decompose
+from ..signals.parts import decompose
 from .planes import with_receivers
 
 CUBES_IN_MEMORY = 1 << 30  # bytes that the cubes of one set of receivers may take, as far as one receiver does not need more

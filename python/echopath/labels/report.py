@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..measures import in_dbm
+from ..signals.measures import in_dbm
 
 
 def text_of(labels) -> str:

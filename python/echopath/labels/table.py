@@ -1,7 +1,7 @@
 """The objects and ghosts of Labels as a table."""
 from __future__ import annotations
 
-from ..tables import make_table
+from ..presentation.tables import make_table
 
 _NOTHING = float("nan")
 _UNITS = {"power": "W", "range": "m", "velocity": "m/s", "azimuth": "rad", "peak_power": "W", "range_min": "m", "range_max": "m",

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from ..polarization import antennas_of, chosen_model
+from ..tracing.polarization import antennas_of, chosen_model
 from ..weather.weather import attenuation_of
 
 # Signals are added and taken away so often before all is summed anew; each time rounds to some 1e-16 of the largest sample.

@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from .. import _core
-from ..checks import MapWindow, Progress, an, anything, checked, count, positive, refused
-from ..scene import Scene
-from ..edges import looks_for_edges
-from ..settings import (
+from ..arguments.checks import MapWindow, Progress, an, anything, checked, count, positive, refused
+from ..arguments.settings import (
     MOST_RAYS, Edges, Evaluate, Footprint, Method, Polarization, Replay, Sampler, Scatterers, SignalSettings, TraceSettings,
 )
-from ..tessellation import warn_of_coarse_meshes
+from ..scene.scene import Scene
+from ..tracing.edges import looks_for_edges
+from ..tracing.tessellation import warn_of_coarse_meshes
 from .changes import Changes
 from .kept_signal import KeptSignal
 from .view import LiveView

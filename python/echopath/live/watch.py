@@ -5,7 +5,7 @@ import threading
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from ..checks import anything, checked, optional, positive
+from ..arguments.checks import anything, checked, optional, positive
 from .changes import Changes
 from .view import LiveView
 

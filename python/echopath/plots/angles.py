@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..measures import SMALLEST_POWER, in_dbm
+from ..signals.measures import SMALLEST_POWER, in_dbm
 from .style import MAP_COLOURS, axes_or_new
 
 SHOWN_DB = 50.0  # below the peak

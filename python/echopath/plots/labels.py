@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..labels.images import colours_of
-from ..measures import SMALLEST_POWER, for_pictures, in_dbm, with_error
+from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm, with_error
 from .maps import RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN
 from .style import axes_or_new, new_figure
 

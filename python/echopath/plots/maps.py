@@ -5,8 +5,8 @@ import math
 
 import numpy as np
 
-from ..checks import optional, real
-from ..measures import SMALLEST_POWER, STATIC_SPEED, for_pictures, in_dbm, with_error
+from ..arguments.checks import optional, real
+from ..signals.measures import SMALLEST_POWER, STATIC_SPEED, for_pictures, in_dbm, with_error
 from .style import MAP_COLOURS, axes_or_new, new_figure
 
 DYNAMIC_RANGE_DB = 70.0      # below the peak that a map shows at most

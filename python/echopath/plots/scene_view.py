@@ -5,7 +5,7 @@ import dataclasses
 
 import numpy as np
 
-from ..path_subset import paths_on, strongest, subset
+from ..paths.subset import paths_on, strongest, subset
 from .clip import clip_triangles, outline
 from .style import BOUNCE_COLOURS, new_figure
 

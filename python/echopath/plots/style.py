@@ -3,8 +3,8 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 
-from ..files import written_whole
-from ..origin import origin_texts
+from ..base.files import written_whole
+from ..base.origin import origin_texts
 
 DPI = 160
 MAP_COLOURS = "inferno"

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 
-from ..measures import SMALLEST_POWER, in_dbm
+from ..signals.measures import SMALLEST_POWER, in_dbm
 from .maps import NOISE_PEAK_DB, chosen_limits, limits_of_level
 from .style import MAP_COLOURS, axes_or_new, new_figure
 

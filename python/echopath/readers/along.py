@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from .. import _core
-from ..checks import refused
+from ..arguments.checks import refused
 from .model import Model, ModelNode
 from .played import PlayedCurve
 
@@ -113,7 +113,7 @@ def _way_of(model: Model, period: float) -> tuple[float | None, float]:
 
 def _poses(model: Model, period: float):
     """Vertices [SAMPLES + 1, V, 3] in m of all meshes over a loop."""
-    from ..scene import Scene
+    from ..scene.scene import Scene
 
     scene = Scene()
     scene.add(dataclasses.replace(model, motion=None), name="model")

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from .. import _core
-from ..checks import checked, choice, flag, optional, path as file_or_folder, real, refused, text
-from ..meshes import UNIT
+from ..arguments.checks import checked, choice, flag, optional, path as file_or_folder, real, refused, text
+from ..scene.meshes import UNIT
 from .material_names import Meaning, checked_materials
 from .model import Model
 from .options import ReadOptions

@@ -7,8 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping, MutableMapping
 from fnmatch import translate
 
 from .. import _core
-from ..checks import refused
-from ..materials import known_material, materials
+from ..arguments.checks import refused
+from ..scene.materials import known_material, materials
 
 Meaning = _core.Material | str
 

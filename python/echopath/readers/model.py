@@ -70,7 +70,7 @@ class Model:
         Returns a Model that `Scene.add` puts on its trajectory. Raises TypeError or ValueError naming the argument, also where
         the animation is not looped, or nothing tells the way.
         """
-        from ..checks import an, optional, positive
+        from ..arguments.checks import an, optional, positive
         from ..trajectories import Trajectory
         from .along import model_along
 

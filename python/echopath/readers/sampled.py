@@ -4,8 +4,8 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..checks import refused
-from ..rotations import quaternions
+from ..arguments.checks import refused
+from ..base.rotations import quaternions
 from .options import ReadOptions
 
 HOLD = 1e5            # s for which vertices of the ends are held, from them and from time 0 of the scene

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 if TYPE_CHECKING:
-    from ..scene import Scene
+    from ..scene.scene import Scene
 
 # what a name tells: words of it, and how large such a thing is at its largest, m
 _SIZES = {

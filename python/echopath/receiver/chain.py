@@ -6,13 +6,13 @@ import dataclasses
 import numpy as np
 
 from .. import _core
-from ..checks import ArrayLike, checked, optional, real, refused, seed as seed_rule
+from ..arguments.checks import ArrayLike, checked, optional, real, refused, seed as seed_rule
 from ..transmit import code_of, is_coded, radar_of_noise
 from .analytic import as_samples
 from .channels import coupled, receiver_factors, require_channels, transmitter_factors
 from .converter import converted
-from .imbalance import compressed, unbalanced
 from .filters import filtered
+from .imbalance import compressed, unbalanced
 from .leakage import leakage_amplitudes, leaked_tone
 from .oscillator import Oscillator
 from .settings import Receiver

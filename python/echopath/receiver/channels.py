@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..checks import refused
+from ..arguments.checks import refused
 from .settings import Receiver
 
 

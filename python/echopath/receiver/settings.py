@@ -7,8 +7,8 @@ from typing import ClassVar
 
 import numpy as np
 
-from ..checks import Rule, array, count, flag, optional, real, refused
-from ..settings import Settings, settings_class
+from ..arguments.checks import Rule, array, count, flag, optional, real, refused
+from ..arguments.settings import Settings, settings_class
 
 Row = tuple[float, ...]
 Table = tuple[Row, ...]

@@ -4,8 +4,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from ..checks import checked
-from ..checks import path as file_or_folder
+from ..arguments.checks import checked
+from ..arguments.checks import path as file_or_folder
 from .scene_file import SceneFile
 
 

@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from ..shown import shown
+from ..arguments.shown import shown
 
 Model = TypeVar("Model", bound=BaseModel)
 

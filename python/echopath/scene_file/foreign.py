@@ -5,7 +5,7 @@ from pathlib import Path
 
 from ..readers import load_model
 from ..readers.names import fit_name
-from ..scene import Scene
+from ..scene.scene import Scene
 
 
 def foreign_scene(path: Path) -> Scene:

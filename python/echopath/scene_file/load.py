@@ -6,14 +6,14 @@ import tomllib
 from pathlib import Path
 
 from .. import _core
-from ..antennas import load_antenna
-from ..azimuth_map import checked_settings
-from ..families import named_globs
-from ..interferers import Interferer
-from ..parts import check_partitions
+from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
+from ..paths.families import named_globs
 from ..readers.load import is_foreign
 from ..sensor_files import load_radar
-from ..settings import LabelSettings, SignalSettings, TraceSettings
+from ..sensor_files.antenna_patterns import load_antenna
+from ..signals.interferers import Interferer
+from ..signals.parts import check_partitions
+from ..spectra.azimuth_map import checked_settings
 from .errors import blamed, validated
 from .foreign import foreign_scene
 from .objects import build_scene, motion_of

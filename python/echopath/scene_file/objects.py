@@ -10,9 +10,9 @@ from pathlib import Path
 from pydantic import create_model
 
 from .. import _core, actors
-from ..materials import material_fields, materials
 from ..readers import load_model
-from ..scene import Scene
+from ..scene.materials import material_fields, materials
+from ..scene.scene import Scene
 from ..weather import Weather
 from .errors import blamed, validated
 from .schema import MODEL_KEYS, ObjectTable, SceneTable, Table, nearest_key

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..parts import as_partitions
-from ..settings import LabelSettings, SignalSettings, TraceSettings
+from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
+from ..signals.parts import as_partitions
 
 if TYPE_CHECKING:
     from .. import _core
-    from ..scene import Scene
+    from ..scene.scene import Scene
     from .schema import AngleTable, DetectionsTable, SequenceTable, TruthTable
 
 

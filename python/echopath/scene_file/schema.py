@@ -13,21 +13,21 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field
 from pydantic_core import PydanticCustomError
 
 from .. import _core
-from ..checks import Rule, map_window, positive, window
-from ..effect_choices import effects_rule
-from ..gates import gate
-from ..parts import are_tables
-from ..receiver.settings import receiver_rule
-from ..settings import (
+from ..arguments.checks import Rule, map_window, positive, window
+from ..arguments.effects import effects_rule
+from ..arguments.gates import gate
+from ..arguments.settings import (
     MOST_BATCHES, MOST_BOUNCES, MOST_RAYS, Edges, Evaluate, Footprint, LabelSettings, Plane, Polarization, Replay, Retrace,
     Sampler,
     Scatterers, SignalSettings, TraceSettings,
 )
-from ..shown import writable
-from ..spectra import FALSE_ALARM_RATE, RANK, CfarMethod
+from ..arguments.shown import writable
+from ..receiver.settings import receiver_rule
+from ..signals.interferers import Over
+from ..signals.parts import are_tables
+from ..spectra.range_doppler import FALSE_ALARM_RATE, RANK, CfarMethod
 from ..trajectories.arguments import checked_points, checked_stops, checked_times
 from ..trajectories.trajectory import ACCELERATION, DECELERATION
-from ..interferers import Over
 from ..weather import Weather
 
 Number = Annotated[float, Field(allow_inf_nan=False)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..readers.sizes import box_of
-from ..scene import Scene
+from ..scene.scene import Scene
 
 TOWN = 30.0          # m, extent from which on the radar stands within the scene
 HEIGHT = 1.5         # m above the ground

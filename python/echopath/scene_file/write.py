@@ -6,10 +6,10 @@ import os
 from pathlib import Path
 
 from .. import _core
-from ..files import written_whole
+from ..base.files import written_whole
 from ..readers import Model, load_model
 from ..readers.names import fit_name
-from ..scene import Scene
+from ..scene.scene import Scene
 from .vantage import vantage
 
 CELLS = 256  # range cells up to the greatest distance

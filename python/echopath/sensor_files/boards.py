@@ -5,8 +5,8 @@ import tomllib
 from typing import NamedTuple
 
 from .. import _core
-from ..checks import refused
-from ..materials import data_folder
+from ..arguments.checks import refused
+from ..scene.materials import data_folder
 
 
 class Board(NamedTuple):

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .. import _core
-from ..checks import checked, flag, optional, refused, text
-from ..checks import count as count_rule
+from ..arguments.checks import checked, flag, optional, refused, text
+from ..arguments.checks import count as count_rule
 from ..receiver import Adc, Receiver
 from .boards import Board, board_names, board_of_platform, read_board
 from .cfg import Command, Lines, read_lines

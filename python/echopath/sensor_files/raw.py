@@ -14,10 +14,10 @@ from collections.abc import Iterable
 import numpy as np
 
 from .. import _core
-from ..checks import checked, path, refused
-from ..files import written_whole
-from ..frame import Frame
-from ..iterables import iterable
+from ..arguments.checks import checked, path, refused
+from ..arguments.iterables import iterable
+from ..base.files import written_whole
+from ..frame.frame import Frame
 from ..receiver.chain import Reception
 from ..receiver.converter import converted
 from ..receiver.settings import Adc

@@ -5,7 +5,7 @@ import threading
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Generic, TypeVar
 
-from ..threads import num_threads
+from ..base.threads import num_threads
 
 Result = TypeVar("Result")
 Work = Callable[[Any], Result]  # of a progress callable (stage, fraction), or None

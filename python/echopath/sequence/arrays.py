@@ -7,18 +7,18 @@ from pathlib import Path
 import numpy as np
 
 from .. import _core
+from ..frame.maps import mean_power
 from ..frame_file.container import our_file
 from ..frame_file.h5 import read_array, read_group
 from ..frame_file.labels import read_all_labels
 from ..frame_file.truth import truth_in
-from ..frame_maps import mean_power
 from ..labels.ghost_names import ghost_name
 from ..labels.labels import NONE
-from ..measures import SMALLEST_POWER, in_dbm
+from ..presentation.xarray_maps import axis, xarray_module
+from ..signals.measures import SMALLEST_POWER, in_dbm
 from ..truth import Truth, joined
 from ..truth.arrays import coordinates
 from ..truth.arrays import variables as truth_variables
-from ..xarray_maps import axis, xarray_module
 
 _INDICES = {"dominant": "dominant", "object": "object_map", "ghost": "ghost_map"}  # variable: field of Labels
 

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from ..checks import refused
+from ..arguments.checks import refused
 
 PATIENCE, PAUSE = 5.0, 0.02  # s that a shard waits for others to begin, and between its tries
 

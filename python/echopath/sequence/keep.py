@@ -4,10 +4,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Literal
 
-from ..frame import Frame
+from ..frame.frame import Frame
+from ..frame.maps import FrameMaps, maps_of
 from ..frame_file import load_frame, min_power_of_budget, save_frame
 from ..frame_file.maps import load_maps, save_maps
-from ..frame_maps import FrameMaps, maps_of
 
 Keep = Literal["all", "maps", "labels"]
 

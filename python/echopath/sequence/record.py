@@ -2,8 +2,8 @@
 from __future__ import annotations
 
 from .. import _core
-from ..settings import TraceSettings
-from ..tracing import trace
+from ..arguments.settings import TraceSettings
+from ..tracing.traces import trace
 
 
 def start_time_of(first: float, interval: float, number: int) -> float:

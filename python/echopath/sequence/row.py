@@ -8,7 +8,7 @@ from typing import Any, Generic, SupportsIndex, TypeVar, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from ..checks import refused
+from ..arguments.checks import refused
 from .record import start_time_of
 
 Item = TypeVar("Item")

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from .. import _core
-from ..checks import array, refused
-from ..files import require_writable
-from ..frame import Frame
+from ..arguments.checks import array, refused
+from ..base.files import require_writable
+from ..frame.frame import Frame
 from ..frame_file.maps import start_time_in
 from .contents import Contents, frame_path, write_contents
 from .folder_lock import writing_to

@@ -10,21 +10,21 @@ from pathlib import Path
 from typing import Any
 
 from .. import _core
-from ..checks import LARGEST_COUNT, MapWindow, Progress, anything, checked, count, flag, one_of, real, refused
-from ..checks import path as folder_rule
-from ..effect_choices import Choices
-from ..frame import Frame
-from ..frame_run import FrameRun, Recorded
-from ..guard import warn_of
-from ..interferers import require_interferers
-from ..parts import Selections
-from ..progress import automatic_bars
-from ..scene import Scene
-from ..settings import (
+from ..arguments.checks import LARGEST_COUNT, MapWindow, Progress, anything, checked, count, flag, one_of, real, refused
+from ..arguments.checks import path as folder_rule
+from ..arguments.effects import Choices
+from ..arguments.settings import (
     Edges, Evaluate, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings,
     TraceSettings,
 )
-from ..tracing import keep_geometry
+from ..base.progress import automatic_bars
+from ..frame.frame import Frame
+from ..frame.run import FrameRun, Recorded
+from ..guard import warn_of
+from ..scene.scene import Scene
+from ..signals.interferers import require_interferers
+from ..signals.parts import Selections
+from ..tracing.traces import keep_geometry
 from ..weather.weather import weather_of
 from .ahead import one_ahead
 from .contents import Contents
@@ -178,7 +178,7 @@ class Sequence(Row[Frame]):
         return f"Sequence({len(self)} frames {self._span()}, every {self.interval:.6g} s)"
 
     def _repr_html_(self) -> str:
-        from ..notebook import sequence_html
+        from ..presentation.notebook import sequence_html
 
         return sequence_html(self, "Sequence", {})
 

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..checks import checked
-from ..checks import path as folder_rule
-from ..frame import Frame
-from ..frame_maps import FrameMaps
-from ..scene import Scene
+from ..arguments.checks import checked
+from ..arguments.checks import path as folder_rule
+from ..frame.frame import Frame
+from ..frame.maps import FrameMaps
+from ..scene.scene import Scene
 from ..truth import Truth
 from ..weather import Weather
 from .arrays import dataset_of, truth_of_files
@@ -22,7 +22,7 @@ from .keep import Keep, read_frame
 from .row import Row
 
 if TYPE_CHECKING:
-    from ..foreign_types import Dataset
+    from ..base.foreign_types import Dataset
 
 
 class StoredSequence(Row[Frame | FrameMaps]):
@@ -111,7 +111,7 @@ class StoredSequence(Row[Frame | FrameMaps]):
                 f"keep='{self.keep}')")
 
     def _repr_html_(self) -> str:
-        from ..notebook import sequence_html
+        from ..presentation.notebook import sequence_html
 
         facts = {"folder": self.folder, "kept": self.keep, "done": int(self.is_done.sum())}
         return sequence_html(self, "StoredSequence", facts)

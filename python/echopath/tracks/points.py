@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..checks import array, refused
+from ..arguments.checks import array, refused
+from ..arguments.iterables import iterable
 from ..detections import Detections
-from ..iterables import iterable
 
 _POINTS = array("[D, 2]", "[D, 3]", finite=True)
 

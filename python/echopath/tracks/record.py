@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..checks import refused
-from ..equality import has_same_fields
-from ..tables import make_table, write_csv
+from ..arguments.checks import refused
+from ..base.equality import has_same_fields
+from ..presentation.tables import make_table, write_csv
 
 if TYPE_CHECKING:
-    from ..foreign_types import Axes, DataFrame
+    from ..base.foreign_types import Axes, DataFrame
 
 _UNITS = {"time": "s", "x": "m", "y": "m", "vx": "m/s", "vy": "m/s"}
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from .. import _core
-from ..checks import ArrayLike, an, array, checked, count, optional, real
+from ..arguments.checks import ArrayLike, an, array, checked, count, optional, real
 from ..detections import Detections
 from ..truth import Truth
 from .assignment import assigned

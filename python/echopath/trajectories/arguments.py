@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..checks import array, real, refused
+from ..arguments.checks import array, real, refused
 from .path import Path, SplinePath, turned_path
 from .profile import Profile, hermite_coefficients, slopes_of
 

@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..checks import anything, array, checked, choice, flag, optional, positive, real, refused, text
+from ..arguments.checks import anything, array, checked, choice, flag, optional, positive, real, refused, text
 from .arguments import LATEST, RATE, checked_path, checked_points
 from .path import Path, turn_of
 from .track import Track

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _core
-from ..checks import array, checked, is_writable, real, refused
-from ..checks import file as file_rule
+from ..arguments.checks import array, checked, is_writable, real, refused
+from ..arguments.checks import file as file_rule
 from .geodesy import east_north_up
 from .markup import read_fcd, read_gpx
 from .samples import Samples, refuse

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _core
-from ..checks import anything, array, checked, choice, flag, optional, positive, real, refused, text
+from ..arguments.checks import anything, array, checked, choice, flag, optional, positive, real, refused, text
 from .arguments import LATEST, RATE, checked_headings, checked_path, checked_points, checked_speed, checked_stops, checked_times
 from .knots import curve_through
 from .limits import Limits, over_distance

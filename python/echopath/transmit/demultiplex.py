@@ -5,7 +5,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..checks import ArrayLike, checked, refused
+from ..arguments.checks import ArrayLike, checked, refused
 from .code import code_of, hadamard, is_coded, num_frame_slots
 from .doppler_division import undo_doppler_division
 

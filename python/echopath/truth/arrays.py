@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..xarray_maps import AXES, xarray_module
+from ..presentation.xarray_maps import AXES, xarray_module
 
 _AXIS, _SIDE = ("x", "y", "z"), ("length", "width", "height")
 # Field of Truth: its dimensions beside frame and object, and unit.

@@ -4,9 +4,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from ..checks import refused
-from ..families import Objects, check_objects, objects_rule
-from ..keywords import refuse_unknown
+from ..arguments.checks import refused
+from ..arguments.keywords import refuse_unknown
+from ..paths.families import Objects, check_objects, objects_rule
 
 Asked = bool | Mapping[str, Any] | None
 

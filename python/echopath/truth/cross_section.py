@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..rotations import matrices
+from ..base.rotations import matrices
 
 
 def isotropic_power(radar, points, time: float):

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..checks import refused
-from ..equality import has_same_fields
-from ..tables import make_table, write_csv
+from ..arguments.checks import refused
+from ..base.equality import has_same_fields
+from ..presentation.tables import make_table, write_csv
 
 if TYPE_CHECKING:
-    from ..foreign_types import DataFrame, Dataset
+    from ..base.foreign_types import DataFrame, Dataset
 
 _XYZ = ("x", "y", "z")
 _SIGNS = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])

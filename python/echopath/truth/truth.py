@@ -7,13 +7,13 @@ from collections.abc import Iterable
 import numpy as np
 
 from .. import _core
-from ..checks import checked, refused
+from ..arguments.checks import checked, refused
+from ..arguments.iterables import iterable
 from ..detections.detections import centre_of
-from ..families import Objects, families, named_globs, objects_rule
-from ..frame import Frame
-from ..frame_maps import FrameMaps
-from ..iterables import iterable
-from ..visibility import visibility_in_trace
+from ..frame.frame import Frame
+from ..frame.maps import FrameMaps
+from ..paths.families import Objects, families, named_globs, objects_rule
+from ..paths.visibility import visibility_in_trace
 from .boxes import STEP, boxes_at, rate_of
 from .cross_section import isotropic_power
 from .record import Truth

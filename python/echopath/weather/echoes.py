@@ -6,10 +6,10 @@ import math
 import numpy as np
 
 from .. import _core
-from ..effect_choices import RAIN_ECHOES, Choices, is_on
-from ..path_subset import HIT
-from ..rotations import matrices
-from ..signals import synthesize
+from ..arguments.effects import RAIN_ECHOES, Choices, is_on
+from ..base.rotations import matrices
+from ..paths.subset import HIT
+from ..signals.if_signal import synthesize
 from ..transmit import signal_shape
 from .drops import DIAMETERS, fall_speeds, reflectivities
 from .weather import Weather, attenuation_of, weather_of

@@ -6,7 +6,7 @@ import functools
 import numpy as np
 from numpy.typing import NDArray
 
-from ..materials import data_folder
+from ..scene.materials import data_folder
 
 VAPOUR_CONSTANT = 216.7  # g K/(hPa m^3), density of water vapour from its pressure
 

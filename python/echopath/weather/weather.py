@@ -8,10 +8,10 @@ from typing import ClassVar
 import numpy as np
 
 from .. import _core
-from ..checks import Rule, anything, checked, real, vector
-from ..effect_choices import ATTENUATION, Choices, is_on
-from ..polarization import polarization_of
-from ..settings import Settings, settings_class
+from ..arguments.checks import Rule, anything, checked, real, vector
+from ..arguments.effects import ATTENUATION, Choices, is_on
+from ..arguments.settings import Settings, settings_class
+from ..tracing.polarization import polarization_of
 from .drops import reflectivities
 from .fog import fog_attenuation
 from .gas import gas_attenuation, saturation_pressure

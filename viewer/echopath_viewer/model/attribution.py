@@ -8,8 +8,8 @@ import numpy as np
 
 import echopath as ep
 from echopath import _core
-from echopath.measures import SMALLEST_POWER, in_dbm
-from echopath.windows import of_range, of_velocity, samples_of
+from echopath.signals.measures import SMALLEST_POWER, in_dbm
+from echopath.spectra.windows import of_range, of_velocity, samples_of
 
 MAX_BYTES = 2 << 30     # of the signals of all families, while they are made
 MAX_MIRRORS = 16        # told apart in the background: those that most paths touch

@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 import echopath as ep
-from echopath.path_subset import subset
+from echopath.paths.subset import subset
 
 LEAST_GAIN = 0.5  # of the amplitude, that a path in a beam keeps: half of the width at -6 dB on each side
 

@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 
 import echopath as ep
-from echopath.measures import SMALLEST_POWER, in_dbm
+from echopath.signals.measures import SMALLEST_POWER, in_dbm
 
 
 @dataclasses.dataclass(frozen=True)

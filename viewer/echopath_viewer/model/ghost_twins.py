@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 
 import echopath as ep
-from echopath.path_subset import strongest, subset
+from echopath.paths.subset import strongest, subset
 
 from .attribution import name_of
 

@@ -6,8 +6,8 @@ import dataclasses
 import numpy as np
 
 import echopath as ep
-from echopath.path_subset import part_of_path
-from echopath.same_radar import difference
+from echopath.paths.subset import part_of_path
+from echopath.signals.same_radar import difference
 
 from .layers import Known
 from .part_set import WHOLE, Part, PartSet

@@ -6,12 +6,12 @@ import dataclasses
 import numpy as np
 
 import echopath as ep
+from echopath.frame.maps import mean_power
 from echopath.frame_file.container import our_file
 from echopath.frame_file.detections import read_detections
 from echopath.frame_file.h5 import read_array, read_group
 from echopath.frame_file.radar import read_radar
-from echopath.frame_maps import mean_power
-from echopath.measures import SMALLEST_POWER, in_dbm
+from echopath.signals.measures import SMALLEST_POWER, in_dbm
 
 AXES = ("velocity", "range")
 

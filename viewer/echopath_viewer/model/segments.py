@@ -5,7 +5,7 @@ import dataclasses
 
 import numpy as np
 
-from echopath.path_subset import subset
+from echopath.paths.subset import subset
 
 NO_MESH = -1
 

@@ -7,7 +7,7 @@ from collections import OrderedDict
 import numpy as np
 
 import echopath as ep
-from echopath.tables import edge_hits, event
+from echopath.presentation.tables import edge_hits, event
 
 from .antennas import world_from_antenna
 from .beams import beam_values, beam_weights, paths_in_beam

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from echopath.path_subset import paths_on, strongest
+from echopath.paths.subset import paths_on, strongest
 
 from .filters import Filters
 from .part_set import WHOLE, Part

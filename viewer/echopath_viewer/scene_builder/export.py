@@ -4,8 +4,8 @@ from __future__ import annotations
 import numpy as np
 import pyvista as pv
 
-from echopath.files import written_whole
-from echopath.origin import origin_texts
+from echopath.base.files import written_whole
+from echopath.base.origin import origin_texts
 
 from .polydata import lines_of, triangles_of
 

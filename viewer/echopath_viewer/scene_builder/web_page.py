@@ -5,9 +5,9 @@ import json
 
 import numpy as np
 
-from echopath.files import written_whole
-from echopath.optional import needed_module
-from echopath.origin import origin_texts
+from echopath.base.files import written_whole
+from echopath.base.optional import needed_module
+from echopath.base.origin import origin_texts
 
 from ..model.palette import objects_of
 

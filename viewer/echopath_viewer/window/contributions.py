@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from echopath.measures import SMALLEST_POWER, for_pictures, in_dbm
+from echopath.signals.measures import SMALLEST_POWER, for_pictures, in_dbm
 
 from ..model.attribution import Attribution
 from .background_work import BackgroundWork

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from echopath.files import written_whole
-from echopath.origin import origin_texts
+from echopath.base.files import written_whole
+from echopath.base.origin import origin_texts
 
 from ..film import KINDS as FILMS
 from ..film import write_film

@@ -4,8 +4,8 @@ from __future__ import annotations
 import numpy as np
 
 from ... import _core
-from ...checks import checked, positive, real, refused
-from ...rotations import about_y, about_z, quaternions
+from ...arguments.checks import checked, positive, real, refused
+from ...base.rotations import about_y, about_z, quaternions
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
 from ..following import key_times, refuse_beside_trajectory, trajectory_rule, with_rates

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from ... import _core
-from ...checks import checked, choice, optional, positive, real
-from ...meshes import UNIT
-from ...rotations import about_z, quaternions
+from ...arguments.checks import checked, choice, optional, positive, real
+from ...base.rotations import about_z, quaternions
+from ...scene.meshes import UNIT
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
 from ..following import key_times, refuse_beside_trajectory, trajectory_rule, with_rates

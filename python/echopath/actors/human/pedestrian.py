@@ -4,8 +4,8 @@ from __future__ import annotations
 import numpy as np
 
 from ... import _core
-from ...checks import an, checked, positive, real, refused
-from ...rotations import quaternions
+from ...arguments.checks import an, checked, positive, real, refused
+from ...base.rotations import quaternions
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
 from ..following import key_times, refuse_beside_trajectory, trajectory_rule, with_rates

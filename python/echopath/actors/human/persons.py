@@ -2,13 +2,13 @@
 from __future__ import annotations
 
 from ... import _core
-from ...checks import checked, optional, positive, real
+from ...arguments.checks import checked, optional, positive, real
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor
 from ..following import refuse_beside_trajectory, trajectory_rule
+from ..laid_line import usual_speed
 from ..surfaces import edge_length
 from .anthropometry import Proportions
-from ..laid_line import usual_speed
 from .pedestrian import HEIGHTS, MIN_KEYFRAME_RATE, body_arrays, material_rule, pedestrian, walk_along, walker_arrays
 from .posture import standing
 from .running import RunningGait, running_speeds

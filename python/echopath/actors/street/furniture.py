@@ -6,7 +6,7 @@ from typing import Literal
 import numpy as np
 
 from ... import _core
-from ...checks import checked, one_of, positive, real
+from ...arguments.checks import checked, one_of, positive, real
 from ..actor import Actor, Part
 from ..solids import extruded, outward, round_segments, tube
 from ..surfaces import joined

@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ... import _core
-from ...checks import checked, count, positive, seed as seed_rule
+from ...arguments.checks import checked, count, positive, seed as seed_rule
 from ..actor import Actor, Part
 from ..solids import tube
 from ..surfaces import joined

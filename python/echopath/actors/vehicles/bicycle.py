@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ... import _core
-from ...checks import checked, flag, positive, real
+from ...arguments.checks import checked, flag, positive, real
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, Part
 from ..following import rolling_along, trajectory_rule

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from ... import _core
-from ...checks import checked, positive, real
-from ...rotations import about_y, quaternions
+from ...arguments.checks import checked, positive, real
+from ...base.rotations import about_y, quaternions
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
 from ..following import key_times, refuse_beside_trajectory, trajectory_rule, with_rates

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 
 from ... import _core
-from ...checks import checked, flag, real
-from ...rotations import about_y
+from ...arguments.checks import checked, flag, real
+from ...base.rotations import about_y
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, Part
 from ..following import trajectory_rule

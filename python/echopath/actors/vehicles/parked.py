@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ... import _core
-from ...checks import checked, count, positive, seed as seed_rule
+from ...arguments.checks import checked, count, positive, seed as seed_rule
 from ..actor import Actor
 from .cars import CARS, car
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ... import _core
-from ...checks import checked, flag, real
+from ...arguments.checks import checked, flag, real
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, Part
 from ..following import trajectory_rule

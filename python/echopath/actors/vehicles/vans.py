@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from ...checks import checked, flag, one_of, real
+from ...arguments.checks import checked, flag, one_of, real
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor
 from ..following import trajectory_rule

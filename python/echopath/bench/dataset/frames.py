@@ -8,11 +8,11 @@ from collections import Counter
 from importlib.resources import as_file
 from pathlib import Path
 
+from ...base.threads import num_threads, set_num_threads
 from ...dataset.folder import checksum
 from ...dataset.template import Template
-from ...materials import data_folder
+from ...scene.materials import data_folder
 from ...sequence.keep import write_frame
-from ...threads import num_threads, set_num_threads
 
 SCENES, QUICK_SCENES = 6, 2
 STREET_LIMIT = 1.5  # s of a processor: a frame of a street with labels, 1e5 rays, 128 chirps, 3 x 4 antennas

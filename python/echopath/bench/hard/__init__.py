@@ -5,7 +5,7 @@ import dataclasses
 import json
 import time
 
-from ...files import write_texts
+from ...base.files import write_texts
 from ..machine import machine
 from ..steps import told
 from . import faults, geometry, heavy, motions, oracle, places, repeat, scenes, signals

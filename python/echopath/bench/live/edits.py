@@ -13,7 +13,7 @@ import numpy as np
 
 import echopath as ep
 
-from ...materials import data_folder
+from ...scene.materials import data_folder
 from ..crowd_scenes import flat_city, radar, rounded_car, street
 from ..suite import describe_judged, judged_row
 from ..timing import wall_time

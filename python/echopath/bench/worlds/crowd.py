@@ -8,8 +8,8 @@ import numpy as np
 
 import echopath as ep
 
-from ...families import families
-from ...visibility import visibility_in_trace
+from ...paths.families import families
+from ...paths.visibility import visibility_in_trace
 from ..suite import describe_judged, judged
 from ..timing import processor_time
 from . import crowd_scene

@@ -8,7 +8,7 @@ from typing import Any, NoReturn
 import numpy as np
 
 from ... import _core
-from ...checks import shown
+from ...arguments.checks import shown
 
 _MISSING = object()
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...rotations import matrices, quaternions
+from ...base.rotations import matrices, quaternions
 from ..axes import Axes
 from ..names import fit_name
 from .document import Document

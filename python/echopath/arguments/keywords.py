@@ -1,0 +1,74 @@
+"""Keywords of calls: what is not known, missing or out of place is refused by name."""
+from __future__ import annotations
+
+import functools
+import inspect
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any, ParamSpec, TypeVar
+
+from .. import _core
+from .shown import shown
+
+Parameters = ParamSpec("Parameters")
+Result = TypeVar("Result")
+
+
+def refuse_unknown(callee: str, words: Iterable[object], known: Iterable[str]) -> None:
+    """Raises TypeError naming the first of `words` that is not in `known`, and the one that was meant, or all of them.
+
+    callee: name of the function, as its caller sees it; words, known: names of keywords
+    """
+    known, words = list(known), list(words)
+    for word in words:
+        if word not in known:
+            readable = str(word).encode("utf-8", "backslashreplace").decode("utf-8")
+            left = [name for name in known if name not in words and name != "self"]
+            meant = _core.meant_name(readable, left)
+            hint = f", the nearest right one is '{meant}'" if meant else f"; its arguments are {', '.join(left)}" if left else ""
+            raise TypeError(f"{callee}: unknown keyword '{readable}'{hint}")
+
+
+def refuse_misplaced(callee: str, signature: inspect.Signature, values: Sequence[object], given: Iterable[str]) -> None:
+    """Raises TypeError where a call has too many values without names, one twice, or lacks one, and says what to write.
+
+    callee: name of the function, as its caller sees it; values: those without names; given: names of the others
+    """
+    given = set(given)
+    by_place = [one.name for one in signature.parameters.values() if one.kind is not one.KEYWORD_ONLY]
+    by_name = [one.name for one in signature.parameters.values() if one.kind is one.KEYWORD_ONLY]
+    surplus = values[len(by_place):]
+    if surplus:
+        written = ", ".join(f"{name}={shown(value)}" for name, value in
+                            zip([name for name in by_name if name not in given], surplus))
+        said = [name for name in by_place if name != "self"]
+        takes = f"{', '.join(said)} alone" if said else "nothing"
+        raise TypeError(f"{callee}: takes {takes} without a name" + (f"; write {written}" if written else "")
+                        + f", got {shown(surplus[0])}")
+    placed = set(by_place[:len(values)])
+    for one in signature.parameters.values():
+        if one.name in placed and one.name in given:
+            raise TypeError(f"{callee}: argument '{one.name}' is given twice, by its place and by its name")
+        if one.default is one.empty and one.name not in placed | given:
+            raise TypeError(f"{callee}: argument '{one.name}' is missing")
+
+
+def known_keywords(function: Callable[Parameters, Result], callee: str = "") -> Callable[Parameters, Result]:
+    """Decorator: the call refuses keywords that are no parameters of the function; its signature stays as it is written.
+
+    callee: what errors call it, "": by its name
+    """
+    signature = inspect.signature(function)
+    name = callee or function.__name__
+
+    @functools.wraps(function)
+    def checked(*values: Any, **keywords: Any) -> Result:
+        refuse_unknown(name, keywords, signature.parameters)
+        refuse_misplaced(name, signature, values, keywords)
+        return function(*values, **keywords)
+
+    return checked
+
+
+def parameters_of(function: Callable[..., object]) -> tuple[str, ...]:
+    """Names of a function's parameters, in their order."""
+    return tuple(inspect.signature(function).parameters)

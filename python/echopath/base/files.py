@@ -1,0 +1,111 @@
+"""Files that are written whole or not at all."""
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+from contextlib import contextmanager
+from pathlib import Path
+
+from .. import _core
+from .interrupts import heed, interrupts_are_kept
+
+
+@contextmanager
+def written_whole(path, suffix: str | None = None):
+    """Yields the path of a temporary file beside `path` that takes its place when the block ends well.
+
+    Whatever ends the block early, Ctrl-C too, the temporary file is removed and `path` is left as it was. Only what ends the
+    process at once leaves it there.
+    suffix: of the temporary file, None: that of `path`
+    Raises ep.FileError when the folder or the file cannot be written.
+    """
+    with interrupts_are_kept():
+        yield from _written(Path(path), suffix)
+
+
+def _written(path: Path, suffix: str | None):
+    temporary = None
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, temporary = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix if suffix is None else suffix,
+                                             dir=path.parent)
+        os.close(handle)
+        os.chmod(temporary, 0o666 & ~_umask())
+        yield Path(temporary)
+        heed()
+        _flush(temporary)
+        os.replace(temporary, path)
+        temporary = None
+        _flush(path.parent)
+    except OSError as error:
+        raise _core.FileError(f"{path}: cannot be written ({error.strerror or error})") from None
+    finally:
+        if temporary is not None:
+            Path(temporary).unlink(missing_ok=True)
+
+
+@contextmanager
+def folder_written_whole(path):
+    """Yields the path of a new folder beside `path` that takes its name when the block ends well; until then `path` is not there.
+
+    Whatever ends the block early, the new folder is removed; one that a process left which was ended at once is removed by the
+    next for the same `path`. Two processes must not write the same one at a time.
+    Raises ep.FileError when folders cannot be written.
+    """
+    path = Path(path)
+    begun = path.with_name(f".{path.name}-begun")
+    try:
+        if begun.exists():
+            shutil.rmtree(begun)
+        begun.mkdir(parents=True)
+        yield begun
+        os.replace(begun, path)
+        _flush(path.parent)
+    except _core.FileError:  # of a file in it, or of one that is read
+        raise
+    except OSError as error:
+        raise _core.FileError(f"{path}: cannot be written ({error.strerror or error})") from None
+    finally:
+        shutil.rmtree(begun, ignore_errors=True)
+
+
+def require_writable(folder, argument: str) -> None:
+    """Raises ep.FileError naming `argument` unless files can be written into `folder`: before long work whose end they are.
+
+    folder: need not exist yet. It is tried in a folder of its own within the nearest one that exists, which is removed again,
+    so that processes that begin at once do not take theirs away from each other.
+    """
+    folder = Path(folder).absolute()
+    there = next(one for one in (folder, *folder.parents) if os.path.lexists(one))
+    try:
+        if there == folder:
+            tempfile.TemporaryFile(dir=folder).close()
+            return
+        with tempfile.TemporaryDirectory(dir=there) as trial:
+            (Path(trial) / folder.relative_to(there)).mkdir(parents=True)
+    except (OSError, ValueError) as error:  # ValueError: NUL in the name
+        reason = getattr(error, "strerror", None) or error
+        raise _core.FileError(f"{argument}: must be a folder that can be written, got {str(folder)!r} ({reason})") from None
+
+
+def write_texts(folder, texts: dict) -> None:
+    """Writes files {name: text} into `folder`, each whole or not at all. Raises ep.FileError."""
+    for name, text in texts.items():
+        with written_whole(Path(folder) / name) as temporary:
+            temporary.write_text(text, encoding="utf-8")
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def _flush(path) -> None:
+    """Down to the disk, so that a power cut after the replacement cannot leave an empty file."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)

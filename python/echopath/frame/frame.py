@@ -1,0 +1,229 @@
+"""What one simulated frame is: its paths, signals and maps."""
+from __future__ import annotations
+
+import dataclasses
+import os
+from typing import TYPE_CHECKING, Any
+from functools import cached_property
+
+import numpy as np
+
+from .. import _core
+from ..base.stages import Stage
+from ..effects import of_paths
+from ..paths.families import families as find_families
+from ..paths.resolution import mean_powers, unresolved_of
+from ..receiver.chain import reception
+from ..signals.beside import cubes_beside
+from ..spectra.angles import range_azimuth
+from ..spectra.azimuth_map import sees_azimuth
+from ..transmit import demultiplex
+
+if TYPE_CHECKING:
+    from ..base.foreign_types import Axes
+
+_WHOLE = object()  # a partition of one part, beside those that have names
+
+
+@dataclasses.dataclass(eq=False)
+class Frame:
+    """One simulated frame.
+
+    scene, radar: what was simulated; paths: what every ray touched
+    cube: complex [tx, rx, chirp, sample], sqrt(W), each transmitter alone, without noise and faults of the receiver; the sum
+        of the parts of each partition
+    coded_cube: [1, rx, slots, sample], sqrt(W), what receivers have of transmitters that send at once, without noise; None
+        where they take turns
+    parts: {partition: {part: cube}}, without noise, part "other" included; {} when none was asked for
+    selections: {partition: {part: expression as text}}, without "other"
+    part_of_path: {partition: u16 [P]}, index of the part of each path in the order of `parts`
+    rain_cube: as coded_cube where there is one, else as cube, of the rain in the scene's weather, which only the map of the
+        whole gets, as it gets the noise; None: none
+    interference_cube: likewise, of the other radars of the scene (`Scene.interferers`); None: none
+    noise_seed: of the thermal noise, which is drawn from it and the start time of the frame (s); None: no noise
+    replay, evaluate, retrace, keyframes: how the signal follows moving echoes, as in `synthesize`
+    effect_choices: pairs (name, True, False or "auto") of `effects` as in `trace`
+    spectrum_settings: window and zero_pad of the maps; angle_settings: keywords of `range_azimuth` for its map
+    spectrum: range-Doppler map of the cube with noise; part_spectra: {partition: {part: map}} without noise
+    labels: {partition: Labels} of the cells of its map, of "parts" with the part "other" without partitions; {} when
+        not asked for
+    detections: Detections in its map, None when not asked for
+    kept_truth: Truth of the objects that files of the frame keep, None when not asked for: `truth` then follows from the paths
+    checks: list [C] of Check, what the guard of the run compared; [] when it was off
+    stages: time and peak memory of each stage
+    """
+
+    scene: object
+    radar: object
+    paths: object
+    cube: object
+    parts: dict
+    selections: dict
+    part_of_path: dict
+    noise_seed: int | None
+    spectrum_settings: dict
+    rain_cube: object = None
+    interference_cube: object = None
+    coded_cube: object = None
+    spectrum: object = None
+    part_spectra: dict = dataclasses.field(default_factory=dict)
+    angle_settings: dict = dataclasses.field(default_factory=dict)
+    replay: str = "material"
+    evaluate: str = "interpolated"
+    retrace: str = "never"
+    keyframes: int = 0
+    effect_choices: tuple = ()
+    labels: dict = dataclasses.field(default_factory=dict)
+    detections: object = None
+    kept_truth: object = None
+    checks: list = dataclasses.field(default_factory=list)
+    stages: list[Stage] = dataclasses.field(default_factory=list)
+
+    @property
+    def noisy_cube(self):
+        """The cube with rain, interference, thermal noise and the faults of the receiver, complex [tx, rx, chirp, sample],
+        sqrt(W): the same bits at every call. Codes of transmitters are undone (`demultiplex`).
+
+        The noise is drawn from the noise seed and the start time of the frame (s): frames in a row differ.
+        """
+        received = self.received.cube
+        return received if self.coded_cube is None else demultiplex(received, self.radar)
+
+    @property
+    def received(self):
+        """Reception: what the converter of the receiver gives, before `demultiplex`, made anew at every call."""
+        return reception(self._arriving_cube, self.radar, self.noise_seed, self.paths.frame.start_time)
+
+    @property
+    def _arriving_cube(self):
+        """What comes to the receivers, without noise: of transmitters that send at once their sum."""
+        cube = self.cube if self.coded_cube is None else self.coded_cube
+        for other in (self.rain_cube, self.interference_cube):
+            cube = cube if other is None else cube + other
+        return cube
+
+    def save_raw(self, path: str | os.PathLike[str]) -> int:
+        """Writes what the converter gives as a DCA1000 would: signed 16-bit words, I0 I1 Q0 Q1, slot by slot.
+
+        path: of the file, which is written whole or not at all. Returns the number of bytes. Raises what `ep.save_raw`
+        raises, which writes several frames.
+        """
+        from ..sensor_files import save_raw
+
+        return save_raw(self, path)
+
+    def plot(self, *, ax: Axes | None = None, vmin: float | None = None, vmax: float | None = None,
+             title: str | None = None) -> Axes:
+        """Draws the range-Doppler map with its noise, and the detections in it, where there are some, as points.
+
+        ax: Matplotlib axes to draw in, None: new ones; vmin, vmax: ends of the colour scale in dBm
+        title: above the map, None: what it shows, with noise or without
+        Returns the axes: range in m across, radial velocity in m/s up (receding positive). Raises ValueError for a record of
+        paths alone.
+        """
+        from ..plots import draw_frame
+
+        return draw_frame(self, ax=ax, vmin=vmin, vmax=vmax, title=title)
+
+    def show(self, *, selection: str | _core.Selection = "", num_rays: int = 300, color_by: str = "bounces") -> Any:
+        """The scene and some rays as an interactive picture for notebooks, whose `save(path)` writes one HTML file.
+
+        The mouse turns it; rays and bodies say what they are, and a click on a ray shows all of it.
+        selection: path expression or Selection of the rays that are drawn, "": all; num_rays: at most, some of every object
+        color_by: "bounces", "mesh", "power", "range" or "speed"
+        Returns a page with `_repr_html_` and `save`. Raises ValueError naming the argument, ModuleNotFoundError where the
+        viewer or plotly is not installed.
+        """
+        from echopath_viewer import page_of
+
+        return page_of(self, selection=selection, num_rays=num_rays, color_by=color_by)
+
+    def _repr_html_(self) -> str:
+        from ..presentation.notebook import frame_html
+
+        return frame_html(self)
+
+    @property
+    def effects(self) -> list:
+        """Which effects the frame models, which not, and why: list [E] of Effect, those of the paths and of the signal."""
+        return of_paths(self.paths, replay=self.replay, evaluate=self.evaluate, retrace=self.retrace,
+                        noise_seed=self.noise_seed, effects=self.effect_choices, surroundings=self.scene,
+                        rain_cube=self.rain_cube, interference_cube=self.interference_cube)
+
+    @cached_property
+    def beside_spectra(self) -> dict:
+        """Range-Doppler maps of what no path makes, without noise: {"interference", "rain" or "leakage" (of the transmitters
+        into the receivers): RangeDoppler}, values in sqrt(W); {} where there is nothing of it."""
+        return {name: _core.range_doppler(cube, self.radar, **self.spectrum_settings)
+                for name, cube in cubes_beside(self).items()}
+
+    @cached_property
+    def path_power(self):
+        """Power of each path at the trace time for the first antennas, [P] in W."""
+        return self.paths.power
+
+    @cached_property
+    def range_azimuth(self):
+        """Range-azimuth map of the cube with noise, power [azimuth, range] in W; None where the radar sees no azimuth."""
+        return self.range_azimuth_of(self.spectrum) if sees_azimuth(self.radar) else None
+
+    def range_azimuth_of(self, spectrum, progress=None):
+        """Range-azimuth map of a part by the settings of the frame, power [azimuth, range] in W.
+
+        spectrum: RangeDoppler of the frame's radar; progress: callable (stage, fraction), True for bars, or None
+        Raises TypeError or ValueError naming the argument, also for arrays that see no azimuth.
+        """
+        return range_azimuth(spectrum, self.radar, **self.angle_settings, progress=progress)
+
+    @cached_property
+    def mean_power(self):
+        """ep.ReceivedPower of all paths, in W: the mean over the random phases, with its interval."""
+        return self._mean_powers.of_parts[_WHOLE][0]
+
+    @cached_property
+    def mean_part_powers(self) -> dict:
+        """The same of each part, {partition: {part: ep.ReceivedPower}}, in W."""
+        return {partition: dict(zip(self.parts[partition], self._mean_powers.of_parts[partition]))
+                for partition in self.part_of_path}
+
+    @cached_property
+    def unresolved(self) -> list:
+        """Objects, ghosts and surroundings above the noise whose mean power the rays do not know to 0.3 dB: list of
+        Unresolved, as `ep.unresolved` gives them, with the noise of the radar."""
+        return unresolved_of(self.paths, self._families, self._mean_powers.of_families,
+                             least_power=_core.noise_power_in_cell(self.radar))
+
+    @cached_property
+    def truth(self):
+        """ep.Truth of the objects in the middle of the frame: places in m, velocities in m/s, boxes, cross sections in m^2."""
+        from ..truth import truth_of_frame
+
+        return truth_of_frame(self) if self.kept_truth is None else self.kept_truth
+
+    @cached_property
+    def _families(self):
+        return find_families(self.paths)
+
+    @cached_property
+    def _mean_powers(self):
+        """MeanPowers of the families, of each partition and, as the one part of _WHOLE, of all paths."""
+        groups = {partition: (part_of_path, len(self.parts[partition]))
+                  for partition, part_of_path in self.part_of_path.items()}
+        groups[_WHOLE] = np.zeros(self.paths.num_paths, np.uint32), 1
+        return mean_powers(self.paths, self._families, groups)
+
+    def __repr__(self) -> str:
+        partitions = ", ".join(self.parts) or "none"
+        cube = None if self.cube is None else list(self.cube.shape)
+        return f"Frame(paths={self.paths.num_paths}, cube={cube}, partitions: {partitions})"
+
+
+def with_spectra(frame: Frame) -> Frame:
+    """Fills in the range-Doppler maps of a frame: with noise of the whole, without noise of its parts."""
+    def spectrum(cube):
+        return _core.range_doppler(cube, frame.radar, **frame.spectrum_settings)
+
+    frame.spectrum = spectrum(frame.noisy_cube)
+    frame.part_spectra = {partition: {name: spectrum(cube) for name, cube in cubes.items()}
+                          for partition, cubes in frame.parts.items()}
+    return frame

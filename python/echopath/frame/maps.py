@@ -1,0 +1,78 @@
+"""What small files keep of a frame: its maps and labels, without paths and signals."""
+from __future__ import annotations
+
+import dataclasses
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..base.equality import has_same_fields
+from ..detections.detections import Detections
+from .frame import Frame
+
+if TYPE_CHECKING:
+    from ..truth import Truth
+
+# Fields of Labels that small files keep for cells of the mask alone.
+_OF_THE_MASK = ("power", "whole", "mean_power", "mean_share", "power_error", "share_error")
+
+
+@dataclasses.dataclass(frozen=True, eq=False, repr=False)
+class FrameMaps:
+    """Maps, labels and detections of a frame, as the small files of a sequence keep them; made by `StoredSequence`.
+
+    start_time: s, first sample of the frame; seed, noise_seed: of the rays and of the thermal noise, None: no noise
+    labels: {partition: Labels}; powers of cells that have no label are 0 in them, and so are shares; {} without labels
+    detections: Detections without the paths behind them, None: not asked for
+    velocity: [V] m/s, receding positive; range: [R] m: axes of the range-Doppler map
+    power: f32 [V, R] W of that map with its noise, mean over channels; None in files of keep="labels"
+    azimuth: [A] rad, left positive; azimuth_power: f32 [A, R] W of the range-azimuth map; None where the radar sees no azimuth
+        and in files of keep="labels"
+    kept_truth: Truth of the objects in the middle of the frame, None: not asked for
+    """
+
+    start_time: float
+    seed: int
+    noise_seed: int | None
+    labels: dict
+    detections: Detections | None
+    velocity: np.ndarray
+    range: np.ndarray
+    power: np.ndarray | None = None
+    azimuth: np.ndarray | None = None
+    azimuth_power: np.ndarray | None = None
+    kept_truth: Truth | None = None
+
+    def __eq__(self, other) -> bool:
+        return has_same_fields(self, other) if isinstance(other, FrameMaps) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        power = "no power" if self.power is None else f"power [{len(self.velocity)}, {len(self.range)}]"
+        return f"FrameMaps(at {self.start_time:.6g} s, {power}, labels: {', '.join(self.labels) or 'none'})"
+
+
+def maps_of(frame: Frame, with_power: bool) -> FrameMaps:
+    """What a small file keeps of a frame; with_power: maps too, not labels alone."""
+    azimuth_map = frame.range_azimuth if with_power else None
+    return FrameMaps(
+        start_time=frame.paths.frame.start_time, seed=frame.paths.frame.seed, noise_seed=frame.noise_seed,
+        labels={partition: _within_mask(labels) for partition, labels in frame.labels.items()},
+        detections=None if frame.detections is None else dataclasses.replace(frame.detections, echoes=None),
+        velocity=np.asarray(frame.spectrum.velocity), range=np.asarray(frame.spectrum.range),
+        power=mean_power(frame.spectrum.values) if with_power else None, kept_truth=frame.kept_truth,
+        azimuth=None if azimuth_map is None else np.asarray(azimuth_map.azimuth),
+        azimuth_power=None if azimuth_map is None else azimuth_map.power.astype(np.float32))
+
+
+def mean_power(values) -> np.ndarray:
+    """Power of a map [tx, rx, V, R] in sqrt(W), mean over channels: f32 [V, R] in W."""
+    return np.mean(values.real ** 2 + values.imag ** 2, axis=(0, 1)).astype(np.float32)
+
+
+def _within_mask(labels):
+    """Labels whose powers are kept where a cell has a label, and are 0 elsewhere: small when compressed."""
+    values = {name: getattr(labels, name) for name in _OF_THE_MASK}
+    kept = {name: np.where(labels.mask, value, 0.0) for name, value in values.items() if value is not None}
+    return dataclasses.replace(labels, share=np.where(labels.mask, labels.share, 0.0), **kept)

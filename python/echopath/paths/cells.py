@@ -1,0 +1,93 @@
+"""Where each path appears in a range-Doppler map."""
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from .. import _core
+from ..arguments.checks import ArrayLike, anything, array, checked, row_of_channel
+
+OUTSIDE = -1  # index of a path that the anti-alias filter removes, or that lies beyond the axis
+_ENDS = array("[2]", kind="whole")
+
+
+@dataclasses.dataclass(frozen=True)
+class PathCells:
+    """Range, radial velocity and cell of each path at one channel, in the middle of the frame.
+
+    length: [P] m, from the transmitter by all hits to the receiver
+    range: [P] m, where the map shows it: half the length and the shift that the velocity makes (range-Doppler coupling)
+    velocity: [P] m/s, half the rate of the length, receding positive; not folded into the axis of the map
+    range_index, velocity_index: [P] i32, nearest cell of the map, velocities folded; both -1 for paths outside of it
+    """
+
+    length: np.ndarray
+    range: np.ndarray
+    velocity: np.ndarray
+    range_index: np.ndarray
+    velocity_index: np.ndarray
+
+    @checked(self=anything, range_indices=_ENDS, velocity_indices=_ENDS)
+    def within(self, range_indices: ArrayLike, velocity_indices: ArrayLike) -> np.ndarray:
+        """Which paths lie in a rectangle of cells: bool [P].
+
+        range_indices, velocity_indices: (first, last) index along each axis of the map, both included
+        Raises TypeError or ValueError naming the argument.
+        """
+        (near, far), (slow, fast) = range_indices, velocity_indices
+        inside = (self.range_index >= near) & (self.range_index <= far)
+        inside &= (self.velocity_index >= slow) & (self.velocity_index <= fast)
+        return inside & (self.range_index != OUTSIDE)
+
+
+@checked()
+def path_cells(paths: _core.Paths, spectrum: _core.RangeDoppler, *, tx: int = 0, rx: int = 0) -> PathCells:
+    """The cell of each path in a range-Doppler map of its radar.
+
+    Model: the beat frequency and the slow-time phase of cpp/echopath/signal/kernels/carrier.h at the middle of the frame. A path
+    whose velocity changes during the frame, and the window's main lobe, spread its power over neighbouring cells.
+    paths: of `trace`, P of them; spectrum: RangeDoppler, any map of the radar that traced them, for its axes
+    tx, rx: indices of the channel's antennas
+    Returns PathCells, ranges in m, velocities in m/s. Raises IndexError for antennas that are not there.
+    """
+    row_of_channel(paths, tx, rx)
+    waveform = paths.radar.waveform
+    length, rate = _length_and_rate(paths, tx, rx)
+    delay, delay_rate = length / _core.speed_of_light, rate / _core.speed_of_light
+    carrier = waveform.start_frequency + waveform.slope * (waveform.window_centre - delay)
+    beat = waveform.slope * delay + carrier * delay_rate  # Hz, fast time
+    doppler = carrier * delay_rate                        # Hz, slow time
+    distance = beat * _core.speed_of_light / (2.0 * waveform.slope)
+    range_index = _range_index(beat, waveform, spectrum.range)
+    velocity_index = _velocity_index(0.5 * waveform.wavelength * doppler, spectrum.velocity, paths.radar)
+    velocity_index[range_index == OUTSIDE] = OUTSIDE
+    return PathCells(length=length, range=distance, velocity=0.5 * rate, range_index=range_index,
+                     velocity_index=velocity_index)
+
+
+def _length_and_rate(paths, tx: int, rx: int):
+    """Length [P] in m in the middle of the frame, and its rate [P] in m/s over a chirp."""
+    radar = paths.radar
+    first, last = (radar.chirp_time(tx, chirp) for chirp in (0, radar.waveform.num_chirps - 1))
+    middle, half = paths.frame.start_time + 0.5 * (first + last), 0.5 * radar.waveform.chirp_duration
+    before, length, after = paths.lengths([middle - half, middle, middle + half], tx, rx)
+    return length, (after - before) / (2.0 * half)
+
+
+def _range_index(beat, waveform, axis):
+    """Nearest cell of each beat frequency in Hz: i32 [P], -1 where the anti-alias filter removes it."""
+    step = axis[1] - axis[0] if len(axis) > 1 else np.inf
+    index = np.rint(beat * _core.speed_of_light / (2.0 * waveform.slope * step)).astype(np.int32)
+    if not waveform.real:
+        index[index == len(axis)] = 0  # the last half cell below the sampling rate
+    highest = waveform.sampling_rate * (0.5 if waveform.real else 1.0)
+    index[(beat < 0.0) | (beat >= highest) | (index >= len(axis))] = OUTSIDE
+    return index
+
+
+def _velocity_index(velocity, axis, radar):
+    """Nearest cell of each velocity in m/s, folded into the axis: i32 [P]."""
+    count = len(axis)
+    step = 2.0 * radar.waveform.max_velocity(radar.num_slots) / count
+    return ((np.rint(velocity / step).astype(np.int64) + count // 2) % count).astype(np.int32)

@@ -1,0 +1,156 @@
+"""Which object each path belongs to, and by what way: ghost families."""
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable, Mapping
+from functools import cached_property
+
+import numpy as np
+
+from .. import _core
+from ..arguments.checks import an, checked, refused, text
+from ..base.equality import is_same
+
+NamedGlobs = tuple[tuple[str, tuple[str, ...]], ...]  # ((name, globs), ...), as objects are kept
+# {name: globs}, globs that are names, or None: the usual ones.
+Objects = Mapping[str, str | Iterable[str]] | Iterable[str] | NamedGlobs | None
+NO_OBJECT = -1  # index of the object of a path that touches none
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Families:
+    """The ghost family of each path; made by `families`. A view for `decompose`.
+
+    objects: names, in order
+    families: tuple of Family, those that occur: by object, order, type and surfaces; last the background, always
+    family_of_path: u32 [P], index into families
+    grouping: the rule, which `decompose` applies to later records of a frame too
+    """
+
+    objects: tuple
+    families: tuple
+    family_of_path: np.ndarray
+    grouping: object
+
+    @cached_property
+    def object_of_path(self) -> np.ndarray:
+        """Index into objects of each path's owner, -1: it touches none; i32 [P]."""
+        index = {name: number for number, name in enumerate(self.objects)}
+        return self._of_paths(lambda family: index.get(family.object, NO_OBJECT))
+
+    @property
+    def ghost_type(self) -> np.ndarray:
+        """Ghost type of each path, 0 for real echoes and the background; i32 [P]."""
+        return self._of_paths(lambda family: family.ghost_type)
+
+    @property
+    def order(self) -> np.ndarray:
+        """Number of bounces of each path, hits that follow each other on one object being one; 0: background; i32 [P]."""
+        return self._of_paths(lambda family: family.order)
+
+    @property
+    def class_code(self) -> np.ndarray:
+        """Family.class_code of each path; i32 [P]."""
+        return self._of_paths(lambda family: family.class_code)
+
+    def paths_of(self, family) -> np.ndarray:
+        """Indices of the paths of a Family, i64 [N]; none where it does not occur.
+
+        family: one of `families` or of another record of the scene
+        Raises TypeError naming the argument.
+        """
+        an(_core.Family)("family", family)
+        if family not in self.families:
+            return np.zeros(0, np.int64)
+        return np.flatnonzero(self.family_of_path == self.families.index(family))
+
+    def _of_paths(self, value) -> np.ndarray:
+        return np.array([value(family) for family in self.families], np.int32)[self.family_of_path]
+
+    def __eq__(self, other) -> bool:
+        if not isinstance(other, Families):
+            return NotImplemented
+        return all(is_same(getattr(self, name), getattr(other, name)) for name in ("objects", "families", "family_of_path"))
+
+    __hash__ = None
+
+    def __len__(self) -> int:
+        return len(self.families)
+
+    def __iter__(self):
+        return iter(self.families)
+
+    def __repr__(self) -> str:
+        return f"Families({len(self)} of {len(self.objects)} objects, paths={len(self.family_of_path)})"
+
+
+def named_globs(objects: Objects) -> list | None:
+    """[(name, [glob, ...]), ...] of the objects of a call; None stays None.
+
+    objects: as in `families`
+    """
+    if objects is None:
+        return None
+    found = objects if isinstance(objects, Mapping) else listed(objects)
+    if not isinstance(found, (Mapping, list)):
+        raise refused(TypeError, "objects", "a dict or a list of globs", objects)
+    pairs = found.items() if isinstance(found, Mapping) else [_pair(glob) for glob in found]
+    return list({_name(name): _globs_of(globs) for name, globs in pairs}.items())
+
+
+def objects_rule(argument: str, value: Objects) -> NamedGlobs | None:
+    """What `families` takes as objects, as values that nobody changes: those of the caller may change or be used up."""
+    named = named_globs(value)
+    return None if named is None else tuple((name, tuple(globs)) for name, globs in named)
+
+
+def check_objects(scene, objects) -> None:
+    """Raises what `families` would for `objects` of a scene: to know before a long trace."""
+    named = named_globs(objects)
+    if named is not None:
+        _core.check_objects(scene, named)
+
+
+def listed(value):
+    """A list of what can be iterated, the value itself where it cannot be."""
+    if isinstance(value, (str, bytes)):
+        return value
+    try:
+        return list(value)
+    except TypeError:
+        return value
+
+
+def _pair(found) -> tuple:
+    """(name, globs) of what a list holds: a glob, which is the name too, or such a pair, as objects are kept."""
+    return found if isinstance(found, tuple) and len(found) == 2 else (found, found)
+
+
+def _name(name) -> str:
+    """A name of an object; a list of globs makes them names, too."""
+    return text("objects", name)
+
+
+def _globs_of(globs) -> list:
+    found = [globs] if isinstance(globs, str) else listed(globs)
+    if not isinstance(found, list):
+        raise refused(TypeError, "objects", "a dict or a list of globs", globs)
+    return [text("objects", glob) for glob in found]
+
+
+@checked(objects=objects_rule)
+def families(paths: _core.Paths, objects: Objects = None) -> Families:
+    """Which object each path belongs to, and which ghost it makes, after the Radar Ghost Dataset (Kraus et al. 2021).
+
+    A path belongs to the first of the objects that it touches; what else it touches has mirrored it. Hits that follow each
+    other on one object are one bounce: an echo that touches nothing else is real, whatever its number of hits. What
+    mirrored is named by the child of the scene's root, or below one that holds objects or several mirrors by the largest
+    group that does not, so that the walls of a street are told apart.
+    paths: of `trace`
+    objects: {name: glob or list of globs}, or a list of globs, which are then the names; None: the children of the scene's
+        root that are neither mirrors nor around the antenna (whose bounding sphere, in m, does not hold the transmitter)
+    Returns Families: a family index [P], and of each family object, ghost type, order, surfaces and class code. Raises
+    ValueError for bad names and globs that take no mesh.
+    """
+    names, found, family_of_path, grouping = _core.find_families(paths, named_globs(objects))
+    return Families(tuple(names), tuple(found), family_of_path, grouping)

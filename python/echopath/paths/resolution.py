@@ -1,0 +1,242 @@
+"""Which powers the rays of a trace know, of each object and ghost family, and what would make them know the others."""
+from __future__ import annotations
+
+import dataclasses
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from .. import _core
+from ..arguments.checks import Progress, checked, real
+from ..signals.measures import in_dbm
+from .families import Objects, objects_rule
+from .families import families as families_of
+from .visibility import visibility_in_trace
+
+RESOLVED_DB = 0.3       # the 95 % interval of a resolved power reaches no further to either side
+MOST_TIMES = 100.0      # of the rays: what needs more is not a matter of rays
+UNSEEN_HITS = 3.0       # rays that may have met what none has met (95 % limit of a Poisson count)
+FRESNEL_ZONES = 4.0     # across a plane, from which on its image is the better answer
+FAINT = 0.01            # of the upper end of an interval
+SURROUNDINGS = "the surroundings"  # what belongs to no object
+_FLAT = 1e-6            # of a plane, relative to its width
+
+
+class Interval(NamedTuple):
+    """A mean received power in W and the ends of its 95 % interval, of bias and chance together."""
+
+    power: float
+    low: float
+    high: float
+
+    @property
+    def resolved(self) -> bool:
+        """The interval reaches no further than 0.3 dB to either side."""
+        factor = 10.0 ** (0.1 * RESOLVED_DB)
+        return 0.0 < self.power <= factor * self.low and self.high <= factor * self.power
+
+    @property
+    def is_in_doubt(self) -> bool:
+        """There is or may be something, and it is not resolved."""
+        return self.high > 0.0 and not self.resolved
+
+    def __str__(self) -> str:
+        if not self.high > 0.0:
+            return "nothing"
+        if self.resolved:
+            return f"{in_dbm(self.power):.2f} dBm"
+        high = f"{in_dbm(self.high):.1f} dBm"
+        if self.low > 0.0:
+            return f"{in_dbm(self.power):.1f} dBm, {in_dbm(self.low):.1f} to {high}"
+        if self.power < FAINT * self.high:  # so far below what may be there that it tells nothing
+            return f"below {high}" if self.power > 0.0 else f"no path, below {high}"
+        return f"{in_dbm(self.power):.1f} dBm, below {high}"
+
+
+@dataclasses.dataclass(frozen=True)
+class Unresolved:
+    """An echo whose power the rays do not know to 0.3 dB.
+
+    name: of the object, or "the surroundings"; via: names of what mirrored it, () for the object itself
+    ghost_type: 1 (last bounce on the object), 2 (last bounce on a mirror), 0 for the object itself; order: number of bounces
+    interval: Interval in W; advice: what would resolve it
+    """
+
+    name: str
+    via: tuple
+    ghost_type: int
+    order: int
+    interval: Interval
+    advice: str
+
+    @property
+    def title(self) -> str:
+        """The name, and for ghosts the way, type and order."""
+        return f"{self.name} via {', '.join(self.via)}, type {self.ghost_type}/{self.order}" if self.via else self.name
+
+    def __str__(self) -> str:
+        return f"{self.title}: {self.interval}; {self.advice}"
+
+
+def interval_of(power) -> Interval:
+    """Of an ep.ReceivedPower, in W."""
+    return Interval(power.power, power.low, power.high)
+
+
+class MeanPowers(NamedTuple):
+    """of_families: list [F] of ep.ReceivedPower, in W; of_parts: {partition: list [part] of the same}"""
+
+    of_families: list
+    of_parts: dict
+
+
+def mean_powers(paths, families, groups: dict, progress=None) -> MeanPowers:
+    """Of ghost families and of the parts of partitions, from one pass over the paths.
+
+    families: Families of the paths; groups: {partition: (part_of_path [P], number of parts)}
+    """
+    sortings = [(families.family_of_path, len(families.families)), *groups.values()]
+    of_families, *of_parts = _core.received_powers_of_sortings(paths, sortings, progress)
+    return MeanPowers(of_families, dict(zip(groups, of_parts)))
+
+
+@checked(objects=objects_rule, least_power=real(0.0, unit="W"))
+def unresolved(paths: _core.Paths, objects: Objects = None, *, least_power: float = 0.0,
+               progress: Progress = None) -> list[Unresolved]:
+    """The objects, surroundings and ghost families whose mean received power the rays do not know to 0.3 dB.
+
+    paths: of a trace; objects: as in `families`
+    least_power: W, echoes whose interval ends below it are left out, such as those far below the noise
+    progress: callable (stage, fraction), True for bars, or None
+    Returns a list of Unresolved: first what took no mirror, then ghosts, strongest first. An object in sight of the radar
+    that no ray has met is among them, with what three rays might have brought back from it as its upper end; so is one whose
+    paths a selection or a file leaves out. Raises ValueError for bad names and for globs that take no mesh,
+    KeyboardInterrupt on Ctrl-C.
+    """
+    families = families_of(paths, objects)
+    powers = mean_powers(paths, families, {}, progress).of_families
+    return unresolved_of(paths, families, powers, objects, least_power=least_power, progress=progress)
+
+
+def unresolved_of(paths, families, powers, objects=None, *, least_power=0.0, progress=None) -> list:
+    """`unresolved` from powers that are known.
+
+    families: of the paths and objects; powers: [F] ep.ReceivedPower of these, in W
+    """
+    found = [Unresolved(family.object or SURROUNDINGS, tuple(family.via), family.ghost_type, family.order,
+                        interval_of(power), _advice(paths, families, family, power))
+             for family, power in zip(families.families, powers)
+             if power.num_coherent_paths + power.num_diffuse_hits and not power.resolved]
+    met = {family.object for family, power in zip(families.families, powers) if not family.is_ghost and power.high > 0.0}
+    found += _unseen(paths, objects, [name for name in families.objects if name not in met], progress)
+    return sorted((one for one in found if one.interval.high > least_power),
+                  key=lambda one: (bool(one.via), -one.interval.power, -one.interval.high))
+
+
+# --- advice ---
+
+def _advice(paths, families, family, power) -> str:
+    """What would resolve a power: mirrors for large planes, else as many rays as its interval asks for."""
+    planes = [] if power.diffuse > power.coherent else _wide_planes(paths, families, family)
+    if planes:
+        return f"mirror=True for {', '.join(planes)}"
+    if paths.frame.footprint == "none" and power.bias > power.chance:
+        return "a footprint: without one nothing tells how coarse the rays are"
+    times = _times_the_rays(power)
+    if times > MOST_TIMES:
+        return f"more than {MOST_TIMES:g} times the rays"
+    return _rays(paths, times)
+
+
+def _rays(paths, times: float) -> str:
+    """So many times the rays of the paths, in words of two digits."""
+    rays = paths.frame.statistics.num_rays * times
+    step = 10.0 ** (math.floor(math.log10(max(rays, 10.0))) - 1)
+    return f"about {round(rays / step) * step:,.0f} rays"
+
+
+def _times_the_rays(power) -> float:
+    """Bias falls about as 1/rays, chance as their root at the latest."""
+    if not power.power > 0.0 or not power.low > 0.0:
+        return math.inf
+    wanted = 10.0 ** (0.1 * RESOLVED_DB) - 1.0
+    bias, chance = power.bias / power.power / wanted, 2.0 * power.chance / power.power / wanted
+    return max(2.0, bias, chance ** 2)
+
+
+def _belongs(mesh, name: str) -> bool:
+    return mesh.name == name or mesh.name.startswith(name + "/")
+
+
+def _wide_planes(paths, families, family) -> list:
+    """Names of unmarked meshes that a family touches and that are planes of several Fresnel zones."""
+    def is_touched(mesh):
+        if family.object:
+            return any(_belongs(mesh, name) for name in (family.object, *family.via))
+        return not any(_belongs(mesh, name) for name in families.objects)
+
+    wavelength = _core.speed_of_light / paths.radar.waveform.start_frequency
+    time, found = paths.frame.trace_time, []
+    for mesh in paths.scene.meshes:
+        if mesh.material.mirror or not is_touched(mesh):
+            continue
+        vertices = np.asarray(paths.scene.world_vertices(mesh.id, time))
+        spread = np.linalg.svd(vertices - vertices.mean(axis=0), compute_uv=False) / math.sqrt(len(vertices))
+        distance = np.linalg.norm(vertices.mean(axis=0) - paths.frame.transmitter)
+        if spread[2] <= _FLAT * spread[0] and spread[1] > FRESNEL_ZONES * math.sqrt(wavelength * distance):
+            found.append(mesh.name)
+    return found
+
+
+# --- what no ray has met ---
+
+def _unseen(paths, objects, names, progress) -> list:
+    """Unresolved for those `names` of the objects that the radar sees."""
+    if not names:
+        return []
+    found = []
+    for seen in visibility_in_trace(paths, paths.radar, objects, progress=progress):
+        interval = unmet_interval(paths, seen) if seen.name in names else Interval(0.0, 0.0, 0.0)
+        if interval.high > 0.0:
+            found.append(Unresolved(seen.name, (), 0, 1, interval, _advice_to_meet(paths, seen)))
+    return found
+
+
+def _advice_to_meet(paths, seen) -> str:
+    if paths.num_paths < paths.frame.statistics.num_paths:
+        return "its paths may be among those that were left out of this record"
+    times = max(2.0, UNSEEN_HITS / max(_ray_density(paths, seen.name) * _visible_angle(seen), 1e-9))
+    return f"{_rays(paths, times)} to meet it"
+
+
+def unmet_interval(paths, seen) -> Interval:
+    """Of the mean power in W of an object that no ray of the paths has met. seen: its ObjectVisibility
+
+    From 0, to the power of the largest surface that the rays may have missed, facing the radar: as large as three launch cells
+    there, or as all that is seen of the object; sigma = 4 pi A^2 / lambda^2 where it may reflect as a mirror does, and 4 A
+    (Lambert). [0, 0] where nothing of the object is in sight.
+    """
+    if not (seen.transmitter.in_view and seen.receiver.in_view and seen.visible_share > 0.0):
+        return Interval(0.0, 0.0, 0.0)
+    density, radar = _ray_density(paths, seen.name), paths.radar
+    solid_angle = min(_visible_angle(seen), UNSEEN_HITS / max(density, 1e-300))
+    distances = seen.transmitter.distance, max(seen.receiver.distance, 1e-3)
+    wavelength = _core.speed_of_light / radar.waveform.start_frequency
+    area = solid_angle * distances[0] ** 2
+    is_rough = all(mesh.material.scattering == 1.0 for mesh in paths.scene.meshes if _belongs(mesh, seen.name))
+    cross_section = 4.0 * area + (0.0 if is_rough else 4.0 * math.pi * area ** 2 / wavelength ** 2)
+    gain = math.prod(max(one.pattern.peak_gain for one in antennas) for antennas in (radar.transmitters, radar.receivers))
+    high = (radar.transmit_power * gain * wavelength ** 2 * cross_section
+            / ((4.0 * math.pi) ** 3 * max(distances[0], 1e-3) ** 2 * distances[1] ** 2))
+    return Interval(0.0, 0.0, high)
+
+
+def _visible_angle(seen) -> float:
+    return seen.transmitter.solid_angle * seen.transmitter.visible_share
+
+
+def _ray_density(paths, name: str) -> float:
+    """Rays per sr of the stratum that aims at an object, or of the field of view."""
+    strata = paths.frame.strata
+    return next((stratum.ray_density for stratum in strata if stratum.name == name), strata[-1].ray_density if strata else 0.0)

@@ -1,0 +1,1 @@
+"""Results as tables, notebooks, xarray and the viewer show them."""

@@ -1,0 +1,98 @@
+"""The materials that come with echopath."""
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from functools import cached_property
+from importlib import resources
+from pathlib import Path
+
+from .. import _core
+from ..arguments.checks import refused
+
+
+def data_folder(name: str):
+    """A folder of the data that comes with echopath: of the installed package, or of the source tree beside it."""
+    try:
+        return resources.files("echopath.data") / name
+    except ModuleNotFoundError:
+        return Path(__file__).resolve().parents[2] / "data" / name
+
+
+class MaterialLibrary(Mapping):
+    """Read-only mapping: name -> Material at 77 GHz, from data/materials/*.toml.
+
+    Raises KeyError naming the nearest right names.
+    """
+
+    def __getitem__(self, name: str):
+        return self._entry(name)[0]
+
+    def __iter__(self):
+        return iter(self._entries)
+
+    def __len__(self) -> int:
+        return len(self._entries)
+
+    def source(self, name: str) -> str:
+        """Where the values of a material come from. Raises KeyError."""
+        return self._entry(name)[1]
+
+    def name_of(self, material) -> str:
+        """The name under which this very object is in the library, "" for any other."""
+        return next((name for name, (known, _) in self._entries.items() if known is material), "")
+
+    def __repr__(self) -> str:
+        return f"materials({', '.join(self)})"
+
+    def _entry(self, name: str):
+        try:
+            return self._entries[name]
+        except (KeyError, TypeError):
+            word = str(name).encode("utf-8", "backslashreplace").decode("utf-8")  # lone surrogates too
+            nearest = ", ".join(_core.nearest_names(word, list(self)))
+            raise KeyError(f"unknown material {name!r}, the nearest known ones are {nearest}") from None
+
+    @cached_property
+    def _entries(self) -> dict:
+        files = sorted((file for file in data_folder("materials").iterdir() if file.name.endswith(".toml")),
+                       key=lambda file: file.name)
+        return {file.name.removesuffix(".toml"): _read(file) for file in files}
+
+
+def _read(file):
+    """A material file -> (Material, source)."""
+    table = tomllib.loads(file.read_text(encoding="utf-8"))
+    source = table.pop("source")
+    return _core.Material(**material_fields(table)), source
+
+
+def material_fields(table: dict) -> dict:
+    """The fields of a Material from the keys of a file: permittivities are eps' or [eps', eps''] for eps' - j eps'', layers are
+    tables of the fields of a Layer."""
+    fields = dict(table)
+    if isinstance(fields.get("permittivity"), list):
+        fields["permittivity"] = _complex(fields["permittivity"])
+    if "layers" in fields:
+        fields["layers"] = [_core.Layer(**{**layer, "permittivity": _complex(layer["permittivity"])})
+                            for layer in fields["layers"]]
+    return fields
+
+
+def _complex(value):
+    return complex(value[0], -value[1]) if isinstance(value, list) else value
+
+
+materials = MaterialLibrary()
+
+
+def known_material(material) -> tuple:
+    """(Material, its name or "") of a Material or a name; raises ValueError or TypeError naming the argument `material`."""
+    if isinstance(material, str):
+        try:
+            return materials[material], material
+        except KeyError as error:
+            raise ValueError(f"material: {error.args[0]}") from None
+    if not isinstance(material, _core.Material):
+        raise refused(TypeError, "material", "a Material or a name of one", material)
+    return material, materials.name_of(material)

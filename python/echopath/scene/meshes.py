@@ -1,0 +1,33 @@
+"""Meshes of files."""
+from __future__ import annotations
+
+import os
+
+from .. import _core
+from ..arguments.checks import checked, real
+
+UNIT = real(1e-12, 1e9, "m")
+
+
+@checked(unit=UNIT)
+def load_mesh(path: str | os.PathLike[str], unit: float = 1.0) -> _core.Mesh:
+    """All faces of a mesh file as one mesh.
+
+    path: an OBJ, PLY (ASCII or binary), STL (text or binary) or OFF file; unit: m per file unit, 1e-12 to 1e9
+    Returns a Mesh; its original_triangle counts the faces of the file from 0.
+    Raises FileError naming the file, and the line where it is text; TypeError or ValueError naming the argument.
+    """
+    return _core.load_mesh(path, unit)
+
+
+@checked(unit=UNIT)
+def load_meshes(path: str | os.PathLike[str], unit: float = 1.0) -> list[tuple[str, _core.Mesh]]:
+    """The groups of a mesh file.
+
+    path: an OBJ file, whose groups (or objects, where there is no group) become meshes, an STL text, whose solids do, or a
+        PLY, binary STL or OFF file. Groups of several materials stay whole (load_model takes them apart)
+    unit: m per file unit, 1e-12 to 1e9
+    Returns a list of (name, Mesh); the name is the file's stem where the file gives none. Groups without any area are left
+    out. Raises FileError naming the file, and the line where it is text; TypeError or ValueError naming the argument.
+    """
+    return _core.load_meshes(path, unit)

@@ -1,0 +1,190 @@
+"""Objects of a scene, to be read and changed in place: what `scene["street/car"]` is."""
+from __future__ import annotations
+
+import numpy as np
+
+from .. import _core
+from ..arguments.checks import flag, real, refused, vector
+from ..trajectories.trajectory import Trajectory
+from . import placements
+from .materials import known_material
+
+ANGLE = real(unit="rad")
+
+
+class FixedArray(np.ndarray):
+    """A read-only array: its entries cannot be set, and `+=` and the like make a new array."""
+
+    def __new__(cls, values) -> FixedArray:
+        array = np.array(values, np.float64).view(cls)
+        array.flags.writeable = False
+        return array
+
+    def __iadd__(self, other):
+        return self + other
+
+    def __isub__(self, other):
+        return self - other
+
+    def __imul__(self, other):
+        return self * other
+
+    def __itruediv__(self, other):
+        return self / other
+
+
+class SceneNode:
+    """An object of a scene, read and changed in place: `scene["street/car"].position += (1.0, 0.0, 0.0)`.
+
+    It stands for a full name, so once the object is removed it raises KeyError. What is traced after a change is what a
+    scene would give that was built so from the start; paths that were traced before it keep the scene that they saw.
+    """
+
+    __slots__ = ("_scene", "_name")
+
+    def __init__(self, scene: _core.Scene, name: str):
+        self._scene, self._name = scene, name
+
+    @property
+    def name(self) -> str:
+        """Full name, "street/car"."""
+        return self._name
+
+    @property
+    def parent(self) -> SceneNode | None:
+        """The object that carries it, None: the scene itself."""
+        above, _, _ = self._name.rpartition("/")
+        return SceneNode(self._scene, above) if above else None
+
+    @property
+    def children(self) -> list[SceneNode]:
+        """The objects right below it, in their order."""
+        index = self._index
+        return [SceneNode(self._scene, node.name) for node in self._scene.nodes if node.parent == index]
+
+    @property
+    def mesh(self) -> _core.Mesh | None:
+        """Its own Mesh, None where it has none, as an actor, whose parts have them."""
+        return self._node.mesh
+
+    @property
+    def meshes(self) -> list[_core.SceneMesh]:
+        """Of `scene.meshes`, with their mesh IDs, its own and those below it; none of what is not visible."""
+        names = (self._node.name, self._name + "/")
+        return [mesh for mesh in self._scene.meshes if mesh.name == names[0] or mesh.name.startswith(names[1])]
+
+    @property
+    def position(self) -> FixedArray:
+        """[3] in m: where its own origin is at rest, in the axes of its parent."""
+        return FixedArray(self._node.placement[:3, 3])
+
+    @position.setter
+    def position(self, value) -> None:
+        self._change(placement=placements.moved_to(self._node.placement, vector("position", value)))
+
+    @property
+    def yaw(self) -> float:
+        """rad about the parent's z, left positive: where its own +x points at rest. To set it turns the object about its
+        own origin; its motion stays, which is in the axes of the parent."""
+        return placements.yaw_of(self._node.placement)
+
+    @yaw.setter
+    def yaw(self, value) -> None:
+        yaw = ANGLE("yaw", value)
+        _core.warn_of_turns(yaw)
+        self._change(placement=placements.turned_to(self._node.placement, yaw))
+
+    @property
+    def transform(self) -> FixedArray:
+        """[4, 4] in m: parent_from_object at rest, which position and yaw are part of."""
+        return FixedArray(self._node.placement)
+
+    @transform.setter
+    def transform(self, value) -> None:
+        self._change(placement=placements.matrix4(value))
+
+    @property
+    def motion(self):
+        """A LinearMotion, KeyframeMotion, CurveMotion, VertexSequence, MorphTargets or Skin, in the axes of the parent about
+        the object's own origin (`Scene.add`); None: at rest. To set a Skin the object must be a part of a mesh, as
+        `Scene.add` makes them."""
+        node = self._node
+        return node.deformation or node.motion
+
+    @motion.setter
+    def motion(self, value) -> None:
+        mesh = self._node.mesh
+        if isinstance(value, _core.Skin) and mesh is not None and mesh.whole is None:
+            rule = f"none that divides its mesh, as a Skin does; remove '{self._name}' and add it anew"
+            raise refused(ValueError, "motion", rule, value)
+        motion, deformation = split_motion(value, mesh, self._name)
+        self._change(motion=motion, deformation=deformation)
+
+    @property
+    def material(self) -> _core.Material | None:
+        """The Material of all meshes at and below it, None where they differ or there are none. To set it gives them all the
+        same: a Material or a name in `materials`."""
+        found = [node.material for _, node in self._with_meshes()]
+        return found[0] if found and all(material == found[0] for material in found) else None
+
+    @material.setter
+    def material(self, value) -> None:
+        material, material_name = known_material(value)
+        found = self._with_meshes()
+        if not found:
+            raise refused(ValueError, "material", f"of an object with meshes, which '{self._name}' is not", value)
+        for index, node in found:
+            self._scene._change(index, node.replace(material=material, material_name=material_name))
+
+    @property
+    def visible(self) -> bool:
+        """False: neither it nor what is below it takes part in anything. Rays do not meet it, it has no mesh ID, and labels
+        leave it out, but it stays in the scene and in frame files, and selections may name it."""
+        return self._node.visible
+
+    @visible.setter
+    def visible(self, value) -> None:
+        self._change(visible=flag("visible", value))
+
+    @property
+    def _index(self) -> int:
+        return self._scene._index_of(self._name)
+
+    @property
+    def _node(self) -> _core.Node:
+        return self._scene._node(self._index)
+
+    def _change(self, **fields) -> None:
+        index = self._index
+        self._scene._change(index, self._scene._node(index).replace(**fields))
+
+    def _with_meshes(self) -> list:
+        """(index, Node) of what has a mesh, at and below it, visible or not."""
+        below = self._name + "/"
+        return [(index, node) for index, node in enumerate(self._scene.nodes)
+                if node.mesh is not None and (node.name == self._name or node.name.startswith(below))]
+
+    def __eq__(self, other) -> bool:
+        return isinstance(other, SceneNode) and self._scene is other._scene and self._name == other._name
+
+    def __hash__(self) -> int:
+        return hash((id(self._scene), self._name))
+
+    def __repr__(self) -> str:
+        if self._name not in self._scene:
+            return f"SceneNode('{self._name}', removed)"
+        position = ", ".join(f"{value:g}" for value in self.position)
+        hidden = "" if self._scene._takes_part(self._index) else ", not visible"
+        return f"SceneNode('{self._name}', position=({position}) m, yaw={self.yaw:g} rad, {len(self.meshes)} meshes{hidden})"
+
+
+def split_motion(motion, mesh, name: str) -> tuple:
+    """What moves an object as the core has it: (Motion or None, Deformation or None), one of them at most."""
+    if isinstance(motion, Trajectory):
+        motion = motion.motion()
+    deformation = motion if isinstance(motion, _core.Deformation) else None
+    if deformation is not None and mesh is None:
+        raise ValueError(f"motion: a {type(motion).__name__} needs a mesh, and '{name}' has none of its own")
+    if not (motion is None or deformation or isinstance(motion, _core.Motion)):
+        raise refused(TypeError, "motion", "a Motion, a Deformation or None", motion)
+    return (None if deformation else motion), deformation

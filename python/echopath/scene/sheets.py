@@ -1,0 +1,55 @@
+"""What sheets, materials of layers, do to waves."""
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from .. import _core
+from ..arguments.checks import ArrayLike, an, anything, array, checked, flag, positive, real
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class SheetCoefficients:
+    """Fields that a sheet reflects and lets pass, over that of the wave; made by `sheet_coefficients`.
+
+    incidence: rad from the normal [N]
+    te_reflection, tm_reflection: complex [N], at the face that the wave meets
+    te_transmission, tm_transmission: complex [N], from that face to the other one, at the same point of both
+    te_delay, tm_delay: m [N], by how much longer the way seems to be than through air
+    TE has its electric field across the plane of incidence, TM in it; signs are those of Fresnel's coefficients here.
+    """
+
+    incidence: np.ndarray
+    te_reflection: np.ndarray
+    tm_reflection: np.ndarray
+    te_transmission: np.ndarray
+    tm_transmission: np.ndarray
+    te_delay: np.ndarray
+    tm_delay: np.ndarray
+
+    @checked(self=anything, te_share=real(0.0, 1.0))
+    def passed_power(self, te_share: float = 0.5) -> np.ndarray:
+        """Share of the power that passes [N].
+
+        te_share: of the wave's power that is TE, in [0, 1]
+        Raises TypeError or ValueError naming the argument.
+        """
+        te, tm = np.abs(self.te_transmission) ** 2, np.abs(self.tm_transmission) ** 2
+        return te_share * te + (1.0 - te_share) * tm
+
+
+@checked(material=an(_core.Material), frequency=positive("Hz"), incidence=array("[]", "[N]", finite=True), from_behind=flag)
+def sheet_coefficients(material: _core.Material, *, frequency: float, incidence: ArrayLike,
+                       from_behind: bool = False) -> SheetCoefficients:
+    """What a sheet reflects and lets pass: Airy's sums over all bounces within its layers.
+
+    material: one with layers
+    frequency: Hz
+    incidence: rad from the normal, in [0, pi/2], a number or [N]
+    from_behind: the wave meets the last layer first
+    Returns SheetCoefficients, [N] each. Raises TypeError or ValueError naming the argument.
+    """
+    angles = np.atleast_1d(np.asarray(incidence, np.float64))
+    rows = _core._sheet_coefficients(material, frequency, angles, from_behind)
+    return SheetCoefficients(angles, *rows[:4], rows[4].real, rows[4].imag)

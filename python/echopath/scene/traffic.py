@@ -1,0 +1,123 @@
+"""Traffic: objects that follow the trajectories of a file, put into a scene."""
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from .. import actors
+from ..actors.laid_line import usual_speed
+from ..arguments.checks import an, anything, checked, optional, real, refused, text
+from ..readers.tree import fit_name
+from ..trajectories.trajectory import Trajectory
+from .scene import Scene
+
+# Words of a kind -> name of an actor and its keywords; the first that is in the kind is taken.
+KINDS = (("truck", "truck", {}), ("trailer", "truck", {}), ("bus", "van", {"kind": "large"}),
+         ("delivery", "van", {"kind": "large"}),
+         ("van", "van", {"kind": "small"}), ("motorcycle", "motorcycle", {}), ("moped", "motorcycle", {}),
+         ("bicycle", "cyclist", {}), ("bike", "cyclist", {}), ("cyclist", "cyclist", {}), ("ped", "pedestrian", {}),
+         ("person", "pedestrian", {}), ("walk", "pedestrian", {}), ("dog", "dog", {}))
+ActorOf = Callable[[str, Trajectory], Any]
+
+
+class Traffic(Mapping[str, Trajectory]):
+    """The objects that `add_traffic` has put into a scene: {full name in the scene: Trajectory}. Raises KeyError for others."""
+
+    def __init__(self, scene, trajectories: dict[str, Trajectory]):
+        self._scene, self._trajectories = scene, trajectories
+
+    def __getitem__(self, name: str) -> Trajectory:
+        return self._trajectories[name]
+
+    def __iter__(self):
+        return iter(self._trajectories)
+
+    def __len__(self) -> int:
+        return len(self._trajectories)
+
+    def __repr__(self) -> str:
+        return f"Traffic({len(self)} objects)"
+
+    def present(self, begin: float, end: float | None = None) -> list[str]:
+        """Names of the objects whose trajectories have begun and not ended, at a time or at some time of a span.
+
+        begin, end: s; None: a single time. Raises TypeError or ValueError naming the argument.
+        """
+        begin = real(unit="s")("begin", begin)
+        end = begin if end is None else real(begin, unit="s")("end", end)
+        return [name for name, one in self._trajectories.items() if one.begin <= end and begin <= one.end]
+
+    def show(self, begin: float, end: float | None = None) -> list[str]:
+        """Makes the objects visible that are present, the others invisible, before a frame of that time is simulated.
+
+        begin, end: s; None: a single time. Returns the names of those that are visible. Raises as `present` does.
+        """
+        present = self.present(begin, end)
+        shown = set(present)
+        for name in self._trajectories:
+            if name in self._scene and self._scene[name].visible != (name in shown):
+                self._scene[name].visible = name in shown
+        return present
+
+
+def _trajectories_rule(argument: str, value) -> dict[str, Trajectory]:
+    rule = "a dict of trajectories by their names, as read_trajectories returns"
+    if not isinstance(value, Mapping):
+        raise refused(TypeError, argument, rule, value)
+    for name, one in value.items():
+        if not isinstance(name, str) or not isinstance(one, Trajectory):
+            raise refused(TypeError, argument, rule, {name: one})
+    return dict(value)
+
+
+def _maker_rule(argument: str, value):
+    if value is not None and (isinstance(value, type) or not callable(value)):
+        raise refused(TypeError, argument, "a callable (name, trajectory) that returns an actor, or None", value)
+    return value
+
+
+@checked(scene=an(Scene), trajectories=_trajectories_rule, actor_of=_maker_rule, parent=optional(text), time=optional(anything))
+def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_of: ActorOf | None = None,
+                parent: str | None = None, time: float | None = None) -> Traffic:
+    """Puts an object for each trajectory into a scene, under its name; what a name of the scene must not hold becomes '_'.
+
+    trajectories: {name: Trajectory}, such as read_trajectories returns
+    actor_of: (name, trajectory) -> what Scene.add takes, such as `ep.actors.car(kind="suv", trajectory=trajectory)`; what does
+        not follow the trajectory by itself is moved by it as a whole; None back: no object. None: by the words of
+        `trajectory.kind`: truck, bus, van, motorcycle, bicycle, pedestrian, dog, else a compact car
+    parent: full name of the object whose axes the trajectories are in; None: the world
+    time: s; what is not there at that time is not visible; None: everything is, at any time. `Traffic.show` changes it
+    Returns the Traffic. Raises TypeError or ValueError naming the argument.
+    """
+    time = None if time is None else real(unit="s")("time", time)
+    added = {}
+    for name, trajectory in trajectories.items():
+        actor = (actor_of or usual_actor)(name, trajectory)
+        if actor is None:
+            continue
+        follows = getattr(actor, "motion", None) is not None
+        full_name = scene.add(actor, name=_free_name(scene, fit_name(name, "object"), parent), parent=parent,
+                              motion=None if follows else trajectory)
+        added[full_name] = trajectory
+    traffic = Traffic(scene, added)
+    if time is not None:
+        traffic.show(time)
+    return traffic
+
+
+def usual_actor(name: str, trajectory: Trajectory):
+    """The actor that is usual for the kind of a trajectory, which follows it."""
+    kind = trajectory.kind.lower()
+    actor, keywords = next(((actor, keywords) for word, actor, keywords in KINDS if word in kind), ("car", {}))
+    if actor == "pedestrian" and usual_speed(trajectory._track) > 2.0:
+        actor = "runner"
+    return getattr(actors, actor)(trajectory=trajectory, **keywords)
+
+
+def _free_name(scene, name: str, parent: str | None) -> str:
+    """The name, or with a number behind it where it is taken."""
+    above, tried, count = f"{parent}/" if parent else "", name, 1
+    while above + tried in scene:
+        count += 1
+        tried = f"{name}_{count}"
+    return tried

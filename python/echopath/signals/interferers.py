@@ -1,0 +1,108 @@
+"""Other radars of a scene, and what they send into the receivers of the radar of a frame."""
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from .. import _core
+from ..arguments.checks import Rule, an, one_of, real, refused
+from ..arguments.effects import INTERFERENCE, Choices, is_on
+from ..arguments.settings import Settings, TraceSettings, settings_class
+from ..tracing.traces import trace
+from ..transmit import signal_shape
+from ..weather.weather import attenuation_of
+from .interference import interference, interference_radar, require_apart
+
+Over = Literal["both", "direct", "paths"]
+
+
+@settings_class
+class Interferer(Settings):
+    """Another FMCW radar in a scene, which sends into the receivers of the radar that is simulated (`Scene.interferers`).
+
+    radar: that sends: its waveform, code, power, transmitters, place in m and motion count. Its motion covers the frames, and
+        the direct way is at least a wavelength long
+    offset: s, by which its frames begin later than at time 0; they follow each other without a pause
+    over: "both" the direct way, where nothing stands in it, and the paths of the scene; "direct" or "paths" alone
+    Raises TypeError or ValueError naming the keyword. Values are frozen; two with equal values are equal.
+    """
+
+    radar: _core.Radar
+    offset: float = 0.0
+    over: Over = "both"
+
+    RULES: ClassVar[Mapping[str, Rule]] = {"radar": an(_core.Radar), "offset": real(unit="s"), "over": one_of(Over)}
+
+
+def interferers_rule(argument: str, value) -> tuple[Interferer, ...]:
+    """Some Interferer, as a tuple."""
+    if not isinstance(value, (list, tuple)) or not all(isinstance(one, Interferer) for one in value):
+        raise refused(TypeError, argument, "a list of Interferer", value)
+    return tuple(value)
+
+
+def interferers_of(scene) -> tuple[Interferer, ...]:
+    """Of a scene; records keep scenes without."""
+    return getattr(scene, "interferers", ())
+
+
+def has_interference(scene, effects: Choices) -> bool:
+    """Whether a scene has other radars and `effects` leave them on. Raises ValueError where only the latter ask for them."""
+    return is_on(effects, INTERFERENCE, bool(interferers_of(scene)), "Scene.interferers")
+
+
+def require_interferers(scene, radar: _core.Radar, effects: Choices, times) -> None:
+    """Raises ValueError, before the long work, for other radars that have no place at one of times in s, or that of the radar."""
+    if not has_interference(scene, effects):
+        return
+    for index, one in enumerate(interferers_of(scene)):
+        argument = f"interferers[{index}].radar"
+        try:
+            for time in times:
+                one.radar.world_from_radar(time)
+        except ValueError as error:
+            raise ValueError(f"{argument}: must have a motion that covers all frames: {error}") from None
+        if one.over != "paths":
+            require_apart(radar, one.radar, times, argument)
+
+
+def interference_cube(scene, radar: _core.Radar, settings: TraceSettings, progress=None) -> np.ndarray:
+    """What the other radars of a scene send into the receivers in a frame, complex, in the shape of `synthesize` in sqrt(W).
+
+    settings: of the trace of the frame, also of those from the other radars; progress: as in `trace`
+    """
+    cube = np.zeros(signal_shape(radar), complex)
+    for one in interferers_of(scene):
+        timing = {"start_time": settings.start_time, "offset": one.offset}
+        if one.over != "paths":
+            share = _direct_share(scene, radar, one.radar, settings)
+            cube += share * interference(radar, one.radar, **timing) if share > 0.0 else 0.0
+        if one.over != "direct":
+            paths = _one_way_paths(scene, radar, one.radar, settings, progress)
+            cube += interference(radar, one.radar, paths, **timing) if paths.num_paths else 0.0
+    return cube
+
+
+def _middle(radar, start_time: float) -> float:
+    return start_time + 0.5 * radar.frame_duration
+
+
+def _direct_share(scene, radar, other, settings: TraceSettings) -> float:
+    """What the scene leaves of the field of the direct way in the middle of the frame: 0 where something stands in it."""
+    time = _middle(radar, settings.start_time)
+    between = interference_radar(radar, other, time=time)
+    sent, heard = (np.mean([one.position for one in antennas], axis=0)
+                   for antennas in (between.transmitters, between.receivers))
+    if not _core.are_clear(scene, time=time, origin=sent, points=[heard])[0]:
+        return 0.0
+    return float(np.exp(-attenuation_of(scene, other, settings.effects) * np.linalg.norm(heard - sent)))
+
+
+def _one_way_paths(scene, radar, other, settings: TraceSettings, progress):
+    """Paths from the other radar to this one, both as they stand in the middle of the frame, through the scene of then."""
+    time = _middle(radar, settings.start_time)
+    between = interference_radar(radar, other, time=time)
+    between = between.replace(multiplexing="tdm", code_phases=None, waveform=between.waveform.replace(num_chirps=1))
+    return trace(scene, between, settings=settings.replace(start_time=time - 0.5 * between.frame_duration), progress=progress)

@@ -1,0 +1,164 @@
+"""Angles of arrival: the virtual array, beams and spectra over it, and the directions of echoes."""
+from __future__ import annotations
+
+from typing import Literal
+
+from .. import _core
+from ..arguments.checks import LARGEST_COUNT, ArrayLike, Progress, Window, array, checked, count, flag, one_of, optional, real
+from ..arguments.checks import window as window_rule
+from ..arguments.gates import gate
+
+BeamMethod = Literal["bartlett", "capon"]
+Overlaps = Literal["average", "first"]
+Combine = Literal["sum", "peak"]
+
+_ANGLES = optional(array("[]", "[N]"))
+_CELLS = array("[N, 2]", kind="whole")
+_BEAM_RULES = {
+    "azimuth": _ANGLES, "elevation": _ANGLES, "method": one_of(BeamMethod), "overlaps": one_of(Overlaps), "compensate": flag,
+    "diagonal_loading": real(1e-9, 1e3), "velocity_neighbours": count(0, 64), "range_neighbours": count(0, 64),
+    "forward_backward": flag, "window": window_rule}
+
+
+@checked()
+def virtual_array(radar: _core.Radar) -> _core.VirtualArray:
+    """The virtual array of a radar's transmitters and receivers.
+
+    Each pair receives the phase of one antenna at the sum of both positions, in m in the radar's frame. Positions closer than
+    0.01 wavelengths are one element (an overlap). Equal steps along a line, or along two perpendicular axes of a plane, are
+    found as a grid, from a fifth of a wavelength on; its points without an element are gaps.
+    radar: whose antennas count
+    Returns a VirtualArray with positions [tx, rx, 3] in m. Raises TypeError naming the argument.
+    """
+    return _core.virtual_array(radar)
+
+
+@checked(fold=count(-1000, 1000))
+def compensate_tdm(spectrum: _core.RangeDoppler, radar: _core.Radar, fold: int = 0) -> _core.RangeDoppler:
+    """A map without the phase that motion adds between transmit slots (TDM).
+
+    Transmitter m sends m chirp intervals after the first: a cell of velocity v (receding positive) is turned by
+    e^{-j 2 pi (2 v / wavelength) m chirp_interval}. M transmitters divide the unambiguous velocity by M; an echo of
+    v + 2 fold v_max, with v_max = waveform.max_velocity(M), appears at v and needs its `fold`.
+    spectrum: RangeDoppler of that radar, with values [tx, rx, velocity, range]
+    radar: that of the spectrum
+    fold: whole number; the velocities of the result are those assumed, v + 2 fold v_max in m/s
+    Returns a RangeDoppler. The functions of angles do this themselves unless it is done. Raises TypeError or ValueError
+    naming the argument.
+    """
+    return _core.compensate_tdm(spectrum, radar, fold)
+
+
+@checked(overlaps=one_of(Overlaps), compensate=flag, window=window_rule)
+def angle_fft(spectrum: _core.RangeDoppler, radar: _core.Radar, *, window: Window = "hann", zero_pad: int = 4,
+              overlaps: Overlaps = "average", compensate: bool = True, progress: Progress = None) -> _core.AngleSpectrum:
+    """Angle spectra of a uniform array: a Fourier transform over its rows and columns.
+
+    spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
+    radar: that of the spectrum
+    window: as in `range_doppler`, over rows and columns; here symmetric and nowhere zero
+    zero_pad: 1 to 64, transforms of so many times the rows and columns
+    overlaps: "average" of channels at one position, or the "first" of them; gaps count as zeros
+    compensate: take out the phase between transmit slots (`compensate_tdm`)
+    progress: callable (stage, fraction), True for bars, or None
+    Returns an AngleSpectrum with values [elevation, azimuth, velocity, range] in sqrt(W). |value|^2 of a far point at its
+    direction is its received power in W, averaged over channels; noise falls to 1/N for N elements without a window.
+    Raises TypeError or ValueError naming the argument, also where the array is no grid of equal steps (`beamform` takes any)
+    or the map is not the radar's.
+    """
+    return _core.angle_fft(spectrum, radar, window=window, zero_pad=zero_pad, overlaps=overlaps, compensate=compensate,
+                           progress=progress)
+
+
+@checked(**_BEAM_RULES, cells=optional(_CELLS))
+def beamform(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLike | None = None,
+             elevation: ArrayLike | None = 0.0, *, cells: ArrayLike | None = None, method: BeamMethod = "bartlett",
+             window: Window = "rect", overlaps: Overlaps = "average", compensate: bool = True, diagonal_loading: float = 0.01,
+             velocity_neighbours: int = 1, range_neighbours: int = 2, forward_backward: bool = False,
+             progress: Progress = None) -> _core.BeamPower:
+    """Power that beams toward a grid of directions pass, for any array.
+
+    Steering vectors are plane waves at the exact element positions and the wavelength at the centre frequency. An echo from
+    the steered direction passes unchanged: a far point gives its received power in W, averaged over channels.
+    spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
+    radar: that of the spectrum
+    azimuth: [A] or one in rad, ascending, in the radar's frame from +x to the left; None: those the array tells apart
+    elevation: [E] or one in rad, up from the xy-plane; None likewise
+    cells: [N, 2] (velocity, range) indices, or None: all
+    method: "bartlett" (delay and sum) or "capon" (minimum variance: the weights that pass the least power from elsewhere;
+        resolves echoes of different velocity or range within a beam; its peaks may be narrower than steps of the grid)
+    window: of bartlett, as in `angle_fft`; other than "rect" for grids of equal steps only
+    overlaps: "average" of channels at one position, or the "first" of them
+    compensate: take out the phase between transmit slots (`compensate_tdm`)
+    diagonal_loading: of capon, added to the covariance relative to the mean power of the elements, 1e-9 to 1e3
+    velocity_neighbours, range_neighbours: of capon, cells on each side whose vectors make the covariance, 0 to 64
+    forward_backward: of capon, also average the covariance of the mirrored array (symmetric arrays)
+    progress: callable (stage, fraction), True for bars, or None
+    Returns a BeamPower with power [elevation, azimuth, velocity, range] in W, of cells [elevation, azimuth, cell].
+    Raises TypeError, ValueError or IndexError naming the argument.
+    """
+    return _core.beamform(spectrum, radar, azimuth, elevation, cells=cells, method=method, window=window, overlaps=overlaps,
+                          compensate=compensate, diagonal_loading=diagonal_loading, velocity_neighbours=velocity_neighbours,
+                          range_neighbours=range_neighbours, forward_backward=forward_backward, progress=progress)
+
+
+@checked(**_BEAM_RULES, velocity=optional(real(unit="m/s")), combine=one_of(Combine), velocity_gate=gate)
+def range_azimuth(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLike | None = None,
+                  elevation: ArrayLike | None = 0.0, *, velocity: float | None = None, combine: Combine = "sum",
+                  velocity_gate: ArrayLike | None = None, method: BeamMethod = "bartlett", window: Window = "rect",
+                  overlaps: Overlaps = "average", compensate: bool = True, diagonal_loading: float = 0.01,
+                  velocity_neighbours: int = 1, range_neighbours: int = 2, forward_backward: bool = False,
+                  progress: Progress = None) -> _core.RangeAzimuth:
+    """Received power by range and azimuth.
+
+    spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
+    radar: that of the spectrum
+    azimuth: [A] or one in rad, ascending, in the radar's frame from +x to the left; None: those the array tells apart
+    elevation: [E] or one in rad: the largest power over them is taken; None: those the array tells apart
+    velocity: m/s, of the cells to take; None: all velocities
+    combine: of all velocities, their "sum", or "peak", the largest of them. A point gives its received power in W in every
+        case, points of several velocities the sum or the largest. Noise of the sum is that of one chirp, noise of the peak
+        about ln(num_chirps) times that of a cell.
+    velocity_gate: (lowest, highest) in m/s of "all velocities", as the map has them; None: those of the map
+    method, window, overlaps, compensate, diagonal_loading, velocity_neighbours, range_neighbours, forward_backward: of the
+        beams, as in `beamform`
+    progress: callable (stage, fraction), True for bars, or None
+    Returns a RangeAzimuth with power [azimuth, range] in W. Raises TypeError or ValueError naming the argument. Warns
+    (RuntimeWarning) where the antennas tell no azimuths apart.
+    """
+    return _core.range_azimuth(spectrum, radar, azimuth, elevation, velocity=velocity, combine=combine,
+                               velocity_gate=velocity_gate, method=method, window=window, overlaps=overlaps,
+                               compensate=compensate, diagonal_loading=diagonal_loading,
+                               velocity_neighbours=velocity_neighbours, range_neighbours=range_neighbours,
+                               forward_backward=forward_backward, progress=progress)
+
+
+@checked(**_BEAM_RULES, cells=_CELLS, max_peaks=count(1, 64), peak_range_db=real(0.0, 200.0, unit="dB"),
+         folds=count(0, LARGEST_COUNT))
+def estimate_angles(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLike | None = None,
+                    elevation: ArrayLike | None = None, *, cells: ArrayLike, max_peaks: int = 1, peak_range_db: float = 10.0,
+                    folds: int = 0, method: BeamMethod = "bartlett", window: Window = "rect", overlaps: Overlaps = "average",
+                    compensate: bool = True, diagonal_loading: float = 0.01, velocity_neighbours: int = 1,
+                    range_neighbours: int = 2, forward_backward: bool = False,
+                    progress: Progress = None) -> _core.AngleEstimates:
+    """Where the echoes of chosen cells come from: peaks of beam power, finer than the grid.
+
+    spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
+    radar: that of the spectrum
+    azimuth: [A] or one in rad, ascending, where to search; None: what the array tells apart, a quarter of a beam each
+    elevation: [E] or one in rad; None likewise, 0 alone for an array without vertical extent
+    cells: [N, 2] (velocity, range) indices
+    max_peaks: of a cell, the strongest; peak_range_db: dB below the strongest of the cell, within which others count
+    folds: K tries the velocities v + 2 k v_max, |k| <= K, and takes the one with the strongest peak, which transmit slots
+        tell apart; less than half the number of transmitters
+    method, window, overlaps, compensate, diagonal_loading, velocity_neighbours, range_neighbours, forward_backward: of the
+        beams, as in `beamform`
+    progress: callable (stage, fraction), True for bars, or None
+    Returns AngleEstimates, arrays [M]: none for a cell without power. Raises TypeError, ValueError or IndexError naming the
+    argument.
+    """
+    return _core.estimate_angles(spectrum, radar, azimuth, elevation, cells=cells, max_peaks=max_peaks,
+                                 peak_range_db=peak_range_db, folds=folds, method=method, window=window, overlaps=overlaps,
+                                 compensate=compensate, diagonal_loading=diagonal_loading,
+                                 velocity_neighbours=velocity_neighbours, range_neighbours=range_neighbours,
+                                 forward_backward=forward_backward, progress=progress)

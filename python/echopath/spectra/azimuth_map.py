@@ -1,0 +1,54 @@
+"""Settings of the range-azimuth map of a frame."""
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+
+from .. import _core
+from ..arguments.checks import keywords, optional, real, refused
+from ..arguments.gates import gate
+from ..arguments.keywords import parameters_of
+from .angles import range_azimuth
+
+DEFAULTS = {"combine": "peak"}  # noise as low as in the cells of the range-Doppler map
+
+_KEYWORDS = keywords("range_azimuth", parameters_of(range_azimuth)[2:])  # all but spectrum and radar
+
+
+def sees_azimuth(radar) -> bool:
+    """Whether the antennas of a radar tell azimuths apart."""
+    azimuth, _ = _core.virtual_array(radar).default_angles()
+    return len(azimuth) > 1
+
+
+def checked_settings(radar, settings, velocity_gate=None) -> dict:
+    """Keywords of `ep.range_azimuth` for a radar, DEFAULTS for None; raises what it would raise, before a long trace.
+
+    velocity_gate: (lowest, highest) in m/s beside the settings, or None
+    """
+    settings = dict(DEFAULTS) if settings is None else dict(_KEYWORDS("angles", settings))
+    if velocity_gate is not None:
+        if settings.get("velocity_gate") is not None:
+            raise refused(ValueError, "velocity_gate", "None where angles has one", velocity_gate)
+        settings["velocity_gate"] = velocity_gate
+    if gate("velocity_gate", settings.get("velocity_gate")) and settings.get("velocity") is not None:
+        raise refused(ValueError, "velocity_gate", "None where a velocity is chosen", settings["velocity_gate"])
+    velocity = optional(real(unit="m/s"))("velocity", settings.get("velocity"))
+    limit = radar.waveform.max_velocity(radar.num_slots)
+    if velocity is not None and abs(velocity) > limit:
+        raise ValueError(f"velocity: must be within +-{limit:.6g} m/s, got {velocity}")
+    small = _with_one_sample(radar)
+    cube = np.zeros((len(radar.transmitters), len(radar.receivers), 1, 1))
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # a radar that sees no azimuth gets no map: `sees_azimuth`
+        range_azimuth(_core.range_doppler(cube, small), small, **settings | {"velocity": None, "velocity_gate": None})
+    return settings
+
+
+def _with_one_sample(radar):
+    """A radar of the same antennas whose maps have one cell."""
+    given = radar.waveform
+    waveform = _core.ChirpSequence(start_frequency=given.start_frequency, bandwidth=given.bandwidth, num_samples=1,
+                                   sampling_rate=given.sampling_rate, num_chirps=1, chirp_interval=given.chirp_interval)
+    return radar.replace(waveform=waveform, multiplexing="tdm", code_phases=None)

@@ -1,0 +1,70 @@
+"""Range-Doppler maps of cubes, and the cells that stand out of their noise."""
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from .. import _core
+from ..arguments.checks import LARGEST_COUNT, ArrayLike, MapWindow, Progress, checked, count, one_of, optional, real, refused
+from ..arguments.settings import SignalSettings
+from ..transmit.code import is_coded, signal_shape
+
+CfarMethod = Literal["ca", "os"]
+_CELLS = optional(count(0, LARGEST_COUNT))
+
+# Of `cfar` and of what detects by it.
+CFAR_RULES = {"method": one_of(CfarMethod), "false_alarm_rate": real(1e-15, 0.5), "guard_velocity": _CELLS,
+              "guard_range": _CELLS, "training_velocity": _CELLS, "training_range": _CELLS,
+              "rank": real(above=0.0, high=1.0)}
+FALSE_ALARM_RATE, RANK = 1e-6, 0.75
+
+
+@checked()
+def range_doppler(cube: ArrayLike, radar: _core.Radar, window: MapWindow = SignalSettings.window,
+                  zero_pad: int = SignalSettings.zero_pad) -> _core.RangeDoppler:
+    """Range-Doppler maps of a cube, calibrated so that |value|^2 of a peak is received power in W.
+
+    cube: [tx, rx, chirp, sample] in sqrt(W), of that radar
+    radar: that of the cube
+    window: "rect", "hann", "hamming", "blackman_harris" or ("chebyshev", sidelobe level in dB), on both axes; or a pair of
+        these, that of range and that of velocity, such as ("hann", ("chebyshev", 60))
+    zero_pad: 1 to 64, transforms of so many times the samples and chirps
+    Returns RangeDoppler with values [tx, rx, velocity, range]. The phase between transmit slots is left in.
+    Raises TypeError or ValueError naming the argument.
+    """
+    apart = (len(radar.transmitters), len(radar.receivers), radar.waveform.num_chirps, radar.waveform.num_samples)
+    if is_coded(radar) and np.shape(cube) == signal_shape(radar) != apart:
+        raise refused(ValueError, "cube", f"apart by transmitters, of the shape {apart}, as ep.demultiplex(cube, radar) gives it",
+                      cube)
+    return _core.range_doppler(cube, radar, window, zero_pad)
+
+
+@checked(**CFAR_RULES)
+def cfar(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMethod = "ca",
+         false_alarm_rate: float = FALSE_ALARM_RATE, guard_velocity: int | None = None, guard_range: int | None = None,
+         training_velocity: int | None = None, training_range: int | None = None, rank: float = RANK,
+         progress: Progress = None) -> _core.CfarResult:
+    """Cells of a range-Doppler map that stand out of the noise about them, at a constant false-alarm rate.
+
+    A cell is found where its power, summed over channels, exceeds what its training cells make of the rate. The threshold is
+    right for the correlation that the map's window and zero padding make between neighbouring cells, and for any number of
+    channels. Velocity is a circle; at the ends of the range axis training cells are taken from the other side.
+    spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
+    radar: that of the spectrum
+    method: "ca" (cell averaging: mean of the training cells) or "os" (ordered statistic: minds neighbouring targets less)
+    false_alarm_rate: probability that noise alone exceeds the threshold of a cell, 1e-15 to 0.5
+    guard_velocity, guard_range: half widths in cells of the rectangle about a cell that tells nothing of its noise, at least
+        the window's main lobe; None: just that
+    training_velocity, training_range: cells beyond them on each side that do; None: 4 and 8 times zero_pad, fewer where the
+        map is small
+    rank: of "os", the share of the training cells that the statistic is not below, above 0 to 1
+    progress: callable (stage, fraction), True for bars, or None
+    Thresholds of a design are computed once: a tenth of a second for the defaults, 3 s for 12 x 24 training cells on each
+    side, "os" several times that; Ctrl-C is heard.
+    Returns a CfarResult. Raises TypeError or ValueError naming the argument, also for windows of more than 2000 cells,
+    counted without padding.
+    """
+    return _core.cfar(spectrum, radar, method=method, false_alarm_rate=false_alarm_rate, guard_velocity=guard_velocity,
+                      guard_range=guard_range, training_velocity=training_velocity, training_range=training_range, rank=rank,
+                      progress=progress)

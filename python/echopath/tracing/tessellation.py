@@ -1,0 +1,132 @@
+"""Curved surfaces whose triangles are too large for physical optics."""
+from __future__ import annotations
+
+import dataclasses
+import warnings
+
+import numpy as np
+
+from .. import _core
+from .polarization import COHERENT_SHARE
+
+# Level error of a metal sphere of flat facets over edge / sqrt(radius wavelength), in dB (icospheres against pi a^2).
+EDGE_RATIOS = (0.19, 0.38, 0.76, 1.52)
+ERRORS_DB = (0.01, 0.30, 1.8, 5.0)
+MAX_RATIO = 0.4          # edge / sqrt(radius wavelength) that errs by 0.3 dB
+SMOOTH_GAIN = 4.0        # how much coarser a smooth mesh may be
+_NAMED = 3               # meshes of which a warning tells
+
+
+class TessellationWarning(UserWarning):
+    """The triangles of a curved surface are too large for its coherent echo."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Tessellation:
+    """How a mesh approximates a curved surface.
+
+    edge: m, of an equilateral triangle that strays as far from the surface (for strips their width)
+    radius: m, of curvature, where the triangle strays; both medians over the curved area
+    curved_area, area: m^2, of the curved facets and of all
+    """
+
+    edge: float
+    radius: float
+    curved_area: float
+    area: float
+
+    def ratio(self, wavelength: float) -> float:
+        """edge / sqrt(radius wavelength), what the error depends on."""
+        return self.edge / np.sqrt(self.radius * wavelength)
+
+    def good_edge(self, wavelength: float) -> float:
+        """Edge in m that errs by 0.3 dB."""
+        return MAX_RATIO * np.sqrt(self.radius * wavelength)
+
+
+def facet_error_db(ratio: float) -> float:
+    """Level error in dB (absolute) of flat facets with edge / sqrt(radius wavelength) = ratio; at most that of 1.52."""
+    return float(np.exp(np.interp(np.log(ratio), np.log(EDGE_RATIOS), np.log(ERRORS_DB))))
+
+
+def tessellation(vertices, triangles) -> Tessellation | None:
+    """Measures the curvature that a mesh's facets stand for, from the turns between neighbours.
+
+    vertices [V, 3] in m, triangles [F, 3]. Returns None for meshes without curved surfaces: planes, and planes that
+    meet in edges of more than 40 degrees or in single bends. The core tells how (scene/mesh/tessellation.h).
+    """
+    return _tessellation_of(_core.Mesh(vertices, triangles))
+
+
+def _tessellation_of(mesh) -> Tessellation | None:
+    found = _core.tessellation(mesh)
+    return None if found is None else Tessellation(*found)
+
+
+def warn_of_coarse_meshes(scene, frequency: float, stacklevel: int = 2) -> None:
+    """Warns (TessellationWarning), once for all, of curved meshes whose coherent echo at `frequency` [Hz] would err by more
+    than 0.3 dB; tells of the worst ones what edge would do."""
+    found = coarse_meshes(scene, frequency)
+    if not found:
+        return
+    worst = sorted(found, key=lambda one: -one.ratio)[:_NAMED]
+    text = "; ".join(one.text for one in worst)
+    if len(found) > len(worst):
+        text = f"{len(found)} meshes are too coarse for their coherent echo, the worst: " + text
+    warnings.warn(text, TessellationWarning, stacklevel=stacklevel + 1)
+
+
+@dataclasses.dataclass(frozen=True)
+class CoarseMesh:
+    """A mesh whose coherent echo would err by more than 0.3 dB.
+
+    mesh_id: index into scene.meshes; ratio: edge / sqrt(radius wavelength), a smooth mesh counts as four times finer
+    text: what is wrong with it
+    """
+
+    mesh_id: int
+    ratio: float
+    text: str
+
+
+def coarse_meshes(scene, frequency: float) -> list[CoarseMesh]:
+    """Meshes of a scene whose coherent echo at `frequency` [Hz] would err by more than 0.3 dB."""
+    wavelength = _core.speed_of_light / frequency
+    asked = _core.coherent_meshes(scene, wavelength, COHERENT_SHARE, without_planes=True)
+    if not asked:
+        return []
+    nodes, meshes, found = scene.nodes, scene.meshes, []
+    for mesh_id in asked:
+        mesh = meshes[mesh_id]
+        measured = _measured(mesh.mesh)
+        if measured is None:
+            continue
+        smooth = nodes[mesh.node].smooth
+        ratio = measured.ratio(wavelength) / (SMOOTH_GAIN if smooth else 1.0)
+        if ratio > MAX_RATIO:
+            found.append(CoarseMesh(mesh_id, ratio, _complaint(mesh.name, measured, wavelength, smooth)))
+    return found
+
+
+_known = _core.MeshTable()  # tessellations, each as long as its mesh lives
+
+
+def _measured(mesh) -> Tessellation | None:
+    """The tessellation of a mesh, measured once."""
+    measured = _known.get(mesh, _known)
+    if measured is _known:
+        measured = _tessellation_of(mesh)
+        _known.set(mesh, measured)
+    return measured
+
+
+def _complaint(name: str, measured: Tessellation, wavelength: float, smooth: bool) -> str:
+    """What is wrong with a mesh that is too coarse."""
+    coarser = SMOOTH_GAIN if smooth else 1.0
+    ratio = measured.ratio(wavelength) / coarser
+    advice = f"edges of {1e3 * coarser * measured.good_edge(wavelength):.2g} mm would do"
+    if not smooth and ratio <= SMOOTH_GAIN * MAX_RATIO:
+        advice += ", or smooth=True"
+    error = f"about {facet_error_db(ratio):.1f} dB" if ratio <= EDGE_RATIOS[-1] else f"{ERRORS_DB[-1]:.0f} dB or more"
+    return (f"mesh '{name}': edges of {1e3 * measured.edge:.2g} mm on a surface curved with a radius of "
+            f"{measured.radius:.2g} m err by {error} in its coherent echo; {advice}")

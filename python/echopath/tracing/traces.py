@@ -1,0 +1,207 @@
+"""Traces and cross sections: the model of polarisation chosen, and what is wrong with the scene said."""
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import _core
+from ..arguments.checks import ArrayLike, Progress, array, checked, flag, one_of, optional, positive, real, shown
+from ..arguments.effects import Choices
+from ..arguments.settings import Edges, Footprint, Polarization, Sampler, Scatterers, TraceSettings
+from ..scene.sizes import warn_of_sizes
+from ..weather.weather import attenuation_of
+from .edges import looks_for_edges
+from .lost_rays import warn_of_lost_rays, warn_of_unaimed, warn_of_unfollowed_beams
+from .polarization import FIELD_VECTORS, SCALAR, antennas_of, chosen_model
+from .tessellation import warn_of_coarse_meshes
+
+Channel = Literal["vv", "hh", "vh", "hv"]  # transmitted, received
+CrossSections = float | NDArray[np.float64]
+
+HIGHEST_FREQUENCY = 1e15  # Hz, of visible light
+_CALLER = 3  # stack level of who called a function that is `checked`
+
+
+@checked({"settings": TraceSettings}, **TraceSettings.RULES)
+def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | None = TraceSettings.num_rays,
+          max_bounces: int = TraceSettings.max_bounces, seed: int = TraceSettings.seed,
+          start_time: float = TraceSettings.start_time, polarization: Polarization = TraceSettings.polarization,
+          footprint: Footprint = TraceSettings.footprint, sampler: Sampler = TraceSettings.sampler,
+          batches: int | None = TraceSettings.batches, target_error_db: float | None = TraceSettings.target_error_db,
+          max_rays: int | float = TraceSettings.max_rays, scatterers: Scatterers = TraceSettings.scatterers,
+          edges: Edges = TraceSettings.edges, effects: Choices = TraceSettings.effects,
+          settings: TraceSettings | None = None, progress: Progress = None) -> _core.Paths:
+    """Shoots rays from the radar through the scene at mid-frame and records what they hit.
+
+    scene: what is traced; radar: that looks at it
+    num_rays: a budget of rays. They go where the error is: a pilot of an eighth as many beside them, which is thrown away,
+        tells how many the echo of each object, and of each of its images, needs to be known to 0.3 dB; moving objects get
+        more; up to half of those of each lie closer about its points of reflection (strata with focus_of). Unless given, and
+        without target_error_db, there are as many as bring the echo of each object that stands above the noise to 0.3 dB
+        (95 % interval of bias and chance), 1 000 000 at most
+    max_bounces: 1 to 64, hits on mirrors count. Between a target and an antenna there are images over up to two mirrors each
+        way; over mirrors alone, over as many as max_bounces
+    seed: the same seed gives the same bits
+    start_time: s, first sample of the frame
+    polarization: "scalar" (one coefficient a hit, TE or TM by the transmit polarisation; all antennas count as
+        co-polarised), "jones" (field vectors, co- and cross-polar echoes; 32 bytes a path more), or "auto": field vectors
+        where the scene has coherent surfaces that are no flagged mirrors, rough ones that turn the polarisation, or antennas
+        of several polarisations; `paths.effects` tells which and why
+    footprint: filter of the ray's footprint on coherent echoes, "second_order", "first_order" or "none"; "edges" is a
+        flatter second order, for curved surfaces whose edges make the echo (a dish along its axis)
+    sampler: spreads the rays over the cone of each object, "lattice", "fibonacci", "r2" or "random"
+    batches: 1 to 64 independent lattices that share the rays, from which `received_power` tells standard errors; each is as
+        fine as its share of the rays; None: 1
+    target_error_db: dB; adds rays where they are missing, from num_rays (16 384 unless given) to at most max_rays, until the
+        echo of each object and image, down to 60 dB below the strongest, is known that well: half its 95 % interval
+        (`received_power`). A RuntimeWarning and `paths.frame.error_db` tell where max_rays did not do
+    scatterers: of rough surfaces: "rays", the points that rays happen to meet, other ones in each trace; "surface", points of
+        the surfaces, the same in all traces of a scene with one seed, so that the speckle of what moves goes on from frame
+        to frame; or "auto": "surface" in a `Sequence`, else "rays". Points of surfaces are less even: 5000 of them tell the
+        mean power of a body to 0.5 %, as many rays to 0.1 %. What rays meet straight from the transmitter persists; second
+        and further diffuse hits are drawn from there, and places that only flagged mirrors show are left to rays
+    edges: whether the echoes of sharp edges are looked for, too: what physical optics leaves out where two faces of a conductor
+        meet at 30 degrees or more, and at rims (`E` in path expressions), directly from the radar, over flagged mirrors and
+        over unflagged planes that rays found, and on from edge to edge over flat faces of up to 40 wavelengths (`E E`).
+        Where the strongest edge stands out of the noise of a cell of the map, those 40 dB below that noise are left out.
+        Dielectrics, and meshes that deform or change their scale, have none. "auto": where the strongest edge, were nothing
+        in its way, stands out of the noise of a cell of the map; `paths.effects` says how strong it is
+    effects: {name: True, False or "auto"} of effects that `Scene.weather` asks for: "attenuation by weather", "echoes of rain"
+        (of `simulate`); those that are left out are "auto", on where the weather has them
+    settings: TraceSettings that give the keywords which the call leaves out, or None
+    progress: callable (stage, fraction), True for bars, or None
+    From a scene's second trace on, and from the first of `simulate(labels=True)`, what has not moved since is not built again,
+    for about 200 bytes a triangle while the scene lives.
+    Returns Paths. Raises TypeError or ValueError naming the argument, also for smooth mirrors that are not flat and motions
+    that do not cover the frame. Warns (TessellationWarning, once) of curved meshes that err by more than 0.3 dB, with the
+    edge length in m that would do, and (RuntimeWarning) where over 1 % of the rays are lost to a surface that the radar
+    touches, not every sequence of mirrors was tried, objects have no rays of their own, the scene is empty, or the lengths of
+    an object look like those of another unit.
+    """
+    wavelength = _core.speed_of_light / radar.waveform.start_frequency
+    is_first, geometry = _remembered(scene)
+    if is_first:
+        warn_of_sizes(scene, wavelength, start_time, stacklevel=_CALLER)
+    warn_of_coarse_meshes(scene, radar.waveform.start_frequency, stacklevel=_CALLER)
+    model = chosen_model(polarization, scene, wavelength, antennas_of(radar), argument="polarization")
+    paths = _core.trace(scene, radar, num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
+                        polarization=model, footprint=footprint, sampler=sampler, batches=batches,
+                        target_error_db=target_error_db, max_rays=max_rays,
+                        scatterers="rays" if scatterers == "auto" else scatterers,
+                        edges=looks_for_edges(edges, scene, radar, start_time),
+                        attenuation=attenuation_of(scene, radar, effects), progress=progress, kept=geometry)
+    for warn in (warn_of_lost_rays, warn_of_unfollowed_beams):
+        warn(paths.frame.statistics, stacklevel=_CALLER)
+    warn_of_unaimed(paths.frame.statistics, paths.frame.strata, stacklevel=_CALLER)
+    return paths
+
+
+def _polarization(argument: str, value):
+    """One vector [3], two [2, 3], the name of a channel, or a list of these."""
+    if isinstance(value, str):
+        return one_of(Channel)(argument, value)
+    if isinstance(value, (list, tuple)) and value and all(isinstance(name, str) for name in value):
+        return [one_of(Channel)(argument, name) for name in value]
+    return array("[3]", "[2, 3]", finite=True)(argument, value)
+
+
+_DIRECTIONS = array("[3]", "[N, 3]", finite=True)
+_FREQUENCY = real(above=0.0, high=HIGHEST_FREQUENCY, unit="Hz")
+
+
+@checked(**TraceSettings.RULES | {
+    "frequency": _FREQUENCY, "incidence": _DIRECTIONS, "observation": optional(_DIRECTIONS), "polarization": _polarization,
+    "model": one_of(Polarization), "edges": flag, "components": flag, "return_error": flag})
+def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observation: ArrayLike | None = None,
+        polarization: ArrayLike | Channel | Sequence[Channel] = (0.0, 0.0, 1.0), model: Polarization = "auto",
+        num_rays: int | float | None = None, max_bounces: int = TraceSettings.max_bounces, seed: int = TraceSettings.seed,
+        footprint: Footprint = TraceSettings.footprint, sampler: Sampler = TraceSettings.sampler, batches: int | None = None,
+        target_error_db: float | None = None, max_rays: int | float = TraceSettings.max_rays,
+        edges: bool = False, components: bool = False,
+        return_error: bool = False, progress: Progress = None
+        ) -> CrossSections | dict[str, CrossSections] | tuple[CrossSections | dict[str, CrossSections], ...]:
+    """Radar cross section of a scene in m^2, far field, at time 0.
+
+    Model: physical optics at every bounce, both antennas isotropic. Coherent echoes add as fields; diffuse ones as powers,
+    the mean over realisations of the roughness.
+    scene: the target
+    frequency: Hz, at most 1e15
+    incidence: toward the transmitter, seen from the target, [3] or [N, 3], any length
+    observation: toward the receiver, likewise; None: monostatic
+    polarization: [3] of both antennas; or, with field vectors: [2, 3] of transmitter and receiver, "vv", "hh", "vh", "hv"
+        (transmitted, received: "v" points up, "h" lies in the xy-plane, both across the line of sight) or a list [C] of
+        these. Of a vector its part across the line of sight counts
+    model: with a polarization of [3], "scalar" (one coefficient a hit), "jones" (field vectors) or "auto", as in `trace`
+    num_rays: rays per direction and transmit polarization, for all batches together; 131 072 for each batch unless given;
+        max_bounces: 1 to 64
+    seed, footprint, sampler, edges: as in `trace`; edges is not "auto", because there is no noise
+    batches: as in `trace`; None: 8 for return_error, else 1
+    target_error_db: dB; doubles the rays, from num_rays (16 384 unless given) to at most max_rays, as `trace` does, until
+        each cross section, of a list of polarizations the first with each transmitter, is known that well
+    components: True returns {"coherent": ..., "diffuse": ...}, which add up to the cross section
+    return_error: True returns (cross section, standard error), alike in shape; the error, in m^2, is that of the batches and,
+        as root sum of squares, what the footprints of too few rays may leave out. Each batch has a part of the rays alone,
+        so give enough of them. An estimate from batches is free of bias by chance, so that it may fall below zero where it
+        is smaller than its error
+    progress: callable (stage, fraction), True for bars, or None
+    Returns a number, or [N] where directions are [N, 3], with a last axis [C] for a list of polarizations. Each direction
+    and transmit polarization costs a trace of its own. Raises TypeError or ValueError naming the argument, also for a zero
+    direction, one along the polarization, an empty scene, and mirrors, which have no cross section. Warns
+    (TessellationWarning) of curved meshes that err by more than 0.3 dB, with the edge length in m that would do, and
+    (RuntimeWarning) where max_rays did not do, or, without target_error_db, where the footprints of the rays are too wide to
+    know cross sections to 3 dB; of nulls between lobes they need not.
+    """
+    warn_of_coarse_meshes(scene, frequency, stacklevel=_CALLER)
+    chosen = chosen_model(model, scene, _core.speed_of_light / frequency, argument="model")
+    is_one = np.shape(polarization) == (3,) and not isinstance(polarization, list)
+    if not is_one and model == SCALAR:
+        raise ValueError(f"model: 'scalar' takes one vector for both antennas as polarization, got {shown(polarization)}")
+    both = np.array([polarization, polarization]) if is_one and chosen == FIELD_VECTORS else polarization
+    return _core.rcs(scene, frequency=frequency, incidence=incidence, observation=observation, polarization=both,
+                     num_rays=num_rays, max_bounces=max_bounces, seed=seed, footprint=footprint, sampler=sampler,
+                     batches=batches, target_error_db=target_error_db, max_rays=max_rays, edges=edges, components=components,
+                     return_error=return_error, progress=progress)
+
+
+@checked(radius=positive("m"), frequency=_FREQUENCY, bistatic_angle=real(0.0, np.pi, "rad"),
+         plane=one_of(Literal["E", "H"]))
+def mie_rcs(radius: float, frequency: float, bistatic_angle: float = 0.0, plane: Literal["E", "H"] = "H") -> float:
+    """Exact radar cross section of a perfectly conducting sphere in m^2, co-polarised, far field.
+
+    The Mie series, to 1e-9: the reference for curved metal. For ka = 2 pi radius frequency / c up to 1e6.
+    radius: m; frequency: Hz
+    bistatic_angle: rad in [0, pi] between the directions to transmitter and receiver, 0 is monostatic
+    plane: "E" or "H": the field that the plane of both directions holds (alike in the monostatic case)
+    Raises TypeError or ValueError naming the argument. Source: Mie 1908; Harrington, Time-Harmonic Electromagnetic Fields,
+    1961, section 6-9.
+    """
+    return _core.mie_rcs(radius, frequency, bistatic_angle, plane)
+
+
+def _remembered(scene: _core.Scene) -> tuple[bool, _core.KeptGeometry | None]:
+    """(whether this is a scene's first trace, where its geometry is kept).
+
+    A scene that is traced once keeps nothing, unless `keep_geometry` was asked for. Plain scenes of the core never do: each of
+    their traces is a first one.
+    """
+    memory = getattr(scene, "__dict__", None)
+    if memory is None:
+        return True, None
+    is_first = "_was_traced" not in memory
+    if not is_first:
+        keep_geometry(scene)
+    memory["_was_traced"] = True
+    return is_first, memory.get("_geometry")
+
+
+def keep_geometry(scene: _core.Scene, kept: _core.KeptGeometry | None = None) -> None:
+    """Has the next trace of a scene keep its geometry: for later ones, or for who looks at the scene again afterwards.
+
+    kept: where; None: where the last trace kept it, or a new place
+    """
+    memory = getattr(scene, "__dict__", None)
+    if memory is not None and (kept is not None or "_geometry" not in memory):
+        memory["_geometry"] = kept or _core.KeptGeometry()

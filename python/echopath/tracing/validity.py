@@ -1,0 +1,46 @@
+"""Whether one trace serves a whole frame, and records brought up to another time of it."""
+from __future__ import annotations
+
+from .. import _core
+from ..arguments.checks import ArrayLike, Progress, an, array, checked, flag, one_of, optional, real
+from ..arguments.settings import Replay, SignalSettings
+
+_RADAR = optional(an(_core.Radar))
+
+
+@checked(radar=_RADAR, replay=one_of(Replay), times=optional(array("[T]", finite=True)), arrays=flag)
+def validity(paths: _core.Paths, radar: _core.Radar | None = None, *, replay: Replay = SignalSettings.replay,
+             times: ArrayLike | None = None, arrays: bool = False, progress: Progress = None) -> _core.Validity:
+    """Whether one trace serves the whole frame and the whole array: a report with warnings, and a certificate per object.
+
+    Checks paths at both ends of the frame and at irrational places between, at eight more for each turn of what turns and two
+    for each breakpoint of its motion, for the antennas of the trace and those at the rim of the array: phase errors of points
+    of reflection that slide, whether these still lie on their surface, shadow rays of all legs, cosines; and traces the scene
+    at these times for surface that was hidden from the trace. Exact parts of the replay (single bounces, images in mirrors)
+    have no phase error. Of paths that end in a rough surface at most 16384 of each object and number of bounces are looked
+    at. What more than 256 times would have to follow is a warning.
+    paths: of a trace, all or a selection of them, which asks about these alone
+    radar: another waveform, array or motion than that of the trace, or None
+    replay: of the replay that is to be certified, as in `synthesize`
+    times: [T] s, of the check, or None: as above
+    arrays: keep what is found of each path, [P] each; then all are looked at
+    progress: callable (stage, fraction), True for bars, or None
+    Returns a Validity. Raises TypeError or ValueError naming the argument, also for motions that do not cover the times,
+    KeyboardInterrupt on Ctrl-C.
+    """
+    return _core.validity(paths, radar, replay=replay, times=times, arrays=arrays, progress=progress)
+
+
+@checked(radar=_RADAR, time=real(unit="s"))
+def renew(paths: _core.Paths, radar: _core.Radar | None = None, *, time: float, progress: Progress = None) -> _core.Renewal:
+    """A record brought up to another time of the frame: hits stay, shadow rays and points of reflection are renewed.
+
+    Material points keep their hits, weights and phases, so that rough surfaces keep their speckle. Surface that came into
+    view has no paths here; `synthesize(retrace="invalid")` adds it.
+    paths: of a trace
+    radar: whose motion carries the antennas of the trace along, or None: that of the trace
+    time: s
+    progress: callable (stage, fraction), True for bars, or None
+    Returns a Renewal. Raises TypeError or ValueError naming the argument, also where a motion does not cover the time.
+    """
+    return _core.renew(paths, radar, time=time, progress=progress)

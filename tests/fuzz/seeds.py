@@ -51,7 +51,8 @@ def _moving_scene():
 
 
 def _coded_scene():
-    scene = ep.Scene(weather=ep.Weather(rain_mm_per_hour=10.0))
+    other = _radar(position=(12, 0, 0), yaw=np.pi, motion=ep.LinearMotion(velocity=(-1, 0, 0)))
+    scene = ep.Scene(weather=ep.Weather(rain_mm_per_hour=10.0), interferers=[ep.Interferer(radar=other, offset=1e-6)])
     scene.add(quad((3, -1, -1), (3, 1, -1), (3, 1, 1), (3, -1, 1)), name="door",
               material=ep.Material(layers=[ep.Layer(0.01, 5 - 0.3j), ep.Layer(0.02, 1.0)]))
     scene.add(quad((5, -1, -1), (5, 1, -1), (5, 1, 1), (5, -1, 1)), name="plate", material="metal")
@@ -62,7 +63,7 @@ def frames() -> list:
     """Frames of ep.simulate, which have all groups between them, and few paths each.
 
     One of whatever moves, with parts; one with labels, detections and truth; one curved and polarised; one of sheets, edges,
-    weather, a receiver and a code.
+    weather, another radar, a receiver and a code.
     """
     parts = {"route": {"direct": "T . R", "wall": "T .* 'wall' .* R"}, "body": {"plate": "T .* 'carrier/*' .* R"}}
     moving = ep.simulate(_moving_scene(), _radar(motion=ep.LinearMotion(velocity=(1, 0, 0))), num_rays=200, batches=2, seed=7,

@@ -7,6 +7,7 @@ import pytest
 
 import echopath as ep
 from fuzz import targets, worker
+from fuzz.seeds import frames
 
 CASES = {"frame_bytes": 40, "frame_structure": 40, "arrays": 150, "scene": 300, "antenna": 300,
          "gltf_bytes": 300, "gltf_json": 300, "xml": 300, "usda": 200, "npz": 200, "bvh": 40, "obj": 200, "stl": 200,
@@ -72,3 +73,11 @@ def test_an_offset_that_leads_nowhere_is_refused_by_name(plates_and_wall, offset
 def test_hits_of_another_type_are_refused_by_name(plates_and_wall, hits):
     with pytest.raises(TypeError, match="hits: must be an array .H. of .mesh_id, triangle_id, u, v."):
         ep.Paths.from_arrays(**columns_of(plates_and_wall[0]) | {"hits": hits})
+
+
+def test_seeds_of_frame_files_have_what_comes_beside_the_paths():
+    made = frames()
+    for name in ("interference_cube", "rain_cube"):
+        assert any(getattr(frame, name) is not None for frame in made), name
+    for name in ("interferers", "weather"):
+        assert any(getattr(frame.scene, name) for frame in made), name

@@ -81,8 +81,8 @@ def require_apart(radar, other, times, argument: str) -> None:
 def _require_far(distance, wavelength: float, argument: str) -> None:
     """Nearer than a wavelength, the spreading of one way holds no longer, and makes power of nothing."""
     if np.min(distance) < wavelength:
-        raise refused(ValueError, argument, f"at least a wavelength, {wavelength:.3g} m, from the receivers of the radar that it "
-                      "is heard by", f"{np.min(distance):.3g} m")
+        raise refused(ValueError, argument, f"at least a wavelength, {wavelength:.3g} m, from the receivers that hear it",
+                      float(np.min(distance)))
 
 
 def _wavelength(radar) -> float:

@@ -101,8 +101,8 @@ def prepare_folder(folder: Path, template: Template) -> None:
         write_texts(folder, {TEMPLATE: template.path.read_text(encoding="utf-8-sig")})
 
 
-def without_template(folder: str) -> ValueError:
-    """What is raised of a folder whose scenes are of nobody knows which template."""
+def without_template(folder: str) -> Exception:
+    """The ValueError of a folder that has scenes, and nobody knows of which template."""
     return refused(ValueError, "folder", f"new, or of this template (it has scenes and no {TEMPLATE})", folder)
 
 

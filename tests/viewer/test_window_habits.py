@@ -135,3 +135,14 @@ def test_names_and_axes_follow_the_scene(qtbot, window):
     ends = [np.array([project(window, point).x(), project(window, point).y()]) for point in
             (window.view3d.camera.focal_point, np.array(window.view3d.camera.focal_point) + (compass.metres, 0.0, 0.0))]
     assert np.linalg.norm(ends[1] - ends[0]) == pytest.approx(compass.pixels, rel=0, abs=2.0)
+
+
+def test_each_row_of_tabs_is_that_of_a_dock(qtbot, frame):
+    """Docks that come before the window is shown leave rows of an earlier layout behind, over the maps of a picture."""
+    window = MainWindow()
+    window.show_input(from_frame(frame))
+    window.show()
+    window.settle()
+    rows = [[row.tabText(tab) for tab in range(row.count())] for row in window.findChildren(QtWidgets.QTabBar)]
+    assert sorted(rows) == [["Rays shown", "Live"], ["What makes the cell", "Rays"]]
+    window.close()

@@ -198,6 +198,8 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         while (self._listing.isActive() or self._pause.isActive() or self.view3d.is_behind()
                or self.contributions.work.is_running or self.time_line.is_busy or self.loading.is_running):
             QtWidgets.QApplication.processEvents(QtCore.QEventLoop.ProcessEventsFlag.WaitForMoreEvents)
+        # Rows of tabs that docks no longer have are there until then.
+        QtWidgets.QApplication.sendPostedEvents(None, QtCore.QEvent.Type.DeferredDelete)
 
     def _connect(self) -> None:
         self._listing.timeout.connect(self._refresh_lists)

@@ -216,7 +216,8 @@ TEST(ManyEchoes, OrderOfOtherWorkLeavesNoTrace) {
   const ChirpSequence w = few_chirps();
   const Echoes echoes = crowd(w, 900, 400 * cell_delay(w), 40, 1);
   Echoes others = echoes;
-  for (size_t p = 0; p < others.delay.size(); ++p) others.delay[p] += (p % 3 - 1.0) * 0.8 * cell_delay(w);
+  for (size_t p = 0; p < others.delay.size(); ++p)
+    others.delay[p] += (static_cast<double>(p % 3) - 1.0) * 0.8 * cell_delay(w);
   const SynthesisOptions options{1e-9, Method::kNufft};
   const auto expected = testing::synthesize(w, echoes, options);
   testing::synthesize(w, others, options);

@@ -46,6 +46,20 @@ TEST(LobeProbabilities, FlaggedMirrorsKeepTheirShares) {
   EXPECT_NEAR(found.specular, 0.64, kRounding);
 }
 
+// A ray becomes four at most: one that is mirrored at each of its first three hits, and one that each of these scatters.
+TEST(LobeProbabilities, BothWaysAreGoneAtTheFirstHitsAlone) {
+  Material material = rough_concrete();
+  const SurfaceModel model(material, kFrequency);
+  const LobeProbabilities both{0.64, 0.36};
+  for (const int depth : {1, 2, 3}) EXPECT_TRUE(goes_both_ways(model, both, 0.0, depth));
+  EXPECT_FALSE(goes_both_ways(model, both, 0.0, 4));
+  EXPECT_FALSE(goes_both_ways(model, both, 0.9, 1));         // asked for
+  EXPECT_FALSE(goes_both_ways(model, {1.0, 0.0}, 0.0, 1));   // smooth
+  EXPECT_FALSE(goes_both_ways(model, {1e-9, 1.0}, 0.0, 1));  // mirrors next to nothing
+  material.mirror = true;
+  EXPECT_FALSE(goes_both_ways(SurfaceModel(material, kFrequency), both, 0.0, 1));
+}
+
 TEST(SurvivalProbability, LetsNoLobeGainWeight) {
   const Material material = rough_concrete();
   const SurfaceModel model(material, kFrequency);

@@ -15,6 +15,9 @@ function(echopath_look target sanitizers)
     # by itself; misaligned ones, and references to null that nothing is read through, are not seen.
     target_compile_options(${target} INTERFACE -fno-sanitize=null,object-size,alignment)
   endif()
+  # Eigen would align by itself what is looked at: the tests, which are compiled without sanitizers, free what modules made, and
+  # the other way round. Memory of the sanitizer is aligned to 16 bytes as that of glibc is.
+  target_compile_definitions(${target} INTERFACE EIGEN_MALLOC_ALREADY_ALIGNED=1)
 endfunction()
 
 add_library(echopath_looked_at INTERFACE)
@@ -131,8 +134,10 @@ function(echopath_kernels name)
   foreach(entry ${sets})
     string(REGEX MATCH "(.+):(.+):(.*)" entry ${entry})
     set(file ${CMAKE_CURRENT_BINARY_DIR}/kernels_${CMAKE_MATCH_1}.cpp)
-    set_source_files_properties(${file} PROPERTIES SKIP_PRECOMPILE_HEADERS ON COMPILE_DEFINITIONS ECHOPATH_LANES=${CMAKE_MATCH_2}
-      COMPILE_OPTIONS "${CMAKE_MATCH_3}")
+    # Eigen aligns to 16 bytes in all files: with what the instruction set asks for, matrices would be freed in another way than
+    # they were made where the linker takes one of its functions from here.
+    set_source_files_properties(${file} PROPERTIES SKIP_PRECOMPILE_HEADERS ON COMPILE_OPTIONS "${CMAKE_MATCH_3}"
+      COMPILE_DEFINITIONS "ECHOPATH_LANES=${CMAKE_MATCH_2};EIGEN_MAX_ALIGN_BYTES=16")
     file(CONFIGURE OUTPUT ${file} CONTENT "${includes}\n")
     target_sources(echopath_${name} PRIVATE ${file})
     if(ECHOPATH_SANITIZED_TWINS)

@@ -13,12 +13,13 @@ from echopath import dataset
 
 # Parameters that are objects, names or counts: they have neither a unit nor a shape.
 NO_QUANTITY = {
-    "actor", "args", "arguments", "batches", "block", "clothing", "evaluate", "exponent", "folder", "footprint", "frame",
-    "function", "glob", "interpolation", "keep", "keyframes", "keywords", "kwargs", "material", "max", "max_bounces",
+    "actor", "args", "arguments", "batches", "block", "clothing", "color_by", "evaluate", "exponent", "folder",
+    "footprint", "frame", "function", "glob", "interpolation", "keep", "keyframes", "keywords", "kwargs", "material", "max",
+    "max_bounces",
     "ax", "figure", "labels", "map", "mesh", "mesh_or_actor", "method", "min", "mirror", "modelled", "motion", "multiplexing",
     "name", "noise_seed", "note", "number",
     "num_batches", "num_rays", "num_slots", "num_threads", "parent", "parts", "path", "paths", "pattern", "picture",
-    "progress", "radar", "reason", "receivers", "replay", "retrace", "scene", "seed", "selection", "selections", "shard",
+    "progress", "radar", "reason", "receivers", "replay", "retrace", "scale", "scene", "seed", "selection", "selections", "shard",
     "show", "skin", "smooth", "source", "spectrum", "state", "subdivisions", "tags", "text", "title", "trace",
     "transmitters", "unknown", "visible", "waveform", "what", "window", "zero_pad",
 }

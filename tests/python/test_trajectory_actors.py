@@ -267,7 +267,7 @@ def test_the_soles_of_a_pedestrian_slip_less_than_a_centimetre():
             for begin, end in zip(edges[::2], edges[1::2]):
                 way = shoes[begin:end, vertex, :2]
                 worst = max(worst, np.linalg.norm(way - way[0], axis=1).max())
-    assert 0.0 < worst < 0.005      # 10 mm asked for; what is within 2 mm of the floor rolls by up to 4 mm
+    assert 0.0 < worst < 0.007      # 10 mm asked for; points of the rim within 2 mm of the floor roll by up to 6 mm
 
 
 def test_at_stops_both_feet_are_down_and_the_body_is_where_it_should_be():

@@ -130,7 +130,7 @@ class Frame:
 
         The mouse turns it; rays and bodies say what they are, and a click on a ray shows all of it.
         selection: path expression or Selection of the rays that are drawn, "": all; num_rays: at most, some of every object
-        color_by: "bounces", "mesh", "power", "range" or "speed"
+        color_by: str, one of "bounces", "mesh", "power", "range" and "speed"
         Returns a page with `_repr_html_` and `save`. Raises ValueError naming the argument, ModuleNotFoundError where the
         viewer or plotly is not installed.
         """

@@ -13,9 +13,6 @@ namespace {
 // A focus has a glint to itself up to so many Fresnel zones and so many cells of its stratum, whose second-order footprints
 // reach that far and would count the glint once more.
 constexpr double kZones = 2.0, kCells = 1.5;
-// About a glint behind several bounces another point of the surface may mirror straight back, whose echo the focus must not
-// cut: it fades over more cells.
-constexpr double kChainCells = 4.5;
 constexpr double kWidest = 0.5;        // rad
 constexpr double kFaintest = 1e-3;     // of the power of a stratum
 constexpr size_t kMaxFoci = 12;        // in a stratum
@@ -56,8 +53,7 @@ LaunchFocus focus_on(const Glint& glint, double power, const StratumPlan& plan) 
   LaunchFocus focus;
   focus.of = plan.name;
   focus.axis = glint.direction;
-  const double cells = glint.is_chain ? kChainCells : kCells;
-  focus.versine = versine_of(std::min((kZones * glint.wide + cells * plan.cell + glint.blur) / kFocusCore, kWidest));
+  focus.versine = versine_of(std::min((kZones * glint.wide + kCells * plan.cell + glint.blur) / kFocusCore, kWidest));
   // Zones narrower than the cells of all those rays together stay unresolved anyway.
   const double finest = kTwoPi * focus.versine / (kLargestShare * std::max(plan.rays, 1.0));
   focus.share = focus.versine / std::max(glint.narrow * glint.narrow, finest) * std::sqrt(power);

@@ -44,6 +44,7 @@ from .presentation.viewing import plot_rays, view
 from .readers import Model, ModelNode, foreign_materials, load_model
 from .receiver import Adc, PhaseNoise, Receiver, Reception, receive
 from .scene.foreign import mesh_from
+from .scene.interferers import Interferer
 from .scene.materials import materials
 from .scene.meshes import load_mesh, load_meshes
 from .scene.node import SceneNode
@@ -56,7 +57,6 @@ from .sensor_files.antenna_patterns import load_antenna
 from .sequence import SavedFrame, Sequence, StoredSequence, load_sequence
 from .signals.if_signal import add_noise, synthesize
 from .signals.interference import interference, interference_radar
-from .signals.interferers import Interferer
 from .signals.measures import power_by_chirp
 from .signals.parts import Parts, decompose
 from .spectra.angles import angle_fft, beamform, compensate_tdm, estimate_angles, range_azimuth, virtual_array

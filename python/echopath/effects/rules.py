@@ -12,7 +12,7 @@ from .. import _core
 from ..arguments.effects import Choices
 from ..arguments.names import MOST_NAMES, first_names
 from ..arguments.settings import Edges
-from ..signals.interferers import interferers_of
+from ..scene.interferers import interferers_of
 from ..tracing.polarization import COHERENT_SHARE, antennas_of, chosen_model, coherent_share
 from ..weather.weather import weather_of
 

@@ -19,7 +19,7 @@ from ..paths.subset import part_of_path
 from ..receiver.chain import transmitted_code
 from ..receiver.channels import require_channels
 from ..signals.beside import cubes_beside, require_names
-from ..signals.interferers import has_interference, interference_cube, require_interferers
+from ..signals.interference_of_frame import has_interference, interference_cube, require_interferers
 from ..signals.parts import ONLY_PARTITION, as_partitions, check_partitions, decompose
 from ..spectra.azimuth_map import checked_settings, sees_azimuth
 from ..tracing.traces import keep_geometry

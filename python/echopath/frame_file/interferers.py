@@ -1,7 +1,7 @@
 """Other radars of a scene in HDF5 groups (layout: data/README.md)."""
 from __future__ import annotations
 
-from ..signals.interferers import Interferer, interferers_of
+from ..scene.interferers import Interferer, interferers_of
 from .h5 import blames_group, read_attribute, read_group, write_attribute
 from .radar import read_radar, write_radar
 

@@ -10,7 +10,7 @@ from .. import _core
 from ..actors import Actor
 from ..arguments.checks import an, anything, checked, flag, optional, real, refused, text, vector
 from ..readers.model import Model
-from ..signals.interferers import Interferer, interferers_of, interferers_rule
+from .interferers import Interferer, interferers_of, interferers_rule
 from ..weather import Weather
 from ..weather.weather import weather_text
 from .materials import known_material, materials

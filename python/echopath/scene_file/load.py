@@ -11,7 +11,7 @@ from ..paths.families import named_globs
 from ..readers.load import is_foreign
 from ..sensor_files import load_radar
 from ..sensor_files.antenna_patterns import load_antenna
-from ..signals.interferers import Interferer
+from ..scene.interferers import Interferer
 from ..signals.parts import check_partitions
 from ..spectra.azimuth_map import checked_settings
 from .errors import blamed, validated

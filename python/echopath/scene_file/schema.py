@@ -23,7 +23,7 @@ from ..arguments.settings import (
 )
 from ..arguments.shown import writable
 from ..receiver.settings import receiver_rule
-from ..signals.interferers import Over
+from ..scene.interferers import Over
 from ..signals.parts import are_tables
 from ..spectra.range_doppler import FALSE_ALARM_RATE, RANK, CfarMethod
 from ..trajectories.arguments import checked_points, checked_stops, checked_times

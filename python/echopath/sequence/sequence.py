@@ -22,7 +22,7 @@ from ..frame.frame import Frame
 from ..frame.run import FrameRun, Recorded
 from ..guard import warn_of
 from ..scene.scene import Scene
-from ..signals.interferers import require_interferers
+from ..signals.interference_of_frame import require_interferers
 from ..signals.parts import Selections
 from ..tracing.traces import keep_geometry
 from ..weather.weather import weather_of

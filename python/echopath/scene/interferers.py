@@ -1,0 +1,41 @@
+"""Other radars of a scene."""
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import ClassVar, Literal
+
+from .. import _core
+from ..arguments.checks import Rule, an, one_of, real, refused
+from ..arguments.settings import Settings, settings_class
+
+Over = Literal["both", "direct", "paths"]
+
+
+@settings_class
+class Interferer(Settings):
+    """Another FMCW radar in a scene, which sends into the receivers of the radar that is simulated (`Scene.interferers`).
+
+    radar: that sends: its waveform, code, power, transmitters, place in m and motion count. Its motion covers the frames, and
+        the direct way is at least a wavelength long
+    offset: s, by which its frames begin later than at time 0; they follow each other without a pause
+    over: "both" the direct way, where nothing stands in it, and the paths of the scene; "direct" or "paths" alone
+    Raises TypeError or ValueError naming the keyword. Values are frozen; two with equal values are equal.
+    """
+
+    radar: _core.Radar
+    offset: float = 0.0
+    over: Over = "both"
+
+    RULES: ClassVar[Mapping[str, Rule]] = {"radar": an(_core.Radar), "offset": real(unit="s"), "over": one_of(Over)}
+
+
+def interferers_rule(argument: str, value) -> tuple[Interferer, ...]:
+    """Some Interferer, as a tuple."""
+    if not isinstance(value, (list, tuple)) or not all(isinstance(one, Interferer) for one in value):
+        raise refused(TypeError, argument, "a list of Interferer", value)
+    return tuple(value)
+
+
+def interferers_of(scene) -> tuple[Interferer, ...]:
+    """Of a scene; records keep scenes without."""
+    return getattr(scene, "interferers", ())

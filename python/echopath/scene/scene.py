@@ -10,9 +10,9 @@ from .. import _core
 from ..actors import Actor
 from ..arguments.checks import an, anything, checked, flag, optional, real, refused, text, vector
 from ..readers.model import Model
-from .interferers import Interferer, interferers_of, interferers_rule
 from ..weather import Weather
 from ..weather.weather import weather_text
+from .interferers import Interferer, interferers_of, interferers_rule
 from .materials import known_material, materials
 from .node import SceneNode, split_motion
 from .placements import ORIGIN, motion_ahead, placement

@@ -9,9 +9,9 @@ from .. import _core
 from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
 from ..paths.families import named_globs
 from ..readers.load import is_foreign
+from ..scene.interferers import Interferer
 from ..sensor_files import load_radar
 from ..sensor_files.antenna_patterns import load_antenna
-from ..scene.interferers import Interferer
 from ..signals.parts import check_partitions
 from ..spectra.azimuth_map import checked_settings
 from .errors import blamed, validated

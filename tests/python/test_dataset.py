@@ -18,6 +18,7 @@ from echopath import dataset
 from echopath.cli.info import describe_file
 from echopath.dataset.folder import scene_folder
 from echopath.frame_file.maps import load_maps
+from support.scene_text import SMALL_WAVEFORM
 
 HEAD = """
 [dataset]
@@ -31,13 +32,7 @@ split = {train = 0.5, test = 0.5}
 SCENE = """
 [radar]
 noise_figure_db = 12.0
-[radar.waveform]
-start_frequency = 77e9
-bandwidth = 1e9
-num_samples = 32
-sampling_rate = 10e6
-num_chirps = 8
-chirp_interval = 1e-4
+""" + SMALL_WAVEFORM + """\
 [[radar.transmitters]]
 position = [0.0, 0.0, 1.0]
 [[radar.receivers]]

@@ -7,20 +7,14 @@ import pytest
 import echopath as ep
 from echopath import dataset
 from echopath.dataset.address import Address
+from support.scene_text import SMALL_WAVEFORM
 
 fsspec = pytest.importorskip("fsspec")
 TEMPLATE = """
 [dataset]
 scenes = 1
 seed = {seed}
-[radar.waveform]
-start_frequency = 77e9
-bandwidth = 1e9
-num_samples = 32
-sampling_rate = 10e6
-num_chirps = 8
-chirp_interval = 1e-4
-"""
+""" + SMALL_WAVEFORM
 
 
 @pytest.fixture

@@ -11,6 +11,7 @@ import pytest
 
 from echopath import dataset
 from echopath.cli.dataset import _forecast_line
+from support.scene_text import SMALL_WAVEFORM
 
 pytest.importorskip("distributed")
 TEMPLATE = """
@@ -18,13 +19,7 @@ TEMPLATE = """
 scenes = 4
 keep = "labels"
 seed = 3
-[radar.waveform]
-start_frequency = 77e9
-bandwidth = 1e9
-num_samples = 32
-sampling_rate = 10e6
-num_chirps = 8
-chirp_interval = 1e-4
+""" + SMALL_WAVEFORM + """\
 [[radar.transmitters]]
 position = [0.0, 0.0, 1.0]
 [[radar.receivers]]

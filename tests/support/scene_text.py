@@ -8,6 +8,15 @@ sampling_rate = 20e6
 num_chirps = 8
 chirp_interval = 100e-6
 """
+SMALL_WAVEFORM = """
+[radar.waveform]
+start_frequency = 77e9
+bandwidth = 1e9
+num_samples = 32
+sampling_rate = 10e6
+num_chirps = 8
+chirp_interval = 1e-4
+"""
 ANTENNAS = """
 [[radar.transmitters]]
 position = [0.0, 0.0, 0.0]

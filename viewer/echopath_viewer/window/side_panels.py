@@ -16,14 +16,37 @@ from .qt import QtCore, QtWidgets
 AZIMUTH_LABEL, ELEVATION_LABEL, TIME_LABEL = "Azimuth in degrees (left: +)", "Elevation in degrees", "Time in ms"
 
 
-class SidePanel(QtWidgets.QWidget):
+class SeenPanel(QtWidgets.QWidget):
+    """Shows something of a session, `refresh`, which makes nothing where nobody looks."""
+
+    def __init__(self, parent=None):
+        super().__init__(parent)
+        self.session, self._is_seen = None, False
+
+    def show_session(self, session) -> None:
+        self.session = session
+        self.refresh()
+
+    follow_session = show_session
+
+    def set_seen(self, is_seen: bool) -> None:
+        """Whether anyone looks."""
+        self._is_seen = is_seen
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Shows what the session has now."""
+        raise NotImplementedError
+
+
+class SidePanel(SeenPanel):
     """A map that is made in a thread when somebody looks, and again when what it is made of has changed."""
 
     x_label, y_label = RANGE_LABEL, VELOCITY_LABEL
 
     def __init__(self, parent=None):
         super().__init__(parent)
-        self.session, self.map, self._made_of, self._is_seen = None, None, None, False
+        self.map, self._made_of = None, None
         self.panel, self.note = MapPanel(x_label=self.x_label, y_label=self.y_label), QtWidgets.QLabel(wordWrap=True)
         self.bar = QtWidgets.QProgressBar(textVisible=False, maximum=0, visible=False)
         self.bar.setFixedHeight(4)
@@ -64,22 +87,11 @@ class SidePanel(QtWidgets.QWidget):
 
     # --- session ---
 
-    def show_session(self, session) -> None:
-        self.session = session
-        self.refresh()
-
-    follow_session = show_session
-
     def update_topics(self, topics: set) -> None:
         if topics & {"maps", "rays"}:
             self.refresh()
         elif topics & {"selection", "time"}:
             self.show_marks()
-
-    def set_seen(self, is_seen: bool) -> None:
-        """Whether anyone looks."""
-        self._is_seen = is_seen
-        self.refresh()
 
     def refresh(self) -> None:
         """Makes the map where it is of something else now."""
@@ -201,31 +213,19 @@ class SpectrogramPanel(SidePanel):
         return f"{x:.2f} ms   {y:+.2f} m/s   {level:.1f} dBm"
 
 
-class BeatPanel(QtWidgets.QWidget):
+class BeatPanel(SeenPanel):
     """The beat signal of the chirp on display: real and imaginary part over its samples."""
 
     def __init__(self, parent=None):
         super().__init__(parent)
-        self.session, self._is_seen = None, False
         self.curves = CurveView("Time in \u00b5s", "\u221aW")
         column = QtWidgets.QVBoxLayout(self)
         column.setContentsMargins(2, 2, 2, 2)
         column.addWidget(self.curves)
 
-    def show_session(self, session) -> None:
-        self.session = session
-        self.refresh()
-
-    follow_session = show_session
-
     def update_topics(self, topics: set) -> None:
         if topics & {"time", "maps"}:
             self.refresh()
-
-    def set_seen(self, is_seen: bool) -> None:
-        """Whether anyone looks."""
-        self._is_seen = is_seen
-        self.refresh()
 
     def refresh(self) -> None:
         """The samples of the chirp and channel of the session."""

@@ -9,6 +9,12 @@
 #include "echopath/trace/near_antenna.h"
 
 namespace echopath::testing {
+// A straight line over the mirrors [first, last) of a path, unfolded.
+struct Line {
+  double length;            // m
+  Vec3 departure, arrival;  // unit directions of travel at both ends
+};
+
 namespace {
 
 constexpr double kFourPi = 4.0 * kPi, kLambert = 1.0 / kPi;
@@ -20,12 +26,6 @@ Vec3 image(const Vec3& point, const PosedHit& mirror) {
 Vec3 reflected(const Vec3& direction, const PosedHit& mirror) {
   return direction - 2.0 * mirror.normal.dot(direction) * mirror.normal;
 }
-
-// A straight line over the mirrors [first, last) of a path, unfolded.
-struct Line {
-  double length;            // m
-  Vec3 departure, arrival;  // unit directions of travel at both ends
-};
 
 Line line_over(const PosedHit* hits, const Vec3& from, int first, int last, const Vec3& to) {
   Vec3 seen = from;

@@ -21,7 +21,7 @@ inline bool is_in_range(const Vec3& position) { return (position.array().abs() <
 // Raises invalid_argument naming `argument` and `what` unless the position is in range.
 inline void require_in_range(const Vec3& position, std::string_view argument, std::string_view what) {
   if (is_in_range(position)) return;
-  require(false, argument, std::string(what) + " must lie within 1e12 m", position.transpose());
+  require(false, argument, std::string(what).append(" must lie within 1e12 m"), position.transpose());
 }
 
 // Raises invalid_argument naming `argument` unless `time` (s) is within kLatest; NaN is not.

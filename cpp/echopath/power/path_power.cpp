@@ -19,9 +19,7 @@ std::vector<double> path_power(const Paths& paths, Job* job) { return power_and_
 PowerAndLength power_and_length(const Paths& paths, Job* job) {
   if (paths.num_paths() == 0) return {};
   require(paths.scene != nullptr, "paths", "must carry a scene to know powers", "none");
-  Radar radar = paths.radar;
-  radar.transmitters.resize(1);
-  radar.receivers.resize(1);
+  const Radar radar = one_channel(paths.radar);
   const Replayer replayer(paths, radar);
   PowerAndLength out;
   std::vector<double> lengths;

@@ -14,17 +14,14 @@ namespace {
 
 constexpr double kStandsOut = 2.0;  // standard errors
 
-const Antenna& antenna_at(const std::vector<Antenna>& antennas, int index, const char* name) {
-  if (index >= 0 && index < static_cast<int>(antennas.size())) return antennas[static_cast<size_t>(index)];
+size_t antenna_at(const std::vector<Antenna>& antennas, int index, const char* name) {
+  if (index >= 0 && index < static_cast<int>(antennas.size())) return static_cast<size_t>(index);
   throw std::out_of_range(std::string(name) + ": must lie in 0 to " + std::to_string(antennas.size() - 1) + ", got " +
                           std::to_string(index));
 }
 
-Radar one_channel(const Radar& radar, Channel channel) {
-  Radar one = radar;
-  one.transmitters = {antenna_at(radar.transmitters, channel.tx, "tx")};
-  one.receivers = {antenna_at(radar.receivers, channel.rx, "rx")};
-  return one;
+Radar radar_of(const Radar& radar, Channel channel) {
+  return one_channel(radar, antenna_at(radar.transmitters, channel.tx, "tx"), antenna_at(radar.receivers, channel.rx, "rx"));
 }
 
 // Holds the estimates of the whole by each batch of rays alone.
@@ -165,7 +162,7 @@ std::vector<std::vector<ReceivedPower>> received_powers(const Paths& paths, std:
                                                         Channel channel) {
   for (const Sorting& sorting : sortings) check(sorting, paths);
   std::vector<std::vector<ReceivedPower>> powers;
-  for (const std::vector<GroupSums>& groups : sum_groups(paths, one_channel(paths.radar, channel), sortings, job)) {
+  for (const std::vector<GroupSums>& groups : sum_groups(paths, radar_of(paths.radar, channel), sortings, job)) {
     std::transform(groups.begin(), groups.end(), std::back_inserter(powers.emplace_back()),
                    [&](const GroupSums& sums) { return with_interval(sums, paths.frame.footprint); });
   }

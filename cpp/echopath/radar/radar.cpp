@@ -237,4 +237,11 @@ double Radar::frame_duration() const {
   return waveform.slot_start(last_slot) + (waveform.num_samples - 1) / waveform.sampling_rate;
 }
 
+Radar one_channel(const Radar& radar, size_t tx, size_t rx) {
+  Radar one = radar;
+  one.transmitters = {radar.transmitters[tx]};
+  one.receivers = {radar.receivers[rx]};
+  return one;
+}
+
 }  // namespace echopath

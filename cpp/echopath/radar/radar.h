@@ -116,4 +116,7 @@ struct Radar {
   double frame_duration() const;  // s, from the first sample to the last
 };
 
+// Returns the radar with one of its transmitters and one of its receivers alone, which must be there.
+Radar one_channel(const Radar& radar, size_t tx = 0, size_t rx = 0);
+
 }  // namespace echopath

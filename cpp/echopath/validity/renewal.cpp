@@ -25,17 +25,10 @@ struct BlockOutcome {
   std::vector<Hit> moved_hits;
 };
 
-Radar carried_radar(const Paths& paths, const Radar& radar) {
-  Radar carried = probe_radar(paths, radar);
-  carried.transmitters.resize(1);
-  carried.receivers.resize(1);
-  return carried;
-}
-
 class Renewer {
  public:
   Renewer(const Paths& paths, const Radar& radar, double time, Job* job, KeptGeometry* kept)
-      : paths_(paths), radar_(carried_radar(paths, radar)), preparer_(paths, whole_patches(*paths.scene)),
+      : paths_(paths), radar_(one_channel(probe_radar(paths, radar))), preparer_(paths, whole_patches(*paths.scene)),
         walk_(*paths.scene, preparer_.smooth_normals()), wavenumber_(radio_constants(paths, radar).wavenumber),
         pose_(*paths.scene, time), loan_(kept, *paths.scene, pose_, paths.frame.transmitter, false, job), geometry_(*loan_),
         origin_(geometry_.origin()), scene_at_(*paths.scene, radar_, preparer_.patches(), origin_, time) {}

@@ -11,6 +11,8 @@
 #include "echopath/base/parallel.h"
 #include "echopath/replay/replay.h"
 #include "echopath/signal/noise.h"
+#include "echopath/validity/frame/path_sample.h"
+#include "echopath/validity/power_sums.h"
 #include "echopath/validity/surface/new_surface.h"
 #include "echopath/validity/validity_objects.h"
 
@@ -24,94 +26,13 @@ constexpr int64_t kSearchRays = 1 << 17;      // for new surface, over all times
 constexpr int64_t kMinSearchRays = 1 << 12;   // of one look
 constexpr uint64_t kSearchSeed = 0x6c6f6f6b;  // combined with the trace's seed, so that the lattice differs from the trace's
 
-// Holds sums of power over paths, W.
-struct Sums {
-  double power = 0.0, squared = 0.0, slid = 0.0, left = 0.0, blocked = 0.0, turned = 0.0;
-
-  void add(const PathState& state, double p, double phase) {
-    power += p;
-    squared += p * phase * phase;
-    if (phase > kPhaseLimit) slid += p;
-    if (state.left != 0) left += p;
-    if (state.blocked != 0 || state.is_receiver_blocked) blocked += p;
-    if (state.is_turned) turned += p;
-  }
-  void add(const Sums& other, double scale = 1.0) {
-    power += scale * other.power;
-    squared += scale * other.squared;
-    slid += scale * other.slid;
-    left += scale * other.left;
-    blocked += scale * other.blocked;
-    turned += scale * other.turned;
-  }
-  ValidityShares shares() const {
-    const double unit = power > 0 ? 1.0 / power : 0.0;
-    return {power, unit * slid, unit * left, unit * blocked, unit * turned, 0.0};
-  }
-};
-
-// Sums physical-optics paths, which add up as fields, apart from the others, which add up as powers.
-struct KindSums {
-  Sums field, power;
-  BandSum together;  // of the physical-optics paths at the trace time
-
-  Sums combined(double field_scale) const {
-    Sums sum = power;
-    sum.add(field, field_scale);
-    return sum;
-  }
-  // Returns the ratio of the power of the sum of the physical-optics paths, averaged over the band, to their sum of |a|^2.
-  double field_scale() const { return field.power > 0 ? together.power() / field.power : 1.0; }
-};
-
 bool is_field(const LocalPath& path) { return path.diffuse == 0 && path.last_material >= 0; }
-
-// Holds the paths to be checked, and how many of its kind each stands for.
-struct Sample {
-  std::vector<int64_t> paths;
-  std::vector<float> weights;
-};
-
-// Takes about every n-th path of each object and number of bounces, so that no more than kPathsChecked are checked, but all
-// paths that add up as fields, which would alias.
-class Sampling {
- public:
-  explicit Sampling(const Paths& paths) : paths_(paths), count_(paths.scene->nodes().size() * kKinds) {
-    for (int64_t path = 0; path < paths.num_paths(); ++path) ++count_[kind_of(path)];
-  }
-  Sample operator()(bool all) const {
-    Sample sample;
-    std::vector<int64_t> seen(count_.size());
-    for (int64_t path = 0; path < paths_.num_paths(); ++path) {
-      const size_t kind = kind_of(path);
-      const int64_t step = all || is_coherent(path) ? 1 : (count_[kind] + kPathsChecked - 1) / kPathsChecked;
-      if (seen[kind]++ % step != 0) continue;
-      sample.paths.push_back(path);
-      // Each path stands for `step` paths, but the last one of a kind may stand for fewer.
-      sample.weights.push_back(static_cast<float>(std::min(step, count_[kind] - seen[kind] + 1)));
-    }
-    return sample;
-  }
-
- private:
-  static constexpr size_t kKinds = 8;  // by coherence and number of bounces
-  bool is_coherent(int64_t path) const { return paths_.diffuse[static_cast<size_t>(path)] == 0; }
-  size_t kind_of(int64_t path) const {
-    const int bounces = paths_.num_bounces[static_cast<size_t>(path)];
-    const Hit& last = paths_.hits_of(path)[std::max(0, bounces - 1)];
-    const auto object = static_cast<size_t>(paths_.scene->meshes()[last.mesh_id].object);
-    return kKinds * object + 4 * is_coherent(path) + static_cast<size_t>(std::min(bounces, 4) - 1);
-  }
-
-  const Paths& paths_;
-  std::vector<int64_t> count_;
-};
 
 class ValidityCheck {
  public:
   ValidityCheck(const Paths& paths, const Radar& radar, CheckTimes times, const ValiditySettings& settings, Job* job)
       : paths_(paths), radar_(radar), check_(paths, radar, std::move(times), settings.specular, job),
-        sample_(Sampling(paths)(settings.arrays)), band_(radar.waveform), keeps_arrays_(settings.arrays), job_(job) {
+        sample_(sample_of(paths, settings.arrays)), band_(radar.waveform), keeps_arrays_(settings.arrays), job_(job) {
     report_.num_paths = paths.num_paths();
     report_.times = check_.times().times;
     report_.has_array = check_.has_array();
@@ -234,7 +155,7 @@ class ValidityCheck {
       raise(report_.stepped_phase_error, phase(found.state.stepped.largest));
       raise(report_.largest_cosine_change, found.state.cosine_change);
     }
-    const Sums sum = whole.combined(whole.field_scale());
+    const PowerSums sum = whole.combined(whole.field_scale());
     report_.shares = sum.shares();
     report_.rms_phase_error = sum.power > 0 ? std::sqrt(sum.squared / sum.power) : 0.0;
   }
@@ -380,7 +301,7 @@ class ValidityCheck {
   const Paths& paths_;
   const Radar& radar_;
   FrameCheck check_;
-  Sample sample_;
+  PathSample sample_;
   BandSum::Band band_;
   bool keeps_arrays_;
   Job* job_;

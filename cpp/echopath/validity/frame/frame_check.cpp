@@ -8,12 +8,6 @@
 namespace echopath {
 namespace {
 
-Radar with_first_antennas(Radar radar) {
-  radar.transmitters.resize(1);
-  radar.receivers.resize(1);
-  return radar;
-}
-
 std::vector<uint8_t> moving_meshes(const Scene& scene) {
   std::vector<uint8_t> moves;
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) moves.push_back(scene.is_moving(id));
@@ -70,10 +64,10 @@ struct FrameCheck::Sweep {
 };
 
 FrameCheck::FrameCheck(const Paths& paths, const Radar& radar, CheckTimes times, SpecularPoints specular, Job* job)
-    : paths_(paths), times_(std::move(times)), probe_radar_(probe_radar(paths, radar)),
-      first_radar_(with_first_antennas(radar)), preparer_(paths, whole_patches(*paths.scene)),
-      walk_(*paths.scene, preparer_.smooth_normals()), radio_(radio_constants(paths, radar)),
-      sheets_(preparer_, radio_.wavelength), specular_(specular), mesh_moves_(moving_meshes(*paths.scene)) {
+    : paths_(paths), times_(std::move(times)), probe_radar_(probe_radar(paths, radar)), first_radar_(one_channel(radar)),
+      preparer_(paths, whole_patches(*paths.scene)), walk_(*paths.scene, preparer_.smooth_normals()),
+      radio_(radio_constants(paths, radar)), sheets_(preparer_, radio_.wavelength), specular_(specular),
+      mesh_moves_(moving_meshes(*paths.scene)) {
   sheets_move_ = std::any_of(paths.passes.begin(), paths.passes.end(),
                              [&](const Pass& pass) { return mesh_moves_[pass.hit.mesh_id] != 0; });
   is_geometry_still_ = std::count(mesh_moves_.begin(), mesh_moves_.end(), 1) == 0;

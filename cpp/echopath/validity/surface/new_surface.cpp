@@ -10,11 +10,11 @@ namespace {
 
 // Returns a radar that is one instant long, between one transmitter and one receiver of the probe.
 Radar instant_radar(const Paths& record, const Radar& radar, size_t antenna) {
-  Radar probe = probe_radar(record, radar);
-  probe.transmitters = {probe.transmitters[std::min(antenna, probe.transmitters.size() - 1)]};
+  const Radar both = probe_radar(record, radar);
+  Radar probe =
+      one_channel(both, std::min(antenna, both.transmitters.size() - 1), std::min(antenna, both.receivers.size() - 1));
   probe.multiplexing = Multiplexing::kTdm;
   probe.code_phases.clear();
-  probe.receivers = {probe.receivers[std::min(antenna, probe.receivers.size() - 1)]};
   probe.waveform.num_chirps = probe.waveform.num_samples = 1;
   return probe;
 }

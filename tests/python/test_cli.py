@@ -1,11 +1,14 @@
 """The command line as a user meets it: exit codes, one line for each fault, Ctrl-C."""
 from __future__ import annotations
 
+import io
 import os
 import signal
 import subprocess
 import sys
 import time
+from contextlib import redirect_stderr, redirect_stdout
+from types import SimpleNamespace
 
 import pytest
 
@@ -47,12 +50,24 @@ def command(*arguments) -> list:
     return [sys.executable, "-m", "echopath", *map(str, arguments)]
 
 
-def call(*arguments):
+def call_apart(*arguments):
+    """What a process of its own, as a user starts it, returns and prints."""
     return subprocess.run(command(*arguments), capture_output=True, text=True, timeout=120)
 
 
+def call(*arguments) -> SimpleNamespace:
+    """The same within this process, which has loaded the package already."""
+    printed, told = io.StringIO(), io.StringIO()
+    with redirect_stdout(printed), redirect_stderr(told):
+        try:
+            code = main([str(argument) for argument in arguments])
+        except SystemExit as end:
+            code = end.code
+    return SimpleNamespace(returncode=code or 0, stdout=printed.getvalue(), stderr=told.getvalue())
+
+
 def test_version_is_that_of_the_package(capsys):
-    assert call("--version").stdout == f"echopath {ep.__version__}\n"
+    assert call_apart("--version").stdout == f"echopath {ep.__version__}\n"
     with pytest.raises(SystemExit, match="0"):
         main(["--version"])
     assert capsys.readouterr().out == f"echopath {ep.__version__}\n"
@@ -84,7 +99,7 @@ def test_a_folder_that_is_tried_is_not_left_behind(tmp_path):
 
 
 def test_run_writes_the_frame_and_its_pictures(scene_path, tmp_path):
-    done = call("run", scene_path, "--out", tmp_path / "out", "--rays", "500")
+    done = call_apart("run", scene_path, "--out", tmp_path / "out", "--rays", "500")
     assert done.returncode == 0, done.stderr
     files = sorted((tmp_path / "out").iterdir())
     assert [path.name for path in files] == ["frame.h5", "map.png", "overview.png", "route.png", "scene.png"]
@@ -237,7 +252,7 @@ def test_ctrl_c_stops_soon_and_leaves_nothing_half_written(scene_path, tmp_path,
 
 
 def test_no_bar_is_drawn_without_a_terminal(scene_path, tmp_path):
-    assert call("run", scene_path, "--out", tmp_path / "out").stderr == ""
+    assert call_apart("run", scene_path, "--out", tmp_path / "out").stderr == ""
 
 
 def test_bars_are_drawn_on_a_terminal(scene_path, tmp_path):

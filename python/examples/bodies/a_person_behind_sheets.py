@@ -24,7 +24,7 @@ def level(material, turn):
     scene.add(ep.actors.pedestrian(), name="person", position=(8, 0, 0), yaw=np.pi)
     if material is not None:
         scene.add(ep.actors.plate(12, 6), name="sheet", material=material, position=(4, 0, 0), yaw=turn)
-    paths = ep.trace(scene, radar, num_rays=30_000, max_bounces=1)
+    paths = ep.trace(scene, radar, num_rays=15_000, max_bounces=1)
     return 10 * np.log10(ep.received_power(paths.select("T 'person' R")).power)
 
 

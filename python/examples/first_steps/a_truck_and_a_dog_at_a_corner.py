@@ -38,6 +38,6 @@ above.legend(loc="upper left")
 chirps = ep.ChirpSequence(start_frequency=77e9, bandwidth=500e6, num_samples=64, sampling_rate=5e6, num_chirps=512,
                           chirp_interval=160e-6)
 radar = ep.Radar(chirps, transmitters=[ep.Antenna((0, 0, 0.5))], receivers=[ep.Antenna((0, 0.01, 0.5))], transmit_power=10.0)
-frames = ep.Sequence(scene, radar, frames=42, interval=512 * 160e-6, num_rays=1500, tolerance=1e-4, guard=False)
+frames = ep.Sequence(scene, radar, frames=42, interval=512 * 160e-6, num_rays=800, tolerance=1e-4, guard=False)
 ep.spectrogram(frames, part="dog", window_length=256, hop=64).plot(ax=film, title="Micro-Doppler of the dog")
 plt.show()

@@ -66,7 +66,8 @@ def complaints(tmp_path_factory):
         (folder / name).write_text(text)
     files = [ROOT / "tests" / "typing" / "first_experiment.py", ROOT / "python" / "echopath" / "_core.pyi",
              *(folder / name for name in WRONG)]
-    command = [sys.executable, "-m", "mypy", "--config-file", ROOT / "tests" / "typing" / "mypy.ini", "--cache-dir", os.devnull, *files]
+    settings = ROOT / "tests" / "typing" / "mypy.ini"
+    command = [sys.executable, "-m", "mypy", "--config-file", settings, "--cache-dir", os.devnull, *files]
     told = subprocess.run(command, capture_output=True, text=True, cwd=ROOT, env=os.environ | {"MYPYPATH": "python"})
     assert told.stdout.rstrip().endswith(f"(checked {len(files)} source files)"), told.stdout + told.stderr
     errors = [line for line in told.stdout.splitlines() if ": error:" in line]

@@ -75,7 +75,7 @@ Radar array() {
 Paths record(const Radar& radar, bool has_mirrors = true, PolarizationModel polarization = PolarizationModel::kScalar) {
   TraceSettings settings;
   settings.polarization = polarization;
-  settings.num_rays = 3000;
+  settings.num_rays = 1200;
   settings.max_bounces = 4;
   return trace(scene_of_all_kinds(has_mirrors), radar, settings);
 }

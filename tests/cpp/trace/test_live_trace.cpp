@@ -127,9 +127,9 @@ void expect_as_fresh(bool mirrors, Scatterers scatterers, int num_changes, uint6
 }
 
 TEST(LiveTrace, HasTheRecordOfAFreshTraceAfterEveryChange) {
-  expect_as_fresh(false, Scatterers::kRays, 30, 1);
-  expect_as_fresh(true, Scatterers::kRays, 30, 2);
-  expect_as_fresh(false, Scatterers::kSurface, 20, 3);
+  expect_as_fresh(false, Scatterers::kRays, 15, 1);
+  expect_as_fresh(true, Scatterers::kRays, 15, 2);
+  expect_as_fresh(false, Scatterers::kSurface, 10, 3);
 }
 
 TEST(LiveTrace, ShootsNothingWhereNothingChanges) {

@@ -16,13 +16,11 @@ ODD_VALUES = [None, [], {}, "x", 1, [1, 2], np.zeros(3), np.zeros((2, 2)), np.ar
 
 def feed_arrays():
     """Cases in which columns have other values, lengths or types: refused by name, or paths that can be used."""
-    seeds = [frame.paths for frame in frames()]
+    seeds = [_columns(frame.paths) for frame in frames()]
 
     def case(number: int) -> None:
         random = Random(f"arrays {number}")
-        paths = random.choice(seeds)
-        arguments = {name: getattr(paths, name) for name in COLUMNS if len(getattr(paths, name))}
-        arguments |= {name: getattr(paths, name) for name in ("scene", "radar", "frame")}
+        arguments = dict(random.choice(seeds))
         for _ in range(random.choice((1, 1, 2))):
             _change(arguments, random)
         try:
@@ -34,6 +32,12 @@ def feed_arrays():
         _use(made)
 
     return case
+
+
+def _columns(paths) -> dict:
+    """Keywords of Paths.from_arrays that give the same paths."""
+    return {name: getattr(paths, name) for name in COLUMNS if len(getattr(paths, name))} | {
+        name: getattr(paths, name) for name in ("scene", "radar", "frame")}
 
 
 def _change(arguments: dict, random: Random) -> None:

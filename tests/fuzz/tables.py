@@ -16,7 +16,7 @@ class Tables:
     """Seeds, and what stands in them: {key: values} of all their tables."""
 
     def __init__(self, seeds: list[dict]):
-        self._seeds = [pickle.dumps(seed) for seed in seeds]
+        self._seeds = [(pickle.dumps(seed), _routes(seed)) for seed in seeds]
         self._keys: dict[str, list] = {}
         for seed in seeds:
             for holder, key in _places(seed):
@@ -25,13 +25,15 @@ class Tables:
 
     def mistaken(self, random: Random) -> dict:
         """A seed with one to four mistakes."""
-        table = pickle.loads(random.choice(self._seeds))
-        for _ in range(random.choice((1, 1, 1, 2, 4))):
-            self._mistake(table, random)
+        seed, routes = random.choice(self._seeds)
+        table = pickle.loads(seed)
+        self._mistake(*_follow(table, random.choice(routes)), random)
+        for _ in range(random.choice((0, 0, 0, 1, 3))):
+            if table:
+                self._mistake(*random.choice(_places(table)), random)
         return table
 
-    def _mistake(self, table: dict, random: Random) -> None:
-        holder, key = random.choice(_places(table) or [(table, "title")])
+    def _mistake(self, holder, key, random: Random) -> None:
         kind = random.randrange(10)
         if kind <= 3:
             holder[key] = _copy(random.choice(VALUES))
@@ -63,6 +65,23 @@ def _places(item) -> list[tuple]:
         places += [(holder, key) for key in keys]
         left += [holder[key] for key in keys if isinstance(holder[key], (dict, list))]
     return places
+
+
+def _routes(item, before: tuple = ()) -> list[tuple]:
+    """The keys and indices that lead to whatever stands in an item: `_places` of a copy yet to be made."""
+    routes = []
+    for key in item if isinstance(item, dict) else range(len(item)):
+        routes.append((*before, key))
+        if isinstance(item[key], (dict, list)):
+            routes += _routes(item[key], routes[-1])
+    return routes
+
+
+def _follow(item, route: tuple) -> tuple:
+    """The (table or list, key or index) that a route leads to."""
+    for key in route[:-1]:
+        item = item[key]
+    return item, route[-1]
 
 
 def _copy(value):

@@ -107,6 +107,21 @@ SCENES = [RADAR + OBJECTS + SETTINGS, RADAR + OBJECTS,
           RADAR + ACTORS + SETTINGS.replace("wall/ball", "box"), RADAR + SETTINGS.partition("[parts")[0]]
 
 
+def _small_tables() -> list[dict]:
+    """What the seeds say, each table or object in a file of its own: most of what a case costs goes by what its file holds."""
+    full = [tomllib.loads(text) for text in SCENES]
+    radar = full[0]["radar"]
+    antennas = [{"position": [0.0, 0.0, 0.0]}]
+    least = {"waveform": radar["waveform"], "transmitters": antennas, "receivers": antennas}
+    found = [{"radar": least | {key: value}} for key, value in radar.items()]
+    for objects in (table["objects"] for table in full if "objects" in table):
+        found += [{"radar": least, "objects": [{key: value for key, value in one.items() if key != "parent"}]} for one in objects]
+    plate = {"actor": "plate", "material": "metal", "parameters": {"width": 0.2, "height": 1.0}}
+    named = [plate | {"name": "wall"}, plate | {"name": "ball", "parent": "wall"}]
+    found += [{"radar": least, "objects": named, key: value} for key, value in full[0].items() if key not in ("radar", "objects")]
+    return found
+
+
 def _text_case(folder: Path, name: str, texts: list, random: Random) -> Path:
     """Writes a text of the seeds with mistakes, or with damaged bytes."""
     path = folder / name
@@ -130,7 +145,8 @@ def _accepts(load, path: Path, errors: tuple) -> bool:
 def feed_scene():
     """Cases of scene files: they load, or are refused by an error that names the file.
 
-    One in four is a text with mistakes; the others are tables with mistakes, which reach the reader behind the syntax of TOML.
+    One in sixteen is a text with mistakes; the others are tables with mistakes, which reach the reader behind the syntax of
+    TOML, and one in eight of them is as full as the texts.
     """
     folder = memory_folder()
     base = Path(folder.name)
@@ -140,14 +156,17 @@ def feed_scene():
     for text in SCENES:
         path.write_text(text)
         ep.load_scene(path)
-    tables = Tables([tomllib.loads(text) for text in SCENES])
+    small = _small_tables()
+    for table in small:
+        scene_file_of(table, path)
+    few, all_together = Tables(small), Tables([tomllib.loads(text) for text in SCENES])
 
     def case(number: int) -> None:
         random = Random(f"scene {number}")
-        if random.random() < 0.25:
+        if random.random() < 1 / 16:
             _accepts(ep.load_scene, _text_case(base, path.name, SCENES, random), (ValueError, ep.FileError))
         else:
-            table = tables.mistaken(random)
+            table = random.choice((few,) * 7 + (all_together,)).mistaken(random)
             _accepts(lambda path: scene_file_of(table, path), path, (ValueError, ep.FileError))
 
     case.folder = folder

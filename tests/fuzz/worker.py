@@ -34,6 +34,7 @@ def run(target: str, numbers, seconds: float = float("inf"), make=None) -> tuple
         make: what TARGETS has for the name, where it is no target there
     Returns how many ran, and the findings.
     """
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # of the workers: a second thread would wait at full speed
     begin, done, findings = time.monotonic(), 0, []
     context = multiprocessing.get_context("spawn")
     while numbers and time.monotonic() - begin < seconds:
@@ -65,12 +66,13 @@ def _watch(process, at, since, results, target: str, findings: list) -> str:
         if at.value != number:
             number, cpu = at.value, _cpu_time(process.pid)
         took = time.monotonic() - since.value
-        if number >= 0 and took > HANG:  # on a busy machine others may have had the time
+        most = HANG if number >= 0 else PATIENCE
+        if took > most:  # on a busy machine others may have had the time
             took = max(_cpu_time(process.pid) - cpu, took / STARVED)
-        if took > (HANG if number >= 0 else PATIENCE):
+        if took > most:
             process.kill()
             process.join()
-            return f"took more than {HANG:g} s"
+            return f"took more than {most:g} s"
     while not results.empty():
         findings.append(Finding(target, *results.get()))
     return "" if process.exitcode == 0 else f"ended the process with {process.exitcode}"

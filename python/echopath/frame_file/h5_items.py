@@ -13,7 +13,12 @@ def item_of(group, name: str):
     """The identifier of the item `name` of a group; None where there is none."""
     import h5py
 
-    return h5py.h5o.open(group.id, name.encode()) if name.encode() in group.id else None
+    try:
+        return h5py.h5o.open(group.id, name.encode())
+    except KeyError:  # for what is damaged, too
+        if name.encode() in group.id:
+            raise
+        return None
 
 
 def name_of(item) -> str:

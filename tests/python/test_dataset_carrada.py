@@ -1,8 +1,6 @@
 """Datasets in the layout of CARRADA: what the loaders of its authors (valeoai/MVRSS, mvrss/loaders) open, with the axes of its
 annotations (valeoai/carrada_dataset, utils/transform_annotations.py) and levels that its networks scale from."""
 import json
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -156,26 +154,6 @@ def test_what_the_layout_does_not_have_is_refused(tmp_path, before, after, told)
     list(dataset.make(tmp_path / "other.toml", tmp_path / "made"))
     with pytest.raises(ValueError, match=f"dataset: must be .*{told}"):
         dataset.write_carrada(dataset.open(tmp_path / "made"), tmp_path / "out")
-
-
-ENDED = """
-import os, sys
-from echopath import dataset
-from echopath.dataset import carrada
-carrada.write_texts = lambda *_: os._exit(9)
-dataset.write_carrada(dataset.open(sys.argv[1])[:1], sys.argv[2])
-"""
-
-
-def test_the_same_call_goes_on_after_a_kill(made, root, tmp_path):
-    """A process is ended when it has written its arrays and no table yet."""
-    assert subprocess.run([sys.executable, "-c", ENDED, made / "made", tmp_path]).returncode == 9
-    assert list(tmp_path.rglob("*.npy")) and not (tmp_path / "Carrada").exists()
-    dataset.write_carrada(dataset.open(made / "made")[:1], tmp_path)
-    assert [one.name for one in tmp_path.iterdir()] == ["Carrada"]
-    assert read(tmp_path / "Carrada", "light_dataset_frame_oriented.json") == {"scene_000000": ["000000"]}
-    for place, mask in masks_of(tmp_path / "Carrada").items():
-        np.testing.assert_array_equal(mask, masks_of(root)[place])
 
 
 def test_what_a_fault_ends_leaves_nothing(made, monkeypatch, tmp_path):

@@ -138,7 +138,7 @@ def test_a_dataset_without_detections_is_refused(written, tmp_path):
 def test_traces_of_osi_are_read_by_its_own_tool(written):
     reader = pytest.importorskip("osi3trace.osi_trace")
     dataset.write_osi(dataset.open(written / "made"), written / "osi")
-    paths = sorted((written / "osi").glob("19700101T000000Z_sd_*_3_scene_*.osi"))
+    paths = sorted((written / "osi" / "traces").glob("19700101T000000Z_sd_*_3_scene_*.osi"))
     assert len(paths) == 4
     for path in paths:
         messages = list(reader.OSITrace(str(path), "SensorData"))
@@ -146,7 +146,7 @@ def test_traces_of_osi_are_read_by_its_own_tool(written):
             [0.05 * place + MIDDLE for place in range(3)], abs=1e-9)
         for place, one in enumerate(messages):
             _check_message(place, one)
-    with pytest.raises(ValueError, match="folder: must be one that has no traces yet"):
+    with pytest.raises(ValueError, match="folder: must be one that has no folder 'traces' yet"):
         dataset.write_osi(dataset.open(written / "made"), written / "osi")
 
 

@@ -34,7 +34,7 @@ def lazy_arrays(dataset: Dataset) -> XarrayDataset:
         return ("frame", "velocity", "range"), _lazy(dataset, read, shape, dtype), attributes
 
     variables = {}
-    if dataset.template.settings.keep != "labels":
+    if dataset.keep != "labels":
         variables["power"] = maps(_power, "f4", {"units": "W", "long_name": "power with noise, mean over channels"})
     if first.labels:
         kinds = _Kinds(dataset)

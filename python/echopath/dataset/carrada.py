@@ -13,10 +13,11 @@ from numpy.typing import NDArray
 from ..arguments.checks import checked, refused
 from ..arguments.checks import path as folder_rule
 from ..arguments.settings import LabelSettings
-from ..base.files import folder_written_whole, require_writable, write_texts, written_whole
+from ..base.files import write_texts, written_whole
 from ..frame.frame import Frame
 from .carrada_views import NUM_ANGLES, NUM_RANGES, NUM_VELOCITIES, Instance, instances_of, one_hot, views_of
 from .classes import classes_of
+from .exports import exported
 from .opened import Dataset, dataset_rule
 
 FOLDER = "Carrada"
@@ -32,8 +33,9 @@ _Annotations = dict[str, dict[str, Any]]  # {instance: {view: its cells}} of one
 def write_carrada(dataset: Dataset, folder: str | os.PathLike[str]) -> None:
     """Writes views and masks of a dataset as CARRADA has them, into the folder Carrada of `folder`.
 
-    dataset: as of `open`, of a template with keep = "all" and splits train, val (or validation) and test alone; its radar has
-        maps of 256 ranges and 64 velocities and antennas that tell azimuths apart (`data/datasets/carrada.toml`)
+    dataset: as of `open`, of a template with keep = "all", else its `remade()`, whose frames are simulated again; its splits are
+        train, val (or validation) and test alone; its radar has maps of 256 ranges and 64 velocities and antennas that tell
+        azimuths apart (`data/datasets/carrada.toml`)
     folder: new or empty, the `warehouse` of MVRSS; it gets the folder Carrada, whole or not at all: after a kill, the same call
         writes it anew.
     For each scene, a folder scene_000000 and so on with frames 000000 and so on:
@@ -52,13 +54,9 @@ def write_carrada(dataset: Dataset, folder: str | os.PathLike[str]) -> None:
     Raises ValueError naming `dataset` where it has no frames or is not of such a template, and naming `folder` where that has a
     folder Carrada; ep.FileError where files cannot be written.
     """
-    require_writable(folder, "folder")
-    root = Path(folder) / FOLDER
-    if root.exists():
-        raise refused(ValueError, "folder", f"one that has no folder '{FOLDER}' yet", str(folder))
     _require(dataset)
-    with folder_written_whole(root) as begun:
-        _write(dataset, begun)
+    with exported(dataset, folder, FOLDER) as root:
+        _write(dataset, root)
 
 
 def _write(dataset: Dataset, root: Path) -> None:
@@ -75,13 +73,10 @@ def _write(dataset: Dataset, root: Path) -> None:
 
 
 def _require(dataset: Dataset) -> None:
-    if len(dataset) == 0:
-        raise refused(ValueError, "dataset", "one with a frame at least", dataset)
-    settings = dataset.template.settings
-    if settings.keep != "all":
-        raise refused(ValueError, "dataset", 'of a template with keep = "all", which has the signals of all antennas',
-                      settings.keep)
-    if unknown := [name for name in settings.split if name not in _SPLITS]:
+    if dataset.keep != "all":
+        raise refused(ValueError, "dataset", 'of a template with keep = "all", or its remade(), for the signals of all antennas',
+                      f"one that keeps {dataset.keep}")
+    if unknown := [name for name in dataset.template.settings.split if name not in _SPLITS]:
         raise refused(ValueError, "dataset", f"of a template with splits {', '.join(_SPLITS)} alone", unknown[0])
 
 

@@ -14,10 +14,10 @@ from ..arguments.checks import path as folder_rule
 from ..frame.frame import Frame
 from ..frame.maps import FrameMaps
 from ..sequence import StoredSequence, load_sequence
-from ..sequence.contents import frame_path
-from ..sequence.keep import read_frame
+from ..sequence.keep import Keep
 from .arrays import lazy_arrays
 from .folder import DRAWN, open_template, read_record, scene_folder
+from .sources import Files, Remade, Source
 from .template import Template
 
 if TYPE_CHECKING:
@@ -45,8 +45,26 @@ class Dataset:
     folder: Path; template: Template of it; numbers: of the frames, ascending
     """
 
-    def __init__(self, folder: Path, template: Template, numbers: list[int]):
+    def __init__(self, folder: Path, template: Template, numbers: list[int], source: Source | None = None):
         self.folder, self.template, self.numbers = folder, template, numbers
+        self._source = source or Files(folder, template.settings.keep)
+
+    @property
+    def keep(self) -> Keep:
+        """What a frame holds, "all", "maps" or "labels", as the template says it; "all" of `remade`."""
+        return self._source.keep
+
+    def remade(self) -> Dataset:
+        """The same frames, each simulated again from the template when it is asked for, with all that keep = "all" keeps.
+
+        The bits are those of a dataset of this template with keep = "all". So a dataset that keeps maps or labels has exports
+        that need the signals of all antennas, and any frame can be made again alone: `dataset.remade()[137]`. Files that the
+        template names must still be there. Raises nothing; its frames ValueError where they are not.
+        """
+        return self._with(self.numbers, Remade(self.template))
+
+    def _with(self, numbers: list[int], source: Source | None = None) -> Dataset:
+        return Dataset(self.folder, self.template, numbers, source or self._source)
 
     def __len__(self) -> int:
         return len(self.numbers)
@@ -59,12 +77,10 @@ class Dataset:
     def __getitem__(self, place: int | slice) -> DatasetFrame | Dataset:
         """The DatasetFrame at a place, or a Dataset of a slice. Raises IndexError, ep.FileError for a damaged file."""
         if isinstance(place, slice):
-            return Dataset(self.folder, self.template, self.numbers[place])
+            return self._with(self.numbers[place])
         number = self.numbers[place]
-        settings = self.template.settings
-        scene, at = divmod(number, settings.frames)
-        return DatasetFrame(number, scene, at, self.template.split_of(scene),
-                            read_frame(frame_path(scene_folder(self.folder, scene), at), settings.keep))
+        scene, at = divmod(number, self.template.settings.frames)
+        return DatasetFrame(number, scene, at, self.template.split_of(scene), self._source.frame(scene, at))
 
     def __iter__(self) -> Iterator[DatasetFrame]:
         return (self[place] for place in range(len(self)))
@@ -75,13 +91,12 @@ class Dataset:
             names = " or ".join(f"'{one}'" for one in self.template.settings.split)
             raise refused(ValueError, "name", names, name)
         per_scene = self.template.settings.frames
-        return Dataset(self.folder, self.template, [number for number in self.numbers
-                                                    if self.template.split_of(number // per_scene) == name])
+        return self._with([number for number in self.numbers if self.template.split_of(number // per_scene) == name])
 
     def of_scene(self, scene: int) -> Dataset:
         """The frames here of the scene with that number; none where there are none. Raises nothing."""
         per_scene = self.template.settings.frames
-        return Dataset(self.folder, self.template, [number for number in self.numbers if number // per_scene == scene])
+        return self._with([number for number in self.numbers if number // per_scene == scene])
 
     @cached_property
     def scenes(self) -> list[int]:
@@ -113,7 +128,7 @@ class Dataset:
         return lazy_arrays(self)
 
     def __repr__(self) -> str:
-        return f"Dataset('{self.folder}', {len(self)} frames of {len(self.scenes)} scenes, keep='{self.template.settings.keep}')"
+        return f"Dataset('{self.folder}', {len(self)} frames of {len(self.scenes)} scenes, keep='{self.keep}')"
 
 
 def dataset_rule(argument: str, value: Any) -> Dataset:

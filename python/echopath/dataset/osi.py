@@ -8,16 +8,18 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments.checks import checked, refused
+from ..arguments.checks import checked
 from ..arguments.checks import path as folder_rule
-from ..base.files import require_writable, written_whole
+from ..base.files import written_whole
 from ..base.optional import needed_module
 from ..detections.detections import Detections
 from ..signals import beside
 from ..truth.cross_section import isotropic_power
 from .classes import classes_of
+from .exports import detections_of, exported
 from .opened import Dataset, dataset_rule
 
+FOLDER = "traces"
 SENSOR = 1
 NO_OBJECT = 2 ** 64 - 1                # as the interface has it
 _NAME = "19700101T000000Z_sd_{version}_{protobuf}_{frames}_scene_{scene:06d}.osi"
@@ -29,8 +31,10 @@ _OTHER, _INVALID, _CLUTTER = 1, 2, 3   # DetectionClassification of real echoes,
 def write_osi(dataset: Dataset, folder: str | os.PathLike[str]) -> None:
     """Writes the detections of a dataset as trace files of ASAM OSI, one for each scene: a SensorData message for each frame.
 
-    dataset: as of `open`, of a template with [detections] and an array that tells azimuths apart
-    folder: new or empty. Every file is written whole or not at all; names are those of the interface, with time 0 of the scene.
+    dataset: as of `open`, of a template with an array that tells azimuths apart and [detections]; else with keep = "all", or
+        its `remade()`: then detections are those of `ep.detect_frame`
+    folder: new or empty; it gets the folder traces, whole or not at all: after a kill, the same call writes it anew. Names of
+        files are those of the interface, with time 0 of the scene.
     feature_data.radar_sensor has one sensor: header (measurement_time in the middle of the frame, cycle_counter the place of
     the frame, mounting_position in the world at that time) and detections: position (distance m, azimuth and elevation rad, in
     the sensor's frame), radial_velocity (m/s, as measured, receding positive), rcs (dBsm, by the radar equation with the gains
@@ -38,21 +42,20 @@ def write_osi(dataset: Dataset, folder: str | os.PathLike[str]) -> None:
     existence_probability 0 of noise and of what comes in beside the echoes (interference, rain, leakage), 1 of echoes;
     classification OTHER of real echoes, INVALID of ghosts, CLUTTER of what has probability 0.
     Raises ValueError naming `dataset` where it has no frames, or no detections with azimuths, and naming `folder` where that has
-    traces; ModuleNotFoundError without osi-python (extra `osi`), ep.FileError where files cannot be written.
+    a folder traces; ModuleNotFoundError without osi-python (extra `osi`), ep.FileError where files cannot be written.
     """
     messages = _module("sensordata")
-    require_writable(folder, "folder")
-    if Path(folder).is_dir() and any(Path(folder).glob("*.osi")):
-        raise refused(ValueError, "folder", "one that has no traces yet", str(folder))
-    if len(dataset) == 0:
-        raise refused(ValueError, "dataset", "one with a frame at least", dataset)
-    for scene in dataset.scenes:
-        written = [_frame(messages, dataset, scene, one) for one in dataset.of_scene(scene)]
-        name = _NAME.format(version=_version_text(written[0].version), protobuf=_protobuf(), frames=len(written), scene=scene)
-        with written_whole(Path(folder) / name) as temporary, open(temporary, "wb") as file:
-            for message in written:
-                content = message.SerializeToString(deterministic=True)
-                file.write(_LENGTH.pack(len(content)) + content)
+    with exported(dataset, folder, FOLDER) as traces:
+        for scene in dataset.scenes:
+            _write_trace([_frame(messages, dataset, scene, one) for one in dataset.of_scene(scene)], scene, traces)
+
+
+def _write_trace(written: list[Any], scene: int, folder: Path) -> None:
+    name = _NAME.format(version=_version_text(written[0].version), protobuf=_protobuf(), frames=len(written), scene=scene)
+    with written_whole(folder / name) as temporary, open(temporary, "wb") as file:
+        for message in written:
+            content = message.SerializeToString(deterministic=True)
+            file.write(_LENGTH.pack(len(content)) + content)
 
 
 def _module(name: str) -> Any:
@@ -74,12 +77,7 @@ def _version_text(version: Any) -> str:
 
 def _frame(messages: Any, dataset: Dataset, scene: int, one: Any) -> Any:
     """The SensorData of one frame."""
-    found = one.frame.detections
-    if not isinstance(found, Detections):
-        raise refused(ValueError, "dataset", "of a template with [detections]", str(dataset.folder))
-    if len(found) and np.isnan(found.azimuth).any():
-        raise refused(ValueError, "dataset", "of a radar whose antennas tell azimuths apart", "directions that are not known")
-    stored = dataset.sequence(scene)
+    found, stored = detections_of(dataset, one), dataset.sequence(scene)
     time = float(stored.times[one.place]) + 0.5 * stored.radar.frame_duration
     message = messages.SensorData()
     _set_version(message.version)

@@ -13,15 +13,17 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arguments.checks import checked, refused
+from ..arguments.checks import checked
 from ..arguments.checks import path as folder_rule
-from ..base.files import require_writable, write_texts, written_whole
+from ..base.files import write_texts, written_whole
 from ..detections.detections import Detections
 from ..frame_file.h5 import writing
 from ..truth.cross_section import isotropic_power
 from .classes import CODES, classes_of
+from .exports import detections_of, exported
 from .opened import Dataset, dataset_rule
 
+FOLDER = "data"
 SENSOR = 1
 MICRO = 1e6  # timestamps are whole microseconds
 _STEP = 1e-4  # s, either side, of the differences that make the radar's velocity
@@ -51,8 +53,9 @@ def write_radar_scenes(dataset: Dataset, folder: str | os.PathLike[str]) -> None
     """Writes the detections of a dataset as RadarScenes has them: data/sequences.json, data/sensors.json, and for each scene
     data/sequence_<k>/radar_data.h5 and scenes.json, k from 1.
 
-    dataset: as of `open`, of a template with [detections] and an array that tells azimuths apart
-    folder: new or empty; it gets the folder data. Every file is written whole or not at all.
+    dataset: as of `open`, of a template with an array that tells azimuths apart and [detections]; else with keep = "all", or
+        its `remade()`: then detections are those of `ep.detect_frame`
+    folder: new or empty; it gets the folder data, whole or not at all: after a kill, the same call writes it anew.
     Fields of radar_data, in its order: timestamp (us), sensor_id, range_sc (m), azimuth_sc (rad, left positive), rcs (dBsm, by
     the radar equation with the gains of the first antennas), vr and vr_compensated (m/s, receding positive; the second without
     the radar's own motion), x_cc, y_cc (m, car frame), x_seq, y_seq (m, world), uuid, track_id ("" of what is static or
@@ -62,18 +65,13 @@ def write_radar_scenes(dataset: Dataset, folder: str | os.PathLike[str]) -> None
     Raises ValueError naming `dataset` where it has no frames, or no detections with azimuths, and naming `folder` where that has
     a folder data; ep.FileError where files cannot be written.
     """
-    require_writable(folder, "folder")
-    data = Path(folder) / "data"
-    if data.exists():
-        raise refused(ValueError, "folder", "one that has no folder 'data' yet", str(folder))
-    if len(dataset) == 0:
-        raise refused(ValueError, "dataset", "one with a frame at least", dataset)
-    sequences = {}
-    for number, scene in enumerate(dataset.scenes, 1):
-        name = f"sequence_{number}"
-        sequences[name] = _write_sequence(dataset, scene, data / name, name)
-    write_texts(data, {"sequences.json": _json({"sequences": sequences}),
-                       "sensors.json": _json({f"radar_{SENSOR}": {"id": SENSOR, "x": 0.0, "y": 0.0, "yaw": 0.0}})})
+    with exported(dataset, folder, FOLDER) as data:
+        sequences = {}
+        for number, scene in enumerate(dataset.scenes, 1):
+            name = f"sequence_{number}"
+            sequences[name] = _write_sequence(dataset, scene, data / name, name)
+        write_texts(data, {"sequences.json": _json({"sequences": sequences}),
+                           "sensors.json": _json({f"radar_{SENSOR}": {"id": SENSOR, "x": 0.0, "y": 0.0, "yaw": 0.0}})})
 
 
 def _write_sequence(dataset: Dataset, scene: int, folder: Path, name: str) -> dict[str, Any]:
@@ -81,16 +79,14 @@ def _write_sequence(dataset: Dataset, scene: int, folder: Path, name: str) -> di
     stored, template = dataset.sequence(scene), dataset.template
     radar = stored.radar
     classes = classes_of(template.draw(scene).table["objects"], template.settings.classes)
-    frames = list(dataset.of_scene(scene))
+    frames = dataset.of_scene(scene)
     points, odometry = [], np.zeros(len(frames), ODOMETRY)
     for row, one in enumerate(frames):
-        if not isinstance(one.frame.detections, Detections):
-            raise refused(ValueError, "dataset", "of a template with [detections]", str(dataset.folder))
         time = float(stored.times[one.place]) + 0.5 * radar.frame_duration
         pose = _pose(radar, time)
         odometry[row] = (round(MICRO * time), *pose.world[:2, 3], pose.yaw,
                          pose.velocity @ pose.world[:3, 0], pose.angular)
-        points.append(_points_of(one.frame.detections, one.number, scene, radar, time, pose, classes))
+        points.append(_points_of(detections_of(dataset, one), one.number, scene, radar, time, pose, classes))
     _write_data(folder / "radar_data.h5", np.concatenate(points), odometry)
     category = _CATEGORIES.get(template.split_of(scene), template.split_of(scene))
     scenes = _scenes(odometry["timestamp"], [len(one) for one in points])
@@ -109,8 +105,6 @@ def _pose(radar: Any, time: float) -> _Pose:
 def _points_of(found: Detections, number: int, scene: int, radar: Any, time: float, pose: _Pose,
                classes: dict[str, Any]) -> NDArray[Any]:
     """The rows of one frame."""
-    if len(found) and np.isnan(found.azimuth).any():
-        raise refused(ValueError, "dataset", "of a radar whose antennas tell azimuths apart", "directions that are not known")
     rows = np.zeros(len(found), POINTS)
     own = found.points                                     # in the radar's frame
     world = own @ pose.world[:3, :3].T + pose.world[:3, 3]

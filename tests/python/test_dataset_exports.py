@@ -1,0 +1,106 @@
+"""Exports of datasets: there whole or not at all, and of datasets that keep less than they need, whose frames are made again."""
+import hashlib
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from echopath import dataset
+
+TEMPLATE = """
+[dataset]
+scenes = 1
+frames = 2
+interval = 0.05
+keep = "{keep}"
+seed = 4
+[radar.waveform]
+start_frequency = 77e9
+bandwidth = 0.7e9
+num_samples = 256
+sampling_rate = 10e6
+num_chirps = 64
+chirp_interval = 40e-6
+[[radar.transmitters]]
+position = [0.0, 0.0, 1.0]
+[[radar.receivers]]
+position = [0.0, 0.0050, 1.0]
+[[radar.receivers]]
+position = [0.0, 0.0069, 1.0]
+[[objects]]
+name = "walker"
+actor = "pedestrian"
+position = [{{uniform = [5.0, 9.0]}}, 1.0, 0.0]
+[trace]
+num_rays = 1000
+[labels]
+"""
+EXPORTS = {"carrada": "Carrada", "radar_scenes": "data", "osi": "traces"}  # module: folder that it writes
+ENDED = """
+import os, sys
+from echopath import dataset
+name, folder, out = sys.argv[1:]
+module = sys.modules[f"echopath.dataset.{name}"]
+last = "_write_trace" if name == "osi" else "write_texts"
+before = getattr(module, last)
+setattr(module, last, lambda *given: (before(*given), os._exit(9)))
+getattr(dataset, f"write_{name}")(dataset.open(folder).remade(), out)
+"""
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """{what frames keep: folder of a dataset}."""
+    folder = tmp_path_factory.mktemp("exports")
+    for keep in ("all", "labels"):
+        (folder / f"{keep}.toml").write_text(TEMPLATE.format(keep=keep))
+        list(dataset.make(folder / f"{keep}.toml", folder / keep))
+    return {keep: folder / keep for keep in ("all", "labels")}
+
+
+def write(name: str, given, out: Path) -> None:
+    if name == "osi":
+        pytest.importorskip("osi3")
+    getattr(dataset, f"write_{name}")(given, out)
+
+
+def bytes_of(folder: Path) -> dict:
+    """{path in the folder: digest} of all its files."""
+    return {str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
+            for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def test_a_frame_that_is_remade_alone_is_the_one_that_was_made(made):
+    whole, again = dataset.open(made["all"]), dataset.open(made["labels"]).remade()
+    assert again.keep == "all" and again[1:].keep == "all" and "keep='all'" in repr(again)
+    ours, theirs = again[1], whole[1]
+    assert ours[:4] == theirs[:4]
+    np.testing.assert_array_equal(ours.frame.spectrum.values, theirs.frame.spectrum.values)
+    for name in ("offsets", "mesh_id", "triangle_id", "u", "amplitude"):
+        np.testing.assert_array_equal(getattr(ours.frame.paths, name), getattr(theirs.frame.paths, name))
+
+
+@pytest.mark.parametrize("name", EXPORTS)
+def test_what_a_dataset_does_not_keep_is_told_and_remade(made, tmp_path, name):
+    labels = dataset.open(made["labels"])
+    with pytest.raises(ValueError, match=r'dataset: must be of a template with .*keep = "all", or its remade\(\)'):
+        write(name, labels, tmp_path / "refused")
+    assert not bytes_of(tmp_path)
+    write(name, dataset.open(made["all"]), tmp_path / "kept")
+    write(name, labels.remade(), tmp_path / "remade")
+    assert [one.name for one in (tmp_path / "kept").iterdir()] == [EXPORTS[name]]
+    assert bytes_of(tmp_path / "kept") == bytes_of(tmp_path / "remade") != {}
+
+
+@pytest.mark.parametrize("name", EXPORTS)
+def test_the_same_call_goes_on_after_a_kill(made, tmp_path, name):
+    """A process is ended, while it writes what the other makes again, behind its first table or trace."""
+    write(name, dataset.open(made["all"]), tmp_path / "whole")
+    killed = subprocess.run([sys.executable, "-c", ENDED, name, made["labels"], tmp_path / "out"])
+    assert killed.returncode == 9 and not (tmp_path / "out" / EXPORTS[name]).exists() and bytes_of(tmp_path / "out")
+    write(name, dataset.open(made["all"]), tmp_path / "out")
+    assert bytes_of(tmp_path / "out") == bytes_of(tmp_path / "whole")
+    with pytest.raises(ValueError, match=f"folder: must be one that has no folder '{EXPORTS[name]}' yet"):
+        write(name, dataset.open(made["all"]), tmp_path / "out")

@@ -36,7 +36,12 @@ def failing(monkeypatch, address, method: str, error: Exception) -> None:
     monkeypatch.setattr(type(address._files), method, fail)
 
 
-@pytest.mark.parametrize("error", [TimeoutError("timed out"), ConnectionResetError("reset"), PermissionError("not yours")])
+class EndpointConnectionError(Exception):
+    """As the library of an object store raises where that does not answer: no OSError."""
+
+
+@pytest.mark.parametrize("error", [TimeoutError("timed out"), ConnectionResetError("reset"), PermissionError("not yours"),
+                                   EndpointConnectionError("no answer")])
 def test_a_file_that_cannot_be_read_is_not_taken_for_none(monkeypatch, address, templates, error):
     ours, other = templates
     address.prepare(ours)
@@ -77,3 +82,35 @@ def test_a_put_that_is_cut_short_leaves_what_was_there(monkeypatch, tmp_path, ki
     assert address.get("dataset.toml") == b"before"
     address.put("dataset.toml", b"after")
     assert address.get("dataset.toml") == b"after"
+
+
+@pytest.mark.parametrize("kind", ["memory", "file"])
+def test_what_a_killed_call_was_about_to_move_is_removed_and_nothing_else(tmp_path, kind):
+    address = Address(f"{kind}://{tmp_path / 'out'}")
+    left = f".frame_0000.h5-{uuid.uuid4().hex}"
+    for name in ("record.json", "frame_0000.h5", ".claim", left):
+        address.put(f"scenes/000004/{name}", b"some")
+    address.put(f"scenes/000005/{left}", b"of another scene")
+    address.tidy(4)
+    assert [address.get(f"scenes/00000{place}") for place in (f"4/{left}", "4/.claim", "4/frame_0000.h5", "5/" + left)] == [
+        b"", b"some", b"some", b"of another scene"]
+    address.tidy(6)  # which is not there
+
+
+def test_a_put_whose_file_another_call_takes_for_left_is_done_again(monkeypatch, address):
+    move, taken = type(address._files).mv, []
+
+    def tidied_before(self, path, *more, **options):
+        if not taken:
+            taken.append(path)
+            self.rm_file(path)
+        move(self, path, *more, **options)
+
+    monkeypatch.setattr(type(address._files), "mv", tidied_before)
+    address.put("scenes/000000/record.json", b"whole")
+    assert taken and address.get("scenes/000000/record.json") == b"whole"
+
+
+def test_an_address_is_copied_before_it_is_opened(address):
+    with pytest.raises(ep.FileError, match=f"^{address.address}: is an address; copy it to a folder first"):
+        dataset.open(address.address)

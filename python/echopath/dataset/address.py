@@ -2,8 +2,11 @@
 from __future__ import annotations
 
 import hashlib
+import re
 import tempfile
 import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +28,9 @@ from .folder import (
     without_template,
 )
 from .template import Template
+
+_TRIES = 3                                     # of moving a file
+_LEFT = re.compile(r"\..+-[0-9a-f]{32}")       # name of a file that is about to be moved
 
 
 def is_address(folder: str) -> bool:
@@ -50,22 +56,33 @@ class Address:
         path = f"{self._root}/{name}"
         folder, _, last = path.rpartition("/")
         temporary = f"{folder}/.{last}-{uuid.uuid4().hex}"
-        try:
+        with self._told(name, "written"):
             self._files.makedirs(folder, exist_ok=True)
-            self._files.pipe_file(temporary, content)
-            self._files.mv(temporary, path)
-        except OSError as error:
-            raise _core.FileError(f"{self.address}/{name}: cannot be written ({error})") from None
+            for left in reversed(range(_TRIES)):
+                self._files.pipe_file(temporary, content)
+                try:
+                    self._files.mv(temporary, path)
+                    return
+                except FileNotFoundError:  # another call took it for one that was left
+                    if not left:
+                        raise
 
     def get(self, name: str) -> bytes:
         """The content of a file, nothing where it is not there. Raises ep.FileError where that cannot be told."""
-        try:
-            content: bytes = self._files.cat_file(f"{self._root}/{name}")
-            return content
-        except FileNotFoundError:
-            return b""
-        except OSError as error:
-            raise _core.FileError(f"{self.address}/{name}: cannot be read ({error})") from None
+        with self._told(name, "read"):
+            try:
+                content: bytes = self._files.cat_file(f"{self._root}/{name}")
+                return content
+            except FileNotFoundError:
+                return b""
+
+    def tidy(self, scene: int) -> None:
+        """Removes the files of a scene that a call which was killed was about to move. Raises ep.FileError."""
+        name = scene_name(scene)
+        for path in self._listed(name):
+            if _LEFT.fullmatch(path.rpartition("/")[2]):
+                with self._told(name, "written"), suppress(FileNotFoundError):
+                    self._files.rm_file(path)
 
     def record(self, scene: int) -> SceneRecord:
         """What is written of a scene; to do where a file of it is not as it was written."""
@@ -73,6 +90,8 @@ class Address:
         for name, digest in record.files.items():
             if hashlib.sha256(self.get(f"{scene_name(scene)}/{name}")).hexdigest() != digest:
                 return SceneRecord("to do")
+        if record.state == "done":
+            self.tidy(scene)
         return record
 
     def prepare(self, template: Template) -> None:
@@ -94,12 +113,24 @@ class Address:
 
     def _has_scenes(self) -> bool:
         path = f"{self._root}/{SCENES}"
+        return any(one.rstrip("/") != path for one in self._listed(SCENES))
+
+    def _listed(self, name: str) -> list[str]:
+        """The paths in a folder, none where it is not there. Raises ep.FileError."""
+        with self._told(name, "read"):
+            try:
+                self._files.invalidate_cache()  # others write there, too
+                return [str(one) for one in self._files.ls(f"{self._root}/{name}", detail=False)]
+            except FileNotFoundError:
+                return []
+
+    @contextmanager
+    def _told(self, name: str, done: str) -> Iterator[None]:
+        """Raises ep.FileError naming a file where the block raises what libraries of addresses raise: anything."""
         try:
-            return any(str(one).rstrip("/") != path for one in self._files.ls(path, detail=False))
-        except FileNotFoundError:
-            return False
-        except OSError as error:
-            raise _core.FileError(f"{self.address}/{SCENES}: cannot be read ({error})") from None
+            yield
+        except Exception as error:
+            raise _core.FileError(f"{self.address}/{name}: cannot be {done} ({error})") from None
 
     def _table(self) -> dict[str, Any] | None:
         if not (content := self.get(TEMPLATE)):

@@ -91,4 +91,5 @@ def _made_at(address: Address, template: Template, scene: int, run: str) -> Scen
         for name in record.files:
             address.put(f"{scene_name(scene)}/{name}", (scene_folder(Path(own), scene) / name).read_bytes())
     address.put(f"{scene_name(scene)}/{RECORD}", record_text(record).encode())
+    address.tidy(scene)
     return record

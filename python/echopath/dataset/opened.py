@@ -15,6 +15,7 @@ from ..frame.frame import Frame
 from ..frame.maps import FrameMaps
 from ..sequence import StoredSequence, load_sequence
 from ..sequence.keep import Keep
+from .address import is_address
 from .arrays import lazy_arrays
 from .folder import DRAWN, open_template, read_record, scene_folder
 from .sources import Files, Remade, Source
@@ -142,8 +143,11 @@ def dataset_rule(argument: str, value: Any) -> Dataset:
 def open(folder: str | os.PathLike[str]) -> Dataset:
     """The dataset that `ep.dataset.make` or `echopath dataset` wrote to a folder, or has written so far.
 
-    folder: of the dataset. Returns a Dataset of all frames of the scenes that are done. Raises ep.FileError where it is none.
+    folder: of the dataset, in the file system. Returns a Dataset of all frames of the scenes that are done. Raises ep.FileError
+    where it is none, or an address, whose files are to be copied to a folder first.
     """
+    if is_address(os.fspath(folder)):
+        raise _core.FileError(f"{folder}: is an address; copy it to a folder first, as `get` of fsspec.core.url_to_fs does")
     folder = Path(folder)
     template = open_template(folder)
     frames = template.settings.frames

@@ -213,6 +213,13 @@ times: [T] s; transmitter, receiver: indices of antennas, or positions [3] in m 
 `synthesize`
 Returns [T, P] in m. Raises TypeError or ValueError naming the argument, also for times outside a motion, and IndexError for
 antennas that are not there.)");
+  define(type, "_placed_echoes", &placed_echoes_of, py::arg("times"), py::arg("radars"), py::arg("replay") = "material",
+         R"(Echoes of the paths for antennas of which each moves by itself.
+
+times: [T] s; radars: [T] Radar with as many antennas as that of the paths, where they stand in the world at each time
+replay: as in `synthesize`
+Returns (delays in s, amplitudes in sqrt(W)), [tx, rx, T, P] each. Raises TypeError or ValueError naming the argument, also for
+times outside a motion.)");
   define(type, "points", &points_of, py::arg("time"),
          "Hits [H, 3] in m in the world at `time` in s. Raises TypeError or ValueError naming the argument.");
 }

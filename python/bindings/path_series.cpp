@@ -109,6 +109,29 @@ py::array lengths_of(const Paths& paths, Arg<"times", VectorOf<double>> times,
   return numpy_take(evaluate_one_channel(paths, *times, from, to, *replay).lengths, series_shape(paths, *times));
 }
 
+py::tuple placed_echoes_of(const Paths& paths, Arg<"times", VectorOf<double>> times,
+                           Arg<"radars", List<Instance<Radar>>> radars, Arg<"replay", OneOf<kSpecularPoints>> replay) {
+  std::vector<double> delays;
+  std::vector<std::complex<double>> amplitudes;
+  run_job("replay", py::none(), [&](Job&) {
+    ReplaySettings settings;
+    settings.specular = *replay;
+    const Replayer replayer(paths, paths.radar, settings);
+    std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
+    std::iota(indices.begin(), indices.end(), 0);
+    std::vector<Echoes> channels = replayer.placed(indices, *times, *radars);
+    for (const Echoes& channel : channels) {
+      delays.insert(delays.end(), channel.delay.begin(), channel.delay.end());
+      amplitudes.insert(amplitudes.end(), channel.amplitude.begin(), channel.amplitude.end());
+    }
+    replayer.recycle(channels);
+  });
+  const Shape shape{static_cast<py::ssize_t>(paths.radar.transmitters.size()),
+                    static_cast<py::ssize_t>(paths.radar.receivers.size()), static_cast<py::ssize_t>((*times).size()),
+                    static_cast<py::ssize_t>(paths.num_paths())};
+  return py::make_tuple(numpy_take(std::move(delays), shape), numpy_take(std::move(amplitudes), shape));
+}
+
 py::array points_of(const Paths& paths, Arg<"time", Real> time) {
   std::vector<double> coordinates = run_job("points", py::none(), [&](Job& job) {
     const PosedScene pose(*paths.scene, *time);

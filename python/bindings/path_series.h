@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <variant>
+#include <vector>
 
 #include "argument.h"
 #include "choice.h"
@@ -35,6 +36,10 @@ py::array path_power_of(const Paths& paths);
 py::array lengths_of(const Paths& paths, Arg<"times", VectorOf<double>> times,
                      Arg<"transmitter", AntennaOrPosition> transmitter, Arg<"receiver", AntennaOrPosition> receiver,
                      Arg<"replay", OneOf<kSpecularPoints>> replay);
+// (delays [tx, rx, T, P] in s, amplitudes [tx, rx, T, P] in sqrt(W)) for antennas that stand where radars [T] have them at
+// `times` [T] in s.
+py::tuple placed_echoes_of(const Paths& paths, Arg<"times", VectorOf<double>> times,
+                           Arg<"radars", List<Instance<Radar>>> radars, Arg<"replay", OneOf<kSpecularPoints>> replay);
 // [H, 3] m in the world at `time` in s.
 py::array points_of(const Paths& paths, Arg<"time", Real> time);
 

@@ -42,7 +42,7 @@ from .paths.selections import first, hits, last, num_bounces, passes, power
 from .paths.visibility import ObjectVisibility, Sight, visibility
 from .presentation.viewing import plot_rays, view
 from .readers import Model, ModelNode, foreign_materials, load_model
-from .receiver import Adc, PhaseNoise, Receiver, Reception, receive
+from .receiver import Adc, PhaseNoise, Receiver, Reception, receive, receive_parts
 from .scene.foreign import mesh_from
 from .scene.interferers import Interferer
 from .scene.materials import materials
@@ -56,7 +56,8 @@ from .sensor_files import SensorConfig, load_radar, load_sensor, save_raw
 from .sensor_files.antenna_patterns import load_antenna
 from .sequence import SavedFrame, Sequence, StoredSequence, load_sequence
 from .signals.if_signal import add_noise, synthesize
-from .signals.interference import interference, interference_radar
+from .signals.interference import interference
+from .signals.interference_ways import interference_radar
 from .signals.measures import power_by_chirp
 from .signals.parts import Parts, decompose
 from .spectra.angles import angle_fft, beamform, compensate_tdm, estimate_angles, range_azimuth, virtual_array
@@ -90,7 +91,7 @@ __all__ = [
     "interference", "interference_radar", "last", "load_antenna", "load_frame", "load_labels", "load_mesh",
     "load_meshes", "load_model", "load_radar", "load_scene", "load_sensor", "load_sequence", "materials", "mesh_from",
     "mie_rcs", "music", "num_bounces", "num_threads", "passes", "path_cells", "plot_rays", "plots", "power",
-    "power_by_chirp", "range_azimuth", "range_doppler", "range_time", "rcs", "read_trajectories", "receive",
+    "power_by_chirp", "range_azimuth", "range_doppler", "range_time", "rcs", "read_trajectories", "receive", "receive_parts",
     "received_power", "received_powers", "remove_clutter", "renew", "save_frame", "save_label_images", "save_labels",
     "save_raw", "set_num_threads", "sheet_coefficients", "simulate", "spectrogram", "spectrogram_labels",
     "speed_of_light", "synthesize", "trace", "track", "truth", "unresolved", "validity", "view", "virtual_array",

@@ -2265,6 +2265,15 @@ class Paths:
         ...
     def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
+    def _placed_echoes(self, times: ArrayLike, radars: typing.Sequence[Radar], replay: str = 'material') -> tuple[typing.Any, ...]:
+        """
+        Echoes of the paths for antennas of which each moves by itself.
+
+        times: [T] s; radars: [T] Radar with as many antennas as that of the paths, where they stand in the world at each time
+        replay: as in `synthesize`
+        Returns (delays in s, amplitudes in sqrt(W)), [tx, rx, T, P] each. Raises TypeError or ValueError naming the argument, also for
+        times outside a motion.
+        """
     def _repr_html_(self) -> str:
         """
         A table for notebooks.

@@ -53,6 +53,7 @@ def good(tmp_path_factory) -> dict:
         "cfar": of_map, "check_rays": {"probe": probe, "frame": paths.frame}, "check_signal": {"cube": cube, "probe": probe},
         "demultiplex": {"cube": cube, "radar": radar}, "load_radar": {"path": folder / "sensor.cfg"},
         "load_sensor": {"path": folder / "sensor.cfg"}, "receive": {"cube": cube, "radar": radar, "seed": 1},
+        "receive_parts": {"parts": {"whole": cube}, "radar": radar, "seed": 1},
         "compensate_tdm": of_map, "decompose": {"paths": paths, "parts": {"plate": "T 'plate' R"}}, "detect": of_map,
         "detect_frame": {"frame": frame}, "effects": {"scene": scene, "radar": radar},
         "estimate_angles": of_map | {"cells": [[0, 1]]}, "families": {"paths": paths}, "first": {"glob": "plate"},

@@ -156,6 +156,21 @@ void Replayer::evaluate_at(std::span<const int64_t> paths, std::span<Target> tar
   }
 }
 
+std::vector<Echoes> Replayer::placed(std::span<const int64_t> indices, std::span<const double> times,
+                                     std::span<const Radar> radars) const {
+  require(radars.size() == times.size(), "radars", "must be as many as times", radars.size());
+  for (const Radar& one : radars) {
+    require(one.transmitters.size() == radar_.transmitters.size() && one.receivers.size() == num_receivers(), "radars",
+            "must have as many antennas as the radar of the paths", one.transmitters.size());
+  }
+  std::vector<Echoes> echoes = take_echoes(indices.size(), static_cast<size_t>(num_channels()), times.size());
+  if (times.empty()) return echoes;
+  const PosedNodes posed = posed_.pose(times, radars);
+  Target target{posed, 0, rows_of(echoes)};
+  evaluate_at(indices, {&target, 1});
+  return echoes;
+}
+
 std::vector<Echoes> Replayer::still(std::span<const int64_t> indices) const {
   return at_nodes(indices, posed_.at_trace(), {});
 }

@@ -44,6 +44,12 @@ class Replayer {
                                std::span<const uint8_t> joined = {}) const;
   int64_t num_rows_by_chirp() const;
 
+  // Evaluates `paths` for antennas of which each may move by itself: radars [T] have them where they stand in the world at
+  // `times` [T] (s), as many as the replayer's radar and with its patterns. Returns echoes by channel, delays in s and
+  // amplitudes in sqrt(W), [T, P] each; their groups and their sampling are left empty.
+  std::vector<Echoes> placed(std::span<const int64_t> paths, std::span<const double> times,
+                             std::span<const Radar> radars) const;
+
   // Returns the rule that joins paths into one echo, unless they differ in `labels` ([P] each, which must outlive the rule).
   JoinRule join_rule(std::vector<const std::vector<uint32_t>*> labels) const;
   // Adds the echo of each path that is `joined` to the echo before it, and returns those that are left.

@@ -92,15 +92,26 @@ class Frame:
     @property
     def received(self):
         """Reception: what the converter of the receiver gives, before `demultiplex`, made anew at every call."""
-        return reception(self._arriving_cube, self.radar, self.noise_seed, self.paths.frame.start_time)
+        return reception(self._arriving_cube, self.radar, self.noise_seed, self.paths.frame.start_time,
+                         self.interference_cube)
+
+    @property
+    def received_parts(self) -> dict:
+        """What the receiver makes of each part: {partition: {part: cube}} in the shape of `received.cube`, sqrt(W), which add up
+        to it, made anew at every call; "parts" with the part "other" without partitions.
+
+        Beside the parts of the paths stand those that no path makes, where there are some: "rain", "interference", "leakage",
+        "noise" (thermal), "offset" and "converter" (rounding and saturation); see `ep.receive_parts`.
+        """
+        from .received import received_parts
+
+        return received_parts(self)
 
     @property
     def _arriving_cube(self):
-        """What comes to the receivers, without noise: of transmitters that send at once their sum."""
+        """Echoes that come to the receivers, without noise: of transmitters that send at once their sum."""
         cube = self.cube if self.coded_cube is None else self.coded_cube
-        for other in (self.rain_cube, self.interference_cube):
-            cube = cube if other is None else cube + other
-        return cube
+        return cube if self.rain_cube is None else cube + self.rain_cube
 
     def save_raw(self, path: str | os.PathLike[str]) -> int:
         """Writes what the converter gives as a DCA1000 would: signed 16-bit words, I0 I1 Q0 Q1, slot by slot.

@@ -133,7 +133,8 @@ class FrameRun:
         if not has_interference(self.scene, self.trace.effects):
             return None
         with clock("interference"):
-            return interference_cube(self.scene, self.radar, self.trace.replace(start_time=paths.frame.start_time), progress)
+            timed = self.trace.replace(start_time=paths.frame.start_time)
+            return interference_cube(self.scene, self.radar, timed, self.signal.replay, progress)
 
     @property
     def selections(self) -> dict:

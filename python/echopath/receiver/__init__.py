@@ -10,9 +10,11 @@ Order of the stages, each of which costs nothing where it is off:
 7. high-pass and low-pass filters of the intermediate frequency
 8. imbalance of the two branches of the mixer, and their offsets
 9. the converter: gain, clock jitter, saturation and quantisation
-What is linear in both branches alike commutes with the imbalance, so that filters may stand before it.
+What is linear in both branches alike commutes with the imbalance, so that filters may stand before it. `receive_parts` sends
+the parts of a signal through the same stages.
 """
 from .chain import Reception, receive
+from .parts import receive_parts
 from .settings import Adc, PhaseNoise, Receiver
 
-__all__ = ["Adc", "PhaseNoise", "Receiver", "Reception", "receive"]
+__all__ = ["Adc", "PhaseNoise", "Receiver", "Reception", "receive", "receive_parts"]

@@ -6,13 +6,13 @@ import dataclasses
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import ArrayLike, checked, optional, real, refused, seed as seed_rule
+from ..arguments.checks import ArrayLike, array, checked, optional, real, refused, seed as seed_rule
 from ..transmit import code_of, is_coded, radar_of_noise
 from .analytic import as_samples
 from .channels import coupled, receiver_factors, require_channels, transmitter_factors
-from .converter import converted
+from .converter import converted, jittered
 from .filters import filtered
-from .imbalance import compressed, unbalanced
+from .imbalance import compressed, compression, unbalanced, with_offset
 from .leakage import leakage_amplitudes, leaked_tone
 from .oscillator import Oscillator
 from .settings import Receiver
@@ -34,21 +34,31 @@ class Reception:
     gain_db: float | None = None
 
 
-@checked(start_time=real(unit="s"), seed=optional(seed_rule))
-def receive(cube: ArrayLike, radar: _core.Radar, *, seed: int | None, start_time: float = 0.0) -> Reception:
+_CUBE = array("[T, R, C, S]", kind="complex")
+
+
+@checked(start_time=real(unit="s"), seed=optional(seed_rule), interference=optional(_CUBE))
+def receive(cube: ArrayLike, radar: _core.Radar, *, seed: int | None, start_time: float = 0.0,
+            interference: ArrayLike | None = None) -> Reception:
     """What the receiver of a radar makes of the ideal signal: noise, and the faults of `radar.receiver` in their order.
 
     cube: of `synthesize` for that radar: [tx, rx, chirp, sample] in sqrt(W), or [1, rx, slots, sample] of transmitters that
         send at once, which have the errors of their chains already
     seed: of thermal noise, phase noise and jitter, drawn from it and start_time; None: none of them
     start_time: s, first sample of the frame
+    interference: what other radars send (`interference`), of the shape of the cube in sqrt(W), or None: the errors of the
+        radar's transmitters are not in it, and its own oscillator turns it by its phase of now, whatever the delay
     Returns Reception. Raises TypeError or ValueError naming the argument, also where the receiver has tables of other
     antennas.
     """
-    return reception(np.asarray(cube, np.complex128), radar, seed, start_time)
+    other = None if interference is None else np.asarray(interference, np.complex128)
+    if other is not None and other.shape != np.shape(cube):
+        raise refused(ValueError, "interference", f"of the shape of the cube, {np.shape(cube)}", other)
+    return reception(np.asarray(cube, np.complex128), radar, seed, start_time, other)
 
 
-def reception(cube: np.ndarray, radar: _core.Radar, seed: int | None, start_time: float) -> Reception:
+def reception(cube: np.ndarray, radar: _core.Radar, seed: int | None, start_time: float,
+              interference: np.ndarray | None = None) -> Reception:
     """`receive` of complex128 that nobody needs to check: the signal of a frame, over which a check would go once more."""
     noisy_radar, receiver = radar_of_noise(radar), radar.receiver
     waveform = noisy_radar.waveform
@@ -56,44 +66,78 @@ def reception(cube: np.ndarray, radar: _core.Radar, seed: int | None, start_time
     if cube.shape != shape:
         raise refused(ValueError, "cube", f"of the shape {shape}", cube)
     if receiver is None:
+        cube = cube if interference is None else cube + interference
         return Reception(cube if seed is None else _noise(cube, noisy_radar, seed, start_time))
     require_channels(receiver, radar)
-    return _received(cube, radar, receiver, seed, start_time)
+    return _received(cube, radar, receiver, seed, start_time, interference)
 
 
-def _received(cube, radar, receiver: Receiver, seed: int | None, start_time: float) -> Reception:
-    slots = SlotTimes(radar, start_time)
-    if not is_coded(radar):
-        factors = transmitter_factors(receiver, radar)
-        cube = cube if factors is None else cube * factors[:, None, None, None]
-    cube = _mixed(cube, radar, receiver, slots, seed)
-    cube = coupled(cube, radar, receiver)
-    factors = receiver_factors(receiver, radar, slots)
-    cube = cube if factors is None else cube * factors
+def _received(cube, radar, receiver: Receiver, seed: int | None, start_time: float, interference) -> Reception:
+    chain = Chain(radar, receiver, seed, start_time)
+    cube = chain.mixed(cube)
+    for other in (None if interference is None else chain.mixed_alone(interference), chain.leaked()):
+        cube = cube if other is None else cube + other
+    cube = chain.amplified(cube)
     if seed is not None:
         cube = _noise(cube, radar_of_noise(radar), seed, start_time)
-    cube = compressed(cube, radar, receiver)
-    cube = filtered(cube, radar.waveform, receiver)
-    cube = unbalanced(cube, radar.waveform, receiver)
+    gain = compression(cube, radar, receiver)
+    cube = chain.filtered(cube if gain is None else compressed(cube, gain, radar))
+    cube = with_offset(cube, radar.waveform, receiver)
     if receiver.adc is None:
         return Reception(cube)
-    return Reception(*converted(cube, radar.waveform, receiver.adc, slots.generator(seed, "jitter")))
+    return Reception(*converted(chain.sampled(cube), radar.waveform, receiver.adc))
 
 
-def _mixed(cube, radar, receiver: Receiver, slots: SlotTimes, seed):
-    """After the mixers: echoes and leakage with what the oscillator does in the meantime of each delay."""
-    waveform = radar.waveform
-    oscillator = Oscillator(radar, receiver, slots, slots.generator(seed, "phase noise"))
-    if not oscillator.is_ideal:
-        cube = oscillator.mixed(cube)
-    amplitudes = leakage_amplitudes(radar, receiver)
-    if amplitudes is None:
-        return cube
-    if oscillator.is_ideal:
-        tone = leaked_tone(waveform, receiver.leakage_delay, np.arange(waveform.num_samples) / waveform.sampling_rate)
-    else:
-        tone = oscillator.leaked(receiver.leakage_delay)
-    return cube + as_samples(amplitudes * tone, waveform.real)
+class Chain:
+    """The linear stages of a receiver for the slots of one frame: what comes out of a sum is the sum of what comes out.
+
+    radar: that has the antennas; receiver: Receiver; seed: of phase noise and jitter, None: neither; start_time: s, of the frame
+    Cubes are [tx, rx, chirp, sample], or [1, rx, slots, sample] of transmitters that send at once, in sqrt(W).
+    """
+
+    def __init__(self, radar, receiver: Receiver, seed: int | None, start_time: float):
+        self._radar, self._receiver, self._seed = radar, receiver, seed
+        self._slots = SlotTimes(radar, start_time)
+        self._oscillator = Oscillator(radar, receiver, self._slots, self._slots.generator(seed, "phase noise"))
+
+    def mixed(self, cube):
+        """Echoes after the mixers: with the errors of the transmitters, those of simultaneous codes have them already, and with
+        what the oscillator does in the meantime of each delay."""
+        factors = None if is_coded(self._radar) else transmitter_factors(self._receiver, self._radar)
+        cube = cube if factors is None else cube * factors[:, None, None, None]
+        return cube if self._oscillator.is_ideal else self._oscillator.mixed(cube)
+
+    def mixed_alone(self, cube):
+        """What other radars send, after the mixers."""
+        return cube if self._oscillator.is_ideal else self._oscillator.alone(cube)
+
+    def leaked(self):
+        """The leakage after the mixers, in a shape that a cube takes; None: none."""
+        waveform, receiver = self._radar.waveform, self._receiver
+        amplitudes = leakage_amplitudes(self._radar, receiver)
+        if amplitudes is None:
+            return None
+        if self._oscillator.is_ideal:
+            time = np.arange(waveform.num_samples) / waveform.sampling_rate
+            tone = leaked_tone(self._slots, receiver.leakage_delay, time)[:, None]
+        else:
+            tone = self._oscillator.leaked(receiver.leakage_delay)
+        return as_samples(amplitudes * tone, waveform.real)
+
+    def amplified(self, cube):
+        """With what couples from receiver to receiver, and the errors of each."""
+        cube = coupled(cube, self._radar, self._receiver, self._slots)
+        factors = receiver_factors(self._receiver, self._radar, self._slots)
+        return cube if factors is None else cube * factors
+
+    def filtered(self, cube):
+        """After the filters and the imbalance of the branches."""
+        return unbalanced(filtered(cube, self._radar.waveform, self._receiver), self._radar.waveform, self._receiver)
+
+    def sampled(self, cube):
+        """At the instants of the converter's clock."""
+        adc = self._receiver.adc
+        return cube if adc is None else jittered(cube, self._radar.waveform, adc, self._slots.generator(self._seed, "jitter"))
 
 
 def _noise(cube, radar, seed: int, start_time: float):

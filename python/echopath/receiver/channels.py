@@ -47,14 +47,15 @@ def _factors(gain_db, phase, count: int) -> np.ndarray | None:
     return np.exp(_log_factors(gain_db, phase, count)) if gain_db or phase else None
 
 
-def coupled(cube: np.ndarray, radar, receiver: Receiver) -> np.ndarray:
+def coupled(cube: np.ndarray, radar, receiver: Receiver, slots) -> np.ndarray:
     """What each receiver has with what couples in from the others: later by the delay, so that every echo turns by
-    2 pi (f0 + slope t) delay."""
+    2 pi (f0 + slope t) delay. slots: SlotTimes"""
     if not receiver.coupling_db:
         return cube
     share = 10.0 ** (np.array(receiver.coupling_db) / 20.0)
     np.fill_diagonal(share, 0.0)
     waveform = radar.waveform
     time = np.arange(waveform.num_samples) / waveform.sampling_rate
-    turn = np.exp(2j * np.pi * (waveform.start_frequency + waveform.slope * time) * receiver.coupling_delay)
-    return cube + np.einsum("ab,tacs,s->tbcs", share, cube, turn, optimize=True)
+    frequency = slots.start_frequency[..., None] + slots.slope[..., None] * time
+    turn = np.exp(2j * np.pi * frequency * receiver.coupling_delay)[:, None]
+    return cube + turn * np.einsum("ab,tacs->tbcs", share, cube, optimize=True)

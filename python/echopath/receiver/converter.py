@@ -9,13 +9,8 @@ from .filters import beat_frequencies
 from .settings import Adc
 
 
-def converted(cube: np.ndarray, waveform, adc: Adc, generator: np.random.Generator | None):
-    """cube in sqrt(W) -> (what the codes stand for in sqrt(W), codes int16 [..., 2 or 1], gain in dB)
-
-    generator: of the jitter, None: none
-    """
-    if adc.clock_jitter > 0.0 and generator is not None:
-        cube = _jittered(cube, waveform, adc.clock_jitter, generator)
+def converted(cube: np.ndarray, waveform, adc: Adc):
+    """cube in sqrt(W) -> (what the codes stand for in sqrt(W), codes int16 [..., 2 or 1], gain in dB)"""
     branches = np.stack([cube.real] if waveform.real else [cube.real, cube.imag], axis=-1)
     gain_db = _automatic_gain(branches, waveform, adc) if adc.automatic_gain else adc.gain_db
     step = _full_scale(waveform, adc) * 10.0 ** (-gain_db / 20.0) / 2 ** (adc.bits - 1)
@@ -40,8 +35,13 @@ def _automatic_gain(branches, waveform, adc: Adc) -> float:
     return gain_db if adc.gain_step_db == 0.0 else math.floor(gain_db / adc.gain_step_db) * adc.gain_step_db
 
 
-def _jittered(cube, waveform, jitter: float, generator):
-    """Each instant has its own deviation, in all channels alike: to first order the slope of the signal times it."""
+def jittered(cube: np.ndarray, waveform, adc: Adc, generator: np.random.Generator | None) -> np.ndarray:
+    """Each instant has its own deviation, in all channels alike: to first order the slope of the signal times it.
+
+    generator: of the deviations, None: none
+    """
+    if adc.clock_jitter == 0.0 or generator is None:
+        return cube
     slope = np.fft.ifft(np.fft.fft(cube, axis=-1) * 2j * np.pi * beat_frequencies(waveform), axis=-1)
-    deviation = generator.normal(0.0, jitter, (cube.shape[0], 1, *cube.shape[2:]))
+    deviation = generator.normal(0.0, adc.clock_jitter, (cube.shape[0], 1, *cube.shape[2:]))
     return cube + deviation * (slope.real if waveform.real else slope)

@@ -9,23 +9,31 @@ from .settings import Receiver
 _ONE_DB = 10.0 ** 0.1 - 1.0  # power over saturation power where the gain is 1 dB lower
 
 
-def compressed(cube: np.ndarray, radar, receiver: Receiver) -> np.ndarray:
-    """Behind an amplifier whose gain falls with the power at its input as 1 / sqrt(1 + power / saturation)."""
+def compression(cube: np.ndarray, radar, receiver: Receiver) -> np.ndarray | None:
+    """The gain of the amplifier for each sample of a cube, which falls with the power at its input as
+    1 / sqrt(1 + power / saturation); None: it does not."""
     if receiver.compression_dbm is None:
-        return cube
+        return None
     saturation = 1e-3 * 10.0 ** (receiver.compression_dbm / 10.0) / _ONE_DB
-    values = analytic(cube, radar.waveform.real)
-    values = values / np.sqrt(1.0 + np.abs(values) ** 2 / saturation)
-    return as_samples(values, radar.waveform.real)
+    return 1.0 / np.sqrt(1.0 + np.abs(analytic(cube, radar.waveform.real)) ** 2 / saturation)
+
+
+def compressed(cube: np.ndarray, gain: np.ndarray, radar) -> np.ndarray:
+    """A cube, or a part of one, behind an amplifier of a gain for each sample (`compression`)."""
+    return as_samples(analytic(cube, radar.waveform.real) * gain, radar.waveform.real)
 
 
 def unbalanced(cube: np.ndarray, waveform, receiver: Receiver) -> np.ndarray:
     """I stays as it is, Q = g (Q cos p + I sin p): a x + b x* with a = (1 + g e^{jp}) / 2 and b = (1 - g e^{-jp}) / 2.
     Samples of real signals have one branch."""
-    gain, offset = 10.0 ** (receiver.iq_gain_db / 20.0), complex(*receiver.dc_offset)
-    if waveform.real:
-        return cube if offset == 0.0 else cube + offset.real
-    if gain != 1.0 or receiver.iq_phase != 0.0:
-        turn = gain * np.exp(1j * receiver.iq_phase)
-        cube = 0.5 * (1.0 + turn) * cube + 0.5 * (1.0 - np.conj(turn)) * np.conj(cube)
-    return cube if offset == 0.0 else cube + offset
+    gain = 10.0 ** (receiver.iq_gain_db / 20.0)
+    if waveform.real or (gain == 1.0 and receiver.iq_phase == 0.0):
+        return cube
+    turn = gain * np.exp(1j * receiver.iq_phase)
+    return 0.5 * (1.0 + turn) * cube + 0.5 * (1.0 - np.conj(turn)) * np.conj(cube)
+
+
+def with_offset(cube: np.ndarray, waveform, receiver: Receiver) -> np.ndarray:
+    """With the offsets of the branches, of I alone where samples are real."""
+    offset = complex(*receiver.dc_offset)
+    return cube if offset == 0.0 else cube + (offset.real if waveform.real else offset)

@@ -20,8 +20,8 @@ def leakage_amplitudes(radar, receiver: Receiver) -> np.ndarray | None:
     return np.einsum("tr,tk->rk", amplitude, code_of(radar))[None, ..., None]
 
 
-def leaked_tone(waveform, delay: float, time: np.ndarray) -> np.ndarray:
-    """The echo of a delay d (s) of amplitude 1 at times (s) after the first sample, complex of their shape:
-    exp(j 2 pi (f0 d + slope t d - slope d^2 / 2))."""
-    cycles = waveform.start_frequency * delay + waveform.slope * delay * (time - 0.5 * delay)
-    return np.exp(2j * np.pi * cycles)
+def leaked_tone(slots, delay: float, time: np.ndarray) -> np.ndarray:
+    """The echo of a delay d (s) of amplitude 1 at times [S] (s) after the first sample, complex [T, C, S], [1, 1, S] where all
+    chirps are alike: exp(j 2 pi (f0 d + slope t d - slope d^2 / 2)). slots: SlotTimes"""
+    start, slope = slots.start_frequency[..., None], slots.slope[..., None]
+    return np.exp(2j * np.pi * (start * delay + slope * delay * (time - 0.5 * delay)))

@@ -39,32 +39,44 @@ class Oscillator:
 
     def mixed(self, cube: np.ndarray) -> np.ndarray:
         """The cube [T, rx, C, sample] with what the oscillator does to the echoes in it, by their beat frequencies."""
-        mixed = np.empty(cube.shape, np.complex128)
-        for tx in range(cube.shape[0]):
-            for begin in range(0, cube.shape[2], SLOTS_AT_ONCE):
-                piece = slice(begin, begin + SLOTS_AT_ONCE)
-                phase = self._phase[tx, piece] if self._phase.shape[1] > 1 else self._phase[tx]
-                mixed[tx, :, piece] = self._mixed_chirps(cube[tx, :, piece], phase)
-        return mixed
+        return self._of_pieces(cube, self._mixed_chirps)
+
+    def alone(self, cube: np.ndarray) -> np.ndarray:
+        """A cube [T, rx, C, sample] of what another oscillator sent: it turns by the phase of now, whatever its delay."""
+        return self._of_pieces(cube, lambda spectrum, phase, slope: np.fft.ifft(spectrum) * np.exp(1j * phase))
 
     def leaked(self, delay: float) -> np.ndarray:
         """An echo of a delay (s) and amplitude 1 with what it does to it: complex, as a cube takes it, [T, 1, C or 1, sample].
         What the filter before the converter cuts off is missing."""
         frequency = np.fft.fftfreq(4 * self._count, 0.5 / self._waveform.sampling_rate)
         past = np.fft.ifft(np.fft.fft(np.exp(-1j * self._phase)) * np.exp(-2j * np.pi * frequency * delay))
-        tone = leaked_tone(self._waveform, delay, self._time)
+        tone = leaked_tone(self._slots, delay, self._time)
         return self._passed(np.exp(1j * self._phase) * past * tone)[:, None]
 
-    def _mixed_chirps(self, chirps, phase):
-        """[rx, C, N], phase [C or 1, 4 N] -> [rx, C, N]"""
-        waveform, count = self._waveform, self._count
-        cells, signed = _cells(count, waveform.real)
-        forward = np.exp(1j * np.pi / waveform.slope * (np.fft.fftfreq(4 * count, 0.5 / waveform.sampling_rate)) ** 2)
-        spectrum = np.zeros((*chirps.shape[:-1], 4 * count), np.complex128)
-        spectrum[..., 2 * signed] = 4.0 * np.fft.fft(analytic(chirps, waveform.real))[..., cells]
+    def _of_pieces(self, cube, work) -> np.ndarray:
+        """A cube whose chirps are worked on some at a time: work(spectrum [rx, C, 4 N], phase [C or 1, 4 N] in rad, slope
+        [C or 1, 1] in Hz/s) -> signal [rx, C, 4 N]"""
+        made = np.empty(cube.shape, np.complex128)
+        for tx in range(cube.shape[0]):
+            for begin in range(0, cube.shape[2], SLOTS_AT_ONCE):
+                piece = slice(begin, begin + SLOTS_AT_ONCE)
+                phase, slope = (_of_chirps(one, tx, piece) for one in (self._phase, self._slots.slope))
+                signal = work(self._spectrum(cube[tx, :, piece]), phase, slope[..., None])
+                made[tx, :, piece] = as_samples(self._passed(signal), self._waveform.real)
+        return made
+
+    def _spectrum(self, chirps):
+        """Of chirps [rx, C, N], sent twice, at twice the sampling rate, [rx, C, 4 N]."""
+        cells, signed = _cells(self._count, self._waveform.real)
+        spectrum = np.zeros((*chirps.shape[:-1], 4 * self._count), np.complex128)
+        spectrum[..., 2 * signed] = 4.0 * np.fft.fft(analytic(chirps, self._waveform.real))[..., cells]
+        return spectrum
+
+    def _mixed_chirps(self, spectrum, phase, slope):
+        frequency = np.fft.fftfreq(4 * self._count, 0.5 / self._waveform.sampling_rate)
+        forward = np.exp(1j * np.pi / slope * frequency ** 2)
         common = np.fft.ifft(np.fft.fft(np.exp(-1j * phase)) * forward)
-        signal = np.fft.ifft(np.fft.fft(np.fft.ifft(spectrum * forward) * common) / forward) * np.exp(1j * phase)
-        return as_samples(self._passed(signal), waveform.real)
+        return np.fft.ifft(np.fft.fft(np.fft.ifft(spectrum * forward) * common) / forward) * np.exp(1j * phase)
 
     def _passed(self, signal):
         """The second half of [..., 4 N] at the sampling rate, complex, without what lies outside the band."""
@@ -91,7 +103,7 @@ class Oscillator:
 
     def _past(self, time) -> int:
         """Index of the first sample of the past that an echo can have come from."""
-        longest = self._waveform.sampling_rate / self._waveform.slope
+        longest = self._waveform.sampling_rate / np.min(self._slots.slope)
         return int(np.clip(np.searchsorted(time, -1.25 * longest) - 2, 2, 2 * self._count))
 
     @property
@@ -113,6 +125,12 @@ class Oscillator:
         slow = _noise_of_lines(self._noise, lines, 1.0 / duration, size, (), generator)
         at = begin[..., None] + (time - time[0])
         return np.interp(at, np.arange(size) * duration / size, slow)
+
+
+def _of_chirps(values, tx: int, piece: slice):
+    """Those of a transmitter and some chirps among values [T or 1, C or 1, ...]."""
+    of_tx = values[tx if len(values) > 1 else 0]
+    return of_tx[piece] if len(of_tx) > 1 else of_tx
 
 
 def _cells(count: int, real: bool):

@@ -54,7 +54,7 @@ def raw_bytes(received: Reception, radar: _core.Radar) -> bytes:
     lanes, and for more receivers than lanes in four."""
     codes = received.codes
     if codes is None:
-        codes = converted(received.cube, radar.waveform, DEFAULT_ADC, None)[1]
+        codes = converted(received.cube, radar.waveform, DEFAULT_ADC)[1]
     # [tx, rx, chirp, sample, branch] -> [slot, rx, sample, branch]
     by_slot = np.moveaxis(codes, (2, 0, 1), (0, 1, 2)).reshape(-1, *codes.shape[1:2], *codes.shape[3:])
     adc = _adc_of(radar)

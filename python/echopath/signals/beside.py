@@ -4,6 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..receiver.leakage import leakage_amplitudes, leaked_tone
+from ..receiver.slots import SlotTimes
 from ..transmit import demultiplex, signal_shape
 
 INTERFERENCE, RAIN, LEAKAGE = "interference", "rain", "leakage"
@@ -24,7 +25,8 @@ def _leaked(radar):
     if amplitudes is None:
         return None
     waveform = radar.waveform
-    tone = leaked_tone(waveform, radar.receiver.leakage_delay, np.arange(waveform.num_samples) / waveform.sampling_rate)
+    time = np.arange(waveform.num_samples) / waveform.sampling_rate
+    tone = leaked_tone(SlotTimes(radar, 0.0), radar.receiver.leakage_delay, time)[:, None]
     cube = np.broadcast_to(amplitudes * tone, signal_shape(radar))
     return np.sqrt(2.0) * cube.real + 0j if waveform.real else np.array(cube)
 

@@ -9,30 +9,34 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..arguments.checks import an, checked, optional, real, refused
-from ..base.rotations import matrices, product, quaternions
+from ..arguments.checks import an, checked, optional, real
+from ..arguments.settings import Replay, SignalSettings
 from ..transmit import code_of, radar_of_noise
-from .interference_paths import few_paths
+from .interference_ways import Ways
 
 _FINE = 4       # times the sampling rate, at which crossings are made before the filter
 _MARGIN = 1.9   # of the sampling rate: differences of frequency beyond which nothing of a crossing is left in the band
 
 
-@checked(other=an(_core.Radar), paths=optional(an(_core.Paths)), start_time=real(unit="s"), offset=real(unit="s"))
+@checked(other=an(_core.Radar), paths=optional(an(_core.Paths)), start_time=real(unit="s"), offset=real(unit="s"),
+         replay=SignalSettings.RULES["replay"])
 def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | None = None, *, start_time: float = 0.0,
-                 offset: float = 0.0) -> NDArray[np.complex128]:
+                 offset: float = 0.0, replay: Replay = SignalSettings.replay) -> NDArray[np.complex128]:
     """The signal of another FMCW radar in the receivers of a radar [tx, rx, chirp, sample], to be added to its own.
 
     Model: the other radar sends its chirps over and over, frame after frame; each is mixed with the chirp of the radar that is
     under way, and the filter before the converter leaves what lies within the band: a crossing of slopes m and n lasts
-    sampling_rate / |m - n|. It sends while it samples. The direct way has the spreading of one way and both antennas' gains
-    toward each other as they move, without anything in between; polarisation counts for nothing.
+    sampling_rate / |m - n|. It sends while it samples. Both radars and the scene move through the frame: each chirp has the
+    delays and the Doppler of its own time. The direct way has the spreading of one way and both antennas' gains toward each
+    other, without anything in between; polarisation counts for nothing.
     radar: that receives, its own position, motion and antennas; other: that sends, likewise, with a waveform of its own
     paths: one-way paths from the other radar to this one, instead of the direct way: those of a trace by a radar that has the
         transmitters of the other and the receivers of this one, both as they stand in the middle of the frame
-        (`interference_radar`): the strongest that hold 99.9 % of the power, or about 1024 drawn by the seed of the trace, which
-        have the power of all of them; None: the direct way alone. A trace has no direct way: the two signals add up
+        (`interference_radar`), replayed to where both are at each chirp: the strongest that hold 99.9 % of the power, or about
+        1024 drawn by the seed of the trace, which have the power of all of them; None: the direct way alone. A trace has no
+        direct way: the two signals add up
     start_time: s, first sample of the frame; offset: s, by which frames of the other radar begin later than at time 0
+    replay: of those paths, as in `synthesize`
     Returns the cube before `demultiplex`, [tx, rx, chirp, sample] or [1, rx, slots, sample], in sqrt(W). As a part of its own
     beside the others, {"interference": cube}, it is named by labels of detections. Raises TypeError or ValueError naming the
     argument.
@@ -40,60 +44,21 @@ def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | No
     slots = radar_of_noise(radar)
     waveform, num_rx = slots.waveform, len(radar.receivers)
     begins = start_time + np.array([waveform.slot_start(slot) for slot in range(waveform.num_chirps * slots.num_slots)])
-    ways = _Ways(radar, other, paths, begins)
+    ways = Ways(radar, other, paths, begins, replay)
     cube = np.zeros((len(begins), num_rx, waveform.num_samples), complex)
     for place, begin in enumerate(begins):
+        delay, amplitude = ways.of(place)
         fine = np.zeros((num_rx, _FINE * waveform.num_samples), complex)
         for slot in _slots_under_way(other, begin - offset, waveform.chirp_duration):
             pair = _Chirps(waveform, *_chirp(waveform, place), *_chirp(other.waveform, slot.index), other.waveform.chirp_duration,
                            begin - slot.begin - offset)
             for rx, (tx, code) in product_of(range(num_rx), slot.transmitters):
-                delay, amplitude = ways.of(tx, rx)
-                _add_crossing(fine[rx], pair, delay[place], np.conj(code) * amplitude[place])
+                _add_crossing(fine[rx], pair, delay[tx, rx], np.conj(code) * amplitude[tx, rx])
         cube[place] = _filtered(fine, waveform)
     # [slot, rx, sample] -> [tx, rx, chirp, sample]
     cube = np.moveaxis(cube.reshape(waveform.num_chirps, slots.num_slots, num_rx, -1), (1, 2), (0, 1))
     cube = np.ascontiguousarray(cube)
     return np.sqrt(2.0) * cube.real + 0j if waveform.real else cube
-
-
-@checked(other=an(_core.Radar), time=real(unit="s"))
-def interference_radar(radar: _core.Radar, other: _core.Radar, *, time: float = 0.0) -> _core.Radar:
-    """A radar whose trace has the one-way paths from another radar to this one.
-
-    radar: that receives; other: that sends; time: s, at which both are where their motions have them
-    Returns a Radar with the transmitters of the other and the receivers of the first, their places [3] in m in the world, and
-    the waveform and the power of the other. Raises TypeError or ValueError naming the argument.
-    """
-    return other.replace(transmitters=_placed(other.transmitters, other, time),
-                         receivers=_placed(radar.receivers, radar, time), position=(0, 0, 0), yaw=0.0, pitch=0.0,
-                         motion=None, receiver=None)
-
-
-def require_apart(radar, other, times, argument: str) -> None:
-    """Raises ValueError naming the argument where a transmitter of the other radar stands in a receiver at one of times in s."""
-    for time in times:
-        sent, heard = (np.array([one.position for one in _placed(antennas, of, time)])
-                       for antennas, of in ((other.transmitters, other), (radar.receivers, radar)))
-        _require_far(np.linalg.norm(sent[:, None] - heard, axis=2), _wavelength(other), argument)
-
-
-def _require_far(distance, wavelength: float, argument: str) -> None:
-    """Nearer than a wavelength, the spreading of one way holds no longer, and makes power of nothing."""
-    if np.min(distance) < wavelength:
-        raise refused(ValueError, argument, f"at least a wavelength, {wavelength:.3g} m, from the receivers that hear it",
-                      float(np.min(distance)))
-
-
-def _wavelength(radar) -> float:
-    return _core.speed_of_light / radar.waveform.start_frequency
-
-
-def _placed(antennas, radar, time: float) -> list:
-    place = radar.world_from_radar(time)
-    turn = quaternions(place[None, :3, :3])[0]
-    return [one.replace(position=place[:3, :3] @ one.position + place[:3, 3],
-                        orientation=product(turn, one.orientation)) for one in antennas]
 
 
 class _Slot(NamedTuple):
@@ -113,49 +78,6 @@ def _slots_under_way(other, begin: float, duration: float) -> Iterator[_Slot]:
         for slot in np.flatnonzero((frame * period + starts > begin - longest) & (frame * period + starts < begin + duration)):
             senders = np.flatnonzero(code[:, slot])
             yield _Slot(int(slot), frame * period + starts[slot], [(int(tx), code[tx, slot]) for tx in senders])
-
-
-class _Ways:
-    """Delays and amplitudes of all ways from a transmitter of the other radar to a receiver, for each chirp.
-
-    paths: of a trace, None: the direct way; begins: [N] s, of the chirps
-    """
-
-    def __init__(self, radar, other, paths, begins):
-        self._radar, self._other, self._kept = radar, other, {}
-        self._paths, self._scale = (None, None) if paths is None else few_paths(paths)
-        self._times = (begins[:, None] + radar.waveform.chirp_duration * np.array([0.0, 0.5, 1.0])).ravel()
-
-    def of(self, tx: int, rx: int) -> tuple:
-        """(delay [N, 3, P] in s at the begin, the middle and the end of each chirp, amplitude [N, P] in sqrt(W) in the middle)"""
-        if (tx, rx) not in self._kept:
-            delay, amplitude = self._direct(tx, rx) if self._paths is None else self._traced(tx, rx)
-            shape = (len(self._times) // 3, 3, delay.shape[-1])
-            self._kept[tx, rx] = delay.reshape(shape), amplitude.reshape(shape)[:, 1]
-        return self._kept[tx, rx]
-
-    def _traced(self, tx: int, rx: int):
-        return (self._paths.lengths(self._times, tx, rx) / _core.speed_of_light,
-                self._paths.amplitudes(self._times, tx, rx) * self._scale)
-
-    def _direct(self, tx: int, rx: int):
-        other, wavelength = self._other, _wavelength(self._other)
-        (here, turned), (there, turned_there) = (_placed_at(one, antenna, self._times) for one, antenna in
-                                                 ((self._radar, self._radar.receivers[rx]), (other, other.transmitters[tx])))
-        apart = here - there
-        distance = np.linalg.norm(apart, axis=1)
-        _require_far(distance, wavelength, "other")
-        ahead = apart / distance[:, None]
-        fields = [antenna.pattern.field(np.einsum("tij,ti->tj", turn, way)) for antenna, turn, way in
-                  ((other.transmitters[tx], turned_there, ahead), (self._radar.receivers[rx], turned, -ahead))]
-        amplitude = np.sqrt(other.transmit_power) * fields[0] * fields[1] * wavelength / (4.0 * np.pi * distance)
-        return distance[:, None] / _core.speed_of_light, amplitude[:, None]
-
-
-def _placed_at(radar, antenna, times) -> tuple:
-    """Places [N, 3] in m and rotations [N, 3, 3] of an antenna of a radar in the world."""
-    placed = np.array([radar.world_from_radar(time) for time in times])
-    return placed[:, :3, :3] @ antenna.position + placed[:, :3, 3], placed[:, :3, :3] @ matrices(antenna.orientation)
 
 
 class _Chirps(NamedTuple):
@@ -191,8 +113,8 @@ def _add_crossing(fine, chirps: _Chirps, delay, amplitude) -> None:
     first, last = _heard(chirps, delay[1], len(fine))
     for way in np.flatnonzero((amplitude != 0.0) & (last > first)):
         time = np.arange(first[way], last[way]) / rate
-        share = time / waveform.chirp_duration
-        # The parabola through the delays at the begin, the middle and the end.
+        share = time * waveform.sampling_rate / max(waveform.num_samples - 1, 1)
+        # The parabola through the delays at the first sample, in the middle and at the last one.
         curve = (1.0 - share) * (1.0 - 2.0 * share), 4.0 * share * (1.0 - share), share * (2.0 * share - 1.0)
         sent_time = late + time - sum(weight * one for weight, one in zip(curve, delay[:, way]))
         cycles = (start - sent_start) * time + sent_start * (time - sent_time) + 0.5 * slope * time ** 2 \

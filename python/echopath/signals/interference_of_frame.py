@@ -10,7 +10,8 @@ from ..scene.interferers import interferers_of
 from ..tracing.traces import trace
 from ..transmit import signal_shape
 from ..weather.weather import attenuation_of
-from .interference import interference, interference_radar, require_apart
+from .interference import interference
+from .interference_ways import interference_radar, require_apart
 
 
 def has_interference(scene, effects: Choices) -> bool:
@@ -33,10 +34,11 @@ def require_interferers(scene, radar: _core.Radar, effects: Choices, times) -> N
             require_apart(radar, one.radar, times, argument)
 
 
-def interference_cube(scene, radar: _core.Radar, settings: TraceSettings, progress=None) -> np.ndarray:
+def interference_cube(scene, radar: _core.Radar, settings: TraceSettings, replay: str, progress=None) -> np.ndarray:
     """What the other radars of a scene send into the receivers in a frame, complex, in the shape of `synthesize` in sqrt(W).
 
-    settings: of the trace of the frame, also of those from the other radars; progress: as in `trace`
+    settings: of the trace of the frame, also of those from the other radars; replay: as in `synthesize`
+    progress: as in `trace`
     """
     cube = np.zeros(signal_shape(radar), complex)
     for one in interferers_of(scene):
@@ -46,7 +48,7 @@ def interference_cube(scene, radar: _core.Radar, settings: TraceSettings, progre
             cube += share * interference(radar, one.radar, **timing) if share > 0.0 else 0.0
         if one.over != "direct":
             paths = _one_way_paths(scene, radar, one.radar, settings, progress)
-            cube += interference(radar, one.radar, paths, **timing) if paths.num_paths else 0.0
+            cube += interference(radar, one.radar, paths, **timing, replay=replay) if paths.num_paths else 0.0
     return cube
 
 

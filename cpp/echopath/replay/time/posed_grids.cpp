@@ -24,6 +24,15 @@ PosedGrid PosedGrids::pose(const TimeGrid& grid) const {
 
 PosedNodes PosedGrids::pose(double time) const { return PosedNodes(scenes_at({time}, -1)); }
 
+PosedNodes PosedGrids::pose(std::span<const double> times, std::span<const Radar> radars) const {
+  auto scenes = std::make_shared<PosedScenes>();
+  scenes->reserve(times.size());
+  for (size_t i = 0; i < times.size(); ++i) {
+    scenes->emplace_back(*paths_.scene, radars[i], preparer_.patches(), paths_.frame.transmitter, times[i]);
+  }
+  return PosedNodes(std::move(scenes));
+}
+
 const PosedGrid& PosedGrids::at_trace() const {
   return at_trace_.get([&] { return pose(grids_.still()); });
 }

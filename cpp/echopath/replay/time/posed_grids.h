@@ -1,6 +1,7 @@
 #pragma once
 // Poses the scene at the nodes of time grids.
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "echopath/base/lazy.h"
@@ -35,6 +36,8 @@ class PosedGrids {
   // Raises what PosedScene does.
   PosedGrid pose(const TimeGrid& grid) const;
   PosedNodes pose(double time) const;  // s
+  // Poses at each of the times (s) the antennas of the radar of that time, which must outlive the result.
+  PosedNodes pose(std::span<const double> times, std::span<const Radar> radars) const;
 
  private:
   struct Polynomial {

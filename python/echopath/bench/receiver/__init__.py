@@ -6,9 +6,9 @@ Levels are those of a tone, laws those of shifts, gains and extents in time; the
 from __future__ import annotations
 
 from ..suite import describe_parts, run_parts
-from . import codes, cost, faults, laws
+from . import codes, cost, faults, laws, off
 
-PARTS = {"faults": faults, "laws": laws, "codes": codes, "cost": cost}
+PARTS = {"faults": faults, "laws": laws, "codes": codes, "off": off, "cost": cost}
 
 
 def run_receiver(folder, *, quick: bool = False, progress=None) -> dict:

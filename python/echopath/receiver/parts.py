@@ -1,0 +1,78 @@
+"""What a receiver makes of each part of a signal, so that the parts add up to what it gives."""
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from .. import _core
+from ..arguments.checks import ArrayLike, anything, array, checked, optional, real, refused, seed as seed_rule
+from ..transmit import radar_of_noise, signal_shape
+from .chain import Chain, reception
+from .channels import require_channels
+from .imbalance import compressed, compression
+from .settings import Receiver
+
+NAMES = ("interference", "leakage", "noise", "offset", "converter")
+
+
+_CUBE = array("[T, R, C, S]", kind="complex")
+
+
+@checked(parts=anything, seed=optional(seed_rule), start_time=real(unit="s"), interference=optional(_CUBE))
+def receive_parts(parts: Mapping[str, ArrayLike], radar: _core.Radar, *, seed: int | None, start_time: float = 0.0,
+                  interference: ArrayLike | None = None) -> dict[str, np.ndarray]:
+    """The parts of what `receive` gives of a signal, which add up to it.
+
+    Linear faults act on each part alike, and so does the gain of the amplifiers, which each sample of the whole sets. What no
+    part of the signal makes stands beside them, where there is some of it: "interference", "leakage" (of the transmitters),
+    "noise" (thermal), "offset" (of the branches) and "converter" (rounding and saturation).
+    parts: {name: cube} of `decompose`, each as `receive` takes it, in sqrt(W)
+    radar, seed, start_time (s), interference: as in `receive`
+    Returns {name: cube} complex128 of the same shapes. Raises TypeError or ValueError naming the argument, also for parts of one
+    of those names.
+    """
+    shape = signal_shape(radar)
+    cubes = {name: _checked_cube(f"parts.{name}", cube, shape) for name, cube in _checked_table(parts).items()}
+    other = None if interference is None else _checked_cube("interference", interference, shape)
+    receiver = Receiver() if radar.receiver is None else radar.receiver
+    require_channels(receiver, radar)
+    found = _before_the_converter(cubes, radar, receiver, seed, start_time, other)
+    if receiver.adc is not None:
+        whole = reception(sum(cubes.values()), radar, seed, start_time, other).cube
+        found["converter"] = whole - sum(found.values())
+    return found
+
+
+def _before_the_converter(cubes, radar, receiver: Receiver, seed, start_time: float, interference) -> dict:
+    chain, shape = Chain(radar, receiver, seed, start_time), signal_shape(radar)
+    found = {name: chain.mixed(cube) for name, cube in cubes.items()}
+    if interference is not None:
+        found["interference"] = chain.mixed_alone(interference)
+    if (leaked := chain.leaked()) is not None:
+        found["leakage"] = np.broadcast_to(leaked, shape)
+    found = {name: chain.amplified(cube) for name, cube in found.items()}
+    if seed is not None:
+        found["noise"] = _core.add_noise(np.zeros(shape, np.complex128), radar_of_noise(radar), seed=seed, start_time=start_time)
+    gain = compression(sum(found.values()), radar, receiver)
+    found = {name: chain.filtered(cube if gain is None else compressed(cube, gain, radar)) for name, cube in found.items()}
+    if receiver.dc_offset != (0.0, 0.0):
+        offset = receiver.dc_offset[0] if radar.waveform.real else complex(*receiver.dc_offset)
+        found["offset"] = np.full(shape, offset, np.complex128)
+    return {name: chain.sampled(cube) for name, cube in found.items()}
+
+
+def _checked_table(parts) -> Mapping:
+    if not isinstance(parts, Mapping) or not parts:
+        raise refused(TypeError, "parts", "a dict of cubes by name, one at least", parts)
+    for name in parts:
+        if name in NAMES:
+            raise ValueError(f"parts: must not be named {name!r}, as what no part of the signal makes is")
+    return parts
+
+
+def _checked_cube(argument: str, cube, shape: tuple) -> np.ndarray:
+    cube = _CUBE(argument, cube).astype(np.complex128, copy=False)
+    if cube.shape != shape:
+        raise refused(ValueError, argument, f"of the shape {shape}", cube)
+    return cube

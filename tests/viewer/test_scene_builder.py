@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from echopath_viewer.model import CellBox, Session, from_frame
 from echopath_viewer.model.antennas import rotation_of
 from echopath_viewer.scene_builder import VIEWS, SceneBuilder
 from echopath_viewer.scene_builder.mesh_layer import boundary_edges
+from echopath_viewer.scene_builder.ray_layer import RayLayer
 
 BASELINES = Path(__file__).parent / "baselines"
 SIZE = (240, 180)
@@ -51,7 +53,7 @@ def drawn_paths(frame):
 
 def colours_of(layer):
     mapper = layer._rays.GetMapper()
-    return pv.wrap(mapper.GetInput()).cell_data["rgb"]
+    return pv.wrap(mapper.GetInput()).point_data["rgb"][::2]  # both points of a segment have its colour
 
 
 def project(plotter, points):
@@ -186,3 +188,16 @@ def test_a_picture_without_a_screen_and_a_renderer_says_what_is_missing(drawn_pa
     told = "^off_screen: pictures without a screen need libc.so.6 and libnone.so.1, or libnone.so.8, got neither .*libegl1"
     with pytest.raises(OSError, match=told):
         ep.plot_rays(None, drawn_paths, off_screen=True)
+
+
+def test_rays_that_are_drawn_opaque_have_their_colours_and_are_hidden_by_what_stands_before_them(plotter):
+    near = RayLayer(plotter, "near", width=6.0)
+    ends = np.array([[0, 1]])
+    near.show(SimpleNamespace(points=np.array([[-1.0, 0, 0], [1, 0, 0]]), ends=ends, num_segments=1, hits=[]), [(10, 200, 30)])
+    plotter.add_mesh(pv.Plane(center=(0.5, 0, 0.5), direction=(0, 0, 1), i_size=1.0, j_size=1.0), color="red", lighting=False)
+    plotter.view_xy()
+    plotter.camera.zoom(1.5)
+    pixels = plotter.screenshot(None, return_img=True)
+    row = pixels[SIZE[1] // 2]
+    is_ray = np.all(row == (10, 200, 30), axis=-1)
+    assert is_ray[:SIZE[0] // 2].sum() > 20 and not is_ray[SIZE[0] // 2 + 2:].any()

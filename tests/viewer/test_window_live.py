@@ -1,6 +1,8 @@
 """Objects that are dragged in the window, while map and rays follow."""
 from __future__ import annotations
 
+import threading
+
 import numpy as np
 import pytest
 
@@ -87,3 +89,27 @@ def test_a_frame_becomes_live_and_another_one_ends_it(qtbot, window, frame):
     assert window.session.title == "live" and window.live_panel.object_box.currentText() == "walker"
     window.show_input(from_frame(frame, title="frame"))
     assert not window.live.is_on and not window.live_panel.start_button.isChecked()
+
+
+def test_scene_rays_and_map_follow_a_preview_before_the_full_view(qtbot, live_window, monkeypatch):
+    window, live, released = live_window, live_window.live.live, threading.Event()
+    settled(qtbot, window)
+    full_update = live.update
+    monkeypatch.setattr(live, "update", lambda **keywords: (released.wait(PATIENCE_MS), full_update(**keywords))[1])
+    window.live._watch._full_seconds = 1.0  # as of a scene that takes long
+    level = window.session.parts.whole.level(0, 0)
+    window.live_panel.choose("plate")
+    window.live_panel.place_boxes[0].setValue(3.0)
+    try:
+        qtbot.waitUntil(lambda: window.live_panel.state_label.text().startswith("preview"), timeout=PATIENCE_MS)
+        drawn = window.view3d.builder
+        assert drawn.meshes.actors[0].center[0] == pytest.approx(9.0, abs=0.01)
+        assert drawn.session is window.session is window.map_area.session is window.filter_box.session
+        on_plate = drawn.rays.segments.points[drawn.rays.segments.hits[drawn.rays.segments.hit_mesh == 0]]
+        assert len(on_plate) and np.abs(on_plate[:, 0] - 9.0).max() < 0.3
+        assert not np.array_equal(window.session.parts.whole.level(0, 0), level)
+        window.table.view.selectRow(0)  # a row of the preview, whose paths are others
+        assert window.session.ray is not None
+    finally:
+        released.set()
+    settled(qtbot, window)

@@ -1,6 +1,6 @@
 """Desktop viewer of Echopath: which rays made which cell.
 
-It needs the packages of `pip install PySide6-Essentials pyvista pyvistaqt vtk`.
+It needs the packages of `pip install 'PySide6-Essentials<6.12' pyvista pyvistaqt vtk`.
 
 model: what is shown, in NumPy; scene_builder: fills any pyvista.Plotter; window: Qt. Each works without the next.
 """
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from contextlib import contextmanager
 
-PACKAGES = "PySide6-Essentials pyvista pyvistaqt vtk"  # the extra "viewer" of pyproject.toml
+PACKAGES = "'PySide6-Essentials<6.12' pyvista pyvistaqt vtk"  # the extra "viewer" of pyproject.toml
 _EXTRA = ("pyvista", "pyvistaqt", "PySide6", "qtpy", "vtk", "vtkmodules")
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from .. import _core
-from ..arguments.checks import MapWindow, Progress, an, anything, checked, count, positive, refused
+from ..arguments.checks import MapWindow, Progress, an, anything, checked, count, flag, positive, refused
 from ..arguments.settings import (
     MOST_RAYS, Edges, Evaluate, Footprint, Method, Polarization, Replay, Sampler, Scatterers, SignalSettings, TraceSettings,
 )
@@ -138,14 +138,18 @@ class Live:
             self._quick = KeptSignal(int(num_rays), self._trace, self._signal)
         return self._view_of(self._quick, is_preview=True, progress=progress)
 
-    @checked(self=anything)
-    def paths(self, *, progress: Progress = None) -> _core.Paths:
+    @checked(self=anything, preview=flag)
+    def paths(self, *, preview: bool = False, progress: Progress = None) -> _core.Paths:
         """The record of the last update, Paths as of `trace`: for labels, parts, selections, files.
 
-        progress: as in `update`. Raises ValueError before the first update.
+        preview: of the last `preview` instead, which has fewer rays; progress: as in `update`
+        Raises ValueError before the first update or preview.
         """
+        kept = self._quick if preview else self._full
+        if kept is None:
+            raise ValueError("preview: no preview was made yet")
         with self._busy:
-            return self._full.paths(progress)
+            return kept.paths(progress)
 
     @checked(self=anything, show=anything, budget=positive("s"))
     def watch(self, show: Callable[[LiveView], object], *, budget: float = 0.05) -> Watch:

@@ -5,11 +5,10 @@ from .session import Session
 from .view_state import apply_state
 
 
-def ready_session(view_input) -> Session:
-    """A session that has made what its first picture needs: for a thread."""
-    session = Session(view_input)
+def make_ready(session: Session) -> Session:
+    """The session, once it has made what its picture and its lists need: for a thread."""
     session.mesh_counts()
-    session.shown_rays()
+    session.segments(session.shown_rays())
     return session
 
 

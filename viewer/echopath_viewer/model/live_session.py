@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import echopath as ep
 
-from .carried import session_like
+from .carried import make_ready, session_like
 from .inputs import ViewInput, whole_part
 from .part_set import PartSet
 from .signals import Signals
@@ -19,14 +19,18 @@ def live_of(session, num_rays: int = DEFAULT_RAYS):
 
 
 def session_of_view(live, view, state, spectrum_settings: dict):
-    """A session of a full ep.LiveView, which shows what another one did; state: as of `state_of`, or None."""
-    return session_like(None if state is None else _without_parts(state), input_of_view(live, view, spectrum_settings))
+    """A session of the latest ep.LiveView, preview or full, ready to be drawn, which shows what another one did.
+
+    state: as of `state_of`, or None
+    """
+    shown = input_of_view(live, view, spectrum_settings)
+    return make_ready(session_like(None if state is None else _without_parts(state), shown))
 
 
 def input_of_view(live, view, spectrum_settings: dict | None = None) -> ViewInput:
-    """What a full view of a live scene shows; spectrum_settings: window and zero_pad of its map, None: as the map tells."""
+    """What the latest view of a live scene shows; spectrum_settings: window and zero_pad of its map, None: as the map tells."""
     settings = {"window": view.map.window, "zero_pad": view.map.zero_pad} if spectrum_settings is None else spectrum_settings
-    paths = live.paths()
+    paths = live.paths(preview=view.is_preview)
     return ViewInput(paths, PartSet(whole_part(view.map)), Signals(paths, settings), view.cube, TITLE)
 
 

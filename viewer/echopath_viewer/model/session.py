@@ -1,7 +1,6 @@
 """The state of a view: what is shown, chosen and selected, and what follows from it."""
 from __future__ import annotations
 
-import dataclasses
 from collections import OrderedDict
 
 import numpy as np
@@ -74,11 +73,6 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
     def _tell(self, *topics: str) -> None:
         for listener in self._listeners:
             listener(set(topics))
-
-    def preview_map(self, spectrum) -> None:
-        """Shows another map of everything, RangeDoppler, until the paths behind it are known."""
-        self.parts.add(dataclasses.replace(self.parts.whole, spectrum=spectrum, _levels={}))
-        self._tell("maps")
 
     # --- channel and time ---
 

@@ -23,7 +23,6 @@ MAX_UNLIT_RAYS = 400     # around lit ones: they only show where those are
 # Of rays that are not lit and of the chosen one, before a light and a dark background.
 UNLIT_COLOURS, CHOSEN_COLOURS = ((208, 208, 208), (72, 74, 78)), ((20, 20, 20), (245, 245, 245))
 CHOSEN_HIT_COLOUR = (230, 159, 0)
-MAX_RAYS_MOVING = 300
 ANTENNA_SIZE = 0.02  # length of the axes, of the size of the picture
 
 
@@ -101,10 +100,10 @@ class SceneBuilder:
         self.show_hits = is_shown
         self._draw_rays()
 
-    def set_moving(self, is_moving: bool) -> None:
-        """Fewer rays as long as the camera moves."""
+    def show_first_rays(self, count: int | None) -> None:
+        """Draws the first rays alone, None: all again."""
         for layer in (self.rays, self.lit):
-            layer.show_first(MAX_RAYS_MOVING if is_moving else None)
+            layer.show_first(count)
 
     def look(self, view: str) -> None:
         """Turns the camera: a name of VIEWS."""

@@ -6,6 +6,15 @@ import pyvista as pv
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
 
 IN_FRONT = -66000.0  # units of depth resolution: in front of whatever else there is
+# Shows the colours of points as they are. Most of the time of a software picture goes into what VTK does at each pixel of a ray.
+OPAQUE_SHADER = """//VTK::System::Dec
+//VTK::Output::Dec
+in vec4 vertexColorVSOutput;
+void main()
+{
+  gl_FragData[0] = vec4(vertexColorVSOutput.rgb, 1.0);
+}
+"""
 
 
 def lines_of(points, ends) -> pv.PolyData:
@@ -15,6 +24,12 @@ def lines_of(points, ends) -> pv.PolyData:
     poly.SetLines(pv.CellArray.from_regular_cells(np.ascontiguousarray(ends, np.int64).reshape(-1, 2)))
     poly.verts = np.empty(0, np.int64)  # pyvista makes vertex cells of bare points, which would shift the IDs of cells
     return poly
+
+
+def loose_lines_of(points, ends) -> pv.PolyData:
+    """The same, each segment with two points of its own, which may have other colours than those of its neighbours."""
+    own = np.asarray(points, np.float32)[np.asarray(ends)].reshape(-1, 3)
+    return lines_of(own, np.arange(len(own)).reshape(-1, 2))
 
 
 def vertices_of(points) -> pv.PolyData:
@@ -36,6 +51,23 @@ def set_cell_colours(poly: pv.PolyData, rgb) -> None:
         return  # pyvista takes no empty arrays
     poly.cell_data["rgb"] = np.ascontiguousarray(rgb, np.uint8).reshape(-1, 3)
     poly.GetCellData().SetActiveScalars("rgb")
+
+
+def set_segment_colours(lines: pv.PolyData, rgb) -> None:
+    """rgb: u8 [S, 3] of the segments of `loose_lines_of`."""
+    if lines.n_points == 0:
+        return
+    lines.point_data["rgb"] = np.repeat(np.ascontiguousarray(rgb, np.uint8).reshape(-1, 3), 2, axis=0)
+    lines.GetPointData().SetActiveScalars("rgb")
+
+
+def actor_in_segment_colours(*, in_front: bool = False, is_opaque: bool = False) -> vtkActor:
+    """An actor for `loose_lines_of` in their colours; is_opaque: in half of the time, but never translucent or in front."""
+    actor = actor_in_cell_colours(in_front=in_front)
+    actor.GetMapper().SetScalarModeToUsePointData()
+    if is_opaque:
+        actor.GetShaderProperty().SetFragmentShaderCode(OPAQUE_SHADER)
+    return actor
 
 
 def actor_in_cell_colours(*, in_front: bool = False) -> vtkActor:

@@ -3,7 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .polydata import actor_in_cell_colours, lines_of, set_cell_colours, vertices_of
+from .polydata import (actor_in_cell_colours, actor_in_segment_colours, loose_lines_of, set_cell_colours, set_segment_colours,
+                       vertices_of)
 
 HIT_SIZE = 5.0  # pixels
 
@@ -13,7 +14,7 @@ class RayLayer:
 
     def __init__(self, plotter, name: str, *, width: float, in_front: bool = False, opacity: float = 1.0):
         self.segments = None
-        self._rays = actor_in_cell_colours(in_front=in_front)
+        self._rays = actor_in_segment_colours(in_front=in_front, is_opaque=opacity == 1.0 and not in_front)
         self._rays.GetProperty().SetLineWidth(width)
         self._hits = actor_in_cell_colours(in_front=in_front)
         self._hits.GetProperty().SetPointSize(HIT_SIZE)
@@ -26,7 +27,7 @@ class RayLayer:
     def show(self, segments, rgb, *, hit_rgb=None) -> None:
         """Replaces the rays; rgb: u8 [S, 3] of segments, hit_rgb: u8 [K, 3] of hits, None: hits are not shown."""
         if segments is not self.segments:
-            self.segments, self._lines = segments, lines_of(segments.points, segments.ends)
+            self.segments, self._lines = segments, loose_lines_of(segments.points, segments.ends)
         self.recolour(rgb)
         self._rays.GetMapper().SetInputDataObject(self._lines)
         self._rays.SetVisibility(segments.num_segments > 0)
@@ -35,15 +36,15 @@ class RayLayer:
     def recolour(self, rgb) -> None:
         """Other colours for the same rays."""
         self._rgb = rgb
-        set_cell_colours(self._lines, rgb)
+        set_segment_colours(self._lines, rgb)
 
     def show_first(self, num_rays: int | None) -> None:
         """Draws only the first rays, None: all; for as long as the camera moves."""
         lines = self._lines
         if num_rays is not None:
             count = self.segments.num_segments_of(num_rays)
-            lines = lines_of(self.segments.points, self.segments.ends[:count])
-            set_cell_colours(lines, self._rgb[:count])
+            lines = loose_lines_of(self.segments.points, self.segments.ends[:count])
+            set_segment_colours(lines, self._rgb[:count])
         self._rays.GetMapper().SetInputDataObject(lines)
 
     def _show_hits(self, segments, hit_rgb) -> None:

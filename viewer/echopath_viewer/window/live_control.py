@@ -1,6 +1,8 @@
 """A live scene in the window: what is dragged is traced again, preview first, then in full quality."""
 from __future__ import annotations
 
+from collections import deque
+
 import numpy as np
 
 from ..model.live_session import live_of, session_of_view
@@ -11,14 +13,17 @@ BUDGET = 0.05    # s, that a preview may take
 
 
 class LiveControl(QtCore.QObject):
-    """Watches an ep.Live; tells sessions of full views and maps of previews in the thread of the window."""
+    """Watches an ep.Live; tells sessions of its views in the thread of the window, the latest alone where that is slower."""
 
-    full, previewed, failed = Signal(object, object), Signal(object), Signal(str)  # (Session, LiveView), LiveView
+    shown, failed = Signal(object, object), Signal(str)  # Session, LiveView
+    _made = Signal()
 
     def __init__(self, state_now, parent=None):
         """state_now: callable () -> state of the view, to be taken over"""
         super().__init__(parent)
         self._state_now, self._state, self.live, self._watch = state_now, None, None, None
+        self._latest = deque(maxlen=1)  # (Session, LiveView) that the window has not taken yet
+        self._made.connect(self._tell)  # in the thread of the window, as this object lives there
 
     @property
     def is_on(self) -> bool:
@@ -90,7 +95,9 @@ class LiveControl(QtCore.QObject):
         live = self.live
         if live is None:
             return
-        if view.is_preview:
-            self.previewed.emit(view)
-        else:
-            self.full.emit(session_of_view(live, view, self._state, self._settings), view)
+        self._latest.append((session_of_view(live, view, self._state, self._settings), view))
+        self._made.emit()
+
+    def _tell(self) -> None:
+        if self._latest and self.is_on:
+            self.shown.emit(*self._latest.pop())

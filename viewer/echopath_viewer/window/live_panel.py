@@ -63,8 +63,7 @@ class LivePanel(QtWidgets.QWidget):
         self.yaw_box.valueChanged.connect(self._turn)
         self.material_box.activated.connect(self._choose_material)
         self.rough_slider.valueChanged.connect(self._roughen)
-        self.control.previewed.connect(lambda view: self._tell(view, "preview, full quality follows"))
-        self.control.full.connect(lambda _, view: self._tell(view, "full quality"))
+        self.control.shown.connect(lambda _, view: self._tell(view))
 
     def show_session(self, session) -> None:
         """Another frame: what was live is not any more."""
@@ -158,6 +157,7 @@ class LivePanel(QtWidgets.QWidget):
         if material is not None:
             self._change(lambda name: self.control.set_material(name, material.replace(roughness_height=height)))
 
-    def _tell(self, view, words: str) -> None:
+    def _tell(self, view) -> None:
+        words = "preview, full quality follows" if view.is_preview else "full quality"
         shot = f"{view.num_rays:,} rays, {view.num_rays_shot:,} shot anew"
         self.state_label.setText(f"{words}: {shot}, {1e3 * view.seconds:.0f} ms")

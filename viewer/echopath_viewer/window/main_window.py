@@ -120,9 +120,18 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         self.view3d.builder.show_tracks(self.frame_bar.strip.tracks)
         self.view3d.render_soon()
 
-    def _take_live(self, session, _view) -> None:
-        if self.live.is_on:
+    def _take_live(self, session, view) -> None:
+        """Scene, rays, map and table follow each preview; what takes longer follows the full view."""
+        if not view.is_preview:
             self._follow(session)
+            return
+        self.session = session
+        for part in (self.tree, self.filter_box, self.contributions):
+            part.session = session
+        for part in (self.view3d, self.map_area, self.time_bar):
+            part.follow_session(session)
+        self.table.show_session(session)
+        session.listen(self._changed)
 
     def _drag_mesh(self, mesh: int, way) -> None:
         """way: [3] m from where the object was when it was taken hold of; [0, 0, 0] then."""
@@ -217,8 +226,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         self.loading.done.connect(self._take_rest)
         self.loading.failed.connect(self._end_loading)
         self.time_line.read.connect(self._follow)
-        self.live.full.connect(self._take_live)
-        self.live.previewed.connect(lambda view: self.session.preview_map(view.map))
+        self.live.shown.connect(self._take_live)
         self.live.failed.connect(self.show_message)
         self.view3d.mesh_dragged.connect(self._drag_mesh)
         self.time_line.glanced.connect(self._show_tracks)

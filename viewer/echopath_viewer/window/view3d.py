@@ -1,6 +1,8 @@
 """The 3-D view."""
 from __future__ import annotations
 
+import time
+
 import numpy as np
 from pyvistaqt import QtInteractor
 from vtkmodules.vtkRenderingCore import vtkCellPicker
@@ -9,6 +11,7 @@ from ..model.picking import nearest_segment
 from ..scene_builder import SceneBuilder
 from .compass import Compass
 from .legend_box import LegendBox
+from .pace import Pace
 from .qt import Qt, QtCore, Signal
 
 CLICK_REACH = 5.0  # pixels: a click moves no farther, and a ray that close is meant
@@ -26,9 +29,9 @@ class View3D(QtInteractor):
     def __init__(self, parent=None):
         self.builder = None  # a resize may come before the constructor has ended
         # Multisampling takes most of the time where there is no graphics card.
-        self._is_behind = self._is_fresh = False
+        self._is_behind = self._is_fresh = self._is_moving = False
         super().__init__(parent, auto_update=False, multi_samples=0)
-        self._press, self._drag, self.legend_box = None, None, LegendBox(self)
+        self._press, self._drag, self.legend_box, self._pace = None, None, LegendBox(self), Pace()
         self.compass = Compass(self)
         self.setAcceptDrops(False)  # what is dropped here is the window's: pyvistaqt would read it with VTK
         # VTK draws in paintGL alone: a drawing of its own, at each turn of the camera, would come on top of that.
@@ -92,13 +95,15 @@ class View3D(QtInteractor):
 
     def paintGL(self):
         """Draws, once; changes that are made from now on ask for another picture."""
-        self._is_behind = False
+        self._is_behind, begin = False, time.perf_counter()
         interactor = self.iren.interactor
         interactor.EnableRenderOn()
         try:
             super().paintGL()
         finally:
             interactor.EnableRenderOff()
+        if self._is_moving and self._pace.follow(time.perf_counter() - begin, len(self.builder.rays.segments.rays)):
+            self.builder.show_first_rays(self._pace.num_rays)
         if self.builder is not None:
             self.compass.follow(self.camera, self.height())
 
@@ -115,8 +120,10 @@ class View3D(QtInteractor):
         self.render_soon()
 
     def _set_moving(self, is_moving: bool) -> None:
+        """Fewer rays as long as the camera moves, where all take too long."""
         if self.builder is not None:
-            self.builder.set_moving(is_moving)
+            self._is_moving = is_moving
+            self.builder.show_first_rays(self._pace.num_rays if is_moving else None)
             if not is_moving:
                 self.render_soon()
 

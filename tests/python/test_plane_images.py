@@ -84,6 +84,32 @@ def test_a_corner_counts_once(depth):
     assert 20 * np.log10(abs(field) / expected) == pytest.approx(0.0, abs=0.1)
 
 
+def wedge_on_a_floor(half_deg):
+    """Two metal walls of 6 x 8 m that meet on the z axis, open toward +x by twice the angle, and a floor at z = -0.3 m."""
+    scene = ep.Scene()
+    ends = [6.0 * np.array([np.cos(angle), np.sin(angle), 0.0]) for angle in np.radians([half_deg, -half_deg])]
+    for index, end in enumerate(ends):
+        low, up = np.array([0.0, 0.0, -4.0]), np.array([0.0, 0.0, 8.0])
+        scene.add(ep.Mesh([low, low + end, low + end + up, low + up], [[0, 1, 2], [0, 2, 3]]), name=f"wall_{index}",
+                  material="metal")
+    scene.add(ep.Mesh(np.array([[0, 0, 0], *ends]) - [0, 0, 0.3], [[0, 1, 2]]), name="floor", material="metal")
+    return scene
+
+
+def test_a_corner_of_five_bounces_counts_once():
+    """Four bounces between the walls and one on the floor, whichever order they have."""
+    antennas = radar((4.5, 0.03, 0.05), (4.5, -0.012, 0.03))
+    paths = ep.trace(wedge_on_a_floor(22.5), antennas, num_rays=30_000, max_bounces=5, polarization="scalar")
+    lengths = np.asarray(paths.lengths([paths.frame.trace_time], 0, 0))[0]
+    five = (np.asarray(paths.num_bounces) == 5) & (np.asarray(paths.diffuse) == 0)
+    wavenumber = 2 * np.pi * 77e9 / ep.speed_of_light
+    field = np.sum(np.asarray(paths.amplitude)[five] * np.exp(-1j * wavenumber * lengths[five]))
+    # Four bounces in a wedge of 45 degrees turn the receiver by 180 degrees about its edge, the floor mirrors it.
+    unfolded = np.linalg.norm(np.array([4.5, 0.03, 0.05]) - [-4.5, 0.012, -0.63])
+    expected = ep.speed_of_light / 77e9 * np.sqrt(paths.radar.transmit_power) / (4 * np.pi * unfolded)
+    assert 20 * np.log10(abs(field) / expected) == pytest.approx(0.0, abs=0.05)
+
+
 def test_a_path_by_image_is_replayed_and_saved(tmp_path):
     paths = traced(box((8.0, 10.0, 9.0), (14.1, 0.3, 4.6)))
     cube = ep.synthesize(paths, paths.radar)

@@ -14,7 +14,6 @@ constexpr double kSamePoint = 1e-3;           // m: paths whose points lie so ne
 constexpr double kNearSheet = 4.0;            // tolerances: from so near a sheet is looked at
 constexpr double kFlatPhase = 1.0 / 16.0;     // wavelengths by which a surface may stray from a plane of which it is a part
 constexpr double kAboutCorner = 4.0;          // half Fresnel zones between bounces at the same corner
-constexpr size_t kMostAtCorner = 4;           // bounces
 constexpr size_t kMostTriedPoints = 1 << 20;  // 24 MiB
 const Vec3 kLine = Vec3(0.5127, 0.6271, 0.5864).normalized();  // along no wall
 constexpr double kZoneShare = 1.0 - 1e-9;                      // of the Fresnel zone that each surface must cover
@@ -213,7 +212,7 @@ PathBlock PlaneImages::find(const Job* job) {
 void PlaneImages::leave_out(const std::vector<int>& planes, const std::vector<Vec3>& points) {
   OrdersAboutCorners orders{planes, {}};
   for (size_t begin = 0, end; begin < planes.size(); begin = end) {
-    for (end = begin + 1; end < planes.size() && end - begin < kMostAtCorner; ++end) {
+    for (end = begin + 1; end < planes.size(); ++end) {
       const double before = (points[end] - settings_.transmitter).norm(), behind = (points[end] - settings_.receiver).norm();
       const double half_zone = std::sqrt(wavelength_ * before * behind / (before + behind));
       if ((points[end] - points[end - 1]).norm() > kAboutCorner * half_zone) break;

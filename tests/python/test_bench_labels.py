@@ -6,6 +6,7 @@ import pytest
 
 import echopath as ep
 from echopath.bench import labels
+from echopath.bench.false_alarms import MAPS, measure_false_alarms
 from echopath.cli import main
 
 COUNT = 0.02  # relative: counts of hits drawn at random
@@ -41,6 +42,7 @@ def test_command_writes_numbers_and_picture(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(labels, "QUICK_RAYS", (200,))
     monkeypatch.setattr(labels, "QUICK_NUM_HITS", 20_000)
     monkeypatch.setattr(labels, "NUM_PARTS", (1, 4, 8))
+    monkeypatch.setattr(labels, "measure_false_alarms", lambda cells: measure_false_alarms(1, maps=MAPS[:2]))
     assert main(["bench", "labels", "--quick", "--out", str(tmp_path / "b")]) == 0
     results = json.loads((tmp_path / "b" / "labels.json").read_text())
     assert (tmp_path / "b" / "labels.png").stat().st_size > 10_000

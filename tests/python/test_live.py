@@ -56,7 +56,7 @@ def test_the_record_is_that_of_a_fresh_scene(live):
 def test_random_edits_end_in_the_view_of_a_fresh_scene(live):
     draw, window = np.random.default_rng(5), ["hann"]
     names = ["sign_30", "car_smooth_15", "pole_20", "pedestrian_10", "car_facets_40"]
-    for _ in range(25):
+    for _ in range(12):
         edit_at_random(live, draw, names, window)
         view = live.update()
         fresh = ep.Live(live.scene, live.radar, num_rays=RAYS, window=window[0]).update()

@@ -1,11 +1,15 @@
 """Pictures that stand alone: axes named, numbers as print has them, nothing beyond the edge."""
 from __future__ import annotations
 
+import re
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
+import echopath as ep
 from echopath import plots
+from echopath.paths.subset import first_group, strongest_of_each
 from echopath.plots.scene_view import _is_cut
 from echopath.signals.measures import for_pictures
 
@@ -45,3 +49,80 @@ def test_mirrors_have_no_edge_where_the_picture_cuts_them():
     on_border = np.array([[2.0, 0.3, 0.1], [2.0, 1.1, 0.1]])
     assert _is_cut(on_border, low, high) and not _is_cut(on_border - [0.5, 0.0, 0.0], low, high)
     assert not _is_cut(np.array([[2.0, 0.3, 0.1], [1.0, 0.3, 0.1]]), low, high)  # which only ends there
+
+
+def texts_of(figure) -> list:
+    from matplotlib.text import Text
+
+    return [text for text in figure.findobj(Text) if text.get_visible() and text.get_text().strip()]
+
+
+def assert_whole(figure) -> None:
+    """All texts lie within the figure, and numbers have minus signs."""
+    figure.canvas.draw()
+    renderer, frame = figure.canvas.get_renderer(), figure.bbox
+    ticks = {id(text) for axes in figure.axes for axis in axes._axis_map.values() for text in axis.get_ticklabels(which="both")}
+    for text in texts_of(figure):
+        # Ticks beyond the limits of axes are not drawn; texts in perspective have a place when they are.
+        if id(text) not in ticks and not hasattr(text, "get_position_3d"):
+            box = text.get_window_extent(renderer)
+            assert frame.x0 <= box.x0 and box.x1 <= frame.x1, text.get_text()
+        assert not re.search(r"(?<!\w)-(?=\d|\))", text.get_text()), text.get_text()
+
+
+def flat_map():
+    return SimpleNamespace(values=np.ones((1, 1, 8, 8), complex), range=np.arange(8.0), velocity=np.arange(-4.0, 4.0))
+
+
+@pytest.mark.parametrize("num_parts", [1, 2, 3, 5])
+def test_long_titles_stay_within_figures_of_any_number_of_parts(num_parts):
+    title = "What the radar receives, taken apart by route, without noise; " + "mean power of all ranges together " * 2
+    spectra = {f"part {number}": flat_map() for number in range(num_parts)}
+    assert_whole(plots.plot_partition(spectra, title=title))
+    assert_whole(plots.plot_overview(flat_map(), spectra, parts_title=title))
+
+
+def test_maps_from_above_ring_the_true_places_and_have_minus_signs():
+    azimuth, distance = np.radians(np.arange(-60.0, 61.0, 2.0)), np.arange(64) * 0.25
+    power = np.full((len(azimuth), len(distance)), 1e-16)
+    power[45, 40] = 1e-10  # 30 degrees, 10 m
+    map = SimpleNamespace(azimuth=azimuth, range=distance, power=power)
+    places = {"car": (10.0, np.radians(30.0)), "beside": (10.0, np.radians(28.0)), "behind": (500.0, 0.0)}
+    figure = plots.plot_range_azimuth(map, places=places)
+    assert_whole(figure)
+    axes, = (one for one in figure.axes if one.get_ylim()[1] > 5.0 and one.get_lines())
+    ring = next(line for line in axes.get_lines() if line.get_marker() == "o")
+    assert np.allclose(np.transpose(ring.get_data())[0], [5.0, 10.0 * np.cos(np.radians(30.0))])  # sin 30 degrees = 1 / 2
+    assert {"car", "beside"} <= {text.get_text() for text in axes.texts} and len(ring.get_xdata()) == 2
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["where the object truly is (its middle)"]
+
+
+def small_radar(position=(0, 0, 0)):
+    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=16, sampling_rate=20e6, num_chirps=2,
+                                chirp_interval=1e-4)
+    return ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 1))], receivers=[ep.Antenna((0, 0, 1))], transmit_power=0.1,
+                    position=position, yaw=np.pi / 2)
+
+
+def test_true_places_are_seen_from_the_radar():
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.5), name="ball", material="metal", position=(4, 8, 1))
+    places = plots.true_places(scene, small_radar((4, 3, 0)), ["ball"], 0.0)  # 5 m along y, where the radar looks
+    assert np.allclose(places["ball"], (5.0, 0.0), atol=1e-6)
+
+
+def test_each_object_has_rays_and_surfaces_say_where_they_are_cut():
+    scene = ep.Scene()
+    scene.add(ep.actors.ground(60.0), name="ground", material=ep.Material.metal(mirror=True))
+    scene.add(ep.actors.plate(2.0, 2.0), name="bright", material="metal", position=(0, 5, 1), yaw=-np.pi / 2)
+    scene.add(ep.actors.sphere(0.1), name="faint", material="metal", smooth=True, position=(2, 8, 1))
+    paths = ep.trace(scene, small_radar(), num_rays=4000)
+    groups = first_group(paths, np.array([{"ground": -1, "bright": 0, "faint": 1}[mesh.name] for mesh in scene.meshes]))
+    chosen = strongest_of_each(paths.power, groups, 2, 40)
+    assert len(set(chosen)) == len(chosen) == 40 and (groups[chosen] >= 0).all()
+    assert min(np.bincount(groups[chosen], minlength=2)) >= 10  # a quarter each, and the strongest
+    figure = plots.plot_scene(scene, paths)
+    assert_whole(figure)
+    words = {text.get_text() for text in figure.legends[0].get_texts()}
+    assert {"surface that mirrors", "cut here, it goes on beyond the picture"} <= words
+    assert any("ground" in text.get_text() for text in figure.axes[0].texts)

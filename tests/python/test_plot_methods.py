@@ -103,7 +103,7 @@ def test_labels_show_parts_or_objects(frame, ax):
         labels.plot(what, ax=ax)
         words[what] = [text.get_text() for text in ax.get_legend().get_texts()]
     assert any(text.startswith("plate: ") for text in words["parts"])
-    assert any(text.startswith("object itself: ") for text in words["objects"])
+    assert any(text.startswith("the object itself: ") for text in words["objects"])
     with pytest.raises(ValueError, match="what: must be 'parts' or 'objects', got 'cars'"):
         labels.plot("cars", ax=ax)
 

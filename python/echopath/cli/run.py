@@ -12,6 +12,8 @@ from ..base.stages import StageClock
 from ..frame.frame import Frame
 from ..frame.simulate import simulate
 from ..frame_file import LeftOut, min_power_of_budget, save_frame
+from ..paths.families import families
+from ..paths.resolution import RESOLVED_DB
 from ..plots.frames import noise_words, title_of
 from ..scene_file import SceneFile
 from ..signals.measures import for_pictures, with_error
@@ -114,15 +116,23 @@ def _write_pictures(frame: Frame, folder: Path, partitions) -> list:
         spectra = shown_parts(frame.part_spectra[partition], vmin)
         looks = {"vmin": vmin, "vmax": vmax, "powers": frame.mean_part_powers[partition]}
         words = "taken apart" + (f" by {partition}" if partition != "parts" else "") + ", without noise"
-        words += "; mean powers and their 95 % intervals"
+        words += "; mean power of all ranges together and its 95 % interval"
+        if not all(power.resolved for power in frame.mean_part_powers[partition].values()):
+            words += f" (not resolved: wider than \N{PLUS-MINUS SIGN}{RESOLVED_DB:g} dB)"
         write(partition, plots.plot_partition(spectra, title=f"What the radar receives, {words}", **looks))
         if index == 0:
             words = f"The same {words}"
             write("overview", plots.plot_overview(frame.spectrum, spectra, title=title + mean, parts_title=words, **looks))
     if frame.range_azimuth is not None:
         maps = _maps_from_above(frame, next(iter(partitions), None), vmin)
-        write("range_azimuth", plots.plot_range_azimuth(maps))
+        write("range_azimuth", plots.plot_range_azimuth(maps, places=_places(frame)))
     return written
+
+
+def _places(frame: Frame) -> dict:
+    """Where the objects of the frame truly are, in its range-azimuth map."""
+    time = frame.paths.frame.trace_time
+    return plots.true_places(frame.scene, frame.radar, families(frame.paths).objects, time)
 
 
 def _maps_from_above(frame: Frame, partition, vmin: float) -> dict:

@@ -78,6 +78,33 @@ def strongest(power, count: int, among=None):
     return best[np.argsort(-power[best], kind="stable")]
 
 
+def strongest_of_each(power, group, num_groups: int, count: int):
+    """Indices of about `count` paths: half of them shared evenly among the groups, the strongest of each, the rest the strongest
+    of all.
+
+    power: [P] W; group: [P], of `num_groups`, those of others (-1) are left out; more groups than half of `count`: the strongest
+    of all alone
+    """
+    among = group >= 0
+    share = count // (2 * num_groups) if num_groups else 0
+    of_each = [strongest(power, share, among=group == number) for number in range(num_groups)] if share else []
+    chosen = np.concatenate([np.zeros(0, np.int64), *of_each])
+    among[chosen] = False
+    return np.concatenate([chosen, strongest(power, count - len(chosen), among=among)])
+
+
+def first_group(paths, group_of_mesh):
+    """The group of the first mesh along each path that has one: [P] from [M], -1 for none."""
+    found = np.full(paths.num_paths, -1, np.int64)
+    offsets, num_bounces, mesh_id = paths.offsets, paths.num_bounces, paths.mesh_id
+    for block in _blocks(paths.num_paths):
+        for order in range(int(num_bounces[block].max(initial=0))):
+            is_open = (num_bounces[block] > order) & (found[block] < 0)
+            open_ones = block.start + np.flatnonzero(is_open)
+            found[open_ones] = group_of_mesh[mesh_id[offsets[open_ones] + order]]
+    return found
+
+
 def paths_on(paths, mesh_is_meant):
     """Which paths have a hit on a mesh that is meant: bool [P] from bool [M]."""
     found = np.zeros(paths.num_paths, bool)

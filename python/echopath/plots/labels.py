@@ -1,24 +1,24 @@
-"""Labels of maps: cells by part, object and ghost; power by part."""
+"""Labels of maps: cells by part, object and ghost."""
 from __future__ import annotations
 
 import numpy as np
 
-from ..labels.images import colours_of
-from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm, with_error
+from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm
 from .maps import RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN
+from .part_powers import draw_part_powers, part_colours
 from .style import axes_or_new, new_figure
 
 AZIMUTH_LABEL, AZIMUTH_MARGIN = "Azimuth in degrees (left: +)", 4.0
 FILL = 0.45                  # opacity of a label over the map
-ROOM_BESIDE_DB = 6.0         # of the weakest and the strongest power
 MAX_UNSEEN, MAX_GHOSTS = 4, 14  # told one by one
 FEWEST_ROWS = 8              # that there is room for, so that few bars stay thin
 NAME_ASIDE, NAME_DEPTH = 14.0, 22.0  # points, from the peak of an object to its name
 NAME_LETTER, NAME_LINE = 5.0, 14.0   # points, about, of the names
+PEAK_LOOK = {"marker": "o", "linestyle": "none", "markerfacecolor": "none", "markeredgecolor": "white", "markersize": 7}
 LEGEND_LINE = 13.0           # points, of the legend above the map
 LEGEND_LETTERS = 72          # of a line of the legend
 # Okabe and Ito: told apart with any colour vision.
-CLASSES = {"real": ("object itself", "#009e73"), 1: ("ghost, type 1: last bounce on the object", "#e69f00"),
+CLASSES = {"real": ("the object itself", "#009e73"), 1: ("ghost, type 1: last bounce on the object", "#e69f00"),
            2: ("ghost, type 2: last bounce on a mirror", "#cc79a7")}
 
 
@@ -91,6 +91,8 @@ def _draw_cells(axes, labels, areas: list) -> None:
         limit(axis[first] - 0.5 * _step(axis), axis[last] + 0.5 * _step(axis))  # whole cells, be it one
     axes.set_xlabel(f"{RANGE_LABEL}{_unseen(labels)}")
     axes.set_ylabel(_row_label(labels))
+    if any(label.peak is not None for label in labels.objects):
+        axes.plot([], [], **PEAK_LOOK | {"markeredgecolor": "0.25", "label": "strongest cell of an object"})
     words = axes.get_legend_handles_labels()[1]
     if words:
         columns = max(1, LEGEND_LETTERS // max(map(len, words)))
@@ -125,7 +127,7 @@ def _legend_height(axes) -> float:
 
 def _part_areas(labels) -> list:
     """Cells of each part where it dominates."""
-    colours = _colours(labels.part_names)
+    colours = part_colours(labels.part_names)
     return [(name, colours[index], labels.dominant == index) for index, name in enumerate(labels.part_names)]
 
 
@@ -167,7 +169,7 @@ def _name_objects(axes, labels) -> None:
 
 
 def _name_object(axes, name: str, distance: float, row: float, is_far: bool, depth: float) -> None:
-    axes.plot(distance, row, "o", markerfacecolor="none", markeredgecolor="white", markersize=7)
+    axes.plot(distance, row, **PEAK_LOOK)
     axes.annotate(name, (distance, row), xytext=(-NAME_ASIDE if is_far else NAME_ASIDE, -depth), textcoords="offset points",
                   color="white",
                   fontsize=8, horizontalalignment="right" if is_far else "left",
@@ -223,8 +225,9 @@ def _draw_extents(panels, labels, rows: list) -> None:
     up.set_xlabel(_row_label(labels))
     up.tick_params(left=False)
     num_hidden = max(0, sum(ghost.peak is not None for ghost in labels.ghosts) - MAX_GHOSTS)
-    words = "Extent in the map (bar) and peak (line)" if rows else "No cells of objects or ghosts"
-    across.set_title(words + (f"; and {num_hidden} weaker ghosts" if num_hidden else ""), loc="left")
+    words = "Where each echo appears: from its first to its last cell, line at its strongest"
+    hidden = f"\n{num_hidden} weaker ghosts are not shown" if num_hidden else ""
+    across.figure.suptitle(words + hidden if rows else "No cells of objects or ghosts", fontsize=10)
     for axes in panels:
         axes.grid(axis="x", alpha=0.25)
         axes.use_sticky_edges = False
@@ -247,66 +250,10 @@ def _row_spans(labels, label) -> list:
 def _row_name(label) -> str:
     if not hasattr(label, "ghost_type"):
         return f"{label.name} itself"
-    return f"{label.object}, type {label.ghost_type}, order {label.order} via {' + '.join(label.via)}"
-
-
-# --- powers ---
-
-def plot_part_powers(powers: dict, *, title="Received power by part"):
-    """The mean received power of each part with its 95 % interval; hollow where it is not resolved to 0.3 dB.
-
-    powers: {part: ep.ReceivedPower}; title: above them. Returns a matplotlib figure: power in dBm across.
-    Raises AttributeError for other objects.
-    """
-    with new_figure(6.0, 0.9 + 0.38 * len(powers)) as figure:
-        draw_part_powers(figure.subplots(), powers, title)
-    return figure
-
-
-def draw_part_powers(axes, powers: dict, title="Mean received power by part") -> None:
-    """A dot for each part with its interval; levels in dB have no zero that a bar could begin at."""
-    shown = {name: power for name, power in powers.items() if power.power > 0.0}
-    levels = {name: float(in_dbm(power.power)) for name, power in shown.items()}
-    names = list(powers)
-    for place, (name, colour) in enumerate(zip(names, _colours(names))):
-        if name in shown:
-            _draw_power(axes, place, shown[name], colour)
-        else:
-            axes.text(0.02, place, "no paths", transform=axes.get_yaxis_transform(), va="center", fontsize=8, color="0.4")
-    axes.set_yticks(range(len(names)), names)
-    axes.set_ylim(len(names) - 0.5, -0.5)
-    lowest = min(levels.values(), default=0.0) - ROOM_BESIDE_DB
-    axes.set_xlim(5.0 * np.floor(lowest / 5.0), 5.0 * np.ceil((max(levels.values(), default=lowest) + ROOM_BESIDE_DB) / 5.0))
-    axes.grid(alpha=0.25)
-    axes.set_xlabel("Power in dBm (hollow: not resolved)" if not all(power.resolved for power in shown.values()) else
-                    "Power in dBm")
-    axes.set_title(title)
-
-
-def _draw_power(axes, place: int, power, colour) -> None:
-    """A dot over its interval, the numbers above it, where they hit no edge."""
-    low, high = _error_bar(power)
-    level = float(in_dbm(power.power))
-    if high > low:
-        ends = [max(low, level - ROOM_BESIDE_DB), high]
-        axes.plot(ends, [place, place], color="black", linewidth=1.2, marker="|", markersize=6)
-    axes.plot(level, place, "o", markersize=8, color=colour, markerfacecolor=colour if power.resolved else "white",
-              markeredgewidth=1.8)
-    text = with_error(power) if high > low else f"{level:.1f} dBm"
-    axes.annotate(for_pictures(text), (0.5, place), xycoords=("axes fraction", "data"), xytext=(0, 9), ha="center",
-                  textcoords="offset points", fontsize=8)
-
-
-def _error_bar(power) -> tuple[float, float]:
-    """Ends in dBm of the 95 % interval."""
-    return tuple(float(in_dbm(end, SMALLEST_POWER)) for end in (power.low, power.high))
+    return f"{label.object} via {' + '.join(label.via)} (type {label.ghost_type}, {label.order} bounces)"
 
 
 # --- what they share ---
-
-def _colours(names) -> list:
-    return [tuple(value / 255.0 for value in colour) for colour in colours_of(list(names))]
-
 
 def _cells(count: int) -> str:
     return f"{count:,} cell{'' if count == 1 else 's'}"

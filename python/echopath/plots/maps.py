@@ -7,7 +7,7 @@ import numpy as np
 
 from ..arguments.checks import optional, real
 from ..signals.measures import SMALLEST_POWER, STATIC_SPEED, for_pictures, in_dbm, with_error
-from .style import MAP_COLOURS, axes_or_new, new_figure
+from .style import MAP_COLOURS, axes_or_new, new_figure, set_title
 
 DYNAMIC_RANGE_DB = 70.0      # below the peak that a map shows at most
 MARGIN_OVER_MEDIAN_DB = 6.0  # the median of a map is its noise: the scale begins above it
@@ -98,7 +98,7 @@ def plot_partition(spectra: dict, *, title="", vmin=None, vmax=None, whole=None,
                 axes.set_xlabel(RANGE_LABEL)
                 axes.tick_params(labelbottom=True)
         figure.supylabel(VELOCITY_LABEL, fontsize=9)
-        figure.suptitle(title, fontsize=11)
+        set_title(figure, title, 11)
         _colour_bar(figure, image, panels[:len(spectra)])
         _small_print(figure, note)
     return figure
@@ -118,7 +118,7 @@ def plot_overview(whole, spectra: dict, *, title="Everything that the radar rece
         image = _draw_whole(axes, whole, vmin, vmax, title)
         panels = list(lower.subplots(1, len(spectra), sharex=True, sharey=True, squeeze=False).flat)
         _draw_parts(panels, spectra, vmin, vmax, powers)
-        lower.suptitle(parts_title, fontsize=10)
+        set_title(lower, parts_title, 10)
         lower.supxlabel(RANGE_LABEL, fontsize=9)
         for first in (axes, panels[0]):
             first.set_ylabel(VELOCITY_LABEL)

@@ -5,7 +5,7 @@ import dataclasses
 
 import numpy as np
 
-from ..paths.subset import paths_on, strongest, subset
+from ..paths.subset import first_group, strongest, strongest_of_each, subset
 from .clip import clip_triangles, outline
 from .style import BOUNCE_COLOURS, new_figure
 
@@ -17,37 +17,43 @@ MARGIN = 0.6                            # m around the rays
 RADAR_LABEL = "radar"
 MOST_NAMES = 12                         # objects that bear their names in a picture; more would hide each other
 NAME_LOOK = {"fontsize": 7, "color": "0.25"}
+MIRROR_NAME_LOOK = {"fontsize": 7, "color": "#33507a"}
+DASHES = (0, (4, 3))
+CUT_LABEL, MIRROR_LABEL = "cut here, it goes on beyond the picture", "surface that mirrors"
+NAME_PLACE = 0.93                       # along x of a mirror, where its name stands
 TICK_SPACE = 0.06                       # of the longest side: room that a number on an axis in perspective needs
 
 
 @dataclasses.dataclass
 class _Drawing:
-    """What the views show: polygons [N, 3] with colours [4], edges [2, 3], rays [S, 2, 3] by number of bounces; names:
-    {object: (lowest, highest) corner [3] of its box}."""
+    """What the views show: polygons [N, 3] with colours [4], edges [2, 3] that end a mirror and that the picture cuts it at, rays
+    [S, 2, 3] by number of bounces; names, mirror_names: {object: (lowest, highest) corner [3] of its box in the picture}."""
 
     bodies: list
     body_colours: list
     mirrors: list
     mirror_edges: list
+    mirror_cuts: list
     segments: dict
     radar: np.ndarray
     low: np.ndarray
     high: np.ndarray
     names: dict
+    mirror_names: dict
 
 
-def plot_scene(scene, paths, *, num_rays=300, time=None, power=None,
-               title="Scene and the strongest rays that reach an object"):
+def plot_scene(scene, paths, *, num_rays=300, time=None, power=None, title="The scene, and the strongest rays to each object"):
     """A scene with its strongest rays.
 
-    paths: of `trace`; num_rays: drawn at most, the strongest that hit anything but mirrors (any, where none does)
+    paths: of `trace`; num_rays: drawn at most, half of them the strongest of each object, half the strongest of all that hit
+        anything but mirrors (of all, where none does)
     time: of the picture in s, None: the time of the trace; power: of the paths [P] in W where it is known already
-    Mirrors are drawn translucent, without an edge where they go on beyond the picture; up to 12 objects bear their names.
+    Mirrors are drawn translucent, dashed where they go on beyond the picture; up to 12 objects bear their names.
     title: above them. Returns a matplotlib figure with three views in metres. Raises AttributeError for other objects.
     """
     time = paths.frame.trace_time if time is None else time
     power = paths.power if power is None else power
-    chosen = strongest(power, num_rays, among=_reach_objects(scene, paths))
+    chosen = _chosen(scene, paths, power, num_rays)
     drawing = _collect(scene, subset(paths, chosen), time)
     with new_figure(10.5, 8.0) as figure:
         grid = figure.add_gridspec(2, 2, height_ratios=(1.75, 1.0))
@@ -67,18 +73,24 @@ def _collect(scene, shown, time: float) -> _Drawing:
                 for count in np.unique(shown.num_bounces)}
     corners = np.concatenate([points, transmitter[None], receiver[None], _object_vertices(scene, time)])
     low, high = corners.min(axis=0) - MARGIN, corners.max(axis=0) + MARGIN
-    drawing = _Drawing([], [], [], [], segments, 0.5 * (transmitter + receiver), low, high, _names(scene, time))
+    drawing = _Drawing([], [], [], [], [], segments, 0.5 * (transmitter + receiver), low, high, _names(scene, time), {})
     for mesh_id, mesh in enumerate(scene.meshes):
         vertices = np.asarray(scene.world_vertices(mesh_id, time))
-        _add_mesh(drawing, vertices[np.asarray(mesh.mesh.triangles)], mesh.material.mirror)
+        _add_mesh(drawing, vertices[np.asarray(mesh.mesh.triangles)], mesh)
     return drawing
 
 
-def _reach_objects(scene, paths):
-    """Paths that hit a mesh that is no mirror, bool [P]; None when there is none."""
-    is_object = np.array([not mesh.material.mirror for mesh in scene.meshes], bool)
-    chosen = paths_on(paths, is_object)
-    return chosen if chosen.any() else None
+def _object_name(mesh) -> str:
+    return mesh.name.split("/")[0]
+
+
+def _chosen(scene, paths, power, num_rays: int):
+    """Indices of the paths that are drawn."""
+    numbers = {}
+    of_mesh = np.array([-1 if mesh.material.mirror else numbers.setdefault(_object_name(mesh), len(numbers))
+                        for mesh in scene.meshes], np.int64)
+    of_path = first_group(paths, of_mesh)
+    return strongest_of_each(power, of_path, len(numbers), num_rays) if (of_path >= 0).any() else strongest(power, num_rays)
 
 
 def _segments(paths, points, count: int, transmitter, receiver):
@@ -102,25 +114,34 @@ def _names(scene, time: float) -> dict:
     objects = {}
     for mesh_id, mesh in enumerate(scene.meshes):
         if not mesh.material.mirror:
-            objects.setdefault(mesh.name.split("/")[0], []).append(np.asarray(scene.world_vertices(mesh_id, time)))
+            objects.setdefault(_object_name(mesh), []).append(np.asarray(scene.world_vertices(mesh_id, time)))
     if len(objects) > MOST_NAMES:
         return {}
     vertices = {name: np.concatenate(parts) for name, parts in objects.items()}
     return {name: (points.min(axis=0), points.max(axis=0)) for name, points in vertices.items()}
 
 
-def _add_mesh(drawing: _Drawing, triangles, is_mirror: bool) -> None:
+def _add_mesh(drawing: _Drawing, triangles, mesh) -> None:
     polygons = clip_triangles(triangles, drawing.low, drawing.high)
-    if is_mirror:
+    if mesh.material.mirror:
         drawing.mirrors += polygons
-        drawing.mirror_edges += [edge for edge in outline(polygons) if not _is_cut(edge, drawing.low, drawing.high)]
+        for edge in outline(polygons):
+            (drawing.mirror_cuts if _is_cut(edge, drawing.low, drawing.high) else drawing.mirror_edges).append(edge)
+        if polygons:
+            _add_mirror_name(drawing.mirror_names, _object_name(mesh), np.concatenate(polygons))
         return
     drawing.bodies += polygons
     drawing.body_colours += [_shaded(polygon) for polygon in polygons]
 
 
+def _add_mirror_name(names: dict, name: str, corners) -> None:
+    """Adds the name of a mirror with the box about its corners [N, 3], or widens the box."""
+    low, high = names.get(name, (corners.min(axis=0), corners.max(axis=0)))
+    names[name] = np.minimum(low, corners.min(axis=0)), np.maximum(high, corners.max(axis=0))
+
+
 def _is_cut(edge, low, high) -> bool:
-    """Whether an edge [2, 3] lies on the border of the picture: there the mirror goes on, and has no edge."""
+    """Whether an edge [2, 3] lies on the border of the picture: there the mirror goes on."""
     return any(np.isclose(edge, border, rtol=0.0, atol=CUT).all(axis=0).any() for border in (low, high))
 
 
@@ -149,6 +170,7 @@ def _draw_perspective(axes, drawing: _Drawing) -> None:
 
     add(Poly3DCollection, drawing.mirrors, 1, facecolors=(*MIRROR_COLOUR, 0.25), edgecolors="none")
     add(Line3DCollection, drawing.mirror_edges, 1, colors=(*MIRROR_COLOUR, 0.9), linewidths=0.7)
+    add(Line3DCollection, drawing.mirror_cuts, 1, colors=(*MIRROR_COLOUR, 0.9), linewidths=0.7, linestyles=[DASHES])
     for count, segments in reversed(drawing.segments.items()):
         add(Line3DCollection, segments, 2, colors=_colour(count), linewidths=0.6, alpha=_ray_opacity(segments))
     add(Poly3DCollection, drawing.bodies, 3, facecolors=drawing.body_colours, edgecolors="none")
@@ -156,8 +178,23 @@ def _draw_perspective(axes, drawing: _Drawing) -> None:
     axes.text(*drawing.radar, f"{RADAR_LABEL}   ", zorder=5, horizontalalignment="right")
     for name, (low, high) in drawing.names.items():
         axes.text(*0.5 * (low + high)[:2], high[2], f"{name}\n", zorder=5, horizontalalignment="center",
-                  verticalalignment="baseline", **NAME_LOOK)
+                  verticalalignment="baseline", path_effects=_halo(), **NAME_LOOK)
+    for name, (low, high) in _named_mirrors(drawing).items():
+        is_floor = high[2] - low[2] < CUT
+        place = low[0] + NAME_PLACE * (high[0] - low[0]), low[1] if is_floor else 0.5 * (low + high)[1], high[2]
+        axes.text(*place, name if is_floor else f"{name}\n", zorder=5, horizontalalignment="center",
+                  verticalalignment="bottom" if is_floor else "center", path_effects=_halo(), **MIRROR_NAME_LOOK)
     _frame_box(axes, drawing)
+
+
+def _halo() -> list:
+    from matplotlib.patheffects import withStroke
+
+    return [withStroke(linewidth=2.0, foreground="white")]
+
+
+def _named_mirrors(drawing: _Drawing) -> dict:
+    return drawing.mirror_names if len(drawing.mirror_names) <= MOST_NAMES else {}
 
 
 def _frame_box(axes, drawing: _Drawing) -> None:
@@ -181,14 +218,14 @@ def _frame_box(axes, drawing: _Drawing) -> None:
 def _draw_flat(axes, drawing: _Drawing, plane: tuple, title: str) -> None:
     """The scene along an axis: mirrors below the rays, bodies above them."""
     from matplotlib.collections import LineCollection, PolyCollection
-    from matplotlib.patheffects import withStroke
 
     columns = list(plane)
     depth = ({0, 1, 2} - set(plane)).pop()
     mirrors = [polygon[:, columns] for polygon in drawing.mirrors]
     axes.add_collection(PolyCollection(mirrors, facecolors=(*MIRROR_COLOUR, 0.15), edgecolors="none"))
-    edges = [edge[:, columns] for edge in drawing.mirror_edges]
-    axes.add_collection(LineCollection(edges, colors=MIRROR_COLOUR, linewidths=0.8))
+    for edges, style in ((drawing.mirror_edges, "-"), (drawing.mirror_cuts, DASHES)):
+        axes.add_collection(LineCollection([edge[:, columns] for edge in edges], colors=MIRROR_COLOUR, linewidths=0.8,
+                                           linestyles=[style]))
     for count, segments in reversed(drawing.segments.items()):
         axes.add_collection(LineCollection(segments[:, :, columns], colors=_colour(count), linewidths=0.5,
                                            alpha=_ray_opacity(segments)))
@@ -197,11 +234,7 @@ def _draw_flat(axes, drawing: _Drawing, plane: tuple, title: str) -> None:
     axes.add_collection(PolyCollection([drawing.bodies[i][:, columns] for i in order],
                                        facecolors=[drawing.body_colours[i] for i in order], edgecolors="none"))
     axes.plot(*drawing.radar[columns], marker="s", color="black", markersize=4)
-    if depth == 2:  # from the side they would stand on each other
-        halo = [withStroke(linewidth=2.0, foreground="white")]
-        for name, (low, high) in drawing.names.items():
-            axes.annotate(name, (0.5 * (low[0] + high[0]), high[1]), xytext=(0, 3), textcoords="offset points", ha="center",
-                          path_effects=halo, **NAME_LOOK)
+    _draw_flat_names(axes, drawing, plane)
     axes.set_xlim(drawing.low[plane[0]], drawing.high[plane[0]])
     axes.set_ylim(drawing.low[plane[1]], drawing.high[plane[1]])
     axes.set_aspect("equal")
@@ -210,9 +243,28 @@ def _draw_flat(axes, drawing: _Drawing, plane: tuple, title: str) -> None:
     axes.set_ylabel("xyz"[plane[1]] + " in m")
 
 
+def _draw_flat_names(axes, drawing: _Drawing, plane: tuple) -> None:
+    """Names of the radar, of mirrors that are seen as lines and, from above, of objects; from the side these would stand on each
+    other."""
+    def write(name: str, place, offset: tuple, ha: str, **look) -> None:
+        axes.annotate(name, place, xytext=offset, textcoords="offset points", ha=ha, path_effects=_halo(), **look)
+
+    write(RADAR_LABEL, drawing.radar[list(plane)], (0, 5), "center", **NAME_LOOK)
+    for name, (low, high) in drawing.names.items() if plane == (0, 1) else ():
+        write(name, (0.5 * (low[0] + high[0]), high[1]), (0, 3), "center", **NAME_LOOK)
+    for name, (low, high) in _named_mirrors(drawing).items():
+        if high[plane[1]] - low[plane[1]] < CUT:
+            write(name, (low[0], high[plane[1]]), (4, 2), "left", **MIRROR_NAME_LOOK)
+
+
 def _add_legend(figure, drawing: _Drawing) -> None:
     from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
 
     handles = [Line2D([], [], color=_colour(count), linewidth=1.5, label=f"{count} bounce" + ("s" if count > 1 else ""))
                for count in sorted(drawing.segments)]
+    if drawing.mirrors:
+        handles.append(Patch(facecolor=(*MIRROR_COLOUR, 0.4), edgecolor=MIRROR_COLOUR, label=MIRROR_LABEL))
+    if drawing.mirror_cuts:
+        handles.append(Line2D([], [], color=MIRROR_COLOUR, linewidth=1.0, linestyle=DASHES, label=CUT_LABEL))
     figure.legend(handles=handles, loc="outside lower center", ncols=max(1, len(handles)), frameon=False)

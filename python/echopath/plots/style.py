@@ -1,6 +1,7 @@
 """What all pictures have in common."""
 from __future__ import annotations
 
+import textwrap
 from contextlib import contextmanager
 
 from ..base.files import written_whole
@@ -12,6 +13,8 @@ MAP_COLOURS = "inferno"
 BOUNCE_COLOURS = ("#009e73", "#0072b2", "#d55e00", "#cc79a7", "#8c6d1f")
 
 CURVE_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")  # of the same palette
+
+LETTER = 0.56  # width of a letter over the size of the font, more than the mean
 
 _SETTINGS = {
     "font.family": "sans-serif", "font.size": 9, "axes.titlesize": 10, "axes.labelsize": 9, "legend.fontsize": 8,
@@ -47,6 +50,13 @@ def axes_or_new(ax, width: float, height: float):
 
             ax = pyplot.figure(figsize=(width, height), layout="constrained").subplots()
         yield ax
+
+
+def set_title(figure, text: str, size: float) -> None:
+    """Sets the title of a figure or of its part, in as many lines as its width asks for. size: of its letters in points"""
+    width = 72.0 * figure.bbox.width / figure.dpi  # points
+    lines = [textwrap.fill(line, max(int(width / (LETTER * size)), 20)) for line in text.splitlines()]
+    figure.suptitle("\n".join(lines), fontsize=size)
 
 
 def save_png(figure, path, *, seed=None, noise_seed=None) -> None:

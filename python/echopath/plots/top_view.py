@@ -1,13 +1,16 @@
 """Range-azimuth maps as seen from above: the radar below, ahead is up, left is left."""
 from __future__ import annotations
 
+import itertools
 import math
 
 import numpy as np
 
-from ..signals.measures import SMALLEST_POWER, in_dbm
+from ..detections.detections import centre_of
+from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm
+from ..truth.boxes import boxes_at
 from .maps import NOISE_PEAK_DB, chosen_limits, limits_of_level
-from .style import MAP_COLOURS, axes_or_new, new_figure
+from .style import MAP_COLOURS, axes_or_new, new_figure, set_title
 
 FARTHER = 1.1                  # of the farthest signal: what is shown
 LEAST_RANGES = 8               # cells shown at least
@@ -16,16 +19,33 @@ LARGE, SMALL = 4.6, 3.2         # inches, height of a sector alone and of one of
 WIDE = 1.4                     # width over height, from which three sectors do not stand in a row
 SPOKE_STEP = math.pi / 6.0     # rad
 MARGIN = 0.1                   # of the reach, around the sector: room for the angles
-LEFT_LABEL, AHEAD_LABEL = "To the left in m (right: -)", "Ahead in m"
+LEFT_LABEL, AHEAD_LABEL = "To the left in m (right: \N{MINUS SIGN})", "Ahead in m"
 GRID_LOOK = {"color": "white", "linewidth": 0.5, "alpha": 0.35}
+TRUE_LABEL = "where the object truly is (its middle)"
+TRUE_LOOK = {"marker": "o", "linestyle": "none", "markerfacecolor": "none", "markeredgecolor": "#56d4ff", "markersize": 9}
+NAME_ASIDE, NAME_LINE, NAME_LETTER = 0.035, 0.065, 0.024  # of the reach: beside a place, a line, a letter
+MOST_NAMES = 12                 # true places that bear their names; more would hide each other
+LEGEND_LOOK = {"facecolor": "black", "labelcolor": "white", "framealpha": 1.0}
 LABEL_LOOK = {"color": "0.35", "fontsize": 7, "ha": "center", "va": "center"}
 
 
-def plot_range_azimuth(maps, *, title="Received power from above", vmin=None, vmax=None):
+def true_places(scene, radar, objects, time) -> dict:
+    """Where objects are in a range-azimuth map: {name: (range in m, azimuth in rad)} of the middle of their boxes.
+
+    scene, radar: of the map; objects: names in the scene; time: s. Raises AttributeError for other objects.
+    """
+    world = radar.world_from_radar(time)
+    middle = boxes_at(scene, [[name] for name in objects], time, radar.frame_duration).centre
+    sight = (middle - world[:3, 3]) @ world[:3, :3] - centre_of(radar)
+    return {name: (float(np.linalg.norm(way)), float(np.arctan2(way[1], way[0]))) for name, way in zip(objects, sight)}
+
+
+def plot_range_azimuth(maps, *, title="Received power by range and azimuth, seen from above", vmin=None, vmax=None, places=None):
     """Range-azimuth maps as sectors seen from above, cropped to where there is signal, with one colour scale.
 
     maps: of `range_azimuth`, one or {title of its panel: map}; of several the first sets the scale; title: above them
     vmin, vmax: ends of the colour scale in dBm, None: the peak, and the noise or 70 dB less
+    places: {object: (range in m, azimuth in rad)} that get a ring, as of `true_places`, in the first map with names; None: none
     Returns a matplotlib figure: metres to the left across (right negative), metres ahead up, in the radar's frame. Raises
     TypeError or ValueError naming vmin or vmax.
     """
@@ -39,8 +59,9 @@ def plot_range_azimuth(maps, *, title="Received power from above", vmin=None, vm
     height = LARGE if len(maps) == 1 else SMALL
     with new_figure(columns * height * aspect + 1.6, rows * (height + 0.2) + 0.6) as figure:
         panels = list(figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).flat)
-        for axes, (name, one) in zip(panels, maps.items()):
+        for number, (axes, (name, one)) in enumerate(zip(panels, maps.items())):
             image = _draw(axes, one, reach, vmin, vmax)
+            ring = _draw_places(axes, one, places or {}, reach, is_named=number == 0)
             axes.set_title(name)
         for axes in panels[len(maps) - columns:len(maps)]:
             axes.tick_params(labelbottom=True)  # the lowest of its column, perhaps above an empty place
@@ -48,8 +69,10 @@ def plot_range_azimuth(maps, *, title="Received power from above", vmin=None, vm
             axes.remove()
         figure.supxlabel(LEFT_LABEL, fontsize=9)
         figure.supylabel(AHEAD_LABEL, fontsize=9)
-        figure.suptitle(title, fontsize=11)
+        set_title(figure, title, 11)
         _colour_bar(figure, image, panels[:len(maps)])
+        if ring:
+            figure.legend(handles=ring, loc="outside lower right", **LEGEND_LOOK)
     return figure
 
 
@@ -67,6 +90,33 @@ def draw_range_azimuth(map, *, ax=None, vmin=None, vmax=None, title=""):
         ax.set_title(title)
         _colour_bar(ax.figure, image, [ax])
     return ax
+
+
+def _draw_places(axes, one, places: dict, reach: float, *, is_named: bool) -> list:
+    """A ring at each place that the map shows; returns the rings."""
+    shown = {name: (distance * math.sin(azimuth), distance * math.cos(azimuth)) for name, (distance, azimuth) in places.items()
+             if distance <= reach and one.azimuth[0] <= azimuth <= one.azimuth[-1]}
+    if is_named and len(shown) <= MOST_NAMES:
+        _name_places(axes, shown, reach)
+    return axes.plot(*zip(*shown.values()), label=TRUE_LABEL, zorder=4, **TRUE_LOOK) if shown else []
+
+
+def _name_places(axes, shown: dict, reach: float) -> None:
+    """Names right below their places, left or lower where another stands there."""
+    from matplotlib.patheffects import withStroke
+
+    taken = []  # (leftmost, rightmost, height) in m of the names so far
+    for name, (left, ahead) in sorted(shown.items(), key=lambda one: -one[1][1]):
+        length, aside, line = NAME_LETTER * reach * len(name), NAME_ASIDE * reach, NAME_LINE * reach
+        tried = ((left + side * aside, side, ahead - row * line) for row in itertools.count(1) for side in (-1.0, 1.0))
+        for begin, side, height in tried:
+            span = sorted((begin, begin + side * length))
+            if all(span[1] < low or high < span[0] or abs(height - other) >= 0.99 * line for low, high, other in taken):
+                break
+        taken.append((*span, height))
+        axes.text(begin, height, name, color="white", fontsize=7, verticalalignment="center",
+                  horizontalalignment="left" if side < 0.0 else "right",
+                  path_effects=[withStroke(linewidth=2.0, foreground="black")])
 
 
 def _colour_bar(figure, image, panels) -> None:
@@ -140,7 +190,7 @@ def _draw_grid(axes, one, reach: float) -> None:
     for spoke in SPOKE_STEP * np.arange(first, last + 1):
         axes.plot([0.0, reach * np.sin(spoke)], [0.0, reach * np.cos(spoke)], **GRID_LOOK)
         rim = (1.0 + 0.55 * MARGIN) * reach
-        axes.text(rim * np.sin(spoke), rim * np.cos(spoke), f"{np.degrees(spoke):.0f}\N{DEGREE SIGN}", **LABEL_LOOK)
+        axes.text(rim * np.sin(spoke), rim * np.cos(spoke), for_pictures(f"{np.degrees(spoke):.0f}\N{DEGREE SIGN}"), **LABEL_LOOK)
 
 
 def _round_step(step: float) -> float:

@@ -1,0 +1,67 @@
+"""Received power by part, with its interval."""
+from __future__ import annotations
+
+import numpy as np
+
+from ..labels.images import colours_of
+from ..paths.resolution import RESOLVED_DB
+from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm, with_error
+from .style import new_figure
+
+ROOM_BESIDE_DB = 6.0  # of the weakest and the strongest power
+
+
+def part_colours(names) -> list:
+    """The colours (red, green, blue), 0 to 1, of parts by their names."""
+    return [tuple(value / 255.0 for value in colour) for colour in colours_of(list(names))]
+
+
+def plot_part_powers(powers: dict, *, title="Received power by part"):
+    """The mean received power of each part with its 95 % interval; hollow where it is not resolved.
+
+    powers: {part: ep.ReceivedPower}; title: above them. Returns a matplotlib figure: power in dBm across.
+    Raises AttributeError for other objects.
+    """
+    with new_figure(6.0, 0.9 + 0.38 * len(powers)) as figure:
+        draw_part_powers(figure.subplots(), powers, title)
+    return figure
+
+
+def draw_part_powers(axes, powers: dict, title="Mean received power by part") -> None:
+    """A dot for each part with its interval; levels in dB have no zero that a bar could begin at."""
+    shown = {name: power for name, power in powers.items() if power.power > 0.0}
+    levels = {name: float(in_dbm(power.power)) for name, power in shown.items()}
+    names = list(powers)
+    for place, (name, colour) in enumerate(zip(names, part_colours(names))):
+        if name in shown:
+            _draw_power(axes, place, shown[name], colour)
+        else:
+            axes.text(0.02, place, "no paths", transform=axes.get_yaxis_transform(), va="center", fontsize=8, color="0.4")
+    axes.set_yticks(range(len(names)), names)
+    axes.set_ylim(len(names) - 0.5, -0.5)
+    lowest = min(levels.values(), default=0.0) - ROOM_BESIDE_DB
+    axes.set_xlim(5.0 * np.floor(lowest / 5.0), 5.0 * np.ceil((max(levels.values(), default=lowest) + ROOM_BESIDE_DB) / 5.0))
+    axes.grid(alpha=0.25)
+    is_hollow = not all(power.resolved for power in shown.values())
+    words = f"\nhollow, not resolved: interval\nwider than \N{PLUS-MINUS SIGN}{RESOLVED_DB:g} dB"
+    axes.set_xlabel("Power in dBm" + (words if is_hollow else ""))
+    axes.set_title(title)
+
+
+def _draw_power(axes, place: int, power, colour) -> None:
+    """A dot over its interval, the numbers above it, where they hit no edge."""
+    low, high = _error_bar(power)
+    level = float(in_dbm(power.power))
+    if high > low:
+        ends = [max(low, level - ROOM_BESIDE_DB), high]
+        axes.plot(ends, [place, place], color="black", linewidth=1.2, marker="|", markersize=6)
+    axes.plot(level, place, "o", markersize=8, color=colour, markerfacecolor=colour if power.resolved else "white",
+              markeredgewidth=1.8)
+    text = with_error(power) if high > low else f"{level:.1f} dBm"
+    axes.annotate(for_pictures(text), (0.5, place), xycoords=("axes fraction", "data"), xytext=(0, 9), ha="center",
+                  textcoords="offset points", fontsize=8)
+
+
+def _error_bar(power) -> tuple[float, float]:
+    """Ends in dBm of the 95 % interval."""
+    return tuple(float(in_dbm(end, SMALLEST_POWER)) for end in (power.low, power.high))

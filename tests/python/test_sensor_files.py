@@ -378,6 +378,10 @@ def test_scene_files_take_sensors_and_runs_write_raw_data(written, tmp_path, cap
     (tmp_path / "scene.toml").write_text(SCENE)
     radar = ep.load_scene(tmp_path / "scene.toml").radar
     assert radar == ep.load_radar(tmp_path / "sensor.cfg").replace(position=(0, 0, 1), yaw=np.pi / 2)
+    (tmp_path / "measured.toml").write_text(SCENE.replace("yaw_deg = 90\n\n[trace]",
+                                                          "transmit_power = 0.02\nnoise_figure_db = 11.0\n\n[trace]"))
+    measured = ep.load_scene(tmp_path / "measured.toml").radar
+    assert measured == radar.replace(yaw=0.0, transmit_power=0.02, noise_figure_db=11.0)
     from echopath.cli import main
 
     arguments = ["run", str(tmp_path / "scene.toml"), "--out", str(tmp_path / "out"), "--raw", str(tmp_path / "two.bin")]
@@ -389,7 +393,7 @@ def test_scene_files_take_sensors_and_runs_write_raw_data(written, tmp_path, cap
 
 
 @pytest.mark.parametrize("line, told", [
-    ('board = "IWR6843"', "radar: board: must be one of"), ("noise_figure_db = 3.0", "noise_figure_db: must not stand beside"),
+    ('board = "IWR6843"', "radar: board: must be one of"), ("empty_slots = 2", "empty_slots: must not stand beside"),
     ("receiver = {adc = {bits = 40}}", "radar.receiver.adc.bits: must be"), ("receiver = {adv = 3}", "unknown keyword 'adv'")])
 def test_bad_sensors_of_scene_files_are_refused(written, tmp_path, line, told):
     written()

@@ -105,12 +105,15 @@ def parse(path: Path) -> dict:
         raise ValueError(f"{path}: {error}") from None
 
 
+_BESIDE_SENSOR = ("transmit_power", "noise_figure_db", "receiver")  # of the table, instead of those of the sensor
+
+
 def _build_radar(table: RadarTable, folder: Path, trajectories: Trajectories, key: str = "radar"):
     if table.sensor is not None:
         with blamed(key):
             radar = load_radar(folder / table.sensor, table.board, subframe=table.subframe)
-            radar = radar if table.receiver is None else radar.replace(receiver=table.receiver)
-            return radar.replace(**_place(table, trajectories, key))
+            given = {name: getattr(table, name) for name in _BESIDE_SENSOR if name in table.model_fields_set}
+            return radar.replace(**given, **_place(table, trajectories, key))
     with blamed(f"{key}.waveform"):
         waveform = _core.ChirpSequence(**table.waveform.model_dump())
     antennas = {}

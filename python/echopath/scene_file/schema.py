@@ -226,8 +226,8 @@ class RadarTable(Table):
     receivers: list[AntennaTable] | None = Field(None, min_length=1, description="at least one")
     pattern: PatternTable | None = Field(None, description="of antennas without their own; none: isotropic")
     polarization: Vector3 = Field([0.0, 0.0, 1.0], description="of antennas without their own")
-    transmit_power: Positive = Field(0.01, description="W, per transmitter")
-    noise_figure_db: Number = Field(12.0, description="dB")
+    transmit_power: Positive = Field(0.01, description="W, per transmitter; of a sensor that of its board")
+    noise_figure_db: Number = Field(12.0, description="dB; of a sensor that of its board")
     multiplexing: Literal["tdm", "bpm", "ddm", "cdm"] = Field("tdm", description="how transmitters share the chirps")
     empty_slots: int = Field(1, ge=1, description="of \"ddm\": shares of the Doppler axis without a transmitter")
     code_phases: list[list[Number]] | None = Field(None, description="rad, of \"cdm\", a row for each transmitter")
@@ -250,8 +250,7 @@ class RadarTable(Table):
                 if getattr(self, key) is None:
                     raise broken_rule(key, "must be given, or a sensor", None)
             return self
-        beside = {*own, "pattern", "polarization", "transmit_power", "noise_figure_db", "multiplexing", "empty_slots",
-                  "code_phases"}
+        beside = {*own, "pattern", "polarization", "multiplexing", "empty_slots", "code_phases"}
         for key in beside & self.model_fields_set:
             raise broken_rule(key, "must not stand beside sensor", key)
         return self

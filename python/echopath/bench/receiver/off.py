@@ -18,7 +18,7 @@ from ..suite import describe_judged, judged_row
 from . import street
 
 LIMIT, QUICK_LIMIT = 1.01, 1.2  # of the time without the receiver: a few turns know it less well
-TURNS, QUICK_TURNS = 41, 3
+TURNS, QUICK_TURNS = 21, 3
 START, SEED = 0.1, 1
 CASES = {"no receiver": None, "a Receiver without faults": ep.Receiver()}
 
@@ -35,7 +35,7 @@ def rows(*, quick: bool) -> list[dict]:
 
 def describe(rows: list[dict]) -> list[str]:
     """Lines for people."""
-    return describe_judged(rows, "switches that are off", width=46, measured="10.5g")
+    return describe_judged(rows, "switches that are off", width=60, measured="10.5g")
 
 
 def _rows_of(name: str, quick: bool) -> list[dict]:

@@ -110,17 +110,44 @@ def test_averaging_over_a_sign_code_lowers_the_noise_by_its_length():
     assert 10.0 * np.log10(np.mean(np.abs(one) ** 2) / np.mean(np.abs(noise) ** 2)) == pytest.approx(6.02, abs=0.2)
 
 
-def test_frames_of_codes_have_labels_and_detections_of_their_objects():
-    scene = ep.Scene()
-    scene.add(ep.actors.sphere(0.2), name="near", material=ep.Material.metal(), position=(4, 0.5, 0), smooth=True)
-    scene.add(ep.actors.sphere(0.2), name="far", material=ep.Material.metal(), position=(7, -1.0, 0), smooth=True,
-              motion=ep.LinearMotion(velocity=(9.0, 0, 0)))
-    radar = array_radar("ddm", num_chirps=64, transmit_power=0.1)
-    frame = ep.simulate(scene, radar, num_rays=4000, max_bounces=1, labels=True, detections=True)
-    assert frame.coded_cube.shape == (1, NUM_RX, 64, 64)
-    assert set(frame.detections.object) >= {"near", "far"}
-    seen = {one.name: one for one in frame.labels["parts"].objects}
-    assert seen["far"].peak.velocity == pytest.approx(9.0, abs=0.7)
+RANDOM_PHASES = np.random.default_rng(1).uniform(-np.pi, np.pi, (NUM_TX, 64))
+WAYS_TO_SEND = {"tdm": {}, "bpm": dict(multiplexing="bpm"), "ddm": dict(multiplexing="ddm"),
+                "cdm": dict(multiplexing="cdm", code_phases=RANDOM_PHASES),
+                "staggered": dict(extra_idle=(0.0, 1e-6, 2e-6)), "hopping": dict(frequency_steps=(0.0, 1e6, 5e5)),
+                "wider": dict(multiplexing="ddm", bandwidth_steps=(0.0, 1e6))}
+
+
+@pytest.mark.parametrize("way", WAYS_TO_SEND)
+def test_frames_have_labels_detections_and_angles_however_transmitters_send(way):
+    scene, azimuths = ep.Scene(), {"near": 0.2, "far": -0.15}
+    for name, distance, speed in (("near", 4.0, 0.0), ("far", 7.0, 3.0)):
+        out = np.array([np.cos(azimuths[name]), np.sin(azimuths[name]), 0.0])
+        scene.add(ep.actors.sphere(0.2), name=name, material=ep.Material.metal(), position=tuple(distance * out), smooth=True,
+                  motion=ep.LinearMotion(velocity=tuple(speed * out)))
+    radar = array_radar(num_chirps=64, transmit_power=0.1, chirp_interval=40e-6, **WAYS_TO_SEND[way])
+    frame = ep.simulate(scene, radar, num_rays=2000, max_bounces=1, labels=True, detections=True, parts={"far": "T 'far' R"})
+    labels, found = frame.labels["parts"], frame.detections
+    seen = {one.name: one for one in labels.objects}
+    assert seen["near"].cells > 0 and seen["far"].peak.velocity == pytest.approx(3.0, abs=0.7)
+    for name, azimuth in azimuths.items():
+        strongest = max(np.flatnonzero(found.object == name), key=lambda index: found.power[index])
+        assert found.azimuth[strongest] == pytest.approx(azimuth, abs=0.02)
+        assert found.part[strongest] == ("far" if name == "far" else "other")
+    whole = sum(frame.parts["parts"].values())
+    assert np.max(np.abs(whole - frame.cube)) < ROUNDING * np.max(np.abs(whole))
+    again = ep.annotate_frame(frame)["parts"]
+    np.testing.assert_array_equal(again.mask, labels.mask)
+    assert [one.cells for one in again.objects] == [one.cells for one in labels.objects]
+
+
+def test_parts_of_chirps_that_differ_are_those_of_their_paths_alone():
+    radar = array_radar(num_chirps=6, frequency_steps=(0.0, 2e8), bandwidth_steps=(0.0, 0.0, 3e8))
+    paths = plates(1.0, -2.0, radar=radar)
+    parts = ep.decompose(paths, radar, {"near": "T 'ball0' R"})
+    alone = ep.synthesize(paths.select("T 'ball0' R"), radar)
+    whole = ep.synthesize(paths, radar)
+    assert np.max(np.abs(parts["near"] - alone)) < 1e-6 * np.max(np.abs(alone))  # the tolerance of each synthesis
+    assert np.max(np.abs(sum(parts.values()) - whole)) < 1e-6 * np.max(np.abs(whole))
 
 
 def test_staggered_slots_begin_later_by_the_idle_times_before_them():

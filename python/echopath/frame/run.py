@@ -50,7 +50,7 @@ class FrameRun:
     def __init__(self, scene, radar, trace: TraceSettings, signal: SignalSettings, parts, angles, labels, detections,
                  truth, guard: bool):
         self.scene, self.radar, self.trace, self.signal, self.guard = scene, radar, trace, signal, guard
-        _check_radar(radar, labels)
+        _check_radar(radar)
         self.partitions, self.angle_settings = as_partitions(parts), checked_settings(radar, angles)
         check_partitions(self.partitions, scene)
         require_names(self.partitions)
@@ -143,13 +143,10 @@ class FrameRun:
                 for partition, group in self.partitions.items()}
 
 
-def _check_radar(radar, labels) -> None:
+def _check_radar(radar) -> None:
     """Raises ValueError, before the long work, for what no frame of a radar can have."""
     if radar.receiver is not None:
         require_channels(radar.receiver, radar)
-    if labels is not None and labels is not False and has_steps(radar):
-        raise ValueError("labels: must be off where the chirps of a frame have steps of frequency or bandwidth: its map is "
-                         "that of equal chirps")
 
 
 def _cubes(paths, radar, partitions: dict, families, request, settings: dict, probe):
@@ -159,7 +156,7 @@ def _cubes(paths, radar, partitions: dict, families, request, settings: dict, pr
     """
     if not partitions and families is None:
         return {}, synthesize_slots(paths, radar, **settings, probe=probe), None
-    if families is None or settings["retrace"] != "never":
+    if families is None or settings["retrace"] != "never" or has_steps(radar):
         return _decomposed(paths, radar, partitions, families, request, settings | {"probe": probe})
     if not partitions:
         signals = FamilyPass(paths, radar, families, request, settings, adds_up=True, probe=probe)

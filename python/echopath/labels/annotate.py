@@ -18,6 +18,7 @@ from ..paths.visibility import appearing_in_frame, visibility_in_trace
 from ..signals import same_radar
 from ..signals.beside import require_names
 from ..signals.parts import selection_rule
+from ..transmit.signals import has_steps
 from .family_pass import FamilyPass, owners_of_views
 from .labels import Labels
 from .objects import family_cells, label_ghosts, label_objects, occluded_objects
@@ -86,7 +87,8 @@ def owners_and_powers(request: Request, paths, families, partitions: dict, setti
     partitions: {partition: {name: selection}}; settings: signal settings
     """
     radar, plane = request.radar, request.plane
-    if settings.get("retrace", "never") != "never":  # families of later records are not known before
+    # Families of later records are not known before, and those of chirps that differ have no common bounds.
+    if settings.get("retrace", "never") != "never" or has_steps(radar):
         views = {_FAMILIES: families, **partitions}
         num_parts = len(families) + sum(len(group) + 1 for group in partitions.values())
         powers = add_powers(decomposed(paths, radar, views, num_parts, plane, settings), plane)

@@ -9,7 +9,7 @@ from ..arguments.checks import Progress, an, checked, optional, refused, text
 from ..arguments.settings import Evaluate, Method, Replay, Retrace, SignalSettings
 from ..base.equality import is_same
 from ..paths.families import Families
-from ..transmit.signals import has_steps
+from ..transmit.signals import decompose_slots
 from .if_signal import RULES
 
 View = Mapping[str, Selection | str] | Families | Grouping
@@ -166,7 +166,7 @@ def decompose(paths: _core.Paths, radar: _core.Radar | None = None, parts: Views
     tolerance (relative rms), method, replay, evaluate, phase_tolerance (rad), retrace, keyframes, settings, probe, progress:
         as in `synthesize`
     Cubes are those of each transmitter alone, [tx, rx, chirp, sample], for transmitters that send at once, too: what
-    `demultiplex` aims at. Slots that differ in frequency or bandwidth are refused.
+    `demultiplex` aims at. Slots that differ in frequency or bandwidth cost one pass for each kind, and take no probe.
     Returns Parts, {name: cube} with "other" for the rest, or {Family: cube} with the background last, the cubes [tx, rx,
     chirp, sample] adding up to the whole; for several views {view: Parts}. Raises TypeError or ValueError naming the
     argument, also for bad names and selections.
@@ -174,12 +174,10 @@ def decompose(paths: _core.Paths, radar: _core.Radar | None = None, parts: Views
     parts = {} if parts is None else parts
     is_one_view = not _is_table_of_views(parts)
     views = {"": parts} if is_one_view else parts
-    if has_steps(paths.radar if radar is None else radar):
-        raise ValueError("radar: must have chirps without steps of frequency or bandwidth for parts of its signal")
-    cubes = _core.decompose(paths, radar, [_grouping(view) for view in views.values()], tolerance=tolerance, method=method,
+    radar = paths.radar if radar is None else radar
+    cubes = decompose_slots(paths, radar, [_grouping(view) for view in views.values()], tolerance=tolerance, method=method,
                             replay=replay, evaluate=evaluate, phase_tolerance=phase_tolerance, retrace=retrace,
                             keyframes=keyframes, progress=progress, probe=probe)
-    radar = paths.radar if radar is None else radar
     made = {name: Parts(of_view, view if isinstance(view, Mapping) else None, radar)
             for (name, view), of_view in zip(views.items(), cubes)}
     return made[""] if is_one_view else made

@@ -1,7 +1,7 @@
 """Signals of radars whose transmitters send at once, or whose chirps differ from slot to slot."""
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -22,22 +22,42 @@ def synthesize_slots(paths: _core.Paths, radar: _core.Radar, **settings) -> np.n
     """
     if not has_steps(radar):
         return _core.synthesize(paths, radar, **settings)
-    settings = {name: value for name, value in settings.items() if name != "probe"}
-    return _by_kind_of_chirp(radar, lambda one: _core.synthesize(paths, one, **settings))
+    return _by_kind_of_chirp(radar, lambda one: [{0: _core.synthesize(paths, one, **_without_probe(settings))}])[0][0]
 
 
-def _by_kind_of_chirp(radar: _core.Radar, cube_of: Callable[[_core.Radar], np.ndarray]) -> np.ndarray:
+def decompose_slots(paths: _core.Paths, radar: _core.Radar, groupings: list[_core.Grouping], **settings) -> list[dict]:
+    """Likewise the signals of parts of the paths, {part: cube} of each grouping; settings: keywords of `_core.decompose`."""
+    if not has_steps(radar):
+        return _core.decompose(paths, radar, groupings, **settings)
+    return _by_kind_of_chirp(radar, lambda one: _core.decompose(paths, one, groupings, **_without_probe(settings)))
+
+
+def _without_probe(settings: dict) -> dict:
+    return {name: value for name, value in settings.items() if name != "probe"}
+
+
+def _by_kind_of_chirp(radar: _core.Radar, cubes_of: Callable[[_core.Radar], list[dict]]) -> list[dict]:
+    """Tables of cubes, of which each chirp is that of a radar all of whose chirps are of its kind."""
+    made = []
+    for plain, tx, chirp in _kinds_of_chirp(radar):
+        cubes = cubes_of(plain)
+        made = made or [{name: np.empty_like(cube) for name, cube in table.items()} for table in cubes]
+        for whole, table in zip(made, cubes):
+            for name, cube in table.items():
+                whole[name][tx, :, chirp] = cube[tx, :, chirp]
+    return made
+
+
+def _kinds_of_chirp(radar: _core.Radar) -> Iterator[tuple]:
+    """(radar without steps, indices of the transmitters and chirps that are of its kind) of each kind of chirp."""
     waveform, num_tx = radar.waveform, len(radar.transmitters)
     chirps = np.arange(waveform.num_chirps) * radar.num_slots
     slots = chirps + (0 if is_coded(radar) else np.arange(num_tx)[:, None]) + np.zeros((num_tx, 1), int)
     kinds = np.stack([_repeated(steps, slots) for steps in (waveform.frequency_steps, waveform.bandwidth_steps)], axis=-1)
-    cube = np.empty((num_tx, len(radar.receivers), waveform.num_chirps, waveform.num_samples), np.complex128)
     for kind in np.unique(kinds.reshape(-1, 2), axis=0):
         plain = waveform.replace(start_frequency=waveform.start_frequency + kind[0],
                                  bandwidth=waveform.bandwidth + kind[1], frequency_steps=(), bandwidth_steps=())
-        tx, chirp = np.nonzero(np.all(kinds == kind, axis=-1))
-        cube[tx, :, chirp] = cube_of(radar.replace(waveform=plain))[tx, :, chirp]
-    return cube
+        yield (radar.replace(waveform=plain), *np.nonzero(np.all(kinds == kind, axis=-1)))
 
 
 def _repeated(steps, slots) -> np.ndarray:

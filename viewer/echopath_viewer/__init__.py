@@ -6,9 +6,12 @@ model: what is shown, in NumPy; scene_builder: fills any pyvista.Plotter; window
 """
 from __future__ import annotations
 
+import importlib
 from contextlib import contextmanager
 
 PACKAGES = "'PySide6-Essentials<6.12' pyvista pyvistaqt vtk"  # the extra "viewer" of pyproject.toml
+LIBRARIES = ("libgl1 libegl1 libdbus-1-3 libfontconfig1 libglib2.0-0 libxkbcommon-x11-0 libxcb-cursor0 libxcb-icccm4 "
+             "libxcb-keysyms1 libxcb-shape0")  # Debian's packages of what Qt's window is linked with
 _EXTRA = ("pyvista", "pyvistaqt", "PySide6", "qtpy", "vtk", "vtkmodules")
 
 
@@ -57,9 +60,24 @@ def blocks_of(scene, time: float):
 @contextmanager
 def _told_what_to_install():
     try:
-        yield
+        try:
+            yield
+        except ImportError as error:
+            if type(error).__name__ == "QtBindingsNotFoundError":  # of qtpy, which does not say why
+                _import_qt()
+            raise
     except ModuleNotFoundError as error:
         if (error.name or "").partition(".")[0] not in _EXTRA:
             raise
         text = f"the viewer needs {error.name}, which is not installed: pip install {PACKAGES}"
         raise ModuleNotFoundError(text, name=error.name) from None
+
+
+def _import_qt() -> None:
+    """Raises ModuleNotFoundError where PySide6 is not installed, and OSError where the system lacks a library of it."""
+    try:
+        importlib.import_module("PySide6.QtWidgets")
+    except ModuleNotFoundError:
+        raise
+    except ImportError as error:
+        raise OSError(f"the viewer's window needs a library of the system: {error} (Debian: apt install {LIBRARIES})") from None

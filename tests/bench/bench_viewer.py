@@ -37,7 +37,7 @@ MAX_PREVIEW = 0.1  # s, promised for scene, rays and map of a dragged object
 # s of processor time from a change to its picture, promised for 3 million paths drawn by software.
 MAX_TO_PICTURE = {"filter": 0.150, "colour": 0.060, "cell": 0.100, "step in time": 0.100, "what makes": 0.100}
 START = """
-import sys
+import os, sys
 from echopath_viewer.window import view
 from echopath_viewer.window.qt import QtWidgets
 window = view(sys.argv[1], block=False)
@@ -47,6 +47,7 @@ window.view3d.repaint()
 if len(sys.argv) > 2:
     window.settle()
     window.view3d.repaint()
+os._exit(0)
 """
 
 

@@ -18,6 +18,10 @@ def large_file(frame, tmp_path, monkeypatch):
     return tmp_path / "frame.h5"
 
 
+def wait_until_read(qtbot, window) -> None:
+    qtbot.waitUntil(lambda: not window.is_to_load and not window.loading.is_running, timeout=4 * PATIENCE_MS)
+
+
 def test_a_preview_has_scene_and_map_of_the_file(frame, large_file):
     early = preview_of(large_file)
     assert np.array_equal(early.parts.whole.spectrum.values, frame.spectrum.values)
@@ -30,7 +34,8 @@ def test_the_rays_come_later(qtbot, shared_window, frame, large_file):
     window = shared_window
     assert window.open_file(large_file)
     assert window.session.paths.num_paths == 0 and window.loading_bar.isVisible()
-    qtbot.waitUntil(lambda: not window.loading.is_running, timeout=4 * PATIENCE_MS)
+    assert window.is_to_load and not window.loading.is_running  # the picture comes first
+    wait_until_read(qtbot, window)
     assert window.session.paths.num_paths == frame.paths.num_paths and not window.loading_bar.isVisible()
     assert window.view3d.builder.session is window.session and len(window.session.parts.partitions) == 2
 
@@ -39,6 +44,6 @@ def test_what_is_damaged_behind_the_map_is_told(qtbot, shared_window, large_file
     with h5py.File(large_file, "a") as file:
         del file["partitions"]
     shared_window.open_file(large_file)
-    qtbot.waitUntil(lambda: not shared_window.loading.is_running, timeout=4 * PATIENCE_MS)
+    wait_until_read(qtbot, shared_window)
     assert "frame.h5" in shared_window.banner.text() and not shared_window.loading_bar.isVisible()
     shared_window.show_message("")

@@ -75,6 +75,10 @@ def test_radar_material_and_turns_follow(qtbot, live_window):
     panel.material_box.activated.emit(panel.material_box.currentIndex())
     settled(qtbot, window)
     assert window.session.parts.whole.level(0, 0).max() > level + 3.0
+    window.live.set_material("wall", ep.Material(permittivity=5.0, scattering=0.5))
+    panel.rough_slider.setValue(10)  # takes the place of the share that it scattered
+    settled(qtbot, window)
+    assert window.live.live.scene["wall"].meshes[0].material.roughness_height == pytest.approx(5e-4)
     panel.yaw_box.setValue(5.0)
     panel.choose("radar")
     panel.place_boxes[1].setValue(0.5)

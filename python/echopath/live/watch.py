@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from .live import Live
 
 FIRST_PREVIEW_RAYS, FEWEST_PREVIEW_RAYS = 4096, 512
+QUIET = 0.1         # s without a change after a preview, before the full view begins: what is dragged would end it at once
 LONGEST_WAIT = 0.1  # s, until a thread that waits for changes looks whether it is to end
 _QUICK_SHARE = 0.25  # of the budget; a preview of all rays that takes less gets twice as many
 
@@ -25,8 +26,8 @@ class Watch:
     """Shows the views of a Live from a thread of its own: `with live.watch(show) as watch: live.change(...); watch.wait()`.
 
     After a change comes a preview with as many rays as the budget allows, unless the last full view took no longer than
-    that, and then the full view. A change that comes meanwhile ends a full view, so that the latest change is shown first;
-    changes in between may not be shown at all.
+    that, and then, once nothing has changed for 0.1 s, the full view. A change that comes meanwhile ends a full view, so that
+    the latest change is shown first; changes in between may not be shown at all.
     What a view or `show` raises ends the watch and is raised by `wait` and `stop`. Made by `Live.watch`.
     """
 
@@ -85,8 +86,8 @@ class Watch:
             pass
 
     def _show_change(self) -> None:
-        if self._full_seconds > self._budget:
-            self._show_preview()
+        if self._full_seconds > self._budget and self._changes.wait_for_other(self._show_preview(), QUIET):
+            return
         number = self._changes.number
         view = self._live.update(progress=lambda stage, fraction: self._go_on(number))
         self._full_seconds = view.seconds
@@ -95,13 +96,15 @@ class Watch:
             self._shown = view.number
             self._shown_one.notify_all()
 
-    def _show_preview(self) -> None:
+    def _show_preview(self) -> int:
+        """Returns the number of the change that it shows."""
         view = self._live.preview(num_rays=self._preview_rays, progress=lambda stage, fraction: self._go_on(None))
         self._show(view)
         if view.seconds > self._budget:
             self._preview_rays = max(self._preview_rays // 2, FEWEST_PREVIEW_RAYS)
         elif view.num_rays_shot == view.num_rays and view.seconds < _QUICK_SHARE * self._budget:
             self._preview_rays = min(2 * self._preview_rays, self._live.num_rays)
+        return view.number
 
     def _go_on(self, number: int | None) -> None:
         if self._stopping or (number is not None and number != self._changes.number):

@@ -35,7 +35,7 @@ class CellIndex:
         self._num_paths = len(range_index)
         inside = np.flatnonzero(np.asarray(range_index) >= 0)
         cell = np.asarray(velocity_index, np.int64)[inside] * num_ranges + np.asarray(range_index)[inside]
-        order = np.argsort(cell, kind="stable")
+        order = np.argsort(cell.astype(np.uint32))
         self._cell, self._path = cell[order], inside[order]
 
     def mask_of(self, box: CellBox):

@@ -4,6 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 import echopath as ep
+from echopath import _core
 
 from .inputs import ViewInput, whole_part
 from .layers import Known
@@ -51,7 +52,8 @@ def with_values(spectrum, values):
 
 def no_paths(scene, radar, start_time: float, seed: int):
     """Paths of a frame without one."""
-    traced = ep.trace(scene, radar, num_rays=1, max_bounces=1, start_time=start_time, seed=seed)
+    # The core's own: that one ray is too few need not be said.
+    traced = _core.trace(scene, radar, num_rays=1, max_bounces=1, start_time=start_time, seed=seed)
     return traced.select(np.zeros(traced.num_paths, bool))
 
 

@@ -3,12 +3,12 @@ from __future__ import annotations
 
 import dataclasses
 import glob
+import os
 import re
 from collections.abc import Callable
 from pathlib import Path
 
 import echopath as ep
-from echopath.dataset.folder import scene_folder
 from echopath.frame_file.container import our_file
 from echopath.frame_file.h5 import read_attribute, read_group
 from echopath.frame_file.maps import load_maps
@@ -77,7 +77,7 @@ def time_line_of(what) -> TimeLine | None:
     """
     if isinstance(what, ep.StoredSequence):
         return _checked(_of_stored(what))
-    if isinstance(what, ep.dataset.Dataset):
+    if not isinstance(what, (str, os.PathLike, list, tuple)) and isinstance(what, ep.dataset.Dataset):  # which is slow to import
         return _checked(_of_dataset(what.folder, set(what.numbers)))
     if isinstance(what, (list, tuple)):
         files = [Path(name) for name in what]
@@ -128,6 +128,8 @@ def _of_dataset(folder: Path, numbers) -> TimeLine:
         return [_moment_in(dataset, folder, number, stored) for number in shown]
 
     def _moment_in(dataset, folder, number, stored):
+        from echopath.dataset.folder import scene_folder  # late: all of `echopath.dataset` comes with it
+
         scene, place = divmod(number, per_scene)
         name = f"scene {scene} ({dataset.template.split_of(scene)}), frame {place}"
         return Moment(name, float(stored[scene].times[place]), frame_path(scene_folder(folder, scene), place), stored[scene])

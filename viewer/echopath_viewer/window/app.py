@@ -15,7 +15,7 @@ from ..model.view_state import load_state
 from .ctrl_c import closing_on_ctrl_c
 from .exporting import export
 from .main_window import MainWindow
-from .qt import QtWidgets
+from .qt import Qt, QtWidgets
 
 
 def view(*what, parts=None, block=True, state=None, picture=None, scale=1, **settings):
@@ -67,7 +67,8 @@ def _load_rest(window: MainWindow, path, state) -> None:
     """The rays of a file whose map is on display, and then the saved view of them."""
     window.load_rest(path)
     if state is not None:
-        window.loading.done.connect(lambda _: window.load_view(state))
+        once = Qt.ConnectionType.SingleShotConnection  # what is read anew later keeps the view of then
+        window.loading.done.connect(lambda _: window.load_view(state), once)
 
 
 def _save_picture(window: MainWindow, path, scale: int) -> None:

@@ -3,12 +3,24 @@ from __future__ import annotations
 
 from .qt import QtWidgets
 
+BAR_STEPS = 1000
 
-def thin_bar() -> QtWidgets.QProgressBar:
-    """That something is under way, without a number."""
-    bar = QtWidgets.QProgressBar(textVisible=False, minimum=0, maximum=0, visible=False)
-    bar.setFixedHeight(4)
-    return bar
+
+class ThinBar(QtWidgets.QProgressBar):
+    """How far something is. One that only moves would have software paint the whole window at each step."""
+
+    def __init__(self):
+        super().__init__(textVisible=False, minimum=0, maximum=BAR_STEPS, visible=False)
+        self.setFixedHeight(4)
+
+    def begin(self) -> None:
+        """From the left, seen from now on."""
+        self.setValue(0)
+        self.show()
+
+    def advance(self, share: float) -> None:
+        """share: of the work that is done, 0 to 1."""
+        self.setValue(int(BAR_STEPS * share))
 
 
 class Banner(QtWidgets.QLabel):

@@ -7,6 +7,7 @@ from echopath.signals.measures import SMALLEST_POWER, for_pictures, in_dbm
 
 from ..model.attribution import Attribution
 from .background_work import BackgroundWork
+from .banner import ThinBar
 from .phasors import COLOURS, MAX_ARROWS, PhasorDiagram
 from .qt import Qt, QtGui, QtWidgets
 
@@ -30,14 +31,13 @@ class ContributionsPanel(QtWidgets.QWidget):
         for label in (self.title, self.without):
             label.setSizePolicy(QtWidgets.QSizePolicy.Policy.Ignored, QtWidgets.QSizePolicy.Policy.Fixed)
             label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-        self.bar = QtWidgets.QProgressBar(textVisible=False, maximum=1000, visible=False)
-        self.bar.setFixedHeight(4)
+        self.bar = ThinBar()
         self.table, self.phasors = QtWidgets.QTableWidget(0, len(COLUMNS)), PhasorDiagram()
         self.work = BackgroundWork(self)
         self._arrange()
         self.work.done.connect(self._take)
         self.work.failed.connect(self._fail)
-        self.work.advanced.connect(lambda share: self.bar.setValue(int(1000 * share)))
+        self.work.advanced.connect(self.bar.advance)
         self.table.itemSelectionChanged.connect(self._row_chosen)
 
     def _arrange(self) -> None:
@@ -79,8 +79,7 @@ class ContributionsPanel(QtWidgets.QWidget):
             self._show_nothing(session.note or "Pause the frames to see what makes the cell.")
         elif not self.work.is_running:
             self._show_nothing("The signals of all families of paths are made, once ...")
-            self.bar.setValue(0)
-            self.bar.show()
+            self.bar.begin()
             signals = session.signals
             self.work.start(lambda progress: Attribution(signals, progress=progress))
 

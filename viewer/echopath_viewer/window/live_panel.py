@@ -155,7 +155,8 @@ class LivePanel(QtWidgets.QWidget):
         name = self.object_box.currentText()
         material = next((mesh.material for mesh in self.control.live.scene[name].meshes), None)
         if material is not None:
-            self._change(lambda name: self.control.set_material(name, material.replace(roughness_height=height)))
+            rough = material.replace(scattering=None, roughness_height=height)  # either of them says how rough it is
+            self._change(lambda name: self.control.set_material(name, rough))
 
     def _tell(self, view) -> None:
         words = "preview, full quality follows" if view.is_preview else "full quality"

@@ -7,7 +7,7 @@ from ..model import Session
 from ..model.history import History
 from ..model.view_state import state_of
 from .background_work import BackgroundWork
-from .banner import Banner, thin_bar
+from .banner import Banner, ThinBar
 from .busy import run_with_progress
 from .choices import Choices
 from .contributions import ContributionsPanel
@@ -56,11 +56,11 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         self.live = LiveControl(lambda: state_of(self.session), self)
         self.live_panel = LivePanel(self.live)
         self.frame_bar.hide()
-        self.banner, self.empty_page, self.loading_bar = Banner(), EmptyPage(), thin_bar()
+        self.banner, self.empty_page, self.loading_bar = Banner(), EmptyPage(), ThinBar()
         self.loading, self.file_watch = BackgroundWork(self), FileWatch(self)
         self._listing = QtCore.QTimer(self, singleShot=True, interval=0)
         self._pause = QtCore.QTimer(self, singleShot=True, interval=SIGNAL_PAUSE_MS)
-        self._stale, self._signal_of = set(), None
+        self._stale, self._signal_of, self.is_to_load = set(), None, False
         self.add_menus()
         self.arrange()
         self._connect()
@@ -76,6 +76,8 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         line: TimeLine whose first frame it is, None: it stands alone
         """
         self.loading.stop()
+        self.view3d.when_drawn(None)
+        self.is_to_load = False
         self.file_watch.watch(None)
         self._show_session(Session(view_input), line)
 
@@ -128,8 +130,9 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         self.session = session
         for part in (self.tree, self.filter_box, self.contributions):
             part.session = session
-        for part in (self.view3d, self.map_area, self.time_bar):
-            part.follow_session(session)
+        self.view3d.follow_session(session, is_passing=True)
+        self.map_area.follow_session(session)
+        self.time_bar.follow_session(session)
         self.table.show_session(session)
         session.listen(self._changed)
 
@@ -205,7 +208,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         """Returns when lists, signals and the scene show what the session shows now."""
         QtWidgets.QApplication.processEvents()
         while (self._listing.isActive() or self._pause.isActive() or self.view3d.is_behind()
-               or self.contributions.work.is_running or self.time_line.is_busy or self.loading.is_running):
+               or self.contributions.work.is_running or self.time_line.is_busy or self.is_to_load or self.loading.is_running):
             QtWidgets.QApplication.processEvents(QtCore.QEventLoop.ProcessEventsFlag.WaitForMoreEvents)
         # Rows of tabs that docks no longer have are there until then.
         QtWidgets.QApplication.sendPostedEvents(None, QtCore.QEvent.Type.DeferredDelete)
@@ -223,6 +226,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         self.view3d.legend_box.row_clicked.connect(self._isolate)
         self.table.ray_chosen.connect(lambda ray: self.session.select_ray(ray))
         self.file_watch.changed.connect(lambda _: self.reload())
+        self.loading.advanced.connect(self.loading_bar.advance)
         self.loading.done.connect(self._take_rest)
         self.loading.failed.connect(self._end_loading)
         self.time_line.read.connect(self._follow)

@@ -3,8 +3,8 @@ from __future__ import annotations
 
 import echopath as ep
 
-from ..model import Session, from_file, from_frame
-from ..model.carried import make_ready, session_like
+from ..model import from_file, from_frame
+from ..model.carried import read_session
 from ..model.preview import preview_of
 from ..model.time_line import time_line_of
 from ..model.view_state import state_of
@@ -35,16 +35,21 @@ class Opening:
         return True
 
     def load_rest(self, path) -> None:
-        """Reads all of a file of which a preview is shown, in a thread."""
-        self.loading_bar.show()
-        self.loading.start(lambda progress: make_ready(Session(from_file(path))))
+        """Reads all of a file of which a preview is shown, in a thread, once that is drawn."""
+        self.loading_bar.begin()
+        self.is_to_load = True
+        self.view3d.when_drawn(lambda: self._load(lambda progress: read_session(path, None, progress)))
+
+    def _load(self, work) -> None:
+        self.is_to_load = False
+        self.loading_bar.begin()
+        self.loading.start(work)
 
     def reload(self) -> None:
         """Reads the file on display anew; what is shown stays, as far as it fits."""
         path, state = self.file_watch.path, state_of(self.session)
         if path is not None:
-            self.loading_bar.show()
-            self.loading.start(lambda progress: make_ready(session_like(state, from_file(path))))
+            self._load(lambda progress: read_session(path, state, progress))
 
     def _end_loading(self, text: str = "") -> None:
         self.loading_bar.hide()

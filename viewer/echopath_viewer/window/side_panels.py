@@ -8,6 +8,7 @@ import numpy as np
 from ..model import CellBox
 from ..model.angle_maps import beat_signal, range_azimuth_map, range_elevation_map, spectrogram_map
 from .background_work import BackgroundWork
+from .banner import ThinBar
 from .curve import CurveView
 from .map_area import title_of
 from .map_panel import RANGE_LABEL, VELOCITY_LABEL, MapPanel, nearest_index, step_of
@@ -48,13 +49,12 @@ class SidePanel(SeenPanel):
         super().__init__(parent)
         self.map, self._made_of = None, None
         self.panel, self.note = MapPanel(x_label=self.x_label, y_label=self.y_label), QtWidgets.QLabel(wordWrap=True)
-        self.bar = QtWidgets.QProgressBar(textVisible=False, maximum=0, visible=False)
-        self.bar.setFixedHeight(4)
-        self.work = BackgroundWork(self)
+        self.bar, self.work = ThinBar(), BackgroundWork(self)
         column = QtWidgets.QVBoxLayout(self)
         column.setContentsMargins(2, 2, 2, 2)
         for widget, stretch in ((self.bar, 0), (self.panel, 1), (self.note, 0)):
             column.addWidget(widget, stretch)
+        self.work.advanced.connect(self.bar.advance)
         self.work.done.connect(self._take)
         self.work.failed.connect(self._fail)
         self.panel.cell_clicked.connect(self.pick)
@@ -102,7 +102,7 @@ class SidePanel(SeenPanel):
             self.show_marks()
             return
         self._made_of = made_of
-        self.bar.show()
+        self.bar.begin()
         self.work.start(self.work_of(self.session))
 
     def _take(self, found) -> None:

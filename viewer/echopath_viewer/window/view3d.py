@@ -4,6 +4,7 @@ from __future__ import annotations
 import time
 
 import numpy as np
+import pyvista as pv
 from pyvistaqt import QtInteractor
 from vtkmodules.vtkRenderingCore import vtkCellPicker
 
@@ -14,6 +15,7 @@ from .legend_box import LegendBox
 from .pace import Pace
 from .qt import Qt, QtCore, Signal
 
+GL_COLOR_BUFFER_BIT = 0x4000
 CLICK_REACH = 5.0  # pixels: a click moves no farther, and a ray that close is meant
 
 
@@ -31,6 +33,7 @@ class View3D(QtInteractor):
         # Multisampling takes most of the time where there is no graphics card.
         self._is_behind = self._is_fresh = self._is_moving = False
         super().__init__(parent, auto_update=False, multi_samples=0)
+        self._afterwards = None
         self._press, self._drag, self.legend_box, self._pace = None, None, LegendBox(self), Pace()
         self.compass = Compass(self)
         self.setAcceptDrops(False)  # what is dropped here is the window's: pyvistaqt would read it with VTK
@@ -48,9 +51,11 @@ class View3D(QtInteractor):
         self._is_fresh = True
         QtCore.QTimer.singleShot(0, self._first_look)
 
-    def follow_session(self, session) -> None:
-        """Another frame of the same time line: the camera stays where it is."""
+    def follow_session(self, session, is_passing: bool = False) -> None:
+        """Another frame of the same time line: the camera stays where it is. is_passing: the next one comes at once, and there
+        are only as many rays as while the camera moves."""
         self.builder.show_session(session)
+        self._set_moving(is_passing)
         self.render_soon()
 
     def background(self) -> str:
@@ -93,8 +98,26 @@ class View3D(QtInteractor):
         """Whether changes are still to be drawn."""
         return self._is_behind and self.isVisible()
 
+    def when_drawn(self, work) -> None:
+        """Calls `work` after the next picture of what is shown, once; None: not any more."""
+        self._afterwards = work
+
     def paintGL(self):
-        """Draws, once; changes that are made from now on ask for another picture."""
+        """Draws, once; changes that are made from now on ask for another picture. Nothing before the first look."""
+        if self._is_fresh:
+            self._clear()
+            return
+        self._draw()
+        work, self._afterwards = self._afterwards, None
+        if work is not None:
+            QtCore.QTimer.singleShot(0, work)
+
+    def _clear(self) -> None:
+        functions = self.context().functions()
+        functions.glClearColor(*pv.Color(self.background()).float_rgb, 1.0)
+        functions.glClear(GL_COLOR_BUFFER_BIT)
+
+    def _draw(self) -> None:
         self._is_behind, begin = False, time.perf_counter()
         interactor = self.iren.interactor
         interactor.EnableRenderOn()

@@ -12,10 +12,8 @@ from .. import _core
 from ..arguments.checks import an, checked, optional, real
 from ..arguments.settings import Replay, SignalSettings
 from ..transmit import code_of, radar_of_noise
+from .interference_crossing import FINE, Chirps, add_crossing
 from .interference_ways import Ways
-
-_FINE = 4       # times the sampling rate, at which crossings are made before the filter
-_MARGIN = 1.9   # of the sampling rate: differences of frequency beyond which nothing of a crossing is left in the band
 
 
 @checked(other=an(_core.Radar), paths=optional(an(_core.Paths)), start_time=real(unit="s"), offset=real(unit="s"),
@@ -48,12 +46,12 @@ def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | No
     cube = np.zeros((len(begins), num_rx, waveform.num_samples), complex)
     for place, begin in enumerate(begins):
         delay, amplitude = ways.of(place)
-        fine = np.zeros((num_rx, _FINE * waveform.num_samples), complex)
+        fine = np.zeros((num_rx, FINE * waveform.num_samples), complex)
         for slot in _slots_under_way(other, begin - offset, waveform.chirp_duration):
-            pair = _Chirps(waveform, *_chirp(waveform, place), *_chirp(other.waveform, slot.index), other.waveform.chirp_duration,
+            pair = Chirps(waveform, *_chirp(waveform, place), *_chirp(other.waveform, slot.index), other.waveform.chirp_duration,
                            begin - slot.begin - offset)
             for rx, (tx, code) in product_of(range(num_rx), slot.transmitters):
-                _add_crossing(fine[rx], pair, delay[tx, rx], np.conj(code) * amplitude[tx, rx])
+                add_crossing(fine[rx], pair, delay[tx, rx], np.conj(code) * amplitude[tx, rx])
         cube[place] = _filtered(fine, waveform)
     # [slot, rx, sample] -> [tx, rx, chirp, sample]
     cube = np.moveaxis(cube.reshape(waveform.num_chirps, slots.num_slots, num_rx, -1), (1, 2), (0, 1))
@@ -80,21 +78,6 @@ def _slots_under_way(other, begin: float, duration: float) -> Iterator[_Slot]:
             yield _Slot(int(slot), frame * period + starts[slot], [(int(tx), code[tx, slot]) for tx in senders])
 
 
-class _Chirps(NamedTuple):
-    """A chirp of this radar and one of the other: frequencies of their first samples in Hz, slopes in Hz/s.
-
-    waveform: of this radar; sent_duration: s; late: s, by which the chirp of this radar begins later
-    """
-
-    waveform: _core.ChirpSequence
-    start: float
-    slope: float
-    sent_start: float
-    sent_slope: float
-    sent_duration: float
-    late: float
-
-
 def _chirp(waveform, slot: int) -> tuple:
     """(Hz, Hz/s) of the chirp of a slot, with its steps."""
     step, wider = (steps[slot % len(steps)] if steps else 0.0
@@ -103,44 +86,10 @@ def _chirp(waveform, slot: int) -> tuple:
     return waveform.start_frequency + step, slope
 
 
-def _add_crossing(fine, chirps: _Chirps, delay, amplitude) -> None:
-    """Adds one chirp of the other radar, over all ways, to one chirp of this one: fine [_FINE x sample] in sqrt(W).
-
-    delay: [3, P] s; amplitude: [P] sqrt(W)
-    """
-    waveform, start, slope, sent_start, sent_slope, _, late = chirps
-    rate = _FINE * waveform.sampling_rate
-    first, last = _heard(chirps, delay[1], len(fine))
-    for way in np.flatnonzero((amplitude != 0.0) & (last > first)):
-        time = np.arange(first[way], last[way]) / rate
-        share = time * waveform.sampling_rate / max(waveform.num_samples - 1, 1)
-        # The parabola through the delays at the first sample, in the middle and at the last one.
-        curve = (1.0 - share) * (1.0 - 2.0 * share), 4.0 * share * (1.0 - share), share * (2.0 * share - 1.0)
-        sent_time = late + time - sum(weight * one for weight, one in zip(curve, delay[:, way]))
-        cycles = (start - sent_start) * time + sent_start * (time - sent_time) + 0.5 * slope * time ** 2 \
-            - 0.5 * sent_slope * sent_time ** 2
-        fine[first[way]:last[way]] += np.conj(amplitude[way]) * np.exp(2j * np.pi * np.mod(cycles, 1.0))
-
-
-def _heard(chirps: _Chirps, delay, count: int) -> tuple:
-    """First and last + 1 of the samples [count] in which each way of a delay [P] in s is heard: while the other radar sends, and
-    the difference of both frequencies is no more than the margin."""
-    waveform, start, slope, sent_start, sent_slope, sent_duration, late = chirps
-    begin, end = delay - late, delay - late + sent_duration
-    margin, difference, rate = _MARGIN * waveform.sampling_rate, start - sent_start + sent_slope * begin, slope - sent_slope
-    if rate == 0.0:
-        end = np.where(np.abs(difference) < margin, end, begin)
-    else:
-        ends = np.sort([(-margin - difference) / rate, (margin - difference) / rate], axis=0)
-        begin, end = np.maximum(begin, ends[0]), np.minimum(end, ends[1])
-    samples = _FINE * waveform.sampling_rate
-    return tuple(np.clip(np.ceil(edge * samples), 0, count).astype(int) for edge in (begin, end))
-
-
 def _filtered(fine, waveform):
-    """[rx, sample] of signals [rx, _FINE x sample]: what the filter before the converter leaves of them."""
+    """[rx, sample] of signals [rx, FINE x sample]: what the filter before the converter leaves of them."""
     if not fine.any():
-        return fine[:, ::_FINE]
+        return fine[:, ::FINE]
     spectrum = np.fft.fft(fine)
     spectrum[:, waveform.num_samples // 2 if waveform.real else waveform.num_samples:] = 0.0
-    return np.fft.ifft(spectrum)[:, ::_FINE]
+    return np.fft.ifft(spectrum)[:, ::FINE]

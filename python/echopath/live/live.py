@@ -31,7 +31,8 @@ class Live:
     differ are taken from the signal and added to it. A change of the waveform, the window or the antennas' patterns shoots
     no ray that sees the scene as before. Where a change concerns all rays (the radar's place, a flagged mirror, an object
     that comes, goes, hides or appears, because objects share the rays), all are shot again. Either way the view is that of a
-    new Live of the changed scene, to 1e-12 of the largest sample.
+    new Live of the changed scene, to 1e-12 of the largest sample. What no path makes is not in it: noise, rain, other radars
+    and faults of the receiver, which `simulate` has.
     scene: is copied; radar: that looks at it, which may be set to another one at any time
     num_rays: 1 to 1e10, shared evenly among objects, their images and the field of view, half of them at least to what moves:
         the shares do not go by errors as those of `trace` do, because these change with every change of the scene

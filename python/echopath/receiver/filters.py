@@ -33,7 +33,8 @@ def response(receiver: Receiver, frequency) -> np.ndarray:
 
 def filtered(cube: np.ndarray, waveform, receiver: Receiver) -> np.ndarray:
     """The cube behind the filters, in the steady state: a chirp goes on as it begins. Transients, some samples at both ends
-    of a chirp, are those of a signal that repeats."""
+    of a chirp, are those of a signal that repeats: windowed levels from 2.5 cells on are right to 0.02 dB, and what is nearer to
+    0 Hz is left too strong by high-pass filters."""
     if not receiver.high_pass and receiver.low_pass is None:
         return cube
     gain = response(receiver, beat_frequencies(waveform))

@@ -9,7 +9,7 @@ import echopath as ep
 
 from . import street
 
-REPEATS, QUICK_REPEATS = 5, 2
+REPEATS, QUICK_REPEATS = 5, 1
 FAULTS = {
     "none": None, "a Receiver without faults": {},
     "phase noise": {"phase_noise": {"offsets": [1e4, 1e5, 1e6, 1e7], "levels": [-70, -85, -95, -115]}},

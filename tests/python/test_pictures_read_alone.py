@@ -126,3 +126,17 @@ def test_each_object_has_rays_and_surfaces_say_where_they_are_cut():
     words = {text.get_text() for text in figure.legends[0].get_texts()}
     assert {"surface that mirrors", "cut here, it goes on beyond the picture"} <= words
     assert any("ground" in text.get_text() for text in figure.axes[0].texts)
+
+
+def test_values_beyond_a_scale_stand_at_its_end_and_are_marked():
+    from echopath.bench import scale_ends
+    from echopath.plots.style import new_figure
+
+    with new_figure(3.0, 3.0) as figure:
+        axes = figure.subplots()
+        held = scale_ends.within(axes, [1.0, 2.0, 3.0], [-5.0, 0.5, 7.0], (0.0, 1.0), "blue")
+        assert np.array_equal(held, [0.0, 0.5, 1.0])
+        marks = {line.get_marker(): tuple(np.ravel(line.get_data())) for line in axes.get_lines()}
+        assert marks == {"v": (1.0, 0.0), "^": (3.0, 1.0)}
+        scale_ends.within(axes, [1.0], [9.0], (0.0, 1.0), "blue", across=True)
+        assert axes.get_lines()[-1].get_marker() == ">" and tuple(np.ravel(axes.get_lines()[-1].get_data())) == (1.0, 1.0)

@@ -17,6 +17,7 @@ from .. import actors
 from ..base.files import write_texts
 from ..base.origin import FIXED_SEEDS
 from ..plots.style import new_figure, save_png
+from ..signals.measures import for_pictures
 from .steps import csv_text, told
 
 FREQUENCY = 77e9                     # Hz
@@ -112,7 +113,9 @@ def draw(found: list[Aspect], path) -> None:
         panels = figure.subplots(3, 4, subplot_kw={"projection": "polar"}).flat
         for axes, one in zip(panels, found):
             _draw_panel(axes, one)
-        figure.suptitle("Cross section in dBsm over aspect at 77 GHz (0 degrees: from ahead). Bands: published", fontsize=11)
+        figure.suptitle("Cross section in dBsm by direction at 77 GHz (0\N{DEGREE SIGN}: from ahead). "
+                        "Green: published band; dashed: the statistic that it is of; "
+                        "levels below the scale stand at the centre", fontsize=11)
         save_png(figure, path, seed=FIXED_SEEDS)
 
 
@@ -128,7 +131,7 @@ def _draw_panel(axes, one: Aspect) -> None:
     axes.plot(circle, np.full_like(circle, value), color="#d55e00", linewidth=1.2, linestyle="--")
     axes.set_theta_zero_location("N")
     axes.set_ylim(bottom, max(top, one.subject.high))
-    axes.set_title(f"{one.subject.name}\n{one.subject.statistic} {value:.1f} dBsm (dashed)", fontsize=8)
+    axes.set_title(for_pictures(f"{one.subject.name}\n{one.subject.statistic} {value:.1f} dBsm (dashed)"), fontsize=8)
     axes.tick_params(labelsize=6)
 
 

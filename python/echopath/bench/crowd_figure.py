@@ -5,8 +5,9 @@ import numpy as np
 
 from ..base.origin import FIXED_SEEDS
 from ..plots.style import CURVE_COLOURS, new_figure, save_png
+from . import scale_ends
 
-LEAST_SHOWN_DB = -12.0
+SHOWN_DB = -12.0, 6.0  # of the errors
 
 
 def draw_crowd(results: dict, path, *, wanted_db: float) -> None:
@@ -25,20 +26,23 @@ def _draw_streets(axes, streets: list, wanted_db: float) -> None:
     axes.axvspan(-wanted_db, wanted_db, color="0.9")
     for offset, colour, street in zip((-0.15, 0.15), CURVE_COLOURS, streets):
         for index, row in enumerate(street["rows"]):
-            errors = np.maximum(row["error_db"], LEAST_SHOWN_DB)
-            places = np.full(len(errors), index + offset)
-            axes.errorbar(errors, places, xerr=np.minimum(row["claimed_db"], -LEAST_SHOWN_DB), fmt="none", ecolor=colour,
-                          alpha=0.4)
+            places = np.full(len(row["error_db"]), index + offset)
+            errors = scale_ends.within(axes, places, row["error_db"], SHOWN_DB, colour, across=True)
+            for side in (-1.0, 1.0):
+                ends = errors + side * np.asarray(row["claimed_db"])
+                ends = scale_ends.within(axes, places, ends, SHOWN_DB, colour, across=True)
+                axes.hlines(places, errors, ends, color=colour, alpha=0.4)
             flagged = np.array(row["flagged"])
             axes.plot(errors[~flagged], places[~flagged], "o", color=colour, markersize=4,
-                      label=f"{street['title']} (hollow: flagged)" if index == 0 else None)
+                      label=f"{street['title']}; hollow: told as not resolved" if index == 0 else None)
             axes.plot(errors[flagged], places[flagged], "o", color=colour, markersize=4, fillstyle="none")
     axes.set_yticks(range(len(streets[0]["rows"])), [row["name"] for row in streets[0]["rows"]], fontsize=7)
     axes.invert_yaxis()
-    axes.set_xlim(LEAST_SHOWN_DB, 6.0)
-    axes.set_xlabel("error of the direct power, dB (grey: wanted)")
+    axes.set_xlim(SHOWN_DB)
+    axes.set_xlabel("error of the direct power in dB, with the interval that the run claims (grey: wanted)")
     axes.set_title("Each object of a street against itself alone")
-    axes.legend(frameon=False, fontsize=7, loc="lower left")
+    handles = [*axes.get_legend_handles_labels()[0], scale_ends.handle(across=True)]
+    axes.legend(handles=handles, frameon=False, fontsize=7, loc="lower left")
     axes.grid(axis="x", alpha=0.25)
 
 
@@ -52,8 +56,8 @@ def _draw_coverage(axes, coverage: dict) -> None:
                   label=kind)
     axes.set_xscale("log", base=2)
     axes.set_ylim(-0.05, 1.05)
-    axes.set_xlabel("rays")
-    axes.set_ylabel("share of seeds whose interval holds the truth (grey: wanted)")
-    axes.set_title("Coverage")
+    axes.set_xlabel("number of rays")
+    axes.set_ylabel("share of seeds (grey: wanted)")
+    axes.set_title("How often intervals of 95 % hold the truth")
     axes.legend(frameon=False, fontsize=7)
     axes.grid(alpha=0.25)

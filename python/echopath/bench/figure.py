@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from ..base.origin import FIXED_SEEDS
 from ..plots.style import new_figure, save_png
+from . import scale_ends
 
 SHOWN = ("sphere_161", "sphere_3228", "ellipsoid", "plate_5", "plate_20.3", "dihedral")
 # Okabe and Ito: told apart with any colour vision. Label of the curve: (text, colour, line, width).
@@ -35,8 +36,8 @@ def draw_physics(results: dict, path) -> None:
         for axes in panels[-1]:
             axes.set_xlabel("time of trace and replay in ms")
         figure.supylabel("error of the level in dB (rms)", fontsize=9)
-        handles, labels = panels[0, 0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside lower center", ncols=3, frameon=False)
+        handles = [*panels[0, 0].get_legend_handles_labels()[0], scale_ends.handle()]
+        figure.legend(handles=handles, loc="outside lower center", ncols=4, frameon=False)
         save_png(figure, path, seed=FIXED_SEEDS)
 
 
@@ -45,7 +46,7 @@ def _draw(axes, curves: dict) -> None:
     for label, (text, colour, line, width) in CURVES.items():
         points = [point for point in curves.get(label, []) if point["num_rays"] >= min(NAMED_RAYS)]
         times = [1e3 * point["seconds"] for point in points]
-        errors = [max(point["rms_db"], ERROR_RANGE[0]) for point in points]
+        errors = scale_ends.within(axes, times, [point["rms_db"] for point in points], ERROR_RANGE, colour)
         axes.plot(times, errors, line, color=colour, linewidth=width, label=text, zorder=4 if label == BEST else 3)
         if label == BEST:
             _name_rays(axes, points, times, errors, colour)

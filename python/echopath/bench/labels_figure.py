@@ -30,7 +30,7 @@ def _draw_cost(axes, cases: list) -> None:
     axes.set_ylim(0.0, max(4.0, 1.1 * max(row["over_synthesize"] for case in cases for row in case["rows"])))
     axes.set_xlabel("number of parts")
     axes.set_ylabel("time of decompose over that of synthesize")
-    axes.set_title("All parts from one pass")
+    axes.set_title("What parts cost: all from one pass")
     axes.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.16))
     axes.grid(alpha=0.25)
 
@@ -45,6 +45,7 @@ def _draw_rates(axes, cases: list, rate_target: float) -> None:
     axes.axvline(rate_target * 1e-6, color="black", linewidth=0.8, linestyle=(0, (1, 2)))
     axes.set_yticks(np.arange(len(labels)), labels, family="monospace", fontsize=7)
     axes.invert_yaxis()
+    axes.set_axisbelow(True)
     axes.set_xlabel("million hits per second on one core (dotted: promised)")
     axes.set_title("Path expressions against a bare loop over the same hits")
     axes.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.5, -0.16), ncols=2)

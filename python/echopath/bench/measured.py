@@ -136,6 +136,9 @@ def row_of(one: Pattern) -> dict:
             "optics_s": f"{one.seconds[0]:.1f}", "edges_s": f"{one.seconds[1]:.1f}"}
 
 
+SHOWN_DB = 58.0  # below the strongest level of a panel
+
+
 def draw(found: list[Pattern], path) -> None:
     """Writes a PNG: a panel for each pattern."""
     with new_figure(13.0, 10.0) as figure:
@@ -143,8 +146,9 @@ def draw(found: list[Pattern], path) -> None:
         for axes, one in zip(panels, found):
             _draw_panel(axes, one)
         next(iter(figure.axes)).legend(loc="upper right", fontsize=7)
-        figure.suptitle("Monostatic cross section, and its mean error beside the method of moments without -> with "
-                        "the echoes of edges (data: Austin RCS Benchmark Suite)")
+        figure.suptitle("Monostatic cross section, and its mean error beside the method of moments, without \N{RIGHTWARDS ARROW} "
+                        "with the echoes of edges\n"
+                        f"(data: Austin RCS Benchmark Suite; what is {SHOWN_DB:g} dB below the strongest goes below the panels)")
         save_png(figure, path, seed=FIXED_SEEDS)
 
 
@@ -154,10 +158,11 @@ def _draw_panel(axes, one: Pattern) -> None:
     axes.plot(one.azimuth, one.measured, ".", color="black", markersize=2.5, label="measured")
     axes.plot(one.azimuth, one.moments, color=CURVE_COLOURS[0], linewidth=1.0, label="method of moments")
     axes.plot(one.azimuth, one.with_edges, color=CURVE_COLOURS[1], linewidth=1.0, label="with edges")
-    axes.set_ylim(top - 58.0, top + 4.0)
-    axes.set(xlabel="azimuth in degrees", ylabel="dBsm",
+    axes.set_ylim(top - SHOWN_DB, top + 4.0)
+    axes.set(xlabel="azimuth in degrees", ylabel="cross section in dBsm",
              title=f"{one.target}, {one.frequency_ghz:g} GHz, {one.polarization.upper()}: "
-                   f"{one.error(one.optics, one.moments):.1f} -> {one.error(one.with_edges, one.moments):.1f} dB")
+                   f"{one.error(one.optics, one.moments):.1f} \N{RIGHTWARDS ARROW} "
+                   f"{one.error(one.with_edges, one.moments):.1f} dB")
     axes.title.set_fontsize(8)
 
 

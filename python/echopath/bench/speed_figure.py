@@ -1,10 +1,13 @@
 """Speed against error of synthesis, and how whole frames grow."""
 from __future__ import annotations
 
+import numpy as np
+
 from ..base.origin import FIXED_SEEDS
 from ..plots.style import new_figure, save_png
 
 OURS, OWN_SPEED, FINUFFT, SUMS, GREY = "#0072b2", "#56b4e9", "#d55e00", "#009e73", "#666666"  # Okabe and Ito
+SUM_WORDS = {"direct": "direct sum", "recurrence": "sum by a recurrence"}
 NAMED_TOLERANCES = (1e-1, 1e-4, 1e-7, 1e-10, 1e-13)
 
 
@@ -20,17 +23,18 @@ def draw_synthesis(results: dict, path) -> None:
             _curve(axes, rows, "finufft_error", "finufft_ns", FINUFFT, "s-",
                    f"FINUFFT {results['finufft']}, points and strengths given")
         for row, marker in zip(found["sums"], "D^"):
-            axes.plot(row["error"], row["ns"], marker, color=SUMS, markersize=8, label=f"{row['method']}")
+            axes.plot(row["error"], row["ns"], marker, color=SUMS, markersize=8,
+                      label=f"echopath, {SUM_WORDS.get(row['method'], row['method'])}")
         for row in rows:
             if any(abs(row["tolerance"] / named - 1.0) < 1e-6 for named in NAMED_TOLERANCES):
-                axes.annotate(f"{row['tolerance']:.0e}", (row["error"], row["ns"]), (0, -12), textcoords="offset points",
-                              ha="center", fontsize=7, color=OURS)
+                axes.annotate(f"$10^{{{np.log10(row['tolerance']):.0f}}}$", (row["error"], row["ns"]), (0, -12),
+                              textcoords="offset points", ha="center", fontsize=7, color=OURS)
         axes.set_xscale("log")
         axes.set_yscale("log")
         axes.set_ylim(1.0, 1000.0)
         axes.yaxis.set_major_formatter("{x:g}")
-        axes.set_xlabel("relative error of the samples")
-        axes.set_ylabel("processor time per echo and chirp [ns], one thread")
+        axes.set_xlabel("relative error of the samples (numbers in the picture: tolerance that was asked for)")
+        axes.set_ylabel("processor time per echo and chirp in ns, one thread")
         axes.set_title(f"IF synthesis: {found['paths']:,} echoes, {found['samples']} samples, {found['chirps']} chirps; "
                        f"{results['machine']['processor']}, {results['machine']['instruction_set']}")
         axes.legend(frameon=False, loc="upper right")
@@ -51,24 +55,26 @@ def draw_frames(results: dict, path) -> None:
         paths.loglog(counts, [row["processor_s"] for row in frames["paths"]], "o-", color=OURS, label="measured")
         last = frames["paths"][-1]
         each = last["processor_s"] / last["paths"]
-        paths.loglog(counts, [each * count for count in counts], ":", color=GREY, label="linear")
-        paths.set_xlabel("paths")
-        paths.set_ylabel("processor time of a frame [s]")
-        paths.set_title("Paths")
+        paths.loglog(counts, [each * count for count in counts], ":", color=GREY, label="in proportion to the paths")
+        paths.set_xlabel("number of paths")
+        paths.set_ylabel("processor time of a frame in s")
+        paths.set_title("Time over paths")
         paths.legend(frameon=False)
         for colour, kind in zip((OURS, FINUFFT, SUMS), ("chirps", "channels", "parts")):
             rows = frames[kind]
             others.loglog([row[kind] for row in rows], [row["processor_s"] for row in rows], "o-", color=colour, label=kind)
-        others.set_xlabel("number of them")
+        others.set_xlabel("number of chirps, channels or parts")
+        others.set_ylabel("processor time of a frame in s")
         others.xaxis.set_major_formatter("{x:g}")
-        others.set_title("Chirps, channels, parts")
+        others.set_title("Time over chirps, channels and parts")
         others.legend(frameon=False)
         memory.loglog(counts, [row["peak_bytes"] / 2 ** 20 for row in frames["paths"]], "o-", color=OURS)
         memory.axhline(4096.0, color=GREY, linestyle=":")
-        memory.annotate("4 GiB", (counts[0], 4096.0), (2, 3), textcoords="offset points", fontsize=8, color=GREY)
-        memory.set_xlabel("paths")
-        memory.set_ylabel("peak memory [MiB]")
-        memory.set_title("Memory, the record of the paths included")
+        memory.annotate("4 GiB: promised at most", (counts[0], 4096.0), (2, -11), textcoords="offset points", fontsize=8,
+                        color=GREY)
+        memory.set_xlabel("number of paths")
+        memory.set_ylabel("peak memory in MiB")
+        memory.set_title("Memory, with the record of the paths")
         for axes in (others, memory):
             axes.yaxis.set_minor_formatter("")
             axes.yaxis.set_major_formatter("{x:g}")

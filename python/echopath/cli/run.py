@@ -118,7 +118,7 @@ def _write_pictures(frame: Frame, folder: Path, partitions) -> list:
         words = "taken apart" + (f" by {partition}" if partition != "parts" else "") + ", without noise"
         words += "; mean power of all ranges together and its 95 % interval"
         if not all(power.resolved for power in frame.mean_part_powers[partition].values()):
-            words += f" (not resolved: wider than \N{PLUS-MINUS SIGN}{RESOLVED_DB:g} dB)"
+            words += f" (not resolved: wider than \N{PLUS-MINUS SIGN}{RESOLVED_DB:g}\N{NO-BREAK SPACE}dB)"
         write(partition, plots.plot_partition(spectra, title=f"What the radar receives, {words}", **looks))
         if index == 0:
             words = f"The same {words}"

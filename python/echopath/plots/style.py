@@ -55,8 +55,17 @@ def axes_or_new(ax, width: float, height: float):
 def set_title(figure, text: str, size: float) -> None:
     """Sets the title of a figure or of its part, in as many lines as its width asks for. size: of its letters in points"""
     width = 72.0 * figure.bbox.width / figure.dpi  # points
-    lines = [textwrap.fill(line, max(int(width / (LETTER * size)), 20)) for line in text.splitlines()]
+    lines = [_filled(line, max(int(width / (LETTER * size)), 20)) for line in text.splitlines()]
     figure.suptitle("\n".join(lines), fontsize=size)
+
+
+def _filled(line: str, width: int) -> str:
+    """In as few lines of `width` letters at most as it takes, about equally long."""
+    lines = textwrap.wrap(line, width)
+    if len(lines) > 1:
+        narrower = (textwrap.wrap(line, one) for one in range(len(line) // len(lines), width + 1))
+        lines = next(found for found in narrower if len(found) == len(lines))
+    return "\n".join(lines)
 
 
 def save_png(figure, path, *, seed=None, noise_seed=None) -> None:

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from support import small_dataset as small
 from support.labelled import trace_plates_and_wall
 
 
@@ -54,3 +55,12 @@ def approx_by_ratio(expected, rel=None, abs=None, nan_ok=False):
 
 
 pytest.approx = approx_by_ratio
+
+
+@pytest.fixture(scope="session")
+def small_dataset(tmp_path_factory):
+    """(template, folder) of a dataset that one process made without a break; nobody changes it."""
+    folder = tmp_path_factory.mktemp("small_dataset")
+    path = small.written(folder)
+    small.make(path, folder / "out")
+    return path, folder / "out"

@@ -3,8 +3,12 @@ import threading
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
+from echopath import dataset
 from echopath.dataset.arrays import KINDS, _Kinds
+from echopath.frame_file.maps import load_maps
+from support.small_dataset import HEAD, SCENE, make, written
 
 
 def test_classes_of_cells_are_those_of_their_scene_in_every_thread():
@@ -29,3 +33,25 @@ def test_classes_of_cells_are_those_of_their_scene_in_every_thread():
             return Plain.objects
 
     assert KINDS[kinds.of(frame(0, Meanwhile())).item()] == "car" and KINDS[kinds.of(frame(1, Plain())).item()] == "pedestrian"
+
+
+def test_xarray_reads_the_frames_that_are_asked_for_and_no_others(tmp_path, monkeypatch):
+    pytest.importorskip("xarray")
+    folder = tmp_path / "out"
+    make(written(tmp_path, HEAD.replace('keep = "labels"', 'keep = "maps"').replace("scenes = 6", "scenes = 3") + SCENE), folder)
+    opened, read = dataset.open(folder), []
+    monkeypatch.setattr("echopath.dataset.sources.read_frame",
+                        lambda path, keep: read.append(path.name) or load_maps(path))
+    arrays = opened.to_xarray()
+    read.clear()
+    assert arrays.power.dims == ("frame", "velocity", "range") and arrays.power.shape == arrays.cell.shape == (6, 8, 32)
+    part = arrays.power.isel(frame=slice(3, 5), range=4)
+    assert read == []
+    values = part.values
+    assert read == ["frame_0001.h5", "frame_0000.h5"]
+    np.testing.assert_array_equal(values, [opened[place].frame.power[:, 4] for place in (3, 4)])
+    labels = opened[2].frame.labels["parts"]
+    np.testing.assert_array_equal(arrays.cell.sel(frame=2) > 0, labels.mask)
+    names = arrays.kind.attrs["names"]
+    assert {names[index] for index in np.unique(arrays.kind[2]) if index >= 0} == {"static"}
+    assert list(arrays.split.values) == [one.split for one in opened] and list(arrays.scene.values) == [0, 0, 1, 1, 2, 2]

@@ -25,6 +25,7 @@ from .template import Template
 from .workers import Done, forget, in_processes, in_this_process
 
 _LOOKED_AT, _BUILT = 1000, 8  # scenes at most that are drawn, and made ready to trace, before the first frame
+_TRIED = 3                    # scenes at most, on one of which a frame is made before, for the forecast
 _MARGIN = 1.1                 # of the disk that is asked for over what the first frame and its scene take
 
 
@@ -176,13 +177,10 @@ def _made(plan: Template, place: _LocalFolder | Address, scenes: list[int], fron
 
 
 def _forecast(plan: Template, place: _LocalFolder | Address, missing: list[int], workers: int | None) -> Forecast:
-    """By the first frame that is missing, which is made on trial. Raises ep.FileError where the disk is too small; nobody knows
-    what room an address has, or how fast workers are that may join and leave (workers: None)."""
+    """By the first frame that can be made. Raises ep.FileError where the disk is too small; nobody knows what room an address
+    has, or how fast workers are that may join and leave (workers: None)."""
     begin = time.perf_counter()
-    with tempfile.TemporaryDirectory(prefix="echopath-") as trial, warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # as when it is made in earnest
-        next(iter(plan.sequence(missing[0]).save_frames(trial, keep=plan.settings.keep)))
-        sizes = {path.name: path.stat().st_size for path in Path(trial).iterdir()}
+    sizes = _sizes_of_a_frame(plan, missing[:_TRIED])
     frames = len(missing) * plan.settings.frames
     once = sizes.pop(CONTENTS, 0)  # for all frames of a scene
     needed = int(_MARGIN * (once * len(missing) + sum(sizes.values()) * frames))
@@ -191,3 +189,17 @@ def _forecast(plan: Template, place: _LocalFolder | Address, missing: list[int],
                               f"{free / 2 ** 20:.1f} MiB in '{place.folder}'")
     seconds = None if workers is None else (time.perf_counter() - begin) * frames / min(workers, len(missing))
     return Forecast(frames, seconds, needed)
+
+
+def _sizes_of_a_frame(plan: Template, scenes: list[int]) -> dict[str, int]:
+    """{file: bytes} of the first frame of a scene, made on trial. Raises ValueError, of the first scene, where none can be."""
+    faults = []
+    for scene in scenes:
+        with tempfile.TemporaryDirectory(prefix="echopath-") as trial, warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # as when it is made in earnest
+            try:
+                next(iter(plan.sequence(scene).save_frames(trial, keep=plan.settings.keep)))
+                return {path.name: path.stat().st_size for path in Path(trial).iterdir()}
+            except (ValueError, RuntimeError) as error:
+                faults.append(f"{plan.path}: scene {scene}: {str(error).removeprefix(f'{plan.path}: ')}")
+    raise ValueError(faults[0])

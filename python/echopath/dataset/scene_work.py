@@ -64,8 +64,8 @@ def make_scene(template: Template, folder: Path, scene: int, run: str) -> SceneR
         record = SceneRecord("failed", reason=f"{deaths} workers died at it")
     else:
         record = _made(template, folder, scene)
-    write_record(folder, scene, record)
     tidy(folder, scene)
+    write_record(folder, scene, record)  # the last: whoever waits for it may end this process
     return record
 
 

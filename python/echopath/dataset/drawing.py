@@ -1,0 +1,101 @@
+"""Draws the values of one scene of a template, and the objects that it has."""
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ..arguments.shown import shown
+from .distributions import drawn, is_distribution, refuse_misspelt
+
+_MOST_PLACES = 1000                     # that are tried for an object that is to stand apart from others
+_OF_NAMES = (".objects", ".materials")  # tables, beside parts, whose keys are names, which may be any
+
+
+class Drawing:
+    """Draws the values of one scene and remembers them."""
+
+    def __init__(self, seed: int, scene: int):
+        self._key = f"{seed}/{scene}/"
+        self.values: dict[str, Any] = {}
+
+    def random(self, place: str) -> np.random.Generator:
+        """The random numbers of a dotted path."""
+        digest = hashlib.sha256((self._key + place).encode("utf-8", "surrogatepass")).digest()
+        return np.random.Generator(np.random.Philox(key=int.from_bytes(digest[:16], "little")))
+
+    def of(self, value: Any, place: str, turn: str = "") -> Any:
+        """A value of the template with all its distributions drawn; turn: another word draws others."""
+        if is_distribution(value):
+            self.values[place] = drawn(value, place, self.random(place + turn))
+            return self.of(self.values[place], place, turn + "/chosen")  # a choice may be among distributions
+        if isinstance(value, dict):
+            if not (place.startswith("parts") or place.endswith(_OF_NAMES)):
+                refuse_misspelt(value, place)
+            return {key: self.of(one, f"{place}.{key}" if place else str(key), turn) for key, one in value.items()}
+        if isinstance(value, list):
+            return [self.of(one, f"{place}[{index}]", turn) for index, one in enumerate(value)]
+        return value
+
+
+class DrawnObjects:
+    """Draws the objects of a scene: how many of each there are, and where."""
+
+    def __init__(self, drawing: Drawing):
+        self._drawing = drawing
+        self._places: list[tuple[np.ndarray, float]] = []  # (x, y) and radius in m of what stands apart
+
+    def of(self, entries: Any) -> list[Any]:
+        if not isinstance(entries, list):
+            return [entries]  # which the schema of the scene refuses
+        objects: list[Any] = []
+        for index, entry in enumerate(entries):
+            is_table = isinstance(entry, dict) and isinstance(entry.get("name"), str)
+            objects += self._copies(dict(entry)) if is_table else [self._drawing.of(entry, f"objects[{index}]")]
+        return objects
+
+    def _copies(self, entry: dict[str, Any]) -> list[dict[str, Any]]:
+        name = entry.pop("name")
+        place = f"objects.{name}"
+        chance = self._number(entry.pop("chance", 1.0), f"{place}.chance", "a number from 0 to 1", lambda x: 0.0 <= x <= 1.0)
+        is_row = "count" in entry
+        count = self._number(entry.pop("count", 1), f"{place}.count", "a whole number of at least 0",
+                             lambda x: x == int(x) and x >= 0)
+        if self._drawing.random(f"{place}.presence").random() >= chance:
+            count = 0
+        names = [f"{name}_{number}" for number in range(1, int(count) + 1)] if is_row else [name] * int(count)
+        return [self._one(one, dict(entry), f"objects.{one}") for one in names]
+
+    def _number(self, value: Any, place: str, rule: str, holds: Callable[[float], bool]) -> float:
+        number = self._drawing.of(value, place)
+        if isinstance(number, bool) or not isinstance(number, (int, float)) or not holds(number):
+            raise ValueError(f"{place}: must be {rule}, got {shown(number)}")
+        return float(number)
+
+    def _one(self, name: str, entry: dict[str, Any], place: str) -> dict[str, Any]:
+        apart, position = entry.pop("apart", None), entry.pop("position", None)
+        made: dict[str, Any] = {"name": name} | self._drawing.of(entry, place)
+        if apart is not None:
+            radius = self._number(apart, f"{place}.apart", "a number of m, at least 0", lambda x: 0.0 <= x < math.inf)
+            made["position"] = self._free_place(position, radius, place)
+        elif position is not None:
+            made["position"] = self._drawing.of(position, f"{place}.position")
+        return made
+
+    def _free_place(self, position: Any, radius: float, place: str) -> list[float]:
+        """A position of which no other that is to stand apart is nearer than both radii together, seen from above."""
+        for attempt in range(_MOST_PLACES):
+            found: list[float] = self._drawing.of(position, f"{place}.position", f"/try {attempt}")
+            try:
+                above = np.array(found, float)[:2]
+                if above.shape != (2,) or not np.isfinite(above).all():
+                    raise ValueError
+            except (TypeError, ValueError):
+                raise ValueError(f"{place}.position: must be [x, y, z] in m beside apart, got {shown(found)}") from None
+            if all(np.hypot(*(above - other)) >= radius + own for other, own in self._places):
+                self._places.append((above, radius))
+                return found
+        raise ValueError(f"{place}.apart: must leave a free place within {_MOST_PLACES} tries, got {shown(radius)}")

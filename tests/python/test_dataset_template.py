@@ -1,0 +1,115 @@
+"""Templates of datasets: what they draw, and that their faults are told before the first frame."""
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from echopath import dataset
+from support.small_dataset import HEAD, SCENE, written
+
+
+@pytest.fixture
+def path(tmp_path) -> Path:
+    return written(tmp_path)
+
+
+def names_of(drawn) -> list[str]:
+    return [one["name"] for one in drawn.table["objects"]]
+
+
+def test_draws_have_their_distributions(path):
+    drawn = [dataset.Template(path).draw(number) for number in range(600)]
+    counts = np.bincount([sum(name.startswith("plate_") for name in names_of(one)) for one in drawn], minlength=4)
+    assert counts[0] == 0 and all(abs(count - 200) < 4 * 12 for count in counts[1:])  # 4 standard deviations
+    assert abs(sum("wall" in names_of(one) for one in drawn) - 300) < 4 * 12.3
+    plates = [one.values for one in drawn]
+    heights = np.array([values["objects.plate_1.parameters.height"] for values in plates])
+    assert abs(heights.mean() - 0.2) < 4 * 0.2 / np.sqrt(12 * 600) and 0.1 <= heights.min() and heights.max() <= 0.3
+    metal = np.mean([values["objects.plate_1.material"] == "metal" for values in plates])
+    assert abs(metal - 0.25) < 4 * np.sqrt(0.25 * 0.75 / 600)
+    speeds = np.array([one.table["objects"][0]["speed"] for one in drawn])
+    moving = speeds[speeds > 0.0]
+    assert abs(len(moving) - 300) < 4 * 12.3
+    assert abs(np.median(moving) / np.sqrt(0.1 * 4.0) - 1.0) < 0.5  # of a log-uniform variable
+    sides = np.array([one.table["objects"][0]["position"][1] for one in drawn])
+    assert np.abs(sides).max() <= 1.5 and abs(sides.std() - 0.4) < 0.05
+    shares = np.mean([dataset.Template(path).split_of(number) == "train" for number in range(600)])
+    assert abs(shares - 0.5) < 4 * np.sqrt(0.25 / 600)
+
+
+def test_objects_stand_apart_as_they_ask(path):
+    for number in range(100):
+        placed = [one["position"][:2] for one in dataset.Template(path).draw(number).table["objects"] if "plate" in one["name"]]
+        for index, one in enumerate(placed):
+            assert all(np.hypot(*np.subtract(one, other)) >= 1.0 for other in placed[:index])
+
+
+def test_other_keys_and_more_scenes_change_no_draw(path, tmp_path):
+    before = dataset.Template(path).draw(4)
+    post = 'name = "post"\nactor = "plate"\nparameters = {width = 1, height = 1}\nposition = [{uniform = [1, 2]}, 9, 0]\n'
+    more = SCENE.replace('[[objects]]\nname = "plate"', f'[[objects]]\n{post}[[objects]]\nname = "plate"')
+    after = dataset.Template(written(tmp_path, HEAD.replace("scenes = 6", "scenes = 60") + more)).draw(4)
+    assert {name: after.values[name] for name in before.values} == before.values
+    assert after.table["trace"]["seed"] == before.table["trace"]["seed"] != dataset.Template(path).draw(5).table["trace"]["seed"]
+    other = dataset.Template(written(tmp_path, HEAD.replace("seed = 3", "seed = 4") + SCENE)).draw(4)
+    assert other.values != before.values
+
+
+@pytest.mark.parametrize("before, after, told", [
+    ("scenes = 6", "scenes = 0", "dataset.scenes: must be at least 1, got 0"),
+    ("scenes = 6", "scenes = 6\nframe = 2", "dataset.frame: unknown key; did you mean 'frames'?"),
+    ("interval = 0.05\n", "", "dataset.interval: is missing, in s"),
+    ("test = 0.5", "test = 0.6", "dataset.split: must be name = share, whose sum is 1"),
+    ("[labels]", "[labels]\n[sequence]\nframes = 2\ninterval = 1.0", "sequence: must not stand in a template"),
+    ("{uniform = [0.1, 0.3]}", "{uniform = [0.3, 0.1]}",
+     "scene 0: objects.plate_1.parameters.height.uniform: must be [lowest, highest], got [0.3, 0.1]"),
+    ("weights = [1, 3]", "weights = [1]", "objects.plate_1.material.weights: must be 2 numbers of at least 0"),
+    ("{integer = [1, 3]}", "{integer = [1.5, 3]}", "objects.plate.count.integer: must be [lowest, highest], whole numbers"),
+    ("{integer = [1, 3]}", "-1", "objects.plate.count: must be a whole number of at least 0, got -1"),
+    ("chance = 0.5", "chance = 2.0", "objects.wall.chance: must be a number from 0 to 1, got 2.0"),
+    ("apart = 0.5", "apart = 9.0", "apart: must leave a free place within 1000 tries, got 9.0"),
+    ("within = [-1.5, 1.5]", "within = [90, 91]", "must be a distribution with a good share of its values within [90, 91]"),
+    ('"metal", "concrete"', '"metal", "cheese"', "unknown material 'cheese'"),
+    ('actor = "wall"', 'actor = "wal"', "did you mean 'wall'"),
+    ("height = 2.0", "heigth = 2.0", "heigth"),
+    ("speed = {choice = [0.0, {log_uniform = [0.1, 4.0]}]}",
+     'motion = {kind = "keyframes", times = [0.0, 0.01], translations = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]}',
+     "scene 0: frames: must all lie within the motions"),
+])
+def test_faults_of_a_template_are_told_before_the_first_frame(tmp_path, before, after, told):
+    text = HEAD + SCENE
+    assert before in text
+    path = written(tmp_path, text.replace(before, after))
+    with pytest.raises(ValueError) as caught:
+        list(dataset.make(path, tmp_path / "out"))
+    assert told in str(caught.value) and str(path) in str(caught.value)
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("before, after, told", [
+    ("num_rays = 400", "num_rays = 0", "line {line}: scene 0: trace.num_rays: must be at least 1, got 0"),
+    ('actor = "wall"', 'actor = "wal"', "line {line}: scene 0: objects.wall.actor: unknown actor 'wal'"),
+    ('"metal", "concrete"', '"tin", "tin"', "line {line}: scene 0: objects.plate_1.material: unknown material 'tin'"),
+    ("{uniform = [1.5, 4.0]}", "{uniform = [4.0, 1.5]}", "line {line}: scene 0: objects.plate_1.position[0].uniform: must be"),
+    ("num_chirps = 8", "num_chirps = 0", "line {line}: scene 0: radar.waveform.num_chirps: must be at least 1, got 0"),
+    ("interval = 0.05", "interval = 1e-6", "line {line}: scene 0: interval: must be at least"),
+    ("frames = 2", "frames = 0", "line {line}: dataset.frames: must be at least 1, got 0")])
+def test_faults_name_the_line_and_the_object_and_are_told_once(tmp_path, before, after, told):
+    text = (HEAD + SCENE).replace(before, after)
+    path = written(tmp_path, text)
+    with pytest.raises(ValueError) as caught:
+        list(dataset.make(path, tmp_path / "out"))
+    line = text[:text.index(after)].count("\n") + 1
+    said, = str(caught.value).splitlines()  # though a scene has up to three plates
+    assert said.startswith(f"{path}: {told.format(line=line)}")
+
+
+def test_a_template_none_of_whose_first_scenes_can_be_made_is_told_before_the_first_frame(path, tmp_path, monkeypatch):
+    def failing(*_, **__):
+        raise ValueError("weight: must be finite, got nan")
+
+    monkeypatch.setattr("echopath.sequence.Sequence.save_frames", failing)
+    with pytest.raises(ValueError) as caught:
+        list(dataset.make(path, tmp_path / "out"))
+    assert str(caught.value) == f"{path}: scene 0: weight: must be finite, got nan"
+    assert not list((tmp_path / "out").rglob("record.json"))

@@ -19,6 +19,7 @@ NO_QUANTITY = {
     "ax", "figure", "labels", "map", "mesh", "mesh_or_actor", "method", "min", "mirror", "modelled", "motion", "multiplexing",
     "name", "noise_seed", "note", "number",
     "num_batches", "num_rays", "num_slots", "num_threads", "parent", "parts", "path", "paths", "pattern", "picture",
+    "preview",
     "progress", "radar", "reason", "receivers", "replay", "retrace", "scale", "scene", "seed", "selection", "selections", "shard",
     "show", "skin", "smooth", "source", "spectrum", "state", "subdivisions", "tags", "text", "title", "trace",
     "transmitters", "unknown", "visible", "waveform", "what", "window", "zero_pad",

@@ -14,8 +14,6 @@ from .annotate import label_partitions, make_request, owners_and_powers
 from .labels import Labels
 from .powers import CubeSet, add_powers, join
 
-SIGNAL_SETTINGS = ("replay", "evaluate", "retrace", "keyframes")  # of a frame, as `decompose` takes them
-
 
 @checked({"settings": LabelSettings}, **LabelSettings.RULES, frame=an(Frame), parts=anything)
 def annotate_frame(frame: Frame, parts: Mapping | None = None, *, plane: Plane = LabelSettings.plane,
@@ -39,7 +37,7 @@ def annotate_frame(frame: Frame, parts: Mapping | None = None, *, plane: Plane =
                           dynamic_range_db=dynamic_range_db, errors=errors)
     request = make_request(frame.radar, paths.frame.num_batches, asked, **frame.spectrum_settings, angles=angles or None)
     chosen = _as_new_partitions(parts, frame)
-    replayed = {name: getattr(frame, name) for name in SIGNAL_SETTINGS} | {"progress": progress}
+    replayed = frame._replayed | {"progress": progress}
     families = find_families(paths, request.objects)
     owners, powers = owners_and_powers(request, paths, families, chosen, replayed)
     kept = {partition: cubes for partition, cubes in frame.parts.items() if partition not in chosen}

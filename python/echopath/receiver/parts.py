@@ -7,6 +7,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import ArrayLike, anything, array, checked, optional, real, refused, seed as seed_rule
+from ..arguments.shown import writable
 from ..transmit import radar_of_noise, signal_shape
 from .chain import Chain, reception
 from .channels import require_channels
@@ -33,7 +34,7 @@ def receive_parts(parts: Mapping[str, ArrayLike], radar: _core.Radar, *, seed: i
     of those names.
     """
     shape = signal_shape(radar)
-    cubes = {name: _checked_cube(f"parts.{name}", cube, shape) for name, cube in _checked_table(parts).items()}
+    cubes = {name: _checked_cube(f"parts.{writable(str(name))}", cube, shape) for name, cube in _checked_table(parts).items()}
     other = None if interference is None else _checked_cube("interference", interference, shape)
     receiver = Receiver() if radar.receiver is None else radar.receiver
     require_channels(receiver, radar)

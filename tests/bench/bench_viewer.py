@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 import echopath as ep
-from echopath.live.watch import FIRST_PREVIEW_RAYS
+from echopath.live.watch import FEWEST_PREVIEW_RAYS
 from echopath.paths.subset import strongest, subset
 from echopath_viewer.model import CellBox, Filters, from_file
 from echopath_viewer.model.attribution import Attribution
@@ -31,9 +31,12 @@ from echopath_viewer.window.demo import simulate_demo
 from echopath_viewer.window.qt import QtWidgets
 
 NUM_REPETITIONS = 7
+MAX_GROWTH = 1.1   # of memory, from the first opening of a file to the next ones
 MAX_START = 2.0  # s, promised for scene and map of a file of 3 million paths, whose rays follow
-LIVE_RAYS, NUM_MOVES = 50_000, 8
-MAX_PREVIEW = 0.1  # s, promised for scene, rays and map of a dragged object
+NUM_TURNS, ORBIT_RATE = 24, 15.0  # pictures; pictures/s promised for 20,000 rays
+LIVE_RAYS, NUM_MOVES = 50_000, 4
+# s, promised for scene, rays and map of a dragged object, and of full quality; watch and window share the cores.
+MAX_PREVIEW, MAX_SETTLED, NUM_CORES = 0.1, 2.0, 2
 # s of processor time from a change to its picture, promised for 3 million paths drawn by software.
 MAX_TO_PICTURE = {"filter": 0.150, "colour": 0.060, "cell": 0.100, "step in time": 0.100, "what makes": 0.100}
 START = """
@@ -49,6 +52,22 @@ if len(sys.argv) > 2:
     window.view3d.repaint()
 os._exit(0)
 """
+OPENINGS = """
+import gc, os, sys, time
+from echopath_viewer.window import MainWindow
+from echopath_viewer.window.qt import QtWidgets
+application = QtWidgets.QApplication([])
+window = MainWindow(remembers=False)
+for _ in range(3):
+    window.open_file(sys.argv[1])
+    window.settle()
+    gc.collect()
+    rest = time.monotonic() + 2.0
+    while time.monotonic() < rest:
+        application.processEvents()
+    print(4096 * int(open("/proc/self/statm").read().split()[1]), flush=True)
+os._exit(0)
+"""
 
 
 def main() -> None:
@@ -58,6 +77,7 @@ def main() -> None:
     given = options.parse_args()
     if given.frame is not None:
         bench_start(Path(given.frame))
+        bench_memory(Path(given.frame))
         bench_changes(Path(given.frame))
         return
     num_paths = given.paths
@@ -66,6 +86,7 @@ def main() -> None:
         save_street(path, num_paths)
         print(f"street demo, {num_paths:,} paths, {path.stat().st_size / 2**20:.0f} MiB")
         bench_start(path)
+        bench_memory(path)
         bench_changes(path)
 
 
@@ -90,6 +111,14 @@ def bench_start(path: Path) -> None:
             subprocess.run([sys.executable, "-c", START, str(path), *more], check=True, stdout=subprocess.DEVNULL)
             wall, seconds = watch.wall(), children_seconds() - before
         verdict(f"{words}, from the command line {seconds:6.2f} s (waited {wall:.2f} s)", seconds, limit)
+
+
+def bench_memory(path: Path) -> None:
+    """Resident memory after each opening of the same file in one window: Linux alone tells."""
+    done = subprocess.run([sys.executable, "-c", OPENINGS, str(path)], check=True, capture_output=True, text=True)
+    first, *others = (int(line) / 2**20 for line in done.stdout.split())
+    words = "holds" if max(others) < MAX_GROWTH * first else "MISSES"
+    print(f"memory {first:.0f} MiB, opened again {', '.join(f'{one:.0f}' for one in others)} MiB   {words} {MAX_GROWTH} times")
 
 
 def children_seconds() -> float:
@@ -132,26 +161,42 @@ def bench_changes(path: Path) -> None:
 
 
 def bench_live(window) -> None:
-    """The first object is moved: processor time of a preview, of the full view, and of the picture of its rays."""
+    """An object, the antenna and a material change: processor time of a preview with as many rays as a watch comes down to, of
+    its picture, and of the full view with its own."""
     live = live_of(window.session, LIVE_RAYS)
-    live.update()
-    name = next(mesh.name.partition("/")[0] for mesh in live.scene.meshes if not mesh.material.mirror)
-    seconds = {"preview": [], "full view": [], "its picture": []}
-    for _ in range(NUM_MOVES):
-        live.scene[name].position += (0.02, 0.0, 0.0)
-        for kind, work in (("preview", lambda: live.preview(num_rays=FIRST_PREVIEW_RAYS)), ("full view", live.update)):
-            watch = Stopwatch()
-            view = work()
-            seconds[kind].append(watch.processor())
-        watch = Stopwatch()
-        window._follow(session_of_view(live, view, state_of(window.session), window.session.signals.spectrum_settings))
-        window.view3d.repaint()
-        seconds["its picture"].append(watch.processor())
-        settle(window)
-    print(f"live scene, {name} moved, {LIVE_RAYS:,} rays")
-    for kind, limit in (("preview", MAX_PREVIEW), ("full view", None), ("its picture", MAX_PREVIEW)):
-        taken = float(np.median(seconds[kind]))
-        verdict(f"  {kind:28} {1e3 * taken:7.1f} ms", taken, limit)
+    settings = window.session.signals.spectrum_settings
+    window._take_live(session_of_view(live, live.update(), None, settings), live.update())
+    names = dict.fromkeys(mesh.name.partition("/")[0] for mesh in live.scene.meshes if not mesh.material.mirror)
+    print(f"live scene, {LIVE_RAYS:,} rays, previews of {FEWEST_PREVIEW_RAYS}")
+    for what, change in {**{name: mover(live, name) for name in names}, "antenna": antenna_mover(live)}.items():
+        for kind, view_of, limit in (("preview", lambda: live.preview(num_rays=FEWEST_PREVIEW_RAYS), MAX_PREVIEW),
+                                     ("full view", live.update, MAX_SETTLED)):
+            seconds = [live_seconds(window, live, change, view_of, settings) for _ in range(NUM_MOVES)]
+            of_view, of_window = np.median(seconds[1:], axis=0)
+            text = f"  {what + ' moved, ' + kind:28} {1e3 * of_view:7.1f} ms, scene, rays and map {1e3 * of_window:7.1f} ms"
+            verdict(text, (of_view + of_window) / NUM_CORES, limit)
+
+
+def live_seconds(window, live, change, view_of, settings) -> tuple:
+    change()
+    watch = Stopwatch()
+    view = view_of()
+    of_view = watch.processor()
+    window._take_live(session_of_view(live, view, state_of(window.session), settings), view)
+    picture(window)
+    seconds = of_view, watch.processor() - of_view
+    settle(window)
+    return seconds
+
+
+def mover(live, name: str):
+    return lambda: setattr(live.scene[name], "position", live.scene[name].position + (0.02, 0.0, 0.0))
+
+
+def antenna_mover(live):
+    def move():
+        live.radar = live.radar.replace(position=tuple(np.add(live.radar.position, (0.0, 0.01, 0.0))))
+    return move
 
 
 def changes(session) -> dict:
@@ -181,7 +226,7 @@ def bench_change(window, name: str, change) -> None:
         change(number)
         window._refresh_lists()
         computing.append(watch.processor())
-        window.view3d.repaint()
+        picture(window)
         drawn.append((watch.processor(), watch.wall()))
         settle(window)
     seconds, wall = min(drawn)
@@ -192,17 +237,44 @@ def bench_change(window, name: str, change) -> None:
 
 def bench_drawing(window) -> None:
     window.session.select_cells(None)
+    picture(window)
+    settle(window)
     watch = Stopwatch()
-    window.view3d.repaint()
+    window.view3d.render_soon()
+    picture(window)
     text = f"  {'drawing once':28} {1e3 * watch.processor():7.1f} ms (waited {1e3 * watch.wall():.1f} ms)"
     verdict(text, watch.processor(), None)
+    bench_orbit(window)
+
+
+def bench_orbit(window) -> None:
+    """The camera turns, as by the mouse: pictures a second of processor time, once their number of rays has settled."""
+    view, seconds = window.view3d, []
+    view._set_moving(True)
+    for _ in range(NUM_TURNS):
+        watch = Stopwatch()
+        view.camera.azimuth += 1.0
+        view.render_soon()
+        picture(window)
+        seconds.append(watch.processor())
+    view._set_moving(False)
+    picture(window)
+    taken = float(np.median(seconds[NUM_TURNS // 2:]))
+    text = f"  {'orbit':28} {1.0 / taken:7.1f} pictures/s, {view._pace.num_rays:,} rays while it turns"
+    verdict(text, taken, 1.0 / ORBIT_RATE)
+
+
+def picture(window) -> None:
+    """Returns when the scene is drawn, maps and lists with it."""
+    window._listing.stop()
+    while window.view3d.is_behind():
+        QtWidgets.QApplication.processEvents()
 
 
 def settle(window) -> None:
-    """Forgets what waits for the next turn of the event loop: it has been done, or is drawing."""
+    """Forgets what waits for the next turn of the event loop: it has been done."""
     window._listing.stop()
     window._pause.stop()
-    window.view3d._is_behind = False
 
 
 def verdict(text: str, seconds: float, limit: float | None) -> None:

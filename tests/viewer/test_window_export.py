@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from echopath_viewer.film import write_film
+from echopath_viewer.scene_builder.web_page import ScenePage
 from echopath_viewer.window.exporting import export
 
 NUM_PICTURES = 4  # of the film, of a frame of more chirps
@@ -81,6 +82,8 @@ def test_a_page_holds_all_it_needs_and_knows_each_ray(qtbot, window, tmp_path):
         assert f'"{ray}": "path: {ray:,}<br>hit 1: ' in text
     for name in ("walker", "wall_left", "wall_right"):
         assert f'"name":"{name}"' in text
+    rays = next(trace for trace in ScenePage(window.session)._traces if trace.name == "rays")
+    assert "bdata" not in rays.to_json()  # packed arrays, which the script of a click cannot go through
 
 
 def test_frames_show_themselves_in_notebooks(frame, tmp_path):

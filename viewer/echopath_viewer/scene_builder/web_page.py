@@ -13,7 +13,7 @@ from ..model.palette import objects_of
 
 MESH_OPACITY, MIRROR_OPACITY, RAY_WIDTH, CHOSEN_WIDTH = 0.6, 0.18, 2, 7
 CHOSEN_COLOUR = "#000000"
-EYE = {"x": -1.0, "y": -1.1, "z": 0.8}  # from behind, right and above
+EYE = np.array([-0.8, -0.9, 0.65])  # from behind, right and above, in sizes of what is looked at
 HINT = ("Drag: turn. Wheel: zoom. Point at a ray or body: what it is. Click a ray: all of it. Legend: click hides, double click "
         "isolates.")
 # Shows the ray that is clicked as a thick line, and what it is below the title.
@@ -102,7 +102,8 @@ class ScenePage:
                      "colorbar": {"title": legend.title, "len": 0.5, "x": 0.0}}
             return [self._plotly.Scatter3d(x=[None] * 2, y=[None] * 2, z=[None] * 2, mode="markers", marker=scale,
                                            showlegend=False, hoverinfo="skip")]
-        return [self._plotly.Scatter3d(x=[None], y=[None], z=[None], mode="lines", name=f"rays: {label}",
+        return [self._plotly.Scatter3d(x=[None], y=[None], z=[None], mode="lines",
+                                       name=f"rays, {legend.title.lower()}: {label}",
                                        line={"color": _css(rgb), "width": 4}) for label, rgb in legend.rows]
 
     def _drawn(self):
@@ -120,8 +121,8 @@ class ScenePage:
         points[order] = corners
         paths = np.repeat(segments.rays[segments.ray], 3)
         texts = self._hover_texts(segments)
-        x, y, z = points.T
-        return self._plotly.Scatter3d(x=x, y=y, z=z, mode="lines", name="rays", customdata=paths, showlegend=False,
+        x, y, z = points.T.tolist()  # lists, which the page's script can read: arrays are packed
+        return self._plotly.Scatter3d(x=x, y=y, z=z, mode="lines", name="rays", customdata=paths.tolist(), showlegend=False,
                                       text=np.repeat(texts, 3), hoverinfo="text",
                                       line={"width": RAY_WIDTH, "color": [_css(rgb[row]) for row in np.repeat(rows[::2], 3)]})
 
@@ -138,12 +139,33 @@ class ScenePage:
 
     def _layout(self) -> dict:
         axis = {"showbackground": False, "gridcolor": "#dddddd", "zeroline": False}
-        axes = {f"{name}axis": axis | {"title": f"{name} in m"} for name in "xyz"}
+        low, high = self._ends()
+        axes = {f"{name}axis": axis | {"title": f"{name} in m", "range": [float(low[row]), float(high[row])]}
+                for row, name in enumerate("xyz")}
         note = {"text": "", "xref": "paper", "yref": "paper", "x": 0.01, "y": 0.98, "xanchor": "left", "yanchor": "top",
                 "align": "left", "showarrow": False, "bgcolor": "rgba(255,255,255,.8)", "font": {"color": "black"}}
         title = {"text": f"{self._session.title or 'Rays'}<br><sub>{HINT}</sub>", "font": {"size": 16}}
-        return {"scene": axes | {"aspectmode": "data", "camera": {"eye": EYE}}, "title": title, "annotations": [note],
+        return {"scene": axes | {"aspectmode": "manual"} | self._camera(low, high), "title": title, "annotations": [note],
                 "margin": {"l": 0, "r": 0, "b": 0, "t": 60}, "legend": {"itemsizing": "constant"}, "paper_bgcolor": "white"}
+
+    def _ends(self) -> tuple:
+        """(lowest, highest), [3] m each, of all that is drawn."""
+        traces = [trace for trace in self._traces if trace.type == "mesh3d" or trace.name in ("rays", "antennas")]
+        points = np.concatenate([np.array([trace.x, trace.y, trace.z], float).T for trace in traces])
+        return np.nanmin(points, axis=0) - 1e-3, np.nanmax(points, axis=0) + 1e-3
+
+    def _camera(self, low, high) -> dict:
+        """All axes to one scale, in which the eye looks at the rays: planes may reach far behind them."""
+        unit = float((high - low).max())  # m
+        rays = self._session.segments(self._drawn()).points
+        seen = np.concatenate([rays, self._session.antennas_at(self._session.time)])
+        centre = (0.5 * (seen.min(axis=0) + seen.max(axis=0)) - 0.5 * (low + high)) / unit
+        size = max(float(np.linalg.norm(seen.max(axis=0) - seen.min(axis=0))) / unit, 1e-2)
+        return {"aspectratio": _xyz((high - low) / unit), "camera": {"center": _xyz(centre), "eye": _xyz(centre + size * EYE)}}
+
+
+def _xyz(values) -> dict:
+    return dict(zip("xyz", map(float, values)))
 
 
 def _css(rgb) -> str:

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import echopath as ep
+from echopath.sequence.unused_memory import give_back_memory
 
 from ..model import from_file, from_frame
 from ..model.carried import read_session
@@ -10,7 +11,10 @@ from ..model.time_line import time_line_of
 from ..model.view_state import state_of
 from .busy import run_with_progress
 from .demo import simulate_demo
+from .qt import QtCore
 from .remembered import remember_file
+
+REST_MS = 1000  # after a file was read, until lists and signals are made of it
 
 
 class Opening:
@@ -62,6 +66,7 @@ class Opening:
             self._follow(session)
         else:
             self._show_session(session, None)
+        QtCore.QTimer.singleShot(REST_MS, give_back_memory)  # what reading has left: a second file would come on top of it
 
     def _simulate_demo(self) -> None:
         frame = run_with_progress(self, "Street demo", simulate_demo)

@@ -43,7 +43,8 @@ def test_a_part_has_the_faults_that_it_has_alone_but_for_the_compression_of_the_
     radar = build_radar(**ARRAY, receiver=ep.Receiver(**LINEAR))
     parts = {"near": tone(5, 1e-9), "far": tone(40, 1e-12)}
     found = ep.receive_parts(parts, radar, seed=None)
-    np.testing.assert_allclose(found["far"], ep.receive(parts["far"], radar, seed=None).cube, atol=1e-18)
+    alone = ep.receive(parts["far"], radar, seed=None).cube
+    np.testing.assert_allclose(found["far"], alone, atol=1e-4 * np.abs(alone).max())  # pasts by the model of the whole
     squeezed = radar.replace(receiver=ep.Receiver(compression_dbm=-60.0))
     power = 1e-3 * 10 ** (-60 / 10)  # where the gain is 1 dB lower
     found = ep.receive_parts({"near": tone(5, power), "far": tone(40, 1e-20)}, squeezed, seed=None)

@@ -11,10 +11,11 @@ from ..transmit import code_of, is_coded, radar_of_noise
 from .analytic import as_samples
 from .channels import coupled, receiver_factors, require_channels, transmitter_factors
 from .converter import converted, jittered
-from .filters import filtered
+from .filters import filtered, has_filters
 from .imbalance import compressed, compression, unbalanced, with_offset
 from .leakage import leakage_amplitudes, leaked_tone
 from .oscillator import Oscillator
+from .past import models_of
 from .settings import Receiver
 from .slots import SlotTimes
 
@@ -81,7 +82,8 @@ def _received(cube, radar, receiver: Receiver, seed: int | None, start_time: flo
     if seed is not None:
         cube = _noise(cube, radar_of_noise(radar), seed, start_time)
     gain = compression(cube, radar, receiver)
-    cube = chain.filtered(cube if gain is None else compressed(cube, gain, radar))
+    cube = cube if gain is None else compressed(cube, gain, radar)
+    cube = chain.unbalanced(chain.filtered(cube, chain.models_of(cube)))
     cube = with_offset(cube, radar.waveform, receiver)
     if receiver.adc is None:
         return Reception(cube)
@@ -130,9 +132,17 @@ class Chain:
         factors = receiver_factors(self._receiver, self._radar, self._slots)
         return cube if factors is None else cube * factors
 
-    def filtered(self, cube):
-        """After the filters and the imbalance of the branches."""
-        return unbalanced(filtered(cube, self._radar.waveform, self._receiver), self._radar.waveform, self._receiver)
+    def models_of(self, cube):
+        """What `filtered` needs to know of the whole; None: nothing."""
+        return models_of(cube) if has_filters(self._receiver) else None
+
+    def filtered(self, cube, models):
+        """After the filters; models: `models_of` the whole of which the cube is a part."""
+        return cube if models is None else filtered(cube, self._radar.waveform, self._receiver, models)
+
+    def unbalanced(self, cube):
+        """With the imbalance of the branches."""
+        return unbalanced(cube, self._radar.waveform, self._receiver)
 
     def sampled(self, cube):
         """At the instants of the converter's clock."""

@@ -1,0 +1,58 @@
+"""What came before a chirp's first sample, foretold from its samples, so that filters have settled when it begins.
+
+A chirp is modelled as autoregressive (Burg 1975), which follows tones exactly. Foretold from its end and back from its begin, the
+two are faded into each other, so that the chirp can repeat without a step. The past is linear in the samples where the model is
+given: parts of a signal have pasts that add up, by the model of the whole.
+"""
+from __future__ import annotations
+
+import numpy as np
+
+_ORDER = 8  # of the model
+
+
+_CHIRPS_AT_ONCE = 256
+
+
+def models_of(cube: np.ndarray) -> np.ndarray:
+    """The model of each chirp of a cube [tx, rx, chirp, sample], [R, order], for `past_of`."""
+    chirps = cube.reshape(-1, cube.shape[-1])
+    order = min(_ORDER, chirps.shape[1] - 1)
+    return np.concatenate([_burg(chirps[begin:begin + _CHIRPS_AT_ONCE], order)
+                           for begin in range(0, len(chirps), _CHIRPS_AT_ONCE)])
+
+
+def past_of(chirps: np.ndarray, model: np.ndarray, count: int) -> np.ndarray:
+    """Samples [R, count] that lead from the ends of chirps [R, N] to their begins; model: [R, order] of the chirps."""
+    order = model.shape[1]
+    if order == 0:
+        return np.zeros((len(chirps), count), np.complex128)
+    after = _foretold(chirps[:, -order:], model, count)
+    before = _foretold(chirps[:, :order][:, ::-1], np.conj(model), count)[:, ::-1]
+    place = np.arange(1, count + 1) / (count + 1)
+    fade = place ** 3 * (10.0 - 15.0 * place + 6.0 * place ** 2)
+    return after * (1.0 - fade) + before * fade
+
+
+def _burg(chirps, order: int) -> np.ndarray:
+    """Coefficients a [R, order] with x[n] = -(a_1 x[n-1] + a_2 x[n-2] + ...)."""
+    forward, backward = chirps, chirps
+    model = np.zeros((len(chirps), order + 1), np.complex128)
+    model[:, 0] = 1.0
+    for step in range(order):
+        ahead, behind = forward[:, 1:], backward[:, :-1]
+        power = np.sum(np.abs(ahead) ** 2 + np.abs(behind) ** 2, axis=1)
+        turn = -2.0 * np.sum(ahead * np.conj(behind), axis=1) / np.maximum(power, np.finfo(float).tiny)
+        turn = turn[:, None]
+        forward, backward = ahead + turn * behind, behind + np.conj(turn) * ahead
+        model[:, 1:step + 2] += turn * np.conj(model[:, step::-1] if step else model[:, :1])
+    return model[:, 1:]
+
+
+def _foretold(last, model, count: int) -> np.ndarray:
+    """The next samples [R, count] behind the last ones [R, order]."""
+    order = last.shape[1]
+    samples = np.concatenate([last, np.zeros((len(last), count), np.complex128)], axis=1)
+    for place in range(order, order + count):
+        samples[:, place] = -np.einsum("ro,ro->r", model, samples[:, place - order:place][:, ::-1])
+    return samples[:, order:]

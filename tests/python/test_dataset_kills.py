@@ -31,7 +31,9 @@ def test_a_killed_command_is_gone_on_with(small_dataset, tmp_path, workers):
     assert bytes_of(tmp_path) == bytes_of(folder)
 
 
-def test_a_worker_that_is_killed_is_replaced(small_dataset, tmp_path):
+def test_a_worker_that_is_killed_is_replaced(small_dataset, monkeypatch, tmp_path):
+    """Libraries of a worker, too, have its share of the processors."""
+    monkeypatch.delenv("OPENBLAS_NUM_THREADS", raising=False)
     path, folder = small_dataset
     running = command(path, tmp_path, "--workers", "2")
     running.stdout.readline()
@@ -40,6 +42,8 @@ def test_a_worker_that_is_killed_is_replaced(small_dataset, tmp_path):
     while running.poll() is None and not workers:
         workers = [int(one) for one in children.read_text().split()
                    if b"spawn_main" in Path(f"/proc/{one}/cmdline").read_bytes()]
+    share = f"OPENBLAS_NUM_THREADS={max(1, (os.cpu_count() or 1) // 2)}".encode()
+    assert all(share in Path(f"/proc/{one}/environ").read_bytes().split(b"\0") for one in workers)
     for one in workers:
         os.kill(one, signal.SIGKILL)
     running.communicate(timeout=120)

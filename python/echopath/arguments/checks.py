@@ -8,206 +8,25 @@ from __future__ import annotations
 
 import functools
 import inspect
-import math
-import numbers
-import os
 from collections.abc import Callable, Mapping
-from typing import Any, Literal, ParamSpec, TypeVar, get_args
+from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from .. import _core
 from .keywords import refuse_misplaced, refuse_unknown
-from .shown import shown, writable
+from .number_rules import LARGEST_COUNT, Rule, count, positive, real, seed
+from .shown import refused, shown
+from .word_rules import (
+    MapWindow, Window, choice, file, flag, flag_or_auto, is_writable, map_window, one_of, path, text, window,
+)
 
 Parameters = ParamSpec("Parameters")
 Result = TypeVar("Result")
-Rule = Callable[[str, Any], Any]
 Progress = Callable[[str, float], object] | bool | None            # (stage, fraction from 0 to 1); True: bars
-WindowName = Literal["rect", "hann", "hamming", "blackman_harris"]
-Window = WindowName | tuple[Literal["chebyshev"], float]           # a name, or with its sidelobe level in dB
-MapWindow = Window | tuple[Window, Window]                         # of both axes of a map, or those of (range, velocity)
 
-LARGEST_SEED = 2**64 - 1
-LONGEST_NAME, LONGEST_PATH = 255, 4096  # bytes of the name of a file and of all folders with it
-LARGEST_COUNT = 2**31 - 1  # of what the core keeps in an int
 KINDS = {"real": "iuf", "complex": "iufc", "whole": "iu"}
-
-
-def refused(kind: type[Exception], argument: str, rule: str, value) -> Exception:
-    """The error to raise: "argument: must be rule, got value"."""
-    return kind(f"{argument}: must be {rule}, got {shown(value)}")
-
-
-# --- numbers ---
-
-def _scalar(value):
-    """The number in an array without axes, anything else as it is."""
-    return value[()] if isinstance(value, np.ndarray) and value.ndim == 0 else value
-
-
-def _is_number(value) -> bool:
-    return isinstance(value, numbers.Real) and not isinstance(value, (bool, np.bool_))
-
-
-def _range_words(low: float, high: float, unit: str = "") -> str:
-    if math.isinf(low) and math.isinf(high):
-        return f" in {unit}" if unit else ""
-    unit = f" {unit}" if unit else ""
-    if math.isinf(high):
-        return f" of at least {low:.15g}{unit}"
-    return f" from {low:.15g} to {high:.15g}{unit}" if math.isfinite(low) else f" of at most {high:.15g}{unit}"
-
-
-def count(least: int = 0, most: int | None = None) -> Rule:
-    """A whole number from `least` to `most`; 1e5, 128.0 and NumPy's integers are whole numbers too."""
-    rule = f"a whole number of at least {least}" if most is None else f"a whole number from {least} to {most}"
-
-    def check(argument: str, value) -> int:
-        number = _scalar(value)
-        if not _is_number(number):
-            raise refused(TypeError, argument, rule, value)
-        is_whole = isinstance(number, numbers.Integral) or (math.isfinite(number) and number == int(number))
-        if not is_whole or number < least or (most is not None and number > most):
-            raise refused(ValueError, argument, rule, value)
-        return int(number)
-
-    return check
-
-
-def real(low: float = -math.inf, high: float = math.inf, unit: str = "", *, above: float | None = None) -> Rule:
-    """A finite number of [low, high], or one that is larger than `above`."""
-    rule = "a finite number" + (_range_words(low, high, unit) if above is None else f" above {above:g} {unit}".rstrip())
-    if above is not None and math.isfinite(high):
-        rule += f", at most {high:.15g}"
-
-    def check(argument: str, value) -> float:
-        number = _scalar(value)
-        if not _is_number(number):
-            raise refused(TypeError, argument, rule, value)
-        try:
-            number = float(number)
-        except OverflowError:  # a whole number beyond 1e308
-            number = math.inf
-        if not math.isfinite(number) or not low <= number <= high or (above is not None and number <= above):
-            raise refused(ValueError, argument, rule, value)
-        return number
-
-    return check
-
-
-def positive(unit: str = "") -> Rule:
-    """A finite number above 0."""
-    return real(above=0.0, unit=unit)
-
-
-def seed(argument: str, value) -> int:
-    """A whole number from 0 to 2^64 - 1."""
-    return _seed(argument, value)
-
-
-_seed = count(0, LARGEST_SEED)
-
-
-# --- words ---
-
-def flag(argument: str, value) -> bool:
-    """True or False, NumPy's too."""
-    if not isinstance(value, (bool, np.bool_)):
-        raise refused(TypeError, argument, "True or False", value)
-    return bool(value)
-
-
-def flag_or_auto(argument: str, value) -> bool | Literal["auto"]:
-    """True or False, NumPy's too, or "auto"."""
-    if isinstance(value, str) and value == "auto":
-        return "auto"
-    if not isinstance(value, (bool, np.bool_)):
-        raise refused(ValueError if isinstance(value, str) else TypeError, argument, "True, False or 'auto'", value)
-    return bool(value)
-
-
-def choice(*names: str) -> Rule:
-    """One of some words."""
-    quoted = [f"'{name}'" for name in names]
-    rule = " or ".join(filter(None, [", ".join(quoted[:-1]), quoted[-1]]))
-
-    def check(argument: str, value) -> str:
-        if not isinstance(value, str):
-            raise refused(TypeError, argument, rule, value)
-        if value not in names:
-            raise refused(ValueError, argument, rule, value)
-        return str(value)
-
-    return check
-
-
-def one_of(literal) -> Rule:
-    """One of the words of a typing.Literal."""
-    return choice(*get_args(literal))
-
-
-def text(argument: str, value) -> str:
-    """Text that can be written as UTF-8, without NUL."""
-    if not isinstance(value, str):
-        raise refused(TypeError, argument, "text", value)
-    if not is_writable(value):
-        raise refused(ValueError, argument, "text without lone surrogates and NUL", value)
-    return str(value)
-
-
-def is_writable(value: str) -> bool:
-    """Whether text can be written as UTF-8 and read back from C."""
-    return "\0" not in value and not any("\ud800" <= letter <= "\udfff" for letter in value)
-
-
-def path(argument: str, value) -> str:
-    """The name of a file or folder: text or an os.PathLike."""
-    try:
-        name = os.fspath(value)
-    except Exception:  # an object may raise anything when it is asked for its name
-        raise refused(TypeError, argument, "the name of a file", value) from None
-    if not isinstance(name, str):
-        raise refused(TypeError, argument, "the name of a file as text", value)
-    if not name or not is_writable(name):
-        raise refused(ValueError, argument, "the name of a file, without lone surrogates and NUL", value)
-    if len(os.fsencode(name)) >= LONGEST_PATH or max(map(len, os.fsencode(name).split(b"/"))) > LONGEST_NAME:
-        raise refused(_core.FileError, argument, "the name of a file that can be", name)
-    return name
-
-
-def file(argument: str, value) -> str:
-    """The name of a file, which is no folder."""
-    name = path(argument, value)
-    if os.path.isdir(name):
-        raise refused(_core.FileError, argument, "the name of a file, not of a folder", value)
-    return name
-
-
-def window(argument: str, value):
-    """A window by its name, or ("chebyshev", sidelobe level in dB)."""
-    names = get_args(WindowName)
-    rule = ", ".join(f"'{name}'" for name in names) + " or ('chebyshev', sidelobe level in dB)"
-    if isinstance(value, str):
-        if value not in (*names, "chebyshev"):
-            known = (*names, "chebyshev")
-            nearest = _core.meant_name(writable(value), known) or _core.nearest_names(writable(value), known, 1)[0]
-            raise refused(ValueError, argument, f"{rule} (nearest: {nearest})", value)
-        return str(value)
-    if not (isinstance(value, (tuple, list)) and len(value) == 2 and isinstance(value[0], str) and _is_number(value[1])):
-        raise refused(TypeError, argument, rule, value)
-    if value[0] != "chebyshev" or not (math.isfinite(value[1]) and value[1] > 0.0):
-        raise refused(ValueError, argument, rule, value)
-    return str(value[0]), float(value[1])
-
-
-def map_window(argument: str, value):
-    """The windows of a map: one for both of its axes, or a pair of them, (of range, of velocity)."""
-    if not (isinstance(value, (tuple, list)) and len(value) == 2 and not _is_number(value[1])):
-        return window(argument, value)
-    of_range, of_velocity = (window(f"{argument}[{axis}]", one) for axis, one in enumerate(value))
-    return of_range if of_range == of_velocity else (of_range, of_velocity)
 
 
 # --- objects ---
@@ -372,6 +191,7 @@ def _spread(argument: str, kind: type, given: dict, known: tuple) -> dict:
     return {name: getattr(holder, name) for name in holder.__dataclass_fields__ if name in known} | given
 
 
-__all__ = ["ArrayLike", "COMMON", "MapWindow", "Progress", "Rule", "Window", "an", "anything", "array", "checked", "choice",
-           "count", "file", "flag", "is_writable", "keywords", "map_window", "one_of", "optional", "path", "positive",
-           "progress", "real", "refused", "row_of_channel", "seed", "shown", "text", "vector", "window"]
+__all__ = ["ArrayLike", "COMMON", "LARGEST_COUNT", "MapWindow", "Progress", "Rule", "Window", "an", "anything", "array",
+           "checked", "choice", "count", "file", "flag", "flag_or_auto", "is_writable", "keywords", "map_window", "one_of",
+           "optional", "path", "positive", "progress", "real", "refused", "row_of_channel", "seed", "shown", "text", "vector",
+           "window"]

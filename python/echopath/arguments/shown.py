@@ -28,3 +28,8 @@ def shown(value) -> str:
 def writable(text: str) -> str:
     """Text with its lone surrogates written out."""
     return text.encode("utf-8", "backslashreplace").decode("utf-8")
+
+
+def refused(kind: type[Exception], argument: str, rule: str, value) -> Exception:
+    """The error to raise: "argument: must be rule, got value"."""
+    return kind(f"{argument}: must be {rule}, got {shown(value)}")

@@ -6,6 +6,7 @@ import os
 import signal
 import time
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,7 @@ from .scene_work import claimed, make_scene, tidy
 from .template import Template
 
 PAUSE = 0.2  # s between looks for what others have made
+_THREADS_OF_LIBRARIES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 Done = tuple[int, SceneRecord]
 
@@ -61,7 +63,8 @@ def in_processes(path: Path, folder: Path, scenes: Sequence[int], run: str, coun
     def start(index: int) -> Any:
         args = (str(path), str(folder), turned(scenes, index, count), run, threads, unwritten)
         process = context.Process(target=_work, args=args, daemon=True)
-        process.start()
+        with _libraries_take(threads):
+            process.start()
         return process
 
     processes = [start(index) for index in range(count)]
@@ -72,6 +75,19 @@ def in_processes(path: Path, folder: Path, scenes: Sequence[int], run: str, coun
             process.terminate()
         for process in processes:
             process.join()
+
+
+@contextmanager
+def _libraries_take(threads: int) -> Iterator[None]:
+    """Processes that begin in the block have so many threads in NumPy's libraries, too, unless the caller's environment says how
+    many: theirs wait for each other with the processor running."""
+    added = [name for name in _THREADS_OF_LIBRARIES if name not in os.environ]
+    os.environ |= dict.fromkeys(added, str(threads))
+    try:
+        yield
+    finally:
+        for name in added:
+            del os.environ[name]
 
 
 def _watched(folder: Path, scenes: Sequence[int], processes: list[Any], start: Callable[[int], Any],

@@ -1,0 +1,116 @@
+"""Rules of arguments that are words, names of files and windows (see `checks`)."""
+from __future__ import annotations
+
+import math
+import os
+from typing import Literal, get_args
+
+import numpy as np
+
+from .. import _core
+from .number_rules import Rule, is_number
+from .shown import refused, writable
+
+WindowName = Literal["rect", "hann", "hamming", "blackman_harris"]
+Window = WindowName | tuple[Literal["chebyshev"], float]           # a name, or with its sidelobe level in dB
+MapWindow = Window | tuple[Window, Window]                         # of both axes of a map, or those of (range, velocity)
+
+LONGEST_NAME, LONGEST_PATH = 255, 4096  # bytes of the name of a file and of all folders with it
+
+
+def flag(argument: str, value) -> bool:
+    """True or False, NumPy's too."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise refused(TypeError, argument, "True or False", value)
+    return bool(value)
+
+
+def flag_or_auto(argument: str, value) -> bool | Literal["auto"]:
+    """True or False, NumPy's too, or "auto"."""
+    if isinstance(value, str) and value == "auto":
+        return "auto"
+    if not isinstance(value, (bool, np.bool_)):
+        raise refused(ValueError if isinstance(value, str) else TypeError, argument, "True, False or 'auto'", value)
+    return bool(value)
+
+
+def choice(*names: str) -> Rule:
+    """One of some words."""
+    quoted = [f"'{name}'" for name in names]
+    rule = " or ".join(filter(None, [", ".join(quoted[:-1]), quoted[-1]]))
+
+    def check(argument: str, value) -> str:
+        if not isinstance(value, str):
+            raise refused(TypeError, argument, rule, value)
+        if value not in names:
+            raise refused(ValueError, argument, rule, value)
+        return str(value)
+
+    return check
+
+
+def one_of(literal) -> Rule:
+    """One of the words of a typing.Literal."""
+    return choice(*get_args(literal))
+
+
+def text(argument: str, value) -> str:
+    """Text that can be written as UTF-8, without NUL."""
+    if not isinstance(value, str):
+        raise refused(TypeError, argument, "text", value)
+    if not is_writable(value):
+        raise refused(ValueError, argument, "text without lone surrogates and NUL", value)
+    return str(value)
+
+
+def is_writable(value: str) -> bool:
+    """Whether text can be written as UTF-8 and read back from C."""
+    return "\0" not in value and not any("\ud800" <= letter <= "\udfff" for letter in value)
+
+
+def path(argument: str, value) -> str:
+    """The name of a file or folder: text or an os.PathLike."""
+    try:
+        name = os.fspath(value)
+    except Exception:  # an object may raise anything when it is asked for its name
+        raise refused(TypeError, argument, "the name of a file", value) from None
+    if not isinstance(name, str):
+        raise refused(TypeError, argument, "the name of a file as text", value)
+    if not name or not is_writable(name):
+        raise refused(ValueError, argument, "the name of a file, without lone surrogates and NUL", value)
+    if len(os.fsencode(name)) >= LONGEST_PATH or max(map(len, os.fsencode(name).split(b"/"))) > LONGEST_NAME:
+        raise refused(_core.FileError, argument, "the name of a file that can be", name)
+    return name
+
+
+def file(argument: str, value) -> str:
+    """The name of a file, which is no folder."""
+    name = path(argument, value)
+    if os.path.isdir(name):
+        raise refused(_core.FileError, argument, "the name of a file, not of a folder", value)
+    return name
+
+
+def window(argument: str, value):
+    """A window by its name, or ("chebyshev", sidelobe level in dB)."""
+    names = get_args(WindowName)
+    rule = ", ".join(f"'{name}'" for name in names) + " or ('chebyshev', sidelobe level in dB)"
+    if isinstance(value, str):
+        if value not in (*names, "chebyshev"):
+            known = (*names, "chebyshev")
+            nearest = _core.meant_name(writable(value), known) or _core.nearest_names(writable(value), known, 1)[0]
+            raise refused(ValueError, argument, f"{rule} (nearest: {nearest})", value)
+        return str(value)
+    if not (isinstance(value, (tuple, list)) and len(value) == 2 and isinstance(value[0], str) and is_number(value[1])):
+        raise refused(TypeError, argument, rule, value)
+    if value[0] != "chebyshev" or not (math.isfinite(value[1]) and value[1] > 0.0):
+        raise refused(ValueError, argument, rule, value)
+    return str(value[0]), float(value[1])
+
+
+def map_window(argument: str, value):
+    """The windows of a map: one for both of its axes, or a pair of them, (of range, of velocity)."""
+    if not (isinstance(value, (tuple, list)) and len(value) == 2 and not is_number(value[1])):
+        return window(argument, value)
+    of_range, of_velocity = (window(f"{argument}[{axis}]", one) for axis, one in enumerate(value))
+    return of_range if of_range == of_velocity else (of_range, of_velocity)

@@ -12,8 +12,8 @@ import pytest
 from PIL import Image
 
 import echopath as ep
+from echopath.base.colours import colours_of
 from echopath.cli import main
-from echopath.labels.images import colours_of
 from echopath.plots import plot_ghosts, plot_labels
 from support.frame_edits import edited
 from support.scene_text import WAVEFORM, moving_plate

@@ -12,12 +12,12 @@ from collections.abc import Mapping
 from typing import Any, ClassVar, Literal, TypeVar, dataclass_transform
 
 from .. import _core
-from ..paths.families import Objects, objects_rule
 from .checks import LARGEST_COUNT, MapWindow, Rule, count, flag, flag_or_auto, one_of, optional, positive, real
-from .checks import seed as seed_rule
 from .checks import map_window as window_rule
+from .checks import seed as seed_rule
 from .effects import Choices, effects_rule
 from .keywords import known_keywords, refuse_unknown
+from .objects import Objects, objects_rule
 
 Polarization = Literal["auto", "scalar", "jones"]
 Footprint = Literal["none", "first_order", "second_order", "edges"]
@@ -131,6 +131,7 @@ class SignalSettings(Settings):
 
 
 REPLAY_KEYWORDS = ("tolerance", "method", "replay", "evaluate", "phase_tolerance", "retrace", "keyframes")
+FRAME_KEYWORDS = ("replay", "evaluate", "retrace", "keyframes")  # those of them that a Frame keeps
 
 
 @settings_class

@@ -6,8 +6,9 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import Rule, count
 from ..arguments.keywords import refuse_unknown
+from ..arguments.objects import objects_rule
 from ..labels.planes import with_receivers
-from ..paths.families import check_objects, objects_rule
+from ..paths.families import check_objects
 from ..spectra.range_doppler import CFAR_RULES
 
 # Of the keywords of `detect_frame`.

@@ -9,17 +9,17 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import Progress, an, checked, keywords, optional, refused, text
 from ..arguments.keywords import parameters_of
+from ..arguments.objects import Objects, objects_rule
+from ..base.antennas import centre_of
 from ..labels.labels import Labels
-from ..paths.families import Objects
 from ..paths.families import families as find_families
-from ..paths.families import objects_rule
 from ..signals.beside import NAMES, require_names
 from ..signals.parts import decompose
 from ..signals.same_radar import difference
 from ..spectra.angles import estimate_angles
 from ..spectra.range_doppler import CFAR_RULES, FALSE_ALARM_RATE, RANK, CfarMethod, cfar
 from . import labelling
-from .detections import Detections, centre_of
+from .detections import Detections
 from .directions import directions_of
 from .echo_fields import EchoFields
 from .noise import warn_of_missing_noise

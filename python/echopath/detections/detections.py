@@ -175,9 +175,3 @@ class Detections:
         of_parts += f", {self.is_noise.sum()} of noise alone" if self.is_noise.any() else ""
         return (f"Detections({len(self)}: {self.range.min():.2f} to {self.range.max():.2f} m, {self.velocity.min():.2f} to "
                 f"{self.velocity.max():.2f} m/s{of_parts})")
-
-
-def centre_of(radar):
-    """[3] m, in the radar's frame: half-way between the mean transmitter and the mean receiver."""
-    return 0.5 * sum(np.mean([antenna.position for antenna in antennas], axis=0)
-                     for antennas in (radar.transmitters, radar.receivers))

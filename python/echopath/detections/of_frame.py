@@ -5,8 +5,8 @@ import dataclasses
 
 from .. import _core
 from ..arguments.checks import Progress, an, checked
+from ..arguments.objects import Objects
 from ..frame.frame import Frame
-from ..paths.families import Objects
 from ..spectra.range_doppler import FALSE_ALARM_RATE, RANK, CfarMethod
 from .checks import RULES
 from .detect import detect

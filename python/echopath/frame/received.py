@@ -1,6 +1,7 @@
 """What the receiver of a frame makes of each of its parts."""
 from __future__ import annotations
 
+from ..arguments.settings import FRAME_KEYWORDS
 from ..paths.subset import subset
 from ..receiver.chain import transmitted_code
 from ..receiver.parts import receive_parts
@@ -21,8 +22,9 @@ def _arriving(frame, partition: str, parts: dict) -> dict:
     """{part: cube} as it comes to the receivers: of transmitters that send at once their sum."""
     if not is_coded(frame.radar):
         return parts
+    settings = {name: getattr(frame, name) for name in FRAME_KEYWORDS}
     code = transmitted_code(frame.radar)
-    return {name: coded_cube(_paths_of(frame, partition, index), frame.radar, cube, code=code, **frame._replayed)
+    return {name: coded_cube(_paths_of(frame, partition, index), frame.radar, cube, code=code, **settings)
             for index, (name, cube) in enumerate(parts.items())}
 
 

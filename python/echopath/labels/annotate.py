@@ -9,8 +9,8 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import MapWindow, Progress, an, anything, checked, optional, refused, text
 from ..arguments.keywords import refuse_unknown
+from ..arguments.objects import Objects
 from ..arguments.settings import Evaluate, LabelSettings, Method, Plane, Replay, Retrace, SignalSettings
-from ..paths.families import Objects
 from ..paths.families import families as find_families
 from ..paths.resolution import Interval, interval_of, mean_powers
 from ..paths.subset import part_of_path

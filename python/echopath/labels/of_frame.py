@@ -4,9 +4,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ..arguments.checks import Progress, an, anything, checked
-from ..arguments.settings import LabelSettings, Plane
+from ..arguments.objects import Objects
+from ..arguments.settings import FRAME_KEYWORDS, LabelSettings, Plane
 from ..frame.frame import Frame
-from ..paths.families import Objects
 from ..paths.families import families as find_families
 from ..signals.beside import cubes_beside, require_names
 from ..signals.parts import ONLY_PARTITION, as_partitions, check_partitions
@@ -37,7 +37,7 @@ def annotate_frame(frame: Frame, parts: Mapping | None = None, *, plane: Plane =
                           dynamic_range_db=dynamic_range_db, errors=errors)
     request = make_request(frame.radar, paths.frame.num_batches, asked, **frame.spectrum_settings, angles=angles or None)
     chosen = _as_new_partitions(parts, frame)
-    replayed = frame._replayed | {"progress": progress}
+    replayed = {name: getattr(frame, name) for name in FRAME_KEYWORDS} | {"progress": progress}
     families = find_families(paths, request.objects)
     owners, powers = owners_and_powers(request, paths, families, chosen, replayed)
     kept = {partition: cubes for partition, cubes in frame.parts.items() if partition not in chosen}

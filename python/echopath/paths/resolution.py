@@ -9,8 +9,8 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import Progress, checked, real
+from ..arguments.objects import Objects, objects_rule
 from ..signals.measures import in_dbm
-from .families import Objects, objects_rule
 from .families import families as families_of
 from .visibility import visibility_in_trace
 

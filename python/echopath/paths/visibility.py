@@ -5,8 +5,7 @@ import dataclasses
 
 from .. import _core
 from ..arguments.checks import Progress, checked, count, optional, real
-from .families import Objects, named_globs, objects_rule
-
+from ..arguments.objects import Objects, named_globs, objects_rule
 
 HIDDEN_SHARE = 0.05  # an object of which no more than this is in sight counts as hidden
 DIRECTIONS_OF_PLACES = 256  # on each object: shares to .004 rms, for the question whether they are above HIDDEN_SHARE

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..labels.images import colours_of
+from ..base.colours import colours_of
 from ..paths.resolution import RESOLVED_DB
 from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm, with_error
 from .style import new_figure

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..labels.images import colours_of
+from ..base.colours import colours_of
 from .maps import RANGE_LABEL, VELOCITY_LABEL
 from .style import axes_or_new
 from .top_view import AHEAD_LABEL, LEFT_LABEL

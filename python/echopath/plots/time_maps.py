@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..labels.images import colours_of
+from ..base.colours import colours_of
 from ..signals.measures import SMALLEST_POWER, in_dbm
 from .maps import NOISE_PEAK_DB, RANGE_LABEL, VELOCITY_LABEL, VELOCITY_MARGIN, chosen_limits, limits_of_level
 from .style import MAP_COLOURS, axes_or_new

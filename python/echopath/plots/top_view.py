@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ..detections.detections import centre_of
+from ..base.antennas import centre_of
 from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm
 from ..truth.boxes import boxes_at
 from .maps import NOISE_PEAK_DB, chosen_limits, limits_of_level

@@ -8,18 +8,30 @@ from typing import TYPE_CHECKING, Literal, Union
 
 from .. import _core
 from ..arguments.checks import (
-    MapWindow, an, anything, array, checked, count, flag, map_window, one_of, optional, path, refused, text,
+    MapWindow,
+    an,
+    anything,
+    array,
+    checked,
+    count,
+    flag,
+    map_window,
+    one_of,
+    optional,
+    path,
+    refused,
+    text,
 )
+from ..arguments.objects import listed
 from ..arguments.settings import Evaluate, Retrace, SignalSettings
 from ..frame.frame import Frame
 from ..live import Live
-from ..paths.families import listed
 from ..sequence import Sequence, StoredSequence
 from ..signals.parts import Views, selection_rule
 
 if TYPE_CHECKING:
-    from ..dataset import Dataset  # takes its time to import
     from ..base.foreign_types import Colormap, Plotter, QMainWindow
+    from ..dataset import Dataset  # takes its time to import
 
 ColorBy = Literal["bounces", "mesh", "power", "range", "speed"]
 Viewed = Union[str, os.PathLike[str], list[str], list[os.PathLike[str]], tuple[str | os.PathLike[str], ...], Frame, Sequence,

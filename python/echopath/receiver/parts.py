@@ -6,8 +6,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import ArrayLike, anything, array, checked, optional, real, refused, seed as seed_rule
-from ..arguments.shown import writable
+from ..arguments.checks import ArrayLike, anything, array, checked, optional, real, refused, seed as seed_rule, text
 from ..transmit import radar_of_noise, signal_shape
 from .chain import Chain, reception
 from .channels import require_channels
@@ -34,7 +33,7 @@ def receive_parts(parts: Mapping[str, ArrayLike], radar: _core.Radar, *, seed: i
     of those names.
     """
     shape = signal_shape(radar)
-    cubes = {name: _checked_cube(f"parts.{writable(str(name))}", cube, shape) for name, cube in _checked_table(parts).items()}
+    cubes = {name: _checked_cube(f"parts.{text('parts', name)}", cube, shape) for name, cube in _checked_table(parts).items()}
     other = None if interference is None else _checked_cube("interference", interference, shape)
     receiver = Receiver() if radar.receiver is None else radar.receiver
     require_channels(receiver, radar)
@@ -56,9 +55,7 @@ def _before_the_converter(cubes, radar, receiver: Receiver, seed, start_time: fl
     if seed is not None:
         found["noise"] = _core.add_noise(np.zeros(shape, np.complex128), radar_of_noise(radar), seed=seed, start_time=start_time)
     gain = compression(sum(found.values()), radar, receiver)
-    found = {name: cube if gain is None else compressed(cube, gain, radar) for name, cube in found.items()}
-    models = chain.models_of(sum(found.values()))
-    found = {name: chain.unbalanced(chain.filtered(cube, models)) for name, cube in found.items()}
+    found = {name: chain.filtered(cube if gain is None else compressed(cube, gain, radar)) for name, cube in found.items()}
     if receiver.dc_offset != (0.0, 0.0):
         offset = receiver.dc_offset[0] if radar.waveform.real else complex(*receiver.dc_offset)
         found["offset"] = np.full(shape, offset, np.complex128)

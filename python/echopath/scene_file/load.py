@@ -6,8 +6,8 @@ import tomllib
 from pathlib import Path
 
 from .. import _core
+from ..arguments.objects import named_globs
 from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
-from ..paths.families import named_globs
 from ..readers.load import is_foreign
 from ..scene.interferers import Interferer
 from ..sensor_files import load_radar

@@ -6,7 +6,8 @@ from typing import Any
 
 from ..arguments.checks import refused
 from ..arguments.keywords import refuse_unknown
-from ..paths.families import Objects, check_objects, objects_rule
+from ..arguments.objects import Objects, objects_rule
+from ..paths.families import check_objects
 
 Asked = bool | Mapping[str, Any] | None
 

@@ -9,10 +9,11 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import checked, refused
 from ..arguments.iterables import iterable
-from ..detections.detections import centre_of
+from ..arguments.objects import Objects, named_globs, objects_rule
+from ..base.antennas import centre_of
 from ..frame.frame import Frame
 from ..frame.maps import FrameMaps
-from ..paths.families import Objects, families, named_globs, objects_rule
+from ..paths.families import families
 from ..paths.visibility import visibility_in_trace
 from .boxes import STEP, boxes_at, rate_of
 from .cross_section import isotropic_power

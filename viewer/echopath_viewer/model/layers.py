@@ -6,8 +6,8 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
+from echopath.base.colours import colours_of
 from echopath.labels.ghost_names import ghost_name
-from echopath.labels.images import colours_of
 from echopath.plots.labels import CLASSES
 
 from .palette import rgb_of

@@ -155,11 +155,6 @@ class Frame:
         return frame_html(self)
 
     @property
-    def _replayed(self) -> dict:
-        """How its signal follows moving echoes, as keywords of `synthesize` and `decompose`."""
-        return {name: getattr(self, name) for name in ("replay", "evaluate", "retrace", "keyframes")}
-
-    @property
     def effects(self) -> list:
         """Which effects the frame models, which not, and why: list [E] of Effect, those of the paths and of the signal."""
         return of_paths(self.paths, replay=self.replay, evaluate=self.evaluate, retrace=self.retrace,

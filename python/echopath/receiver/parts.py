@@ -55,7 +55,9 @@ def _before_the_converter(cubes, radar, receiver: Receiver, seed, start_time: fl
     if seed is not None:
         found["noise"] = _core.add_noise(np.zeros(shape, np.complex128), radar_of_noise(radar), seed=seed, start_time=start_time)
     gain = compression(sum(found.values()), radar, receiver)
-    found = {name: chain.filtered(cube if gain is None else compressed(cube, gain, radar)) for name, cube in found.items()}
+    found = {name: cube if gain is None else compressed(cube, gain, radar) for name, cube in found.items()}
+    models = chain.models_of(sum(found.values()))
+    found = {name: chain.unbalanced(chain.filtered(cube, models)) for name, cube in found.items()}
     if receiver.dc_offset != (0.0, 0.0):
         offset = receiver.dc_offset[0] if radar.waveform.real else complex(*receiver.dc_offset)
         found["offset"] = np.full(shape, offset, np.complex128)

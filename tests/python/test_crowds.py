@@ -10,6 +10,7 @@ ALONE_DB = 0.3      # what is asked of each object of a crowd
 FOCUSED_DB = 1.0    # claimed for a smooth car at 40 m, at most; even rays claim 3.7
 POLE_DB = 0.5       # of poles, resolved or not: cones about spheres left 2 dB and more
 ORDERS_DB = 0.05    # of both orders over a rough mirror: one lattice each, tilted against the other
+CLAIMED_DB = 0.8    # of his direct power, at most; it scatters by .04 dB
 SCATTER = 0.01      # relative, of the diffuse part of a person's direct power
 
 
@@ -47,11 +48,22 @@ def test_smooth_cars_of_a_street_are_resolved_by_foci_on_their_glints():
         assert abs(decibels(here.power, alone.power)) < ALONE_DB and here.interval_db < FOCUSED_DB, name
 
 
+@pytest.mark.filterwarnings("ignore")
+def test_rays_that_are_too_few_serve_what_the_radar_sees_before_its_images():
+    """Images of pedestrians in flagged walls took three quarters of the rays, and direct echoes of poles and cars a fifth."""
+    paths = ep.trace(crowd_scenes.street(mirrors=True), crowd_scenes.radar(), num_rays=60_000)
+    strata = list(paths.frame.strata)
+    objects = {stratum.name for stratum in strata if stratum.num_mirrors == 0 and stratum.name in crowd_scenes.street_names()}
+    assert len(objects) >= 18
+    assert sum(stratum.num_rays for stratum in strata if stratum.num_mirrors == 0) >= 0.45 * 60_000
+
+
 def test_a_person_among_thousands_of_objects_has_rays():
     """With 254 cones of equal shares he had 25 paths, or none."""
     scene, radar = crowd_scenes.flat_city()
     found = [crowd.direct(ep.trace(scene, radar, num_rays=100_000, max_bounces=2, seed=seed), "person") for seed in range(1, 5)]
     powers = np.array([ep.received_power(paths).diffuse for paths in found])  # his smooth parts glint: 5 % in all
+    assert all(ep.received_power(paths).interval_db < CLAIMED_DB for paths in found)
     assert min(paths.num_paths for paths in found) > 1000
     assert powers.std(ddof=1) / powers.mean() < SCATTER
 

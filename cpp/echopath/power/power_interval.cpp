@@ -7,12 +7,14 @@ namespace echopath {
 namespace {
 
 constexpr double kNormal = 1.959964;  // two-sided 95 % quantile
-constexpr double kOfHalving = 1.2, kOfHalvingMore = 12.0, kMostOfHalving = 5.0;
+constexpr double kOfHalving = 1.2, kOfHalvingMore = 3.0, kMostOfHalving = 5.0;
 constexpr double kAliases = 0.007, kOfFiner = 4.0;
-constexpr double kGone = 0.3, kOfBetween = 1.25;
+constexpr double kGone = 0.5, kOfEdges = 1.25;
+constexpr double kPointsTimesField = 4.0, kMostOfPoints = 2.5;
 constexpr double kOfSurface = 0.0025;
 constexpr double kOfAHit = 0.5;
 constexpr double kEdgeCells = 8.0;  // twice the outline of a square, 4 sqrt(n) of n cells
+constexpr double kFewCells = 600.0;
 constexpr double kOutline = 0.6, kOutlineOfFields = 0.29;
 
 double squared(double x) { return x * x; }
@@ -41,15 +43,30 @@ class SumOfChanges {
   double squares_ = 0.0;
 };
 
+double between_points(const CoherentKind& kind, int num_batches) { return num_batches * kind.power[kPoints]; }
+
+double between_edges(const CoherentKind& kind, int num_batches) {
+  const double edges = kind.power[kEdges], num_cells = effective_number(edges, kind.edge_squares);
+  const double of_each = kEdgeCells / std::sqrt(num_cells / num_batches);
+  return num_batches * edges * std::min(1.0, of_each) * std::min(1.0, num_cells / kFewCells);
+}
+
+// Returns by how much the field of that size may grow by what waves of points hold between rays, sqrt(W).
+double missing_of_points(double size, double points) {
+  const double most = kMostOfPoints * std::sqrt(points);
+  return size > 0.0 ? std::clamp(points / (kPointsTimesField * size) - size, 0.0, most) : most;
+}
+
 FieldBias field_bias(const PowerEvidence& evidence) {
   SumOfChanges above, below;
   double finer = 0.0, gone = 0.0, surface = 0.0;  // W
   for (const CoherentKind& kind : evidence.kinds) {
     const double size = std::abs(kind.field[kAsLaunched]);
-    const double between = squared(kOfBetween) * power_between_rays(kind, evidence.num_batches);
+    const double edges = squared(kOfEdges) * between_edges(kind, evidence.num_batches);
+    gone += squared(missing_of_points(size, between_points(kind, evidence.num_batches)));
     if (kind.has_cells) surface += squared(kOfSurface * size);
     if (size == 0.0) {
-      gone += between;
+      gone += edges;
       continue;
     }
     const std::complex<double> change = kind.field[kHalfDensity] - kind.field[kAsLaunched];
@@ -58,11 +75,9 @@ FieldBias field_bias(const PowerEvidence& evidence) {
     below.add(kOfHalving * change);
     const double of_finer = std::abs(kind.field[kFiner] - kind.field[kAsLaunched]);
     finer += squared(kOfFiner * std::max(0.0, of_finer - kAliases * size));
-    gone += squared(squared(std::min(halving / kGone, 1.0))) * between;
+    gone += squared(squared(std::min(halving / kGone, 1.0))) * edges;
   }
-  const double of_finer = std::sqrt(finer);
-  return {std::hypot(above.size() + of_finer, std::sqrt(gone + surface)),
-          std::hypot(below.size() + of_finer, std::sqrt(surface))};
+  return {std::hypot(above.size(), std::sqrt(finer + gone + surface)), std::hypot(below.size(), std::sqrt(finer + surface))};
 }
 
 std::complex<double> field_of(const PowerEvidence& evidence) {
@@ -124,10 +139,7 @@ Reach bias_reach(const PowerEvidence& evidence, double coherent) {
 }  // namespace
 
 double power_between_rays(const CoherentKind& kind, int num_batches) {
-  const double edges = kind.power[kEdges];
-  const double num_cells = effective_number(edges, kind.edge_squares) / num_batches;  // of each batch
-  const double of_edges = edges * std::min(1.0, kEdgeCells / std::sqrt(num_cells));
-  return num_batches * (kind.power[kPoints] + of_edges);
+  return between_points(kind, num_batches) + between_edges(kind, num_batches);
 }
 
 double student_t95(int degrees_of_freedom) {

@@ -48,17 +48,21 @@ struct PowerInterval {
 };
 
 // Returns the power that launch cells may hold between rays, W. It sums |a|^2 as for random phases, so that a few cells
-// beside a point count several times. Of n cells without a point of reflection, kEdgeCells sqrt(n) at most lie at an edge.
+// beside a point count several times. Of n cells without a point of reflection, kEdgeCells sqrt(n) at most lie at an edge,
+// and where they are fewer than kFewCells they mostly lie about the foot of a wave that the others know, not along an edge.
 // Each batch has cells of its own, and the cells of every batch hold the same.
 double power_between_rays(const CoherentKind& kind, int num_batches);
 
 // Bias: the footprint filter of cells sqrt(2) wider tells how fast the coherent field F of a kind changes with the cells.
-// With d the change relative to |F|, the field may be off by kOfHalving d |F| where d is small. Where d is large, cells are
-// far too wide, and what finer ones will find grows to several times the change (kOfHalvingMore). The field may then also be
-// larger by kOfBetween times what power_between_rays allows, in full where d reaches kGone. Cells a little finer tell where
-// the filter takes edges for a surface without end; a change below kAliases there is the lattice showing through. The
-// changes of all kinds add up as fields, but to no less than their root sum of squares, and the powers between rays add up:
-// kinds whose echoes cancel are known as well as they are one by one. No field of a kind is known better than to kOfSurface,
+// With d the change relative to |F|, the field may be off by kOfHalving d |F| where d is small, and by kOfHalvingMore d times
+// as much more where cells are too wide. Cells a little finer tell where the filter takes edges for a surface without end; a
+// change below kAliases there is the lattice showing through.
+// Between rays: the filter fades the wave of a point of reflection as cells outgrow its Fresnel zone, about as fast as what
+// cells hold of such points, P (power_between_rays), outgrows |F|^2. The field may then be as large as
+// P / (kPointsTimesField |F|), and larger than it is by no more than kMostOfPoints sqrt(P). Of P's waves of edges it may lack
+// kOfEdges times as much, in full where d reaches kGone.
+// The changes of all kinds add up as fields, but to no less than their root sum of squares, and all else as powers: kinds
+// whose echoes cancel are known as well as they are one by one. No field of a kind is known better than to kOfSurface,
 // however fine the cells: that is what the lattice and interpolated normals leave.
 // Without a footprint filter nothing tells how coarse the rays are for the phases of a surface: its waves may cancel, or add
 // up as coherent_at_most has them.

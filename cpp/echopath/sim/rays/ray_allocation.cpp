@@ -17,7 +17,8 @@ constexpr double kMinGrowth = 1.0 / 16.0;
 constexpr double kUnseenGrowth = 0.25;    // of strata that send nothing back
 constexpr double kMovingTarget = 0.25;    // of the target: what moves is what a radar looks for
 constexpr double kImageWeight = 0.5;      // beside that of the target
-constexpr double kServedFirst = 0.75;     // of the rays
+constexpr double kObjectsFirst = 0.5;     // of the rays, where they are too few for objects and images
+constexpr double kServedFirst = 0.75;     // of the rays of either
 constexpr double kGlintFieldShare = 0.1;  // of the field of view, at least, where it has a glint that is not resolved
 constexpr int64_t kPilotDivisor = 8;
 constexpr int64_t kFewestPilotRays = 2048;
@@ -65,13 +66,39 @@ RayNeed need_of(const Stratum& stratum, double num_rays, const ReceivedPower& po
   RayNeed need;
   need.stratum = stratum.name;
   need.echo = {power.power, power.high};
-  need.weight = weight_of_target(stratum.num_mirrors) * (stratum.num_mirrors > 0 ? kImageWeight : 1.0);
+  need.is_image = stratum.num_mirrors > 0;
+  need.weight = weight_of_target(stratum.num_mirrors) * (need.is_image ? kImageWeight : 1.0);
   double growth = power.high > 0 ? std::clamp(missing / target_db, kMinGrowth, kMaxGrowth) : kUnseenGrowth;
   // The field of view sees many surfaces, of which the strongest would speak for all, so it keeps the rays that it has.
   if (stratum.object < 0) growth = 1.0;
   need.is_bounded = growth < kMaxGrowth;
   need.rays = growth * num_rays;
   return need;
+}
+
+double rays_of(const RayNeeds& needs, bool is_image) {
+  double sum = 0.0;
+  for (const RayNeed& need : needs.strata) sum += need.is_image == is_image ? need.rays : 0.0;
+  return sum;
+}
+
+// Shares out `num_rays` rays among images, or among what is none.
+void share_out_among(const RayNeeds& needs, bool is_image, double num_rays, RayShares& shares) {
+  double bounded = 0.0, others = 0.0, weights = 0.0;
+  for (const RayNeed& need : needs.strata) {
+    if (need.is_image != is_image) continue;
+    (need.is_bounded ? bounded : others) += need.rays;
+    weights += need.is_bounded ? 0.0 : need.weight;
+  }
+  const bool is_scarce = bounded + others > num_rays;
+  const double to_bounded =
+      is_scarce && others > 0 ? std::min(bounded, kServedFirst * num_rays) : std::min(bounded, num_rays);
+  for (const RayNeed& need : needs.strata) {
+    if (need.is_image != is_image) continue;
+    const bool shares_rest = is_scarce && !need.is_bounded;
+    const double of_bounded = need.is_bounded && bounded > 0 ? to_bounded / bounded : 1.0;
+    shares[need.stratum] = shares_rest ? need.weight * (num_rays - to_bounded) / weights : need.rays * of_bounded;
+  }
 }
 
 // Raises the rays of the field of view where its echo is not resolved and a glint makes it.
@@ -115,7 +142,7 @@ RayNeeds ray_needs(const Paths& paths, double target_db, EchoFloor floor, Job* j
     if (stratum.is_focus()) continue;
     const double missing = missing_db(powers[k], least);
     const bool is_moving = stratum.object >= 0 && moves[static_cast<size_t>(stratum.object)];
-    const double target = is_moving ? kMovingTarget * target_db : target_db;
+    const double target = is_moving && stratum.num_mirrors == 0 ? kMovingTarget * target_db : target_db;
     needs.strata.push_back(need_of(stratum, launched.at(stratum.name), powers[k], missing, target));
     needs.strata.back().is_resolved = missing <= target || powers[k].high <= least;
     if (powers[k].high > least) needs.worst_db = std::max(needs.worst_db, missing);
@@ -124,16 +151,11 @@ RayNeeds ray_needs(const Paths& paths, double target_db, EchoFloor floor, Job* j
 }
 
 RayShares share_out(const RayNeeds& needs, double num_rays) {
-  double bounded = 0.0, others = 0.0;
-  for (const RayNeed& need : needs.strata) (need.is_bounded ? bounded : others) += need.is_bounded ? need.rays : need.weight;
-  const bool is_scarce = needs.num_rays() > num_rays && others > 0;
-  const double to_bounded = std::min(bounded, kServedFirst * num_rays);
-  const double of_bounded = is_scarce && bounded > 0 ? to_bounded / bounded : 1.0;
+  const double of_objects = rays_of(needs, false), of_images = rays_of(needs, true);
+  const double to_objects = std::min(of_objects, std::max(kObjectsFirst * num_rays, num_rays - of_images));
   RayShares shares;
-  for (const RayNeed& need : needs.strata) {
-    const bool shares_rest = is_scarce && !need.is_bounded;
-    shares[need.stratum] = shares_rest ? need.weight * (num_rays - to_bounded) / others : need.rays * of_bounded;
-  }
+  share_out_among(needs, false, to_objects, shares);
+  share_out_among(needs, true, num_rays - to_objects, shares);
   return shares;
 }
 

@@ -17,6 +17,7 @@ struct RayNeed {
   KnownEcho echo;
   bool is_resolved = true;  // to the target, or below the floor
   double weight = 1.0;      // of images, below that of objects
+  bool is_image = false;    // of an object over mirrors
   bool is_bounded = true;   // false: it asks for as many as kMaxGrowth allows, and may need any number more
 };
 
@@ -34,15 +35,16 @@ struct RayNeeds {
 };
 
 // Returns for every stratum whose echo may stand above the floor as many rays as bring its interval (power/received_power.h)
-// to `target_db`, for objects that move to a quarter of it. The interval of a coherent echo falls about with the rays, that
-// of a diffuse one with their root; both get rays in proportion to the error over the target, within a factor of
-// kMaxGrowth. An echo that is known better gives rays back, down to a sixteenth; a stratum that sends nothing back keeps a
-// quarter. Raises Cancelled.
+// to `target_db`, for objects that move, but not for their images, to a quarter of it. The interval of a coherent echo falls
+// about with the rays, that of a diffuse one with their root; both get rays in proportion to the error over the target,
+// within a factor of kMaxGrowth. An echo that is known better gives rays back, down to a sixteenth; a stratum that sends
+// nothing back keeps a quarter. Raises Cancelled.
 RayNeeds ray_needs(const Paths& paths, double target_db, EchoFloor floor, Job* job = nullptr);
 inline constexpr double kMaxGrowth = 32.0;
 
-// Returns the shares of `num_rays` rays. Where they are too few, needs that are bounded are served first, up to three
-// quarters of the rays, so that most objects get what they need. The others share what is left by their weights.
+// Returns the shares of `num_rays` rays. Where they are too few, what the radar sees itself is served before images, up to
+// kObjectsFirst of the rays. Among either, needs that are bounded are served first, up to three quarters of their rays, so
+// that most get what they need. The others share what is left by their weights.
 RayShares share_out(const RayNeeds& needs, double num_rays);
 
 // Returns the guide for a trace of that many rays by the needs that one of fewer rays shows, with foci about its glints

@@ -54,13 +54,13 @@ struct PowerInterval {
 double power_between_rays(const CoherentKind& kind, int num_batches);
 
 // Bias: the footprint filter of cells sqrt(2) wider tells how fast the coherent field F of a kind changes with the cells.
-// With d the change relative to |F|, the field may be off by kOfHalving d |F| where d is small, and by kOfHalvingMore d times
-// as much more where cells are too wide. Cells a little finer tell where the filter takes edges for a surface without end; a
-// change below kAliases there is the lattice showing through.
+// With d the change relative to |F|, the field may be off by kOfHalving d |F| where d is small, and by kOfHalvingMore d
+// times as much more where cells are too wide. Cells a little finer tell where the filter takes edges for a surface without
+// end; a change below kAliases there is the lattice showing through.
 // Between rays: the filter fades the wave of a point of reflection as cells outgrow its Fresnel zone, about as fast as what
 // cells hold of such points, P (power_between_rays), outgrows |F|^2. The field may then be as large as
-// P / (kPointsTimesField |F|), and larger than it is by no more than kMostOfPoints sqrt(P). Of P's waves of edges it may lack
-// kOfEdges times as much, in full where d reaches kGone.
+// P / (kPointsTimesField |F|), but larger than it is by no more than kMostOfPoints sqrt(P). Of waves of edges it may lack
+// kOfEdges times as much as cells hold, in full where d reaches kGone.
 // The changes of all kinds add up as fields, but to no less than their root sum of squares, and all else as powers: kinds
 // whose echoes cancel are known as well as they are one by one. No field of a kind is known better than to kOfSurface,
 // however fine the cells: that is what the lattice and interpolated normals leave.

@@ -144,7 +144,6 @@ RayNeeds ray_needs(const Paths& paths, double target_db, EchoFloor floor, Job* j
     const bool is_moving = stratum.object >= 0 && moves[static_cast<size_t>(stratum.object)];
     const double target = is_moving && stratum.num_mirrors == 0 ? kMovingTarget * target_db : target_db;
     needs.strata.push_back(need_of(stratum, launched.at(stratum.name), powers[k], missing, target));
-    if (is_moving) needs.strata.back().is_bounded = missing < kMaxGrowth * target_db;  // asking for more loses no rays
     needs.strata.back().is_resolved = missing <= target || powers[k].high <= least;
     if (powers[k].high > least) needs.worst_db = std::max(needs.worst_db, missing);
   }

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath_viewer.model import Signals
+from echopath_viewer.model import CellBox, Session, Signals, from_frame
 from echopath_viewer.model.attribution import REST, Attribution, chirp_weights, range_profiles
 
 SUM = 1e-6       # of a cell's value, or of the largest contribution to it where they cancel
@@ -110,3 +110,42 @@ def test_too_many_families_are_refused(frame, monkeypatch):
     monkeypatch.setattr("echopath_viewer.model.attribution.MAX_BYTES", 1 << 20)
     with pytest.raises(ValueError, match="families: the signals of .* would take more than"):
         Attribution(Signals(frame.paths, dict(frame.spectrum_settings)))
+
+
+def radar_at_once(radar):
+    """Its two transmitters send in each chirp, in three slots of velocity."""
+    return radar.replace(waveform=radar.waveform.replace(num_chirps=30), multiplexing="ddm")
+
+
+def kinds_of_frames(frame) -> dict:
+    """{kind: (scene, radar, settings of `simulate`)}: what their maps hold beside the signals of single transmitters."""
+    other = ep.Interferer(radar=ep.Radar(frame.radar.waveform, transmitters=[ep.Antenna((8.0, 1.0, 0.0), yaw=np.pi)],
+                                         receivers=[ep.Antenna((8.0, 1.0, 0.1))]), over="direct")
+    return {
+        "turns, padded": (frame.scene, frame.radar, {"zero_pad": 2}),
+        "window for each axis": (frame.scene, frame.radar, {"window": ("rect", ("chebyshev", 60.0)), "zero_pad": 3}),
+        "at once, told apart by Doppler": (frame.scene, radar_at_once(frame.radar), {}),
+        "other radars": (ep.Scene(frame.scene, interferers=[other]), frame.radar, {}),
+        "real samples": (frame.scene, like(frame.radar, real=True), {"window": "blackman_harris"}),
+    }
+
+
+@pytest.mark.parametrize("kind", ["turns, padded", "window for each axis", "at once, told apart by Doppler", "other radars",
+                                  "real samples"])
+def test_contributions_add_up_in_every_kind_of_frame(frame, kind):
+    scene, radar, settings = kinds_of_frames(frame)[kind]
+    made = ep.simulate(scene, radar, num_rays=1500, max_bounces=3, seed=4, **settings)
+    session = Session(from_frame(made))
+    session.attribution = Attribution(session.signals)
+    without_noise = ep.range_doppler(made.cube, radar, **made.spectrum_settings).values
+    peak, shape, rng = np.abs(without_noise).max(), made.spectrum.values.shape, np.random.default_rng(8)
+    strongest = np.argsort(-np.abs(without_noise).ravel())[:50]
+    for row in [*strongest, *rng.integers(0, without_noise.size, 50)]:
+        tx, rx, velocity, distance = (int(index) for index in np.unravel_index(row, shape))
+        if session.channel != (tx, rx):
+            session.set_channel(tx, rx)
+        session.select_cells(CellBox.around(distance, velocity), (distance, velocity))
+        cell, value = session.cell_attribution(), made.spectrum.values[tx, rx, velocity, distance]
+        assert abs(sum(one.value for one in cell.contributions) - value) <= SUM * abs(value)
+        told, clean = sum(one.value for one in cell.contributions if one.name != REST), without_noise[tx, rx, velocity, distance]
+        assert abs(told - clean) <= SUM * abs(clean) + (0.0 if row in strongest else SYNTHESIS * peak)

@@ -6,12 +6,14 @@ from types import SimpleNamespace
 
 import h5py
 import numpy as np
+import pytest
 import pyvista as pv
 
 import echopath as ep
 from echopath_viewer.model import Legend, Session, colour_rays, from_file, from_frame, from_paths, mesh_palette
 from echopath_viewer.scene_builder.legend import LegendLayer
-from echopath_viewer.scene_builder.mesh_layer import creases
+from echopath_viewer.scene_builder.mesh_layer import MeshLayer, creases
+from echopath_viewer.scene_builder.name_layer import NameLayer
 
 HUE_STEP = 0.02  # of the circle of hues: what 8 bits of a colour turn it by at most
 
@@ -88,3 +90,23 @@ def test_a_number_that_is_none_is_told_with_the_name_of_the_file(frame, tmp_path
             with h5py.File(path, "r+") as file:
                 file[name][()] = kept
     assert from_file(path).paths.num_paths == frame.paths.num_paths
+
+
+def test_boxes_have_edges_and_round_bodies_none():
+    box, ball = pv.Box().triangulate().clean(), pv.Sphere(theta_resolution=30, phi_resolution=30)
+    scene = ep.Scene()
+    for name, shape in (("box", box), ("ball", ball)):
+        scene.add(ep.Mesh(np.asarray(shape.points, float), np.asarray(shape.regular_faces)), name=name, material="metal")
+    plotter = pv.Plotter(off_screen=True)
+    layer = MeshLayer(plotter, scene, mesh_palette(scene), 0.0)
+    assert list(layer._outlines) == [0] and layer._outlines[0].mapper.dataset.n_cells == 12
+    plotter.close()
+
+
+def test_planes_are_named_where_rays_meet_them():
+    """Their middle may lie far outside the picture."""
+    points = np.array([[9.0, 9, 9], [1, 2, 0], [3, 2, 0]])
+    drawn = SimpleNamespace(points=points, hits=np.array([1, 2]), hit_mesh=np.array([0, 0]))
+    plane = SimpleNamespace(material=SimpleNamespace(mirror=True))
+    session = SimpleNamespace(scene=SimpleNamespace(meshes=[plane]), segments=lambda rays: drawn, shown_rays=lambda: None)
+    assert NameLayer(None, None)._place(session, [0]) == pytest.approx([2.0, 2.0, 0.0])

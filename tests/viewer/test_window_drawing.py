@@ -9,6 +9,7 @@ import pytest
 import echopath as ep
 from echopath_viewer.model import CellBox
 from echopath_viewer.window.filter_box import ErrorLabel
+from echopath_viewer.window.pace import Smoothing
 from echopath_viewer.window.qt import Qt, QtCore, QtGui, QtWidgets
 from support.window import PATIENCE_MS, panel_of, settle
 
@@ -159,3 +160,24 @@ def test_a_click_on_a_row_of_the_legend_shows_that_object_alone(qtbot, window):
     for shown in ({0, 1}, {0, 1, 2, 3}):
         qtbot.mouseClick(legend, Qt.MouseButton.LeftButton, pos=QtCore.QPoint(20, 8 + line + line // 2))
         assert set(range(4)) - session.hidden_meshes == shown
+
+
+def test_edges_are_smooth_on_a_quick_machine(qtbot, window, monkeypatch):
+    wait_for_pictures(qtbot, window)
+    coarse = shades_of(window)
+    monkeypatch.setattr("echopath_viewer.window.pace.INSTANT", 10.0)
+    monkeypatch.setattr("echopath_viewer.window.pace.QUICK", 10.0)
+    window.view3d._smoothing = Smoothing()
+    for _ in range(6):
+        window.view3d.render_soon()
+        wait_for_pictures(qtbot, window)
+    assert window.view3d.render_window.GetMultiSamples() == 4 and shades_of(window) > 1.2 * coarse
+    window.view3d.render_window.SetMultiSamples(0)
+    window.view3d._smoothing = Smoothing()
+
+
+def shades_of(window) -> int:
+    """How many colours the scene has: smooth edges have those between two."""
+    image = window.view3d.grab().toImage().convertToFormat(QtGui.QImage.Format.Format_RGB32)
+    pixels = np.frombuffer(image.constBits(), np.uint32)
+    return len(np.unique(pixels))

@@ -68,7 +68,7 @@ class SceneBuilder:
         if "layers" in topics:
             self.known.show(self.session)
             self.twins.show(self.session)
-        if topics & {"layers", "time", "meshes"}:
+        if topics & {"layers", "time", "meshes", "rays"}:
             self.names.show(self.session)
         if "meshes" in topics:
             self.meshes.colour(self.session.palette)

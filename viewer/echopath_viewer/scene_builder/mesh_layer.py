@@ -9,6 +9,8 @@ BODY_OPACITY, MIRROR_OPACITY, CHOSEN_OPACITY = 0.65, 0.15, 0.9
 AMBIENT = 0.4         # light from everywhere: surfaces seen at a grazing angle keep their colour
 OUTLINE_WIDTH = 1.5   # pixels
 CHOSEN_EDGE_WIDTH = 2.0
+EDGE_SHADE = 0.55     # of a body's colour, that its edges have
+MOST_TRIANGLES, MOST_EDGED = 200, 400  # of a body whose edges are drawn; meshes of such a scene
 CHOSEN_COLOUR = "#d55e00"
 CREASE = np.cos(np.radians(30.0))  # of the angle between two faces whose edge is drawn
 
@@ -24,8 +26,9 @@ class MeshLayer:
             vertices = scene.world_vertices(mesh.id, time)
             self._polys.append(triangles_of(vertices, mesh.triangles))
             self.actors.append(self._add(plotter, f"mesh {mesh.id}", self._polys[-1], mesh.material.mirror))
-            if mesh.material.mirror:  # hard to see otherwise
-                self._outlines[mesh.id] = self._add_outline(plotter, mesh, vertices)
+            edges = self._edges_of(mesh, vertices)
+            if len(edges):
+                self._outlines[mesh.id] = self._add_outline(plotter, mesh, vertices, edges)
         self.colour(palette)
 
     @staticmethod
@@ -34,11 +37,19 @@ class MeshLayer:
                                 lighting=not is_mirror, ambient=AMBIENT, diffuse=1.0 - AMBIENT, show_scalar_bar=False,
                                 reset_camera=False, render=False)
 
+    def _edges_of(self, mesh, vertices):
+        """Those that are drawn, [E, 2]: rims of planes, which are hard to see otherwise, and creases of simple bodies: a box
+        looks like a box then."""
+        triangles = np.asarray(mesh.triangles)
+        if mesh.material.mirror:
+            return boundary_edges(triangles)
+        is_simple = len(triangles) <= MOST_TRIANGLES and len(self._is_moving) <= MOST_EDGED
+        return creases(vertices, triangles) if is_simple else np.zeros((0, 2), np.int64)
+
     @staticmethod
-    def _add_outline(plotter, mesh, vertices):
-        edges = lines_of(vertices, boundary_edges(np.asarray(mesh.triangles)))
-        return plotter.add_mesh(edges, name=f"outline {mesh.id}", line_width=OUTLINE_WIDTH, lighting=False, pickable=False,
-                                show_scalar_bar=False, reset_camera=False, render=False)
+    def _add_outline(plotter, mesh, vertices, edges):
+        return plotter.add_mesh(lines_of(vertices, edges), name=f"outline {mesh.id}", line_width=OUTLINE_WIDTH, lighting=False,
+                                pickable=False, show_scalar_bar=False, reset_camera=False, render=False)
 
     def move(self, time: float) -> None:
         """Puts all meshes where they are at a time in s."""
@@ -76,7 +87,8 @@ class MeshLayer:
         for mesh, actor in enumerate(self.actors):
             actor.prop.color = palette[mesh] / 255.0
             if mesh in self._outlines:
-                self._outlines[mesh].prop.color = palette[mesh] / 255.0
+                shade = 1.0 if self._scene.meshes[mesh].material.mirror else EDGE_SHADE
+                self._outlines[mesh].prop.color = shade * palette[mesh] / 255.0
 
     def show(self, hidden: set, chosen) -> None:
         """hidden: mesh IDs; chosen: those whose edges are drawn."""

@@ -10,7 +10,8 @@ FONT_SIZE = 12
 
 
 class NameLayer:
-    """Above each object that is not hidden, where it is at the time on display."""
+    """Above each object that is not hidden, where it is at the time on display; planes, which reach out of the picture, where
+    rays meet them."""
 
     def __init__(self, plotter, meshes_of):
         """meshes_of: callable () -> MeshLayer, which has the boxes."""
@@ -26,11 +27,20 @@ class NameLayer:
         for number, name in enumerate(names):
             meshes = [int(mesh) for mesh in np.flatnonzero(object_of_mesh == number) if mesh not in session.hidden_meshes]
             if meshes:
-                corners = np.concatenate(self._meshes_of().bounds_of(meshes))
-                low, high = corners.min(axis=0), corners.max(axis=0)
-                tops.append([*(0.5 * (low + high))[:2], high[2]])
+                tops.append(self._place(session, meshes))
                 texts.append(name)
         if tops:
             self._plotter.add_point_labels(np.array(tops), texts, name="object names", font_size=FONT_SIZE, text_color="black",
                                            shape_color="white", shape_opacity=0.75, show_points=False, always_visible=True,
                                            reset_camera=False, render=False)
+
+    def _place(self, session, meshes: list):
+        """[3] m, of the name of an object."""
+        if all(session.scene.meshes[mesh].material.mirror for mesh in meshes):
+            drawn = session.segments(session.shown_rays())
+            hits = drawn.points[drawn.hits[np.isin(drawn.hit_mesh, meshes)]]
+            if len(hits):
+                return np.median(hits, axis=0)
+        corners = np.concatenate(self._meshes_of().bounds_of(meshes))
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        return np.array([*(0.5 * (low + high))[:2], high[2]])

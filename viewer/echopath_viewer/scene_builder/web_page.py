@@ -102,8 +102,8 @@ class ScenePage:
                      "colorbar": {"title": legend.title, "len": 0.5, "x": 0.0}}
             return [self._plotly.Scatter3d(x=[None] * 2, y=[None] * 2, z=[None] * 2, mode="markers", marker=scale,
                                            showlegend=False, hoverinfo="skip")]
-        return [self._plotly.Scatter3d(x=[None], y=[None], z=[None], mode="lines",
-                                       name=f"rays, {legend.title.lower()}: {label}",
+        words = "rays to" if legend.title.startswith("Object") else f"rays, {legend.title.lower()}:"
+        return [self._plotly.Scatter3d(x=[None], y=[None], z=[None], mode="lines", name=f"{words} {label}",
                                        line={"color": _css(rgb), "width": 4}) for label, rgb in legend.rows]
 
     def _drawn(self):

@@ -12,7 +12,7 @@ from ..model.picking import nearest_segment
 from ..scene_builder import SceneBuilder
 from .compass import Compass
 from .legend_box import LegendBox
-from .pace import Pace
+from .pace import Pace, Smoothing
 from .qt import Qt, QtCore, Signal
 
 GL_COLOR_BUFFER_BIT = 0x4000
@@ -30,11 +30,12 @@ class View3D(QtInteractor):
 
     def __init__(self, parent=None):
         self.builder = None  # a resize may come before the constructor has ended
-        # Multisampling takes most of the time where there is no graphics card.
+        # Multisampling takes most of the time where there is no graphics card: Smoothing begins it elsewhere.
         self._is_behind = self._is_fresh = self._is_moving = False
         super().__init__(parent, auto_update=False, multi_samples=0)
         self._afterwards = None
         self._press, self._drag, self.legend_box, self._pace = None, None, LegendBox(self), Pace()
+        self._smoothing = Smoothing()
         self.compass = Compass(self)
         self.setAcceptDrops(False)  # what is dropped here is the window's: pyvistaqt would read it with VTK
         # VTK draws in paintGL alone: a drawing of its own, at each turn of the camera, would come on top of that.
@@ -47,6 +48,7 @@ class View3D(QtInteractor):
     def show_session(self, session) -> None:
         """Replaces what is drawn."""
         self.clear()
+        self.enable_3_lights()
         self.builder = SceneBuilder(self, session, legend=self.legend_box, background=self.background(), is_quick=True)
         self._is_fresh = True
         QtCore.QTimer.singleShot(0, self._first_look)
@@ -125,10 +127,17 @@ class View3D(QtInteractor):
             super().paintGL()
         finally:
             interactor.EnableRenderOff()
-        if self._is_moving and self._pace.follow(time.perf_counter() - begin, len(self.builder.rays.segments.rays)):
-            self.builder.show_first_rays(self._pace.num_rays)
+        self._learn(time.perf_counter() - begin)
         if self.builder is not None:
             self.compass.follow(self.camera, self.height())
+
+    def _learn(self, seconds: float) -> None:
+        """How much the next pictures may have, from what one took."""
+        if self._is_moving and self._pace.follow(seconds, len(self.builder.rays.segments.rays)):
+            self.builder.show_first_rays(self._pace.num_rays)
+        if self.builder is not None and self._smoothing.follow(seconds):
+            self.render_window.SetMultiSamples(self._smoothing.samples)
+            self.render_soon()
 
     def camera_state(self) -> dict:
         camera = self.camera

@@ -110,3 +110,15 @@ def test_planes_are_named_where_rays_meet_them():
     plane = SimpleNamespace(material=SimpleNamespace(mirror=True))
     session = SimpleNamespace(scene=SimpleNamespace(meshes=[plane]), segments=lambda rays: drawn, shown_rays=lambda: None)
     assert NameLayer(None, None)._place(session, [0]) == pytest.approx([2.0, 2.0, 0.0])
+
+
+def test_the_title_of_a_scale_stands_over_none_of_its_labels():
+    pictures = []
+    for title in ("", "Radial speed in m/s (away: +)"):
+        plotter = pv.Plotter(off_screen=True, window_size=(420, 200))
+        plotter.set_background("white")
+        LegendLayer(plotter).show(Legend(title, clim=(-4.0, 4.0), cmap="coolwarm"))
+        pictures.append(plotter.screenshot(None, return_img=True).astype(int))
+        plotter.close()
+    is_title = np.abs(pictures[1] - pictures[0]).max(axis=-1) > 60
+    assert is_title.sum() > 200 and pictures[0][is_title].min() > 200

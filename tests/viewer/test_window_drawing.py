@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath_viewer.model import CellBox
+from echopath_viewer.model import CellBox, Legend
 from echopath_viewer.window.filter_box import ErrorLabel
+from echopath_viewer.window.legend_box import LegendBox
 from echopath_viewer.window.pace import Smoothing
 from echopath_viewer.window.qt import Qt, QtCore, QtGui, QtWidgets
 from support.window import PATIENCE_MS, panel_of, settle
@@ -181,3 +182,16 @@ def shades_of(window) -> int:
     image = window.view3d.grab().toImage().convertToFormat(QtGui.QImage.Format.Format_RGB32)
     pixels = np.frombuffer(image.constBits(), np.uint32)
     return len(np.unique(pixels))
+
+
+def test_the_title_of_a_scale_in_the_window_stands_over_none_of_its_labels(qtbot):
+    parent, pictures = QtWidgets.QWidget(), []
+    qtbot.addWidget(parent)
+    box = LegendBox(parent)
+    for title in (" ", "Power in dBm"):
+        box.show(Legend(title, clim=(-140.0, -100.0), cmap="viridis"))
+        image = box.grab().toImage().convertToFormat(QtGui.QImage.Format.Format_RGB888)
+        rows = np.frombuffer(image.constBits(), np.uint8).reshape(image.height(), image.bytesPerLine())
+        pictures.append(rows[:, :3 * image.width()].reshape(image.height(), image.width(), 3).astype(int))
+    is_title = np.abs(pictures[1] - pictures[0]).max(axis=-1) > 60
+    assert is_title.sum() > 50 and pictures[0][is_title].min() > 200

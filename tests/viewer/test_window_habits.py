@@ -125,9 +125,9 @@ def test_a_file_that_is_written_anew_is_shown_anew(qtbot, window, frame, tmp_pat
 
 def test_names_and_axes_follow_the_scene(qtbot, window):
     window.layer_actions["names"].setChecked(True)
-    assert any(name.startswith("object names") for name in window.view3d.actors)
+    assert any(name.startswith("scene names") for name in window.view3d.actors)
     window.layer_actions["names"].setChecked(False)
-    assert not any(name.startswith("object names") for name in window.view3d.actors)
+    assert not any(name.startswith("scene names") for name in window.view3d.actors)
     window.look_top()
     window.settle()
     compass = window.view3d.compass

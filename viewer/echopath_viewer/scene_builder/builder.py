@@ -12,6 +12,7 @@ from .legend import LegendLayer
 from .mesh_layer import MeshLayer
 from .name_layer import NameLayer
 from .ray_layer import RayLayer
+from .scene_names import SceneNames
 from .track_layer import TrackLayer
 from .twin_layer import TwinLayer
 
@@ -46,8 +47,9 @@ class SceneBuilder:
         self.rays = RayLayer(plotter, "all", width=RAY_WIDTH, opacity=1.0 if is_quick else RAY_OPACITY)
         self.lit = RayLayer(plotter, "lit", width=LIT_WIDTH, in_front=True)
         self.chosen = RayLayer(plotter, "chosen", width=CHOSEN_WIDTH, in_front=True)
-        self.known, self.tracks, self.twins = KnownLayer(plotter), TrackLayer(plotter), TwinLayer(plotter)
-        self.names = NameLayer(plotter, lambda: self.meshes)
+        self._texts = texts = SceneNames(plotter)
+        self.names = NameLayer(texts, lambda: self.meshes)
+        self.known, self.tracks, self.twins = KnownLayer(plotter, texts), TrackLayer(plotter), TwinLayer(plotter, texts)
         self.legend = legend if legend is not None else LegendLayer(plotter) if show_legend else None
         self.update({"meshes"})
         self._draw_rays()
@@ -165,12 +167,8 @@ class SceneBuilder:
         segments = session.segments([] if session.ray is None else [session.ray])
         rgb = np.broadcast_to(np.uint8(CHOSEN_COLOURS[self._is_dark]), (segments.num_segments, 3))
         self.chosen.show(segments, rgb, hit_rgb=np.uint8(CHOSEN_HIT_COLOUR))
-        self.plotter.remove_actor("chosen names", render=False)
-        if len(segments.hits):
-            names = [f"{number + 1} {session.mesh_names[mesh]}" for number, mesh in enumerate(segments.hit_mesh)]
-            self.plotter.add_point_labels(segments.points[segments.hits], names, name="chosen names", font_size=12,
-                                          text_color="black", shape_color="white", shape_opacity=0.8, show_points=False,
-                                          always_visible=True, reset_camera=False, render=False)
+        names = [f"{number + 1} {session.mesh_names[mesh]}" for number, mesh in enumerate(segments.hit_mesh)]
+        self._texts.show("chosen", segments.points[segments.hits], names)
 
     def resized(self) -> None:
         """The picture has got another size."""

@@ -13,8 +13,9 @@ BOX_RGB = (0, 158, 115)
 class KnownLayer:
     """Points where detections are, by object, and the oriented boxes of objects with their names."""
 
-    def __init__(self, plotter):
-        self._plotter = plotter
+    def __init__(self, plotter, names):
+        """names: SceneNames"""
+        self._names = names
         self._points, self._boxes = (actor_in_cell_colours(in_front=True) for _ in range(2))
         self._points.GetProperty().SetPointSize(POINT_SIZE)
         self._points.GetProperty().RenderPointsAsSpheresOn()
@@ -45,16 +46,14 @@ class KnownLayer:
         self._points.VisibilityOn()
 
     def _show_boxes(self, truth) -> None:
-        self._plotter.remove_actor("known names", render=False)
         self._boxes.VisibilityOff()
         if truth is None or not len(truth.name):
+            self._names.show("boxes", [], [])
             return
         corners = box_corners(truth)
+        self._names.show("boxes", corners.max(axis=1), [str(name) for name in truth.name])
         edges = (BOX_EDGES[None] + 8 * np.arange(len(corners))[:, None, None]).reshape(-1, 2)
         poly = lines_of(corners.reshape(-1, 3), edges)
         set_cell_colours(poly, np.broadcast_to(np.uint8(BOX_RGB), (len(edges), 3)))
         self._boxes.GetMapper().SetInputDataObject(poly)
         self._boxes.VisibilityOn()
-        self._plotter.add_point_labels(corners.max(axis=1), [str(name) for name in truth.name], name="known names",
-                                       font_size=12, text_color="black", shape_color="white", shape_opacity=0.8,
-                                       show_points=False, always_visible=True, reset_camera=False, render=False)

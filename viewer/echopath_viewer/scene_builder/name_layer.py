@@ -6,22 +6,21 @@ import numpy as np
 from ..model.layers import NAMES
 from ..model.palette import objects_of
 
-FONT_SIZE = 12
-
 
 class NameLayer:
     """Above each object that is not hidden, where it is at the time on display; planes, which reach out of the picture, where
     rays meet them."""
 
-    def __init__(self, plotter, meshes_of):
-        """meshes_of: callable () -> MeshLayer, which has the boxes."""
-        self._plotter, self._meshes_of = plotter, meshes_of
+    def __init__(self, names, meshes_of):
+        """names: SceneNames; meshes_of: callable () -> MeshLayer, which has the boxes."""
+        self._names, self._meshes_of = names, meshes_of
 
     def show(self, session) -> None:
         """What the session has switched on."""
-        self._plotter.remove_actor("object names", render=False)
-        if NAMES not in session.layers:
-            return
+        self._names.show("objects", *(self._tops(session) if NAMES in session.layers else ([], [])))
+
+    def _tops(self, session) -> tuple:
+        """(places [N, 3] m, names) of what is not hidden."""
         names, object_of_mesh = objects_of(session.scene)
         tops, texts = [], []
         for number, name in enumerate(names):
@@ -29,10 +28,7 @@ class NameLayer:
             if meshes:
                 tops.append(self._place(session, meshes))
                 texts.append(name)
-        if tops:
-            self._plotter.add_point_labels(np.array(tops), texts, name="object names", font_size=FONT_SIZE, text_color="black",
-                                           shape_color="white", shape_opacity=0.75, show_points=False, always_visible=True,
-                                           reset_camera=False, render=False)
+        return tops, texts
 
     def _place(self, session, meshes: list):
         """[3] m, of the name of an object."""

@@ -9,20 +9,20 @@ from ..model.layers import TWINS
 from .polydata import triangles_of
 
 OPACITY = 0.28
-FONT_SIZE = 11
 
 
 class TwinLayer:
     """The object once more where its ghost seems to be, in the colour of the ghost's class, with the way as its name."""
 
-    def __init__(self, plotter):
-        self._plotter, self._names = plotter, []
+    def __init__(self, plotter, names):
+        """names: SceneNames"""
+        self._plotter, self._names, self._actors = plotter, names, []
 
     def show(self, session) -> None:
         """What the session has switched on."""
-        for name in self._names:
+        for name in self._actors:
             self._plotter.remove_actor(name, render=False)
-        self._names = []
+        self._actors = []
         twins = session.known_data(TWINS) if TWINS in session.layers else []
         tops = []
         for number, twin in enumerate(twins):
@@ -30,14 +30,10 @@ class TwinLayer:
             points = points + twin.offset
             tops.append(points[points[:, 2].argmax()])
             self._add(f"twin {number}", triangles_of(points, faces), CLASSES[twin.ghost_type][1])
-        if tops:
-            self._names.append("twin names")
-            self._plotter.add_point_labels(np.array(tops), [twin.name for twin in twins], name="twin names", font_size=FONT_SIZE,
-                                           text_color="black", shape_color="white", shape_opacity=0.7, show_points=False,
-                                           always_visible=True, reset_camera=False, render=False)
+        self._names.show("twins", tops, [twin.name for twin in twins])
 
     def _add(self, name: str, poly, colour: str) -> None:
-        self._names.append(name)
+        self._actors.append(name)
         self._plotter.add_mesh(poly, name=name, color=colour, opacity=OPACITY, lighting=False, pickable=False,
                                show_scalar_bar=False, reset_camera=False, render=False)
 

@@ -6,9 +6,11 @@ from types import SimpleNamespace
 import numpy as np
 
 import echopath as ep
+from echopath.signals.measures import for_pictures
 
 from ..model import CellBox, Session, from_file
 from ..model.comparison import difference, kept_map
+from .colour_bar import ColourBar
 from .map_area import title_of
 from .map_panel import MapPanel
 from .qt import QtCore, QtWidgets
@@ -44,6 +46,10 @@ class ComparePanel(QtWidgets.QWidget):
         row.addStretch()
         for panel, place in zip(self.panels.values(), ((0, 0, 1, 1), (0, 1, 1, 1), (1, 0, 1, 2))):
             maps.addWidget(panel, *place)
+        self.level_bar, self.change_bar = ColourBar(), ColourBar(colours=DIFFERENCE_COLOURS, unit="dB")
+        for line, bar in enumerate((self.level_bar, self.change_bar)):
+            maps.addWidget(bar, line, 2)
+            bar.hide()
         column = QtWidgets.QVBoxLayout(self)
         column.setContentsMargins(2, 2, 2, 2)
         column.addLayout(row)
@@ -100,12 +106,15 @@ class ComparePanel(QtWidgets.QWidget):
         for name, one, level, ends in (("kept", self.kept, self.kept.level, limits), ("now", now, now.level, limits),
                                        ("difference", now, np.nan_to_num(change), (-DIFFERENCE_SPAN_DB, DIFFERENCE_SPAN_DB))):
             axes = SimpleNamespace(range=one.range, velocity=one.velocity)
-            title = f"{name}: {one.title}" if name != "difference" else f"now minus kept, \u00b1{DIFFERENCE_SPAN_DB:.0f} dB"
+            title = f"{name}: {one.title}" if name != "difference" else "now minus kept"
             self.panels[name].show_map(title, level, axes, ends, view, is_current=False)
             self.panels[name].setToolTip(title)
             if name != "kept":
                 self.panels[name].show_marks(self.session.box, None)
         self.change = change
+        for bar, ends in ((self.level_bar, limits), (self.change_bar, (-DIFFERENCE_SPAN_DB, DIFFERENCE_SPAN_DB))):
+            bar.show_limits(*ends)
+            bar.show()
         self._tell_cell()
 
     def _tell_cell(self) -> None:
@@ -113,7 +122,7 @@ class ComparePanel(QtWidgets.QWidget):
         if cell is None or not np.isfinite(self.change[cell[1], cell[0]]):
             self.note.setText("Click a cell: its change in dB.")
             return
-        self.note.setText(f"the selected cell: {self.change[cell[1], cell[0]]:+.1f} dB".replace("-", "\u2212"))
+        self.note.setText(for_pictures(f"the selected cell: {self.change[cell[1], cell[0]]:+.1f} dB"))
 
     @staticmethod
     def _whole_view(one) -> QtCore.QRectF:
@@ -137,7 +146,7 @@ class ComparePanel(QtWidgets.QWidget):
 
     def _read(self, distance: float, velocity: float, level: float) -> None:
         unit = "dB" if self.sender() is self.panels["difference"] else "dBm"
-        self.note.setText(f"{distance:.2f} m   {velocity:+.2f} m/s   {level:.1f} {unit}")
+        self.note.setText(for_pictures(f"{distance:.2f} m   {velocity:+.2f} m/s   {level:.1f} {unit}"))
 
     def stop(self) -> None:
         """There is nothing to end."""

@@ -4,11 +4,11 @@ from __future__ import annotations
 import numpy as np
 
 from .qt import Qt, QtCore, QtGui, QtWidgets
-from .ticks import nice_ticks
+from .ticks import nice_below
 
 EDGE, SIZE, ARM = 10, QtCore.QSize(150, 84), 24.0  # pixels
 BAR = 110.0  # pixels, at most
-COLOURS = {"x": "#cc3311", "y": "#008855", "z": "#0066cc"}
+COLOURS = {"x": ("#cc3311", "#ff7d5c"), "y": ("#007a4d", "#33cc99"), "z": ("#0066cc", "#66aaff")}  # on light, on dark
 
 
 class Compass(QtWidgets.QWidget):
@@ -37,9 +37,9 @@ class Compass(QtWidgets.QWidget):
         upward = np.cross(right, ahead / distance)
         axes = np.stack([right, upward], axis=1)
         metre = height / (2.0 * distance * np.tan(0.5 * np.radians(camera.view_angle)))  # pixels
-        ticks = [value for value in nice_ticks(0.0, BAR / metre, 1.9) if value > 0.0] or [BAR / metre]
-        if not np.array_equal(axes, self.axes) or ticks[-1] * metre != self.pixels:
-            self.axes, self.metres, self.pixels = axes, ticks[-1], ticks[-1] * metre
+        metres = nice_below(BAR / metre)
+        if not np.array_equal(axes, self.axes) or metres * metre != self.pixels:
+            self.axes, self.metres, self.pixels = axes, metres, metres * metre
             self.update()
         self.place()
         self.setVisible(True)
@@ -48,9 +48,10 @@ class Compass(QtWidgets.QWidget):
         painter = QtGui.QPainter(self)
         painter.setRenderHint(QtGui.QPainter.RenderHint.Antialiasing)
         origin = QtCore.QPointF(34.0, 30.0)
+        is_dark = self.parent().palette().base().color().lightness() < 128
         for name, (across, up) in zip("xyz", self.axes):
             end = origin + QtCore.QPointF(ARM * across, -ARM * up)
-            painter.setPen(QtGui.QPen(QtGui.QColor(COLOURS[name]), 2))
+            painter.setPen(QtGui.QPen(QtGui.QColor(COLOURS[name][is_dark]), 2))
             painter.drawLine(origin, end)
             painter.drawText(end + QtCore.QPointF(4.0 * across - 3.0, -5.0 * up + 4.0), name)
         painter.setPen(QtGui.QPen(self.parent().palette().windowText().color(), 1.5))
@@ -58,4 +59,4 @@ class Compass(QtWidgets.QWidget):
         painter.drawPolyline(QtGui.QPolygonF([QtCore.QPointF(left, bottom - 4), QtCore.QPointF(left, bottom),
                                               QtCore.QPointF(left + self.pixels, bottom),
                                               QtCore.QPointF(left + self.pixels, bottom - 4)]))
-        painter.drawText(QtCore.QPointF(left + 4, bottom - 5), f"{self.metres:g} m at the centre")
+        painter.drawText(QtCore.QPointF(left + 4, bottom - 8), f"{self.metres:g} m at the centre")

@@ -46,6 +46,8 @@ class ContributionsPanel(QtWidgets.QWidget):
         self.table.setSelectionMode(QtWidgets.QAbstractItemView.SelectionMode.SingleSelection)
         self.table.setEditTriggers(QtWidgets.QAbstractItemView.EditTrigger.NoEditTriggers)
         self.table.setToolTip("Choose a row: its paths light up, wherever they lie.")
+        self.table.setWordWrap(False)
+        self.table.setTextElideMode(Qt.TextElideMode.ElideLeft)  # ways differ at their ends
         self.table.verticalHeader().hide()
         self.table.verticalHeader().setDefaultSectionSize(20)
         header = self.table.horizontalHeader()
@@ -155,6 +157,7 @@ class ContributionsPanel(QtWidgets.QWidget):
             texts = (one.name, f"{level:.1f}", f"{one.without_db:+.1f} dB", peak)
             for column, text in enumerate(texts):
                 item = QtWidgets.QTableWidgetItem(text if column == 0 else for_pictures(text))
+                item.setToolTip(item.text())
                 if column:
                     item.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
                 self.table.setItem(number, column, item)

@@ -6,7 +6,7 @@ import numpy as np
 from echopath.plots.style import CURVE_COLOURS
 
 from .qt import Qt, QtCore, QtGui, QtWidgets
-from .ticks import nice_ticks, tick_text
+from .ticks import nice_ticks, scientific_text, tick_text
 
 LEFT, RIGHT, TOP, BOTTOM = 62, 8, 20, 34  # pixels around the curves
 
@@ -46,8 +46,12 @@ class CurveView(QtWidgets.QWidget):
             down = rect.center().y() - values / largest * 0.45 * rect.height()
             painter.setPen(QtGui.QPen(colour, 1.2))
             painter.drawPolyline(QtGui.QPolygonF([QtCore.QPointF(*at) for at in zip(across.tolist(), down.tolist())]))
-            box = QtCore.QRectF(rect.left() + 6 + 80 * number, rect.top() + 2, 80, 16)
-            painter.drawText(box, Qt.AlignmentFlag.AlignLeft, name)
+            at = QtCore.QPointF(rect.left() + 6 + 90 * number, rect.top() + 10)
+            painter.fillRect(QtCore.QRectF(at.x() - 3, rect.top() + 1, 88, 18), self.palette().base())
+            painter.setPen(QtGui.QPen(colour, 3.0))
+            painter.drawLine(at, at + QtCore.QPointF(14, 0))
+            painter.setPen(self.palette().text().color())
+            painter.drawText(QtCore.QRectF(at.x() + 19, rect.top() + 2, 70, 16), Qt.AlignmentFlag.AlignLeft, name)
 
     def _paint_axes(self, painter, rect, largest: float) -> None:
         for value in nice_ticks(float(self.x[0]), float(self.x[-1]), rect.width() / 50.0):
@@ -57,7 +61,7 @@ class CurveView(QtWidgets.QWidget):
         for share in (-1, 0, 1):
             y = rect.center().y() - share * 0.45 * rect.height()
             painter.drawText(QtCore.QRectF(0, y - 8, LEFT - 6, 16), Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter,
-                             "0" if share == 0 else f"{share * largest:.1e}")
+                             "0" if share == 0 else scientific_text(share * largest))
         painter.drawText(QtCore.QRectF(2, 2, LEFT, 16), Qt.AlignmentFlag.AlignLeft, self._unit)
         painter.drawText(QtCore.QRectF(rect.left(), rect.bottom() + 17, rect.width(), 16), Qt.AlignmentFlag.AlignCenter,
                          self._x_label)

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from echopath.plots.maps import signal_extent
+from echopath.signals.measures import for_pictures
 
 from ..model import CellBox
 from ..model.part_set import WHOLE
@@ -209,7 +210,7 @@ class MapArea(QtWidgets.QWidget):
 
     def _read(self, key: tuple, distance: float, velocity: float, level: float) -> None:
         title = title_of(self.session.parts[key])
-        self.read_out.setText(f"{distance:.2f} m   {velocity:+.2f} m/s   {level:.1f} dBm   ({title})")
+        self.read_out.setText(for_pictures(f"{distance:.2f} m   {velocity:+.2f} m/s   {level:.1f} dBm   ({title})"))
 
     def set_view(self, view: QtCore.QRectF) -> None:
         """What all maps show: a rectangle of range in m and velocity in m/s."""

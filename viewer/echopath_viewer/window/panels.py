@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from .compare_panel import ComparePanel
-from .qt import Qt, QtWidgets
+from .qt import Qt, QtCore, QtWidgets
 from .side_panels import AzimuthPanel, BeatPanel, ElevationPanel, SpectrogramPanel
 
 LEFT, RIGHT = Qt.DockWidgetArea.LeftDockWidgetArea, Qt.DockWidgetArea.RightDockWidgetArea
@@ -74,6 +74,13 @@ class Panels:
             self.tabifyDockWidget(self.docks["Range-Doppler"], dock)
         dock.show()
         self.docks[name].raise_()
+        self._show_whole_titles()
+
+    def _show_whole_titles(self) -> None:
+        """Rows of tabs scroll where there is no room for all: shortened titles would be alike."""
+        for bar in self.findChildren(QtWidgets.QTabBar):
+            bar.setUsesScrollButtons(True)
+            bar.setElideMode(Qt.TextElideMode.ElideNone)
 
     def reset_sizes(self) -> None:
         docks = self.docks
@@ -91,5 +98,6 @@ class Panels:
             for dock in self._shown_docks:
                 dock.hide()
         self._had_content = is_shown
+        QtCore.QTimer.singleShot(0, self._show_whole_titles)
         for action in self._needs_frame:
             action.setEnabled(is_shown)

@@ -3,12 +3,14 @@ from __future__ import annotations
 
 import numpy as np
 
+from echopath.signals.measures import for_pictures
+
 from .qt import Qt, QtCore, QtGui, QtWidgets, Signal
 
 COLUMNS = ("Bounces", "Range in m", "Speed in m/s", "Power in dBm", "Hits")
 DECIMALS = {1: "{:.3f}", 2: "{:+.3f}", 3: "{:.1f}"}
 STRONGEST_FIRST = (3, Qt.SortOrder.DescendingOrder)
-WIDTHS = (70, 88, 100, 104)  # pixels; the last column has the rest
+WIDTHS = (60, 78, 90, 96)  # pixels; the last column has the rest
 HITS = len(COLUMNS) - 1
 
 
@@ -41,7 +43,8 @@ class RayTableModel(QtCore.QAbstractTableModel):
 
     def data(self, index, role=Qt.ItemDataRole.DisplayRole):
         if role == Qt.ItemDataRole.DisplayRole:
-            return self.text(index.row(), index.column())
+            text = self.text(index.row(), index.column())
+            return text if index.column() == HITS else for_pictures(text)
         if role == Qt.ItemDataRole.TextAlignmentRole and index.column() != HITS:
             return int(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         return None
@@ -92,6 +95,9 @@ class RayTable(QtWidgets.QWidget):
         self.view.setSelectionBehavior(QtWidgets.QAbstractItemView.SelectionBehavior.SelectRows)
         self.view.setAlternatingRowColors(True)
         self.view.verticalHeader().setDefaultSectionSize(20)
+        self.view.verticalHeader().hide()
+        self.view.setWordWrap(False)
+        self.view.setTextElideMode(Qt.TextElideMode.ElideMiddle)
         self.view.horizontalHeader().setStretchLastSection(True)
         for column, width in enumerate(WIDTHS):
             self.view.setColumnWidth(column, width)

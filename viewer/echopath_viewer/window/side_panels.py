@@ -5,10 +5,13 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from echopath.signals.measures import for_pictures
+
 from ..model import CellBox
 from ..model.angle_maps import beat_signal, range_azimuth_map, range_elevation_map, spectrogram_map
 from .background_work import BackgroundWork
 from .banner import ThinBar
+from .colour_bar import ColourBar
 from .curve import CurveView
 from .map_area import title_of
 from .map_panel import RANGE_LABEL, VELOCITY_LABEL, MapPanel, nearest_index, step_of
@@ -49,11 +52,15 @@ class SidePanel(SeenPanel):
         super().__init__(parent)
         self.map, self._made_of = None, None
         self.panel, self.note = MapPanel(x_label=self.x_label, y_label=self.y_label), QtWidgets.QLabel(wordWrap=True)
-        self.bar, self.work = ThinBar(), BackgroundWork(self)
-        column = QtWidgets.QVBoxLayout(self)
+        self.bar, self.colour_bar, self.work = ThinBar(), ColourBar(), BackgroundWork(self)
+        self.colour_bar.hide()
+        row, column = QtWidgets.QHBoxLayout(), QtWidgets.QVBoxLayout(self)
         column.setContentsMargins(2, 2, 2, 2)
-        for widget, stretch in ((self.bar, 0), (self.panel, 1), (self.note, 0)):
-            column.addWidget(widget, stretch)
+        row.addWidget(self.panel, 1)
+        row.addWidget(self.colour_bar)
+        column.addWidget(self.bar)
+        column.addLayout(row, 1)
+        column.addWidget(self.note)
         self.work.advanced.connect(self.bar.advance)
         self.work.done.connect(self._take)
         self.work.failed.connect(self._fail)
@@ -112,15 +119,18 @@ class SidePanel(SeenPanel):
         highest = 5.0 * np.ceil(float(found.level.max()) / 5.0)
         axes = SimpleNamespace(range=found.x, velocity=found.y)
         view = self.panel.view if is_same else self._whole_view()
-        self.panel.show_map(found.title, found.level, axes, (highest - self.session.dynamic_range_db, highest), view,
-                            is_current=False)
+        limits = highest - self.session.dynamic_range_db, highest
+        self.panel.show_map(found.title, found.level, axes, limits, view, is_current=False)
+        self.colour_bar.show_limits(*limits)
+        self.colour_bar.show()
         self.show_marks()
 
     def _fail(self, text: str) -> None:
         self.bar.hide()
         self.map = None
         self.panel.show_nothing()
-        self.note.setText(text)
+        self.colour_bar.hide()
+        self.note.setText(f"There is no map to show: {text}.")
 
     def _whole_view(self) -> QtCore.QRectF:
         half_x, half_y = 0.5 * step_of(self.map.x), 0.5 * step_of(self.map.y)
@@ -155,7 +165,7 @@ class _AnglePanel(SidePanel):
         self.session.select_beam(x_index, *angles)
 
     def words_of(self, x: float, y: float, level: float) -> str:
-        return f"{x:.2f} m   {y:+.1f}\u00b0   {level:.1f} dBm"
+        return for_pictures(f"{x:.2f} m   {y:+.1f}\u00b0   {level:.1f} dBm")
 
 
 class AzimuthPanel(_AnglePanel):
@@ -210,7 +220,7 @@ class SpectrogramPanel(SidePanel):
         session.set_chirp(round(1e-3 * float(self.map.x[x_index]) / period))
 
     def words_of(self, x: float, y: float, level: float) -> str:
-        return f"{x:.2f} ms   {y:+.2f} m/s   {level:.1f} dBm"
+        return for_pictures(f"{x:.2f} ms   {y:+.2f} m/s   {level:.1f} dBm")
 
 
 class BeatPanel(SeenPanel):

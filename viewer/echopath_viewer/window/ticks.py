@@ -3,6 +3,10 @@ from __future__ import annotations
 
 import math
 
+from echopath.signals.measures import for_pictures
+
+_RAISED = str.maketrans("-0123456789", "\u207b\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079")
+
 
 def nice_ticks(low: float, high: float, max_count: float) -> list[float]:
     """Multiples of 1, 2 or 5 times a power of ten in [low, high], about `max_count` at most."""
@@ -16,6 +20,18 @@ def nice_ticks(low: float, high: float, max_count: float) -> list[float]:
     return [step * number for number in range(first, math.floor(high / step + 1e-9) + 1)]
 
 
+def nice_below(value: float) -> float:
+    """The largest of 1, 2 or 5 times a power of ten that is no larger than `value`, above 0."""
+    power = 10.0 ** math.floor(math.log10(value) + 1e-9)
+    return next(factor * power for factor in (5.0, 2.0, 1.0) if factor * power <= value * (1.0 + 1e-9))
+
+
+def scientific_text(value: float) -> str:
+    """Two digits times a power of ten, as print has it."""
+    mantissa, exponent = f"{value:.1e}".split("e")
+    return for_pictures(mantissa) + "\u00b710" + str(int(exponent)).translate(_RAISED)
+
+
 def tick_text(value: float) -> str:
     """Without the noise of binary fractions."""
-    return f"{round(value, 9) + 0.0:g}"
+    return for_pictures(f"{round(value, 9) + 0.0:g}")

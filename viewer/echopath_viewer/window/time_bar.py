@@ -3,6 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from echopath.signals.measures import for_pictures
+
 from .qt import Qt, QtCore, QtGui, QtWidgets
 
 TICK_MS = 50
@@ -129,4 +131,4 @@ class SlowTimeStrip(QtWidgets.QWidget):
 
     def _text(self) -> str:
         value = f": {self._power[self._chirp]:.1f} dBm" if self._chirp < len(self._power) else ""
-        return f"{self._title}{value}"
+        return for_pictures(f"{self._title}{value}")

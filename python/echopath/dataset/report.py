@@ -16,6 +16,7 @@ from ..arguments.checks import checked
 from ..arguments.checks import path as file_or_folder
 from ..base.files import write_texts
 from ..plots.style import CURVE_COLOURS, new_figure
+from ..signals.measures import for_pictures
 from .classes import CODES
 from .folder import read_record
 from .opened import Dataset, open
@@ -121,6 +122,7 @@ def _drawn(found: Statistics) -> Iterable[str]:
         for axes, place in zip(panels, chosen):
             _draw_numbers(axes, numbers[place])
             axes.set_title(place.removeprefix("objects."))
+            axes.set_xlabel("Value (SI units where its name says no other)")
             axes.set_ylabel("Scenes")
         for axes in list(panels):  # what is left of the iterator
             axes.set_axis_off()
@@ -131,7 +133,7 @@ def _draw_numbers(axes: Any, values: list[float]) -> None:
     """A bar for each value where there are few, else a histogram."""
     counts = sorted(Counter(values).items())
     if len(counts) <= FEW:
-        axes.bar([f"{value:g}" for value, _ in counts], [count for _, count in counts], color=CURVE_COLOURS[0])
+        axes.bar([for_pictures(f"{value:g}") for value, _ in counts], [count for _, count in counts], color=CURVE_COLOURS[0])
     else:
         axes.hist(values, bins=20, color=CURVE_COLOURS[0])
 

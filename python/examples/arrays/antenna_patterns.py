@@ -30,5 +30,5 @@ for name, pattern in patterns.items():
 axes.set_theta_zero_location("N")
 axes.set_ylim(-25, 12)
 axes.set_title("Gain in dBi over azimuth (left is positive)")
-axes.legend(loc="lower left", bbox_to_anchor=(-0.15, -0.08))
+axes.legend(loc="upper left", bbox_to_anchor=(1.05, 1.0))
 plt.show()

@@ -52,7 +52,8 @@ for row, drop in zip(rows, (3.2, 5.3, 4.0, 0.0)):
     for name, actor in row:
         place = draw(axes, name, actor, place, ground)
     ground -= drop
-axes.set(xlim=(-0.9, 23.5), ylim=(-13.1, 1.8), xlabel="Length in m", ylabel="Height in m, row by row",
+axes.set(xlim=(-0.9, 23.5), ylim=(-13.1, 1.8), xlabel="Length in m", yticks=[],
+         ylabel="Four rows, each on its own ground; as high as long",
          title="Actors, from the side")
 axes.set_aspect("equal")
 plt.show()

@@ -2,8 +2,8 @@
 Where the rays go
 =================
 
-The strongest rays of a trace, drawn into the scene from above, from the side and aslant. Colours tell how often a ray
-bounced.
+The strongest rays of a trace to each object, drawn into the scene from above, from the side and aslant. Colours tell how
+often a ray bounced.
 """
 import numpy as np
 
@@ -25,4 +25,4 @@ print(paths)
 # %%
 # Green rays went straight to an object and back, blue ones took the wall on one way, orange ones bounced three times within
 # the corner reflector.
-figure = plots.plot_scene(scene, paths, num_rays=150, title="The 150 strongest rays of 20 000")
+figure = plots.plot_scene(scene, paths, num_rays=150, title="150 of the paths of 20 000 rays: the strongest to each object")

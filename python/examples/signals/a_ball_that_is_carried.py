@@ -47,12 +47,13 @@ ranges = views[0].map.range
 far = power[:, ranges > 5.0]
 steps = np.arange(len(views))
 figure, (upper, lower) = plt.subplots(2, 1, figsize=(9, 8), layout="constrained", sharex=True, height_ratios=(3, 2))
-image = upper.pcolormesh(steps, ranges, 10 * np.log10(power.T + 1e-30), shading="nearest", cmap="magma",
-                         vmax=10 * np.log10(far.max()), vmin=10 * np.log10(far.max()) - 60)
-upper.plot(steps, np.linalg.norm(way - (0, 0, 1), axis=1) + 1.5, ":", color="white", label="range of the ball, 1.5 m above it")
-upper.set(ylabel="range (m)", ylim=(0, 48), title="What the radar sees while the ball is carried down the street")
+highest = 10 * np.log10(far.max()) + 30  # dBm
+image = upper.pcolormesh(steps, ranges, 10 * np.log10(power.T + 1e-30) + 30, shading="nearest", cmap="magma", vmax=highest,
+                         vmin=highest - 60)
+upper.plot(steps, np.linalg.norm(way - (0, 0, 1), axis=1) + 1.5, ":", color="white", label="range of the ball plus 1.5 m")
+upper.set(ylabel="Range in m", ylim=(0, 48), title="What the radar sees while the ball is carried down the street")
 upper.legend(loc="lower right", facecolor="black", labelcolor="white")
-figure.colorbar(image, ax=upper, label="power at rest (dBW)")
+figure.colorbar(image, ax=upper, label="Received power at 0 m/s in dBm")
 lower.bar(steps[1:], [100.0 * view.num_rays_shot / view.num_rays for view in views[1:]], width=0.8)
-lower.set(xlabel="step", ylabel="rays shot again (%)", ylim=(0, None))
+lower.set(xlabel="Step of the ball", ylabel="Rays shot again in %", ylim=(0, None))
 plt.show()

@@ -30,6 +30,6 @@ for speed, text in ((0.0, "road"), (8.0, "car"), (16.0, "top of a tyre")):
     axes.text(speed * np.cos(np.arctan2(3.0, 9.0)) + 0.15, -62, text, fontsize=8, color="0.3")
 axes.set(xlim=(-5, 19), ylim=(-150, -55), xlabel="Radial velocity in m/s", ylabel="Received power in dBm",
          title="A car at 8 m/s, body and wheels")
-axes.legend(loc="lower right")
+axes.legend(loc="center right")
 axes.grid(alpha=0.3)
 plt.show()

@@ -13,7 +13,7 @@ from echopath.spectra.windows import of_range, of_velocity, samples_of
 
 MAX_BYTES = 2 << 30     # of the signals of all families, while they are made
 MAX_MIRRORS = 16        # told apart in the background: those that most paths touch
-REST = "rest: noise, and paths that the file leaves out"
+REST = "rest: noise, left-out paths"
 BACKGROUND = "background"
 
 

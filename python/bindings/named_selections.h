@@ -3,6 +3,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,7 +30,12 @@ struct SelectionOrText {
   static Selection from(py::handle value, const char* argument) {
     if (py::isinstance<Selection>(value)) return value.cast<Selection>();
     if (!PyUnicode_Check(value.ptr())) refuse_type(argument, "must be a Selection or its text", value);
-    return Selection(detail::checked_text(value, argument));
+    const std::string text = detail::checked_text(value, argument);
+    try {
+      return Selection(text);
+    } catch (const std::invalid_argument& fault) {
+      throw std::invalid_argument(std::string(argument) + ": " + fault.what());
+    }
   }
 };
 

@@ -151,3 +151,25 @@ def test_detections_take_parts_as_decompose_has_them():
     assert set(ep.detect(spectrum, radar, parts=ep.decompose(paths, radar, ep.families(paths))).part) == {"ball"}
     with pytest.raises(ValueError, match="^parts: selections need paths"):
         ep.detect(spectrum, radar, parts={"ball": "T 'ball' R"})
+
+
+@pytest.mark.parametrize("kind, maker", [
+    (ep.Detections, "ep.detect"), (ep.Labels, "ep.annotate"), (ep.Frame, "ep.simulate"), (ep.Truth, "ep.truth"),
+    (ep.Spectrogram, "ep.spectrogram"), (ep.Tracks, "ep.track"), (ep.Parts, "ep.decompose"), (ep.SceneFile, "ep.load_scene"),
+    (ep.RangeDoppler, "ep.range_doppler"), (ep.Paths, "ep.trace")])
+def test_records_that_a_function_makes_lead_to_it(kind, maker):
+    with pytest.raises(TypeError, match=rf"^{kind.__name__}: .*is made by .*{maker}"):
+        kind(0)
+
+
+def test_errors_within_a_record_are_not_taken_for_a_call_that_does_not_fit():
+    with pytest.raises(TypeError, match="^cubes: must be a dict by the names of the parts, got 0"):
+        ep.Parts(0, {})
+
+
+def test_a_faulty_text_of_paths_names_its_argument(scene):
+    paths = ep.trace(scene, RADAR, num_rays=100)
+    with pytest.raises(ValueError, match="^selection: path expression: expected"):
+        paths.select("nonsense")
+    with pytest.raises(ValueError, match=r"^parts\['a'\]: path expression: expected"):
+        paths.partition({"a": "T ("})

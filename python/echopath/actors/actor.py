@@ -1,10 +1,12 @@
 """Actors: named parts, each a mesh with a material and a motion of its own."""
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from .. import _core
+from ..arguments.checks import refused
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,8 @@ class Actor:
     motion: _core.Motion | None = None
 
     def __post_init__(self):
+        if not isinstance(self.parts, Sequence) or not all(isinstance(part, Part) for part in self.parts):
+            raise refused(TypeError, "parts", "a list of Part", self.parts)
         names = [part.name for part in self.parts]
         for name in names:
             if not name or any(not step for step in name.split("/")):

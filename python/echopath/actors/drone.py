@@ -4,9 +4,10 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import checked, count, positive, real
+from ..arguments.checks import checked, count, real
 from . import solids
 from .actor import Actor, Part
+from .limits import size_rule
 from .shapes import ellipsoid
 from .surfaces import joined
 
@@ -18,7 +19,7 @@ BLADE = _core.Material(reflectivity=0.3, scattering=0.9)
 ROTORS = (("front_left", 1, 1, 1), ("front_right", 1, -1, -1), ("rear_left", -1, 1, -1), ("rear_right", -1, -1, 1))
 
 
-@checked(size=positive("m"), rotor_rpm=real(unit="1/min"), num_blades=count(2, 6), speed=real(unit="m/s"))
+@checked(size=size_rule, rotor_rpm=real(unit="1/min"), num_blades=count(2, 6), speed=real(unit="m/s"))
 def drone(*, size: float = 0.35, rotor_rpm: float = 5500.0, num_blades: int = 2, speed: float = 0.0) -> Actor:
     """A quadcopter about the origin that flies along +x, its rotors turning.
 

@@ -44,7 +44,7 @@ class Settings:
         for name, rule in self.RULES.items():
             object.__setattr__(self, name, rule(name, getattr(self, name)))
 
-    def replace(self: Kind, **changes: Any) -> Kind:
+    def replace(self: Kind, **changes: object) -> Kind:
         """A copy with other values. changes: keywords of the class. Raises TypeError or ValueError naming the keyword."""
         refuse_unknown("replace", changes, self.RULES)
         return dataclasses.replace(self, **changes)  # type: ignore[type-var]

@@ -1,7 +1,8 @@
 """Types of libraries that only some calls need, for annotations: nothing of them is imported when the program runs."""
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import os
+from typing import TYPE_CHECKING, Protocol
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes as Axes
@@ -11,3 +12,15 @@ if TYPE_CHECKING:
     from PySide6.QtWidgets import QMainWindow as QMainWindow  # type: ignore[import-not-found,unused-ignore]
     from xarray import DataArray as DataArray  # type: ignore[import-not-found,unused-ignore]
     from xarray import Dataset as Dataset  # type: ignore[import-not-found,unused-ignore]
+
+
+class Page(Protocol):
+    """A web page that a notebook shows: what `Frame.show` returns."""
+
+    def html(self, whole: bool = True) -> str:
+        """Its text; whole: with a head, as a file has it."""
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes it to a file."""
+
+    def _repr_html_(self) -> str: ...

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..arguments.checks import refused
 from ..base.equality import has_same_fields
+from ..base.made_by import made_by
 from ..presentation.tables import make_table, write_csv
 from .directions import toward
 from .echo_fields import EchoFields
@@ -24,6 +25,7 @@ UNITS = {"range": "m", "velocity": "m/s", "azimuth": "rad", "elevation": "rad", 
 _FIELDS = COLUMNS[:COLUMNS.index("is_noise")]
 
 
+@made_by("ep.detect")
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Detections:
     """Echoes that stand out of the noise of a range-Doppler map, D of them by cell; made by `detect`.

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arguments.checks import file
 from ..base.files import written_whole
 from ..base.optional import needed_module
 
@@ -19,7 +20,7 @@ def write_pcd(detections, path) -> None:
     head = ["# .PCD v0.7 - Point Cloud Data file format", "VERSION 0.7", "FIELDS " + " ".join(columns),
             *(f"{word} " + " ".join([value] * len(columns)) for word, value in (("SIZE", "4"), ("TYPE", "F"), ("COUNT", "1"))),
             f"WIDTH {len(table)}", "HEIGHT 1", "VIEWPOINT 0 0 0 1 0 0 0", f"POINTS {len(table)}", "DATA binary"]
-    with written_whole(path) as temporary:
+    with written_whole(file("path", path)) as temporary:
         temporary.write_bytes(("\n".join(head) + "\n").encode("ascii") + table.tobytes())
 
 
@@ -38,6 +39,6 @@ def write_las(detections, path) -> int:
     cloud.intensity = np.clip(np.rint(100.0 * snr), 0, 65535).astype(np.uint16)
     for name, field in _EXTRA.items():
         cloud[name] = getattr(detections, field)[is_placed]
-    with written_whole(path) as temporary:
+    with written_whole(file("path", path)) as temporary:
         cloud.write(str(temporary))
     return int(np.sum(~is_placed))

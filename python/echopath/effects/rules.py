@@ -12,11 +12,13 @@ from .. import _core
 from ..arguments.effects import Choices
 from ..arguments.names import MOST_NAMES, first_names
 from ..arguments.settings import Edges
+from ..base.made_by import made_by
 from ..scene.interferers import interferers_of
 from ..tracing.polarization import COHERENT_SHARE, antennas_of, chosen_model, coherent_share
 from ..weather.weather import weather_of
 
 
+@made_by("ep.effects")
 @dataclasses.dataclass(frozen=True)
 class Effect:
     """One effect. name; modelled: whether it is; reason: what in the scene or the settings asks for it, or why not."""

@@ -3,12 +3,13 @@ from __future__ import annotations
 
 import dataclasses
 import os
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 from functools import cached_property
 
 import numpy as np
 
 from .. import _core
+from ..base.made_by import made_by
 from ..base.stages import Stage
 from ..effects import of_paths
 from ..paths.families import families as find_families
@@ -20,11 +21,12 @@ from ..spectra.azimuth_map import sees_azimuth
 from ..transmit import demultiplex
 
 if TYPE_CHECKING:
-    from ..base.foreign_types import Axes
+    from ..base.foreign_types import Axes, Page
 
 _WHOLE = object()  # a partition of one part, beside those that have names
 
 
+@made_by("ep.simulate and ep.load_frame")
 @dataclasses.dataclass(eq=False)
 class Frame:
     """One simulated frame.
@@ -136,7 +138,7 @@ class Frame:
 
         return draw_frame(self, ax=ax, vmin=vmin, vmax=vmax, title=title)
 
-    def show(self, *, selection: str | _core.Selection = "", num_rays: int = 300, color_by: str = "bounces") -> Any:
+    def show(self, *, selection: str | _core.Selection = "", num_rays: int = 300, color_by: str = "bounces") -> Page:
         """The scene and some rays as an interactive picture for notebooks, whose `save(path)` writes one HTML file.
 
         The mouse turns it; rays and bodies say what they are, and a click on a ray shows all of it.

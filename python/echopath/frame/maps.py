@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..base.equality import has_same_fields
+from ..base.made_by import made_by
 from ..detections.detections import Detections
 from .frame import Frame
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 _OF_THE_MASK = ("power", "whole", "mean_power", "mean_share", "power_error", "share_error")
 
 
+@made_by("ep.load_sequence")
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class FrameMaps:
     """Maps, labels and detections of a frame, as the small files of a sequence keep them; made by `StoredSequence`.

@@ -3,12 +3,14 @@ from __future__ import annotations
 
 import dataclasses
 import warnings
+from ..base.made_by import made_by
 
 
 class GuardWarning(UserWarning):
     """A result disagrees with a slower way to it by more than the run promises."""
 
 
+@made_by("ep.check_rays and ep.check_signal")
 @dataclasses.dataclass(frozen=True)
 class Check:
     """One comparison of the guard.

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
-from ..arguments.checks import refused
+from ..arguments.checks import real
 from ..base.equality import has_same_fields
+from ..base.made_by import made_by
 from ..presentation.xarray_maps import time_map_array
 
 if TYPE_CHECKING:
@@ -72,6 +73,7 @@ class TimeMap:
         return ""
 
 
+@made_by("ep.spectrogram")
 @dataclasses.dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Spectrogram(TimeMap):
     """Received power by time and radial velocity; made by `spectrogram`.
@@ -102,8 +104,7 @@ class Spectrogram(TimeMap):
         below_peak_db: dB, 0 or more
         Returns (lowest, highest), [T] each in m/s, NaN at times without power. Raises ValueError.
         """
-        if not (np.isreal(below_peak_db) and 0.0 <= below_peak_db < np.inf):
-            raise refused(ValueError, "below_peak_db", "a finite number of at least 0 dB", below_peak_db)
+        below_peak_db = real(0.0, unit="dB")("below_peak_db", below_peak_db)
         peak = self.power.max(axis=1, keepdims=True)
         is_inside = self.power >= peak * 10.0 ** (-below_peak_db / 10.0)
         last = len(self.velocity) - 1
@@ -117,6 +118,7 @@ class Spectrogram(TimeMap):
         return f", {self.velocity[0]:.2f} to {self.velocity[-1]:.2f} m/s, {gaps}"
 
 
+@made_by("ep.range_time")
 @dataclasses.dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class RangeTime(TimeMap):
     """Received power by time and range; made by `range_time`.
@@ -137,6 +139,7 @@ class RangeTime(TimeMap):
     AXIS, TITLE = "range", "Received power by time and range"
 
 
+@made_by("ep.angle_time")
 @dataclasses.dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class AngleTime(TimeMap):
     """Received power by time and azimuth; made by `angle_time`.

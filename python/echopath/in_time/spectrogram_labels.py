@@ -11,6 +11,7 @@ from .. import _core
 from ..arguments.checks import an, checked, optional, refused
 from ..arguments.settings import LabelSettings
 from ..base.equality import has_same_fields, is_same
+from ..base.made_by import made_by
 from ..labels.part_cells import PartCells
 from ..presentation.xarray_maps import spectrogram_labels_dataset
 from .maps import Spectrogram
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 _SAME = ("times", "velocity", "trains", "window_length", "hop", "window", "zero_pad", "range_gate", "channel")
 
 
+@made_by("ep.spectrogram_labels")
 @dataclasses.dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class SpectrogramLabels(PartCells):
     """Labels of all cells of a spectrogram [T, V]; made by `spectrogram_labels`.

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 
+from ..arguments.checks import choice
 from ..base.equality import has_same_fields
+from ..base.made_by import made_by
 from ..paths.resolution import Interval
 from ..paths.visibility import HIDDEN_SHARE
 from .dataset import dataset_of
@@ -64,6 +66,7 @@ def is_occluded(seen) -> bool:
     return seen.visible_share <= HIDDEN_SHARE and bool(seen.occluders)
 
 
+@made_by("ep.annotate")
 @dataclasses.dataclass(frozen=True)
 class ObjectLabel:
     """What a map shows of one object of the scene, by echoes that take no mirror.
@@ -108,6 +111,7 @@ class ObjectLabel:
         return is_occluded(self)
 
 
+@made_by("ep.annotate")
 @dataclasses.dataclass(frozen=True)
 class GhostLabel:
     """What a map shows of one ghost: an object's echoes over the same mirrors, of the same type and order.
@@ -134,6 +138,7 @@ class GhostLabel:
     received: Interval | None
 
 
+@made_by("ep.annotate")
 @dataclasses.dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Labels(PartCells):
     """Labels of all cells of a map [V, R]; of a range-azimuth map [A, R] wherever V is written.
@@ -218,7 +223,8 @@ class Labels(PartCells):
         from ..plots import draw_labels
 
         titles = {"parts": "Which part made each cell", "objects": "Objects and their ghosts"}
-        return draw_labels(self, what=what, ax=ax, title=titles.get(what, "") if title is None else title)
+        title = titles[choice(*titles)("what", what)] if title is None else title
+        return draw_labels(self, what=what, ax=ax, title=title)
 
     def _repr_html_(self) -> str:
         from ..presentation.notebook import labels_html

@@ -7,8 +7,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from .. import _core
+from ..base.made_by import made_by
 
 
+@made_by("ep.Live")
 @dataclasses.dataclass(frozen=True, eq=False)
 class LiveView:
     """The signal and map of a live scene after a change; made by `Live`.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from ..arguments.checks import anything, checked, optional, positive
 from .changes import Changes
 from .view import LiveView
+from ..base.made_by import made_by
 
 if TYPE_CHECKING:
     from .live import Live
@@ -22,6 +23,7 @@ class _Superseded(Exception):
     """Another change came while a view was made."""
 
 
+@made_by("Live.watch")
 class Watch:
     """Shows the views of a Live from a thread of its own: `with live.watch(show) as watch: live.change(...); watch.wait()`.
 

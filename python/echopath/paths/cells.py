@@ -7,11 +7,13 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import ArrayLike, anything, array, checked, row_of_channel
+from ..base.made_by import made_by
 
 OUTSIDE = -1  # index of a path that the anti-alias filter removes, or that lies beyond the axis
 _ENDS = array("[2]", kind="whole")
 
 
+@made_by("ep.path_cells")
 @dataclasses.dataclass(frozen=True)
 class PathCells:
     """Range, radial velocity and cell of each path at one channel, in the middle of the frame.

@@ -10,10 +10,12 @@ from .. import _core
 from ..arguments.checks import an, checked
 from ..arguments.objects import Objects, named_globs, objects_rule
 from ..base.equality import is_same
+from ..base.made_by import made_by
 
 NO_OBJECT = -1  # index of the object of a path that touches none
 
 
+@made_by("ep.families")
 @dataclasses.dataclass(frozen=True, eq=False)
 class Families:
     """The ghost family of each path; made by `families`. A view for `decompose`.

@@ -10,6 +10,7 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import Progress, checked, real
 from ..arguments.objects import Objects, objects_rule
+from ..base.made_by import made_by
 from ..signals.measures import in_dbm
 from .families import families as families_of
 from .visibility import visibility_in_trace
@@ -54,6 +55,7 @@ class Interval(NamedTuple):
         return f"{in_dbm(self.power):.1f} dBm, below {high}"
 
 
+@made_by("ep.unresolved")
 @dataclasses.dataclass(frozen=True)
 class Unresolved:
     """An echo whose power the rays do not know to 0.3 dB.

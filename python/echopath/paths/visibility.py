@@ -6,12 +6,14 @@ import dataclasses
 from .. import _core
 from ..arguments.checks import Progress, checked, count, optional, real
 from ..arguments.objects import Objects, named_globs, objects_rule
+from ..base.made_by import made_by
 
 HIDDEN_SHARE = 0.05  # an object of which no more than this is in sight counts as hidden
 DIRECTIONS_OF_PLACES = 256  # on each object: shares to .004 rms, for the question whether they are above HIDDEN_SHARE
 FRAME_PLACES = (0.0, 1.0, 0.618, 0.236, 0.854)  # shares of a frame: its ends and irrational ones
 
 
+@made_by("ep.visibility")
 @dataclasses.dataclass(frozen=True)
 class Sight:
     """An object as one end of the radar sees it, from the mean position of its antennas.
@@ -37,6 +39,7 @@ class Sight:
         return f"<Sight {self.visible_share:.1%} visible{hidden}, {self.distance:.4g} m{view}>"
 
 
+@made_by("ep.visibility")
 @dataclasses.dataclass(frozen=True)
 class ObjectVisibility:
     """How much of an object the radar can see; made by `visibility`.

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arguments.checks import choice
 from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm
 from .maps import RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN
 from .part_powers import draw_part_powers, part_colours
@@ -60,8 +61,7 @@ def draw_labels(labels, *, what="parts", ax=None, title=""):
     TypeError naming `ax`.
     """
     areas_of = {"parts": _part_areas, "objects": _class_areas}
-    if what not in areas_of:
-        raise ValueError(f"what: must be 'parts' or 'objects', got {what!r}")
+    choice(*areas_of)("what", what)
     with axes_or_new(ax, 9.0, 4.8) as ax:
         _draw_cells(ax, labels, areas_of[what](labels))
         ax.set_title(title, pad=_legend_height(ax))

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arguments.checks import choice, text
 from ..base.colours import colours_of
 from .maps import RANGE_LABEL, VELOCITY_LABEL
 from .style import axes_or_new
@@ -26,8 +27,7 @@ def draw_detections(detections, *, view="range_doppler", ax=None, title=""):
     Returns the axes: range in m and radial velocity in m/s, or metres to the left and ahead in the radar's frame.
     Raises ValueError for other views, and for a view from above without azimuths.
     """
-    if view not in VIEWS:
-        raise ValueError(f"view: must be 'range_doppler' or 'above', got {view!r}")
+    choice(*VIEWS)("view", view)
     if view == "above" and len(detections) and not np.isfinite(detections.azimuth).any():
         raise ValueError("view: 'above' needs azimuths, which the antennas of these detections cannot tell")
     is_given = ax is not None
@@ -42,7 +42,7 @@ def draw_detections(detections, *, view="range_doppler", ax=None, title=""):
             ax.set_xlabel(RANGE_LABEL)
             ax.set_ylabel(VELOCITY_LABEL)
         ax.grid(alpha=0.25)
-        ax.set_title(title or f"{len(detections)} detections")
+        ax.set_title(text("title", title) or f"{len(detections)} detections")
     return ax
 
 

@@ -5,6 +5,7 @@ import csv
 
 import numpy as np
 
+from ..arguments.checks import file
 from ..base.files import written_whole
 from ..base.optional import needed_module
 from ..paths.families import families
@@ -24,7 +25,7 @@ def make_table(columns: dict, units: dict):
 
 def write_csv(path, columns: dict) -> None:
     """Writes {name: values [N]} as a table with a header, whole or not at all; NaN as nothing. Raises ep.FileError."""
-    with written_whole(path) as temporary, open(temporary, "w", encoding="utf-8", newline="") as stream:
+    with written_whole(file("path", path)) as temporary, open(temporary, "w", encoding="utf-8", newline="") as stream:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(columns)
         writer.writerows([_as_text(value) for value in row] for row in zip(*columns.values()))

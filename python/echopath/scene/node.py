@@ -5,6 +5,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import flag, real, refused, vector
+from ..base.made_by import made_by
 from ..trajectories.trajectory import Trajectory
 from . import placements
 from .materials import known_material
@@ -33,6 +34,7 @@ class FixedArray(np.ndarray):
         return self / other
 
 
+@made_by('scene["name"]')
 class SceneNode:
     """An object of a scene, read and changed in place: `scene["street/car"].position += (1.0, 0.0, 0.0)`.
 

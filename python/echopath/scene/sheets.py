@@ -7,8 +7,10 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import ArrayLike, an, anything, array, checked, flag, positive, real
+from ..base.made_by import made_by
 
 
+@made_by("ep.sheet_coefficients")
 @dataclasses.dataclass(frozen=True, eq=False)
 class SheetCoefficients:
     """Fields that a sheet reflects and lets pass, over that of the wave; made by `sheet_coefficients`.

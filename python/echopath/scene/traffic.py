@@ -7,6 +7,7 @@ from typing import Any
 from .. import actors
 from ..actors.laid_line import usual_speed
 from ..arguments.checks import an, anything, checked, optional, real, refused, text
+from ..base.made_by import made_by
 from ..readers.tree import fit_name
 from ..trajectories.trajectory import Trajectory
 from .scene import Scene
@@ -20,6 +21,7 @@ KINDS = (("truck", "truck", {}), ("trailer", "truck", {}), ("bus", "van", {"kind
 ActorOf = Callable[[str, Trajectory], Any]
 
 
+@made_by("ep.add_traffic")
 class Traffic(Mapping[str, Trajectory]):
     """The objects that `add_traffic` has put into a scene: {full name in the scene: Trajectory}. Raises KeyError for others."""
 

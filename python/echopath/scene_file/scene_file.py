@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
+from ..base.made_by import made_by
 from ..signals.parts import as_partitions
 
 if TYPE_CHECKING:
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from .schema import AngleTable, DetectionsTable, SequenceTable, TruthTable
 
 
+@made_by("ep.load_scene")
 @dataclasses.dataclass(frozen=True)
 class SceneFile:
     """What a scene file says.

@@ -5,11 +5,12 @@ import dataclasses
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from .. import _core
 from ..arguments.checks import checked, flag, optional, refused, text
 from ..arguments.checks import count as count_rule
+from ..base.made_by import made_by
 from ..receiver import Adc, Receiver
 from .boards import Board, board_names, board_of_platform, read_board
 from .cfg import Command, Lines, read_lines
@@ -26,6 +27,7 @@ BITS = (12, 14, 16)
 _RF_GAIN_BITS = 0x3F  # of the gain; what is above tells how it is shared
 
 
+@made_by("ep.load_sensor")
 @dataclasses.dataclass(frozen=True)
 class SensorConfig:
     """What a mmWave configuration sets up.
@@ -43,7 +45,7 @@ class SensorConfig:
     board: str
     ignored: tuple[str, ...]
 
-    def replace(self, **changes: Any) -> SensorConfig:
+    def replace(self, **changes: object) -> SensorConfig:
         """A copy whose radars have other values. changes: keywords of Radar, such as position in m, for all of them.
 
         Raises TypeError or ValueError naming the keyword.
@@ -51,7 +53,7 @@ class SensorConfig:
         return dataclasses.replace(self, radars=tuple(radar.replace(**changes) for radar in self.radars))
 
     def sequences(self, scene: _core.Scene, *, frames: int, start_time: float = 0.0,
-                  settings: Mapping[str, Any] | None = None) -> tuple[Sequence, ...]:
+                  settings: Mapping[str, object] | None = None) -> tuple[Sequence, ...]:
         """A Sequence of each sub-frame, one of a plain frame: frame after frame at the sensor's interval.
 
         scene: of the frames; frames: their number; start_time: s, of the first

@@ -36,8 +36,9 @@ class StoredSequence(Row[Frame | FrameMaps]):
     """
 
     def __init__(self, folder: Path):
-        contents = read_contents(folder)
-        self.folder, self.radar, self.settings = folder, contents.radar, contents.settings
+        self.folder = Path(folder_rule("folder", folder))
+        contents = read_contents(self.folder)
+        self.radar, self.settings = contents.radar, contents.settings
         self._scene = contents.scene
         self._take(self.settings)
 

@@ -8,6 +8,7 @@ from .._core import Grouping, Selection
 from ..arguments.checks import Progress, an, checked, optional, refused, text
 from ..arguments.settings import Evaluate, Method, Replay, Retrace, SignalSettings
 from ..base.equality import is_same
+from ..base.made_by import made_by
 from ..paths.families import Families
 from ..transmit.signals import decompose_slots
 from .if_signal import RULES
@@ -21,6 +22,7 @@ _ONE_KIND = "all selections (one partition) or all tables of selections (several
 ONLY_PARTITION = "parts"  # name of a partition that is the only one and has none
 
 
+@made_by("ep.decompose")
 class Parts(dict):
     """{name: cube [tx, rx, chirp, sample] in sqrt(W)} of one partition, "other" last; made by `decompose`.
 
@@ -29,6 +31,11 @@ class Parts(dict):
     """
 
     def __init__(self, cubes, selections, radar=None):
+        for argument, value in (("cubes", cubes), ("selections", {} if selections is None else selections)):
+            if not isinstance(value, Mapping):
+                raise refused(TypeError, argument, "a dict by the names of the parts", value)
+        if radar is not None and not isinstance(radar, _core.Radar):
+            raise refused(TypeError, "radar", "a Radar or None", radar)
         super().__init__(cubes)
         self.selections = None if selections is None else dict(selections)
         self.radar = radar

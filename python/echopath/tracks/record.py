@@ -9,6 +9,7 @@ import numpy as np
 
 from ..arguments.checks import refused
 from ..base.equality import has_same_fields
+from ..base.made_by import made_by
 from ..presentation.tables import make_table, write_csv
 
 if TYPE_CHECKING:
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 _UNITS = {"time": "s", "x": "m", "y": "m", "vx": "m/s", "vy": "m/s"}
 
 
+@made_by("ep.track")
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Tracks:
     """Where tracked objects were, N rows of a track and a frame, by track and time; made by `track`.

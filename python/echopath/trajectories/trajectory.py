@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -153,7 +153,7 @@ class Trajectory(_core.CurveMotion):
             return self.replace(times=np.asarray(arguments["times"], float) + seconds)
         return self.replace(start_time=arguments["start_time"] + seconds)
 
-    def replace(self, **changes: Any) -> Trajectory:
+    def replace(self, **changes: object) -> Trajectory:
         """A copy with other values of some arguments.
 
         changes: arguments of the constructor, or of `Lane.trajectory` where that made it, by name (m, s, m/s)

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arguments.checks import refused
+from ..arguments.checks import LARGEST_COUNT, count, refused
 from ..base.equality import has_same_fields
+from ..base.made_by import made_by
 from ..presentation.tables import make_table, write_csv
 
 if TYPE_CHECKING:
@@ -31,6 +32,7 @@ _COLUMNS = {
     "rcs_high": (("rcs_high",), "m^2"), "rotation": (tuple(f"rotation_{row}{column}" for row in _XYZ for column in _XYZ), "")}
 
 
+@made_by("ep.truth")
 @dataclasses.dataclass(frozen=True, eq=False, repr=False)
 class Truth:
     """What is true of objects in the middle of frames, N rows of an object and a frame; made by `truth`.
@@ -103,9 +105,7 @@ class Truth:
 
     def of_frame(self, frame: int) -> Truth:
         """The rows of the frame with that index; none where it has no objects. Raises TypeError for what is no index."""
-        if not hasattr(frame, "__index__"):
-            raise refused(TypeError, "frame", "the index of a frame, a whole number", frame)
-        return self._where(self.frame == frame)
+        return self._where(self.frame == count(-LARGEST_COUNT)("frame", frame))
 
     def to_dataframe(self) -> DataFrame:
         """A pandas.DataFrame with a row for each object and frame.

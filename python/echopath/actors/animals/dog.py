@@ -12,6 +12,7 @@ from ..following import key_times, refuse_beside_trajectory, trajectory_rule, wi
 from ..human.gait import Frames
 from ..human.pedestrian import keyframe_times
 from ..laid_line import LaidLine, usual_speed
+from ..limits import size_rule, start_time_rule
 from ..shapes import capsule, ellipsoid
 
 # Proportions of a Labrador retriever in heights of its withers (0.57 m by the breed's standard), drawn after photographs.
@@ -40,7 +41,7 @@ SPEEDS = (0.3, 4.0)               # m/s, least and greatest of a trot
 KEYFRAME_RATE = 240.0             # 1/s
 
 
-@checked(height=positive("m"), speed=real(0.0, SPEEDS[1], unit="m/s"), start_time=real(unit="s"), duration=positive("s"),
+@checked(height=size_rule, speed=real(0.0, SPEEDS[1], unit="m/s"), start_time=start_time_rule, duration=positive("s"),
          phase=real(unit="cycles"), trajectory=trajectory_rule)
 def dog(*, height: float = 0.57, speed: float = 2.2, start_time: float = -0.5, duration: float = 2.5,
         phase: float = 0.0, trajectory: Trajectory | None = None) -> Actor:

@@ -10,13 +10,13 @@ from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
 from ..following import key_times, refuse_beside_trajectory, trajectory_rule, with_rates
 from ..laid_line import usual_speed
+from ..limits import start_time_rule
 from ..surfaces import edge_length
 from .anthropometry import Proportions
 from .body import surface
 from .gait import Frames, Gait, relative_speed_limit
 from .gait_along import GaitAlong
 
-LONGEST = 1e9                 # s
 MOST_KEYS = 200_000           # of a part
 HEIGHTS = (0.5, 2.5)          # m
 MIN_SPEED = 0.1               # m/s
@@ -29,7 +29,7 @@ def material_rule(argument: str, value):
     return an(_core.Material, str, called="a Material or the name of one")(argument, value)
 
 
-@checked(height=real(*HEIGHTS, unit="m"), speed=positive("m/s"), start_time=real(-LONGEST, LONGEST, unit="s"),
+@checked(height=real(*HEIGHTS, unit="m"), speed=positive("m/s"), start_time=start_time_rule,
          duration=positive("s"), phase=real(unit="cycles"), edge=positive("m"), keyframe_rate=real(MIN_KEYFRAME_RATE, unit="1/s"),
          clothing=material_rule, skin=material_rule, trajectory=trajectory_rule)
 def pedestrian(*, height: float = 1.78, speed: float = 1.4, start_time: float = -0.5, duration: float = 2.5,
@@ -65,9 +65,6 @@ def pedestrian(*, height: float = 1.78, speed: float = 1.4, start_time: float = 
         body, most = Proportions(height), relative_speed_limit(Proportions(height))
         return walk_along(body, lambda speed: Gait(body, speed), (MIN_SPEED, most), trajectory, edge=edge,
                           keyframe_rate=keyframe_rate, clothing=clothing, skin=skin)
-    if duration * keyframe_rate > MOST_KEYS:
-        raise refused(ValueError, "duration", f"at most {MOST_KEYS / keyframe_rate:g} s at a keyframe_rate of {keyframe_rate:g}",
-                      duration)
     arrays = pedestrian_arrays(height=height, speed=speed, start_time=start_time, duration=duration, phase=phase,
                                edge=edge, keyframe_rate=keyframe_rate, clothing=clothing, skin=skin)
     return Actor([part.build() for part in arrays])
@@ -129,6 +126,11 @@ def body_arrays(body, frames, times, *, edge, clothing, skin):
 
 
 def keyframe_times(start_time, duration, rate):
-    """Times [T] in s, evenly from start_time over `duration`, at least `rate` a second and at least 4."""
+    """Times [T] in s, evenly from start_time over `duration`, at least `rate` a second and at least 4.
+
+    Raises ValueError naming duration where these are more than MOST_KEYS.
+    """
+    if duration * rate > MOST_KEYS:
+        raise refused(ValueError, "duration", f"at most {MOST_KEYS / rate:g} s at a keyframe_rate of {rate:g}", duration)
     count = max(4, int(np.ceil(duration * rate - 1e-9)) + 1)
     return start_time + duration * np.linspace(0.0, 1.0, count)

@@ -6,6 +6,7 @@ from ...arguments.checks import checked, optional, positive, real
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor
 from ..following import refuse_beside_trajectory, trajectory_rule
+from ..limits import start_time_rule
 from ..laid_line import usual_speed
 from ..surfaces import edge_length
 from .anthropometry import Proportions
@@ -16,7 +17,7 @@ from .running import RunningGait, running_speeds
 CHILD_HEIGHTS = (0.8, 1.5)   # m, of children of about 1 to 12 years
 
 
-@checked(height=real(*HEIGHTS, unit="m"), speed=positive("m/s"), start_time=real(unit="s"), duration=positive("s"),
+@checked(height=real(*HEIGHTS, unit="m"), speed=positive("m/s"), start_time=start_time_rule, duration=positive("s"),
          phase=real(unit="cycles"), edge=positive("m"), keyframe_rate=real(MIN_KEYFRAME_RATE, unit="1/s"),
          clothing=material_rule, skin=material_rule, trajectory=trajectory_rule)
 def runner(*, height: float = 1.78, speed: float = 3.0, start_time: float = -0.5, duration: float = 2.5, phase: float = 0.0,
@@ -59,7 +60,7 @@ def standing_person(*, height: float = 1.78, edge: float = 0.018, clothing: str 
     return Actor([part.build() for part in arrays])
 
 
-@checked(height=real(*CHILD_HEIGHTS, unit="m"), speed=optional(real(0.0, unit="m/s")), start_time=real(unit="s"),
+@checked(height=real(*CHILD_HEIGHTS, unit="m"), speed=optional(real(0.0, unit="m/s")), start_time=start_time_rule,
          duration=positive("s"), phase=real(unit="cycles"), edge=positive("m"), trajectory=trajectory_rule)
 def child(*, height: float = 1.15, speed: float | None = None, start_time: float = -0.5, duration: float = 2.5,
           phase: float = 0.0, edge: float = 0.014, trajectory: Trajectory | None = None) -> Actor:

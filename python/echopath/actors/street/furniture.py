@@ -6,8 +6,9 @@ from typing import Literal
 import numpy as np
 
 from ... import _core
-from ...arguments.checks import checked, one_of, positive, real
+from ...arguments.checks import checked, one_of, real
 from ..actor import Actor, Part
+from ..limits import row_rule, size_rule
 from ..solids import extruded, outward, round_segments, tube
 from ..surfaces import joined
 
@@ -30,7 +31,7 @@ RAIL_LINE = ((0.0, 0.86), (0.05, 0.80), (0.12, 0.30), (0.19, 0.02), (0.25, 0.0),
              (1.0, 0.86))
 
 
-@checked(height=positive("m"), radius=positive("m"), end_radius=positive("m"))
+@checked(height=size_rule, radius=size_rule, end_radius=size_rule)
 def pole(*, height: float = 6.0, radius: float = 0.07, end_radius: float = 0.04) -> Actor:
     """A round metal pole that tapers from `radius` at the ground to `end_radius` at `height`, all in m.
 
@@ -41,7 +42,7 @@ def pole(*, height: float = 6.0, radius: float = 0.07, end_radius: float = 0.04)
     return Actor([Part("tube", _core.Mesh(*surface), "metal", smooth=True)])
 
 
-@checked(shape=one_of(SignShape), size=positive("m"), height=positive("m"))
+@checked(shape=one_of(SignShape), size=size_rule, height=size_rule)
 def traffic_sign(*, shape: SignShape = "round", size: float = 0.6, height: float = 2.2) -> Actor:
     """A flat metal traffic sign that looks along -x, on a tube of 76 mm.
 
@@ -60,7 +61,7 @@ def traffic_sign(*, shape: SignShape = "round", size: float = 0.6, height: float
                   Part("pole", _core.Mesh(*mast), "metal", smooth=True)])
 
 
-@checked(length=positive("m"), spacing=positive("m"), edge=real(0.02, unit="m"))
+@checked(length=row_rule, spacing=real(0.1, unit="m"), edge=real(0.02, unit="m"))
 def guard_rail(*, length: float = 20.0, spacing: float = 2.0, edge: float = 1.0) -> Actor:
     """A steel guard rail along x about the origin, its front towards -y, 0.75 m high, on posts of H section.
 

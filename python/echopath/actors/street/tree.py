@@ -4,8 +4,9 @@ from __future__ import annotations
 import numpy as np
 
 from ... import _core
-from ...arguments.checks import checked, count, positive, seed as seed_rule
+from ...arguments.checks import checked, count, seed as seed_rule
 from ..actor import Actor, Part
+from ..limits import size_rule
 from ..solids import tube
 from ..surfaces import joined
 
@@ -18,7 +19,7 @@ TRUNK_SHARE = 0.035     # radius of the trunk over the height of the tree, at th
 NUM_BRANCHES = 9
 
 
-@checked(height=positive("m"), crown_radius=positive("m"), num_bunches=count(1, 1_000_000), bunch_size=positive("m"),
+@checked(height=size_rule, crown_radius=size_rule, num_bunches=count(1, 1_000_000), bunch_size=size_rule,
          seed=seed_rule)
 def tree(*, height: float = 7.0, crown_radius: float = 2.0, num_bunches: int = 900, bunch_size: float = 0.28,
          seed: int = 1) -> Actor:

@@ -9,10 +9,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ... import _core
-from ...arguments.checks import checked, flag, positive, real
+from ...arguments.checks import checked, flag, real
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, Part
 from ..following import rolling_along, trajectory_rule
+from ..limits import size_rule
 from ..shapes import ellipsoid
 from ..solids import block, ring, tube
 from ..surfaces import joined
@@ -56,7 +57,7 @@ class Ride:
         return np.stack([CRANK * np.sin(angle), np.full_like(angle, sign * PEDAL_Y), BRACKET_HEIGHT + CRANK * np.cos(angle)], -1)
 
 
-@checked(speed=real(unit="m/s"), saddle_height=positive("m"), drives=flag, trajectory=trajectory_rule)
+@checked(speed=real(unit="m/s"), saddle_height=size_rule, drives=flag, trajectory=trajectory_rule)
 def bicycle(*, speed: float = 0.0, saddle_height: float = 0.95, drives: bool = True,
             trajectory: Trajectory | None = None) -> Actor:
     """A trekking bicycle with wheels of 28 inches that rolls along +x, without a rider; the crank stands still.

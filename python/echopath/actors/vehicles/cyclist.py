@@ -16,6 +16,7 @@ from ..human.foot import Sole
 from ..human.gait import Frames
 from ..human.pedestrian import MIN_KEYFRAME_RATE, body_arrays, keyframe_times, material_rule
 from ..human.posture import leg, reaching_arm, trunk
+from ..limits import start_time_rule
 from ..solids import block
 from ..surfaces import edge_length
 from .bicycle import CRANK, DEVELOPMENT, GRIP, PEDAL, Ride, bicycle_parts, pedal_corners, seat_point
@@ -28,7 +29,7 @@ ANKLING = (np.radians(-14.0), np.radians(10.0))   # pitch of the foot: mean, and
 SEAT_DEPTH = 0.052                       # of the saddle below the hip joints, in body heights
 
 
-@checked(height=real(*RIDER_HEIGHTS, unit="m"), speed=positive("m/s"), start_time=real(unit="s"), duration=positive("s"),
+@checked(height=real(*RIDER_HEIGHTS, unit="m"), speed=positive("m/s"), start_time=start_time_rule, duration=positive("s"),
          phase=real(unit="cycles"), edge=positive("m"), keyframe_rate=real(MIN_KEYFRAME_RATE, unit="1/s"), clothing=material_rule,
          skin=material_rule, trajectory=trajectory_rule)
 def cyclist(*, height: float = 1.78, speed: float = 5.0, start_time: float = -0.5, duration: float = 2.5, phase: float = 0.25,

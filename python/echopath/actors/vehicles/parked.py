@@ -6,14 +6,15 @@ from dataclasses import replace
 import numpy as np
 
 from ... import _core
-from ...arguments.checks import checked, count, positive, seed as seed_rule
+from ...arguments.checks import checked, count, seed as seed_rule
 from ..actor import Actor
+from ..limits import row_rule
 from .cars import CARS, car
 
 SHARES = {"small": 0.2, "compact": 0.3, "saloon": 0.15, "estate": 0.15, "suv": 0.2}   # of the classes
 
 
-@checked(number=count(1, 100), spacing=positive("m"), seed=seed_rule)
+@checked(number=count(1, 100), spacing=row_rule, seed=seed_rule)
 def parked_row(*, number: int = 5, spacing: float = 2.5, seed: int = 1) -> Actor:
     """Cars of mixed classes side by side along y, as in a car park; they face along +x or -x.
 

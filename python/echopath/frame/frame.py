@@ -19,6 +19,7 @@ from ..signals.beside import cubes_beside
 from ..spectra.angles import range_azimuth
 from ..spectra.azimuth_map import sees_azimuth
 from ..transmit import demultiplex
+from .received import received_parts
 
 if TYPE_CHECKING:
     from ..base.foreign_types import Axes, Page
@@ -105,8 +106,6 @@ class Frame:
         Beside the parts of the paths stand those that no path makes, where there are some: "rain", "interference", "leakage",
         "noise" (thermal), "offset" and "converter" (rounding and saturation); see `ep.receive_parts`.
         """
-        from .received import received_parts
-
         return received_parts(self)
 
     @property

@@ -68,7 +68,7 @@ def _checked_table(parts) -> Mapping:
     if not isinstance(parts, Mapping) or not parts:
         raise refused(TypeError, "parts", "a dict of cubes by name, one at least", parts)
     for name in parts:
-        if name in NAMES:
+        if text("parts", name) in NAMES:
             raise ValueError(f"parts: must not be named {name!r}, as what no part of the signal makes is")
     return parts
 

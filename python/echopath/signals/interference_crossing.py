@@ -10,6 +10,7 @@ from .. import _core
 FINE = 4       # times the sampling rate, at which crossings are made before the filter
 _MARGIN = 1.9  # of the sampling rate: differences of frequency beyond which nothing of a crossing is left in the band
 _BLOCK = 64    # fine samples within which ways differ by a tone
+_FEW_WAYS = 4  # that are made sample by sample
 
 
 class Chirps(NamedTuple):
@@ -30,9 +31,9 @@ class Chirps(NamedTuple):
 def add_crossing(fine: np.ndarray, chirps: Chirps, delay: np.ndarray, amplitude: np.ndarray) -> None:
     """Adds one chirp of the other radar, over all ways, to one chirp of this one.
 
-    Every way has its phase in the middle of each block of samples, exactly; within a block it differs from the first one by a
-    tone (to 1e-3 rad where ways differ by 100 m/s). So a block is a product of matrices. Blocks in which a way begins or ends
-    are summed sample by sample.
+    Of more than a few ways each has its phase in the middle of each block of samples, exactly; within a block it differs from the
+    first one by a tone (to 1e-3 rad where ways differ by 100 m/s). So a block is a product of matrices. Blocks in which a way
+    begins or ends are summed sample by sample.
     fine: [FINE x sample] in sqrt(W), added to; delay: [3, P] s at the first sample, in the middle and at the last one
     amplitude: [P] sqrt(W)
     """
@@ -41,6 +42,10 @@ def add_crossing(fine: np.ndarray, chirps: Chirps, delay: np.ndarray, amplitude:
     if not ways.any():
         return
     first, last, delay, amplitude = first[ways], last[ways], delay[:, ways], np.conj(amplitude[ways])
+    if len(first) <= _FEW_WAYS:
+        for begin, end, of_way, strength in zip(first, last, delay.T, amplitude):
+            fine[begin:end] += strength * _turned(_cycles(chirps, np.arange(begin, end), of_way))
+        return
     place = np.arange(-(-len(fine) // _BLOCK) * _BLOCK).reshape(-1, _BLOCK)
     blocks = _whole_blocks(chirps, place, first, last, delay, amplitude)
     begins, ends = first // _BLOCK, (last - 1) // _BLOCK

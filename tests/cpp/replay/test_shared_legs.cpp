@@ -262,8 +262,8 @@ SingleBounceCounts single_bounce_counts(const Paths& paths) {
   SingleBounceCounts counts;
   counts.others = plan.chains.size() + plan.mirror_paths.size();
   counts.of_mesh.resize(paths.scene->meshes().size());
-  for (const SharedLegPlan::Direct& point : plan.direct) {
-    const auto has = [&](size_t kind) { return size_t{point.path[kind] != SharedLegPlan::Direct::kNoPath}; };
+  for (const SharedLegPlan::SingleBounce& point : plan.single_bounces) {
+    const auto has = [&](size_t kind) { return size_t{point.path[kind] != SharedLegPlan::SingleBounce::kNoPath}; };
     counts.paths += has(0) + has(1);
     counts.pairs += has(0) & has(1);
     ++counts.of_mesh[point.hit->mesh_id];
@@ -307,13 +307,13 @@ TEST(SharedLegs, RaysShareLegsAndPoints) {
   EXPECT_LT(plan.legs.size(), plan.chains.size());  // each has two
   EXPECT_LT(plan.points.size(), plan.legs.size());
   const auto any_chain = [&](auto is) { return std::any_of(plan.chains.begin(), plan.chains.end(), is); };
-  EXPECT_TRUE(any_chain([](const SharedLegPlan::Chain& chain) { return chain.is_reversed; }));
-  EXPECT_TRUE(any_chain([](const SharedLegPlan::Chain& chain) { return chain.inner == SharedLegPlan::kNone; }));
-  EXPECT_TRUE(any_chain([&](const SharedLegPlan::Chain& chain) {
+  EXPECT_TRUE(any_chain([](const SharedLegPlan::ChainPath& chain) { return chain.is_reversed; }));
+  EXPECT_TRUE(any_chain([](const SharedLegPlan::ChainPath& chain) { return chain.inner == SharedLegPlan::kNone; }));
+  EXPECT_TRUE(any_chain([&](const SharedLegPlan::ChainPath& chain) {
     return chain.inner != SharedLegPlan::kNone && (plan.inner[chain.inner].diffuse & 1) == 0;
   }));
   EXPECT_TRUE(
-      any_chain([&](const SharedLegPlan::Chain& chain) { return plan.images[plan.legs[chain.end].image].parent != 0; }));
+      any_chain([&](const SharedLegPlan::ChainPath& chain) { return plan.images[plan.legs[chain.end].image].parent != 0; }));
   EXPECT_GT(plan.inner.size(), 10u);
 }
 

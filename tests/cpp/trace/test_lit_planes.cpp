@@ -44,7 +44,14 @@ void add_ray(PathBlock& block, std::initializer_list<uint32_t> meshes) {
   block.end_ray(hits.data());
 }
 
+// The planes that rays found to light each other: each list of meshes is a ray.
 struct Lit {
+  explicit Lit(std::initializer_list<std::initializer_list<uint32_t>> rays, double apart = 0.0) {
+    PathBlock block;
+    for (const auto& meshes : rays) add_ray(block, meshes);
+    planes.add_chains(block);
+    planes.finish(apart);
+  }
   Scene scene = corner();
   PosedScene pose{scene, 0.0};
   EmbreeScene geometry{scene, pose, Vec3::Zero()};
@@ -52,12 +59,7 @@ struct Lit {
 };
 
 TEST(LitPlanes, FacetsOfSeveralMeshesInOnePlaneAreOne) {
-  Lit lit;
-  PathBlock block;
-  add_ray(block, {kFloor, kWall});
-  add_ray(block, {kOtherFloor, kWall});
-  lit.planes.add_chains(block);
-  lit.planes.finish(0.0);
+  const Lit lit({{kFloor, kWall}, {kOtherFloor, kWall}});
   EXPECT_EQ(lit.planes.planes().size(), 2u);
   ASSERT_EQ(lit.planes.from_transmitter().size(), 1u);  // the wall over the floor
   for (const LitPlane& one : lit.planes.from_transmitter()) {
@@ -68,16 +70,8 @@ TEST(LitPlanes, FacetsOfSeveralMeshesInOnePlaneAreOne) {
 }
 
 TEST(LitPlanes, TheSameWaysAreFoundInAnyOrderOfTheRays) {
-  Lit one, other;
-  PathBlock there, back;
-  add_ray(there, {kFloor, kWall});
-  add_ray(there, {kWall, kFloor});
-  add_ray(back, {kWall, kFloor});
-  add_ray(back, {kFloor, kWall});
-  one.planes.add_chains(there);
-  other.planes.add_chains(back);
-  one.planes.finish(0.1);
-  other.planes.finish(0.1);
+  const double apart = 0.1;  // m
+  const Lit one({{kFloor, kWall}, {kWall, kFloor}}, apart), other({{kWall, kFloor}, {kFloor, kWall}}, apart);
   ASSERT_EQ(one.planes.from_receiver().size(), other.planes.from_receiver().size());
   for (size_t i = 0; i < one.planes.from_receiver().size(); ++i) {
     EXPECT_EQ(one.planes.from_receiver()[i].mirrors, other.planes.from_receiver()[i].mirrors);
@@ -87,30 +81,31 @@ TEST(LitPlanes, TheSameWaysAreFoundInAnyOrderOfTheRays) {
 
 // Queries go through panes, so that no way over one can be followed: looking for them is lost work.
 TEST(LitPlanes, PanesLightNothing) {
-  Lit lit;
-  PathBlock block;
-  add_ray(block, {kFloor, kPane});
-  add_ray(block, {kPane, kFloor});
-  lit.planes.add_chains(block);
-  lit.planes.finish(0.0);
+  const Lit lit({{kFloor, kPane}, {kPane, kFloor}});
   EXPECT_TRUE(lit.planes.planes().empty());
   EXPECT_TRUE(lit.planes.from_transmitter().empty());
   EXPECT_EQ(lit.planes.plane_of({kPane, 0, 0.1f, 0.1f}), -1);
 }
 
+// A floor that lights the wall.
+struct WallOverFloor : Lit {
+  WallOverFloor() : Lit({{kFloor, kWall}}) {}
+  SbrSettings settings;
+  PlaneLegFinder finder{scene, geometry, planes, settings};
+
+  // Returns the way from a point on the wall over the floor to an antenna.
+  std::optional<PlaneLeg> way(const Vec3& point, const Vec3& antenna) const {
+    const int floor = planes.plane_of({kFloor, 0, 0.1f, 0.1f}), wall = planes.plane_of({kWall, 0, 0.1f, 0.1f});
+    int64_t num_queries = 0;
+    return finder.find(point, -Vec3::UnitX(), antenna, {{floor}, wall, {}}, num_queries);
+  }
+};
+
 // By the image of the antenna in the floor.
 TEST(PlaneLegs, AWayOverAPlaneIsThatToTheImageOfTheAntenna) {
-  Lit lit;
-  PathBlock block;
-  add_ray(block, {kFloor, kWall});
-  lit.planes.add_chains(block);
-  lit.planes.finish(0.0);
-  const SbrSettings settings;
-  const PlaneLegFinder finder(lit.scene, lit.geometry, lit.planes, settings);
+  const WallOverFloor lit;
   const Vec3 point(4.0 - 1e-3, 0.3, 2.0), antenna(-3.0, 0.1, 1.0), image(-3.0, 0.1, -1.0);
-  const int floor = lit.planes.plane_of({kFloor, 0, 0.1f, 0.1f}), wall = lit.planes.plane_of({kWall, 0, 0.1f, 0.1f});
-  int64_t num_queries = 0;
-  const auto leg = finder.find(point, -Vec3::UnitX(), antenna, {{floor}, wall, {}}, num_queries);
+  const auto leg = lit.way(point, antenna);
   ASSERT_TRUE(leg.has_value());
   EXPECT_NEAR(leg->length, (image - point).norm(), kRounding);
   EXPECT_NEAR((leg->to_antenna - (image - point).normalized()).norm(), 0.0, kRounding);
@@ -122,18 +117,10 @@ TEST(PlaneLegs, AWayOverAPlaneIsThatToTheImageOfTheAntenna) {
 }
 
 TEST(PlaneLegs, TheRimOfAPlaneMirrorsHalfAndWhatLiesBeyondNothing) {
-  Lit lit;
-  PathBlock block;
-  add_ray(block, {kFloor, kWall});
-  lit.planes.add_chains(block);
-  lit.planes.finish(0.0);
-  const SbrSettings settings;
-  const PlaneLegFinder finder(lit.scene, lit.geometry, lit.planes, settings);
-  const int floor = lit.planes.plane_of({kFloor, 0, 0.1f, 0.1f}), wall = lit.planes.plane_of({kWall, 0, 0.1f, 0.1f});
-  int64_t num_queries = 0;
+  const WallOverFloor lit;
   const auto share_of = [&](double y) {  // of a way that meets the floor there: its rim is at y = 4
     const Vec3 point(4.0 - 1e-3, y, 1.0), antenna(-3.0, y, 1.0);
-    const auto leg = finder.find(point, -Vec3::UnitX(), antenna, {{floor}, wall, {}}, num_queries);
+    const auto leg = lit.way(point, antenna);
     return leg ? leg->share : 0.0;
   };
   EXPECT_DOUBLE_EQ(share_of(0.0), 1.0);

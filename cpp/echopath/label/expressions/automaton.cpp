@@ -1,115 +1,16 @@
 #include "echopath/label/expressions/automaton.h"
 
 #include <algorithm>
-#include <cstring>
-#include <functional>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "echopath/base/errors.h"
-#include "echopath/base/parallel.h"
-#include "echopath/base/simd.h"
+#include "echopath/label/expressions/nfa.h"
 #include "echopath/scene/scene.h"
 
 namespace echopath {
 namespace {
-
-constexpr int kMaxPositions = 8192;                 // states before determinisation; bounds the time to compile
-constexpr int64_t kPathsMatchedTogether = 1 << 14;  // 0.2 ms of work at most
-
-uint64_t mesh_bit(size_t mesh_id) { return uint64_t{1} << (mesh_id % 64); }
-
-// Calls body(begin, end) for ranges of all paths, on all threads.
-void for_paths(const Paths& paths, Job* job, const std::function<void(size_t begin, size_t end)>& body) {
-  parallel_for((paths.num_paths() + kPathsMatchedTogether - 1) / kPathsMatchedTogether, [&](int64_t task) {
-    const int64_t end = std::min((task + 1) * kPathsMatchedTogether, paths.num_paths());
-    body(static_cast<size_t>(task * kPathsMatchedTogether), static_cast<size_t>(end));
-  }, job);
-}
-
-ECHOPATH_INLINE void keep_touching(const uint64_t* bits, uint64_t needed, size_t count, uint8_t* candidates) {
-  for (size_t i = 0; i < count; ++i) candidates[i] &= static_cast<uint8_t>((bits[i] & needed) != 0);
-}
-
-[[noreturn]] void throw_too_large(const std::string& text) {
-  throw std::invalid_argument("path expression: must compile to at most " + std::to_string(kMaxAutomatonStates) +
-                              " states; use smaller counts or split it, got " + text);
-}
-
-// A nondeterministic automaton (Thompson 1968), in which a state either reads one hit or branches without reading.
-struct Nfa {
-  struct State {
-    int pattern = -1;       // index into `patterns`; -1: a branch
-    std::vector<int> next;  // one state after a hit, any number for a branch
-  };
-  std::vector<State> states;  // state 0 takes the path; it has no next
-  std::vector<const HitPattern*> patterns;
-  int start = 0;
-};
-
-class NfaBuilder {
- public:
-  explicit NfaBuilder(const PathExpression& expression) : text_(expression.text) {
-    nfa_.states.emplace_back();
-    nfa_.start = build(expression.body, 0);
-  }
-  Nfa take() { return std::move(nfa_); }
-
- private:
-  // Returns the state from which `syntax`, and then what follows `next`, is read.
-  int build(const Syntax& syntax, int next) {
-    switch (syntax.kind) {
-      case Syntax::Kind::kHit: return add({pattern_index(syntax.hit), {next}});
-      case Syntax::Kind::kSequence:
-        for (size_t i = syntax.children.size(); i-- > 0;) next = build(syntax.children[i], next);
-        return next;
-      case Syntax::Kind::kChoice: return build_choice(syntax, next);
-      case Syntax::Kind::kRepeat: return build_repeat(syntax, next);
-    }
-    return next;
-  }
-
-  int build_choice(const Syntax& choice, int next) {
-    std::vector<int> branches;
-    for (const Syntax& child : choice.children) branches.push_back(build(child, next));
-    return add({-1, std::move(branches)});
-  }
-
-  int build_repeat(const Syntax& repeat, int next) {
-    const Syntax& child = repeat.children.front();
-    if (repeat.max == kNoLimit) {
-      const int loop = add({-1, {next}});
-      const int again = build(child, loop);
-      nfa_.states[static_cast<size_t>(loop)].next.push_back(again);
-      next = loop;
-    }
-    const int end = next;
-    for (int i = repeat.min; i < repeat.max; ++i) next = add({-1, {build(child, next), end}});
-    for (int i = 0; i < repeat.min; ++i) {
-      const int start = build(child, next);
-      if (start == next) break;  // the child reads nothing; nested counts of nothing would take for ever
-      next = start;
-    }
-    return next;
-  }
-
-  int add(Nfa::State state) {
-    if (nfa_.states.size() >= kMaxPositions) throw_too_large(text_);
-    nfa_.states.push_back(std::move(state));
-    return static_cast<int>(nfa_.states.size()) - 1;
-  }
-
-  int pattern_index(const HitPattern& pattern) {
-    const auto [entry, added] = index_of_.try_emplace(&pattern, static_cast<int>(nfa_.patterns.size()));
-    if (added) nfa_.patterns.push_back(&pattern);
-    return entry->second;
-  }
-
-  const std::string& text_;
-  Nfa nfa_;
-  std::map<const HitPattern*, int> index_of_;  // a repeated pattern is one pattern
-};
 
 [[noreturn]] void throw_takes_no_mesh(const PathExpression& expression, const HitPattern::Glob& glob,
                                       const std::vector<std::string>& mesh_names) {
@@ -239,7 +140,7 @@ class Determiniser {
 }  // namespace
 
 Automaton::Automaton(const PathExpression& expression, const std::vector<std::string>& mesh_names) {
-  const Nfa nfa = NfaBuilder(expression).take();
+  const Nfa nfa = make_nfa(expression);
   const MeshClasses classes = classify_meshes(nfa, expression, mesh_names);
   num_events_ = names_passes(nfa) ? kPassSymbol + 1 : kPassSymbol;
   const Determiniser dfa(nfa, classes, num_events_, expression.text);
@@ -298,69 +199,6 @@ void Automaton::find_needed_bits() {
   for (uint32_t mesh_class = 0; mesh_class < of_class.size(); ++mesh_class) {
     if (!takes_something_without(mesh_class)) needed_bits_.push_back(of_class[mesh_class]);
   }
-}
-
-std::vector<uint64_t> mesh_bits(const Paths& paths, Job* job) {
-  std::vector<uint64_t> bits(static_cast<size_t>(paths.num_paths()));
-  for_paths(paths, job, [&](size_t begin, size_t end) {
-    for (size_t path = begin; path < end; ++path) {
-      const Hit* hits = paths.hits_of(static_cast<int64_t>(path));
-      for (int k = 0; k < paths.num_bounces[path]; ++k) bits[path] |= mesh_bit(hits[k].mesh_id);
-      for (const Pass& pass : paths.passes_of(path)) bits[path] |= mesh_bit(pass.hit.mesh_id);
-    }
-  });
-  return bits;
-}
-
-namespace {
-
-constexpr size_t kWord = sizeof(uint64_t);
-
-// Returns the first path from `path` on in whose word of candidates not all are zero; often most paths are no candidates.
-size_t next_candidate(const std::vector<uint8_t>& candidates, size_t path, size_t end) {
-  for (; path + kWord <= end; path += kWord) {
-    uint64_t word;
-    std::memcpy(&word, candidates.data() + path, kWord);
-    if (word != 0) break;
-  }
-  return path;
-}
-
-}  // namespace
-
-std::vector<uint8_t> matches(const Automaton& automaton, const Paths& paths, Job* job) {
-  std::vector<uint8_t> taken(static_cast<size_t>(paths.num_paths()), 1);
-  narrow(automaton, paths, taken, job);
-  return taken;
-}
-
-void narrow(const Automaton& automaton, const Paths& paths, std::vector<uint8_t>& candidates, Job* job,
-            const std::vector<uint64_t>& bits) {
-  const Hit* hits = paths.hits ? paths.hits->data() : nullptr;
-  for_paths(paths, job, [&](size_t begin, size_t end) {
-    for (const uint64_t needed : automaton.needed_bits()) {
-      if (!bits.empty()) run_simd<keep_touching>(bits.data() + begin, needed, end - begin, candidates.data() + begin);
-    }
-    for (size_t path = begin; path < end; ++path) {
-      if (path % kWord == 0) path = next_candidate(candidates, path, end);
-      if (path == end || !candidates[path]) continue;
-      const int64_t first = paths.offsets[path];
-      const int num_hits = paths.num_bounces[path];
-      const int edge = paths.frame.edges ? edge_hit(paths.flags[path]) : -1;
-      const int edges_end = edge < 0 ? -1 : edge + num_edge_hits(paths.flags[path]);
-      if (const auto passes = paths.passes_of(path); automaton.sees_passes() && !passes.empty()) {
-        candidates[path] = automaton.takes_with_passes(hits + first, num_hits, paths.diffuse[path], edge, edges_end, passes);
-        continue;
-      }
-      if (edge >= 0) {
-        candidates[path] = automaton.takes_with_edges(hits + first, num_hits, edge, edges_end);
-        continue;
-      }
-      candidates[path] = first + num_hits + Automaton::kOverread <= paths.num_hits()
-                             ? automaton.takes_in_fours(hits + first, num_hits, paths.diffuse[path])
-                             : automaton.takes(hits + first, num_hits, paths.diffuse[path]);
-    }
-  });
 }
 
 }  // namespace echopath

@@ -13,6 +13,9 @@ namespace echopath {
 
 constexpr int kMaxAutomatonStates = 4096;
 
+// Returns the bit of a mesh in the words of `mesh_bits`.
+inline uint64_t mesh_bit(size_t mesh_id) { return uint64_t{1} << (mesh_id % 64); }
+
 // Reads symbols (mesh class, event): meshes that every glob or set of the expression treats alike share a class.
 class Automaton {
  public:

@@ -47,12 +47,13 @@ NearestPoints::NearestPoints(const Scene& scene, const PosedScene& pose, const E
 
 double NearestPoints::longest_edge(uint32_t mesh_id) const {
   const Node& node = scene_.node_of(mesh_id);
-  LongestEdge& edge = node.deformation ? of_deformed_.at(mesh_id) : of_meshes_.at(node.mesh.get());
-  std::call_once(edge.is_found, [&] {
-    const std::vector<Vec3>& vertices = node.deformation ? geometry_.vertices(mesh_id) : node.mesh->vertices();
-    edge.length = longest_edge_of(vertices, node.mesh->triangles());
-  });
-  return node.deformation ? edge.length : edge.length * largest_stretch(pose_.linear(mesh_id));
+  const std::vector<Triangle>& triangles = node.mesh->triangles();
+  if (node.deformation) {
+    return of_deformed_.at(mesh_id).get([&] { return longest_edge_of(geometry_.vertices(mesh_id), triangles); });
+  }
+  const double at_rest =
+      of_meshes_.at(node.mesh.get()).get([&] { return longest_edge_of(node.mesh->vertices(), triangles); });
+  return at_rest * largest_stretch(pose_.linear(mesh_id));
 }
 
 std::array<double, 2> NearestPoints::distances(const Points& points, std::span<const uint32_t> mesh_ids) const {

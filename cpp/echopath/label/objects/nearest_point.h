@@ -2,10 +2,10 @@
 // Finds how near objects are.
 #include <array>
 #include <map>
-#include <mutex>
 #include <span>
 #include <vector>
 
+#include "echopath/base/lazy.h"
 #include "echopath/trace/geometry/embree_scene.h"
 
 namespace echopath {
@@ -26,16 +26,13 @@ class NearestPoints {
 
   const Scene& scene_;
   const EmbreeScene& geometry_;
-  // Of a mesh, m, in its own frame or, where it deforms, posed; found when it is first asked for.
-  struct LongestEdge {
-    std::once_flag is_found;
-    double length = 0.0;
-  };
   double longest_edge(uint32_t mesh_id) const;
 
   const PosedScene& pose_;
-  mutable std::map<const Mesh*, LongestEdge> of_meshes_;  // that several nodes may share
-  mutable std::map<uint32_t, LongestEdge> of_deformed_;   // by mesh ID
+  // The lengths of the longest edges in m: of meshes, which several nodes may share, in their own frames, and by mesh ID of
+  // those that deform, as posed.
+  std::map<const Mesh*, Lazy<double>> of_meshes_;
+  std::map<uint32_t, Lazy<double>> of_deformed_;
 };
 
 }  // namespace echopath

@@ -43,25 +43,25 @@ void SightGrid::direct(int64_t block, int cell, LaneValues& x, LaneValues& y, in
 }
 
 // Places outside of a disc meet nothing.
-void SightGrid::look_at(const LaneValues& x, const LaneValues& y, int count, const Look& look, uint32_t* met) const {
+void SightGrid::look_at(const LaneValues& x, const LaneValues& y, int count, const FindMet& find_met, uint32_t* met) const {
   LaneVectors directions;
   directions_.launch(0, x, y, {0, kPacketSize}, directions);
-  look(directions, count, met);
+  find_met(directions, count, met);
   for (int lane = 0; is_disc_ && lane < count; ++lane) {
     if (x[lane] * x[lane] + y[lane] * y[lane] > 1.0) met[lane] = kNothing;
   }
 }
 
-double SightGrid::start(const Look& look) {
-  if (num_blocks() <= kFewBlocks) finish_everywhere(look);
-  else look_at_first_cells(look);
+double SightGrid::start(const FindMet& find_met) {
+  if (num_blocks() <= kFewBlocks) finish_everywhere(find_met);
+  else look_at_first_cells(find_met);
   const auto& all = num_blocks() > kFewBlocks ? first_met_ : met_;
   const auto num_found = std::ssize(all) - std::count(all.begin(), all.end(), kNothing);
   return static_cast<double>(num_found) / static_cast<double>(all.size());
 }
 
 // Looks at squares of blocks: nearly parallel rays are faster.
-void SightGrid::look_at_first_cells(const Look& look) {
+void SightGrid::look_at_first_cells(const FindMet& find_met) {
   for (int row = 0; row < num_rows_; row += kSide) {
     for (int column = 0; column < num_columns_; column += kSide) {
       const int columns = std::min(kSide, num_columns_ - column), count = columns * std::min(kSide, num_rows_ - row);
@@ -69,32 +69,32 @@ void SightGrid::look_at_first_cells(const Look& look) {
       LaneValues x, y;
       for (int lane = 0; lane < kPacketSize; ++lane) direct(block(std::min(lane, count - 1)), kFirstCell, x, y, lane);
       std::array<uint32_t, kPacketSize> met;
-      look_at(x, y, count, look, met.data());
+      look_at(x, y, count, find_met, met.data());
       for (int lane = 0; lane < count; ++lane) first_met_[static_cast<size_t>(block(lane))] = met[static_cast<size_t>(lane)];
     }
   }
 }
 
-void SightGrid::finish(const Look& look) {
+void SightGrid::finish(const FindMet& find_met) {
   queue_changes();
   while (!queue_.empty()) {
     const int64_t block = queue_.back();
     queue_.pop_back();
-    see(block, look);
+    see(block, find_met);
     queue_neighbours(block);
   }
 }
 
-void SightGrid::finish_everywhere(const Look& look) {
-  for (int64_t block = 0; block < num_blocks(); ++block) see(block, look);
+void SightGrid::finish_everywhere(const FindMet& find_met) {
+  for (int64_t block = 0; block < num_blocks(); ++block) see(block, find_met);
 }
 
-void SightGrid::see(int64_t block, const Look& look) {
+void SightGrid::see(int64_t block, const FindMet& find_met) {
   const auto at = static_cast<size_t>(block);
   if (state_[at] == State::kSeen) return;
   LaneValues x, y;
   for (int cell = 0; cell < kCells; ++cell) direct(block, cell, x, y, cell);
-  look_at(x, y, kCells, look, met_.data() + at * kCells);
+  look_at(x, y, kCells, find_met, met_.data() + at * kCells);
   state_[at] = State::kSeen;
 }
 

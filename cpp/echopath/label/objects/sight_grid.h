@@ -18,7 +18,7 @@ namespace echopath {
 class SightGrid {
  public:
   // Writes what the first `count` directions of a packet meet.
-  using Look = std::function<void(const LaneVectors& directions, int count, uint32_t* met)>;
+  using FindMet = std::function<void(const LaneVectors& directions, int count, uint32_t* met)>;
   static constexpr int kSide = 4;        // cells of a block
   static constexpr int kFewBlocks = 64;  // as many are looked at wholly
   static constexpr uint32_t kNothing = std::numeric_limits<uint32_t>::max();
@@ -26,10 +26,10 @@ class SightGrid {
   // `num_cells` is approximate.
   SightGrid(const Stratum& stratum, int64_t num_cells);
   // Looks at one direction of each block, or at all where there are few. Returns the share of them that met something.
-  double start(const Look& look);
+  double start(const FindMet& find_met);
   // Looks at the blocks where what is met changes, or at all of them.
-  void finish(const Look& look);
-  void finish_everywhere(const Look& look);
+  void finish(const FindMet& find_met);
+  void finish_everywhere(const FindMet& find_met);
 
   // Returns the number of cells that met each of `num_kinds`.
   std::vector<int64_t> counts(size_t num_kinds) const;
@@ -39,9 +39,9 @@ class SightGrid {
   enum class State : uint8_t { kUnseen, kQueued, kSeen };
   int64_t num_blocks() const { return int64_t{num_columns_} * num_rows_; }
   void direct(int64_t block, int cell, LaneValues& x, LaneValues& y, int lane) const;
-  void look_at(const LaneValues& x, const LaneValues& y, int count, const Look& look, uint32_t* met) const;
-  void look_at_first_cells(const Look& look);
-  void see(int64_t block, const Look& look);
+  void look_at(const LaneValues& x, const LaneValues& y, int count, const FindMet& find_met, uint32_t* met) const;
+  void look_at_first_cells(const FindMet& find_met);
+  void see(int64_t block, const FindMet& find_met);
   void queue(int64_t block);
   void queue_changes();
   void queue_neighbours(int64_t block);

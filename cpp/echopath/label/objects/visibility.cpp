@@ -39,14 +39,14 @@ class ObjectScanner {
         view_(geometry, surfaces, object, end.position) {}
 
   Sight sight(int num_directions) {
-    const SightGrid::Look look = [this](const LaneVectors& directions, int count, uint32_t* met) {
+    const SightGrid::FindMet find_met = [this](const LaneVectors& directions, int count, uint32_t* met) {
       see(directions, count, met);
     };
     const Stratum stratum = view_.stratum(false);
     if (const std::optional<uint32_t> hiding = hidden_by(stratum, num_directions)) {
       return hidden_sight(stratum, *hiding, num_directions);
     }
-    const SightGrid grid = looked_at(stratum, num_directions, look);
+    const SightGrid grid = looked_at(stratum, num_directions, find_met);
     return sight_of(grid.counts(surfaces_.names.size()), grid.cell_angle());
   }
 
@@ -82,24 +82,24 @@ class ObjectScanner {
   }
 
   // Looks at as many cells as it takes to have so many directions on the object.
-  static SightGrid looked_at(const Stratum& stratum, double fill, int num_directions, const SightGrid::Look& look) {
+  static SightGrid looked_at(const Stratum& stratum, double fill, int num_directions, const SightGrid::FindMet& find_met) {
     const double cells = fill > 0.0 ? std::min(kMostCells, 1.0 / fill) : kMostCells;
     SightGrid grid(stratum, static_cast<int64_t>(cells * num_directions));
-    if (grid.start(look) > 0.0) grid.finish(look);
-    else grid.finish_everywhere(look);
+    if (grid.start(find_met) > 0.0) grid.finish(find_met);
+    else grid.finish_everywhere(find_met);
     return grid;
   }
 
-  SightGrid looked_at(Stratum stratum, int num_directions, const SightGrid::Look& look) const {
+  SightGrid looked_at(Stratum stratum, int num_directions, const SightGrid::FindMet& find_met) const {
     SightGrid grid(stratum, int64_t{kGridCells} * num_directions);
-    double fill = grid.start(look);
+    double fill = grid.start(find_met);
     if (fill < kLooseFill) {
       stratum = view_.stratum(true);
       grid = SightGrid(stratum, int64_t{kGridCells} * num_directions);
-      fill = grid.start(look);
+      fill = grid.start(find_met);
     }
-    if (fill < kLeastFill) return looked_at(stratum, fill, num_directions, look);
-    grid.finish(look);
+    if (fill < kLeastFill) return looked_at(stratum, fill, num_directions, find_met);
+    grid.finish(find_met);
     return grid;
   }
 

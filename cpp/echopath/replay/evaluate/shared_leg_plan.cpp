@@ -15,7 +15,7 @@ constexpr uint64_t place_key(const Hit& hit) {
 }  // namespace
 
 void SharedLegPlan::clear() {
-  direct.clear();
+  single_bounces.clear();
   points.clear();
   mirrors.clear();
   images.assign(1, {0, kNone});
@@ -67,7 +67,7 @@ const SharedLegPlan& SharedLegPlanner::operator()(std::span<const int64_t> indic
   clear();
   for (size_t place = 0; place < indices.size(); ++place) {
     if (paths_->flags[static_cast<size_t>(indices[place])] & kEdgePath) plan_.edge_paths.push_back({place, indices[place]});
-    else if (!add_direct(place, indices[place])) add_chain(place, indices[place]);
+    else if (!add_single_bounce(place, indices[place])) add_chain(place, indices[place]);
     if (preparer_->has_lobe(indices[place])) plan_.lobed_paths.push_back({place, indices[place]});
   }
   return plan_;
@@ -99,7 +99,7 @@ SharedLegPlanner::Ends SharedLegPlanner::ends_of(const TracedHits& hits) const {
   return ends;
 }
 
-bool SharedLegPlanner::is_direct(size_t path) const {
+bool SharedLegPlanner::is_single_bounce(size_t path) const {
   if (!with_single_bounces_ || paths_->num_bounces[path] != 1 || (paths_->flags[path] & kReversedPath) != 0) return false;
   const uint32_t mesh = paths_->hits_of(static_cast<int64_t>(path))->mesh_id;
   if (!preparer_->is_plane(mesh) || preparer_->may_stretch(mesh)) return false;
@@ -109,16 +109,17 @@ bool SharedLegPlanner::is_direct(size_t path) const {
 }
 
 // The coherent and the diffuse path of a point follow each other in the record.
-bool SharedLegPlanner::add_direct(size_t place, int64_t path) {
+bool SharedLegPlanner::add_single_bounce(size_t place, int64_t path) {
   const auto p = static_cast<size_t>(path);
-  if (!is_direct(p)) return false;
+  if (!is_single_bounce(p)) return false;
   const Hit* hit = paths_->hits_of(path);
   const size_t kind = paths_->diffuse[p] != 0;
-  constexpr int64_t kNone = SharedLegPlan::Direct::kNoPath;
-  const bool is_known = !plan_.direct.empty() && plan_.direct.back().hit == hit && plan_.direct.back().path[kind] == kNone;
-  if (!is_known) plan_.direct.push_back({hit, {kNone, kNone}, {0, 0}});
-  plan_.direct.back().path[kind] = path;
-  plan_.direct.back().place[kind] = place;
+  constexpr int64_t kNone = SharedLegPlan::SingleBounce::kNoPath;
+  const bool is_known = !plan_.single_bounces.empty() && plan_.single_bounces.back().hit == hit &&
+                        plan_.single_bounces.back().path[kind] == kNone;
+  if (!is_known) plan_.single_bounces.push_back({hit, {kNone, kNone}, {0, 0}});
+  plan_.single_bounces.back().path[kind] = path;
+  plan_.single_bounces.back().place[kind] = place;
   return true;
 }
 

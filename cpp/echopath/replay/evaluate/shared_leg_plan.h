@@ -29,7 +29,8 @@ struct SharedLegPlan {
     size_t begin, end;
     uint64_t diffuse, image;  // bit per hit
   };
-  struct Chain {
+  // Describes a path over material points that is none of the single bounces.
+  struct ChainPath {
     size_t place;  // of the path in its block
     int64_t path;
     uint32_t start, end;  // legs, in the order in which the path was traced
@@ -54,22 +55,23 @@ struct SharedLegPlan {
   using LobedPath = EdgePath;
 
   // Lists the paths that one point sends straight back: at most one coherent and one diffuse path.
-  struct Direct {
+  struct SingleBounce {
     static constexpr int64_t kNoPath = -1;
     const Hit* hit;
     int64_t path[2];  // SingleBounceSlots::Kind
     size_t place[2];
+    bool has_path(size_t kind) const { return path[kind] != kNoPath; }
   };
 
-  std::vector<Direct> direct;  // by place
-  std::vector<Hit> points;     // distinct hits, of the chains
-  std::vector<Hit> mirrors;    // distinct planes: triangles at their first corner, of curved mirrors each hit
+  std::vector<SingleBounce> single_bounces;  // by place
+  std::vector<Hit> points;                   // distinct hits, of the chains
+  std::vector<Hit> mirrors;                  // distinct planes: triangles at their first corner, of curved mirrors each hit
   std::vector<Image> images;
   std::vector<Leg> legs;
   std::vector<uint32_t> inner_points;
   std::vector<Inner> inner;
-  std::vector<Chain> chains;     // by place
-  std::vector<int64_t> sliding;  // paths whose points of reflection move (SpecularPoints::kFermat)
+  std::vector<ChainPath> chains;  // by place
+  std::vector<int64_t> sliding;   // paths whose points of reflection move (SpecularPoints::kFermat)
   std::vector<MirrorPath> mirror_paths;
   std::vector<EdgePath> edge_paths;    // edge_echoes.h
   std::vector<LobedPath> lobed_paths;  // lobe_factors.h; they stand among the others, too
@@ -101,8 +103,8 @@ class SharedLegPlanner {
   static bool is_same(const Known& known, const Known& run);
   bool is_image(const TracedHits& hits, int k) const;
   Ends ends_of(const TracedHits& hits) const;
-  bool is_direct(size_t path) const;
-  bool add_direct(size_t place, int64_t path);
+  bool is_single_bounce(size_t path) const;
+  bool add_single_bounce(size_t place, int64_t path);
   void add_chain(size_t place, int64_t path);
   uint32_t slide_of(int64_t path, const Ends& ends);
   uint32_t start_leg(const TracedHits& hits, int first);

@@ -42,7 +42,7 @@ void SharedLegEvaluation::operator()(const SharedLegPlan& plan, const PathPrepar
     }
     for (size_t channel = 0; channel < channels.nodes.size(); ++channel) {
       for (size_t slot = 0; slot < chains.size(); ++slot) {
-        const SharedLegPlan::Chain& chain = chains[slot];
+        const SharedLegPlan::ChainPath& chain = chains[slot];
         const Ends ends = ends_of(chain, channels.first + channel);
         if (chain.is_coherent) evaluate_coherent(plan, chain, ends, of_coherent, slot);
         else evaluate_diffuse(chain, ends, of_diffuse, slot);
@@ -55,13 +55,13 @@ void SharedLegEvaluation::operator()(const SharedLegPlan& plan, const PathPrepar
     evaluate_mirrors(path, nodes, channels, radio.mirror_scale());
 }
 
-SharedLegEvaluation::Ends SharedLegEvaluation::ends_of(const SharedLegPlan::Chain& chain, size_t channel) const {
+SharedLegEvaluation::Ends SharedLegEvaluation::ends_of(const SharedLegPlan::ChainPath& chain, size_t channel) const {
   const size_t transmitter = channel / num_receivers_, receiver = channel % num_receivers_;
   return chain.is_reversed ? Ends{receiver, transmitter} : Ends{transmitter, receiver};
 }
 
 // Between upright antennas only one entry of the matrix counts.
-ComplexOf<double> SharedLegEvaluation::scaled_weight(const SharedLegPlan::Chain& chain, double scale) const {
+ComplexOf<double> SharedLegEvaluation::scaled_weight(const SharedLegPlan::ChainPath& chain, double scale) const {
   std::complex<double> weight = scale * chain.weight;
   if (!paths_->jones.empty() && !tables_.has_polarizations) {
     weight *= std::complex<double>(paths_->jones[static_cast<size_t>(chain.path)][3]);
@@ -69,22 +69,23 @@ ComplexOf<double> SharedLegEvaluation::scaled_weight(const SharedLegPlan::Chain&
   return {weight.real(), weight.imag()};
 }
 
-SharedLegEvaluation::MeasuredLeg SharedLegEvaluation::start_of(const SharedLegPlan::Chain& chain, size_t antenna) const {
+SharedLegEvaluation::MeasuredLeg SharedLegEvaluation::start_of(const SharedLegPlan::ChainPath& chain, size_t antenna) const {
   if (chain.slide != SharedLegPlan::kNone) return {tables_.sliding.legs, chain.slide * tables_.stride + antenna};
   return {tables_.legs, chain.start * tables_.stride + antenna};
 }
 
-SharedLegEvaluation::MeasuredLeg SharedLegEvaluation::end_of(const SharedLegPlan::Chain& chain, size_t antenna) const {
+SharedLegEvaluation::MeasuredLeg SharedLegEvaluation::end_of(const SharedLegPlan::ChainPath& chain, size_t antenna) const {
   return {tables_.legs, chain.end * tables_.stride + antenna};
 }
 
 // `antenna` is the antenna at the start. The result is null where there is one material point.
-const double* SharedLegEvaluation::inner_of(const SharedLegPlan::Chain& chain, size_t antenna) const {
+const double* SharedLegEvaluation::inner_of(const SharedLegPlan::ChainPath& chain, size_t antenna) const {
   if (chain.slide != SharedLegPlan::kNone) return tables_.sliding.inner.row(chain.slide * tables_.stride + antenna, 0);
   return chain.inner == SharedLegPlan::kNone ? nullptr : tables_.inner.rows.row(chain.inner, 0);
 }
 
-PathToCombine SharedLegEvaluation::path_of(const SharedLegPlan::Chain& chain, const Ends& ends, double scale, size_t slot) {
+PathToCombine SharedLegEvaluation::path_of(const SharedLegPlan::ChainPath& chain, const Ends& ends, double scale,
+                                           size_t slot) {
   return {start_of(chain, ends.start).rows(), end_of(chain, ends.end).rows(), inner_of(chain, ends.start),
           scaled_weight(chain, scale), values_.row(slot, 0)};
 }
@@ -94,8 +95,8 @@ const double* SharedLegEvaluation::image_of(const SharedLegPlan& plan, uint32_t 
   return images.rows.row(images.entry(plan.legs[leg].image, antenna), 0);
 }
 
-void SharedLegEvaluation::place_cell(const SharedLegPlan& plan, const SharedLegPlan::Chain& chain, const TraceCells& cells,
-                                     const PosedNodes& nodes, size_t slot) {
+void SharedLegEvaluation::place_cell(const SharedLegPlan& plan, const SharedLegPlan::ChainPath& chain,
+                                     const TraceCells& cells, const PosedNodes& nodes, size_t slot) {
   const uint32_t point = plan.legs[chain.end].point, mesh_id = plan.points[point].mesh_id;
   CoherentPath& path = coherent_[slot];
   path.point = tables_.points.rows.row(point, 0);
@@ -109,8 +110,8 @@ void SharedLegEvaluation::place_cell(const SharedLegPlan& plan, const SharedLegP
   }
 }
 
-void SharedLegEvaluation::evaluate_coherent(const SharedLegPlan& plan, const SharedLegPlan::Chain& chain, const Ends& ends,
-                                            double scale, size_t slot) {
+void SharedLegEvaluation::evaluate_coherent(const SharedLegPlan& plan, const SharedLegPlan::ChainPath& chain,
+                                            const Ends& ends, double scale, size_t slot) {
   CoherentPath& path = coherent_[slot];
   path.path = path_of(chain, ends, scale, slot);
   path.start_image = image_of(plan, chain.start, ends.start);
@@ -131,7 +132,8 @@ void SharedLegEvaluation::reflect_from_stretching(size_t slot) {
   }
 }
 
-void SharedLegEvaluation::evaluate_diffuse(const SharedLegPlan::Chain& chain, const Ends& ends, double scale, size_t slot) {
+void SharedLegEvaluation::evaluate_diffuse(const SharedLegPlan::ChainPath& chain, const Ends& ends, double scale,
+                                           size_t slot) {
   const bool has_inner = chain.inner != SharedLegPlan::kNone;
   const bool begins_specular = has_inner && tables_.inner.begins_specular[chain.inner];
   const bool is_single = !has_inner || tables_.inner.is_single[chain.inner];
@@ -196,10 +198,10 @@ bool SharedLegEvaluation::turns(uint32_t leg) const {
 }
 
 void SharedLegEvaluation::mark_turned(const SharedLegPlan& plan, uint8_t* turned) const {
-  for (const SharedLegPlan::Chain& chain : plan.chains) turned[chain.place] = turns(chain.start) || turns(chain.end);
+  for (const SharedLegPlan::ChainPath& chain : plan.chains) turned[chain.place] = turns(chain.start) || turns(chain.end);
 }
 
-double SharedLegEvaluation::size_of_weight(const SharedLegPlan::Chain& chain) const {
+double SharedLegEvaluation::size_of_weight(const SharedLegPlan::ChainPath& chain) const {
   const ComplexOf<double> weight = scaled_weight(chain, 1.0);
   const double size = std::hypot(weight.re, weight.im);
   if (!tables_.has_polarizations) return size;
@@ -212,7 +214,7 @@ double SharedLegEvaluation::size_of_weight(const SharedLegPlan::Chain& chain) co
 
 // Takes the cosine of the arrival for that of the departure, and no curvature of the surfaces before. A cell that is wider
 // than a Fresnel zone returns no more than a mirror in its place.
-double SharedLegEvaluation::unfiltered(const SharedLegPlan::Chain& chain, const RadioConstants& radio) const {
+double SharedLegEvaluation::unfiltered(const SharedLegPlan::ChainPath& chain, const RadioConstants& radio) const {
   const size_t stride = values_.stride();
   const double *const start = start_of(chain, 0).rows(), *const end = end_of(chain, 0).rows();
   const double* const inner = inner_of(chain, 0);
@@ -226,7 +228,7 @@ double SharedLegEvaluation::unfiltered(const SharedLegPlan::Chain& chain, const 
 }
 
 void SharedLegEvaluation::mark_unfiltered(const SharedLegPlan& plan, const RadioConstants& radio, double* unfiltered) const {
-  for (const SharedLegPlan::Chain& chain : plan.chains) {
+  for (const SharedLegPlan::ChainPath& chain : plan.chains) {
     if (chain.is_coherent) unfiltered[chain.place] = this->unfiltered(chain, radio);
   }
 }

@@ -57,7 +57,7 @@ class SharedLegEvaluation {
 
  private:
   static constexpr size_t kTogether = 8;  // paths whose values are written side by side: a line of the cache for each node
-  using Chains = std::span<const SharedLegPlan::Chain>;
+  using Chains = std::span<const SharedLegPlan::ChainPath>;
   struct Ends {
     size_t start, end;  // antennas of both
   };
@@ -66,29 +66,29 @@ class SharedLegEvaluation {
     size_t leg;
     const double* rows() const { return table.rows.row(leg, 0); }
   };
-  Ends ends_of(const SharedLegPlan::Chain& chain, size_t channel) const;
-  PathToCombine path_of(const SharedLegPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
-  MeasuredLeg start_of(const SharedLegPlan::Chain& chain, size_t antenna) const;
-  MeasuredLeg end_of(const SharedLegPlan::Chain& chain, size_t antenna) const;
-  const double* inner_of(const SharedLegPlan::Chain& chain, size_t antenna) const;
+  Ends ends_of(const SharedLegPlan::ChainPath& chain, size_t channel) const;
+  PathToCombine path_of(const SharedLegPlan::ChainPath& chain, const Ends& ends, double scale, size_t slot);
+  MeasuredLeg start_of(const SharedLegPlan::ChainPath& chain, size_t antenna) const;
+  MeasuredLeg end_of(const SharedLegPlan::ChainPath& chain, size_t antenna) const;
+  const double* inner_of(const SharedLegPlan::ChainPath& chain, size_t antenna) const;
   const double* image_of(const SharedLegPlan& plan, uint32_t leg, size_t antenna) const;
-  void place_cell(const SharedLegPlan& plan, const SharedLegPlan::Chain& chain, const TraceCells& cells,
+  void place_cell(const SharedLegPlan& plan, const SharedLegPlan::ChainPath& chain, const TraceCells& cells,
                   const PosedNodes& nodes, size_t slot);
-  void evaluate_coherent(const SharedLegPlan& plan, const SharedLegPlan::Chain& chain, const Ends& ends, double scale,
+  void evaluate_coherent(const SharedLegPlan& plan, const SharedLegPlan::ChainPath& chain, const Ends& ends, double scale,
                          size_t slot);
   void reflect_from_stretching(size_t slot);
-  void evaluate_diffuse(const SharedLegPlan::Chain& chain, const Ends& ends, double scale, size_t slot);
+  void evaluate_diffuse(const SharedLegPlan::ChainPath& chain, const Ends& ends, double scale, size_t slot);
   template <class Path>
   void put(std::span<const Path> paths, const ChannelNodes& to) const;  // from the first slots on
-  ComplexOf<double> scaled_weight(const SharedLegPlan::Chain& chain, double scale) const;
+  ComplexOf<double> scaled_weight(const SharedLegPlan::ChainPath& chain, double scale) const;
   void turn(int64_t path, const MeasuredLeg& start, const MeasuredLeg& end, size_t slot);
   void polarize(int64_t path, const MeasuredLeg& start, const MeasuredLeg& end, size_t slot);
   void turn_phase(const MeasuredLeg& start, const MeasuredLeg& end, size_t slot);
   void evaluate_mirrors(const SharedLegPlan::MirrorPath& path, const PosedNodes& nodes, const ChannelSpan& channels,
                         double scale);
   bool turns(uint32_t leg) const;
-  double size_of_weight(const SharedLegPlan::Chain& chain) const;
-  double unfiltered(const SharedLegPlan::Chain& chain, const RadioConstants& radio) const;
+  double size_of_weight(const SharedLegPlan::ChainPath& chain) const;
+  double unfiltered(const SharedLegPlan::ChainPath& chain, const RadioConstants& radio) const;
 
   SharedLegTables tables_;
   NodeRows values_;                                            // [slot], PathToCombine::Row

@@ -8,8 +8,6 @@
 namespace echopath {
 namespace {
 
-constexpr size_t kSlots = SingleBounceSlots::kSlots, kOfNode = SingleBouncesToEvaluate::kNumRows * kSlots;
-
 void copy_matrix(const Mat3& matrix, double* to) {
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) to[3 * row + column] = matrix(row, column);
@@ -41,7 +39,7 @@ bool can_evaluate_single_bounces(const Radar& radar) {
 
 void SingleBounceEvaluation::operator()(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes,
                                         const RadioConstants& radio, const ChannelSpan& channels, const Wanted& wanted) {
-  if (plan.direct.empty()) return;
+  if (plan.single_bounces.empty()) return;
   sort_by_mesh(plan);
   set_antennas(nodes);
   const size_t num_nodes = nodes.size();
@@ -94,14 +92,14 @@ void SingleBounceEvaluation::operator()(const SharedLegPlan& plan, const PathPre
 
 void SingleBounceEvaluation::sort_by_mesh(const SharedLegPlan& plan) {
   first_of_mesh_.clear();
-  for (const SharedLegPlan::Direct& direct : plan.direct) {
-    const size_t mesh = direct.hit->mesh_id;
+  for (const SharedLegPlan::SingleBounce& one : plan.single_bounces) {
+    const size_t mesh = one.hit->mesh_id;
     if (mesh + 2 > first_of_mesh_.size()) first_of_mesh_.resize(mesh + 2);
     ++first_of_mesh_[mesh + 1];
   }
   for (size_t mesh = 1; mesh < first_of_mesh_.size(); ++mesh) first_of_mesh_[mesh] += first_of_mesh_[mesh - 1];
-  sorted_.resize(plan.direct.size());
-  for (const SharedLegPlan::Direct& direct : plan.direct) sorted_[first_of_mesh_[direct.hit->mesh_id]++] = &direct;
+  sorted_.resize(plan.single_bounces.size());
+  for (const SharedLegPlan::SingleBounce& one : plan.single_bounces) sorted_[first_of_mesh_[one.hit->mesh_id]++] = &one;
 }
 
 void SingleBounceEvaluation::set_antennas(const PosedNodes& nodes) {
@@ -175,22 +173,22 @@ void SingleBounceEvaluation::set_slots(Points points, const PathPreparer& prepar
   const Mesh& mesh = *paths.scene->node_of(points.front()->hit->mesh_id).mesh;
   work_.has_coherent = false;
   for (size_t slot = 0; slot < kSlots; ++slot) {
-    const SharedLegPlan::Direct& direct = *points[std::min(slot, points.size() - 1)];
-    set_triangle(*direct.hit, mesh, slot, slots_);
-    set_weights(direct, slot, paths, radio);
-    const int64_t coherent = direct.path[SingleBounceSlots::kCoherent];
-    const bool is_coherent = coherent != SharedLegPlan::Direct::kNoPath;
+    const SharedLegPlan::SingleBounce& point = *points[std::min(slot, points.size() - 1)];
+    set_triangle(*point.hit, mesh, slot, slots_);
+    set_weights(point, slot, paths, radio);
+    const int64_t coherent = point.path[SingleBounceSlots::kCoherent];
+    const bool is_coherent = coherent != SharedLegPlan::SingleBounce::kNoPath;
     work_.has_coherent |= is_coherent;
     slots_.density[slot] = is_coherent ? paths.frame.lattice_density(paths.stratum[static_cast<size_t>(coherent)]) : 0.0;
   }
 }
 
 // Polarised paths between upright antennas need only one entry of their matrix.
-void SingleBounceEvaluation::set_weights(const SharedLegPlan::Direct& point, size_t slot, const Paths& paths,
+void SingleBounceEvaluation::set_weights(const SharedLegPlan::SingleBounce& point, size_t slot, const Paths& paths,
                                          const RadioConstants& radio) {
   const double scale[] = {radio.coherent_scale(), radio.diffuse_scale()};
   for (size_t kind = 0; kind < SingleBounceSlots::kNumKinds; ++kind) {
-    const bool is_there = point.path[kind] != SharedLegPlan::Direct::kNoPath;
+    const bool is_there = point.has_path(kind);
     const auto path = static_cast<size_t>(is_there ? point.path[kind] : 0);
     const std::complex<double> weight = is_there ? scale[kind] * std::complex<double>(paths.weight[path]) : 0.0;
     const auto set = [&](SingleBounceSlots::Row* rows, std::complex<double> value) {
@@ -209,122 +207,10 @@ void SingleBounceEvaluation::set_weights(const SharedLegPlan::Direct& point, siz
   }
 }
 
-namespace {
-
-std::complex<double> amplitude_at(const double* values, size_t kind, size_t slot) {
-  const double* from = values + (SingleBouncesToEvaluate::kRe + 2 * kind) * kSlots + slot;
-  return {from[0], from[kSlots]};
-}
-
-bool has_path(const SharedLegPlan::Direct& point, size_t kind) { return point.path[kind] != SharedLegPlan::Direct::kNoPath; }
-
-// Points to the nodes of eight points with two paths each that follow each other.
-struct PairNodes {
-  const double* values;  // [node, SingleBouncesToEvaluate::Row, slot]
-  size_t count, stride;
-  double scale;
-  double *length, *amplitude;  // of the first path at the first node
-};
-
-// Writes the values of pairs side by side.
-ECHOPATH_INLINE void put_pairs(const PairNodes* nodes) {
-  const double* from = nodes->values;
-  double* length = nodes->length;
-  double* amplitude = nodes->amplitude;
-  for (size_t node = 0; node < nodes->count;
-       ++node, from += kOfNode, length += nodes->stride, amplitude += 2 * nodes->stride) {
-    for (size_t slot = 0; slot < kSlots; ++slot) {
-      length[2 * slot] = length[2 * slot + 1] = nodes->scale * from[slot];
-      for (size_t row = 0; row < 4; ++row)
-        amplitude[4 * slot + row] = from[(SingleBouncesToEvaluate::kRe + row) * kSlots + slot];
-    }
-  }
-}
-
-// Adds the sums of pairs to their echoes.
-ECHOPATH_INLINE void add_pairs(const PairNodes* nodes) {
-  const double* from = nodes->values;
-  double* length = nodes->length;
-  double* amplitude = nodes->amplitude;
-  for (size_t node = 0; node < nodes->count;
-       ++node, from += kOfNode, length += nodes->stride, amplitude += 2 * nodes->stride) {
-    for (size_t slot = 0; slot < kSlots; ++slot) {
-      length[slot] = nodes->scale * from[slot];
-      for (size_t part = 0; part < 2; ++part) {
-        const double* kinds = from + (SingleBouncesToEvaluate::kRe + part) * kSlots + slot;
-        amplitude[2 * slot + part] += kinds[0] + kinds[2 * kSlots];
-      }
-    }
-  }
-}
-
-// Returns whether all points have both paths, and whether their echoes follow each other at these steps: `kinds` from kind
-// to kind, `pairs` from point to point.
-bool are_neighbours(std::span<const SharedLegPlan::Direct* const> points, const ChannelNodes& to, size_t kinds,
-                    size_t pairs) {
-  if (points.size() != kSlots || !has_path(*points[0], 0) || !has_path(*points[0], 1)) return false;
-  const size_t first = to.echo(points[0]->place[0]);
-  for (size_t slot = 0; slot < kSlots; ++slot) {
-    const SharedLegPlan::Direct& point = *points[slot];
-    if (!has_path(point, 0) || !has_path(point, 1)) return false;
-    if (to.echo(point.place[0]) != first + pairs * slot || to.echo(point.place[1]) != first + pairs * slot + kinds)
-      return false;
-  }
-  return true;
-}
-
-PairNodes pair_nodes(const SharedLegPlan::Direct& first, const ChannelNodes& to, const double* values, size_t num_nodes) {
-  const size_t echo = to.echo(first.place[0]);
-  return {values, num_nodes, to.stride, to.scale, to.length + echo, reinterpret_cast<double*>(to.amplitude + echo)};
-}
-
-// Returns whether both paths of a point go to one echo, or there is only one.
-bool is_one_echo(const SharedLegPlan::Direct& point, const ChannelNodes& to) {
-  return !has_path(point, 0) || !has_path(point, 1) || to.echo(point.place[0]) == to.echo(point.place[1]);
-}
-
-}  // namespace
-
-void SingleBounceEvaluation::put(Points points, const ChannelNodes& to, const double* values) const {
-  if (to.echo_of) return put_joined(points, to, values);
-  if (are_neighbours(points, to, 1, 2)) {
-    const PairNodes nodes = pair_nodes(*points[0], to, values, work_.num_nodes);
-    return run_simd<put_pairs>(&nodes);
-  }
-  for (size_t node = 0; node < work_.num_nodes; ++node, values += kOfNode) {
-    for (size_t slot = 0; slot < points.size(); ++slot) {
-      for (size_t kind = 0; kind < SingleBounceSlots::kNumKinds; ++kind) {
-        if (has_path(*points[slot], kind))
-          to.set(node, points[slot]->place[kind], values[slot], amplitude_at(values, kind, slot));
-      }
-    }
-  }
-}
-
-// A path that does not exist has amplitude 0.
-void SingleBounceEvaluation::put_joined(Points points, const ChannelNodes& to, const double* values) const {
-  if (are_neighbours(points, to, 0, 1)) {
-    const PairNodes nodes = pair_nodes(*points[0], to, values, work_.num_nodes);
-    return run_simd<add_pairs>(&nodes);
-  }
-  for (size_t node = 0; node < work_.num_nodes; ++node, values += kOfNode) {
-    for (size_t slot = 0; slot < points.size(); ++slot) {
-      const SharedLegPlan::Direct& point = *points[slot];
-      const std::complex<double> coherent = amplitude_at(values, 0, slot), diffuse = amplitude_at(values, 1, slot);
-      if (is_one_echo(point, to)) {
-        to.set(node, point.place[has_path(point, 0) ? 0 : 1], values[slot], coherent + diffuse);
-      } else {
-        to.set(node, point.place[0], values[slot], coherent);
-        to.set(node, point.place[1], values[slot], diffuse);
-      }
-    }
-  }
-}
-
 void SingleBounceEvaluation::mark_turned(Points points, uint8_t* turned) const {
   for (size_t slot = 0; slot < points.size(); ++slot) {
     for (size_t kind = 0; kind < SingleBounceSlots::kNumKinds; ++kind) {
-      if (has_path(*points[slot], kind)) turned[points[slot]->place[kind]] = work_.turned[slot] != 0.0;
+      if (points[slot]->has_path(kind)) turned[points[slot]->place[kind]] = work_.turned[slot] != 0.0;
     }
   }
 }
@@ -341,7 +227,7 @@ double SingleBounceEvaluation::size_of_weight(size_t slot) const {
 void SingleBounceEvaluation::mark_unfiltered(Points points, double mirror_scale, double* unfiltered) const {
   for (size_t slot = 0; slot < points.size(); ++slot) {
     constexpr auto kKind = SingleBounceSlots::kCoherent;
-    if (!has_path(*points[slot], kKind)) continue;
+    if (!points[slot]->has_path(kKind)) continue;
     const double of_cell = unfiltered_[SingleBouncesToEvaluate::kOfCell][slot] * size_of_weight(slot);
     const double of_mirror = unfiltered_[SingleBouncesToEvaluate::kOfMirror][slot] * mirror_scale;
     unfiltered[points[slot]->place[kKind]] = std::min(of_cell, of_mirror);

@@ -11,18 +11,19 @@ namespace echopath {
 // It keeps its memory from block to block and serves one thread at a time.
 class SingleBounceEvaluation {
  public:
+  static constexpr size_t kSlots = SingleBounceSlots::kSlots, kOfNode = SingleBouncesToEvaluate::kNumRows * kSlots;
   struct Wanted {
     uint8_t* turned = nullptr;     // [P] or null, see SharedLegEvaluation::mark_turned
     double* unfiltered = nullptr;  // [P] or null, likewise mark_unfiltered
     bool with_amplitudes = true;   // else they are not evaluated
   };
-  // Writes the direct paths of the plan, for antennas that can_evaluate_single_bounces.
+  // Writes the single bounces of the plan, for antennas that can_evaluate_single_bounces.
   void operator()(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes,
                   const RadioConstants& radio, const ChannelSpan& channels, const Wanted& wanted);
   size_t num_bytes() const { return (out_.capacity() + legs_.capacity()) * sizeof(double); }  // of its memory, nearly all
 
  private:
-  using Points = std::span<const SharedLegPlan::Direct* const>;
+  using Points = std::span<const SharedLegPlan::SingleBounce* const>;
   void sort_by_mesh(const SharedLegPlan& plan);
   void set_antennas(const PosedNodes& nodes);
   bool is_monostatic(const PosedNodes& nodes) const;
@@ -30,14 +31,14 @@ class SingleBounceEvaluation {
   void see_axes(uint32_t mesh_id, const PathPreparer& preparer, const PosedNodes& nodes);
   void set_mesh(uint32_t mesh_id, const PathPreparer& preparer);
   void set_slots(Points points, const PathPreparer& preparer, const RadioConstants& radio);
-  void set_weights(const SharedLegPlan::Direct& point, size_t slot, const Paths& paths, const RadioConstants& radio);
+  void set_weights(const SharedLegPlan::SingleBounce& point, size_t slot, const Paths& paths, const RadioConstants& radio);
   void put(Points points, const ChannelNodes& to, const double* values) const;
   void put_joined(Points points, const ChannelNodes& to, const double* values) const;
   void mark_turned(Points points, uint8_t* turned) const;
   double size_of_weight(size_t slot) const;
   void mark_unfiltered(Points points, double mirror_scale, double* unfiltered) const;
 
-  std::vector<const SharedLegPlan::Direct*> sorted_;  // by mesh, each in the order of the plan
+  std::vector<const SharedLegPlan::SingleBounce*> sorted_;  // by mesh, each in the order of the plan
   std::vector<size_t> first_of_mesh_;
   std::vector<SingleBounceAntenna> antennas_[2];  // of transmitters, of receivers
   NodeRows seen_[2];                              // [antenna] as seen from the mesh in hand

@@ -30,25 +30,25 @@ TraceCells::TraceCells(const SharedLegPlan& plan, const PathPreparer& preparer, 
   }
 }
 
-double TraceCells::density_of(const SharedLegPlan::Chain& chain) const {
+double TraceCells::density_of(const SharedLegPlan::ChainPath& chain) const {
   const Paths& paths = preparer_.paths();
   return paths.frame.lattice_density(paths.stratum[static_cast<size_t>(chain.path)]);
 }
 
-const std::array<float, 7>* TraceCells::curved_cell_of(const SharedLegPlan::Chain& chain) const {
+const std::array<float, 7>* TraceCells::curved_cell_of(const SharedLegPlan::ChainPath& chain) const {
   const Paths& paths = preparer_.paths();
   const auto p = static_cast<size_t>(chain.path);
   const bool is_flat = paths.curved_cell.empty() || paths.curved_cell[p] == std::array<float, 7>{};
   return is_flat ? nullptr : &paths.curved_cell[p];
 }
 
-bool TraceCells::has_cell(const SharedLegPlan::Chain& chain) const {
+bool TraceCells::has_cell(const SharedLegPlan::ChainPath& chain) const {
   const Paths& paths = preparer_.paths();
   if (paths.stratum[static_cast<size_t>(chain.path)] >= paths.frame.strata.size()) return false;
   return curved_cell_of(chain) || paths.frame.footprint != Footprint::kNone;
 }
 
-TraceCells::Arrival TraceCells::arrival_of(const SharedLegPlan::Chain& chain) const {
+TraceCells::Arrival TraceCells::arrival_of(const SharedLegPlan::ChainPath& chain) const {
   const SharedLegPlan::Leg& start = plan_.legs[chain.start];
   const Vec3 line = points_.traced[start.point].position - origin_[start.image];
   const double length = line.norm();
@@ -61,7 +61,7 @@ TraceCells::Arrival TraceCells::arrival_of(const SharedLegPlan::Chain& chain) co
 }
 
 // Returns the tangents of the cell of the path's own stratum, on the plane of the surface.
-CellTangents TraceCells::flat_tangents(const SharedLegPlan::Chain& chain, const PosedHit& hit, double density) const {
+CellTangents TraceCells::flat_tangents(const SharedLegPlan::ChainPath& chain, const PosedHit& hit, double density) const {
   const Arrival arrival = arrival_of(chain);
   const double cos_in = hit.normal.dot(arrival.direction), side = arrival.length / std::sqrt(density);  // of the tube, m
   Vec3 along = arrival.direction - cos_in * hit.normal;
@@ -70,7 +70,7 @@ CellTangents TraceCells::flat_tangents(const SharedLegPlan::Chain& chain, const 
   return {along * (side / std::max(std::abs(cos_in), 1e-3)), hit.normal.cross(along) * side};
 }
 
-PlacedCell TraceCells::on_rigid(const SharedLegPlan::Chain& chain) const {
+PlacedCell TraceCells::on_rigid(const SharedLegPlan::ChainPath& chain) const {
   if (!has_cell(chain)) return {};
   const double density = density_of(chain);
   PosedHit hit = points_.at_trace(plan_.legs[chain.end].point);
@@ -95,7 +95,7 @@ PlacedCell TraceCells::on_rigid(const SharedLegPlan::Chain& chain) const {
 }
 
 // Tangents stretch with their triangle, so each node has its own cell.
-std::vector<PlacedCell> TraceCells::on_stretching(const SharedLegPlan::Chain& chain, const PosedNodes& nodes) const {
+std::vector<PlacedCell> TraceCells::on_stretching(const SharedLegPlan::ChainPath& chain, const PosedNodes& nodes) const {
   std::vector<PlacedCell> out(nodes.size());
   if (!has_cell(chain)) return out;
   const double density = density_of(chain);

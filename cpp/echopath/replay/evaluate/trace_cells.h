@@ -18,22 +18,22 @@ class TraceCells {
   TraceCells(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedPoints& points);
   bool may_stretch(uint32_t mesh_id) const { return preparer_.may_stretch(mesh_id); }
   // Returns the cell on a mesh that moves rigidly; it is the same at all times.
-  PlacedCell on_rigid(const SharedLegPlan::Chain& chain) const;
+  PlacedCell on_rigid(const SharedLegPlan::ChainPath& chain) const;
   // Returns the cell on a mesh that may stretch, at each of the nodes.
-  std::vector<PlacedCell> on_stretching(const SharedLegPlan::Chain& chain, const PosedNodes& nodes) const;
+  std::vector<PlacedCell> on_stretching(const SharedLegPlan::ChainPath& chain, const PosedNodes& nodes) const;
 
  private:
   struct Arrival {
     double length;   // m, unfolded, from the mean transmitter
     Vec3 direction;  // of travel, unit
   };
-  Arrival arrival_of(const SharedLegPlan::Chain& chain) const;
-  CellTangents flat_tangents(const SharedLegPlan::Chain& chain, const PosedHit& hit, double density) const;
-  const Hit& hit_of(const SharedLegPlan::Chain& chain) const { return plan_.points[plan_.legs[chain.end].point]; }
-  bool has_cell(const SharedLegPlan::Chain& chain) const;
-  double density_of(const SharedLegPlan::Chain& chain) const;  // rays per sr
+  Arrival arrival_of(const SharedLegPlan::ChainPath& chain) const;
+  CellTangents flat_tangents(const SharedLegPlan::ChainPath& chain, const PosedHit& hit, double density) const;
+  const Hit& hit_of(const SharedLegPlan::ChainPath& chain) const { return plan_.points[plan_.legs[chain.end].point]; }
+  bool has_cell(const SharedLegPlan::ChainPath& chain) const;
+  double density_of(const SharedLegPlan::ChainPath& chain) const;  // rays per sr
   // Returns the cell that was recorded behind a curved bounce, or null where the chain is flat.
-  const std::array<float, 7>* curved_cell_of(const SharedLegPlan::Chain& chain) const;
+  const std::array<float, 7>* curved_cell_of(const SharedLegPlan::ChainPath& chain) const;
 
   const SharedLegPlan& plan_;
   const PathPreparer& preparer_;

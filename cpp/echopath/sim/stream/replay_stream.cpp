@@ -164,7 +164,7 @@ class ReplayStream::WindowPipeline {
   Window last_;
 };
 
-void ReplayStream::run(const Sink& sink) const {
+void ReplayStream::run(const Sink& sink) {
   const PathGrids grids = replayer_.path_grids();
   run(grids, PathsByGrid(grids, num_paths_, job_).take(), sink);
 }
@@ -179,7 +179,7 @@ void ReplayStream::run(std::span<const int64_t> paths, const Sink& sink) {
   run(*kept_grids_, std::move(by_grid), sink);
 }
 
-void ReplayStream::run(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, const Sink& sink) const {
+void ReplayStream::run(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, const Sink& sink) {
   WindowPipeline out(*this, sink);
   add_still(by_grid.front(), out);
   by_grid.front() = {};
@@ -193,7 +193,7 @@ void ReplayStream::add_still(const std::vector<int64_t>& paths, WindowPipeline& 
 
 // Replays each path at the polynomial that its meshes need; where that was not enough, at the next, or with its amplitude in
 // every chirp.
-void ReplayStream::add_moving(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, WindowPipeline& out) const {
+void ReplayStream::add_moving(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, WindowPipeline& out) {
   std::vector<std::vector<int64_t>> by_chirp(by_grid.size());
   for (int polynomial = 1; polynomial <= replayer_.grids().num_polynomials(); ++polynomial) {
     const Extent extent{0, num_channels(), replayer_.grids().polynomial(polynomial).num_nodes};
@@ -211,7 +211,7 @@ void ReplayStream::add_moving(const PathGrids& grids, std::vector<std::vector<in
 }
 
 // Holds only the scene as posed at the chirps of one transmitter.
-void ReplayStream::add_chirps(const std::vector<std::vector<int64_t>>& by_grid, int transmitter, WindowPipeline& out) const {
+void ReplayStream::add_chirps(const std::vector<std::vector<int64_t>>& by_grid, int transmitter, WindowPipeline& out) {
   const auto is_empty = [](const std::vector<int64_t>& paths) { return paths.empty(); };
   if (std::all_of(by_grid.begin(), by_grid.end(), is_empty)) return;
   const int num_receivers = num_channels() / num_transmitters_;
@@ -232,7 +232,7 @@ std::shared_ptr<const PosedGrid> ReplayStream::posed(const TimeGrid& grid, int t
 }
 
 // Replays the paths that no polynomial follows.
-void ReplayStream::add_samples(const std::vector<int64_t>& paths, int transmitter, WindowPipeline& out) const {
+void ReplayStream::add_samples(const std::vector<int64_t>& paths, int transmitter, WindowPipeline& out) {
   if (paths.empty()) return;
   const int num_receivers = num_channels() / num_transmitters_;
   const auto samples = posed(replayer_.grids().samples(transmitter), transmitter, kept_samples_);

@@ -49,17 +49,16 @@ class ReplayStream {
   static constexpr int64_t kKeptSamples = 256 << 20;  // bytes
   int num_channels() const { return replayer_.num_channels(); }
   const Replayer& replayer() const { return replayer_; }
-  // Sends the paths to the sink, all of them or some (indices, of which those that are to be
-  // joined follow each other). A stream that sends some at a time keeps the
-  // scene as posed in each chirp, where paths need it, and at the samples of all chirps where that is no more than
-  // kKeptSamples. Memory is bounded by the blocks in flight, 0.2 GiB of delays and
-  // amplitudes at 32 nodes a path, whatever the number of paths, chirps and channels; a sink that sorts them needs at
-  // most as much again. Beside these each thread works on 320 B for each channel and node of a block
-  // (SingleBounceEvaluation), and on what chains of its paths share. `sink` is called from one thread at a time, while
-  // the next blocks are replayed. Raises Cancelled.
-  void run(const Sink& sink) const;
+  // Sends the paths to the sink, all of them or some (indices, of which those that are to be joined follow each other). A
+  // stream that sends some at a time keeps the scene as posed in each chirp, where paths need it, and at the samples of all
+  // chirps where that is no more than kKeptSamples. Memory is bounded by the blocks in flight, 0.2 GiB of delays and
+  // amplitudes at 32 nodes a path, whatever the number of paths, chirps and channels; a sink that sorts them needs at most
+  // as much again. Beside these each thread works on 320 B for each channel and node of a block (SingleBounceEvaluation),
+  // and on what chains of its paths share. `sink` is called from one thread at a time, while the next blocks are replayed.
+  // Raises Cancelled.
+  void run(const Sink& sink);
   void run(std::span<const int64_t> paths, const Sink& sink);
-  // The job that is told from now on.
+  // Sets the job that is told from now on.
   void set_job(Job* job) { job_ = job; }
 
  private:
@@ -68,13 +67,13 @@ class ReplayStream {
   struct Block;
   struct Window;
   class WindowPipeline;
-  void run(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, const Sink& sink) const;
+  void run(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, const Sink& sink);
   using KeptPoses = std::vector<std::shared_ptr<const PosedGrid>>;  // by transmitter; empty where none are kept
   std::shared_ptr<const PosedGrid> posed(const TimeGrid& grid, int transmitter, KeptPoses& kept) const;
   void add_still(const std::vector<int64_t>& paths, WindowPipeline& out) const;
-  void add_moving(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, WindowPipeline& out) const;
-  void add_chirps(const std::vector<std::vector<int64_t>>& by_grid, int transmitter, WindowPipeline& out) const;
-  void add_samples(const std::vector<int64_t>& paths, int transmitter, WindowPipeline& out) const;
+  void add_moving(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, WindowPipeline& out);
+  void add_chirps(const std::vector<std::vector<int64_t>>& by_grid, int transmitter, WindowPipeline& out);
+  void add_samples(const std::vector<int64_t>& paths, int transmitter, WindowPipeline& out);
   // Describes the channels that `replay` makes echoes of, the number of rows, and whether it joins paths itself on
   // request.
   struct Extent {
@@ -96,9 +95,9 @@ class ReplayStream {
   Job* job_;
   std::optional<JoinRule> join_rule_;
   PathWatcher* watcher_ = nullptr;
-  // Of runs over some paths.
+  // Are kept between runs over some paths.
   std::optional<PathGrids> kept_grids_;
-  mutable KeptPoses kept_chirps_, kept_samples_;
+  KeptPoses kept_chirps_, kept_samples_;
 };
 
 }  // namespace echopath

@@ -8,29 +8,18 @@
 #include <utility>
 
 #include "echopath/base/constants.h"
-#include "echopath/base/lanes.h"
 #include "echopath/base/parallel.h"
-#include "echopath/base/phasor.h"
 #include "echopath/base/random.h"
-#include "echopath/base/simd.h"
 #include "echopath/signal/echoes/echo_states.h"
 #include "echopath/signal/kernels/carrier.h"
 #include "echopath/signal/kernels/kernels.h"
 #include "echopath/signal/methods/per_sample.h"
+#include "echopath/sim/stream/probe_sums.h"
 
 namespace echopath {
 
-// What a pass keeps. These types have names that others could see, because what PassProbe declares is made of them.
-
-// Holds sums of samples, or the offsets of these in samples from the first of the chirp.
-using SampleSums = std::array<double, ProbedChirp::kSamples>;
-
-// Holds the samples of a row, real parts first.
-struct SampleRow {
-  SampleSums re{}, im{};
-};
-
-// Holds an echo as the polynomials have it.
+// Holds an echo as the polynomials have it. It stands in no unnamed namespace, because what PassProbe declares is made of
+// it.
 struct DrawnEcho {
   int64_t path;
   double delay;                    // s
@@ -40,69 +29,15 @@ struct DrawnEcho {
 namespace {
 
 constexpr int kSamples = ProbedChirp::kSamples;
-constexpr int kMostChirps = 2;                 // of a pass
-constexpr size_t kStrongest = 4, kRandom = 4;  // echoes drawn of a block
-constexpr size_t kEchoesOfChirp = 1024;        // that are evaluated, at most
-constexpr size_t kSumsOfShare = 4;             // side by side, because additions to one sum would wait for each other
-
-// At most so many carriers are computed side by side.
-constexpr int kMaxLanes = 8;
-
-// Adds carriers, as many as fill whole lanes, to sums [2, kSamples, kLanes] over samples that are evenly spaced, with one
-// phasor for the first and one for the step between them.
-template <int kLanes>
-ECHOPATH_INLINE void add_tones(const double* frequency, const double* re, const double* im, int count, double first,
-                               double step, double* sums) {
-  using Vec = Lanes<double, kLanes>;
-  Vec sum_re[kSamples], sum_im[kSamples];
-  for (int s = 0; s < kSamples; ++s) {
-    sum_re[s] = load_lanes<kLanes>(sums + s * kLanes);
-    sum_im[s] = load_lanes<kLanes>(sums + (kSamples + s) * kLanes);
-  }
-  for (int p = 0; p < count; p += kLanes) {
-    const Vec f = load_lanes<kLanes>(frequency + p), a = load_lanes<kLanes>(re + p), b = load_lanes<kLanes>(im + p);
-    const auto start = phasor_of_cycles(f * first), turn = phasor_of_cycles(f * step);
-    Vec c = a * start.re - b * start.im, d = a * start.im + b * start.re;
-    for (int s = 0; s < kSamples; ++s) {
-      sum_re[s] += c;
-      sum_im[s] += d;
-      const Vec next = c * turn.re - d * turn.im;
-      d = c * turn.im + d * turn.re;
-      c = next;
-    }
-  }
-  for (int s = 0; s < kSamples; ++s) {
-    store_lanes(sums + s * kLanes, sum_re[s]);
-    store_lanes(sums + (kSamples + s) * kLanes, sum_im[s]);
-  }
-}
+constexpr int kMostChirps = 2;           // of a pass
+constexpr size_t kRandom = 4;            // echoes drawn of a block, beside the strongest
+constexpr size_t kEchoesOfChirp = 1024;  // that are evaluated, at most
+constexpr size_t kSumsOfShare = 4;       // side by side, because additions to one sum would wait for each other
 
 // Returns a number below `count` that depends on nothing but the arguments.
 int draw(uint64_t seed, int64_t index, int dimension, int count) {
   const double unit = uniform2(seed, Stream::kProbe, static_cast<uint64_t>(index), static_cast<uint32_t>(dimension))[0];
   return std::min(count - 1, static_cast<int>(unit * count));
-}
-
-// Holds sums over some echoes, in kLanes sums side by side.
-struct PowerSums {
-  static constexpr int kLanes = 8;
-  double power[kLanes] = {}, root[kLanes] = {}, largest[kLanes] = {};
-};
-
-// Computes the powers of echoes, as many as fill whole lanes: those behind the last are 0.
-ECHOPATH_INLINE void find_powers(const double* amplitude, int count, double* __restrict power, PowerSums* out) {
-  for (int p = 0; p < count; ++p)
-    power[p] = amplitude[2 * p] * amplitude[2 * p] + amplitude[2 * p + 1] * amplitude[2 * p + 1];
-  PowerSums sums;
-  for (int p = 0; p < count; p += PowerSums::kLanes) {
-    for (int lane = 0; lane < PowerSums::kLanes; ++lane) {
-      const double here = power[p + lane];
-      sums.power[lane] += here;
-      sums.root[lane] += std::sqrt(here);
-      sums.largest[lane] = std::max(sums.largest[lane], here);
-    }
-  }
-  *out = sums;
 }
 
 // Returns whether the amplitude of an echo is 0 at all nodes.
@@ -119,15 +54,6 @@ DrawnEcho state_of(const Echoes& block, int chirp, int64_t echo, int64_t path) {
   return {path, state.delay[0], {state.amplitude[0], state.amplitude[1]}};
 }
 
-// `power` has room for EchoStates::kCapacity powers, W.
-PowerSums powers_of(EchoStates& states, int count, double* power) {
-  const int filled = (count + PowerSums::kLanes - 1) / PowerSums::kLanes * PowerSums::kLanes;
-  std::fill(states.amplitude + 2 * count, states.amplitude + 2 * filled, 0.0);
-  PowerSums sums;
-  run_simd<find_powers>(states.amplitude, filled, power, &sums);
-  return sums;
-}
-
 // Keeps at most kEchoesOfChirp: the strongest half and an even choice of the others.
 void thin_out(std::vector<DrawnEcho>& echoes) {
   if (echoes.size() <= kEchoesOfChirp) return;
@@ -139,84 +65,6 @@ void thin_out(std::vector<DrawnEcho>& echoes) {
 }
 
 }  // namespace
-
-// Keeps the few strongest of the echoes that are shown to it, strongest first.
-class PassProbe::Strongest {
- public:
-  // `largest` is the largest of these powers, W.
-  void show(const double* power, double largest, int64_t first, int count) {
-    if (largest <= best_.back().first) return;
-    for (int p = 0; p < count; ++p) {
-      if (power[p] > best_.back().first) insert(power[p], first + p);
-    }
-  }
-  void append_to(std::vector<int64_t>& echoes) const {
-    for (const auto& [power, echo] : best_) {
-      if (power > 0.0) echoes.push_back(echo);
-    }
-  }
-
- private:
-  void insert(double power, int64_t echo) {
-    size_t i = kStrongest - 1;
-    for (; i > 0 && best_[i - 1].first < power; --i) best_[i] = best_[i - 1];
-    best_[i] = {power, echo};
-  }
-  std::array<std::pair<double, int64_t>, kStrongest> best_{};
-};
-
-// Holds carriers of some echoes in the order of their rows, each row filled up to whole lanes, and sums of them.
-struct PassProbe::Tones {
-  explicit Tones(size_t num_rows) : first(num_rows + 1), count(num_rows), sums(num_rows * kSums) {
-    for (std::vector<double>* values : {&frequency, &re, &im}) values->resize(Carriers::kCapacity + num_rows * kMaxLanes);
-  }
-  static constexpr size_t kSums = 2 * kSamples * kMaxLanes;
-  std::vector<double> frequency, re, im;
-  std::vector<int> first, count;  // [row]
-  std::vector<double> sums;       // [row, kSums]
-
-  void sort(const Carriers& carriers) {
-    std::fill(count.begin(), count.end(), 0);
-    for (int p = 0; p < carriers.count; ++p) ++count[carriers.group[p]];
-    for (size_t row = 0; row < count.size(); ++row) {
-      first[row + 1] = first[row] + (count[row] + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
-      for (std::vector<double>* values : {&frequency, &re, &im}) {
-        std::fill(values->begin() + first[row] + count[row], values->begin() + first[row + 1], 0.0);
-      }
-      count[row] = first[row];
-    }
-    for (int p = 0; p < carriers.count; ++p) {
-      const auto to = static_cast<size_t>(count[carriers.group[p]]++);
-      frequency[to] = carriers.frequency[p];
-      re[to] = carriers.re[p];
-      im[to] = carriers.im[p];
-    }
-  }
-
-  void add(const Carriers& carriers, double first_sample, double step) {
-    sort(carriers);
-    const bool is_wide = instruction_set() == InstructionSet::kAvx512;
-    for (size_t row = 0; row < count.size(); ++row) {
-      const auto at = static_cast<size_t>(first[row]);
-      const int num_tones = first[row + 1] - first[row];
-      double* const to = sums.data() + row * kSums;
-      if (num_tones == 0) continue;
-      if (is_wide) run_simd<add_tones<8>>(&frequency[at], &re[at], &im[at], num_tones, first_sample, step, to);
-      else run_simd<add_tones<4>>(&frequency[at], &re[at], &im[at], num_tones, first_sample, step, to);
-    }
-  }
-
-  void give(std::vector<SampleRow>& rows) const {
-    const size_t lanes = instruction_set() == InstructionSet::kAvx512 ? 8 : 4;
-    for (size_t row = 0; row < rows.size(); ++row) {
-      const double* from = sums.data() + row * kSums;
-      for (size_t s = 0; s < kSamples; ++s, from += lanes) {
-        rows[row].re[s] = std::accumulate(from, from + lanes, rows[row].re[s]);
-        rows[row].im[s] = std::accumulate(from + kSamples * lanes, from + (kSamples + 1) * lanes, rows[row].im[s]);
-      }
-    }
-  }
-};
 
 // Holds what was seen of one block, or of all so far.
 struct PassProbe::EchoTally {
@@ -319,8 +167,8 @@ void PassProbe::tally_block(const ChirpTarget& target, const Echoes& block, std:
   EchoStates states;
   alignas(64) double power[kCapacity];
   uint32_t row[kCapacity];
-  Strongest strongest;
-  Tones tones(tally.rows.size());
+  StrongestEchoes strongest;
+  TonesOfRows tones(tally.rows.size());
   for (int64_t begin = 0; begin < block.num_echoes; begin += kCapacity) {
     const int count = static_cast<int>(std::min<int64_t>(kCapacity, block.num_echoes - begin));
     evaluate_states(block, target.chirp, begin, count, states);
@@ -352,7 +200,7 @@ void PassProbe::sort_paths(std::span<const int64_t> paths, const double* power, 
 }
 
 void PassProbe::add_samples(const ChirpTarget& target, const Echoes& block, int64_t begin, const EchoStates& states,
-                            std::span<const uint32_t> row, Tones& tones, EchoTally& tally) const {
+                            std::span<const uint32_t> row, TonesOfRows& tones, EchoTally& tally) const {
   const int count = static_cast<int>(row.size());
   if (per_sample_ && !block.sampling.is_static()) {
     for (int i = 0; i < count; ++i) {
@@ -369,7 +217,7 @@ void PassProbe::add_samples(const ChirpTarget& target, const Echoes& block, int6
 }
 
 void PassProbe::draw_echoes(const ChirpTarget& target, const Echoes& block, std::span<const int64_t> paths,
-                            const Strongest& strongest, EchoTally& tally) const {
+                            const StrongestEchoes& strongest, EchoTally& tally) const {
   std::vector<int64_t> echoes;
   strongest.append_to(echoes);
   for (size_t i = 0; i < kRandom && block.num_echoes > 0; ++i) {

@@ -51,6 +51,9 @@ struct SignalProbe {
   std::vector<ProbedChirp> chirps;
 };
 
+class StrongestEchoes;
+class TonesOfRows;
+
 // Probes the echoes of one pass at one chirp, or at two where there are several channels. TARGET of
 // python/echopath/bench/speed_guard.py bounds its share of the time of trace and synthesis of one channel; more channels
 // cost less. The result has the same bits for any number of threads.
@@ -69,17 +72,15 @@ class PassProbe : public PathWatcher {
  private:
   struct ChirpTarget;
   struct EchoTally;
-  class Strongest;
-  struct Tones;
   void tally_block(const ChirpTarget& target, const Echoes& block, std::span<const int64_t> paths, EchoTally& tally) const;
   static void draw_samples(uint64_t seed, int64_t index, int num_samples, ChirpTarget& target);
   size_t num_shares() const;
   void sort_paths(std::span<const int64_t> paths, const double* power, uint32_t* row, EchoTally& tally) const;
   void add_samples(const ChirpTarget& target, const Echoes& block, int64_t begin, const EchoStates& states,
-                   std::span<const uint32_t> row, Tones& tones, EchoTally& tally) const;
+                   std::span<const uint32_t> row, TonesOfRows& tones, EchoTally& tally) const;
   void sum_up(const ChirpTarget& target, ProbedChirp& chirp) const;
   void draw_echoes(const ChirpTarget& target, const Echoes& block, std::span<const int64_t> paths,
-                   const Strongest& strongest, EchoTally& tally) const;
+                   const StrongestEchoes& strongest, EchoTally& tally) const;
   void compare_echoes(const ChirpTarget& target, ProbedChirp& chirp, Job* job) const;
   static void add(const EchoTally& some, EchoTally& all);
 

@@ -96,13 +96,13 @@ PlaneImages::PlaneImages(const Scene& scene, const EmbreeScene& geometry, const 
 void PlaneImages::add_chains(const PathBlock& block) {
   const size_t first = facets_.size();
   for (const Hit& hit : block.chain_hits) facets_.push_back({hit.mesh_id, hit.triangle_id});
-  for (const PathBlock::Chain& chain : block.chains) chains_.push_back({first + chain.first, chain.count});
+  for (const PathBlock::HitChain& chain : block.chains) chains_.push_back({first + chain.first, chain.count});
 }
 
 // Sorts the chains by their facets, so that they do not hang on the order of the rays, and keeps each once.
 void PlaneImages::sort_chains() {
   const auto compare = [&](const RayChain& a, const RayChain& b) {
-    const Chain one = facets_of(a), other = facets_of(b);
+    const Facets one = facets_of(a), other = facets_of(b);
     return std::lexicographical_compare_three_way(one.begin(), one.end(), other.begin(), other.end());
   };
   std::sort(chains_.begin(), chains_.end(), [&](const auto& a, const auto& b) { return compare(a, b) < 0; });
@@ -113,7 +113,7 @@ void PlaneImages::sort_chains() {
 
 // Sets planes_ to the planes of the chain, and returns their indices in travel order; returns none where a surface has no
 // plane that lasts.
-std::vector<int> PlaneImages::planes_of(Chain chain) {
+std::vector<int> PlaneImages::planes_of(Facets chain) {
   planes_.clear();
   std::vector<int> sequence;
   for (const auto& [mesh_id, triangle_id] : chain) {
@@ -133,7 +133,7 @@ std::vector<int> PlaneImages::planes_of(Chain chain) {
 }
 
 // Returns whether a path through these points was tried before, as far as there is room to remember it.
-bool PlaneImages::is_known(Chain chain, const std::vector<Vec3>& points) {
+bool PlaneImages::is_known(Facets chain, const std::vector<Vec3>& points) {
   std::vector<uint32_t> meshes;
   for (const Facet& facet : chain) meshes.push_back(facet.mesh_id);
   const double place = kLine.dot(points.front());  // points lie no nearer to each other than their places
@@ -190,7 +190,7 @@ PathBlock PlaneImages::find(const Job* job) {
   sort_chains();
   for (const RayChain& of_ray : chains_) {
     if (job) job->throw_if_cancelled();
-    const Chain chain = facets_of(of_ray);
+    const Facets chain = facets_of(of_ray);
     const std::vector<int> sequence = planes_of(chain);
     if (sequence.empty()) continue;
     ImageMethod images(geometry_, planes_, locator, settings_);

@@ -42,11 +42,11 @@ class PlaneImages {
     size_t first;  // in facets_
     uint32_t count;
   };
-  using Chain = std::span<const Facet>;  // the surfaces of each hit
-  Chain facets_of(const RayChain& chain) const { return {facets_.data() + chain.first, chain.count}; }
+  using Facets = std::span<const Facet>;  // the surfaces of each hit
+  Facets facets_of(const RayChain& chain) const { return {facets_.data() + chain.first, chain.count}; }
   void sort_chains();
-  std::vector<int> planes_of(Chain chain);
-  bool is_known(Chain chain, const std::vector<Vec3>& points);
+  std::vector<int> planes_of(Facets chain);
+  bool is_known(Facets chain, const std::vector<Vec3>& points);
   bool holds_zones(const ImagePath& path, int64_t& num_queries) const;
   std::vector<int> joined(const std::vector<int>& sequence);
   bool is_same_plane(const Mirror& plane, const Mirror& other) const;

@@ -59,7 +59,7 @@ void PathBlock::end_fan() {
 void PathBlock::end_chains(const Hit* ray_hits) {
   const auto first = static_cast<uint32_t>(chain_hits.size());
   uint32_t longest = 0;
-  const auto begin_at_first = [&](Chain& chain) {
+  const auto begin_at_first = [&](HitChain& chain) {
     chain.first = first;
     longest = std::max(longest, chain.count);
   };

@@ -23,14 +23,14 @@ class PathBlock {
   std::vector<Hit> fan_hits;     // of their mirrors
   // The first hits of a ray that goes by so near to the receiver that images are looked for on their planes
   // (mirrors/plane_images.h). The chains of one ray share their hits.
-  struct Chain {
+  struct HitChain {
     uint32_t first = 0, count = 0;  // in chain_hits
   };
   std::vector<Hit> chain_hits;
-  std::vector<Chain> chains;
+  std::vector<HitChain> chains;
   // The hits of a ray over planes that light the last of them (edges/lit_planes.h), and the distance in m to the rays beside
   // it on that surface.
-  struct LitChain : Chain {
+  struct LitChain : HitChain {
     float spacing = 0.0f;
   };
   std::vector<LitChain> lit_chains;

@@ -70,17 +70,16 @@ Crossing SurfaceWalk::Surface::cross_toward(uint32_t at, const Vec3& weights, co
 }
 
 SurfaceWalk::SurfaceWalk(const Scene& scene, const std::vector<std::vector<Vec3>>& smooth_normals)
-    : scene_(scene), smooth_normals_(smooth_normals), made_(scene.meshes().size()), surfaces_(scene.meshes().size()) {}
+    : scene_(scene), smooth_normals_(smooth_normals), surfaces_(scene.meshes().size()) {}
 
 SurfaceWalk::~SurfaceWalk() = default;
 
 const SurfaceWalk::Surface& SurfaceWalk::surface(uint32_t mesh_id) const {
-  std::call_once(made_[mesh_id], [&] {
+  return *surfaces_[mesh_id].get([&] {
     const Mesh& mesh = *scene_.node_of(mesh_id).mesh;
-    surfaces_[mesh_id] = std::make_unique<const Surface>(
+    return std::make_unique<const Surface>(
         Surface{mesh.triangles(), edge_neighbours(mesh.vertices(), mesh.triangles()), smooth_normals_[mesh_id]});
   });
-  return *surfaces_[mesh_id];
 }
 
 std::optional<SurfaceWalk::Spot> SurfaceWalk::find(uint32_t mesh_id, uint32_t triangle, const std::vector<Vec3>& vertices,

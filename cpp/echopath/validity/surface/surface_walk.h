@@ -1,10 +1,10 @@
 #pragma once
 // Walks from a triangle over its neighbours to where a point lies over the surface.
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <vector>
 
+#include "echopath/base/lazy.h"
 #include "echopath/scene/mesh/adjacency.h"
 #include "echopath/trace/record/paths.h"
 
@@ -30,8 +30,7 @@ class SurfaceWalk {
 
   const Scene& scene_;
   const std::vector<std::vector<Vec3>>& smooth_normals_;
-  mutable std::vector<std::once_flag> made_;  // by mesh ID
-  mutable std::vector<std::unique_ptr<const Surface>> surfaces_;
+  std::vector<Lazy<std::unique_ptr<const Surface>>> surfaces_;  // by mesh ID
 };
 
 }  // namespace echopath

@@ -5,6 +5,8 @@ import subprocess
 import sys
 from html.parser import HTMLParser
 
+import numpy as np
+
 from echopath import dataset
 
 
@@ -14,6 +16,7 @@ class _Page(HTMLParser):
     def __init__(self, text: str):
         super().__init__()
         self.rows: list[list[str]] = []
+        self._is_in_cell = False
         self.pictures: list[bytes] = []
         self.feed(text)
 
@@ -22,14 +25,19 @@ class _Page(HTMLParser):
             self.rows.append([])
         elif tag in ("td", "th"):
             self.rows[-1].append("")
+            self._is_in_cell = True
         elif tag == "img":
             kind, _, code = dict(attributes)["src"].partition(",")
             assert kind == "data:image/png;base64"
             self.pictures.append(base64.b64decode(code))
 
     def handle_data(self, data):
-        if self.rows and self.rows[-1]:
+        if self._is_in_cell:
             self.rows[-1][-1] += data.strip()
+
+    def handle_endtag(self, tag):
+        if tag in ("td", "th"):
+            self._is_in_cell = False
 
 
 def test_the_report_counts_what_is_there(small_dataset, tmp_path):
@@ -42,10 +50,20 @@ def test_the_report_counts_what_is_there(small_dataset, tmp_path):
     assert facts["scenes done"] == ["6 of 6"] and facts["frames done"] == ["12"]
     assert facts["frames of 'train'"] == [str(len(opened.split("train")))]
     labels = [one.frame.labels["parts"] for one in opened]
-    assert int(facts["static"][-2]) == sum(one.cells for label in labels for one in label.objects) > 0
-    assert sum(map(int, facts["static"][:2])) == sum(len(label.objects) for label in labels)
+    counts = next(row for row in page.rows if row[0] == "static")  # of the first table of classes
+    assert int(counts[-2]) == sum(one.cells for label in labels for one in label.objects) > 0
+    assert sum(map(int, counts[1:3])) == sum(len(label.objects) for label in labels)
     assert len(page.pictures) == 6 and all(picture.startswith(b"\x89PNG") for picture in page.pictures)
     assert "http" not in text.replace("base64", "")
+    received = [one.received for label in labels for one in label.objects if one.cells]
+    with np.errstate(divide="ignore"):
+        errors = [10.0 * np.log10(max(one.high / one.power, np.float64(one.power) / one.low)) for one in received]
+    head = next(row for row in page.rows if row[:2] == ["class", "half within"])
+    known = page.rows[page.rows.index(head) + 1]
+    assert known[0] == "static" and f"{100 * np.mean(np.array(errors) <= 0.3):.0f} %" == known[-1]
+    median = sorted(errors)[len(errors) // 2]  # the upper one of two
+    assert known[1] == (f"{median:.1f} dB" if np.isfinite(median) else "not known")
+    assert text.count("Validity: ") == 4  # of each frame that is shown
 
 
 def test_the_command_writes_the_report_beside_the_frames(small_dataset, tmp_path):

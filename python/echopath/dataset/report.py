@@ -12,11 +12,15 @@ from typing import Any
 
 import numpy as np
 
+from .. import _core
 from ..arguments.checks import checked
 from ..arguments.checks import path as file_or_folder
 from ..base.files import write_texts
+from ..paths.resolution import RESOLVED_DB
 from ..plots.style import CURVE_COLOURS, new_figure
+from ..presentation.notebook import validity_html
 from ..signals.measures import for_pictures
+from ..tracing.validity import validity
 from .classes import CODES
 from .folder import read_record
 from .opened import Dataset, open
@@ -32,15 +36,17 @@ _STYLE = ("body{font:15px/1.5 sans-serif;max-width:70em;margin:2em auto;padding:
 @checked(folder=file_or_folder, path=file_or_folder)
 def write_report(folder: str | os.PathLike[str], path: str | os.PathLike[str]) -> None:
     """Writes one HTML file about a dataset: what is done, objects by class, range and power, ghosts, detections, what was drawn,
-    how well the rays know the powers, and frames chosen evenly.
+    how well the rays know the powers, and frames chosen evenly with their validity (`ep.validity`).
 
-    folder: of the dataset; path: of the file, written whole or not at all. At most 2000 frames, evenly spread, are read.
+    folder: of the dataset; path: of the file, written whole or not at all. At most 2000 frames, evenly spread, are read; those
+        that are shown are made again where their paths were not kept.
     Raises ep.FileError where the folder is no dataset, or the file cannot be written.
     """
     dataset = open(folder)
     found = statistics_of(dataset)
     parts = [f"<h1>{html.escape(str(dataset.template.table.get('title') or dataset.folder.name))}</h1>", *_facts(dataset, found),
-             *_classes(dataset, found), *_histograms(found), *_detections(found), *_drawn(found), *_examples(dataset)]
+             *_classes(dataset, found), *_histograms(found), *_errors(found), *_detections(found), *_drawn(found),
+             *_examples(dataset)]
     head = f'<!doctype html><meta charset="utf-8"><title>Dataset</title><style>{_STYLE}</style>'
     path = Path(path)
     write_texts(path.parent, {path.name: "\n".join([head, *parts]) + "\n"})
@@ -53,15 +59,10 @@ def _facts(dataset: Dataset, found: Statistics) -> Iterable[str]:
     yield _table(("", ""), [
         ("scenes done", f"{states['done']} of {settings.scenes}"), ("frames done", str(len(dataset))),
         *((f"frames of '{name}'", str(len(dataset.split(name)))) for name in settings.split),
-        ("frames read for this page", str(found.frames)),
-        ("objects in a map whose power the rays know to 0.3 dB", _percent(found.resolved_share))])
+        ("frames read for this page", str(found.frames))])
     failed = [(f"scene {scene}", record.reason) for scene, record in enumerate(records) if record.state == "failed"]
     if failed:
         yield "<h2>Scenes that failed</h2>" + _table(("scene", "reason"), failed)
-
-
-def _percent(share: float) -> str:
-    return "none in any" if np.isnan(share) else f"{100.0 * share:.0f} %"
 
 
 def _classes(dataset: Dataset, found: Statistics) -> Iterable[str]:
@@ -103,6 +104,21 @@ def _histograms(found: Statistics) -> Iterable[str]:
     yield "<h2>Where they are, and how strong</h2>" + _image(figure)
 
 
+def _errors(found: Statistics) -> Iterable[str]:
+    """How well the rays know the mean powers of the objects that have cells."""
+    errors = {kind: found.errors_db(kind) for kind in _kinds(found)}
+    rows = [(kind, *(_decibels(np.quantile(ones, share, method="higher")) for share in (0.5, 0.9)),
+             f"{100.0 * np.mean(np.array(ones) <= RESOLVED_DB):.0f} %") for kind, ones in errors.items() if ones]
+    if rows:
+        yield ("<h2>Monte-Carlo error</h2><p>How far the 95 % interval of an object's mean power reaches: what more rays would "
+               "change.</p>")
+        yield _table(("class", "half within", "nine of ten within", f"within {RESOLVED_DB} dB"), rows)
+
+
+def _decibels(value: float) -> str:
+    return f"{value:.1f} dB" if np.isfinite(value) else "not known"
+
+
 def _detections(found: Statistics) -> Iterable[str]:
     if found.detections:
         yield "<h2>Detections</h2>" + _table(("what made them", "number", "a frame"), [
@@ -139,7 +155,7 @@ def _draw_numbers(axes: Any, values: list[float]) -> None:
 
 
 def _examples(dataset: Dataset) -> Iterable[str]:
-    """Labelled maps of some frames, evenly chosen."""
+    """Labelled maps of some frames, evenly chosen, and whether one trace serves each."""
     places = sorted({int(place) for place in np.linspace(0, len(dataset) - 1, EXAMPLES)}) if len(dataset) else []
     for one in (dataset[place] for place in places):
         for labels in list(one.frame.labels.values())[:1]:
@@ -147,6 +163,16 @@ def _examples(dataset: Dataset) -> Iterable[str]:
                 title = f"Frame {one.number}: scene {one.scene}, {one.split}"
                 labels.plot("objects", ax=figure.subplots(), title=title)
             yield _image(figure)
+        yield _validity(dataset, dataset.numbers.index(one.number))
+
+
+def _validity(dataset: Dataset, place: int) -> str:
+    """Whether one trace serves a frame, which is made again where its paths were not kept; why not, where it cannot be."""
+    try:
+        frame: Any = (dataset if dataset.keep == "all" else dataset.remade())[place].frame
+    except (ValueError, _core.FileError) as error:
+        return f"<p>Its validity is not known: {html.escape(str(error))}</p>"
+    return validity_html(validity(frame.paths, frame.radar, replay=frame.replay))
 
 
 def _image(figure: Any) -> str:

@@ -1,6 +1,7 @@
 """What a dataset holds, in numbers: objects, ghosts, detections, and how well the rays know them."""
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -9,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..detections.detections import Detections
+from ..paths.resolution import Interval
 from ..signals import beside
 from .classes import ClassName, classes_of
 from .opened import Dataset, DatasetFrame
@@ -18,7 +20,8 @@ MOST_FRAMES = 2000  # that are read, evenly spread
 
 class SeenObject(NamedTuple):
     """An object of a frame: its class, the split and status of its label; range in m and power in W of its strongest cell, None
-    without one; cells: that it has; resolved: whether the rays know its power to 0.3 dB."""
+    without one; cells: that it has; error_db: how far the 95 % interval of its received power reaches, by the rays (bias and
+    chance), dB to the farther side, infinite where it reaches to nothing, None without paths."""
 
     kind: ClassName
     split: str
@@ -26,7 +29,7 @@ class SeenObject(NamedTuple):
     range: float | None
     power: float | None
     cells: int
-    resolved: bool
+    error_db: float | None
 
 
 @dataclass
@@ -43,11 +46,9 @@ class Statistics:
     detections: Counter[str] = field(default_factory=Counter)
     drawn: dict[str, list[Any]] = field(default_factory=dict)
 
-    @property
-    def resolved_share(self) -> float:
-        """Of the objects that have cells, those whose power the rays know to 0.3 dB; NaN without any."""
-        seen = [one.resolved for one in self.objects if one.cells]
-        return sum(seen) / len(seen) if seen else float("nan")
+    def errors_db(self, kind: ClassName) -> list[float]:
+        """Of the objects of a class that have cells, `error_db`."""
+        return [one.error_db for one in self.objects if one.kind == kind and one.cells and one.error_db is not None]
 
 
 def statistics_of(dataset: Dataset) -> Statistics:
@@ -83,5 +84,13 @@ def _count(one: DatasetFrame, kinds: dict[str, ClassName], found: Statistics) ->
 def _objects(labels: Any, kinds: dict[str, ClassName], split: str) -> Iterator[SeenObject]:
     for one in labels.objects:
         place, power = (None, None) if one.peak is None else (one.peak.range, one.peak.power)
-        is_resolved = one.received is not None and one.received.resolved
-        yield SeenObject(kinds.get(one.name, "static"), split, one.status, place, power, one.cells, is_resolved)
+        yield SeenObject(kinds.get(one.name, "static"), split, one.status, place, power, one.cells, _error_db(one.received))
+
+
+def _error_db(received: Interval | None) -> float | None:
+    """How far an interval reaches to its farther side."""
+    if received is None or received.power <= 0.0:
+        return None
+    if received.low <= 0.0:
+        return math.inf
+    return 10.0 * math.log10(max(received.high / received.power, received.power / received.low))

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from matplotlib.text import Text
 
 import echopath as ep
 from echopath import plots
@@ -52,8 +53,6 @@ def test_mirrors_have_no_edge_where_the_picture_cuts_them():
 
 
 def texts_of(figure) -> list:
-    from matplotlib.text import Text
-
     return [text for text in figure.findobj(Text) if text.get_visible() and text.get_text().strip()]
 
 
@@ -140,3 +139,20 @@ def test_values_beyond_a_scale_stand_at_its_end_and_are_marked():
         assert marks == {"v": (1.0, 0.0), "^": (3.0, 1.0)}
         scale_ends.within(axes, [1.0], [9.0], (0.0, 1.0), "blue", across=True)
         assert axes.get_lines()[-1].get_marker() == ">" and tuple(np.ravel(axes.get_lines()[-1].get_data())) == (1.0, 1.0)
+
+
+@pytest.mark.parametrize("velocity", [-3.9, 0.0, 3.9])
+def test_names_of_objects_stand_within_the_map(velocity):
+
+    from echopath.plots.labels import _name_objects
+    from echopath.plots.style import new_figure
+
+    with new_figure(6.0, 3.0) as figure:
+        axes = figure.subplots()
+        axes.set(xlim=(0.0, 20.0), ylim=(-4.0, 4.0))
+        objects = [SimpleNamespace(name=name, peak=(10.0, velocity)) for name in ("car", "person")]
+        _name_objects(axes, SimpleNamespace(objects=objects, azimuth=None))
+        figure.canvas.draw()
+        frame, boxes = axes.get_window_extent(), [Text.get_window_extent(text) for text in axes.texts]  # without the lines
+        assert all(frame.y0 <= box.y0 and box.y1 <= frame.y1 for box in boxes)
+        assert not boxes[0].overlaps(boxes[1])

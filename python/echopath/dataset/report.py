@@ -146,9 +146,10 @@ def _drawn(found: Statistics) -> Iterable[str]:
 
 
 def _draw_numbers(axes: Any, values: list[float]) -> None:
-    """A bar for each value where there are few, else a histogram."""
+    """A bar for each value where few were drawn again and again, else a histogram."""
     counts = sorted(Counter(values).items())
-    if len(counts) <= FEW:
+    axes.yaxis.get_major_locator().set_params(integer=True)
+    if len(counts) <= FEW and (len(counts) < len(values) or all(isinstance(one, int) for one in values)):
         axes.bar([for_pictures(f"{value:g}") for value, _ in counts], [count for _, count in counts], color=CURVE_COLOURS[0])
     else:
         axes.hist(values, bins=20, color=CURVE_COLOURS[0])

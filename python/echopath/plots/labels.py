@@ -147,7 +147,7 @@ def _grey_limits(labels) -> dict:
 
 
 def _name_objects(axes, labels) -> None:
-    """A ring at the peak of each object with its name below it, deeper where another name stands in the way."""
+    """A ring at the peak of each object with its name below or above it, further where another name stands in the way."""
     seen = sorted((label for label in labels.objects if label.peak is not None), key=lambda label: label.peak[0])
     width = axes.get_window_extent().width * 72.0 / axes.figure.dpi  # points
     taken = []  # (left, right, top) of the names so far, points
@@ -160,10 +160,11 @@ def _name_objects(axes, labels) -> None:
         row = _in_plot_units(labels, label.peak[1])
         bottom, top = axes.get_ylim()
         level = (row - bottom) / (top - bottom) * axes.get_window_extent().height * 72.0 / axes.figure.dpi
-        depth = NAME_DEPTH
+        down = 1.0 if level > NAME_DEPTH + NAME_LINE else -1.0  # near the lower edge names stand above
+        depth = down * NAME_DEPTH
         while any(begin < end and start < begin + length and abs(height - (level - depth)) < NAME_LINE
                   for start, end, height in taken):
-            depth += NAME_LINE
+            depth += down * NAME_LINE
         taken.append((begin, begin + length, level - depth))
         _name_object(axes, label.name, label.peak[0], row, is_far, depth)
 

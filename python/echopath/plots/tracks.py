@@ -21,7 +21,7 @@ def draw_tracks(tracks, *, ax=None, title=""):
             x, y = one.state[:, :2].T
             ax.plot(y, x, color=colour, marker=".", markersize=3, label=_name(one, number))
             ax.plot(y[~one.is_detected], x[~one.is_detected], "x", color=colour, markersize=5)
-            ax.annotate(str(number), (y[-1], x[-1]), xytext=(4, 4), textcoords="offset points", color=colour)
+            ax.annotate(str(number), (y[-1], x[-1]), xytext=(4, 4), textcoords="offset points", color="0.1")
         ax.set(xlabel=Y_LABEL, ylabel=X_LABEL, title=title, aspect="equal")
         ax.set_xlim(*sorted(ax.get_xlim(), reverse=True))
         if tracks.num_tracks:

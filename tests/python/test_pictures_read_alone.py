@@ -13,6 +13,7 @@ from echopath import plots
 from echopath.paths.subset import first_group, strongest_of_each
 from echopath.plots.scene_view import _is_cut
 from echopath.signals.measures import for_pictures
+from echopath.truth.places import true_places
 
 
 def power_of(level_dbm: float, half_db: float, resolved: bool):
@@ -106,7 +107,7 @@ def small_radar(position=(0, 0, 0)):
 def test_true_places_are_seen_from_the_radar():
     scene = ep.Scene()
     scene.add(ep.actors.sphere(0.5), name="ball", material="metal", position=(4, 8, 1))
-    places = plots.true_places(scene, small_radar((4, 3, 0)), ["ball"], 0.0)  # 5 m along y, where the radar looks
+    places = true_places(scene, small_radar((4, 3, 0)), ["ball"], 0.0)  # 5 m along y, where the radar looks
     assert np.allclose(places["ball"], (5.0, 0.0), atol=1e-6)
 
 

@@ -18,6 +18,7 @@ from ..plots.frames import noise_words, title_of
 from ..scene_file import SceneFile
 from ..signals.measures import for_pictures, with_error
 from ..signals.parts import parts_of_options
+from ..truth.places import true_places
 from .label_outputs import write_labels
 
 TRUTH_NAME = "truth.csv"
@@ -132,7 +133,7 @@ def _write_pictures(frame: Frame, folder: Path, partitions) -> list:
 def _places(frame: Frame) -> dict:
     """Where the objects of the frame truly are, in its range-azimuth map."""
     time = frame.paths.frame.trace_time
-    return plots.true_places(frame.scene, frame.radar, families(frame.paths).objects, time)
+    return true_places(frame.scene, frame.radar, families(frame.paths).objects, time)
 
 
 def _maps_from_above(frame: Frame, partition, vmin: float) -> dict:

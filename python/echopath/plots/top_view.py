@@ -6,9 +6,7 @@ import math
 
 import numpy as np
 
-from ..base.antennas import centre_of
 from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm
-from ..truth.boxes import boxes_at
 from .maps import NOISE_PEAK_DB, chosen_limits, limits_of_level
 from .style import MAP_COLOURS, axes_or_new, new_figure, set_title
 
@@ -29,23 +27,12 @@ LEGEND_LOOK = {"facecolor": "black", "labelcolor": "white", "framealpha": 1.0}
 LABEL_LOOK = {"color": "0.35", "fontsize": 7, "ha": "center", "va": "center"}
 
 
-def true_places(scene, radar, objects, time) -> dict:
-    """Where objects are in a range-azimuth map: {name: (range in m, azimuth in rad)} of the middle of their boxes.
-
-    scene, radar: of the map; objects: names in the scene; time: s. Raises AttributeError for other objects.
-    """
-    world = radar.world_from_radar(time)
-    middle = boxes_at(scene, [[name] for name in objects], time, radar.frame_duration).centre
-    sight = (middle - world[:3, 3]) @ world[:3, :3] - centre_of(radar)
-    return {name: (float(np.linalg.norm(way)), float(np.arctan2(way[1], way[0]))) for name, way in zip(objects, sight)}
-
-
 def plot_range_azimuth(maps, *, title="Received power by range and azimuth, seen from above", vmin=None, vmax=None, places=None):
     """Range-azimuth maps as sectors seen from above, cropped to where there is signal, with one colour scale.
 
     maps: of `range_azimuth`, one or {title of its panel: map}; of several the first sets the scale; title: above them
     vmin, vmax: ends of the colour scale in dBm, None: the peak, and the noise or 70 dB less
-    places: {object: (range in m, azimuth in rad)} that get a ring, as of `true_places`, in the first map with names; None: none
+    places: {object: (range in m, azimuth in rad)} that get a ring, in the first map with names; None: none
     Returns a matplotlib figure: metres to the left across (right negative), metres ahead up, in the radar's frame. Raises
     TypeError or ValueError naming vmin or vmax.
     """

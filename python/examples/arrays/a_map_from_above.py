@@ -29,5 +29,6 @@ scene.add(ep.actors.sphere(0.25), name="ball", material="metal", smooth=True, po
 # %%
 # The phase between the transmitters' turns, which the ball's motion makes, is taken out at each velocity.
 frame = ep.simulate(scene, radar, num_rays=40_000, angles={"combine": "peak", "window": ("chebyshev", 30)}, guard=False)
-places = plots.true_places(scene, radar, ["corner_near", "corner_middle", "corner_far", "ball"], frame.paths.frame.trace_time)
+truth = ep.truth(frame)
+places = dict(zip(truth.name, zip(truth.range, truth.azimuth)))
 figure = plots.plot_range_azimuth(frame.range_azimuth, title="Three corners at 6, 9 and 14 m, a ball at 10 m", places=places)

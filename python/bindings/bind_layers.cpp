@@ -46,6 +46,7 @@ Raises TypeError or ValueError naming the field, the rule and the value.)");
       .def_readonly("conductivity", &Layer::conductivity, "S/m")
       .def("__repr__", &layer_text);
   define_value<Layer>(type, &layer_fields);
+  define_replace<Layer>(type, &layer_fields);
 }
 
 }  // namespace echopath::bindings

@@ -55,7 +55,7 @@ from .scene_file import SceneFile, load_scene
 from .sensor_files import SensorConfig, load_radar, load_sensor, save_raw
 from .sensor_files.antenna_patterns import load_antenna
 from .sequence import SavedFrame, Sequence, StoredSequence, load_sequence
-from .signals.if_signal import add_noise, synthesize
+from .signals.if_signal import add_noise, noise_power, synthesize
 from .signals.interference import interference
 from .signals.interference_ways import interference_radar
 from .signals.measures import power_by_chirp
@@ -90,8 +90,9 @@ __all__ = [
     "detect", "detect_frame", "effects", "estimate_angles", "families", "first", "foreign_materials", "hits",
     "interference", "interference_radar", "last", "load_antenna", "load_frame", "load_labels", "load_mesh",
     "load_meshes", "load_model", "load_radar", "load_scene", "load_sensor", "load_sequence", "materials", "mesh_from",
-    "mie_rcs", "music", "num_bounces", "num_threads", "passes", "path_cells", "plot_rays", "plots", "power",
-    "power_by_chirp", "range_azimuth", "range_doppler", "range_time", "rcs", "read_trajectories", "receive", "receive_parts",
+    "mie_rcs", "music", "noise_power", "num_bounces", "num_threads", "passes", "path_cells", "plot_rays", "plots",
+    "power", "power_by_chirp", "range_azimuth", "range_doppler", "range_time", "rcs", "read_trajectories", "receive",
+    "receive_parts",
     "received_power", "received_powers", "remove_clutter", "renew", "save_frame", "save_label_images", "save_labels",
     "save_raw", "set_num_threads", "sheet_coefficients", "simulate", "spectrogram", "spectrogram_labels",
     "speed_of_light", "synthesize", "trace", "track", "truth", "unresolved", "validity", "view", "virtual_array",

@@ -419,6 +419,13 @@ class Layer:
         ...
     def __setstate__(self, arg0: typing.Any) -> None:
         ...
+    def replace(self, *, thickness: float = ..., permittivity: complex = ..., conductivity: float = ...) -> Layer:
+        """
+        A copy with other values of some arguments.
+
+        changes: arguments of the constructor, by name
+        Raises TypeError or ValueError as the constructor does.
+        """
     @property
     def conductivity(self) -> float:
         """

@@ -65,3 +65,23 @@ def test_noise_added_by_hand_is_that_of_the_frame(tmp_path):
 def test_a_frame_that_starts_at_zero_has_the_noise_of_the_bare_seed(zero):
     cube, radar = np.zeros((1, 1, NUM_CHIRPS, NUM_SAMPLES), complex), make_radar()
     assert np.array_equal(ep.add_noise(cube, radar, seed=3, start_time=zero), ep.add_noise(cube, radar, seed=3))
+
+
+NOISY = ep.Radar(ep.ChirpSequence(num_samples=64, num_chirps=64, sampling_rate=5e6), transmitters=[ep.Antenna()],
+                 receivers=[ep.Antenna()], noise_figure_db=7.0)
+OF_SAMPLE = 1.380649e-23 * 290.0 * 10 ** 0.7 * 5e6  # W, k T0 F fs
+
+
+@pytest.mark.parametrize("window, bandwidth", [("rect", 1.0), ("hann", 1.5)])  # in cells, Harris (1978), table 1
+def test_noise_power_of_a_cell_is_that_of_a_sample_over_all_samples_times_the_bandwidths(window, bandwidth):
+    wanted = OF_SAMPLE * bandwidth**2 / 64**2
+    assert ep.noise_power(NOISY, of="sample") == pytest.approx(OF_SAMPLE, rel=1e-6)
+    assert ep.noise_power(NOISY, window) == pytest.approx(wanted, rel=0.05)  # a window of 64 points, not an endless one
+
+
+@pytest.mark.parametrize("window", ["rect", "hann", ("rect", "hann")])
+def test_noise_power_is_the_mean_over_a_map_of_noise(window):
+    cube = ep.add_noise(np.zeros((1, 1, 64, 64)), NOISY, seed=1)
+    assert np.mean(np.abs(cube) ** 2) == pytest.approx(ep.noise_power(NOISY, of="sample"), rel=0.06)  # 4096 draws
+    of_map = np.mean(np.abs(ep.range_doppler(cube, NOISY, window=window).values) ** 2)
+    assert of_map == pytest.approx(ep.noise_power(NOISY, window), rel=0.06)

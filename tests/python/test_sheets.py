@@ -1,4 +1,7 @@
 """Sheets: materials of layers that waves pass, against Airy's formula and against closed forms of whole scenes."""
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -186,3 +189,9 @@ def test_panes_behind_panes_both_reflect_and_pass():
     assert power_db(twice) - power_db(free) == pytest.approx(80.0 * np.log10(abs(over_free(0.0)[0])), abs=LEVEL)
     assert paths.select("T P'pane' 'second' P'pane' R").num_paths > 0
     assert paths.select("T 'pane' R").num_paths > 0
+
+
+def test_coefficients_of_sheets_travel_and_compare():
+    one, other = (ep.sheet_coefficients(ep.materials["glass_pane"], frequency=frequency, incidence=[0.0, 0.3])
+                  for frequency in (77e9, 78e9))
+    assert pickle.loads(pickle.dumps(one)) == one == copy.deepcopy(one) != other

@@ -193,7 +193,8 @@ def test_unequal_values_are_told_apart(kind):
     (ep.KeyframeMotion([0, 1, 2], [[0, 0, 0], [1, 0, 0], [3, 0, 0]]), {"interpolation": "linear"}),
     (ep.Curve([0, 1], [[0], [1]]), {"interpolation": "step"}),
     (ep.CurveMotion(ep.Curve([0, 1], [[0, 0, 0], [1, 0, 0]])), {"period": 2.0}),
-    (ep.Joint("a"), {"name": "b"}),
+    (ep.Joint("a"), {"name": "b"}), (ep.Layer(0.01, 3 - 0.1j), {"thickness": 0.02}),
+    (ep.Weather(), {"rain_mm_per_hour": 5.0}), (ep.Receiver(), {"adc": ep.Adc(bits=10)}), (ep.Adc(), {"bits": 8}),
 ])
 def test_replace_changes_what_is_named_and_nothing_else(value, change):
     before = pickle.dumps(value)

@@ -7,6 +7,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import ArrayLike, an, anything, array, checked, flag, positive, real
+from ..base.equality import has_same_fields
 from ..base.made_by import made_by
 
 
@@ -39,6 +40,11 @@ class SheetCoefficients:
         """
         te, tm = np.abs(self.te_transmission) ** 2, np.abs(self.tm_transmission) ** 2
         return te_share * te + (1.0 - te_share) * tm
+
+    def __eq__(self, other) -> bool:
+        return has_same_fields(self, other) if isinstance(other, SheetCoefficients) else NotImplemented
+
+    __hash__ = None
 
 
 @checked(material=an(_core.Material), frequency=positive("Hz"), incidence=array("[]", "[N]", finite=True), from_behind=flag)

@@ -1,15 +1,18 @@
 """The IF signal of paths, and the receiver's noise."""
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..arguments.checks import ArrayLike, Progress, an, checked, optional, real
+from ..arguments.checks import ArrayLike, MapWindow, Progress, an, checked, one_of, optional, real
 from ..arguments.settings import Evaluate, Method, Replay, Retrace, SignalSettings
 from ..receiver.chain import transmitted_code
 from ..transmit import code_signal, is_coded, radar_of_noise, slots_radar, synthesize_slots
 
+NoiseOf = Literal["cell", "sample"]
 RULES = SignalSettings.RULES | {"radar": optional(an(_core.Radar)), "probe": optional(an(_core.SignalProbe))}
 
 
@@ -51,6 +54,20 @@ def synthesize(paths: _core.Paths, radar: _core.Radar | None = None, *, toleranc
                    retrace=retrace, keyframes=keyframes, progress=progress)
     separate = synthesize_slots(paths, slots_radar(radar) if is_coded(radar) else radar, **made_by, probe=probe)
     return code_signal(separate, transmitted_code(radar)) if is_coded(radar) else separate
+
+
+@checked(of=one_of(NoiseOf))
+def noise_power(radar: _core.Radar, window: MapWindow = SignalSettings.window, *, of: NoiseOf = "cell") -> float:
+    """Mean power of the receiver's thermal noise, W.
+
+    In a cell it is k T0 F fs Br Bv / (N M) of N samples and M chirps, whose windows have the noise bandwidths Br and Bv in cells.
+    An echo whose `received_power` is as much has a signal-to-noise ratio of 0 dB at its peak.
+    radar: whose noise figure, sampling rate, samples and chirps count
+    window: of the map, as in `range_doppler`; a sample has none
+    of: "cell" of a range-Doppler map of one channel, or "sample" of the IF signal, as `add_noise` draws it
+    Returns W. Raises TypeError or ValueError naming the argument.
+    """
+    return _core.noise_power(radar) if of == "sample" else _core.cell_noise_power(radar, window)
 
 
 @checked(start_time=real(unit="s"))

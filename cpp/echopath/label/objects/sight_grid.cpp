@@ -36,7 +36,8 @@ SightGrid::SightGrid(const Stratum& stratum, int64_t num_cells) : directions_({s
 // Sets the place of a cell's direction in the domain.
 void SightGrid::direct(int64_t block, int cell, LaneValues& x, LaneValues& y, int lane) const {
   const auto column = static_cast<double>(block % num_columns_ * kSide + cell % kSide);
-  const auto row = static_cast<double>(block / num_columns_ * kSide + cell / kSide);
+  const int64_t whole_rows = block / num_columns_ * kSide + cell / kSide;
+  const auto row = static_cast<double>(whole_rows);
   const double along = column + fraction(kAlong * row + 0.5), across = row + fraction(kAcross * column + 0.5);
   x[lane] = half_[0] * (2.0 * along / (kSide * num_columns_) - 1.0);
   y[lane] = half_[1] * (2.0 * across / (kSide * num_rows_) - 1.0);

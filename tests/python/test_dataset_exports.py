@@ -1,5 +1,6 @@
 """Exports of datasets: there whole or not at all, and of datasets that keep less than they need, whose frames are made again."""
 import hashlib
+import pickle
 import subprocess
 import sys
 from pathlib import Path
@@ -104,3 +105,9 @@ def test_the_same_call_goes_on_after_a_kill(made, tmp_path, name):
     assert bytes_of(tmp_path / "out") == bytes_of(tmp_path / "whole")
     with pytest.raises(ValueError, match=f"folder: must be one that has no folder '{EXPORTS[name]}' yet"):
         write(name, dataset.open(made["all"]), tmp_path / "out")
+
+
+def test_remade_frames_go_to_other_processes(made):
+    frames = dataset.open(made["labels"]).remade()
+    first = frames[0].frame.cube
+    assert np.array_equal(pickle.loads(pickle.dumps(frames))[0].frame.cube, first)

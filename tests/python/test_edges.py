@@ -381,6 +381,15 @@ def test_auto_looks_for_edges_where_they_stand_out_of_the_noise():
     assert np.array_equal(off.weight, trace(scene_of(sheet()), far, edges="auto").weight)
 
 
+def test_auto_does_not_depend_on_the_order_of_the_antennas():
+    """Of an upright plate, whose upright edges send nothing to a level antenna that is asked first."""
+    for order in ((0, 1), (1, 0)):
+        radar = radar_at((8.0, 0.5, 0.0))
+        both = [radar.receivers[0], radar.receivers[0].replace(polarization=(0.0, 1.0, 0.0))]
+        paths = trace(scene_of(sheet(), yaw=0.5), radar.replace(receivers=[both[index] for index in order]), edges="auto")
+        assert paths.frame.edges
+
+
 def test_the_estimate_is_near_the_strongest_edge():
     """Of a plate seen across two of its edges, whose echo is about that of both."""
     radar = radar_at((6.0, 6.0, 0.0))

@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import tempfile
 import warnings
-from functools import lru_cache
 from pathlib import Path
 from typing import Protocol
 
@@ -42,11 +41,18 @@ class Remade:
     keep: Keep = "all"
 
     def __init__(self, template: Template):
-        self._sequence_of = lru_cache(1)(template.sequence)  # frames are asked for scene by scene
+        self._template = template
+        self._latest: tuple[int, Sequence] | None = None  # number of a scene, and its frames
+
+    def _sequence_of(self, scene: int) -> Sequence:
+        """The latest is kept, since frames are asked for scene by scene."""
+        if self._latest is None or self._latest[0] != scene:
+            self._latest = scene, self._template.sequence(scene)
+        return self._latest[1]
 
     def frame(self, scene: int, place: int) -> Frame | FrameMaps:
         """Simulated, then written and read: files leave out paths that carry next to nothing."""
-        sequence: Sequence = self._sequence_of(scene)
+        sequence = self._sequence_of(scene)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # as when it was made; what a frame warns of is in its checks
             made = sequence[place]

@@ -37,6 +37,17 @@ TEST(EdgePower, ALongEdgeFallsWithTheCubeOfTheDistance) { EXPECT_NEAR(estimated(
 
 TEST(EdgePower, GainsOfBothAntennasMultiply) { EXPECT_NEAR(estimated(10.0, 0.5) / estimated(10.0), 0.25, 1e-9); }
 
+// An upright edge couples nothing across itself and most along itself: the pair that it couples most decides.
+TEST(EdgePower, DoesNotDependOnTheOrderOfTheAntennas) {
+  Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
+  radar.receivers.push_back(radar.receivers[0]);
+  radar.receivers[1].polarization = Vec3::UnitY();
+  const double upright_first = strongest_edge(strip_at(10.0), radar, 0.0);
+  std::swap(radar.receivers[0], radar.receivers[1]);
+  EXPECT_NEAR(strongest_edge(strip_at(10.0), radar, 0.0) / upright_first, 1.0, kRounding);
+  EXPECT_NEAR(estimated(10.0) / upright_first, 1.0, kRounding);
+}
+
 TEST(EdgePower, SeveralEdgesInARowSendNoMoreThanOneThatIsNotCutOff) {
   const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
   const EdgeEstimate estimate(radar, Transform::Identity(), Vec3::Zero());

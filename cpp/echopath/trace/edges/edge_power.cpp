@@ -12,9 +12,15 @@ namespace {
 
 constexpr double kOfNoise = 1e-4;  // of the noise in a cell: that of the weakest echoes of edges which are kept
 
-EdgeWayTo way_to(const PosedAntenna& antenna, const Vec3& point) {
-  const Vec3 line = point - antenna.position, direction = line.normalized();
+EdgeWayTo way_to(const Vec3& antenna, const Vec3& point) {
+  const Vec3 line = point - antenna, direction = line.normalized();
   return {-direction, direction, line.norm()};
+}
+
+Vec3 middle_of(const std::vector<PosedAntenna>& antennas) {
+  Vec3 sum = Vec3::Zero();
+  for (const PosedAntenna& antenna : antennas) sum += antenna.position;
+  return sum / static_cast<double>(antennas.size());
 }
 
 Vec3 field_along(const PosedAntenna& antenna, const Vec3& direction) {
@@ -28,6 +34,19 @@ double best_gain(const std::vector<PosedAntenna>& antennas, const Vec3& directio
   return best;
 }
 
+// Returns the largest field that a matrix brings from one of the transmitters to one of the receivers, for all of which the
+// ways are about the same.
+double best_coupling(const Mat3& matrix, const std::vector<PosedAntenna>& transmitters, const EdgeWayTo& in,
+                     const std::vector<PosedAntenna>& receivers, const EdgeWayTo& out) {
+  double best = 0.0;
+  for (const PosedAntenna& transmitter : transmitters) {
+    const Vec3 sent = matrix * field_along(transmitter, in.at_antenna);
+    for (const PosedAntenna& receiver : receivers)
+      best = std::max(best, std::abs(field_along(receiver, out.at_antenna).dot(sent)));
+  }
+  return best;
+}
+
 }  // namespace
 
 EdgeEstimate::EdgeEstimate(const Radar& radar, const Transform& world_from_radar, const Vec3& origin)
@@ -36,13 +55,12 @@ EdgeEstimate::EdgeEstimate(const Radar& radar, const Transform& world_from_radar
       receivers_(posed_antennas(radar.receivers, world_from_radar, origin)) {}
 
 double EdgeEstimate::power(const PosedEdge& edge, const Material& material) const {
-  const PosedAntenna &transmitter = transmitters_.front(), &receiver = receivers_.front();
-  const Vec3 line = edge.line(), middle = 0.5 * (transmitter.position + receiver.position);
+  const Vec3 sender = middle_of(transmitters_), receiver = middle_of(receivers_);
+  const Vec3 line = edge.line(), middle = 0.5 * (sender + receiver);
   const Vec3 point = edge.from + std::clamp(line.dot(middle - edge.from) / line.squaredNorm(), 0.0, 1.0) * line;
-  const EdgeWayTo in = way_to(transmitter, point), out = way_to(receiver, point);
+  const EdgeWayTo in = way_to(sender, point), out = way_to(receiver, point);
   const Mat3 fringe = fringe_matrix(edge.wedge, in.at_antenna, out.to_antenna);
-  const double coupled =
-      std::abs(field_along(receiver, out.at_antenna).dot(fringe * field_along(transmitter, in.at_antenna)));
+  const double coupled = best_coupling(fringe, transmitters_, in, receivers_, out);
   return power(edge.wedge, in, out, coupled * kept_share(material, frequency_, edge.wedge, in.to_antenna), line.norm());
 }
 

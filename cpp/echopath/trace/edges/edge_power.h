@@ -21,8 +21,8 @@ class EdgeEstimate {
  public:
   // Positions count from `origin` (m, world). The radar must outlive it.
   EdgeEstimate(const Radar& radar, const Transform& world_from_radar, const Vec3& origin);
-  // Returns the power in W of the first-order field of an edge between the first antennas: that about the point nearest to
-  // the radar, over what keeps the phase there, were nothing in the way.
+  // Returns the power in W of the first-order field of an edge between the pair of antennas that it couples most: that about
+  // the point nearest to the radar, over what keeps the phase there, were nothing in the way.
   double power(const PosedEdge& edge, const Material& material) const;
   // Returns the power in W at the best pair of antennas of an edge whose matrix (edge_diffraction.h) has the norm `coupled`,
   // over as much of it as keeps the phase, and at most `longest` (m). Edges that follow each other along a curve send no

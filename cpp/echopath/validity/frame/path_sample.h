@@ -13,8 +13,8 @@ struct PathSample {
   std::vector<float> weights;
 };
 
-// Takes about every n-th path of each object and number of bounces, so that no more than kPathsChecked of them are checked,
-// but every path that adds up as a field, since those would alias. Takes all paths where `all` is true.
+// Takes all coherent paths, whose sums would alias, and of the diffuse ones of each object and number of bounces about every
+// n-th, at most kPathsChecked. Takes all paths where `all` is true.
 PathSample sample_of(const Paths& paths, bool all);
 
 }  // namespace echopath

@@ -97,5 +97,6 @@ def _misspelt(key: str, random: Random) -> str:
 def _near(value, random: Random):
     """A number changed a little or much, and a text by a letter."""
     if isinstance(value, (int, float)) and not isinstance(value, bool):
-        return random.choice((-value, value + 1, value * 1e-9, value * 1e9, float(value), int(min(max(value, -1e15), 1e15))))
+        whole = int(min(max(value, -1e15), 1e15)) if value == value else 0  # NaN has none
+        return random.choice((-value, value + 1, value * 1e-9, value * 1e9, float(value), whole))
     return _misspelt(value, random) if isinstance(value, str) else random.choice(VALUES)

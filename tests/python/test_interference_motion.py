@@ -118,10 +118,15 @@ def test_paths_of_other_antennas_are_refused():
         ep.interference(two, other, paths)
 
 
-@pytest.mark.parametrize("ratio, late", [(1.0, 0.0), (1.0, 2e-6), (1.0, -2e-6), (0.9, 0.0), (1.1, 3.3e-6), (-1.0, 0.0)])
-def test_many_ways_are_the_sum_of_each(ratio, late):
+LONG, SHORT = 300, (1, 3, 16, 32)  # samples: 16 are one block of the fine ones, fewer are less than one
+
+
+@pytest.mark.parametrize("ratio, late, count", [
+    *((ratio, late, LONG) for ratio, late in [(1.0, 0.0), (1.0, 2e-6), (1.0, -2e-6), (0.9, 0.0), (1.1, 3.3e-6), (-1.0, 0.0)]),
+    *((1.0, 0.3e-6, count) for count in SHORT)])
+def test_many_ways_are_the_sum_of_each(ratio, late, count):
     """Ways of 10 to 60 m that move by up to 100 m/s, added up one by one and sample by sample."""
-    random, count = np.random.default_rng(2), 300
+    random = np.random.default_rng(2)
     chirps = Chirps(victim().waveform.replace(num_samples=count), F0, SLOPE, F0 + (1.0 - ratio) * SLOPE * 5e-6, ratio * SLOPE,
                     12e-6, late)
     begin, speed = random.uniform(10.0, 60.0, 40), random.uniform(-100.0, 100.0, 40)

@@ -32,8 +32,8 @@ def add_crossing(fine: np.ndarray, chirps: Chirps, delay: np.ndarray, amplitude:
     """Adds one chirp of the other radar, over all ways, to one chirp of this one.
 
     Of more than a few ways each has its phase in the middle of each block of samples, exactly; within a block it differs from the
-    first one by a tone (to 1e-3 rad where ways differ by 100 m/s). So a block is a product of matrices. Blocks in which a way
-    begins or ends are summed sample by sample.
+    first one by the tone of the block in the middle of the chirp (to 1e-3 rad where ways differ by 100 m/s). So a block is a
+    product of matrices. Blocks in which a way begins or ends are summed sample by sample.
     fine: [FINE x sample] in sqrt(W), added to; delay: [3, P] s at the first sample, in the middle and at the last one
     amplitude: [P] sqrt(W)
     """
@@ -62,7 +62,9 @@ def _whole_blocks(chirps: Chirps, place, first, last, delay, amplitude) -> np.nd
     middle = place[:, :1] + 0.5 * (_BLOCK - 1)
     reference = delay[:, :1]
     apart = _cycles(chirps, middle, delay[:, None]) - _cycles(chirps, middle, reference[:, None])
-    tone = (apart[-1] - apart[0]) / max((len(place) - 1) * _BLOCK, 1)  # cycles per sample
+    ends = place[len(place) // 2, [0, -1], None]
+    of_ends = _cycles(chirps, ends, delay[:, None]) - _cycles(chirps, ends, reference[:, None])
+    tone = (of_ends[1] - of_ends[0]) / (_BLOCK - 1)  # cycles per sample, of the block in the middle
     fills = (place[:, :1] >= first) & (place[:, -1:] < last)
     in_middles = np.where(fills, amplitude * _turned(apart), 0.0)
     within = _turned(np.outer(place[0] - middle[0], tone))

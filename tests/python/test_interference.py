@@ -61,6 +61,18 @@ def test_parallel_chirps_are_a_tone_at_the_delay():
     assert 10 * np.log10(np.mean(np.abs(steady[20:-20]) ** 2) / friis(0.01, 20.0, 77e9)) == pytest.approx(0.0, abs=LEVEL)
 
 
+@pytest.mark.parametrize("early", [0.9e-6, 1.1e-6, 2.0e-6])
+def test_far_radars_are_heard_until_the_end_of_their_chirps_has_come(early):
+    """From 750 m a chirp that ended before the radar's began is heard for what its delay is longer, as a tone of 2 MHz."""
+    delay, duration = 750.0 / C, COUNT / RATE
+    sender = build_radar(num_samples=COUNT, position=(750, 0, 0), yaw=np.pi,
+                         start_frequency=77e9 - SLOPE * (duration + early - delay) - 2e6)
+    power = np.abs(ep.interference(victim(num_chirps=1), sender, offset=-duration - early)[0, 0, 0]) ** 2
+    level = friis(0.01, 750.0, sender.waveform.start_frequency)
+    assert np.sum(power) / RATE == pytest.approx(level * (delay - early), rel=0.05)
+    assert np.flatnonzero(power > 0.25 * level)[-1] == pytest.approx((delay - early) * RATE, abs=1)
+
+
 def test_patterns_and_motion_of_both_count():
     pattern = ep.CosinePower(2.0)
     receiver = victim(receivers=[ep.Antenna(yaw=0.5, pattern=pattern)])

@@ -47,7 +47,7 @@ def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | No
     for place, begin in enumerate(begins):
         delay, amplitude = ways.of(place)
         fine = np.zeros((num_rx, FINE * waveform.num_samples), complex)
-        for slot in _slots_under_way(other, begin - offset, waveform.chirp_duration):
+        for slot in _slots_under_way(other, begin - offset, waveform.chirp_duration, np.max(delay, initial=0.0)):
             pair = Chirps(waveform, *_chirp(waveform, place), *_chirp(other.waveform, slot.index), other.waveform.chirp_duration,
                            begin - slot.begin - offset)
             for rx, (tx, code) in product_of(range(num_rx), slot.transmitters):
@@ -67,9 +67,9 @@ class _Slot(NamedTuple):
     transmitters: list
 
 
-def _slots_under_way(other, begin: float, duration: float) -> Iterator[_Slot]:
-    """The chirps that may be heard from `begin` on (s, of its own time) for a duration, those of a microsecond of delay too."""
-    code, longest = code_of(other), 1e-6 + other.waveform.chirp_duration
+def _slots_under_way(other, begin: float, duration: float, delay: float) -> Iterator[_Slot]:
+    """The chirps that may be heard from `begin` on (s, of its own time) for a duration, over ways of a delay (s) or less."""
+    code, longest = code_of(other), delay + other.waveform.chirp_duration
     starts = np.array([other.waveform.slot_start(slot) for slot in range(code.shape[1])])
     period = code.shape[1] * other.waveform.mean_interval
     for frame in range(int(np.floor((begin - longest) / period)), int(np.floor((begin + duration) / period)) + 1):

@@ -75,6 +75,33 @@ def test_frames_have_them_for_their_parts(code):
     assert list(ep.simulate(scene, radar, num_rays=100, noise_seed=None).received_parts["parts"])[:2] == ["other", "rain"]
 
 
+@pytest.mark.parametrize("code", [dict(multiplexing="bpm"), dict(multiplexing="ddm", empty_slots=2)], ids=["bpm", "ddm"])
+def test_frames_whose_paths_are_traced_anew_have_them_too(code):
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.5, 0.5), name="near", material=ep.Material.metal(), position=(4, 0, 0), yaw=np.pi,
+              motion=ep.LinearMotion(velocity=(3.0, 0, 0)))
+    scene.add(ep.actors.plate(0.5, 0.5), name="far", material=ep.Material.metal(), position=(9, 2, 0), yaw=np.pi)
+    frame = ep.simulate(scene, build_radar(**ARRAY, **code), num_rays=500, max_bounces=1, parts={"near": "T 'near' R"},
+                        retrace="always")
+    found, whole = frame.received_parts["parts"], frame.received.cube
+    assert list(found) == ["near", "other", "noise"] and found["near"].any() and found["other"].any()
+    np.testing.assert_allclose(sum(found.values()), whole, atol=1e-6 * np.abs(whole).max())
+
+
+@pytest.mark.parametrize("name", ["interference", "leakage", "offset", "converter", "noise", "rain"])
+def test_names_of_what_no_path_makes_are_refused_before_the_trace(name, monkeypatch):
+    def never(*arguments, **settings):
+        raise AssertionError("traced")
+
+    monkeypatch.setattr("echopath.frame.simulate.trace_scene", never)
+    told = f"^parts: must not be named '{name}', as what no path makes is$"
+    with pytest.raises(ValueError, match=told):
+        ep.simulate(ep.Scene(), build_radar(**ARRAY), num_rays=100, parts={name: "T . R"})
+    if name != "rain":  # which is a signal that comes to the receivers like others
+        with pytest.raises(ValueError, match=told):
+            ep.receive_parts({name: tone(5, 1e-9)}, build_radar(**ARRAY), seed=None)
+
+
 def test_back_off_of_the_transmitters_leaves_other_radars_as_they_are():
     radar = build_radar(**ARRAY, receiver=ep.Receiver(transmitter_gain_db=[-20.0, -20.0]))
     cube, other = tone(5, 1e-9), tone(21, 1e-9)

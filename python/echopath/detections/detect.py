@@ -10,10 +10,10 @@ from .. import _core
 from ..arguments.checks import Progress, an, checked, keywords, optional, refused, text
 from ..arguments.keywords import parameters_of
 from ..arguments.objects import Objects, objects_rule
+from ..arguments.part_names import BESIDE, require_names
 from ..base.antennas import centre_of
 from ..labels.labels import Labels
 from ..paths.families import families as find_families
-from ..signals.beside import NAMES, require_names
 from ..signals.parts import decompose
 from ..signals.same_radar import difference
 from ..spectra.angles import estimate_angles
@@ -125,7 +125,7 @@ def _labels_of(spectrum, cells, power, paths, parts, labels, beside: dict, objec
         found.take_parts(*labelling.part_powers(parts | beside, cells), power)
     elif beside:
         found.take_beside(*labelling.part_powers(beside, cells)[:2])
-    found.leave((*NAMES, *beside))
+    found.leave((*BESIDE, *beside))
     return found.columns()
 
 

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from .. import _core
 from ..arguments.checks import refused
+from ..arguments.part_names import require_names
 from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
 from ..base.stages import StageClock
 from ..detections.checks import checked_keywords
@@ -18,7 +19,7 @@ from ..paths.families import families as find_families
 from ..paths.subset import part_of_path
 from ..receiver.chain import transmitted_code
 from ..receiver.channels import require_channels
-from ..signals.beside import cubes_beside, require_names
+from ..signals.beside import cubes_beside
 from ..signals.interference_of_frame import has_interference, interference_cube, require_interferers
 from ..signals.parts import ONLY_PARTITION, as_partitions, check_partitions, decompose
 from ..spectra.azimuth_map import checked_settings, sees_azimuth

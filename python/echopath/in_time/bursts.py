@@ -10,8 +10,9 @@ from .. import _core
 from .._core import Selection
 from ..arguments.checks import ArrayLike, array, refused, row_of_channel, shown
 from ..arguments.iterables import iterable
+from ..arguments.part_names import BESIDE
 from ..frame.frame import Frame
-from ..signals.beside import NAMES, cubes_beside
+from ..signals.beside import cubes_beside
 from ..signals.parts import decompose, selection_rule
 from ..signals.same_radar import WAVEFORM_KINDS
 
@@ -185,7 +186,7 @@ def part_cube(frame, part):
         for name, cube in cubes.items():
             if part == name or part == f"{partition}/{name}":
                 return cube
-    if isinstance(part, str) and part in NAMES and part not in frame.paths.scene:
+    if isinstance(part, str) and part in BESIDE and part not in frame.paths.scene:
         beside = cubes_beside(frame)
         if part in beside:
             return beside[part]

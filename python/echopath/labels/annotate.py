@@ -10,13 +10,13 @@ from .. import _core
 from ..arguments.checks import MapWindow, Progress, an, anything, checked, optional, refused, text
 from ..arguments.keywords import refuse_unknown
 from ..arguments.objects import Objects
+from ..arguments.part_names import require_names
 from ..arguments.settings import Evaluate, LabelSettings, Method, Plane, Replay, Retrace, SignalSettings
 from ..paths.families import families as find_families
 from ..paths.resolution import Interval, interval_of, mean_powers
 from ..paths.subset import part_of_path
 from ..paths.visibility import appearing_in_frame, visibility_in_trace
 from ..signals import same_radar
-from ..signals.beside import require_names
 from ..signals.parts import selection_rule
 from ..transmit.signals import has_steps
 from .family_pass import FamilyPass, owners_of_views

@@ -5,10 +5,11 @@ from collections.abc import Mapping
 
 from ..arguments.checks import Progress, an, anything, checked
 from ..arguments.objects import Objects
+from ..arguments.part_names import require_names
 from ..arguments.settings import FRAME_KEYWORDS, LabelSettings, Plane
 from ..frame.frame import Frame
 from ..paths.families import families as find_families
-from ..signals.beside import cubes_beside, require_names
+from ..signals.beside import cubes_beside
 from ..signals.parts import ONLY_PARTITION, as_partitions, check_partitions
 from .annotate import label_partitions, make_request, owners_and_powers
 from .labels import Labels

@@ -7,14 +7,12 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import ArrayLike, anything, array, checked, optional, real, refused, seed as seed_rule, text
+from ..arguments.part_names import CONVERTER, INTERFERENCE, LEAKAGE, NOISE, OF_RECEIVER, OFFSET, require_free
 from ..transmit import radar_of_noise, signal_shape
 from .chain import Chain, reception
 from .channels import require_channels
 from .imbalance import compressed, compression
 from .settings import Receiver
-
-NAMES = ("interference", "leakage", "noise", "offset", "converter")
-
 
 _CUBE = array("[T, R, C, S]", kind="complex")
 
@@ -40,7 +38,7 @@ def receive_parts(parts: Mapping[str, ArrayLike], radar: _core.Radar, *, seed: i
     found = _before_the_converter(cubes, radar, receiver, seed, start_time, other)
     if receiver.adc is not None:
         whole = reception(sum(cubes.values()), radar, seed, start_time, other).cube
-        found["converter"] = whole - sum(found.values())
+        found[CONVERTER] = whole - sum(found.values())
     return found
 
 
@@ -48,28 +46,26 @@ def _before_the_converter(cubes, radar, receiver: Receiver, seed, start_time: fl
     chain, shape = Chain(radar, receiver, seed, start_time), signal_shape(radar)
     found = {name: chain.mixed(cube) for name, cube in cubes.items()}
     if interference is not None:
-        found["interference"] = chain.mixed_alone(interference)
+        found[INTERFERENCE] = chain.mixed_alone(interference)
     if (leaked := chain.leaked()) is not None:
-        found["leakage"] = np.broadcast_to(leaked, shape)
+        found[LEAKAGE] = np.broadcast_to(leaked, shape)
     found = {name: chain.amplified(cube) for name, cube in found.items()}
     if seed is not None:
-        found["noise"] = _core.add_noise(np.zeros(shape, np.complex128), radar_of_noise(radar), seed=seed, start_time=start_time)
+        found[NOISE] = _core.add_noise(np.zeros(shape, np.complex128), radar_of_noise(radar), seed=seed, start_time=start_time)
     gain = compression(sum(found.values()), radar, receiver)
     found = {name: cube if gain is None else compressed(cube, gain, radar) for name, cube in found.items()}
     models = chain.models_of(sum(found.values()))
     found = {name: chain.unbalanced(chain.filtered(cube, models)) for name, cube in found.items()}
     if receiver.dc_offset != (0.0, 0.0):
         offset = receiver.dc_offset[0] if radar.waveform.real else complex(*receiver.dc_offset)
-        found["offset"] = np.full(shape, offset, np.complex128)
+        found[OFFSET] = np.full(shape, offset, np.complex128)
     return {name: chain.sampled(cube) for name, cube in found.items()}
 
 
 def _checked_table(parts) -> Mapping:
     if not isinstance(parts, Mapping) or not parts:
         raise refused(TypeError, "parts", "a dict of cubes by name, one at least", parts)
-    for name in parts:
-        if text("parts", name) in NAMES:
-            raise ValueError(f"parts: must not be named {name!r}, as what no part of the signal makes is")
+    require_free((text("parts", name) for name in parts), OF_RECEIVER)
     return parts
 
 

@@ -3,12 +3,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..arguments.part_names import INTERFERENCE, LEAKAGE, RAIN
 from ..receiver.leakage import leakage_amplitudes, leaked_tone
 from ..receiver.slots import SlotTimes
 from ..transmit import demultiplex, signal_shape
-
-INTERFERENCE, RAIN, LEAKAGE = "interference", "rain", "leakage"
-NAMES = (INTERFERENCE, RAIN, LEAKAGE)
 
 
 def cubes_beside(frame) -> dict:
@@ -29,11 +27,3 @@ def _leaked(radar):
     tone = leaked_tone(SlotTimes(radar, 0.0), radar.receiver.leakage_delay, time)[:, None]
     cube = np.broadcast_to(amplitudes * tone, signal_shape(radar))
     return np.sqrt(2.0) * cube.real + 0j if waveform.real else np.array(cube)
-
-
-def require_names(partitions: dict) -> None:
-    """Raises ValueError for parts that have the name of something beside the paths."""
-    for parts in partitions.values():
-        for name in parts:
-            if name in NAMES:
-                raise ValueError(f"parts: must not be named {name!r}, as the labels of what no path makes are")

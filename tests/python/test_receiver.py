@@ -188,15 +188,41 @@ def test_filters_have_their_response(frequency):
     assert db(levels(out)[cell]) == pytest.approx(db(high * low), abs=1e-3)
 
 
-@pytest.mark.parametrize("cell", [2.5, 5.5, 20.5, 100.3, 204.7])
-def test_filters_have_settled_when_a_chirp_begins(cell):
-    """Tones between the cells, in every sample; as if the chirp repeated, the first ones were off by a fifth of the amplitude."""
-    corners, f = (175e3, 350e3), cell * RATE / COUNT
-    gain = np.prod([1j * f / (1j * f + corner) for corner in corners])
-    np.testing.assert_allclose(received(tone(cell), high_pass=corners).cube, gain * tone(cell), atol=1e-3)
-    poles = 5e6 * np.exp(1j * np.pi * (2 * np.arange(3) + 4) / 6)
-    gain = np.prod(-poles / (1j * f - poles))
-    np.testing.assert_allclose(received(tone(cell), low_pass=5e6, low_pass_poles=3).cube, gain * tone(cell), atol=1e-3)
+def settled(cell, count, poles=3, **filters):
+    """What filters leave of a tone of a cell after all time, and what comes out of a receiver, [count]."""
+    echo, f = np.exp(2j * np.pi * cell * np.arange(count) / count), cell * RATE / count
+    gain = np.prod([1j * f / (1j * f + corner) for corner in filters.get("high_pass", ())])
+    if "low_pass" in filters:
+        pole = filters["low_pass"] * np.exp(1j * np.pi * (2 * np.arange(poles) + poles + 1) / (2 * poles))
+        gain *= np.prod(-pole / (1j * f - pole))
+    radar = build_radar(num_samples=count, num_chirps=1, receiver=ep.Receiver(**filters, low_pass_poles=poles))
+    return gain * echo, ep.receive(np.tile(echo, (1, 1, 1, 1)), radar, seed=None).cube[0, 0, 0]
+
+
+@pytest.mark.parametrize("count", [256, 512])
+@pytest.mark.parametrize("cell", [0.5, 2.3, 5.5, 20.5, 100.3, 204.7])
+def test_filters_have_settled_when_a_chirp_begins(cell, count):
+    """Tones between the cells, in every sample, behind corners that settle within a chirp and over many chirps."""
+    for corners in ((20e3,), (100e3,), (400e3,), (175e3, 350e3)):
+        wanted, found = settled(cell, count, high_pass=corners)
+        np.testing.assert_allclose(found, wanted, atol=2e-5)
+    for poles in (3, 10):  # cut at 15/16 of the sampling rate, where a low pass steps to its values below 0
+        wanted, found = settled(cell, count, poles, low_pass=5e6)
+        np.testing.assert_allclose(found, wanted, atol=5e-4)
+
+
+def test_a_burst_does_not_come_back_at_the_begin_of_its_chirp():
+    """A pulse behind a corner of 20 kHz leaves a tail of 160 samples, which runs off the end: against the integral of
+    x(t) - w x(s) exp(-w (t - s)), and nothing before the pulse."""
+    count, fine, w = 256, 16, 2 * np.pi * 20e3
+    time = np.arange(count * fine) / (RATE * fine)
+    pulse = np.exp(-0.5 * ((time * RATE - 128.0) / 8.0) ** 2)
+    integral = np.exp(-w * time) * np.cumsum(pulse * np.exp(w * time)) / (RATE * fine)
+    wanted = (pulse - w * integral)[::fine]
+    radar = build_radar(num_samples=count, num_chirps=1, receiver=ep.Receiver(high_pass=[20e3]))
+    found = ep.receive(pulse[::fine].reshape(1, 1, 1, count), radar, seed=None).cube[0, 0, 0]
+    np.testing.assert_allclose(found, wanted, atol=1e-3)
+    assert np.abs(found[:64]).max() < 1e-4
 
 
 def test_leakage_is_gone_behind_a_high_pass():

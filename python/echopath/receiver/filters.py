@@ -3,14 +3,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from .past import past_of
+from .past import CHIRPS_AT_ONCE, past_of
 from .settings import Receiver
 
 # Beat frequencies from -1/16 of the sampling rate on: below 0 stand the sidelobes of what is near.
 NEGATIVE_SHARE = 1 / 16
-_TIME_CONSTANTS = 28  # of the lowest corner: the past fades in half of them, in the other half filters settle to 1e-6
-_LEAST_PAST = 64      # samples
-_CHIRPS_AT_ONCE = 256
+_TIME_CONSTANTS = 28   # of the slowest pole: the past fades in half of them, in the other half filters settle to 1e-6
+_PAST_STEP = 128       # samples, the shortest past, of which all are multiples
+_MOST_SAMPLES = 1 << 20  # of chirps and their pasts that are worked on at once
 
 
 def beat_frequencies(waveform, count: int | None = None) -> np.ndarray:
@@ -51,15 +51,18 @@ def filtered(cube: np.ndarray, waveform, receiver: Receiver, models: np.ndarray)
     if waveform.real and len(gain) % 2 == 0:
         gain[len(gain) // 2] = abs(gain[len(gain) // 2])
     made = np.empty(chirps.shape, np.complex128)
-    for begin in range(0, len(chirps), _CHIRPS_AT_ONCE):
-        piece, model = (rows[begin:begin + _CHIRPS_AT_ONCE] for rows in (chirps, models))
+    at_once = min(CHIRPS_AT_ONCE, max(1, _MOST_SAMPLES // len(gain)))
+    for begin in range(0, len(chirps), at_once):
+        piece, model = (rows[begin:begin + at_once] for rows in (chirps, models))
         whole = np.concatenate([past_of(piece, model, past), piece], axis=1)
         made[begin:begin + len(piece)] = np.fft.ifft(np.fft.fft(whole) * gain)[:, past:]
     return made.reshape(cube.shape)
 
 
 def _length_of_past(waveform, receiver: Receiver) -> int:
-    """Samples in which the filters settle and the past fades, no more than a chirp has."""
-    corners = [*receiver.high_pass, *([] if receiver.low_pass is None else [receiver.low_pass])]
-    settled = _TIME_CONSTANTS * waveform.sampling_rate / (2.0 * np.pi * min(corners))
-    return min(max(int(np.ceil(settled)), _LEAST_PAST), waveform.num_samples)
+    """Samples in which the past fades and the filters settle, more than a chirp has where corners are low."""
+    slowest = [*receiver.high_pass]  # Hz, what poles decay by over 2 pi
+    if receiver.low_pass is not None:
+        slowest.append(receiver.low_pass * np.sin(0.5 * np.pi / receiver.low_pass_poles))
+    settled = _TIME_CONSTANTS * waveform.sampling_rate / (2.0 * np.pi * min(slowest))
+    return max(1, int(np.ceil(settled / _PAST_STEP))) * _PAST_STEP

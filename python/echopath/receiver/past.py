@@ -9,29 +9,32 @@ from __future__ import annotations
 import numpy as np
 
 _ORDER = 8  # of the model
-
-
-_CHIRPS_AT_ONCE = 256
+_STEP = 64  # samples that are foretold at once
+CHIRPS_AT_ONCE = 256
 
 
 def models_of(cube: np.ndarray) -> np.ndarray:
     """The model of each chirp of a cube [tx, rx, chirp, sample], [R, order], for `past_of`."""
     chirps = cube.reshape(-1, cube.shape[-1])
     order = min(_ORDER, chirps.shape[1] - 1)
-    return np.concatenate([_burg(chirps[begin:begin + _CHIRPS_AT_ONCE], order)
-                           for begin in range(0, len(chirps), _CHIRPS_AT_ONCE)])
+    return np.concatenate([_burg(chirps[begin:begin + CHIRPS_AT_ONCE], order)
+                           for begin in range(0, len(chirps), CHIRPS_AT_ONCE)])
 
 
 def past_of(chirps: np.ndarray, model: np.ndarray, count: int) -> np.ndarray:
-    """Samples [R, count] that lead from the ends of chirps [R, N] to their begins; model: [R, order] of the chirps."""
+    """Samples [R, count] that lead from the ends of chirps [R, N] to their begins; model: [R, order] of the chirps.
+
+    In the first half the end goes over into the past of the begin, which the second half has alone.
+    """
     order = model.shape[1]
     if order == 0:
         return np.zeros((len(chirps), count), np.complex128)
-    after = _foretold(chirps[:, -order:], model, count)
+    half = count // 2
+    after = _foretold(chirps[:, -order:], model, half)
     before = _foretold(chirps[:, :order][:, ::-1], np.conj(model), count)[:, ::-1]
-    place = np.arange(1, count + 1) / (count + 1)
+    place = np.arange(1, half + 1) / (half + 1)
     fade = place ** 3 * (10.0 - 15.0 * place + 6.0 * place ** 2)
-    return after * (1.0 - fade) + before * fade
+    return np.concatenate([after * (1.0 - fade) + before[:, :half] * fade, before[:, half:]], axis=1)
 
 
 def _burg(chirps, order: int) -> np.ndarray:
@@ -50,9 +53,21 @@ def _burg(chirps, order: int) -> np.ndarray:
 
 
 def _foretold(last, model, count: int) -> np.ndarray:
-    """The next samples [R, count] behind the last ones [R, order]."""
+    """The next samples [R, count] behind the last ones [R, order], _STEP at a time."""
     order = last.shape[1]
-    samples = np.concatenate([last, np.zeros((len(last), count), np.complex128)], axis=1)
-    for place in range(order, order + count):
-        samples[:, place] = -np.einsum("ro,ro->r", model, samples[:, place - order:place][:, ::-1])
+    steps = -(-count // _STEP)
+    weights = _weights(model)
+    samples = np.concatenate([last, np.zeros((len(last), steps * _STEP), np.complex128)], axis=1)
+    for begin in range(order, order + steps * _STEP, _STEP):
+        samples[:, begin:begin + _STEP] = np.einsum("rso,ro->rs", weights, samples[:, begin - order:begin])
+    return samples[:, order:order + count]
+
+
+def _weights(model) -> np.ndarray:
+    """What each of the next samples has of each of the last ones, [R, _STEP, order]."""
+    rows, order = model.shape
+    samples = np.zeros((rows, order + _STEP, order), np.complex128)
+    samples[:, :order] = np.eye(order)
+    for place in range(order, order + _STEP):
+        samples[:, place] = -np.einsum("ro,roc->rc", model, samples[:, place - order:place][:, ::-1])
     return samples[:, order:]

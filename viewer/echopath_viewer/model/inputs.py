@@ -72,7 +72,7 @@ def from_paths(scene, paths, parts=None, *, window="hann", zero_pad=1, evaluate=
                          f"got one with {len(scene.meshes)}")
     signals = Signals(paths, {"window": window, "zero_pad": zero_pad}, evaluate, retrace, keyframes)
     made = [part for partition, group in _partitions(parts).items() for part in _parts_of(partition, group, signals)]
-    cube = ep.synthesize(paths, **signals.settings)
+    cube = signals.whole()
     return ViewInput(paths, PartSet(whole_part(signals.map_of(cube)), made), signals, cube, title)
 
 

@@ -23,7 +23,7 @@ def from_maps(maps, stored, title: str = "") -> ViewInput:
     paths = no_paths(scene, radar, maps.start_time, maps.seed)
     spectrum_settings = {"window": _window(settings.get("window", "hann")), "zero_pad": int(settings.get("zero_pad", 1))}
     signals = Signals(paths, spectrum_settings)
-    cube = ep.synthesize(paths)
+    cube = signals.whole()
     parts = PartSet(whole_part(_with_power(signals.map_of(cube), maps)))
     known = Known(labels=lambda progress: _there(maps.labels, "labels"),
                   detections=lambda progress: _there(maps.detections, "detections"),

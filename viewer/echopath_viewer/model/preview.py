@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 
-import echopath as ep
 from echopath.frame_file.container import our_file
 from echopath.frame_file.h5 import read_array, read_attribute, read_group
 from echopath.frame_file.radar import read_radar
@@ -39,6 +38,6 @@ def preview_of(path) -> ViewInput | None:
     window = settings.get("window")
     settings |= {"window": tuple(window)} if isinstance(window, list) else {}
     signals = Signals(no_paths(scene, radar, start_time, seed), settings)
-    cube = ep.synthesize(signals.paths)
+    cube = signals.whole()
     spectrum = with_values(signals.map_of(cube), values)
     return ViewInput(signals.paths, PartSet(whole_part(spectrum)), signals, cube, str(path), note=READING)

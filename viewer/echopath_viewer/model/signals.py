@@ -1,9 +1,10 @@
-"""The signal of some of the paths, made as that of the frame was."""
+"""The signal of some of the paths, each transmitter alone, made as that of the frame was."""
 from __future__ import annotations
 
 import dataclasses
 
 import echopath as ep
+from echopath.transmit import synthesize_slots
 
 NO_WORDS = ("signal: this frame is traced anew within (retrace='{}'), so that its later paths are known by expressions "
             "alone; rays chosen by power, by cells or by signals without selections have no signal of their own")
@@ -36,10 +37,18 @@ class Signals:
         Raises ValueError where the frame is traced anew and there are no words.
         """
         if self.is_sum_over_paths:
-            return ep.synthesize(self.paths.select(mask), progress=progress, **self.settings)
+            return self._separate(self.paths.select(mask), progress)
         if selection is None:
             raise ValueError(NO_WORDS.format(self.retrace))
         return ep.decompose(self.paths, None, {"shown": selection}, progress=progress, **self.settings)["shown"]
+
+    def whole(self, progress=None):
+        """The signal of all paths, without noise: complex [tx, rx, chirp, sample], sqrt(W)."""
+        return self._separate(self.paths, progress)
+
+    def _separate(self, paths, progress):
+        """Of transmitters that send at once, too: maps and chirps are those of each alone."""
+        return synthesize_slots(paths, self.paths.radar, progress=progress, **self.settings)
 
     def spectrum(self, mask, selection=None, progress=None):
         """The map of the same, RangeDoppler."""

@@ -6,7 +6,7 @@ import pytest
 
 import echopath as ep
 from echopath_viewer.model import CellBox, Session, Signals, from_frame
-from echopath_viewer.model.attribution import REST, Attribution, chirp_weights, range_profiles
+from echopath_viewer.model.attribution import REST, REST_RECEIVED, Attribution, chirp_weights, range_profiles
 
 SUM = 1e-6       # of a cell's value, or of the largest contribution to it where they cancel
 SYNTHESIS = 1e-6  # of the peak: what the synthesis promises of the sum of all amplitudes
@@ -112,9 +112,9 @@ def test_too_many_families_are_refused(frame, monkeypatch):
         Attribution(Signals(frame.paths, dict(frame.spectrum_settings)))
 
 
-def radar_at_once(radar):
-    """Its two transmitters send in each chirp, in three slots of velocity."""
-    return radar.replace(waveform=radar.waveform.replace(num_chirps=30), multiplexing="ddm")
+def radar_at_once(radar, **change):
+    """Its two transmitters send in each chirp, in three slots of velocity; change: of the waveform."""
+    return radar.replace(waveform=radar.waveform.replace(num_chirps=30, **change), multiplexing="ddm")
 
 
 def kinds_of_frames(frame) -> dict:
@@ -126,12 +126,13 @@ def kinds_of_frames(frame) -> dict:
         "window for each axis": (frame.scene, frame.radar, {"window": ("rect", ("chebyshev", 60.0)), "zero_pad": 3}),
         "at once, told apart by Doppler": (frame.scene, radar_at_once(frame.radar), {}),
         "other radars": (ep.Scene(frame.scene, interferers=[other]), frame.radar, {}),
+        "at once, and hop": (frame.scene, radar_at_once(frame.radar, frequency_steps=(0.0, 40e6, -25e6)), {}),
         "real samples": (frame.scene, like(frame.radar, real=True), {"window": "blackman_harris"}),
     }
 
 
 @pytest.mark.parametrize("kind", ["turns, padded", "window for each axis", "at once, told apart by Doppler", "other radars",
-                                  "real samples"])
+                                  "at once, and hop", "real samples"])
 def test_contributions_add_up_in_every_kind_of_frame(frame, kind):
     scene, radar, settings = kinds_of_frames(frame)[kind]
     made = ep.simulate(scene, radar, num_rays=1500, max_bounces=3, seed=4, **settings)
@@ -149,3 +150,25 @@ def test_contributions_add_up_in_every_kind_of_frame(frame, kind):
         assert abs(sum(one.value for one in cell.contributions) - value) <= SUM * abs(value)
         told, clean = sum(one.value for one in cell.contributions if one.name != REST), without_noise[tx, rx, velocity, distance]
         assert abs(told - clean) <= SUM * abs(clean) + (0.0 if row in strongest else SYNTHESIS * peak)
+
+
+@pytest.mark.parametrize("steps", [{"frequency_steps": (0.0, 40e6, -25e6)}, {"bandwidth_steps": (0.0, 5e7)}])
+def test_chirps_that_differ_leave_no_rest_without_noise(frame, steps):
+    radar = frame.radar.replace(waveform=frame.radar.waveform.replace(**steps))
+    made = ep.simulate(frame.scene, radar, num_rays=800, max_bounces=3, seed=4, noise_seed=None)
+    attribution, values = Attribution(from_frame(made).signals), made.spectrum.values[1, 0]
+    for row in np.argsort(-np.abs(values).ravel())[:30]:
+        velocity, distance = (int(index) for index in np.unravel_index(row, values.shape))
+        rest = attribution.of_cell(made.spectrum, distance, velocity, np.array([[0, 0], [1, 0]])).contributions[-1]
+        assert rest.name == REST and abs(rest.value) <= SUM * abs(values[velocity, distance])
+
+
+def test_the_rest_names_the_receiver_where_there_is_one(frame):
+    """Families are what arrives at the antennas: a transmitter 6 dB down leaves half of each echo, minus, to the rest."""
+    radar = frame.radar.replace(receiver=ep.Receiver(transmitter_gain_db=(-6.0, -6.0)))
+    made = ep.simulate(frame.scene, radar, num_rays=800, max_bounces=3, seed=4, noise_seed=None)
+    values = made.spectrum.values[0, 0]
+    velocity, distance = (int(index) for index in np.unravel_index(np.abs(values).argmax(), values.shape))
+    cell = Attribution(from_frame(made).signals).of_cell(made.spectrum, distance, velocity, np.array([[1, 0], [0, 0]]))
+    assert cell.contributions[-1].name == REST_RECEIVED
+    assert cell.contributions[-1].value == pytest.approx((1.0 - 10.0 ** 0.3) * cell.value, rel=1e-5, abs=0)

@@ -10,10 +10,12 @@ import echopath as ep
 from echopath import _core
 from echopath.signals.measures import SMALLEST_POWER, in_dbm
 from echopath.spectra.windows import of_range, of_velocity, samples_of
+from echopath.transmit.signals import decompose_slots
 
 MAX_BYTES = 2 << 30     # of the signals of all families, while they are made
 MAX_MIRRORS = 16        # told apart in the background: those that most paths touch
 REST = "rest: noise, left-out paths"
+REST_RECEIVED = "rest: what the receiver makes, noise, left-out paths"  # its gains, filters and faults are in no family
 BACKGROUND = "background"
 
 
@@ -105,7 +107,7 @@ class Attribution:
         """{(family, mirror or "other", ...): cube}, the mirrors telling the paths of the background apart."""
         views = [families.grouping] + [_core.Grouping.selections([(name, ep.hits(name))]) for name in mirrors]
         grouping = _core.Grouping.all_of(views)
-        return dict(_core.decompose(self._paths, None, [grouping], progress=progress, **settings)[0])
+        return decompose_slots(self._paths, self._paths.radar, [grouping], progress=progress, **settings)[0]
 
     def _group(self, row: int, key: tuple, mirrors, cube) -> EchoGroup:
         waveform = self._paths.radar.waveform
@@ -156,7 +158,8 @@ class Attribution:
                          for group, part in zip(self.groups, values)]
         contributions.sort(key=lambda one: -abs(one.value))
         rest = value - complex(values.sum())
-        contributions.append(Contribution(REST, rest, _change_db(value, rest)))
+        rest_name = REST if self._paths.radar.receiver is None else REST_RECEIVED
+        contributions.append(Contribution(rest_name, rest, _change_db(value, rest)))
         without = [(thing, _change_db(value, sum(part for group, part in zip(self.groups, values) if thing in group.touched)))
                    for thing in self.things]
         return CellAttribution(value, tuple(contributions), tuple(sorted(without, key=lambda one: one[1])))

@@ -1,6 +1,7 @@
 """Frames in time as the viewer finds and reads them."""
 from __future__ import annotations
 
+import dataclasses
 import gc
 import shutil
 import weakref
@@ -11,7 +12,7 @@ import pytest
 import echopath as ep
 from echopath_viewer.model import Session
 from echopath_viewer.model.carried import session_like
-from echopath_viewer.model.overview import glance_at, level_image, track_values, tracks_of
+from echopath_viewer.model.overview import Glance, glance_at, level_image, track_values, tracks_of
 from echopath_viewer.model.simulated_frames import SimulatedFrames
 from echopath_viewer.model.time_line import time_line_of
 from echopath_viewer.model.view_state import state_of
@@ -72,9 +73,47 @@ def test_tracks_go_with_the_object(stored_run):
     tracks = tracks_of(glances)
     assert tracks.num_tracks >= 1
     rows = tracks.of_track(int(tracks.track[0]))
-    distance = track_values(rows, glances[0].radar, "range")
+    distance = track_values(rows, glances, "range")
     assert np.diff(distance) == pytest.approx(-0.8, rel=0, abs=0.25)
-    assert track_values(rows, glances[0].radar, "velocity")[-1] == pytest.approx(-4.0, rel=0, abs=1.5)
+    assert track_values(rows, glances, "velocity")[-1] == pytest.approx(-4.0, rel=0, abs=1.5)
+
+
+def glance_of(time: float, radar, distance: float, detections=None):
+    """A glance whose one detection is straight ahead of the radar."""
+    found = dataclasses.replace(detections, **{name: value[:1] for name, value in vars(detections).items()
+                                               if isinstance(value, np.ndarray) and len(value) == len(detections)})
+    found = dataclasses.replace(found, range=np.array([distance]), azimuth=np.zeros(1))
+    axis = np.arange(2.0)
+    return Glance(time, axis, axis, axis, axis, found, radar)
+
+
+def test_tracks_stand_still_before_a_radar_that_was_moved_between_files(stored_run):
+    """Three radars, each at rest, 1 m apart, turned to look at what stands at (9, 0): the file of each has a radar of its own."""
+    places = (np.array([0.0, 0.0]), np.array([0.6, 0.8]), np.array([1.2, 1.6]))
+    glances = []
+    for number, place in enumerate(places):
+        way = np.array([9.0, 0.0]) - place
+        radar = stored_run.radar.replace(position=(*place, 0.0), yaw=float(np.arctan2(way[1], way[0])))
+        glances.append(glance_of(0.2 * number, radar, float(np.linalg.norm(way)), stored_run[0].detections))
+    tracks = tracks_of(glances)
+    assert tracks.num_tracks == 1
+    assert tracks.state[:, :2] == pytest.approx(np.tile([9.0, 0.0], (3, 1)), rel=0, abs=1e-6)
+    distances = [float(np.hypot(9.0 - place[0], place[1])) for place in places]
+    assert track_values(tracks, glances, "range") == pytest.approx(distances, rel=0, abs=1e-6)
+    assert track_values(tracks, glances, "velocity") == pytest.approx(np.zeros(3), abs=1e-6)
+
+
+def test_velocities_of_tracks_need_no_motion_beyond_the_last_frame(stored_run):
+    """Towards what stands still, a radar of 3 m/s whose keyframes end with the last frame sees -3 m/s."""
+    times = 0.2 * np.arange(3)
+    short = stored_run.radar.replace(waveform=stored_run.radar.waveform.replace(chirp_interval=2e-5))
+    end = times[-1] + short.frame_duration  # .64 ms
+    motion = ep.KeyframeMotion([0.0, end], [[0.0, 0.0, 0.0], [3.0 * end, 0.0, 0.0]], None, "linear")
+    radar = short.replace(motion=motion)
+    middles = times + 0.5 * radar.frame_duration
+    glances = [glance_of(time, radar, 9.0 - 3.0 * middle, stored_run[0].detections) for time, middle in zip(times, middles)]
+    tracks = tracks_of(glances)
+    assert track_values(tracks, glances, "velocity") == pytest.approx(-3.0 * np.ones(3), abs=1e-5)
 
 
 def test_frames_of_maps_alone_show_maps_and_labels(stored_run, maps_of_run):

@@ -6,6 +6,7 @@ import dataclasses
 import numpy as np
 
 import echopath as ep
+from echopath.base.rotations import quaternions
 from echopath.frame.maps import mean_power
 from echopath.frame_file.container import our_file
 from echopath.frame_file.detections import read_detections
@@ -72,22 +73,38 @@ def tracks_of(glances):
     times = np.array([one.time for one in glances])
     if len(glances) < 2 or any(one.detections is None or one.radar is None for one in glances) or (np.diff(times) <= 0.0).any():
         return None
-    middles = times + 0.5 * glances[0].radar.frame_duration
+    middles = times + 0.5 * np.array([one.radar.frame_duration for one in glances])
     try:
-        return ep.track([one.detections for one in glances], middles, radar=glances[0].radar)
+        return ep.track([one.detections for one in glances], middles, radar=_radar_of_all(glances, middles))
     except ValueError:  # antennas that see no directions
         return None
 
 
-def track_values(tracks, radar, axis: str):
-    """[N], range in m or radial velocity in m/s from the middle of the radar of each row of tracks."""
-    frames = [np.asarray(radar.world_from_radar(float(time))) for time in tracks.time]
-    origin = np.array([frame[:3, 3] for frame in frames]).reshape(-1, 3)
-    way = tracks.state[:, :2] - origin[:, :2]
+def _radar_of_all(glances, times):
+    """The radar of the first frame, which at the time of each frame is where the radar of that one is: files may be of radars
+    that were moved, rather than of one that moves."""
+    poses = np.array([one.radar.world_from_radar(float(time)) for one, time in zip(glances, times)])
+    motion = ep.KeyframeMotion(times, poses[:, :3, 3], quaternions(poses[:, :3, :3]), "linear")
+    return glances[0].radar.replace(position=(0.0, 0.0, 0.0), yaw=0.0, pitch=0.0, motion=motion)
+
+
+def track_values(tracks, glances, axis: str):
+    """[N], range in m or radial velocity in m/s from the middle of the radar of each row of tracks.
+
+    glances: those that the tracks are of
+    """
+    radars, times = [glances[frame].radar for frame in tracks.frame], np.asarray(tracks.time)
+    way = tracks.state[:, :2] - _origins(radars, times)
     distance = np.linalg.norm(way, axis=1)
     if axis == "range":
         return distance
-    step = 1e-3
-    later = np.array([np.asarray(radar.world_from_radar(float(time) + step))[:2, 3] for time in tracks.time]).reshape(-1, 2)
-    own = (later - origin[:, :2]) / step
+    # Motions need not go on beyond the frame, of which these times are the middles.
+    step = 0.25 * np.array([radar.frame_duration for radar in radars])
+    own = (_origins(radars, times + step) - _origins(radars, times - step)) / (2.0 * step[:, None])
     return np.einsum("ni,ni->n", way, tracks.state[:, 2:] - own) / np.maximum(distance, 1e-9)
+
+
+def _origins(radars, times):
+    """[N, 2] m, x and y in the world."""
+    frames = [np.asarray(radar.world_from_radar(float(time))) for radar, time in zip(radars, times)]
+    return np.array([frame[:2, 3] for frame in frames]).reshape(-1, 2)

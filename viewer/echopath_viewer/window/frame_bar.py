@@ -171,7 +171,7 @@ class TimeStrip(QtWidgets.QWidget):
     def _paint_tracks(self, painter) -> None:
         if self.tracks is None or not self.tracks.num_tracks:
             return
-        values = track_values(self.tracks, self._glances[0].radar, self.axis)
+        values = track_values(self.tracks, self._glances, self.axis)
         for number in np.unique(self.tracks.track):
             rows = np.flatnonzero(self.tracks.track == number)
             line = QtGui.QPolygonF([QtCore.QPointF(self.x_of(int(self.tracks.frame[row])), self._y_of(values[row]))

@@ -108,7 +108,9 @@ def test_scene_rays_and_map_follow_a_preview_before_the_full_view(qtbot, live_wi
         qtbot.waitUntil(lambda: window.live_panel.state_label.text().startswith("preview"), timeout=PATIENCE_MS)
         drawn = window.view3d.builder
         assert drawn.meshes.actors[0].center[0] == pytest.approx(9.0, abs=0.01)
-        assert drawn.session is window.session is window.map_area.session is window.filter_box.session
+        assert drawn.session is window.session is window.map_area.session
+        assert all(panel.session is window.session for panel in (window.tree, window.filter_box, window.contributions,
+                                                                 *window.side_panels.values(), window.live_panel))
         on_plate = drawn.rays.segments.points[drawn.rays.segments.hits[drawn.rays.segments.hit_mesh == 0]]
         assert len(on_plate) and np.abs(on_plate[:, 0] - 9.0).max() < 0.3
         assert not np.array_equal(window.session.parts.whole.level(0, 0), level)

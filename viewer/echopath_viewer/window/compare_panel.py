@@ -14,17 +14,18 @@ from .colour_bar import ColourBar
 from .map_area import title_of
 from .map_panel import MapPanel
 from .qt import QtCore, QtWidgets
+from .side_panels import SeenPanel
 
 DIFFERENCE_COLOURS, DIFFERENCE_SPAN_DB = "coolwarm", 20.0
 HINT = "Keep a map, then go to another frame, channel or part: it is shown beside it. Or compare with the map of a file."
 
 
-class ComparePanel(QtWidgets.QWidget):
+class ComparePanel(SeenPanel):
     """A map that was kept, that of now, and how much higher the latter is; a click in any selects the cell now."""
 
     def __init__(self, parent=None):
         super().__init__(parent)
-        self.session, self.kept, self._is_seen = None, None, False
+        self.kept = None
         self.keep_button = QtWidgets.QPushButton("Keep this map")
         self.file_button = QtWidgets.QPushButton("Compare with a file ...")
         self.note = QtWidgets.QLabel(HINT, wordWrap=True)
@@ -56,20 +57,9 @@ class ComparePanel(QtWidgets.QWidget):
         column.addLayout(maps, 1)
         column.addWidget(self.note)
 
-    def show_session(self, session) -> None:
-        self.session = session
-        self.refresh()
-
-    follow_session = show_session
-
     def update_topics(self, topics: set) -> None:
         if topics & {"maps", "rays", "selection"}:
             self.refresh()
-
-    def set_seen(self, is_seen: bool) -> None:
-        """Whether anyone looks."""
-        self._is_seen = is_seen
-        self.refresh()
 
     def keep(self) -> None:
         """Keeps the map that is on display now."""

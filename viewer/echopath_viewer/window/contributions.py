@@ -68,6 +68,15 @@ class ContributionsPanel(QtWidgets.QWidget):
         self.session, self._cell = session, None
         self.refresh()
 
+    def follow_session(self, session, is_passing: bool = False) -> None:
+        """Another frame. is_passing: the next one comes at once; what is made for the one before is not of this one."""
+        if is_passing:
+            self.work.stop()
+            self.bar.hide()
+            self.session = session
+        else:
+            self.show_session(session)
+
     def refresh(self) -> None:
         """Tells of the cell that is selected now, if anyone looks."""
         session = self.session

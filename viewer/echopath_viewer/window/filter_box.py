@@ -106,6 +106,13 @@ class FilterBox(QtWidgets.QWidget):
         self.power_box.setValue(round(float(power.max()) - 40.0) if len(power) else -100.0)
         self.read(session)
 
+    def follow_session(self, session, is_passing: bool = False) -> None:
+        """Another frame. is_passing: the next one comes at once, and what is told stays."""
+        if is_passing:
+            self.session = session
+        else:
+            self.show_session(session)
+
     def read(self, session) -> None:
         """Takes over what the session shows, telling nobody."""
         self.session = None

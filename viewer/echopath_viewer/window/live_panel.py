@@ -71,7 +71,9 @@ class LivePanel(QtWidgets.QWidget):
         if session.title != "live":
             self.start_button.setChecked(False)
 
-    follow_session = show_session
+    def follow_session(self, session, is_passing: bool = False) -> None:
+        """Another frame of a time line, or another view of what is live."""
+        self.show_session(session)
 
     def update_topics(self, topics: set) -> None:
         """Nothing of it depends on what is shown."""

@@ -109,14 +109,17 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
 
     def _follow(self, session) -> None:
         """Another frame of the time line, which shows what the one before did."""
-        self.session = session
-        for part in (self.view3d, self.map_area, self.time_bar, self.tree, *self.side_panels.values()):
-            part.follow_session(session)
-        for part in (self.filter_box, self.table, self.contributions):
-            part.show_session(session)
+        self._take(session)
         self._signal_of = None
         self._begin()
         self._pause.start()
+
+    def _take(self, session, is_passing: bool = False) -> None:
+        """All views go on with another frame. is_passing: the next one comes at once, and only what is quick is made."""
+        self.session = session
+        for part in (self.view3d, self.map_area, self.time_bar, self.tree, self.filter_box, self.table, self.contributions,
+                     *self.side_panels.values(), self.live_panel):
+            part.follow_session(session, is_passing)
 
     def _show_tracks(self) -> None:
         self.view3d.builder.show_tracks(self.frame_bar.strip.tracks)
@@ -127,13 +130,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         if not view.is_preview:
             self._follow(session)
             return
-        self.session = session
-        for part in (self.tree, self.filter_box, self.contributions):
-            part.session = session
-        self.view3d.follow_session(session, is_passing=True)
-        self.map_area.follow_session(session)
-        self.time_bar.follow_session(session)
-        self.table.show_session(session)
+        self._take(session, is_passing=True)
         session.listen(self._changed)
 
     def _drag_mesh(self, mesh: int, way) -> None:

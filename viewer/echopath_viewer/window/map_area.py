@@ -92,7 +92,7 @@ class MapArea(QtWidgets.QWidget):
         self.view = QtCore.QRectF(self.near_view)
         self.rebuild()
 
-    def follow_session(self, session) -> None:
+    def follow_session(self, session, is_passing: bool = False) -> None:
         """Another frame of the same time line: what is seen of the maps stays, unless their axes are others."""
         before, view = self.session.parts.whole.spectrum, self.view
         after = session.parts.whole.spectrum

@@ -123,6 +123,10 @@ class RayTable(QtWidgets.QWidget):
             self.title.setText(f"{len(self.model.rays):,} strongest of {total:,} rays {where}")
         self._show_chosen(session)
 
+    def follow_session(self, session, is_passing: bool = False) -> None:
+        """Another frame: rows that lie before the eye follow each."""
+        self.show_session(session)
+
     def _show_chosen(self, session) -> None:
         rows = np.flatnonzero(self.model.rays == session.ray) if session.ray is not None else []
         selection = self.view.selectionModel()

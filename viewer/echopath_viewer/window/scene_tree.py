@@ -45,8 +45,12 @@ class SceneTree(QtWidgets.QTreeWidget):
         self.session = session
         self.refresh()
 
-    def follow_session(self, session) -> None:
-        """Another frame: rows that are open stay so where its scene has the same."""
+    def follow_session(self, session, is_passing: bool = False) -> None:
+        """Another frame: rows that are open stay so where its scene has the same. is_passing: the next one comes at once, and
+        the rows keep what they tell."""
+        if is_passing:
+            self.session = session
+            return
         same = self.session is not None and [node.name for node in session.scene.nodes] == list(self._items)
         if not same:
             self.show_session(session)

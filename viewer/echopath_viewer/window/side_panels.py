@@ -31,7 +31,11 @@ class SeenPanel(QtWidgets.QWidget):
         self.session = session
         self.refresh()
 
-    follow_session = show_session
+    def follow_session(self, session, is_passing: bool = False) -> None:
+        """Another frame. is_passing: the next one comes at once, and nothing is made of this one."""
+        self.session = session
+        if not is_passing:
+            self.refresh()
 
     def set_seen(self, is_seen: bool) -> None:
         """Whether anyone looks."""

@@ -41,7 +41,7 @@ class TimeBar(QtWidgets.QWidget):
         self.play_button.setChecked(False)
         self.follow_session(session)
 
-    def follow_session(self, session) -> None:
+    def follow_session(self, session, is_passing: bool = False) -> None:
         """Another frame of the same time line: what plays goes on."""
         self.session = None
         self.slider.setRange(0, session.radar.waveform.num_chirps - 1)

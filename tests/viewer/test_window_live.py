@@ -95,27 +95,50 @@ def test_a_frame_becomes_live_and_another_one_ends_it(qtbot, window, frame):
     assert not window.live.is_on and not window.live_panel.start_button.isChecked()
 
 
-def test_scene_rays_and_map_follow_a_preview_before_the_full_view(qtbot, live_window, monkeypatch):
-    window, live, released = live_window, live_window.live.live, threading.Event()
+@pytest.fixture
+def preview_window(qtbot, live_window, monkeypatch):
+    """A window that shows the preview of a plate moved by 3 m; the full view comes once `window.released` is set."""
+    window, live, window.released = live_window, live_window.live.live, threading.Event()
     settled(qtbot, window)
     full_update = live.update
-    monkeypatch.setattr(live, "update", lambda **keywords: (released.wait(PATIENCE_MS), full_update(**keywords))[1])
+
+    def update(progress):
+        while not window.released.wait(0.01):
+            progress("trace", 0.0)  # raises where the watch was stopped
+        return full_update(progress=progress)
+
+    monkeypatch.setattr(live, "update", update)
     window.live._watch._full_seconds = 1.0  # as of a scene that takes long
-    level = window.session.parts.whole.level(0, 0)
+    window.level_before = window.session.parts.whole.level(0, 0)
     window.live_panel.choose("plate")
     window.live_panel.place_boxes[0].setValue(3.0)
-    try:
-        qtbot.waitUntil(lambda: window.live_panel.state_label.text().startswith("preview"), timeout=PATIENCE_MS)
-        drawn = window.view3d.builder
-        assert drawn.meshes.actors[0].center[0] == pytest.approx(9.0, abs=0.01)
-        assert drawn.session is window.session is window.map_area.session
-        assert all(panel.session is window.session for panel in (window.tree, window.filter_box, window.contributions,
-                                                                 *window.side_panels.values(), window.live_panel))
-        on_plate = drawn.rays.segments.points[drawn.rays.segments.hits[drawn.rays.segments.hit_mesh == 0]]
-        assert len(on_plate) and np.abs(on_plate[:, 0] - 9.0).max() < 0.3
-        assert not np.array_equal(window.session.parts.whole.level(0, 0), level)
-        window.table.view.selectRow(0)  # a row of the preview, whose paths are others
-        assert window.session.ray is not None
-    finally:
-        released.set()
+    qtbot.waitUntil(lambda: window.live_panel.state_label.text().startswith("preview"), timeout=PATIENCE_MS)
+    yield window
+    window.released.set()
+
+
+def test_scene_rays_and_map_follow_a_preview_before_the_full_view(qtbot, preview_window):
+    window, drawn = preview_window, preview_window.view3d.builder
+    assert drawn.meshes.actors[0].center[0] == pytest.approx(9.0, abs=0.01)
+    assert drawn.session is window.session is window.map_area.session
+    assert all(panel.session is window.session for panel in (window.tree, window.filter_box, window.contributions,
+                                                             *window.side_panels.values(), window.live_panel))
+    on_plate = drawn.rays.segments.points[drawn.rays.segments.hits[drawn.rays.segments.hit_mesh == 0]]
+    assert len(on_plate) and np.abs(on_plate[:, 0] - 9.0).max() < 0.3
+    assert not np.array_equal(window.session.parts.whole.level(0, 0), window.level_before)
+    window.table.view.selectRow(0)  # a row of the preview, whose paths are others
+    assert window.session.ray is not None
+    window.released.set()
     settled(qtbot, window)
+
+
+def test_a_preview_that_is_stopped_stays_and_is_where_the_next_start_begins(qtbot, preview_window):
+    window, drawn = preview_window, preview_window.view3d.builder.rays
+    window.live_panel.start_button.setChecked(False)
+    shown = window.session
+    assert shown.title == "live" and shown._listeners.count(window._changed) == 1
+    assert drawn._rays.GetMapper().GetInput() is drawn._lines and len(drawn.segments.rays) == len(shown.shown_rays())
+    window.live_panel.start_button.setChecked(True)
+    assert window.live.position("plate")[0] == pytest.approx(3.0)
+    settled(qtbot, window)
+    assert window.view3d.builder.meshes.actors[0].center[0] == pytest.approx(9.0, abs=0.01)

@@ -15,7 +15,7 @@ BUDGET = 0.05    # s, that a preview may take
 class LiveControl(QtCore.QObject):
     """Watches an ep.Live; tells sessions of its views in the thread of the window, the latest alone where that is slower."""
 
-    shown, failed = Signal(object, object), Signal(str)  # Session, LiveView
+    shown, failed, stopped = Signal(object, object), Signal(str), Signal()  # Session, LiveView
     _made = Signal()
 
     def __init__(self, state_now, parent=None):
@@ -46,6 +46,8 @@ class LiveControl(QtCore.QObject):
                 watch.stop()
             except Exception as error:  # what had ended it before
                 self.failed.emit(str(error))
+            self._latest.clear()
+            self.stopped.emit()
 
     def is_settled(self) -> bool:
         """Whether the full view of the latest change was shown."""

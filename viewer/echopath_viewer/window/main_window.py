@@ -60,7 +60,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         self.loading, self.file_watch = BackgroundWork(self), FileWatch(self)
         self._listing = QtCore.QTimer(self, singleShot=True, interval=0)
         self._pause = QtCore.QTimer(self, singleShot=True, interval=SIGNAL_PAUSE_MS)
-        self._stale, self._signal_of, self.is_to_load = set(), None, False
+        self._stale, self._signal_of, self.is_to_load, self._is_passing = set(), None, False, False
         self.add_menus()
         self.arrange()
         self._connect()
@@ -82,7 +82,8 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         self._show_session(Session(view_input), line)
 
     def _show_session(self, session, line) -> None:
-        self.session, self.history = session, History()
+        self.session, self.history, self._is_passing = session, History(), False
+        session.listen(self._changed)
         self.show_message("")
         self.show_content(True)
         self.show()
@@ -98,7 +99,6 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
     def _begin(self) -> None:
         """Follows the session that all views show by now."""
         self.show_layer_checks()
-        self.session.listen(self._changed)
         self.history.record(self._view_state())
         self.setWindowTitle(f"{self.session.title or 'paths'} - {TITLE}")
 
@@ -116,7 +116,9 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
 
     def _take(self, session, is_passing: bool = False) -> None:
         """All views go on with another frame. is_passing: the next one comes at once, and only what is quick is made."""
-        self.session = session
+        if session is not self.session:
+            session.listen(self._changed)
+        self.session, self._is_passing = session, is_passing
         for part in (self.view3d, self.map_area, self.time_bar, self.tree, self.filter_box, self.table, self.contributions,
                      *self.side_panels.values(), self.live_panel):
             part.follow_session(session, is_passing)
@@ -127,11 +129,15 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
 
     def _take_live(self, session, view) -> None:
         """Scene, rays, map and table follow each preview; what takes longer follows the full view."""
-        if not view.is_preview:
+        if view.is_preview:
+            self._take(session, is_passing=True)
+        else:
             self._follow(session)
-            return
-        self._take(session, is_passing=True)
-        session.listen(self._changed)
+
+    def _end_live(self) -> None:
+        """The preview that no full view follows any more is shown whole."""
+        if self._is_passing:
+            self._follow(self.session)
 
     def _drag_mesh(self, mesh: int, way) -> None:
         """way: [3] m from where the object was when it was taken hold of; [0, 0, 0] then."""
@@ -229,6 +235,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         self.time_line.read.connect(self._follow)
         self.live.shown.connect(self._take_live)
         self.live.failed.connect(self.show_message)
+        self.live.stopped.connect(self._end_live)
         self.view3d.mesh_dragged.connect(self._drag_mesh)
         self.time_line.glanced.connect(self._show_tracks)
         self.time_line.failed.connect(self.show_message)
@@ -250,6 +257,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         self.time_bar.stop()
         self.file_watch.watch(None)
         self.time_line.stop()
+        self._is_passing = False
         for work in (self.contributions.work, self.loading, self.live_panel):
             work.stop()
         for panel in self.side_panels.values():

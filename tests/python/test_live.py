@@ -226,13 +226,15 @@ def test_threads_that_change_beside_each_other_lose_no_change(live):
 
 
 def test_what_a_watch_cannot_show_is_raised_by_wait_and_stop(live):
-    watch = live.watch(Shown())
+    told = []
+    watch = live.watch(Shown(), failed=told.append)
     watch.wait(LONG)
     live.change(lambda scene: setattr(scene["sign_30"], "position", (1e30, 0.0, 0.0)))
     with pytest.raises(ValueError, match="sign_30"):
         watch.wait(LONG)
-    with pytest.raises(ValueError, match="sign_30"):
+    with pytest.raises(ValueError, match="sign_30") as raised:
         watch.stop()
+    assert told == [raised.value]
 
 
 def test_a_stopped_watch_ends_soon():
@@ -248,6 +250,7 @@ def test_a_stopped_watch_ends_soon():
     (lambda live: ep.Live(live.scene, "radar"), "radar"),
     (lambda live: ep.Live(live.scene, live.radar, window="square"), "window"),
     (lambda live: live.change(3), "function"), (lambda live: live.watch(None), "show"),
+    (lambda live: live.watch(print, failed=3), "failed"),
     (lambda live: live.watch(print, budget=0.0), "budget"), (lambda live: live.preview(num_rays=-1), "num_rays"),
     (lambda live: setattr(live, "radar", None), "radar"), (lambda live: live.set_map(zero_pad=0), "zero_pad")])
 def test_wrong_arguments_are_named(live, call, named):

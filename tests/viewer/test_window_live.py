@@ -142,3 +142,13 @@ def test_a_preview_that_is_stopped_stays_and_is_where_the_next_start_begins(qtbo
     assert window.live.position("plate")[0] == pytest.approx(3.0)
     settled(qtbot, window)
     assert window.view3d.builder.meshes.actors[0].center[0] == pytest.approx(9.0, abs=0.01)
+
+
+def test_what_ends_the_watch_is_told_at_once(qtbot, live_window):
+    window = live_window
+    settled(qtbot, window)
+    window.live.live.change(lambda scene: setattr(scene["plate"], "position", (1e30, 0.0, 0.0)))
+    qtbot.waitUntil(lambda: not window.live.is_on, timeout=PATIENCE_MS)
+    assert window.banner.text().startswith("The live view has ended: ") and "plate" in window.banner.text()
+    assert not window.live_panel.start_button.isChecked() and not window.live_panel.state_label.text().startswith("preview")
+    window.show_message("")

@@ -152,16 +152,20 @@ class Live:
         with self._busy:
             return kept.paths(progress)
 
-    @checked(self=anything, show=anything, budget=positive("s"))
-    def watch(self, show: Callable[[LiveView], object], *, budget: float = 0.05) -> Watch:
+    @checked(self=anything, show=anything, budget=positive("s"), failed=anything)
+    def watch(self, show: Callable[[LiveView], object], *, budget: float = 0.05,
+              failed: Callable[[Exception], object] | None = None) -> Watch:
         """Shows the scene, and each change from now on, from a thread of its own until the Watch is stopped.
 
-        show: callable (LiveView), called in that thread; budget: s, that a preview may take. Raises TypeError unless show can
-        be called.
+        show: callable (LiveView), called in that thread; budget: s, that a preview may take; failed: callable (error), called in
+        that thread with what has ended the watch, None: only `wait` and `stop` raise it. Raises TypeError unless show and failed
+        can be called.
         """
         if not callable(show):
             raise refused(TypeError, "show", "callable with a LiveView", show)
-        return Watch(self, self._changes, show, budget)
+        if failed is not None and not callable(failed):
+            raise refused(TypeError, "failed", "callable with an exception or None", failed)
+        return Watch(self, self._changes, show, budget, failed)
 
     def _view_of(self, kept: KeptSignal, *, is_preview: bool, progress) -> LiveView:
         with self._busy:

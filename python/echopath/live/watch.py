@@ -30,11 +30,12 @@ class Watch:
     After a change comes a preview with as many rays as the budget allows, unless the last full view took no longer than
     that, and then, once nothing has changed for 0.1 s, the full view. A change that comes meanwhile ends a full view, so that
     the latest change is shown first; changes in between may not be shown at all.
-    What a view or `show` raises ends the watch and is raised by `wait` and `stop`. Made by `Live.watch`.
+    What a view or `show` raises ends the watch, is told to `failed` and raised by `wait` and `stop`. Made by `Live.watch`.
     """
 
-    def __init__(self, live: Live, changes: Changes, show: Callable[[LiveView], object], budget: float):
-        self._live, self._changes, self._show, self._budget = live, changes, show, budget
+    def __init__(self, live: Live, changes: Changes, show: Callable[[LiveView], object], budget: float,
+                 failed: Callable[[Exception], object] | None = None):
+        self._live, self._changes, self._show, self._budget, self._failed = live, changes, show, budget, failed
         self._preview_rays, self._full_seconds = FIRST_PREVIEW_RAYS, 0.0
         self._shown, self._error = -1, None  # number of the change whose full view was shown
         self._stopping, self._shown_one = False, threading.Condition()
@@ -80,6 +81,8 @@ class Watch:
             self._error = error
         with self._shown_one:
             self._shown_one.notify_all()
+        if self._error is not None and self._failed is not None:
+            self._failed(self._error)
 
     def _try_to_show_change(self) -> None:
         try:

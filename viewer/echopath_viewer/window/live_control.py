@@ -16,7 +16,7 @@ class LiveControl(QtCore.QObject):
     """Watches an ep.Live; tells sessions of its views in the thread of the window, the latest alone where that is slower."""
 
     shown, failed, stopped = Signal(object, object), Signal(str), Signal()  # Session, LiveView
-    _made = Signal()
+    _made, _broken = Signal(), Signal(object)  # ep.Live
 
     def __init__(self, state_now, parent=None):
         """state_now: callable () -> state of the view, to be taken over"""
@@ -24,6 +24,7 @@ class LiveControl(QtCore.QObject):
         self._state_now, self._state, self.live, self._watch = state_now, None, None, None
         self._latest = deque(maxlen=1)  # (Session, LiveView) that the window has not taken yet
         self._made.connect(self._tell)  # in the thread of the window, as this object lives there
+        self._broken.connect(self._end)
 
     @property
     def is_on(self) -> bool:
@@ -35,8 +36,8 @@ class LiveControl(QtCore.QObject):
         self.stop()
         self._settings = session.signals.spectrum_settings
         self._state = self._state_now()
-        self.live = live_of(session, num_rays) if live is None else live
-        self._watch = self.live.watch(self._show, budget=BUDGET)
+        self.live = watched = live_of(session, num_rays) if live is None else live
+        self._watch = watched.watch(self._show, budget=BUDGET, failed=lambda error: self._broken.emit(watched))
 
     def stop(self) -> None:
         """Ends the watch; the view that was shown last stays."""
@@ -45,13 +46,18 @@ class LiveControl(QtCore.QObject):
             try:
                 watch.stop()
             except Exception as error:  # what had ended it before
-                self.failed.emit(str(error))
+                self.failed.emit(f"The live view has ended: {str(error) or type(error).__name__}")
             self._latest.clear()
             self.stopped.emit()
 
     def is_settled(self) -> bool:
         """Whether the full view of the latest change was shown."""
         return self._watch is None or self._watch.wait(1e-3)
+
+    def _end(self, live) -> None:
+        """Tells what has ended the watch, unless another scene is live by now."""
+        if live is self.live:
+            self.stop()
 
     # --- changes ---
 

@@ -64,6 +64,7 @@ class LivePanel(QtWidgets.QWidget):
         self.material_box.activated.connect(self._choose_material)
         self.rough_slider.valueChanged.connect(self._roughen)
         self.control.shown.connect(lambda _, view: self._tell(view))
+        self.control.stopped.connect(lambda: self.start_button.setChecked(False))
 
     def show_session(self, session) -> None:
         """Another frame: what was live is not any more."""

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath_viewer.model import from_frame
+from echopath_viewer.model import CellBox, from_frame
 from echopath_viewer.model.live_session import input_of_view
 from echopath_viewer.window.qt import Qt, QtCore, QtWidgets
 from support.window import LEFT, open_on_screen, project
@@ -152,3 +152,14 @@ def test_what_ends_the_watch_is_told_at_once(qtbot, live_window):
     assert window.banner.text().startswith("The live view has ended: ") and "plate" in window.banner.text()
     assert not window.live_panel.start_button.isChecked() and not window.live_panel.state_label.text().startswith("preview")
     window.show_message("")
+
+
+def test_what_is_chosen_while_the_full_view_is_traced_stays(qtbot, preview_window):
+    window = preview_window
+    window.session.select_cells(CellBox(3, 9, 2, 9))
+    window.session.set_color_by("mesh")
+    window.session.set_dynamic_range(35.0)
+    window.released.set()
+    settled(qtbot, window)
+    assert window.session.box == CellBox(3, 9, 2, 9) and window.session.color_by == "mesh"
+    assert window.session.dynamic_range_db == 35.0 and window.filter_box.colour_box.currentText() == "mesh"

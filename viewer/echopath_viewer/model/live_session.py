@@ -7,6 +7,7 @@ from .carried import make_ready, session_like
 from .inputs import ViewInput, whole_part
 from .part_set import PartSet
 from .signals import Signals
+from .view_state import apply_state
 
 DEFAULT_RAYS, TITLE = 50_000, "live"
 
@@ -25,6 +26,16 @@ def session_of_view(live, view, state, spectrum_settings: dict):
     """
     shown = input_of_view(live, view, spectrum_settings)
     return make_ready(session_like(None if state is None else _without_parts(state), shown))
+
+
+def show_state(session, state: dict, made_for: dict) -> None:
+    """Has a session of `session_of_view` show what was chosen since it was made.
+
+    state: as of `state_of`; made_for: the one then
+    """
+    kept = {"frame": session.title, "ray": None}  # whose rays are others
+    if _without_parts(state) | kept != _without_parts(made_for) | kept:
+        apply_state(session, _without_parts(state) | kept)
 
 
 def input_of_view(live, view, spectrum_settings: dict | None = None) -> ViewInput:

@@ -5,7 +5,7 @@ from collections import deque
 
 import numpy as np
 
-from ..model.live_session import live_of, session_of_view
+from ..model.live_session import live_of, session_of_view, show_state
 from .qt import QtCore, Signal
 
 RADAR = "radar"  # as an object that is moved
@@ -22,7 +22,7 @@ class LiveControl(QtCore.QObject):
         """state_now: callable () -> state of the view, to be taken over"""
         super().__init__(parent)
         self._state_now, self._state, self.live, self._watch = state_now, None, None, None
-        self._latest = deque(maxlen=1)  # (Session, LiveView) that the window has not taken yet
+        self._latest = deque(maxlen=1)  # (Session, LiveView, state that it was made for) that the window has not taken yet
         self._made.connect(self._tell)  # in the thread of the window, as this object lives there
         self._broken.connect(self._end)
 
@@ -103,9 +103,14 @@ class LiveControl(QtCore.QObject):
         live = self.live
         if live is None:
             return
-        self._latest.append((session_of_view(live, view, self._state, self._settings), view))
+        state = self._state
+        self._latest.append((session_of_view(live, view, state, self._settings), view, state))
         self._made.emit()
 
     def _tell(self) -> None:
-        if self._latest and self.is_on:
-            self.shown.emit(*self._latest.pop())
+        if not (self._latest and self.is_on):
+            return
+        session, view, made_for = self._latest.pop()
+        self._state = self._state_now()
+        show_state(session, self._state, made_for)
+        self.shown.emit(session, view)

@@ -1,6 +1,7 @@
 """Pictures, maps, films and pages of what the window shows."""
 from __future__ import annotations
 
+import contextlib
 import re
 import xml.etree.ElementTree as ElementTree
 
@@ -8,7 +9,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
+import echopath as ep
 from echopath_viewer.film import write_film
+from echopath_viewer.scene_builder.export import export_rays
 from echopath_viewer.scene_builder.web_page import ScenePage
 from echopath_viewer.window.exporting import export
 
@@ -40,6 +43,27 @@ def test_maps_are_drawings(qtbot, window, tmp_path):
     assert any(text.startswith("everyth") for text in texts)
     assert (tmp_path / "maps.pdf").read_bytes().startswith(b"%PDF")
     assert window.map_area.palette() == before
+
+
+@contextlib.contextmanager
+def full_disk(room: int = 4096):
+    """No file grows beyond `room` bytes."""
+    resource = pytest.importorskip("resource")
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (room, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+@pytest.mark.parametrize("kind", ["png", "svg", "pdf", "vtp"])
+def test_files_that_find_no_room_are_not_written(qtbot, window, tmp_path, kind):
+    window.settle()
+    path = tmp_path / f"file.{kind}"
+    with pytest.raises(ep.FileError, match="cannot be written"), full_disk():
+        export_rays(window.session, path) if kind == "vtp" else export(window, path)
+    assert not list(tmp_path.iterdir())
 
 
 def test_films_go_through_the_chirps_and_back(qtbot, window, tmp_path, monkeypatch):

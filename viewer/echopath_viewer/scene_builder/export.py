@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 from echopath.base.files import written_whole
 from echopath.base.origin import origin_texts
@@ -61,4 +62,14 @@ def _write(poly: pv.PolyData, path, session) -> None:
     for name, text in origin_texts(session.paths.frame.seed).items():
         poly.field_data[name.lower()] = [text]
     with written_whole(path) as temporary:
-        poly.save(temporary)
+        temporary.write_bytes(_file_of(poly))
+
+
+def _file_of(poly: pv.PolyData) -> bytes:
+    """In memory: VTK prints what goes wrong with a disk, and goes on."""
+    writer = vtkXMLPolyDataWriter()
+    writer.SetInputData(poly)
+    writer.SetDataModeToBinary()
+    writer.WriteToOutputStringOn()
+    writer.Write()
+    return writer.GetOutputString().encode()

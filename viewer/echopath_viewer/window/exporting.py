@@ -11,7 +11,7 @@ from echopath.base.origin import origin_texts
 from ..film import KINDS as FILMS
 from ..film import write_film
 from ..scene_builder.web_page import ScenePage
-from .pictures import draw_maps, picture_of
+from .pictures import drawing_of, picture_of, png_of
 from .qt import QtGui
 
 DRAWINGS, PAGES = (".svg", ".pdf"), (".html", ".htm")
@@ -31,7 +31,7 @@ def export(window, path, scale: int = 1, progress=None) -> None:
         _write_png(window, path, scale)
     elif kind in DRAWINGS:
         with written_whole(path) as temporary:
-            draw_maps(window.map_area, str(temporary), kind)
+            temporary.write_bytes(drawing_of(window.map_area, kind))
     elif kind in FILMS:
         write_film(path, film_pictures(window, progress), FRAMES_PER_SECOND)
     elif kind in PAGES:
@@ -46,7 +46,7 @@ def _write_png(window, path, scale: int) -> None:
     for keyword, text in origin_texts(window.session.paths.frame.seed if window.session else None).items():
         picture.setText(keyword, text)
     with written_whole(path) as temporary:
-        picture.save(str(temporary), "PNG")
+        temporary.write_bytes(png_of(picture))
 
 
 def film_pictures(window, progress=None):

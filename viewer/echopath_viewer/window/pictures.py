@@ -42,16 +42,32 @@ def _paint_scene(window, image, scale: int) -> None:
             box.render(image, box.mapTo(window, QtCore.QPoint(0, 0)), renderFlags=QtWidgets.QWidget.RenderFlag.DrawChildren)
 
 
-def draw_maps(map_area, path: str, kind: str) -> None:
-    """All maps that are on display with the colour scale, as SVG or PDF: text and axes are lines, the cells an image.
+def png_of(picture: QtGui.QImage) -> bytes:
+    """The picture as a file, in memory: Qt tells nobody of a disk that is full."""
+    file = QtCore.QBuffer()
+    file.open(QtCore.QIODevice.OpenModeFlag.WriteOnly)
+    if not picture.save(file, "PNG"):
+        raise ValueError(f"picture: {picture.width()} x {picture.height()} pixels cannot be written as PNG")
+    return file.data().data()
 
-    path: of the file; kind: ".svg" or ".pdf"
+
+def drawing_of(map_area, kind: str) -> bytes:
+    """A file, in memory, of all maps that are on display with the colour scale: text and axes are lines, the cells an image.
+
+    kind: ".svg" or ".pdf"
     """
+    file = QtCore.QBuffer()
+    file.open(QtCore.QIODevice.OpenModeFlag.WriteOnly)
+    _draw_maps(map_area, file, kind)
+    return file.data().data()
+
+
+def _draw_maps(map_area, file, kind: str) -> None:
     widgets = [*map_area.panels.values(), map_area.colour_bar]
     frame = QtCore.QRect()
     for widget in widgets:
         frame = frame.united(QtCore.QRect(widget.mapTo(map_area, QtCore.QPoint(0, 0)), widget.size()))
-    device, factor = (_svg if kind == ".svg" else _pdf)(path, frame.size())
+    device, factor = (_svg if kind == ".svg" else _pdf)(file, frame.size())
     before, light = map_area.palette(), _light_palette()
     painter = QtGui.QPainter(device)
     painter.scale(factor, factor)
@@ -69,19 +85,19 @@ def draw_maps(map_area, path: str, kind: str) -> None:
             widget.setPalette(before)
 
 
-def _svg(path: str, size):
+def _svg(file, size):
     from PySide6.QtSvg import QSvgGenerator
 
     device = QSvgGenerator()
-    device.setFileName(path)
+    device.setOutputDevice(file)
     device.setSize(size)
     device.setViewBox(QtCore.QRect(QtCore.QPoint(0, 0), size))
     device.setTitle("Maps of Echopath")
     return device, 1.0
 
 
-def _pdf(path: str, size):
-    device = QtGui.QPdfWriter(path)
+def _pdf(file, size):
+    device = QtGui.QPdfWriter(file)
     page = QtGui.QPageSize(QtCore.QSizeF(size) * POINTS_PER_PIXEL, QtGui.QPageSize.Unit.Point)
     device.setPageSize(page)
     device.setPageMargins(QtCore.QMarginsF(0, 0, 0, 0))

@@ -124,3 +124,46 @@ def test_a_simulated_sequence_opens(qtbot, moving_sequence):
     finally:
         window.close()
     assert not folder.exists()
+
+
+def test_files_that_go_away_are_told_and_found_again(qtbot, shared_window, stored_run, tmp_path):
+    window, control, folder, told = shared_window, shared_window.time_line, tmp_path / "frames", []
+    folder.mkdir()
+    for path in stored_run.paths_of_files:
+        shutil.copy(path, folder)
+    assert window.open_file(folder)
+    control._poll.stop()
+    control.failed.connect(told.append)
+    control.go(1)
+    wait_for(qtbot, window, 1)
+    folder.rename(tmp_path / "elsewhere")
+    for _ in range(2):
+        control.look()
+    assert len(told) == 1 and told[0].startswith(f"{folder}: its files are gone")
+    control.step(1)
+    window.toggle_play_frames()
+    qtbot.waitUntil(lambda: not control.is_playing, timeout=PATIENCE_MS)
+    assert control.place == 1 and "files are gone" in window.banner.text()
+    (tmp_path / "elsewhere").rename(folder)
+    control.look()
+    assert control.place == 1 and len(control.line) == 3
+    control.step(1)
+    wait_for(qtbot, window, 2)
+    control.failed.disconnect(told.append)
+    window.show_message("")
+    control.show(None)
+
+
+def test_what_keeps_frames_from_being_found_is_told_once(qtbot, line_window, monkeypatch):
+    control, told = line_window.time_line, []
+
+    def refuse():
+        raise ep.FileError("dataset.toml: cannot be read")
+
+    monkeypatch.setattr(control.line, "_find", refuse)
+    control.failed.connect(told.append)
+    for _ in range(3):
+        control.look()
+    control.failed.disconnect(told.append)
+    assert told == ["dataset.toml: cannot be read"] and control.place == 0
+    line_window.show_message("")

@@ -1,6 +1,8 @@
 """Which frame of a time line is shown: reads frames in a thread, plays them, and finds those that are written."""
 from __future__ import annotations
 
+import echopath as ep
+
 from ..model.carried import session_like
 from ..model.overview import glance_at
 from .background_work import BackgroundWork
@@ -9,6 +11,7 @@ from .qt import QtCore, Signal
 POLL_MS = 1000      # between looks for new frames
 FILM_MS = 100       # from frame to frame at least
 MOST_GLANCES = 4    # that are read in one piece of work
+GONE = "{}: its files are gone; what is shown is the last frame that was read"
 
 
 class TimeControl(QtCore.QObject):
@@ -22,6 +25,7 @@ class TimeControl(QtCore.QObject):
         super().__init__(bar)
         self.bar, self._state_now, self._is_behind = bar, state_now, is_behind
         self.line, self.place, self._wanted, self._glances = None, 0, None, {}
+        self._shown, self._trouble = None, ""  # Moment on display; what the last look has found wrong
         self.work, self._glancing = BackgroundWork(self), BackgroundWork(self)
         self._poll, self._film = QtCore.QTimer(self, interval=POLL_MS), QtCore.QTimer(self, interval=FILM_MS)
         self._poll.timeout.connect(self.look)
@@ -51,6 +55,7 @@ class TimeControl(QtCore.QObject):
         self.bar.setVisible(line is not None)
         self.bar.strip.show_glances([])
         if line is not None:
+            self._shown, self._trouble = line.moments[place], ""
             self._show_place()
             self._poll.start()
             self._read_glances()
@@ -76,6 +81,9 @@ class TimeControl(QtCore.QObject):
         """Shows the frame at a place, kept within those that are there, as soon as it is read."""
         if self.line is None:
             return
+        if not len(self.line):
+            self._fail(GONE.format(self.line.title))
+            return
         place = min(max(place, 0), len(self.line) - 1)
         if place == self.place and self._wanted is None:
             return
@@ -85,33 +93,50 @@ class TimeControl(QtCore.QObject):
 
     def look(self) -> None:
         """Finds frames that were written since."""
-        shown = self.line.moments[self.place]
         if getattr(self.line, "failure", ""):
             self.failed.emit(self.line.failure)
             self.line.failure = ""
-        if not self.line.refresh() or not len(self.line):
+        if not self._has_found_others():
             return
-        self.place = self.line.moments.index(shown) if shown in self.line.moments else min(self.place, len(self.line) - 1)
+        if not len(self.line):
+            self._fail(GONE.format(self.line.title))
+            return
+        self.place = self._place_of(self._shown)
         self._show_place()
         self._read_glances()
         if self.bar.follow_check.isChecked():
             self.go(len(self.line) - 1)
 
+    def _has_found_others(self) -> bool:
+        """Whether there are other frames now; what keeps them from being found is told once."""
+        try:
+            is_other, trouble = self.line.refresh(), ""
+        except (ep.FileError, OSError) as error:
+            is_other, trouble = False, str(error)
+        if trouble not in ("", self._trouble):
+            self.failed.emit(trouble)
+        self._trouble = trouble
+        return is_other
+
+    def _place_of(self, moment) -> int:
+        """Where it is now, or was before it was gone."""
+        moments = self.line.moments
+        return moments.index(moment) if moment in moments else max(min(self.place, len(moments) - 1), 0)
+
     # --- reading ---
 
     def _start(self, place: int) -> None:
         moment, state = self.line.moments[place], self._state_now()
-        self._reading = place
+        self._reading = moment
         self.work.start(lambda progress: session_like(state, moment.read()))
 
     def _take(self, session) -> None:
-        self.place = self._reading
-        is_there = self._wanted in (None, self.place)
-        self._wanted = None if is_there else self._wanted
+        self._shown, wanted, self._wanted = self._reading, self._wanted, None
+        self.place = self._place_of(self._shown)
         self.read.emit(session)
         self._show_place()
-        if not is_there:
-            self._start(self._wanted)
+        if wanted is not None:
+            self.go(wanted)
 
     def _fail(self, text: str) -> None:
         self._wanted = None
@@ -120,7 +145,8 @@ class TimeControl(QtCore.QObject):
         self.failed.emit(text)
 
     def _show_place(self) -> None:
-        self.bar.show_place(self.place, self.line.moments, self.line.expected)
+        if len(self.line):
+            self.bar.show_place(self.place, self.line.moments, self.line.expected)
 
     def _play(self, is_on: bool) -> None:
         if is_on and self.line is not None:

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath_viewer.model import preview
+from echopath_viewer.model import CellBox, preview
 from echopath_viewer.model.preview import READING, preview_of
+from echopath_viewer.window.qt import QtWidgets
 from support.window import PATIENCE_MS
 
 
@@ -38,6 +39,24 @@ def test_the_rays_come_later(qtbot, shared_window, frame, large_file):
     wait_until_read(qtbot, window)
     assert window.session.paths.num_paths == frame.paths.num_paths and not window.loading_bar.isVisible()
     assert window.view3d.builder.session is window.session and len(window.session.parts.partitions) == 2
+
+
+def test_what_was_chosen_before_the_rays_came_stays(qtbot, shared_window, frame, large_file):
+    window, box = shared_window, CellBox(3, 9, 2, 9)
+    assert window.open_file(large_file)
+    QtWidgets.QApplication.processEvents()
+    session = window.session
+    assert session.paths.num_paths == 0
+    session.set_channel(1, 0)
+    session.set_dynamic_range(33.0)
+    session.select_cells(box)
+    window.look_top()
+    camera = window.view3d.camera_state()
+    wait_until_read(qtbot, window)
+    assert window.session is not session and window.session.paths.num_paths == frame.paths.num_paths
+    assert (window.session.channel, window.session.dynamic_range_db, window.session.box) == ((1, 0), 33.0, box)
+    assert window.view3d.camera_state() == camera and window.map_area.channel_box.currentData() == (1, 0)
+    assert len(window.session.parts.partitions) == 2 and len(window.view3d.builder.rays.segments.rays)
 
 
 def test_what_is_damaged_behind_the_map_is_told(qtbot, shared_window, large_file):

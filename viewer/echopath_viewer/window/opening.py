@@ -8,7 +8,7 @@ from ..model import from_file, from_frame
 from ..model.carried import read_session
 from ..model.preview import preview_of
 from ..model.time_line import time_line_of
-from ..model.view_state import state_of
+from ..model.view_state import apply_state, state_of
 from .busy import run_with_progress
 from .demo import simulate_demo
 from .qt import QtCore
@@ -41,7 +41,7 @@ class Opening:
     def load_rest(self, path) -> None:
         """Reads all of a file of which a preview is shown, in a thread, once that is drawn."""
         self.loading_bar.begin()
-        self.is_to_load = True
+        self.is_to_load, self._begun_with = True, state_of(self.session)
         self.view3d.when_drawn(lambda: self._load(lambda progress: read_session(path, None, progress)))
 
     def _load(self, work) -> None:
@@ -53,6 +53,7 @@ class Opening:
         """Reads the file on display anew; what is shown stays, as far as it fits."""
         path, state = self.file_watch.path, state_of(self.session)
         if path is not None:
+            self._begun_with = state
             self._load(lambda progress: read_session(path, state, progress))
 
     def _end_loading(self, text: str = "") -> None:
@@ -62,11 +63,15 @@ class Opening:
 
     def _take_rest(self, session) -> None:
         self._end_loading()
-        if self.session.paths.num_paths:  # read anew
-            self._follow(session)
-        else:
-            self._show_session(session, None)
+        self._go_on_with_choices(session)
+        self._follow(session)
         QtCore.QTimer.singleShot(REST_MS, give_back_memory)  # what reading has left: a second file would come on top of it
+
+    def _go_on_with_choices(self, session) -> None:
+        """What was chosen since the reading began is chosen in the session that was read, too; rays are others."""
+        chosen = {name: value for name, value in state_of(self.session).items() if value != self._begun_with[name]}
+        if chosen:
+            apply_state(session, state_of(session) | chosen | {"frame": session.title, "ray": None})
 
     def _simulate_demo(self) -> None:
         frame = run_with_progress(self, "Street demo", simulate_demo)

@@ -165,3 +165,42 @@ def test_a_sequence_is_simulated_beside(moving_sequence, stored_run):
     folder = line.moments[0].path.parent
     line.close()
     assert not folder.exists()
+
+
+LABELS_ALONE = """
+[dataset]
+scenes = 1
+frames = 2
+interval = 0.05
+keep = "labels"
+[radar.waveform]
+start_frequency = 77e9
+bandwidth = 0.7e9
+num_samples = 64
+sampling_rate = 10e6
+num_chirps = 16
+chirp_interval = 40e-6
+[[radar.transmitters]]
+position = [0.0, 0.0, 1.0]
+[[radar.receivers]]
+position = [0.0, 0.0050, 1.0]
+[[objects]]
+name = "walker"
+actor = "pedestrian"
+position = [6.0, 1.0, 0.0]
+[trace]
+num_rays = 300
+[labels]
+"""
+
+
+def test_frames_of_a_dataset_that_are_remade_have_their_rays(tmp_path):
+    (tmp_path / "template.toml").write_text(LABELS_ALONE)
+    list(ep.dataset.make(tmp_path / "template.toml", tmp_path / "made"))
+    dataset = ep.dataset.open(tmp_path / "made")
+    assert time_line_of(dataset).read(1).paths.num_paths == 0
+    remade = dataset.remade()[1:]
+    line = time_line_of(remade)
+    shown, wanted = line.read(0), remade[0].frame
+    assert len(line) == 1 and shown.paths.num_paths == wanted.paths.num_paths > 0 and shown.note == ""
+    assert np.array_equal(shown.cube, wanted.cube) and shown.paths.frame.start_time == pytest.approx(0.05)

@@ -15,7 +15,7 @@ from echopath.frame_file.maps import load_maps
 from echopath.sequence.contents import NAME as SEQUENCE_NAME
 from echopath.sequence.contents import frame_path
 
-from .inputs import ViewInput, from_file
+from .inputs import ViewInput, from_file, from_frame
 from .maps_input import from_maps
 
 PATTERN_LETTERS = "*?["
@@ -27,18 +27,28 @@ class Moment:
     """A frame of a time line.
 
     name: as it is shown; start_time: s; path: of its file; stored: StoredSequence that it belongs to, None: to none
+    remake: callable () -> Frame, which is shown in place of what the file keeps; None: the file is shown
     """
 
     name: str
     start_time: float
     path: Path
     stored: object = dataclasses.field(default=None, compare=False)
+    remake: Callable | None = dataclasses.field(default=None, compare=False)
 
     def read(self) -> ViewInput:
         """What is shown of it. Raises ep.FileError."""
+        if self.remake is not None:
+            return self._remade()
         if self.stored is None or self.stored.keep == "all":
             return from_file(self.path)
         return from_maps(load_maps(self.path), self.stored, title=str(self.path))
+
+    def _remade(self) -> ViewInput:
+        try:
+            return from_frame(self.remake(), title=self.name)
+        except ValueError as error:  # a file that the template names is no more
+            raise ep.FileError(f"{self.name}: {error}") from None
 
 
 class TimeLine:
@@ -78,7 +88,7 @@ def time_line_of(what) -> TimeLine | None:
     if isinstance(what, ep.StoredSequence):
         return _checked(_of_stored(what))
     if not isinstance(what, (str, os.PathLike, list, tuple)) and isinstance(what, ep.dataset.Dataset):  # which is slow to import
-        return _checked(_of_dataset(what.folder, set(what.numbers)))
+        return _checked(_of_dataset(what.folder, what))
     if isinstance(what, (list, tuple)):
         files = [Path(name) for name in what]
         return _checked(TimeLine(f"{len(files)} files", lambda: _moments_of(files)))
@@ -100,7 +110,7 @@ def _of_folder(folder: Path) -> TimeLine:
     if (folder / SEQUENCE_NAME).exists():
         return _of_stored(ep.load_sequence(folder))
     try:
-        return _of_dataset(folder, None)
+        return _of_dataset(folder)
     except ep.FileError as error:
         if any(folder.glob(FRAMES_OF_A_FOLDER)):
             return TimeLine(str(folder), lambda: _moments_of(folder.glob(FRAMES_OF_A_FOLDER)))
@@ -117,8 +127,13 @@ def written_frames(stored) -> list[Moment]:
             for place, (time, path) in enumerate(zip(stored.times, stored.paths_of_files)) if path.exists()]
 
 
-def _of_dataset(folder: Path, numbers) -> TimeLine:
-    """Scene after scene; numbers: of the frames that are shown, None: all that are done, those to come too."""
+def _of_dataset(folder: Path, given=None) -> TimeLine:
+    """Scene after scene; given: ep.dataset.Dataset whose frames are shown, None: all that are done, those to come too.
+
+    Frames of one that was `remade` are simulated again when they are shown; the strip of all has what the files keep.
+    """
+    numbers = None if given is None else set(given.numbers)
+    is_remade = given is not None and given.keep != given.template.settings.keep
     per_scene = ep.dataset.open(folder).template.settings.frames
 
     def find():
@@ -132,7 +147,9 @@ def _of_dataset(folder: Path, numbers) -> TimeLine:
 
         scene, place = divmod(number, per_scene)
         name = f"scene {scene} ({dataset.template.split_of(scene)}), frame {place}"
-        return Moment(name, float(stored[scene].times[place]), frame_path(scene_folder(folder, scene), place), stored[scene])
+        remake = (lambda: given[given.numbers.index(number)].frame) if is_remade else None
+        path = frame_path(scene_folder(folder, scene), place)
+        return Moment(name, float(stored[scene].times[place]), path, stored[scene], remake)
 
     return TimeLine(str(folder), find)
 

@@ -66,3 +66,24 @@ def test_what_is_damaged_behind_the_map_is_told(qtbot, shared_window, large_file
     wait_until_read(qtbot, shared_window)
     assert "frame.h5" in shared_window.banner.text() and not shared_window.loading_bar.isVisible()
     shared_window.show_message("")
+
+
+def test_rays_come_where_nothing_is_drawn(qtbot, shared_window, frame, large_file, monkeypatch):
+    """As in a window that is minimised before its first picture."""
+    window, view = shared_window, shared_window.view3d
+    monkeypatch.setattr("echopath_viewer.window.view3d.LONGEST_WAIT_MS", 50)
+    monkeypatch.setattr(type(view), "_first_look", lambda self: None)
+    monkeypatch.setattr(window, "isMinimized", lambda: True)
+    assert window.open_file(large_file)
+    window.settle()
+    assert window.session.paths.num_paths == frame.paths.num_paths and view._is_behind
+
+
+def test_a_picture_after_the_window_was_closed_is_no_error(shared_window, frame, monkeypatch):
+    view, builder = shared_window.view3d, shared_window.view3d.builder
+    monkeypatch.setattr(view, "builder", None)
+    monkeypatch.setattr(view, "_is_moving", True)
+    view._draw()
+    monkeypatch.undo()
+    assert view.builder is builder
+    view.look("fit")

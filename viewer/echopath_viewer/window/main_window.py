@@ -266,6 +266,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         self._pause.stop()
         self.session = None
         self.view3d.builder = None
+        self.view3d.when_drawn(None)
         self.view3d.close()
         super().closeEvent(event)
 

@@ -16,6 +16,7 @@ from .pace import Pace, Smoothing
 from .qt import Qt, QtCore, Signal
 
 GL_COLOR_BUFFER_BIT = 0x4000
+LONGEST_WAIT_MS = 2000  # for a picture, of what is to come after it
 CLICK_REACH = 5.0  # pixels: a click moves no farther, and a ray that close is meant
 
 
@@ -98,11 +99,19 @@ class View3D(QtInteractor):
 
     def is_behind(self) -> bool:
         """Whether changes are still to be drawn."""
-        return self._is_behind and self.isVisible()
+        return self._is_behind and self.isVisible() and not self.window().isMinimized()
 
     def when_drawn(self, work) -> None:
-        """Calls `work` after the next picture of what is shown, once; None: not any more."""
+        """Calls `work` after the next picture of what is shown, or after a while where none is drawn, as of a minimised window;
+        once. None: not any more."""
         self._afterwards = work
+        if work is not None:
+            QtCore.QTimer.singleShot(LONGEST_WAIT_MS, lambda: self._go_on(work))
+
+    def _go_on(self, work) -> None:
+        if work is self._afterwards:
+            self._afterwards = None
+            work()
 
     def paintGL(self):
         """Draws, once; changes that are made from now on ask for another picture. Nothing before the first look."""
@@ -110,9 +119,9 @@ class View3D(QtInteractor):
             self._clear()
             return
         self._draw()
-        work, self._afterwards = self._afterwards, None
+        work = self._afterwards
         if work is not None:
-            QtCore.QTimer.singleShot(0, work)
+            QtCore.QTimer.singleShot(0, lambda: self._go_on(work))
 
     def _clear(self) -> None:
         functions = self.context().functions()
@@ -127,15 +136,15 @@ class View3D(QtInteractor):
             super().paintGL()
         finally:
             interactor.EnableRenderOff()
-        self._learn(time.perf_counter() - begin)
-        if self.builder is not None:
+        if self.builder is not None:  # a picture may come after the window was closed
+            self._learn(time.perf_counter() - begin)
             self.compass.follow(self.camera, self.height())
 
     def _learn(self, seconds: float) -> None:
         """How much the next pictures may have, from what one took."""
         if self._is_moving and self._pace.follow(seconds, len(self.builder.rays.segments.rays)):
             self.builder.show_first_rays(self._pace.num_rays)
-        if self.builder is not None and self._smoothing.follow(seconds):
+        if self._smoothing.follow(seconds):
             self.render_window.SetMultiSamples(self._smoothing.samples)
             self.render_soon()
 

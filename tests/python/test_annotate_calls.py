@@ -25,6 +25,14 @@ def test_simulate_carries_the_labels_of_its_parts(plates_and_wall):
     assert bare.parts == {} and bare.labels["parts"].part_names == ["other"]
 
 
+def test_a_frame_of_parts_is_labelled_by_the_same_selections(plates_and_wall):
+    """They take the place of the partition of that name, which the frame has already."""
+    paths, parts, _ = plates_and_wall
+    frame = ep.simulate(paths.scene, make_radar(), num_rays=1000, parts=parts, guard=False)
+    labelled = ep.annotate_frame(frame, parts)
+    assert list(labelled) == list(frame.parts) and labelled["parts"].part_names == list(frame.parts["parts"])
+
+
 def test_words_name_objects_and_ghosts(labels):
     text = str(labels)
     assert "object a: seen" in text and "ghost  a: type" in text and "part   wall:" in text

@@ -292,10 +292,10 @@ def test_standard_error_is_the_spread_over_seeds():
 
 @pytest.mark.filterwarnings("ignore:rcs. .* not known to 3 dB")  # few they are
 def test_errors_of_coherent_echoes_hold_the_spread_and_the_truth():
-    """Of a smooth sphere, pi a^2: what footprints may leave out stands beside the spread over seeds."""
+    """Of a smooth sphere, pi a^2: what footprints may leave out stands beside the spread over seeds. Intervals of 95 % hold it."""
     rows, truth = _over_seeds(smooth_sphere(), 256), math.pi * RADIUS ** 2
     assert np.all(rows[:, 1] > (1 - ERROR_OF_ERRORS) * rows[:, 0].std(ddof=1))
-    assert np.all(np.abs(rows[:, 0] - truth) < 2 * rows[:, 1])
+    assert np.mean(np.abs(rows[:, 0] - truth) < 1.96 * rows[:, 1]) >= 0.9
 
 
 def test_errors_have_the_shape_of_what_they_belong_to():
@@ -410,8 +410,10 @@ def test_few_rays_are_warned_of():
         ep.rcs(plate_scene(1.0), **PLATE_ASKEW)
 
 
-def test_errors_hold_what_footprints_take_away():
+@pytest.mark.parametrize("rays", [500, 2000, 5000])
+def test_errors_hold_what_footprints_take_away(rays):
+    """Upright edges of a plate that is seen aslant: all cells along one are in phase."""
     with pytest.warns(RuntimeWarning, match="not known to 3 dB"):
-        few, error = ep.rcs(plate_scene(1.0), num_rays=8 * 5000, return_error=True, **PLATE_ASKEW)
+        few, error = ep.rcs(plate_scene(1.0), num_rays=8 * rays, return_error=True, **PLATE_ASKEW)
     many = ep.rcs(plate_scene(1.0), **PLATE_ASKEW)
-    assert abs(few - many) < 3 * error and abs(few - many) > 0.5 * many
+    assert 0.5 * many < abs(few - many) < 2 * error

@@ -45,10 +45,11 @@ class SumOfChanges {
 
 double between_points(const CoherentKind& kind, int num_batches) { return num_batches * kind.power[kPoints]; }
 
-double between_edges(const CoherentKind& kind, int num_batches) {
+// `in_phase`: how far, from 0 to 1, the cells along an edge are taken for in phase: n times as much as of random phases.
+double between_edges(const CoherentKind& kind, int num_batches, double in_phase) {
   const double edges = kind.power[kEdges], num_cells = effective_number(edges, kind.edge_squares);
-  const double of_each = kEdgeCells / std::sqrt(num_cells / num_batches);
-  return num_batches * edges * std::min(1.0, of_each) * std::min(1.0, num_cells / kFewCells);
+  const double of_each = std::min(1.0, kEdgeCells / std::sqrt(num_cells / num_batches));
+  return num_batches * edges * std::lerp(of_each, 1.0, in_phase) * std::min(1.0, num_cells / kFewCells);
 }
 
 // Returns by how much the field of that size may grow by what waves of points hold between rays, sqrt(W).
@@ -62,11 +63,10 @@ FieldBias field_bias(const PowerEvidence& evidence) {
   double finer = 0.0, gone = 0.0, surface = 0.0;  // W
   for (const CoherentKind& kind : evidence.kinds) {
     const double size = std::abs(kind.field[kAsLaunched]);
-    const double edges = squared(kOfEdges) * between_edges(kind, evidence.num_batches);
     gone += squared(missing_of_points(size, between_points(kind, evidence.num_batches)));
     if (kind.has_cells) surface += squared(kOfSurface * size);
     if (size == 0.0) {
-      gone += edges;
+      gone += squared(kOfEdges) * between_edges(kind, evidence.num_batches, 1.0);
       continue;
     }
     const std::complex<double> change = kind.field[kHalfDensity] - kind.field[kAsLaunched];
@@ -75,6 +75,8 @@ FieldBias field_bias(const PowerEvidence& evidence) {
     below.add(kOfHalving * change);
     const double of_finer = std::abs(kind.field[kFiner] - kind.field[kAsLaunched]);
     finer += squared(kOfFiner * std::max(0.0, of_finer - kAliases * size));
+    const double in_phase = std::clamp((halving - kGone) / (1.0 - kGone), 0.0, 1.0);
+    const double edges = squared(kOfEdges) * between_edges(kind, evidence.num_batches, in_phase);
     gone += squared(squared(std::min(halving / kGone, 1.0))) * edges;
   }
   return {std::hypot(above.size(), std::sqrt(finer + gone + surface)), std::hypot(below.size(), std::sqrt(finer + surface))};
@@ -139,7 +141,7 @@ Reach bias_reach(const PowerEvidence& evidence, double coherent) {
 }  // namespace
 
 double power_between_rays(const CoherentKind& kind, int num_batches) {
-  return between_points(kind, num_batches) + between_edges(kind, num_batches);
+  return between_points(kind, num_batches) + between_edges(kind, num_batches, 0.0);
 }
 
 double student_t95(int degrees_of_freedom) {

@@ -150,7 +150,8 @@ Mesh::Mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles, std::vec
     original_triangle_.push_back(source_triangle.empty() ? t : source_triangle[t]);
   }
   num_removed_triangles_ = static_cast<int64_t>(triangles.size() - triangles_.size());
-  require(!triangles_.empty(), "triangles", "must hold one with an area at least, all without of", triangles.size());
+  require(!triangles_.empty(), "triangles", "must hold at least one whose area is above the rounding of its corners",
+          "0 of " + std::to_string(triangles.size()));
 
   original_vertex_ = drop_unused_vertices(triangles_, vertices.size());
   const size_t num_used = original_vertex_.size();

@@ -17,7 +17,7 @@ EdgeWayTo way_to(const Vec3& antenna, const Vec3& point) {
   return {-direction, direction, line.norm()};
 }
 
-Vec3 middle_of(const std::vector<PosedAntenna>& antennas) {
+Vec3 centre_of_antennas(const std::vector<PosedAntenna>& antennas) {
   Vec3 sum = Vec3::Zero();
   for (const PosedAntenna& antenna : antennas) sum += antenna.position;
   return sum / static_cast<double>(antennas.size());
@@ -55,7 +55,7 @@ EdgeEstimate::EdgeEstimate(const Radar& radar, const Transform& world_from_radar
       receivers_(posed_antennas(radar.receivers, world_from_radar, origin)) {}
 
 double EdgeEstimate::power(const PosedEdge& edge, const Material& material) const {
-  const Vec3 sender = middle_of(transmitters_), receiver = middle_of(receivers_);
+  const Vec3 sender = centre_of_antennas(transmitters_), receiver = centre_of_antennas(receivers_);
   const Vec3 line = edge.line(), middle = 0.5 * (sender + receiver);
   const Vec3 point = edge.from + std::clamp(line.dot(middle - edge.from) / line.squaredNorm(), 0.0, 1.0) * line;
   const EdgeWayTo in = way_to(sender, point), out = way_to(receiver, point);

@@ -142,6 +142,18 @@ def test_leakage_and_coupling_follow_chirps_that_hop():
     assert np.angle(cube[1, 1, 0, 0] / cube[0, 1, 0, 0]) == pytest.approx(0.2 * np.pi, abs=1e-6)
 
 
+@pytest.mark.filterwarnings("ignore:scene. has no mesh")
+@pytest.mark.parametrize("settings", [{}, {"real": True}, {"multiplexing": "bpm"}, {"frequency_steps": (0.0, 1e8)}],
+                         ids=["tdm", "real", "bpm", "hops"])
+def test_labels_have_the_leakage_that_an_ideal_oscillator_brings(settings):
+    faults = {"leakage_db": np.full((2, 2), -20.0), "leakage_delay": 1e-9, "transmitter_phase": [0.0, 0.3]}
+    radar = build_radar(**ARRAY, **settings, receiver=ep.Receiver(**faults))
+    frame = ep.simulate(ep.Scene(), radar, num_rays=100, noise_seed=None)
+    beside = frame.beside_spectra["leakage"]
+    whole = ep.range_doppler(frame.noisy_cube, radar)
+    np.testing.assert_allclose(beside.values, whole.values, atol=1e-9 * np.abs(whole.values).max())
+
+
 def test_oscillators_know_the_slope_of_each_chirp():
     """A slope off by 0.1 % moves each beat by 0.1 % of its slope over the common one, as its delay says."""
     radar = build_radar(num_samples=512, num_chirps=4, bandwidth_steps=(0.0, 1e9),

@@ -8,12 +8,11 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import ArrayLike, array, checked, optional, real, refused, seed as seed_rule
 from ..transmit import code_of, is_coded, radar_of_noise
-from .analytic import as_samples
 from .channels import coupled, receiver_factors, require_channels, transmitter_factors
 from .converter import converted, jittered
 from .filters import filtered, has_filters
 from .imbalance import compressed, compression, unbalanced, with_offset
-from .leakage import leakage_amplitudes, leaked_tone
+from .leakage import leakage
 from .oscillator import Oscillator
 from .past import models_of
 from .settings import Receiver
@@ -115,16 +114,7 @@ class Chain:
 
     def leaked(self):
         """The leakage after the mixers, in a shape that a cube takes; None: none."""
-        waveform, receiver = self._radar.waveform, self._receiver
-        amplitudes = leakage_amplitudes(self._radar, receiver)
-        if amplitudes is None:
-            return None
-        if self._oscillator.is_ideal:
-            time = np.arange(waveform.num_samples) / waveform.sampling_rate
-            tone = leaked_tone(self._slots, receiver.leakage_delay, time)[:, None]
-        else:
-            tone = self._oscillator.leaked(receiver.leakage_delay)
-        return as_samples(amplitudes * tone, waveform.real)
+        return leakage(self._radar, self._receiver, self._slots, self._oscillator)
 
     def amplified(self, cube):
         """With what couples from receiver to receiver, and the errors of each."""

@@ -4,14 +4,28 @@ from __future__ import annotations
 import numpy as np
 
 from ..transmit import code_of, is_coded
+from .analytic import as_samples
 from .channels import transmitter_factors
 from .settings import Receiver
 
 
-def leakage_amplitudes(radar, receiver: Receiver) -> np.ndarray | None:
-    """Of the leakage in sqrt(W), as a cube before `demultiplex` takes it: complex [T, rx, C or 1, 1]; None: none."""
+def leakage(radar, receiver: Receiver, slots, oscillator=None) -> np.ndarray | None:
+    """The leakage after the mixers, in a shape that a cube before `demultiplex` takes, in sqrt(W); None: none.
+
+    slots: SlotTimes; oscillator: Oscillator with what it does in the meantime, None: an ideal one
+    """
     if not receiver.leakage_db:
         return None
+    if oscillator is None or oscillator.is_ideal:
+        time = np.arange(radar.waveform.num_samples) / radar.waveform.sampling_rate
+        tone = leaked_tone(slots, receiver.leakage_delay, time)[:, None]
+    else:
+        tone = oscillator.leaked(receiver.leakage_delay)
+    return as_samples(_amplitudes(radar, receiver) * tone, radar.waveform.real)
+
+
+def _amplitudes(radar, receiver: Receiver) -> np.ndarray:
+    """Of the leakage in sqrt(W), complex [T, rx, C or 1, 1]."""
     amplitude = np.sqrt(radar.transmit_power) * 10.0 ** (np.array(receiver.leakage_db) / 20.0)
     factors = transmitter_factors(receiver, radar)
     amplitude = amplitude if factors is None else amplitude * factors[:, None]

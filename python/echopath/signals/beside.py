@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arguments.part_names import INTERFERENCE, LEAKAGE, RAIN
-from ..receiver.leakage import leakage_amplitudes, leaked_tone
+from ..receiver.leakage import leakage
 from ..receiver.slots import SlotTimes
 from ..transmit import demultiplex, signal_shape
 
@@ -17,13 +17,5 @@ def cubes_beside(frame) -> dict:
 
 
 def _leaked(radar):
-    if radar.receiver is None:
-        return None
-    amplitudes = leakage_amplitudes(radar, radar.receiver)
-    if amplitudes is None:
-        return None
-    waveform = radar.waveform
-    time = np.arange(waveform.num_samples) / waveform.sampling_rate
-    tone = leaked_tone(SlotTimes(radar, 0.0), radar.receiver.leakage_delay, time)[:, None]
-    cube = np.broadcast_to(amplitudes * tone, signal_shape(radar))
-    return np.sqrt(2.0) * cube.real + 0j if waveform.real else np.array(cube)
+    leaked = None if radar.receiver is None else leakage(radar, radar.receiver, SlotTimes(radar, 0.0))
+    return None if leaked is None else np.array(np.broadcast_to(leaked, signal_shape(radar)))

@@ -9,8 +9,9 @@ from .. import _core
 from ..arguments.checks import ArrayLike, anything, array, checked, optional, real, refused, seed as seed_rule, text
 from ..arguments.part_names import CONVERTER, INTERFERENCE, LEAKAGE, NOISE, OF_RECEIVER, OFFSET, require_free
 from ..transmit import radar_of_noise, signal_shape
-from .chain import Chain, reception
+from .chain import Chain
 from .channels import require_channels
+from .converter import converted
 from .imbalance import compressed, compression
 from .settings import Receiver
 
@@ -37,8 +38,8 @@ def receive_parts(parts: Mapping[str, ArrayLike], radar: _core.Radar, *, seed: i
     require_channels(receiver, radar)
     found = _before_the_converter(cubes, radar, receiver, seed, start_time, other)
     if receiver.adc is not None:
-        whole = reception(sum(cubes.values()), radar, seed, start_time, other).cube
-        found[CONVERTER] = whole - sum(found.values())
+        before = sum(found.values())
+        found[CONVERTER] = converted(before, radar.waveform, receiver.adc)[0] - before
     return found
 
 

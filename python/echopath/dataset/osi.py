@@ -13,7 +13,7 @@ from ..arguments.checks import path as folder_rule
 from ..base.files import written_whole
 from ..base.optional import needed_module
 from ..detections.detections import Detections
-from ..signals import beside
+from ..arguments import part_names
 from ..truth.cross_section import isotropic_power
 from .classes import classes_of
 from .exports import detections_of, exported
@@ -108,7 +108,7 @@ def _add_detections(radar: Any, found: Detections, world: np.ndarray, simulated:
     cross_sections = 10.0 * np.log10(found.power / isotropic_power(simulated, places, time))
     for index in range(len(found)):
         one = radar.detection.add()
-        is_echo = not found.is_noise[index] and found.part[index] not in beside.NAMES
+        is_echo = not found.is_noise[index] and found.part[index] not in part_names.BESIDE
         one.position.distance, one.position.azimuth = float(found.range[index]), float(found.azimuth[index])
         one.position.elevation = float(np.nan_to_num(found.elevation[index]))
         one.radial_velocity, one.rcs = float(found.velocity[index]), float(cross_sections[index])

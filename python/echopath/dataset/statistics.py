@@ -11,7 +11,7 @@ import numpy as np
 
 from ..detections.detections import Detections
 from ..paths.resolution import Interval
-from ..signals import beside
+from ..arguments import part_names
 from .classes import ClassName, classes_of
 from .opened import Dataset, DatasetFrame
 
@@ -75,7 +75,7 @@ def _count(one: DatasetFrame, kinds: dict[str, ClassName], found: Statistics) ->
             found.ghosts[kinds.get(ghost.object, "static"), ghost.ghost_type] += ghost.cells
     detections = one.frame.detections
     if isinstance(detections, Detections):
-        no_echoes = np.where(detections.is_noise | np.isin(detections.part, beside.NAMES), detections.part, "")
+        no_echoes = np.where(detections.is_noise | np.isin(detections.part, part_names.BESIDE), detections.part, "")
         for no_echo, name, ghost_type in zip(no_echoes, detections.object, detections.ghost_type):
             kind = kinds.get(str(name), "static")
             found.detections[str(no_echo) or (f"ghost of {kind}" if ghost_type else kind)] += 1

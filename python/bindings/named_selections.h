@@ -5,6 +5,7 @@
 
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -34,6 +35,8 @@ struct SelectionOrText {
     try {
       return Selection(text);
     } catch (const std::invalid_argument& fault) {
+      // The text of a Selection itself is shown by the fault: whoever makes one of a key of a file names that.
+      if (std::string_view(argument) == "text") throw;
       throw std::invalid_argument(std::string(argument) + ": " + fault.what());
     }
   }

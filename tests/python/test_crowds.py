@@ -10,7 +10,7 @@ ALONE_DB = 0.3      # what is asked of each object of a crowd
 FOCUSED_DB = 1.0    # claimed for a smooth car at 40 m, at most; even rays claim 3.7
 POLE_DB = 0.5       # of poles, resolved or not: cones about spheres left 2 dB and more
 ORDERS_DB = 0.05    # of both orders over a rough mirror: one lattice each, tilted against the other
-CLAIMED_DB = 0.8    # of his direct power, at most; it scatters by .04 dB
+CLAIMED_DB = 0.95   # of his direct power: parts whose waves are faded away may have edges in phase; it scatters by .04 dB
 SCATTER = 0.01      # relative, of the diffuse part of a person's direct power
 
 

@@ -292,7 +292,7 @@ def test_standard_error_is_the_spread_over_seeds():
 
 @pytest.mark.filterwarnings("ignore:rcs. .* not known to 3 dB")  # few they are
 def test_errors_of_coherent_echoes_hold_the_spread_and_the_truth():
-    """Of a smooth sphere, pi a^2: what footprints may leave out stands beside the spread over seeds. Intervals of 95 % hold it."""
+    """Of a smooth sphere, pi a^2: what footprints may leave out stands beside the spread over seeds."""
     rows, truth = _over_seeds(smooth_sphere(), 256), math.pi * RADIUS ** 2
     assert np.all(rows[:, 1] > (1 - ERROR_OF_ERRORS) * rows[:, 0].std(ddof=1))
     assert np.mean(np.abs(rows[:, 0] - truth) < 1.96 * rows[:, 1]) >= 0.9

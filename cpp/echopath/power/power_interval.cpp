@@ -9,7 +9,7 @@ namespace {
 constexpr double kNormal = 1.959964;  // two-sided 95 % quantile
 constexpr double kOfHalving = 1.2, kOfHalvingMore = 3.0, kMostOfHalving = 5.0;
 constexpr double kAliases = 0.007, kOfFiner = 4.0;
-constexpr double kGone = 0.5, kOfEdges = 1.25;
+constexpr double kGone = 0.5, kOfEdges = 1.25, kFaded = 0.2;
 constexpr double kPointsTimesField = 4.0, kMostOfPoints = 2.5;
 constexpr double kOfSurface = 0.0025;
 constexpr double kOfAHit = 0.5;
@@ -75,7 +75,7 @@ FieldBias field_bias(const PowerEvidence& evidence) {
     below.add(kOfHalving * change);
     const double of_finer = std::abs(kind.field[kFiner] - kind.field[kAsLaunched]);
     finer += squared(kOfFiner * std::max(0.0, of_finer - kAliases * size));
-    const double in_phase = std::clamp((halving - kGone) / (1.0 - kGone), 0.0, 1.0);
+    const double in_phase = std::max(0.0, 1.0 - std::abs(kind.field[kHalfDensity]) / (kFaded * size));
     const double edges = squared(kOfEdges) * between_edges(kind, evidence.num_batches, in_phase);
     gone += squared(squared(std::min(halving / kGone, 1.0))) * edges;
   }

@@ -60,7 +60,8 @@ double power_between_rays(const CoherentKind& kind, int num_batches);
 // Between rays: the filter fades the wave of a point of reflection as cells outgrow its Fresnel zone, about as fast as what
 // cells hold of such points, P (power_between_rays), outgrows |F|^2. The field may then be as large as
 // P / (kPointsTimesField |F|), but larger than it is by no more than kMostOfPoints sqrt(P). Of waves of edges it may lack
-// kOfEdges times as much as cells hold, in full where d reaches kGone.
+// kOfEdges times as much as cells hold, in full where d reaches kGone. Where cells that are twice as large leave less than
+// kFaded of the field, cells along an edge may be in phase: those of a straight edge across the line of sight are.
 // The changes of all kinds add up as fields, but to no less than their root sum of squares, and all else as powers: kinds
 // whose echoes cancel are known as well as they are one by one. No field of a kind is known better than to kOfSurface,
 // however fine the cells: that is what the lattice and interpolated normals leave.

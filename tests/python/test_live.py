@@ -261,3 +261,14 @@ def test_wrong_arguments_are_named(live, call, named):
 def test_paths_come_after_the_first_update():
     with pytest.raises(ValueError, match="updated"):
         make_live().paths()
+
+
+def test_chirps_that_differ_have_the_signal_of_the_record(live):
+    """Before and after a change, which is added to the signal by itself."""
+    waveform = live.radar.waveform.replace(frequency_steps=(0.0, 5e6), bandwidth_steps=(0.0, 2e7, 0.0))
+    live.radar = live.radar.replace(waveform=waveform)
+    for _ in range(2):
+        view = live.update()
+        expected = ep.synthesize(live.paths(), live.radar)
+        assert np.abs(view.cube - expected).max() < ROUNDING * np.abs(expected).max()
+        live.scene["sign_30"].position += (0.0, 0.1, 0.0)

@@ -9,6 +9,7 @@ import numpy as np
 
 from .. import _core
 from ..tracing.polarization import antennas_of, chosen_model
+from ..transmit.signals import synthesize_slots
 from ..weather.weather import attenuation_of
 
 # Signals are added and taken away so often before all is summed anew; each time rounds to some 1e-16 of the largest sample.
@@ -28,7 +29,7 @@ class Update:
 class KeptSignal:
     """The record and the cube of the scene of the last update. An update that was ended is made up for by the next one.
 
-    trace, signal: {keyword: value} of `_core.LiveTrace.update` without the number of rays, and of `_core.synthesize`
+    trace, signal: {keyword: value} of `_core.LiveTrace.update` without the number of rays, and of `synthesize_slots`
     """
 
     def __init__(self, num_rays: int, trace: dict[str, Any], signal: dict[str, Any]):
@@ -75,12 +76,12 @@ class KeptSignal:
         num_paths = 0
         if self._whole is not None:
             num_paths = self._whole.num_paths
-            self._set_cube(_core.synthesize(self._whole, radar, progress=progress, **self._signal_keywords))
+            self._set_cube(synthesize_slots(self._whole, radar, progress=progress, **self._signal_keywords))
             self._radar, self._whole, self._pending, self._num_differences = radar, None, [], 0
         while self._pending:
             sign, paths = self._pending[-1]
             num_paths += paths.num_paths
-            part = _core.synthesize(paths, radar, progress=progress, **self._signal_keywords)
+            part = synthesize_slots(paths, radar, progress=progress, **self._signal_keywords)
             self._set_cube(self.cube + part if sign > 0.0 else self.cube - part)
             self._pending.pop()
             self._num_differences += 1

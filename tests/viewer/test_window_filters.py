@@ -4,8 +4,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-import echopath as ep
-from echopath_viewer.model import WHOLE, CellBox, from_paths
+from echopath_viewer.model import WHOLE, CellBox, from_paths, signals
 from echopath_viewer.window.filter_box import UNKNOWN_PATHS, around_caret
 from echopath_viewer.window.main_window import SIGNAL_PAUSE_MS
 from echopath_viewer.window.qt import Qt
@@ -68,8 +67,9 @@ def test_a_named_part_joins_the_maps_at_once(qtbot, window):
 
 
 def test_signals_wait_until_the_filters_have_come_to_rest(qtbot, window, monkeypatch):
-    made, synthesize = [], ep.synthesize
-    monkeypatch.setattr(ep, "synthesize", lambda *what, **keywords: made.append(what) or synthesize(*what, **keywords))
+    made, synthesize = [], signals.synthesize_slots
+    monkeypatch.setattr(signals, "synthesize_slots",
+                        lambda *what, **keywords: made.append(what) or synthesize(*what, **keywords))
     window.session.select_cells(CellBox(0, 127, 0, 31))
     qtbot.waitUntil(lambda: len(made) == 1, timeout=PATIENCE_MS)
     for count in range(10, 15):

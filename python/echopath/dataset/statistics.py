@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ..arguments import part_names
 from ..detections.detections import Detections
 from ..paths.resolution import Interval
-from ..arguments import part_names
 from .classes import ClassName, classes_of
 from .opened import Dataset, DatasetFrame
 

@@ -11,7 +11,7 @@ import pytest
 
 from echopath import dataset
 from echopath.cli.dataset import _forecast_line
-from support.scene_text import SMALL_WAVEFORM
+from support.scene_text import SMALL_RADAR
 
 pytest.importorskip("distributed")
 TEMPLATE = """
@@ -19,11 +19,7 @@ TEMPLATE = """
 scenes = 4
 keep = "labels"
 seed = 3
-""" + SMALL_WAVEFORM + """\
-[[radar.transmitters]]
-position = [0.0, 0.0, 1.0]
-[[radar.receivers]]
-position = [0.0, 0.01, 1.0]
+""" + SMALL_RADAR + """\
 [[objects]]
 name = "plate"
 actor = "plate"

@@ -17,6 +17,13 @@ sampling_rate = 10e6
 num_chirps = 8
 chirp_interval = 1e-4
 """
+# That waveform from antennas 1 m above the ground.
+SMALL_RADAR = SMALL_WAVEFORM + """\
+[[radar.transmitters]]
+position = [0.0, 0.0, 1.0]
+[[radar.receivers]]
+position = [0.0, 0.01, 1.0]
+"""
 ANTENNAS = """
 [[radar.transmitters]]
 position = [0.0, 0.0, 0.0]

@@ -3,7 +3,7 @@ import hashlib
 from pathlib import Path
 
 from echopath import dataset
-from support.scene_text import SMALL_WAVEFORM
+from support.scene_text import SMALL_RADAR
 
 HEAD = """
 [dataset]
@@ -17,11 +17,7 @@ split = {train = 0.5, test = 0.5}
 SCENE = """
 [radar]
 noise_figure_db = 12.0
-""" + SMALL_WAVEFORM + """\
-[[radar.transmitters]]
-position = [0.0, 0.0, 1.0]
-[[radar.receivers]]
-position = [0.0, 0.01, 1.0]
+""" + SMALL_RADAR + """\
 [[objects]]
 name = "plate"
 count = {integer = [1, 3]}

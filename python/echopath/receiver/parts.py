@@ -12,7 +12,7 @@ from ..transmit import radar_of_noise, signal_shape
 from .chain import Chain
 from .channels import require_channels
 from .converter import converted
-from .imbalance import compressed, compression
+from .imbalance import compressed, compression, with_offset
 from .settings import Receiver
 
 _CUBE = array("[T, R, C, S]", kind="complex")
@@ -58,8 +58,7 @@ def _before_the_converter(cubes, radar, receiver: Receiver, seed, start_time: fl
     models = chain.models_of(sum(found.values()))
     found = {name: chain.unbalanced(chain.filtered(cube, models)) for name, cube in found.items()}
     if receiver.dc_offset != (0.0, 0.0):
-        offset = receiver.dc_offset[0] if radar.waveform.real else complex(*receiver.dc_offset)
-        found[OFFSET] = np.full(shape, offset, np.complex128)
+        found[OFFSET] = with_offset(np.zeros(shape, np.complex128), radar.waveform, receiver)
     return {name: chain.sampled(cube) for name, cube in found.items()}
 
 

@@ -122,8 +122,8 @@ macro(echopath_library suffix unity_files)
   echopath_parse_headers_once(${target} echopath_base${suffix} ${own} ${echopath_common_headers})
 endmacro()
 
-# echopath_kernels(MODULE headers...): compiles them into a module once per instruction set that base/simd.h picks from, as
-# base/lane_math.h says. What is compiled with options of its own cannot use headers that were parsed without.
+# echopath_kernels(MODULE headers...): compiles them into a module once per instruction set that base/lanes/simd.h picks from, as
+# base/lanes/lane_math.h says. What is compiled with options of its own cannot use headers that were parsed without.
 function(echopath_kernels name)
   list(TRANSFORM ARGN REPLACE "(.+)" "#include \"echopath/${name}/\\1\"" OUTPUT_VARIABLE includes)
   list(JOIN includes "\n" includes)

@@ -6,9 +6,9 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
-#include "echopath/base/meant_name.h"
-#include "echopath/base/parallel.h"
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes/simd.h"
+#include "echopath/base/text/meant_name.h"
+#include "echopath/base/threads/parallel.h"
 #include "plausible.h"
 #include "run_job.h"
 

@@ -9,7 +9,7 @@
 #include "array.h"
 #include "define.h"
 #include "echopath/base/errors.h"
-#include "echopath/em/sheet_model.h"
+#include "echopath/em/layers/sheet_model.h"
 
 namespace echopath::bindings {
 namespace {

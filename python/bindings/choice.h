@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "echopath/em/footprint.h"
-#include "echopath/em/jones.h"
+#include "echopath/em/polarization/jones.h"
 #include "echopath/replay/posed/specular_slide.h"
 #include "echopath/signal/synthesizer.h"
 #include "echopath/trace/launch/sampler.h"

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "echopath/base/meant_name.h"
+#include "echopath/base/text/meant_name.h"
 
 namespace echopath::bindings::detail {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 
 namespace echopath::bindings {
 

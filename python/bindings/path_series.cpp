@@ -14,7 +14,7 @@
 #include "array.h"
 #include "choice.h"
 #include "echopath/base/errors.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/power/path_power.h"
 #include "echopath/replay/replay.h"
 #include "run_job.h"

@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 
 namespace echopath::bindings {
 

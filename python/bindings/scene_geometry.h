@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "echopath/scene/scene.h"
-#include "echopath/trace/geometry/kept_geometry.h"
+#include "echopath/trace/embree/kept_geometry.h"
 
 namespace echopath::bindings {
 

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes/simd.h"
 #include "echopath/radar/radar.h"
 #include "echopath/signal/kernels/kernels.h"
 #include "echopath/signal/kernels/nufft_kernel.h"

@@ -5,7 +5,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/replay/posed/hit_patches.h"
-#include "echopath/scene/mesh/smooth.h"
+#include "echopath/scene/smooth/smooth.h"
 #include "echopath/trace/near_antenna.h"
 
 namespace echopath::testing {

@@ -5,8 +5,8 @@
 #include <complex>
 #include <vector>
 
-#include "echopath/replay/evaluate/launch_cell.h"
-#include "echopath/replay/evaluate/radio_constants.h"
+#include "echopath/replay/factors/launch_cell.h"
+#include "echopath/replay/factors/radio_constants.h"
 #include "echopath/replay/posed/local_paths.h"
 #include "echopath/replay/posed/specular_slide.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "echopath/base/edit_distance.h"
+#include "echopath/base/text/edit_distance.h"
 
 namespace echopath {
 

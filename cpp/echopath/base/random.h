@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes/simd.h"
 
 namespace echopath {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/bench/query_recorder.h"
 #include "echopath/bench/stopwatch.h"
 #include "echopath/trace/tracer.h"

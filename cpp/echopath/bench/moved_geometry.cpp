@@ -2,7 +2,7 @@
 
 #include "echopath/base/errors.h"
 #include "echopath/bench/stopwatch.h"
-#include "echopath/trace/geometry/embree_device.h"
+#include "echopath/trace/embree/embree_device.h"
 
 namespace echopath {
 namespace {

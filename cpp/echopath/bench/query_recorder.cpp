@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "echopath/trace/geometry/embree_device.h"
+#include "echopath/trace/embree/embree_device.h"
 
 namespace echopath {
 namespace {

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "echopath/bench/query_log.h"
-#include "echopath/trace/geometry/embree_scene.h"
+#include "echopath/trace/embree/embree_scene.h"
 
 namespace echopath {
 

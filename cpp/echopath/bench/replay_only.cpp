@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/signal/echoes/echo_states.h"
 
 namespace echopath {

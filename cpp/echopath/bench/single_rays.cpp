@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "echopath/base/errors.h"
-#include "echopath/base/parallel.h"
-#include "echopath/trace/geometry/embree_scene.h"
+#include "echopath/base/threads/parallel.h"
+#include "echopath/trace/embree/embree_scene.h"
 
 namespace echopath {
 namespace {

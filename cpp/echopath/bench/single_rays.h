@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/scene/scene.h"
 
 namespace echopath {

@@ -1,6 +1,6 @@
 #pragma once
-// Evaluates the filters of em/footprint.h for doubles and for vectors of doubles. Math is as in base/scalar_math.h.
-#include "echopath/base/scalar_math.h"
+// Evaluates the filters of em/footprint.h for doubles and for vectors of doubles. Math is as in base/lanes/scalar_math.h.
+#include "echopath/base/lanes/scalar_math.h"
 
 namespace echopath {
 

@@ -5,8 +5,8 @@
 #include <set>
 
 #include "echopath/base/errors.h"
-#include "echopath/base/quoted.h"
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes/simd.h"
+#include "echopath/base/text/quoted.h"
 
 namespace echopath {
 namespace {

@@ -2,8 +2,8 @@
 
 #include "echopath/base/errors.h"
 #include "echopath/base/range_of_coordinates.h"
-#include "echopath/scene/mesh/kept_normals.h"
-#include "echopath/scene/mesh/smooth.h"
+#include "echopath/scene/smooth/kept_normals.h"
+#include "echopath/scene/smooth/smooth.h"
 
 namespace echopath {
 namespace {

@@ -43,7 +43,7 @@ class PosedScene {
   // Returns all vertices of a mesh in the world, m. Raises invalid_argument where only a patch of it is posed.
   std::vector<Vec3> world_vertices(uint32_t mesh_id) const;
   // Unit normals [V] in world axes of the curved surface that the mesh, or the whole that it is a part of, stands
-  // for (scene/mesh/smooth.h).
+  // for (scene/smooth/smooth.h).
   std::vector<Vec3> world_normals(uint32_t mesh_id) const;
   // Returns the corners of a triangle in the world, m. Raises as world_vertices.
   std::array<Vec3, 3> world_triangle(uint32_t mesh_id, uint32_t triangle_id) const;

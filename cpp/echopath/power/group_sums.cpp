@@ -7,8 +7,8 @@
 #include <unordered_map>
 
 #include "echopath/base/constants.h"
-#include "echopath/base/parallel.h"
-#include "echopath/base/phasor.h"
+#include "echopath/base/lanes/phasor.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/replay/replay.h"
 
 namespace echopath {

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/power/power_interval.h"
 #include "echopath/trace/record/paths.h"
 

@@ -2,7 +2,7 @@
 // Computes the power and the length of each path of a record.
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/trace/record/paths.h"
 
 namespace echopath {

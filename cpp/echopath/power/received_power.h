@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/power/group_sums.h"
 #include "echopath/trace/record/paths.h"
 

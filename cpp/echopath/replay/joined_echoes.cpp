@@ -4,7 +4,7 @@
 #include <bit>
 #include <utility>
 
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes/simd.h"
 
 namespace echopath {
 

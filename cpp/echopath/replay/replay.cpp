@@ -6,9 +6,9 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
-#include "echopath/base/kept_memory.h"
-#include "echopath/base/parallel.h"
-#include "echopath/replay/evaluate/attenuation.h"
+#include "echopath/base/memory/kept_memory.h"
+#include "echopath/base/threads/parallel.h"
+#include "echopath/replay/factors/attenuation.h"
 #include "echopath/replay/spare_echoes.h"
 #include "echopath/replay/time/chirp_derivatives.h"
 #include "echopath/replay/time/node_tails.h"

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "echopath/replay/evaluate/path_evaluator.h"
-#include "echopath/replay/evaluate/radio_constants.h"
+#include "echopath/replay/factors/radio_constants.h"
 #include "echopath/replay/joined_echoes.h"
 #include "echopath/replay/time/path_grids.h"
 

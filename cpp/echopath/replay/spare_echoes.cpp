@@ -3,7 +3,7 @@
 #include <memory>
 #include <utility>
 
-#include "echopath/base/kept_memory.h"
+#include "echopath/base/memory/kept_memory.h"
 
 namespace echopath {
 namespace {

@@ -1,6 +1,6 @@
 #include "echopath/scene/coherent_meshes.h"
 
-#include "echopath/em/coherent_share.h"
+#include "echopath/em/surface/coherent_share.h"
 
 namespace echopath {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "echopath/base/errors.h"
-#include "echopath/base/quoted.h"
+#include "echopath/base/text/quoted.h"
 
 namespace echopath {
 namespace {

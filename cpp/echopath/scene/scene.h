@@ -25,7 +25,7 @@ struct Node {
   std::shared_ptr<const Deformation> deformation;  // may be null; its vertices replace the mesh's
   MaterialPtr material;                            // null where there is no mesh
   std::string material_name;                       // as the user gave it, may be empty
-  bool smooth = false;                             // the mesh stands for a curved surface (scene/mesh/smooth.h)
+  bool smooth = false;                             // the mesh stands for a curved surface (scene/smooth/smooth.h)
   bool visible = true;                             // false: neither it nor what is below it takes part in anything
 };
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "echopath/scene/mesh/sharp_edges.h"
+#include "echopath/scene/edges/sharp_edges.h"
 #include "echopath/scene/scene.h"
 
 namespace echopath {

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "echopath/scene/mesh/edge_finder.h"
+#include "echopath/scene/edges/edge_finder.h"
 #include "echopath/scene/scene_edges.h"
 
 namespace echopath {

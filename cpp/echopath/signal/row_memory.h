@@ -2,8 +2,8 @@
 // Holds what the parts of the synthesizer share: the rows of moving echoes. Internal to the module.
 #include <memory>
 
-#include "echopath/base/kept_memory.h"
-#include "echopath/base/large_array.h"
+#include "echopath/base/memory/kept_memory.h"
+#include "echopath/base/memory/large_array.h"
 #include "echopath/signal/synthesizer.h"
 
 namespace echopath {

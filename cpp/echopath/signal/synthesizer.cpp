@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "echopath/base/errors.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/signal/echoes/echoes_check.h"
 #include "echopath/signal/kernels/carrier.h"
 #include "echopath/signal/methods/method.h"

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/signal/kernels/carrier.h"
 #include "echopath/signal/methods/method.h"
 #include "echopath/signal/methods/per_sample.h"

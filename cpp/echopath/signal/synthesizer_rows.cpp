@@ -4,8 +4,8 @@
 #include <stdexcept>
 #include <string>
 
-#include "echopath/base/parallel.h"
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes/simd.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/signal/methods/method.h"
 #include "echopath/signal/row_memory.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 // Some vectors side by side, for kernels_body.h alone.
-#include "echopath/base/lane_math.h"
+#include "echopath/base/lanes/lane_math.h"
 
 namespace echopath::ECHOPATH_KERNELS {
 

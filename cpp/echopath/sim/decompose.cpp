@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 
 namespace echopath {
 namespace {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/scene/scene.h"
 #include "echopath/sim/rays/trace_to_error.h"
 
@@ -20,7 +20,7 @@ struct RcsDirections {
 struct RcsPolarization {
   enum class Kind {
     kVector,
-    kHorizontal,  // in the xy-plane (em/jones.h, transverse_basis)
+    kHorizontal,  // in the xy-plane (em/polarization/jones.h, transverse_basis)
     kVertical,    // up
   };
   Kind kind = Kind::kVector;

@@ -1,6 +1,6 @@
 #include "echopath/sim/replay_cost.h"
 
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 
 namespace echopath {
 namespace {

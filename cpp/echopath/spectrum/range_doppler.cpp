@@ -8,7 +8,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/fft/fft.h"
 
 namespace echopath {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/radar/radar.h"
 #include "echopath/spectrum/window.h"
 

@@ -7,7 +7,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
-#include "echopath/base/meant_name.h"
+#include "echopath/base/text/meant_name.h"
 
 namespace echopath {
 namespace {

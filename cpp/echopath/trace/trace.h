@@ -1,13 +1,13 @@
 #pragma once
 // Traces a scene: rays that see scene and radar at mid-frame make the paths of the record.
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/scene/scene_snapshot.h"
 #include "echopath/trace/launch/launch_focus.h"
 #include "echopath/trace/record/paths.h"
 
 namespace echopath {
 
-class KeptGeometry;  // trace/geometry/kept_geometry.h
+class KeptGeometry;  // trace/embree/kept_geometry.h
 
 inline constexpr int64_t kMostRays = 10000000000;
 

@@ -4,12 +4,12 @@
 #include <sstream>
 
 #include "echopath/base/constants.h"
-#include "echopath/base/machine_memory.h"
-#include "echopath/base/parallel.h"
-#include "echopath/trace/launch/aimed_points.h"
+#include "echopath/base/memory/machine_memory.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/trace/mirrors/mirror_paths.h"
 #include "echopath/trace/record/record_writer.h"
 #include "echopath/trace/sheets/passes.h"
+#include "echopath/trace/strata/aimed_points.h"
 
 namespace echopath {
 namespace {

@@ -2,7 +2,7 @@
 // Carries out the steps of a trace: it makes once what all rays share, and shoots the rays in blocks. Internal to the
 // module.
 #include "echopath/trace/edges/edges_over_planes.h"
-#include "echopath/trace/geometry/kept_geometry.h"
+#include "echopath/trace/embree/kept_geometry.h"
 #include "echopath/trace/mirrors/plane_images.h"
 #include "echopath/trace/sbr/sbr.h"
 #include "echopath/trace/trace.h"

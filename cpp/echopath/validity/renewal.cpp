@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <numeric>
 
-#include "echopath/base/parallel.h"
-#include "echopath/replay/evaluate/radio_constants.h"
+#include "echopath/base/threads/parallel.h"
+#include "echopath/replay/factors/radio_constants.h"
 #include "echopath/validity/frame/frame_probe.h"
 
 namespace echopath {

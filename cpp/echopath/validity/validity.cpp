@@ -8,7 +8,7 @@
 #include <span>
 
 #include "echopath/base/errors.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/replay/replay.h"
 #include "echopath/signal/noise.h"
 #include "echopath/validity/frame/path_sample.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/replay/posed/specular_slide.h"
 #include "echopath/trace/record/paths.h"
 

@@ -1,7 +1,7 @@
 #include "echopath/validity/validity_objects.h"
 
 #include "echopath/base/constants.h"
-#include "echopath/base/phasor.h"
+#include "echopath/base/lanes/phasor.h"
 
 namespace echopath {
 

@@ -53,7 +53,7 @@ def tessellation(vertices, triangles) -> Tessellation | None:
     """Measures the curvature that a mesh's facets stand for, from the turns between neighbours.
 
     vertices [V, 3] in m, triangles [F, 3]. Returns None for meshes without curved surfaces: planes, and planes that
-    meet in edges of more than 40 degrees or in single bends. The core tells how (scene/mesh/tessellation.h).
+    meet in edges of more than 40 degrees or in single bends. The core tells how (scene/smooth/tessellation.h).
     """
     return _tessellation_of(_core.Mesh(vertices, triangles))
 

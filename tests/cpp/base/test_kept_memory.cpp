@@ -1,4 +1,4 @@
-#include "echopath/base/kept_memory.h"
+#include "echopath/base/memory/kept_memory.h"
 
 #include <gtest/gtest.h>
 

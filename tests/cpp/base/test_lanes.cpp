@@ -1,4 +1,4 @@
-#include "echopath/base/lanes.h"
+#include "echopath/base/lanes/lanes.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "echopath/base/lazy.h"
+#include "echopath/base/memory/lazy.h"
 
 namespace echopath::test_lazy {
 namespace {

@@ -1,4 +1,4 @@
-#include "echopath/base/meant_name.h"
+#include "echopath/base/text/meant_name.h"
 
 #include <gtest/gtest.h>
 

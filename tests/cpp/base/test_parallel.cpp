@@ -1,4 +1,4 @@
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 
 #include <gtest/gtest.h>
 

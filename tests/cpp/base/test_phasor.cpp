@@ -1,5 +1,5 @@
 // Phases of products of many turns, beside long double.
-#include "echopath/base/phasor.h"
+#include "echopath/base/lanes/phasor.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "echopath/base/recent_results.h"
+#include "echopath/base/memory/recent_results.h"
 
 #include <gtest/gtest.h>
 

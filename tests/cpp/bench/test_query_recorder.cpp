@@ -5,7 +5,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/bench/query_recorder.h"
 #include "echopath/trace/tracer.h"
 #include "support/scenes.h"

@@ -5,7 +5,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/random.h"
-#include "echopath/em/diffuse_lobe.h"
+#include "echopath/em/surface/diffuse_lobe.h"
 
 namespace echopath::test_diffuse_lobe {
 namespace {

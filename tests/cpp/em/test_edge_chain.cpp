@@ -5,7 +5,7 @@
 #include <complex>
 
 #include "echopath/base/constants.h"
-#include "echopath/em/edge_chain.h"
+#include "echopath/em/edges/edge_chain.h"
 
 namespace echopath::test_edge_chain {
 namespace {

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "echopath/base/constants.h"
-#include "echopath/em/edge_diffraction.h"
+#include "echopath/em/edges/edge_diffraction.h"
 
 namespace echopath::test_edge_diffraction {
 namespace {

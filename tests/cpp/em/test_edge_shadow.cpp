@@ -5,7 +5,7 @@
 #include <complex>
 
 #include "echopath/base/constants.h"
-#include "echopath/em/edge_shadow.h"
+#include "echopath/em/edges/edge_shadow.h"
 
 namespace echopath::test_edge_shadow {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
-#include "echopath/em/fresnel.h"
-#include "echopath/em/surface_response.h"
+#include "echopath/em/surface/fresnel.h"
+#include "echopath/em/surface/surface_response.h"
 
 namespace echopath::test_em {
 namespace {

@@ -5,8 +5,8 @@
 #include <random>
 
 #include "echopath/base/constants.h"
-#include "echopath/em/fresnel.h"
-#include "echopath/em/jones.h"
+#include "echopath/em/polarization/jones.h"
+#include "echopath/em/surface/fresnel.h"
 
 namespace echopath::test_jones {
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "echopath/base/constants.h"
-#include "echopath/em/sheet_table.h"
-#include "echopath/em/surface_response.h"
+#include "echopath/em/layers/sheet_table.h"
+#include "echopath/em/surface/surface_response.h"
 
 namespace echopath::test_layers {
 namespace {

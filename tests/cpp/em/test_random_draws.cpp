@@ -7,8 +7,8 @@
 #include "echopath/base/constants.h"
 #include "echopath/base/random.h"
 #include "echopath/em/footprint.h"
-#include "echopath/em/jones.h"
-#include "echopath/em/surface_response.h"
+#include "echopath/em/polarization/jones.h"
+#include "echopath/em/surface/surface_response.h"
 
 namespace echopath::test_random_draws {
 namespace {

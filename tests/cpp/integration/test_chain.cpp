@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <fstream>
 
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/scene/readers/readers.h"
 #include "echopath/sim/decompose.h"
 #include "echopath/sim/synthesize.h"

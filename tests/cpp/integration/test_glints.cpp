@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/sim/rays/ray_allocation.h"
 #include "support/scenes.h"
 

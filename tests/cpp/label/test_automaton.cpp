@@ -6,7 +6,7 @@
 #include <string>
 
 #include "cpp/label/hand_made_paths.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/label/expressions/automaton.h"
 #include "echopath/label/expressions/expression.h"
 

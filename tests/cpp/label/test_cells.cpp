@@ -6,7 +6,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 
 namespace echopath::test_cells {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cpp/label/hand_made_paths.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/label/grouping.h"
 #include "echopath/label/objects/families.h"
 

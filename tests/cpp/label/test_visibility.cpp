@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "cpp/label/plates.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/label/objects/appearing.h"
 #include "echopath/label/objects/visibility.h"
-#include "echopath/trace/geometry/kept_geometry.h"
+#include "echopath/trace/embree/kept_geometry.h"
 #include "support/scenes.h"
 
 namespace echopath::test_visibility {

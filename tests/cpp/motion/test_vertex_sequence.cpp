@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "echopath/base/constants.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/motion/deformation.h"
 #include "support/expect_error.h"
 

@@ -1,7 +1,7 @@
 // What sheets, the air and lobes make of the amplitudes of paths, against closed forms.
 #include <gtest/gtest.h>
 
-#include "echopath/replay/evaluate/path_passages.h"
+#include "echopath/replay/factors/path_passages.h"
 #include "support/scenes.h"
 
 namespace echopath::test_sheet_passages {

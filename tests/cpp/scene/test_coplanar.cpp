@@ -5,7 +5,7 @@
 #include <random>
 
 #include "echopath/base/constants.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/motion/motion.h"
 #include "echopath/scene/overlap/box_tree.h"
 #include "echopath/scene/overlap/coplanar.h"

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "echopath/scene/mesh/kept_normals.h"
-#include "echopath/scene/mesh/smooth.h"
+#include "echopath/scene/smooth/kept_normals.h"
+#include "echopath/scene/smooth/smooth.h"
 
 namespace echopath::test_kept_normals {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <numeric>
 
-#include "echopath/scene/mesh/smooth.h"
 #include "echopath/scene/mesh/surface_patch.h"
 #include "echopath/scene/readers/skin_parts.h"
 #include "echopath/scene/scene.h"
+#include "echopath/scene/smooth/smooth.h"
 #include "support/expect_error.h"
 
 namespace echopath::test_mesh_part {

@@ -2,7 +2,7 @@
 
 #include <random>
 
-#include "echopath/scene/mesh/planar_patches.h"
+#include "echopath/scene/edges/planar_patches.h"
 
 namespace echopath::test_planar_patches {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "echopath/scene/mesh/reflection_point.h"
-#include "echopath/scene/mesh/smooth.h"
+#include "echopath/scene/smooth/reflection_point.h"
+#include "echopath/scene/smooth/smooth.h"
 
 namespace echopath::test_reflection_point {
 namespace {

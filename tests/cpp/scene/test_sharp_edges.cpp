@@ -4,7 +4,7 @@
 #include <random>
 
 #include "echopath/base/constants.h"
-#include "echopath/scene/mesh/sharp_edges.h"
+#include "echopath/scene/edges/sharp_edges.h"
 
 namespace echopath::test_sharp_edges {
 namespace {

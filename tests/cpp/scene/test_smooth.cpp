@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "echopath/scene/mesh/smooth.h"
+#include "echopath/scene/smooth/smooth.h"
 
 namespace echopath::test_smooth {
 namespace {

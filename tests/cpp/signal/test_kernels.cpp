@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "cpp/signal/slow_sum.h"
-#include "echopath/base/phasor.h"
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes/phasor.h"
+#include "echopath/base/lanes/simd.h"
 #include "echopath/signal/echoes/echo_tiles.h"
 #include "echopath/signal/kernels/kernels.h"
 #include "echopath/signal/kernels/nufft_kernel.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "cpp/signal/slow_sum.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 
 namespace echopath::test_many_echoes {
 namespace {

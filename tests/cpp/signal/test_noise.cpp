@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "cpp/signal/slow_sum.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/signal/noise.h"
 
 namespace echopath::test_noise {

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "cpp/signal/slow_sum.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 
 namespace echopath::test_synthesizer {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "cpp/sim/slow_map.h"
 #include "echopath/base/constants.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/sim/stream/part_pass.h"
 #include "echopath/trace/trace.h"
 #include "support/path_by_path.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/spectrum/angle/angle_fft.h"
 #include "echopath/spectrum/array/virtual_array.h"
 #include "plane_waves.h"

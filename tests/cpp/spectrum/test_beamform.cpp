@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/spectrum/angle/beamform.h"
 #include "plane_waves.h"
 

@@ -8,7 +8,7 @@
 #include <random>
 #include <thread>
 
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/spectrum/cfar/cfar.h"
 #include "plane_waves.h"
 #include "support/expect_error.h"

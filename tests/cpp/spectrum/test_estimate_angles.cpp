@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/spectrum/angle/estimate_angles.h"
 #include "echopath/spectrum/array/tdm.h"
 #include "plane_waves.h"

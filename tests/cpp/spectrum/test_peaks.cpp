@@ -6,7 +6,7 @@
 #include <numbers>
 #include <random>
 
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/spectrum/cfar/peaks.h"
 #include "plane_waves.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/spectrum/angle/range_azimuth.h"
 #include "plane_waves.h"
 

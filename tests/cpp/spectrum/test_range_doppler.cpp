@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/spectrum/range_doppler.h"
 #include "support/waveforms.h"
 

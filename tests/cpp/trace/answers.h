@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "echopath/trace/geometry/embree_scene.h"
+#include "echopath/trace/embree/embree_scene.h"
 
 namespace echopath::testing {
 

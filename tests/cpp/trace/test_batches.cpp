@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "echopath/trace/geometry/embree_scene.h"
+#include "echopath/trace/embree/embree_scene.h"
 #include "echopath/trace/launch/launch.h"
 #include "echopath/trace/launch/launch_directions.h"
 #include "echopath/trace/launch/launch_lattice.h"

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "echopath/base/constants.h"
-#include "echopath/trace/launch/fit_stratum.h"
+#include "echopath/trace/strata/fit_stratum.h"
 
 namespace echopath::test_fit_stratum {
 namespace {

@@ -9,8 +9,8 @@
 #include <random>
 
 #include "answers.h"
-#include "echopath/base/parallel.h"
-#include "echopath/trace/geometry/kept_geometry.h"
+#include "echopath/base/threads/parallel.h"
+#include "echopath/trace/embree/kept_geometry.h"
 #include "support/sanitized.h"
 #include "support/scenes.h"
 

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "echopath/base/random.h"
-#include "echopath/trace/mirrors/mirror_frusta.h"
+#include "echopath/trace/frusta/mirror_frusta.h"
 
 namespace echopath::test_mirror_frusta {
 namespace {

@@ -5,8 +5,8 @@
 #include <numeric>
 #include <random>
 
-#include "echopath/base/parallel.h"
-#include "echopath/trace/mirrors/frustum_locator.h"
+#include "echopath/base/threads/parallel.h"
+#include "echopath/trace/frusta/frustum_locator.h"
 #include "echopath/trace/trace.h"
 #include "support/sanitized.h"
 #include "support/scenes.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "echopath/trace/geometry/embree_scene.h"
+#include "echopath/trace/embree/embree_scene.h"
 #include "echopath/trace/trace.h"
 #include "support/scenes.h"
 

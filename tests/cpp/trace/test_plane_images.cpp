@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/trace/trace.h"
 #include "support/sanitized.h"
 #include "support/scenes.h"

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstring>
 
-#include "echopath/base/parallel.h"
-#include "echopath/trace/geometry/embree_scene.h"
+#include "echopath/base/threads/parallel.h"
+#include "echopath/trace/embree/embree_scene.h"
 #include "echopath/trace/launch/launch.h"
 #include "echopath/trace/launch/launch_directions.h"
 #include "echopath/trace/launch/launch_lattice.h"

@@ -7,8 +7,8 @@
 #include <set>
 
 #include "answers.h"
-#include "echopath/trace/geometry/mesh_clusters.h"
-#include "echopath/trace/geometry/tree_shape.h"
+#include "echopath/trace/embree/mesh_clusters.h"
+#include "echopath/trace/embree/tree_shape.h"
 #include "support/scenes.h"
 
 namespace echopath::test_trees {

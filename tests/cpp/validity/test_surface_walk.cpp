@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "echopath/scene/mesh/smooth.h"
+#include "echopath/scene/smooth/smooth.h"
 #include "support/scenes.h"
 
 namespace echopath::test_surface_walk {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "echopath/base/errors.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 
 namespace echopath {
 namespace {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 
 namespace echopath {
 

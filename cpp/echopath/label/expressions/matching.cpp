@@ -2,8 +2,8 @@
 #include <cstring>
 #include <functional>
 
-#include "echopath/base/parallel.h"
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes/simd.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/label/expressions/automaton.h"
 
 namespace echopath {

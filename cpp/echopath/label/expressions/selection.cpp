@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "echopath/base/errors.h"
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes/simd.h"
 #include "echopath/label/expressions/automaton.h"
 #include "echopath/label/expressions/selection_text.h"
 #include "echopath/power/path_power.h"

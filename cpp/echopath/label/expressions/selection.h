@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/label/expressions/expression.h"
 #include "echopath/trace/record/paths.h"
 

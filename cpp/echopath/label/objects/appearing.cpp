@@ -4,9 +4,9 @@
 #include <array>
 #include <set>
 
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/label/objects/object_view.h"
-#include "echopath/trace/geometry/kept_geometry.h"
+#include "echopath/trace/embree/kept_geometry.h"
 #include "echopath/trace/launch/launch_directions.h"
 #include "echopath/trace/launch/sampler.h"
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "echopath/base/lazy.h"
-#include "echopath/trace/geometry/embree_scene.h"
+#include "echopath/base/memory/lazy.h"
+#include "echopath/trace/embree/embree_scene.h"
 
 namespace echopath {
 

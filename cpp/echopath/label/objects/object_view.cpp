@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "echopath/base/scalar_math.h"
-#include "echopath/base/simd.h"
-#include "echopath/trace/launch/fit_stratum.h"
+#include "echopath/base/lanes/scalar_math.h"
+#include "echopath/base/lanes/simd.h"
+#include "echopath/trace/strata/fit_stratum.h"
 
 namespace echopath {
 namespace {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "echopath/label/objects/surfaces.h"
-#include "echopath/trace/geometry/embree_scene.h"
-#include "echopath/trace/launch/stratum.h"
+#include "echopath/trace/embree/embree_scene.h"
+#include "echopath/trace/strata/stratum.h"
 
 namespace echopath {
 

@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-#include "echopath/trace/geometry/packet.h"
+#include "echopath/trace/embree/packet.h"
 #include "echopath/trace/launch/launch_directions.h"
 
 namespace echopath {

@@ -6,7 +6,7 @@
 
 #include "echopath/base/errors.h"
 #include "echopath/posed/posed_scene.h"
-#include "echopath/trace/launch/scene_objects.h"
+#include "echopath/trace/strata/scene_objects.h"
 
 namespace echopath {
 namespace {

@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "echopath/base/errors.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/label/objects/nearest_point.h"
 #include "echopath/label/objects/object_view.h"
 #include "echopath/label/objects/sight_grid.h"
-#include "echopath/trace/geometry/kept_geometry.h"
+#include "echopath/trace/embree/kept_geometry.h"
 
 namespace echopath {
 namespace {

@@ -4,13 +4,13 @@
 #include <utility>
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/label/objects/surfaces.h"
 #include "echopath/radar/radar.h"
 
 namespace echopath {
 
-class KeptGeometry;  // trace/geometry/kept_geometry.h
+class KeptGeometry;  // trace/embree/kept_geometry.h
 
 // Describes an object as one end of the radar sees it, from the mean position of its antennas.
 struct Sight {

@@ -5,10 +5,10 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/plane.h"
-#include "echopath/em/edge_chain.h"
-#include "echopath/em/edge_diffraction.h"
-#include "echopath/em/edge_shadow.h"
-#include "echopath/em/surface_response.h"
+#include "echopath/em/edges/edge_chain.h"
+#include "echopath/em/edges/edge_diffraction.h"
+#include "echopath/em/edges/edge_shadow.h"
+#include "echopath/em/surface/surface_response.h"
 #include "echopath/replay/kernels/path_formula.h"
 #include "echopath/trace/edges/posed_edge.h"
 

@@ -1,7 +1,7 @@
 #include "echopath/replay/evaluate/path_evaluator.h"
 
 #include "echopath/replay/evaluate/edge_echoes.h"
-#include "echopath/replay/evaluate/lobe_factors.h"
+#include "echopath/replay/factors/lobe_factors.h"
 
 namespace echopath {
 

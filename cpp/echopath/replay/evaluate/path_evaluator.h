@@ -1,8 +1,8 @@
 #pragma once
 // Evaluates lengths and amplitudes of blocks of paths at the nodes of a time grid: it plans what the paths share and
 // evaluates that once.
-#include "echopath/replay/evaluate/sheet_passages.h"
 #include "echopath/replay/evaluate/single_bounces.h"
+#include "echopath/replay/factors/sheet_passages.h"
 
 namespace echopath {
 

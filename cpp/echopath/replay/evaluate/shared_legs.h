@@ -3,9 +3,9 @@
 // factors and, where it is coherent, the filter of its launch cell; an array of N x M channels costs N + M legs.
 #include <array>
 
-#include "echopath/replay/evaluate/radio_constants.h"
 #include "echopath/replay/evaluate/shared_leg_tables.h"
-#include "echopath/replay/evaluate/trace_cells.h"
+#include "echopath/replay/factors/radio_constants.h"
+#include "echopath/replay/factors/trace_cells.h"
 
 namespace echopath {
 

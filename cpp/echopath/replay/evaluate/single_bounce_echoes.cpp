@@ -1,5 +1,5 @@
 // Writes what kernels made of single bounces to the echoes of their paths.
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes/simd.h"
 #include "echopath/replay/evaluate/single_bounces.h"
 
 namespace echopath {

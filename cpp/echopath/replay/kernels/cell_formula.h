@@ -1,6 +1,6 @@
 #pragma once
 // Computes the footprint filter of a launch cell (launch_cell.h) for doubles and for vectors of doubles; Math is as in
-// base/scalar_math.h.
+// base/lanes/scalar_math.h.
 #include "echopath/em/footprint_formula.h"
 
 namespace echopath {

@@ -1,6 +1,6 @@
 #pragma once
 // Makes the amplitude of a path from factors of its legs and of the part between them. The formula stands only here, for
-// doubles and for vectors of doubles (Math as in base/scalar_math.h).
+// doubles and for vectors of doubles (Math as in base/lanes/scalar_math.h).
 //
 // Coherent path (regime C), physical optics at its last material point:
 //   a = sqrt(Pt Gt Gr)/(4 pi) * weight * cos_i * F / (sqrt(D) r),   weight = j W_C Gamma s dS
@@ -20,7 +20,7 @@
 // nearer than kNearAntenna to a material point neither sends there nor receives. The phase of the length is not part of the
 // amplitude.
 #include "echopath/em/footprint_formula.h"
-#include "echopath/em/transverse_formula.h"
+#include "echopath/em/polarization/transverse_formula.h"
 #include "echopath/replay/kernels/cell_formula.h"
 #include "echopath/trace/near_antenna.h"
 

@@ -1,6 +1,6 @@
 #include "echopath/replay/kernels/shared_leg_kernels.h"
 
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes/simd.h"
 #include "echopath/replay/kernels/single_bounce_kernels.h"
 
 namespace echopath {

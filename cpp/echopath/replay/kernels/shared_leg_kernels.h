@@ -6,7 +6,7 @@
 // Pointers to constant or written doubles are the first of several rows of `stride` nodes each (node_rows.h).
 #include <cstddef>
 
-#include "echopath/base/scalar_math.h"
+#include "echopath/base/lanes/scalar_math.h"
 #include "echopath/replay/kernels/cell_formula.h"
 
 namespace echopath {

@@ -1,6 +1,6 @@
 #pragma once
-// The inner loops of replay, compiled once per instruction set (base/lane_math.h).
-#include "echopath/base/lane_math.h"
+// The inner loops of replay, compiled once per instruction set (base/lanes/lane_math.h).
+#include "echopath/base/lanes/lane_math.h"
 #include "echopath/base/vector_of.h"
 #include "echopath/replay/kernels/path_formula.h"
 #include "echopath/replay/kernels/shared_leg_kernels.h"

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "echopath/replay/kernels/cell_formula.h"
-#include "echopath/scene/mesh/kept_normals.h"
-#include "echopath/scene/mesh/smooth.h"
+#include "echopath/scene/smooth/kept_normals.h"
+#include "echopath/scene/smooth/smooth.h"
 
 namespace echopath {
 namespace {

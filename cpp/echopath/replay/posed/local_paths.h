@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "echopath/em/diffuse_lobe.h"
+#include "echopath/em/surface/diffuse_lobe.h"
 #include "echopath/replay/posed/hit_patches.h"
 #include "echopath/replay/posed/path_geometry.h"
 #include "echopath/scene/scene_edges.h"

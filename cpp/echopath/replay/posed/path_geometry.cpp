@@ -1,7 +1,7 @@
 #include "echopath/replay/posed/path_geometry.h"
 
 #include "echopath/base/plane.h"
-#include "echopath/scene/mesh/smooth.h"
+#include "echopath/scene/smooth/smooth.h"
 #include "echopath/trace/edges/posed_edge.h"
 
 namespace echopath {

@@ -28,7 +28,7 @@ struct PosedHit {
   Vec3 point, normal;   // relative to the origin, on the curved surface where it is smooth; unit, of the triangle's winding
   Vec3 edge_u, edge_v;  // only where they are asked for or the triangle bends
   Vec3 facet;           // the point on the flat triangle; only where is_smooth
-  Mat3 curvature;       // 1/m, about `normal` (scene/mesh/smooth.h); only where is_smooth
+  Mat3 curvature;       // 1/m, about `normal` (scene/smooth/smooth.h); only where is_smooth
   bool is_smooth = false;
   double area_ratio = 1.0;  // of its triangle, over that at the trace
   bool is_edge = false;     // LocalHit::edge

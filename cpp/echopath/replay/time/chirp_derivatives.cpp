@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "echopath/base/lanes.h"
+#include "echopath/base/lanes/lanes.h"
 
 namespace echopath {
 namespace {

@@ -9,7 +9,7 @@
 #include <limits>
 #include <numbers>
 
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes/simd.h"
 #include "echopath/replay/time/time_grids.h"
 
 namespace echopath {

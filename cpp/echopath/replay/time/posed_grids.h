@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "echopath/base/lazy.h"
+#include "echopath/base/memory/lazy.h"
 #include "echopath/replay/posed/local_paths.h"
 #include "echopath/replay/posed/posed_nodes.h"
 #include "echopath/replay/time/time_grids.h"

@@ -15,9 +15,9 @@
 #include <utility>
 
 #include "echopath/base/errors.h"
+#include "echopath/scene/edges/sharp_edges.h"
 #include "echopath/scene/mesh/farthest_vertex.h"
 #include "echopath/scene/mesh/manifold.h"
-#include "echopath/scene/mesh/sharp_edges.h"
 
 namespace echopath {
 namespace {

@@ -11,7 +11,7 @@ namespace echopath {
 
 using Triangle = std::array<uint32_t, 3>;
 
-struct SharpEdge;  // scene/mesh/sharp_edges.h
+struct SharpEdge;  // scene/edges/sharp_edges.h
 
 class Mesh;
 using MeshPtr = std::shared_ptr<const Mesh>;

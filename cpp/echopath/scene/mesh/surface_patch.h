@@ -13,7 +13,7 @@ struct SurfacePatch {
   std::vector<uint32_t> original_vertex;  // [n] vertex of the input, for a Deformation, in the order of the surface
   std::vector<uint32_t> place;            // [V of the mesh] index among the n, kAbsent where it is no corner
   // The triangles of the surface that meet a corner, as indices among the n, in the order of the surface; empty without
-  // normals. Normals from them (scene/mesh/smooth.h) are right at the corners, to the same bits as those of the whole
+  // normals. Normals from them (scene/smooth/smooth.h) are right at the corners, to the same bits as those of the whole
   // surface.
   std::vector<Triangle> triangles;
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "echopath/base/geometry.h"
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 
 namespace echopath {
 

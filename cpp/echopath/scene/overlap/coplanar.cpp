@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "echopath/base/errors.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/scene/overlap/facet_overlap.h"
 
 namespace echopath {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "echopath/base/lanes.h"
+#include "echopath/base/lanes/lanes.h"
 #include "echopath/signal/echoes/echoes.h"
 
 namespace echopath {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "echopath/base/errors.h"
-#include "echopath/base/large_array.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/memory/large_array.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/signal/kernels/kernels.h"
 
 namespace echopath {

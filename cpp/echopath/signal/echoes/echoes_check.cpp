@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "echopath/base/errors.h"
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes/simd.h"
 
 namespace echopath {
 namespace {

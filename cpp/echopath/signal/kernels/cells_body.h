@@ -1,6 +1,6 @@
 #pragma once
 // The places of echoes on the grid of frequencies, and their order by cells of that grid.
-#include "echopath/base/lane_math.h"
+#include "echopath/base/lanes/lane_math.h"
 #include "echopath/signal/kernels/kernels.h"
 #include "echopath/signal/vecs.h"
 

@@ -3,7 +3,7 @@
 // includes define no functions with code: what is compiled for one instruction set must not be linked into another's.
 #include <cstdint>
 
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes/simd.h"
 #include "echopath/signal/kernels/carrier.h"
 
 namespace echopath {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "echopath/base/phasor.h"
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes/phasor.h"
+#include "echopath/base/lanes/simd.h"
 
 namespace echopath {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 // The frequency and the phasor of echoes within a chirp, for a vector of echoes at a time.
-#include "echopath/base/lane_math.h"
-#include "echopath/base/phasor.h"
+#include "echopath/base/lanes/lane_math.h"
+#include "echopath/base/lanes/phasor.h"
 #include "echopath/signal/kernels/kernels.h"
 #include "echopath/signal/vecs.h"
 

@@ -1,4 +1,4 @@
-#include "echopath/base/phasor.h"
+#include "echopath/base/lanes/phasor.h"
 #include "echopath/signal/methods/method.h"
 
 namespace echopath {

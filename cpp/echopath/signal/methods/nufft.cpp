@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "echopath/base/recent_results.h"
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes/simd.h"
+#include "echopath/base/memory/recent_results.h"
 #include "echopath/fft/fft.h"
 #include "echopath/signal/kernels/nufft_kernel.h"
 #include "echopath/signal/methods/method.h"

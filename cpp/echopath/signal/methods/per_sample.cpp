@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "echopath/base/phasor.h"
+#include "echopath/base/lanes/phasor.h"
 #include "echopath/signal/echoes/echoes.h"
 
 namespace echopath {

@@ -3,7 +3,7 @@
 // stays in registers.
 #include <algorithm>
 
-#include "echopath/base/phasor.h"
+#include "echopath/base/lanes/phasor.h"
 #include "echopath/signal/methods/method.h"
 
 namespace echopath {

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "echopath/base/constants.h"
-#include "echopath/base/parallel.h"
-#include "echopath/replay/evaluate/launch_cell.h"
+#include "echopath/base/threads/parallel.h"
+#include "echopath/replay/factors/launch_cell.h"
 #include "echopath/replay/kernels/path_formula.h"
 #include "echopath/replay/posed/local_paths.h"
 #include "echopath/replay/replay.h"

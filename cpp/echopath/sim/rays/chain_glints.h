@@ -2,7 +2,7 @@
 // Finds points of reflection behind bounces off curved surfaces.
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/sim/rays/find_glints.h"
 
 namespace echopath {

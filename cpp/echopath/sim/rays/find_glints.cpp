@@ -8,10 +8,10 @@
 #include <tuple>
 
 #include "echopath/base/constants.h"
-#include "echopath/base/parallel.h"
 #include "echopath/base/plane.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/replay/replay.h"
-#include "echopath/scene/mesh/reflection_point.h"
+#include "echopath/scene/smooth/reflection_point.h"
 #include "echopath/sim/rays/chain_glints.h"
 
 namespace echopath {

@@ -2,7 +2,7 @@
 // Finds points of reflection (glints) that the rays of a trace may be too far apart for.
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/trace/record/paths.h"
 
 namespace echopath {

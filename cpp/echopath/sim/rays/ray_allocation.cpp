@@ -7,7 +7,7 @@
 #include "echopath/power/received_power.h"
 #include "echopath/signal/noise.h"
 #include "echopath/sim/rays/plan_foci.h"
-#include "echopath/trace/launch/ray_targets.h"
+#include "echopath/trace/strata/ray_targets.h"
 
 namespace echopath {
 namespace {

@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/sim/rays/plan_foci.h"
-#include "echopath/trace/geometry/kept_geometry.h"
+#include "echopath/trace/embree/kept_geometry.h"
 #include "echopath/trace/trace.h"
 
 namespace echopath {

@@ -1,7 +1,7 @@
 #pragma once
 // Traces with as many rays as a target error needs.
 #include "echopath/sim/rays/ray_allocation.h"
-#include "echopath/trace/geometry/kept_geometry.h"
+#include "echopath/trace/embree/kept_geometry.h"
 #include "echopath/trace/trace.h"
 
 namespace echopath {

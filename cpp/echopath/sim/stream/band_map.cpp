@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes/simd.h"
 #include "echopath/spectrum/range_doppler.h"
 
 namespace echopath {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/fft/fft.h"
 #include "echopath/signal/echoes/echo_states.h"
 #include "echopath/spectrum/range_doppler.h"

@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/sim/stream/replay_stream.h"
 
 namespace echopath {

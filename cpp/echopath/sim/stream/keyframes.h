@@ -3,9 +3,9 @@
 // frame.
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/replay/posed/specular_slide.h"
-#include "echopath/trace/geometry/kept_geometry.h"
+#include "echopath/trace/embree/kept_geometry.h"
 #include "echopath/trace/record/paths.h"
 
 namespace echopath {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "echopath/base/errors.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 
 namespace echopath {
 namespace {

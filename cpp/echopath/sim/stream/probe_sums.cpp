@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "echopath/base/lanes.h"
-#include "echopath/base/phasor.h"
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes/lanes.h"
+#include "echopath/base/lanes/phasor.h"
+#include "echopath/base/lanes/simd.h"
 
 namespace echopath {
 namespace {

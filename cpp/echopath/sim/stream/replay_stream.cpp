@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "echopath/base/large_array.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/memory/large_array.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/signal/echoes/echoes.h"
 
 namespace echopath {

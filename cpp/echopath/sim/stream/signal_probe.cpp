@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "echopath/base/constants.h"
-#include "echopath/base/parallel.h"
 #include "echopath/base/random.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/signal/echoes/echo_states.h"
 #include "echopath/signal/kernels/carrier.h"
 #include "echopath/signal/kernels/kernels.h"

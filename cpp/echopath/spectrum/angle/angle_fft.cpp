@@ -6,7 +6,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/fft/fft.h"
 #include "echopath/spectrum/array/steering.h"
 #include "echopath/spectrum/array/tdm.h"

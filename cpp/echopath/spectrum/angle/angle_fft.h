@@ -3,7 +3,7 @@
 #include <complex>
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/radar/radar.h"
 #include "echopath/spectrum/array/element_reader.h"
 #include "echopath/spectrum/range_doppler.h"

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes/simd.h"
 
 namespace echopath {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 
 namespace echopath {
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "echopath/base/errors.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/spectrum/angle/beam_source.h"
 
 namespace echopath {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/radar/radar.h"
 #include "echopath/spectrum/array/element_reader.h"
 #include "echopath/spectrum/array/steering.h"

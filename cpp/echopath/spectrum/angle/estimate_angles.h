@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/radar/radar.h"
 #include "echopath/spectrum/angle/beamform.h"
 #include "echopath/spectrum/range_doppler.h"

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/radar/radar.h"
 #include "echopath/spectrum/angle/beam_kernel.h"
 #include "echopath/spectrum/angle/beamform.h"

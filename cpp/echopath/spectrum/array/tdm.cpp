@@ -7,7 +7,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 
 namespace echopath {
 namespace {

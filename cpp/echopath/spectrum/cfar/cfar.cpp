@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "echopath/base/parallel.h"
-#include "echopath/base/recent_results.h"
+#include "echopath/base/memory/recent_results.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/spectrum/array/tdm.h"
 #include "echopath/spectrum/cfar/training_power.h"
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/radar/radar.h"
 #include "echopath/spectrum/cfar/cfar_factor.h"
 #include "echopath/spectrum/range_doppler.h"

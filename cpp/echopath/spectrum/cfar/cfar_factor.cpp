@@ -7,7 +7,7 @@
 #include <string>
 
 #include "echopath/base/errors.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/spectrum/cfar/training_draws.h"
 #include "echopath/spectrum/cfar/training_noise.h"
 

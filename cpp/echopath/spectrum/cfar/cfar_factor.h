@@ -3,7 +3,7 @@
 // make between neighbouring cells.
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/spectrum/cfar/cfar_window.h"
 
 namespace echopath {

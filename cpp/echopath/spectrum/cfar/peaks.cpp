@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "echopath/base/errors.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/spectrum/array/tdm.h"
 #include "echopath/spectrum/tone_offset.h"
 

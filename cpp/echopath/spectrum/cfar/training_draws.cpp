@@ -5,8 +5,8 @@
 #include <cstdlib>
 
 #include "echopath/base/constants.h"
-#include "echopath/base/parallel.h"
 #include "echopath/base/random.h"
+#include "echopath/base/threads/parallel.h"
 
 namespace echopath {
 namespace {

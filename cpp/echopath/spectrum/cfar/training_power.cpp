@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes/simd.h"
 
 namespace echopath {
 namespace {

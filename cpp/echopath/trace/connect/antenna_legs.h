@@ -1,6 +1,6 @@
 #pragma once
 // Finds the legs between the hit of a ray and both antennas.
-#include "echopath/trace/mirrors/antenna_frusta.h"
+#include "echopath/trace/frusta/antenna_frusta.h"
 #include "echopath/trace/sbr/ray.h"
 #include "echopath/trace/sbr/ray_context.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 // Describes a hit that is being connected to the receiver, with all that its paths are made of.
-#include "echopath/em/hit_modes.h"
+#include "echopath/em/polarization/hit_modes.h"
 #include "echopath/trace/connect/antenna_legs.h"
 #include "echopath/trace/record/path_block.h"
 

@@ -10,7 +10,7 @@ namespace {
 
 // Returns the sign of the field that comes back to the radar.
 //
-// Fresnel's TM coefficient is that along p_i and p_r (em/fresnel.h). These point opposite ways where a wave turns back, so
+// Fresnel's TM coefficient is that along p_i and p_r (em/surface/fresnel.h). These point opposite ways where a wave turns back, so
 // the sign changes once: only then TE and TM are the same at normal incidence. Conductors count as TE at every angle: an odd
 // number of them has made that change already.
 double sign_of_return(const Ray& ray) { return ray.has_dielectric_tm && !ray.has_odd_conductors ? -1.0 : 1.0; }

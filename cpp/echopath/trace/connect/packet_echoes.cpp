@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes/simd.h"
 #include "echopath/trace/sbr/weight.h"
 
 namespace echopath {

@@ -1,11 +1,11 @@
 #pragma once
-// Finds the ways from edge to edge over flat faces (em/edge_chain.h).
+// Finds the ways from edge to edge over flat faces (em/edges/edge_chain.h).
 #include <array>
 #include <functional>
 #include <span>
 #include <vector>
 
-#include "echopath/em/edge_chain.h"
+#include "echopath/em/edges/edge_chain.h"
 #include "echopath/trace/edges/posed_edge.h"
 #include "echopath/trace/record/paths.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/trace/edges/edge_chains.h"
 #include "echopath/trace/mirrors/legs.h"
 #include "echopath/trace/near_antenna.h"

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/trace/edges/edge_power.h"
-#include "echopath/trace/mirrors/antenna_frusta.h"
+#include "echopath/trace/frusta/antenna_frusta.h"
 #include "echopath/trace/record/path_block.h"
 
 namespace echopath {

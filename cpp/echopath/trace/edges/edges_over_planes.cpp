@@ -5,8 +5,8 @@
 #include <map>
 
 #include "echopath/base/constants.h"
-#include "echopath/base/parallel.h"
-#include "echopath/em/edge_shadow.h"
+#include "echopath/base/threads/parallel.h"
+#include "echopath/em/edges/edge_shadow.h"
 #include "echopath/trace/connect/mirror_orders.h"
 #include "echopath/trace/mirrors/legs.h"
 #include "echopath/trace/near_antenna.h"

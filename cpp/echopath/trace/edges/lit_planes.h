@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "echopath/base/plane.h"
-#include "echopath/trace/geometry/embree_scene.h"
+#include "echopath/trace/embree/embree_scene.h"
 #include "echopath/trace/record/path_block.h"
 
 namespace echopath {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "echopath/em/surface_response.h"
+#include "echopath/em/surface/surface_response.h"
 #include "echopath/trace/near_antenna.h"
 
 namespace echopath {

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "echopath/em/edge_diffraction.h"
+#include "echopath/em/edges/edge_diffraction.h"
 #include "echopath/em/material.h"
 #include "echopath/posed/posed_scene.h"
 #include "echopath/scene/scene_edges.h"

@@ -1,6 +1,6 @@
 #pragma once
 // Measures how far a surface goes on around one of its points, whatever meshes and triangles it consists of.
-#include "echopath/trace/geometry/embree_scene.h"
+#include "echopath/trace/embree/embree_scene.h"
 
 namespace echopath {
 

@@ -8,8 +8,8 @@
 #include "echopath/base/constants.h"
 #include "echopath/base/random.h"
 #include "echopath/trace/launch/launch_directions.h"
-#include "echopath/trace/launch/ray_targets.h"
 #include "echopath/trace/record/paths.h"
+#include "echopath/trace/strata/ray_targets.h"
 
 namespace echopath {
 namespace {

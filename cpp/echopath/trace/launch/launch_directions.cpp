@@ -1,6 +1,6 @@
 #include "echopath/trace/launch/launch_directions.h"
 
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes/simd.h"
 
 namespace echopath {
 namespace {

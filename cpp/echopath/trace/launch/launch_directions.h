@@ -2,11 +2,11 @@
 // Turns the points of a lattice into directions of the strata of a launch plan.
 #include <vector>
 
-#include "echopath/base/phasor.h"
-#include "echopath/base/scalar_math.h"
-#include "echopath/trace/geometry/packet.h"
+#include "echopath/base/lanes/phasor.h"
+#include "echopath/base/lanes/scalar_math.h"
+#include "echopath/trace/embree/packet.h"
 #include "echopath/trace/launch/sampler.h"
-#include "echopath/trace/launch/stratum.h"
+#include "echopath/trace/strata/stratum.h"
 
 namespace echopath {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "echopath/trace/launch/stratum.h"
+#include "echopath/trace/strata/stratum.h"
 
 namespace echopath {
 

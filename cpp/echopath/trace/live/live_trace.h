@@ -9,8 +9,8 @@
 #include <memory>
 #include <vector>
 
-#include "echopath/trace/geometry/kept_geometry.h"
-#include "echopath/trace/launch/fitted_strata.h"
+#include "echopath/trace/embree/kept_geometry.h"
+#include "echopath/trace/strata/fitted_strata.h"
 #include "echopath/trace/trace.h"
 
 namespace echopath {

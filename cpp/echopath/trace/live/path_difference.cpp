@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "echopath/base/bit_sum.h"
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/scene/scene_edges.h"
 
 namespace echopath {

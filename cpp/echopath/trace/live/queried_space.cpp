@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "echopath/trace/geometry/embree_device.h"
+#include "echopath/trace/embree/embree_device.h"
 
 namespace echopath {
 namespace {

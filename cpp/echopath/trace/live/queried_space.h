@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "echopath/trace/geometry/embree_scene.h"
+#include "echopath/trace/embree/embree_scene.h"
 
 namespace echopath {
 

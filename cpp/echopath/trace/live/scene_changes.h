@@ -2,7 +2,7 @@
 // Tells which meshes of a scene differ from those of another one, for rays and for the signal.
 #include <vector>
 
-#include "echopath/trace/geometry/embree_scene.h"
+#include "echopath/trace/embree/embree_scene.h"
 
 namespace echopath {
 

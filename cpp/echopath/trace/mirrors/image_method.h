@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "echopath/em/surface_response.h"
-#include "echopath/trace/geometry/embree_scene.h"
+#include "echopath/em/surface/surface_response.h"
+#include "echopath/trace/embree/embree_scene.h"
 #include "echopath/trace/mirrors/mirrors.h"
 #include "echopath/trace/record/path_block.h"
 #include "echopath/trace/sbr/sbr_settings.h"

@@ -4,9 +4,9 @@
 #include <complex>
 #include <span>
 
-#include "echopath/em/surface_response.h"
-#include "echopath/trace/geometry/embree_scene.h"
-#include "echopath/trace/mirrors/frustum_locator.h"
+#include "echopath/em/surface/surface_response.h"
+#include "echopath/trace/embree/embree_scene.h"
+#include "echopath/trace/frusta/frustum_locator.h"
 
 namespace echopath {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <optional>
 
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
+#include "echopath/trace/frusta/mirror_frusta.h"
 #include "echopath/trace/mirrors/image_method.h"
-#include "echopath/trace/mirrors/mirror_frusta.h"
 
 namespace echopath {
 namespace {

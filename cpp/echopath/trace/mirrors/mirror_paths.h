@@ -2,8 +2,8 @@
 // Finds the paths over flagged mirrors alone, from transmitter to receiver, by the image method.
 #include <vector>
 
-#include "echopath/base/job.h"
-#include "echopath/trace/mirrors/antenna_frusta.h"
+#include "echopath/base/threads/job.h"
+#include "echopath/trace/frusta/antenna_frusta.h"
 #include "echopath/trace/record/path_block.h"
 #include "echopath/trace/sbr/sbr.h"
 

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "echopath/scene/mesh/planar_patches.h"
+#include "echopath/scene/edges/planar_patches.h"
 #include "echopath/trace/geometry/convex_hull.h"
 
 namespace echopath {

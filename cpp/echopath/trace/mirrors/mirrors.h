@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "echopath/base/plane.h"
-#include "echopath/em/surface_response.h"
-#include "echopath/trace/geometry/embree_scene.h"
+#include "echopath/em/surface/surface_response.h"
+#include "echopath/trace/embree/embree_scene.h"
 #include "echopath/trace/geometry/plane_mesh.h"
 
 namespace echopath {
@@ -25,7 +25,7 @@ struct Mirror : Plane {
 std::vector<Vec3> outline_of(const Mirror& mirror, const std::vector<Vec3>& points);
 
 // Returns the planes of all flagged meshes of the scene: one of a mesh that is flat (to 0.1 mm plus 1e-6 of its size),
-// else those that its triangles make (scene/mesh/planar_patches.h). Raises invalid_argument naming a smooth mesh that is
+// else those that its triangles make (scene/edges/planar_patches.h). Raises invalid_argument naming a smooth mesh that is
 // not flat.
 std::vector<Mirror> find_mirrors(const Scene& scene, const EmbreeScene& geometry);
 
@@ -59,7 +59,7 @@ class MirrorIndex {
 PolarizationMode polarization_mode(const Vec3& polarization, const Vec3& direction, const Vec3& normal);
 
 // Returns the sign that a flagged mirror's coefficient takes along `polarization` (scalar mode), for a wave that travels
-// along `direction`. Fresnel's TM coefficient is that along p_i and p_r (em/fresnel.h), of which one may point with the
+// along `direction`. Fresnel's TM coefficient is that along p_i and p_r (em/surface/fresnel.h), of which one may point with the
 // field and the other against it, as at a wall at right angles to the field, where TE and TM must meet at normal incidence.
 // The sign is +1 for TE and for conductors.
 double mirror_sign(const Material& material, PolarizationMode mode, const Vec3& polarization, const Vec3& direction,

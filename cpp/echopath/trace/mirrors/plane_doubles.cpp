@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "echopath/base/parallel.h"
+#include "echopath/base/threads/parallel.h"
 
 namespace echopath {
 namespace {

@@ -4,7 +4,7 @@
 #include <map>
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/trace/record/paths.h"
 
 namespace echopath {

@@ -15,7 +15,7 @@
 #include <span>
 #include <vector>
 
-#include "echopath/base/job.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/trace/mirrors/image_method.h"
 #include "echopath/trace/mirrors/plane_doubles.h"
 #include "echopath/trace/record/path_block.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <memory>
 
-#include "echopath/base/simd.h"
+#include "echopath/base/lanes/simd.h"
 
 namespace echopath {
 namespace {

@@ -4,7 +4,7 @@
 #include <complex>
 #include <optional>
 
-#include "echopath/em/jones.h"
+#include "echopath/em/polarization/jones.h"
 #include "echopath/trace/mirrors/legs.h"
 #include "echopath/trace/sbr/ray_differential.h"
 #include "echopath/trace/scatter/hit_samples.h"

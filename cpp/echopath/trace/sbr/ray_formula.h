@@ -1,6 +1,6 @@
 #pragma once
 // Computes in the same way for one ray and, in loops over lanes, for all of a packet.
-#include "echopath/base/scalar_math.h"
+#include "echopath/base/lanes/scalar_math.h"
 #include "echopath/base/vector_of.h"
 
 namespace echopath {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "echopath/scene/mesh/smooth.h"
+#include "echopath/scene/smooth/smooth.h"
 
 namespace echopath {
 

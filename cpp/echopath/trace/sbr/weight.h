@@ -4,7 +4,7 @@
 // Each policy tells how a wave changes along a ray, and what a path keeps of it. ScalarWeight follows one polarisation,
 // whose coefficients are all in the weight. JonesWeight follows field vectors, whose coefficients are all in a matrix beside
 // the weight.
-#include "echopath/em/hit_modes.h"
+#include "echopath/em/polarization/hit_modes.h"
 #include "echopath/trace/connect/connection.h"
 
 namespace echopath {
@@ -41,7 +41,7 @@ class ScalarWeight {
 };
 
 // Coherent paths hold the true reflections and the vector form of physical optics. Diffuse paths hold the true reflections
-// of their mirrors and specular bounces, and at each diffuse hit the split of power between both polarisations (em/jones.h,
+// of their mirrors and specular bounces, and at each diffuse hit the split of power between both polarisations (em/polarization/jones.h,
 // scattered_field). In a chain of diffuse hits these matrices are multiplied: the mean power is that of every split in turn,
 // and the phases between two polarisations are one random draw.
 class JonesWeight {

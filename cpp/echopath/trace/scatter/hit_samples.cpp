@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
-#include "echopath/base/phasor.h"
+#include "echopath/base/lanes/phasor.h"
+#include "echopath/base/lanes/simd.h"
 #include "echopath/base/random.h"
-#include "echopath/base/simd.h"
 #include "echopath/trace/scatter/scatter_points.h"
 
 namespace echopath {

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "echopath/base/geometry.h"
-#include "echopath/trace/geometry/packet.h"
+#include "echopath/trace/embree/packet.h"
 
 namespace echopath {
 

@@ -2,8 +2,8 @@
 // Gives the probabilities with which a ray goes on from a hit.
 #include <algorithm>
 
-#include "echopath/em/surface_response.h"
-#include "echopath/trace/mirrors/mirror_frusta.h"
+#include "echopath/em/surface/surface_response.h"
+#include "echopath/trace/frusta/mirror_frusta.h"
 
 namespace echopath {
 

@@ -3,7 +3,7 @@
 #include <map>
 #include <vector>
 
-#include "echopath/em/surface_response.h"
+#include "echopath/em/surface/surface_response.h"
 #include "echopath/trace/mirrors/mirrors.h"
 
 namespace echopath {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <map>
 
-#include "echopath/base/parallel.h"
-#include "echopath/em/sheet_model.h"
-#include "echopath/trace/geometry/embree_scene.h"
+#include "echopath/base/threads/parallel.h"
+#include "echopath/em/layers/sheet_model.h"
+#include "echopath/trace/embree/embree_scene.h"
 
 namespace echopath {
 namespace {

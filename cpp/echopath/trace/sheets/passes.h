@@ -3,7 +3,7 @@
 //
 // Queries of rays go through sheets, so that the record has the paths behind them as if they were not there. Here each leg
 // of each path is laid against the sheets alone. Their transmission is no part of the weight: replay computes it for each
-// time and antenna (replay/evaluate/sheet_passages.h), of the polarisation of the first transmitter in that polarisation. In
+// time and antenna (replay/factors/sheet_passages.h), of the polarisation of the first transmitter in that polarisation. In
 // a polarised trace the matrix gets what both modes do to the components at either end of the path, over that; between hits,
 // sheets are taken to leave the polarisation as it is. Replay follows the fields of edge paths itself (path_passages.h).
 #include "echopath/trace/record/paths.h"

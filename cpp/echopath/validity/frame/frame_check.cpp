@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "echopath/base/kept_memory.h"
-#include "echopath/replay/evaluate/attenuation.h"
+#include "echopath/base/memory/kept_memory.h"
+#include "echopath/replay/factors/attenuation.h"
 
 namespace echopath {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "echopath/replay/evaluate/path_evaluator.h"
-#include "echopath/trace/geometry/kept_geometry.h"
+#include "echopath/trace/embree/kept_geometry.h"
 #include "echopath/validity/frame/check_times.h"
 #include "echopath/validity/frame/frame_probe.h"
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "echopath/replay/posed/path_geometry.h"
-#include "echopath/trace/geometry/embree_scene.h"
+#include "echopath/trace/embree/embree_scene.h"
 
 namespace echopath {
 

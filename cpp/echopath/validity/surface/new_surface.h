@@ -3,8 +3,8 @@
 // echoes.
 #include <vector>
 
-#include "echopath/base/job.h"
-#include "echopath/trace/geometry/kept_geometry.h"
+#include "echopath/base/threads/job.h"
+#include "echopath/trace/embree/kept_geometry.h"
 #include "echopath/trace/trace.h"
 
 namespace echopath {

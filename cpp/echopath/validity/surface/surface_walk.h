@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "echopath/base/lazy.h"
+#include "echopath/base/memory/lazy.h"
 #include "echopath/scene/mesh/adjacency.h"
 #include "echopath/trace/record/paths.h"
 

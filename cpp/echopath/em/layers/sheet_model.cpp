@@ -1,0 +1,50 @@
+#include "echopath/em/layers/sheet_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/base/constants.h"
+#include "echopath/em/polarization/hit_modes.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kStep = 1e-4;         // of the frequency, to either side
+constexpr double kLeastOffset = 0.1;   // wavelengths
+constexpr double kLeastField = 1e-12;  // of a polarisation's square: what lies along the direction has no mode
+
+}  // namespace
+
+SheetModel::SheetModel(const Material& material, double frequency)
+    : at_(material.layers, frequency), below_(material.layers, (1.0 - kStep) * frequency),
+      above_(material.layers, (1.0 + kStep) * frequency), turn_(kSpeedOfLight / (kTwoPi * 2.0 * kStep * frequency)) {}
+
+SheetPassage SheetModel::passage(double cos_incidence) const {
+  const LayerTransmission at = at_.over_free_space(cos_incidence), below = below_.over_free_space(cos_incidence),
+                          above = above_.over_free_space(cos_incidence);
+  const auto delay = [&](std::complex<double> first, std::complex<double> last) {
+    return -turn_ * std::arg(last * std::conj(first));
+  };
+  return {at.te, at.tm, delay(below.te, above.te), delay(below.tm, above.tm), at_.offset(cos_incidence)};
+}
+
+double te_share(const Vec3& polarization, const Vec3& direction, const Vec3& normal) {
+  const Vec3 across = direction.cross(normal), field = polarization - direction.dot(polarization) * direction;
+  const double sine = across.squaredNorm(), size = field.squaredNorm();
+  if (sine < kMinSine * kMinSine || size < kLeastField) return 1.0;
+  const double along = across.dot(field);
+  return std::min(1.0, along * along / (sine * size));
+}
+
+SheetFactor sheet_factor(const SheetPassage& passage, double te_share) {
+  const double te = te_share * std::norm(passage.te), tm = (1.0 - te_share) * std::norm(passage.tm), sum = te + tm;
+  const double delay = sum > 0.0 ? (te * passage.te_delay + tm * passage.tm_delay) / sum : 0.0;
+  return {te_share * passage.te + (1.0 - te_share) * passage.tm, delay};
+}
+
+double detour(const Vec3& offset, double length, double wavelength) {
+  const double squared = offset.squaredNorm(), least = kLeastOffset * wavelength;
+  return squared > least * least && length > 0.0 ? 0.5 * squared / length : 0.0;
+}
+
+}  // namespace echopath

@@ -1,0 +1,31 @@
+#pragma once
+// Computes the components of a polarisation across a direction (em/polarization/jones.h) for doubles and for vectors of doubles. Math is
+// as in base/lanes/scalar_math.h.
+#include "echopath/base/lanes/scalar_math.h"
+#include "echopath/base/vector_of.h"
+
+namespace echopath {
+
+template <class Real>
+struct TransverseOf {
+  Real horizontal, vertical;
+};
+
+// `line` points along the direction and may have any length.
+template <class Math, class Real>
+ECHOPATH_INLINE TransverseOf<Real> transverse_of(const VectorOf<Real>& polarization, const VectorOf<Real>& line) {
+  constexpr double kLeast = 1e-18;  // squares of sines below count as 0
+  const Real level = line.x * line.x + line.y * line.y, square = level + line.z * line.z;
+  const auto is_along_z = level <= kLeast * square;
+  const Real off_axis = Math::root(square) * (polarization.y * line.x - polarization.x * line.y);
+  const Real upward = polarization.z * level - line.z * (polarization.x * line.x + polarization.y * line.y);
+  const Real horizontal = is_along_z ? (line.z < 0.0 ? -polarization.x : polarization.x) : off_axis;
+  const Real vertical = is_along_z ? polarization.y : upward;
+  const Real one = Real{} + 1.0, none = Real{};
+  const Real length_squared = horizontal * horizontal + vertical * vertical, scale = is_along_z ? one : level * square;
+  const auto is_across = length_squared > kLeast * scale;
+  const Real inverse = 1.0 / Math::root(is_across ? length_squared : one);
+  return {is_across ? inverse * horizontal : none, is_across ? inverse * vertical : none};
+}
+
+}  // namespace echopath

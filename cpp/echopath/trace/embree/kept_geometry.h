@@ -1,0 +1,41 @@
+#pragma once
+// Keeps geometry from one trace of a scene to the next.
+#include <memory>
+#include <mutex>
+
+#include "echopath/trace/embree/embree_scene.h"
+
+namespace echopath {
+
+class KeptGeometry;
+
+// Holds the geometry that one trace uses; at its end it returns it to where it was kept, if anywhere.
+class GeometryLoan {
+ public:
+  // Takes the geometry of the scene at the pose: the kept one after an update, or a new one where `kept` is null or has lent
+  // its own to another trace. Raises as EmbreeScene does; nothing is kept then.
+  GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job);
+  // The same about EmbreeScene::origin_near of `near` (m, world), which may move.
+  GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedScene& pose, const Vec3& near, bool near_moves, Job* job);
+  ~GeometryLoan();
+  GeometryLoan(const GeometryLoan&) = delete;
+  GeometryLoan& operator=(const GeometryLoan&) = delete;
+  EmbreeScene& operator*() const { return *geometry_; }
+
+ private:
+  KeptGeometry* kept_;
+  std::unique_ptr<EmbreeScene> geometry_;
+};
+
+// Holds the memory of one EmbreeScene between loans. Thread-safe; must outlive its loans.
+class KeptGeometry {
+ private:
+  friend class GeometryLoan;
+  std::unique_ptr<EmbreeScene> take();
+  void put_back(std::unique_ptr<EmbreeScene> geometry);
+
+  std::mutex mutex_;
+  std::unique_ptr<EmbreeScene> geometry_;
+};
+
+}  // namespace echopath

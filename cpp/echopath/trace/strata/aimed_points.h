@@ -1,0 +1,24 @@
+#pragma once
+// Finds the points of rough surfaces at which rays are aimed, where these points are to be the same in every trace.
+#include <vector>
+
+#include "echopath/base/threads/job.h"
+#include "echopath/trace/embree/embree_scene.h"
+#include "echopath/trace/launch/launch.h"
+#include "echopath/trace/scatter/surface_points.h"
+
+namespace echopath {
+
+struct AimSettings {
+  uint64_t seed = 0;
+  double frequency = 77e9;          // Hz
+  Vec3 transmitter = Vec3::Zero();  // relative to the origin of the geometry
+};
+
+// Returns the points of all rough meshes that face the transmitter in the field of view, hidden ones too, as dense as the
+// rays of a plan by the default rule (LaunchPlan::default_density). So many are there of an object while its share of the
+// rays stays the same, from whatever distance. Meshes come in their order, so that neighbours are near each other.
+std::vector<SurfacePoint> find_aimed_points(const Scene& scene, const EmbreeScene& geometry, const LaunchPlan& plan,
+                                            const AimSettings& settings, Job* job = nullptr);
+
+}  // namespace echopath

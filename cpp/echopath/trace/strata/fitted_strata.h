@@ -1,0 +1,26 @@
+#pragma once
+// Remembers the strata that were fitted to surfaces, from one plan of rays to the next.
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <unordered_map>
+
+#include "echopath/trace/strata/stratum.h"
+
+namespace echopath {
+
+// Not thread-safe. What one plan has asked for is known to the next one alone.
+class FittedStrata {
+ public:
+  using Fitted = std::optional<Stratum>;
+  // Begins a plan.
+  void begin_plan();
+  // Returns what was fitted to the same input before, else what `fit` returns. `input` is the sum of the bits of all that
+  // the stratum hangs on (base/bit_sum.h).
+  Fitted find(uint64_t input, const std::function<Fitted()>& fit);
+
+ private:
+  std::unordered_map<uint64_t, Fitted> before_, now_;  // by input
+};
+
+}  // namespace echopath

@@ -1,0 +1,24 @@
+#include "echopath/trace/strata/ray_owners.h"
+
+#include <algorithm>
+
+namespace echopath {
+
+void RayOwners::assign(int object, MirrorSequence sequence, int stratum) {
+  const auto k = static_cast<size_t>(object);
+  if (sequence == kNoMirrors) {
+    direct_[k] = stratum;
+    return;
+  }
+  const std::pair<MirrorSequence, int> entry{sequence, stratum};
+  over_mirrors_[k].insert(std::lower_bound(over_mirrors_[k].begin(), over_mirrors_[k].end(), entry), entry);
+}
+
+int RayOwners::owner_over_mirrors(size_t object, MirrorSequence sequence) const {
+  const auto& owners = over_mirrors_[object];
+  const auto found = std::lower_bound(owners.begin(), owners.end(), sequence,
+                                      [](const auto& entry, MirrorSequence wanted) { return entry.first < wanted; });
+  return found != owners.end() && found->first == sequence ? found->second : field_of_view_;
+}
+
+}  // namespace echopath

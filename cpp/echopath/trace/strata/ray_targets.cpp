@@ -1,0 +1,189 @@
+#include "echopath/trace/strata/ray_targets.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/base/bit_sum.h"
+#include "echopath/trace/strata/fit_stratum.h"
+#include "echopath/trace/strata/scene_objects.h"
+
+namespace echopath {
+namespace {
+
+// Largest number of targets: with the field of view they stay below kNoStratum.
+constexpr size_t kMaxAims = 65000;
+// Strata are the same within this difference of axes and solid angles, relative to the latter.
+constexpr double kSameStratum = 1e-6;
+
+struct Target {
+  int object = 0, node = 0;
+  std::string name;
+  std::vector<Vec3> vertices;
+  uint64_t bits = 0;  // sum of those of the vertices
+  Sphere sphere;
+  bool moves = false;
+};
+
+// Returns the image of the point as the antenna sees it over a sequence of mirrors (in travel order from the antenna).
+Vec3 image_of(Vec3 point, const std::vector<Mirror>& mirrors, const std::vector<int>& sequence) {
+  for (size_t k = sequence.size(); k-- > 0;) point = mirrors[static_cast<size_t>(sequence[k])].image(point);
+  return point;
+}
+
+bool is_same(const Stratum& a, const Stratum& b) {
+  const double size = a.solid_angle();
+  return (a.axis - b.axis).squaredNorm() < kSameStratum * size && std::abs(size - b.solid_angle()) < kSameStratum * size &&
+         (a.across - b.across).norm() < kSameStratum;
+}
+
+class RayTargetFinder {
+ public:
+  RayTargetFinder(const Scene& scene, const std::vector<Mirror>& mirrors, const RayTargetSettings& settings)
+      : scene_(scene), mirrors_(mirrors), settings_(settings) {}
+
+  std::optional<RayTarget> at_object(const Target& target) const {
+    return target_at(target, input_of(target, {}), target.name, 0,
+                     [&]() -> const std::vector<Vec3>& { return target.vertices; });
+  }
+
+  // RayTargets at each image that a frustum may show.
+  std::vector<RayTarget> at_images(const Target& target) const {
+    std::vector<RayTarget> images;
+    std::vector<Vec3> vertices(target.vertices.size());
+    for (const MirrorFrustum& frustum : settings_.frusta) {
+      if (!frustum.reaches(target.sphere.centre, target.sphere.radius)) continue;
+      const int num_mirrors = static_cast<int>(frustum.mirrors.size());
+      const auto images_of_vertices = [&]() -> const std::vector<Vec3>& {
+        std::transform(target.vertices.begin(), target.vertices.end(), vertices.begin(),
+                       [&](const Vec3& vertex) { return image_of(vertex, mirrors_, frustum.mirrors); });
+        return vertices;
+      };
+      std::optional<RayTarget> made =
+          target_at(target, input_of(target, frustum.mirrors), name_over(target, frustum), num_mirrors, images_of_vertices);
+      if (!made) continue;
+      const auto same = std::find_if(images.begin(), images.end(),
+                                     [&](const RayTarget& other) { return is_same(made->stratum, other.stratum); });
+      RayTarget& image = same == images.end() ? images.emplace_back(std::move(*made)) : *same;
+      image.sequences.push_back(frustum.sequence);
+    }
+    return images;
+  }
+
+ private:
+  // Returns the sum of the bits of all that a stratum hangs on.
+  uint64_t input_of(const Target& target, const std::vector<int>& sequence) const {
+    if (!settings_.fitted) return 0;
+    BitSum bits;
+    bits.add(target.bits);
+    bits.add_bytes(target.name.data(), target.name.size());
+    bits.add_bytes(settings_.transmitter.data(), sizeof(Vec3));
+    bits.add(settings_.may_use_strips);
+    for (const int index : sequence) {
+      const Mirror& mirror = mirrors_[static_cast<size_t>(index)];
+      bits.add_bytes(mirror.point.data(), sizeof(Vec3));
+      bits.add_bytes(mirror.normal.data(), sizeof(Vec3));
+      bits.add(mirror.mesh_id);
+      bits.add(mirror.face);
+    }
+    return bits.value();
+  }
+
+  template <class Vertices>
+  std::optional<RayTarget> target_at(const Target& target, uint64_t input, std::string name, int num_mirrors,
+                                     const Vertices& vertices) const {
+    const auto fit = [&] {
+      return fit_stratum(vertices(), settings_.transmitter, std::move(name), settings_.may_use_strips ? kManyTurns : 0);
+    };
+    std::optional<Stratum> stratum = settings_.fitted ? settings_.fitted->find(input, fit) : fit();
+    if (!stratum || stratum->solid_angle() > settings_.largest_solid_angle) return std::nullopt;
+    stratum->object = target.node;
+    stratum->num_mirrors = num_mirrors;
+    RayTarget made{std::move(*stratum), target.object, {}, target.moves};
+    if (num_mirrors == 0) made.sequences.push_back(kNoMirrors);
+    return made;
+  }
+
+  std::string name_over(const Target& target, const MirrorFrustum& frustum) const {
+    std::string name = target.name;
+    for (size_t k = frustum.mirrors.size(); k-- > 0;) {
+      name += " over " + name_of(mirrors_[static_cast<size_t>(frustum.mirrors[k])], scene_);
+    }
+    return name;
+  }
+
+  const Scene& scene_;
+  const std::vector<Mirror>& mirrors_;
+  const RayTargetSettings& settings_;
+};
+
+Target target_of(const Scene& scene, const EmbreeScene& geometry, const SceneObject& object, int index) {
+  Target target;
+  target.object = index;
+  target.node = object.node;
+  target.name = scene.nodes()[static_cast<size_t>(object.node)].name;
+  target.sphere =
+      bounding_sphere([&](uint32_t id) -> const std::vector<Vec3>& { return geometry.vertices(id); }, object.mesh_ids);
+  for (const uint32_t id : object.mesh_ids) {
+    const std::vector<Vec3>& vertices = geometry.vertices(id);
+    target.vertices.insert(target.vertices.end(), vertices.begin(), vertices.end());
+    target.moves = target.moves || scene.is_moving(id);
+  }
+  BitSum bits;
+  bits.add_bytes(target.vertices.data(), target.vertices.size() * sizeof(Vec3));
+  target.bits = bits.value();
+  return target;
+}
+
+// Leaves out the images over the most mirrors first, then the objects that fill the least of the view.
+void limit(std::vector<RayTarget>& objects, std::vector<RayTarget>& images, RayTargets& out) {
+  const size_t all = objects.size() + images.size();
+  std::stable_sort(images.begin(), images.end(),
+                   [](const RayTarget& a, const RayTarget& b) { return a.stratum.num_mirrors < b.stratum.num_mirrors; });
+  if (objects.size() > kMaxAims) {
+    const auto wider = [](const RayTarget& a, const RayTarget& b) {
+      return a.stratum.solid_angle() > b.stratum.solid_angle();
+    };
+    std::stable_sort(objects.begin(), objects.end(), wider);
+    objects.resize(kMaxAims);
+  }
+  images.resize(std::min(images.size(), kMaxAims - objects.size()));
+  out.num_left_out = static_cast<int64_t>(all - objects.size() - images.size());
+  out.any_unaimed = out.any_unaimed || out.num_left_out > 0;
+}
+
+}  // namespace
+
+double weight_of_target(int num_mirrors) { return num_mirrors < 2 ? 1.0 : std::pow(0.25, num_mirrors - 1); }
+
+RayTargets find_ray_targets(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
+                            const RayTargetSettings& settings) {
+  RayTargets out;
+  if (settings.fitted) settings.fitted->begin_plan();
+  const std::vector<SceneObject> scene_objects = objects_of(scene);
+  out.num_objects = static_cast<int>(scene_objects.size());
+  out.object_of_mesh.assign(scene.meshes().size(), -1);
+  out.any_unaimed = out.num_objects > settings.most_objects;
+  if (out.any_unaimed) out.num_left_out = out.num_objects;
+  if (out.any_unaimed || scene_objects.empty()) return out;
+  const RayTargetFinder finder(scene, mirrors, settings);
+  std::vector<RayTarget> objects, images;
+  for (int index = 0; index < out.num_objects; ++index) {
+    const SceneObject& object = scene_objects[static_cast<size_t>(index)];
+    for (const uint32_t id : object.mesh_ids) out.object_of_mesh[id] = index;
+    const Target target = target_of(scene, geometry, object, index);
+    std::optional<RayTarget> direct = finder.at_object(target);
+    if (!direct) {
+      out.any_unaimed = true;
+      continue;
+    }
+    objects.push_back(std::move(*direct));
+    std::vector<RayTarget> more = finder.at_images(target);
+    std::move(more.begin(), more.end(), std::back_inserter(images));
+  }
+  limit(objects, images, out);
+  out.targets = std::move(objects);
+  std::move(images.begin(), images.end(), std::back_inserter(out.targets));
+  return out;
+}
+
+}  // namespace echopath

@@ -1,0 +1,45 @@
+#pragma once
+// Finds the objects of a scene and their images over mirrors, as targets of rays.
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "echopath/trace/frusta/mirror_frusta.h"
+#include "echopath/trace/strata/fitted_strata.h"
+
+namespace echopath {
+
+struct RayTarget {
+  Stratum stratum;  // holds the target; without rays
+  int object = 0;   // index into objects_of(scene)
+  // Rays find it over these; planes at right angles have one image in both orders.
+  std::vector<MirrorSequence> sequences;
+  bool moves = false;
+};
+
+// Returns the weight of an image over that many mirrors (0: of the object itself) in the sharing of the rays.
+double weight_of_target(int num_mirrors);
+
+struct RayTargetSettings {
+  Vec3 transmitter;
+  std::span<const MirrorFrustum> frusta;  // of the transmitter
+  double largest_solid_angle = 0.0;       // sr: larger objects are left to the field of view
+  bool may_use_strips = true;
+  int64_t most_objects = std::numeric_limits<int64_t>::max();  // nothing is aimed at where there are more
+  FittedStrata* fitted = nullptr;                              // the strata of plans before; may be null
+};
+
+struct RayTargets {
+  std::vector<RayTarget> targets;   // objects first, then images
+  std::vector<int> object_of_mesh;  // by mesh ID, -1: a mirror
+  int num_objects = 0;
+  bool any_unaimed = false;  // some object has no stratum
+  int64_t num_left_out =
+      0;  // beyond the strata that a record can tell apart; all objects where these are too many to aim at
+};
+
+RayTargets find_ray_targets(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
+                            const RayTargetSettings& settings);
+
+}  // namespace echopath

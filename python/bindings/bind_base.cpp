@@ -4,13 +4,13 @@
 #include <chrono>
 #include <thread>
 
+#include "call/plausible.h"
+#include "call/run_job.h"
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
 #include "echopath/base/lanes/simd.h"
 #include "echopath/base/text/meant_name.h"
 #include "echopath/base/threads/parallel.h"
-#include "plausible.h"
-#include "run_job.h"
 
 namespace echopath::bindings {
 namespace {

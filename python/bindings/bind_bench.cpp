@@ -6,15 +6,15 @@
 #include <string>
 #include <utility>
 
-#include "array.h"
-#include "choice.h"
+#include "call/run_job.h"
 #include "echopath/bench/bare_queries.h"
 #include "echopath/bench/moved_geometry.h"
 #include "echopath/bench/read_hits.h"
 #include "echopath/bench/replay_only.h"
 #include "echopath/bench/single_rays.h"
 #include "echopath/bench/synthesis_trial.h"
-#include "run_job.h"
+#include "values/array.h"
+#include "values/choice.h"
 
 namespace echopath::bindings {
 namespace {

@@ -2,8 +2,8 @@
 // X(base) X(motion) ... Each has a file bind_<module>.cpp.
 #include <pybind11/pybind11.h>
 
-#include "errors.h"
-#include "leaving.h"
+#include "call/errors.h"
+#include "call/leaving.h"
 
 namespace echopath::bindings {
 

@@ -1,0 +1,54 @@
+#include "call/plausible.h"
+
+#include <cmath>
+#include <sstream>
+#include <string>
+
+#include "call/warn.h"
+#include "echopath/base/constants.h"
+#include "echopath/base/errors.h"
+
+namespace echopath::bindings {
+namespace {
+
+constexpr double kLowestFrequency = 1e6;    // Hz, of radars that look over the horizon
+constexpr double kNarrowest = 1e3;          // Hz, cells of 150 km
+constexpr double kLongestInterval = 1.0;    // s
+constexpr double kTurn = 2.0 * kPi + 1e-9;  // rad
+
+template <class... Words>
+void warn(const Words&... words) {
+  std::ostringstream text;
+  (text << ... << words);
+  warn_caller(text.str());
+}
+
+}  // namespace
+
+void require_plausible(const ChirpSequence& waveform) {
+  require(waveform.start_frequency >= kLowestFrequency, "start_frequency", "must be at least 1e6 Hz (77 GHz are 77e9)",
+          waveform.start_frequency);
+  if (waveform.bandwidth > waveform.start_frequency) {
+    warn("bandwidth: ", waveform.bandwidth, " Hz is more than start_frequency, ", waveform.start_frequency,
+         " Hz; are both in Hz?");
+  }
+  if (waveform.bandwidth < kNarrowest) {
+    warn("bandwidth: ", waveform.bandwidth, " Hz makes range cells of ", waveform.range_resolution() * 1e-3,
+         " km; is it in Hz (1 GHz is 1e9)?");
+  }
+  if (waveform.chirp_interval > kLongestInterval) {
+    warn("chirp_interval: ", waveform.chirp_interval, " s from chirp to chirp; is it in s (60 us are 60e-6)?");
+  }
+}
+
+void warn_of_turns(double yaw) {
+  if (std::abs(yaw) <= kTurn) return;
+  warn("yaw: ", yaw, " rad are ", yaw / (2.0 * kPi), " turns; angles are in rad, ", yaw, " degrees would be ",
+       yaw * kPi / 180.0);
+}
+
+void require_below_light(double speed, const char* argument) {
+  require(std::abs(speed) < kSpeedOfLight, argument, "must be below the speed of light, 299792458 m/s", speed);
+}
+
+}  // namespace echopath::bindings

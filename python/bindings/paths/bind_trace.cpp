@@ -1,0 +1,112 @@
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "call/argument.h"
+#include "call/leaving.h"
+#include "call/run_job.h"
+#include "echopath/sim/rays/ray_allocation.h"
+#include "echopath/trace/edges/edge_power.h"
+#include "echopath/trace/embree/embree_scene.h"
+#include "echopath/trace/embree/kept_geometry.h"
+#include "echopath/trace/trace.h"
+#include "paths/error_target.h"
+#include "scene/scene_geometry.h"
+#include "values/array.h"
+#include "values/choice.h"
+
+namespace echopath::bindings {
+namespace {
+
+using PathsPtr = std::shared_ptr<Paths>;
+
+// A number of rays is a budget; who names neither it nor a target gets the target of ErrorTarget.
+Effort effort_of(std::optional<int64_t> num_rays, int batches, std::optional<double> target_error_db, int64_t max_rays) {
+  if (target_error_db) return toward(ErrorTarget{*target_error_db, max_rays}, num_rays, batches);
+  if (num_rays) return {*num_rays, batches, std::nullopt};
+  ErrorTarget target;
+  target.floor = EchoFloor::kNoise;
+  target.max_rays = std::min(max_rays, kMaxDefaultRays);
+  return toward(target, std::nullopt, batches);
+}
+
+PathsPtr trace_paths(Scene scene, const Radar& radar, std::optional<int64_t> num_rays, int max_bounces, uint64_t seed,
+                     double start_time, const std::string& polarization, const std::string& footprint,
+                     const std::string& sampler, std::optional<int> batches, std::optional<double> target_error_db,
+                     int64_t max_rays, const std::string& scatterers, bool edges, double attenuation,
+                     const py::object& progress, const std::shared_ptr<KeptGeometry>& kept) {
+  const Effort effort = effort_of(num_rays, batches.value_or(1), target_error_db, max_rays);
+  TraceSettings settings;
+  settings.num_rays = effort.num_rays;
+  settings.max_bounces = max_bounces;
+  settings.seed = seed;
+  settings.start_time = start_time;
+  settings.polarization = kPolarization.value_of(polarization);
+  settings.footprint = kFootprint.value_of(footprint);
+  settings.batches = effort.batches;
+  settings.sampler = kSampler.value_of(sampler);
+  settings.scatterers = kScatterers.value_of(scatterers);
+  settings.edges = edges;
+  settings.attenuation = attenuation;
+  const SceneSnapshot snapshot(std::move(scene));
+  auto paths = std::make_shared<Paths>(run_job("trace", progress, [&](Job& job) {
+    return effort.target ? trace_to_error(snapshot, radar, settings, *effort.target, &job, kept.get())
+                         : trace_by_need(snapshot, radar, settings, &job, kept.get());
+  }));
+  if (kept) remember_geometry(paths->scene, kept);
+  const TraceFrame& frame = paths->frame;
+  if (target_error_db && frame.error_db > frame.target_error_db) {
+    warn_of_missed_target("trace: max_rays", frame.error_db, frame.target_error_db);
+  }
+  return paths;
+}
+
+py::array_t<bool> are_clear(const Scene& scene, double time, const Vec3& from, const std::vector<Vec3>& points) {
+  std::vector<uint8_t> blocked(points.size(), 0);
+  if (scene.num_triangles() > 0 && !points.empty()) {
+    const WithoutGil released;
+    const PosedScene pose(scene, time);
+    const EmbreeScene geometry(scene, pose, EmbreeScene::origin_near(scene, pose, from));
+    std::vector<Segment> ways;
+    ways.reserve(points.size());
+    for (const Vec3& point : points) ways.push_back({from - geometry.origin(), point - geometry.origin()});
+    geometry.occluded(ways.data(), ways.size(), blocked.data());
+  }
+  py::array_t<bool> clear(static_cast<py::ssize_t>(points.size()));
+  for (size_t i = 0; i < points.size(); ++i) clear.mutable_data()[i] = !blocked[i];
+  return clear;
+}
+
+}  // namespace
+
+void bind_trace(py::module_& m) {
+  py::class_<KeptGeometry, std::shared_ptr<KeptGeometry>>(
+      m, "KeptGeometry", "Geometry that goes from one trace of a scene to the next, no part of the public interface.")
+      .def(py::init<>());
+
+  m.def("trace", &trace_paths, py::arg("scene"), py::arg("radar"), py::kw_only(), py::arg("num_rays") = py::none(),
+        py::arg("max_bounces") = 4, py::arg("seed") = 1, py::arg("start_time") = 0.0, py::arg("polarization") = "scalar",
+        py::arg("footprint") = "second_order", py::arg("sampler") = "lattice", py::arg("batches") = py::none(),
+        py::arg("target_error_db") = py::none(), py::arg("max_rays") = kMaxRays, py::arg("scatterers") = "rays",
+        py::arg("edges") = false, py::arg("attenuation") = 0.0, py::arg("progress") = py::none(),
+        py::arg("kept") = py::none(), "What ep.trace calls. kept: KeptGeometry of the scene, or None.");
+  m.def(
+      "are_clear",
+      [](const Scene& scene, Arg<"time", Real> time, Arg<"origin", Vector3> origin, Arg<"points", Points> points) {
+        return are_clear(scene, *time, *origin, *points);
+      },
+      py::arg("scene"), py::arg("time"), py::arg("origin"), py::arg("points"),
+      "Whether nothing of the scene lies between `origin` [3] and each of `points` [N, 3], m at `time` in s; [N].");
+  m.def("strongest_edge", &strongest_edge, py::arg("scene"), py::arg("radar"), py::arg("time"),
+        "What edges=\"auto\" compares with the noise: W that the strongest sharp edge would carry at a time in s.");
+  m.attr("DEFAULT_MAX_RAYS") = kMaxRays;
+  m.attr("MOST_RAYS") = kMostRays;
+}
+
+}  // namespace echopath::bindings

@@ -1,0 +1,231 @@
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <sstream>
+#include <string>
+
+#include "call/argument.h"
+#include "call/define.h"
+#include "call/run_job.h"
+#include "echopath/validity/renewal.h"
+#include "echopath/validity/validity.h"
+#include "values/array.h"
+#include "values/choice.h"
+#include "values/in_package.h"
+#include "values/travel.h"
+
+namespace echopath::bindings {
+namespace {
+
+using ValidityPtr = std::shared_ptr<Validity>;
+
+ValidityPtr check_validity(const Paths& paths, const Radar* radar, const std::string& replay, const py::object& times,
+                           bool arrays, const py::object& progress) {
+  ValiditySettings settings;
+  if (!times.is_none()) settings.times = as_vector<double>(times, "times");
+  settings.arrays = arrays;
+  settings.specular = kSpecularPoints.value_of(replay);
+  return run_job("validity", progress, [&](Job& job) {
+    return std::make_shared<Validity>(validity(paths, radar ? *radar : paths.radar, settings, &job));
+  });
+}
+
+template <class T>
+auto array_column(std::vector<T> ValidityArrays::* field) {
+  return [field](const py::object& self) { return numpy_view(self.cast<const Validity&>().arrays.*field, self); };
+}
+
+auto share(double ValidityShares::* field) {
+  return [field](const Validity& self) { return self.shares.*field; };
+}
+
+std::string repr_of(const Validity& self) {
+  std::ostringstream text;
+  text << "Validity("
+       << (self.warnings().empty() ? "one trace serves" : std::to_string(self.warnings().size()) + " warnings") << ", "
+       << self.num_paths << " paths, phase error " << self.rms_phase_error << " rad rms)";
+  return text.str();
+}
+
+void bind_shares(py::module_& m) {
+  py::class_<ValidityShares> bound(m, "ValidityShares",
+                                   "What one trace does not serve, as shares of the power of some paths.");
+  define_no_init(bound, "ep.validity");
+  bound.def_readonly("power", &ValidityShares::power, "W, what the shares are of")
+      .def_readonly("slid", &ValidityShares::slid, "share: phase error of points of reflection above 0.3 rad")
+      .def_readonly("left", &ValidityShares::left, "share: points of reflection that leave the surface around their hit")
+      .def_readonly("blocked", &ValidityShares::blocked, "share: something comes in the way")
+      .def_readonly("turned", &ValidityShares::turned,
+                    "share: a cosine of incidence or departure changes its sign or by more than a factor of two")
+      .def_readonly("new_surface", &ValidityShares::new_surface,
+                    "share of single echoes of all that is seen: of what was hidden from the trace")
+      .def("__repr__", [](const ValidityShares& self) {
+        std::ostringstream text;
+        text << "ValidityShares(slid=" << self.slid << ", left=" << self.left << ", blocked=" << self.blocked
+             << ", turned=" << self.turned << ", new_surface=" << self.new_surface << ")";
+        return text.str();
+      });
+  def_travel(bound, field("power", &ValidityShares::power), field("slid", &ValidityShares::slid),
+             field("left", &ValidityShares::left), field("blocked", &ValidityShares::blocked),
+             field("turned", &ValidityShares::turned), field("new_surface", &ValidityShares::new_surface));
+}
+
+void bind_objects(py::module_& m) {
+  py::class_<ObjectValidity, ValidityShares> bound(
+      m, "ObjectValidity", "What one trace does not serve of an object: of the paths that scattered on it last.");
+  define_no_init(bound, "ep.validity");
+  bound.def_readonly("name", &ObjectValidity::name, "of the object")
+      .def_property_readonly("ok", &ObjectValidity::ok, "it is served, or out of the dynamic range")
+      .def_readonly("disappears", &ObjectValidity::disappears,
+                    "share of its power that is lost, mean over the times of the check")
+      .def_readonly("error_db", &ObjectValidity::error_db,
+                    "dB, of its power over the frame: the replay over what is there with new surface; 0: not known")
+      .def_readonly("seen_power", &ObjectValidity::seen_power, "W, largest power with which the times of the check see it")
+      .def_readonly("turn", &ObjectValidity::turn, "rad, how far it turns within the frame at most")
+      .def_readonly("has_paths", &ObjectValidity::has_paths, "False: it has no path that carries power")
+      .def_readonly("in_range", &ObjectValidity::is_in_range,
+                    "at most 60 dB below the strongest object, and above the noise of a range-Doppler cell")
+      .def("__repr__", [](const ObjectValidity& self) {
+        std::ostringstream text;
+        text << "<ObjectValidity " << self.name << (self.ok() ? ": ok" : ": not served")
+             << ", new_surface=" << self.new_surface << ", disappears=" << self.disappears << ", error_db=" << self.error_db
+             << ">";
+        return text.str();
+      });
+  def_travel(bound, field("name", &ObjectValidity::name), field("power", &ObjectValidity::power),
+             field("slid", &ObjectValidity::slid), field("left", &ObjectValidity::left),
+             field("blocked", &ObjectValidity::blocked), field("turned", &ObjectValidity::turned),
+             field("new_surface", &ObjectValidity::new_surface), field("disappears", &ObjectValidity::disappears),
+             field("error_db", &ObjectValidity::error_db), field("seen_power", &ObjectValidity::seen_power),
+             field("turn", &ObjectValidity::turn), field("has_paths", &ObjectValidity::has_paths),
+             field("is_in_range", &ObjectValidity::is_in_range), field("is_too_fast", &ObjectValidity::is_too_fast),
+             field("is_asked", &ObjectValidity::is_asked));
+}
+
+// A column of what was found of each path.
+template <class T>
+auto found(const char* name, std::vector<T> ValidityArrays::* column) {
+  return field(name, [column](auto& self) -> auto& { return self.arrays.*column; });
+}
+
+void def_validity_travel(py::class_<Validity, ValidityPtr>& bound) {
+  def_travel(
+      bound, field("num_paths", &Validity::num_paths), field("times", &Validity::times),
+      field("has_array", &Validity::has_array), field("shares", &Validity::shares),
+      field("rms_phase_error", &Validity::rms_phase_error), field("largest_phase_error", &Validity::largest_phase_error),
+      field("motion_phase_error", &Validity::motion_phase_error),
+      field("stepped_phase_error", &Validity::stepped_phase_error),
+      field("largest_cosine_change", &Validity::largest_cosine_change), field("objects", &Validity::objects),
+      field("cell_noise", &Validity::cell_noise), field("specular", &Validity::specular, kSpecularPoints),
+      found("path_power", &ValidityArrays::power), found("path_phase_error", &ValidityArrays::phase_error),
+      found("path_stepped_phase_error", &ValidityArrays::stepped_phase_error), found("path_left", &ValidityArrays::left),
+      found("path_blocked", &ValidityArrays::blocked), found("path_receiver_blocked", &ValidityArrays::receiver_blocked),
+      found("path_turned", &ValidityArrays::turned), found("path_cosine_change", &ValidityArrays::cosine_change));
+}
+
+void bind_report(py::module_& m) {
+  py::class_<Validity, ValidityPtr> bound(
+      m, "Validity",
+      R"(Whether one trace serves a whole frame and a whole array; `str` tells it in words.
+
+Shares are of the power that the replay carries; a warning is due above 1 %. The power of a path is the mean of |a|^2 over
+the trace time and the times of the check; physical-optics paths are scaled to the power of their sum over the band. An object
+within 60 dB of the strongest and above the noise of a range-Doppler cell is not ok where one of its shares exceeds 5 %, its power
+over the frame is off by more than 0.5 dB, or it is seen but has no path.)");
+  define_no_init(bound, "ep.validity");
+  bound.def_readonly("num_paths", &Validity::num_paths, "P, their number")
+      .def_readonly("times", &Validity::times, "[T] s, of the check")
+      .def_readonly("shares", &Validity::shares, "ValidityShares of all paths")
+      .def_property_readonly("phase_error_share", share(&ValidityShares::slid),
+                             "share of the power whose points of reflection make an error above 0.3 rad")
+      .def_property_readonly("occluded_share", share(&ValidityShares::blocked), "share of the power that something blocks")
+      .def_property_readonly("left_share", share(&ValidityShares::left),
+                             "share of the power whose points of reflection leave the surface around their hit")
+      .def_property_readonly("turned_share", share(&ValidityShares::turned),
+                             "share of the power of surfaces that turn to or away from the rays")
+      .def_property_readonly("new_surface_share", share(&ValidityShares::new_surface),
+                             "share of single echoes of all that is seen: of what was hidden from the trace")
+      .def_property_readonly(
+          "replay", [](const Validity& self) { return kSpecularPoints.name_of(self.specular); },
+          "\"material\" or \"fermat\": the replay that was certified")
+      .def_readonly("rms_phase_error", &Validity::rms_phase_error, "rad, weighted by power")
+      .def_readonly("largest_phase_error", &Validity::largest_phase_error, "rad, over paths, times and antennas")
+      .def_readonly("motion_phase_error", &Validity::motion_phase_error, "rad, largest for the trace's own antennas")
+      .def_readonly("stepped_phase_error", &Validity::stepped_phase_error,
+                    "rad, largest that a Newton step to the moved points of reflection leaves")
+      .def_readonly("largest_cosine_change", &Validity::largest_cosine_change, "largest change of a cosine, linear")
+      .def_property_readonly("keyframes", &Validity::keyframes,
+                             "traces, each for its own part of the frame, that bring the error by motion below 0.3 rad")
+      .def_property_readonly("warnings", &Validity::warnings, "list of sentences; empty where one trace serves")
+      .def_property_readonly(
+          "ok", [](const Validity& self) { return self.warnings().empty(); },
+          "no warnings: every object in the dynamic range is served")
+      .def_property_readonly(
+          "objects",
+          [](const Validity& self) {
+            py::dict out;
+            for (const ObjectValidity& object : self.objects) out[py::str(object.name)] = object;
+            return out;
+          },
+          "{name: ObjectValidity} by the object that a path scattered on last (mirrors by images apart), by strength")
+      .def_property_readonly("power", array_column(&ValidityArrays::power), "[P] W")
+      .def_property_readonly("phase_error", array_column(&ValidityArrays::phase_error),
+                             "[P] rad, largest where no point of reflection has left its surface")
+      .def_property_readonly("path_stepped_phase_error", array_column(&ValidityArrays::stepped_phase_error),
+                             "[P] rad, what a Newton step leaves")
+      .def_property_readonly("left", array_column(&ValidityArrays::left),
+                             "[P] bit k: the point of reflection of hit k leaves the surface around it")
+      .def_property_readonly("blocked", array_column(&ValidityArrays::blocked),
+                             "[P] bit k: something comes in the way of the leg that arrives at hit k")
+      .def_property_readonly("receiver_blocked", array_column(&ValidityArrays::receiver_blocked),
+                             "[P] 1: something comes in the way of the leg to the receiver")
+      .def_property_readonly("turned", array_column(&ValidityArrays::turned), "[P] 1: a cosine changes too much")
+      .def_property_readonly("cosine_change", array_column(&ValidityArrays::cosine_change),
+                             "[P] largest of a cosine, linear")
+      .def("__str__", &Validity::text)
+      .def("__repr__", &repr_of);
+  define(bound, "_repr_html_", from_package("presentation.notebook", "validity_html"), "A table for notebooks.");
+  def_validity_travel(bound);
+}
+
+std::shared_ptr<Renewal> renew_paths(const Paths& paths, const Radar* radar, double time, const py::object& progress) {
+  return run_job("renew", progress, [&](Job& job) {
+    return std::make_shared<Renewal>(renew(paths, radar ? *radar : paths.radar, time, &job));
+  });
+}
+
+void bind_renewal(py::module_& m) {
+  py::class_<Renewal, std::shared_ptr<Renewal>> bound(m, "Renewal", "A record brought up to another time; made by `renew`.");
+  define_no_init(bound, "ep.renew");
+  bound
+      .def_property_readonly(
+          "paths", [](const Renewal& self) { return std::make_shared<Paths>(self.paths); },
+          "Paths that are still there, in their order.")
+      .def_readonly("num_blocked", &Renewal::num_blocked, "Paths left out because something stands in the way of a leg.")
+      .def_readonly("num_lost", &Renewal::num_lost, "Paths left out because a point of reflection has left its surface.")
+      .def_readonly("num_moved", &Renewal::num_moved, "Paths whose points of reflection were found anew.")
+      .def("__repr__", [](const Renewal& self) {
+        return "Renewal(paths=" + std::to_string(self.paths.num_paths()) +
+               ", num_blocked=" + std::to_string(self.num_blocked) + ", num_lost=" + std::to_string(self.num_lost) +
+               ", num_moved=" + std::to_string(self.num_moved) + ")";
+      });
+  def_travel(bound, field("paths", &Renewal::paths), field("num_blocked", &Renewal::num_blocked),
+             field("num_lost", &Renewal::num_lost), field("num_moved", &Renewal::num_moved));
+  m.def("renew", &renew_paths, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(), py::arg("time"),
+        py::arg("progress") = py::none(), "What ep.renew calls.");
+}
+
+}  // namespace
+
+void bind_validity(py::module_& m) {
+  bind_renewal(m);
+  bind_shares(m);
+  bind_objects(m);
+  bind_report(m);
+  m.def("validity", &check_validity, py::arg("paths"), py::arg("radar") = py::none(), py::kw_only(),
+        py::arg("replay") = "material", py::arg("times") = py::none(), py::arg("arrays") = false,
+        py::arg("progress") = py::none(), "What ep.validity calls.");
+}
+
+}  // namespace echopath::bindings

@@ -1,0 +1,50 @@
+#pragma once
+// Passes through sheets as rows of NumPy: Pass has a Hit within, which a structured array cannot name.
+#include <pybind11/numpy.h>
+
+#include <string>
+#include <vector>
+
+#include "call/argument.h"
+#include "echopath/trace/record/paths.h"
+#include "values/array.h"
+
+namespace echopath::bindings {
+
+// As Paths.passes has them.
+struct PassRow {
+  uint32_t mesh_id, triangle_id;
+  float u, v;
+  uint32_t leg;
+};
+static_assert(sizeof(PassRow) == sizeof(Pass));
+
+inline py::array passes_of(const py::object& self) {
+  const auto& passes = self.cast<const Paths&>().passes;
+  const auto* rows = reinterpret_cast<const PassRow*>(passes.data());
+  return numpy_view(rows, {static_cast<py::ssize_t>(passes.size())}, self);
+}
+
+// [N] structured, as Paths.passes has them.
+struct PassRows {
+  using Value = std::vector<Pass>;
+  static constexpr auto type_name = py::detail::const_name("ArrayLike");
+  static Value from(py::handle value, const char* argument) {
+    constexpr const char* kRule = "must be an array [N] of (mesh_id, triangle_id, u, v, leg) as Paths.passes has it";
+    if (!py::isinstance<py::array>(value)) refuse_type(argument, kRule, value);
+    const auto given = py::reinterpret_borrow<py::array>(value);
+    if (given.ndim() != 1 || !given.dtype().equal(py::dtype::of<PassRow>())) {
+      throw py::type_error(std::string(argument) + ": " + kRule + ", got " + std::string(py::str(given.dtype())) + " of " +
+                           std::to_string(given.ndim()) + " dimensions");
+    }
+    const py::array_t<PassRow, py::array::c_style | py::array::forcecast> rows(given);
+    Value passes;
+    for (py::ssize_t i = 0; i < rows.size(); ++i) {
+      const PassRow& row = rows.data()[i];
+      passes.push_back({{row.mesh_id, row.triangle_id, row.u, row.v}, row.leg});
+    }
+    return passes;
+  }
+};
+
+}  // namespace echopath::bindings

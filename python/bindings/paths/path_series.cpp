@@ -1,0 +1,154 @@
+#include "paths/path_series.h"
+
+#include <pybind11/complex.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "call/run_job.h"
+#include "echopath/base/errors.h"
+#include "echopath/base/threads/parallel.h"
+#include "echopath/power/path_power.h"
+#include "echopath/replay/replay.h"
+#include "values/array.h"
+#include "values/choice.h"
+
+namespace echopath::bindings {
+namespace {
+
+constexpr int64_t kHitsPerTask = 1 << 19;
+
+size_t antenna_index(int64_t index, const char* argument, size_t count) {
+  if (index >= 0 && index < static_cast<int64_t>(count)) return static_cast<size_t>(index);
+  throw std::out_of_range(std::string(argument) + ": must lie in 0 to " + std::to_string(count - 1) + ", got " +
+                          std::to_string(index));
+}
+
+// The antenna of that index, or an isotropic one at a position [3] in m in the radar's frame.
+Antenna antenna_of(const AntennaOrPosition::Value& value, const char* argument, const std::vector<Antenna>& antennas) {
+  if (const auto* index = std::get_if<int64_t>(&value)) return antennas[antenna_index(*index, argument, antennas.size())];
+  Antenna made;
+  made.position = std::get<Vec3>(value);
+  return made;
+}
+
+struct Series {
+  std::vector<double> lengths;                   // [T, P]
+  std::vector<std::complex<double>> amplitudes;  // [T, P]
+};
+
+// Of all paths. Runs beside Python, so that Ctrl-C is answered.
+Series evaluate_one_channel(const Paths& paths, const std::vector<double>& times, const Antenna& transmitter,
+                            const Antenna& receiver, SpecularPoints specular = SpecularPoints::kMaterial) {
+  for (const double time : times) require(std::isfinite(time), "times", "must be finite", time);
+  return run_job("replay", py::none(), [&](Job& job) {
+    Radar radar = paths.radar;
+    radar.transmitters = {transmitter};
+    radar.receivers = {receiver};
+    ReplaySettings settings;
+    settings.specular = specular;
+    const Replayer replayer(paths, radar, settings);
+    std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
+    std::iota(indices.begin(), indices.end(), 0);
+    Series series;
+    std::vector<double> lengths;
+    std::vector<std::complex<double>> amplitudes;
+    for (const double time : times) {
+      replayer.evaluate(indices, time, lengths, amplitudes, &job);
+      series.lengths.insert(series.lengths.end(), lengths.begin(), lengths.end());
+      series.amplitudes.insert(series.amplitudes.end(), amplitudes.begin(), amplitudes.end());
+    }
+    return series;
+  });
+}
+
+Shape series_shape(const Paths& paths, const std::vector<double>& times) {
+  return {static_cast<py::ssize_t>(times.size()), static_cast<py::ssize_t>(paths.num_paths())};
+}
+
+}  // namespace
+
+AntennaOrPosition::Value AntennaOrPosition::from(py::handle value, const char* argument) {
+  const bool is_scalar = PyIndex_Check(value.ptr()) && !PySequence_Check(value.ptr());
+  if (is_scalar) return Index::from(value, argument);
+  if (!PySequence_Check(value.ptr())) {
+    refuse_type(argument, "must be the index of an antenna or a position [3] in m in the radar's frame", value);
+  }
+  return as_vec3(value, argument);
+}
+
+py::array amplitudes_of(const Paths& paths, Arg<"times", VectorOf<double>> times, Arg<"tx", Index> tx, Arg<"rx", Index> rx,
+                        Arg<"replay", OneOf<kSpecularPoints>> replay) {
+  const Antenna transmitter = paths.radar.transmitters[antenna_index(*tx, "tx", paths.radar.transmitters.size())];
+  const Antenna receiver = paths.radar.receivers[antenna_index(*rx, "rx", paths.radar.receivers.size())];
+  return numpy_take(evaluate_one_channel(paths, *times, transmitter, receiver, *replay).amplitudes,
+                    series_shape(paths, *times));
+}
+
+py::array amplitude_of(const Paths& paths) {
+  const Radar& radar = paths.radar;
+  return numpy_take(
+      evaluate_one_channel(paths, {paths.frame.trace_time}, radar.transmitters[0], radar.receivers[0]).amplitudes);
+}
+
+py::array path_power_of(const Paths& paths) {
+  return numpy_take(run_job("replay", py::none(), [&](Job& job) { return path_power(paths, &job); }));
+}
+
+py::array lengths_of(const Paths& paths, Arg<"times", VectorOf<double>> times,
+                     Arg<"transmitter", AntennaOrPosition> transmitter, Arg<"receiver", AntennaOrPosition> receiver,
+                     Arg<"replay", OneOf<kSpecularPoints>> replay) {
+  const Antenna from = antenna_of(*transmitter, "transmitter", paths.radar.transmitters);
+  const Antenna to = antenna_of(*receiver, "receiver", paths.radar.receivers);
+  return numpy_take(evaluate_one_channel(paths, *times, from, to, *replay).lengths, series_shape(paths, *times));
+}
+
+py::tuple placed_echoes_of(const Paths& paths, Arg<"times", VectorOf<double>> times,
+                           Arg<"radars", List<Instance<Radar>>> radars, Arg<"replay", OneOf<kSpecularPoints>> replay) {
+  std::vector<double> delays;
+  std::vector<std::complex<double>> amplitudes;
+  run_job("replay", py::none(), [&](Job&) {
+    ReplaySettings settings;
+    settings.specular = *replay;
+    const Replayer replayer(paths, paths.radar, settings);
+    std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
+    std::iota(indices.begin(), indices.end(), 0);
+    std::vector<Echoes> channels = replayer.placed(indices, *times, *radars);
+    for (const Echoes& channel : channels) {
+      delays.insert(delays.end(), channel.delay.begin(), channel.delay.end());
+      amplitudes.insert(amplitudes.end(), channel.amplitude.begin(), channel.amplitude.end());
+    }
+    replayer.recycle(channels);
+  });
+  const Shape shape{static_cast<py::ssize_t>(paths.radar.transmitters.size()),
+                    static_cast<py::ssize_t>(paths.radar.receivers.size()), static_cast<py::ssize_t>((*times).size()),
+                    static_cast<py::ssize_t>(paths.num_paths())};
+  return py::make_tuple(numpy_take(std::move(delays), shape), numpy_take(std::move(amplitudes), shape));
+}
+
+py::array points_of(const Paths& paths, Arg<"time", Real> time) {
+  std::vector<double> coordinates = run_job("points", py::none(), [&](Job& job) {
+    const PosedScene pose(*paths.scene, *time);
+    std::vector<double> out(3 * static_cast<size_t>(paths.num_hits()));
+    parallel_for((paths.num_hits() + kHitsPerTask - 1) / kHitsPerTask,
+                 [&](int64_t block) {
+                   const int64_t end = std::min((block + 1) * kHitsPerTask, paths.num_hits());
+                   for (int64_t i = block * kHitsPerTask; i < end; ++i) {
+                     const Hit& hit = (*paths.hits)[static_cast<size_t>(i)];
+                     const auto [a, b, c] = pose.world_triangle(hit.mesh_id, hit.triangle_id);
+                     Eigen::Map<Vec3>(out.data() + 3 * i) = a + double{hit.u} * (b - a) + double{hit.v} * (c - a);
+                   }
+                 },
+                 &job);
+    return out;
+  });
+  return numpy_take(std::move(coordinates), {static_cast<py::ssize_t>(paths.num_hits()), 3});
+}
+
+}  // namespace echopath::bindings

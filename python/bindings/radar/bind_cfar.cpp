@@ -1,0 +1,176 @@
+// Detection at a constant false-alarm rate.
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+
+#include "call/define.h"
+#include "call/run_job.h"
+#include "echopath/spectrum/cfar/peaks.h"
+#include "values/array.h"
+#include "values/choice.h"
+#include "values/travel.h"
+
+namespace echopath::bindings {
+namespace {
+
+constexpr auto kCfarMethod = choice<CfarMethod>("method", "ca", "os");
+
+CfarResult cfar_of(const RangeDoppler& map, const Radar& radar, const std::string& method, double false_alarm_rate,
+                   std::optional<int> guard_velocity, std::optional<int> guard_range, std::optional<int> training_velocity,
+                   std::optional<int> training_range, double rank, const py::object& progress) {
+  const CfarOptions options{
+      kCfarMethod.value_of(method), false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank};
+  return run_job("cfar", progress, [&](Job& job) { return cfar(map, radar, options, &job); });
+}
+
+void check_cfar(const RangeDoppler& map, const Radar& radar, const std::string& method, double false_alarm_rate,
+                std::optional<int> guard_velocity, std::optional<int> guard_range, std::optional<int> training_velocity,
+                std::optional<int> training_range, double rank) {
+  cfar_design(map, radar,
+              {kCfarMethod.value_of(method), false_alarm_rate, guard_velocity, guard_range, training_velocity,
+               training_range, rank});
+}
+
+py::array_t<int64_t> cells_array(const std::vector<std::array<int64_t, 2>>& values) {
+  py::array_t<int64_t> cells({static_cast<py::ssize_t>(values.size()), py::ssize_t{2}});
+  for (size_t i = 0; i < values.size(); ++i) {
+    for (int axis = 0; axis < 2; ++axis) cells.mutable_at(i, axis) = values[i][axis];
+  }
+  return cells;
+}
+
+py::array_t<bool> mask_of(const CfarResult& result) {
+  py::array_t<bool> mask({result.num_velocities, result.num_ranges});
+  std::fill_n(mask.mutable_data(), mask.size(), false);
+  for (const auto& [velocity, range] : result.cells) mask.mutable_at(velocity, range) = true;
+  return mask;
+}
+
+py::dict peaks_of(const RangeDoppler& map, const Radar& radar, const CfarResult& found, const py::object& progress) {
+  Peaks peaks = run_job("find_peaks", progress, [&](Job& job) { return find_peaks(map, radar, found, &job); });
+  py::dict out;
+  out["cells"] = cells_array(peaks.cells);
+  out["velocity"] = numpy_take(std::move(peaks.velocity));
+  out["range"] = numpy_take(std::move(peaks.range));
+  out["power"] = numpy_take(std::move(peaks.power));
+  out["noise"] = numpy_take(std::move(peaks.noise));
+  out["velocity_offset"] = numpy_take(std::move(peaks.velocity_offset));
+  out["range_offset"] = numpy_take(std::move(peaks.range_offset));
+  return out;
+}
+
+std::string text_of(const CfarResult& result) {
+  const CfarWindow& cells = result.design.cells;
+  std::ostringstream text;
+  text << "CfarResult(" << result.cells.size() << " of " << result.num_velocities << " x " << result.num_ranges
+       << " cells, method '" << kCfarMethod.name_of(result.design.method) << "', false_alarm_rate "
+       << result.design.false_alarm_rate << ", guard " << cells.guard_velocity << " x " << cells.guard_range << ", training "
+       << cells.training_velocity << " x " << cells.training_range << ")";
+  return text.str();
+}
+
+void check_result(const CfarResult& made) {
+  require_shape(made.power, {made.num_velocities, made.num_ranges}, "power");
+  require_shape(made.noise, {static_cast<py::ssize_t>(made.cells.size())}, "noise");
+  for (const auto& [velocity, range] : made.cells) {
+    require(velocity >= 0 && velocity < made.num_velocities, "cells", "must lie in the map", velocity);
+    require(range >= 0 && range < made.num_ranges, "cells", "must lie in the map", range);
+  }
+  require(!made.factors.factor.empty(), "factors", "must not be empty", 0);
+}
+
+// Fields of the parts of a result.
+auto in_design(const char* name, auto CfarDesign::* member) {
+  return field(name, [member](auto& self) -> auto& { return self.design.*member; });
+}
+auto in_window(const char* name, int CfarWindow::* member) {
+  return field(name, [member](auto& self) -> auto& { return self.design.cells.*member; });
+}
+auto in_noise(const char* name, auto MapNoise::* member) {
+  return field(name, [member](auto& self) -> auto& { return self.design.noise.*member; });
+}
+
+void def_cfar_travel(py::class_<CfarResult>& bound) {
+  def_travel_checked(
+      bound, &check_result,
+      field(
+          "method", [](auto& self) -> auto& { return self.design.method; }, kCfarMethod),
+      in_design("false_alarm_rate", &CfarDesign::false_alarm_rate), in_design("rank", &CfarDesign::rank),
+      in_window("guard_velocity", &CfarWindow::guard_velocity), in_window("guard_range", &CfarWindow::guard_range),
+      in_window("training_velocity", &CfarWindow::training_velocity),
+      in_window("training_range", &CfarWindow::training_range), in_noise("window", &MapNoise::window),
+      in_noise("num_chirps", &MapNoise::num_chirps), in_noise("num_samples", &MapNoise::num_samples),
+      in_noise("zero_pad", &MapNoise::zero_pad), in_noise("num_channels", &MapNoise::num_channels),
+      field("factors", [](auto& self) -> auto& { return self.factors.factor; }),
+      field("statistic", [](auto& self) -> auto& { return self.factors.statistic; }),
+      field("num_velocities", &CfarResult::num_velocities), field("num_ranges", &CfarResult::num_ranges),
+      field("power", &CfarResult::power), field("cells", &CfarResult::cells), field("noise", &CfarResult::noise));
+}
+
+}  // namespace
+
+void bind_cfar(py::module_& m) {
+  py::class_<CfarResult> bound(m, "CfarResult", "Cells of a range-Doppler map that exceed their thresholds; made by cfar.");
+  define_no_init(bound, "ep.cfar");
+  bound
+      .def_property_readonly(
+          "power",
+          [](const py::object& self) {
+            const auto& result = self.cast<const CfarResult&>();
+            return numpy_view(result.power.data(), {result.num_velocities, result.num_ranges}, self);
+          },
+          "[velocity, range] W, mean over channels")
+      .def_property_readonly("mask", &mask_of, "[velocity, range] bool, true in the cells found")
+      .def_property_readonly(
+          "cells", [](const CfarResult& self) { return cells_array(self.cells); },
+          "[D, 2] (velocity, range) indices of the cells found, ascending")
+      .def_property_readonly(
+          "noise", [](const py::object& self) { return numpy_view(self.cast<const CfarResult&>().noise, self); },
+          "[D] W, mean power of the noise about each cell found, as its training cells tell it")
+      .def_property_readonly(
+          "factor", [](const CfarResult& self) { return self.factors.factor.back() * self.factors.statistic; },
+          "power over noise, linear, from which a cell away from the ends of the range axis is found")
+      .def_property_readonly(
+          "method", [](const CfarResult& self) { return kCfarMethod.name_of(self.design.method); }, "\"ca\" or \"os\"")
+      .def_property_readonly(
+          "false_alarm_rate", [](const CfarResult& self) { return self.design.false_alarm_rate; }, "of one cell")
+      .def_property_readonly(
+          "guard",
+          [](const CfarResult& self) {
+            return py::make_tuple(self.design.cells.guard_velocity, self.design.cells.guard_range);
+          },
+          "half widths along (velocity, range) in cells")
+      .def_property_readonly(
+          "training",
+          [](const CfarResult& self) {
+            return py::make_tuple(self.design.cells.training_velocity, self.design.cells.training_range);
+          },
+          "cells beyond the guard cells on each side, along (velocity, range)")
+      .def("__len__", [](const CfarResult& self) { return self.cells.size(); })
+      .def("__repr__", [](const CfarResult& self) { return text_of(self); });
+  def_cfar_travel(bound);
+
+  const CfarOptions standard;
+  m.def("cfar", &cfar_of, py::arg("spectrum"), py::arg("radar"), py::kw_only(), py::arg("method") = "ca",
+        py::arg("false_alarm_rate") = standard.false_alarm_rate, py::arg("guard_velocity") = py::none(),
+        py::arg("guard_range") = py::none(), py::arg("training_velocity") = py::none(),
+        py::arg("training_range") = py::none(), py::arg("rank") = standard.rank, py::arg("progress") = py::none(),
+        "What ep.cfar calls.");
+  m.def("check_cfar", &check_cfar, py::arg("spectrum"), py::arg("radar"), py::kw_only(), py::arg("method") = "ca",
+        py::arg("false_alarm_rate") = standard.false_alarm_rate, py::arg("guard_velocity") = py::none(),
+        py::arg("guard_range") = py::none(), py::arg("training_velocity") = py::none(),
+        py::arg("training_range") = py::none(), py::arg("rank") = standard.rank,
+        "Raises what cfar would for these settings, at no cost.");
+  m.def("find_peaks", &peaks_of, py::arg("spectrum"), py::arg("radar"), py::arg("found"), py::arg("progress") = py::none(),
+        R"(Local maxima among the cells found, and where between the cells they lie.
+
+found: CfarResult of that spectrum [tx, rx, velocity, range]; progress: callable(stage, fraction) or None
+Returns a dict of arrays [N]: cells [N, 2], velocity (m/s), range (m, as the map shows it), power and noise (W, mean over
+channels), velocity_offset, range_offset (cells). Raises ValueError.)");
+}
+
+}  // namespace echopath::bindings

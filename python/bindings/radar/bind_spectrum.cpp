@@ -1,0 +1,107 @@
+#include <pybind11/complex.h>
+#include <pybind11/pybind11.h>
+
+#include <sstream>
+#include <string>
+
+#include "call/argument.h"
+#include "call/define.h"
+#include "call/run_job.h"
+#include "echopath/spectrum/range_doppler.h"
+#include "radar/cube_array.h"
+#include "radar/window_name.h"
+#include "values/array.h"
+#include "values/in_package.h"
+#include "values/travel.h"
+
+namespace echopath::bindings {
+namespace {
+
+RangeDoppler range_doppler_map(const py::object& cube, const Radar& radar, const py::object& window, int zero_pad) {
+  const std::vector<std::complex<double>> values = as_cube(cube, radar);
+  const MapWindows taper = as_map_windows(window);
+  return run_job("range_doppler", py::none(), [&](Job& job) { return range_doppler(values, radar, taper, zero_pad, &job); });
+}
+
+py::array values_of(const py::object& self) {
+  const auto& map = self.cast<const RangeDoppler&>();
+  return numpy_view(map.values.data(),
+                    {map.num_transmitters, map.num_receivers, static_cast<py::ssize_t>(map.velocity.size()),
+                     static_cast<py::ssize_t>(map.range.size())},
+                    self);
+}
+
+void check_map(const RangeDoppler& map) {
+  require(map.num_transmitters >= 1, "num_transmitters", "must be at least 1", map.num_transmitters);
+  require(map.num_receivers >= 1, "num_receivers", "must be at least 1", map.num_receivers);
+  require_shape(map.values, {map.num_transmitters, map.num_receivers, num_of(map.velocity), num_of(map.range)}, "values");
+}
+
+std::string text_of(const RangeDoppler& map) {
+  std::ostringstream text;
+  text << "RangeDoppler([" << map.num_transmitters << ", " << map.num_receivers << ", " << map.velocity.size() << ", "
+       << map.range.size() << "], " << map.velocity.front() << " to " << map.velocity.back() << " m/s, 0 to "
+       << map.range.back() << " m)";
+  return text.str();
+}
+
+}  // namespace
+
+void bind_spectrum(py::module_& m) {
+  py::class_<RangeDoppler> bound(m, "RangeDoppler", "Range-Doppler maps with their axes; made by range_doppler.");
+  define_no_init(bound, "ep.range_doppler");
+  bound.def_property_readonly("values", &values_of, "[tx, rx, velocity, range] complex in sqrt(W), read-only")
+      .def_property_readonly(
+          "velocity", [](const py::object& self) { return numpy_view(self.cast<const RangeDoppler&>().velocity, self); },
+          "[velocity] in m/s, ascending, receding positive")
+      .def_property_readonly(
+          "range", [](const py::object& self) { return numpy_view(self.cast<const RangeDoppler&>().range, self); },
+          "[range] in m, ascending from 0")
+      .def_readonly("zero_pad", &RangeDoppler::zero_pad, "of both axes")
+      .def_property_readonly(
+          "window", [](const RangeDoppler& self) { return map_windows_value(self.window); },
+          "as range_doppler takes it: a name or (\"chebyshev\", sidelobe level in dB) of both axes, or those of (range, "
+          "velocity)")
+      .def_readonly("is_tdm_compensated", &RangeDoppler::is_tdm_compensated,
+                    "whether compensate_tdm took out the phase between transmit slots")
+      .def("__repr__", [](const RangeDoppler& self) { return text_of(self); });
+  define(bound, "to_xarray", from_package("presentation.xarray_maps", "range_doppler_array"),
+         R"(The map as an xarray.DataArray, without a copy: complex values in sqrt(W).
+
+Axes: tx, rx, velocity (m/s, receding positive) and range (m).
+
+Units stand in `attrs["units"]` of values and coordinates. Needs xarray, raises ModuleNotFoundError without it.)");
+  define(
+      bound, "plot",
+      [](const py::object& self, const py::object& ax, const py::object& vmin, const py::object& vmax,
+         Arg<"title", Text> title) {
+        return in_package("plots", "draw_range_doppler")(self, py::arg("ax") = ax, py::arg("vmin") = vmin,
+                                                         py::arg("vmax") = vmax, py::arg("title") = *title);
+      },
+      py::kw_only(), py::arg("ax") = py::none(), py::arg("vmin") = py::none(), py::arg("vmax") = py::none(),
+      py::arg("title") = "Received power by range and radial velocity",
+      R"(Draws the map, the mean over the channels, cropped to where there is signal.
+
+ax: Matplotlib axes to draw in, None: new ones; title: what stands above the map
+vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak
+Returns the axes: range in m across, radial velocity in m/s up (receding positive). Raises TypeError or
+ValueError naming the argument.)");
+  define(bound, "_repr_html_", from_package("presentation.notebook", "range_doppler_html"), "A table for notebooks.");
+  def_travel_checked(bound, &check_map, field("num_transmitters", &RangeDoppler::num_transmitters),
+                     field("num_receivers", &RangeDoppler::num_receivers), field("velocity", &RangeDoppler::velocity),
+                     field("range", &RangeDoppler::range), field("values", &RangeDoppler::values),
+                     field("window", &RangeDoppler::window), field("zero_pad", &RangeDoppler::zero_pad),
+                     field("is_tdm_compensated", &RangeDoppler::is_tdm_compensated));
+
+  m.def("range_doppler", &range_doppler_map, py::arg("cube"), py::arg("radar"), py::arg("window") = "hann",
+        py::arg("zero_pad") = 1, "What ep.range_doppler calls.");
+  m.def(
+      "window",
+      [](const std::string& name, int n, double sidelobe_db) {
+        return to_numpy(window_samples(Window::named(name, sidelobe_db), n));
+      },
+      py::arg("name"), py::arg("n"), py::arg("sidelobe_db") = 80.0,
+      "Samples [n] of a window: cosines periodic; \"chebyshev\" symmetric, sidelobes `sidelobe_db` dB down.");
+}
+
+}  // namespace echopath::bindings

@@ -1,0 +1,65 @@
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "echopath/posed/object_sizes.h"
+#include "echopath/scene/coherent_meshes.h"
+#include "echopath/scene/mesh_traits.h"
+#include "values/array.h"
+#include "values/shared.h"
+
+namespace echopath::bindings {
+namespace {
+
+// Returns (node [N], sides [N, 2], closed [N]).
+py::tuple sizes_of_objects(const Scene& scene, double time) {
+  const std::vector<ObjectSize> sizes = object_sizes(scene, time);
+  const auto count = static_cast<py::ssize_t>(sizes.size());
+  py::array_t<int32_t> node(count);
+  py::array_t<double> sides({count, py::ssize_t{2}});
+  py::array_t<bool> closed(count);
+  for (py::ssize_t i = 0; i < count; ++i) {
+    const ObjectSize& size = sizes[static_cast<size_t>(i)];
+    node.mutable_at(i) = size.node;
+    sides.mutable_at(i, 0) = size.shortest;
+    sides.mutable_at(i, 1) = size.longest;
+    closed.mutable_at(i) = size.is_closed;
+  }
+  return py::make_tuple(node, sides, closed);
+}
+
+// Returns (materials, index of each mesh's [M], smooth [M], moving [M], deforming [M]).
+py::tuple traits_of_meshes(const Scene& scene) {
+  const MeshTraits traits = mesh_traits(scene);
+  py::list materials;
+  for (const MaterialPtr& material : traits.materials) materials.append(shared(material));
+  const auto flags = [](const std::vector<uint8_t>& values) { return py::object(to_numpy(values).attr("astype")("bool")); };
+  return py::make_tuple(materials, to_numpy(traits.material), flags(traits.smooth), flags(traits.moving),
+                        flags(traits.deforming));
+}
+
+std::vector<std::string> names_of_meshes(const Scene& scene, const std::vector<uint32_t>& mesh_ids) {
+  std::vector<std::string> names;
+  for (const uint32_t id : mesh_ids) names.push_back(scene.nodes()[static_cast<size_t>(scene.meshes().at(id).node)].name);
+  return names;
+}
+
+}  // namespace
+
+// Binds what reports on scenes ask for, no part of the public interface.
+void bind_scene_reports(py::module_& m) {
+  m.def("coherent_meshes", &coherent_meshes, py::arg("scene"), py::arg("wavelength"), py::arg("least_share"),
+        py::arg("without_planes") = false,
+        "IDs of the meshes that reflect this share of the power in phase at a wavelength in m, mirrors left out.");
+  m.def("object_sizes", &sizes_of_objects, py::arg("scene"), py::arg("time"),
+        "Of the children of the root: (node [N], sides [N, 2] in m, shortest and longest, closed [N]).");
+  m.def(
+      "mesh_traits", &traits_of_meshes, py::arg("scene"),
+      "Of all meshes: (materials, each once; index of each mesh's [M]; whether it is smooth [M], moves [M], deforms [M]).");
+  m.def("mesh_names", &names_of_meshes, py::arg("scene"), py::arg("mesh_ids"), "Full names by mesh IDs.");
+}
+
+}  // namespace echopath::bindings

@@ -1,0 +1,347 @@
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "call/argument.h"
+#include "call/define.h"
+#include "call/run_job.h"
+#include "call/shown.h"
+#include "echopath/base/errors.h"
+#include "echopath/scene/overlap/coplanar.h"
+#include "echopath/scene/scene.h"
+#include "scene/deformation_type.h"
+#include "values/array.h"
+#include "values/shared.h"
+#include "values/travel.h"
+
+namespace echopath::bindings {
+namespace {
+
+template <class T>
+using OrNone = Optional<Instance<std::shared_ptr<T>>>;
+
+Node node(Arg<"name", Text> name, Arg<"parent", Whole<-1, std::numeric_limits<int>::max()>> parent,
+          Arg<"placement", Optional<Matrix>> placement, Arg<"motion", OrNone<Motion>> motion, Arg<"mesh", OrNone<Mesh>> mesh,
+          Arg<"deformation", OrNone<Deformation>> deformation, Arg<"material", OrNone<Material>> material,
+          Arg<"material_name", Text> material_name, Arg<"smooth", Flag> smooth, Arg<"visible", Flag> visible) {
+  Node made;
+  made.name = *name;
+  made.parent = *parent;
+  if (*placement) made.placement = **placement;
+  made.motion = motion->value_or(nullptr);
+  made.mesh = mesh->value_or(nullptr);
+  made.deformation = deformation->value_or(nullptr);
+  made.material = material->value_or(nullptr);
+  made.material_name = *material_name;
+  made.smooth = *smooth;
+  made.visible = *visible;
+  return made;
+}
+
+py::dict node_fields(const Node& self) {
+  py::dict fields;
+  fields["name"] = self.name;
+  fields["parent"] = self.parent;
+  fields["placement"] = to_numpy(self.placement);
+  fields["motion"] = shared(self.motion);
+  fields["mesh"] = shared(self.mesh);
+  fields["deformation"] = shared(self.deformation);
+  fields["material"] = shared(self.material);
+  fields["material_name"] = self.material_name;
+  fields["smooth"] = self.smooth;
+  fields["visible"] = self.visible;
+  return fields;
+}
+
+py::object changed_node(const Node& self, const py::kwargs& changes) {
+  py::dict fields = node_fields(self);
+  for (const auto& [name, value] : changes) fields[name] = value;
+  return py::type::of<Node>()(**fields);
+}
+
+// What scene.meshes lists.
+struct MeshEntry {
+  uint32_t id;
+  int node_index;
+  Node node;
+};
+
+py::dict state_of(const MeshEntry& self) {
+  return py::dict(py::arg("id") = self.id, py::arg("node_index") = self.node_index, py::arg("node") = self.node);
+}
+
+MeshEntry entry_of_state(const py::dict& state) {
+  require_fields(state, {"id", "node_index", "node"});
+  const Node node = Instance<Node>::from(state["node"], "node");
+  require(node.mesh != nullptr && node.material != nullptr, "node", "must have a mesh and a material", node.name);
+  return {Codec<uint32_t>::value(state["id"], "id"), Codec<int>::value(state["node_index"], "node_index"), node};
+}
+
+uint32_t checked_mesh_id(const Scene& scene, int mesh_id) {
+  const auto count = static_cast<int64_t>(scene.meshes().size());
+  if (mesh_id >= 0 && mesh_id < count) return static_cast<uint32_t>(mesh_id);
+  throw std::out_of_range("mesh_id: must lie in 0 to " + std::to_string(count - 1) + ", got " + std::to_string(mesh_id));
+}
+
+// All nodes or none.
+void add_nodes(Scene& scene, const std::vector<Node>& nodes) {
+  const size_t num_before = scene.nodes().size();
+  try {
+    for (const Node& node : nodes) scene.add(node);
+  } catch (...) {
+    while (scene.nodes().size() > num_before) scene.remove(static_cast<int>(scene.nodes().size()) - 1);
+    throw;
+  }
+}
+
+// The nodes of a scene in their order make the same scene again.
+Scene scene_of(const std::vector<Node>& nodes) {
+  Scene scene;
+  for (Node node : nodes) {
+    node.name = node.name.substr(node.name.rfind('/') + 1);
+    scene.add(std::move(node));
+  }
+  return scene;
+}
+
+Scene scene_of_state(const py::object& state) {
+  std::vector<Node> nodes;
+  const bool is_list =
+      py::isinstance<py::tuple>(state) && py::len(state) == 1 && py::isinstance<py::list>(py::object(state[py::int_(0)]));
+  if (!is_list) refuse_type("state", "must be that of a Scene", state);
+  for (const py::handle node : py::list(state[py::int_(0)])) {
+    if (!py::isinstance<Node>(node)) refuse_type("state", "must hold Nodes", node);
+    nodes.push_back(node.cast<Node>());
+  }
+  return scene_of(nodes);
+}
+
+int index_of_name(const Scene& scene, const py::object& name) {
+  constexpr const char* kRule = "must be the full name of a node";
+  if (!py::isinstance<py::str>(name)) refuse_type("name", kRule, name);
+  const std::string text = escaped(name);
+  if (const std::optional<int> index = scene.find(text)) return *index;
+  std::vector<std::string> names;
+  for (const Node& node : scene.nodes()) names.push_back(node.name);
+  std::string nearest;
+  for (const std::string& one : nearest_names(text, names)) nearest += (nearest.empty() ? "" : ", ") + one;
+  throw py::key_error("name: " + std::string(kRule) +
+                      " (nearest: " + (names.empty() ? "none, the scene is empty" : nearest) + "), got " + shown(name));
+}
+
+bool has_name(const Scene& scene, const py::object& name) {
+  return py::isinstance<py::str>(name) && scene.find(escaped(name)).has_value();
+}
+
+py::list names_of(const Scene& scene) {
+  py::list names;
+  for (const Node& node : scene.nodes()) names.append(node.name);
+  return names;
+}
+
+std::vector<MeshEntry> mesh_entries(const Scene& scene) {
+  std::vector<MeshEntry> entries;
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
+    entries.push_back({id, scene.meshes()[id].node, scene.node_of(id)});
+  }
+  return entries;
+}
+
+using MeshId = Arg<"mesh_id", Whole<std::numeric_limits<int>::min(), std::numeric_limits<int>::max()>>;
+
+bool is_mesh_moving(const Scene& scene, MeshId mesh_id) { return scene.is_moving(checked_mesh_id(scene, *mesh_id)); }
+
+py::array_t<double> world_vertices_of(const Scene& scene, MeshId mesh_id, Arg<"time", Real> time) {
+  return to_numpy(world_vertices(scene, checked_mesh_id(scene, *mesh_id), *time));
+}
+
+std::optional<int> find_node(const Scene& scene, Arg<"name", Text> name) { return scene.find(*name); }
+
+void require_scene_times(const Scene& scene, Arg<"begin", Real> begin, Arg<"end", Real> end) {
+  scene.require_times(*begin, *end);
+}
+
+// What scene.coplanar_overlaps lists.
+struct NamedOverlap {
+  CoplanarOverlap overlap;
+  std::string first, second;
+};
+
+std::vector<NamedOverlap> named_overlaps(const Scene& scene, Arg<"time", Real> time,
+                                         Arg<"max_distance", Real> max_distance) {
+  const Scene kept = scene;  // others may change it while the work runs
+  const auto found = run_job("coplanar overlaps", py::none(),
+                             [&](Job& job) { return coplanar_overlaps(kept, *time, *max_distance, &job); });
+  std::vector<NamedOverlap> named;
+  for (const CoplanarOverlap& one : found) {
+    named.push_back({one, kept.node_of(one.first_mesh_id).name, kept.node_of(one.second_mesh_id).name});
+  }
+  return named;
+}
+
+std::string overlap_text(const NamedOverlap& self) {
+  std::ostringstream text;
+  text << "CoplanarOverlap('" << self.first << "', '" << self.second << "', " << self.overlap.num_triangles << " triangles, "
+       << self.overlap.area << " m^2)";
+  return text.str();
+}
+
+void bind_overlaps(py::module_& m) {
+  py::class_<NamedOverlap> type(m, "CoplanarOverlap", "Where two meshes, or a mesh and itself, lie on each other.");
+  define_no_init(type, "scene.coplanar_overlaps()");
+  type.def_property_readonly(
+          "names", [](const NamedOverlap& self) { return py::make_tuple(self.first, self.second); },
+          "full names of the two meshes; twice the same for a mesh that lies on itself")
+      .def_property_readonly(
+          "mesh_ids",
+          [](const NamedOverlap& self) { return py::make_tuple(self.overlap.first_mesh_id, self.overlap.second_mesh_id); },
+          "their mesh IDs, the lower one first")
+      .def_property_readonly(
+          "num_triangles", [](const NamedOverlap& self) { return self.overlap.num_triangles; },
+          "of both meshes, that lie on one of the other")
+      .def_property_readonly(
+          "area", [](const NamedOverlap& self) { return self.overlap.area; }, "m^2, summed over pairs of triangles")
+      .def_property_readonly(
+          "distance", [](const NamedOverlap& self) { return self.overlap.distance; }, "m, largest between the two")
+      .def("__repr__", &overlap_text);
+  const auto of_overlap = [](const char* name, auto member) {
+    return field(name, [member](auto& self) -> auto& { return self.overlap.*member; });
+  };
+  def_travel(type, field("first", &NamedOverlap::first), field("second", &NamedOverlap::second),
+             of_overlap("first_mesh_id", &CoplanarOverlap::first_mesh_id),
+             of_overlap("second_mesh_id", &CoplanarOverlap::second_mesh_id),
+             of_overlap("num_triangles", &CoplanarOverlap::num_triangles), of_overlap("area", &CoplanarOverlap::area),
+             of_overlap("distance", &CoplanarOverlap::distance));
+}
+
+std::string scene_text(const Scene& self) {
+  return "Scene(" + std::to_string(self.nodes().size()) + " nodes, " + std::to_string(self.meshes().size()) + " meshes, " +
+         std::to_string(self.num_triangles()) + " triangles)";
+}
+
+void bind_nodes(py::module_& m) {
+  py::class_<Node> type(m, "Node", "A node of a scene; cannot be changed.");
+  define_init(type, &node, py::kw_only(), py::arg("name"), py::arg("parent") = -1, py::arg("placement") = py::none(),
+              py::arg("motion") = py::none(), py::arg("mesh") = py::none(), py::arg("deformation") = py::none(),
+              py::arg("material") = py::none(), py::arg("material_name") = "", py::arg("smooth") = false,
+              py::arg("visible") = true);
+  define(type, "replace", &changed_node,
+         "A copy with some fields changed: node.replace(visible=False). Raises TypeError or ValueError naming the field.");
+  type.def_readonly("name", &Node::name, "full name, \"street/pedestrian/head\"")
+      .def_readonly("parent", &Node::parent, "index of the parent, -1 for a child of the root")
+      .def_property_readonly(
+          "placement", [](const Node& self) { return to_numpy(self.placement); },
+          "[4, 4] at rest, relative to the parent, m")
+      .def_property_readonly(
+          "motion", [](const Node& self) { return shared(self.motion); }, "a motion or None")
+      .def_property_readonly(
+          "mesh", [](const Node& self) { return shared(self.mesh); }, "a Mesh or None")
+      .def_property_readonly(
+          "deformation", [](const Node& self) { return shared(self.deformation); }, "a VertexSequence, a Skin or None")
+      .def_property_readonly(
+          "material", [](const Node& self) { return shared(self.material); }, "a Material or None")
+      .def_readonly("material_name", &Node::material_name, "as given, \"\" for a material without a name")
+      .def_readonly("smooth", &Node::smooth, "whether the mesh stands for a curved surface")
+      .def_readonly("visible", &Node::visible, "False: neither it nor what is below it takes part in anything")
+      .def(py::pickle([](const Node& self) { return node_fields(self); },
+                      [](const py::dict& fields) { return py::type::of<Node>()(**fields).cast<Node>(); }))
+      .def("__repr__", [](const Node& self) { return "Node('" + self.name + "'" + (self.mesh ? ", mesh)" : ")"); });
+
+  py::class_<MeshEntry> entry(m, "SceneMesh", "A mesh of a scene with its mesh ID.");
+  define_no_init(entry, "scene.meshes");
+  entry.def_readonly("id", &MeshEntry::id, "mesh ID")
+      .def_readonly("node", &MeshEntry::node_index, "index into scene.nodes")
+      .def_property_readonly(
+          "name", [](const MeshEntry& self) { return self.node.name; }, "full name of its node")
+      .def_property_readonly(
+          "mesh", [](const MeshEntry& self) { return shared(self.node.mesh); }, "the Mesh")
+      .def_property_readonly(
+          "triangles",
+          [](const MeshEntry& self) -> py::object { return py::cast(shared(self.node.mesh)).attr("triangles"); },
+          "[F, 3] indices of vertices")
+      .def_property_readonly(
+          "material", [](const MeshEntry& self) { return shared(self.node.material); }, "the Material")
+      .def_property_readonly(
+          "material_name", [](const MeshEntry& self) { return self.node.material_name; },
+          "as given, \"\" for a material without a name")
+      .def("__repr__",
+           [](const MeshEntry& self) {
+             const std::string count = std::to_string(self.node.mesh->triangles().size());
+             return "SceneMesh(" + std::to_string(self.id) + ", '" + self.node.name + "', " + count + " triangles)";
+           })
+      .def(py::pickle(&state_of, &entry_of_state));
+}
+
+void bind_tree(py::module_& m) {
+  py::class_<Scene, std::shared_ptr<Scene>> tree(m, "Scene", "A tree of named nodes with placements, motions and meshes.");
+  tree.def(py::init<>())
+      .def(py::init<const Scene&>(), py::arg("scene"), "A copy.")
+      .def("_add_nodes", &add_nodes, py::arg("nodes"))
+      .def("_index_of", &index_of_name, py::arg("name"), "Raises KeyError naming the nearest names.")
+      .def(
+          "_node", [](const Scene& self, int index) { return self.nodes().at(static_cast<size_t>(index)); },
+          py::arg("index"))
+      .def("_change", &Scene::change, py::arg("index"), py::arg("node"))
+      .def("_remove", &Scene::remove, py::arg("index"))
+      .def("_takes_part", &Scene::takes_part, py::arg("index"))
+      .def("__len__", [](const Scene& self) { return self.nodes().size(); })
+      .def(
+          "__iter__", [](const Scene& self) { return names_of(self).attr("__iter__")(); }, "Full names, parents first.")
+      .def("__contains__", &has_name, py::arg("name"), "Whether there is a node with that full name.")
+      .def(
+          "__getitem__",
+          [](const Scene& self, const py::object& name) {
+            return self.nodes()[static_cast<size_t>(index_of_name(self, name))];
+          },
+          py::arg("name"), "The Node with that full name, \"street/car\". Raises KeyError naming the nearest names.")
+      .def("__copy__", [](const py::object& self) { return py::type::of(self)(self); })
+      .def(
+          "__deepcopy__", [](const py::object& self, const py::dict&) { return py::type::of(self)(self); }, py::arg("memo"),
+          "Shares meshes, motions and materials, which cannot change.")
+      .def(py::pickle([](const Scene& self) { return py::make_tuple(self.nodes()); }, &scene_of_state))
+      .def_property_readonly(
+          "nodes", [](const Scene& self) { return self.nodes(); }, "list of Node, parents first")
+      .def_property_readonly("meshes", &mesh_entries, "list of SceneMesh that take part, by mesh ID")
+      .def_property_readonly("num_triangles", &Scene::num_triangles)
+      .def_property_readonly(
+          "breakpoints", [](const Scene& self) { return to_numpy(self.breakpoints()); },
+          "Times [N] in s, ascending, where some motion is not smooth.")
+      .def("__repr__", &scene_text);
+  define(tree, "find", &find_node, py::arg("name"), "Index of the node with that full name, None where there is none.");
+  define(tree, "is_moving", &is_mesh_moving, py::arg("mesh_id"),
+         "Whether the mesh moves or deforms at some time. Raises IndexError.");
+  define(tree, "require_times", &require_scene_times, py::arg("begin"), py::arg("end"),
+         "Raises ValueError naming the node whose motion is not defined on all of [begin, end] (s).");
+  define(tree, "world_vertices", &world_vertices_of, py::arg("mesh_id"), py::arg("time") = 0.0,
+         "Vertices [V, 3] in m of a mesh at `time` in s, in world coordinates. Raises IndexError, ValueError.");
+  define(tree, "coplanar_overlaps", &named_overlaps, py::kw_only(), py::arg("time") = 0.0,
+         py::arg("max_distance") = kCoplanarDistance, R"(Where meshes lie on each other, or a mesh lies on itself.
+
+time: s; max_distance: m, up to which two triangles count that are nowhere further apart where one lies over the other
+Which of the two a ray meets is decided by rounding. The level of the echo stays that of one surface; its material and the
+label are those of the one that is met. Where no ray reaches, as under a box on the ground, it does no harm.
+Triangles that merely touch, overlap by less than max_distance, or cross do not count.
+Of meshes that are copies of each other at the same place, the first stands for all: each copy is listed with it and with
+nothing else.
+Returns a list of CoplanarOverlap, by mesh IDs. Takes about a second for a million triangles. Raises ValueError, also for a
+time outside a motion.)");
+  m.def("glob_takes", &glob_takes, py::arg("glob"), py::arg("full_name"),
+        "Whether a glob takes a mesh name: its full name or an ancestor's; * is any text, / too, and ? one character.");
+}
+
+}  // namespace
+
+void bind_scene_tree(py::module_& m) {
+  bind_nodes(m);
+  bind_overlaps(m);
+  bind_tree(m);
+}
+
+}  // namespace echopath::bindings

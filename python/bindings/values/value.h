@@ -1,0 +1,91 @@
+#pragma once
+// Values: objects that are nothing but what their constructor was given.
+#include <pybind11/pybind11.h>
+
+#include <memory>
+#include <string>
+#include <type_traits>
+
+#include "call/define.h"
+#include "call/shown.h"
+
+namespace echopath::bindings {
+
+namespace detail {
+
+// Whether two keywords have equal values, arrays by their numbers.
+bool same_values(const pybind11::dict& one, const pybind11::dict& other);
+// Equal for equal values.
+pybind11::ssize_t hash_of_values(const pybind11::dict& keywords);
+// What `make` returns for keywords with changes.
+pybind11::object remade(const pybind11::object& make, const pybind11::dict& keywords, const pybind11::dict& changes);
+// The keywords in the state of a pickle. Raises TypeError where it is none.
+pybind11::dict checked_state(const pybind11::object& state, const char* type_name);
+
+// Sets an attribute as Python does, or raises AttributeError with a hint at `replace`.
+void refuse_change(pybind11::handle self, pybind11::handle name, pybind11::handle value);
+
+// How pybind11 hands over new objects of a class.
+template <class Value, class Holder>
+using Held = std::conditional_t<std::is_same_v<Holder, std::shared_ptr<Value>>, std::shared_ptr<Value>, Value>;
+
+// The Python callable that makes a Value of keywords: its class.
+template <class Value>
+pybind11::object constructor_for(const pybind11::dict&) {
+  return pybind11::type::of<Value>();
+}
+
+}  // namespace detail
+
+// Gives a class pickle, copy, deepcopy, == and a hash. `keywords_of` returns the keywords that make the value again, so the
+// state of a pickle is checked by the constructor, as any other input. `maker_for` names what takes the keywords where that
+// is not the class.
+template <class Value, class... Options>
+void define_value(pybind11::class_<Value, Options...>& type, pybind11::dict (*keywords_of)(const Value&),
+                  pybind11::object (*maker_for)(const pybind11::dict&) = &detail::constructor_for<Value>) {
+  namespace py = pybind11;
+  using Held = detail::Held<Value, typename py::class_<Value, Options...>::holder_type>;
+  type.def(
+      "__eq__",
+      [keywords_of](const Value& self, const py::object& other) -> py::object {
+        if (!py::isinstance<Value>(other)) return py::reinterpret_borrow<py::object>(Py_NotImplemented);
+        return py::bool_(detail::same_values(keywords_of(self), keywords_of(other.cast<const Value&>())));
+      },
+      py::arg("other"), "Whether the other one is made of the same values.");
+  type.def("__hash__", [keywords_of](const Value& self) { return detail::hash_of_values(keywords_of(self)); });
+  type.def(py::pickle([keywords_of](const Value& self) { return keywords_of(self); },
+                      [maker_for](const py::object& state) {
+                        const std::string name = py::cast<std::string>(py::type::of<Value>().attr("__name__"));
+                        const py::dict keywords = detail::checked_state(state, name.c_str());
+                        return detail::remade(maker_for(keywords), keywords, py::dict()).template cast<Held>();
+                      }));
+}
+
+// Answers `value.name = ...` by what to write instead: attributes of a value are set by nobody. Classes derived in Python
+// keep what they have of their own.
+template <class Value, class... Options>
+void define_no_change(pybind11::class_<Value, Options...>& type) {
+  type.def("__setattr__", [](const pybind11::object& self, const pybind11::str& name, const pybind11::object& value) {
+    detail::refuse_change(self, name, value);
+  });
+}
+
+// Gives a value `replace`: a copy with other values of some of its keywords.
+template <class Value, class... Options>
+void define_replace(pybind11::class_<Value, Options...>& type, pybind11::dict (*keywords_of)(const Value&),
+                    pybind11::object (*maker_for)(const pybind11::dict&) = &detail::constructor_for<Value>) {
+  namespace py = pybind11;
+  using Held = detail::Held<Value, typename py::class_<Value, Options...>::holder_type>;
+  define(
+      type, "replace",
+      [keywords_of, maker_for](const Value& self, const py::kwargs& changes) {
+        const py::dict keywords = keywords_of(self);
+        return detail::remade(maker_for(keywords), keywords, changes).template cast<Held>();
+      },
+      "A copy with other values of some arguments.\n\n"
+      "changes: arguments of the constructor, by name\n"
+      "Raises TypeError or ValueError as the constructor does.");
+  define_no_change(type);
+}
+
+}  // namespace echopath::bindings

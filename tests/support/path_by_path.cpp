@@ -37,6 +37,13 @@ Line line_over(const PosedHit* hits, const Vec3& from, int first, int last, cons
   return {line.norm(), departure, arrival};
 }
 
+// The horizontal and vertical components of a polarisation, scaled to length 1; zero along the direction.
+Eigen::Vector2d transverse_components(const Vec3& polarization, const Vec3& direction) {
+  const TransverseBasis across = transverse_basis(direction);
+  const Eigen::Vector2d found(polarization.dot(across.horizontal), polarization.dot(across.vertical));
+  return found.norm() > 1e-9 ? Eigen::Vector2d(found.normalized()) : Eigen::Vector2d::Zero();
+}
+
 std::complex<double> polarized(const JonesMatrix& j, const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
   return to[0] * (from[0] * std::complex<double>(j[0]) + from[1] * std::complex<double>(j[1])) +
          to[1] * (from[0] * std::complex<double>(j[2]) + from[1] * std::complex<double>(j[3]));

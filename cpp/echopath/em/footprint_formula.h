@@ -1,5 +1,6 @@
 #pragma once
-// Evaluates the filters of em/footprint.h for doubles and for vectors of doubles. Math is as in base/lanes/scalar_math.h.
+// Evaluates what a ray's footprint on a surface leaves of its echo, from the phase across the launch cell that the ray stands
+// for. Math and Real are doubles or vectors of doubles, as in base/lanes/scalar_math.h.
 #include "echopath/base/lanes/scalar_math.h"
 
 namespace echopath {
@@ -18,11 +19,15 @@ struct FootprintPhaseOf {
   Real h11{}, h12{}, h22{};  // rad per cell^2
 };
 
+// Returns the first-order footprint F = exp(-(g1^2 + g2^2) / 24), the Gaussian fit of a square cell's shape factor
+// sinc(g1/2) sinc(g2/2) (ray-tube integration of Ling, Chou, Lee 1989). It lies in (0, 1].
 template <class Math, class Real>
 ECHOPATH_INLINE Real first_order_footprint_of(const FootprintPhaseOf<Real>& phase) {
   return Math::exp((phase.g1 * phase.g1 + phase.g2 * phase.g2) * (-1.0 / 24.0));
 }
 
+// Returns the second-order footprint: the exact mean of e^{-j(g.x + x.h.x/2)} over a Gaussian of covariance spread^2
+// (cells^2). |F| <= 1, and F -> 1 for small cells. `spread` is 0.6 for spherical Fibonacci points.
 template <class Math, class Real>
 ECHOPATH_INLINE ComplexOf<Real> second_order_footprint_of(const FootprintPhaseOf<Real>& phase, double spread) {
   const double variance = spread * spread;
@@ -48,6 +53,8 @@ ECHOPATH_INLINE ComplexOf<Real> second_order_footprint_of(const FootprintPhaseOf
   return {root_real * c + root_imag * s, root_real * s - root_imag * c};
 }
 
+// Returns 3 F(s^2) - 3 F(2 s^2) + F(3 s^2), with F of the second order. Its response is flat near g = 0, so that phases that
+// turn by a tenth of a cycle between rays lose less than 1e-3 where the Gaussian loses 8 %. |F| <= 7.
 template <class Math, class Real>
 ECHOPATH_INLINE ComplexOf<Real> edges_footprint_of(const FootprintPhaseOf<Real>& phase, double spread) {
   constexpr double kRoot2 = 1.4142135623730951, kRoot3 = 1.7320508075688772;
@@ -57,7 +64,10 @@ ECHOPATH_INLINE ComplexOf<Real> edges_footprint_of(const FootprintPhaseOf<Real>&
   return {3.0 * (once.re - twice.re) + thrice.re, 3.0 * (once.im - twice.im) + thrice.im};
 }
 
-// Evaluates the flat-top filter along one axis.
+// Returns the footprint of a flat surface behind flat mirrors along one axis, 1 - (1 - exp(-g^2/8))^4; the whole one is the
+// product over both. It is flatter near g = 0 than the Gaussian, so that plates lose nothing while phases turn by less than a
+// quarter of a cycle between rays. It lies in [0, 1]. Higher powers are flatter still but let facets of a curved mesh alias:
+// a sphere of facets errs by .10, .13, .19 dB with power 3, 4, 6 (2^14 rays).
 template <class Math, class Real>
 ECHOPATH_INLINE Real flat_top_of(Real g) {
   const Real loss = 1.0 - Math::exp(g * g * -0.125);  // its fourth power needs no more digits

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "echopath/base/errors.h"
-#include "echopath/label/objects/families.h"
 
 namespace echopath {
 namespace {
@@ -41,12 +40,6 @@ Partition flattened(CombinedPartition combined) {
 
 Grouping by_selections(std::vector<NamedSelection> parts) {
   return [parts = std::move(parts)](const Paths& paths, Job* job) { return make_partition(paths, parts, job); };
-}
-
-Grouping by_families(SurfaceMap surfaces) {
-  return [surfaces = std::move(surfaces)](const Paths& paths, Job* job) {
-    return find_families(paths, surfaces, job).partition();
-  };
 }
 
 Grouping by_batches() {

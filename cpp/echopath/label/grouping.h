@@ -4,7 +4,6 @@
 #include <functional>
 #include <vector>
 
-#include "echopath/label/objects/surfaces.h"
 #include "echopath/label/partition.h"
 
 namespace echopath {
@@ -15,9 +14,6 @@ using Grouping = std::function<Partition(const Paths&, Job*)>;
 
 // Groups by make_partition.
 Grouping by_selections(std::vector<NamedSelection> parts);
-
-// Groups by find_families.
-Grouping by_families(SurfaceMap surfaces);
 
 // Groups the paths for error bars: the coherent and the diffuse paths of each batch of rays, "batch 0 coherent", "batch 0
 // diffuse", ...; the last group, "all batches", holds the paths by images, which count in full in each batch's estimate.

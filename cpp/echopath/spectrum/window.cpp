@@ -91,15 +91,9 @@ std::vector<double> window_samples(const Window& window, int n) { return samples
 
 std::vector<double> centred_window_samples(const Window& window, int n) { return samples_of(window, n, 0.5); }
 
-double coherent_gain(const std::vector<double>& samples) { return sum_of(samples) / static_cast<double>(samples.size()); }
-
 double equivalent_noise_bandwidth(const std::vector<double>& samples) {
   const double power = std::inner_product(samples.begin(), samples.end(), samples.begin(), 0.0);
   return static_cast<double>(samples.size()) * power / (sum_of(samples) * sum_of(samples));
-}
-
-double scalloping_loss_db(const std::vector<double>& samples) {
-  return -20.0 * std::log10(std::abs(tone_response(samples, 0.5)));
 }
 
 double main_lobe_half_width(const std::vector<double>& samples) {

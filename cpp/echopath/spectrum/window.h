@@ -38,9 +38,7 @@ std::vector<double> window_samples(const Window& window, int n);
 // 0.
 std::vector<double> centred_window_samples(const Window& window, int n);
 
-double coherent_gain(const std::vector<double>& samples);               // sum w / n
 double equivalent_noise_bandwidth(const std::vector<double>& samples);  // n sum w^2 / (sum w)^2, bins
-double scalloping_loss_db(const std::vector<double>& samples);          // loss of a tone half-way between bins, dB
 double main_lobe_half_width(const std::vector<double>& samples);        // from a tone to its first null, bins, to 1/64
 // Returns the response to a tone `bins` away, 1 at 0; it is real where samples are symmetric about their middle (n - 1) / 2.
 std::complex<double> tone_response(const std::vector<double>& samples, double bins);

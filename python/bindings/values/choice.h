@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "echopath/em/footprint.h"
+#include "echopath/em/footprint_formula.h"
 #include "echopath/em/polarization/jones.h"
 #include "echopath/replay/posed/specular_slide.h"
 #include "echopath/signal/synthesizer.h"

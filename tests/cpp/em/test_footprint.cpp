@@ -2,10 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
 #include <random>
 
 #include "echopath/base/constants.h"
-#include "echopath/em/footprint.h"
+#include "echopath/em/footprint_formula.h"
 
 namespace echopath::test_footprint {
 namespace {
@@ -20,6 +21,24 @@ constexpr double kFlatTop = 1e-4;           // likewise, at half a radian
 constexpr double kFaded = 1e-6;             // of cells that turn by two cycles
 constexpr double kSmallCell = 1e-5;         // of the first order in phases of 1e-5
 constexpr double kSmallCellSquared = 1e-9;  // of their second order
+
+using FootprintPhase = FootprintPhaseOf<double>;
+
+double first_order(const FootprintPhase& phase) { return first_order_footprint_of<ScalarMath>(phase); }
+
+std::complex<double> second_order(const FootprintPhase& phase, double spread) {
+  const ComplexOf<double> found = second_order_footprint_of<ScalarMath>(phase, spread);
+  return {found.re, found.im};
+}
+
+std::complex<double> edges(const FootprintPhase& phase, double spread) {
+  const ComplexOf<double> found = edges_footprint_of<ScalarMath>(phase, spread);
+  return {found.re, found.im};
+}
+
+double flat_top(const FootprintPhase& phase) {
+  return flat_top_of<ScalarMath>(phase.g1) * flat_top_of<ScalarMath>(phase.g2);
+}
 
 // Trapezoidal sum over +-9 standard deviations: exact to rounding for a Gaussian times a resolved phase.
 std::complex<double> gaussian_mean(const FootprintPhase& phase, double spread) {
@@ -42,7 +61,7 @@ TEST(Footprint, SecondOrderIsTheGaussianIntegral) {
   std::uniform_real_distribution<double> slope(-4.0, 4.0), curvature(-6.0, 6.0);
   for (int i = 0; i < 40; ++i) {
     const FootprintPhase phase{slope(random), slope(random), curvature(random), curvature(random), curvature(random)};
-    EXPECT_LT(std::abs(second_order_footprint(phase, 0.6) - gaussian_mean(phase, 0.6)), kSum);
+    EXPECT_LT(std::abs(second_order(phase, 0.6) - gaussian_mean(phase, 0.6)), kSum);
   }
 }
 
@@ -50,7 +69,7 @@ TEST(Footprint, SecondOrderIsContinuousAndBoundedForLargeCurvature) {
   for (const double sign : {-1.0, 1.0}) {
     std::complex<double> before = 1.0;
     for (double h = 0.0; h < 2000.0; h = h * 1.02 + 1e-3) {
-      const std::complex<double> now = second_order_footprint({0.3, -0.2, sign * h, 0.1 * h, sign * 0.7 * h}, 0.6);
+      const std::complex<double> now = second_order({0.3, -0.2, sign * h, 0.1 * h, sign * 0.7 * h}, 0.6);
       EXPECT_LE(std::abs(now), 1.0 + kRounding);
       EXPECT_LT(std::abs(now - before), kStep);
       before = now;
@@ -69,8 +88,7 @@ TEST(Footprint, SecondOrderIsTheProductOfBothAxesForCellsOfAnySize) {
         const std::complex<double> width(1.0, kVariance * h);
         expected *= std::exp(-0.5 * kVariance * g * g / width) / std::sqrt(width);
       }
-      EXPECT_LT(std::abs(second_order_footprint(phase, kSpread) - expected), kAnyRounding * std::abs(expected))
-          << h1 << " " << h2;
+      EXPECT_LT(std::abs(second_order(phase, kSpread) - expected), kAnyRounding * std::abs(expected)) << h1 << " " << h2;
     }
   }
 }
@@ -82,37 +100,37 @@ TEST(Footprint, IsBoundedWhereItsMatrixIsSingularToRounding) {
   for (int i = 0; i < 100000; ++i) {
     const double size = std::pow(10.0, 8.0 + 6.0 * unit(random)), x = unit(random), y = unit(random);
     const FootprintPhase phase{size * x, size * y, size * x * x, size * x * y, size * y * y * (1.0 + 1e-15 * unit(random))};
-    ASSERT_LE(std::abs(second_order_footprint(phase, 0.65)), 1.0 + kRounding) << i;
-    ASSERT_TRUE(std::isfinite(std::abs(edges_footprint(phase, 0.65)))) << i;
+    ASSERT_LE(std::abs(second_order(phase, 0.65)), 1.0 + kRounding) << i;
+    ASSERT_TRUE(std::isfinite(std::abs(edges(phase, 0.65)))) << i;
   }
 }
 
 TEST(Footprint, EdgesCombineThreeGaussians) {
   const FootprintPhase phase{0.7, -0.4, 0.5, 0.2, -0.3};
   const auto mean = [&](double times) { return gaussian_mean(phase, 0.6 * std::sqrt(times)); };
-  EXPECT_LT(std::abs(edges_footprint(phase, 0.6) - (3.0 * mean(1.0) - 3.0 * mean(2.0) + mean(3.0))), kThreeSums);
-  EXPECT_LT(std::abs(edges_footprint({0.2 * kPi, 0, 0, 0, 0}, 0.65) - 1.0), kFlat);
-  EXPECT_LT(std::abs(edges_footprint({12.0, 0, 0, 0, 0}, 0.65)), kFaded);
+  EXPECT_LT(std::abs(edges(phase, 0.6) - (3.0 * mean(1.0) - 3.0 * mean(2.0) + mean(3.0))), kThreeSums);
+  EXPECT_LT(std::abs(edges({0.2 * kPi, 0, 0, 0, 0}, 0.65) - 1.0), kFlat);
+  EXPECT_LT(std::abs(edges({12.0, 0, 0, 0, 0}, 0.65)), kFaded);
 }
 
 TEST(Footprint, AllTendToOneForSmallCells) {
   const FootprintPhase small{1e-5, -2e-5, 1e-5, 3e-6, -1e-5};
-  EXPECT_NEAR(first_order_footprint(small), 1.0, kSmallCellSquared);
-  EXPECT_NEAR(flat_top_footprint(small), 1.0, kRounding);
-  EXPECT_LT(std::abs(second_order_footprint(small, 0.6) - 1.0), kSmallCell);
+  EXPECT_NEAR(first_order(small), 1.0, kSmallCellSquared);
+  EXPECT_NEAR(flat_top(small), 1.0, kRounding);
+  EXPECT_LT(std::abs(second_order(small, 0.6) - 1.0), kSmallCell);
 }
 
 // sinc(g/2) = 1 - g^2/24 + ... : the Gaussian is its fit.
 TEST(Footprint, FirstOrderFitsTheShapeFactorOfASquareCell) {
   for (const double g : {0.1, 0.5, 1.0}) {
     const double sinc = std::sin(0.5 * g) / (0.5 * g);
-    EXPECT_NEAR(first_order_footprint({g, 0, 0, 0, 0}), sinc, 4e-4 * std::pow(g, 4));
+    EXPECT_NEAR(first_order({g, 0, 0, 0, 0}), sinc, 4e-4 * std::pow(g, 4));
   }
 }
 
 TEST(Footprint, FlatTopIsFlat) {
-  EXPECT_GT(flat_top_footprint({0.5, 0.5, 0, 0, 0}), 1.0 - kFlatTop);
-  EXPECT_LT(flat_top_footprint({12.0, 0, 0, 0, 0}), kFaded);
+  EXPECT_GT(flat_top({0.5, 0.5, 0, 0, 0}), 1.0 - kFlatTop);
+  EXPECT_LT(flat_top({12.0, 0, 0, 0, 0}), kFaded);
 }
 
 // |integral of e^{-j(g.x + x.h.x/2)} over a square of cells about the middle|, by midpoints.
@@ -149,7 +167,7 @@ TEST(Footprint, BetweenRaysIsAPointOfReflectionInTheCell) {
   const double whole = integral_over(bent, -3.0, 3.0);
   EXPECT_NEAR(of_points(bent) / whole, 1.0, 0.1);
   EXPECT_EQ(of_edges(bent), 0.0);
-  EXPECT_LT(std::abs(second_order_footprint(bent, 0.65)), 0.8 * whole);
+  EXPECT_LT(std::abs(second_order(bent, 0.65)), 0.8 * whole);
   for (const double angle : {0.3, 1.1, 2.5}) EXPECT_NEAR(of_points(turned(bent, angle)) / of_points(bent), 1.0, kThreeSums);
 }
 

@@ -6,7 +6,9 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/em/polarization/jones.h"
+#include "echopath/em/polarization/transverse_formula.h"
 #include "echopath/em/surface/fresnel.h"
+#include "echopath/em/surface/surface_response.h"
 
 namespace echopath::test_jones {
 namespace {
@@ -36,6 +38,12 @@ Case random_case(std::mt19937& random) {
 
 std::complex<double> dot(const Vec3& a, const FieldVector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
+Eigen::Vector2d transverse_components(const Vec3& polarization, const Vec3& direction) {
+  const auto unpacked = [](const Vec3& v) { return VectorOf<double>{v[0], v[1], v[2]}; };
+  const TransverseOf<double> found = transverse_of<ScalarMath>(unpacked(polarization), unpacked(direction));
+  return {found.horizontal, found.vertical};
+}
+
 TEST(Jones, ConductorIsItsPhysicalOptics) {
   std::mt19937 random(5);
   const Material metal = Material::metal();
@@ -43,7 +51,7 @@ TEST(Jones, ConductorIsItsPhysicalOptics) {
     const Case at = random_case(random);
     const double cos_incidence = -at.direction.dot(at.normal);
     const FieldVector radiated =
-        radiated_field(at.field, at.direction, at.normal, at.out, mode_coefficients(metal, 77e9, cos_incidence));
+        radiated_field(at.field, at.direction, at.normal, at.out, SurfaceModel(metal, 77e9).modes(cos_incidence));
     FieldVector expected =
         -(at.field * cos_incidence + dot(at.normal, at.field) * at.direction.cast<std::complex<double>>());
     expected -= dot(at.out, expected) * at.out.cast<std::complex<double>>();
@@ -58,7 +66,7 @@ TEST(Jones, SpecularRadiationIsTheReflectedFieldTimesTheCosine) {
   for (int i = 0; i < 200; ++i) {
     const Case at = random_case(random);
     const double cos_incidence = -at.direction.dot(at.normal);
-    const ModeCoefficients modes = mode_coefficients(glass, 77e9, cos_incidence);
+    const ModeCoefficients modes = SurfaceModel(glass, 77e9).modes(cos_incidence);
     const Vec3 mirrored = at.direction + 2.0 * cos_incidence * at.normal;
     const FieldVector reflected = reflected_field(at.field, at.direction, at.normal, modes);
     EXPECT_LT((radiated_field(at.field, at.direction, at.normal, mirrored, modes) - cos_incidence * reflected).norm(),
@@ -82,7 +90,7 @@ TEST(Jones, NormalIncidenceHasNoPreferredPlane) {
   Material dielectric;
   dielectric.permittivity = std::complex<double>(4.0, -0.2);
   const FieldVector reflected =
-      reflected_field(field, -Vec3::UnitZ(), Vec3::UnitZ(), mode_coefficients(dielectric, 77e9, 1.0));
+      reflected_field(field, -Vec3::UnitZ(), Vec3::UnitZ(), SurfaceModel(dielectric, 77e9).modes(1.0));
   EXPECT_LT((reflected - fresnel_te(*dielectric.permittivity, 1.0) * field).norm(), kRounding);
 }
 

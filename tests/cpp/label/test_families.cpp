@@ -137,7 +137,8 @@ TEST(Grouping, BatchesTellCoherentFromDiffuseAndImagesFromRays) {
 TEST(Grouping, ByAllIsTheCombinationsThatOccur) {
   const Paths paths = make_paths({{{kFloor, false}}, {{kTorso, true}}, {{kFloor, false}, {kTorso, false}}});
   const Grouping bounces = by_selections({{"one", Selection::num_bounces(1, 1)}});
-  const Grouping objects = by_families(map_surfaces(*make_street(), {{"walker", {"pedestrian"}}}));
+  const SurfaceMap surfaces = map_surfaces(*make_street(), {{"walker", {"pedestrian"}}});
+  const Grouping objects = [&](const Paths& of, Job* job) { return find_families(of, surfaces, job).partition(); };
   const Partition partition = by_all({bounces, objects})(paths, nullptr);
   // clang-format off
   const std::vector<std::string> names{"one\x1fwalker\x1e" "0\x1e" "1", "one\x1f",

@@ -4,8 +4,6 @@
 
 #include "echopath/base/plane.h"
 #include "echopath/em/polarization/hit_modes.h"
-#include "echopath/em/polarization/transverse_formula.h"
-#include "echopath/em/surface/surface_response.h"
 
 namespace echopath {
 namespace {
@@ -62,15 +60,6 @@ JonesMatrix components(const FieldPair& fields, const FieldPair& axes) {
     }
   }
   return matrix;
-}
-
-Eigen::Vector2d transverse_components(const Vec3& polarization, const Vec3& direction) {
-  const TransverseOf<double> components = transverse_of<ScalarMath>(unpacked(polarization), unpacked(direction));
-  return {components.horizontal, components.vertical};
-}
-
-ModeCoefficients mode_coefficients(const Material& material, double frequency, double cos_incidence) {
-  return SurfaceModel(material, frequency).modes(cos_incidence);
 }
 
 FieldVector reflected_field(const FieldVector& incident, const Vec3& direction, const Vec3& normal,

@@ -35,16 +35,11 @@ JonesMatrix arriving_components(const FieldPair& fields, const Vec3& direction);
 // Returns the components along two fields that serve as axes.
 JonesMatrix components(const FieldPair& fields, const FieldPair& axes);
 
-// Returns the components (horizontal, vertical) of a polarisation vector across a direction, of length 1; zero along the
-// direction.
-Eigen::Vector2d transverse_components(const Vec3& polarization, const Vec3& direction);
-
 // Holds the Fresnel coefficients of both modes: -1 and +1 for a conductor, -sqrt(rho) and +sqrt(rho) for a constant
 // reflectivity.
 struct ModeCoefficients {
   std::complex<double> te, tm;
 };
-ModeCoefficients mode_coefficients(const Material& material, double frequency, double cos_incidence);
 
 // Returns the field behind a mirror, Gamma_TE (E.s) s + Gamma_TM (E.p_i) p_r with s = k x n, p = s x k. `normal` is a unit
 // vector on the incident side.

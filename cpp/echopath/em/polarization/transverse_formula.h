@@ -1,6 +1,6 @@
 #pragma once
-// Computes the components of a polarisation across a direction (em/polarization/jones.h) for doubles and for vectors of doubles. Math is
-// as in base/lanes/scalar_math.h.
+// Computes the components of a polarisation across a direction (em/polarization/jones.h) for doubles and for vectors of
+// doubles. Math is as in base/lanes/scalar_math.h.
 #include "echopath/base/lanes/scalar_math.h"
 #include "echopath/base/vector_of.h"
 
@@ -11,7 +11,8 @@ struct TransverseOf {
   Real horizontal, vertical;
 };
 
-// `line` points along the direction and may have any length.
+// Returns the components along the axes of transverse_basis, scaled to length 1; zero where the polarisation lies along the
+// direction. `line` points along the direction and may have any length.
 template <class Math, class Real>
 ECHOPATH_INLINE TransverseOf<Real> transverse_of(const VectorOf<Real>& polarization, const VectorOf<Real>& line) {
   constexpr double kLeast = 1e-18;  // squares of sines below count as 0

@@ -27,14 +27,11 @@ std::shared_ptr<const LayerStack> layers_of(const Material& material, double fre
 
 double facet_reflection(std::complex<double> permittivity) { return std::abs(fresnel_te(permittivity, 1.0)); }
 
-// `phase` is k sigma_h cos(incidence) in rad.
+// Returns the coherent field factor of Ament 1953, s = exp(-2 phase^2). `phase` is k sigma_h cos(incidence) in rad, with the
+// rms height sigma_h.
 double ament_of_phase(double phase) { return std::exp(-2.0 * phase * phase); }
 
 }  // namespace
-
-double ament_factor(double wavenumber, double roughness_height, double cos_incidence) {
-  return ament_of_phase(wavenumber * roughness_height * cos_incidence);
-}
 
 SurfaceModel::SurfaceModel(const Material& material, double frequency, SheetSide side)
     : material_(&material), lobe_(material), is_dielectric_(!material.conductor && !material.reflectivity),

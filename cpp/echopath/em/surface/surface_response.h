@@ -27,10 +27,6 @@ struct SurfaceResponse {
   double facet = 1.0;          // magnitude of the field reflection of the facets that scatter
 };
 
-// Returns the coherent field factor of Ament 1953, s = exp(-2 (k sigma_h cos)^2). wavenumber [rad/m], roughness_height [m]
-// rms.
-double ament_factor(double wavenumber, double roughness_height, double cos_incidence);
-
 // Returns the response at `frequency` [Hz] and cos_incidence in [0, 1]. A conductor reflects with -1 in both modes (scalar
 // convention), a constant reflectivity rho with -sqrt(rho).
 SurfaceResponse respond(const Material& material, double frequency, double cos_incidence, PolarizationMode mode);

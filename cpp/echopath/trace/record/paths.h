@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "echopath/base/threads/job.h"
-#include "echopath/em/footprint.h"
+#include "echopath/em/footprint_formula.h"
 #include "echopath/em/polarization/jones.h"
 #include "echopath/radar/radar.h"
 #include "echopath/scene/scene.h"

@@ -1,6 +1,6 @@
 #pragma once
-// Evaluates what a ray's footprint on a surface leaves of its echo, from the phase across the launch cell that the ray stands
-// for. Math and Real are doubles or vectors of doubles, as in base/lanes/scalar_math.h.
+// Evaluates what a ray's footprint on a surface leaves of its echo, from the phase across the launch cell that the ray
+// stands for. Math and Real are doubles or vectors of doubles, as in base/lanes/scalar_math.h.
 #include "echopath/base/lanes/scalar_math.h"
 
 namespace echopath {
@@ -65,9 +65,9 @@ ECHOPATH_INLINE ComplexOf<Real> edges_footprint_of(const FootprintPhaseOf<Real>&
 }
 
 // Returns the footprint of a flat surface behind flat mirrors along one axis, 1 - (1 - exp(-g^2/8))^4; the whole one is the
-// product over both. It is flatter near g = 0 than the Gaussian, so that plates lose nothing while phases turn by less than a
-// quarter of a cycle between rays. It lies in [0, 1]. Higher powers are flatter still but let facets of a curved mesh alias:
-// a sphere of facets errs by .10, .13, .19 dB with power 3, 4, 6 (2^14 rays).
+// product over both. It is flatter near g = 0 than the Gaussian, so that plates lose nothing while phases turn by less than
+// a quarter of a cycle between rays. It lies in [0, 1]. Higher powers are flatter still but let facets of a curved mesh
+// alias: a sphere of facets errs by .10, .13, .19 dB with power 3, 4, 6 (2^14 rays).
 template <class Math, class Real>
 ECHOPATH_INLINE Real flat_top_of(Real g) {
   const Real loss = 1.0 - Math::exp(g * g * -0.125);  // its fourth power needs no more digits

@@ -38,11 +38,25 @@ struct MirrorsToEdge {
   int leg(size_t mirror) const { return is_forward ? static_cast<int>(mirror) : last_leg - static_cast<int>(mirror); }
 };
 
+// These policies tell which fields are at an edge. Scalar ones are those of the transmitter's polarisation at both ends, and
+// the weight has what mirrors made of them; Jones ones are those of each antenna, as they have come over the mirrors.
+struct ScalarFields {
+  static constexpr bool kComeOverMirrors = false;
+  static FieldVector seen(const WayToEdge&, const Vec3& polarization, const Vec3& direction) {
+    return part_across(polarization, direction).cast<std::complex<double>>();
+  }
+};
+
+struct JonesFields {
+  static constexpr bool kComeOverMirrors = true;
+  static const FieldVector& seen(const WayToEdge& way, const Vec3&, const Vec3&) { return way.field; }
+};
+
+template <class Fields>
 class EdgeEchoes {
  public:
   EdgeEchoes(const PathPreparer& preparer, const RadioConstants& radio)
-      : paths_(preparer.paths()), radio_(radio), frequency_(kSpeedOfLight / radio.wavelength),
-        is_polarized_(!paths_.jones.empty()), hits_(64) {}
+      : paths_(preparer.paths()), radio_(radio), frequency_(kSpeedOfLight / radio.wavelength), hits_(64) {}
 
   // Sets the path that is looked at, at a node. `sheets` are those on its way that turn polarisations, or null.
   void pose(const LocalPath& path, const PosedScene& scene, PathPassages* sheets) {
@@ -75,13 +89,10 @@ class EdgeEchoes {
   std::complex<double> amplitude(size_t transmitter, size_t receiver, const Vec3& polarization,
                                  std::complex<double> weight) const {
     const WayToEdge &in = way_in(transmitter, receiver), &out = way_out(transmitter, receiver);
-    if (in.length < kNearAntenna || out.length < kNearAntenna || is_broken()) return 0.0;
+    if (!reaches_antenna(in.length) || !reaches_antenna(out.length) || is_broken()) return 0.0;
     const Vec3 departure = -out.direction;
-    const auto seen = [&](const WayToEdge& way, const Vec3& direction) {
-      return is_polarized_ ? way.field : FieldVector(part_across(polarization, direction).cast<std::complex<double>>());
-    };
-    const std::complex<double> coupled =
-        seen(out, departure).transpose() * diffracted(seen(in, in.direction), in, departure, out.length);
+    const std::complex<double> coupled = Fields::seen(out, polarization, departure).transpose() *
+                                         diffracted(Fields::seen(in, polarization, in.direction), in, departure, out.length);
     const double size = radio_.coherent_scale() * in.root_gain * out.root_gain * piece_.norm() /
                         (2.0 * radio_.wavenumber * in.length * out.length);
     const std::complex<double> factor =
@@ -145,7 +156,7 @@ class EdgeEchoes {
     const UnfoldedLeg leg = unfolded_leg(mirrors_.hits.data(), antenna.position, 0, count, point);
     const AntennaGain gain = antenna.toward(leg.departure);
     FieldVector field = FieldVector::Zero();
-    if (is_polarized_) field = over_mirrors(antenna, leg.departure);
+    if constexpr (Fields::kComeOverMirrors) field = over_mirrors(antenna, leg.departure);
     return {leg.length, std::sqrt(gain.power), gain.phase, leg.arrival, field};
   }
 
@@ -171,7 +182,7 @@ class EdgeEchoes {
   const Paths& paths_;
   const RadioConstants& radio_;
   double frequency_;  // Hz
-  bool is_polarized_, is_reversed_ = false, is_past_edge_ = false;
+  bool is_reversed_ = false, is_past_edge_ = false;
   std::vector<PosedHit> hits_;
   MirrorsToEdge mirrors_;
   PathPassages* sheets_ = nullptr;
@@ -198,17 +209,15 @@ class SheetsOnWays {
   std::vector<PathPassages*> of_path_;
 };
 
-}  // namespace
-
-void evaluate_edges(const SharedLegPlan& plan, const RecordSheets& sheets, const PosedNodes& nodes,
-                    const RadioConstants& radio, const ChannelSpan& channels, bool with_amplitudes) {
-  if (plan.edge_paths.empty()) return;
+template <class Fields>
+void evaluate(const SharedLegPlan& plan, const RecordSheets& sheets, const PosedNodes& nodes, const RadioConstants& radio,
+              const ChannelSpan& channels, bool with_amplitudes) {
   std::vector<int64_t> indices;
   for (const SharedLegPlan::EdgePath& path : plan.edge_paths) indices.push_back(path.path);
   const PathPreparer& preparer = sheets.preparer;
   const LocalPaths local = preparer(indices);
   const SheetsOnWays on_ways(sheets, indices);
-  EdgeEchoes echoes(preparer, radio);
+  EdgeEchoes<Fields> echoes(preparer, radio);
   for (size_t node = 0; node < nodes.size(); ++node) {
     const PosedScene& scene = nodes.at(node);
     const size_t num_receivers = scene.receivers.size();
@@ -225,6 +234,15 @@ void evaluate_edges(const SharedLegPlan& plan, const RecordSheets& sheets, const
       }
     }
   }
+}
+
+}  // namespace
+
+void evaluate_edges(const SharedLegPlan& plan, const RecordSheets& sheets, const PosedNodes& nodes,
+                    const RadioConstants& radio, const ChannelSpan& channels, bool with_amplitudes) {
+  if (plan.edge_paths.empty()) return;
+  const auto run = sheets.preparer.paths().jones.empty() ? evaluate<ScalarFields> : evaluate<JonesFields>;
+  run(plan, sheets, nodes, radio, channels, with_amplitudes);
 }
 
 }  // namespace echopath

@@ -83,7 +83,7 @@ ECHOPATH_INLINE void set_waves(Real cos_in, Real cos_out, Real inverse_in, Real 
 // both, in m.
 template <class Real>
 ECHOPATH_INLINE auto is_lit(Real cos_in, Real cos_out, Real first_length, Real last_length) {
-  return (cos_in * cos_out > 0.0) & (first_length >= kNearAntenna) & (last_length >= kNearAntenna);
+  return (cos_in * cos_out > 0.0) & reaches_antenna(first_length) & reaches_antenna(last_length);
 }
 
 // `root_gains` is sqrt(Gt Gr), `inverse_tube` is 1/sqrt(D) in 1/m, and `is_lit` is the result of the function above.
@@ -100,7 +100,7 @@ ECHOPATH_INLINE ComplexOf<Real> coherent_factor(const CellWaves<Real>& waves, Re
 // the length, in 1/m.
 template <class Math, class Real>
 ECHOPATH_INLINE Real diffuse_leg(Real root_gain, Real root_cosine, Real cosine, Real length, Real inverse) {
-  return length < kNearAntenna ? Real{} : Math::with_sign_of(root_gain * root_cosine * inverse, cosine);
+  return reaches_antenna(length) ? Math::with_sign_of(root_gain * root_cosine * inverse, cosine) : Real{};
 }
 template <class Math, class Real>
 ECHOPATH_INLINE Real diffuse_leg(Real root_gain, Real cosine, Real length) {
@@ -110,7 +110,7 @@ ECHOPATH_INLINE Real diffuse_leg(Real root_gain, Real cosine, Real length) {
 // Returns the factor of a leg to a specular point, from which it is `to_first` (m) to the first diffuse hit.
 template <class Real>
 ECHOPATH_INLINE Real specular_leg(Real root_gain, Real length, Real to_first, Real root_cos_first) {
-  return length < kNearAntenna ? Real{} : root_gain * root_cos_first / (length + to_first);
+  return reaches_antenna(length) ? root_gain * root_cos_first / (length + to_first) : Real{};
 }
 
 // With one diffuse hit, its cosines must have one sign. With several, this must hold at the first hit and at the last.

@@ -10,16 +10,16 @@ namespace {
 
 // Returns the sign of the field that comes back to the radar.
 //
-// Fresnel's TM coefficient is that along p_i and p_r (em/surface/fresnel.h). These point opposite ways where a wave turns back, so
-// the sign changes once: only then TE and TM are the same at normal incidence. Conductors count as TE at every angle: an odd
-// number of them has made that change already.
+// Fresnel's TM coefficient is that along p_i and p_r (em/surface/fresnel.h). These point opposite ways where a wave turns
+// back, so the sign changes once: only then TE and TM are the same at normal incidence. Conductors count as TE at every
+// angle: an odd number of them has made that change already.
 double sign_of_return(const Ray& ray) { return ray.has_dielectric_tm && !ray.has_odd_conductors ? -1.0 : 1.0; }
 
 }  // namespace
 
 template <class Weight>
 bool Connector<Weight>::is_near_antenna(const Vec3& point) const {
-  const auto is_near = [&](const Vec3& antenna) { return (point - antenna).squaredNorm() < kNearAntenna * kNearAntenna; };
+  const auto is_near = [&](const Vec3& antenna) { return !reaches_antenna_by_square((point - antenna).squaredNorm()); };
   return is_near(context_.settings.receiver) || is_near(context_.settings.transmitter);
 }
 

@@ -9,8 +9,7 @@ namespace echopath {
 
 // Returns whether the hit of a lane is plain, where all legs are straight.
 inline bool is_plain(const FirstHits& first, int lane) {
-  return !first.models[static_cast<size_t>(lane)]->material().mirror &&
-         first.near_squared[lane] >= kNearAntenna * kNearAntenna;
+  return !first.models[static_cast<size_t>(lane)]->material().mirror && reaches_antenna_by_square(first.near_squared[lane]);
 }
 
 // Holds the weights of the coherent and of the diffuse echo to the receiver.

@@ -6,8 +6,8 @@
 #include "echopath/base/constants.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/trace/edges/edge_chains.h"
+#include "echopath/trace/edges/edge_coefficients.h"
 #include "echopath/trace/mirrors/legs.h"
-#include "echopath/trace/near_antenna.h"
 
 namespace echopath {
 namespace {
@@ -39,11 +39,12 @@ std::vector<double> extents_of_bodies(const EdgeQuery& query) {
 
 EdgeWayTo way_of(const Leg& leg) { return {leg.to_antenna, leg.at_antenna, leg.length}; }
 
+template <class Coefficients>
 class EdgeTracer {
  public:
   explicit EdgeTracer(const EdgeQuery& query)
-      : query_(query), extent_(extents_of_bodies(query)), wavenumber_(kTwoPi * query.settings.frequency / kSpeedOfLight),
-        chains_(query.edges, kTwoPi / wavenumber_),
+      : query_(query), coefficients_(query.settings.polarization), extent_(extents_of_bodies(query)),
+        wavenumber_(kTwoPi * query.settings.frequency / kSpeedOfLight), chains_(query.edges, kTwoPi / wavenumber_),
         finder_(query.geometry, query.mirrors, query.settings.frequency, query.settings.polarization),
         transmitter_(view_for_edges(query.settings.transmitter, query.frusta.transmitter, query)),
         receiver_(view_for_edges(query.settings.receiver, query.frusta.receiver, query)) {}
@@ -93,7 +94,7 @@ class EdgeTracer {
     scratch.segments.clear();
     for (size_t i = 0; i < scratch.points.size(); ++i) {
       const Vec3 line = antenna - scratch.points[i];
-      if (line.norm() < kNearAntenna || !is_outside(wedge, line)) continue;
+      if (!may_leave(wedge, line, line.norm())) continue;
       states[i] = ShadowState::kOpen;
       scratch.segments.push_back({query_.geometry.lifted(scratch.points[i], outward), antenna});
     }
@@ -113,7 +114,7 @@ class EdgeTracer {
     query.faces_all = true;
     query.direct = direct;
     finder_.find(query, antenna, legs, search);
-    std::erase_if(legs, [&](const Leg& leg) { return leg.length < kNearAntenna || !is_outside(wedge, leg.to_antenna); });
+    std::erase_if(legs, [&](const Leg& leg) { return !may_leave(wedge, leg.to_antenna, leg.length); });
   }
 
   void add_point(size_t edge, size_t piece, Scratch& scratch, PathBlock& block) const {
@@ -128,7 +129,7 @@ class EdgeTracer {
     for (const Leg& in : scratch.in) {
       for (const Leg& out : scratch.out) {
         const auto coupled = [&] { return fringe_matrix(wedge, -in.to_antenna, out.to_antenna).norm(); };
-        if (is_strong(wedge, way_of(in), way_of(out), over_mirrors(in, out), coupled))
+        if (is_strong(wedge, way_of(in), way_of(out), coefficients_.held(in.gain * out.gain), coupled))
           add_path(in, hit, out, wedge, num_pieces, block);
       }
       const auto add_way = [&](const EdgeWay& way, size_t last) {
@@ -146,7 +147,7 @@ class EdgeTracer {
     const double entered = strength(*chain, in);
     const Wedge& wedge = query_.edges[last].wedge;
     const Vec3 point = way.edges.back().point, line = query_.settings.receiver - point;
-    const bool is_lit = line.norm() > kNearAntenna && is_outside(wedge, line);
+    const bool is_lit = may_leave(wedge, line, line.norm());
     const bool is_seen = is_lit && matters(*chain, entered, line.normalized(), line.norm());
     const bool goes_on = entered > kLeastChain;
     if (!is_seen && (receiver_.frusta.empty() || !goes_on)) return goes_on;
@@ -156,14 +157,10 @@ class EdgeTracer {
       const auto coupled = [&] { return entered * chain->leave(out.to_antenna, out.length).norm(); };
       const EdgeWayTo arrival{-chain->arrival(), in.at_antenna, in.length};
       if (matters(*chain, entered, out.to_antenna, out.length) &&
-          is_strong(wedge, arrival, way_of(out), over_mirrors(in, out), coupled))
+          is_strong(wedge, arrival, way_of(out), coefficients_.held(in.gain * out.gain), coupled))
         add_path(in, way.hits, out, wedge, num_pieces, block);
     }
     return goes_on;
-  }
-
-  std::complex<double> over_mirrors(const Leg& in, const Leg& out) const {
-    return query_.settings.is_polarized ? 1.0 : in.gain * out.gain;
   }
 
   // Returns whether an echo is to be kept; `coupled` returns the norm of what the edge makes of the field.
@@ -174,18 +171,11 @@ class EdgeTracer {
            query_.estimate.power(wedge, in, out, std::abs(over_mirrors) * coupled()) >= query_.least_power;
   }
 
-  Vec3 polarization_across(const Vec3& direction) const {
-    const Vec3& along = query_.settings.polarization;
-    return (along - direction.dot(along) * direction).normalized();
-  }
-
-  // Returns the strength on the last face for the polarisation that makes most of it, in the scalar model for its own.
+  // Returns the strength on the last face.
   double strength(const EdgeChain& chain, const Leg& leg) const {
-    const Vec3 in = -leg.to_antenna, first = query_.settings.is_polarized ? in.unitOrthogonal() : polarization_across(in);
-    const auto entered = [&](const Vec3& field) {
-      return std::abs(chain.enter(in, field.cast<std::complex<double>>(), leg.length));
-    };
-    return query_.settings.is_polarized ? std::hypot(entered(first), entered(in.cross(first))) : entered(first);
+    const Vec3 in = -leg.to_antenna;
+    return coefficients_.strongest(
+        in, [&](const Vec3& field) { return std::abs(chain.enter(in, field.cast<std::complex<double>>(), leg.length)); });
   }
 
   // Returns whether a chain sends at least kLeastChain of the edge of a half plane, likewise.
@@ -195,10 +185,7 @@ class EdgeTracer {
     const double most = 4.0 * std::sqrt(2.0 / std::max(1.0 - chain.arrival().dot(out), 1e-12));
     if (entered * most < kOfHalfPlane * kLeastChain) return false;
     const FieldVector left = chain.leave(out, distance);
-    const double taken = query_.settings.is_polarized
-                             ? left.norm()
-                             : std::abs((polarization_across(out).cast<std::complex<double>>().transpose() * left).value());
-    return entered * taken > kOfHalfPlane * kLeastChain;
+    return entered * coefficients_.received(out, left) > kOfHalfPlane * kLeastChain;
   }
 
   // `wedge` is that of the last edge; the share of the field that stays in phase is taken from it.
@@ -213,13 +200,14 @@ class EdgeTracer {
     for (int k = 0; k < out.num_bounces; ++k) hits[static_cast<size_t>(count++)] = out.bounces[static_cast<size_t>(k)].hit;
     const Material& material = *query_.scene.node_of(on_edges.back().mesh_id).material;
     const double kept = kept_share(material, query_.settings.frequency, wedge, in.to_antenna);
-    const std::complex<double> weight = kept * over_mirrors(in, out);
+    const std::complex<double> weight = kept * coefficients_.held(in.gain * out.gain);
     block.add(hits.data(), count, 0, std::complex<float>(weight), kNoStratum);
     block.set_edge(at, num_pieces, static_cast<int>(on_edges.size()));
-    if (query_.settings.is_polarized) block.set_jones({1.0f, 0.0f, 0.0f, 1.0f});
+    coefficients_.add_matrix(block);
   }
 
   const EdgeQuery& query_;
+  Coefficients coefficients_;
   std::vector<double> extent_;  // m, by mesh ID
   double wavenumber_;           // rad/m
   EdgeChains chains_;
@@ -227,21 +215,27 @@ class EdgeTracer {
   AntennaView transmitter_, receiver_;
 };
 
-}  // namespace
-
-std::vector<PathBlock> find_edge_paths(const EdgeQuery& query, Job* job) {
-  const EdgeTracer tracer(query);
+template <class Coefficients>
+std::vector<PathBlock> edge_paths(const EdgeQuery& query, Job* job) {
+  const EdgeTracer<Coefficients> tracer(query);
   const size_t num_edges = query.edges.size();
   std::vector<PathBlock> blocks((num_edges + kEdgesPerBlock - 1) / kEdgesPerBlock);
   Job own(job);
   parallel_for(std::ssize(blocks), [&](int64_t i) {
     PathBlock& block = blocks[static_cast<size_t>(i)];
-    EdgeTracer::Scratch scratch;
+    typename EdgeTracer<Coefficients>::Scratch scratch;
     const size_t begin = static_cast<size_t>(i) * kEdgesPerBlock, end = std::min(num_edges, begin + kEdgesPerBlock);
     for (size_t edge = begin; edge < end; ++edge) tracer.add(edge, scratch, block);
     block.statistics.num_queries += scratch.search.num_queries;
   }, &own);
   return blocks;
+}
+
+}  // namespace
+
+std::vector<PathBlock> find_edge_paths(const EdgeQuery& query, Job* job) {
+  if (query.settings.is_polarized) return edge_paths<JonesCoefficients>(query, job);
+  return edge_paths<ScalarCoefficients>(query, job);
 }
 
 }  // namespace echopath

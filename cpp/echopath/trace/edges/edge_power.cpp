@@ -66,7 +66,7 @@ double EdgeEstimate::power(const PosedEdge& edge, const Material& material) cons
 
 double EdgeEstimate::power(const Wedge& wedge, const EdgeWayTo& in, const EdgeWayTo& out, double coupled,
                            double longest) const {
-  if (in.length < kNearAntenna || out.length < kNearAntenna) return 0.0;
+  if (!reaches_antenna(in.length) || !reaches_antenna(out.length)) return 0.0;
   const double slope = wavenumber_ * std::abs((in.to_antenna + out.to_antenna).dot(axis_of(wedge)));
   const double zone = 2.0 * std::sqrt(kPi / (wavenumber_ * (1.0 / in.length + 1.0 / out.length)));
   const double effective = std::min({longest, zone, 2.0 / std::max(slope, 1e-9)});

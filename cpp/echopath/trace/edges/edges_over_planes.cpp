@@ -8,8 +8,8 @@
 #include "echopath/base/threads/parallel.h"
 #include "echopath/em/edges/edge_shadow.h"
 #include "echopath/trace/connect/mirror_orders.h"
+#include "echopath/trace/edges/edge_coefficients.h"
 #include "echopath/trace/mirrors/legs.h"
-#include "echopath/trace/near_antenna.h"
 
 namespace echopath {
 namespace {
@@ -81,6 +81,7 @@ std::vector<LitEdge> lit_edges(const EdgeQuery& query, const LitPlanes& lit) {
 }
 
 // Follows the ways to and from the pieces of one edge. It serves one thread.
+template <class Coefficients>
 class LitEdgeTracer {
  public:
   LitEdgeTracer(const EdgeQuery& query, const LitPlanes& lit, const LitEdge& edge, PathBlock& block)
@@ -160,7 +161,7 @@ class LitEdgeTracer {
       const auto [begin, end] = stretch_within(edge_.from, edge_.to, over->box);
       if (at < begin || at > end || std::ssize(over->mirrors) >= query_.settings.max_bounces) continue;
       const std::optional<PlaneLeg> leg = planes_.find(point_, outward_, antenna, *over, block_.statistics.num_queries);
-      if (!leg || leg->length < kNearAntenna || !is_outside(edge_.wedge, leg->to_antenna)) continue;
+      if (!leg || !may_leave(edge_.wedge, leg->to_antenna, leg->length)) continue;
       Way& way = ways.emplace_back();
       for (const RayHit& bounce : leg->bounces) way.hits.push_back(bounce.hit);
       way.way = {leg->to_antenna, leg->at_antenna, leg->length};
@@ -182,7 +183,7 @@ class LitEdgeTracer {
     block_.statistics.num_queries += std::exchange(search_.num_queries, 0);
     std::vector<Way> ways;
     for (const Leg& leg : legs_) {
-      if (leg.length < kNearAntenna || !is_outside(edge_.wedge, leg.to_antenna)) continue;
+      if (!may_leave(edge_.wedge, leg.to_antenna, leg.length)) continue;
       Way& way = ways.emplace_back();
       way.way = {leg.to_antenna, leg.at_antenna, leg.length};
       way.gain = leg.gain;
@@ -249,10 +250,9 @@ class LitEdgeTracer {
   void add_path(const Way& in, const Way& out, std::complex<double> share, uint32_t flag) {
     if (share == 0.0 || std::ssize(in.hits) + 1 + std::ssize(out.hits) > query_.settings.max_bounces) return;
     const Way& first = (flag & kReversedPath) != 0 ? out : in;  // from which the wave comes
-    const std::complex<double> over_mirrors = query_.settings.is_polarized ? 1.0 : in.gain * out.gain;
     const Material& material = *query_.scene.node_of(edge_.mesh_id).material;
     const double kept = kept_share(material, query_.settings.frequency, edge_.wedge, first.way.to_antenna);
-    const std::complex<double> weight = share * in.share * out.share * kept * over_mirrors;
+    const std::complex<double> weight = share * in.share * out.share * kept * Coefficients::held(in.gain * out.gain);
     if (!is_strong(in, out, weight, flag == kPastEdge)) return;
     std::vector<Hit> hits(in.hits.rbegin(), in.hits.rend());
     const int at = static_cast<int>(hits.size());
@@ -261,7 +261,7 @@ class LitEdgeTracer {
     block_.add(hits.data(), static_cast<int>(hits.size()), 0, std::complex<float>(weight), kNoStratum);
     block_.set_edge(at, num_pieces_);
     block_.rows.flags[block_.rows.size() - 1] |= flag;
-    if (query_.settings.is_polarized) block_.set_jones({1.0f, 0.0f, 0.0f, 1.0f});
+    Coefficients::add_matrix(block_);
   }
 
   const EdgeQuery& query_;
@@ -279,16 +279,22 @@ class LitEdgeTracer {
   Vec3 point_;  // m, likewise
 };
 
-}  // namespace
-
-std::vector<PathBlock> find_edges_over_planes(const EdgeQuery& query, const LitPlanes& lit, Job* job) {
+template <class Coefficients>
+std::vector<PathBlock> paths_over_planes(const EdgeQuery& query, const LitPlanes& lit, Job* job) {
   const std::vector<LitEdge> edges = lit_edges(query, lit);
   std::vector<PathBlock> blocks(edges.size());
   Job own(job);
   parallel_for(std::ssize(blocks), [&](int64_t i) {
-    LitEdgeTracer(query, lit, edges[static_cast<size_t>(i)], blocks[static_cast<size_t>(i)]).trace();
+    LitEdgeTracer<Coefficients>(query, lit, edges[static_cast<size_t>(i)], blocks[static_cast<size_t>(i)]).trace();
   }, &own);
   return blocks;
+}
+
+}  // namespace
+
+std::vector<PathBlock> find_edges_over_planes(const EdgeQuery& query, const LitPlanes& lit, Job* job) {
+  if (query.settings.is_polarized) return paths_over_planes<JonesCoefficients>(query, lit, job);
+  return paths_over_planes<ScalarCoefficients>(query, lit, job);
 }
 
 }  // namespace echopath

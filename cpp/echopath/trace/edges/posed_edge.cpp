@@ -61,6 +61,10 @@ double kept_share(const Material& material, double frequency, const Wedge& wedge
   return std::abs(response.gamma) * response.coherent;
 }
 
+bool may_leave(const Wedge& wedge, const Vec3& to_antenna, double distance) {
+  return reaches_antenna(distance) && is_outside(wedge, to_antenna);
+}
+
 Vec3 outward_of(const Wedge& wedge) {
   return (wedge.faces[0].normal + wedge.faces[1].normal - wedge.faces[0].inward - wedge.faces[1].inward).normalized();
 }

@@ -43,6 +43,10 @@ EdgePoint point_on_edge(const PosedEdge& edge, double along, const std::array<Ve
 // frequency in Hz.
 double kept_share(const Material& material, double frequency, const Wedge& wedge, const Vec3& to_antenna);
 
+// Returns whether a wave may leave an edge toward an antenna at that distance (m): it stands in the space around the edge
+// and not near it.
+bool may_leave(const Wedge& wedge, const Vec3& to_antenna, double distance);
+
 // Returns the unit vector across an edge that leads away from both faces.
 Vec3 outward_of(const Wedge& wedge);
 

@@ -18,9 +18,10 @@ std::optional<ImagePath> ImageMethod::path_over(const std::vector<int>& sequence
   int num_found = 0;
   for (const double side : {1.0, -1.0}) num_found += follow(settings_.receiver + side * kAside * kAsideDirection) ? 1 : 0;
   if (num_found == 0) return std::nullopt;
-  ImagePath path{hits_, points_, (settings_.is_polarized ? 1.0 : field()) * (0.5 * num_found), {}};
-  if (std::abs(path.weight) == 0) return std::nullopt;
+  ImagePath path{hits_, points_, 0.5 * num_found, {}};
   if (settings_.is_polarized) path.jones = jones_matrix();
+  else path.weight = field() * (0.5 * num_found);
+  if (std::abs(path.weight) == 0) return std::nullopt;
   return path;
 }
 
@@ -121,10 +122,10 @@ std::complex<double> ImageMethod::field() const {
   return product;
 }
 
-void add_path(const ImagePath& path, bool is_polarized, PathBlock& block) {
+void add_path(const ImagePath& path, PathBlock& block) {
   const int count = static_cast<int>(path.hits.size());
   block.add(path.hits.data(), count, 0, std::complex<float>(path.weight), kNoStratum);
-  if (is_polarized) block.set_jones(path.jones);
+  if (path.jones) block.set_jones(*path.jones);
   block.statistics.num_hits += count;
 }
 

@@ -32,9 +32,9 @@ class MeshLocator final : public PointLocator {
 // Describes a path over planes alone: its hits, the points where it meets the planes, and its weight.
 struct ImagePath {
   std::vector<Hit> hits;
-  std::vector<Vec3> points;     // m
-  std::complex<double> weight;  // without the coefficients where polarised
-  JonesMatrix jones;            // where polarised
+  std::vector<Vec3> points;          // m
+  std::complex<double> weight;       // without the coefficients where polarised
+  std::optional<JonesMatrix> jones;  // where polarised
 };
 
 // All must outlive it.
@@ -71,6 +71,6 @@ class ImageMethod {
 };
 
 // Adds an image path to a block.
-void add_path(const ImagePath& path, bool is_polarized, PathBlock& block);
+void add_path(const ImagePath& path, PathBlock& block);
 
 }  // namespace echopath

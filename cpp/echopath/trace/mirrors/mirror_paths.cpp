@@ -18,17 +18,16 @@ class SequenceTrier {
  public:
   SequenceTrier(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const SbrSettings& settings,
                 PathBlock& block)
-      : images_(geometry, mirrors, locator_, settings), is_polarized_(settings.is_polarized), block_(block) {}
+      : images_(geometry, mirrors, locator_, settings), block_(block) {}
   ~SequenceTrier() { block_.statistics.num_queries += images_.num_queries(); }
 
   void try_sequence(const std::vector<int>& sequence) {
-    if (const std::optional<ImagePath> path = images_.path_over(sequence)) add_path(*path, is_polarized_, block_);
+    if (const std::optional<ImagePath> path = images_.path_over(sequence)) add_path(*path, block_);
   }
 
  private:
   MeshLocator locator_;
   ImageMethod images_;
-  bool is_polarized_;
   PathBlock& block_;
 };
 

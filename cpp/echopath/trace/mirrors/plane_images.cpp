@@ -200,7 +200,7 @@ PathBlock PlaneImages::find(const Job* job) {
     if (!path || !holds_zones(*path, block.statistics.num_queries)) continue;
     const std::vector<int> planes = joined(sequence);
     if (!sequences_.insert(planes).second) continue;
-    add_path(*path, settings_.is_polarized, block);
+    add_path(*path, block);
     leave_out(planes, path->points);
   }
   find_triangles();

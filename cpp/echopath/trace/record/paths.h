@@ -53,10 +53,11 @@ inline constexpr uint32_t kSecondHalf = 2;
 // Marks a path with a point on a sharp edge (scene/edges/sharp_edges.h), one of its hits. Its flags also hold which hit that
 // is and into how many pieces of one length the edge is parted: the path stands for the piece around its point. All its
 // other hits are images. Its weight holds the coefficients of the scalar model and what the faces keep in phase. A path may
-// go on from edge to edge over flat faces (em/edges/edge_chain.h): then its next hits, up to kMostEdges in all, lie on edges too,
-// and the pieces are those of the first edge.
+// go on from edge to edge over flat faces (em/edges/edge_chain.h): then its next hits, up to kMostEdges in all, lie on edges
+// too, and the pieces are those of the first edge.
 inline constexpr uint32_t kEdgePath = 4;
-// Marks, beside that, a path whose edge sends the field of the uniform theory of diffraction to a mirror (em/edges/edge_shadow.h).
+// Marks, beside that, a path whose edge sends the field of the uniform theory of diffraction to a mirror
+// (em/edges/edge_shadow.h).
 inline constexpr uint32_t kPastEdge = 32;
 inline constexpr int kMostPieces = 65535, kMostEdges = 4;
 constexpr uint32_t edge_flags(int hit, int num_pieces, int num_edges = 1) {
@@ -130,8 +131,8 @@ struct Paths {
   // the triangle's edges (du1, dv1, du2, dv2), then T_a.U_b in m (11, 12, 22). A flat chain has zeros.
   std::vector<std::array<float, 7>> curved_cell;
 
-  // [P] or empty (scalar). Matrices are in the transverse bases of em/polarization/jones.h and hold the coefficients of all hits, which
-  // then are not in the weight. Those of coherent paths are divided by cos_i at the last surface.
+  // [P] or empty (scalar). Matrices are in the transverse bases of em/polarization/jones.h and hold the coefficients of all
+  // hits, which then are not in the weight. Those of coherent paths are divided by cos_i at the last surface.
   std::vector<JonesMatrix> jones;
 
   // The sheets through which paths go, in order of travel, path by path: those of path p are [pass_offsets[p],

@@ -41,9 +41,9 @@ class ScalarWeight {
 };
 
 // Coherent paths hold the true reflections and the vector form of physical optics. Diffuse paths hold the true reflections
-// of their mirrors and specular bounces, and at each diffuse hit the split of power between both polarisations (em/polarization/jones.h,
-// scattered_field). In a chain of diffuse hits these matrices are multiplied: the mean power is that of every split in turn,
-// and the phases between two polarisations are one random draw.
+// of their mirrors and specular bounces, and at each diffuse hit the split of power between both polarisations
+// (em/polarization/jones.h, scattered_field). In a chain of diffuse hits these matrices are multiplied: the mean power is
+// that of every split in turn, and the phases between two polarisations are one random draw.
 class JonesWeight {
  public:
   using Echoes = JonesEchoes;

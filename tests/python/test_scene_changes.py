@@ -2,7 +2,9 @@
 from __future__ import annotations
 
 import gc
+import itertools
 import math
+import threading
 from unittest import mock
 
 import numpy as np
@@ -25,6 +27,10 @@ position = [0.0, 0.0, 0.0]
 [[radar.receivers]]
 position = [0.0, 0.0, 0.0]
 """
+
+
+def record_bytes(paths) -> bytes:
+    return b"".join(np.ascontiguousarray(getattr(paths, name)).tobytes() for name in ARRAYS)
 
 
 @pytest.fixture
@@ -136,6 +142,29 @@ def test_paths_of_before_a_change_stay_what_they_are(table):
     assert [(effect.name, effect.reason) for effect in paths.effects] == effects
     for name, values in arrays.items():
         assert np.array_equal(getattr(paths, name), values)
+
+
+def test_a_trace_beside_changes_of_its_scene_sees_one_state_of_it(table):
+    """The record is that of the one place or of the other, to the last bit, however often the object moves meanwhile."""
+    scene, places, records = built(table), ((24.0, 2.0, 0.0), (12.0, -2.0, 0.0)), []
+    for place in places:
+        scene["bus"].position = place
+        records.append(record_bytes(traced(scene)))
+    assert records[0] != records[1]
+    changes, is_over = itertools.count(), threading.Event()
+
+    def move():
+        while not is_over.is_set():
+            scene["bus"].position = places[next(changes) % 2]
+
+    mover = threading.Thread(target=move)
+    mover.start()
+    try:
+        found = [record_bytes(traced(scene)) for _ in range(8)]
+    finally:
+        is_over.set()
+        mover.join()
+    assert set(found) <= set(records) and next(changes) > len(found)
 
 
 def test_paths_of_before_a_change_save_their_scene(table, tmp_path):

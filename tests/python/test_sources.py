@@ -93,3 +93,59 @@ def test_names_of_unnamed_namespaces_are_unique_within_a_module():
             for name in names:
                 homes[parts[2], name].append("/".join(parts[3:]))
     assert total > 800 and not {key: files for key, files in homes.items() if len(files) > 1}
+
+
+# Strings and comments; then what opens a scope: a namespace, a type, or anything else; and constants outside of functions.
+UNREAD = re.compile(r'R"(\w*)\(.*?\)\1"|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])+\'|//[^\n]*|/\*.*?\*/', re.S)
+SCOPE = re.compile(r"namespace\s*(?P<namespace>[\w:]*)\s*\{"
+                   r"|\b(?:enum class|enum|struct|class|union)\s+(?P<type>[\w:]+\w)(?:\s+final)?(?:\s*:(?!:)[^;{()=]*)?\s*\{"
+                   r"|\binline constexpr [\w:<>,&* ]*?\b(?P<constant>k[A-Z]\w*)|(?P<open>\{)|(?P<close>\})")
+
+
+def defined_names(text: str) -> list[str]:
+    """Types and constants that a file defines where other files see them, with the namespaces and types around them."""
+    scopes, found = [], []
+    for match in SCOPE.finditer(UNREAD.sub(" ", text)):
+        if match["close"]:
+            scopes.pop()
+        elif match["open"]:
+            scopes.append("{")
+        elif match["namespace"] is not None:
+            scopes.append(match["namespace"] or "{")
+        else:
+            name = match["type"] or match["constant"]
+            if "{" not in scopes:
+                found.append("::".join([*scopes, name]))
+            if match["type"]:
+                scopes.append(name)
+    return found
+
+
+def test_defined_names_are_found():
+    text = """namespace one::two {
+inline constexpr double kLeast = 1e-3;  // struct NotThis {
+enum class Kind : int { kFirst };
+template <class T>
+struct Row final : Base<T> {
+  struct Part {};
+  void member() { struct Local {}; }
+};
+struct Owner::Inner {};
+struct Declared;
+namespace {
+struct Own {};
+}  // namespace
+}  // namespace one::two
+"""
+    names = ["kLeast", "Kind", "Row", "Row::Part", "Owner::Inner"]
+    assert defined_names(text) == [f"one::two::{name}" for name in names]
+
+
+@pytest.mark.skipif(not SOURCES, reason="the sources are not there")
+def test_no_name_is_defined_twice():
+    """The one-definition rule: the linker would take either of two types or constants for both."""
+    homes = defaultdict(list)
+    for path in SOURCES:
+        for name in defined_names(path.read_text(encoding="utf-8")):
+            homes[name].append(path.relative_to(ROOT).as_posix())
+    assert len(homes) > 600 and not {name: files for name, files in homes.items() if len(files) > 1}

@@ -99,6 +99,13 @@ def test_columns_are_read_only_views():
     assert np.array_equal(column, expected)
 
 
+def with_batches(frame, count):
+    """The frame with another count of batches."""
+    names = ("start_time", "trace_time", "transmitter", "receiver", "strata", "seed", "max_bounces", "polarization", "footprint",
+             "statistics", "target_error_db", "error_db", "sampler", "scatterers", "edges", "attenuation")
+    return ep.TraceFrame(**{name: getattr(frame, name) for name in names}, num_batches=count)
+
+
 def test_arrays_give_the_paths_back():
     paths = ep.trace(soup_scene(triangle_soup(seed=7), reflectivity=0.5, scattering=0.5), make_radar(), num_rays=2000)
     columns = {name: np.array(getattr(paths, name)) for name in
@@ -113,6 +120,10 @@ def test_arrays_give_the_paths_back():
         broken[name][0] = value
         with pytest.raises(ValueError, match=f"{name}: {rule}"):
             ep.Paths.from_arrays(**broken, scene=paths.scene, radar=paths.radar, frame=paths.frame)
+    for count in (0, 65):
+        frame = with_batches(paths.frame, count)
+        with pytest.raises(ValueError, match=f"num_batches: must lie in .*, got {count}"):
+            ep.Paths.from_arrays(**columns, scene=paths.scene, radar=paths.radar, frame=frame)
     off = columns["hits"].copy()
     off["u"][0] = 2.0
     with pytest.raises(ValueError, match="u and v: must not be negative"):

@@ -41,12 +41,12 @@ ECHOPATH_INLINE void add_tones(const double* frequency, const double* re, const 
 }
 
 // Computes the powers of echoes, as many as fill whole lanes: those behind the last are 0.
-ECHOPATH_INLINE void find_powers(const double* amplitude, int count, double* __restrict power, PowerSums* out) {
+ECHOPATH_INLINE void find_powers(const double* amplitude, int count, double* __restrict power, EchoPowerSums* out) {
   for (int p = 0; p < count; ++p)
     power[p] = amplitude[2 * p] * amplitude[2 * p] + amplitude[2 * p + 1] * amplitude[2 * p + 1];
-  PowerSums sums;
-  for (int p = 0; p < count; p += PowerSums::kLanes) {
-    for (int lane = 0; lane < PowerSums::kLanes; ++lane) {
+  EchoPowerSums sums;
+  for (int p = 0; p < count; p += EchoPowerSums::kLanes) {
+    for (int lane = 0; lane < EchoPowerSums::kLanes; ++lane) {
       const double here = power[p + lane];
       sums.power[lane] += here;
       sums.root[lane] += std::sqrt(here);
@@ -58,10 +58,10 @@ ECHOPATH_INLINE void find_powers(const double* amplitude, int count, double* __r
 
 }  // namespace
 
-PowerSums powers_of(EchoStates& states, int count, double* power) {
-  const int filled = (count + PowerSums::kLanes - 1) / PowerSums::kLanes * PowerSums::kLanes;
+EchoPowerSums powers_of(EchoStates& states, int count, double* power) {
+  const int filled = (count + EchoPowerSums::kLanes - 1) / EchoPowerSums::kLanes * EchoPowerSums::kLanes;
   std::fill(states.amplitude + 2 * count, states.amplitude + 2 * filled, 0.0);
-  PowerSums sums;
+  EchoPowerSums sums;
   run_simd<find_powers>(states.amplitude, filled, power, &sums);
   return sums;
 }

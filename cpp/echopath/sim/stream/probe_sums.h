@@ -21,13 +21,13 @@ struct SampleRow {
 };
 
 // Holds sums over some echoes, in kLanes sums side by side.
-struct PowerSums {
+struct EchoPowerSums {
   static constexpr int kLanes = 8;
   double power[kLanes] = {}, root[kLanes] = {}, largest[kLanes] = {};
 };
 
 // Computes the powers of the first `count` echoes, W, and their sums. `power` has room for EchoStates::kCapacity.
-PowerSums powers_of(EchoStates& states, int count, double* power);
+EchoPowerSums powers_of(EchoStates& states, int count, double* power);
 
 // Keeps the few strongest of the echoes that are shown to it, strongest first.
 class StrongestEchoes {

@@ -172,7 +172,7 @@ void PassProbe::tally_block(const ChirpTarget& target, const Echoes& block, std:
   for (int64_t begin = 0; begin < block.num_echoes; begin += kCapacity) {
     const int count = static_cast<int>(std::min<int64_t>(kCapacity, block.num_echoes - begin));
     evaluate_states(block, target.chirp, begin, count, states);
-    const PowerSums sums = powers_of(states, count, power);
+    const EchoPowerSums sums = powers_of(states, count, power);
     tally.amplitude_sum = std::accumulate(std::begin(sums.root), std::end(sums.root), tally.amplitude_sum);
     tally.power_sum = std::accumulate(std::begin(sums.power), std::end(sums.power), tally.power_sum);
     strongest.show(power, *std::max_element(std::begin(sums.largest), std::end(sums.largest)), begin, count);

@@ -64,6 +64,7 @@ struct SignalKernels {
   void (*add_tile)(const CarrierModel& model, const Spreading& spreading, const TileAtChirps& tile, const RowRoom& room);
 };
 
-inline const SignalKernels& signal_kernels() { return kernels<SignalKernels>(); }
+// Returns those of the instruction set picked.
+const SignalKernels& signal_kernels();
 
 }  // namespace echopath

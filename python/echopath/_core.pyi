@@ -777,44 +777,6 @@ class SceneMesh:
         """
         [F, 3] indices of vertices
         """
-class CoplanarOverlap:
-    """
-    Where two meshes, or a mesh and itself, lie on each other.
-    """
-    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
-    def __eq__(self, arg0: object) -> bool:
-        ...
-    def __getstate__(self) -> dict[typing.Any, typing.Any]:
-        ...
-    def __repr__(self) -> str:
-        ...
-    def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
-        ...
-    @property
-    def area(self) -> float:
-        """
-        m^2, summed over pairs of triangles
-        """
-    @property
-    def distance(self) -> float:
-        """
-        m, largest between the two
-        """
-    @property
-    def mesh_ids(self) -> tuple[int, int]:
-        """
-        their mesh IDs, the lower one first
-        """
-    @property
-    def names(self) -> tuple[str, str]:
-        """
-        full names of the two meshes; twice the same for a mesh that lies on itself
-        """
-    @property
-    def num_triangles(self) -> int:
-        """
-        of both meshes, that lie on one of the other
-        """
 class Scene:
     """
     A tree of named nodes with placements, motions and meshes.
@@ -914,6 +876,44 @@ class Scene:
     @property
     def num_triangles(self) -> int:
         ...
+class CoplanarOverlap:
+    """
+    Where two meshes, or a mesh and itself, lie on each other.
+    """
+    __hash__: typing.ClassVar[None] = None  # type: ignore[assignment]
+    def __eq__(self, arg0: object) -> bool:
+        ...
+    def __getstate__(self) -> dict[typing.Any, typing.Any]:
+        ...
+    def __repr__(self) -> str:
+        ...
+    def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
+        ...
+    @property
+    def area(self) -> float:
+        """
+        m^2, summed over pairs of triangles
+        """
+    @property
+    def distance(self) -> float:
+        """
+        m, largest between the two
+        """
+    @property
+    def mesh_ids(self) -> tuple[int, int]:
+        """
+        their mesh IDs, the lower one first
+        """
+    @property
+    def names(self) -> tuple[str, str]:
+        """
+        full names of the two meshes; twice the same for a mesh that lies on itself
+        """
+    @property
+    def num_triangles(self) -> int:
+        """
+        of both meshes, that lie on one of the other
+        """
 class Joint:
     """
     A joint of a skin. Cannot be changed.

@@ -7,13 +7,13 @@ import pytest
 
 BINDINGS = Path(__file__).parents[2] / "python" / "bindings"
 CALL = re.compile(r'(?:from|in)_package\(\s*"([\w.]+)",\s*"(\w+)"\s*\)')
-NAMED = sorted({pair for file in BINDINGS.glob("*.cpp") for pair in CALL.findall(file.read_text(encoding="utf-8"))})
+NAMED = sorted({pair for file in BINDINGS.rglob("*.cpp") for pair in CALL.findall(file.read_text(encoding="utf-8"))})
 
 
 def test_calls_by_name_are_found():
     """None is written in another way, which the pattern would miss."""
-    calls = sum(len(re.findall(r"\b(?:from|in)_package\(", file.read_text(encoding="utf-8"))) for file in BINDINGS.glob("*.cpp"))
-    found = sum(len(CALL.findall(file.read_text(encoding="utf-8"))) for file in BINDINGS.glob("*.cpp"))
+    calls = sum(len(re.findall(r"\b(?:from|in)_package\(", file.read_text(encoding="utf-8"))) for file in BINDINGS.rglob("*.cpp"))
+    found = sum(len(CALL.findall(file.read_text(encoding="utf-8"))) for file in BINDINGS.rglob("*.cpp"))
     assert calls == found and {("presentation.tables", "paths_table"), ("base.progress", "automatic_bars")} <= set(NAMED)
 
 

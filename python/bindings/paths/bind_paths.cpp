@@ -2,7 +2,6 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <variant>
@@ -12,17 +11,14 @@
 #include "call/define.h"
 #include "call/run_job.h"
 #include "label/named_selections.h"
+#include "paths/from_arrays.h"
 #include "paths/pass_rows.h"
 #include "paths/path_series.h"
 #include "values/array.h"
 #include "values/in_package.h"
-#include "values/travel.h"
 
 namespace echopath::bindings {
 namespace {
-
-using PathsPtr = std::shared_ptr<Paths>;
-using PathsClass = py::class_<Paths, PathsPtr>;
 
 // A column of the hits, a strided view without a copy.
 template <class T>
@@ -115,84 +111,6 @@ py::dict partition_paths(const Paths& paths, Arg<"parts", SelectionsByName> part
   return out;
 }
 
-// [H] structured, as Paths.hits has them.
-struct HitRows {
-  using Value = std::vector<Hit>;
-  static constexpr auto type_name = py::detail::const_name("ArrayLike");
-  static Value from(py::handle value, const char* argument) {
-    constexpr const char* kRule = "must be an array [H] of (mesh_id, triangle_id, u, v) as Paths.hits has it";
-    if (!py::isinstance<py::array>(value)) refuse_type(argument, kRule, value);
-    const auto given = py::reinterpret_borrow<py::array>(value);
-    if (given.ndim() != 1 || !given.dtype().equal(py::dtype::of<Hit>())) {
-      throw py::type_error(std::string(argument) + ": " + kRule + ", got " + std::string(py::str(given.dtype())) + " of " +
-                           std::to_string(given.ndim()) + " dimensions");
-    }
-    const py::array_t<Hit, py::array::c_style | py::array::forcecast> rows(given);
-    return Value(rows.data(), rows.data() + rows.size());
-  }
-};
-
-// Rows of `size` numbers, of a flat vector.
-template <class Row, class T>
-std::vector<Row> rows_of(const std::vector<T>& values, size_t size) {
-  std::vector<Row> rows(values.size() / size);
-  std::copy(values.begin(), values.end(), rows.empty() ? nullptr : rows.front().data());
-  return rows;
-}
-
-using ComplexFloat = std::complex<float>;
-
-PathsPtr paths_from_arrays(Arg<"hits", HitRows> hits, Arg<"offsets", VectorOf<int64_t, "[P]">> offsets,
-                           Arg<"num_bounces", VectorOf<uint8_t, "[P]">> num_bounces,
-                           Arg<"diffuse", VectorOf<uint64_t, "[P]">> diffuse,
-                           Arg<"weight", VectorOf<ComplexFloat, "[P]">> weight,
-                           Arg<"stratum", VectorOf<uint16_t, "[P]">> stratum, Arg<"batch", VectorOf<uint8_t, "[P]">> batch,
-                           Arg<"flags", VectorOf<uint32_t, "[P]">> flags,
-                           Arg<"curved_cell", Optional<VectorOf<float, "[P, 7]">>> curved_cell,
-                           Arg<"jones", Optional<VectorOf<ComplexFloat, "[P, 2, 2]">>> jones,
-                           Arg<"passes", Optional<PassRows>> passes,
-                           Arg<"pass_offsets", Optional<VectorOf<int64_t, "[P + 1]">>> pass_offsets,
-                           Arg<"scene", Instance<std::shared_ptr<Scene>>> scene, Arg<"radar", Instance<Radar>> radar,
-                           Arg<"frame", Instance<TraceFrame>> frame) {
-  auto paths = std::make_shared<Paths>();
-  paths->hits = std::make_shared<const std::vector<Hit>>(*hits);
-  paths->offsets = *offsets;
-  paths->num_bounces = *num_bounces;
-  paths->diffuse = *diffuse;
-  paths->weight = *weight;
-  paths->stratum = *stratum;
-  paths->batch = *batch;
-  paths->flags = *flags;
-  if (*curved_cell) paths->curved_cell = rows_of<decltype(paths->curved_cell)::value_type>(**curved_cell, 7);
-  if (*jones) paths->jones = rows_of<decltype(paths->jones)::value_type>(**jones, 4);
-  if (*passes) paths->passes = **passes;
-  if (*pass_offsets) paths->pass_offsets = **pass_offsets;
-  paths->scene = std::make_shared<const Scene>(**scene);
-  paths->radar = *radar;
-  paths->frame = *frame;
-  run_job("check", py::none(), [&](Job&) { paths->validate(); });
-  return paths;
-}
-
-// What from_arrays takes, by name: also the state of a pickle.
-const std::vector<std::string> kPathsState = {"hits",    "offsets",      "num_bounces", "diffuse",     "weight",
-                                              "stratum", "batch",        "flags",       "curved_cell", "jones",
-                                              "passes",  "pass_offsets", "scene",       "radar",       "frame"};
-
-py::dict paths_state(const py::object& self) {
-  py::dict state;
-  for (const std::string& name : kPathsState) state[name.c_str()] = self.attr(name.c_str());
-  for (const char* name : {"curved_cell", "jones", "passes", "pass_offsets"}) {
-    if (py::len(state[name]) == 0) state[name] = py::none();
-  }
-  return state;
-}
-
-PathsPtr paths_of_state(const py::dict& state) {
-  require_fields(state, kPathsState);
-  return py::type::of<Paths>().attr("from_arrays")(**state).cast<PathsPtr>();
-}
-
 std::string paths_text(const Paths& self) {
   return "Paths(" + std::to_string(self.num_paths()) + " paths, " + std::to_string(self.num_hits()) + " hits)";
 }
@@ -254,17 +172,6 @@ path: of the file, written whole or not at all; min_power: in W at the trace tim
 below it are left out and counted. Returns what was left out. Raises ep.FileError when the file cannot be written.)");
   define_static(type, "load", &load_paths, py::arg("path"),
                 "Reads the paths of a frame file at `path`: the same bits that were written. Raises ep.FileError.");
-  define_static(type, "from_arrays", &paths_from_arrays, py::kw_only(), py::arg("hits"), py::arg("offsets"),
-                py::arg("num_bounces"), py::arg("diffuse"), py::arg("weight"), py::arg("stratum"), py::arg("batch"),
-                py::arg("flags"), py::arg("curved_cell") = py::none(), py::arg("jones") = py::none(),
-                py::arg("passes") = py::none(), py::arg("pass_offsets") = py::none(), py::arg("scene"), py::arg("radar"),
-                py::arg("frame"),
-                R"(Paths of arrays as the properties give them.
-
-hits: [H] structured; offsets, num_bounces, diffuse, weight, stratum, batch, flags: [P]; curved_cell: [P, 7] or None; jones:
-[P, 2, 2] complex or None; passes: [N] structured and pass_offsets: [P + 1], or None
-scene, radar, frame: what they belong to
-Raises ValueError where an index leads nowhere.)");
   define(type, "to_dataframe", from_package("presentation.tables", "paths_table"),
          R"(A table with a row for each path, as a pandas.DataFrame.
 
@@ -332,12 +239,12 @@ share hits; selections share all hits of their trace.)");
       .def_property_readonly("power", &path_power_of, "[P] W, |amplitude|^2")
       .def_property_readonly("effects", from_package("effects", "of_paths"),
                              "list of Effect: what the trace modelled, what not, and why")
-      .def(py::pickle(&paths_state, &paths_of_state))
       .def("__len__", &Paths::num_paths)
       .def("__repr__", &paths_text);
   bind_series(type);
   bind_parts(type);
   bind_exports(type);
+  bind_from_arrays(type);
 }
 
 }  // namespace echopath::bindings

@@ -17,7 +17,7 @@ CLOSING = {
     ("echopath.frame.frame", "echopath.truth"): "Frame.truth asks for the truth, which also takes rows of frames",
     ("echopath.frame.frame", "echopath.sensor_files"): "Frame.save_raw writes with what writes several frames",
     ("echopath.readers.model", "echopath.readers.along"): "Model.along makes another model of its nodes",
-    ("echopath.cli", "echopath_viewer"): "`echopath view` starts the viewer, whose demo is that of the command line",
+    ("echopath.cli.commands", "echopath_viewer"): "`echopath view` starts the viewer, whose demo is that of the command line",
 }
 
 

@@ -10,7 +10,8 @@ import pytest
 
 import echopath as ep
 from echopath.cli.run import simulate_file
-from echopath.scene_file import schema as scene_schema
+from echopath.scene_file import motion_tables, object_tables, radar_tables, run_tables, schema
+from echopath.scene_file.table import Table
 from support.scene_text import WAVEFORM
 
 RADAR = WAVEFORM + """\
@@ -331,8 +332,9 @@ def test_the_pedestrian_of_the_street_walks_towards_the_radar():
 
 
 def tables() -> dict:
-    return {name: value for name, value in vars(scene_schema).items()
-            if isinstance(value, type) and issubclass(value, scene_schema.Table) and value is not scene_schema.Table}
+    parts = (motion_tables, object_tables, radar_tables, run_tables, schema)
+    return {name: value for part in parts for name, value in vars(part).items()
+            if isinstance(value, type) and issubclass(value, Table) and value is not Table}
 
 
 @pytest.mark.parametrize("name", tables())

@@ -12,7 +12,8 @@ from pydantic import AfterValidator, Field
 from ..scene_file import SceneFile
 from ..scene_file.errors import validated
 from ..scene_file.load import parse, scene_file_of
-from ..scene_file.schema import Positive, SceneTable, Table
+from ..scene_file.schema import SceneTable
+from ..scene_file.table import Positive, Table
 from ..sequence import Sequence
 from ..sequence.keep import Keep
 from .classes import ClassName

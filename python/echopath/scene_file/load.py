@@ -18,7 +18,9 @@ from .errors import blamed, validated
 from .foreign import foreign_scene
 from .objects import build_scene, motion_of
 from .scene_file import SceneFile
-from .schema import AngleTable, RadarTable, SceneTable
+from .radar_tables import RadarTable
+from .run_tables import AngleTable
+from .schema import SceneTable
 from .trajectories import Trajectories
 
 

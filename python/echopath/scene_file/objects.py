@@ -15,7 +15,9 @@ from ..scene.materials import material_fields, materials
 from ..scene.scene import Scene
 from ..weather import Weather
 from .errors import blamed, validated
-from .schema import MODEL_KEYS, ObjectTable, SceneTable, Table, nearest_key
+from .object_tables import MODEL_KEYS, ObjectTable
+from .schema import SceneTable
+from .table import Table, nearest_key
 from .trajectories import Trajectories
 
 

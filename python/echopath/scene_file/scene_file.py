@@ -15,7 +15,7 @@ from ..signals.parts import as_partitions
 if TYPE_CHECKING:
     from .. import _core
     from ..scene.scene import Scene
-    from .schema import AngleTable, DetectionsTable, SequenceTable, TruthTable
+    from .run_tables import AngleTable, DetectionsTable, SequenceTable, TruthTable
 
 
 @made_by("ep.load_scene")

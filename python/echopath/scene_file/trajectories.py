@@ -8,7 +8,8 @@ import numpy as np
 
 from ..trajectories import Trajectory, read_trajectories
 from .errors import blamed
-from .schema import ObjectTable, RadarTable
+from .object_tables import ObjectTable
+from .radar_tables import RadarTable
 
 
 class Trajectories:

@@ -8,11 +8,11 @@ import time
 from ...base.files import write_texts
 from ..machine import machine
 from ..steps import told
-from . import faults, geometry, heavy, motions, oracle, places, repeat, scenes, signals
+from . import faults, geometry, heavy, materials, meshes, motions, oracle, places, repeat, scenes, signals
 from .case import Case
 from .page import page
 
-GROUPS = (signals, geometry, places, motions, repeat, faults, heavy, oracle)
+GROUPS = (signals, geometry, meshes, places, materials, motions, repeat, faults, heavy, oracle)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -12,9 +12,8 @@ from echopath import _core
 from ...actors import shapes
 from .. import closed_forms as exact
 from .case import Cases
-from .geometry import level_of
 from .repeat import small_street
-from .scenes import METAL, POWER, ROUGH, decibels, edge_points, make_radar, misses, scene_of, traced
+from .scenes import METAL, POWER, ROUGH, decibels, edge_points, level_of, make_radar, misses, scene_of, traced
 
 cases = Cases("Large")
 NO_MESH = 2 ** 32 - 1

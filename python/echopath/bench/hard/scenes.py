@@ -11,6 +11,8 @@ from echopath import _core
 from ...actors import shapes
 from .. import closed_forms as exact
 
+UTM = np.array([450_000.0, 5_400_000.0, 120.0])  # m, a place in coordinates of maps
+NO_MESH = 2 ** 32 - 1  # of a ray that hits nothing
 METAL = ep.Material.metal()
 ROUGH = ep.Material(reflectivity=0.5, scattering=1.0)
 POWER = 0.01  # W
@@ -99,3 +101,9 @@ def same_bits(a, b) -> bool:
     """Whether two records hold the same bits."""
     columns = ("hits", "offsets", "num_bounces", "diffuse", "weight", "stratum", "batch", "flags", "curved_cell", "jones")
     return all(np.asarray(getattr(a, name)).tobytes() == np.asarray(getattr(b, name)).tobytes() for name in columns)
+
+
+def level_of(mesh, max_bounces: int = 1) -> float:
+    """Radar cross section in m^2 of a metal mesh 200 m ahead."""
+    scene = scene_of(("target", mesh, METAL, {"position": (200.0, 0.0, 0.0)}))
+    return rcs_of(traced(scene, make_radar(), 2 ** 14, max_bounces=max_bounces), 200.0)

@@ -1,0 +1,135 @@
+"""What each command does; each imports what it needs, so that none waits for the others."""
+from __future__ import annotations
+
+from pathlib import Path
+
+from ..base.files import require_writable
+
+
+def demo(options) -> None:
+    from .demo import run_demo
+    from ..base.progress import progress_bars
+
+    require_writable(options.out, "--out")
+    if options.view:
+        from echopath_viewer import require_window
+
+        require_window()
+    with progress_bars() as progress:
+        frame = run_demo(options.out, num_rays=options.rays, seed=options.seed, batches=options.batches, progress=progress)
+    if options.view:
+        import echopath as ep
+
+        ep.view(frame)
+
+
+def view(options) -> None:
+    import echopath as ep
+
+    if options.picture is not None:
+        require_writable(Path(options.picture).parent, "--picture")
+    frames = options.frames[0] if len(options.frames) == 1 else options.frames
+    ep.view(*([frames] if frames else []), state=options.state, picture=options.picture, scale=options.scale)
+
+
+def run(options) -> None:
+    from . import report
+    from ..base.progress import progress_bars
+    from .run import certify, chosen_partition, raw_line, simulate_file, write_outputs
+    from .run_sequence import is_sequence, run_sequence
+    from ..scene_file import load_scene
+
+    require_writable(options.out, "--out")
+    if options.raw is not None:
+        require_writable(Path(options.raw).parent, "--raw")
+    scene_file = load_scene(options.scene)
+    if scene_file.radar is None:
+        raise ValueError(f"{options.scene}: has no radar; 'echopath scene {options.scene} --out SCENE.toml' writes a scene file "
+                         "with one, where [[objects]] names it as model")
+    chosen = chosen_partition(options.part, scene_file.partitions())
+    if is_sequence(scene_file, options):
+        for line in run_sequence(scene_file, options, chosen):
+            print(line, flush=True)
+        return
+    with progress_bars() as progress:
+        frame = simulate_file(scene_file, num_rays=options.rays, seed=options.seed,
+                              batches=options.batches, extra_parts=chosen, truth=options.truth or None, progress=progress)
+        certificate = certify(frame, progress=progress)
+        written = write_outputs(frame, options.out, partitions=frame.parts)
+    if options.raw is not None:
+        print(raw_line(options.raw, frame.save_raw(options.raw)))
+    for text in [scene_file.title or options.scene, *report.counts(frame.paths),
+                 *report.overlaps(frame.scene, frame.paths.frame.trace_time), *report.effects(frame.effects),
+                 *report.stages(frame.stages), *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
+                 *report.labels(frame.labels), *report.detections(frame.detections),
+                 *report.truth(frame.kept_truth), *report.checks(frame.checks), *report.validity(certificate),
+                 *report.files(written), *report.unresolved(frame.unresolved)]:
+        print(text)
+
+
+def info(options) -> None:
+    from .info import describe_file
+
+    print("\n".join(describe_file(options.file, options.select)))
+
+
+def scene(options) -> None:
+    from .model_info import describe_model
+    from ..scene_file.write import write_scene_file
+
+    out = Path(options.out)
+    if out.suffix.lower() != ".toml":
+        raise ValueError(f"--out: must be a file .toml, got '{options.out}'")
+    model = write_scene_file(options.file, out, unit=options.unit, up=options.up)
+    print("\n".join([*describe_model(Path(options.file), model), f"wrote {out}: echopath run {out} --out DIR"]))
+
+
+def labels(options) -> None:
+    from ..arguments.settings import LabelSettings
+    from .labels import label_file, objects_of_options
+    from ..base.progress import progress_bars
+
+    require_writable(options.out, "--out")
+    settings = LabelSettings(objects=objects_of_options(options.object), plane=options.plane,
+                             dynamic_range_db=options.dynamic_range, noise_margin_db=options.noise_margin,
+                             errors=options.errors)
+    with progress_bars() as progress:
+        lines = label_file(options.frame, options.out, settings=settings, parts=options.part, progress=progress,
+                           cfar={"method": options.cfar, "false_alarm_rate": options.false_alarm_rate})
+    print("\n".join(lines))
+
+
+def dataset(options) -> None:
+    from .dataset import lines_of
+
+    for line in lines_of(options):
+        print(line, flush=True)
+
+
+def dataset_report(options) -> None:
+    from ..dataset import write_report
+
+    page = options.out or Path(options.folder) / "report.html"
+    write_report(options.folder, page)
+    print(f"wrote {page}")
+
+
+def bench(options) -> None:
+    from ..bench import (actors, certificate, crowd, dataset, hard, labels, live, measured, published, receiver, replay, report,
+                         run_actors, run_certificate, run_crowd, run_dataset, run_labels, run_live, run_measured, run_physics,
+                         run_published, run_receiver, run_replay, run_speed, run_worlds, speed, worlds)
+    from ..base.progress import progress_bars
+
+    works = {"physics": (run_physics, report.describe), "labels": (run_labels, labels.describe),
+             "hard": (hard.run_hard, hard.describe), "certificate": (run_certificate, certificate.describe),
+             "crowd": (run_crowd, crowd.describe), "speed": (run_speed, speed.describe),
+             "actors": (run_actors, actors.describe), "measured": (run_measured, measured.describe),
+             "worlds": (run_worlds, worlds.describe), "live": (run_live, live.describe),
+             "receiver": (run_receiver, receiver.describe), "dataset": (run_dataset, dataset.describe),
+             "targets": (run_published, published.describe), "replay": (run_replay, replay.describe)}
+    more = {"physics": {"rays_max": options.rays_max}, "certificate": {"scenes": options.scenes}}
+    require_writable(options.out, "--out")
+    run, describe = works[options.what]
+    with progress_bars() as progress:
+        lines = describe(run(options.out, quick=options.quick, progress=progress, **more.get(options.what, {})))
+    print("\n".join(lines))

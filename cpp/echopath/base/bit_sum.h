@@ -7,8 +7,8 @@
 
 namespace echopath {
 
-// Hangs on all values added and on their order. Two different sequences have the same sum by chance once in 2^64. Source:
-// each word goes through the finaliser of Steele, Lea, Flood 2014 (SplitMix).
+// The sum hangs on all values added and on their order. Two different sequences have the same sum by chance once in 2^64.
+// Source: each word goes through the finaliser of Steele, Lea, Flood 2014 (SplitMix).
 class BitSum {
  public:
   template <class Value>

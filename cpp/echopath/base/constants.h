@@ -1,7 +1,7 @@
 #pragma once
-// Physical constants (SI, exact by the 2019 definition) and the conventions of the whole program.
+// Defines the physical constants (SI, exact by the 2019 definition) and the conventions of the whole program.
 //
-// Conventions, their only home:
+// The conventions have their only home here:
 //  * time factor e^{+jwt}: a wave that travelled L carries e^{-jkL};
 //  * |amplitude|^2 of a path is the power in W at the receiver's port, without e^{-jkL}: the phase comes from the delay;
 //  * IF signal: mixer s_tx conj(s_rx), so a delay tau gives a positive beat frequency slope * tau;

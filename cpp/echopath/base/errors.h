@@ -1,5 +1,5 @@
 #pragma once
-// The exceptions of the core. In Python: std::invalid_argument -> ValueError, std::out_of_range -> IndexError,
+// Defines the exceptions of the core. Python shows std::invalid_argument -> ValueError, std::out_of_range -> IndexError,
 // FileError -> OSError, DeviceError -> RuntimeError, Cancelled -> KeyboardInterrupt.
 #include <sstream>
 #include <stdexcept>
@@ -29,7 +29,8 @@ void require(bool holds, std::string_view argument, std::string_view rule, const
   throw std::invalid_argument(text.str());
 }
 
-// The candidates most like `word`, at most `count`: those it begins, then by edit distance; for "did you mean" texts.
+// Returns the candidates most like `word`, at most `count`: those that it begins, then by edit distance; for texts such as
+// "did you mean".
 std::vector<std::string> nearest_names(std::string_view word, const std::vector<std::string>& candidates, int count = 3);
 
 }  // namespace echopath

@@ -1,5 +1,5 @@
 #pragma once
-// Names for the small linear algebra that every module uses.
+// Names the small linear algebra that every module uses.
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -9,10 +9,10 @@ namespace echopath {
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
 using Quaternion = Eigen::Quaterniond;
-// p_outer = T * p_inner; read names right to left: world_from_node.
+// A transform T turns p_inner into p_outer = T * p_inner; its name reads from right to left, as in world_from_node.
 using Transform = Eigen::Affine3d;
 
-// From a point to the segment between two others, which may be one.
+// Returns the distance from a point to the segment between two others, which may be one.
 inline double distance_to_segment(const Vec3& point, const Vec3& from, const Vec3& to) {
   const Vec3 along = to - from;
   const double square = along.squaredNorm(), at = square > 0 ? std::clamp(along.dot(point - from) / square, 0.0, 1.0) : 0.0;

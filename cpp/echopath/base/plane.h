@@ -1,10 +1,10 @@
 #pragma once
-// What a plane mirror makes of points and directions.
+// Tells what a plane mirror makes of points and directions.
 #include "echopath/base/geometry.h"
 
 namespace echopath {
 
-// A direction of travel behind a mirror with this unit normal; the same turns it back.
+// Returns a direction of travel as it is behind a mirror with this unit normal; the same turns it back.
 inline Vec3 mirrored(const Vec3& direction, const Vec3& normal) { return direction - 2.0 * normal.dot(direction) * normal; }
 
 struct Plane {

@@ -1,6 +1,6 @@
 #pragma once
-// Counter-based random numbers: Philox4x32-10 (Salmon, Moraes, Dror, Shaw, "Parallel random numbers: as easy as 1, 2, 3",
-// SC 2011). A number is a pure function of (seed, counter), so results depend on neither threads nor call order.
+// Draws counter-based random numbers by Philox4x32-10 (Salmon, Moraes, Dror, Shaw, "Parallel random numbers: as easy as 1,
+// 2, 3", SC 2011). A number is a pure function of (seed, counter), so results depend on neither threads nor call order.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace echopath {
 
-// Independent uses of one seed.
+// Names the independent uses of one seed.
 enum class Stream : uint32_t {
   kLaunchShift = 1,
   kBounce = 2,
@@ -23,11 +23,11 @@ enum class Stream : uint32_t {
   kTraining = 16
 };
 
-// The four words of as many counters as there are lanes, or what has become of them.
+// Holds the four words of as many counters as there are lanes, or what has become of them.
 template <size_t kLanes>
 using PhiloxWords = std::array<std::array<uint32_t, kLanes>, 4>;
 
-// In loops over lanes that compilers vectorise.
+// Runs the rounds in loops over lanes that compilers vectorise.
 template <size_t kLanes>
 ECHOPATH_INLINE void philox4x32(PhiloxWords<kLanes>& words, std::array<uint32_t, 2> key) {
   for (int round = 0; round < 10; ++round) {
@@ -56,12 +56,12 @@ ECHOPATH_INLINE std::array<uint32_t, 2> philox_key(uint64_t seed) {
   return {static_cast<uint32_t>(seed), static_cast<uint32_t>(seed >> 32)};
 }
 
-// Uniform in [0, 1) with 53 bits.
+// Returns a number that is uniform in [0, 1), with 53 bits.
 ECHOPATH_INLINE double unit_interval(uint32_t high, uint32_t low) {
   return static_cast<double>(static_cast<int64_t>(((uint64_t{high} << 32) | low) >> 11)) * 0x1.0p-53;
 }
 
-// Two uniform numbers in [0, 1) with 53 bits for (seed, stream, index, dimension).
+// Returns two numbers that are uniform in [0, 1), with 53 bits, for (seed, stream, index, dimension).
 inline std::array<double, 2> uniform2(uint64_t seed, Stream stream, uint64_t index, uint32_t dimension) {
   const auto bits = philox4x32(
       {static_cast<uint32_t>(index), static_cast<uint32_t>(index >> 32), dimension, static_cast<uint32_t>(stream)},

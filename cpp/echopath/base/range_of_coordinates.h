@@ -1,5 +1,5 @@
 #pragma once
-// The one rule on how far away and how late things may be.
+// Sets the one rule on how far away and how late things may be.
 #include <cmath>
 #include <string>
 #include <string_view>

@@ -1,5 +1,6 @@
 #pragma once
-// Small vectors of numbers or of vectors of numbers, for formulas that are compiled for single values and for lanes alike.
+// Defines small vectors of numbers, or of vectors of numbers, for formulas that are compiled for single values and for lanes
+// alike.
 #include "echopath/base/lanes/simd.h"
 
 namespace echopath {

@@ -1,5 +1,5 @@
 #pragma once
-// A motion of curves, one for the translation, one for the rotation and one for the scale, each with keys of its own.
+// Moves a node by curves, one for the translation, one for the rotation and one for the scale, each with keys of its own.
 #include <memory>
 #include <optional>
 

@@ -1,5 +1,5 @@
 #pragma once
-// Morph targets: a mesh takes on shares of other shapes.
+// Deforms a mesh by morph targets: it takes on shares of other shapes.
 #include <memory>
 
 #include "echopath/motion/curve.h"

@@ -1,5 +1,5 @@
 #pragma once
-// Linear blend skinning: the vertices of one mesh follow the joints of a skeleton.
+// Deforms a mesh by linear blend skinning: its vertices follow the joints of a skeleton.
 #include <array>
 #include <optional>
 #include <span>

@@ -1,5 +1,5 @@
 #pragma once
-// Antennas of a radar at one time, in the axes of the world.
+// Places the antennas of a radar at one time, in the axes of the world.
 #include <vector>
 
 #include "echopath/radar/radar.h"

@@ -1,10 +1,10 @@
 #pragma once
-// Some vectors side by side, for kernels_body.h alone.
+// Holds some vectors side by side, for kernels_body.h alone.
 #include "echopath/base/lanes/lane_math.h"
 
 namespace echopath::ECHOPATH_KERNELS {
 
-// Vectors that take each step together: the chain of one is short of work while it waits for its last result.
+// These vectors take each step together: the chain of one is short of work while it waits for its last result.
 template <int kCount>
 struct Vecs {
   Vec of[kCount];

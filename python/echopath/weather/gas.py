@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 
 from ..scene.materials import data_folder
 
-VAPOUR_CONSTANT = 216.7  # g K/(hPa m^3), density of water vapour from its pressure
-
 
 @functools.cache
 def _lines(name: str) -> NDArray[np.float64]:

@@ -54,17 +54,17 @@ ECHOPATH_INLINE uint64_t differences(const int32_t* a, const int32_t* b) {
   return bits;
 }
 
-// a * b + c; which roundings it has is the compiler's choice.
+// Returns a * b + c; which roundings it has is the compiler's choice.
 ECHOPATH_INLINE Vec multiply_add(Vec a, Vec b, Vec c) { return a * b + c; }
 
-// a * b + c where c is nearly -a * b: the product is not rounded before c is added.
+// Returns a * b + c where c is nearly -a * b: the product is not rounded before c is added.
 ECHOPATH_INLINE Vec exact_multiply_add(Vec a, Vec b, Vec c) {
 #if ECHOPATH_LANES == 8
   return _mm512_fmadd_pd(a, b, c);
 #elif ECHOPATH_LANES == 4
   return _mm256_fmadd_pd(a, b, c);
 #else
-  // Without a fused operation: the product's own error by halves of 26 bits (Dekker 1971).
+  // Without a fused operation, the product's own error is found from halves of 26 bits (Dekker 1971).
   constexpr double kSplit = 134217729.0;  // 2^27 + 1
   const Vec big_a = a * kSplit, big_b = b * kSplit;
   const Vec ah = big_a - (big_a - a), bh = big_b - (big_b - b);
@@ -75,7 +75,7 @@ ECHOPATH_INLINE Vec exact_multiply_add(Vec a, Vec b, Vec c) {
 #endif
 }
 
-// Every other number of a and b in a row, from the number kFirst (0 or 1) on.
+// Returns every other number of a and b in a row, from the number kFirst (0 or 1) on.
 template <int kFirst>
 ECHOPATH_INLINE Vec every_other(Vec a, Vec b) {
   constexpr int k = kFirst;
@@ -88,7 +88,7 @@ ECHOPATH_INLINE Vec every_other(Vec a, Vec b) {
 #endif
 }
 
-// The lanes of a but the first, then the first of b.
+// Returns the lanes of a but the first, then the first of b.
 ECHOPATH_INLINE Vec without_first(Vec a, Vec b) {
 #if ECHOPATH_LANES == 8
   return __builtin_shufflevector(a, b, 1, 2, 3, 4, 5, 6, 7, 8);
@@ -176,7 +176,7 @@ struct LaneMath {
     return found != 0;
   }
 
-  // e^x for x <= 0, relative error 4e-16: 2^k times the series of the rest, |rest| <= ln(2)/2.
+  // Returns e^x for x <= 0 with a relative error of 4e-16: 2^k times the series of the rest, |rest| <= ln(2)/2.
   static ECHOPATH_INLINE Vec exp(Vec x) {
     constexpr double kLog2E = 1.4426950408889634, kLn2High = 0.6931471803691238, kLn2Low = 1.9082149292705877e-10;
     const Vec shifted = larger(x, all(kMaxNegativeExponent)) * kLog2E + kRoundingShift, k = shifted - kRoundingShift;

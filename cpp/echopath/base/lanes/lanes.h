@@ -1,5 +1,5 @@
 #pragma once
-// The vector type of all hot loops: numbers side by side in a register, which operators take lane by lane
+// Defines the vector type of all hot loops: numbers side by side in a register, which operators take lane by lane
 // (`mask ? a : b` chooses). Formulas take it by value: references to it cost 15 to 28 % of replay.
 //
 // Loops that compilers vectorise by themselves need none, and keep lanes in arrays (the rays of a packet, for example):
@@ -8,7 +8,7 @@
 
 namespace echopath {
 
-// In a register, and in memory at any place where a number may stand.
+// `Aligned` is a vector in a register, `Anywhere` one in memory, at any place where a number may stand.
 template <class Number, int kCount>
 struct LanesType {
   typedef Number Aligned __attribute__((vector_size(kCount * sizeof(Number))));
@@ -17,7 +17,7 @@ struct LanesType {
 template <class Number, int kCount>
 using Lanes = typename LanesType<Number, kCount>::Aligned;
 
-// Neither needs more than the alignment of the numbers.
+// Loading and storing need no more than the alignment of the numbers.
 template <int kCount, class Number>
 ECHOPATH_INLINE Lanes<Number, kCount> load_lanes(const Number* from) {
   return *reinterpret_cast<const typename LanesType<Number, kCount>::Anywhere*>(from);

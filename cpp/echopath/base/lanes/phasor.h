@@ -1,5 +1,6 @@
 #pragma once
-// e^{j pi x} and e^{j 2 pi x}, written for doubles in loops that compilers vectorise and for vectors of doubles alike.
+// Computes e^{j pi x} and e^{j 2 pi x}, written for doubles in loops that compilers vectorise and for vectors of doubles
+// alike.
 #include <cmath>
 
 #include "echopath/base/lanes/scalar_math.h"
@@ -10,7 +11,7 @@ namespace echopath {
 // Adding this to |x| < 2^51 leaves no bits for the fraction, and the lowest bit tells odd from even.
 inline constexpr double kRoundingShift = 6755399441055744.0;  // 1.5 * 2^52
 
-// Nearest integer, without a library call.
+// Returns the nearest integer, without a library call.
 template <class Real>
 ECHOPATH_INLINE Real round_to_integer(Real x) {
   return (x + kRoundingShift) - kRoundingShift;
@@ -18,11 +19,11 @@ ECHOPATH_INLINE Real round_to_integer(Real x) {
 
 using Phasor = ComplexOf<double>;
 
-// How far e^{j pi x} for |x| <= 1/2 may be off, absolutely.
+// Says how far e^{j pi x} for |x| <= 1/2 may be off, absolutely.
 enum class PhasorError { kRounding, k1em12, k7em6 };
 
-// e^{j pi x} for |x| <= 1/2: polynomials in x^2 through Chebyshev nodes of [0, 1/4] (Trefethen 2013, chapter 8). At
-// kRounding off by 4e-18 (cosine) and 2e-16 (sine) before rounding, 5e-16 in all.
+// Returns e^{j pi x} for |x| <= 1/2 by polynomials in x^2 through Chebyshev nodes of [0, 1/4] (Trefethen 2013, chapter 8).
+// At kRounding they are off by 4e-18 (cosine) and 2e-16 (sine) before rounding, by 5e-16 in all.
 template <PhasorError kError = PhasorError::kRounding, class Real>
 ECHOPATH_INLINE ComplexOf<Real> phasor_of_half_turns(Real x) {
   const Real y = x * x;
@@ -67,7 +68,7 @@ ECHOPATH_INLINE ComplexOf<Real> phasor_of_half_turns(Real x) {
   return {c, s * x};
 }
 
-// e^{j 2 pi x}.
+// Returns e^{j 2 pi x}.
 template <class Real>
 ECHOPATH_INLINE ComplexOf<Real> phasor_of_cycles(Real x) {
   const Real reduced = 2.0 * (x - round_to_integer(x));  // half turns in [-1, 1]
@@ -77,7 +78,8 @@ ECHOPATH_INLINE ComplexOf<Real> phasor_of_cycles(Real x) {
   return {sign * phasor.re, sign * phasor.im};
 }
 
-// e^{j 2 pi a b} of the two doubles, off by 5e-15 for up to 2^40 turns: what rounding takes off the product is added again.
+// Returns e^{j 2 pi a b} of the two doubles, off by 5e-15 for up to 2^40 turns: what rounding takes off the product is
+// added again.
 ECHOPATH_INLINE Phasor phasor_of_product(double a, double b) {
   const double turns = a * b, rest = std::fma(a, b, -turns);
   return phasor_of_cycles((turns - round_to_integer(turns)) + rest);

@@ -17,7 +17,8 @@
 // Helpers of such loops must be inlined to be compiled for the same instruction set.
 #define ECHOPATH_INLINE inline __attribute__((always_inline))
 
-// Before a loop: do not unroll it; its rounds may run side by side, whatever its pointers suggest.
+// These stand before a loop: the first keeps it from being unrolled, the second says that its rounds may run side by side,
+// whatever its pointers suggest.
 #if defined(__clang__)
 #define ECHOPATH_NO_UNROLL _Pragma("clang loop unroll(disable)")
 #define ECHOPATH_SIDE_BY_SIDE _Pragma("clang loop vectorize(assume_safety)")
@@ -30,9 +31,9 @@ namespace echopath {
 
 enum class InstructionSet { kBaseline, kAvx2, kAvx512 };
 
-// The best that machine and compiler have, or what the environment variable ECHOPATH_INSTRUCTION_SET names: baseline, avx2
-// or avx512. Fixed at the first call. Raises invalid_argument where the variable names another, or one that the machine
-// lacks.
+// Returns the best that machine and compiler have, or what the environment variable ECHOPATH_INSTRUCTION_SET names:
+// baseline, avx2 or avx512. It is fixed at the first call. Raises invalid_argument where the variable names another, or one
+// that the machine lacks.
 InstructionSet instruction_set();
 const char* name_of(InstructionSet set);
 
@@ -80,11 +81,12 @@ void run_simd(Args... args) {
       [&](auto set) __attribute__((always_inline)) { FunctionTarget<decltype(set)::value>::template run<kLoop>(args...); });
 }
 
-// A table of functions compiled for one instruction set: each file that is compiled for it specialises this for its table.
+// Returns the table of functions compiled for one instruction set: each file that is compiled for it specialises this for
+// its table.
 template <class Table, InstructionSet kSet>
 const Table& kernels_for();
 
-// That of the instruction set picked.
+// Returns that of the instruction set picked.
 template <class Table>
 const Table& kernels() {
   return with_instruction_set(

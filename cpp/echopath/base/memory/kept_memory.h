@@ -1,9 +1,9 @@
 #pragma once
-// Memory that one computation leaves for the next: of a short one, pages that are touched for the first time cost as much
-// as the work on them. One home for all of the process, with one budget.
+// Keeps the memory that one computation leaves for the next: in a short one, pages that are touched for the first time cost
+// as much as the work on them. The process has one home for it, with one budget.
 //
-// Not kept here: scratch of a few kB, which is thread_local where it is used; what holds results and not mere memory
-// (base/memory/recent_results.h, KeptGeometry).
+// Scratch of a few kB is not kept here, but is thread_local where it is used; what holds results, and not mere memory, has
+// its own homes (base/memory/recent_results.h, KeptGeometry).
 #include <compare>
 #include <cstddef>
 #include <cstdint>
@@ -17,18 +17,18 @@
 
 namespace echopath {
 
-// Of any type T that tells its num_bytes(). Thread-safe.
+// Keeps memory of any type T that tells its num_bytes(). It is thread-safe.
 class KeptMemory {
  public:
   static constexpr size_t kMost = size_t{128} << 20;
   explicit KeptMemory(size_t most = kMost) : most_(most) {}  // bytes in all, whatever their types
 
-  // The one of the whole process, never destroyed: threads may outlive what is static.
+  // Returns the one of the whole process, which is never destroyed: threads may outlive what is static.
   static KeptMemory& of_process();
 
-  // The smallest of this type that has so many bytes; where none has, the largest, which is to make room, so that there are
-  // never more of them than were in use at once; a new one, which has no bytes, where there is none at all. Of equal ones
-  // the one that was left last: it may still be in the cache.
+  // Returns the smallest of this type that has so many bytes; where none has, the largest, which is to make room, so that
+  // there are never more of them than were in use at once; and a new one, which has no bytes, where there is none at all.
+  // Among equal ones it takes the one that was left last, which may still be in the cache.
   template <class T>
   std::unique_ptr<T> take(size_t num_bytes = std::numeric_limits<size_t>::max()) {
     Memory found = take(typeid(T), num_bytes);
@@ -47,7 +47,7 @@ class KeptMemory {
 
  private:
   using Memory = std::unique_ptr<void, void (*)(void*)>;
-  // In the order of types, sizes and times, the last time first.
+  // Keys stand in the order of types, sizes and times, the last time first.
   struct Key {
     std::type_index type;
     size_t num_bytes;

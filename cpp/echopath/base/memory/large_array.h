@@ -1,5 +1,5 @@
 #pragma once
-// Memory for arrays of many megabytes.
+// Allocates arrays of many megabytes.
 #include <cstddef>
 #include <vector>
 

@@ -1,11 +1,12 @@
 #pragma once
-// A value that is made when it is first asked for.
+// Holds a value that is made when it is first asked for.
 #include <mutex>
 #include <optional>
 
 namespace echopath {
 
-// Thread-safe: whoever asks first makes the value, all others wait for it. Where making it throws, the next one makes it.
+// It is thread-safe: whoever asks first makes the value, all others wait for it. Where making it throws, the next one makes
+// it.
 // What makes it must neither ask the same value nor run a parallel loop: a thread that waits in the loop may take up a task
 // that asks it.
 template <class T>

@@ -1,5 +1,5 @@
 #pragma once
-// Results that are costly to make, kept for those who ask for the same again.
+// Keeps results that are costly to make for those who ask for the same again.
 #include <algorithm>
 #include <cstddef>
 #include <list>
@@ -9,13 +9,14 @@
 
 namespace echopath {
 
-// The last few. Thread-safe.
+// Keeps the last few of them. It is thread-safe.
 template <class Key, class Result>
 class RecentResults {
  public:
   explicit RecentResults(size_t most) : most_(most) {}
 
-  // What was made for an equal key, or what `make` makes, which others need not wait for: they make the same meanwhile.
+  // Returns what was made for an equal key, or what `make` makes, for which others need not wait: they make the same
+  // meanwhile.
   template <class Make>
   Result get(const Key& key, Make make) {
     if (std::optional<Result> found = find(key)) return *std::move(found);

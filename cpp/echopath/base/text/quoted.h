@@ -1,5 +1,5 @@
 #pragma once
-// Text as messages repeat it.
+// Writes text as messages repeat it.
 #include <array>
 #include <cstdio>
 #include <string>

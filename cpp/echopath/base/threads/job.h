@@ -1,5 +1,5 @@
 #pragma once
-// Progress and cancellation of one long computation. The worker side calls `advance`; another thread may read
+// Tells the progress of one long computation, and cancels it. The worker side calls `advance`; another thread may read
 // `fraction` and call `cancel`. All functions are safe from any thread.
 #include <atomic>
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace echopath {
 class Job {
  public:
   Job() = default;
-  // Part of another one (or of none), which must outlive it: cancelled with it, with a progress of its own.
+  // A job may be part of another one, which must outlive it: it is cancelled with that and has a progress of its own.
   explicit Job(const Job* whole) : whole_(whole) {}
   void start(int64_t total) {
     done_ = 0;

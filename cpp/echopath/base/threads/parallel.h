@@ -1,6 +1,6 @@
 #pragma once
-// Parallel loops (TBB) in one arena whose size `set_num_threads` fixes. Results must not depend on the number of threads:
-// a task owns what it writes, and whoever adds up does so in index order.
+// Runs parallel loops (TBB) in one arena whose size `set_num_threads` fixes. Results must not depend on the number of
+// threads: a task owns what it writes, and whoever adds up does so in index order.
 #include <cstdint>
 #include <functional>
 
@@ -8,7 +8,7 @@
 
 namespace echopath {
 
-// Number of threads of all parallel loops from now on; 0 means one per core. Raises invalid_argument if negative.
+// Sets the number of threads of all parallel loops from now on; 0 means one per core. Raises invalid_argument if negative.
 void set_num_threads(int num_threads);
 int num_threads();
 

@@ -1,5 +1,5 @@
 #pragma once
-// Path expressions: regular expressions over the hits of a path, from the transmitter T to the receiver R.
+// Parses path expressions: regular expressions over the hits of a path, from the transmitter T to the receiver R.
 //
 //   expression := 'T' [ choice ] 'R'             'T R' takes the path without hits
 //   choice     := sequence { '|' sequence }

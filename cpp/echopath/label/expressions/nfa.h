@@ -1,5 +1,5 @@
 #pragma once
-// Nondeterministic automata of path expressions.
+// Makes nondeterministic automata of path expressions.
 #include <string>
 #include <vector>
 

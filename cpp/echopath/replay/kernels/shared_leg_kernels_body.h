@@ -1,5 +1,5 @@
 #pragma once
-// The inner loops of replay, compiled once per instruction set (base/lanes/lane_math.h).
+// Holds the inner loops of replay, compiled once per instruction set (base/lanes/lane_math.h).
 #include "echopath/base/lanes/lane_math.h"
 #include "echopath/base/vector_of.h"
 #include "echopath/replay/kernels/path_formula.h"

@@ -1,5 +1,5 @@
 #pragma once
-// The loops of single_bounce_kernels.h, compiled once per instruction set (base/lanes/lane_math.h).
+// Holds the loops of single_bounce_kernels.h, compiled once per instruction set (base/lanes/lane_math.h).
 #include "echopath/replay/kernels/shared_leg_kernels_body.h"
 #include "echopath/replay/kernels/single_bounce_kernels.h"
 

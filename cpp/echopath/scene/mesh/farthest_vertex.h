@@ -1,5 +1,5 @@
 #pragma once
-// How far away vertices of a mesh may be in coordinates of its own. Internal to the module.
+// Says how far away vertices of a mesh may be in coordinates of its own. Internal to the module.
 #include "echopath/base/geometry.h"
 
 namespace echopath {

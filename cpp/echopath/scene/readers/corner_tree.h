@@ -1,5 +1,6 @@
 #pragma once
-// A tree of boxes around the corners of a polygon that finds quickly whether one lies in a triangle. Internal to the module.
+// Holds the corners of a polygon in a tree of boxes, which finds quickly whether one lies in a triangle. Internal to the
+// module.
 #include <array>
 #include <cstdint>
 #include <vector>

@@ -1,5 +1,5 @@
 #pragma once
-// The lines of a mesh file that is text, with errors that name them. Internal to the module.
+// Reads the lines of a mesh file that is text; errors name them. Internal to the module.
 #include <cstdint>
 #include <string>
 #include <string_view>

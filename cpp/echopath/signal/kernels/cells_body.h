@@ -1,5 +1,5 @@
 #pragma once
-// The places of echoes on the grid of frequencies, and their order by cells of that grid.
+// Finds the places of echoes on the grid of frequencies, and their order by cells of that grid.
 #include "echopath/base/lanes/lane_math.h"
 #include "echopath/signal/kernels/kernels.h"
 #include "echopath/signal/vecs.h"
@@ -84,7 +84,7 @@ ECHOPATH_INLINE void visit_shares(int share, int count, Visit visit) {
   }
 }
 
-// The first cells of the kernels of some echoes.
+// Holds the first cells of the kernels of some echoes.
 struct FirstCells {
   int32_t lowest, highest;
   int size() const { return highest - lowest + 1; }

@@ -1,5 +1,5 @@
 #pragma once
-// The inner loops of synthesis, compiled once per instruction set (base/lanes/lane_math.h).
+// Holds the inner loops of synthesis, compiled once per instruction set (base/lanes/lane_math.h).
 #include "echopath/signal/kernels/spreader_body.h"
 #include "echopath/signal/kernels/tones_body.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// The frequency and the phasor of echoes within a chirp, for a vector of echoes at a time.
+// Computes the frequency and the phasor of echoes within a chirp, for a vector of echoes at a time.
 #include "echopath/base/lanes/lane_math.h"
 #include "echopath/base/lanes/phasor.h"
 #include "echopath/signal/kernels/kernels.h"

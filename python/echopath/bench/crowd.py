@@ -195,9 +195,9 @@ def verdicts(results: dict) -> list[dict]:
     rows += [_verdict(f"{row['mirrors']} mirrors, {row['max_bounces']} bounces: sequences not followed", 0, row["unfollowed"])
              for row in results["mirrors"]]
     low, high = results["coverage"]["wanted"]
-    for row in results["coverage"]["rows"]:
+    for row in results["coverage"]["classes"]:
         holds = low <= row["coverage"] <= high
-        rows.append({"what": f"coverage, {row['kind']}, {row['rays']:,} rays: {low} to {high}", "limit": low,
+        rows.append({"what": f"coverage, {row['kind']}, {row['count']} runs: {low} to {high}", "limit": low,
                      "measured": row["coverage"], "holds": bool(holds)})
     return rows
 
@@ -222,15 +222,21 @@ def describe(results: dict) -> list[str]:
     lines += [f"  {row['mirrors']:>5} mirrors, {row['max_bounces']} bounces: {row['paths']} paths by bounces, "
               f"{row['processor_s']:.2f} s of processor time, {row['unfollowed']} sequences not followed"
               for row in results["mirrors"]]
-    lines += ["", f"coverage of the true value by the 95 % interval, {results['coverage']['seeds']} seeds",
-              f"  {'':<30}{'rays':>9}{'coverage':>10} {'+-':>5}{'mean error, dB':>16}{'claimed, dB':>13}{'unresolved':>12}"]
-    lines += [f"  {row['kind']:<30}{row['rays']:>9,}{row['coverage']:>10.2f} {row['coverage_error']:>5.2f}"
-              f"{row['mean_error_db']:>+16.3f}"
-              f"{row['claimed_db']:>13.3f}{row['unresolved']:>12}" for row in results["coverage"]["rows"]]
+    lines += ["", *_describe_coverage(results["coverage"])]
     lines += ["", f"{'must reach':<82}limit  measured"]
     lines += [f"  {row['what']:<78} {row['limit']:6.4g} {row['measured']:9.4g}  {'holds' if row['holds'] else 'MISSED'}"
               for row in results["must_reach"]]
     return lines + ["", f"{results['seconds']:.0f} s in all"]
+
+
+def _describe_coverage(coverage: dict) -> list[str]:
+    lines = [f"coverage of the true value by the 95 % interval, {coverage['seeds']} seeds",
+             f"  {'':<30}{'rays':>9}{'coverage':>10} {'+-':>5}{'mean error, dB':>16}{'claimed, dB':>13}{'unresolved':>12}"]
+    for row in [*coverage["rows"], *coverage["classes"]]:
+        rays = f"{row['rays']:,}" if "rays" in row else "all"
+        lines.append(f"  {row['kind']:<30}{rays:>9}{row['coverage']:>10.3f} {row['coverage_error']:>5.3f}"
+                     f"{row['mean_error_db']:>+16.3f}{row['claimed_db']:>13.3f}{row['unresolved']:>12}")
+    return lines
 
 
 def _describe_street(street: dict) -> list[str]:

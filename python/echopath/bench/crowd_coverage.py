@@ -11,25 +11,46 @@ from .crowd_echoes import Echo, all_echoes
 
 NUM_SEEDS, QUICK_SEEDS = 60, 4
 RAYS, QUICK_RAYS = (2 ** 12, 2 ** 14, 2 ** 16), (2 ** 12,)
-TRUE_RAYS, QUICK_TRUE_RAYS = 2 ** 22, 2 ** 16
+TRUE_RAYS, TRUE_RAYS_OF_EACH, QUICK_TRUE_RAYS = 2 ** 22, 2 ** 20, 2 ** 16
 BATCHES = 8
 WANTED = (0.90, 0.98)
 FIRST_SEED = 1000
 
 
 def measure_coverage(*, quick: bool) -> dict:
-    """A row for each echo and number of rays."""
+    """A row for each echo and number of rays, and one for each class of echoes, over all of its bodies."""
     seeds = [FIRST_SEED + seed for seed in range(QUICK_SEEDS if quick else NUM_SEEDS)]
-    rows = []
-    for echo in all_echoes():
-        drawn = [echo.draw(seed) for seed in seeds]
-        truths = [truth for _, truth in drawn]
-        if truths[0] is None:
-            truths = [power_of(echo, drawn[0][0], num_rays=QUICK_TRUE_RAYS if quick else TRUE_RAYS)[0].power] * len(seeds)
-        for rays in QUICK_RAYS if quick else RAYS:
-            found = [power_of(echo, scene, num_rays=rays, seed=seed, batches=BATCHES) for (scene, _), seed in zip(drawn, seeds)]
-            rows.append({"kind": echo.kind, "rays": rays, **covered(found, truths)})
-    return {"seeds": len(seeds), "wanted": WANTED, "rows": rows}
+    rays = QUICK_RAYS if quick else RAYS
+    claims = {(echo.kind, count): found for echo in all_echoes() for count, found in _claims(echo, seeds, rays, quick).items()}
+    rows = [{"kind": kind, "rays": count, **covered(*found)} for (kind, count), found in claims.items()]
+    return {"seeds": len(seeds), "wanted": WANTED, "rows": rows, "classes": _by_class(claims)}
+
+
+def _claims(echo: Echo, seeds: list, rays: tuple, quick: bool) -> dict:
+    """{rays: (what runs claim, the truth), both by seed}"""
+    drawn = [echo.draw(seed) for seed in seeds]
+    truths = _truths(echo, drawn, quick)
+    return {count: ([power_of(echo, scene, num_rays=count, seed=seed, batches=BATCHES) for (scene, _), seed in zip(drawn, seeds)],
+                    truths) for count in rays}
+
+
+def _truths(echo: Echo, drawn: list, quick: bool) -> list:
+    """Power of each scene, W."""
+    if drawn[0][1] is not None:
+        return [truth for _, truth in drawn]
+    if echo.differs:
+        return [power_of(echo, scene, num_rays=QUICK_TRUE_RAYS if quick else TRUE_RAYS_OF_EACH)[0].power for scene, _ in drawn]
+    return [power_of(echo, drawn[0][0], num_rays=QUICK_TRUE_RAYS if quick else TRUE_RAYS)[0].power] * len(drawn)
+
+
+def _by_class(claims: dict) -> list[dict]:
+    """Rows over all bodies and numbers of rays of a class: what the promise of the intervals is about."""
+    together = {}
+    for (kind, _), (found, truths) in claims.items():
+        all_found, all_truths = together.setdefault(kind.split(",")[0], ([], []))
+        all_found += found
+        all_truths += truths
+    return [{"kind": name, "count": len(found), **covered(found, truths)} for name, (found, truths) in together.items()]
 
 
 def covered(found: list, truths: list) -> dict:

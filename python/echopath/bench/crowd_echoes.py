@@ -2,6 +2,8 @@
 
 What launch cells take away is the same for every seed of the rays: of one scene, intervals hold the truth always or never. The
 coherent echoes and those of two bounces are therefore of another body, attitude or place for each seed.
+
+Power that no closed form tells is that of a trace with many more rays (crowd_coverage.py).
 """
 from __future__ import annotations
 
@@ -13,7 +15,7 @@ import numpy as np
 import echopath as ep
 
 from ..actors import shapes
-from . import closed_forms, targets
+from . import closed_forms, crowd_scenes, targets
 from .two_bounces import power_over_ellipsoids
 
 # centre and semi-axes of ellipsoids, m: a metal ball beside the long curved flank of a body
@@ -27,25 +29,30 @@ EDGE = 0.4                        # of the root of the least radius of curvature
 
 @dataclasses.dataclass(frozen=True)
 class Echo:
-    """kind: for people; draw: callable (seed) -> (scene, truth in W, or None for the mean power of many rays); selection: of its
-    paths; objects: names of what they touch first, for what no ray has met; max_bounces: of the trace"""
+    """kind: for people, the class of echoes before a comma; draw: callable (seed) -> (scene, truth in W, or None for the mean
+    power of many rays); selection: of its paths; objects: names of what they touch first, for what no ray has met; max_bounces:
+    of the trace; differs: whether each seed has a scene of its own"""
 
     kind: str
     draw: Callable
     selection: str
     objects: dict | None = None
     max_bounces: int = 1
+    differs: bool = False
 
 
 def all_echoes() -> list[Echo]:
     plate = next(target for target in targets.all_targets() if target.name == "lambert_plate")
     return [Echo("coherent, spheres", _sphere, "T 'target' R"),
             Echo("coherent, car's ellipsoid", _ellipsoid, "T 'target' R"),
+            Echo("coherent, plates", _plate, "T 'plate' R", differs=True),
+            Echo("coherent, lofted cars", _lofted_car, "T 'car' R", differs=True),
             Echo("diffuse, plate", lambda seed: (plate.scene, None), "T 'plate' R"),
             Echo("diffuse, patch far away", lambda seed: (_far_patch(), None), "T 'pair/patch' R",
                  {"patch": "pair/patch", "board": "pair/board"}),
             Echo("ghost, patch then wall", lambda seed: (_ghost(), None), "T 'patch' 'mirror' R", None, 2),
             Echo("ghost, wall then patch", lambda seed: (_ghost(), None), "T 'mirror' 'patch' R", None, 2),
+            Echo("ghost, sphere then wall", _sphere_by_wall, "T 'target' 'mirror' R", None, 2, differs=True),
             Echo("two bounces, ball then flank", lambda seed: _flank_and_ball(seed, ("ball", "flank")), "T 'ball' 'flank' R",
                  None, 2),
             Echo("two bounces, flank then ball", lambda seed: _flank_and_ball(seed, ("flank", "ball")), "T 'flank' 'ball' R",
@@ -79,6 +86,32 @@ def _ellipsoid(seed: int):
     target = targets.ellipsoid_seen_along(_direction(np.random.default_rng(seed)), edge=_edge(targets.CAR))
     factor = closed_forms.WAVELENGTH ** 2 / ((4.0 * np.pi) ** 3 * FAR ** 4)
     return target.scene, targets.radar().transmit_power * factor * target.truth
+
+
+def _plate(seed: int):
+    """A metal plate up to 12 degrees off the line of sight."""
+    draw = np.random.default_rng(seed)
+    side, distance, yaw = draw.uniform(0.1, 0.5), draw.uniform(8.0, 30.0), np.radians(draw.uniform(0.0, 12.0))
+    scene = ep.Scene()
+    scene.add(shapes.plate(side, side), name="plate", material=ep.Material.metal(), position=(distance, 0.0, 0.0), yaw=yaw)
+    return scene, None
+
+
+def _lofted_car(seed: int):
+    draw = np.random.default_rng(seed)
+    scene = ep.Scene()
+    scene.add(crowd_scenes.lofted_car(), name="car", material=ep.Material.metal(), smooth=True,
+              position=(draw.uniform(12.0, 50.0), 0.0, -0.7), yaw=draw.uniform(0.0, 2.0 * np.pi))
+    return scene, None
+
+
+def _sphere_by_wall(seed: int):
+    """A metal sphere, and a metal wall 4 m aside."""
+    draw = np.random.default_rng(seed)
+    radius, distance = draw.uniform(0.2, 0.6), draw.uniform(8.0, 30.0)
+    scene = ellipsoids({"target": ((distance, 0.0, radius + 0.1), (radius,) * 3)})
+    scene.add(shapes.wall(200.0, 100.0), name="mirror", material=ep.Material.metal(mirror=True), position=(0.0, 4.0, -50.0))
+    return scene, None
 
 
 def _flank_and_ball(seed: int, order: tuple):

@@ -4,6 +4,7 @@ Its datasets are `h5py.h5d.DatasetID`, and groups `h5py.Group`. h5py is imported
 """
 from __future__ import annotations
 
+import functools
 import math
 
 BLOCK_BYTES = 1 << 23   # written or read at a time: between two blocks Ctrl-C is answered
@@ -40,12 +41,24 @@ def is_chunked(dataset) -> bool:
     return dataset.get_create_plist().get_layout() == h5py.h5d.CHUNKED
 
 
+@functools.lru_cache
+def _number_type(dtype):
+    import h5py
+
+    return h5py.h5t.py_create(dtype)
+
+
+def memory_type(dtype):
+    """The HDF5 type of values in memory; h5py's own, None, for texts, whose NumPy type does not say their encoding."""
+    return None if dtype.kind in "SO" else _number_type(dtype)
+
+
 def read_blocks(dataset, values):
     """Fills an array with the values of a dataset, and yields what is read at a time."""
     import h5py
 
     if 0 < values.nbytes <= BLOCK_BYTES:
-        dataset.read(h5py.h5s.ALL, h5py.h5s.ALL, values)
+        dataset.read(h5py.h5s.ALL, h5py.h5s.ALL, values, memory_type(values.dtype))
         yield values
         return
     source = h5py.Dataset(dataset, readonly=True)

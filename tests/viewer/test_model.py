@@ -40,7 +40,8 @@ def test_the_index_finds_what_a_loop_over_all_paths_finds(seed):
     num_ranges, num_velocities, num_paths = 23, 11, 900
     range_index = rng.integers(-1, num_ranges, num_paths)
     velocity_index = np.where(range_index < 0, -1, rng.integers(0, num_velocities, num_paths))
-    index = CellIndex(range_index, velocity_index, num_ranges, num_velocities)
+    cell = np.where(range_index < 0, -1, velocity_index * num_ranges + range_index)
+    index = CellIndex(cell, num_ranges, num_velocities)
     for _ in range(40):
         first, last = np.sort(rng.integers(-3, num_ranges + 3, 2)), np.sort(rng.integers(-3, num_velocities + 3, 2))
         slow = [first[0] <= r <= first[1] and last[0] <= v <= last[1] and r >= 0
@@ -260,7 +261,10 @@ def test_signals_by_families_are_shown_by_their_names(frame):
 def test_each_channel_has_its_own_cells_powers_and_maps(session, frame):
     session.set_channel(1, 1)
     cells = ep.path_cells(frame.paths, frame.spectrum, tx=1, rx=1)
-    assert np.array_equal(session.columns.cells.range_index, cells.range_index)
+    wanted = zip(cells.range_index[::7], cells.velocity_index[::7])
+    assert [session.cell_of(path) for path in range(0, len(cells.range), 7)] == [
+        None if distance < 0 else (distance, velocity) for distance, velocity in wanted]
+    assert session.columns.range == pytest.approx(cells.range, rel=SINGLE, abs=0)
     power = np.abs(frame.paths.amplitudes([frame.paths.frame.trace_time], 1, 1)[0]) ** 2
     assert np.array_equal(session.columns.power, power)
     level = 10 * np.log10(np.abs(frame.spectrum.values[1, 1]) ** 2 * 1e3)
@@ -330,8 +334,8 @@ def test_every_segment_has_the_colour_of_its_legend(session, mode):
             of_object = dict(colouring.legend.rows)[session.mesh_names[segments.mesh_id[row]].partition("/")[0]]
             assert np.abs(np.subtract(of_object, colouring.rgb[row].astype(int))).max() <= SHADE
         else:
-            value = {"power": session.columns.power_dbm, "range": session.columns.cells.range,
-                     "speed": session.columns.cells.velocity}[mode][path]
+            columns = session.columns
+            value = {"power": columns.power_dbm(), "range": columns.range, "speed": columns.velocity}[mode][path]
             assert_colour_of_scale(colouring.rgb[row], value, colouring.legend)
 
 

@@ -132,7 +132,7 @@ def test_cells_without_rays_say_why(qtbot, window):
     settle(qtbot)
     assert "no ray lies there" in text() and "side lobes" in text()
     session.set_part(("route", "ghost"))
-    only_direct = np.flatnonzero((session.columns.cells.range_index >= 0) & ~session.part.mask)
+    only_direct = np.flatnonzero((session.columns.cell >= 0) & ~session.part.mask)
     box = next(CellBox(*(cell[0],) * 2, *(cell[1],) * 2) for cell in map(session.cell_of, map(int, only_direct))
                if not (session.visible & session.index.mask_of(CellBox(*(cell[0],) * 2, *(cell[1],) * 2))).any())
     session.select_cells(box)

@@ -107,7 +107,7 @@ def test_rays_and_meshes_are_exported_for_paraview(qtbot, window, frame, tmp_pat
     assert rays.n_lines == window.view3d.builder.rays.segments.num_segments and rays.n_verts == 0
     path = rays.cell_data["path"]
     assert np.array_equal(rays.cell_data["num_bounces"], frame.paths.num_bounces[path])
-    assert rays.cell_data["power_dbm"] == pytest.approx(window.session.columns.power_dbm[path])
+    assert rays.cell_data["power_dbm"] == pytest.approx(window.session.columns.power_dbm(path))
     assert meshes.n_cells == sum(len(mesh.triangles) for mesh in frame.scene.meshes)
     assert [list(file.field_data["seed"]) for file in (rays, meshes)] == [[str(frame.paths.frame.seed)]] * 2
     assert list(meshes.field_data["mesh_names"]) == [mesh.name for mesh in frame.scene.meshes]

@@ -47,7 +47,7 @@ def test_bounces_and_power_filter(qtbot, window):
     window.filter_box.power_box.setValue(-140)
     window.filter_box.power_check.click()
     columns = window.session.columns
-    assert np.array_equal(window.session.visible, (columns.num_bounces >= 2) & (columns.power_dbm >= -140))
+    assert np.array_equal(window.session.visible, (columns.num_bounces >= 2) & (columns.power_dbm() >= -140))
     qtbot.mouseClick(window.filter_box.reset_button, LEFT)
     assert window.session.visible.all() and window.filter_box.from_box.value() == 0
 

@@ -66,7 +66,7 @@ def test_a_dragged_rectangle_lights_its_rays(qtbot, window):
     qtbot.mouseRelease(panel, LEFT, pos=end)
     session = window.session
     assert session.box.first_range < distance < session.box.last_range
-    cells = session.columns.cells
+    cells = ep.path_cells(session.paths, session.parts.whole.spectrum)
     assert np.array_equal(session.lit, cells.within((session.box.first_range, session.box.last_range),
                                                     (session.box.first_velocity, session.box.last_velocity)))
     qtbot.keyClick(window, Qt.Key.Key_Escape)
@@ -154,7 +154,7 @@ def test_the_map_of_a_mesh_is_made_anew_when_the_filters_have_come_to_rest(qtbot
 
 def test_the_table_is_sorted_and_copied(qtbot, window):
     window.table.view.sortByColumn(1, Qt.SortOrder.AscendingOrder)
-    ranges = window.session.columns.cells.range[window.table.model.rays]
+    ranges = window.session.columns.range[window.table.model.rays]
     assert np.all(np.diff(ranges) >= 0.0)
     window.table.view.selectRow(1)
     window.table.view.setFocus()

@@ -43,7 +43,7 @@ def writing(path):
 
     _take_space(path)
     with h5py.File(path, "w", libver=LAYOUT) as file:
-        _reserve(file, 0)
+        reserve(file, 0)
         yield file
         file.flush()
         size = file.id.get_filesize()
@@ -55,7 +55,7 @@ def _take_space(path) -> None:
         os.posix_fallocate(file.fileno(), 0, SPARE_BYTES)
 
 
-def _reserve(group, num_bytes: int) -> None:
+def reserve(group, num_bytes: int) -> None:
     """Space on the disk for a dataset of `num_bytes` at the end of the file; raises OSError where there is none."""
     file = group.file.id
     os.posix_fallocate(file.get_vfd_handle(), file.get_filesize(), num_bytes + num_bytes // 64 + SPARE_BYTES)
@@ -71,14 +71,14 @@ def write_array(group, name: str, values, *, unit: str = "", compress: bool = Fa
     if compress and values.nbytes > SMALL_BYTES:
         options = {"chunks": _chunks(values.shape, values.itemsize), "compression": "gzip", "compression_opts": 1,
                    "shuffle": True}
-    _reserve(group, values.nbytes)
+    reserve(group, values.nbytes)
     dataset = group.create_dataset(name, shape=values.shape, dtype=values.dtype, **options)
     _fill(dataset, ((rows, values[rows]) for rows in row_blocks(values.shape, values.itemsize)), unit)
 
 
 def write_stack(group, name: str, arrays: list, *, unit: str = "") -> None:
     """Writes arrays of one shape as one array [N, ...], one after the other."""
-    _reserve(group, sum(values.nbytes for values in arrays))
+    reserve(group, sum(values.nbytes for values in arrays))
     dataset = group.create_dataset(name, shape=(len(arrays), *arrays[0].shape), dtype=arrays[0].dtype)
     _fill(dataset, enumerate(arrays), unit)
 

@@ -27,24 +27,26 @@ class CellBox:
 
 
 class CellIndex:
-    """Paths sorted by cell, so that a rectangle costs one search for each velocity, however many paths there are."""
+    """Paths sorted by cell, so that a rectangle costs one look for each velocity, however many paths there are.
 
-    def __init__(self, range_index, velocity_index, num_ranges: int, num_velocities: int):
-        """range_index, velocity_index: [P] cell of each path, -1 for paths outside the map."""
+    order: u32 [P], the paths cell by cell, those outside the map last
+    """
+
+    def __init__(self, cell, num_ranges: int, num_velocities: int, order=None):
+        """cell: i32 [P], velocity index * num_ranges + range index, -1 for paths outside the map; order: where it is known."""
         self._shape = num_ranges, num_velocities
-        self._num_paths = len(range_index)
-        inside = np.flatnonzero(np.asarray(range_index) >= 0)
-        cell = np.asarray(velocity_index, np.int64)[inside] * num_ranges + np.asarray(range_index)[inside]
-        order = np.argsort(cell.astype(np.uint32))
-        self._cell, self._path = cell[order], inside[order]
+        cell = np.asarray(cell, np.int32)
+        self.order = np.argsort(cell.view(np.uint32)).astype(np.uint32) if order is None else order
+        counts = np.bincount(cell[cell >= 0], minlength=num_ranges * num_velocities)
+        self._begins = np.concatenate([[0], np.cumsum(counts)])
 
     def mask_of(self, box: CellBox):
         """Which paths lie in the rectangle: bool [P]."""
-        mask = np.zeros(self._num_paths, bool)
+        mask = np.zeros(len(self.order), bool)
         box = box.within(*self._shape)
+        if box.first_range > box.last_range:
+            return mask
         rows = np.arange(box.first_velocity, box.last_velocity + 1) * self._shape[0]
-        begins = np.searchsorted(self._cell, rows + box.first_range, "left")
-        ends = np.searchsorted(self._cell, rows + box.last_range, "right")
-        for begin, end in zip(begins, ends):
-            mask[self._path[begin:end]] = True
+        for begin, end in zip(self._begins[rows + box.first_range], self._begins[rows + box.last_range + 1]):
+            mask[self.order[begin:end]] = True
         return mask

@@ -55,7 +55,7 @@ def colour_rays(mode: str, columns, segments, palette, mesh_names, *, cmap=None,
     if mode not in _SCALES:
         raise ValueError(f"color_by: must be one of {', '.join(COLOUR_MODES)}, got {mode!r}")
     title, usual_cmap = _SCALES[mode]
-    values = _values(mode, columns)[segments.rays]
+    values = _values(mode, columns, segments.rays)
     clim = _limits(mode, values) if clim is None else clim
     legend = Legend(title=title, clim=clim, cmap=cmap or usual_cmap)
     return Colouring(np.take(scale_colours(values, clim, legend.cmap), segments.ray, axis=0), legend)
@@ -82,8 +82,8 @@ def colour_table(cmap: str):
     return (matplotlib.colormaps[cmap](np.arange(256), bytes=True)[:, :3]).astype(np.uint8)
 
 
-def _values(mode: str, columns):
-    return {"power": columns.power_dbm, "range": columns.cells.range, "speed": columns.cells.velocity}[mode]
+def _values(mode: str, columns, rays):
+    return columns.power_dbm(rays) if mode == "power" else {"range": columns.range, "speed": columns.velocity}[mode][rays]
 
 
 def _limits(mode: str, values) -> tuple:

@@ -38,7 +38,7 @@ class Filters:
         """Bool [P]; matches: callable (Selection) -> bool [P]. Raises FilterError for bad texts."""
         mask = (columns.num_bounces >= self.min_bounces) & (columns.num_bounces <= self.max_bounces)
         if self.min_power_dbm is not None:
-            mask &= columns.power_dbm >= self.min_power_dbm
+            mask &= columns.is_at_least(self.min_power_dbm)
         for field, parse in (("mesh", _touching), ("expression", ep.Selection)):
             text = getattr(self, field).strip()
             if text:

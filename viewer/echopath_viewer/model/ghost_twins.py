@@ -68,7 +68,7 @@ def _apparent_place(paths, columns, mask):
     world = np.asarray(radar.world_from_radar(time))
     receiver = world[:3, :3] @ np.asarray(radar.receivers[columns.rx].position) + world[:3, 3]
     way = hits - receiver
-    places = receiver + columns.cells.range[rows, None] * way / np.linalg.norm(way, axis=1, keepdims=True)
+    places = receiver + columns.range[rows, None] * way / np.linalg.norm(way, axis=1, keepdims=True)
     return np.average(places, axis=0, weights=columns.power[rows])
 
 

@@ -9,6 +9,7 @@ import echopath as ep
 from echopath.paths.subset import part_of_path
 from echopath.signals.same_radar import difference
 
+from .kept_orders import KeptOrders, read_kept
 from .layers import Known
 from .part_set import WHOLE, Part, PartSet
 from .signals import Signals, all_paths, selections_of
@@ -19,6 +20,7 @@ class ViewInput:
     """Paths and parts.
 
     known: what the frame knows beside its signals, None for paths alone; note: what it lacks, in words
+    kept: what an earlier view has kept in the file, None: nothing
     signals: how theirs are made; cube: the whole [tx, rx, chirp, sample] in sqrt(W); title: of the window
     """
 
@@ -29,22 +31,25 @@ class ViewInput:
     title: str = ""
     known: Known | None = None
     note: str = ""
+    kept: KeptOrders | None = None
 
 
 def from_file(path) -> ViewInput:
     """Reads a frame file. Raises ep.FileError, with its name, where it is not ours or damaged."""
     frame = ep.load_frame(path)
     try:
-        return from_frame(frame, title=str(path))
+        view_input = from_frame(frame, title=str(path))
     except (ValueError, IndexError) as error:  # what it holds does not fit together
         raise ep.FileError(f"{path}: {error}") from None
+    view_input.kept = read_kept(path, view_input)
+    return view_input
 
 
 def from_frame(frame, title: str = "") -> ViewInput:
     """A simulated frame; one that is only a record of paths is synthesised."""
     if frame.cube is None:
         return from_paths(frame.scene, frame.paths, title=title)
-    parts = [Part(partition, name, frame.part_spectra[partition][name], frame.part_of_path[partition] == index, selection)
+    parts = [Part(partition, name, frame.part_spectra[partition][name], (frame.part_of_path[partition], index), selection)
              for partition, cubes in frame.parts.items()
              for index, (name, selection) in enumerate(zip(cubes, selections_of(frame.selections[partition])))]
     signals = Signals(frame.paths, dict(frame.spectrum_settings), frame.evaluate, frame.retrace,
@@ -98,7 +103,7 @@ def _parts_of(partition: str, group, signals: Signals) -> list[Part]:
         none = np.zeros(signals.paths.num_paths, bool)
         return [Part(partition, name, spectrum, none, is_known=False) for name, spectrum in spectra.items()]
     labels = part_of_path(signals.paths, selections)
-    return [Part(partition, name, spectrum, labels == index, selection)
+    return [Part(partition, name, spectrum, (labels, index), selection)
             for index, ((name, spectrum), selection) in enumerate(zip(spectra.items(), selections_of(selections)))]
 
 

@@ -21,7 +21,8 @@ class Part:
     """One map and the paths behind it.
 
     group, name: its partition and its name there; the whole has both "whole"
-    spectrum: RangeDoppler; mask: bool [P], None: all paths; selection: the same paths in words, None: there are none
+    spectrum: RangeDoppler; paths: bool [P], or (part of each path [P], the number of this one), None: all paths
+    selection: the same paths in words, None: there are none
     is_known: False for signals that were given without a word on their paths: their mask holds none
     recipe: how to make it again, for saving
     """
@@ -29,7 +30,7 @@ class Part:
     group: str
     name: str
     spectrum: object
-    mask: np.ndarray | None = None
+    paths: np.ndarray | tuple | None = None
     selection: object = None
     is_known: bool = True
     recipe: dict | None = None
@@ -38,6 +39,14 @@ class Part:
     @property
     def key(self) -> tuple:
         return self.group, self.name
+
+    @property
+    def mask(self):
+        """Its paths, bool [P], made at every call; None: all."""
+        if not isinstance(self.paths, tuple):
+            return self.paths
+        part_of_path, number = self.paths
+        return part_of_path == number
 
     def level(self, tx: int, rx: int):
         """Power of a channel in dBm, f32 [velocity, range]."""

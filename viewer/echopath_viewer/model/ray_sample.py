@@ -13,26 +13,14 @@ MESH_SHARE = 0.25  # of the rays, that meshes are sure of together
 class RaySampler:
     """Samples of the paths of a record at one channel, stratified by the meshes that they touch."""
 
-    def __init__(self, groups: TouchGroups, amplitude, cell, num_meshes: int):
-        """amplitude: complex [P] in sqrt(W); cell: [P] any number of the cell where a path is seen."""
-        self._groups, self._touches = groups, groups.touching(num_meshes)
-        power = np.abs(amplitude) ** 2
-        self._order = groups.order.copy()  # group by group, each strongest first: filters need no sorting then
-        for rows in groups.slices():
-            within = self._order[rows]
-            self._order[rows] = within[np.argsort(-power[within])]  # a stable order takes four times as long
-        self._power, self._power_of_path = power[self._order], power
-        self._has_power = self._power > 0.0
-        self.coherent_power = self._peaks(amplitude[self._order], cell[self._order])
+    def __init__(self, groups: TouchGroups, power, coherent_power, num_meshes: int):
+        """groups: each of them strongest first, so that filters need no sorting; power: [P] W
 
-    def _peaks(self, amplitude, cell):
-        """W, the largest power of a cell of each group, its paths added with their phases: [G]."""
-        peaks = np.zeros(len(self._groups))
-        for group, rows in enumerate(self._groups.slices()):
-            _, at = np.unique(cell[rows], return_inverse=True)
-            sums = np.bincount(at, amplitude[rows].real) + 1j * np.bincount(at, amplitude[rows].imag)
-            peaks[group] = (np.abs(sums) ** 2).max(initial=0.0)
-        return peaks
+        coherent_power: [G] W, as of `coherent_powers`
+        """
+        self._groups, self._touches = groups, groups.touching(num_meshes)
+        self._order, self._power, self.coherent_power = groups.order, power, coherent_power
+        self._has_power = power[self._order] > 0.0
 
     def sample(self, mask, count: int, parts=()):
         """At most `count` of the paths where `mask` [P] is true, as indices; every prefix is spread over the groups.
@@ -46,14 +34,14 @@ class RaySampler:
         begins, sizes = ends[:-1], np.diff(ends)
         quotas = self._quotas(sizes, count, self._strongest(found, begins, sizes))
         rank = np.arange(int(quotas.sum())) - np.repeat(np.cumsum(quotas) - quotas, quotas)
-        chosen = found[np.repeat(begins, quotas) + rank]
-        chosen = chosen[np.lexsort((-self._power[chosen], rank))]
-        return self._with_parts(self._order[chosen], mask, count, parts)
+        chosen = self._order[found[np.repeat(begins, quotas) + rank]]
+        chosen = chosen[np.lexsort((-self._power[chosen], rank))].astype(np.int64)
+        return self._with_parts(chosen, mask, count, parts)
 
     def _strongest(self, found, begins, sizes):
         """W, of each group, 0 where it has none: [G]."""
         power = np.zeros(len(sizes))
-        power[sizes > 0] = self._power[found[begins[sizes > 0]]]
+        power[sizes > 0] = self._power[self._order[found[begins[sizes > 0]]]]
         return power
 
     def _quotas(self, sizes, count: int, strongest):
@@ -81,8 +69,22 @@ class RaySampler:
         for part in parts:
             if len(chosen) and not part[chosen].any():
                 own = np.flatnonzero(part & mask)
-                firsts += [int(path) for path in own[self._power_of_path[own].argsort()[-1:]] if self._power_of_path[path] > 0.0]
+                firsts += [int(path) for path in own[self._power[own].argsort()[-1:]] if self._power[path] > 0.0]
         return np.concatenate([np.array(firsts, np.int64), chosen])[:count]
+
+
+def coherent_powers(groups: TouchGroups, amplitude, cell):
+    """W, the largest power of a cell of each group, its paths added with their phases: [G].
+
+    amplitude: complex [P] in sqrt(W); cell: [P] any number of the cell where a path is seen
+    """
+    amplitude, cell = amplitude[groups.order], cell[groups.order]
+    peaks = np.zeros(len(groups))
+    for group, rows in enumerate(groups.slices()):
+        _, at = np.unique(cell[rows], return_inverse=True)
+        sums = np.bincount(at, amplitude[rows].real) + 1j * np.bincount(at, amplitude[rows].imag)
+        peaks[group] = (np.abs(sums) ** 2).max(initial=0.0)
+    return peaks
 
 
 def _shared(weight, room, count: int):

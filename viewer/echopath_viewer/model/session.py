@@ -12,8 +12,9 @@ from .antennas import world_from_antenna
 from .beams import beam_values, beam_weights, paths_in_beam
 from .cell_index import CellBox, CellIndex
 from .colours import COLOUR_MODES, colour_rays
-from .columns import read_columns
+from .columns import Columns, read_columns
 from .filters import Filters
+from .kept_orders import KEPT_CHANNEL
 from .palette import mesh_palette
 from .part_set import WHOLE
 from .ray_sample import SAMPLINGS
@@ -60,7 +61,7 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
         self.is_node_stale = False     # that map is of other filters
         self.chirp = self.radar.waveform.num_chirps // 2
         self._listeners, self._matches, self._bundles = [], OrderedDict(), []
-        self._groups = None
+        self._kept, self._groups, self._amplitude = view_input.kept, None, None
         self._read_channel(0, 0)
         self._refresh_visible()
 
@@ -77,6 +78,11 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
     # --- channel and time ---
 
     @property
+    def is_kept(self) -> bool:
+        """Whether the file has columns and orders of an earlier view, which were read."""
+        return self._kept is not None
+
+    @property
     def channel(self) -> tuple:
         return self.columns.tx, self.columns.rx
 
@@ -88,9 +94,12 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
         self._tell("rays", "maps", "selection")
 
     def _read_channel(self, tx: int, rx: int) -> None:
-        self.columns = read_columns(self.paths, self.parts.whole.spectrum, tx, rx)
-        spectrum, cells = self.parts.whole.spectrum, self.columns.cells
-        self.index = CellIndex(cells.range_index, cells.velocity_index, len(spectrum.range), len(spectrum.velocity))
+        spectrum, kept = self.parts.whole.spectrum, self._kept if (tx, rx) == KEPT_CHANNEL else None
+        if kept is None:
+            self.columns, self._amplitude = read_columns(self.paths, spectrum, tx, rx)
+        else:
+            self.columns = Columns(paths=self.paths, tx=tx, rx=rx, num_ranges=len(spectrum.range), **kept.columns)
+        self.index = CellIndex(self.columns.cell, len(spectrum.range), len(spectrum.velocity), kept and kept.cell_order)
         self._sampler = None
 
     def set_chirp(self, chirp: int) -> None:
@@ -232,10 +241,7 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
 
     def cell_of(self, path: int) -> tuple | None:
         """(range index, velocity index) of a path; None for one outside the map."""
-        cells = self.columns.cells
-        if cells.range_index[path] < 0:
-            return None
-        return int(cells.range_index[path]), int(cells.velocity_index[path])
+        return self.columns.cell_of(path)
 
     def slow_time_power(self, progress=None):
         """Power by chirp in dBm, [chirps]: of the rays in the selected cells, or of the whole. Raises ValueError where those
@@ -250,10 +256,10 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
 
     def explain(self, path: int) -> list[tuple]:
         """What a path is, in (label, text) lines."""
-        cells, columns = self.columns.cells, self.columns
+        columns = self.columns
         diffuse, edges = int(self.paths.diffuse[path]), int(edge_hits(self.paths)[path])
         events = [_EVENTS[event(diffuse, edges, hit)] for hit in range(int(columns.num_bounces[path]))]
         hits = [(f"hit {number + 1}", f"{self.mesh_names[mesh]} ({kind})")
                 for number, (mesh, kind) in enumerate(zip(columns.meshes_of(path), events))]
-        return [("path", f"{path:,}"), *hits, ("range", f"{cells.range[path]:.3f} m"),
-                ("speed", f"{cells.velocity[path]:+.3f} m/s"), ("power", f"{columns.power_dbm[path]:.1f} dBm")]
+        return [("path", f"{path:,}"), *hits, ("range", f"{columns.range[path]:.3f} m"),
+                ("speed", f"{columns.velocity[path]:+.3f} m/s"), ("power", f"{columns.power_dbm(path):.1f} dBm")]

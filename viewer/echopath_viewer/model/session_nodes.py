@@ -63,7 +63,7 @@ class SessionNodes:
     def _part_of_node(self, name: str, base: tuple, progress) -> Part:
         """Its mask holds all paths of the part below, its map those that pass the filters."""
         below, hits = self.parts[base], ep.hits(name)
-        mask = self.matches(hits) if below.mask is None else below.mask & self.matches(hits)
+        mask = self.matches(hits) if below.paths is None else below.mask & self.matches(hits)
         selection = both(below.selection, hits)
         shown = mask & self.filters.mask(self.columns, self.matches)
         spectrum = self.signals.spectrum(shown, both(selection, self.filters.selection()), progress)

@@ -6,8 +6,9 @@ import numpy as np
 from echopath.paths.subset import paths_on, strongest
 
 from .filters import Filters
+from .kept_orders import KEPT_CHANNEL
 from .part_set import WHOLE, Part
-from .ray_sample import SAMPLINGS, RaySampler
+from .ray_sample import SAMPLINGS, RaySampler, coherent_powers
 from .touch_groups import TouchGroups
 
 MAX_LISTED = 100_000     # rows of the table
@@ -57,7 +58,8 @@ class SessionPaths:
         self._set_visible(self.filters.mask(self.columns, self.matches))
 
     def _set_visible(self, mask) -> None:
-        self.visible = mask if self.part.mask is None else mask & self.part.mask
+        of_part = self.part.mask
+        self.visible = mask if of_part is None else mask & of_part
         self._refresh_drawable()
 
     def _refresh_drawable(self) -> None:
@@ -87,7 +89,7 @@ class SessionPaths:
         if limit is not None or self.sampling == "strongest":
             return strongest(self.columns.power, self.max_rays if limit is None else limit, self.drawable)
         if self._sample is None:
-            parts = [part.mask for part in self.parts.of_group(self.partition) if part.mask is not None]
+            parts = [part.mask for part in self.parts.of_group(self.partition) if part.paths is not None]
             self._sample = self.sampler.sample(self.drawable, self.max_rays, parts)
         return self._sample
 
@@ -95,17 +97,23 @@ class SessionPaths:
     def groups(self) -> TouchGroups:
         """The paths by the meshes that they touch; made when they are first asked for."""
         if self._groups is None:
-            columns = self.columns
-            self._groups = TouchGroups(columns.offsets, columns.num_bounces, columns.mesh_id, len(self.mesh_names))
+            columns, kept = self.columns, self._kept
+            self._groups = TouchGroups(columns.offsets, columns.num_bounces, columns.mesh_id, len(self.mesh_names),
+                                       kept and kept.groups)
         return self._groups
 
     @property
     def sampler(self) -> RaySampler:
         """Made when it is first asked for."""
         if self._sampler is None:
-            cells = self.columns.cells
-            cell = cells.velocity_index.astype(np.int64) * len(self.parts.whole.spectrum.range) + cells.range_index
-            self._sampler = RaySampler(self.groups, self.columns.amplitude, cell, len(self.mesh_names))
+            columns, kept = self.columns, self._kept if self.channel == KEPT_CHANNEL else None
+            if kept is None:
+                self.groups.sort_within(columns.power)
+                coherent_power = coherent_powers(self.groups, self._amplitude, columns.cell)
+            else:
+                coherent_power = kept.coherent_power
+            self._sampler = RaySampler(self.groups, columns.power, coherent_power, len(self.mesh_names))
+            self._amplitude = None  # nothing else needs them
         return self._sampler
 
     def set_sampling(self, sampling: str) -> None:

@@ -22,8 +22,8 @@ def export_rays(session, path, rays=None) -> int:
     poly = lines_of(segments.points, segments.ends)
     row, columns = segments.rays[segments.ray], session.columns
     values = {"path": row, "bounce": segments.bounce, "num_bounces": columns.num_bounces[row],
-              "mesh_id": segments.mesh_id, "power_dbm": columns.power_dbm[row], "range": columns.cells.range[row],
-              "velocity": columns.cells.velocity[row]}
+              "mesh_id": segments.mesh_id, "power_dbm": columns.power_dbm(row), "range": columns.range[row],
+              "velocity": columns.velocity[row]}
     for name, column in values.items():
         poly.cell_data[name] = column
     poly.field_data["mesh_names"] = list(session.mesh_names)

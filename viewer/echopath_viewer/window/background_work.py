@@ -18,9 +18,10 @@ class BackgroundWork(QtCore.QObject):
     advanced = Signal(float)  # share of the work, 0 to 1
     _ended = Signal(int, object, str)
 
-    def __init__(self, parent=None):
+    def __init__(self, parent=None, *, ends_first: bool = False):
+        """ends_first: whether the program waits at its end for work that is running."""
         super().__init__(parent)
-        self._number = 0
+        self._number, self._is_daemon = 0, not ends_first
         self.is_running = False
         self._ended.connect(self._tell)  # in the thread of the window, as this object lives there
 
@@ -28,7 +29,7 @@ class BackgroundWork(QtCore.QObject):
         """work: callable (progress) -> result, which may raise ValueError or OSError; progress: callable (stage, fraction)."""
         self._number += 1
         self.is_running = True
-        threading.Thread(target=self._run, args=(self._number, work), daemon=True).start()
+        threading.Thread(target=self._run, args=(self._number, work), daemon=self._is_daemon).start()
 
     def stop(self) -> None:
         self._number += 1

@@ -30,6 +30,10 @@ class FileWatch(QtCore.QObject):
         """The file that is watched, or None."""
         return self._path
 
+    def accept(self) -> None:
+        """What the file holds now is known."""
+        self._shown = self._seen = self._state()
+
     def look(self) -> None:
         """Once at rest for one turn, a file that differs is told of."""
         state = self._state()

@@ -102,8 +102,8 @@ class FilterBox(QtWidgets.QWidget):
         self.session = None
         self.mesh_box.clear()
         self.mesh_box.addItems(["", *(node.name for node in session.scene.nodes)])
-        power = session.columns.power_dbm
-        self.power_box.setValue(round(float(power.max()) - 40.0) if len(power) else -100.0)
+        power = session.columns.power
+        self.power_box.setValue(round(float(session.columns.power_dbm(power.argmax())) - 40.0) if len(power) else -100.0)
         self.read(session)
 
     def follow_session(self, session, is_passing: bool = False) -> None:

@@ -57,7 +57,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         self.live_panel = LivePanel(self.live)
         self.frame_bar.hide()
         self.banner, self.empty_page, self.loading_bar = Banner(), EmptyPage(), ThinBar()
-        self.loading, self.file_watch = BackgroundWork(self), FileWatch(self)
+        self.loading, self.keeping, self.file_watch = BackgroundWork(self), BackgroundWork(self, ends_first=True), FileWatch(self)
         self._listing = QtCore.QTimer(self, singleShot=True, interval=0)
         self._pause = QtCore.QTimer(self, singleShot=True, interval=SIGNAL_PAUSE_MS)
         self._stale, self._signal_of, self.is_to_load, self._is_passing = set(), None, False, False
@@ -211,7 +211,8 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         """Returns when lists, signals and the scene show what the session shows now."""
         QtWidgets.QApplication.processEvents()
         while (self._listing.isActive() or self._pause.isActive() or self.view3d.is_behind()
-               or self.contributions.work.is_running or self.time_line.is_busy or self.is_to_load or self.loading.is_running):
+               or self.contributions.work.is_running or self.time_line.is_busy or self.is_to_load or self.loading.is_running
+               or self.keeping.is_running):
             QtWidgets.QApplication.processEvents(QtCore.QEventLoop.ProcessEventsFlag.WaitForMoreEvents)
         # Rows of tabs that docks no longer have are there until then.
         QtWidgets.QApplication.sendPostedEvents(None, QtCore.QEvent.Type.DeferredDelete)
@@ -232,6 +233,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         self.loading.advanced.connect(self.loading_bar.advance)
         self.loading.done.connect(self._take_rest)
         self.loading.failed.connect(self._end_loading)
+        self.keeping.done.connect(self._take_kept)
         self.time_line.read.connect(self._follow)
         self.live.shown.connect(self._take_live)
         self.live.failed.connect(self.show_message)
@@ -258,7 +260,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         self.file_watch.watch(None)
         self.time_line.stop()
         self._is_passing = False
-        for work in (self.contributions.work, self.loading, self.live_panel):
+        for work in (self.contributions.work, self.loading, self.keeping, self.live_panel):
             work.stop()
         for panel in self.side_panels.values():
             panel.stop()

@@ -6,6 +6,7 @@ from echopath.sequence.unused_memory import give_back_memory
 
 from ..model import from_file, from_frame
 from ..model.carried import read_session
+from ..model.kept_orders import keep_orders
 from ..model.preview import preview_of
 from ..model.time_line import time_line_of
 from ..model.view_state import apply_state, state_of
@@ -42,19 +43,19 @@ class Opening:
         """Reads all of a file of which a preview is shown, in a thread, once that is drawn."""
         self.loading_bar.begin()
         self.is_to_load, self._begun_with = True, state_of(self.session)
-        self.view3d.when_drawn(lambda: self._load(lambda progress: read_session(path, None, progress)))
+        self.view3d.when_drawn(lambda: self._load(path, None))
 
-    def _load(self, work) -> None:
-        self.is_to_load = False
+    def _load(self, path, state: dict | None) -> None:
+        self.is_to_load, self._path_read = False, path
         self.loading_bar.begin()
-        self.loading.start(work)
+        self.loading.start(lambda progress: read_session(path, state, progress))
 
     def reload(self) -> None:
         """Reads the file on display anew; what is shown stays, as far as it fits."""
         path, state = self.file_watch.path, state_of(self.session)
         if path is not None:
             self._begun_with = state
-            self._load(lambda progress: read_session(path, state, progress))
+            self._load(path, state)
 
     def _end_loading(self, text: str = "") -> None:
         self.loading_bar.hide()
@@ -66,6 +67,14 @@ class Opening:
         self._go_on_with_choices(session)
         self._follow(session)
         QtCore.QTimer.singleShot(REST_MS, give_back_memory)  # what reading has left: a second file would come on top of it
+        if self._remembers and not session.is_kept:
+            path = self._path_read
+            self.keeping.start(lambda progress: keep_orders(path, session))
+
+    def _take_kept(self, is_kept: bool) -> None:
+        """The file on display was written by this window: there is nothing new in it."""
+        if is_kept:
+            self.file_watch.accept()
 
     def _go_on_with_choices(self, session) -> None:
         """What was chosen since the reading began is chosen in the session that was read, too; rays are others."""

@@ -9,7 +9,8 @@ from .qt import Qt, QtCore, QtGui, QtWidgets, Signal
 
 COLUMNS = ("Bounces", "Range in m", "Speed in m/s", "Power in dBm", "Hits")
 DECIMALS = {1: "{:.3f}", 2: "{:+.3f}", 3: "{:.1f}"}
-STRONGEST_FIRST = (3, Qt.SortOrder.DescendingOrder)
+POWER = 3
+STRONGEST_FIRST = (POWER, Qt.SortOrder.DescendingOrder)
 WIDTHS = (60, 78, 90, 96)  # pixels; the last column has the rest
 HITS = len(COLUMNS) - 1
 
@@ -54,12 +55,14 @@ class RayTableModel(QtCore.QAbstractTableModel):
         path = self.rays[row]
         if column == HITS:
             return " > ".join(self.session.mesh_names[mesh] for mesh in self.session.columns.meshes_of(path))
-        return DECIMALS.get(column, "{}").format(self._values(column)[path])
+        return DECIMALS.get(column, "{}").format(self._values(column, path))
 
-    def _values(self, column: int):
-        """[P] of all paths."""
+    def _values(self, column: int, paths):
+        """Of one path, or of some [N]."""
         columns = self.session.columns
-        return (columns.num_bounces, columns.cells.range, columns.cells.velocity, columns.power_dbm)[column]
+        if column == POWER:
+            return columns.power_dbm(paths)
+        return (columns.num_bounces, columns.range, columns.velocity)[column][paths]
 
     def sort(self, column, order=Qt.SortOrder.AscendingOrder):
         self._order = (column, order)
@@ -76,7 +79,7 @@ class RayTableModel(QtCore.QAbstractTableModel):
         if column == HITS:
             keys = np.array([self.text(row, HITS) for row in range(len(self.rays))])
         else:
-            keys = self._values(column)[self.rays]
+            keys = self._values(column, self.rays)
         ranks = np.argsort(keys, kind="stable")
         self.rays = self.rays[ranks if order == Qt.SortOrder.AscendingOrder else ranks[::-1]]
 

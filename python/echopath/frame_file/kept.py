@@ -1,0 +1,110 @@
+"""Arrays that a program has made of a frame file and keeps in it, so as not to make them again (layout: data/README.md).
+
+They are never what a frame is: files without them hold the same frame, and what does not belong to it any more is not read.
+"""
+from __future__ import annotations
+
+import hashlib
+import os
+import stat
+from pathlib import Path
+
+import numpy as np
+
+from .. import _core
+from ..base.files import written_whole
+from .container import our_file
+from .h5 import read_array, read_attribute, read_group, reading, reserve, write_array, write_attribute, writing
+
+SOURCES = ("scene", "radar", "record")  # what all arrays are made of; of the map its axes and settings
+
+
+def kept_arrays(path, name: str, version: int, dtypes: dict) -> dict | None:
+    """The arrays [N] that `keep_arrays` wrote to a frame file; None where there are none, or none that belong to it.
+
+    name: of their group; version: of how they are made; dtypes: {array: type, or types of which it has one}
+    Arrays of another version, of another record, radar or map, and damaged ones are as if they were not there.
+    """
+    try:
+        with our_file(path) as file:
+            if name not in file:
+                return None
+            group = read_group(file, name)
+            if read_attribute(group, "key", str) != _key(file, version):
+                return None
+            return {array: _read(group, array, dtype) for array, dtype in dtypes.items()}
+    except _core.FileError:
+        return None
+
+
+def keep_arrays(path, name: str, version: int, arrays: dict) -> bool:
+    """Writes arrays into the group `name` of a frame file, in place of those that it has; returns whether it did.
+
+    The file is replaced whole or not at all, with the same frame. It stays as it is where it cannot be written, has other names
+    (hard links) or is written anew meanwhile.
+    """
+    path = Path(os.path.realpath(path))
+    try:
+        before = _state(path)
+        if not os.access(path, os.W_OK) or path.stat().st_nlink > 1:
+            return False
+        with written_whole(path) as temporary:
+            _copy_with(path, temporary, name, version, arrays)
+            os.chmod(temporary, stat.S_IMODE(path.stat().st_mode))
+            if _state(path) != before:
+                raise _core.FileError(f"{path}: was written anew")
+    except (OSError, _core.FileError):
+        return False
+    return True
+
+
+def _copy_with(path, temporary, name: str, version: int, arrays: dict) -> None:
+    with reading(path) as source, writing(temporary) as target:
+        reserve(target, path.stat().st_size)
+        for item in source:
+            if item != name:
+                source.copy(source[item], target, item)
+        for key, value in source.attrs.items():
+            target.attrs.create(key, value, dtype=source.attrs.get_id(key).dtype)
+        group = target.create_group(name)
+        write_attribute(group, "key", _key(source, version))
+        for array, values in arrays.items():
+            write_array(group, array, values)
+
+
+def _read(group, name: str, dtype):
+    kinds = dtype if isinstance(dtype, tuple) else (dtype,)
+    held = group[name].dtype if name in group else None
+    return read_array(group, name, held if held in map(np.dtype, kinds) else kinds[0], (None,))
+
+
+def _key(file, version: int) -> str:
+    """Of all that arrays are made of: the check sums of its numbers, and its attributes."""
+    digest = hashlib.sha256(f"{version} {_core.__version__}".encode())
+    for name in SOURCES:
+        _add(digest, read_group(file, name))
+    if "spectra" in file:
+        spectra = read_group(file, "spectra")
+        digest.update(read_attribute(spectra, "settings", str).encode())
+        for axis in ("velocity", "range"):
+            _add_attributes(digest, spectra[axis])
+    return digest.hexdigest()
+
+
+def _add(digest, item) -> None:
+    """An item and what is below it, with their names."""
+    digest.update(item.name.encode())
+    _add_attributes(digest, item)
+    if hasattr(item, "items"):
+        for name in sorted(item):
+            _add(digest, item[name])
+
+
+def _add_attributes(digest, item) -> None:
+    for name in sorted(item.attrs):
+        digest.update(name.encode() + np.asarray(item.attrs[name]).tobytes())
+
+
+def _state(path) -> tuple:
+    found = os.stat(path)
+    return found.st_mtime_ns, found.st_size, found.st_ino

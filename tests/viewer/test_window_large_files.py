@@ -82,7 +82,7 @@ def test_rays_come_where_nothing_is_drawn(qtbot, shared_window, frame, large_fil
 def test_a_picture_after_the_window_was_closed_is_no_error(shared_window, frame, monkeypatch):
     view, builder = shared_window.view3d, shared_window.view3d.builder
     monkeypatch.setattr(view, "builder", None)
-    monkeypatch.setattr(view, "_is_moving", True)
+    monkeypatch.setattr(view, "_pace", view._turning)
     view._draw()
     monkeypatch.undo()
     assert view.builder is builder

@@ -1,29 +1,53 @@
-"""How much is drawn in the time that a picture may take: rays while the camera moves, smooth edges."""
+"""How much is drawn in the time that a picture may take: rays and pixels while the camera moves, smooth edges."""
 from __future__ import annotations
 
-FEWEST_RAYS = 300
+import math
+
+FEWEST_RAYS, FIRST_RAYS = 300, 2000
 SLOW, QUICK = 0.045, 0.022  # s of a picture: with what the rest of the window takes, more than SLOW is below 15 pictures a second
+MOST_SLOW = 2               # pictures in a row, before less is drawn: one may be slow by chance
+GROWTH = 1.25               # from one number of rays to the next
 
 INSTANT, NUM_QUICK, SAMPLES = 0.008, 5, 4  # s of a picture; pictures in a row, before edges are smoothed; samples of a pixel
 
 
 class Pace:
-    """As many rays as leave a smooth motion: halved after a slow picture, doubled after a quick one.
+    """As many rays as leave a smooth motion, in pixels as coarse as they may be: a software picture takes its time for the
+    pixels of the rays.
 
-    num_rays: that the next picture has at most
+    num_rays: that the next picture has at most; coarseness: its pixels are squares of that many of the screen's
     """
 
-    def __init__(self):
-        self.num_rays = FEWEST_RAYS
+    def __init__(self, coarsest: int):
+        """coarsest: that pixels may be."""
+        self.num_rays, self.coarseness, self._coarsest = FIRST_RAYS, 1, coarsest
+        self.begin()
+
+    def begin(self) -> None:
+        """Another motion begins: what was too much in the last one is tried again."""
+        self._too_many, self._too_fine, self._num_slow = math.inf, 0, 0
 
     def follow(self, seconds: float, num_there: int) -> bool:
         """Takes note of what a picture took in s, of num_there rays at most; returns whether the next one has another number."""
-        before = self.num_rays
-        if seconds > SLOW:
-            self.num_rays = max(before // 2, FEWEST_RAYS)
-        elif seconds < QUICK and before < num_there:
-            self.num_rays = 2 * before
+        before, more = self.num_rays, min(int(GROWTH * self.num_rays), num_there)
+        self._num_slow = self._num_slow + 1 if seconds > SLOW else 0
+        if self._num_slow >= MOST_SLOW:
+            self._num_slow = 0
+            self._draw_less()
+        elif seconds > SLOW:
+            return False
+        elif before < more < self._too_many:
+            self.num_rays = more
+        elif self.coarseness - 1 > self._too_fine and seconds * self.coarseness < SLOW * (self.coarseness - 1):
+            self.coarseness -= 1  # lines take a time that goes with their length in pixels
         return self.num_rays != before
+
+    def _draw_less(self) -> None:
+        if self.coarseness < self._coarsest:
+            self._too_fine, self.coarseness = self.coarseness, self.coarseness + 1
+        else:
+            self._too_many = self.num_rays
+            self.num_rays = max(int(self.num_rays / GROWTH), FEWEST_RAYS)
 
 
 class Smoothing:

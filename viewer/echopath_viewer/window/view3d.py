@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import time
+from contextlib import contextmanager
 
 import numpy as np
 import pyvista as pv
@@ -17,6 +18,7 @@ from .qt import Qt, QtCore, Signal
 
 GL_COLOR_BUFFER_BIT = 0x4000
 LONGEST_WAIT_MS = 2000  # for a picture, of what is to come after it
+COARSEST = 3  # pixels while the camera is turned, of the screen's
 CLICK_REACH = 5.0  # pixels: a click moves no farther, and a ray that close is meant
 
 
@@ -32,10 +34,12 @@ class View3D(QtInteractor):
     def __init__(self, parent=None):
         self.builder = None  # a resize may come before the constructor has ended
         # Multisampling takes most of the time where there is no graphics card: Smoothing begins it elsewhere.
-        self._is_behind = self._is_fresh = self._is_moving = False
+        self._is_behind = self._is_fresh = False
         super().__init__(parent, auto_update=False, multi_samples=0)
         self._afterwards = None
-        self._press, self._drag, self.legend_box, self._pace = None, None, LegendBox(self), Pace()
+        self._press, self._drag, self.legend_box = None, None, LegendBox(self)
+        self.clock, self._turning, self._passing = time.perf_counter, Pace(COARSEST), Pace(1)
+        self._pace = None  # of the two, while the camera turns or frames pass
         self._smoothing = Smoothing()
         self.compass = Compass(self)
         self.setAcceptDrops(False)  # what is dropped here is the window's: pyvistaqt would read it with VTK
@@ -43,8 +47,8 @@ class View3D(QtInteractor):
         self.iren.interactor.EnableRenderOff()
         self.iren.interactor.AddObserver("RenderEvent", lambda *_: self.render_soon())
         style = self.iren.interactor.GetInteractorStyle()
-        style.AddObserver("StartInteractionEvent", lambda *_: self._set_moving(True))
-        style.AddObserver("EndInteractionEvent", lambda *_: self._set_moving(False))
+        style.AddObserver("StartInteractionEvent", lambda *_: self.set_moving(self._turning))
+        style.AddObserver("EndInteractionEvent", lambda *_: self.set_moving(None))
 
     def show_session(self, session) -> None:
         """Replaces what is drawn."""
@@ -58,7 +62,7 @@ class View3D(QtInteractor):
         """Another frame of the same time line: the camera stays where it is. is_passing: the next one comes at once, and there
         are only as many rays as while the camera moves."""
         self.builder.show_session(session)
-        self._set_moving(is_passing)
+        self.set_moving(self._passing if is_passing else None)
         self.render_soon()
 
     def background(self) -> str:
@@ -129,20 +133,38 @@ class View3D(QtInteractor):
         functions.glClear(GL_COLOR_BUFFER_BIT)
 
     def _draw(self) -> None:
-        self._is_behind, begin = False, time.perf_counter()
+        self._is_behind, begin = False, self.clock()
         interactor = self.iren.interactor
         interactor.EnableRenderOn()
         try:
-            super().paintGL()
+            with self._coarse_pixels():
+                super().paintGL()
         finally:
             interactor.EnableRenderOff()
         if self.builder is not None:  # a picture may come after the window was closed
-            self._learn(time.perf_counter() - begin)
+            self._learn(self.clock() - begin)
             self.compass.follow(self.camera, self.height())
+
+    @contextmanager
+    def _coarse_pixels(self):
+        """As coarse as the pace of the camera asks for: pyvistaqt stretches what VTK has drawn over the widget."""
+        times = 1 if self._pace is None else self._pace.coarseness
+        if times == 1:
+            yield
+            return
+        window = self.render_window
+        size, dpi = window.GetSize(), window.GetDPI()
+        window.SetSize(*(max(length // times, 1) for length in size))
+        window.SetDPI(max(dpi // times, 1))  # names keep their size
+        try:
+            yield
+        finally:
+            window.SetSize(*size)
+            window.SetDPI(dpi)
 
     def _learn(self, seconds: float) -> None:
         """How much the next pictures may have, from what one took."""
-        if self._is_moving and self._pace.follow(seconds, len(self.builder.rays.segments.rays)):
+        if self._pace is not None and self._pace.follow(seconds, len(self.builder.rays.segments.rays)):
             self.builder.show_first_rays(self._pace.num_rays)
         if self._smoothing.follow(seconds):
             self.render_window.SetMultiSamples(self._smoothing.samples)
@@ -160,13 +182,16 @@ class View3D(QtInteractor):
         self.reset_camera_clipping_range()
         self.render_soon()
 
-    def _set_moving(self, is_moving: bool) -> None:
-        """Fewer rays as long as the camera moves, where all take too long."""
-        if self.builder is not None:
-            self._is_moving = is_moving
-            self.builder.show_first_rays(self._pace.num_rays if is_moving else None)
-            if not is_moving:
-                self.render_soon()
+    def set_moving(self, pace: Pace | None) -> None:
+        """Fewer rays and coarser pixels as long as the camera moves, where all take too long; None: it does not any more."""
+        if self.builder is None:
+            return
+        if pace is not None and pace is not self._pace:
+            pace.begin()
+        self._pace = pace
+        self.builder.show_first_rays(None if pace is None else pace.num_rays)
+        if pace is None:
+            self.render_soon()
 
     # --- picking ---
 

@@ -113,6 +113,19 @@ TEST(MirrorZone, CoverIsTheShareOfTheZone) {
   }
 }
 
+// The floor of a well is no larger a mirror than without its walls, which rise far less than the antennas.
+TEST(MirrorZone, AFloorBetweenWallsEndsAtThem) {
+  const double distance = 40.0, half = std::sqrt(kWavelength * distance / 2.0), side = half;
+  Plates plates;
+  plates.add("floor", Vec3(-0.5 * side, -0.5 * side, 0), Vec3(side, 0, 0), Vec3(0, side, 0));
+  for (const double end : {-0.5, 0.5}) {
+    plates.add("x" + std::to_string(end), Vec3(end * side, -0.5 * side, 0), Vec3(0, side, 0), Vec3(0, 0, 0.2));
+    plates.add("y" + std::to_string(end), Vec3(-0.5 * side, end * side, 0), Vec3(side, 0, 0), Vec3(0, 0, 0.2));
+  }
+  plates.look_at(1e-4, 2e-4);
+  EXPECT_NEAR(plates.cover(distance, distance).share, 0.25, 1e-4);
+}
+
 // Born and Wolf, 8.7: sqrt(j) times the integral of exp(-j pi x^2) from -infinity to the edge; here by Simpson's rule from
 // 0.
 TEST(MirrorZone, TheFieldBesideAnEdgeIsFresnelsIntegral) {

@@ -55,7 +55,10 @@ class AxisCover {
       width += ends[k].distance;
     }
     if (width >= ample) return cover;
-    cover.share = std::min(1.0, 0.5 * (half_covered(ends[0]) + half_covered(ends[1])) / axis_.half);
+    // Between two walls it ends at both: the images in them go on only as far as the walls rise.
+    const bool is_trough = ends[0].is_wall && ends[1].is_wall;
+    const double covered = is_trough ? width : half_covered(ends[0]) + half_covered(ends[1]);
+    cover.share = std::min(1.0, 0.5 * covered / axis_.half);
     if (!lit_.target) return cover;
     const double narrowness = std::min(1.0, (2.0 * axis_.half / width - 1.0 / kAmple) / (1.0 - 1.0 / kAmple));
     const std::complex<double> left = field_at(ends[0], ways[0]) + field_at(ends[1], ways[1]) - 1.0;

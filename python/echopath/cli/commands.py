@@ -127,7 +127,8 @@ def bench(options) -> None:
              "worlds": (run_worlds, worlds.describe), "live": (run_live, live.describe),
              "receiver": (run_receiver, receiver.describe), "dataset": (run_dataset, dataset.describe),
              "targets": (run_published, published.describe), "replay": (run_replay, replay.describe)}
-    more = {"physics": {"rays_max": options.rays_max}, "certificate": {"scenes": options.scenes}}
+    more = {"physics": {"rays_max": options.rays_max}, "certificate": {"scenes": options.scenes},
+            "measured": {"suite": options.suite}}
     require_writable(options.out, "--out")
     run, describe = works[options.what]
     with progress_bars() as progress:

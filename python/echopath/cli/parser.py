@@ -91,17 +91,19 @@ def command_parser() -> argparse.ArgumentParser:
                             "crowd: objects of a crowded scene against themselves alone; certificate: objects of random "
                             "moving scenes against traces of every 8th chirp, and what `validity` says of them; targets: a "
                             "pedestrian, a road and spheres beside published levels; actors: cross sections of vehicles, "
-                            "people and the rest over aspect; measured: a plate and a box of metal beside measurement and "
-                            "method of moments, with and without sharp edges; worlds: crowds, and cities of many walls and "
-                            "meshes, their mirror paths against a search over all walls; live: scenes that change and go on in "
-                            "time, a drive through a city street; receiver: faults of receivers beside closed forms, codes of "
-                            "transmitters beside turns, and what they cost; dataset: frames of datasets by second and core, what "
-                            "each stage takes, growth and memory of workers")
+                            "people and the rest over aspect; measured: plates, boxes, ducts and an almond of metal beside "
+                            "measurement and method of moments, with and without sharp edges; worlds: crowds, and cities of many "
+                            "walls and meshes, their mirror paths against a search over all walls; live: scenes that change and "
+                            "go on in time, a drive through a city street; receiver: faults of receivers beside closed forms, "
+                            "codes of transmitters beside turns, and what they cost; dataset: frames of datasets by second and "
+                            "core, what each stage takes, growth and memory of workers")
     bench.add_argument("--out", required=True, metavar="DIR", help="folder of its results")
     bench.add_argument("--quick", action="store_true", help="few shifts and rays, for a look; hard: without the heavy cases")
     bench.add_argument("--rays-max", type=positive, default=2**16, metavar="N",
                        help="physics: most rays of a trace (default: %(default)s)")
     bench.add_argument("--scenes", type=positive, default=None, metavar="N", help="certificate: how many (default: a few dozen)")
+    bench.add_argument("--suite", default=None, metavar="DIR",
+                       help="measured: a checkout of the Austin RCS Benchmark Suite, for its PRIME aircraft, too")
     bench.set_defaults(command=work.bench)
     return parser
 

@@ -3,13 +3,17 @@ from __future__ import annotations
 
 import contextlib
 import pickle
+from collections.abc import Callable
 from pathlib import Path
 from random import Random
+from typing import NamedTuple
 
 import h5py
 import numpy as np
 
 import echopath as ep
+from echopath.frame.maps import maps_of
+from echopath.frame_file.maps import load_maps, save_maps
 from fuzz.folder import memory_folder
 from fuzz.mutate import damaged
 from fuzz.seeds import frames
@@ -24,56 +28,63 @@ ODD_TYPES = ["f4", "f8", ">f8", "i1", "i4", "i8", "u1", "u2", "u4", "u8", "c8", 
              h5py.vlen_dtype("i4"), h5py.ref_dtype, [("a", "f8"), ("b", "i4")]]
 
 
-class _Seeds:
-    """The files of the seeds: their bytes, the names of their items, and the bytes of the frame that each gives.
+class _Seed(NamedTuple):
+    """A file: its bytes, the names of its items, what reads and writes it, and the bytes of what it gives."""
 
-    Each frame is there whole and as its record alone, with scene, radar and paths.
-    """
+    content: bytes
+    names: list
+    load: Callable
+    save: Callable
+    expected: bytes
+
+
+class _Seeds:
+    """Files of frames: whole, their records alone, and the small files of sequences, which have maps and labels alone."""
 
     def __init__(self):
         self._folder = memory_folder()
         self.folder = Path(self._folder.name)
-        self.contents, self.names, self.expected = [], [], []
         made = frames()
-        self._whole, self._records = range(len(made)), range(len(made), 2 * len(made))
-        for frame in made:
-            self._add(frame, ep.save_frame)
-        for frame in made:
-            self._add(frame, _save_record)
+        maps = [maps_of(frame, with_power) for frame in made for with_power in (True, False)]
+        self._kinds = [[self._seed(one, load, save) for one in several] for several, load, save in (
+            (made, ep.load_frame, ep.save_frame), (made, ep.load_frame, _save_record), (maps, load_maps, save_maps))]
 
-    def _add(self, frame, save) -> None:
-        path, again = self.folder / f"seed{len(self.contents)}.h5", self.folder / "again.h5"
-        save(frame, path)
-        self.contents.append(path.read_bytes())
-        with h5py.File(path) as file:
-            self.names.append([])
-            file.visit(self.names[-1].append)
-        self.expected.append(pickle.dumps(ep.load_frame(path)))
-        save(ep.load_frame(path), again)
-        assert everything_in(again) == everything_in(path), "a frame read back is written as it was"
+    def _seed(self, one, load, save) -> _Seed:
+        path, again = self.folder / "seed.h5", self.folder / "again.h5"
+        save(one, path)
+        save(load(path), again)
+        assert everything_in(again) == everything_in(path), "what is read back is written as it was"
+        return _Seed(path.read_bytes(), _names_in(path), load, save, pickle.dumps(load(path)))
 
-    def choose(self, random: Random) -> int:
-        """Number of a seed: one in four is a whole frame, which takes half as long again to read as its record."""
-        return random.choice(self._whole if random.random() < 1 / 4 else self._records)
+    def choose(self, random: Random) -> _Seed:
+        """One in eight is whole, half are of maps: what a case costs goes by the items of its file."""
+        return random.choice(random.choice((self._kinds[0],) + 3 * (self._kinds[1],) + 4 * (self._kinds[2],)))
 
-    def check(self, path: Path, index: int, *, may_differ: bool, is_written: bool = False) -> None:
+    def check(self, path: Path, seed: _Seed, *, may_differ: bool, is_written: bool = False) -> None:
         """Holds what a damaged file gives to what it must be: an error that names it, or the frame as it was.
 
         is_written: also saves a frame that may differ
         """
         try:
-            frame = ep.load_frame(path)
+            frame = seed.load(path)
         except ep.FileError as error:
             assert str(error).startswith(f"{path}: ") and len(str(error)) > len(str(path)) + 8, f"says little: {error}"
             return
-        assert may_differ or pickle.dumps(frame) == self.expected[index], f"seed {index} loads as another frame"
+        assert may_differ or pickle.dumps(frame) == seed.expected, "loads as another frame"
         if is_written:
             with contextlib.suppress(ValueError, ep.FileError):
-                ep.save_frame(frame, self.folder / "again.h5")
+                seed.save(frame, self.folder / "again.h5")
 
 
 def _save_record(frame, path) -> None:
     frame.paths.save(path)
+
+
+def _names_in(path) -> list:
+    names: list = []
+    with h5py.File(path) as file:
+        file.visit(names.append)
+    return names
 
 
 def everything_in(path) -> dict:
@@ -98,9 +109,9 @@ def feed_frame_bytes():
 
     def case(number: int) -> None:
         random = Random(f"frame_bytes {number}")
-        index = seeds.choose(random)
-        path.write_bytes(damaged(seeds.contents[index], random))
-        seeds.check(path, index, may_differ=False)
+        seed = seeds.choose(random)
+        path.write_bytes(damaged(seed.content, random))
+        seeds.check(path, seed, may_differ=False)
 
     return case
 
@@ -115,12 +126,12 @@ def feed_frame_structure():
 
     def case(number: int) -> None:
         random = Random(f"frame_structure {number}")
-        index, is_sealed = seeds.choose(random), random.random() < 0.6
-        path.write_bytes(seeds.contents[index])
+        seed, is_sealed = seeds.choose(random), random.random() < 0.6
+        path.write_bytes(seed.content)
         with h5py.File(path, "r+") as file:
-            values_only = [_edit(file, random.choice(seeds.names[index]), is_sealed, seeds.names[index], random)
+            values_only = [_edit(file, random.choice(seed.names), is_sealed, seed.names, random)
                            for _ in range(random.choice((1, 1, 2)))]
-        seeds.check(path, index, may_differ=is_sealed or not all(values_only), is_written=random.random() < 1 / 8)
+        seeds.check(path, seed, may_differ=is_sealed or not all(values_only), is_written=random.random() < 1 / 8)
 
     return case
 
@@ -151,7 +162,7 @@ def _edit(file, name: str, is_sealed: bool, others: list, random: Random) -> boo
 
 
 def _change_value(dataset, random: Random) -> bool:
-    if not dataset.size or dataset.dtype.kind not in "iufcbS":
+    if not dataset.size or dataset.size > 1 << 20 or dataset.dtype.kind not in "iufcbS":
         return False
     values = dataset[...]
     at = random.randrange(values.size)
@@ -199,6 +210,6 @@ def _put_other(file, name: str, other: str, random: Random) -> None:
     elif kind == 2:
         file[name] = h5py.SoftLink("/" + random.choice((other, name, "nowhere")))
     elif kind == 3:
-        file[name] = h5py.ExternalLink(random.choice(("nowhere.h5", "seed0.h5")), "/" + other)
+        file[name] = h5py.ExternalLink(random.choice(("nowhere.h5", "seed.h5")), "/" + other)
     else:
         file.create_dataset(name, data=h5py.Empty("f8"))

@@ -292,6 +292,7 @@ EDITS = {
     "wild part": (lambda file: file["partitions/0/part_of_path"].__setitem__(0, 9), "must be below 3, the number of parts"),
     "last offset": (lambda file: file["record/paths/offsets"].__setitem__(0, 2**63 - 1), "must lie within"),
     "array as setting": (lambda file: file["record/frame"].attrs.create("seed", [1, 2]), "'seed' must be a int"),
+    "negative seed": (lambda file: file["signal"].attrs.create("noise_seed", -1), "'noise_seed' must not be negative, is -1"),
     "group as array": (lambda file: replace_by_group(file, "record/paths/offsets"), "offsets: no such dataset"),
     "array as group": (lambda file: replace(file, "scene/materials", np.zeros(3)), "scene/materials: no such group"),
     "values without end": (lambda file: replace_by_nothing(file, "record/hits/u", (1 << 40,)), "record/hits"),

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.frame.maps import FrameMaps
+from echopath.frame_file.maps import load_maps, save_maps
 from support.frames_in_time import DISTANCE, INTERVAL, SPEED, make_radar, make_sequence
 
 
@@ -98,3 +100,14 @@ def test_the_maps_of_all_frames_are_one_dataset(folders, keep):
     assert maps.object.attrs["names"] == ["plate"] and maps.dominant.attrs["names"] == ["plate", "other"]
     moved = maps.range.values[maps.power.max("velocity").argmax("range")]
     assert np.allclose(moved, DISTANCE + SPEED * stored.times, atol=0.3)  # a cell
+
+
+@pytest.mark.parametrize("name", ["seed", "noise_seed"])
+def test_small_files_with_negative_seeds_are_refused(tmp_path, name):
+    path = tmp_path / "frame.h5"
+    save_maps(FrameMaps(0.0, seed=1, noise_seed=2, labels={}, detections=None, velocity=np.arange(2.0), range=np.arange(3.0)),
+              path)
+    with h5py.File(path, "r+") as file:
+        file["maps"].attrs.create(name, -1)
+    with pytest.raises(ep.FileError, match=f"attribute '{name}' must not be negative, is -1"):
+        load_maps(path)

@@ -2,6 +2,8 @@
 
 Triangles are counter-clockwise seen from the front (outside, where the surface is closed).
 """
+import functools
+
 import numpy as np
 
 from .curves import monotone_cubic
@@ -63,8 +65,9 @@ def joined(*pieces):
     return vertices[order[is_new]], same[triangles]
 
 
-def icosphere(radius, pieces):
-    """Sphere about the origin, vertices on it: an icosahedron with its edges in `pieces` pieces."""
+@functools.cache
+def _icosahedron():
+    """The corners of the faces [20, 3, 3] of an icosahedron with edges of 2, counter-clockwise from outside."""
     golden = (1.0 + np.sqrt(5.0)) / 2.0
     corners = np.array([[0, s, t * golden] for s in (-1, 1) for t in (-1, 1)], dtype=float)
     corners = np.concatenate([np.roll(corners, k, axis=1) for k in range(3)])
@@ -72,11 +75,15 @@ def icosphere(radius, pieces):
     near = np.abs(distance - 2.0) < 1e-9
     faces = [(i, j, k) for i in range(12) for j in range(i) for k in range(j)
              if near[i, j] and near[j, k] and near[i, k]]
-    sides = []
-    for face in faces:
-        a, b, c = corners[list(face)]
-        sides.append(triangle(a, b, c, pieces) if np.dot(np.cross(b, c), a) > 0 else triangle(a, c, b, pieces))
-    vertices, triangles = joined(*sides)
+    sides = corners[np.array(faces)]
+    is_inward = np.linalg.det(sides) < 0
+    sides[is_inward] = sides[is_inward][:, [0, 2, 1]]
+    return sides
+
+
+def icosphere(radius, pieces):
+    """Sphere about the origin, vertices on it: an icosahedron with its edges in `pieces` pieces."""
+    vertices, triangles = joined(*(triangle(*face, pieces) for face in _icosahedron()))
     return radius * vertices / np.linalg.norm(vertices, axis=1)[:, None], triangles
 
 

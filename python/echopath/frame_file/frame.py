@@ -29,6 +29,7 @@ from .labels import read_all_labels, write_all_labels
 from .paths import read_paths, write_paths
 from .radar import read_radar, write_radar
 from .scene import read_scene, write_scene
+from .seeds import read_optional_seed, write_seed
 from .truth import truth_in, write_truth
 from .weather import read_effect_choices, scene_in_weather, write_weather
 
@@ -175,8 +176,7 @@ def _write_signal(file, frame: Frame) -> None:
     for name in SIGNAL_SETTINGS:
         write_attribute(group, name, getattr(frame, name))
     write_attribute(group, "keyframes", frame.keyframes)
-    if frame.noise_seed is not None:
-        write_attribute(group, "noise_seed", np.uint64(frame.noise_seed))
+    write_seed(group, "noise_seed", frame.noise_seed)
 
 
 def _write_spectra(file, frame: Frame) -> None:
@@ -221,7 +221,7 @@ def _read_signal(file, frame: Frame) -> None:
             setattr(frame, name, read_array(group, name, np.complex128, signal_shape(frame.radar)))
     if is_coded(frame.radar):
         frame.coded_cube = read_array(group, "coded_cube", np.complex128, signal_shape(frame.radar))
-    frame.noise_seed = read_attribute(group, "noise_seed", int) if "noise_seed" in group.attrs else None
+    frame.noise_seed = read_optional_seed(group, "noise_seed")
     for name, known in SIGNAL_SETTINGS.items():
         setattr(frame, name, _one_of(group, name, known))
     frame.keyframes = read_attribute(group, "keyframes", int)

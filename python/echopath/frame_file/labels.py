@@ -10,6 +10,7 @@ from ..labels.labels import AzimuthBox, AzimuthPeak, Box, GhostLabel, Labels, Ob
 from ..labels.left_out import LeftOut
 from ..paths.resolution import Interval
 from .h5 import blames_group, read_array, read_attribute, read_group, read_texts, write_array, write_attribute, write_texts
+from .seeds import read_seed, write_seed
 
 
 class Plane(NamedTuple):
@@ -51,7 +52,7 @@ def write_labels(group, labels: Labels, compress: bool = False) -> None:
     write_attribute(group, "plane", labels.plane)
     for name in SETTINGS:
         write_attribute(group, name, getattr(labels, name))
-    write_attribute(group, "seed", np.uint64(labels.seed))
+    write_seed(group, "seed", labels.seed)
     write_array(group, plane.rows, getattr(labels, plane.rows), unit=plane.unit)
     write_array(group, "range", labels.range, unit="m")
     write_texts(group, "part", labels.part_names)
@@ -84,7 +85,7 @@ def read_labels(group) -> Labels:
     objects, ghosts = _read_objects(read_group(group, "objects"), plane), _read_ghosts(read_group(group, "ghosts"), plane)
     _check_indices(group, cells, {"dominant": len(names), "object_map": len(objects), "ghost_map": len(ghosts)})
     settings = {name: read_attribute(group, name, float) for name in SETTINGS}
-    settings["seed"] = read_attribute(group, "seed", int)
+    settings["seed"] = read_seed(group, "seed")
     return Labels(plane=read_attribute(group, "plane", str), **axes, part_names=names, power=power,
                   share=_core.power_shares(power), objects=objects, ghosts=ghosts,
                   part_received=_read_part_received(group, len(names)), left_out=_read_left_out(group), **settings, **cells,

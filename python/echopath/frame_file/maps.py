@@ -8,6 +8,7 @@ from .container import new_file, our_file
 from .detections import read_detections, write_detections
 from .h5 import check_sums, read_array, read_attribute, read_group, write_array, write_attribute
 from .labels import read_all_labels, write_all_labels
+from .seeds import read_optional_seed, read_seed, write_seed
 from .truth import truth_in, write_truth
 
 
@@ -16,9 +17,8 @@ def save_maps(maps: FrameMaps, path) -> None:
     with new_file(path) as file:
         group = file.create_group("maps")
         write_attribute(group, "start_time", maps.start_time)
-        write_attribute(group, "seed", np.uint64(maps.seed))
-        if maps.noise_seed is not None:
-            write_attribute(group, "noise_seed", np.uint64(maps.noise_seed))
+        write_seed(group, "seed", maps.seed)
+        write_seed(group, "noise_seed", maps.noise_seed)
         write_array(group, "velocity", maps.velocity, unit="m/s")
         write_array(group, "range", maps.range, unit="m")
         if maps.power is not None:
@@ -38,8 +38,7 @@ def load_maps(path) -> FrameMaps:
     """What `save_maps` wrote: the same bits. Raises ep.FileError."""
     with our_file(path) as file:
         group = read_group(file, "maps")
-        seeds = {"seed": read_attribute(group, "seed", int),
-                 "noise_seed": read_attribute(group, "noise_seed", int) if "noise_seed" in group.attrs else None}
+        seeds = {"seed": read_seed(group, "seed"), "noise_seed": read_optional_seed(group, "noise_seed")}
         axes = {name: read_array(group, name, np.float64, (None,)) for name in ("velocity", "range")}
         shape = len(axes["velocity"]), len(axes["range"])
         labels = read_all_labels(read_group(file, "labels")) if "labels" in file else {}

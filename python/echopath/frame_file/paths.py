@@ -7,6 +7,7 @@ from .. import _core
 from ..paths.subset import HIT, HIT_FIELDS, subset
 from .h5 import (blames_group, length_of, read_array, read_attribute, read_group, read_texts, write_array, write_attribute,
                  write_texts)
+from .seeds import read_seed, write_seed
 
 PATH_FIELDS = {"offsets": np.int64, "num_bounces": np.uint8, "diffuse": np.uint64, "weight": np.complex64,
                "stratum": np.uint16, "batch": np.uint8, "flags": np.uint32}
@@ -106,7 +107,7 @@ def _check_indices(group, hits, columns: dict, scene) -> None:
 
 def _write_frame(group, frame) -> None:
     for name in FRAME_VALUES:
-        write_attribute(group, name, np.uint64(frame.seed) if name == "seed" else getattr(frame, name))
+        (write_seed if name == "seed" else write_attribute)(group, name, getattr(frame, name))
     if frame.attenuation > 0:
         write_attribute(group, "attenuation", frame.attenuation)
     write_array(group, "transmitter", frame.transmitter, unit="m")
@@ -151,7 +152,7 @@ def _read_frame(group):
         start_time=read_attribute(group, "start_time", float), trace_time=read_attribute(group, "trace_time", float),
         transmitter=read_array(group, "transmitter", np.float64, (3,)),
         receiver=read_array(group, "receiver", np.float64, (3,)), strata=strata,
-        seed=read_attribute(group, "seed", int), max_bounces=read_attribute(group, "max_bounces", int),
+        seed=read_seed(group, "seed"), max_bounces=read_attribute(group, "max_bounces", int),
         polarization=read_attribute(group, "polarization", str), footprint=read_attribute(group, "footprint", str),
         sampler=read_attribute(group, "sampler", str),
         scatterers=read_attribute(group, "scatterers", str) if "scatterers" in group.attrs else "rays",

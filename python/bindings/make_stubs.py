@@ -40,6 +40,7 @@ PLAIN = [
     (r"dict\[typing\.Any\]", "dict[typing.Any, typing.Any]"),
     (r"tuple\[typing\.Any\]", "tuple[typing.Any, ...]"),
     (r"\*\*kwargs\)", "**kwargs: typing.Any)"),
+    (r"\*\*kwargs: typing\.Any(?=\) -> AntennaPattern)", "**kwargs: object"),  # those of its kind
     (r"\*args,", "*args: typing.Any,"),
     (r"(def __eq__\(self, [^:]*: )[^)]*\) -> [^:]*:", r"\1object) -> bool:"),
     (r"numpy\.ndarray(?!\[)", "numpy.ndarray[typing.Any, typing.Any]"),

@@ -1212,7 +1212,7 @@ class AntennaPattern:
         """
         Linear power gain where cos_boresight is the cosine of the angle from the boresight. A table raises ValueError.
         """
-    def replace(self, **kwargs: typing.Any) -> AntennaPattern:
+    def replace(self, **kwargs: object) -> AntennaPattern:
         """
         A copy with other values of some arguments.
 

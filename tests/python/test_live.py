@@ -1,4 +1,6 @@
 """Live scenes: the view after any change is that of a fresh one, and only what a change touches is done again."""
+import copy
+import pickle
 import threading
 import time
 
@@ -272,3 +274,12 @@ def test_chirps_that_differ_have_the_signal_of_the_record(live):
         expected = ep.synthesize(live.paths(), live.radar)
         assert np.abs(view.cube - expected).max() < ROUNDING * np.abs(expected).max()
         live.scene["sign_30"].position += (0.0, 0.1, 0.0)
+
+
+@pytest.mark.parametrize("travel", [pickle.dumps, copy.copy, copy.deepcopy])
+def test_a_live_scene_says_what_travels_in_its_place(live, travel):
+    with pytest.raises(TypeError, match="^Live: holds locks of its threads and cannot be pickled or copied; pickle or copy its "
+                                        "scene and radar"):
+        travel(live)
+    again = ep.Live(*pickle.loads(pickle.dumps((live.scene, live.radar))), num_rays=live.num_rays)
+    assert np.array_equal(again.update().cube, ep.Live(live.scene, live.radar, num_rays=live.num_rays).update().cube)

@@ -85,3 +85,27 @@ def test_no_antenna_radiates_more_than_it_is_fed(make, says):
 
 def test_lossless_antennas_are_accepted():
     assert ep.CosinePower(2, peak_gain=6.0) == ep.CosinePower(2) and ep.Isotropic(1.0).efficiency == 1.0
+
+
+@pytest.mark.parametrize(("given", "message"), [
+    ({"start_frequency": 1e30}, "^start_frequency: must be at most 1e14 Hz"),
+    ({"start_frequency": 77e6, "bandwidth": 1e30}, "^bandwidth: must leave frequencies up to 1e14 Hz"),
+    ({"frequency_steps": [0.0, 1e20]}, "^frequency_steps: must leave frequencies up to 1e14 Hz"),
+    ({"frequency_steps": [0.0, 1.0 - 76e9]}, "^frequency_steps: must leave frequencies from 1e6 Hz on"),
+    ({"bandwidth_steps": [0.0, 1e20]}, "^bandwidth_steps: must leave frequencies up to 1e14 Hz"),
+])
+def test_frequencies_that_no_radar_has_are_refused(given, message):
+    """At 1e30 Hz the signal of a plate was 1e58 sqrt(W), at 1e300 Hz NaN."""
+    with pytest.raises(ValueError, match=message):
+        ep.ChirpSequence(**{"start_frequency": 76e9, "bandwidth": 1e9, **given})
+
+
+def test_chirps_may_sweep_more_than_their_start():
+    """Echoes of chirps from 1 to 3 GHz are where the plate is: radars that look through walls sweep so."""
+    with pytest.warns(RuntimeWarning, match="bandwidth: 2e.09 Hz is more than start_frequency"):
+        waveform = ep.ChirpSequence(start_frequency=1e9, bandwidth=2e9, num_samples=256, sampling_rate=5e6, num_chirps=1)
+    radar = ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 0))], receivers=[ep.Antenna((0, 0, 0))])
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(2, 2), name="plate", material="metal", position=(6, 0, 0))
+    spectrum = ep.range_doppler(ep.synthesize(ep.trace(scene, radar, num_rays=5000), radar), radar)
+    assert spectrum.range[np.abs(spectrum.values[0, 0, 0]).argmax()] == pytest.approx(6.0, abs=waveform.range_resolution)

@@ -12,6 +12,7 @@ namespace echopath::bindings {
 namespace {
 
 constexpr double kLowestFrequency = 1e6;    // Hz, of radars that look over the horizon
+constexpr double kHighestFrequency = 1e14;  // Hz, of infrared light
 constexpr double kNarrowest = 1e3;          // Hz, cells of 150 km
 constexpr double kLongestInterval = 1.0;    // s
 constexpr double kTurn = 2.0 * kPi + 1e-9;  // rad
@@ -23,11 +24,25 @@ void warn(const Words&... words) {
   warn_caller(text.str());
 }
 
+void require_below_infrared(const ChirpSequence& waveform, double step, const char* argument, double value) {
+  require(waveform.start_frequency + waveform.bandwidth + step <= kHighestFrequency, argument,
+          "must leave frequencies up to 1e14 Hz (1 GHz is 1e9)", value);
+}
+
 }  // namespace
 
 void require_plausible(const ChirpSequence& waveform) {
   require(waveform.start_frequency >= kLowestFrequency, "start_frequency", "must be at least 1e6 Hz (77 GHz are 77e9)",
           waveform.start_frequency);
+  require(waveform.start_frequency <= kHighestFrequency, "start_frequency", "must be at most 1e14 Hz (77 GHz are 77e9)",
+          waveform.start_frequency);
+  require_below_infrared(waveform, 0.0, "bandwidth", waveform.bandwidth);
+  for (const double step : waveform.frequency_steps) {
+    require(waveform.start_frequency + step >= kLowestFrequency, "frequency_steps", "must leave frequencies from 1e6 Hz on",
+            step);
+    require_below_infrared(waveform, step, "frequency_steps", step);
+  }
+  for (const double step : waveform.bandwidth_steps) require_below_infrared(waveform, step, "bandwidth_steps", step);
   if (waveform.bandwidth > waveform.start_frequency) {
     warn("bandwidth: ", waveform.bandwidth, " Hz is more than start_frequency, ", waveform.start_frequency,
          " Hz; are both in Hz?");

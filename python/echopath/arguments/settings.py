@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
-from typing import Any, ClassVar, Literal, TypeVar, dataclass_transform
+from typing import ClassVar, Literal, TypedDict, TypeVar, dataclass_transform
 
 from .. import _core
 from .checks import LARGEST_COUNT, MapWindow, Rule, count, flag, flag_or_auto, one_of, optional, positive, real
@@ -49,7 +49,7 @@ class Settings:
         refuse_unknown("replace", changes, self.RULES)
         return dataclasses.replace(self, **changes)  # type: ignore[type-var]
 
-    def keywords(self) -> dict[str, Any]:
+    def keywords(self) -> dict[str, object]:
         """{keyword: value}, as the functions take them."""
         return {name: getattr(self, name) for name in self.RULES}
 
@@ -125,12 +125,25 @@ class SignalSettings(Settings):
         "phase_tolerance": positive("rad"), "retrace": one_of(Retrace), "keyframes": count(0, LARGEST_COUNT),
         "noise_seed": optional(seed_rule), "window": window_rule, "zero_pad": count(1, 64)}
 
-    def of_replay(self) -> dict[str, Any]:
+    def of_replay(self) -> ReplayKeywords:
         """The keywords of `synthesize` and `decompose` alone."""
-        return {name: getattr(self, name) for name in REPLAY_KEYWORDS}
+        return ReplayKeywords(tolerance=self.tolerance, method=self.method, replay=self.replay, evaluate=self.evaluate,
+                              phase_tolerance=self.phase_tolerance, retrace=self.retrace, keyframes=self.keyframes)
 
 
-REPLAY_KEYWORDS = ("tolerance", "method", "replay", "evaluate", "phase_tolerance", "retrace", "keyframes")
+class ReplayKeywords(TypedDict):
+    """The keywords of `synthesize` and `decompose`; tolerance: relative; phase_tolerance: rad."""
+
+    tolerance: float
+    method: Method
+    replay: Replay
+    evaluate: Evaluate
+    phase_tolerance: float
+    retrace: Retrace
+    keyframes: int
+
+
+REPLAY_KEYWORDS = tuple(ReplayKeywords.__annotations__)
 FRAME_KEYWORDS = ("replay", "evaluate", "retrace", "keyframes")  # those of them that a Frame keeps
 
 

@@ -14,7 +14,7 @@ from ..signals.measures import EXTENT_BELOW_PEAK_DB, residual
 from . import report
 from .run import certify, simulate_file, write_outputs
 
-NUM_RAYS = 200_000
+NUM_RAYS = 100_000
 ARMS, LEGS = "pedestrian/arm_*", "pedestrian/leg_*"
 
 

@@ -38,7 +38,7 @@ def command_parser() -> argparse.ArgumentParser:
 
     demo = commands.add_parser("demo", help="simulate a pedestrian in a street and show what every ray touched")
     demo.add_argument("--out", default="out/demo", metavar="DIR", help="folder of the results (default: %(default)s)")
-    _add_trace_options(demo, default_rays=200_000)
+    _add_trace_options(demo, default_rays=100_000)
     demo.add_argument("--view", action="store_true", help="then open it in the viewer")
     demo.set_defaults(command=work.demo)
 

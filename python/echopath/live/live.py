@@ -5,6 +5,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from typing import NoReturn
 
 from .. import _core
 from ..arguments.checks import MapWindow, Progress, an, anything, checked, count, flag, positive, refused
@@ -179,6 +180,10 @@ class Live:
             stages = {"trace": done.trace, "signal": done.signal, "map": time.perf_counter() - begin}
             return LiveView(number, kept.cube, spectrum, kept.num_rays, done.num_rays_shot, done.num_paths_changed,
                             is_preview, stages)
+
+    def __reduce__(self) -> NoReturn:
+        raise TypeError("Live: holds locks of its threads and cannot be pickled or copied; pickle or copy its scene and radar, "
+                        "and make a Live of them")
 
     def __repr__(self) -> str:
         return f"Live({len(self._scene)} objects, {self.num_rays} rays, change {self.number})"

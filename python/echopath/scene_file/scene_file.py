@@ -3,19 +3,34 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, TypedDict
 
 import numpy as np
 
+from .._core import Selection
 from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
 from ..base.made_by import made_by
-from ..signals.parts import as_partitions
+from ..signals.parts import Selections, as_partitions
 
 if TYPE_CHECKING:
     from .. import _core
     from ..scene.scene import Scene
     from .run_tables import AngleTable, DetectionsTable, SequenceTable, TruthTable
+
+
+class SimulateKeywords(TypedDict):
+    """Keywords of `ep.simulate` and `ep.Sequence` that a scene file gives; angles in rad."""
+
+    trace: TraceSettings
+    signal: SignalSettings
+    parts: Selections
+    angles: dict[str, object]
+    labels: LabelSettings | None
+    detections: dict[str, object] | None
+    truth: dict[str, object] | None
+    guard: bool
 
 
 @made_by("ep.load_scene")
@@ -37,14 +52,14 @@ class SceneFile:
     trace: TraceSettings
     signal: SignalSettings
     angle: AngleTable
-    parts: dict[str, Any]
+    parts: Selections
     labels: LabelSettings | None = None
     detections: DetectionsTable | None = None
     guard: bool = True
     sequence: SequenceTable | None = None
     truth: TruthTable | None = None
 
-    def angle_settings(self) -> dict[str, Any]:
+    def angle_settings(self) -> dict[str, object]:
         """Keywords of `ep.range_azimuth`, angles in rad; those without a value are left out."""
         settings = self.angle.model_dump(exclude={"azimuth_deg", "elevation_deg"}, exclude_none=True)
         settings["elevation"] = np.radians(self.angle.elevation_deg).tolist()
@@ -53,23 +68,23 @@ class SceneFile:
             settings["azimuth"] = np.radians(first + step * np.arange(math.floor((last - first) / step + 1e-9) + 1)).tolist()
         return settings
 
-    def detection_settings(self) -> dict[str, Any] | None:
+    def detection_settings(self) -> dict[str, object] | None:
         """`detections` of `ep.simulate`: keywords of `ep.detect_frame`, None: no detections."""
         if self.detections is None:
             return None
         objects = None if self.labels is None else self.labels.objects
         return self.detections.model_dump() | {"objects": objects}
 
-    def truth_settings(self) -> dict[str, Any] | None:
+    def truth_settings(self) -> dict[str, object] | None:
         """`truth` of `ep.simulate`: keywords of `ep.truth`, None: not asked for."""
         return None if self.truth is None else self.truth.model_dump(exclude_none=True)
 
-    def keywords(self) -> dict[str, Any]:
+    def keywords(self) -> SimulateKeywords:
         """Keywords of `ep.simulate` and `ep.Sequence`."""
-        return {"trace": self.trace, "signal": self.signal, "parts": self.partitions(), "angles": self.angle_settings(),
-                "labels": self.labels, "detections": self.detection_settings(), "truth": self.truth_settings(),
-                "guard": self.guard}
+        return SimulateKeywords(trace=self.trace, signal=self.signal, parts=self.partitions(), angles=self.angle_settings(),
+                                labels=self.labels, detections=self.detection_settings(), truth=self.truth_settings(),
+                                guard=self.guard)
 
-    def partitions(self) -> dict[str, Any]:
+    def partitions(self) -> dict[str, Mapping[str, Selection | str]]:
         """`parts` as {partition: {name: expression}}."""
         return as_partitions(self.parts)

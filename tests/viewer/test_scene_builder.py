@@ -17,6 +17,7 @@ from echopath_viewer.model import CellBox, Session, from_frame
 from echopath_viewer.model.antennas import rotation_of
 from echopath_viewer.scene_builder import VIEWS, SceneBuilder
 from echopath_viewer.scene_builder.mesh_layer import boundary_edges
+from echopath_viewer.plot import _new_plotter
 from echopath_viewer.scene_builder.ray_layer import RayLayer
 
 BASELINES = Path(__file__).parent / "baselines"
@@ -181,13 +182,35 @@ def test_pictures_are_as_they_were(drawn_paths, tmp_path, name, keywords):
     assert np.abs(got - wanted).mean() < BASELINE_DIFFERENCE
 
 
-def test_a_picture_without_a_screen_and_a_renderer_says_what_is_missing(drawn_paths, monkeypatch):
-    """VTK would end the process."""
+@pytest.fixture
+def lacking(monkeypatch) -> str:
+    """What is said on a machine without a screen and without renderers, where VTK would end the process."""
     monkeypatch.delenv("DISPLAY", raising=False)
-    monkeypatch.setattr("echopath_viewer.plot.RENDERERS", (("libc.so.6", "libnone.so.1"), ("libnone.so.8",)))
-    told = "^off_screen: pictures without a screen need libc.so.6 and libnone.so.1, or libnone.so.8, got neither .*libegl1"
-    with pytest.raises(OSError, match=told):
-        ep.plot_rays(None, drawn_paths, off_screen=True)
+    monkeypatch.setattr("echopath_viewer.plot.RENDERERS", {"egl": ("libc.so.6", "libnone.so.1"), "mesa": ("libnone.so.8",)})
+    return "pictures without a screen need libc.so.6 and libnone.so.1, or libnone.so.8, got neither .*libegl1"
+
+
+@pytest.mark.parametrize("keywords", [{}, {"return_plotter": True, "screenshot": "rays.png"}])
+def test_a_plotter_without_a_screen_and_a_renderer_says_what_is_missing(drawn_paths, lacking, keywords):
+    with pytest.raises(OSError, match=f"^off_screen: {lacking}"):
+        ep.plot_rays(None, drawn_paths, off_screen=True, **keywords)
+
+
+def test_a_picture_without_a_screen_and_a_renderer_is_drawn_by_matplotlib(drawn_paths, lacking, tmp_path):
+    with pytest.warns(RuntimeWarning, match=f"^off_screen: drawn by Matplotlib, in its views and colours: {lacking}") as told:
+        assert ep.plot_rays(None, drawn_paths, off_screen=True, selection="T . R", screenshot=tmp_path / "rays.png") is None
+    assert told[0].filename == __file__
+    shades = pv.read(tmp_path / "rays.png").point_data.active_scalars
+    assert len(np.unique(shades, axis=0)) > 20, "an empty picture has few colours"
+
+
+def test_the_renderer_that_is_there_is_asked_to_draw(lacking, monkeypatch):
+    monkeypatch.setattr("echopath_viewer.plot.RENDERERS", {"egl": ("libnone.so.1",), "mesa": ("libc.so.6",)})
+    monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", "")  # so that it is as before after the test
+    monkeypatch.delenv("VTK_DEFAULT_OPENGL_WINDOW")
+    monkeypatch.setattr("echopath_viewer.plot.pv.Plotter", lambda **keywords: None)
+    _new_plotter(True, (4, 3))
+    assert os.environ["VTK_DEFAULT_OPENGL_WINDOW"] == "mesa"
 
 
 def test_rays_that_are_drawn_opaque_have_their_colours_and_are_hidden_by_what_stands_before_them(plotter):

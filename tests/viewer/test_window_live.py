@@ -49,6 +49,13 @@ def test_what_is_moved_by_numbers_is_that_of_a_fresh_scene(qtbot, live_window):
     assert window.session.paths.num_paths == window.session.columns.power.size > 0
 
 
+def test_the_panel_tells_how_many_rays_there_are_and_what_is_left_out(qtbot, live_window):
+    settled(qtbot, live_window)
+    assert live_window.live_panel.rays_box.value() == live_window.live.live.num_rays == 3000
+    assert "3,000 rays" in live_window.live_panel.state_label.text()
+    assert "without noise, rain and other radars" in live_window.live_panel.state_label.text()
+
+
 def test_an_object_is_dragged_with_shift(qtbot, live_window):
     window, view = live_window, live_window.view3d
     settled(qtbot, window)

@@ -11,6 +11,7 @@ from .qt import Qt, QtCore, QtWidgets
 
 STEP, FARTHEST = 0.1, 1e4    # m
 ROUGHEST, NUM_STEPS = 5e-3, 100  # m, of the slider, and its steps
+ALONE = "echoes of the scene alone, without noise, rain and other radars"
 HINT = "Start, then drag an object in the scene with Shift held, or change the numbers."
 
 
@@ -22,7 +23,7 @@ class LivePanel(QtWidgets.QWidget):
         super().__init__(parent)
         self.control, self.session, self._is_filling = control, None, False
         self.start_button = QtWidgets.QPushButton("Start", checkable=True)
-        self.rays_box = QtWidgets.QSpinBox(minimum=1000, maximum=10_000_000, singleStep=10_000, suffix=" rays")
+        self.rays_box = QtWidgets.QSpinBox(minimum=1, maximum=1_000_000_000, singleStep=10_000, suffix=" rays")
         self.rays_box.setValue(DEFAULT_RAYS)
         self.object_box, self.material_box = QtWidgets.QComboBox(), QtWidgets.QComboBox()
         self.material_box.addItems(["as it is", *ep.materials])
@@ -109,6 +110,7 @@ class LivePanel(QtWidgets.QWidget):
             self.object_box.clear()
             self.object_box.addItems(self.control.objects())
             self.object_box.setCurrentIndex(min(1, self.object_box.count() - 1))
+        self.rays_box.setValue(self.control.live.num_rays)
         self.start_button.setChecked(True)
         self._enable(True)
         self.read()
@@ -164,4 +166,4 @@ class LivePanel(QtWidgets.QWidget):
     def _tell(self, view) -> None:
         words = "preview, full quality follows" if view.is_preview else "full quality"
         shot = f"{view.num_rays:,} rays, {view.num_rays_shot:,} shot anew"
-        self.state_label.setText(f"{words}: {shot}, {1e3 * view.seconds:.0f} ms")
+        self.state_label.setText(f"{words}: {shot}, {1e3 * view.seconds:.0f} ms; {ALONE}")

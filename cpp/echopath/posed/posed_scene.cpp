@@ -36,12 +36,38 @@ PosedScene::PosedScene(const Scene& scene, const Radar& radar, const std::vector
   transmitters = posed_antennas(radar.transmitters, world_from_radar, origin);
   receivers = posed_antennas(radar.receivers, world_from_radar, origin);
   place_meshes();
-  for (uint32_t id = 0; id < num_meshes(); ++id) {
-    const Node& node = scene.node_of(id);
-    if (!node.deformation) continue;
-    node.deformation->at(time, patches[id].original_vertex, deformed_[id]);
-    if (node.smooth) deformed_normals_[id] = vertex_normals(deformed_[id], patches[id].triangles);
+  for (uint32_t id = 0; id < num_meshes(); ++id) deform(id, patches[id]);
+}
+
+PosedScene::PosedScene(const Scene& scene, const Radar& radar, const Vec3& origin, double time)
+    : scene_(&scene), time_(time), is_in_patches_(true), origin_(origin),
+      places_(std::make_shared<const MeshPlaces>(scene.meshes().size())) {
+  require_time(time_, "time");
+  const Transform world_from_radar = radar.world_from_radar(time);
+  transmitters = posed_antennas(radar.transmitters, world_from_radar, origin);
+  receivers = posed_antennas(radar.receivers, world_from_radar, origin);
+}
+
+void PosedScene::add(const std::shared_ptr<const MeshPlaces>& places, const PlacingNodes& nodes,
+                     const std::vector<SurfacePatch>& patches) {
+  const std::vector<Transform> world_from_meshes = nodes.world_from_meshes(time_);
+  const size_t first = linear_.size(), count = places->meshes.size();
+  places_ = places;
+  deformed_.resize(count);
+  deformed_normals_.resize(count);
+  for (size_t place = first; place < count; ++place) {
+    const uint32_t id = places->meshes[place];
+    this->place(id, world_from_meshes[place - first]);
+    deform(id, patches[id]);
   }
+}
+
+void PosedScene::deform(uint32_t mesh_id, const SurfacePatch& patch) {
+  const Node& node = scene_->node_of(mesh_id);
+  if (!node.deformation) return;
+  std::vector<Vec3>& vertices = deformed_[at(mesh_id)];
+  node.deformation->at(time_, patch.original_vertex, vertices);
+  if (node.smooth) deformed_normals_[at(mesh_id)] = vertex_normals(vertices, patch.triangles);
 }
 
 void PosedScene::place_meshes() {
@@ -51,28 +77,31 @@ void PosedScene::place_meshes() {
   linear_.reserve(count);
   normal_matrix_.reserve(count);
   world_translation_.reserve(count);
-  for (const SceneMesh& mesh : scene_->meshes()) {
-    const Transform& world_from_mesh = world_from_node[static_cast<size_t>(mesh.node)];
-    const std::string& name = scene_->node_of(num_meshes()).name;
-    if (!world_from_mesh.linear().allFinite()) {
-      std::ostringstream value;
-      value << "one that is not finite at " << time_ << " s";
-      require(false, "scene", "the motions of mesh '" + name + "' must turn it by finite angles", value.str());
-    }
-    if (!is_in_range(world_from_mesh.translation())) {
-      require_in_range(world_from_mesh.translation(), "scene", "the place of mesh '" + name + "'");
-    }
-    linear_.push_back(world_from_mesh.linear());
-    normal_matrix_.push_back(cofactor_matrix(world_from_mesh.linear()));
-    world_translation_.push_back(world_from_mesh.translation());
+  for (uint32_t id = 0; id < num_meshes(); ++id) {
+    place(id, world_from_node[static_cast<size_t>(scene_->meshes()[id].node)]);
   }
   deformed_.resize(linear_.size());
   deformed_normals_.resize(linear_.size());
 }
 
+void PosedScene::place(uint32_t mesh_id, const Transform& world_from_mesh) {
+  const std::string& name = scene_->node_of(mesh_id).name;
+  if (!world_from_mesh.linear().allFinite()) {
+    std::ostringstream value;
+    value << "one that is not finite at " << time_ << " s";
+    require(false, "scene", "the motions of mesh '" + name + "' must turn it by finite angles", value.str());
+  }
+  if (!is_in_range(world_from_mesh.translation())) {
+    require_in_range(world_from_mesh.translation(), "scene", "the place of mesh '" + name + "'");
+  }
+  linear_.push_back(world_from_mesh.linear());
+  normal_matrix_.push_back(cofactor_matrix(world_from_mesh.linear()));
+  world_translation_.push_back(world_from_mesh.translation());
+}
+
 const std::vector<Vec3>& PosedScene::local_vertices(uint32_t mesh_id) const {
   const Node& node = scene_->node_of(mesh_id);
-  return node.deformation ? deformed_[mesh_id] : node.mesh->vertices();
+  return node.deformation ? deformed_[at(mesh_id)] : node.mesh->vertices();
 }
 
 void PosedScene::require_whole(uint32_t mesh_id) const {
@@ -89,7 +118,7 @@ std::vector<Vec3> PosedScene::world_vertices(uint32_t mesh_id) const {
 std::vector<Vec3> PosedScene::world_normals(uint32_t mesh_id) const {
   const Node& node = scene_->node_of(mesh_id);
   std::vector<Vec3> normals = node.deformation ? whole_deformed_normals(node, time_) : *kept_vertex_normals(node.mesh);
-  for (Vec3& normal : normals) normal = (normal_matrix_[mesh_id] * normal).stableNormalized();
+  for (Vec3& normal : normals) normal = (normal_matrix(mesh_id) * normal).stableNormalized();
   return normals;
 }
 

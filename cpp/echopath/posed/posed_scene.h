@@ -3,6 +3,7 @@
 #include <array>
 #include <vector>
 
+#include "echopath/posed/mesh_places.h"
 #include "echopath/posed/posed_antenna.h"
 #include "echopath/scene/mesh/surface_patch.h"
 #include "echopath/scene/scene.h"
@@ -20,25 +21,33 @@ class PosedScene {
   // relative counts from `origin` (m, world). Raises as the other one.
   PosedScene(const Scene& scene, const Radar& radar, const std::vector<SurfacePatch>& patches, const Vec3& origin,
              double time);
+  // As the one before, but poses no meshes: add() does.
+  PosedScene(const Scene& scene, const Radar& radar, const Vec3& origin, double time);
+  // Poses the meshes of `places` behind those that it has, which begin the list; only these may be asked for. `nodes` are
+  // those that place the new ones.
+  void add(const std::shared_ptr<const MeshPlaces>& places, const PlacingNodes& nodes,
+           const std::vector<SurfacePatch>& patches);
 
   std::vector<PosedAntenna> transmitters, receivers;  // relative to the origin
   const std::vector<PosedAntenna>& antennas(bool of_receivers) const { return of_receivers ? receivers : transmitters; }
 
   double time() const { return time_; }
-  uint32_t num_meshes() const { return static_cast<uint32_t>(linear_.size()); }
+  uint32_t num_meshes() const { return static_cast<uint32_t>(scene_->meshes().size()); }
+  size_t num_posed() const { return linear_.size(); }
+  uint32_t mesh_at(size_t place) const { return places_ ? places_->meshes[place] : static_cast<uint32_t>(place); }
   // A point x of the mesh's frame lies at linear * x + translation, relative to the origin.
-  const Mat3& linear(uint32_t mesh_id) const { return linear_[mesh_id]; }
-  Vec3 translation(uint32_t mesh_id) const { return world_translation_[mesh_id] - origin_; }
-  const Vec3& world_translation(uint32_t mesh_id) const { return world_translation_[mesh_id]; }
+  const Mat3& linear(uint32_t mesh_id) const { return linear_[at(mesh_id)]; }
+  Vec3 translation(uint32_t mesh_id) const { return world_translation(mesh_id) - origin_; }
+  const Vec3& world_translation(uint32_t mesh_id) const { return world_translation_[at(mesh_id)]; }
   // Takes normals of the mesh's frame to the world; they are not normalised there. It is made of cofactors, so that normals
   // follow the winding of the triangles through reflections too.
-  const Mat3& normal_matrix(uint32_t mesh_id) const { return normal_matrix_[mesh_id]; }
+  const Mat3& normal_matrix(uint32_t mesh_id) const { return normal_matrix_[at(mesh_id)]; }
 
   // Vertices in the mesh's frame, m. Where the mesh deforms and patches were given, these are the vertices of its patch.
   const std::vector<Vec3>& local_vertices(uint32_t mesh_id) const;
   // Unit normals at the vertices of the patch of a smooth deforming mesh, in its frame; right at the corners of the patch's
   // own triangles. Empty for other meshes.
-  const std::vector<Vec3>& deformed_normals(uint32_t mesh_id) const { return deformed_normals_[mesh_id]; }
+  const std::vector<Vec3>& deformed_normals(uint32_t mesh_id) const { return deformed_normals_[at(mesh_id)]; }
 
   // Returns all vertices of a mesh in the world, m. Raises invalid_argument where only a patch of it is posed.
   std::vector<Vec3> world_vertices(uint32_t mesh_id) const;
@@ -49,15 +58,19 @@ class PosedScene {
   std::array<Vec3, 3> world_triangle(uint32_t mesh_id, uint32_t triangle_id) const;
 
  private:
+  size_t at(uint32_t mesh_id) const { return places_ ? places_->place[mesh_id] : mesh_id; }
   void place_meshes();
+  void place(uint32_t mesh_id, const Transform& world_from_mesh);
+  void deform(uint32_t mesh_id, const SurfacePatch& patch);
   void require_whole(uint32_t mesh_id) const;
-  Vec3 in_world(uint32_t mesh_id, const Vec3& local) const { return linear_[mesh_id] * local + world_translation_[mesh_id]; }
+  Vec3 in_world(uint32_t mesh_id, const Vec3& local) const { return linear(mesh_id) * local + world_translation(mesh_id); }
 
   const Scene* scene_;
   double time_;
   bool is_in_patches_ = false;  // of deforming meshes only patches are posed
   Vec3 origin_ = Vec3::Zero();
-  // By mesh ID.
+  std::shared_ptr<const MeshPlaces> places_;  // null: all meshes are posed, in their order
+  // By place.
   std::vector<Mat3> linear_, normal_matrix_;
   std::vector<Vec3> world_translation_;
   std::vector<std::vector<Vec3>> deformed_, deformed_normals_;  // empty where rigid

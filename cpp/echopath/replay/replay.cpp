@@ -25,7 +25,7 @@ constexpr double kFirstPhase = 100.0;    // rad
 constexpr double kFirstAmplitude = 1.0;  // relative to the largest
 
 // A path whose launch cell filters its amplitude down to this share of the tolerance, of what it would be without the
-// filter, needs no polynomial that follows it.
+// filter or of the strongest path, needs no polynomial that follows it.
 constexpr double kDarkShare = 1e-5;
 
 // Returns the order at which a tail found at `order` would be within its tolerance.
@@ -219,14 +219,16 @@ std::vector<Echoes> Replayer::interpolated(std::span<const int64_t> indices, int
   std::vector<Echoes> echoes = at_nodes(indices, polynomial, {turned.data(), unfiltered.data()});
   std::vector<UnfollowedPath> needed(indices.size());
   for (const Echoes& channel : echoes) raise_orders(polynomial.nodes, channel, unfiltered, needed);
+  const std::vector<uint8_t> is_negligible = negligible_ones(polynomial.nodes, echoes);
   std::vector<size_t> followed;
   for (size_t p = 0; p < indices.size(); ++p) {
-    if (needed[p].order_for_length == 0.0 && needed[p].order_for_amplitude == 0.0) {
+    if (!is_negligible[p] && needed[p].order_for_length == 0.0 && needed[p].order_for_amplitude == 0.0) {
       followed.push_back(p);
       continue;
     }
     needed[p].path = indices[p];
     needed[p].is_turned = turned[p] != 0;
+    needed[p].is_negligible = is_negligible[p] != 0;
     unfollowed.push_back(needed[p]);
   }
   if (followed.size() == indices.size()) return echoes;
@@ -245,7 +247,7 @@ void Replayer::raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::
     raise(settings_.phase_tolerance, radio_.wavenumber * kSpeedOfLight * tails.delay[p], kFirstPhase,
           needed[p].order_for_length);
     if (tails.amplitude[p] <= settings_.amplitude_tolerance) continue;
-    const double dark = settings_.amplitude_tolerance * kDarkShare * unfiltered[p];
+    const double dark = settings_.amplitude_tolerance * kDarkShare * std::max(unfiltered[p], strongest_);
     if (is_dark(nodes, echoes, p, dark)) continue;
     raise(settings_.amplitude_tolerance, tails.amplitude[p], kFirstAmplitude, needed[p].order_for_amplitude);
   }

@@ -27,12 +27,20 @@ class Replayer {
   // Returns the echoes of `paths` (indices), by channel [tx * num_rx + rx]; their groups are left empty. Neither the paths
   // nor the radar may move: they are evaluated once, at the time of the trace.
   std::vector<Echoes> still(std::span<const int64_t> paths) const;
+  // Finds the amplitude of the strongest of some paths at the time of the trace, between the first antennas. From then on
+  // interpolated() leaves out paths that it may.
+  void find_strongest(Job* job = nullptr);
   // Interpolates the echoes of `paths` by a polynomial (grids()). Paths are left out and added to `unfollowed`, in their
-  // order, where the last two coefficients of their length or of their amplitude exceed the tolerance.
+  // order, where the last two coefficients of their length or of their amplitude exceed the tolerance; or where they are
+  // negligible: their amplitudes stay so small in all channels, throughout the frame (is_dark), that the sum of all such
+  // paths is below the rounding of the strongest path of the record.
   std::vector<Echoes> interpolated(std::span<const int64_t> paths, int polynomial,
                                    std::vector<UnfollowedPath>& unfollowed) const;
   // Poses the scene at all nodes of a grid of chirps or samples, which both functions below take.
   PosedGrid pose(const TimeGrid& grid) const { return posed_.pose(grid); }
+  // The same of meshes that some paths touch, as PartlyPosedGrid::with takes them; the replayer must outlive it.
+  PartlyPosedGrid pose_partly(const TimeGrid& grid) const { return posed_.pose_partly(grid); }
+  std::vector<uint32_t> meshes_of(std::span<const int64_t> paths) const;  // mesh IDs, ascending
   // Evaluates the channels of one transmitter [rx] at the nodes of a SampleGrid, which has several nodes in each of its
   // chirps.
   std::vector<Echoes> exact(std::span<const int64_t> paths, const PosedGrid& samples) const;
@@ -78,10 +86,12 @@ class Replayer {
   void evaluate_at(std::span<const int64_t> paths, std::span<Target> targets) const;
   void raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::span<const double> unfiltered,
                     std::vector<UnfollowedPath>& needed) const;
+  std::vector<uint8_t> negligible_ones(const FrameNodes& nodes, std::span<const Echoes> channels) const;
 
   const Paths& paths_;
   const Radar& radar_;
   ReplaySettings settings_;
+  double strongest_ = 0.0;  // sqrt(W); 0: not looked for
   RadioConstants radio_;
   PathPreparer preparer_;
   SheetPassages sheets_;

@@ -64,6 +64,8 @@ class Scene {
   std::vector<std::string> all_mesh_names() const;
   std::optional<int> find(std::string_view full_name) const;  // node index
 
+  // Returns parent_from_node at `time` (s). The motion of what does not take part is not asked for anything.
+  Transform local_transform(int index, double time) const;
   // Returns whether a mesh moves at some time: its node or an ancestor has a motion, or it deforms.
   bool is_moving(uint32_t mesh_id) const;
   bool is_anything_moving() const;

@@ -12,15 +12,19 @@ std::vector<Vec3> transformed(const Transform& transform, std::vector<Vec3> poin
 
 }  // namespace
 
+Transform Scene::local_transform(int index, double time) const {
+  const Node& node = at(index);
+  return moved(node.placement, takes_part(index) ? node.motion.get() : nullptr, time);
+}
+
 // Parents come before their children, so one pass in order is enough.
 std::vector<Transform> world_from_nodes(const Scene& scene, double time) {
   std::vector<Transform> result;
   result.reserve(scene.nodes().size());
   for (int index = 0; index < static_cast<int>(scene.nodes().size()); ++index) {
-    const Node& node = scene.nodes()[static_cast<size_t>(index)];
-    const Motion* motion = scene.takes_part(index) ? node.motion.get() : nullptr;
-    const Transform local = moved(node.placement, motion, time);
-    result.push_back(node.parent < 0 ? local : result[static_cast<size_t>(node.parent)] * local);
+    const int parent = scene.nodes()[static_cast<size_t>(index)].parent;
+    const Transform local = scene.local_transform(index, time);
+    result.push_back(parent < 0 ? local : result[static_cast<size_t>(parent)] * local);
   }
   return result;
 }

@@ -117,12 +117,13 @@ std::vector<ObjectVisibility> visibility_of(Scene scene, const Radar& radar, con
   });
 }
 
+constexpr int kDirectionsInTrace = 512;  // on each object: labels and truth look at all objects of each frame
+
 // At the time of the trace and of the objects that families_of finds, whatever the radar.
 std::vector<ObjectVisibility> visibility_in_trace(const Paths& paths, const Radar& radar,
                                                   const std::optional<Objects>& objects, const py::object& progress) {
   const SurfaceMap surfaces = surfaces_of(*paths.scene, objects, paths.frame.trace_time, paths.frame.transmitter);
-  VisibilitySettings settings;
-  settings.time = paths.frame.trace_time;
+  const VisibilitySettings settings{paths.frame.trace_time, kDirectionsInTrace};
   const std::shared_ptr<KeptGeometry> kept = geometry_of(paths.scene);
   return run_job("visibility", progress,
                  [&](Job& job) { return visibility(*paths.scene, radar, surfaces, settings, &job, kept.get()); });

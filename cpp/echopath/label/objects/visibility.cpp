@@ -14,11 +14,11 @@
 namespace echopath {
 namespace {
 
-constexpr int kGridCells = 2;                         // for each direction asked for, at first
-constexpr double kLeastFill = 0.25;                   // share of cells on the object below which there are to be more
-constexpr double kLooseFill = 0.2;                    // below which the stratum is fitted to the vertices
-constexpr double kMostCells = 16.0;                   // for each direction asked for
-constexpr int kFewerIfHidden = 16, kLeastCells = 64;  // cells of a grid that serves the solid angle alone
+constexpr int kGridCells = 2;                          // for each direction asked for, at first
+constexpr double kLeastFill = 0.25;                    // share of cells on the object below which there are to be more
+constexpr double kLooseFill = 0.2;                     // below which the stratum is fitted to the vertices
+constexpr double kMostCells = 16.0;                    // for each direction asked for
+constexpr int kFewerIfHidden = 16, kLeastCells = 256;  // cells of a grid that serves the solid angle alone
 
 // Holds the antennas of one end of the radar.
 struct End {

@@ -5,19 +5,15 @@
 namespace echopath {
 namespace {
 
-void store_meshes(const PosedScenes& scenes, NodeRows& rows) {
-  const uint32_t num_meshes = scenes.front().num_meshes();
-  rows.resize(num_meshes, PointToPose::kNumMeshRows, scenes.size());
-  for (uint32_t id = 0; id < num_meshes; ++id) {
-    for (size_t node = 0; node < scenes.size(); ++node) {
-      const Mat3& matrix = scenes[node].linear(id);
-      for (int axis = 0; axis < 3; ++axis) {
-        store(matrix.row(axis), rows, id, PointToPose::kLinear + 3 * static_cast<size_t>(axis), node);
-      }
-      store(scenes[node].translation(id), rows, id, PointToPose::kTranslation, node);
+void store_mesh(const PosedScenes& scenes, uint32_t id, NodeRows& rows) {
+  for (size_t node = 0; node < scenes.size(); ++node) {
+    const Mat3& matrix = scenes[node].linear(id);
+    for (int axis = 0; axis < 3; ++axis) {
+      store(matrix.row(axis), rows, id, PointToPose::kLinear + 3 * static_cast<size_t>(axis), node);
     }
-    pad(rows, id, PointToPose::kNumMeshRows);
+    store(scenes[node].translation(id), rows, id, PointToPose::kTranslation, node);
   }
+  pad(rows, id, PointToPose::kNumMeshRows);
 }
 
 void store_antennas(const PosedScenes& scenes, bool of_receivers, NodeRows& rows) {
@@ -58,11 +54,17 @@ std::shared_ptr<PosedScenes> pose_at(const Scene& scene, const Radar& radar, con
 }
 
 PosedNodes::PosedNodes(std::shared_ptr<const PosedScenes> at_nodes) : scenes(std::move(at_nodes)) {
-  store_meshes(*scenes, meshes);
+  meshes.resize(scenes->front().num_meshes(), PointToPose::kNumMeshRows, scenes->size());
+  take_meshes(0);
   for (const bool of_receivers : {false, true}) {
     store_antennas(*scenes, of_receivers, antennas[of_receivers]);
     store_polarizations(*scenes, of_receivers, *this);
   }
+}
+
+void PosedNodes::take_meshes(size_t first) {
+  const PosedScene& one = scenes->front();
+  for (size_t place = first; place < one.num_posed(); ++place) store_mesh(*scenes, one.mesh_at(place), meshes);
 }
 
 }  // namespace echopath

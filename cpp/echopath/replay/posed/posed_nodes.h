@@ -21,6 +21,8 @@ struct PosedNodes {
   PosedNodes() = default;
   // The scenes are shared with whoever else looks at single nodes; there is at least one.
   explicit PosedNodes(std::shared_ptr<const PosedScenes> at_nodes);
+  // Takes the meshes that the scenes have from place `first` on.
+  void take_meshes(size_t first);
 
   std::shared_ptr<const PosedScenes> scenes;
   NodeRows meshes;            // of mesh IDs, PointToPose::MeshRow

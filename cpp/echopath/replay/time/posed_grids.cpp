@@ -3,6 +3,41 @@
 #include <utility>
 
 namespace echopath {
+namespace {
+
+// Keeps all where `transmitter` is -1.
+void keep_one_transmitter(PosedScene& posed, int transmitter) {
+  if (transmitter >= 0) posed.transmitters = {posed.transmitters[static_cast<size_t>(transmitter)]};
+}
+
+// Returns what a mesh takes at one node: its matrices and place in PosedScene, its rows in PosedNodes, and the vertices and
+// normals of a mesh that deforms.
+int64_t bytes_of_pose(const Scene& scene, uint32_t mesh) {
+  size_t bytes = 2 * sizeof(Mat3) + sizeof(Vec3) + PointToPose::kNumMeshRows * sizeof(double);
+  if (scene.node_of(mesh).deformation) bytes += 2 * sizeof(Vec3) * scene.node_of(mesh).mesh->vertices().size();
+  return static_cast<int64_t>(bytes);
+}
+
+}  // namespace
+
+PartlyPosedGrid::PartlyPosedGrid(PosedGrid grid, std::shared_ptr<PosedScenes> scenes, const Scene& scene,
+                                 const std::vector<SurfacePatch>& patches)
+    : grid_(std::move(grid)), scenes_(std::move(scenes)), scene_(scene), patches_(patches),
+      places_(std::make_shared<const MeshPlaces>(scene.meshes().size())) {}
+
+const PosedGrid& PartlyPosedGrid::with(std::span<const uint32_t> meshes) {
+  const size_t first = places_->meshes.size();
+  auto places = std::make_shared<MeshPlaces>(*places_);
+  for (const uint32_t mesh : meshes) places->add(mesh);
+  if (places->meshes.size() == first) return grid_;
+  const PlacingNodes nodes(scene_, std::span(places->meshes).subspan(first));
+  for (PosedScene& scene : *scenes_) scene.add(places, nodes, patches_);
+  grid_.posed.take_meshes(first);
+  for (size_t place = first; place < places->meshes.size(); ++place)
+    num_bytes_ += static_cast<int64_t>(scenes_->size()) * bytes_of_pose(scene_, places->meshes[place]);
+  places_ = std::move(places);
+  return grid_;
+}
 
 PosedGrids::PosedGrids(const TimeGrids& grids, const Paths& paths, const Radar& radar, const PathPreparer& preparer)
     : grids_(grids), paths_(paths), radar_(radar), preparer_(preparer),
@@ -11,8 +46,7 @@ PosedGrids::PosedGrids(const TimeGrids& grids, const Paths& paths, const Radar& 
 // Poses only this `transmitter`, or all where it is -1.
 std::shared_ptr<const PosedScenes> PosedGrids::scenes_at(const std::vector<double>& times, int transmitter) const {
   std::shared_ptr<PosedScenes> scenes = pose_at(*paths_.scene, radar_, preparer_.patches(), paths_.frame.transmitter, times);
-  if (transmitter < 0) return scenes;
-  for (PosedScene& posed : *scenes) posed.transmitters = {posed.transmitters[static_cast<size_t>(transmitter)]};
+  for (PosedScene& posed : *scenes) keep_one_transmitter(posed, transmitter);
   return scenes;
 }
 
@@ -20,6 +54,18 @@ PosedGrid PosedGrids::pose(const TimeGrid& grid) const {
   FrameNodes nodes = nodes_of(grid, radar_, grids_.start_time(), grids_.derivatives());
   PosedNodes posed(scenes_at(nodes.times, transmitter_of(grid)));
   return {std::move(nodes), std::move(posed), transmitter_of(grid)};
+}
+
+PartlyPosedGrid PosedGrids::pose_partly(const TimeGrid& grid) const {
+  FrameNodes nodes = nodes_of(grid, radar_, grids_.start_time(), grids_.derivatives());
+  auto scenes = std::make_shared<PosedScenes>();
+  scenes->reserve(nodes.times.size());
+  for (const double time : nodes.times) {
+    scenes->emplace_back(*paths_.scene, radar_, paths_.frame.transmitter, time);
+    keep_one_transmitter(scenes->back(), transmitter_of(grid));
+  }
+  PosedNodes posed(scenes);
+  return {{std::move(nodes), std::move(posed), transmitter_of(grid)}, std::move(scenes), *paths_.scene, preparer_.patches()};
 }
 
 PosedNodes PosedGrids::pose(double time) const { return PosedNodes(scenes_at({time}, -1)); }

@@ -23,6 +23,25 @@ struct TrialGrid {
   std::shared_ptr<const PosedScenes> scenes;
 };
 
+// A grid of which only those meshes are posed that paths needed.
+class PartlyPosedGrid {
+ public:
+  // `grid` has scenes without meshes, which are `scenes`. All arguments must outlive it.
+  PartlyPosedGrid(PosedGrid grid, std::shared_ptr<PosedScenes> scenes, const Scene& scene,
+                  const std::vector<SurfacePatch>& patches);
+  // Poses those of the meshes that are missing. Raises what PosedScene does.
+  const PosedGrid& with(std::span<const uint32_t> meshes);
+  int64_t num_bytes() const { return num_bytes_; }  // of what its meshes take, nearly all
+
+ private:
+  PosedGrid grid_;
+  std::shared_ptr<PosedScenes> scenes_;
+  const Scene& scene_;
+  const std::vector<SurfacePatch>& patches_;
+  std::shared_ptr<const MeshPlaces> places_;
+  int64_t num_bytes_ = 0;
+};
+
 // Poses grids when they are asked for. Polynomials and the time of the trace are posed once and kept; grids of chirps, which
 // are large, belong to the caller. Its functions are thread-safe.
 class PosedGrids {
@@ -35,6 +54,7 @@ class PosedGrids {
   const TrialGrid& trial(int polynomial) const;
   // Raises what PosedScene does.
   PosedGrid pose(const TimeGrid& grid) const;
+  PartlyPosedGrid pose_partly(const TimeGrid& grid) const;
   PosedNodes pose(double time) const;  // s
   // Poses at each of the times (s) the antennas of the radar of that time, which must outlive the result.
   PosedNodes pose(std::span<const double> times, std::span<const Radar> radars) const;

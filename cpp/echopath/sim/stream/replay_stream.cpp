@@ -30,17 +30,6 @@ int64_t block_size(int64_t num_channels, int64_t num_rows) {
   return std::min(most, std::max(kMinBlock, kValuesInFlight / (kBlocksInFlight * num_channels * num_rows)));
 }
 
-// Returns what one node takes at most: matrices and places of the meshes in PosedScene, their rows in PosedNodes, and the
-// vertices and normals of meshes that deform.
-int64_t bytes_of_pose(const Scene& scene) {
-  size_t bytes = 0;
-  for (uint32_t mesh = 0; mesh < scene.meshes().size(); ++mesh) {
-    bytes += 2 * sizeof(Mat3) + sizeof(Vec3) + PointToPose::kNumMeshRows * sizeof(double);
-    if (scene.node_of(mesh).deformation) bytes += 2 * sizeof(Vec3) * scene.node_of(mesh).mesh->vertices().size();
-  }
-  return static_cast<int64_t>(bytes);
-}
-
 // Returns the paths less those that were left, in their order.
 std::vector<int64_t> without(const std::vector<UnfollowedPath>& left, std::span<const int64_t> paths) {
   std::vector<int64_t> rest;
@@ -60,7 +49,7 @@ std::vector<int64_t> without(const std::vector<UnfollowedPath>& left, std::span<
 struct ReplayStream::Block {
   std::vector<Echoes> channels;
   std::vector<int64_t> paths;  // [echo] its path, or the first of those joined in it
-  int64_t num_paths = 0;       // of all echoes
+  int64_t num_paths = 0;       // of all echoes, and those that are negligible
   std::vector<UnfollowedPath> left;
 };
 
@@ -113,9 +102,7 @@ void ReplayStream::run(const Sink& sink) {
 
 void ReplayStream::run(std::span<const int64_t> paths, const Sink& sink) {
   if (!kept_grids_) kept_grids_.emplace(replayer_.path_grids());
-  kept_chirps_.resize(static_cast<size_t>(num_transmitters_));
-  const int64_t num_nodes = num_transmitters_ * replayer_.grids().num_sample_nodes();
-  if (num_nodes * bytes_of_pose(scene_) <= kKeptSamples) kept_samples_.resize(static_cast<size_t>(num_transmitters_));
+  keeps_poses_ = true;
   std::vector<std::vector<int64_t>> by_grid(static_cast<size_t>(kept_grids_->num_grids()));
   for (const int64_t path : paths) by_grid[static_cast<size_t>(kept_grids_->first(path))].push_back(path);
   run(*kept_grids_, std::move(by_grid), sink);
@@ -137,10 +124,13 @@ void ReplayStream::add_still(const std::vector<int64_t>& paths, WindowPipeline& 
 // every chirp.
 void ReplayStream::add_moving(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, WindowPipeline& out) {
   std::vector<std::vector<int64_t>> by_chirp(by_grid.size());
+  const auto is_empty = [](const std::vector<int64_t>& some) { return some.empty(); };
+  if (!std::all_of(by_grid.begin() + 1, by_grid.end(), is_empty)) replayer_.find_strongest(job_);
   for (int polynomial = 1; polynomial <= replayer_.grids().num_polynomials(); ++polynomial) {
     const Extent extent{0, num_channels(), replayer_.grids().polynomial(polynomial).num_nodes};
     const Replay replay = [&](auto part, auto, auto& left) { return replayer_.interpolated(part, polynomial, left); };
     for (const UnfollowedPath& path : run_blocks(by_grid[static_cast<size_t>(polynomial)], extent, replay, out)) {
+      if (path.is_negligible) continue;
       const NextGrid next = grids.next(path, polynomial);
       (next.by_chirp ? by_chirp : by_grid)[static_cast<size_t>(next.polynomial)].push_back(path.path);
     }
@@ -154,32 +144,36 @@ void ReplayStream::add_moving(const PathGrids& grids, std::vector<std::vector<in
 
 // Holds only the scene as posed at the chirps of one transmitter.
 void ReplayStream::add_chirps(const std::vector<std::vector<int64_t>>& by_grid, int transmitter, WindowPipeline& out) {
-  const auto is_empty = [](const std::vector<int64_t>& paths) { return paths.empty(); };
-  if (std::all_of(by_grid.begin(), by_grid.end(), is_empty)) return;
+  std::vector<int64_t> paths;
+  for (const std::vector<int64_t>& of_grid : by_grid) paths.insert(paths.end(), of_grid.begin(), of_grid.end());
+  if (paths.empty()) return;
   const int num_receivers = num_channels() / num_transmitters_;
   const Extent extent{transmitter * num_receivers, num_receivers, replayer_.num_rows_by_chirp(), true};
-  const std::shared_ptr<const PosedGrid> chirps = posed(replayer_.grids().chirps(transmitter), transmitter, kept_chirps_);
+  std::unique_ptr<PartlyPosedGrid>& kept = kept_chirps_[static_cast<size_t>(transmitter)];
+  const PosedGrid& chirps = posed(replayer_.grids().chirps(transmitter), paths, kept);
   for (int polynomial = 1; polynomial <= replayer_.grids().num_polynomials(); ++polynomial) {
     run_blocks(by_grid[static_cast<size_t>(polynomial)], extent,
-               [&](auto part, auto joined, auto&) { return replayer_.by_chirp(part, polynomial, *chirps, joined); }, out);
+               [&](auto part, auto joined, auto&) { return replayer_.by_chirp(part, polynomial, chirps, joined); }, out);
   }
+  if (!keeps_poses_) kept.reset();
 }
 
-std::shared_ptr<const PosedGrid> ReplayStream::posed(const TimeGrid& grid, int transmitter, KeptPoses& kept) const {
-  const auto pose = [&] { return std::make_shared<const PosedGrid>(replayer_.pose(grid)); };
-  if (kept.empty()) return pose();
-  std::shared_ptr<const PosedGrid>& of_transmitter = kept[static_cast<size_t>(transmitter)];
-  if (!of_transmitter) of_transmitter = pose();
-  return of_transmitter;
+// Poses what the paths touch, beside what the grid had.
+const PosedGrid& ReplayStream::posed(const TimeGrid& grid, std::span<const int64_t> paths,
+                                     std::unique_ptr<PartlyPosedGrid>& kept) const {
+  if (!kept) kept = std::make_unique<PartlyPosedGrid>(replayer_.pose_partly(grid));
+  return kept->with(replayer_.meshes_of(paths));
 }
 
 // Replays the paths that no polynomial follows.
 void ReplayStream::add_samples(const std::vector<int64_t>& paths, int transmitter, WindowPipeline& out) {
   if (paths.empty()) return;
   const int num_receivers = num_channels() / num_transmitters_;
-  const auto samples = posed(replayer_.grids().samples(transmitter), transmitter, kept_samples_);
+  std::unique_ptr<PartlyPosedGrid>& kept = kept_samples_[static_cast<size_t>(transmitter)];
+  const PosedGrid& samples = posed(replayer_.grids().samples(transmitter), paths, kept);
   run_blocks(paths, {transmitter * num_receivers, num_receivers, replayer_.grids().num_sample_nodes()},
-             [&](auto part, auto, auto&) { return replayer_.exact(part, *samples); }, out);
+             [&](auto part, auto, auto&) { return replayer_.exact(part, samples); }, out);
+  if (!keeps_poses_ || kept->num_bytes() * num_transmitters_ > kKeptSamples) kept.reset();
 }
 
 // Replays blocks in parallel, a fixed number at a time. Returns the paths that `replay` left.
@@ -232,7 +226,8 @@ ReplayStream::Block ReplayStream::run_block(std::span<const int64_t> paths, size
   if (joins_at_once) joined = (*join_rule_)(paths);
   block.channels = replay(paths, joined, block.left);
   block.paths = without(block.left, paths);
-  block.num_paths = static_cast<int64_t>(block.paths.size());
+  const auto is_negligible = [](const UnfollowedPath& path) { return path.is_negligible; };
+  block.num_paths = std::ssize(block.paths) + std::count_if(block.left.begin(), block.left.end(), is_negligible);
   if (!joins_at_once) {
     for (int i = 0; watcher_ && i < extent.num_channels; ++i) {
       const int channel = extent.first_channel + i;

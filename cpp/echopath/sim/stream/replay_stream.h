@@ -30,15 +30,16 @@ class ReplayStream {
   // Tells which paths the echoes of some blocks belong to.
   struct EchoPaths {
     std::span<const int64_t> first;  // [echo], one block after the other: its path, or the first of those joined in it
-    int64_t count;                   // of all paths
+    int64_t count;                   // of all paths, with those that are negligible and have no echo
   };
   // Takes the blocks of one channel, which it may change. Each path comes once.
   using Sink = std::function<void(int channel, std::span<Echoes> blocks, const EchoPaths& paths)>;
 
   // `paths` and `radar` must outlive the stream. Raises as Replayer.
   ReplayStream(const Paths& paths, const Radar& radar, const ReplaySettings& settings, Job* job)
-      : num_paths_(paths.num_paths()), scene_(*paths.scene), num_transmitters_(static_cast<int>(radar.transmitters.size())),
-        replayer_(paths, radar, settings), job_(job) {}
+      : num_paths_(paths.num_paths()), num_transmitters_(static_cast<int>(radar.transmitters.size())),
+        replayer_(paths, radar, settings), job_(job), kept_chirps_(radar.transmitters.size()),
+        kept_samples_(radar.transmitters.size()) {}
 
   // From now on paths over the same hits make one echo where they agree in all of `labels` ([P] each, which must outlive
   // the stream).
@@ -50,8 +51,8 @@ class ReplayStream {
   int num_channels() const { return replayer_.num_channels(); }
   const Replayer& replayer() const { return replayer_; }
   // Sends the paths to the sink, all of them or some (indices, of which those that are to be joined follow each other). A
-  // stream that sends some at a time keeps the scene as posed in each chirp, where paths need it, and at the samples of all
-  // chirps where that is no more than kKeptSamples. Memory is bounded by the blocks in flight, 0.2 GiB of delays and
+  // stream that sends some at a time keeps the meshes as posed in each chirp, where paths need them, and at the samples of
+  // all chirps where that is no more than kKeptSamples. Memory is bounded by the blocks in flight, 0.2 GiB of delays and
   // amplitudes at 32 nodes a path, whatever the number of paths, chirps and channels; a sink that sorts them needs at most
   // as much again. Beside these each thread works on 320 B for each channel and node of a block (SingleBounceEvaluation),
   // and on what chains of its paths share. `sink` is called from one thread at a time, while the next blocks are replayed.
@@ -68,10 +69,9 @@ class ReplayStream {
   struct Window;
   class WindowPipeline;
   void run(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, const Sink& sink);
-  using KeptPoses = std::vector<std::shared_ptr<const PosedGrid>>;  // by transmitter; empty where none are kept
-  std::shared_ptr<const PosedGrid> posed(const TimeGrid& grid, int transmitter, KeptPoses& kept) const;
   void add_still(const std::vector<int64_t>& paths, WindowPipeline& out) const;
   void add_moving(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, WindowPipeline& out);
+  const PosedGrid& posed(const TimeGrid& grid, std::span<const int64_t> paths, std::unique_ptr<PartlyPosedGrid>& kept) const;
   void add_chirps(const std::vector<std::vector<int64_t>>& by_grid, int transmitter, WindowPipeline& out);
   void add_samples(const std::vector<int64_t>& paths, int transmitter, WindowPipeline& out);
   // Describes the channels that `replay` makes echoes of, the number of rows, and whether it joins paths itself on
@@ -89,7 +89,6 @@ class ReplayStream {
   Block run_block(std::span<const int64_t> paths, size_t index, const Extent& extent, const Replay& replay) const;
 
   int64_t num_paths_;
-  const Scene& scene_;
   int num_transmitters_;
   Replayer replayer_;
   Job* job_;
@@ -97,7 +96,8 @@ class ReplayStream {
   PathWatcher* watcher_ = nullptr;
   // Are kept between runs over some paths.
   std::optional<PathGrids> kept_grids_;
-  KeptPoses kept_chirps_, kept_samples_;
+  bool keeps_poses_ = false;
+  std::vector<std::unique_ptr<PartlyPosedGrid>> kept_chirps_, kept_samples_;  // by transmitter, null where none are kept
 };
 
 }  // namespace echopath

@@ -1,0 +1,113 @@
+// Replay leaves out paths that no sum of doubles would show, and poses only the meshes that paths touch.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "echopath/replay/replay.h"
+#include "support/scenes.h"
+
+namespace echopath::test_needed_paths {
+namespace {
+
+using namespace testing;
+
+constexpr double kRounding = std::numeric_limits<double>::epsilon();
+
+// Metal balls that turn: their launch cells filter all but the glints away.
+Paths record(const Radar& radar) {
+  Scene scene;
+  for (const double side : {-1.0, 1.0}) {
+    Surface surface = ellipsoid(Vec3::Zero(), {.3, .2, .25}, 3);
+    Node node;
+    node.name = side < 0 ? "left" : "right";
+    node.placement = Eigen::Translation3d(8, side, 0) * Transform::Identity();
+    node.mesh = std::make_shared<Mesh>(std::move(surface.vertices), std::move(surface.triangles));
+    node.material = std::make_shared<const Material>(Material::metal());
+    node.motion = std::make_shared<LinearMotion>(Vec3(-3, 0, 0), Vec3(0, 0, 2 * side));
+    node.smooth = true;
+    scene.add(node);
+  }
+  TraceSettings settings;
+  settings.num_rays = 2000;
+  settings.max_bounces = 1;
+  return trace(scene, radar, settings);
+}
+
+Radar two_by_two() {
+  Radar radar = plain_radar(Vec3::Zero(), Vec3(0, 0.01, 0));
+  radar.waveform.num_chirps = 64;
+  radar.transmitters.push_back(antenna_at(Vec3(0, 0.02, 0)));
+  radar.receivers.push_back(antenna_at(Vec3(0, 0.03, 0)));
+  return radar;
+}
+
+std::vector<int64_t> all(const Paths& paths) {
+  std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
+  std::iota(indices.begin(), indices.end(), 0);
+  return indices;
+}
+
+// Returns the largest amplitude of each path over the frame and all channels.
+std::vector<double> largest(const Paths& paths, const Radar& radar, const Replayer& replayer) {
+  constexpr int kTimes = 60;
+  const std::vector<int64_t> indices = all(paths);
+  std::vector<double> most(indices.size()), lengths;
+  std::vector<std::complex<double>> amplitudes;
+  for (int i = 0; i <= kTimes; ++i) {
+    replayer.evaluate(indices, paths.frame.start_time + radar.frame_duration() * i / kTimes, lengths, amplitudes);
+    for (size_t at = 0; at < amplitudes.size(); ++at) {
+      double& of_path = most[at % indices.size()];
+      of_path = std::max(of_path, std::abs(amplitudes[at]));
+    }
+  }
+  return most;
+}
+
+TEST(NeededPaths, ThoseThatAreLeftOutAreTogetherBelowTheRoundingOfTheStrongest) {
+  const Radar radar = two_by_two();
+  const Paths paths = record(radar);
+  Replayer replayer(paths, radar);
+  const int polynomial = replayer.path_grids().first(0);
+  std::vector<UnfollowedPath> before, left;
+  replayer.interpolated(all(paths), polynomial, before);
+  for (const UnfollowedPath& path : before) EXPECT_FALSE(path.is_negligible);
+  replayer.find_strongest();
+  const std::vector<Echoes> echoes = replayer.interpolated(all(paths), polynomial, left);
+  const std::vector<double> most = largest(paths, radar, replayer);
+  const double strongest = *std::max_element(most.begin(), most.end());
+  double sum = 0.0;
+  int64_t num_negligible = 0;
+  for (const UnfollowedPath& path : left) {
+    if (!path.is_negligible) continue;
+    sum += most[static_cast<size_t>(path.path)];
+    ++num_negligible;
+  }
+  EXPECT_GT(num_negligible, paths.num_paths() / 4);
+  EXPECT_LE(sum, kRounding * strongest);
+  EXPECT_EQ(echoes.front().num_echoes + std::ssize(left), paths.num_paths());
+}
+
+TEST(NeededPaths, MeshesThatArePosedLaterStandWhereAllWouldStand) {
+  const Radar radar = two_by_two();
+  const Paths paths = record(radar);
+  const Replayer replayer(paths, radar);
+  const std::vector<int64_t> indices = all(paths);
+  ASSERT_EQ(replayer.meshes_of(indices), (std::vector<uint32_t>{0, 1}));
+  for (const int transmitter : {0, 1}) {
+    const TimeGrid samples = replayer.grids().samples(transmitter);
+    const PosedGrid whole = replayer.pose(samples);
+    PartlyPosedGrid partly = replayer.pose_partly(samples);
+    for (const uint32_t mesh : {1u, 0u}) partly.with(std::span(&mesh, 1));
+    EXPECT_GT(partly.num_bytes(), 0);
+    const std::vector<Echoes> expected = replayer.exact(indices, whole), found = replayer.exact(indices, partly.with({}));
+    for (size_t channel = 0; channel < expected.size(); ++channel) {
+      EXPECT_EQ(found[channel].delay, expected[channel].delay);
+      EXPECT_EQ(found[channel].amplitude, expected[channel].amplitude);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace echopath::test_needed_paths

@@ -34,6 +34,7 @@ from .in_time import (
 )
 from .labels import GhostLabel, Labels, ObjectLabel, annotate, annotate_frame, save_label_images
 from .live import Live, LiveView, Watch
+from .paths.around_corners import AroundCorner, around_corners
 from .paths.cells import PathCells, path_cells
 from .paths.families import Families, families
 from .paths.powers import received_power, received_powers
@@ -74,7 +75,7 @@ from .truth import Truth, truth
 from .weather import Weather
 
 __all__ = [
-    "Actor", "Adc", "AngleEstimates", "AngleSpectrum", "AngleTime", "Antenna", "AntennaPattern", "BeamPower",
+    "Actor", "Adc", "AngleEstimates", "AngleSpectrum", "AngleTime", "Antenna", "AntennaPattern", "AroundCorner", "BeamPower",
     "CfarResult", "Check", "ChirpSequence", "CoplanarOverlap", "CosinePower", "Curve", "CurveMotion", "Deformation",
     "Detections", "DeviceError", "Effect", "Families", "Family", "FileError", "Frame", "FrameMaps", "GainTable",
     "GhostLabel", "GuardWarning", "Interferer", "Interval", "Isotropic", "Joint", "KeyframeMotion", "LabelSettings",
@@ -86,6 +87,7 @@ __all__ = [
     "StoredSequence", "Stratum", "TessellationWarning", "TraceFrame", "TraceSettings", "TraceStatistics", "Tracks",
     "Traffic", "Trajectory", "Truth", "Unresolved", "Validity", "ValidityShares", "VertexSequence", "VirtualArray",
     "Watch", "Weather", "actors", "add_noise", "add_traffic", "angle_fft", "angle_time", "annotate", "annotate_frame",
+    "around_corners",
     "beamform", "boltzmann", "cfar", "check_rays", "check_signal", "compensate_tdm", "decompose", "demultiplex",
     "detect", "detect_frame", "effects", "estimate_angles", "families", "first", "foreign_materials", "hits",
     "interference", "interference_radar", "last", "load_antenna", "load_frame", "load_labels", "load_mesh",

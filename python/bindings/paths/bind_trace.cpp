@@ -12,6 +12,7 @@
 #include "call/leaving.h"
 #include "call/run_job.h"
 #include "echopath/sim/rays/ray_allocation.h"
+#include "echopath/trace/edges/around_edges.h"
 #include "echopath/trace/edges/edge_power.h"
 #include "echopath/trace/embree/embree_scene.h"
 #include "echopath/trace/embree/kept_geometry.h"
@@ -83,6 +84,30 @@ py::array_t<bool> are_clear(const Scene& scene, double time, const Vec3& from, c
   return clear;
 }
 
+py::dict around_edges(const AroundQuery& query, const std::vector<Vec3>& points) {
+  std::vector<WayAroundEdge> ways;
+  {
+    const WithoutGil released;
+    ways = ways_around_edges(query, points);
+  }
+  const auto count = static_cast<py::ssize_t>(ways.size());
+  py::array_t<uint32_t> mesh_id(count);
+  py::array_t<double> at({count, py::ssize_t{3}}), length(count), share(count);
+  for (py::ssize_t i = 0; i < count; ++i) {
+    const WayAroundEdge& way = ways[static_cast<size_t>(i)];
+    mesh_id.mutable_at(i) = way.mesh_id;
+    for (py::ssize_t k = 0; k < 3; ++k) at.mutable_at(i, k) = way.point[k];
+    length.mutable_at(i) = way.length;
+    share.mutable_at(i) = way.share;
+  }
+  py::dict found;
+  found["mesh_id"] = mesh_id;
+  found["point"] = at;
+  found["length"] = length;
+  found["share"] = share;
+  return found;
+}
+
 }  // namespace
 
 void bind_trace(py::module_& m) {
@@ -103,6 +128,19 @@ void bind_trace(py::module_& m) {
       },
       py::arg("scene"), py::arg("time"), py::arg("origin"), py::arg("points"),
       "Whether nothing of the scene lies between `origin` [3] and each of `points` [N, 3], m at `time` in s; [N].");
+  m.def(
+      "ways_around_edges",
+      [](const Scene& scene, Arg<"time", Real> time, Arg<"frequency", Real> frequency, Arg<"antenna", Vector3> antenna,
+         Arg<"polarization", Vector3> polarization, Arg<"points", Points> points) {
+        return around_edges({scene, *time, *frequency, *antenna, *polarization}, *points);
+      },
+      py::arg("scene"), py::arg("time"), py::arg("frequency"), py::arg("antenna"), py::arg("polarization"),
+      py::arg("points"),
+      "The strongest way around one edge from an antenna [3] to each of `points` [N, 3], m at `time` in s: a dict of "
+      "mesh_id "
+      "[N] (of the edge; 4294967295: none, or nothing in the way), point [N, 3] on it in m, length [N] in m, share [N] of "
+      "the "
+      "field that would arrive were nothing in its way.");
   m.def("strongest_edge", &strongest_edge, py::arg("scene"), py::arg("radar"), py::arg("time"),
         "What edges=\"auto\" compares with the noise: W that the strongest sharp edge would carry at a time in s.");
   m.attr("DEFAULT_MAX_RAYS") = kMaxRays;

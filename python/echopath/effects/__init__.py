@@ -12,7 +12,8 @@ from .rules import RULES, Case, Effect, Settings
 
 # What no scene and no setting can ask for.
 OUT_OF_SCOPE = [
-    Effect("creeping waves, diffraction into shadows", False, "out of scope"),
+    Effect("creeping waves", False, "out of scope"),
+    Effect("diffraction into shadows", False, "not modelled by traces: ep.around_corners says what hidden objects would send"),
 ]
 
 

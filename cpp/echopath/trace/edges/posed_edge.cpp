@@ -24,19 +24,22 @@ Wedge posed_wedge(const SharpEdge& edge, const PosedScene& scene, uint32_t mesh_
   return wedge_between(posed_face(edge, 0, scene, mesh_id), posed_face(edge, 1, scene, mesh_id));
 }
 
+PosedEdge posed_edge(const SharpEdge& edge, const Scene& scene, const PosedScene& pose, uint32_t mesh_id,
+                     const Vec3& origin) {
+  const Mesh& mesh = *scene.node_of(mesh_id).mesh;
+  const Vec3 translation = pose.world_translation(mesh_id) - origin;
+  const auto corner = [&](uint32_t index) -> Vec3 {
+    return pose.linear(mesh_id) * mesh.vertices()[mesh.triangles()[edge.triangle][index]] + translation;
+  };
+  const Vec3 from = corner(edge.side), line = corner((edge.side + 1) % 3) - from;
+  return {mesh_id, edge, posed_wedge(edge, pose, mesh_id), from + edge.begin * line, from + edge.end * line};
+}
+
 std::vector<PosedEdge> posed_edges(const Scene& scene, const PosedScene& pose, const Vec3& origin) {
   const SceneEdges edges(scene);
   std::vector<PosedEdge> found;
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
-    const Mesh& mesh = *scene.node_of(id).mesh;
-    const Vec3 translation = pose.world_translation(id) - origin;
-    const auto corner = [&](uint32_t triangle, uint32_t index) -> Vec3 {
-      return pose.linear(id) * mesh.vertices()[mesh.triangles()[triangle][index]] + translation;
-    };
-    for (const SharpEdge& edge : edges.of(id)) {
-      const Vec3 from = corner(edge.triangle, edge.side), line = corner(edge.triangle, (edge.side + 1) % 3) - from;
-      found.push_back({id, edge, posed_wedge(edge, pose, id), from + edge.begin * line, from + edge.end * line});
-    }
+    for (const SharpEdge& edge : edges.of(id)) found.push_back(posed_edge(edge, scene, pose, id, origin));
   }
   return found;
 }

@@ -24,6 +24,10 @@ struct PosedEdge {
   Vec3 line() const { return to - from; }
 };
 
+// Returns an edge of a mesh at the time of the pose, relative to `origin` (m, world).
+PosedEdge posed_edge(const SharpEdge& edge, const Scene& scene, const PosedScene& pose, uint32_t mesh_id,
+                     const Vec3& origin);
+
 // Returns all edges of a scene at the time of the pose, in the order of meshes and edges, relative to `origin` (m, world).
 std::vector<PosedEdge> posed_edges(const Scene& scene, const PosedScene& pose, const Vec3& origin);
 

@@ -1,0 +1,35 @@
+#pragma once
+// Finds what a wave brings around one edge to points that an antenna does not see: diffraction into shadows.
+//
+// The field is that of the uniform theory of diffraction (em/edge_shadow.h) about Keller's point of the edge, by stationary
+// phase along it. All edges of bodies count as those of perfect conductors: the part that follows from the shadow, which is
+// most of it near the shadow's boundary, is that of any opaque body. Sheets and meshes that deform have none.
+#include <limits>
+#include <vector>
+
+#include "echopath/base/geometry.h"
+#include "echopath/scene/scene.h"
+
+namespace echopath {
+
+struct AroundQuery {
+  const Scene& scene;
+  double time;       // s
+  double frequency;  // Hz
+  Vec3 antenna;      // m, world
+  Vec3 polarization;
+};
+
+// Holds the strongest way around one edge.
+struct WayAroundEdge {
+  static constexpr uint32_t kNoMesh = std::numeric_limits<uint32_t>::max();
+  uint32_t mesh_id = kNoMesh;  // whose edge; kNoMesh: nothing is in the way, or no edge leads there
+  Vec3 point = Vec3::Zero();   // m, world: on the edge
+  double length = 0.0;         // m, of the way
+  double share = 0.0;          // of the field that would arrive were nothing in its way; 1 where nothing is
+};
+
+// Returns a way for each point (m, world). Raises invalid_argument when a motion is not defined at the time.
+std::vector<WayAroundEdge> ways_around_edges(const AroundQuery& query, const std::vector<Vec3>& points);
+
+}  // namespace echopath

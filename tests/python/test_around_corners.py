@@ -1,0 +1,90 @@
+"""Diffraction into shadows: edges against Sommerfeld's half plane, and what hidden objects are said to send."""
+import numpy as np
+import pytest
+from scipy.special import fresnel
+
+import echopath as ep
+from echopath import _core
+
+FREQUENCY = 77e9
+WAVENUMBER = 2.0 * np.pi * FREQUENCY / 299792458.0
+OF_SOMMERFELD_DB = 1e-4  # the transition function's
+BEFORE, BEHIND = 10.0, 8.0  # m, of the edge
+
+
+def sommerfeld(source, at, is_electric):
+    """The field about a half plane, over the wave that comes: angles from its face; the wave's field along the edge is electric
+    or magnetic (Born and Wolf, 11.5), at the distance parameter of spherical waves."""
+    distance = BEFORE * BEHIND / (BEFORE + BEHIND)
+
+    def part(angle):
+        across = np.cos(0.5 * angle)
+        x = -np.sqrt(2.0 * WAVENUMBER * distance) * across
+        sine, cosine = fresnel(np.sqrt(2.0 / np.pi) * x)
+        rest = 0.5 * np.sqrt(np.pi) * np.exp(-0.25j * np.pi) - np.sqrt(0.5 * np.pi) * (cosine - 1j * sine)
+        return np.exp(0.25j * np.pi) / np.sqrt(np.pi) * rest * np.exp(2j * WAVENUMBER * distance * across ** 2)
+
+    return abs(part(at - source) + (-1.0 if is_electric else 1.0) * part(at + source))
+
+
+def ways_to(scene, points, antenna, polarization=(0.0, 0.0, 1.0)):
+    return _core.ways_around_edges(scene, time=0.0, frequency=FREQUENCY, antenna=antenna, polarization=polarization,
+                                   points=points)
+
+
+@pytest.mark.parametrize("polarization, is_electric", [((0.0, 0.0, 1.0), True), ((0.0, 1.0, 0.0), False)])
+def test_the_shadow_of_a_half_plane_is_sommerfelds(polarization, is_electric):
+    """From its boundary, where half of the field arrives, to 60 degrees into it."""
+    screen = np.array([(0.0, -900.0, -900.0), (0.0, 0.0, -900.0), (0.0, 0.0, 900.0), (0.0, -900.0, 900.0)])
+    scene = ep.Scene()
+    scene.add(ep.Mesh(screen, np.array([(0, 1, 2), (0, 2, 3)])), name="screen", material=ep.Material.metal())
+    source = np.radians(70.0)  # from the face, which goes on to -y
+    antenna = BEFORE * np.array([-np.sin(source), -np.cos(source), 0.0])
+    angles = source + np.pi + np.radians([0.02, 0.2, 1.0, 5.0, 20.0, 60.0])
+    points = BEHIND * np.stack([-np.sin(angles), -np.cos(angles), 0.0 * angles], axis=-1)
+    found = ways_to(scene, points, antenna, polarization)
+    free = np.linalg.norm(points - antenna, axis=1) / (BEFORE + BEHIND)  # the wave about the edge spreads over its own length
+    wanted = free * [sommerfeld(source, at, is_electric) for at in angles]
+    assert 20.0 * np.log10(found["share"]) == pytest.approx(20.0 * np.log10(wanted), abs=OF_SOMMERFELD_DB)
+    assert found["share"][0] == pytest.approx(0.5, abs=0.03)
+    assert found["length"] == pytest.approx(BEFORE + BEHIND, rel=1e-9)
+
+
+def building(scene):
+    corners = np.array([(x, y, z) for x in (8.0, 20.0) for y in (-12.0, -1.0) for z in (0.0, 8.0)])
+    faces = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+    mesh = ep.Mesh(corners, np.array([half for a, b, c, d in faces for half in ((a, b, c), (a, c, d))]))
+    scene.add(mesh, name="building", material="concrete")
+
+
+@pytest.fixture(scope="module")
+def radar():
+    chirps = ep.ChirpSequence(start_frequency=FREQUENCY, bandwidth=1e9, num_samples=64, sampling_rate=20e6, num_chirps=4,
+                              chirp_interval=60e-6)
+    return ep.Radar(chirps, transmitters=[ep.Antenna((0, 0, 1))], receivers=[ep.Antenna((0, 0.01, 1))])
+
+
+def test_a_person_behind_a_corner_sends_less_the_deeper_in_its_shadow(radar):
+    losses = []
+    for y in (-2.6, -4.0):
+        scene = ep.Scene()
+        building(scene)
+        scene.add(ep.actors.pedestrian(height=1.78), name="person", position=(30.0, y, 0.0))
+        person = next(one for one in ep.around_corners(scene, radar, num_rays=2000) if one.name == "person")
+        assert person.hidden_share > 0.9 and person.corner == "building"
+        assert person.point[:2] == pytest.approx((20.0, -1.0), abs=1e-6)
+        alone = ep.Scene()
+        alone.add(ep.actors.pedestrian(height=1.78), name="person", position=(30.0, y, 0.0))
+        level = ep.received_power(ep.trace(alone, radar, num_rays=2000, max_bounces=1)).power
+        assert 10.0 * np.log10(level / person.power) == pytest.approx(person.loss_db, abs=1.0)
+        losses.append(person.loss_db)
+    assert 40.0 < losses[0] < losses[1] - 10.0
+
+
+def test_nothing_is_told_of_who_is_seen(radar):
+    scene = ep.Scene()
+    building(scene)
+    scene.add(ep.actors.pedestrian(height=1.78), name="person", position=(24.0, 3.0, 0.0))
+    assert [one.name for one in ep.around_corners(scene, radar, num_rays=500)] in ([], ["building"])
+    told = next(effect for effect in ep.effects(scene, radar) if effect.name == "diffraction into shadows")
+    assert not told.modelled and "around_corners" in told.reason

@@ -2,7 +2,7 @@
 
     python python/bindings/make_stubs.py
 
-To be run after a change to the bindings, with the extension built; tests/python/test_stubs.py compares.
+To be run after a change to the bindings, with the extension built; tests/python/documents/test_stubs.py compares.
 """
 import re
 import subprocess

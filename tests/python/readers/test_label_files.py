@@ -148,7 +148,7 @@ def test_the_layout_is_written_down(saved):
         names, attributes = [], list(file["labels/0"].attrs)
         for group in ("labels/0", "detections"):
             file[group].visit(names.append)
-    section = (Path(__file__).parents[2] / "data" / "README.md").read_text().split("## Frame files (HDF5)")[1]
+    section = (Path(__file__).parents[3] / "data" / "README.md").read_text().split("## Frame files (HDF5)")[1]
     missing = [name for name in [*names, *attributes] if not re.search(f"[`/]{name.rpartition('/')[2]}/?`", section)]
     assert not missing
 

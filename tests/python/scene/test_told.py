@@ -9,7 +9,7 @@ from echopath.cli.info import describe_file
 from support.radars import build_radar
 from support.shapes import quad
 
-TEMPLATE = Path(__file__).parents[2] / "data" / "datasets" / "crossing.toml"
+TEMPLATE = Path(__file__).parents[3] / "data" / "datasets" / "crossing.toml"
 RAIN = ep.Weather(rain_mm_per_hour=20.0)
 
 

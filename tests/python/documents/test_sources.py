@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 MOST_COLUMNS = 125
 FILE_NAME = re.compile(r"(?<![\w/])((?:\w+/)*\w{2,}\.(?:h|cpp))\b")
 SOURCES = sorted(path for folder in ("cpp", "python/bindings", "tests") for path in (ROOT / folder).rglob("*")

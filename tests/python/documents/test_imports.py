@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 PACKAGES = (ROOT / "python" / "echopath", ROOT / "viewer" / "echopath_viewer")
 
 # Imports within functions that close a circle, and why each may.

@@ -12,7 +12,7 @@ from echopath.sequence import folder_lock
 from support.frames_in_time import INTERVAL, make_radar, make_scene, make_sequence
 
 KEEPS = ["all", "maps", "labels"]
-TESTS = Path(__file__).parents[1]
+TESTS = Path(__file__).parents[2]
 WAIT = 60.0  # s, for a process on a busy machine
 MANY = 8     # frames: more than a process makes before it is killed
 

@@ -21,7 +21,7 @@ position = [0.0, 0.0, 1.0]
 position = [0.0, 0.01, 1.0]
 """
 QUAD = "v 0 0 0\nv 1000 0 0\nv 1000 500 0\nv 0 500 0\nf 1 2 3 4\n"
-DATA = Path(__file__).resolve().parents[2] / "data"
+DATA = Path(__file__).resolve().parents[3] / "data"
 ROUNDING = 1e-12  # m
 SWAY = 0.05       # relative: the torso sways by a few centimetres within a step
 

@@ -11,7 +11,7 @@ import pytest
 
 import echopath
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 
 
 def _maker():

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-BINDINGS = Path(__file__).parents[2] / "python" / "bindings"
+BINDINGS = Path(__file__).parents[3] / "python" / "bindings"
 CALL = re.compile(r'(?:from|in)_package\(\s*"([\w.]+)",\s*"(\w+)"\s*\)')
 NAMED = sorted({pair for file in BINDINGS.rglob("*.cpp") for pair in CALL.findall(file.read_text(encoding="utf-8"))})
 

@@ -10,7 +10,7 @@ import echopath as ep
 from echopath import _core
 from support import slow_beams
 
-DATA = Path(__file__).resolve().parents[2] / "data"
+DATA = Path(__file__).resolve().parents[3] / "data"
 C = ep.speed_of_light
 WAVELENGTH = C / 77.5e9
 HALF = 0.5 * WAVELENGTH

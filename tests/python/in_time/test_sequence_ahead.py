@@ -176,7 +176,7 @@ except KeyboardInterrupt:
 
 
 def test_ctrl_c_ends_the_loop_and_its_thread():
-    process = subprocess.Popen([sys.executable, "-c", SCRIPT], cwd=Path(__file__).parents[1], stdout=subprocess.PIPE, text=True,
+    process = subprocess.Popen([sys.executable, "-c", SCRIPT], cwd=Path(__file__).parents[2], stdout=subprocess.PIPE, text=True,
                                preexec_fn=heed_ctrl_c)
     assert process.stdout.readline() == "begun\n"
     time.sleep(0.5)
@@ -187,7 +187,7 @@ def test_ctrl_c_ends_the_loop_and_its_thread():
 def test_python_may_end_with_a_loop_that_nobody_ended():
     script = ("from support.frames_in_time import make_sequence\n"
               "kept = iter(make_sequence(frames=9, num_rays=2_000_000))\nnext(kept)\n")
-    done = subprocess.run([sys.executable, "-c", script], cwd=Path(__file__).parents[1], timeout=2 * WAIT, capture_output=True)
+    done = subprocess.run([sys.executable, "-c", script], cwd=Path(__file__).parents[2], timeout=2 * WAIT, capture_output=True)
     assert done.returncode == 0 and done.stderr == b""
 
 

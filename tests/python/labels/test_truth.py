@@ -10,7 +10,7 @@ import pytest
 import echopath as ep
 from support.radars import build_radar
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 TOUCH = 1e-9         # m, of vertices and faces of a box: rounding
 RATE_ERROR = 1e-6    # m/s, of differences over 0.1 ms
 SPHERE_ERROR_DB = 0.1

@@ -18,7 +18,7 @@ import echopath as ep
 import echopath.dataset
 
 matplotlib.use("agg")
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 DOCS, EXAMPLES = ROOT / "python" / "docs", ROOT / "python" / "examples"
 PAGES = sorted((DOCS / "how_do_i").glob("*.md"))
 TRAINING = EXAMPLES / "training"  # needs PyTorch, and takes minutes: no part of the gallery

@@ -1,7 +1,6 @@
 #include "echopath/spectrum/tone_offset.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "echopath/base/constants.h"
 #include "echopath/spectrum/window.h"

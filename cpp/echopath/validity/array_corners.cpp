@@ -1,7 +1,6 @@
 #include "echopath/validity/array_corners.h"
 
 #include <Eigen/Eigenvalues>
-#include <algorithm>
 #include <set>
 
 namespace echopath {

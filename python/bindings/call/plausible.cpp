@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <sstream>
-#include <string>
 
 #include "call/warn.h"
 #include "echopath/base/constants.h"

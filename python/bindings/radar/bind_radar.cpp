@@ -4,8 +4,6 @@
 
 #include <cmath>
 #include <complex>
-#include <memory>
-#include <optional>
 #include <sstream>
 #include <string>
 

@@ -4,10 +4,7 @@
 
 #include <cmath>
 #include <memory>
-#include <optional>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "call/argument.h"
 #include "call/define.h"

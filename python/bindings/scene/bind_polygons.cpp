@@ -1,8 +1,6 @@
 // Polygons of other libraries' meshes, cut into triangles as those of files are.
 #include <pybind11/pybind11.h>
 
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "echopath/base/errors.h"

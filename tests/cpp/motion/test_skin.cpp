@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "echopath/base/constants.h"
 #include "echopath/motion/skin.h"

@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "echopath/base/constants.h"
 #include "echopath/replay/time/time_grids.h"
 #include "support/scenes.h"

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <numeric>
 
 #include "echopath/base/threads/parallel.h"
 #include "echopath/spectrum/angle/range_azimuth.h"

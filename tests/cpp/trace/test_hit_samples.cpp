@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <vector>
 
 #include "echopath/trace/scatter/hit_samples.h"
 #include "echopath/trace/scatter/scatter_points.h"

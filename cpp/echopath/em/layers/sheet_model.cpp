@@ -1,7 +1,6 @@
 #include "echopath/em/layers/sheet_model.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "echopath/base/constants.h"
 #include "echopath/em/polarization/hit_modes.h"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
-#include <utility>
 
 #include "echopath/base/errors.h"
 #include "echopath/base/threads/parallel.h"

@@ -1,7 +1,6 @@
 #include "echopath/label/objects/object_view.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "echopath/base/lanes/scalar_math.h"
 #include "echopath/base/lanes/simd.h"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <utility>
 
 #include "echopath/base/errors.h"
 #include "echopath/base/threads/parallel.h"

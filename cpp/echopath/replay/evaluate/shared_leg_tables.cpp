@@ -1,7 +1,6 @@
 #include "echopath/replay/evaluate/shared_leg_tables.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "echopath/base/plane.h"
 #include "echopath/replay/evaluate/inner_part.h"

@@ -1,9 +1,6 @@
-#include <array>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <iterator>
-#include <optional>
 #include <string_view>
 #include <utility>
 

@@ -1,7 +1,6 @@
 #include "echopath/scene/readers/triangulate.h"
 
 #include <functional>
-#include <numeric>
 #include <queue>
 
 #include "echopath/scene/readers/corner_tree.h"

@@ -3,7 +3,6 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
 
 #include "echopath/scene/smooth/smooth.h"
 

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
-#include <utility>
 
 #include "echopath/base/lanes/simd.h"
 #include "echopath/spectrum/range_doppler.h"

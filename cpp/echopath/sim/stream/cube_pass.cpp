@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <optional>
 #include <span>
-#include <utility>
 
 #include "echopath/base/threads/parallel.h"
 #include "echopath/sim/stream/replay_stream.h"

@@ -5,7 +5,6 @@
 #include <numbers>
 #include <numeric>
 #include <optional>
-#include <utility>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/random.h"

@@ -2,7 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <cmath>
 
 #include "echopath/base/errors.h"
 #include "echopath/spectrum/array/tdm.h"

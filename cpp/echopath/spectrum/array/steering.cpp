@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <string>
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"

@@ -1,7 +1,6 @@
 #include "echopath/trace/mirrors/legs.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace echopath {
 namespace {

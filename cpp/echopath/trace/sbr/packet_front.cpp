@@ -1,7 +1,6 @@
 #include "echopath/trace/sbr/packet_front.h"
 
 #include <cmath>
-#include <memory>
 
 #include "echopath/base/lanes/simd.h"
 

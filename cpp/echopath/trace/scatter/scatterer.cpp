@@ -1,7 +1,6 @@
 #include "echopath/trace/scatter/scatterer.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "echopath/base/random.h"
 #include "echopath/trace/sbr/ray_tube.h"

@@ -1,7 +1,6 @@
 #include "echopath/trace/strata/scene_objects.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace echopath {
 

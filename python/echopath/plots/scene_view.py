@@ -131,7 +131,8 @@ def _add_mesh(drawing: _Drawing, triangles, mesh) -> None:
             _add_mirror_name(drawing.mirror_names, _object_name(mesh), np.concatenate(polygons))
         return
     drawing.bodies += polygons
-    drawing.body_colours += [_shaded(polygon) for polygon in polygons]
+    if polygons:
+        drawing.body_colours += _shaded(np.array([polygon[:3] for polygon in polygons]))
 
 
 def _add_mirror_name(names: dict, name: str, corners) -> None:
@@ -145,12 +146,13 @@ def _is_cut(edge, low, high) -> bool:
     return any(np.isclose(edge, border, rtol=0.0, atol=CUT).all(axis=0).any() for border in (low, high))
 
 
-def _shaded(polygon):
-    """Colour of a polygon under the lamp, both sides alike."""
-    normal = np.cross(polygon[1] - polygon[0], polygon[2] - polygon[0])
-    length = np.linalg.norm(normal)
-    brightness = abs(normal @ LIGHT) / (length * np.linalg.norm(LIGHT)) if length > 0.0 else 0.0
-    return (*np.clip(BODY_COLOUR * (0.55 + 1.0 * brightness), 0.0, 1.0), 1.0)
+def _shaded(corners) -> list:
+    """Colours [N] of polygons under the lamp, both sides alike, from their first three corners [N, 3, 3]."""
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    length = np.linalg.norm(normal, axis=1)
+    brightness = np.abs(normal @ LIGHT) / (np.where(length > 0.0, length, 1.0) * np.linalg.norm(LIGHT))
+    colour = np.clip(BODY_COLOUR * (0.55 + brightness[:, None]), 0.0, 1.0)
+    return list(np.column_stack([colour, np.ones(len(colour))]))
 
 
 def _colour(count: int) -> str:

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
-#include "echopath/em/edge_shadow.h"
+#include "echopath/em/edges/edge_shadow.h"
 #include "echopath/posed/posed_scene.h"
 #include "echopath/trace/edges/posed_edge.h"
-#include "echopath/trace/geometry/embree_scene.h"
+#include "echopath/trace/embree/embree_scene.h"
 
 namespace echopath {
 namespace {

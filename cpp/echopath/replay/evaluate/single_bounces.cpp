@@ -46,8 +46,11 @@ void SingleBounceEvaluation::operator()(const SharedLegPlan& plan, const PathPre
   out_.resize(channels.nodes.size() * num_nodes * SingleBouncesToEvaluate::kNumRows * kSlots);
   const size_t num_legs = SingleBouncesToEvaluate::kNodesTogether * (antennas_[0].size() + antennas_[1].size());
   legs_.resize(num_legs * SingleBouncesToEvaluate::kNumLegRows * kSlots);
-  const bool is_polarized = SharedLegTables::needs_polarizations(preparer.paths(), nodes);
-  if (is_polarized) axes_.resize(1, ComponentsToFind::kNumAxisRows, num_nodes);
+  double* axes = nullptr;  // of the world, as seen from the mesh, where polarisations need them
+  if (SharedLegTables::needs_polarizations(preparer.paths(), nodes)) {
+    axes_.resize(1, ComponentsToFind::kNumAxisRows, num_nodes);
+    axes = axes_.row(0, 0);
+  }
   work_ = {&slots_,
            false,
            {antennas_[0].data(), antennas_[1].data()},
@@ -59,7 +62,7 @@ void SingleBounceEvaluation::operator()(const SharedLegPlan& plan, const PathPre
            nodes.meshes.stride(),
            radio.filter(),
            kNoFacets,
-           is_polarized ? axes_.row(0, 0) : nullptr,
+           axes,
            legs_.data(),
            out_.data(),
            turned_,
@@ -74,7 +77,7 @@ void SingleBounceEvaluation::operator()(const SharedLegPlan& plan, const PathPre
       set_mesh(mesh_id, preparer);
       work_.facet_area = preparer.facet_area(mesh_id);
       see_antennas(mesh_id, preparer, nodes);
-      if (is_polarized) see_axes(mesh_id, preparer, nodes);
+      if (axes) see_axes(mesh_id, preparer, nodes);
     }
     set_slots(points, preparer, radio);
     kernels.prepare(trace_, slots_);

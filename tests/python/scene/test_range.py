@@ -66,7 +66,7 @@ for name, case in cases.items():
 @pytest.fixture(scope="module")
 def answers(request):
     done = subprocess.run([sys.executable, "-c", SCRIPT], capture_output=True, text=True, timeout=120,
-                          cwd=request.path.parent.parent)
+                          cwd=request.path.parents[2])
     return dict(line.split("|", 1) for line in done.stdout.splitlines()) | {"the end": done.stderr}
 
 

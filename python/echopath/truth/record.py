@@ -152,7 +152,7 @@ class Truth:
 
         records: structured array [N]. Raises ValueError for other fields.
         """
-        names = getattr(getattr(records, "dtype", None), "names", None)
+        names = records.dtype.names if isinstance(records, np.ndarray) else None
         if names is None or set(names) != set(_fields()):
             raise refused(ValueError, "records", "a structured array as Truth.to_records makes it", records)
         columns = {field: np.array(records[field]) for field in _fields()}

@@ -327,7 +327,7 @@ def test_parts_are_smooth_bodies_of_cloth_and_skin(person):
 @pytest.mark.parametrize("arguments, message", [
     ({"height": -1.0}, "height: must be a finite number from 0.5 to 2.5 m, got -1.0"),
     ({"speed": 0.0}, "speed: must be a finite number above 0 m/s, got 0.0"),
-    ({"speed": 5.0}, "speed: must be a finite number from 0.1 to 2.83 m/s, got 5.0"),
+    ({"speed": 5.0}, "speed: must be a finite number from 0.1 to 2.83 m/s for a height of 1.78 m, got 5.0"),
     ({"duration": 0.0}, "duration: must be a finite number above 0 s, got 0.0"),
     ({"keyframe_rate": 10.0}, "keyframe_rate: must be a finite number of at least 60 1/s, got 10.0"),
     ({"edge": 1e-7}, "edge: must be long enough"),
@@ -342,3 +342,9 @@ def test_bad_arguments_name_rule_and_value(arguments, message):
 def test_unknown_keyword_names_the_nearest_right_one():
     with pytest.raises(TypeError, match="unknown keyword 'hieght', the nearest right one is 'height'"):
         ep.actors.pedestrian(hieght=1.8)
+
+
+@pytest.mark.parametrize("person", [ep.actors.pedestrian, ep.actors.runner])
+def test_a_speed_that_is_not_for_a_height_names_both(person):
+    with pytest.raises(ValueError, match="^speed: must be a finite number from .* m/s for a height of 0.5 m, got"):
+        person(height=0.5)

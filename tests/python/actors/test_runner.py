@@ -55,7 +55,7 @@ def test_mean_speed_of_a_run_is_the_asked_one():
 
 
 def test_speeds_out_of_range_are_refused():
-    with pytest.raises(ValueError, match="speed: must be a finite number from 1.8 to 5 m/s, got 9.0"):
+    with pytest.raises(ValueError, match="speed: must be a finite number from 1.8 to 5 m/s for a height of 1.78 m, got 9.0"):
         ep.actors.runner(speed=9.0)
 
 

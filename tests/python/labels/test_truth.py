@@ -239,3 +239,8 @@ def test_a_scene_without_objects_has_no_rows():
     assert len(ep.truth(trace(scene))) == 0
     with pytest.raises(TypeError, match="frame: must be a Frame, Paths, or some of either, got 3"):
         ep.truth(3)
+
+
+def test_records_that_are_no_array_are_refused_by_name():
+    with pytest.raises(ValueError, match="records: must be a structured array as Truth.to_records makes it"):
+        ep.Truth.from_records(np)

@@ -73,7 +73,7 @@ def pedestrian(*, height: float = 1.78, speed: float = 1.4, start_time: float = 
 def pedestrian_arrays(*, height, speed, start_time, duration, phase, edge, keyframe_rate, clothing, skin):
     """The parts of a pedestrian as plain arrays: a list of PartArrays. Arguments as of pedestrian()."""
     body = Proportions(height)
-    real(MIN_SPEED, round(relative_speed_limit(body), 3), "m/s")("speed", speed)
+    real(MIN_SPEED, round(relative_speed_limit(body), 3), f"m/s for a height of {height:g} m")("speed", speed)
     edge = edge_length(edge, 3.0 * body.height)
     real(0.0, 0.05 * body.height, "m")("edge", edge)
     return walker_arrays(body, Gait(body, speed), start_time=start_time, duration=duration, phase=phase, edge=edge,

@@ -39,7 +39,7 @@ def runner(*, height: float = 1.78, speed: float = 3.0, start_time: float = -0.5
     if trajectory is not None:
         return walk_along(body, lambda speed: RunningGait(body, speed), running_speeds(body), trajectory, edge=edge,
                           keyframe_rate=keyframe_rate, clothing=clothing, skin=skin)
-    real(*running_speeds(body), "m/s")("speed", speed)
+    real(*running_speeds(body), f"m/s for a height of {body.height:g} m")("speed", speed)
     edge = edge_length(edge, 3.0 * body.height)
     arrays = walker_arrays(body, RunningGait(body, speed), start_time=start_time, duration=duration, phase=phase, edge=edge,
                            keyframe_rate=keyframe_rate, clothing=clothing, skin=skin)

@@ -56,7 +56,6 @@ def _require_other_names(parts: dict | None, beside: dict | None) -> None:
         raise ValueError(f"beside: must have other names than parts, got {twice[0]!r} in both")
 
 
-_CALLER = 3  # of detect: behind it and the check of its arguments
 _ANGLES = keywords("estimate_angles", parameters_of(estimate_angles)[2:])  # all but spectrum and radar
 
 
@@ -100,7 +99,7 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     found = cfar(spectrum, radar, method=method, false_alarm_rate=false_alarm_rate, guard_velocity=guard_velocity,
                  guard_range=guard_range, training_velocity=training_velocity, training_range=training_range, rank=rank,
                  progress=progress)
-    warn_of_missing_noise(radar, found.power, stacklevel=_CALLER)
+    warn_of_missing_noise(radar, found.power)
     peaks = _core.find_peaks(spectrum, radar, found, progress)
     cells, power = peaks["cells"], found.power[tuple(peaks["cells"].T)]
     echoes = None if paths is None else EchoFields(paths, spectrum)

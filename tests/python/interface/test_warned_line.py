@@ -39,3 +39,12 @@ def test_antennas_that_tell_no_azimuths_apart(scene, radar):
         warnings.simplefilter("always")
         ep.range_azimuth(spectrum, radar)
     assert _lines(record, "tell no azimuths apart") == [__file__]
+
+
+def test_a_map_without_noise_in_detections_of_frames(scene, radar):
+    with warnings.catch_warnings(record=True) as record:
+        warnings.simplefilter("always")
+        frame = ep.simulate(scene, radar, num_rays=100, noise_seed=None, detections=True, guard=False)
+        ep.detect_frame(frame)
+        ep.detect(frame.spectrum, radar)
+    assert _lines(record, "holds no noise of the radar") == 3 * [__file__]

@@ -125,9 +125,12 @@ def test_arrays_give_the_paths_back():
         with pytest.raises(ValueError, match=f"num_batches: must lie in .*, got {count}"):
             ep.Paths.from_arrays(**columns, scene=paths.scene, radar=paths.radar, frame=frame)
     off = columns["hits"].copy()
-    off["u"][0] = 2.0
-    with pytest.raises(ValueError, match="u and v: must not be negative"):
-        ep.Paths.from_arrays(**columns | {"hits": off}, scene=paths.scene, radar=paths.radar, frame=paths.frame)
+    for u in (2.0, -1e-3):
+        off["u"][0] = u
+        with pytest.raises(ValueError, match="u and v: must not be negative"):
+            ep.Paths.from_arrays(**columns | {"hits": off}, scene=paths.scene, radar=paths.radar, frame=paths.frame)
+    off["u"][0] = -1e-7  # rounding, on the border of two triangles
+    ep.Paths.from_arrays(**columns | {"hits": off}, scene=paths.scene, radar=paths.radar, frame=paths.frame)
     columns["offsets"][0] = len(columns["hits"])
     with pytest.raises(ValueError, match="offsets: must lead to hits"):
         ep.Paths.from_arrays(**columns, scene=paths.scene, radar=paths.radar, frame=paths.frame)

@@ -16,6 +16,7 @@ namespace {
 
 constexpr size_t kHitsPerWord = 64;
 constexpr float kBarycentricRounding = 1e-3f;  // by which u + v may exceed 1 at hits that are moved to an edge
+constexpr float kBelowZero = 1e-6f;  // by which u or v may be below 0 at hits of rays on the border of two triangles
 
 template <class T>
 std::vector<T> kept(const std::vector<T>& values, const std::vector<uint8_t>& keep, size_t count, Job* job) {
@@ -59,7 +60,7 @@ void validate_hit(const Hit& hit, const Scene& scene) {
   require(hit.mesh_id < scene.meshes().size(), "mesh_id", "must be a mesh of the scene", hit.mesh_id);
   const size_t num_triangles = scene.node_of(hit.mesh_id).mesh->triangles().size();
   require(hit.triangle_id < num_triangles, "triangle_id", "must be a triangle of its mesh", hit.triangle_id);
-  require(hit.u >= 0.0f && hit.v >= 0.0f && hit.u + hit.v <= 1.0f + kBarycentricRounding, "u and v",
+  require(std::min(hit.u, hit.v) >= -kBelowZero && hit.u + hit.v <= 1.0f + kBarycentricRounding, "u and v",
           "must not be negative, their sum at most 1", hit.u + hit.v);
 }
 

@@ -21,7 +21,7 @@ namespace {
 
 // [H] structured, as Paths.hits has them.
 struct HitRows {
-  using Value = std::vector<Hit>;
+  using Value = py::array_t<Hit, py::array::c_style | py::array::forcecast>;
   static constexpr auto type_name = py::detail::const_name("ArrayLike");
   static Value from(py::handle value, const char* argument) {
     constexpr const char* kRule = "must be an array [H] of (mesh_id, triangle_id, u, v) as Paths.hits has it";
@@ -31,46 +31,50 @@ struct HitRows {
       throw py::type_error(std::string(argument) + ": " + kRule + ", got " + std::string(py::str(given.dtype())) + " of " +
                            std::to_string(given.ndim()) + " dimensions");
     }
-    const py::array_t<Hit, py::array::c_style | py::array::forcecast> rows(given);
-    return Value(rows.data(), rows.data() + rows.size());
+    return Value(given);
   }
 };
 
-// Rows of `size` numbers, of a flat vector.
-template <class Row, class T>
-std::vector<Row> rows_of(const std::vector<T>& values, size_t size) {
-  std::vector<Row> rows(values.size() / size);
-  std::copy(values.begin(), values.end(), rows.empty() ? nullptr : rows.front().data());
+// All of an array, which is no copy until then: records take gigabytes.
+template <class T, int kFlags>
+std::vector<T> vector_of(const py::array_t<T, kFlags>& values) {
+  return {values.data(), values.data() + values.size()};
+}
+
+// Rows of `size` numbers.
+template <class Row, class T, int kFlags>
+std::vector<Row> rows_of(const py::array_t<T, kFlags>& values, size_t size) {
+  std::vector<Row> rows(static_cast<size_t>(values.size()) / size);
+  std::copy(values.data(), values.data() + values.size(), rows.empty() ? nullptr : rows.front().data());
   return rows;
 }
 
 using ComplexFloat = std::complex<float>;
 
-PathsPtr paths_from_arrays(Arg<"hits", HitRows> hits, Arg<"offsets", VectorOf<int64_t, "[P]">> offsets,
-                           Arg<"num_bounces", VectorOf<uint8_t, "[P]">> num_bounces,
-                           Arg<"diffuse", VectorOf<uint64_t, "[P]">> diffuse,
-                           Arg<"weight", VectorOf<ComplexFloat, "[P]">> weight,
-                           Arg<"stratum", VectorOf<uint16_t, "[P]">> stratum, Arg<"batch", VectorOf<uint8_t, "[P]">> batch,
-                           Arg<"flags", VectorOf<uint32_t, "[P]">> flags,
-                           Arg<"curved_cell", Optional<VectorOf<float, "[P, 7]">>> curved_cell,
-                           Arg<"jones", Optional<VectorOf<ComplexFloat, "[P, 2, 2]">>> jones,
+PathsPtr paths_from_arrays(Arg<"hits", HitRows> hits, Arg<"offsets", Array<int64_t, "[P]">> offsets,
+                           Arg<"num_bounces", Array<uint8_t, "[P]">> num_bounces,
+                           Arg<"diffuse", Array<uint64_t, "[P]">> diffuse, Arg<"weight", Array<ComplexFloat, "[P]">> weight,
+                           Arg<"stratum", Array<uint16_t, "[P]">> stratum, Arg<"batch", Array<uint8_t, "[P]">> batch,
+                           Arg<"flags", Array<uint32_t, "[P]">> flags,
+                           Arg<"curved_cell", Optional<Array<float, "[P, 7]">>> curved_cell,
+                           Arg<"jones", Optional<Array<ComplexFloat, "[P, 2, 2]">>> jones,
                            Arg<"passes", Optional<PassRows>> passes,
-                           Arg<"pass_offsets", Optional<VectorOf<int64_t, "[P + 1]">>> pass_offsets,
+                           Arg<"pass_offsets", Optional<Array<int64_t, "[P + 1]">>> pass_offsets,
                            Arg<"scene", Instance<std::shared_ptr<Scene>>> scene, Arg<"radar", Instance<Radar>> radar,
                            Arg<"frame", Instance<TraceFrame>> frame) {
   auto paths = std::make_shared<Paths>();
-  paths->hits = std::make_shared<const std::vector<Hit>>(*hits);
-  paths->offsets = *offsets;
-  paths->num_bounces = *num_bounces;
-  paths->diffuse = *diffuse;
-  paths->weight = *weight;
-  paths->stratum = *stratum;
-  paths->batch = *batch;
-  paths->flags = *flags;
+  paths->hits = std::make_shared<const std::vector<Hit>>(vector_of(*hits));
+  paths->offsets = vector_of(*offsets);
+  paths->num_bounces = vector_of(*num_bounces);
+  paths->diffuse = vector_of(*diffuse);
+  paths->weight = vector_of(*weight);
+  paths->stratum = vector_of(*stratum);
+  paths->batch = vector_of(*batch);
+  paths->flags = vector_of(*flags);
   if (*curved_cell) paths->curved_cell = rows_of<decltype(paths->curved_cell)::value_type>(**curved_cell, 7);
   if (*jones) paths->jones = rows_of<decltype(paths->jones)::value_type>(**jones, 4);
   if (*passes) paths->passes = **passes;
-  if (*pass_offsets) paths->pass_offsets = **pass_offsets;
+  if (*pass_offsets) paths->pass_offsets = vector_of(**pass_offsets);
   paths->scene = std::make_shared<const Scene>(**scene);
   paths->radar = *radar;
   paths->frame = *frame;

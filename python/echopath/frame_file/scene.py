@@ -87,7 +87,8 @@ def _read_shared(group, kind: str, count: int) -> list:
     for index in range(len(source)):
         items.append(read(read_group(source, str(index)), items))
     if count and not (indices.min() >= NONE and indices.max() < len(items)):
-        raise _core.FileError(f"{group.name}/{kind}: must lie in {NONE} to {len(items) - 1}")
+        raise _core.FileError(f"{group.name}/{kind}: must lie in {NONE} to {len(items) - 1}, as there are {len(items)} "
+                              f"{group.name}/{folder}")
     return [None if index == NONE else items[index] for index in indices]
 
 

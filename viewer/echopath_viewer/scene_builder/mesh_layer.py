@@ -19,17 +19,25 @@ class MeshLayer:
     """One actor for each mesh: coloured by mesh ID, translucent, at its place at some time."""
 
     def __init__(self, plotter, scene, palette, time: float):
-        self._plotter, self._scene, self._creases = plotter, scene, {}
-        self._is_moving = [scene.is_moving(mesh.id) for mesh in scene.meshes]
-        self._polys, self.actors, self._outlines = [], [], {}
+        self._plotter, self._creases = plotter, {}
+        self._set_scene(scene)
+        self._polys, self._placed, self.actors, self._outlines = [], [], [], {}
+        self._colours = np.full((len(self._is_moving), 3), -1)
         for mesh in scene.meshes:
             vertices = scene.world_vertices(mesh.id, time)
             self._polys.append(triangles_of(vertices, mesh.triangles))
+            self._placed.append(vertices.astype(np.float32))
             self.actors.append(self._add(plotter, f"mesh {mesh.id}", self._polys[-1], mesh.material.mirror))
             edges = self._edges_of(mesh, vertices)
             if len(edges):
                 self._outlines[mesh.id] = self._add_outline(plotter, mesh, vertices, edges)
         self.colour(palette)
+
+    def _set_scene(self, scene) -> None:
+        """Keeps what is asked for often: a scene makes the list of its meshes anew each time."""
+        self._scene, meshes = scene, scene.meshes
+        self._is_moving = [scene.is_moving(mesh.id) for mesh in meshes]
+        self._is_mirror = [mesh.material.mirror for mesh in meshes]
 
     @staticmethod
     def _add(plotter, name: str, poly, is_mirror: bool):
@@ -59,6 +67,9 @@ class MeshLayer:
 
     def _place(self, mesh: int, time: float) -> None:
         vertices = self._scene.world_vertices(mesh, time).astype(np.float32)
+        if np.array_equal(vertices, self._placed[mesh]):
+            return
+        self._placed[mesh] = vertices
         self._polys[mesh].points = vertices
         for edges in (self._outlines, self._creases):
             if mesh in edges:
@@ -73,7 +84,7 @@ class MeshLayer:
 
     def take(self, scene, palette, time: float) -> None:
         """Shows the meshes of a scene that `fits`, where they are at a time in s."""
-        self._scene, self._is_moving = scene, [scene.is_moving(mesh.id) for mesh in scene.meshes]
+        self._set_scene(scene)
         for mesh in range(len(self._polys)):
             self._place(mesh, time)
         self.colour(palette)
@@ -84,11 +95,13 @@ class MeshLayer:
             self._plotter.remove_actor(actor, render=False)
 
     def colour(self, palette) -> None:
-        for mesh, actor in enumerate(self.actors):
-            actor.prop.color = palette[mesh] / 255.0
+        """u8 [M, 3]; what has its colour already is left alone."""
+        for mesh in np.flatnonzero((np.asarray(palette) != self._colours).any(axis=1)):
+            self.actors[mesh].GetProperty().SetColor(*(palette[mesh] / 255.0))
             if mesh in self._outlines:
-                shade = 1.0 if self._scene.meshes[mesh].material.mirror else EDGE_SHADE
-                self._outlines[mesh].prop.color = shade * palette[mesh] / 255.0
+                shade = 1.0 if self._is_mirror[mesh] else EDGE_SHADE
+                self._outlines[mesh].GetProperty().SetColor(*(shade * palette[mesh] / 255.0))
+        self._colours = np.array(palette, int)
 
     def show(self, hidden: set, chosen) -> None:
         """hidden: mesh IDs; chosen: those whose edges are drawn."""
@@ -111,10 +124,10 @@ class MeshLayer:
             actor.mapper.dataset.points = np.asarray(self._polys[mesh].points)
             actor.SetVisibility(mesh in chosen)
         for mesh, actor in enumerate(self.actors):
-            actor.prop.opacity = self._opacity_of(mesh) if mesh not in chosen else CHOSEN_OPACITY
+            actor.GetProperty().SetOpacity(self._opacity_of(mesh) if mesh not in chosen else CHOSEN_OPACITY)
 
     def _opacity_of(self, mesh: int) -> float:
-        return MIRROR_OPACITY if self._scene.meshes[mesh].material.mirror else BODY_OPACITY
+        return MIRROR_OPACITY if self._is_mirror[mesh] else BODY_OPACITY
 
     def bounds_of(self, meshes) -> list:
         """Corners [N, 3] in m of the boxes around meshes."""

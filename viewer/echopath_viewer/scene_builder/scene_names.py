@@ -16,7 +16,10 @@ class SceneNames:
 
     def show(self, layer: str, points, texts: list) -> None:
         """The names of a layer in place of those that it had. points: [N, 3] m; texts: N; none: it has no names"""
-        self._of_layer[layer] = list(zip(np.asarray(points, float).reshape(-1, 3), texts))
+        named = [(tuple(point), text) for point, text in zip(np.asarray(points, float).reshape(-1, 3), texts)]
+        if named == self._of_layer.get(layer, []):
+            return
+        self._of_layer[layer] = named
         places = {}
         for named in self._of_layer.values():
             for point, text in named:

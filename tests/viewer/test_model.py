@@ -115,11 +115,11 @@ def test_the_strongest_rays_are_drawn_first(session):
     assert session.columns.power[others].max() <= power.min()
 
 
-def test_mesh_counts_count_each_path_once(session):
+def test_counts_of_nodes_have_each_path_once(session):
     session.set_filters(Filters(min_bounces=2))
-    slow = [sum(name in set(hit_names(session, path)) for path in np.flatnonzero(session.visible))
-            for name in session.mesh_names]
-    assert np.array_equal(session.mesh_counts(), slow)
+    slow = [sum(any(f"{name}/".startswith(f"{node.name}/") for name in hit_names(session, path))
+                for path in np.flatnonzero(session.visible)) for node in session.scene.nodes]
+    assert np.array_equal(session.node_counts(), slow)
 
 
 # --- parts ---
@@ -402,7 +402,7 @@ def test_a_record_without_paths_is_a_view_too(frame):
     session.set_filters(Filters(min_power_dbm=-100.0, mesh="walker"))
     session.select_cells(CellBox(0, 9, 0, 9))
     assert len(session.shown_rays()) == len(session.lit_rays()) == 0
-    assert not session.mesh_counts().any()
+    assert not session.node_counts().any()
 
 
 def test_listeners_hear_what_changed(session):

@@ -1,12 +1,15 @@
 """What makes a cell, asked for by real clicks."""
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 import echopath as ep
+from echopath_viewer.model.attribution import CellAttribution, Contribution
 from echopath_viewer.window.background_work import BackgroundWork
-from echopath_viewer.window.contributions import HINT
+from echopath_viewer.window.contributions import HINT, kind_of
 from echopath_viewer.window.phasors import PhasorDiagram
 from support.window import PATIENCE_MS, click_cell, settle, strongest_cell
 
@@ -33,6 +36,7 @@ def test_a_clicked_cell_tells_its_echoes_and_what_it_would_be_without(qtbot, win
     assert window.session.cell == (distance, velocity)
     level = window.session.parts.whole.level(0, 0)[velocity, distance]
     assert f"{level:.1f} dBm".replace("-", "−") in panel.title.text()
+    assert panel._rows[0].name in panel.title.text()
     assert "without wall_left " in panel.without.text() and "dB" in panel.without.text()
     assert panel.without.height() >= panel.without.sizeHint().height() and panel.without.sizeHint().width() <= panel.width()
     values = [one.value for one in panel._rows]
@@ -40,6 +44,16 @@ def test_a_clicked_cell_tells_its_echoes_and_what_it_would_be_without(qtbot, win
     total = frame.spectrum.values[0, 0, velocity, distance]
     assert panel.phasors.corners()[-1] == pytest.approx(abs(total), rel=1e-6, abs=1e-9 * abs(total))
     assert not panel.bar.isVisible()
+
+
+@pytest.mark.parametrize("kind", ["ghost", "object", "rest"])
+def test_a_cell_says_in_words_what_makes_most_of_it(kind):
+    family = SimpleNamespace(object="walker", via=("wall_left", "floor"), is_ghost=kind == "ghost")
+    group = SimpleNamespace(family=family)
+    weak, strong = Contribution("weak", 0.5j, 0.0), Contribution("walker itself", -2.0, 0.0, None if kind == "rest" else group)
+    assert CellAttribution(1.0, (weak, strong), ()).strongest is strong
+    words = "a ghost: walker by way of wall_left and floor" if kind == "ghost" else "walker itself"
+    assert kind_of(strong) == words
 
 
 def test_a_chosen_row_lights_its_paths_wherever_they_lie(qtbot, window, frame, panel):

@@ -26,7 +26,7 @@ def kept_file(frame, tmp_path, monkeypatch):
 
 def shown(session) -> list:
     """All that columns and orders decide."""
-    found = [session.shown_rays(), session.mesh_counts(), session.listed_rays(), session.columns.power]
+    found = [session.shown_rays(), session.node_counts(), session.listed_rays(), session.columns.power]
     session.set_filters(Filters(min_power_dbm=-130.0))
     found += [session.shown_rays(), session.visible]
     return found + [session.index.mask_of(CellBox(*box)) for box in BOXES]

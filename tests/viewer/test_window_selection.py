@@ -135,7 +135,9 @@ def test_the_check_boxes_of_the_tree_hide_meshes(qtbot, window):
     assert [bool(actor.GetVisibility()) for actor in actors] == [False, False, True, True]
     assert walker.child(0).checkState(0) == Qt.CheckState.Unchecked
     counts = [walker.child(row).text(1) for row in range(2)]
-    assert counts == [f"{count:,}" for count in window.session.mesh_counts()[:2]]
+    assert counts == [f"{count:,}" for count in window.session.node_counts()[1:3]]
+    either = np.asarray(ep.hits("walker/*").matches(window.session.paths)) & window.session.visible
+    assert walker.text(1) == f"{np.count_nonzero(either):,}"
 
 
 def test_the_map_of_a_mesh_is_made_anew_when_the_filters_have_come_to_rest(qtbot, window):

@@ -57,6 +57,11 @@ class CellAttribution:
     without: tuple
 
     @property
+    def strongest(self) -> Contribution:
+        """The largest contribution."""
+        return max(self.contributions, key=lambda one: abs(one.value))
+
+    @property
     def level_dbm(self) -> float:
         """Of the cell, dB re 1 mW."""
         return float(in_dbm(abs(self.value) ** 2, SMALLEST_POWER))

@@ -8,7 +8,7 @@ from .view_state import apply_state
 
 def make_ready(session: Session) -> Session:
     """The session, once it has made what its picture and its lists need: for a thread."""
-    session.mesh_counts()
+    session.node_counts()
     session.segments(session.shown_rays())
     return session
 

@@ -61,7 +61,7 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
         self.is_node_stale = False     # that map is of other filters
         self.chirp = self.radar.waveform.num_chirps // 2
         self._listeners, self._matches, self._bundles = [], OrderedDict(), []
-        self._kept, self._groups, self._amplitude = view_input.kept, None, None
+        self._kept, self._groups, self._node_touches, self._amplitude = view_input.kept, None, None, None
         self._read_channel(0, 0)
         self._refresh_visible()
 

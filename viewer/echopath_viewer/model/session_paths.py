@@ -139,11 +139,22 @@ class SessionPaths:
         drawn = self.shown_rays()
         return drawn[np.argsort(-self.columns.power[drawn], kind="stable")]
 
-    def mesh_counts(self):
-        """How many visible paths hit each mesh: [M]."""
-        groups = self.groups
-        counts = np.bincount(groups.group_of_path[self.visible], minlength=len(groups))
-        return counts @ groups.touching(len(self.mesh_names)).astype(np.int64)
+    def node_counts(self):
+        """How many visible paths hit each node of the scene or what is below it: [N]."""
+        counts = np.bincount(self.groups.group_of_path[self.visible], minlength=len(self.groups))
+        return self._touched_nodes @ counts
+
+    @property
+    def _touched_nodes(self):
+        """Which nodes each group of paths touches: bool [N, G]."""
+        if self._node_touches is None:
+            touched = np.zeros((len(self.scene.nodes), len(self.groups)), bool)
+            touched[[mesh.node for mesh in self.scene.meshes]] = self.groups.touching(len(self.mesh_names)).T
+            for number, node in reversed(list(enumerate(self.scene.nodes))):  # parents come before their children
+                if node.parent >= 0:
+                    touched[node.parent] |= touched[number]
+            self._node_touches = touched
+        return self._node_touches
 
     def set_max_rays(self, count: int) -> None:
         self.max_rays, self._sample, self._lit_rays = int(count), None, None

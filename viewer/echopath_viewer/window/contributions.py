@@ -139,7 +139,7 @@ class ContributionsPanel(QtWidgets.QWidget):
         place = f"{spectrum.range[distance]:.2f} m, {spectrum.velocity[velocity]:+.2f} m/s"
         if self.session.beam is not None:
             place += ", beam at {:+.1f}\u00b0, {:+.1f}\u00b0".format(*np.degrees(self.session.beam))
-        self.title.setText(for_pictures(f"<b>{place}: {cell.level_dbm:.1f} dBm</b>"))
+        self.title.setText(for_pictures(f"<b>{place}: {cell.level_dbm:.1f} dBm</b>, mostly {kind_of(cell.strongest)}"))
         self._told = [for_pictures(f"without {name} {change:+.1f} dB") for name, change in cell.without
                       if abs(change) >= LEAST_CHANGE_DB]
         self._break_lines()
@@ -178,6 +178,14 @@ class ContributionsPanel(QtWidgets.QWidget):
         rows = {index.row() for index in self.table.selectedIndexes()}
         if self.session is not None and len(rows) == 1:
             self.session.select_family(self._rows[rows.pop()].group)
+
+
+def kind_of(contribution) -> str:
+    """What a contribution is, in words for whoever sees the panel for the first time."""
+    family = None if contribution.group is None else contribution.group.family
+    if family is None or not (family.object and family.is_ghost):
+        return contribution.name
+    return f"a ghost: {family.object} by way of {' and '.join(family.via)}"
 
 
 def _swatch(colour: str) -> QtGui.QIcon:

@@ -4,6 +4,7 @@ from __future__ import annotations
 from .qt import Qt, QtCore, QtGui, QtWidgets, Signal
 
 NAME, COUNT = 0, 1
+MOST_OPEN = 24  # rows: more objects than that show their own alone
 NODE_ROLE = Qt.ItemDataRole.UserRole
 
 
@@ -41,7 +42,8 @@ class SceneTree(QtWidgets.QTreeWidget):
             item.setCheckState(NAME, Qt.CheckState.Checked)
             self._items[node.name] = item
             items.append(item)
-        self.expandToDepth(0)
+        if sum(1 + self.topLevelItem(row).childCount() for row in range(self.topLevelItemCount())) <= MOST_OPEN:
+            self.expandToDepth(0)
         self.session = session
         self.refresh()
 
@@ -61,8 +63,9 @@ class SceneTree(QtWidgets.QTreeWidget):
     def refresh(self) -> None:
         """Check marks, colours and counts as they are now."""
         session, self.session = self.session, None
-        for mesh, (item, count) in enumerate(zip(self._mesh_items.values(), session.mesh_counts())):
+        for item, count in zip(self._items.values(), session.node_counts()):
             item.setText(COUNT, f"{count:,}")
+        for mesh, item in self._mesh_items.items():
             item.setIcon(NAME, _swatch(session.palette[mesh]))
             hidden = mesh in session.hidden_meshes
             item.setCheckState(NAME, Qt.CheckState.Unchecked if hidden else Qt.CheckState.Checked)

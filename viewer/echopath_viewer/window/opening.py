@@ -1,6 +1,8 @@
 """From a file, a folder or a drop to what the window shows."""
 from __future__ import annotations
 
+import gc
+
 import echopath as ep
 from echopath.sequence.unused_memory import give_back_memory
 
@@ -16,6 +18,12 @@ from .qt import QtCore
 from .remembered import remember_file
 
 REST_MS = 1000  # after a file was read, until lists and signals are made of it
+
+
+def _give_back() -> None:
+    """What reading has left, and the session before: the next file would come on top of it."""
+    gc.collect()
+    give_back_memory()
 
 
 class Opening:
@@ -66,7 +74,7 @@ class Opening:
         self._end_loading()
         self._go_on_with_choices(session)
         self._follow(session)
-        QtCore.QTimer.singleShot(REST_MS, give_back_memory)  # what reading has left: a second file would come on top of it
+        QtCore.QTimer.singleShot(REST_MS, _give_back)
         if self._remembers and not session.is_kept:
             path = self._path_read
             self.keeping.start(lambda progress: keep_orders(path, session))

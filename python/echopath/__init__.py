@@ -56,6 +56,7 @@ from .scene_file import SceneFile, load_scene
 from .sensor_files import SensorConfig, load_radar, load_sensor, save_raw
 from .sensor_files.antenna_patterns import load_antenna
 from .sequence import SavedFrame, Sequence, StoredSequence, load_sequence
+from .signals.around_corners import synthesize_around_corners
 from .signals.if_signal import add_noise, noise_power, synthesize
 from .signals.interference import interference
 from .signals.interference_ways import interference_radar
@@ -97,8 +98,8 @@ __all__ = [
     "receive_parts",
     "received_power", "received_powers", "remove_clutter", "renew", "save_frame", "save_label_images", "save_labels",
     "save_raw", "set_num_threads", "sheet_coefficients", "simulate", "spectrogram", "spectrogram_labels",
-    "speed_of_light", "synthesize", "trace", "track", "truth", "unresolved", "validity", "view", "virtual_array",
-    "visibility",
+    "speed_of_light", "synthesize", "synthesize_around_corners", "trace", "track", "truth", "unresolved", "validity",
+    "view", "virtual_array", "visibility",
 ]
 
 

@@ -164,13 +164,13 @@ def fan_in_a_duct() -> list[ep.Mesh]:
 
 def almond() -> list[ep.Mesh]:
     """The almond of Woo, Wang, Schuh and Sanders 1993: half an ellipsoid, and a tip toward +x."""
-    rear = -0.416667 * np.cos(np.linspace(0.0, np.pi / 2.0, 61))[:-1]
-    front = 0.583333 * np.sin(np.linspace(0.0, np.pi / 2.0, 81))
+    rear = -0.416667 * np.cos(np.linspace(0.0, np.pi / 2.0, 31))[:-1]
+    front = 0.583333 * np.sin(np.linspace(0.0, np.pi / 2.0, 41))
     along = np.concatenate([rear, front])
     girth = np.where(along < 0.0, 0.193333 * np.sqrt(np.maximum(1.0 - (along / 0.416667) ** 2, 0.0)),
                      4.83345 * (np.sqrt(1.0 - (along / 2.08335) ** 2) - 0.96))
     girth[[0, -1]] = 0.0
-    around = np.linspace(0.0, 2.0 * np.pi, 181)
+    around = np.linspace(0.0, 2.0 * np.pi, 91)
     rings = [np.column_stack([np.full(around.size, x), g * np.cos(around), g / 3.0 * np.sin(around)]) * ALMOND_LENGTH
              for x, g in zip(along, girth)]
     return [mesh_of([quad for pair in zip(rings, rings[1:]) for quad in wall(*pair)])]

@@ -47,27 +47,53 @@ def around_corners(scene: _core.Scene, radar: _core.Radar, *, time: float = 0.0,
     scene, radar: of the frame; time: s; num_rays: for the level of each object alone
     Returns a list of AroundCorner, of objects with hidden vertices. Raises ValueError for motions that do not cover the time.
     """
+    found = [_told(scene, radar, hidden, time, num_rays) for hidden in hidden_objects(scene, radar, time)]
+    return sorted(found, key=lambda one: -one.power)
+
+
+@dataclasses.dataclass(frozen=True)
+class Hidden:
+    """Vertices [N, 3] of an object that face the radar, and what comes to them around edges.
+
+    ways: of the first transmitter and the first receiver; is_hidden: [N], from either; chosen: [N], among those of points_of
+    """
+
+    name: str
+    alone: _core.Scene
+    points: np.ndarray
+    chosen: np.ndarray
+    ways: tuple[dict, dict]
+    is_hidden: np.ndarray
+
+    @property
+    def shares(self) -> np.ndarray:
+        """[N], of the field there and back; 0 where nothing hides the point."""
+        return np.where(self.is_hidden, self.ways[0]["share"] * self.ways[1]["share"], 0.0)
+
+
+def hidden_objects(scene, radar, time) -> list[Hidden]:
+    """Objects of which something else hides a part from the first antennas at a time in s."""
     names = list(dict.fromkeys(mesh.name.split("/")[0] for mesh in scene.meshes))
-    found = [_of_object(scene, radar, name, names, time, num_rays) for name in names]
-    return sorted((one for one in found if one), key=lambda one: -one.power)
+    found = (_hidden(scene, radar, name, names, time) for name in names)
+    return [one for one in found if one.is_hidden.any()]
 
 
-def _of_object(scene, radar, name, names, time, num_rays) -> AroundCorner | None:
-    alone = _alone(scene, name, names)
-    points = _points_of(scene, name, time)
+def _hidden(scene, radar, name, names, time) -> Hidden:
+    alone, points = _alone(scene, name, names), points_of(scene, name, time)
     ends = (radar.transmitters[0], radar.receivers[0])
-    facing = np.all([_is_free(_ways(alone, radar, end, points, time)) for end in ends], axis=0)  # not hidden by the object itself
-    ways = [_ways(scene, radar, end, points[facing], time) for end in ends]
-    hidden = ~np.all([_is_free(way) for way in ways], axis=0)
-    if not hidden.any():
-        return None
-    factor = np.where(hidden, (ways[0]["share"] * ways[1]["share"]) ** 2, 0.0)
-    best, mean = int(np.argmax(factor)), float(factor[hidden].mean())
-    mesh_id = max(int(way["mesh_id"][best]) for way in ways if way["mesh_id"][best] != NO_MESH) if mean > 0.0 else NO_MESH
-    power = _level(alone, radar, time, num_rays) * float(factor.mean()) if mean > 0.0 else 0.0
-    return AroundCorner(name, float(hidden.mean()), scene.meshes[mesh_id].name if mean > 0.0 else "", ways[0]["point"][best],
-                        0.5 * float(ways[0]["length"][best] + ways[1]["length"][best]),
-                        -10.0 * float(np.log10(mean)) if mean > 0.0 else np.inf, power)
+    facing = np.all([_is_free(ways_to(alone, radar, end, points, time)) for end in ends], axis=0)  # seen were it alone
+    ways = tuple(ways_to(scene, radar, end, points[facing], time) for end in ends)
+    return Hidden(name, alone, points[facing], np.flatnonzero(facing), ways, ~np.all([_is_free(way) for way in ways], axis=0))
+
+
+def _told(scene, radar, hidden: Hidden, time, num_rays) -> AroundCorner:
+    factor = hidden.shares ** 2
+    best, mean = int(np.argmax(factor)), float(factor[hidden.is_hidden].mean())
+    around = [int(way["mesh_id"][best]) for way in hidden.ways if way["mesh_id"][best] != NO_MESH]
+    return AroundCorner(hidden.name, float(hidden.is_hidden.mean()), scene.meshes[around[0]].name if mean > 0.0 else "",
+                        hidden.ways[0]["point"][best], 0.5 * float(sum(way["length"][best] for way in hidden.ways)),
+                        -10.0 * float(np.log10(mean)) if mean > 0.0 else np.inf,
+                        level_of(hidden.alone, radar, time, num_rays) * float(factor.mean()) if mean > 0.0 else 0.0)
 
 
 def _alone(scene, name, names):
@@ -84,13 +110,14 @@ def _is_free(ways) -> np.ndarray:
     return (ways["mesh_id"] == NO_MESH) & (ways["share"] == 1.0)
 
 
-def _points_of(scene, name, time) -> np.ndarray:
+def points_of(scene, name, time) -> np.ndarray:
     """Vertices [N, 3] of an object, at most MOST_POINTS, which stand for its surface."""
     vertices = np.concatenate([scene.world_vertices(mesh.id, time) for mesh in scene.meshes if mesh.name.split("/")[0] == name])
     return vertices[np.unique(np.linspace(0, len(vertices) - 1, min(len(vertices), MOST_POINTS)).astype(int))]
 
 
-def _ways(scene, radar, antenna, points, time) -> dict:
+def ways_to(scene, radar, antenna, points, time) -> dict:
+    """The ways from an antenna at a time in s to points [N, 3] in m (_core.ways_around_edges)."""
     world_from_radar = radar.world_from_radar(time)
     rotation, place = world_from_radar[:3, :3], world_from_radar[:3, 3]
     scalar, vector = antenna.orientation[0], antenna.orientation[1:]
@@ -100,7 +127,7 @@ def _ways(scene, radar, antenna, points, time) -> dict:
                                    antenna=rotation @ antenna.position + place, polarization=rotation @ along, points=points)
 
 
-def _level(alone, radar, time, num_rays) -> float:
+def level_of(alone, radar, time, num_rays) -> float:
     """W that a scene sends straight back."""
     from ..tracing.traces import trace
 

@@ -50,11 +50,14 @@ def test_the_shadow_of_a_half_plane_is_sommerfelds(polarization, is_electric):
     assert found["length"] == pytest.approx(BEFORE + BEHIND, rel=1e-9)
 
 
-def building(scene):
-    corners = np.array([(x, y, z) for x in (8.0, 20.0) for y in (-12.0, -1.0) for z in (0.0, 8.0)])
+def block(low, high):
+    corners = np.array([(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
     faces = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
-    mesh = ep.Mesh(corners, np.array([half for a, b, c, d in faces for half in ((a, b, c), (a, c, d))]))
-    scene.add(mesh, name="building", material="concrete")
+    return ep.Mesh(corners, np.array([half for a, b, c, d in faces for half in ((a, b, c), (a, c, d))]))
+
+
+def building(scene):
+    scene.add(block((8.0, -12.0, 0.0), (20.0, -1.0, 8.0)), name="building", material="concrete")
 
 
 @pytest.fixture(scope="module")
@@ -88,3 +91,39 @@ def test_nothing_is_told_of_who_is_seen(radar):
     assert [one.name for one in ep.around_corners(scene, radar, num_rays=500)] in ([], ["building"])
     told = next(effect for effect in ep.effects(scene, radar) if effect.name == "diffraction into shadows")
     assert not told.modelled and "around_corners" in told.reason
+
+
+def hidden_block():
+    """A rough block that drives away behind the corner."""
+    scene = ep.Scene()
+    building(scene)
+    scene.add(block((-0.2, -0.2, 0.0), (0.2, 0.2, 1.5)), name="block", position=(30.0, -2.6, 0.3), yaw=0.4,
+              material=ep.Material(conductor=True, scattering=0.7), motion=ep.LinearMotion(velocity=(2.0, 0, 0)))
+    return scene
+
+
+def test_the_signal_of_hidden_objects_has_their_power_range_and_speed(radar):
+    chirps = radar.waveform.replace(num_samples=256, num_chirps=32)
+    radar = radar.replace(waveform=chirps)
+    scene = hidden_block()
+    told = next(one for one in ep.around_corners(scene, radar, time=0.5 * radar.frame_duration) if one.name == "block")
+    powers, place = [], np.zeros(2)
+    for seed in range(12):
+        cube = ep.synthesize_around_corners(scene, radar, seed=seed)
+        powers.append(np.mean(np.abs(cube) ** 2))
+        values = ep.range_doppler(cube, radar, window="hann")
+        power = np.abs(values.values[0, 0]) ** 2
+        row, column = np.unravel_index(np.argmax(power), power.shape)
+        place += np.array([values.velocity[row], values.range[column]]) / 12
+    assert 10.0 * np.log10(np.mean(powers) / told.power) == pytest.approx(0.0, abs=2.0)  # 12 speckles: 1.3 dB
+    assert place[1] == pytest.approx(told.length, abs=0.3)
+    assert place[0] == pytest.approx(2.0 * 10.0 / np.hypot(10.0, 1.6), abs=values.velocity[1] - values.velocity[0])
+
+
+def test_what_is_seen_adds_no_signal_and_codes_are_refused(radar):
+    scene = ep.Scene()
+    scene.add(ep.actors.pedestrian(height=1.78), name="person", position=(24.0, 3.0, 0.0))
+    assert not ep.synthesize_around_corners(scene, radar).any()
+    both = radar.replace(transmitters=[ep.Antenna((0, 0, 1)), ep.Antenna((0, 0.1, 1))], multiplexing="bpm")
+    with pytest.raises(ValueError, match="multiplexing"):
+        ep.synthesize_around_corners(scene, both)

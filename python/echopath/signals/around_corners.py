@@ -1,0 +1,71 @@
+"""The signal of hidden objects around edges: diffraction into shadows, to be added to that of a trace."""
+from __future__ import annotations
+
+import numpy as np
+
+from .. import _core
+from ..arguments.checks import checked, count, real
+from ..paths.around_corners import NO_MESH, Hidden, hidden_objects, level_of, points_of, ways_to
+from ..transmit import signal_shape
+
+_STREAM = 0x65646765  # tells these random numbers from others of the same seed
+NODES = np.array([0.0, 0.5, 1.0])  # of the frame, between which lengths are parabolas
+
+
+@checked(start_time=real(unit="s"), seed=count(0, 2**32 - 1), num_rays=count(1, 2**24))
+def synthesize_around_corners(scene: _core.Scene, radar: _core.Radar, *, start_time: float = 0.0, seed: int = 1,
+                              num_rays: int = 5000) -> np.ndarray:
+    """The signal that hidden objects send around one edge there and one back: what `synthesize` of a trace does not have.
+
+    The vertices of `around_corners` are scatterers with phases of their own, whose ways around their edges are followed over
+    the frame; on the average over `seed` the power is that which `around_corners` tells. A vertex that comes into sight, or
+    whose edge changes within the frame, is left out.
+    scene, radar: of the frame, whose transmitters take turns; start_time: s; seed: of the phases; num_rays: as there
+    Returns an array in the shape of `synthesize`, in sqrt(W), without noise. Raises ValueError for transmitters that send at
+    once.
+    """
+    if len(radar.transmitters) > 1 and radar.multiplexing != "tdm":
+        raise ValueError(f'radar: must have multiplexing "tdm", got {radar.multiplexing!r}')
+    cube = np.zeros(signal_shape(radar), complex)
+    middle = start_time + 0.5 * radar.frame_duration
+    for number, hidden in enumerate(hidden_objects(scene, radar, middle)):
+        level = level_of(hidden.alone, radar, middle, num_rays) / len(hidden.points)
+        phases = np.random.default_rng([_STREAM, seed, number]).random(len(hidden.points))
+        _add(cube, scene, radar, hidden, np.sqrt(level) * hidden.shares * np.exp(2j * np.pi * phases), start_time)
+    return cube
+
+
+def _add(cube, scene, radar, hidden: Hidden, amplitudes, start_time) -> None:
+    """Adds the echoes of one object, amplitudes [N] in sqrt(W), to every channel."""
+    times = start_time + NODES * radar.frame_duration
+    points = [points_of(scene, hidden.name, time)[hidden.chosen] for time in times]
+    ends = {end: [_lengths(scene, radar, end, points, times) for end in antennas]
+            for end, antennas in (("out", radar.transmitters), ("back", radar.receivers))}
+    kept = np.all([is_kept for ways in ends.values() for _, is_kept in ways], axis=0) & (amplitudes != 0.0)
+    if not kept.any():
+        return
+    num_slots, waveform = len(radar.transmitters), radar.waveform
+    half = 0.5 * waveform.num_samples / waveform.sampling_rate
+    chirps = np.arange(waveform.num_chirps) * num_slots * waveform.chirp_interval + half
+    for i, (out, _) in enumerate(ends["out"]):
+        share = (chirps + i * waveform.chirp_interval) / radar.frame_duration
+        for j, (back, _) in enumerate(ends["back"]):
+            delays = _parabolas(share) @ (out + back)[:, kept] / _core.speed_of_light
+            cube[i, j] += _core.synthesize_echoes(waveform, delays, np.broadcast_to(amplitudes[kept], delays.shape),
+                                                  num_slots=num_slots)
+
+
+def _lengths(scene, radar, antenna, points, times) -> tuple[np.ndarray, np.ndarray]:
+    """m [nodes, N] from an antenna, and which points [N] keep their edge."""
+    ways = [ways_to(scene, radar, antenna, at, time) for at, time in zip(points, times)]
+    meshes = np.array([way["mesh_id"] for way in ways])
+    steps = np.linalg.norm(np.diff([way["point"] for way in ways], axis=0), axis=-1)  # of the point on the edge
+    moved = np.linalg.norm(np.diff(points, axis=0), axis=-1)
+    is_kept = np.all(meshes == meshes[0], axis=0) & np.all((steps <= moved + 0.1) | (meshes[0] == NO_MESH), axis=0)
+    return np.array([way["length"] for way in ways]), is_kept & np.all([way["share"] > 0.0 for way in ways], axis=0)
+
+
+def _parabolas(share) -> np.ndarray:
+    """Weights [N, nodes] of parabolas through the nodes, at shares [N] of the frame."""
+    factors = [[(share - other) / (node - other) for other in NODES if other != node] for node in NODES]
+    return np.stack([np.prod(of_node, axis=0) for of_node in factors], axis=-1)

@@ -13,7 +13,8 @@ from .rules import RULES, Case, Effect, Settings
 # What no scene and no setting can ask for.
 OUT_OF_SCOPE = [
     Effect("creeping waves", False, "out of scope"),
-    Effect("diffraction into shadows", False, "not modelled by traces: ep.around_corners tells its power, ep.synthesize_around_corners its signal"),
+    Effect("diffraction into shadows", False,
+           "not modelled by traces: ep.around_corners tells its power, ep.synthesize_around_corners its signal"),
 ]
 
 

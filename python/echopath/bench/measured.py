@@ -26,7 +26,7 @@ NUM_RAYS, QUICK_NUM_RAYS = 2 ** 15, 2 ** 13
 STEP, QUICK_STEP = 1, 3                    # of the table's azimuths
 FLOOR_DB, SUITE_FLOOR_DB, PEAK_DB = 60.0, 80.0, 20.0
 LEAST = 1e-9                               # m^2, least cross section that is shown
-BOUNCES, DUCT_BOUNCES = 4, 12
+BOUNCES, DUCT_BOUNCES = 4, 40
 DUCTS = ("cobra duct", "cylindrical duct", "fan in a duct")
 LIMITS = {("plate", "vv"): 1.3, ("plate", "hh"): 1.5, ("camera box", "vv"): 1.2, ("camera box", "hh"): 1.2,
           **{(name, polarization): 1.5 for name in DUCTS[:2] for polarization in ("vv", "hh")}}  # dB

@@ -1,7 +1,7 @@
 """Diffraction into shadows: edges against Sommerfeld's half plane, and what hidden objects are said to send."""
 import numpy as np
 import pytest
-from scipy.special import fresnel
+from scipy.special import fresnel, jv
 
 import echopath as ep
 from echopath import _core
@@ -54,6 +54,31 @@ def block(low, high):
     corners = np.array([(x, y, z) for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
     faces = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
     return ep.Mesh(corners, np.array([half for a, b, c, d in faces for half in ((a, b, c), (a, c, d))]))
+
+
+@pytest.mark.parametrize("polarization, sign", [((0.0, 0.0, 1.0), -1.0), ((1.0, -1.0, 0.0), 1.0)])
+def test_the_shadow_of_a_right_angle_is_that_of_the_exact_series(polarization, sign):
+    """The eigenfunctions of a wedge for a plane wave (Balanis, Advanced Engineering Electromagnetics, 13.3), 100 wavelengths
+    from the edge: from the boundary of the shadow to a degree from the dark face."""
+    frequency, source, ratio = 1e9, np.radians(50.0), 1.5
+    wavenumber = 2.0 * np.pi * frequency / 299792458.0
+    distance, far = 200.0 * np.pi / wavenumber, 3e5
+    scene = ep.Scene()
+    scene.add(block((0.0, -4000.0, -4000.0), (4000.0, 0.0, 4000.0)), name="wedge", material=ep.Material.metal())
+    degrees = np.array([230.1, 231.0, 234.0, 240.0, 250.0, 260.0, 269.0])
+    around = np.radians(degrees)
+    points = distance * np.stack([-np.sin(around), -np.cos(around), 0.0 * around], axis=-1)
+    antenna = far * np.array([-np.sin(source), -np.cos(source), 0.0])
+    found = _core.ways_around_edges(scene, time=0.0, frequency=frequency, antenna=antenna, polarization=polarization,
+                                    points=points)
+    assert np.all(found["mesh_id"] == 0)
+    orders = np.arange(1300)
+    terms = np.where(orders > 0, 2.0, 1.0) / ratio * np.exp(0.5j * np.pi * orders / ratio) * jv(orders / ratio, 200.0 * np.pi)
+    angles = [np.cos(np.outer(around + side * source, orders / ratio)) for side in (-1.0, 1.0)]
+    exact = np.abs((angles[0] + sign * angles[1]) @ terms)
+    difference = 20.0 * np.log10(found["share"] / exact)
+    in_transition = degrees < 250.0
+    assert np.abs(difference[in_transition]).max() < 0.5 and np.abs(difference[~in_transition]).max() < 0.1
 
 
 def building(scene):

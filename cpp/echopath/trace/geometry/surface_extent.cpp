@@ -34,6 +34,13 @@ double SurfaceAround::distance_to_wall(const Vec3& along, double reach) const {
   return meets ? std::min(met.distance, reach) : reach;
 }
 
+bool SurfaceAround::has_wall(const Vec3& along, double height, double reach) const {
+  RayHit met;
+  ++num_queries_;
+  const Vec3 from = point_.position + height * point_.normal;
+  return geometry_.intersect_from_surface(from, along, met, sees_) == EmbreeScene::Verdict::kHit && met.distance <= reach;
+}
+
 // Returns how far the triangle at that distance goes on; it is negative where the surface is not there.
 double SurfaceAround::end_of_triangle_at(const Vec3& along, double distance) const {
   RayHit met;

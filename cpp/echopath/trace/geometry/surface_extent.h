@@ -37,6 +37,8 @@ class SurfaceAround {
   bool reaches(const Vec3& along, double distance) const {
     return distance_to_rim(along) >= distance || is_at(along, distance);
   }
+  // Returns whether something stands within `reach` (m) at a height (m) above the surface; this costs a ray.
+  bool has_wall(const Vec3& along, double height, double reach) const;
   // Finds its end where it does not reach as far as `reach` (m). An edge lies where the last triangle ends, so that the
   // distance does not depend on how the surface is cut into triangles and meshes. This costs some ten rays.
   SurfaceEnd find_end(const Vec3& along, double reach) const;

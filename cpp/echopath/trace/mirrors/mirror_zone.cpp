@@ -55,9 +55,11 @@ class AxisCover {
       width += ends[k].distance;
     }
     if (width >= ample) return cover;
-    // Between two walls it ends at both: the images in them go on only as far as the walls rise.
+    // Between two walls the images in them go on only as far as the walls rise.
     const bool is_trough = ends[0].is_wall && ends[1].is_wall;
-    const double covered = is_trough ? width : half_covered(ends[0]) + half_covered(ends[1]);
+    double covered = 0.0;
+    for (size_t k = 0; k < 2; ++k)
+      covered += is_trough && !rises(ways[k], ends[k]) ? ends[k].distance : half_covered(ends[k]);
     cover.share = std::min(1.0, 0.5 * covered / axis_.half);
     if (!lit_.target) return cover;
     const double narrowness = std::min(1.0, (2.0 * axis_.half / width - 1.0 / kAmple) / (1.0 - 1.0 / kAmple));
@@ -72,6 +74,14 @@ class AxisCover {
     double width = 0.0;
     for (const Vec3& way : ways) width += mirror_.distance_to_rim(way);
     return width >= ample || mirror_.is_at(ways[0], ample) || mirror_.is_at(ways[1], ample);
+  }
+
+  // Returns whether the wall at an end is as high as the farther antenna, unfolded, stands above the surface: no ray between
+  // the antennas and the surface beyond the wall is higher where it meets the wall.
+  bool rises(const Vec3& way, const SurfaceEnd& end) const {
+    const MirrorView& view = lit_.view;
+    const double height = -view.point.normal.dot(view.arrival) * std::max(view.before, view.behind);
+    return mirror_.has_wall(way, height, end.distance + height);
   }
 
   double half_covered(const SurfaceEnd& end) const {

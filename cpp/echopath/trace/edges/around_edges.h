@@ -2,8 +2,9 @@
 // Finds what a wave brings around one edge to points that an antenna does not see: diffraction into shadows.
 //
 // The field is that of the uniform theory of diffraction (em/edges/edge_shadow.h) about Keller's point of the edge, by
-// stationary phase along it. All edges of bodies count as those of perfect conductors: the part that follows from the shadow, which is
-// most of it near the shadow's boundary, is that of any opaque body. Sheets and meshes that deform have none.
+// stationary phase along it. All edges of bodies count as those of perfect conductors: the part that follows from the
+// shadow, which is most of it near the shadow's boundary, is that of any opaque body. Sheets and meshes that deform have
+// none.
 #include <limits>
 #include <vector>
 

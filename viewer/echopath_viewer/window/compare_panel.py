@@ -82,8 +82,11 @@ class ComparePanel(SeenPanel):
             self.keep_file(path)
 
     def _title(self) -> str:
+        """What tells it from others first: there is room for few words above a map."""
         session = self.session
-        return "{}, TX {}, RX {}, {:.3f} s".format(title_of(session.part), *session.channel, session.paths.frame.start_time)
+        name = str(session.title).rpartition("/")[2] or "paths"
+        return "{}, {:.3f} s, {}, TX {}, RX {}".format(name, session.paths.frame.start_time, title_of(session.part),
+                                                       *session.channel)
 
     def refresh(self) -> None:
         """All three maps."""

@@ -148,11 +148,10 @@ class View3D(QtInteractor):
     @contextmanager
     def _coarse_pixels(self):
         """As coarse as the pace of the camera asks for: pyvistaqt stretches what VTK has drawn over the widget."""
-        times = 1 if self._pace is None else self._pace.coarseness
+        times, window = 1 if self._pace is None else self._pace.coarseness, self.render_window
         if times == 1:
             yield
             return
-        window = self.render_window
         size, dpi = window.GetSize(), window.GetDPI()
         window.SetSize(*(max(length // times, 1) for length in size))
         window.SetDPI(max(dpi // times, 1))  # names keep their size
@@ -186,7 +185,7 @@ class View3D(QtInteractor):
         """Fewer rays and coarser pixels as long as the camera moves, where all take too long; None: it does not any more."""
         if self.builder is None:
             return
-        if pace is not None and pace is not self._pace:
+        if pace not in (None, self._pace):
             pace.begin()
         self._pace = pace
         self.builder.show_first_rays(None if pace is None else pace.num_rays)

@@ -25,7 +25,7 @@ constexpr double kFirstPhase = 100.0;    // rad
 constexpr double kFirstAmplitude = 1.0;  // relative to the largest
 
 // A path whose launch cell filters its amplitude down to this share of the tolerance, of what it would be without the
-// filter or of the strongest path, needs no polynomial that follows it.
+// filter, needs no polynomial that follows it.
 constexpr double kDarkShare = 1e-5;
 
 // Returns the order at which a tail found at `order` would be within its tolerance.
@@ -247,7 +247,7 @@ void Replayer::raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::
     raise(settings_.phase_tolerance, radio_.wavenumber * kSpeedOfLight * tails.delay[p], kFirstPhase,
           needed[p].order_for_length);
     if (tails.amplitude[p] <= settings_.amplitude_tolerance) continue;
-    const double dark = settings_.amplitude_tolerance * kDarkShare * std::max(unfiltered[p], strongest_);
+    const double dark = settings_.amplitude_tolerance * kDarkShare * unfiltered[p];
     if (is_dark(nodes, echoes, p, dark)) continue;
     raise(settings_.amplitude_tolerance, tails.amplitude[p], kFirstAmplitude, needed[p].order_for_amplitude);
   }

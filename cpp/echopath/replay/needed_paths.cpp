@@ -37,14 +37,14 @@ std::vector<uint32_t> Replayer::meshes_of(std::span<const int64_t> paths) const 
   return meshes;
 }
 
-void Replayer::find_strongest(Job* job) {
+void Replayer::find_strongest() {
   if (strongest_ > 0.0) return;
   std::vector<int64_t> some;
   const int64_t step = std::max<int64_t>(1, paths_.num_paths() / kStrongestAmong);
   for (int64_t path = 0; path < paths_.num_paths(); path += step) some.push_back(path);
   std::vector<double> lengths;
   std::vector<std::complex<double>> amplitudes;
-  evaluate(some, paths_.frame.trace_time, lengths, amplitudes, job);
+  evaluate(some, paths_.frame.trace_time, lengths, amplitudes);
   for (size_t i = 0; i < some.size(); ++i) strongest_ = std::max(strongest_, std::abs(amplitudes[i]));
 }
 

@@ -29,7 +29,7 @@ class Replayer {
   std::vector<Echoes> still(std::span<const int64_t> paths) const;
   // Finds the amplitude of the strongest of some paths at the time of the trace, between the first antennas. From then on
   // interpolated() leaves out paths that it may.
-  void find_strongest(Job* job = nullptr);
+  void find_strongest();
   // Interpolates the echoes of `paths` by a polynomial (grids()). Paths are left out and added to `unfollowed`, in their
   // order, where the last two coefficients of their length or of their amplitude exceed the tolerance; or where they are
   // negligible: their amplitudes stay so small in all channels, throughout the frame (is_dark), that the sum of all such

@@ -125,7 +125,7 @@ void ReplayStream::add_still(const std::vector<int64_t>& paths, WindowPipeline& 
 void ReplayStream::add_moving(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, WindowPipeline& out) {
   std::vector<std::vector<int64_t>> by_chirp(by_grid.size());
   const auto is_empty = [](const std::vector<int64_t>& some) { return some.empty(); };
-  if (!std::all_of(by_grid.begin() + 1, by_grid.end(), is_empty)) replayer_.find_strongest(job_);
+  if (!std::all_of(by_grid.begin() + 1, by_grid.end(), is_empty)) replayer_.find_strongest();
   for (int polynomial = 1; polynomial <= replayer_.grids().num_polynomials(); ++polynomial) {
     const Extent extent{0, num_channels(), replayer_.grids().polynomial(polynomial).num_nodes};
     const Replay replay = [&](auto part, auto, auto& left) { return replayer_.interpolated(part, polynomial, left); };

@@ -195,6 +195,10 @@ def verdicts(results: dict) -> list[dict]:
     rows += [_verdict(f"{row['mirrors']} mirrors, {row['max_bounces']} bounces: sequences not followed", 0, row["unfollowed"])
              for row in results["mirrors"]]
     low, high = results["coverage"]["wanted"]
+    worst = min(results["coverage"]["rows"], key=lambda row: row["coverage"])
+    least = results["coverage"]["wanted_of_one"]
+    rows.append({"what": f"coverage, the worst: {worst['kind']}, {worst['rays']:,} rays: at least {least}", "limit": least,
+                 "measured": worst["coverage"], "holds": bool(worst["coverage"] >= least)})
     for row in results["coverage"]["classes"]:
         holds = low <= row["coverage"] <= high
         rows.append({"what": f"coverage, {row['kind']}, {row['count']} runs: {low} to {high}", "limit": low,

@@ -27,6 +27,7 @@ LEAK_BYTES = 40e6    # a window with this frame takes more; caches of fonts and 
 # --- camera, keys ---
 
 def test_fewer_rays_are_drawn_while_the_camera_moves(qtbot, window):
+    window.view3d._turning.num_rays = 300  # as slow pictures make it
     rays = window.view3d.builder.rays
     style = window.view3d.iren.interactor.GetInteractorStyle()
     style.InvokeEvent("StartInteractionEvent")
@@ -60,6 +61,7 @@ def test_keys_do_what_the_help_says(qtbot, window):
 
 
 def test_fewer_lit_rays_are_drawn_while_the_camera_moves(qtbot, window):
+    window.view3d._turning.num_rays = 300
     window.session.select_cells(CellBox(0, 127, 0, 31))
     settle(qtbot)
     lit = window.view3d.builder.lit

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.base.files import file_state
 from echopath.frame_file import kept
+from echopath.frame_file.h5 import write_array
 from echopath_viewer.model import CellBox, Filters, Session, from_file, from_frame, kept_orders, preview
 from echopath_viewer.model.kept_orders import COLUMNS, ORDERS, keep_orders
 
@@ -22,6 +24,19 @@ def kept_file(frame, tmp_path, monkeypatch):
     ep.save_frame(frame, tmp_path / "frame.h5")
     assert keep_orders(tmp_path / "frame.h5", Session(from_file(tmp_path / "frame.h5")))
     return tmp_path / "frame.h5"
+
+
+def held(path):
+    """The arrays in a file, None: none that belong to it."""
+    return kept.kept_arrays(path, file_state(path), "viewer", kept_orders.VERSION, kept_orders.ARRAYS)
+
+
+def write_next_frame(path) -> None:
+    """Another frame of as many paths and cells: each path has four times the power."""
+    with h5py.File(path, "a") as file:
+        values = 2.0 * file["record/paths/weight"][...]
+        del file["record/paths/weight"]
+        write_array(file["record/paths"], "weight", values)
 
 
 def shown(session) -> list:
@@ -61,7 +76,7 @@ def test_what_is_deleted_or_damaged_is_made_anew(kept_file, frame):
             kept_file.write_bytes(good)
             with h5py.File(kept_file, "a") as file:
                 damage(file["viewer"], item)
-            assert kept.kept_arrays(kept_file, "viewer", kept_orders.VERSION, kept_orders.ARRAYS) is None
+            assert held(kept_file) is None
     for damage in (delete, hold_a_number):
         kept_file.write_bytes(good)
         with h5py.File(kept_file, "a") as file:
@@ -95,7 +110,7 @@ def test_without_its_key_nothing_is_read(kept_file, key):
 def test_what_another_record_has_left_is_not_read(kept_file, part):
     with h5py.File(kept_file, "a") as file:
         file[part].attrs["crc32"] = np.uint32(1)
-    assert kept.kept_arrays(kept_file, "viewer", kept_orders.VERSION, COLUMNS) is None
+    assert held(kept_file) is None
 
 
 def test_numbers_that_point_beyond_the_paths_are_not_used(kept_file, frame):
@@ -122,9 +137,39 @@ def test_a_file_that_cannot_be_replaced_stays_as_it_is(kept_file, monkeypatch):
 
     def full(*_):
         raise OSError(28, "No space left on device")
+    session = Session(from_file(kept_file))
     monkeypatch.setattr(kept, "reserve", full)
     assert not keep_orders(kept_file, session)
     assert kept_file.read_bytes() == before and os.listdir(kept_file.parent) == ["frame.h5"]
+
+
+def test_what_is_made_of_the_frame_before_is_not_kept_with_the_next(kept_file):
+    session = Session(from_file(kept_file))
+    write_next_frame(kept_file)
+    assert not keep_orders(kept_file, session) and from_file(kept_file).kept is None
+    again = Session(from_file(kept_file))
+    assert again.columns.power == pytest.approx(4.0 * session.columns.power, rel=1e-12)
+    assert keep_orders(kept_file, again)
+
+
+def test_what_is_kept_of_the_next_frame_is_not_read_to_the_one_before(kept_file, monkeypatch):
+    power = Session(from_file(kept_file)).columns.power
+
+    def load_and_write(path):
+        frame = load(path)
+        write_next_frame(path)
+        assert keep_orders(path, Session(from_file_unwatched(path)))
+        return frame
+
+    def from_file_unwatched(path):
+        with monkeypatch.context() as patch:
+            patch.setattr(ep, "load_frame", load)
+            return from_file(path)
+
+    load = ep.load_frame
+    monkeypatch.setattr(ep, "load_frame", load_and_write)
+    view_input = from_file(kept_file)
+    assert view_input.kept is None and np.array_equal(Session(view_input).columns.power, power)
 
 
 def test_a_stale_one_is_replaced_and_the_mode_of_the_file_kept(kept_file, frame):

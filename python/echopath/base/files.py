@@ -34,10 +34,10 @@ def _written(path: Path, suffix: str | None):
         os.chmod(temporary, 0o666 & ~_umask())
         yield Path(temporary)
         heed()
-        _flush(temporary)
+        flush(temporary)
         os.replace(temporary, path)
         temporary = None
-        _flush(path.parent)
+        flush(path.parent)
     except OSError as error:
         raise _core.FileError(f"{path}: cannot be written ({error.strerror or error})") from None
     finally:
@@ -61,7 +61,7 @@ def folder_written_whole(path):
         begun.mkdir(parents=True)
         yield begun
         os.replace(begun, path)
-        _flush(path.parent)
+        flush(path.parent)
     except _core.FileError:  # of a file in it, or of one that is read
         raise
     except OSError as error:
@@ -96,13 +96,25 @@ def write_texts(folder, texts: dict) -> None:
             temporary.write_text(text, encoding="utf-8")
 
 
+def file_state(path) -> tuple | None:
+    """What tells contents of a file from those before: (time of the last change in ns, bytes, inode); None where there is none.
+
+    path: name or number of an open file
+    """
+    try:
+        found = os.stat(path)
+    except (OSError, TypeError):
+        return None
+    return found.st_mtime_ns, found.st_size, found.st_ino
+
+
 def _umask() -> int:
     mask = os.umask(0)
     os.umask(mask)
     return mask
 
 
-def _flush(path) -> None:
+def flush(path) -> None:
     """Down to the disk, so that a power cut after the replacement cannot leave an empty file."""
     handle = os.open(path, os.O_RDONLY)
     try:

@@ -12,16 +12,17 @@ from pathlib import Path
 import numpy as np
 
 from .. import _core
-from ..base.files import written_whole
+from ..base.files import file_state, flush, written_whole
 from .container import our_file
 from .h5 import read_array, read_attribute, read_group, reading, reserve, write_array, write_attribute, writing
 
 SOURCES = ("scene", "radar", "record")  # what all arrays are made of; of the map its axes and settings
 
 
-def kept_arrays(path, name: str, version: int, dtypes: dict) -> dict | None:
+def kept_arrays(path, state: tuple, name: str, version: int, dtypes: dict) -> dict | None:
     """The arrays [N] that `keep_arrays` wrote to a frame file; None where there are none, or none that belong to it.
 
+    state: `file_state` from before the frame was read; a file that was written since holds arrays of another frame
     name: of their group; version: of how they are made; dtypes: {array: type, or types of which it has one}
     Arrays of another version, of another record, radar or map, and damaged ones are as if they were not there.
     """
@@ -32,30 +33,33 @@ def kept_arrays(path, name: str, version: int, dtypes: dict) -> dict | None:
             group = read_group(file, name)
             if read_attribute(group, "key", str) != _key(file, version):
                 return None
-            return {array: _read(group, array, dtype) for array, dtype in dtypes.items()}
+            arrays = {array: _read(group, array, dtype) for array, dtype in dtypes.items()}
+            return arrays if file_state(file.id.get_vfd_handle()) == state else None
     except _core.FileError:
         return None
 
 
-def keep_arrays(path, name: str, version: int, arrays: dict) -> bool:
-    """Writes arrays into the group `name` of a frame file, in place of those that it has; returns whether it did.
+def keep_arrays(path, state: tuple, name: str, version: int, arrays: dict) -> tuple | None:
+    """Writes arrays into the group `name` of a frame file, in place of those that it has; returns the file's new `file_state`.
 
-    The file is replaced whole or not at all, with the same frame. It stays as it is where it cannot be written, has other names
-    (hard links) or is written anew meanwhile.
+    state: `file_state` from before the frame was read that the arrays are made of
+    The file is replaced whole or not at all, with the same frame. It stays as it is, and None is returned, where it cannot be
+    written, has other names (hard links) or was written since it had `state`.
     """
     path = Path(os.path.realpath(path))
     try:
-        before = _state(path)
-        if not os.access(path, os.W_OK) or path.stat().st_nlink > 1:
-            return False
+        if file_state(path) != state or not os.access(path, os.W_OK) or path.stat().st_nlink > 1:
+            return None
         with written_whole(path) as temporary:
             _copy_with(path, temporary, name, version, arrays)
             os.chmod(temporary, stat.S_IMODE(path.stat().st_mode))
-            if _state(path) != before:
+            flush(temporary)  # which takes seconds, and would leave them between the look at the file and its replacement
+            written = file_state(temporary)
+            if file_state(path) != state:
                 raise _core.FileError(f"{path}: was written anew")
     except (OSError, _core.FileError):
-        return False
-    return True
+        return None
+    return written
 
 
 def _copy_with(path, temporary, name: str, version: int, arrays: dict) -> None:
@@ -103,8 +107,3 @@ def _add(digest, item) -> None:
 def _add_attributes(digest, item) -> None:
     for name in sorted(item.attrs):
         digest.update(name.encode() + np.asarray(item.attrs[name]).tobytes())
-
-
-def _state(path) -> tuple:
-    found = os.stat(path)
-    return found.st_mtime_ns, found.st_size, found.st_ino

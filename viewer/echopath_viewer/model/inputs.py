@@ -6,6 +6,7 @@ import dataclasses
 import numpy as np
 
 import echopath as ep
+from echopath.base.files import file_state
 from echopath.paths.subset import part_of_path
 from echopath.signals.same_radar import difference
 
@@ -21,6 +22,7 @@ class ViewInput:
 
     known: what the frame knows beside its signals, None for paths alone; note: what it lacks, in words
     kept: what an earlier view has kept in the file, None: nothing
+    file_state: of the file from before it was read, None: there is no file
     signals: how theirs are made; cube: the whole [tx, rx, chirp, sample] in sqrt(W); title: of the window
     """
 
@@ -32,15 +34,18 @@ class ViewInput:
     known: Known | None = None
     note: str = ""
     kept: KeptOrders | None = None
+    file_state: tuple | None = None
 
 
 def from_file(path) -> ViewInput:
     """Reads a frame file. Raises ep.FileError, with its name, where it is not ours or damaged."""
+    state = file_state(path)
     frame = ep.load_frame(path)
     try:
         view_input = from_frame(frame, title=str(path))
     except (ValueError, IndexError) as error:  # what it holds does not fit together
         raise ep.FileError(f"{path}: {error}") from None
+    view_input.file_state = state
     view_input.kept = read_kept(path, view_input)
     return view_input
 

@@ -31,25 +31,26 @@ def read_kept(path, view_input) -> KeptOrders | None:
     num_paths = view_input.paths.num_paths
     if num_paths < FEWEST_PATHS:
         return None
-    arrays = kept_arrays(path, GROUP, VERSION, ARRAYS)
+    arrays = kept_arrays(path, view_input.file_state, GROUP, VERSION, ARRAYS)
     if arrays is None or not _fits(arrays, num_paths, view_input.parts.whole.spectrum.values[0, 0].size):
         return None
     return KeptOrders({name: arrays[name] for name in COLUMNS}, arrays["cell_order"], (arrays["group"], arrays["group_order"]),
                       arrays["group_power"])
 
 
-def keep_orders(path, session) -> bool:
-    """Keeps the columns and orders of a session of a frame file in it; returns whether the file has them now.
+def keep_orders(path, session) -> tuple | None:
+    """Keeps the columns and orders of a session of a frame file in it; returns the state of the file that has them now.
 
-    What another channel is on display for, and what takes no time to make, is not kept.
+    None: the file is as it was. What another channel is on display for, and what takes no time to make, is not kept, nor what
+    belongs to a frame that the file has no more.
     """
-    if session.paths.num_paths < FEWEST_PATHS or session.channel != KEPT_CHANNEL:
-        return False
+    if session.file_state is None or session.paths.num_paths < FEWEST_PATHS or session.channel != KEPT_CHANNEL:
+        return None
     columns, sampler, groups = session.columns, session.sampler, session.groups
     arrays = {name: getattr(columns, name) for name in COLUMNS}
     arrays |= {"cell_order": session.index.order, "group": groups.group_of_path, "group_order": groups.order,
                "group_power": sampler.coherent_power}
-    return keep_arrays(path, GROUP, VERSION, arrays)
+    return keep_arrays(path, session.file_state, GROUP, VERSION, arrays)
 
 
 def _fits(arrays: dict, num_paths: int, num_cells: int) -> bool:

@@ -79,7 +79,7 @@ class Opening:
             path = self._path_read
             self.keeping.start(lambda progress: keep_orders(path, session))
 
-    def _take_kept(self, is_kept: bool) -> None:
+    def _take_kept(self, is_kept) -> None:
         """The file on display was written by this window: there is nothing new in it."""
         if is_kept:
             self.file_watch.accept()

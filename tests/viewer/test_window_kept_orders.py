@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -111,6 +112,23 @@ def test_what_another_record_has_left_is_not_read(kept_file, part):
     with h5py.File(kept_file, "a") as file:
         file[part].attrs["crc32"] = np.uint32(1)
     assert held(kept_file) is None
+
+
+def test_what_another_core_has_made_is_not_read(kept_file, tmp_path, monkeypatch):
+    core = tmp_path / "core.so"
+    core.write_bytes(Path(kept.CORE[0]).read_bytes())
+    monkeypatch.setattr(kept, "CORE", (str(core), file_state(core)))
+    assert held(kept_file) is not None
+    core.write_bytes(core.read_bytes() + b"0")
+    monkeypatch.setattr(kept, "CORE", (str(core), file_state(core)))
+    assert held(kept_file) is None
+
+
+def test_a_core_that_was_built_anew_since_it_was_loaded_keeps_nothing(kept_file, tmp_path, monkeypatch):
+    core = tmp_path / "core.so"
+    core.write_bytes(b"another")
+    monkeypatch.setattr(kept, "CORE", (str(core), (0, 0, 0)))
+    assert not keep_orders(kept_file, Session(from_file(kept_file)))
 
 
 def test_numbers_that_point_beyond_the_paths_are_not_used(kept_file, frame):

@@ -4,6 +4,7 @@ They are never what a frame is: files without them hold the same frame, and what
 """
 from __future__ import annotations
 
+import functools
 import hashlib
 import os
 import stat
@@ -16,6 +17,7 @@ from ..base.files import file_state, flush, written_whole
 from .container import our_file
 from .h5 import read_array, read_attribute, read_group, reading, reserve, write_array, write_attribute, writing
 
+CORE = _core.__file__, file_state(_core.__file__)  # while this program was loaded: it may be built anew meanwhile
 SOURCES = ("scene", "radar", "record")  # what all arrays are made of; of the map its axes and settings
 
 
@@ -84,7 +86,7 @@ def _read(group, name: str, dtype):
 
 def _key(file, version: int) -> str:
     """Of all that arrays are made of: the check sums of its numbers, and its attributes."""
-    digest = hashlib.sha256(f"{version} {_core.__version__}".encode())
+    digest = hashlib.sha256(f"{version} {_digest(*CORE)}".encode())
     for name in SOURCES:
         _add(digest, read_group(file, name))
     if "spectra" in file:
@@ -93,6 +95,15 @@ def _key(file, version: int) -> str:
         for axis in ("velocity", "range"):
             _add_attributes(digest, spectra[axis])
     return digest.hexdigest()
+
+
+@functools.cache
+def _digest(path: str, state: tuple) -> str:
+    """Of the program's core, whose version stays the same from one change of its code to the next."""
+    digest = hashlib.sha256(Path(path).read_bytes()).hexdigest()
+    if file_state(path) != state:
+        raise _core.FileError(f"{path}: was built anew since it was loaded")
+    return digest
 
 
 def _add(digest, item) -> None:

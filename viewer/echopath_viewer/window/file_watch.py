@@ -3,6 +3,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from echopath.base.files import file_state
+
 from .qt import QtCore, Signal
 
 POLL_MS = 1000
@@ -30,9 +32,10 @@ class FileWatch(QtCore.QObject):
         """The file that is watched, or None."""
         return self._path
 
-    def accept(self) -> None:
-        """What the file holds now is known."""
-        self._shown = self._seen = self._state()
+    def accept(self, path, state: tuple | None) -> None:
+        """What a file holds in a state (`file_state`) is known, if it is the one watched; what it holds since is not."""
+        if self._path is not None and self._path == Path(path):
+            self._shown = state
 
     def look(self) -> None:
         """Once at rest for one turn, a file that differs is told of."""
@@ -43,8 +46,4 @@ class FileWatch(QtCore.QObject):
         self._seen = state
 
     def _state(self):
-        try:
-            found = self._path.stat()
-        except (OSError, AttributeError):
-            return None
-        return found.st_mtime_ns, found.st_size, found.st_ino
+        return None if self._path is None else file_state(self._path)

@@ -76,6 +76,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         line: TimeLine whose first frame it is, None: it stands alone
         """
         self.loading.stop()
+        self.keeping.stop()
         self.view3d.when_drawn(None)
         self.is_to_load = False
         self.file_watch.watch(None)

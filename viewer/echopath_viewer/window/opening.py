@@ -41,6 +41,8 @@ class Opening:
             return False
         self.show_input(view_input, line)
         self.file_watch.watch(path if line is None else None)
+        if view_input.file_state is not None:
+            self.file_watch.accept(path, view_input.file_state)
         if early is not None:
             self.load_rest(path)
         if not isinstance(path, list):
@@ -72,17 +74,19 @@ class Opening:
 
     def _take_rest(self, session) -> None:
         self._end_loading()
+        self.file_watch.accept(self._path_read, session.file_state)
         self._go_on_with_choices(session)
         self._follow(session)
         QtCore.QTimer.singleShot(REST_MS, _give_back)
         if self._remembers and not session.is_kept:
             path = self._path_read
-            self.keeping.start(lambda progress: keep_orders(path, session))
+            self.keeping.start(lambda progress: (path, keep_orders(path, session)))
 
-    def _take_kept(self, is_kept) -> None:
-        """The file on display was written by this window: there is nothing new in it."""
-        if is_kept:
-            self.file_watch.accept()
+    def _take_kept(self, kept: tuple) -> None:
+        """kept: (path, state) of a file that this window has written: there is nothing new in it. state: None: it has not"""
+        path, state = kept
+        if state is not None:
+            self.file_watch.accept(path, state)
 
     def _go_on_with_choices(self, session) -> None:
         """What was chosen since the reading began is chosen in the session that was read, too; rays are others."""

@@ -3421,9 +3421,14 @@ def warn_of_turns(yaw: float) -> None:
     """
     Warns of a yaw (rad) beyond a turn, which looks like degrees.
     """
-def ways_around_edges(scene: Scene, time: float, frequency: float, antenna: ArrayLike, polarization: ArrayLike, points: ArrayLike) -> dict[typing.Any, typing.Any]:
+def ways_around_edges(scene: Scene, time: float, frequency: float, antenna: ArrayLike, polarization: ArrayLike, points: ArrayLike, edges: bool = True, progress: typing.Any = None) -> dict[typing.Any, typing.Any]:
     """
-    The strongest way around one edge from an antenna [3] to each of `points` [N, 3], m at `time` in s: a dict of mesh_id [N] (of the edge; 4294967295: none, or nothing in the way), point [N, 3] on it in m, length [N] in m, share [N] of the field that would arrive were nothing in its way.
+    The strongest way around one edge from an antenna to each of some points.
+
+    time: s; frequency: Hz; antenna: [3], m, world; polarization: [3], unit vector, world; points: [N, 3], m, world
+    edges: whether ways around edges are looked for, or only whether the points are seen
+    Returns a dict of mesh_id [N] (of the edge; 4294967295: none, or nothing in the way), point [N, 3] on it in m, length [N] in
+    m, share [N] of the field that would arrive were nothing in its way.
     """
 def window(name: str, n: int, sidelobe_db: float = 80.0) -> numpy.typing.NDArray[numpy.float64]:
     """

@@ -68,7 +68,7 @@ PathsPtr trace_paths(Scene scene, const Radar& radar, std::optional<int64_t> num
   return paths;
 }
 
-py::array_t<bool> are_clear(const Scene& scene, double time, const Vec3& from, const std::vector<Vec3>& points) {
+py::array_t<bool> are_clear(Scene scene, double time, const Vec3& from, const std::vector<Vec3>& points) {
   std::vector<uint8_t> blocked(points.size(), 0);
   if (scene.num_triangles() > 0 && !points.empty()) {
     const WithoutGil released;
@@ -84,12 +84,8 @@ py::array_t<bool> are_clear(const Scene& scene, double time, const Vec3& from, c
   return clear;
 }
 
-py::dict around_edges(const AroundQuery& query, const std::vector<Vec3>& points) {
-  std::vector<WayAroundEdge> ways;
-  {
-    const WithoutGil released;
-    ways = ways_around_edges(query, points);
-  }
+py::dict around_edges(const AroundQuery& query, const std::vector<Vec3>& points, const py::object& progress) {
+  const auto ways = run_job("ways around edges", progress, [&](Job& job) { return ways_around_edges(query, points, &job); });
   const auto count = static_cast<py::ssize_t>(ways.size());
   py::array_t<uint32_t> mesh_id(count);
   py::array_t<double> at({count, py::ssize_t{3}}), length(count), share(count);
@@ -123,24 +119,26 @@ void bind_trace(py::module_& m) {
         py::arg("kept") = py::none(), "What ep.trace calls. kept: KeptGeometry of the scene, or None.");
   m.def(
       "are_clear",
-      [](const Scene& scene, Arg<"time", Real> time, Arg<"origin", Vector3> origin, Arg<"points", Points> points) {
-        return are_clear(scene, *time, *origin, *points);
+      [](Scene scene, Arg<"time", Real> time, Arg<"origin", Vector3> origin, Arg<"points", Points> points) {
+        return are_clear(std::move(scene), *time, *origin, *points);
       },
       py::arg("scene"), py::arg("time"), py::arg("origin"), py::arg("points"),
       "Whether nothing of the scene lies between `origin` [3] and each of `points` [N, 3], m at `time` in s; [N].");
   m.def(
       "ways_around_edges",
-      [](const Scene& scene, Arg<"time", Real> time, Arg<"frequency", Real> frequency, Arg<"antenna", Vector3> antenna,
-         Arg<"polarization", Vector3> polarization, Arg<"points", Points> points) {
-        return around_edges({scene, *time, *frequency, *antenna, *polarization}, *points);
+      [](Scene scene, Arg<"time", Real> time, Arg<"frequency", Real> frequency, Arg<"antenna", Vector3> antenna,
+         Arg<"polarization", Vector3> polarization, Arg<"points", Points> points, Arg<"edges", Flag> edges,
+         const py::object& progress) {
+        return around_edges({scene, *time, *frequency, *antenna, *polarization, *edges}, *points, progress);
       },
       py::arg("scene"), py::arg("time"), py::arg("frequency"), py::arg("antenna"), py::arg("polarization"),
-      py::arg("points"),
-      "The strongest way around one edge from an antenna [3] to each of `points` [N, 3], m at `time` in s: a dict of "
-      "mesh_id "
-      "[N] (of the edge; 4294967295: none, or nothing in the way), point [N, 3] on it in m, length [N] in m, share [N] of "
-      "the "
-      "field that would arrive were nothing in its way.");
+      py::arg("points"), py::arg("edges") = true, py::arg("progress") = py::none(),
+      R"(The strongest way around one edge from an antenna to each of some points.
+
+time: s; frequency: Hz; antenna: [3], m, world; polarization: [3], unit vector, world; points: [N, 3], m, world
+edges: whether ways around edges are looked for, or only whether the points are seen
+Returns a dict of mesh_id [N] (of the edge; 4294967295: none, or nothing in the way), point [N, 3] on it in m, length [N] in
+m, share [N] of the field that would arrive were nothing in its way.)");
   m.def("strongest_edge", &strongest_edge, py::arg("scene"), py::arg("radar"), py::arg("time"),
         "What edges=\"auto\" compares with the noise: W that the strongest sharp edge would carry at a time in s.");
   m.attr("DEFAULT_MAX_RAYS") = kMaxRays;

@@ -7,11 +7,13 @@ import dataclasses
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import checked, count, real
+from ..arguments.checks import Progress, checked, count, real
 from ..base.made_by import made_by
+from .resolution import Interval
+from .surface_points import SurfacePoints, surface_points
 
 NO_MESH = 2**32 - 1
-MOST_POINTS = 256  # of an object that are looked at
+NUM_POINTS = 256  # of an object's surface that are looked at
 
 
 @made_by("ep.around_corners")
@@ -19,11 +21,12 @@ MOST_POINTS = 256  # of an object that are looked at
 class AroundCorner:
     """What an object would send around the strongest edge between it and the radar; made by `around_corners`.
 
-    name: of the object; hidden_share: of its vertices that face the radar, 0 to 1, which something else hides from an end of it
-    corner: name of the mesh whose edge leads to the vertex that the strongest wave comes to, "" where no edge does
-    point: [3], m, world: on that edge; length: m, half of the way out and back about it
-    loss_db: dB, of the echo around edges beside that of the hidden vertices were nothing in the way; inf: no edge leads there
-    power: W at the first antennas, of that echo
+    name: of the object; hidden_share: of the area that faces the radar, 0 to 1, which something else hides from an end of it
+    corner: name of the mesh whose edge leads to the point that the strongest wave comes to, "" where no edge does
+    point: [3], m, world: on that edge, on the way out where both ways have one; length: m, half of the way out and back. Both
+        are zero where no edge leads there
+    loss_db: dB, of the echo around edges beside that of the hidden surface were nothing in the way; inf: no edge leads there
+    power: W at the first antennas, of that echo; low, high: W, ends of the 95 % interval that the rays leave to it
     """
 
     name: str
@@ -33,35 +36,45 @@ class AroundCorner:
     length: float
     loss_db: float
     power: float
+    low: float
+    high: float
+
+    @property
+    def resolved(self) -> bool:
+        """The rays know the object's level to 0.3 dB; else `power` may be anything from `low` to `high`, and more rays help."""
+        return self.high == 0.0 or Interval(self.power, self.low, self.high).resolved
 
 
 @checked(time=real(unit="s"), num_rays=count(1, 2**24))
-def around_corners(scene: _core.Scene, radar: _core.Radar, *, time: float = 0.0, num_rays: int = 5000) -> list[AroundCorner]:
+def around_corners(scene: _core.Scene, radar: _core.Radar, *, time: float = 0.0, num_rays: int = 5000,
+                   progress: Progress = None) -> list[AroundCorner]:
     """What objects that something hides would send around one edge there and one back, the strongest first.
 
-    `trace` follows no wave into a shadow. This says what it neglects: the level of each object alone, times the power that the
-    uniform theory of diffraction brings around the best edge to each of its hidden vertices, from the first transmitter and
-    back to the first receiver. Edges are those of all bodies that keep their shape, as of perfect conductors; the part of the
-    shadow is that of any body. Waves around two edges, and what the objects' own shadows let pass, are left out; levels are
-    good to some 3 dB where an object is much smaller than its distance from the corner.
+    `trace` follows no wave into a shadow. This says what it neglects: the level of each object alone, its sharp edges with it,
+    times the power that the uniform theory of diffraction brings around the best edge to each of its hidden points, from the
+    first transmitter and back to the first receiver. The points are 256, spread over the object's area; what is hidden on less
+    of it may be missed. Edges are those of all bodies that keep their shape, as of perfect conductors; the part of the shadow
+    is that of any body. Waves around two edges, and what the objects' own shadows let pass, are left out; levels are good to
+    some 3 dB where an object is much smaller than its distance from the corner, and `resolved`.
     scene, radar: of the frame; time: s; num_rays: for the level of each object alone
-    Returns a list of AroundCorner, of objects with hidden vertices. Raises ValueError for motions that do not cover the time.
+    progress: callable (stage, fraction), True for bars, or None
+    Returns a list of AroundCorner, of objects with hidden points. Raises ValueError for motions that do not cover the time.
     """
-    found = [_told(scene, radar, hidden, time, num_rays) for hidden in hidden_objects(scene, radar, time)]
+    found = [_told(scene, radar, hidden, time, num_rays, progress)
+             for hidden in hidden_objects(scene, radar, time, progress)]
     return sorted(found, key=lambda one: -one.power)
 
 
 @dataclasses.dataclass(frozen=True)
 class Hidden:
-    """Vertices [N, 3] of an object that face the radar, and what comes to them around edges.
+    """Points [N] of an object that face the radar, and what comes to them around edges.
 
-    ways: of the first transmitter and the first receiver; is_hidden: [N], from either; chosen: [N], among those of points_of
+    ways: of the first transmitter and the first receiver; is_hidden: [N], from either
     """
 
     name: str
     alone: _core.Scene
-    points: np.ndarray
-    chosen: np.ndarray
+    points: SurfacePoints
     ways: tuple[dict, dict]
     is_hidden: np.ndarray
 
@@ -71,29 +84,36 @@ class Hidden:
         return np.where(self.is_hidden, self.ways[0]["share"] * self.ways[1]["share"], 0.0)
 
 
-def hidden_objects(scene, radar, time) -> list[Hidden]:
+def hidden_objects(scene, radar, time, progress=None) -> list[Hidden]:
     """Objects of which something else hides a part from the first antennas at a time in s."""
-    names = list(dict.fromkeys(mesh.name.split("/")[0] for mesh in scene.meshes))
-    found = (_hidden(scene, radar, name, names, time) for name in names)
+    names = [name for name in dict.fromkeys(_object_of(mesh) for mesh in scene.meshes) if scene[name].visible]
+    found = (_hidden(scene, radar, name, names, time, progress) for name in names)
     return [one for one in found if one.is_hidden.any()]
 
 
-def _hidden(scene, radar, name, names, time) -> Hidden:
-    alone, points = _alone(scene, name, names), points_of(scene, name, time)
-    ends = (radar.transmitters[0], radar.receivers[0])
-    facing = np.all([_is_free(ways_to(alone, radar, end, points, time)) for end in ends], axis=0)  # seen were it alone
-    ways = tuple(ways_to(scene, radar, end, points[facing], time) for end in ends)
-    return Hidden(name, alone, points[facing], np.flatnonzero(facing), ways, ~np.all([_is_free(way) for way in ways], axis=0))
+def _object_of(mesh) -> str:
+    return mesh.name.split("/")[0]
 
 
-def _told(scene, radar, hidden: Hidden, time, num_rays) -> AroundCorner:
-    factor = hidden.shares ** 2
-    best, mean = int(np.argmax(factor)), float(factor[hidden.is_hidden].mean())
-    around = [int(way["mesh_id"][best]) for way in hidden.ways if way["mesh_id"][best] != NO_MESH]
-    return AroundCorner(hidden.name, float(hidden.is_hidden.mean()), scene.meshes[around[0]].name if mean > 0.0 else "",
-                        hidden.ways[0]["point"][best], 0.5 * float(sum(way["length"][best] for way in hidden.ways)),
-                        -10.0 * float(np.log10(mean)) if mean > 0.0 else np.inf,
-                        level_of(hidden.alone, radar, time, num_rays) * float(factor.mean()) if mean > 0.0 else 0.0)
+def _hidden(scene, radar, name, names, time, progress) -> Hidden:
+    alone = _alone(scene, name, names)
+    points = surface_points(scene, [mesh for mesh in scene.meshes if _object_of(mesh) == name], time, NUM_POINTS)
+    places, ends = points.at(scene, time), (radar.transmitters[0], radar.receivers[0])
+    facing = np.all([_is_free(ways_to(alone, radar, end, places, time, edges=False)) for end in ends], axis=0)
+    ways = tuple(ways_to(scene, radar, end, places[facing], time, progress=progress) for end in ends)
+    return Hidden(name, alone, points[facing], ways, ~np.all([_is_free(way) for way in ways], axis=0))
+
+
+def _told(scene, radar, hidden: Hidden, time, num_rays, progress) -> AroundCorner:
+    factor, share = hidden.shares ** 2, float(hidden.is_hidden.mean())
+    if not factor.any():
+        return AroundCorner(hidden.name, share, "", np.zeros(3), 0.0, np.inf, 0.0, 0.0, 0.0)
+    best = int(np.argmax(factor))
+    around = next(way for way in hidden.ways if way["mesh_id"][best] != NO_MESH)
+    level, mean = level_of(hidden.alone, radar, time, num_rays, progress), float(factor.mean())
+    return AroundCorner(hidden.name, share, scene.meshes[int(around["mesh_id"][best])].name, around["point"][best],
+                        0.5 * float(sum(way["length"][best] for way in hidden.ways)),
+                        -10.0 * float(np.log10(factor[hidden.is_hidden].mean())), *(mean * end for end in level))
 
 
 def _alone(scene, name, names):
@@ -110,13 +130,7 @@ def _is_free(ways) -> np.ndarray:
     return (ways["mesh_id"] == NO_MESH) & (ways["share"] == 1.0)
 
 
-def points_of(scene, name, time) -> np.ndarray:
-    """Vertices [N, 3] of an object, at most MOST_POINTS, which stand for its surface."""
-    vertices = np.concatenate([scene.world_vertices(mesh.id, time) for mesh in scene.meshes if mesh.name.split("/")[0] == name])
-    return vertices[np.unique(np.linspace(0, len(vertices) - 1, min(len(vertices), MOST_POINTS)).astype(int))]
-
-
-def ways_to(scene, radar, antenna, points, time) -> dict:
+def ways_to(scene, radar, antenna, points, time, *, edges=True, progress=None) -> dict:
     """The ways from an antenna at a time in s to points [N, 3] in m (_core.ways_around_edges)."""
     world_from_radar = radar.world_from_radar(time)
     rotation, place = world_from_radar[:3, :3], world_from_radar[:3, 3]
@@ -124,12 +138,15 @@ def ways_to(scene, radar, antenna, points, time) -> dict:
     across = np.cross(vector, antenna.polarization)
     along = antenna.polarization + 2.0 * (scalar * across + np.cross(vector, across))  # in the radar's axes
     return _core.ways_around_edges(scene, time=time, frequency=radar.waveform.start_frequency,
-                                   antenna=rotation @ antenna.position + place, polarization=rotation @ along, points=points)
+                                   antenna=rotation @ antenna.position + place, polarization=rotation @ along, points=points,
+                                   edges=edges, progress=progress)
 
 
-def level_of(alone, radar, time, num_rays) -> float:
-    """W that a scene sends straight back."""
+def level_of(alone, radar, time, num_rays, progress=None) -> Interval:
+    """W that a scene and its sharp edges send straight back."""
     from ..tracing.traces import trace
 
     begin = time - 0.5 * radar.frame_duration  # rays see the scene at the middle of a frame
-    return _core.received_power(trace(alone, radar, num_rays=num_rays, max_bounces=1, start_time=begin)).power
+    paths = trace(alone, radar, num_rays=num_rays, max_bounces=1, start_time=begin, edges=True, progress=progress)
+    power = _core.received_power(paths, progress=progress)
+    return Interval(power.power, power.low, power.high)

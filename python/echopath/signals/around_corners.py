@@ -4,23 +4,28 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import checked, count, real
-from ..paths.around_corners import NO_MESH, Hidden, hidden_objects, level_of, points_of, ways_to
+from ..arguments.checks import Progress, checked, count, real
+from ..paths.around_corners import NO_MESH, Hidden, hidden_objects, level_of, ways_to
 from ..transmit import signal_shape
 
 _STREAM = 0x65646765  # tells these random numbers from others of the same seed
 NODES = np.array([0.0, 0.5, 1.0])  # of the frame, between which lengths are parabolas
 
 
-@checked(start_time=real(unit="s"), seed=count(0, 2**32 - 1), num_rays=count(1, 2**24))
+LATEST = 1e9  # s, either way: motions know no later time
+
+
+@checked(start_time=real(-LATEST, LATEST, unit="s"), seed=count(0, 2**32 - 1), num_rays=count(1, 2**24))
 def synthesize_around_corners(scene: _core.Scene, radar: _core.Radar, *, start_time: float = 0.0, seed: int = 1,
-                              num_rays: int = 5000) -> np.ndarray:
+                              num_rays: int = 5000, progress: Progress = None) -> np.ndarray:
     """The signal that hidden objects send around one edge there and one back: what `synthesize` of a trace does not have.
 
-    The vertices of `around_corners` are scatterers with phases of their own, whose ways around their edges are followed over
-    the frame; on the average over `seed` the power is that which `around_corners` tells. A vertex that comes into sight, or
-    whose edge changes within the frame, is left out.
-    scene, radar: of the frame, whose transmitters take turns; start_time: s; seed: of the phases; num_rays: as there
+    The hidden points of `around_corners` are scatterers with phases of their own, fast to the material, whose ways around
+    their edges are followed over the frame; on the average over `seed` the power is that which `around_corners` tells of the
+    middle of the frame, `resolved` there or not. A point that comes into sight, or whose edge changes within the frame, is left
+    out.
+    scene, radar: of the frame, whose transmitters take turns; start_time: s, within 1e9 s of zero; seed: of the phases
+    num_rays, progress: as there
     Returns an array in the shape of `synthesize`, in sqrt(W), without noise. Raises ValueError for transmitters that send at
     once.
     """
@@ -28,8 +33,8 @@ def synthesize_around_corners(scene: _core.Scene, radar: _core.Radar, *, start_t
         raise ValueError(f'radar: must have multiplexing "tdm", got {radar.multiplexing!r}')
     cube = np.zeros(signal_shape(radar), complex)
     middle = start_time + 0.5 * radar.frame_duration
-    for number, hidden in enumerate(hidden_objects(scene, radar, middle)):
-        level = level_of(hidden.alone, radar, middle, num_rays) / len(hidden.points)
+    for number, hidden in enumerate(hidden_objects(scene, radar, middle, progress)):
+        level = level_of(hidden.alone, radar, middle, num_rays, progress).power / len(hidden.points)
         phases = np.random.default_rng([_STREAM, seed, number]).random(len(hidden.points))
         _add(cube, scene, radar, hidden, np.sqrt(level) * hidden.shares * np.exp(2j * np.pi * phases), start_time)
     return cube
@@ -38,7 +43,7 @@ def synthesize_around_corners(scene: _core.Scene, radar: _core.Radar, *, start_t
 def _add(cube, scene, radar, hidden: Hidden, amplitudes, start_time) -> None:
     """Adds the echoes of one object, amplitudes [N] in sqrt(W), to every channel."""
     times = start_time + NODES * radar.frame_duration
-    points = [points_of(scene, hidden.name, time)[hidden.chosen] for time in times]
+    points = [hidden.points.at(scene, time) for time in times]
     ends = {end: [_lengths(scene, radar, end, points, times) for end in antennas]
             for end, antennas in (("out", radar.transmitters), ("back", radar.receivers))}
     kept = np.all([is_kept for ways in ends.values() for _, is_kept in ways], axis=0) & (amplitudes != 0.0)

@@ -50,6 +50,8 @@ def good(tmp_path_factory) -> dict:
         "angle_fft": of_map, "beamform": of_map, "read_trajectories": {"path": folder / "drive.csv"},
         "annotate": {"paths": paths, "parts": {"plate": "T 'plate' R"}},
         "annotate_frame": {"frame": frame, "parts": {"again": {"plate": "T 'plate' R"}}},
+        "around_corners": {"scene": scene, "radar": radar, "num_rays": 50},
+        "synthesize_around_corners": {"scene": scene, "radar": radar, "num_rays": 50},
         "cfar": of_map, "check_rays": {"probe": probe, "frame": paths.frame}, "check_signal": {"cube": cube, "probe": probe},
         "demultiplex": {"cube": cube, "radar": radar}, "load_radar": {"path": folder / "sensor.cfg"},
         "load_sensor": {"path": folder / "sensor.cfg"}, "receive": {"cube": cube, "radar": radar, "seed": 1},

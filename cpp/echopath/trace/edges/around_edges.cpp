@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
+#include "echopath/base/threads/parallel.h"
 #include "echopath/em/edges/edge_shadow.h"
 #include "echopath/posed/posed_scene.h"
 #include "echopath/trace/edges/posed_edge.h"
@@ -12,13 +13,27 @@
 namespace echopath {
 namespace {
 
+// Holds an edge, relative to the antenna, and where the antenna stands beside it.
+struct EdgeSeen {
+  EdgeSeen(const PosedEdge& edge)
+      : mesh_id(edge.mesh_id), wedge(edge.wedge), from(edge.from), axis(edge.line().normalized()),
+        length(edge.line().norm()), before(-from.dot(axis)), off_antenna((from + before * axis).norm()) {}
+
+  uint32_t mesh_id;
+  Wedge wedge;
+  Vec3 from, axis;     // m, one end; unit vector to the other
+  double length;       // m
+  double before;       // m, of the antenna, along the axis
+  double off_antenna;  // m, across it
+};
+
 // Returns the edges of all meshes that nothing passes and that keep their shape.
-std::vector<PosedEdge> opaque_edges(const Scene& scene, const PosedScene& pose, const Vec3& origin) {
-  std::vector<PosedEdge> found;
+std::vector<EdgeSeen> opaque_edges(const Scene& scene, const PosedScene& pose, const Vec3& origin) {
+  std::vector<EdgeSeen> found;
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
     const Node& node = scene.node_of(id);
     if (!node.material->layers.empty() || node.deformation || scene.may_stretch(id)) continue;
-    for (const SharpEdge& edge : node.mesh->sharp_edges()) found.push_back(posed_edge(edge, scene, pose, id, origin));
+    for (const SharpEdge& edge : node.mesh->sharp_edges()) found.emplace_back(posed_edge(edge, scene, pose, id, origin));
   }
   return found;
 }
@@ -28,8 +43,9 @@ class AroundEdges {
   explicit AroundEdges(const AroundQuery& query)
       : query_(query), pose_(query.scene, query.time),
         geometry_(query.scene, pose_, EmbreeScene::origin_near(query.scene, pose_, query.antenna)),
-        shift_(query.antenna - geometry_.origin()), edges_(opaque_edges(query.scene, pose_, query.antenna)),
-        wavenumber_(kTwoPi * query.frequency / kSpeedOfLight) {}
+        shift_(query.antenna - geometry_.origin()), wavenumber_(kTwoPi * query.frequency / kSpeedOfLight) {
+    if (query.edges) edges_ = opaque_edges(query.scene, pose_, query.antenna);
+  }
 
   WayAroundEdge best_to(const Vec3& world) const {
     const Vec3 point = world - query_.antenna;
@@ -39,7 +55,7 @@ class AroundEdges {
       best.length = point.norm();
       return best;
     }
-    for (const PosedEdge& edge : edges_) take_better(edge, point, best);
+    for (const EdgeSeen& edge : edges_) take_better(edge, point, best);
     return best;
   }
 
@@ -49,13 +65,16 @@ class AroundEdges {
     return !geometry_.occluded(from + shift_, to + shift_ - 8.0 * geometry_.lift() * (to - from).normalized());
   }
 
-  void take_better(const PosedEdge& edge, const Vec3& point, WayAroundEdge& best) const {
-    const Vec3 axis = edge.line().normalized();
-    const double before = -edge.from.dot(axis), behind = (point - edge.from).dot(axis);
-    const double off_antenna = (edge.from + before * axis).norm(), off_point = (point - edge.from - behind * axis).norm();
-    const double along = (before * off_point + behind * off_antenna) / std::max(off_antenna + off_point, 1e-12);
-    if (along < 0.0 || along > edge.line().norm()) return;
-    const Vec3 at = edge.from + along * axis;
+  void take_better(const EdgeSeen& edge, const Vec3& point, WayAroundEdge& best) const {
+    const Vec3 from_end = point - edge.from;
+    const double behind = from_end.dot(edge.axis);
+    // Keller's point lies between the feet of both ends, so that most edges are left without a root.
+    if (std::max(edge.before, behind) < 0.0 || std::min(edge.before, behind) > edge.length) return;
+    const double off_point = (from_end - behind * edge.axis).norm();
+    const double across = std::max(edge.off_antenna + off_point, 1e-12);
+    const double along = (edge.before * off_point + behind * edge.off_antenna) / across;
+    if (along < 0.0 || along > edge.length) return;
+    const Vec3 at = edge.from + along * edge.axis;
     const double share = share_of(edge.wedge, at, point);
     if (share <= best.share) return;
     const Vec3 lifted = geometry_.lifted(at, outward_of(edge.wedge));
@@ -80,17 +99,19 @@ class AroundEdges {
   AroundQuery query_;
   PosedScene pose_;
   EmbreeScene geometry_;
-  Vec3 shift_;                    // m, of the antenna in the geometry
-  std::vector<PosedEdge> edges_;  // relative to the antenna
-  double wavenumber_;             // rad/m
+  Vec3 shift_;         // m, of the antenna in the geometry
+  double wavenumber_;  // rad/m
+  std::vector<EdgeSeen> edges_;
 };
 
 }  // namespace
 
-std::vector<WayAroundEdge> ways_around_edges(const AroundQuery& query, const std::vector<Vec3>& points) {
+std::vector<WayAroundEdge> ways_around_edges(const AroundQuery& query, const std::vector<Vec3>& points, Job* job) {
   const AroundEdges around(query);
-  std::vector<WayAroundEdge> ways;
-  for (const Vec3& point : points) ways.push_back(around.best_to(point));
+  std::vector<WayAroundEdge> ways(points.size());
+  if (job) job->start(std::ssize(points));
+  parallel_for(std::ssize(points),
+               [&](int64_t i) { ways[static_cast<size_t>(i)] = around.best_to(points[static_cast<size_t>(i)]); }, job);
   return ways;
 }
 

@@ -9,16 +9,18 @@
 #include <vector>
 
 #include "echopath/base/geometry.h"
+#include "echopath/base/threads/job.h"
 #include "echopath/scene/scene.h"
 
 namespace echopath {
 
 struct AroundQuery {
-  const Scene& scene;
-  double time;       // s
-  double frequency;  // Hz
-  Vec3 antenna;      // m, world
-  Vec3 polarization;
+  const Scene& scene;  // outlives the query
+  double time;         // s
+  double frequency;    // Hz
+  Vec3 antenna;        // m, world
+  Vec3 polarization;   // unit vector, world
+  bool edges = true;   // whether ways around edges are looked for, or only whether the points are seen
 };
 
 // Holds the strongest way around one edge.
@@ -30,7 +32,8 @@ struct WayAroundEdge {
   double share = 0.0;          // of the field that would arrive were nothing in its way; 1 where nothing is
 };
 
-// Returns a way for each point (m, world). Raises invalid_argument when a motion is not defined at the time.
-std::vector<WayAroundEdge> ways_around_edges(const AroundQuery& query, const std::vector<Vec3>& points);
+// Returns a way for each point (m, world). Raises invalid_argument when a motion is not defined at the time, Cancelled when
+// the job is cancelled.
+std::vector<WayAroundEdge> ways_around_edges(const AroundQuery& query, const std::vector<Vec3>& points, Job* job = nullptr);
 
 }  // namespace echopath

@@ -113,17 +113,55 @@ TEST(MirrorZone, CoverIsTheShareOfTheZone) {
   }
 }
 
-// The floor of a well is no larger a mirror than without its walls, which rise far less than the antennas.
-TEST(MirrorZone, AFloorBetweenWallsEndsAtThem) {
-  const double distance = 40.0, half = std::sqrt(kWavelength * distance / 2.0), side = half;
+// The floor of a square well between walls of 0.2 m.
+Plates well(double side) {
   Plates plates;
   plates.add("floor", Vec3(-0.5 * side, -0.5 * side, 0), Vec3(side, 0, 0), Vec3(0, side, 0));
   for (const double end : {-0.5, 0.5}) {
     plates.add("x" + std::to_string(end), Vec3(end * side, -0.5 * side, 0), Vec3(0, side, 0), Vec3(0, 0, 0.2));
     plates.add("y" + std::to_string(end), Vec3(-0.5 * side, end * side, 0), Vec3(side, 0, 0), Vec3(0, 0, 0.2));
   }
+  return plates;
+}
+
+constexpr double kHigh = 40.0;  // m: where both antennas are
+const double kHalfOfWell = std::sqrt(kWavelength * kHigh / 2.0);
+
+// The floor of a well is no larger a mirror than without its walls, which rise far less than the antennas.
+TEST(MirrorZone, AFloorBetweenWallsEndsAtThem) {
+  Plates plates = well(kHalfOfWell);
   plates.look_at(1e-4, 2e-4);
-  EXPECT_NEAR(plates.cover(distance, distance).share, 0.25, 1e-4);
+  EXPECT_NEAR(plates.cover(kHigh, kHigh).share, 0.25, 1e-4);
+}
+
+// Facades that rise above the antennas behind the walls of a well, all around it, make its floor no larger.
+TEST(MirrorZone, AFloorBetweenLowWallsEndsAtThemHoweverHighTheHousesBehindAre) {
+  for (const double behind : {0.01, 3.0, 30.0}) {
+    Plates plates = well(kHalfOfWell);
+    const double far = 0.5 * kHalfOfWell + behind;
+    for (const double end : {-far, far}) {
+      plates.add("u" + std::to_string(end), Vec3(end, -far, 0), Vec3(0, 2 * far, 0), Vec3(0, 0, 60));
+      plates.add("v" + std::to_string(end), Vec3(-far, end, 0), Vec3(2 * far, 0, 0), Vec3(0, 0, 60));
+    }
+    plates.look_at(1e-4, 2e-4);
+    EXPECT_NEAR(plates.cover(kHigh, kHigh).share, 0.25, 1e-4) << behind;
+  }
+}
+
+// Walls that rise above the antennas in the planes of the low ones, or lean back from them, go on as their images do.
+TEST(MirrorZone, AFloorBetweenHighWallsHasNoEdges) {
+  for (const double lean : {0.0, 0.1}) {
+    Plates plates;
+    const double half = 0.5 * kHalfOfWell, top = half + 60 * lean;
+    plates.add("floor", Vec3(-half, -half, 0), Vec3(2 * half, 0, 0), Vec3(0, 2 * half, 0));
+    for (const double side : {-1.0, 1.0}) {
+      const Vec3 slant(side * (top - half), 0, 60), across(0, side * (top - half), 60);
+      plates.add("x" + std::to_string(side), Vec3(side * half, -2, 0), Vec3(0, 4, 0), slant);
+      plates.add("y" + std::to_string(side), Vec3(-2, side * half, 0), Vec3(4, 0, 0), across);
+    }
+    plates.look_at(1e-4, 2e-4);
+    EXPECT_NEAR(plates.cover(kHigh, kHigh).share, 1.0, 1e-4) << lean;
+  }
 }
 
 // Born and Wolf, 8.7: sqrt(j) times the integral of exp(-j pi x^2) from -infinity to the edge; here by Simpson's rule from

@@ -34,11 +34,15 @@ double SurfaceAround::distance_to_wall(const Vec3& along, double reach) const {
   return meets ? std::min(met.distance, reach) : reach;
 }
 
-bool SurfaceAround::has_wall(const Vec3& along, double height, double reach) const {
+bool SurfaceAround::wall_rises(const Vec3& along, double distance, double height) const {
   RayHit met;
   ++num_queries_;
   const Vec3 from = point_.position + height * point_.normal;
-  return geometry_.intersect_from_surface(from, along, met, sees_) == EmbreeScene::Verdict::kHit && met.distance <= reach;
+  if (geometry_.intersect_from_surface(from, along, met, sees_) != EmbreeScene::Verdict::kHit) return false;
+  if (met.distance > distance + height) return false;
+  // What stands behind a low wall is not that wall, however high.
+  const double aside = (from + met.distance * along - above(along, distance)).dot(met.normal);
+  return std::abs(met.distance - distance) <= gap_ || std::abs(aside) <= gap_;
 }
 
 // Returns how far the triangle at that distance goes on; it is negative where the surface is not there.

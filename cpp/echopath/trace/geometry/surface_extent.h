@@ -37,8 +37,9 @@ class SurfaceAround {
   bool reaches(const Vec3& along, double distance) const {
     return distance_to_rim(along) >= distance || is_at(along, distance);
   }
-  // Returns whether something stands within `reach` (m) at a height (m) above the surface; this costs a ray.
-  bool has_wall(const Vec3& along, double height, double reach) const;
+  // Returns whether the wall whose foot stands at `distance` (m) rises to a height (m), straight up or in its plane, leaning
+  // back by no more than 45 degrees; this costs a ray.
+  bool wall_rises(const Vec3& along, double distance, double height) const;
   // Finds its end where it does not reach as far as `reach` (m). An edge lies where the last triangle ends, so that the
   // distance does not depend on how the surface is cut into triangles and meshes. This costs some ten rays.
   SurfaceEnd find_end(const Vec3& along, double reach) const;

@@ -81,7 +81,7 @@ class AxisCover {
   bool rises(const Vec3& way, const SurfaceEnd& end) const {
     const MirrorView& view = lit_.view;
     const double height = -view.point.normal.dot(view.arrival) * std::max(view.before, view.behind);
-    return mirror_.has_wall(way, height, end.distance + height);
+    return mirror_.wall_rises(way, end.distance, height);
   }
 
   double half_covered(const SurfaceEnd& end) const {

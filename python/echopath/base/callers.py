@@ -1,10 +1,11 @@
 """Where in the stack the user's own code is."""
 from __future__ import annotations
 
+import os
 import sys
-from pathlib import Path
 
-_PACKAGE = str(Path(__file__).resolve().parents[1])
+# As the code of the package names its files: unresolved, and apart from folders whose names only begin alike.
+_PACKAGE = os.path.dirname(os.path.dirname(__file__)) + os.sep
 
 
 def level_of_user() -> int:

@@ -1,5 +1,9 @@
 """Warnings of the core name the line of the user, however many functions of the package lie between."""
+import os
+import subprocess
+import sys
 import warnings
+from pathlib import Path
 
 import pytest
 
@@ -48,3 +52,16 @@ def test_a_map_without_noise_in_detections_of_frames(scene, radar):
         ep.detect_frame(frame)
         ep.detect(frame.spectrum, radar)
     assert _lines(record, "holds no noise of the radar") == 3 * [__file__]
+
+
+def test_a_script_beside_a_package_behind_a_link(tmp_path):
+    package, beside = Path(ep.__file__).parent, tmp_path / "echopath_study"
+    beside.mkdir()
+    (tmp_path / "echopath").symlink_to(package)
+    (beside / "run.py").write_text(
+        "from echopath.base import callers\n"
+        "code = compile('level = level_of_user()', callers.__file__, 'exec')\n"
+        "names = {'level_of_user': callers.level_of_user}\nexec(code, names)\nprint(callers.__file__, names['level'])\n")
+    run = subprocess.run([sys.executable, beside / "run.py"], env={**os.environ, "PYTHONPATH": str(tmp_path)},
+                         capture_output=True, text=True, check=True)
+    assert run.stdout.split() == [str(tmp_path / "echopath" / "base" / "callers.py"), "2"]

@@ -61,7 +61,8 @@ def test_a_script_beside_a_package_behind_a_link(tmp_path):
     (beside / "run.py").write_text(
         "from echopath.base import callers\n"
         "code = compile('level = level_of_user()', callers.__file__, 'exec')\n"
-        "names = {'level_of_user': callers.level_of_user}\nexec(code, names)\nprint(callers.__file__, names['level'])\n")
+        "names = {'level_of_user': callers.level_of_user}\ndef main():\n    exec(code, names)\nmain()\n"
+        "print(callers.__file__, names['level'])\n")
     run = subprocess.run([sys.executable, beside / "run.py"], env={**os.environ, "PYTHONPATH": str(tmp_path)},
                          capture_output=True, text=True, check=True)
     assert run.stdout.split() == [str(tmp_path / "echopath" / "base" / "callers.py"), "2"]

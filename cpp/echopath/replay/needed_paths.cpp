@@ -12,14 +12,6 @@ namespace {
 // The strongest path is looked for among so many, evenly spaced: a weaker one in its place leaves out fewer paths.
 constexpr int64_t kStrongestAmong = 1 << 14;
 
-// Returns whether the amplitude of an echo is below `limit` (sqrt(W)) at all nodes.
-bool is_below(const Echoes& echoes, size_t echo, double limit) {
-  for (size_t at = echo; at < echoes.amplitude.size(); at += static_cast<size_t>(echoes.num_echoes)) {
-    if (!(std::norm(echoes.amplitude[at]) < limit * limit)) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 std::vector<uint32_t> Replayer::meshes_of(std::span<const int64_t> paths) const {
@@ -48,14 +40,14 @@ void Replayer::find_strongest() {
   for (size_t i = 0; i < some.size(); ++i) strongest_ = std::max(strongest_, std::abs(amplitudes[i]));
 }
 
-// Returns [P], 1 for paths that are negligible in all channels. Between the nodes all channels do what the first does.
+// Returns [P], 1 for paths that are negligible in all channels.
 std::vector<uint8_t> Replayer::negligible_ones(const FrameNodes& nodes, std::span<const Echoes> channels) const {
   std::vector<uint8_t> is_negligible(static_cast<size_t>(channels.front().num_echoes), 1);
   const double rounding = std::numeric_limits<double>::epsilon() * strongest_;
   const double limit = rounding / static_cast<double>(std::max<int64_t>(1, paths_.num_paths()));
-  for (size_t p = 0; p < is_negligible.size(); ++p) is_negligible[p] = is_dark(nodes, channels.front(), p, limit);
-  for (const Echoes& channel : channels.subspan(1)) {
-    for (size_t p = 0; p < is_negligible.size(); ++p) is_negligible[p] = is_negligible[p] && is_below(channel, p, limit);
+  for (const Echoes& channel : channels) {
+    for (size_t p = 0; p < is_negligible.size(); ++p)
+      is_negligible[p] = is_negligible[p] && is_dark(nodes, channel, p, limit);
   }
   return is_negligible;
 }

@@ -115,6 +115,7 @@ def test_ctrl_c_while_the_program_loads_is_one_line(delay, tmp_path):
     for line in process.stderr:  # Python tells each module that it has loaded: the package itself has begun
         if line.rstrip().endswith("echopath._startup"):
             break
+    process.stderr.readline()  # the next module: the package has asked for its own answer to Ctrl-C by now
     time.sleep(delay)
     process.send_signal(signal.SIGINT)
     _, errors = process.communicate(timeout=60)

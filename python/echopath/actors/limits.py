@@ -3,10 +3,8 @@ from __future__ import annotations
 
 from ..arguments.checks import real
 
-LONGEST_TIME = 1e9      # s, from time 0: microseconds are still told apart
 LARGEST = 1000.0        # m, of a thing in a street
 LONGEST_ROW = 10_000.0  # m, of a rail
 
-start_time_rule = real(-LONGEST_TIME, LONGEST_TIME, unit="s")
 size_rule = real(above=0.0, high=LARGEST, unit="m")
 row_rule = real(above=0.0, high=LONGEST_ROW, unit="m")

@@ -14,6 +14,7 @@ Rule = Callable[[str, Any], Any]  # (argument, value) -> value as the work takes
 
 LARGEST_SEED = 2**64 - 1
 LARGEST_COUNT = 2**31 - 1  # of what the core keeps in an int
+LONGEST_TIME = 1e9         # s, from time 0: microseconds are still told apart
 
 
 def _scalar(value):
@@ -82,3 +83,6 @@ def seed(argument: str, value) -> int:
 
 
 _seed = count(0, LARGEST_SEED)
+
+
+start_time_rule = real(-LONGEST_TIME, LONGEST_TIME, unit="s")

@@ -9,6 +9,7 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import Progress, checked, count, real
 from ..base.made_by import made_by
+from ..tracing.polarization import polarization_of
 from .resolution import Interval
 from .surface_points import SurfacePoints, surface_points
 
@@ -134,12 +135,10 @@ def ways_to(scene, radar, antenna, points, time, *, edges=True, progress=None) -
     """The ways from an antenna at a time in s to points [N, 3] in m (_core.ways_around_edges)."""
     world_from_radar = radar.world_from_radar(time)
     rotation, place = world_from_radar[:3, :3], world_from_radar[:3, 3]
-    scalar, vector = antenna.orientation[0], antenna.orientation[1:]
-    across = np.cross(vector, antenna.polarization)
-    along = antenna.polarization + 2.0 * (scalar * across + np.cross(vector, across))  # in the radar's axes
     return _core.ways_around_edges(scene, time=time, frequency=radar.waveform.start_frequency,
-                                   antenna=rotation @ antenna.position + place, polarization=rotation @ along, points=points,
-                                   edges=edges, progress=progress)
+                                   antenna=rotation @ antenna.position + place,
+                                   polarization=rotation @ polarization_of(antenna), points=points, edges=edges,
+                                   progress=progress)
 
 
 def level_of(alone, radar, time, num_rays, progress=None) -> Interval:

@@ -5,6 +5,8 @@ import dataclasses
 
 import numpy as np
 
+from ..base.triangles import areas_of
+
 _STEPS = np.array([0.7548776662466927, 0.5698402909910532])  # 1/g and 1/g^2 with g^3 = g + 1: an even sequence in the square
 
 
@@ -42,17 +44,12 @@ def surface_points(scene, meshes, time, count) -> SurfacePoints:
     """
     corners = np.concatenate([mesh.triangles for mesh in meshes])
     mesh_ids = np.repeat([mesh.id for mesh in meshes], [len(mesh.triangles) for mesh in meshes])
-    areas = np.concatenate([_areas(scene.world_vertices(mesh.id, time)[mesh.triangles]) for mesh in meshes])
+    areas = np.concatenate([areas_of(scene.world_vertices(mesh.id, time)[mesh.triangles]) for mesh in meshes])
     if not areas.sum() > 0.0:
         return SurfacePoints(mesh_ids[:0], corners[:0], np.zeros((0, 3)))
     upto = np.cumsum(areas)
     chosen = np.searchsorted(upto, (np.arange(count) + 0.5) / count * upto[-1])
     return SurfacePoints(mesh_ids[chosen], corners[chosen], _even_weights(count))
-
-
-def _areas(corners) -> np.ndarray:
-    """m^2 [N], of triangles [N, corner, 3]."""
-    return 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=-1)
 
 
 def _even_weights(count) -> np.ndarray:

@@ -4,7 +4,8 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import Progress, checked, count, real
+from ..arguments.checks import Progress, checked, count
+from ..arguments.number_rules import start_time_rule
 from ..paths.around_corners import NO_MESH, Hidden, hidden_objects, level_of, ways_to
 from ..transmit import signal_shape
 
@@ -12,10 +13,7 @@ _STREAM = 0x65646765  # tells these random numbers from others of the same seed
 NODES = np.array([0.0, 0.5, 1.0])  # of the frame, between which lengths are parabolas
 
 
-LATEST = 1e9  # s, either way: motions know no later time
-
-
-@checked(start_time=real(-LATEST, LATEST, unit="s"), seed=count(0, 2**32 - 1), num_rays=count(1, 2**24))
+@checked(start_time=start_time_rule, seed=count(0, 2**32 - 1), num_rays=count(1, 2**24))
 def synthesize_around_corners(scene: _core.Scene, radar: _core.Radar, *, start_time: float = 0.0, seed: int = 1,
                               num_rays: int = 5000, progress: Progress = None) -> np.ndarray:
     """The signal that hidden objects send around one edge there and one back: what `synthesize` of a trace does not have.

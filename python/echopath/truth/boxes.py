@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import _core
+from ..base.triangles import areas_of
 
 STEP = 5e-5  # s, of differences over time; their error for a point 0.3 m from an axis of 50 turns/s is below 1e-5 m/s
 
@@ -85,7 +86,7 @@ class _Body:
         total, moment = 0.0, np.zeros(3)
         for mesh in self._meshes:
             corners = self._scene.world_vertices(mesh.id, time)[mesh.triangles]
-            area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+            area = areas_of(corners)
             total, moment = total + area.sum(), moment + area @ corners.mean(axis=1)
         frame = self._frame(time)
         return (moment / total - frame[:3, 3]) @ frame[:3, :3]

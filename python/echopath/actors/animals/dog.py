@@ -5,6 +5,7 @@ import numpy as np
 
 from ... import _core
 from ...arguments.checks import checked, positive, real, refused
+from ...arguments.number_rules import start_time_rule
 from ...base.rotations import about_y, about_z, quaternions
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
@@ -12,7 +13,7 @@ from ..following import key_times, refuse_beside_trajectory, trajectory_rule, wi
 from ..human.gait import Frames
 from ..human.pedestrian import keyframe_times
 from ..laid_line import LaidLine, usual_speed
-from ..limits import size_rule, start_time_rule
+from ..limits import size_rule
 from ..shapes import capsule, ellipsoid
 
 # Proportions of a Labrador retriever in heights of its withers (0.57 m by the breed's standard), drawn after photographs.

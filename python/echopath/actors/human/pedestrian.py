@@ -5,12 +5,12 @@ import numpy as np
 
 from ... import _core
 from ...arguments.checks import an, checked, positive, real, refused
+from ...arguments.number_rules import start_time_rule
 from ...base.rotations import quaternions
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
 from ..following import key_times, refuse_beside_trajectory, trajectory_rule, with_rates
 from ..laid_line import usual_speed
-from ..limits import start_time_rule
 from ..surfaces import edge_length
 from .anthropometry import Proportions
 from .body import surface

@@ -3,10 +3,10 @@ from __future__ import annotations
 
 from ... import _core
 from ...arguments.checks import checked, optional, positive, real
+from ...arguments.number_rules import start_time_rule
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor
 from ..following import refuse_beside_trajectory, trajectory_rule
-from ..limits import start_time_rule
 from ..laid_line import usual_speed
 from ..surfaces import edge_length
 from .anthropometry import Proportions

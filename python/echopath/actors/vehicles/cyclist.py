@@ -7,6 +7,7 @@ import numpy as np
 
 from ... import _core
 from ...arguments.checks import checked, positive, real
+from ...arguments.number_rules import start_time_rule
 from ...base.rotations import about_y, quaternions
 from ...trajectories.trajectory import Trajectory
 from ..actor import Actor, PartArrays
@@ -16,7 +17,6 @@ from ..human.foot import Sole
 from ..human.gait import Frames
 from ..human.pedestrian import MIN_KEYFRAME_RATE, body_arrays, keyframe_times, material_rule
 from ..human.posture import leg, reaching_arm, trunk
-from ..limits import start_time_rule
 from ..solids import block
 from ..surfaces import edge_length
 from .bicycle import CRANK, DEVELOPMENT, GRIP, PEDAL, Ride, bicycle_parts, pedal_corners, seat_point

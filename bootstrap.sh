@@ -142,7 +142,7 @@ wants_viewer() {
   return 1
 }
 
-has_viewer_tests() { compgen -G 'tests/viewer/test_*.py' >/dev/null; }
+has_viewer_tests() { compgen -G 'tests/viewer/*/test_*.py' >/dev/null; }
 
 # No test that OPTIONS select is no fault.
 run_pytest() {

@@ -9,16 +9,16 @@ import echopath as ep
 from echopath.presentation.tables import edge_hits, event
 
 from .antennas import world_from_antenna
-from .beams import beam_values, beam_weights, paths_in_beam
-from .cell_index import CellBox, CellIndex
+from .maps.beams import beam_values, beam_weights, paths_in_beam
+from .maps.cell_index import CellBox, CellIndex
 from .colours import COLOUR_MODES, colour_rays
-from .columns import Columns, read_columns
-from .filters import Filters
-from .kept_orders import KEPT_CHANNEL
+from .rays.columns import Columns, read_columns
+from .rays.filters import Filters
+from .frames.kept_orders import KEPT_CHANNEL
 from .palette import mesh_palette
-from .part_set import WHOLE
-from .ray_sample import SAMPLINGS
-from .segments import RayBundle
+from .maps.part_set import WHOLE
+from .rays.ray_sample import SAMPLINGS
+from .rays.segments import RayBundle
 from .session_layers import SessionLayers
 from .session_nodes import SessionNodes
 from .session_paths import SessionPaths

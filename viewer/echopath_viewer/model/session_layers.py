@@ -3,9 +3,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from .cell_index import CellBox
-from .ghost_twins import ghost_twins
-from .layers import (
+from .maps.cell_index import CellBox
+from .maps.ghost_twins import ghost_twins
+from .maps.layers import (
     DETECTIONS,
     LABELS,
     LAYERS,

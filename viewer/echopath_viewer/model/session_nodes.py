@@ -5,8 +5,8 @@ import dataclasses
 
 import echopath as ep
 
-from .part_set import MESH_GROUP, OWN_GROUP, WHOLE, Part
-from .signals import both
+from .maps.part_set import MESH_GROUP, OWN_GROUP, WHOLE, Part
+from .maps.signals import both
 
 
 class SessionNodes:

@@ -5,11 +5,11 @@ import numpy as np
 
 from echopath.paths.subset import paths_on, strongest
 
-from .filters import Filters
-from .kept_orders import KEPT_CHANNEL
-from .part_set import WHOLE, Part
-from .ray_sample import SAMPLINGS, RaySampler, coherent_powers
-from .touch_groups import TouchGroups
+from .rays.filters import Filters
+from .frames.kept_orders import KEPT_CHANNEL
+from .maps.part_set import WHOLE, Part
+from .rays.ray_sample import SAMPLINGS, RaySampler, coherent_powers
+from .rays.touch_groups import TouchGroups
 
 MAX_LISTED = 100_000     # rows of the table
 MAX_KEPT_MATCHES = 16    # masks of expressions kept for the next time

@@ -5,9 +5,9 @@ import dataclasses
 import math
 
 from .colours import COLOUR_MODES
-from .filters import MAX_BOUNCES, Filters
-from .layers import LAYERS
-from .ray_sample import SAMPLINGS
+from .rays.filters import MAX_BOUNCES, Filters
+from .maps.layers import LAYERS
+from .rays.ray_sample import SAMPLINGS
 
 FORMAT = "echopath view"
 VERSION = 1

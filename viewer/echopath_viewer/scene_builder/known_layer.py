@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..model.layers import BOX_EDGES, DETECTIONS, TRUTH, box_corners, detection_rgb
+from ..model.maps.layers import BOX_EDGES, DETECTIONS, TRUTH, box_corners, detection_rgb
 from .polydata import actor_in_cell_colours, lines_of, set_cell_colours, vertices_of
 
 POINT_SIZE, BOX_WIDTH = 9.0, 1.8  # pixels

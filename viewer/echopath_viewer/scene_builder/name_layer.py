@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..model.layers import NAMES
+from ..model.maps.layers import NAMES
 from ..model.palette import objects_of
 
 

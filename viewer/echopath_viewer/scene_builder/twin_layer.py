@@ -5,7 +5,7 @@ import numpy as np
 
 from echopath.plots.labels import CLASSES
 
-from ..model.layers import TWINS
+from ..model.maps.layers import TWINS
 from .polydata import triangles_of
 
 OPACITY = 0.28

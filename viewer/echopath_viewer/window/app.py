@@ -7,13 +7,13 @@ import sys
 import echopath as ep
 
 from ..model import from_file, from_frame, from_paths
-from ..model.live_session import input_of_view
-from ..model.preview import preview_of
-from ..model.simulated_frames import SimulatedFrames
-from ..model.time_line import time_line_of
+from ..model.frames.live_session import input_of_view
+from ..model.frames.preview import preview_of
+from ..model.frames.simulated_frames import SimulatedFrames
+from ..model.frames.time_line import time_line_of
 from ..model.view_state import load_state
 from .ctrl_c import closing_on_ctrl_c
-from .exporting import export
+from .files.exporting import export
 from .main_window import MainWindow
 from .qt import Qt, QtWidgets
 

@@ -10,26 +10,26 @@ from .background_work import BackgroundWork
 from .banner import Banner, ThinBar
 from .busy import run_with_progress
 from .choices import Choices
-from .contributions import ContributionsPanel
+from .maps.contributions import ContributionsPanel
 from .empty_page import EmptyPage
-from .file_actions import FileActions
-from .file_watch import FileWatch
-from .filter_box import FilterBox
-from .frame_bar import FrameBar
+from .files.file_actions import FileActions
+from .files.file_watch import FileWatch
+from .scene.filter_box import FilterBox
+from .timeline.frame_bar import FrameBar
 from .keys import uses_key
-from .live_control import LiveControl
-from .live_panel import LivePanel
-from .map_area import MapArea
+from .live.live_control import LiveControl
+from .live.live_panel import LivePanel
+from .maps.map_area import MapArea
 from .menus import Menus
-from .opening import Opening
+from .files.opening import Opening
 from .panels import Panels
 from .qt import QtCore, QtWidgets
-from .ray_table import RayTable
-from .remembered import remember_layout, restore_layout
-from .scene_tree import SceneTree
-from .time_bar import TimeBar
-from .time_control import TimeControl
-from .view3d import View3D
+from .scene.ray_table import RayTable
+from .files.remembered import remember_layout, restore_layout
+from .scene.scene_tree import SceneTree
+from .timeline.time_bar import TimeBar
+from .timeline.time_control import TimeControl
+from .scene.view3d import View3D
 from .view_actions import ViewActions
 
 TITLE = "Echopath"

@@ -1,9 +1,9 @@
 """The panels around the 3-D view: docks that are moved, closed and opened again."""
 from __future__ import annotations
 
-from .compare_panel import ComparePanel
+from .maps.compare_panel import ComparePanel
 from .qt import Qt, QtCore, QtWidgets
-from .side_panels import AzimuthPanel, BeatPanel, ElevationPanel, SpectrogramPanel
+from .maps.side_panels import AzimuthPanel, BeatPanel, ElevationPanel, SpectrogramPanel
 
 LEFT, RIGHT = Qt.DockWidgetArea.LeftDockWidgetArea, Qt.DockWidgetArea.RightDockWidgetArea
 CONTENT_PAGE, EMPTY_PAGE = 0, 1

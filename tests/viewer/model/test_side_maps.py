@@ -1,0 +1,100 @@
+"""Beams, maps beside range-Doppler, twins of ghosts and differences of maps, without a window."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath_viewer.model import Session, from_frame
+from echopath_viewer.model.maps.angle_maps import beat_signal, range_azimuth_map, range_elevation_map, spectrogram_map
+from echopath_viewer.model.maps.attribution import Attribution
+from echopath_viewer.model.maps.beams import beam_values, paths_in_beam
+from echopath_viewer.model.maps.comparison import KeptMap, difference
+from echopath_viewer.model.maps.ghost_twins import ghost_twins
+
+SUM_TOLERANCE = 1e-6  # of what makes a cell, of its value: what is promised
+
+
+@pytest.fixture(scope="module")
+def session(frame):
+    return Session(from_frame(frame))
+
+
+def test_beams_have_the_power_of_beamforming(frame):
+    """Two transmitters take turns: the phase of motion between their slots is part of the beam."""
+    for azimuth, elevation in ((0.0, 0.0), (0.3, -0.2)):
+        power = np.asarray(ep.beamform(frame.spectrum, frame.radar, azimuth, elevation).power)[0, 0]
+        for range_index in (30, 45):
+            found = np.abs(beam_values(frame.spectrum, frame.radar, range_index, azimuth, elevation)) ** 2
+            assert found == pytest.approx(power[:, range_index], rel=1e-6, abs=0)
+
+
+def test_a_beam_is_the_sum_of_its_contributions(session):
+    session.attribution = Attribution(session.signals)
+    session.select_beam(45, 0.1, 0.0)
+    found, spectrum = session.cell_attribution(), session.parts.whole.spectrum
+    value = beam_values(spectrum, session.radar, 45, 0.1, 0.0)[session.cell[1]]
+    assert found.value == pytest.approx(value, rel=1e-9, abs=0)
+    assert abs(sum(one.value for one in found.contributions) - value) < SUM_TOLERANCE * abs(value)
+
+
+def test_paths_lie_in_the_beam_that_looks_at_their_object(stored_run):
+    paths = stored_run[0].paths
+    plate = np.asarray(ep.Selection("T 'plate' R").matches(paths))
+    there = paths_in_beam(paths, plate, paths.frame.trace_time, np.arctan2(0.5, 6.0), 0.0)
+    aside = paths_in_beam(paths, plate, paths.frame.trace_time, np.radians(50.0), 0.0)
+    assert there.sum() == plate.sum() > 0 and not aside.any()
+
+
+def test_side_maps_have_the_axes_and_peaks_of_their_functions(frame, moving_sequence):
+    whole = frame.spectrum
+    azimuth = range_azimuth_map(whole, frame.radar, "everything")
+    truth = ep.range_azimuth(whole, frame.radar, combine="peak")
+    assert azimuth.level == pytest.approx(10.0 * np.log10(np.asarray(truth.power)) + 30.0, rel=0, abs=1e-3)
+    elevation = range_elevation_map(whole, frame.radar, "everything")
+    assert elevation.level.shape == (len(elevation.y), len(whole.range)) and (np.diff(elevation.y) > 0.0).all()
+    with pytest.raises(ValueError, match="tell no elevations apart"):
+        range_elevation_map(whole, moving_sequence.radar, "")
+    power = spectrogram_map(frame.cube, frame.radar, (0, 0))
+    assert power.level.shape == (len(power.y), len(power.x)) and 0.0 < power.x[0] < power.x[-1]
+    times, samples = beat_signal(frame.cube, frame.radar, (1, 0), 3)
+    assert np.array_equal(samples, frame.cube[1, 0, 3]) and times[1] == pytest.approx(1e-7)
+
+
+def test_a_ghost_over_a_plane_seems_to_be_at_the_mirror_image():
+    """Image method: an echo that goes over a wall both ways comes from behind it, as far as the object stands before it."""
+    scene = ep.Scene()
+    # Rough: a smooth box shows no face to the radar or its image, and too little of it comes back to tell where from.
+    rough = ep.Material(reflectivity=0.8, scattering=1.0)
+    scene.add(ep.Mesh(*_box((8.0, -1.0, 0.0))), name="box", material=rough)
+    wall = ep.Material.metal(mirror=True)
+    scene.add(ep.actors.wall(60, 8), name="wall", material=wall, position=(8, 3, -4))
+    radar = ep.Radar(ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=128, sampling_rate=10e6, num_chirps=4,
+                                      chirp_interval=1e-4), transmitters=[ep.Antenna((0, 0, 0))],
+                     receivers=[ep.Antenna((0, 0.01, 0))])
+    frame = ep.simulate(scene, radar, num_rays=20_000, max_bounces=3, seed=1)
+    session = Session(from_frame(frame))
+    twins = ghost_twins(session.paths, session.columns)
+    both_ways = next(twin for twin in twins if (twin.object, twin.ghost_type) == ("box", 2) and "(2/3)" in twin.name)
+    assert both_ways.offset == pytest.approx([0.0, 8.0, 0.0], rel=0, abs=0.7)  # from y = -1 to its image in
+    # y = 3, but for the size of the box, whose nearest faces are seen.
+
+
+def _box(centre):
+    corners = np.array([[x, y, z] for x in (-0.3, 0.3) for y in (-0.3, 0.3) for z in (-0.3, 0.3)]) + centre
+    faces = [(0, 1, 3), (0, 3, 2), (4, 6, 7), (4, 7, 5), (0, 4, 5), (0, 5, 1), (2, 3, 7), (2, 7, 6), (0, 2, 6), (0, 6, 4),
+             (1, 5, 7), (1, 7, 3)]
+    return corners, np.array(faces)
+
+
+def test_differences_are_of_the_same_place_and_of_signal_alone():
+    axis = np.arange(10.0)
+    noise = np.full((10, 10), -150.0, np.float32)
+    first, second = noise.copy(), noise.copy()
+    first[4, 5], second[4, 5] = -100.0, -93.0
+    second[1, 1] = -149.0  # noise
+    change = difference(KeptMap("a", first, axis, axis), KeptMap("b", second, axis, axis))
+    assert change[4, 5] == pytest.approx(7.0) and change[1, 1] == 0.0
+    other = KeptMap("coarse", first[::2, 1::2], axis[1::2], axis[::2])  # ranges 1, 3, ..., velocities 0, 2, ...
+    change = difference(other, KeptMap("b", second, axis, axis))
+    assert change[4, 5] == pytest.approx(7.0) and np.isnan(change[:, 0]).all() == (abs(axis[0] - 1.0) > 1.0)

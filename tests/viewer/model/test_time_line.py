@@ -1,0 +1,206 @@
+"""Frames in time as the viewer finds and reads them."""
+from __future__ import annotations
+
+import dataclasses
+import gc
+import shutil
+import weakref
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath_viewer.model import Session
+from echopath_viewer.model.frames.carried import session_like
+from echopath_viewer.model.frames.overview import Glance, glance_at, level_image, track_values, tracks_of
+from echopath_viewer.model.frames.simulated_frames import SimulatedFrames
+from echopath_viewer.model.frames.time_line import time_line_of
+from echopath_viewer.model.view_state import state_of
+
+NUM_FRAMES = 3
+
+
+@pytest.fixture(scope="module")
+def maps_of_run(moving_sequence, tmp_path_factory):
+    return moving_sequence.save(tmp_path_factory.mktemp("maps"), keep="maps")
+
+
+@pytest.mark.parametrize("what", [lambda folder: folder, lambda folder: ep.load_sequence(folder),
+                                  lambda folder: f"{folder}/frame_*.h5",
+                                  lambda folder: sorted(folder.glob("frame_*.h5"), reverse=True)])
+def test_folders_patterns_and_lists_are_lines_in_the_order_of_time(stored_run, what):
+    line = time_line_of(what(stored_run.folder))
+    assert [moment.start_time for moment in line.moments] == list(stored_run.times)
+    assert [moment.path for moment in line.moments] == stored_run.paths_of_files
+    second = line.read(1)
+    assert second.paths.frame.start_time == stored_run.times[1] and second.paths.num_paths == stored_run[1].paths.num_paths
+
+
+def test_one_file_is_no_line(stored_run):
+    assert time_line_of(stored_run.paths_of_files[0]) is None
+
+
+def test_folders_of_nothing_say_so(tmp_path):
+    with pytest.raises(ep.FileError, match="holds neither frames"):
+        time_line_of(tmp_path)
+    with pytest.raises(ep.FileError, match=r"\*.h5: holds no frame"):
+        time_line_of(f"{tmp_path}/*.h5")
+
+
+def test_frames_appear_when_they_are_written(stored_run, tmp_path):
+    for name in ("sequence.h5", "frame_0000.h5"):
+        shutil.copy(stored_run.folder / name, tmp_path / name)
+    line = time_line_of(tmp_path)
+    assert (len(line), line.expected, line.refresh()) == (1, NUM_FRAMES, False)
+    (tmp_path / "frame_0001.h5").write_bytes(b"")  # of another program: a frame is renamed into its place when it is whole
+    shutil.copy(stored_run.paths_of_files[1], tmp_path / "frame_0001.h5")
+    assert line.refresh() and [moment.name for moment in line.moments] == ["frame 0", "frame 1"]
+
+
+def test_a_glance_has_the_power_of_the_map(stored_run):
+    line = time_line_of(stored_run.folder)
+    glance = glance_at(line.moments[1])
+    power = np.abs(stored_run[1].spectrum.values) ** 2
+    assert glance.by_velocity == pytest.approx(power.mean(axis=(0, 1)).sum(axis=1), rel=1e-5, abs=0)
+    assert glance.by_range == pytest.approx(power.mean(axis=(0, 1)).sum(axis=0), rel=1e-5, abs=0)
+    level, values = level_image([glance_at(moment) for moment in line.moments], "range")
+    assert level.shape == (len(values), NUM_FRAMES)
+
+
+def test_tracks_go_with_the_object(stored_run):
+    """The plate drives straight at the radar: its range falls by the way of a frame, its velocity is its speed."""
+    glances = [glance_at(moment) for moment in time_line_of(stored_run.folder).moments]
+    tracks = tracks_of(glances)
+    assert tracks.num_tracks >= 1
+    rows = tracks.of_track(int(tracks.track[0]))
+    distance = track_values(rows, glances, "range")
+    assert np.diff(distance) == pytest.approx(-0.8, rel=0, abs=0.25)
+    assert track_values(rows, glances, "velocity")[-1] == pytest.approx(-4.0, rel=0, abs=1.5)
+
+
+def glance_of(time: float, radar, distance: float, detections=None):
+    """A glance whose one detection is straight ahead of the radar."""
+    found = dataclasses.replace(detections, **{name: value[:1] for name, value in vars(detections).items()
+                                               if isinstance(value, np.ndarray) and len(value) == len(detections)})
+    found = dataclasses.replace(found, range=np.array([distance]), azimuth=np.zeros(1))
+    axis = np.arange(2.0)
+    return Glance(time, axis, axis, axis, axis, found, radar)
+
+
+def test_tracks_stand_still_before_a_radar_that_was_moved_between_files(stored_run):
+    """Three radars, each at rest, 1 m apart, turned to look at what stands at (9, 0): the file of each has a radar of its own."""
+    places = (np.array([0.0, 0.0]), np.array([0.6, 0.8]), np.array([1.2, 1.6]))
+    glances = []
+    for number, place in enumerate(places):
+        way = np.array([9.0, 0.0]) - place
+        radar = stored_run.radar.replace(position=(*place, 0.0), yaw=float(np.arctan2(way[1], way[0])))
+        glances.append(glance_of(0.2 * number, radar, float(np.linalg.norm(way)), stored_run[0].detections))
+    tracks = tracks_of(glances)
+    assert tracks.num_tracks == 1
+    assert tracks.state[:, :2] == pytest.approx(np.tile([9.0, 0.0], (3, 1)), rel=0, abs=1e-6)
+    distances = [float(np.hypot(9.0 - place[0], place[1])) for place in places]
+    assert track_values(tracks, glances, "range") == pytest.approx(distances, rel=0, abs=1e-6)
+    assert track_values(tracks, glances, "velocity") == pytest.approx(np.zeros(3), abs=1e-6)
+
+
+def test_velocities_of_tracks_need_no_motion_beyond_the_last_frame(stored_run):
+    """Towards what stands still, a radar of 3 m/s whose keyframes end with the last frame sees -3 m/s."""
+    times = 0.2 * np.arange(3)
+    short = stored_run.radar.replace(waveform=stored_run.radar.waveform.replace(chirp_interval=2e-5))
+    end = times[-1] + short.frame_duration  # .64 ms
+    motion = ep.KeyframeMotion([0.0, end], [[0.0, 0.0, 0.0], [3.0 * end, 0.0, 0.0]], None, "linear")
+    radar = short.replace(motion=motion)
+    middles = times + 0.5 * radar.frame_duration
+    glances = [glance_of(time, radar, 9.0 - 3.0 * middle, stored_run[0].detections) for time, middle in zip(times, middles)]
+    tracks = tracks_of(glances)
+    assert track_values(tracks, glances, "velocity") == pytest.approx(-3.0 * np.ones(3), abs=1e-5)
+
+
+def test_frames_of_maps_alone_show_maps_and_labels(stored_run, maps_of_run):
+    line = time_line_of(maps_of_run.folder)
+    session = Session(line.read(1))
+    kept = maps_of_run[1]
+    shown = np.abs(session.parts.whole.spectrum.values) ** 2
+    assert shown == pytest.approx(np.broadcast_to(kept.power, shown.shape), rel=1e-6, abs=0)
+    assert session.paths.num_paths == 0 and session.radar == stored_run.radar
+    session.set_layer("detections", True)
+    assert len(session.known_data("detections")) == len(kept.detections)
+    assert "keeps maps" in session.note
+    assert glance_at(line.moments[1]).by_range == pytest.approx(glance_at(time_line_of(stored_run.folder).moments[1]).by_range,
+                                                                rel=1e-5, abs=0)
+
+
+def test_what_is_shown_goes_on_in_the_next_frame(stored_run):
+    line = time_line_of(stored_run.folder)
+    first = Session(line.read(0))
+    first.set_color_by("mesh")
+    first.set_mesh_colour(0, (1, 2, 3))
+    first.set_mesh_visible([1], False)
+    first.set_layer("detections", True)
+    first.select_ray(int(first.shown_rays(1)[0]))
+    second = session_like(state_of(first), line.read(1))
+    assert second.color_by == "mesh" and second.palette[0].tolist() == [1, 2, 3] and second.hidden_meshes == {1}
+    assert second.layers == {"detections"} and second.ray is None
+
+
+def test_frames_that_were_shown_are_forgotten(stored_run):
+    line, kept, state = time_line_of(stored_run.folder), [], None
+    for place in (0, 1, 2, 0, 1):
+        session = session_like(state, line.read(place))
+        state = state_of(session)
+        kept.append(weakref.ref(session))
+    del session
+    gc.collect()
+    assert sum(one() is not None for one in kept) == 0
+
+
+def test_a_sequence_is_simulated_beside(moving_sequence, stored_run):
+    line = SimulatedFrames(moving_sequence)
+    assert len(line) >= 1 and line.expected == NUM_FRAMES
+    line._thread.join(60.0)
+    line.refresh()
+    assert len(line) == NUM_FRAMES and line.failure == ""
+    paths = line.read(2).paths
+    assert paths.frame.start_time == stored_run.times[2] and np.array_equal(paths.amplitude, stored_run[2].paths.amplitude)
+    folder = line.moments[0].path.parent
+    line.close()
+    assert not folder.exists()
+
+
+LABELS_ALONE = """
+[dataset]
+scenes = 1
+frames = 2
+interval = 0.05
+keep = "labels"
+[radar.waveform]
+start_frequency = 77e9
+bandwidth = 0.7e9
+num_samples = 64
+sampling_rate = 10e6
+num_chirps = 16
+chirp_interval = 40e-6
+[[radar.transmitters]]
+position = [0.0, 0.0, 1.0]
+[[radar.receivers]]
+position = [0.0, 0.0050, 1.0]
+[[objects]]
+name = "walker"
+actor = "pedestrian"
+position = [6.0, 1.0, 0.0]
+[trace]
+num_rays = 300
+[labels]
+"""
+
+
+def test_frames_of_a_dataset_that_are_remade_have_their_rays(tmp_path):
+    (tmp_path / "template.toml").write_text(LABELS_ALONE)
+    list(ep.dataset.make(tmp_path / "template.toml", tmp_path / "made"))
+    dataset = ep.dataset.open(tmp_path / "made")
+    assert time_line_of(dataset).read(1).paths.num_paths == 0
+    remade = dataset.remade()[1:]
+    line = time_line_of(remade)
+    shown, wanted = line.read(0), remade[0].frame
+    assert len(line) == 1 and shown.paths.num_paths == wanted.paths.num_paths > 0 and shown.note == ""
+    assert np.array_equal(shown.cube, wanted.cube) and shown.paths.frame.start_time == pytest.approx(0.05)

@@ -1,0 +1,197 @@
+"""What is drawn when, and keys and drops that reach the right widget."""
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath_viewer.model import CellBox, Legend
+from echopath_viewer.window.scene.filter_box import ErrorLabel
+from echopath_viewer.window.scene.legend_box import LegendBox
+from echopath_viewer.window.scene.pace import Smoothing
+from echopath_viewer.window.qt import Qt, QtCore, QtGui, QtWidgets
+from support.window import PATIENCE_MS, panel_of, settle
+
+SLOW_PICTURE = 0.12  # s: longer than a step of the film
+WHOLE_KEY = ("whole", "whole")
+
+
+@pytest.fixture
+def pictures(window):
+    """A list that grows with each picture that VTK draws."""
+    drawn, renderer = [], window.view3d.renderer
+    tag = renderer.AddObserver("EndEvent", lambda *_: drawn.append(window.session.chirp))
+    yield drawn
+    renderer.RemoveObserver(tag)
+
+
+def wait_for_pictures(qtbot, window) -> None:
+    qtbot.waitUntil(lambda: not window.view3d.is_behind() and not window._listing.isActive(), timeout=PATIENCE_MS)
+    settle(qtbot)
+
+
+def test_each_change_is_drawn_once(qtbot, window, pictures):
+    wait_for_pictures(qtbot, window)
+    pictures.clear()
+    window.session.set_chirp(3)
+    wait_for_pictures(qtbot, window)
+    assert pictures == [3]
+
+
+def test_a_turn_of_the_camera_is_drawn_once(qtbot, window, pictures):
+    wait_for_pictures(qtbot, window)
+    pictures.clear()
+    window.view3d.iren.interactor.Render()  # what VTK's styles call
+    wait_for_pictures(qtbot, window)
+    assert len(pictures) == 1
+
+
+def test_the_film_shows_every_step_however_slow_its_pictures_are(qtbot, window, pictures):
+    wait_for_pictures(qtbot, window)
+    tag = window.view3d.renderer.AddObserver("StartEvent", lambda *_: time.sleep(SLOW_PICTURE))
+    window.time_bar.slider.setValue(0)
+    pictures.clear()
+    window.time_bar.play_button.setChecked(True)
+    try:
+        qtbot.waitUntil(lambda: window.session.chirp >= 4, timeout=PATIENCE_MS)
+    finally:
+        window.time_bar.play_button.setChecked(False)
+        window.view3d.renderer.RemoveObserver(tag)
+    assert {1, 2, 3} <= set(pictures)
+
+
+def test_a_step_in_time_selects_no_paths_anew(qtbot, window, monkeypatch):
+    window.session.select_cells(CellBox(0, 60, 0, 31))
+    window.session.select_ray(int(window.session.lit_rays(1)[0]))
+    copied = []
+    monkeypatch.setattr("echopath_viewer.model.rays.segments.subset", lambda *_: copied.append(True))
+    window.session.set_chirp(7)
+    assert not copied
+
+
+@pytest.mark.filterwarnings("ignore:.*QDragEnterEvent:DeprecationWarning")
+def test_a_file_dropped_on_the_scene_is_opened_by_the_window(qtbot, window, monkeypatch, tmp_path):
+    opened = []
+    monkeypatch.setattr(window, "open_file", lambda path: opened.append(path))
+    data = QtCore.QMimeData()
+    data.setUrls([QtCore.QUrl.fromLocalFile(str(tmp_path / "frame.h5"))])
+    for widget in (window.view3d, window.filter_box.expression_edit, panel_of(window, *WHOLE_KEY)):
+        at = QtCore.QPointF(widget.mapTo(window, widget.rect().center()))
+        for kind in (QtGui.QDragEnterEvent, QtGui.QDropEvent):
+            place = at.toPoint() if kind is QtGui.QDragEnterEvent else at
+            event = kind(place, Qt.DropAction.CopyAction, data, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier)
+            QtWidgets.QApplication.sendEvent(window.windowHandle(), event)
+    assert opened == [str(tmp_path / "frame.h5")] * 3
+
+
+def test_space_on_a_check_box_checks_it(qtbot, window):
+    check = window.filter_box.hits_check
+    check.setFocus()
+    qtbot.keyClick(check, Qt.Key.Key_Space)
+    assert check.isChecked() and not window.time_bar.play_button.isChecked()
+    window.view3d.setFocus()  # which has no use for it itself
+    qtbot.keyClick(window.view3d, Qt.Key.Key_Space)
+    assert window.time_bar.play_button.isChecked()
+    window.time_bar.play_button.setChecked(False)
+
+
+def test_messages_of_the_path_field_are_shown_whole(qtbot):
+    label = ErrorLabel()
+    qtbot.addWidget(label)
+    label.resize(190, 100)
+    label.show()
+    what = "there is no mesh that the glob takes, which is written in quotes; the nearest names are others " * 2
+    label.setText(f"path expression: {what}\n{'T .* ' * 20}'nobody' R\n{' ' * 100}^")
+    qtbot.wait(20)
+    text = label._where
+    assert text.fontMetrics().horizontalAdvance(text.text().split("\n")[0]) <= 190 and "^" in text.text()
+    assert label._what.height() >= label._what.heightForWidth(label._what.width())
+
+
+def test_rays_over_hidden_meshes_are_not_drawn(qtbot, window):
+    session = window.session
+    wall = session.mesh_names.index("wall_left")
+    session.set_mesh_visible([wall], False)
+    settle(qtbot)
+    drawn = window.view3d.builder.rays.segments
+    assert drawn.num_segments and wall not in drawn.hit_mesh
+    over = np.asarray(ep.hits("wall_left").matches(session.paths))
+    assert not over[session.shown_rays()].any() and session.visible[over].any()  # filters do not change
+    session.set_mesh_visible([wall], True)
+    assert over[session.shown_rays()].any()
+
+
+def test_cells_without_rays_say_why(qtbot, window):
+    session, text = window.session, window.filter_box.count_label.text
+    empty = np.argwhere(np.array([[not session.index.mask_of(CellBox(r, r, v, v)).any() for r in range(0, 128, 9)]
+                                  for v in range(0, 32, 5)]))[0]
+    velocity, distance = int(empty[0]) * 5, int(empty[1]) * 9
+    session.select_cells(CellBox(distance, distance, velocity, velocity))
+    settle(qtbot)
+    assert "no ray lies there" in text() and "side lobes" in text()
+    session.set_part(("route", "ghost"))
+    only_direct = np.flatnonzero((session.columns.cell >= 0) & ~session.part.mask)
+    box = next(CellBox(*(cell[0],) * 2, *(cell[1],) * 2) for cell in map(session.cell_of, map(int, only_direct))
+               if not (session.visible & session.index.mask_of(CellBox(*(cell[0],) * 2, *(cell[1],) * 2))).any())
+    session.select_cells(box)
+    settle(qtbot)
+    assert "leave them out" in text()
+
+
+def test_a_peak_beyond_the_view_sets_no_colours(qtbot, window):
+    session, area = window.session, window.map_area
+    level, spectrum = session.parts.whole.level(0, 0), session.parts.whole.spectrum
+    column = len(spectrum.range) - 20  # far behind all echoes
+    area.set_view(QtCore.QRectF(spectrum.range[column], spectrum.velocity[0], spectrum.range[-1] - spectrum.range[column],
+                                spectrum.velocity[-1] - spectrum.velocity[0]))
+    seen = float(level[:, column:].max())
+    assert seen <= area.colour_bar.limits[1] < seen + 5.0 < level.max()
+    assert panel_of(window, *WHOLE_KEY).limits == area.colour_bar.limits
+    area.set_view(area.whole_view)
+
+
+def test_a_click_on_a_row_of_the_legend_shows_that_object_alone(qtbot, window):
+    session, legend = window.session, window.view3d.legend_box
+    session.set_color_by("mesh")
+    settle(qtbot)
+    assert legend.isVisible() and [label for label, _ in legend.legend.rows] == ["walker", "wall_left", "wall_right"]
+    line = legend._line()
+    for shown in ({0, 1}, {0, 1, 2, 3}):
+        qtbot.mouseClick(legend, Qt.MouseButton.LeftButton, pos=QtCore.QPoint(20, 8 + line + line // 2))
+        assert set(range(4)) - session.hidden_meshes == shown
+
+
+def test_edges_are_smooth_on_a_quick_machine(qtbot, window, monkeypatch):
+    wait_for_pictures(qtbot, window)
+    coarse = shades_of(window)
+    monkeypatch.setattr("echopath_viewer.window.scene.pace.INSTANT", 10.0)
+    monkeypatch.setattr("echopath_viewer.window.scene.pace.QUICK", 10.0)
+    window.view3d._smoothing = Smoothing()
+    for _ in range(6):
+        window.view3d.render_soon()
+        wait_for_pictures(qtbot, window)
+    assert window.view3d.render_window.GetMultiSamples() == 4 and shades_of(window) > 1.2 * coarse
+    window.view3d.render_window.SetMultiSamples(0)
+    window.view3d._smoothing = Smoothing()
+
+
+def shades_of(window) -> int:
+    """How many colours the scene has: smooth edges have those between two."""
+    image = window.view3d.grab().toImage().convertToFormat(QtGui.QImage.Format.Format_RGB32)
+    pixels = np.frombuffer(image.constBits(), np.uint32)
+    return len(np.unique(pixels))
+
+
+def test_the_title_of_a_scale_in_the_window_stands_over_none_of_its_labels(qtbot):
+    parent, pictures = QtWidgets.QWidget(), []
+    qtbot.addWidget(parent)
+    box = LegendBox(parent)
+    for title in (" ", "Power in dBm"):
+        box.show(Legend(title, clim=(-140.0, -100.0), cmap="viridis"))
+        image = box.grab().toImage().convertToFormat(QtGui.QImage.Format.Format_RGB888)
+        rows = np.frombuffer(image.constBits(), np.uint8).reshape(image.height(), image.bytesPerLine())
+        pictures.append(rows[:, :3 * image.width()].reshape(image.height(), image.width(), 3).astype(int))
+    is_title = np.abs(pictures[1] - pictures[0]).max(axis=-1) > 60
+    assert is_title.sum() > 50 and pictures[0][is_title].min() > 200

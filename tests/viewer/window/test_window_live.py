@@ -1,0 +1,172 @@
+"""Objects that are dragged in the window, while map and rays follow."""
+from __future__ import annotations
+
+import threading
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath_viewer.model import CellBox, from_frame
+from echopath_viewer.model.frames.live_session import input_of_view
+from echopath_viewer.window.qt import Qt, QtCore, QtWidgets
+from support.window import LEFT, open_on_screen, project
+
+PATIENCE_MS = 20_000
+SAME = 1e-9  # of the largest sample, of a fresh scene
+
+
+@pytest.fixture
+def live_window(qtbot, shared_window, moving_sequence):
+    scene = moving_sequence.scene
+    scene["plate"].motion = None
+    live = ep.Live(scene, moving_sequence.radar, num_rays=3000, max_bounces=2)
+    window = shared_window
+    window.show_input(input_of_view(live, live.update()))
+    open_on_screen(qtbot, window)
+    window.live_panel.attach(live, window.session)
+    yield window
+    window.live_panel.stop()
+
+
+def settled(qtbot, window) -> None:
+    """Waits until the window has the full view of the latest change: the watch has told it, and its events are handled."""
+    qtbot.waitUntil(window.live.is_settled, timeout=PATIENCE_MS)
+    QtWidgets.QApplication.processEvents()
+    assert window.live_panel.state_label.text().startswith("full")
+
+
+def test_what_is_moved_by_numbers_is_that_of_a_fresh_scene(qtbot, live_window):
+    window, panel = live_window, live_window.live_panel
+    settled(qtbot, window)
+    panel.choose("plate")
+    panel.place_boxes[0].setValue(8.0)
+    qtbot.waitUntil(lambda: abs(window.view3d.builder.meshes.actors[0].center[0] - 14.0) < 1e-3, timeout=PATIENCE_MS)
+    settled(qtbot, window)
+    fresh = ep.Live(window.live.live.scene, window.live.live.radar, num_rays=3000, max_bounces=2).update()
+    shown = window.session.parts.whole.spectrum.values
+    assert np.abs(shown - fresh.map.values).max() < SAME * np.abs(fresh.map.values).max()
+    assert window.session.paths.num_paths == window.session.columns.power.size > 0
+
+
+def test_the_panel_tells_how_many_rays_there_are_and_what_is_left_out(qtbot, live_window):
+    settled(qtbot, live_window)
+    assert live_window.live_panel.rays_box.value() == live_window.live.live.num_rays == 3000
+    assert "3,000 rays" in live_window.live_panel.state_label.text()
+    assert "without noise, rain and other radars" in live_window.live_panel.state_label.text()
+
+
+def test_an_object_is_dragged_with_shift(qtbot, live_window):
+    window, view = live_window, live_window.view3d
+    settled(qtbot, window)
+    window.look_fit()
+    window.settle()
+    before, middle = window.live.position("plate"), np.array(view.builder.meshes.actors[0].center)
+    at = project(window, middle)
+    at = next(spot for spot in (at + QtCore.QPoint(dx, dy) for dx in (0, 1, -1, 2, -2) for dy in (0, 3, -3, 6))
+              if view.mesh_at(spot.x(), spot.y(), False) == 0)
+    aim = project(window, middle + (2.0, 1.0, 0.0)) + (at - project(window, middle))
+    qtbot.mousePress(view, LEFT, Qt.KeyboardModifier.ShiftModifier, pos=at)
+    qtbot.mouseMove(view, aim)
+    qtbot.mouseRelease(view, LEFT, Qt.KeyboardModifier.ShiftModifier, pos=aim)
+    assert window.live.position("plate") - before == pytest.approx([2.0, 1.0, 0.0], rel=0, abs=0.15)
+    settled(qtbot, window)
+
+
+def test_radar_material_and_turns_follow(qtbot, live_window):
+    window, panel = live_window, live_window.live_panel
+    settled(qtbot, window)
+    level = window.session.parts.whole.level(0, 0).max()
+    panel.choose("wall")
+    panel.material_box.setCurrentText("metal")
+    panel.material_box.activated.emit(panel.material_box.currentIndex())
+    settled(qtbot, window)
+    assert window.session.parts.whole.level(0, 0).max() > level + 3.0
+    window.live.set_material("wall", ep.Material(permittivity=5.0, scattering=0.5))
+    panel.rough_slider.setValue(10)  # takes the place of the share that it scattered
+    settled(qtbot, window)
+    assert window.live.live.scene["wall"].meshes[0].material.roughness_height == pytest.approx(5e-4)
+    panel.yaw_box.setValue(5.0)
+    panel.choose("radar")
+    panel.place_boxes[1].setValue(0.5)
+    settled(qtbot, window)
+    assert window.session.radar.position[1] == 0.5 and window.live.yaw("wall") == pytest.approx(np.radians(5.0))
+
+
+def test_a_frame_becomes_live_and_another_one_ends_it(qtbot, window, frame):
+    window.live_panel.rays_box.setValue(2000)
+    window.live_panel.start_button.setChecked(True)
+    settled(qtbot, window)
+    assert window.session.title == "live" and window.live_panel.object_box.currentText() == "walker"
+    window.show_input(from_frame(frame, title="frame"))
+    assert not window.live.is_on and not window.live_panel.start_button.isChecked()
+
+
+@pytest.fixture
+def preview_window(qtbot, live_window, monkeypatch):
+    """A window that shows the preview of a plate moved by 3 m; the full view comes once `window.released` is set."""
+    window, live, window.released = live_window, live_window.live.live, threading.Event()
+    settled(qtbot, window)
+    full_update = live.update
+
+    def update(progress):
+        while not window.released.wait(0.01):
+            progress("trace", 0.0)  # raises where the watch was stopped
+        return full_update(progress=progress)
+
+    monkeypatch.setattr(live, "update", update)
+    window.live._watch._full_seconds = 1.0  # as of a scene that takes long
+    window.level_before = window.session.parts.whole.level(0, 0)
+    window.live_panel.choose("plate")
+    window.live_panel.place_boxes[0].setValue(3.0)
+    qtbot.waitUntil(lambda: window.live_panel.state_label.text().startswith("preview"), timeout=PATIENCE_MS)
+    yield window
+    window.released.set()
+
+
+def test_scene_rays_and_map_follow_a_preview_before_the_full_view(qtbot, preview_window):
+    window, drawn = preview_window, preview_window.view3d.builder
+    assert drawn.meshes.actors[0].center[0] == pytest.approx(9.0, abs=0.01)
+    assert drawn.session is window.session is window.map_area.session
+    assert all(panel.session is window.session for panel in (window.tree, window.filter_box, window.contributions,
+                                                             *window.side_panels.values(), window.live_panel))
+    on_plate = drawn.rays.segments.points[drawn.rays.segments.hits[drawn.rays.segments.hit_mesh == 0]]
+    assert len(on_plate) and np.abs(on_plate[:, 0] - 9.0).max() < 0.3
+    assert not np.array_equal(window.session.parts.whole.level(0, 0), window.level_before)
+    window.table.view.selectRow(0)  # a row of the preview, whose paths are others
+    assert window.session.ray is not None
+    window.released.set()
+    settled(qtbot, window)
+
+
+def test_a_preview_that_is_stopped_stays_and_is_where_the_next_start_begins(qtbot, preview_window):
+    window, drawn = preview_window, preview_window.view3d.builder.rays
+    window.live_panel.start_button.setChecked(False)
+    shown = window.session
+    assert shown.title == "live" and shown._listeners.count(window._changed) == 1
+    assert drawn._rays.GetMapper().GetInput() is drawn._lines and len(drawn.segments.rays) == len(shown.shown_rays())
+    window.live_panel.start_button.setChecked(True)
+    assert window.live.position("plate")[0] == pytest.approx(3.0)
+    settled(qtbot, window)
+    assert window.view3d.builder.meshes.actors[0].center[0] == pytest.approx(9.0, abs=0.01)
+
+
+def test_what_ends_the_watch_is_told_at_once(qtbot, live_window):
+    window = live_window
+    settled(qtbot, window)
+    window.live.live.change(lambda scene: setattr(scene["plate"], "position", (1e30, 0.0, 0.0)))
+    qtbot.waitUntil(lambda: not window.live.is_on, timeout=PATIENCE_MS)
+    assert window.banner.text().startswith("The live view has ended: ") and "plate" in window.banner.text()
+    assert not window.live_panel.start_button.isChecked() and not window.live_panel.state_label.text().startswith("preview")
+    window.show_message("")
+
+
+def test_what_is_chosen_while_the_full_view_is_traced_stays(qtbot, preview_window):
+    window = preview_window
+    window.session.select_cells(CellBox(3, 9, 2, 9))
+    window.session.set_color_by("mesh")
+    window.session.set_dynamic_range(35.0)
+    window.released.set()
+    settled(qtbot, window)
+    assert window.session.box == CellBox(3, 9, 2, 9) and window.session.color_by == "mesh"
+    assert window.session.dynamic_range_db == 35.0 and window.filter_box.colour_box.currentText() == "mesh"

@@ -1,0 +1,1 @@
+"""Where a view comes from: frames, files, time lines, live scenes."""

@@ -1,0 +1,51 @@
+"""Sessions of a scene that is changed while it is watched."""
+from __future__ import annotations
+
+import echopath as ep
+
+from .carried import make_ready, session_like
+from .inputs import ViewInput, whole_part
+from ..maps.part_set import PartSet
+from ..maps.signals import Signals
+from ..view_state import apply_state
+
+DEFAULT_RAYS, TITLE = 50_000, "live"
+
+
+def live_of(session, num_rays: int = DEFAULT_RAYS):
+    """ep.Live of the scene, the radar and the start of the frame of a session; maps have its window and zero_pad."""
+    frame = session.paths.frame
+    return ep.Live(session.scene, session.radar, num_rays=num_rays, max_bounces=frame.max_bounces, start_time=frame.start_time,
+                   seed=frame.seed, **session.signals.spectrum_settings)
+
+
+def session_of_view(live, view, state, spectrum_settings: dict):
+    """A session of the latest ep.LiveView, preview or full, ready to be drawn, which shows what another one did.
+
+    state: as of `state_of`, or None
+    """
+    shown = input_of_view(live, view, spectrum_settings)
+    return make_ready(session_like(None if state is None else _without_parts(state), shown))
+
+
+def show_state(session, state: dict, made_for: dict) -> None:
+    """Has a session of `session_of_view` show what was chosen since it was made.
+
+    state: as of `state_of`; made_for: the one then
+    """
+    kept = {"frame": session.title, "ray": None}  # whose rays are others
+    if _without_parts(state) | kept != _without_parts(made_for) | kept:
+        apply_state(session, _without_parts(state) | kept)
+
+
+def input_of_view(live, view, spectrum_settings: dict | None = None) -> ViewInput:
+    """What the latest view of a live scene shows; spectrum_settings: window and zero_pad of its map, None: as the map tells."""
+    settings = {"window": view.map.window, "zero_pad": view.map.zero_pad} if spectrum_settings is None else spectrum_settings
+    paths = live.paths(preview=view.is_preview)
+    return ViewInput(paths, PartSet(whole_part(view.map)), Signals(paths, settings), view.cube, TITLE)
+
+
+def _without_parts(state: dict) -> dict:
+    """Parts take synthesis, which would slow down what is dragged."""
+    whole = ["whole", "whole"]
+    return state | {"part": whole, "partition": None, "own_parts": {}, "node": None, "node_base": whole, "layers": []}

@@ -1,0 +1,67 @@
+"""Frames of which a file keeps maps and labels alone."""
+from __future__ import annotations
+
+import numpy as np
+
+import echopath as ep
+from echopath import _core
+
+from .inputs import ViewInput, whole_part
+from ..maps.layers import Known
+from ..maps.part_set import PartSet
+from ..maps.signals import Signals
+
+NO_PATHS = "this file keeps maps and labels alone, no rays: made with keep=\"all\" it would have them"
+
+
+def from_maps(maps, stored, title: str = "") -> ViewInput:
+    """What small files keep of a frame: its map, labels, detections and truth, in the scene of its sequence, without a ray.
+
+    maps: ep.FrameMaps; stored: ep.StoredSequence that it is of, for scene and radar
+    """
+    scene, radar, settings = stored.scene, stored.radar, stored.settings
+    paths = no_paths(scene, radar, maps.start_time, maps.seed)
+    spectrum_settings = {"window": _window(settings.get("window", "hann")), "zero_pad": int(settings.get("zero_pad", 1))}
+    signals = Signals(paths, spectrum_settings)
+    cube = signals.whole()
+    parts = PartSet(whole_part(_with_power(signals.map_of(cube), maps)))
+    known = Known(labels=lambda progress: _there(maps.labels, "labels"),
+                  detections=lambda progress: _there(maps.detections, "detections"),
+                  truth=lambda progress: _there(maps.kept_truth, "truth"))
+    return ViewInput(paths, parts, signals, cube, title, known, NO_PATHS)
+
+
+def _with_power(spectrum, maps):
+    """A map of the axes of the radar that shows the mean power of the file in each channel."""
+    if maps.power is None:
+        return spectrum
+    return with_values(spectrum, np.sqrt(maps.power.astype(float)).astype(complex))
+
+
+def with_values(spectrum, values):
+    """A map with the axes of another one. Raises ep.FileError for values [..., velocity, range] that do not fit it."""
+    if values.shape[-2:] != spectrum.values.shape[2:]:
+        cells = [list(shape[-2:]) for shape in (spectrum.values.shape, values.shape)]
+        raise ep.FileError("map: must have the cells {} of the radar, has {}".format(*cells))
+    state = spectrum.__getstate__()
+    state["values"] = np.broadcast_to(values, spectrum.values.shape).ravel()
+    made = type(spectrum).__new__(type(spectrum))
+    made.__setstate__(state)
+    return made
+
+
+def no_paths(scene, radar, start_time: float, seed: int):
+    """Paths of a frame without one."""
+    # The core's own: that one ray is too few need not be said.
+    traced = _core.trace(scene, radar, num_rays=1, max_bounces=1, start_time=start_time, seed=seed)
+    return traced.select(np.zeros(traced.num_paths, bool))
+
+
+def _window(value):
+    return tuple(value) if isinstance(value, list) else value
+
+
+def _there(kept, name: str):
+    if kept is None or kept == {}:
+        raise ValueError(f"{name}: this file keeps none")
+    return kept

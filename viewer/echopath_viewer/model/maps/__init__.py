@@ -1,0 +1,1 @@
+"""Signals, their parts and maps, and which paths and echoes make a cell."""

@@ -1,0 +1,1 @@
+"""Which rays are shown, and their places."""

@@ -1,0 +1,1 @@
+"""What the window reads, writes, watches and remembers."""

@@ -1,0 +1,1 @@
+"""Scenes that are changed while they are watched."""

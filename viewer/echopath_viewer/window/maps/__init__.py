@@ -1,0 +1,1 @@
+"""Maps of the signal and what makes their cells."""

@@ -1,0 +1,254 @@
+"""Maps beside range-Doppler, each in a panel of its own, linked with it."""
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+
+from echopath.signals.measures import for_pictures
+
+from ...model import CellBox
+from ...model.maps.angle_maps import beat_signal, range_azimuth_map, range_elevation_map, spectrogram_map
+from ..background_work import BackgroundWork
+from ..banner import ThinBar
+from .colour_bar import ColourBar
+from .curve import CurveView
+from .map_area import title_of
+from .map_panel import RANGE_LABEL, VELOCITY_LABEL, MapPanel, nearest_index, step_of
+from ..qt import QtCore, QtWidgets
+
+AZIMUTH_LABEL, ELEVATION_LABEL, TIME_LABEL = "Azimuth in degrees (left: +)", "Elevation in degrees", "Time in ms"
+
+
+class SeenPanel(QtWidgets.QWidget):
+    """Shows something of a session, `refresh`, which makes nothing where nobody looks."""
+
+    def __init__(self, parent=None):
+        super().__init__(parent)
+        self.session, self._is_seen = None, False
+
+    def show_session(self, session) -> None:
+        self.session = session
+        self.refresh()
+
+    def follow_session(self, session, is_passing: bool = False) -> None:
+        """Another frame. is_passing: the next one comes at once, and nothing is made of this one."""
+        self.session = session
+        if not is_passing:
+            self.refresh()
+
+    def set_seen(self, is_seen: bool) -> None:
+        """Whether anyone looks."""
+        self._is_seen = is_seen
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Shows what the session has now."""
+        raise NotImplementedError
+
+
+class SidePanel(SeenPanel):
+    """A map that is made in a thread when somebody looks, and again when what it is made of has changed."""
+
+    x_label, y_label = RANGE_LABEL, VELOCITY_LABEL
+
+    def __init__(self, parent=None):
+        super().__init__(parent)
+        self.map, self._made_of = None, None
+        self.panel, self.note = MapPanel(x_label=self.x_label, y_label=self.y_label), QtWidgets.QLabel(wordWrap=True)
+        self.bar, self.colour_bar, self.work = ThinBar(), ColourBar(), BackgroundWork(self)
+        self.colour_bar.hide()
+        row, column = QtWidgets.QHBoxLayout(), QtWidgets.QVBoxLayout(self)
+        column.setContentsMargins(2, 2, 2, 2)
+        row.addWidget(self.panel, 1)
+        row.addWidget(self.colour_bar)
+        column.addWidget(self.bar)
+        column.addLayout(row, 1)
+        column.addWidget(self.note)
+        self.work.advanced.connect(self.bar.advance)
+        self.work.done.connect(self._take)
+        self.work.failed.connect(self._fail)
+        self.panel.cell_clicked.connect(self.pick)
+        self.panel.view_changed.connect(self.panel.set_view)
+        self.panel.view_reset.connect(lambda: self.panel.set_view(self._whole_view()))
+        self.panel.hovered.connect(lambda *at: self.note.setText(self.words_of(*at)))
+        self.panel.left.connect(lambda: self.note.setText(""))
+
+    # --- of each kind ---
+
+    def made_of(self, session) -> tuple:
+        """What the map depends on."""
+        return session.part.spectrum, session.radar
+
+    def work_of(self, session):
+        """Callable (progress) -> SideMap; touches no session, which goes on meanwhile."""
+        raise NotImplementedError
+
+    def pick(self, x_index: int, y_index: int) -> None:
+        """Selects in the session what a cell of the map is."""
+        raise NotImplementedError
+
+    def marks(self) -> tuple:
+        """(CellBox or None, cell or None) of what is selected."""
+        raise NotImplementedError
+
+    def words_of(self, x: float, y: float, level: float) -> str:
+        """Of the cell under the mouse."""
+        raise NotImplementedError
+
+    # --- session ---
+
+    def update_topics(self, topics: set) -> None:
+        if topics & {"maps", "rays"}:
+            self.refresh()
+        elif topics & {"selection", "time"}:
+            self.show_marks()
+
+    def refresh(self) -> None:
+        """Makes the map where it is of something else now."""
+        if self.session is None or not self._is_seen:
+            return
+        made_of = self.made_of(self.session)
+        if self._made_of is not None and all(one is other for one, other in zip(made_of, self._made_of)):
+            self.show_marks()
+            return
+        self._made_of = made_of
+        self.bar.begin()
+        self.work.start(self.work_of(self.session))
+
+    def _take(self, found) -> None:
+        self.bar.hide()
+        is_same = self.map is not None and np.array_equal(self.map.x, found.x) and np.array_equal(self.map.y, found.y)
+        self.map = found
+        highest = 5.0 * np.ceil(float(found.level.max()) / 5.0)
+        axes = SimpleNamespace(range=found.x, velocity=found.y)
+        view = self.panel.view if is_same else self._whole_view()
+        limits = highest - self.session.dynamic_range_db, highest
+        self.panel.show_map(found.title, found.level, axes, limits, view, is_current=False)
+        self.colour_bar.show_limits(*limits)
+        self.colour_bar.show()
+        self.show_marks()
+
+    def _fail(self, text: str) -> None:
+        self.bar.hide()
+        self.map = None
+        self.panel.show_nothing()
+        self.colour_bar.hide()
+        self.note.setText(f"There is no map to show: {text}.")
+
+    def _whole_view(self) -> QtCore.QRectF:
+        half_x, half_y = 0.5 * step_of(self.map.x), 0.5 * step_of(self.map.y)
+        return QtCore.QRectF(self.map.x[0] - half_x, self.map.y[0] - half_y, self.map.x[-1] - self.map.x[0] + 2 * half_x,
+                             self.map.y[-1] - self.map.y[0] + 2 * half_y)
+
+    def show_marks(self) -> None:
+        """Where the selection of the session is in this map."""
+        if self.session is not None and self.map is not None:
+            self.panel.show_marks(*self.marks())
+
+    def stop(self) -> None:
+        """Ends the work."""
+        self.work.stop()
+
+
+class _AnglePanel(SidePanel):
+    """Range and an angle: a click selects the strongest velocity of the beam there."""
+
+    def marks(self) -> tuple:
+        session = self.session
+        if session.box is None:
+            return None, None
+        box = CellBox(session.box.first_range, session.box.last_range, 0, len(self.map.y) - 1)
+        angle = None if session.beam is None else np.degrees(session.beam[self.axis])
+        cell = None if angle is None else (session.cell[0], nearest_index(self.map.y, angle))
+        return box, cell
+
+    def pick(self, x_index: int, y_index: int) -> None:
+        angles = [0.0, 0.0]
+        angles[self.axis] = float(np.radians(self.map.y[y_index]))
+        self.session.select_beam(x_index, *angles)
+
+    def words_of(self, x: float, y: float, level: float) -> str:
+        return for_pictures(f"{x:.2f} m   {y:+.1f}\u00b0   {level:.1f} dBm")
+
+
+class AzimuthPanel(_AnglePanel):
+    """Range-azimuth map of the part on display."""
+
+    y_label, axis = AZIMUTH_LABEL, 0
+
+    def work_of(self, session):
+        spectrum, radar, name = session.part.spectrum, session.radar, title_of(session.part)
+        return lambda progress: range_azimuth_map(spectrum, radar, name, progress)
+
+
+class ElevationPanel(_AnglePanel):
+    """Range-elevation map of the part on display, straight ahead."""
+
+    y_label, axis = ELEVATION_LABEL, 1
+
+    def work_of(self, session):
+        spectrum, radar, name = session.part.spectrum, session.radar, title_of(session.part)
+        return lambda progress: range_elevation_map(spectrum, radar, name, progress)
+
+
+class SpectrogramPanel(SidePanel):
+    """Power over the time of the frame: a click goes to its chirp and selects all ranges of its velocity."""
+
+    x_label = TIME_LABEL
+
+    def made_of(self, session) -> tuple:
+        return session.cube, session.columns
+
+    def work_of(self, session):
+        cube, radar, channel = session.cube, session.radar, session.channel
+        return lambda progress: spectrogram_map(cube, radar, channel, progress)
+
+    def marks(self) -> tuple:
+        session, box = self.session, None
+        if session.box is not None:
+            velocity = session.parts.whole.spectrum.velocity
+            slow, fast = (nearest_index(self.map.y, float(velocity[index]))
+                          for index in (session.box.first_velocity, session.box.last_velocity))
+            box = CellBox(0, len(self.map.x) - 1, slow, fast)
+        time = 1e3 * (session.time - session.paths.frame.start_time)
+        middle = int(np.abs(self.map.y).argmin()) if box is None else box.first_velocity
+        return box, (nearest_index(self.map.x, time), middle)
+
+    def pick(self, x_index: int, y_index: int) -> None:
+        session, spectrum = self.session, self.session.parts.whole.spectrum
+        half = 0.5 * step_of(self.map.y)
+        slow, fast = (nearest_index(np.asarray(spectrum.velocity), float(self.map.y[y_index]) + sign * half) for sign in (-1, 1))
+        session.select_cells(CellBox(0, len(spectrum.range) - 1, slow, fast))
+        period = session.radar.chirp_time(0, 1) - session.radar.chirp_time(0, 0)
+        session.set_chirp(round(1e-3 * float(self.map.x[x_index]) / period))
+
+    def words_of(self, x: float, y: float, level: float) -> str:
+        return for_pictures(f"{x:.2f} ms   {y:+.2f} m/s   {level:.1f} dBm")
+
+
+class BeatPanel(SeenPanel):
+    """The beat signal of the chirp on display: real and imaginary part over its samples."""
+
+    def __init__(self, parent=None):
+        super().__init__(parent)
+        self.curves = CurveView("Time in \u00b5s", "\u221aW")
+        column = QtWidgets.QVBoxLayout(self)
+        column.setContentsMargins(2, 2, 2, 2)
+        column.addWidget(self.curves)
+
+    def update_topics(self, topics: set) -> None:
+        if topics & {"time", "maps"}:
+            self.refresh()
+
+    def refresh(self) -> None:
+        """The samples of the chirp and channel of the session."""
+        if self.session is None or not self._is_seen:
+            return
+        session = self.session
+        times, samples = beat_signal(session.cube, session.radar, session.channel, session.chirp)
+        title = "beat signal of chirp {}, TX {}, RX {}".format(session.chirp + 1, *session.channel)
+        self.curves.show_curves(title, 1e6 * times, {"real": samples.real, "imaginary": samples.imag})
+
+    def stop(self) -> None:
+        """There is nothing to end."""

@@ -1,0 +1,86 @@
+"""What the colours of rays mean, over a corner of the 3-D view."""
+from __future__ import annotations
+
+from ...model.colours import colour_table
+from ..qt import Qt, QtCore, QtGui, QtWidgets, Signal
+from ..maps.ticks import nice_ticks, tick_text
+
+EDGE, MARGIN, SWATCH = 10, 8, 12   # pixels
+SCALE_WIDTH, BAR_HEIGHT = 240, 12
+PAPER, INK = QtGui.QColor(255, 255, 255, 225), QtGui.QColor(0, 0, 0)
+HINT = "Click an object: show it alone, again: show all"
+
+
+class LegendBox(QtWidgets.QWidget):
+    """Rows of colours or a scale in the lower right corner of its parent, black on white in every theme."""
+
+    row_clicked = Signal(str)
+
+    def __init__(self, parent):
+        super().__init__(parent)
+        self.legend = None
+        self.hide()
+
+    def show(self, legend=None) -> None:
+        """legend: model.Legend; None: the one of before."""
+        if legend is not None and legend != self.legend:
+            self.legend = legend
+            self.setToolTip(HINT if legend.rows and "Object" in legend.title else "")
+            self.place()
+            self.update()
+        self.setVisible(self.legend is not None and bool(self.legend.rows or self.legend.clim))
+
+    def place(self) -> None:
+        """In its size, in its corner."""
+        if self.legend is None:
+            return
+        self.resize(self._size())
+        self.move(max(self.parent().width() - self.width() - EDGE, 0), max(self.parent().height() - self.height() - EDGE, 0))
+
+    def _line(self) -> int:
+        return self.fontMetrics().height() + 2
+
+    def _size(self) -> QtCore.QSize:
+        width = self.fontMetrics().horizontalAdvance
+        if self.legend.clim is not None:
+            height = 2 * MARGIN + 2 * self._line() + BAR_HEIGHT
+            return QtCore.QSize(max(SCALE_WIDTH, width(self.legend.title)) + 4 * MARGIN, height)
+        widest = max([width(self.legend.title), *(width(text) + SWATCH + 6 for text in self.legend.texts())])
+        return QtCore.QSize(widest + 2 * MARGIN, 2 * MARGIN + self._line() * (1 + len(self.legend.texts())))
+
+    def mousePressEvent(self, event):
+        row = (int(event.position().y()) - MARGIN) // self._line() - 1
+        if self.legend.clim is None and 0 <= row < len(self.legend.rows):
+            self.row_clicked.emit(self.legend.rows[row][0])
+
+    def paintEvent(self, _event):
+        painter = QtGui.QPainter(self)
+        painter.fillRect(self.rect(), PAPER)
+        painter.setPen(INK)
+        painter.drawText(QtCore.QRect(MARGIN, MARGIN, self.width(), self._line()), Qt.AlignmentFlag.AlignLeft, self.legend.title)
+        if self.legend.clim is None:
+            self._paint_rows(painter)
+        else:
+            self._paint_scale(painter)
+
+    def _paint_rows(self, painter) -> None:
+        line = self._line()
+        for number, text in enumerate(self.legend.texts()):
+            top, left = MARGIN + line * (number + 1), MARGIN
+            if number < len(self.legend.rows):
+                square = QtCore.QRect(left, top + (line - SWATCH) // 2 - 1, SWATCH, SWATCH)
+                painter.fillRect(square, QtGui.QColor(*self.legend.rows[number][1]))
+                painter.drawRect(square)
+            painter.drawText(QtCore.QRect(left + SWATCH + 6, top, self.width(), line), Qt.AlignmentFlag.AlignLeft, text)
+
+    def _paint_scale(self, painter) -> None:
+        low, high = self.legend.clim
+        bar = QtCore.QRectF(2 * MARGIN, MARGIN + self._line() + 2, self.width() - 4 * MARGIN, BAR_HEIGHT)
+        gradient = QtGui.QLinearGradient(bar.topLeft(), bar.topRight())
+        for step, rgb in enumerate(colour_table(self.legend.cmap)):
+            gradient.setColorAt(step / 255.0, QtGui.QColor(*map(int, rgb)))
+        painter.fillRect(bar, gradient)
+        for value in nice_ticks(low, high, bar.width() / 55.0):
+            x = bar.left() + (value - low) / max(high - low, 1e-12) * bar.width()
+            box = QtCore.QRectF(x - 30, bar.bottom() + 1, 60, self._line())
+            painter.drawText(box, Qt.AlignmentFlag.AlignHCenter, tick_text(value))

@@ -1,0 +1,126 @@
+"""The meshes of the scene as a tree."""
+from __future__ import annotations
+
+from ..qt import Qt, QtCore, QtGui, QtWidgets, Signal
+
+NAME, COUNT = 0, 1
+MOST_OPEN = 24  # rows: more objects than that show their own alone
+NODE_ROLE = Qt.ItemDataRole.UserRole
+
+
+class SceneTree(QtWidgets.QTreeWidget):
+    """Check boxes hide meshes, a click asks for the spectrum, the menu for colours and for the rays over a mesh."""
+
+    node_clicked = Signal(str)
+    rays_wanted = Signal(str)
+
+    def __init__(self, parent=None):
+        super().__init__(parent)
+        self.session = None
+        self.setHeaderLabels(["Mesh", "Paths"])
+        self.header().setStretchLastSection(False)
+        self.header().setSectionResizeMode(NAME, QtWidgets.QHeaderView.ResizeMode.Stretch)
+        self.header().setSectionResizeMode(COUNT, QtWidgets.QHeaderView.ResizeMode.ResizeToContents)
+        self.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
+        self.customContextMenuRequested.connect(self._menu)
+        self.itemChanged.connect(self._checked)
+        self.itemClicked.connect(self._clicked)
+        self.setToolTip("Check box: show or hide. Click: map of the paths that hit it. Right button: more.")
+
+    def show_session(self, session) -> None:
+        self.session = None
+        self.clear()
+        self._items, self._mesh_items, items = {}, {}, []
+        mesh_of_node = {mesh.node: mesh.id for mesh in session.scene.meshes}
+        for number, node in enumerate(session.scene.nodes):
+            item = QtWidgets.QTreeWidgetItem(self if node.parent < 0 else items[node.parent], [node.name.rpartition("/")[2]])
+            item.setData(NAME, NODE_ROLE, node.name)
+            item.setTextAlignment(COUNT, Qt.AlignmentFlag.AlignRight)
+            item.setFlags(item.flags() | Qt.ItemFlag.ItemIsUserCheckable)
+            if number in mesh_of_node:
+                self._mesh_items[mesh_of_node[number]] = item
+            item.setCheckState(NAME, Qt.CheckState.Checked)
+            self._items[node.name] = item
+            items.append(item)
+        if sum(1 + self.topLevelItem(row).childCount() for row in range(self.topLevelItemCount())) <= MOST_OPEN:
+            self.expandToDepth(0)
+        self.session = session
+        self.refresh()
+
+    def follow_session(self, session, is_passing: bool = False) -> None:
+        """Another frame: rows that are open stay so where its scene has the same. is_passing: the next one comes at once, and
+        the rows keep what they tell."""
+        if is_passing:
+            self.session = session
+            return
+        same = self.session is not None and [node.name for node in session.scene.nodes] == list(self._items)
+        if not same:
+            self.show_session(session)
+            return
+        self.session = session
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Check marks, colours and counts as they are now."""
+        session, self.session = self.session, None
+        for item, count in zip(self._items.values(), session.node_counts()):
+            item.setText(COUNT, f"{count:,}")
+        for mesh, item in self._mesh_items.items():
+            item.setIcon(NAME, _swatch(session.palette[mesh]))
+            hidden = mesh in session.hidden_meshes
+            item.setCheckState(NAME, Qt.CheckState.Unchecked if hidden else Qt.CheckState.Checked)
+        for item in reversed(self._items.values()):
+            if item.childCount():
+                item.setCheckState(NAME, _state_of_children(item))
+        self.session = session
+
+    def _checked(self, item, column: int) -> None:
+        if self.session is None or column != NAME:
+            return
+        name, is_on = item.data(NAME, NODE_ROLE), item.checkState(NAME) != Qt.CheckState.Unchecked
+        self.session.set_mesh_visible(self._meshes_below(name), is_on)
+
+    def _meshes_below(self, name: str) -> list[int]:
+        return [mesh for mesh, full_name in enumerate(self.session.mesh_names) if f"{full_name}/".startswith(f"{name}/")]
+
+    def _clicked(self, item, _column: int) -> None:
+        if self.session is not None and not self._is_on_check_box(item):
+            self.node_clicked.emit(item.data(NAME, NODE_ROLE))
+
+    def _is_on_check_box(self, item) -> bool:
+        at = self.viewport().mapFromGlobal(QtGui.QCursor.pos())
+        return 0 <= at.x() - self.visualItemRect(item).left() < 18
+
+    def _menu(self, at) -> None:
+        item = self.itemAt(at)
+        if item is None:
+            return
+        name = item.data(NAME, NODE_ROLE)
+        menu = QtWidgets.QMenu(self)
+        menu.addAction("Map of the paths that hit it", lambda: self.node_clicked.emit(name))
+        menu.addAction("Only rays that hit it", lambda: self.rays_wanted.emit(name))
+        menu.addAction("Show it alone", lambda: self._show_alone(name))
+        menu.addAction("Show all", lambda: self.session.set_mesh_visible(range(len(self.session.mesh_names)), True))
+        if name in self.session.mesh_names:
+            menu.addAction("Colour ...", lambda: self._choose_colour(self.session.mesh_names.index(name)))
+        menu.popup(self.viewport().mapToGlobal(at))
+
+    def _show_alone(self, name: str) -> None:
+        self.session.set_mesh_visible(range(len(self.session.mesh_names)), False)
+        self.session.set_mesh_visible(self._meshes_below(name), True)
+
+    def _choose_colour(self, mesh: int) -> None:
+        colour = QtWidgets.QColorDialog.getColor(QtGui.QColor(*map(int, self.session.palette[mesh])), self)
+        if colour.isValid():
+            self.session.set_mesh_colour(mesh, (colour.red(), colour.green(), colour.blue()))
+
+
+def _state_of_children(item) -> Qt.CheckState:
+    states = {item.child(row).checkState(NAME) for row in range(item.childCount())}
+    return states.pop() if len(states) == 1 else Qt.CheckState.PartiallyChecked
+
+
+def _swatch(rgb) -> QtGui.QIcon:
+    pixmap = QtGui.QPixmap(QtCore.QSize(12, 12))
+    pixmap.fill(QtGui.QColor(*map(int, rgb)))
+    return QtGui.QIcon(pixmap)

@@ -1,0 +1,301 @@
+"""The 3-D view."""
+from __future__ import annotations
+
+import time
+from contextlib import contextmanager
+
+import numpy as np
+import pyvista as pv
+from pyvistaqt import QtInteractor
+from vtkmodules.vtkRenderingCore import vtkCellPicker
+
+from ...model.rays.picking import nearest_segment
+from ...scene_builder import SceneBuilder
+from .compass import Compass
+from .legend_box import LegendBox
+from .pace import Pace, Smoothing
+from ..qt import Qt, QtCore, Signal
+
+GL_COLOR_BUFFER_BIT = 0x4000
+LONGEST_WAIT_MS = 2000  # for a picture, of what is to come after it
+COARSEST = 3  # pixels while the camera is turned, of the screen's
+CLICK_REACH = 5.0  # pixels: a click moves no farther, and a ray that close is meant
+
+
+class View3D(QtInteractor):
+    """Draws a session; tells what is clicked: a ray, else the body under the cursor; with Ctrl always the mesh."""
+
+    ray_clicked = Signal(int)
+    mesh_clicked = Signal(int)
+    nothing_clicked = Signal()
+    mesh_dragged = Signal(int, object)  # with Shift: the mesh, [3] m on the horizontal plane through where it was taken
+    _in_paint = False  # of pyvistaqt, which sets it in its constructor
+
+    def __init__(self, parent=None):
+        self.builder = None  # a resize may come before the constructor has ended
+        # Multisampling takes most of the time where there is no graphics card: Smoothing begins it elsewhere.
+        self._is_behind = self._is_fresh = False
+        super().__init__(parent, auto_update=False, multi_samples=0)
+        self._afterwards = None
+        self._press, self._drag, self.legend_box = None, None, LegendBox(self)
+        self.clock, self._turning, self._passing = time.perf_counter, Pace(COARSEST), Pace(1)
+        self._pace = None  # of the two, while the camera turns or frames pass
+        self._smoothing = Smoothing()
+        self.compass = Compass(self)
+        self.setAcceptDrops(False)  # what is dropped here is the window's: pyvistaqt would read it with VTK
+        # VTK draws in paintGL alone: a drawing of its own, at each turn of the camera, would come on top of that.
+        self.iren.interactor.EnableRenderOff()
+        self.iren.interactor.AddObserver("RenderEvent", lambda *_: self.render_soon())
+        style = self.iren.interactor.GetInteractorStyle()
+        style.AddObserver("StartInteractionEvent", lambda *_: self.set_moving(self._turning))
+        style.AddObserver("EndInteractionEvent", lambda *_: self.set_moving(None))
+
+    def show_session(self, session) -> None:
+        """Replaces what is drawn."""
+        self.clear()
+        self.enable_3_lights()
+        self.builder = SceneBuilder(self, session, legend=self.legend_box, background=self.background(), is_quick=True)
+        self._is_fresh = True
+        QtCore.QTimer.singleShot(0, self._first_look)
+
+    def follow_session(self, session, is_passing: bool = False) -> None:
+        """Another frame of the same time line: the camera stays where it is. is_passing: the next one comes at once, and there
+        are only as many rays as while the camera moves."""
+        self.builder.show_session(session)
+        self.set_moving(self._passing if is_passing else None)
+        self.render_soon()
+
+    def background(self) -> str:
+        """White, or near black in a dark theme."""
+        return "white" if self.palette().base().color().lightness() >= 128 else "#17181a"
+
+    def changeEvent(self, event):
+        super().changeEvent(event)
+        if event.type() == QtCore.QEvent.Type.PaletteChange and self.builder is not None:
+            self.builder.set_background(self.background())
+            self.builder.update({"rays"})
+            self.render_soon()
+
+    def _first_look(self) -> None:
+        """Once the window has its size."""
+        if self.builder is not None and self._is_fresh:
+            self.look("fit")
+
+    def update_topics(self, topics: set) -> None:
+        self.builder.update(topics)
+        self.render_soon()
+
+    def look(self, view: str) -> None:
+        self._is_fresh = False
+        self.builder.look(view)
+        self.render_soon()
+
+    def render(self) -> None:
+        """What pyvista calls after changes; they are drawn with the next picture."""
+        self._rendered = True  # pyvista asks for it
+        self.render_soon()
+
+    def render_soon(self) -> None:
+        """Once, when all changes of this turn of the event loop are made."""
+        if not self._in_paint:
+            self._is_behind = True
+            self.update()
+
+    def is_behind(self) -> bool:
+        """Whether changes are still to be drawn."""
+        return self._is_behind and self.isVisible() and not self.window().isMinimized()
+
+    def when_drawn(self, work) -> None:
+        """Calls `work` after the next picture of what is shown, or after a while where none is drawn, as of a minimised window;
+        once. None: not any more."""
+        self._afterwards = work
+        if work is not None:
+            QtCore.QTimer.singleShot(LONGEST_WAIT_MS, lambda: self._go_on(work))
+
+    def _go_on(self, work) -> None:
+        if work is self._afterwards:
+            self._afterwards = None
+            work()
+
+    def paintGL(self):
+        """Draws, once; changes that are made from now on ask for another picture. Nothing before the first look."""
+        if self._is_fresh:
+            self._clear()
+            return
+        self._draw()
+        work = self._afterwards
+        if work is not None:
+            QtCore.QTimer.singleShot(0, lambda: self._go_on(work))
+
+    def _clear(self) -> None:
+        functions = self.context().functions()
+        functions.glClearColor(*pv.Color(self.background()).float_rgb, 1.0)
+        functions.glClear(GL_COLOR_BUFFER_BIT)
+
+    def _draw(self) -> None:
+        self._is_behind, begin = False, self.clock()
+        interactor = self.iren.interactor
+        interactor.EnableRenderOn()
+        try:
+            with self._coarse_pixels():
+                super().paintGL()
+        finally:
+            interactor.EnableRenderOff()
+        if self.builder is not None:  # a picture may come after the window was closed
+            self._learn(self.clock() - begin)
+            self.compass.follow(self.camera, self.height())
+
+    @contextmanager
+    def _coarse_pixels(self):
+        """As coarse as the pace of the camera asks for: pyvistaqt stretches what VTK has drawn over the widget."""
+        times, window = 1 if self._pace is None else self._pace.coarseness, self.render_window
+        if times == 1:
+            yield
+            return
+        size, dpi = window.GetSize(), window.GetDPI()
+        window.SetSize(*(max(length // times, 1) for length in size))
+        window.SetDPI(max(dpi // times, 1))  # names keep their size
+        try:
+            yield
+        finally:
+            window.SetSize(*size)
+            window.SetDPI(dpi)
+
+    def _learn(self, seconds: float) -> None:
+        """How much the next pictures may have, from what one took."""
+        if self._pace is not None and self._pace.follow(seconds, len(self.builder.rays.segments.rays)):
+            self.builder.show_first_rays(self._pace.num_rays)
+        if self._smoothing.follow(seconds):
+            self.render_window.SetMultiSamples(self._smoothing.samples)
+            self.render_soon()
+
+    def camera_state(self) -> dict:
+        camera = self.camera
+        return {"position": list(camera.position), "focal_point": list(camera.focal_point), "up": list(camera.up),
+                "view_angle": camera.view_angle}
+
+    def set_camera_state(self, state: dict) -> None:
+        self._is_fresh = False
+        for name in ("position", "focal_point", "up", "view_angle"):
+            setattr(self.camera, name, state[name])
+        self.reset_camera_clipping_range()
+        self.render_soon()
+
+    def set_moving(self, pace: Pace | None) -> None:
+        """Fewer rays and coarser pixels as long as the camera moves, where all take too long; None: it does not any more."""
+        if self.builder is None:
+            return
+        if pace not in (None, self._pace):
+            pace.begin()
+        self._pace = pace
+        self.builder.show_first_rays(None if pace is None else pace.num_rays)
+        if pace is None:
+            self.render_soon()
+
+    # --- picking ---
+
+    def clip_from_world(self):
+        """[4, 4] of the camera with its perspective."""
+        matrix = self.camera.GetCompositeProjectionTransformMatrix(self.width() / max(self.height(), 1), -1.0, 1.0)
+        return np.array([[matrix.GetElement(row, column) for column in range(4)] for row in range(4)])
+
+    def ray_at(self, x: float, y: float) -> int | None:
+        """The path whose ray is drawn at a pixel from the upper left, None where there is none."""
+        for layer in self.builder.drawn_layers():
+            segments = layer.segments
+            row = nearest_segment(segments.points, segments.ends, self.clip_from_world(), (self.width(), self.height()),
+                                  (x, y), CLICK_REACH)
+            if row is not None:
+                return int(segments.rays[segments.ray[row]])
+        return None
+
+    def mesh_at(self, x: float, y: float, with_mirrors: bool) -> int | None:
+        """The mesh drawn at a pixel; bodies come before mirrors, which are large and see-through."""
+        session, actors = self.builder.session, self.builder.meshes.actors
+        is_mirror = [mesh.material.mirror for mesh in session.scene.meshes]
+        for mirrors in (False, True)[:1 + with_mirrors]:
+            picker = vtkCellPicker()
+            picker.PickFromListOn()
+            for mesh, actor in enumerate(actors):
+                if is_mirror[mesh] == mirrors and actor.GetVisibility():
+                    picker.AddPickList(actor)
+            scale = self.devicePixelRatioF()
+            if picker.Pick(x * scale, (self.height() - 1 - y) * scale, 0.0, self.renderer):
+                return next(mesh for mesh, actor in enumerate(actors) if actor is picker.GetActor())
+        return None
+
+    def _click(self, x: float, y: float, wants_mesh: bool) -> None:
+        ray = None if wants_mesh else self.ray_at(x, y)
+        mesh = self.mesh_at(x, y, wants_mesh) if ray is None else None
+        if ray is not None:
+            self.ray_clicked.emit(ray)
+        elif mesh is not None:
+            self.mesh_clicked.emit(mesh)
+        else:
+            self.nothing_clicked.emit()
+
+    # --- Qt ---
+
+    def resizeEvent(self, event):
+        super().resizeEvent(event)
+        if self.builder is not None:
+            self.builder.resized()
+            self.compass.place()
+            self.render_soon()
+
+    def _world_at(self, at, height: float):
+        """[3] m of a pixel on the horizontal plane at a height; None where that lies behind the camera."""
+        across, up = 2.0 * at.x() / self.width() - 1.0, 1.0 - 2.0 * at.y() / self.height()
+        world = np.linalg.inv(self.clip_from_world())
+        near, far = (world @ (across, up, depth, 1.0) for depth in (-1.0, 1.0))
+        near, far = near[:3] / near[3], far[:3] / far[3]
+        share = (height - near[2]) / (far[2] - near[2]) if far[2] != near[2] else -1.0
+        return near + share * (far - near) if 0.0 < share <= 1.0 else None
+
+    def _take_hold(self, at) -> bool:
+        """Of the mesh under the cursor, to drag its object."""
+        mesh = self.mesh_at(at.x(), at.y(), False)
+        if mesh is None:
+            return False
+        height = self.builder.meshes.actors[mesh].center[2]
+        self._drag = mesh, height, self._world_at(at, height)
+        if self._drag[2] is None:
+            self._drag = None
+            return False
+        self.mesh_dragged.emit(mesh, np.zeros(3))
+        return True
+
+    def mouseMoveEvent(self, event):
+        if self._drag is None:
+            super().mouseMoveEvent(event)
+            return
+        mesh, height, begin = self._drag
+        at = self._world_at(event.position(), height)
+        if at is not None:
+            self.mesh_dragged.emit(mesh, at - begin)
+
+    def mousePressEvent(self, event):
+        is_hold = event.button() == Qt.MouseButton.LeftButton and event.modifiers() & Qt.KeyboardModifier.ShiftModifier
+        if is_hold and self.builder is not None and self._take_hold(event.position()):
+            return
+        self._press = event.position() if event.button() == Qt.MouseButton.LeftButton else None
+        super().mousePressEvent(event)
+
+    def mouseReleaseEvent(self, event):
+        if self._drag is not None:
+            self._drag = None
+            return
+        super().mouseReleaseEvent(event)
+        press, self._press = self._press, None
+        if press is None or self.builder is None:
+            return
+        if (event.position() - press).manhattanLength() <= CLICK_REACH:
+            at = event.position()
+            self._click(at.x(), at.y(), bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier))
+
+    def keyPressEvent(self, event):
+        """Keys are the window's: VTK's own would quit or change to wire frames."""
+        event.ignore()
+
+    def keyReleaseEvent(self, event):
+        event.ignore()

@@ -1,0 +1,1 @@
+"""Time within a frame, and frames in time."""

@@ -1,0 +1,181 @@
+"""Which frame of a time line is shown: reads frames in a thread, plays them, and finds those that are written."""
+from __future__ import annotations
+
+import echopath as ep
+
+from ...model.frames.carried import session_like
+from ...model.frames.overview import glance_at
+from ..background_work import BackgroundWork
+from ..qt import QtCore, Signal
+
+POLL_MS = 1000      # between looks for new frames
+FILM_MS = 100       # from frame to frame at least
+MOST_GLANCES = 4    # that are read in one piece of work
+GONE = "{}: its files are gone; what is shown is the last frame that was read"
+
+
+class TimeControl(QtCore.QObject):
+    """Goes through a TimeLine; at most two frames are held: that on display and the one that is read."""
+
+    read, failed, glanced = Signal(object), Signal(str), Signal()  # Session
+
+    def __init__(self, bar, state_now, is_behind):
+        """bar: FrameBar; state_now: callable () -> state of the view to be taken over; is_behind: callable () -> whether the
+        frame before is still to be drawn"""
+        super().__init__(bar)
+        self.bar, self._state_now, self._is_behind = bar, state_now, is_behind
+        self.line, self.place, self._wanted, self._glances = None, 0, None, {}
+        self._shown, self._trouble = None, ""  # Moment on display; what the last look has found wrong
+        self.work, self._glancing = BackgroundWork(self), BackgroundWork(self)
+        self._poll, self._film = QtCore.QTimer(self, interval=POLL_MS), QtCore.QTimer(self, interval=FILM_MS)
+        self._poll.timeout.connect(self.look)
+        self._film.timeout.connect(self._play_on)
+        self.work.done.connect(self._take)
+        self.work.failed.connect(self._fail)
+        self._glancing.done.connect(self._take_glances)
+        self._glancing.failed.connect(self.failed)
+        bar.wanted.connect(self.go)
+        bar.stepped.connect(self.step)
+        bar.play_toggled.connect(self._play)
+
+    @property
+    def is_playing(self) -> bool:
+        """Whether the frames are played."""
+        return self._film.isActive()
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether a frame is read that was asked for."""
+        return self.work.is_running
+
+    def show(self, line, place: int = 0) -> None:
+        """Takes over a time line of which the frame at a place is on display already; None: there is none."""
+        self.stop()
+        self.line, self.place, self._glances = line, place, {}
+        self.bar.setVisible(line is not None)
+        self.bar.strip.show_glances([])
+        if line is not None:
+            self._shown, self._trouble = line.moments[place], ""
+            self._show_place()
+            self._poll.start()
+            self._read_glances()
+
+    def stop(self) -> None:
+        """Ends the film, the reading and what makes frames."""
+        self.bar.play_button.setChecked(False)
+        for timer in (self._poll, self._film):
+            timer.stop()
+        for work in (self.work, self._glancing):
+            work.stop()
+        self._wanted = None
+        if self.line is not None:
+            self.line.close()
+        self.line = None
+
+    def step(self, by: int) -> None:
+        """To a frame before or after."""
+        if self.line is not None:
+            self.go(self.place + by if self._wanted is None else self._wanted + by)
+
+    def go(self, place: int) -> None:
+        """Shows the frame at a place, kept within those that are there, as soon as it is read."""
+        if self.line is None:
+            return
+        if not len(self.line):
+            self._fail(GONE.format(self.line.title))
+            return
+        place = min(max(place, 0), len(self.line) - 1)
+        if place == self.place and self._wanted is None:
+            return
+        self._wanted = place
+        if not self.work.is_running:
+            self._start(place)
+
+    def look(self) -> None:
+        """Finds frames that were written since."""
+        if getattr(self.line, "failure", ""):
+            self.failed.emit(self.line.failure)
+            self.line.failure = ""
+        if not self._has_found_others():
+            return
+        if not len(self.line):
+            self._fail(GONE.format(self.line.title))
+            return
+        self.place = self._place_of(self._shown)
+        self._show_place()
+        self._read_glances()
+        if self.bar.follow_check.isChecked():
+            self.go(len(self.line) - 1)
+
+    def _has_found_others(self) -> bool:
+        """Whether there are other frames now; what keeps them from being found is told once."""
+        try:
+            is_other, trouble = self.line.refresh(), ""
+        except (ep.FileError, OSError) as error:
+            is_other, trouble = False, str(error)
+        if trouble not in ("", self._trouble):
+            self.failed.emit(trouble)
+        self._trouble = trouble
+        return is_other
+
+    def _place_of(self, moment) -> int:
+        """Where it is now, or was before it was gone."""
+        moments = self.line.moments
+        return moments.index(moment) if moment in moments else max(min(self.place, len(moments) - 1), 0)
+
+    # --- reading ---
+
+    def _start(self, place: int) -> None:
+        moment, state = self.line.moments[place], self._state_now()
+        self._reading = moment
+        self.work.start(lambda progress: session_like(state, moment.read()))
+
+    def _take(self, session) -> None:
+        self._shown, wanted, self._wanted = self._reading, self._wanted, None
+        self.place = self._place_of(self._shown)
+        self.read.emit(session)
+        self._show_place()
+        if wanted is not None:
+            self.go(wanted)
+
+    def _fail(self, text: str) -> None:
+        self._wanted = None
+        self.bar.play_button.setChecked(False)
+        self._show_place()
+        self.failed.emit(text)
+
+    def _show_place(self) -> None:
+        if len(self.line):
+            self.bar.show_place(self.place, self.line.moments, self.line.expected)
+
+    def _play(self, is_on: bool) -> None:
+        if is_on and self.line is not None:
+            self._film.start()
+        else:
+            self._film.stop()
+
+    def _play_on(self) -> None:
+        if self._is_behind() or self.is_busy:
+            return
+        is_last = self.place == len(self.line) - 1
+        if is_last and self.line.expected not in (None, len(self.line)):
+            return  # further ones are being written
+        self.go(0 if is_last else self.place + 1)
+
+    # --- all at a glance ---
+
+    def _read_glances(self) -> None:
+        missing = [moment for moment in self.line.moments if moment not in self._glances][:MOST_GLANCES]
+        if missing and not self._glancing.is_running:
+            self._glancing.start(lambda progress: {moment: glance_at(moment) for moment in missing})
+
+    def _take_glances(self, found: dict) -> None:
+        self._glances |= found
+        there = []
+        for moment in self.line.moments:
+            if moment not in self._glances:
+                break
+            there.append(self._glances[moment])
+        self.bar.strip.show_glances(there)
+        self.glanced.emit()
+        self._read_glances()

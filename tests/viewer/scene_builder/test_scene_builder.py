@@ -236,3 +236,24 @@ def test_rays_that_are_drawn_opaque_have_their_colours_and_are_hidden_by_what_st
     row = pixels[SIZE[1] // 2]
     is_ray = np.all(row == (10, 200, 30), axis=-1)
     assert is_ray[:SIZE[0] // 2].sum() > 20 and not is_ray[SIZE[0] // 2 + 2:].any()
+
+
+def test_a_leg_that_rays_share_is_drawn_once_in_the_colours_of_the_first(plotter):
+    layer = RayLayer(plotter, "shared", width=2.0)
+    points = np.float32([[-1, 0, 0], [1, 0, 0], [1, 1, 0], [-1, 0, 0], [1, 0, 0]])
+    segments = SimpleNamespace(points=points, ends=np.array([[0, 1], [1, 2], [4, 3]]), num_segments=3, hits=[],
+                               num_segments_of={1: 2, 2: 3}.get)
+    layer.show(segments, np.uint8([(9, 0, 0), (8, 0, 0), (7, 0, 0)]))
+    lines = layer._rays.GetMapper().GetInput()
+    assert lines.n_lines == 2 and lines.point_data["rgb"][:, 0].tolist() == [9, 9, 8, 8]
+    layer.recolour(np.uint8([(1, 0, 0), (2, 0, 0), (3, 0, 0)]))
+    assert lines.point_data["rgb"][:, 0].tolist() == [1, 1, 2, 2]
+    layer.show_first(2, 10.0)  # m: all ends are one
+    assert layer._rays.GetMapper().GetInput().n_lines == 1
+
+
+def test_translucent_rays_are_drawn_as_often_as_they_are_there(plotter):
+    layer = RayLayer(plotter, "shared", width=2.0, opacity=0.5)  # more of them on each other look darker
+    segments = SimpleNamespace(points=np.eye(3)[:2], ends=np.array([[0, 1], [0, 1]]), num_segments=2, hits=[])
+    layer.show(segments, np.uint8([(9, 0, 0), (7, 0, 0)]))
+    assert layer._rays.GetMapper().GetInput().n_lines == 2

@@ -21,7 +21,7 @@ assert type(chart._canvas).__name__ == "FigureCanvasAgg"
 
 
 def test_pyvista_comes_without_pyplot_which_works_when_it_is_asked_for():
-    # Without a backend that asks for the screen: a virtual one resets when its last program leaves, and refuses the next one then.
+    # Without a backend that asks for the screen: a virtual one resets when its last program leaves, and refuses the next then.
     done = subprocess.run([sys.executable, "-c", SCRIPT], capture_output=True, text=True, check=False,
                           env=os.environ | {"MPLBACKEND": "agg"})
     assert done.returncode == 0, done.stderr

@@ -24,6 +24,11 @@ from support.window import LEFT, open_on_screen, settle
 LEAK_BYTES = 40e6    # a window with this frame takes more; caches of fonts and of the driver take less
 
 
+def num_distinct(segments) -> int:
+    """Of those between the same points only one is drawn."""
+    return len({frozenset(map(tuple, ends)) for ends in segments.points[segments.ends].tolist()})
+
+
 # --- camera, keys ---
 
 def test_fewer_rays_are_drawn_while_the_camera_moves(qtbot, window):
@@ -34,7 +39,7 @@ def test_fewer_rays_are_drawn_while_the_camera_moves(qtbot, window):
     moving = rays._rays.GetMapper().GetInput().GetNumberOfLines()
     style.InvokeEvent("EndInteractionEvent")
     still = rays._rays.GetMapper().GetInput().GetNumberOfLines()
-    assert moving == rays.segments.num_segments_of(300) < still == rays.segments.num_segments
+    assert 0 < moving <= rays.segments.num_segments_of(300) < still == num_distinct(rays.segments)
 
 
 def test_keys_do_what_the_help_says(qtbot, window):
@@ -69,7 +74,7 @@ def test_fewer_lit_rays_are_drawn_while_the_camera_moves(qtbot, window):
     for event in ("StartInteractionEvent", "EndInteractionEvent"):
         window.view3d.iren.interactor.GetInteractorStyle().InvokeEvent(event)
         counts.append(lit._rays.GetMapper().GetInput().GetNumberOfLines())
-    assert counts == [lit.segments.num_segments_of(300), lit.segments.num_segments] and counts[0] < counts[1]
+    assert 0 < counts[0] <= lit.segments.num_segments_of(300) and counts[0] < counts[1] == num_distinct(lit.segments)
 
 
 # --- files ---

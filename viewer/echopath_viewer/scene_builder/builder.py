@@ -102,10 +102,10 @@ class SceneBuilder:
         self.show_hits = is_shown
         self._draw_rays()
 
-    def show_first_rays(self, count: int | None) -> None:
-        """Draws the first rays alone, None: all again."""
+    def show_first_rays(self, count: int | None, cell: float = 0.0) -> None:
+        """Draws the first rays alone, None: all again; cell: m, those no farther apart may be drawn once."""
         for layer in (self.rays, self.lit):
-            layer.show_first(count)
+            layer.show_first(count, cell)
 
     def look(self, view: str) -> None:
         """Turns the camera: a name of VIEWS."""

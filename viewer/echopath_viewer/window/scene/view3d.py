@@ -13,12 +13,13 @@ from ...model.rays.picking import nearest_segment
 from ...scene_builder import SceneBuilder
 from .compass import Compass
 from .legend_box import LegendBox
-from .pace import Pace, Smoothing
+from .pace import FEW_RAYS, MANY_RAYS, Pace, Smoothing
 from ..qt import Qt, QtCore, Signal
 
 GL_COLOR_BUFFER_BIT = 0x4000
 LONGEST_WAIT_MS = 2000  # for a picture, of what is to come after it
 COARSEST = 3  # pixels while the camera is turned, of the screen's
+ONE_PLACE = 0.5  # of a pixel at the distance that the camera looks at: ends so close are one while the camera moves
 CLICK_REACH = 5.0  # pixels: a click moves no farther, and a ray that close is meant
 
 
@@ -38,7 +39,7 @@ class View3D(QtInteractor):
         super().__init__(parent, auto_update=False, multi_samples=0)
         self._afterwards = None
         self._press, self._drag, self.legend_box = None, None, LegendBox(self)
-        self.clock, self._turning, self._passing = time.perf_counter, Pace(COARSEST), Pace(1)
+        self.clock, self._turning, self._passing = time.perf_counter, Pace(COARSEST, MANY_RAYS), Pace(1, FEW_RAYS)
         self._pace = None  # of the two, while the camera turns or frames pass
         self._smoothing = Smoothing()
         self.compass = Compass(self)
@@ -164,7 +165,7 @@ class View3D(QtInteractor):
     def _learn(self, seconds: float) -> None:
         """How much the next pictures may have, from what one took."""
         if self._pace is not None and self._pace.follow(seconds, len(self.builder.rays.segments.rays)):
-            self.builder.show_first_rays(self._pace.num_rays)
+            self._show_moving()
         if self._smoothing.follow(seconds):
             self.render_window.SetMultiSamples(self._smoothing.samples)
             self.render_soon()
@@ -188,9 +189,18 @@ class View3D(QtInteractor):
         if pace not in (None, self._pace):
             pace.begin()
         self._pace = pace
-        self.builder.show_first_rays(None if pace is None else pace.num_rays)
-        if pace is None:
-            self.render_soon()
+        if pace is not None:
+            self._show_moving()
+            return
+        self.builder.show_first_rays(None)
+        self.render_soon()
+
+    def _show_moving(self) -> None:
+        """As many rays as the pace allows; of those that no pixel tells apart the first."""
+        camera, pace = self.camera, self._pace
+        height = 2.0 * camera.distance * np.tan(np.radians(camera.view_angle) / 2.0)  # m, of what the view shows there
+        pixel = pace.coarseness * height / max(self.render_window.GetSize()[1], 1)
+        self.builder.show_first_rays(pace.num_rays, ONE_PLACE * pixel)
 
     # --- picking ---
 

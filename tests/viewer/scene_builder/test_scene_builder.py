@@ -17,6 +17,7 @@ import echopath as ep
 from echopath_viewer.model import CellBox, Session, from_frame
 from echopath_viewer.model.antennas import rotation_of
 from echopath_viewer.scene_builder import VIEWS, SceneBuilder
+from echopath_viewer.scene_builder.antenna_layer import AXIS_COLOURS
 from echopath_viewer.scene_builder.mesh_layer import boundary_edges
 from echopath_viewer.off_screen import renderer
 from echopath_viewer.plot import _new_plotter
@@ -127,16 +128,19 @@ def test_the_outline_of_a_rectangle_is_its_four_edges():
     assert sorted(map(tuple, boundary_edges(np.array([[0, 1, 2], [0, 2, 3]])))) == [(0, 1), (0, 3), (1, 2), (2, 3)]
 
 
-def test_plot_rays_writes_a_picture_without_a_screen(frame, tmp_path):
+@pytest.mark.parametrize("driver", ["llvmpipe", "softpipe"])  # Mesa's renderers: a machine's, a wheel's
+def test_plot_rays_writes_a_picture_without_a_screen(frame, tmp_path, driver):
     frame.paths.save(tmp_path / "paths.h5")
     script = ("import sys, echopath as ep; paths = ep.Paths.load(sys.argv[1]);"
-              "ep.plot_rays(paths.scene, paths, off_screen=True, screenshot=sys.argv[2], window_size=(240, 180),"
+              "ep.plot_rays(paths.scene, paths, off_screen=True, screenshot=sys.argv[2], window_size=(480, 360),"
               "num_rays=20)")
     environment = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
     done = subprocess.run([sys.executable, "-c", script, str(tmp_path / "paths.h5"), str(tmp_path / "rays.png")],
-                          env=environment, capture_output=True, text=True)
+                          env=environment | {"GALLIUM_DRIVER": driver}, capture_output=True, text=True)
     assert done.returncode == 0 and not done.stderr, done.stderr
-    assert len(np.unique(pv.read(tmp_path / "rays.png").point_data.active_scalars, axis=0)) > 10
+    colours = np.unique(pv.read(tmp_path / "rays.png").point_data.active_scalars, axis=0)
+    assert len(colours) > 10
+    assert np.abs(colours.astype(float) - AXIS_COLOURS[0]).max(axis=1).min() < 25.0, "the boresight of an antenna"
     with Image.open(tmp_path / "rays.png") as image:
         assert image.text["Seed"] == str(frame.paths.frame.seed) and image.text["Software"] == f"echopath {ep.__version__}"
 

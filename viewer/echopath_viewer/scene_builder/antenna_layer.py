@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..model.antennas import world_from_antenna
-from .polydata import actor_in_cell_colours, lines_of, set_cell_colours, vertices_of
+from .polydata import coloured_actor, lines_of, set_point_colours, set_segment_colours, vertices_of
 
 AXIS_COLOURS = np.array([[204, 51, 17], [0, 136, 85], [0, 102, 204]], np.uint8)  # x (boresight), y, z
 TRANSMITTER_COLOUR, RECEIVER_COLOUR, IDLE_COLOUR = (204, 51, 17), (0, 102, 204), (120, 120, 120)
@@ -17,7 +17,7 @@ class AntennaLayer:
     def __init__(self, plotter, radar, size: float):
         """size: length of the axes in m."""
         self._radar, self._size = radar, size
-        self._axes, self._dots = (actor_in_cell_colours(in_front=True) for _ in range(2))
+        self._axes, self._dots = (coloured_actor(in_front=True) for _ in range(2))
         self._axes.GetProperty().SetLineWidth(AXIS_WIDTH)
         self._dots.GetProperty().SetPointSize(DOT_SIZE)
         self._dots.GetProperty().RenderPointsAsSpheresOn()
@@ -34,9 +34,9 @@ class AntennaLayer:
         corners = [frame[:3, 3] + self._size * direction for frame in frames for direction in frame[:3, :3].T]
         origins = np.repeat([frame[:3, 3] for frame in frames], 3, axis=0)
         lines = lines_of(np.stack([origins, corners], axis=1), np.arange(6 * len(frames)).reshape(-1, 2))
-        set_cell_colours(lines, np.tile(AXIS_COLOURS, (len(frames), 1)))
+        set_segment_colours(lines, np.tile(AXIS_COLOURS, (len(frames), 1)))
         dots = vertices_of(origins[::3])
-        set_cell_colours(dots, self._dot_colours(tx, rx))
+        set_point_colours(dots, self._dot_colours(tx, rx))
         self._axes.GetMapper().SetInputDataObject(lines)
         self._dots.GetMapper().SetInputDataObject(dots)
 

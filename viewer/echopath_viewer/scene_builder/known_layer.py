@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..model.maps.layers import BOX_EDGES, DETECTIONS, TRUTH, box_corners, detection_rgb
-from .polydata import actor_in_cell_colours, lines_of, set_cell_colours, vertices_of
+from .polydata import coloured_actor, lines_of, set_point_colours, vertices_of
 
 POINT_SIZE, BOX_WIDTH = 9.0, 1.8  # pixels
 BOX_RGB = (0, 158, 115)
@@ -16,7 +16,7 @@ class KnownLayer:
     def __init__(self, plotter, names):
         """names: SceneNames"""
         self._names = names
-        self._points, self._boxes = (actor_in_cell_colours(in_front=True) for _ in range(2))
+        self._points, self._boxes = (coloured_actor(in_front=True) for _ in range(2))
         self._points.GetProperty().SetPointSize(POINT_SIZE)
         self._points.GetProperty().RenderPointsAsSpheresOn()
         self._boxes.GetProperty().SetLineWidth(BOX_WIDTH)
@@ -41,7 +41,7 @@ class KnownLayer:
         world = np.asarray(session.radar.world_from_radar(session.paths.frame.trace_time))
         poly = vertices_of(points[known] @ world[:3, :3].T + world[:3, 3])
         colours = session.object_colours()
-        set_cell_colours(poly, [detection_rgb(detections, index, colours) for index in known])
+        set_point_colours(poly, [detection_rgb(detections, index, colours) for index in known])
         self._points.GetMapper().SetInputDataObject(poly)
         self._points.VisibilityOn()
 
@@ -54,6 +54,6 @@ class KnownLayer:
         self._names.show("boxes", corners.max(axis=1), [str(name) for name in truth.name])
         edges = (BOX_EDGES[None] + 8 * np.arange(len(corners))[:, None, None]).reshape(-1, 2)
         poly = lines_of(corners.reshape(-1, 3), edges)
-        set_cell_colours(poly, np.broadcast_to(np.uint8(BOX_RGB), (len(edges), 3)))
+        set_point_colours(poly, np.broadcast_to(np.uint8(BOX_RGB), (poly.n_points, 3)))
         self._boxes.GetMapper().SetInputDataObject(poly)
         self._boxes.VisibilityOn()

@@ -6,7 +6,7 @@ from vtkmodules.vtkFiltersSources import vtkPlaneSource
 from vtkmodules.vtkRenderingAnnotation import vtkLegendBoxActor, vtkScalarBarActor
 from vtkmodules.vtkRenderingCore import vtkTextActor
 
-from .polydata import set_cell_colours
+from .polydata import set_point_colours
 
 ROW_HEIGHT, LETTER_WIDTH = 16.0, 7.8  # pixels
 SCALE_SIZE, EDGE = (300.0, 46.0), 26.0
@@ -86,7 +86,7 @@ def _square(rgb):
     square = vtkPlaneSource()
     square.Update()
     poly = pv.wrap(square.GetOutput())
-    set_cell_colours(poly, [rgb])
+    set_point_colours(poly, [rgb] * poly.n_points)
     return poly
 
 

@@ -45,36 +45,27 @@ def triangles_of(vertices, triangles, dtype=np.float32) -> pv.PolyData:
     return pv.PolyData.from_regular_faces(np.asarray(vertices, dtype), np.asarray(triangles, np.int64))
 
 
-def set_cell_colours(poly: pv.PolyData, rgb) -> None:
-    """rgb: u8 [cells, 3]."""
-    if poly.n_cells == 0:
+def set_point_colours(poly: pv.PolyData, rgb) -> None:
+    """rgb: u8 [points, 3]. Colours of cells would not do: Mesa's renderer without LLVM draws nothing where they are."""
+    if poly.n_points == 0:
         return  # pyvista takes no empty arrays
-    poly.cell_data["rgb"] = np.ascontiguousarray(rgb, np.uint8).reshape(-1, 3)
-    poly.GetCellData().SetActiveScalars("rgb")
+    poly.point_data["rgb"] = np.ascontiguousarray(rgb, np.uint8).reshape(-1, 3)
+    poly.GetPointData().SetActiveScalars("rgb")
 
 
 def set_segment_colours(lines: pv.PolyData, rgb) -> None:
     """rgb: u8 [S, 3] of the segments of `loose_lines_of`."""
-    if lines.n_points == 0:
-        return
-    lines.point_data["rgb"] = np.repeat(np.ascontiguousarray(rgb, np.uint8).reshape(-1, 3), 2, axis=0)
-    lines.GetPointData().SetActiveScalars("rgb")
+    set_point_colours(lines, np.repeat(np.ascontiguousarray(rgb, np.uint8).reshape(-1, 3), 2, axis=0))
 
 
-def actor_in_segment_colours(*, in_front: bool = False, is_opaque: bool = False) -> vtkActor:
-    """An actor for `loose_lines_of` in their colours; is_opaque: in half of the time, but never translucent or in front."""
-    actor = actor_in_cell_colours(in_front=in_front)
-    actor.GetMapper().SetScalarModeToUsePointData()
-    if is_opaque:
-        actor.GetShaderProperty().SetFragmentShaderCode(OPAQUE_SHADER)
-    return actor
+def coloured_actor(*, in_front: bool = False, is_opaque: bool = False) -> vtkActor:
+    """An actor that shows the colours of its points as they are, unlit.
 
-
-def actor_in_cell_colours(*, in_front: bool = False) -> vtkActor:
-    """An actor that shows the colours of its cells as they are, unlit; in_front: over everything else."""
+    in_front: over everything else; is_opaque: in half of the time, but never translucent or in front
+    """
     mapper = vtkPolyDataMapper()
     mapper.SetColorModeToDirectScalars()
-    mapper.SetScalarModeToUseCellData()
+    mapper.SetScalarModeToUsePointData()
     mapper.ScalarVisibilityOn()
     if in_front:
         mapper.SetResolveCoincidentTopologyToPolygonOffset()
@@ -84,4 +75,6 @@ def actor_in_cell_colours(*, in_front: bool = False) -> vtkActor:
     actor.SetMapper(mapper)
     actor.GetProperty().LightingOff()
     actor.PickableOff()
+    if is_opaque:
+        actor.GetShaderProperty().SetFragmentShaderCode(OPAQUE_SHADER)
     return actor

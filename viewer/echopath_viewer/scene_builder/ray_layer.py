@@ -4,8 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..model.rays.distinct import first_of_each
-from .polydata import (actor_in_cell_colours, actor_in_segment_colours, loose_lines_of, set_cell_colours, set_segment_colours,
-                       vertices_of)
+from .polydata import coloured_actor, loose_lines_of, set_point_colours, set_segment_colours, vertices_of
 
 HIT_SIZE = 5.0  # pixels
 
@@ -18,9 +17,9 @@ class RayLayer:
 
     def __init__(self, plotter, name: str, *, width: float, in_front: bool = False, opacity: float = 1.0):
         self.segments, self._is_opaque = None, opacity == 1.0
-        self._rays = actor_in_segment_colours(in_front=in_front, is_opaque=self._is_opaque and not in_front)
+        self._rays = coloured_actor(in_front=in_front, is_opaque=self._is_opaque and not in_front)
         self._rays.GetProperty().SetLineWidth(width)
-        self._hits = actor_in_cell_colours(in_front=in_front)
+        self._hits = coloured_actor(in_front=in_front)
         self._hits.GetProperty().SetPointSize(HIT_SIZE)
         self._hits.GetProperty().RenderPointsAsSpheresOn()
         for actor, kind in ((self._rays, "rays"), (self._hits, "hits")):
@@ -67,5 +66,5 @@ class RayLayer:
         self._hits.SetVisibility(is_shown)
         if is_shown:
             points = vertices_of(segments.points[segments.hits])
-            set_cell_colours(points, np.broadcast_to(hit_rgb, (len(segments.hits), 3)))
+            set_point_colours(points, np.broadcast_to(hit_rgb, (len(segments.hits), 3)))
             self._hits.GetMapper().SetInputDataObject(points)

@@ -6,7 +6,7 @@ import numpy as np
 from echopath.plots.style import CURVE_COLOURS
 
 from ..model.palette import rgb_of
-from .polydata import actor_in_cell_colours, lines_of, set_cell_colours
+from .polydata import coloured_actor, loose_lines_of, set_segment_colours
 
 WIDTH = 3.0  # pixels
 
@@ -15,7 +15,7 @@ class TrackLayer:
     """Lines along which tracks went, at the height of the radar, which tells no heights; their colours are those of the strip."""
 
     def __init__(self, plotter):
-        self._actor = actor_in_cell_colours(in_front=True)
+        self._actor = coloured_actor(in_front=True)
         self._actor.GetProperty().SetLineWidth(WIDTH)
         self._actor.VisibilityOff()
         plotter.add_actor(self._actor, name="tracks", reset_camera=False, pickable=False, render=False)
@@ -30,6 +30,6 @@ class TrackLayer:
         self._actor.SetVisibility(bool(ends))
         if ends:
             points = np.column_stack([tracks.state[:, :2], np.full(len(tracks.track), height)])
-            lines = lines_of(points, np.array(ends))
-            set_cell_colours(lines, np.array(colours, np.uint8))
+            lines = loose_lines_of(points, np.array(ends))
+            set_segment_colours(lines, np.array(colours, np.uint8))
             self._actor.GetMapper().SetInputDataObject(lines)

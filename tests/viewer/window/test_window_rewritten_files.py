@@ -8,6 +8,7 @@ import pytest
 import echopath as ep
 from echopath_viewer.model import from_file
 from echopath_viewer.model.frames import kept_orders, preview
+from echopath_viewer.window import app
 from echopath_viewer.window.files import opening
 
 
@@ -69,14 +70,27 @@ def test_a_file_written_while_the_orders_of_another_are_kept(qtbot, window, fram
     window.settle()
 
 
-def test_a_file_written_while_it_is_read(window, frame, large_files, monkeypatch):
-    def read_and_write(path):
+@pytest.fixture
+def read_and_write(frame, monkeypatch):
+    """Reads a frame file at once, which is written anew right after."""
+    def read(path):
         view_input = from_file(path)
         ep.save_frame(frame, path)
         return view_input
 
     monkeypatch.setattr(preview, "LARGE", 1 << 30)
+    return read
+
+
+def test_a_file_of_the_menu_written_while_it_is_read(window, large_files, read_and_write, monkeypatch):
     monkeypatch.setattr(opening, "from_file", read_and_write)
     window.open_file(large_files[0])
     assert is_told_of(window.file_watch)
     window.settle()
+
+
+def test_a_file_of_the_command_line_written_while_it_is_read(qtbot, large_files, read_and_write, monkeypatch):
+    monkeypatch.setattr(app, "from_file", read_and_write)
+    opened = app.view(large_files[0], block=False)
+    qtbot.addWidget(opened)
+    assert is_told_of(opened.file_watch)

@@ -44,7 +44,7 @@ def view(*what, parts=None, block=True, state=None, picture=None, scale=1, **set
     if early is not None:
         _load_rest(window, what[0], state)
     if line is None and what and isinstance(what[0], (str, os.PathLike)):
-        window.file_watch.watch(what[0])
+        window.watch_file(what[0], view_input)
     if picture is not None:
         return _save_picture(window, picture, scale)
     if not block:

@@ -40,14 +40,18 @@ class Opening:
             self.show_message(str(error))
             return False
         self.show_input(view_input, line)
-        self.file_watch.watch(path if line is None else None)
-        if view_input.file_state is not None:
-            self.file_watch.accept(path, view_input.file_state)
+        self.watch_file(path if line is None else None, view_input)
         if early is not None:
             self.load_rest(path)
         if not isinstance(path, list):
             remember_file(path)
         return True
+
+    def watch_file(self, path, view_input) -> None:
+        """From now on, for other contents than those of view_input, which was read from there; path: None: none is watched."""
+        self.file_watch.watch(path)
+        if path is not None and view_input.file_state is not None:
+            self.file_watch.accept(path, view_input.file_state)
 
     def load_rest(self, path) -> None:
         """Reads all of a file of which a preview is shown, in a thread, once that is drawn."""

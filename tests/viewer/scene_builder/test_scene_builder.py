@@ -15,7 +15,7 @@ from PIL import Image
 
 import echopath as ep
 from echopath_viewer.model import CellBox, Session, from_frame
-from echopath_viewer.model.antennas import rotation_of
+from echopath_viewer.model.antennas import world_from_antenna
 from echopath_viewer.scene_builder import VIEWS, SceneBuilder
 from echopath_viewer.scene_builder.antenna_layer import AXIS_COLOURS
 from echopath_viewer.scene_builder.mesh_layer import boundary_edges
@@ -117,11 +117,10 @@ def test_moving_scenes_keep_their_triangles(session, plotter):
 
 def test_axes_of_an_antenna_turn_with_it():
     half = np.sqrt(0.5)
-    assert rotation_of((half, 0, 0, half)) @ [1, 0, 0] == pytest.approx([0, 1, 0])  # a quarter turn about z
-    assert rotation_of((half, 0, -half, 0)) @ [1, 0, 0] == pytest.approx([0, 0, 1])
-    quaternion = np.array([0.5, -0.1, 0.7, 0.3]) / np.linalg.norm([0.5, -0.1, 0.7, 0.3])
-    turn = rotation_of(quaternion)
-    assert turn @ turn.T == pytest.approx(np.eye(3)) and np.linalg.det(turn) == pytest.approx(1.0)
+    radar = SimpleNamespace(world_from_radar=lambda time: np.eye(4))
+    for quaternion, ahead in (((half, 0, 0, half), [0, 1, 0]), ((half, 0, -half, 0), [0, 0, 1])):  # a quarter turn about z, -y
+        axes = world_from_antenna(radar, SimpleNamespace(orientation=quaternion, position=(1.0, 2.0, 3.0)), 0.0)
+        assert axes @ [1, 0, 0, 0] == pytest.approx([*ahead, 0]) and axes[:, 3] == pytest.approx([1, 2, 3, 1])
 
 
 def test_the_outline_of_a_rectangle_is_its_four_edges():

@@ -1,10 +1,10 @@
 """Labelled frames by the thousand: a template, whose values are drawn for each scene, and the folder that they are kept in."""
-from .carrada import write_carrada
+from .exports.carrada import write_carrada
+from .exports.osi import write_osi
+from .exports.radar_scenes import write_radar_scenes
 from .folder import SceneRecord
 from .making import Forecast, MadeScene, make
 from .opened import Dataset, DatasetFrame, open
-from .osi import write_osi
-from .radar_scenes import write_radar_scenes
 from .report import write_report
 from .template import DatasetTable, DrawnScene, Template
 

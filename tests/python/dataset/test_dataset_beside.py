@@ -5,7 +5,8 @@ import pytest
 
 import echopath as ep
 from echopath import dataset
-from echopath.dataset import osi, statistics
+from echopath.dataset import statistics
+from echopath.dataset.exports import osi
 
 WAVEFORM = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=512, sampling_rate=20e6, num_chirps=32,
                             chirp_interval=60e-6)

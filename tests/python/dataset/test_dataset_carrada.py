@@ -160,7 +160,7 @@ def test_what_a_fault_ends_leaves_nothing(made, monkeypatch, tmp_path):
     def damaged(*_):
         raise ep.FileError("frame_0000.h5: is damaged")
 
-    monkeypatch.setattr("echopath.dataset.carrada.views_of", damaged)
+    monkeypatch.setattr("echopath.dataset.exports.carrada.views_of", damaged)
     with pytest.raises(ep.FileError, match="^frame_0000.h5: is damaged$"):
         dataset.write_carrada(dataset.open(made / "made")[:1], tmp_path)
     assert not list(tmp_path.iterdir())

@@ -13,14 +13,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import _core
-from ..arguments.checks import refused
-from ..arguments.settings import LabelSettings
-from ..frame.frame import Frame
-from ..labels import annotate_frame
-from ..labels.labels import Labels
-from ..spectra.angles import beamform
-from .classes import ClassName
+from ... import _core
+from ...arguments.checks import refused
+from ...arguments.settings import LabelSettings
+from ...frame.frame import Frame
+from ...labels import annotate_frame
+from ...labels.labels import Labels
+from ...spectra.angles import beamform
+from ..classes import ClassName
 
 NUM_RANGES, NUM_VELOCITIES, NUM_ANGLES = 256, 64, 256
 CLASSES = ("background", "pedestrian", "cyclist", "car")  # in the order of the masks

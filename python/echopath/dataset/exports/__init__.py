@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
-from ..arguments.checks import refused
-from ..base.files import folder_written_whole, require_writable
-from ..detections import detect_frame
-from ..detections.detections import Detections
-from ..frame.frame import Frame
-from .opened import Dataset, DatasetFrame
+from ...arguments.checks import refused
+from ...base.files import folder_written_whole, require_writable
+from ...detections import detect_frame
+from ...detections.detections import Detections
+from ...frame.frame import Frame
+from ..opened import Dataset, DatasetFrame
 
 
 @contextmanager

@@ -8,16 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments import part_names
-from ..arguments.checks import checked
-from ..arguments.checks import path as folder_rule
-from ..base.files import written_whole
-from ..base.optional import needed_module
-from ..detections.detections import Detections
-from ..truth.cross_section import isotropic_power
-from .classes import classes_of
-from .exports import detections_of, exported
-from .opened import Dataset, dataset_rule
+from ...arguments import part_names
+from ...arguments.checks import checked
+from ...arguments.checks import path as folder_rule
+from ...base.files import written_whole
+from ...base.optional import needed_module
+from ...detections.detections import Detections
+from ...truth.cross_section import isotropic_power
+from ..classes import classes_of
+from ..opened import Dataset, dataset_rule
+from . import detections_of, exported
 
 FOLDER = "traces"
 SENSOR = 1

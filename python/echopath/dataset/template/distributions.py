@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments.shown import shown
+from ...arguments.shown import shown
 
 _MORE = {"choice": {"weights"}, "normal": {"within"}}  # keys that may stand beside that of a kind
 _MOST_TRIES = 10_000                                   # of a normal distribution that is to lie within limits

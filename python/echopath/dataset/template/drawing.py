@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arguments.shown import shown
+from ...arguments.shown import shown
 from .distributions import drawn, is_distribution, refuse_misspelt
 
 _MOST_PLACES = 1000                     # that are tried for an object that is to stand apart from others

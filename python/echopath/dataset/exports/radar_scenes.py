@@ -13,15 +13,15 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arguments.checks import checked
-from ..arguments.checks import path as folder_rule
-from ..base.files import write_texts, written_whole
-from ..detections.detections import Detections
-from ..frame_file.h5 import writing
-from ..truth.cross_section import isotropic_power
-from .classes import CODES, classes_of
-from .exports import detections_of, exported
-from .opened import Dataset, dataset_rule
+from ...arguments.checks import checked
+from ...arguments.checks import path as folder_rule
+from ...base.files import write_texts, written_whole
+from ...detections.detections import Detections
+from ...frame_file.h5 import writing
+from ...truth.cross_section import isotropic_power
+from ..classes import CODES, classes_of
+from ..opened import Dataset, dataset_rule
+from . import detections_of, exported
 
 FOLDER = "data"
 SENSOR = 1

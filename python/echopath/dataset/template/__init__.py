@@ -9,14 +9,14 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 from pydantic import AfterValidator, Field
 
-from ..scene_file import SceneFile
-from ..scene_file.errors import validated
-from ..scene_file.load import parse, scene_file_of
-from ..scene_file.schema import SceneTable
-from ..scene_file.table import Positive, Table
-from ..sequence import Sequence
-from ..sequence.keep import Keep
-from .classes import ClassName
+from ...scene_file import SceneFile
+from ...scene_file.errors import validated
+from ...scene_file.load import parse, scene_file_of
+from ...scene_file.schema import SceneTable
+from ...scene_file.table import Positive, Table
+from ...sequence import Sequence
+from ...sequence.keep import Keep
+from ..classes import ClassName
 from .drawing import Drawing, DrawnObjects
 from .faults import Faults
 
@@ -83,7 +83,7 @@ class Template:
         return f"Template('{self.path}', {made.scenes} scenes of {frames}, keep='{made.keep}', seed={made.seed})"
 
     def _repr_html_(self) -> str:
-        from ..presentation.notebook import template_html
+        from ...presentation.notebook import template_html
 
         return template_html(self)
 

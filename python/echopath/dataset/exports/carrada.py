@@ -10,15 +10,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arguments.checks import checked, refused
-from ..arguments.checks import path as folder_rule
-from ..arguments.settings import LabelSettings
-from ..base.files import write_texts, written_whole
-from ..frame.frame import Frame
+from ...arguments.checks import checked, refused
+from ...arguments.checks import path as folder_rule
+from ...arguments.settings import LabelSettings
+from ...base.files import write_texts, written_whole
+from ...frame.frame import Frame
+from ..classes import classes_of
+from ..opened import Dataset, dataset_rule
+from . import exported
 from .carrada_views import NUM_ANGLES, NUM_RANGES, NUM_VELOCITIES, Instance, instances_of, one_hot, views_of
-from .classes import classes_of
-from .exports import exported
-from .opened import Dataset, dataset_rule
 
 FOLDER = "Carrada"
 _SPLITS = {"train": "Train", "val": "Validation", "validation": "Validation", "test": "Test"}

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from .. import _core
+from ... import _core
 from .distributions import with_kinds
 
 _HEADER = re.compile(r"\s*(\[\[?)\s*([\w.-]+)\s*\]")    # [radar.waveform] or [[objects]]

@@ -24,14 +24,14 @@ from .container import file_with_paths, new_file
 from .detections import read_detections, write_detections
 from .h5 import (blames_group, blaming, length_of, read_array, read_attribute, read_group, read_texts, write_array,
                  write_attribute, write_stack, write_texts)
-from .interferers import read_interferers, write_interferers
 from .labels import read_all_labels, write_all_labels
 from .paths import read_paths, write_paths
 from .radar import read_radar, write_radar
 from .scene import read_scene, write_scene
+from .scene.interferers import read_interferers, write_interferers
+from .scene.weather import read_effect_choices, scene_in_weather, write_weather
 from .seeds import read_optional_seed, write_seed
 from .truth import truth_in, write_truth
-from .weather import read_effect_choices, scene_in_weather, write_weather
 
 # Settings of a signal and the values that each may have.
 SIGNAL_SETTINGS = {"replay": get_args(Replay), "evaluate": get_args(Evaluate), "retrace": get_args(Retrace)}

@@ -9,7 +9,7 @@ from .. import _core
 from ..receiver import Receiver
 from ..signals.same_radar import WAVEFORM_KINDS, WAVEFORM_LISTS, table_key
 from .h5 import blames_group, read_array, read_attribute, read_group, read_texts, write_array, write_attribute, write_texts
-from .motion import read_motion, write_motion
+from .scene.motion import read_motion, write_motion
 
 
 def write_radar(group, radar) -> None:

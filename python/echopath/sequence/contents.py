@@ -13,9 +13,9 @@ from ..arguments.shown import shown
 from ..base.files import written_whole
 from ..frame_file.container import our_file, write_head
 from ..frame_file.h5 import blames_group, read_attribute, read_group, write_attribute, writing
-from ..frame_file.interferers import read_interferers, write_interferers
 from ..frame_file.radar import read_radar, write_radar
 from ..frame_file.scene import read_scene, write_scene
+from ..frame_file.scene.interferers import read_interferers, write_interferers
 from ..scene.scene import Scene
 
 KIND, NAME = "sequence", "sequence.h5"

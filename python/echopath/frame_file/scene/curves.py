@@ -3,8 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .. import _core
-from .h5 import read_array, read_attribute, read_group, write_array, write_attribute
+from ... import _core
+from ..h5 import read_array, read_attribute, read_group, write_array, write_attribute
 
 CURVES = ("translation", "rotation", "scale")
 

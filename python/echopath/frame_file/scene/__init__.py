@@ -3,10 +3,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from .. import _core
-from ..scene.scene import Scene
+from ... import _core
+from ...scene.scene import Scene
+from ..h5 import blames_group, read_array, read_attribute, read_group, read_texts, write_array, write_attribute, write_texts
 from .deformation import read_deformation, write_deformation
-from .h5 import blames_group, read_array, read_attribute, read_group, read_texts, write_array, write_attribute, write_texts
 from .motion import read_motion, write_motion
 
 NONE = -1  # index that means "has none"

@@ -3,9 +3,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from .. import _core
+from ... import _core
+from ..h5 import blames_group, read_array, read_attribute, write_array, write_attribute
 from .curves import read_curve_motion, write_curve_motion
-from .h5 import blames_group, read_array, read_attribute, write_array, write_attribute
 from .kinds import Kind, read_kind, write_kind
 
 

@@ -3,9 +3,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from .. import _core
+from ... import _core
+from ..h5 import blames_group, read_array, read_attribute, read_group, read_texts, write_array, write_attribute, write_texts
 from .curves import read_morph_targets, read_playback, write_morph_targets, write_playback
-from .h5 import blames_group, read_array, read_attribute, read_group, read_texts, write_array, write_attribute, write_texts
 from .kinds import Kind, read_kind, write_kind
 from .motion import read_motion, write_motion
 

@@ -6,11 +6,11 @@ from __future__ import annotations
 
 import json
 
-from ..arguments.effects import effects_rule
-from ..scene.scene import Scene
-from ..weather import Weather
-from ..weather.weather import weather_of
-from .h5 import blames_group, read_attribute, write_attribute
+from ...arguments.effects import effects_rule
+from ...scene.scene import Scene
+from ...weather import Weather
+from ...weather.weather import weather_of
+from ..h5 import blames_group, read_attribute, write_attribute
 
 
 def write_weather(group, frame) -> None:

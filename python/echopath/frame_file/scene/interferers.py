@@ -1,9 +1,9 @@
 """Other radars of a scene in HDF5 groups (layout: data/README.md)."""
 from __future__ import annotations
 
-from ..scene.interferers import Interferer, interferers_of
-from .h5 import blames_group, read_attribute, read_group, write_attribute
-from .radar import read_radar, write_radar
+from ...scene.interferers import Interferer, interferers_of
+from ..h5 import blames_group, read_attribute, read_group, write_attribute
+from ..radar import read_radar, write_radar
 
 NAME = "interferers"
 

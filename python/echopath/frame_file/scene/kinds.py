@@ -4,8 +4,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from .. import _core
-from .h5 import read_attribute, write_attribute
+from ... import _core
+from ..h5 import read_attribute, write_attribute
 
 
 class Kind(NamedTuple):

@@ -3,8 +3,8 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support import iterated_optics
-from support.method_of_moments import Strips, hankel, polyline
+from support.references import iterated_optics
+from support.references.method_of_moments import Strips, hankel, polyline
 from support.shapes import FREQUENCY, METAL, WAVELENGTH, decibel, fields, make_radar, rectangle, scene_of, sphere
 
 MOMENTS = 2e-3          # relative: a circle of 60 chords and more has less area than that

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support.method_of_moments import Strips, polyline
+from support.references.method_of_moments import Strips, polyline
 from support.shapes import FREQUENCY, METAL, WAVELENGTH, decibel, fields, make_radar, rectangle
 
 HALF = np.sqrt(0.5)

@@ -4,8 +4,8 @@ import pytest
 from scipy.special import spherical_jn, spherical_yn
 
 import echopath as ep
+from support.references.surface_moments import Currents, about_the_axis, sphere, trihedral
 from support.shapes import FREQUENCY, METAL, WAVELENGTH, decibel
-from support.surface_moments import Currents, about_the_axis, sphere, trihedral
 
 SIDE = 4                # wavelengths, of the legs
 MEAN_DB, AXIS_DB = 0.5, 0.55

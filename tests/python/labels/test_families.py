@@ -8,7 +8,7 @@ import pytest
 from echopath import _core
 from support.hand_made import hand_made_paths, make_street, random_expression, random_routes
 from support.radars import build_radar
-from support.slow_matcher import glob_takes
+from support.references.slow_matcher import glob_takes
 
 ADDITIVITY = 1e-12    # relative to the largest sample: parts add up in another order than the whole
 OBJECTS = {"walker": "pedestrian", "floor": "street/floor"}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from echopath import _core
 from support.hand_made import GLOBS, MESHES, hand_made_paths, make_street, random_expression, random_routes
-from support.slow_matcher import Words, glob_takes, slow_matches
+from support.references.slow_matcher import Words, glob_takes, slow_matches
 
 
 @pytest.fixture(scope="module")

@@ -1,9 +1,9 @@
 """Lengths from replay against an independent evaluation in NumPy, for everything that moves."""
 import numpy as np
 import pytest
-from support import slow_lengths
 from support.arm import make_arm
 from support.radars import build_radar
+from support.references import slow_lengths
 from support.shapes import quad
 
 import echopath as ep

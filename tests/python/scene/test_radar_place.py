@@ -6,9 +6,9 @@ import pytest
 
 import echopath as ep
 from echopath.signals import same_radar
-from support import slow_lengths
 from support.placed_radar import antennas_in_world, make_radars, quaternion, turn
 from support.radars import build_radar
+from support.references import slow_lengths
 from support.shapes import lambert, quad
 
 ROUNDING = 1e-8          # relative: phases of 1e5 rad from coordinates that were rounded on different ways

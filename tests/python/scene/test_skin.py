@@ -5,8 +5,8 @@ import pytest
 from scipy.special import ellipj, ellipkm1
 from support.arm import BEND, ELBOW, LENGTH, arm_weights, make_arm, tube
 from support.radars import build_radar
+from support.references.slow_lengths import deformed
 from support.shapes import METAL, lambert
-from support.slow_lengths import deformed
 
 import echopath as ep
 

@@ -8,7 +8,7 @@ import pytest
 
 import echopath as ep
 from echopath import _core
-from support import slow_beams
+from support.references import slow_beams
 
 DATA = Path(__file__).resolve().parents[3] / "data"
 C = ep.speed_of_light

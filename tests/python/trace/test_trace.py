@@ -4,7 +4,7 @@ import pytest
 
 import echopath as ep
 from support.radars import build_radar
-from support.slow_rays import closest_hit, segment_is_free
+from support.references.slow_rays import closest_hit, segment_is_free
 
 BARYCENTRIC_TOLERANCE = 2e-3  # single precision of a ray over some metres on triangles of decimetres
 ON_RAY_TOLERANCE = 1e-4       # m, likewise

@@ -16,7 +16,7 @@ NUM_SCENES, NUM_ARRAYS = 20, 8  # each of the latter is four channels
 def _deviations(kind: str) -> tuple:
     if str(TESTS) not in sys.path:
         sys.path.append(str(TESTS))
-    from support import reference_scenes
+    from support.references import reference_scenes
 
     measure = getattr(reference_scenes, f"{kind}_deviation")
     return tuple(measure(seed) for seed in range(NUM_ARRAYS if kind == "array" else NUM_SCENES))

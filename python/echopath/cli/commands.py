@@ -115,9 +115,10 @@ def dataset_report(options) -> None:
 
 
 def bench(options) -> None:
-    from ..bench import (actors, certificate, crowd, dataset, hard, labels, live, measured, published, receiver, replay, report,
+    from ..bench import (actors, certificate, crowd, dataset, hard, labels, live, measured, published, receiver, replay,
                          run_actors, run_certificate, run_crowd, run_dataset, run_labels, run_live, run_measured, run_physics,
                          run_published, run_receiver, run_replay, run_speed, run_worlds, speed, worlds)
+    from ..bench.physics import report
     from ..base.progress import progress_bars
 
     works = {"physics": (run_physics, report.describe), "labels": (run_labels, labels.describe),

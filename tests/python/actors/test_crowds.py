@@ -3,7 +3,8 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.bench import crowd, crowd_scenes
+from echopath.bench import crowd
+from echopath.bench.crowd import scenes as crowd_scenes
 from support.radars import build_radar
 
 ALONE_DB = 0.3      # what is asked of each object of a crowd

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.bench import closed_forms, targets
+from echopath.bench.physics import closed_forms, targets
 from echopath.bench.physics import DEFAULT, Variant, _point, _slope, plate_pairs
-from echopath.bench.report import describe
+from echopath.bench.physics.report import describe
 from echopath.cli import main
 
 MULTI_BOUNCE_DB = 0.2   # what the README promises of corners

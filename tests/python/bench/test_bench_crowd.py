@@ -5,9 +5,10 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.bench import crowd, crowd_coverage
-from echopath.bench import crowd_scenes as scenes
-from echopath.bench.closed_forms import FREQUENCY
+from echopath.bench import crowd
+from echopath.bench.crowd import coverage as crowd_coverage
+from echopath.bench.crowd import scenes
+from echopath.bench.physics.closed_forms import FREQUENCY
 from echopath.cli import main
 from echopath.paths.resolution import Interval
 from echopath.tracing.tessellation import coarse_meshes

@@ -6,7 +6,7 @@ import pytest
 
 import echopath as ep
 from echopath.bench import labels
-from echopath.bench.false_alarms import MAPS, measure_false_alarms
+from echopath.bench.labels.false_alarms import MAPS, measure_false_alarms
 from echopath.cli import main
 
 COUNT = 0.02  # relative: counts of hits drawn at random

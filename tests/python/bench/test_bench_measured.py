@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.bench import measured, measured_targets
+from echopath.bench import measured
+from echopath.bench.measured import targets as measured_targets
 
 
 @pytest.fixture(scope="module")

@@ -3,7 +3,8 @@ import json
 
 import pytest
 
-from echopath.bench import replay, replay_cases
+from echopath.bench import replay
+from echopath.bench.replay import cases as replay_cases
 from echopath.cli import main
 
 FOLLOWED_DB = -35.0    # of the map's peak, for motions that one record follows; the sides of a rotor come into view at -37

@@ -5,7 +5,9 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.bench import speed, speed_frames, speed_retrace, speed_synthesis, speed_tracer
+from echopath.bench import speed
+from echopath.bench.speed import (frames as speed_frames, retrace as speed_retrace, synthesis as speed_synthesis,
+                                  tracer as speed_tracer)
 from echopath.cli import main
 from support.radars import build_radar
 

@@ -9,8 +9,9 @@ from scipy import stats
 
 import echopath as ep
 from echopath.actors import shapes
-from echopath.bench import crowd_coverage, crowd_echoes, crowd_scenes, targets
-from echopath.bench.closed_forms import WAVELENGTH
+from echopath.bench.crowd import coverage as crowd_coverage, echoes as crowd_echoes, scenes as crowd_scenes
+from echopath.bench.physics import targets
+from echopath.bench.physics.closed_forms import WAVELENGTH
 from echopath.cli import main, report
 from support.radars import build_radar
 

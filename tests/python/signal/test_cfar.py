@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.bench.false_alarms import NoiseMap, describe_false_alarms, measure_false_alarms
+from echopath.bench.labels.false_alarms import NoiseMap, describe_false_alarms, measure_false_alarms
 from support.radars import build_radar
 
 RATE_TOLERANCE = 0.1  # of the rate; a thousand false alarms scatter by 3 to 4 %

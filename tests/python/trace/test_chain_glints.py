@@ -3,10 +3,10 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.bench.closed_forms import WAVELENGTH
-from echopath.bench.crowd_echoes import FLANK_AND_BALL, ellipsoids
-from echopath.bench.targets import radar
-from echopath.bench.two_bounces import power_over_ellipsoids
+from echopath.bench.crowd.echoes import FLANK_AND_BALL, ellipsoids
+from echopath.bench.crowd.two_bounces import power_over_ellipsoids
+from echopath.bench.physics.closed_forms import WAVELENGTH
+from echopath.bench.physics.targets import radar
 
 RAYS, SEEDS = 1 << 16, 3
 LEVEL_DB = 0.25     # of the mean; without such foci it is 1.7 to 2.2 dB low

@@ -55,7 +55,7 @@ class StrongestEchoes;
 class TonesOfRows;
 
 // Probes the echoes of one pass at one chirp, or at two where there are several channels. TARGET of
-// python/echopath/bench/speed_guard.py bounds its share of the time of trace and synthesis of one channel; more channels
+// python/echopath/bench/speed/guard.py bounds its share of the time of trace and synthesis of one channel; more channels
 // cost less. The result has the same bits for any number of threads.
 class PassProbe : public PathWatcher {
  public:

@@ -10,7 +10,7 @@ import echopath as ep
 from echopath import _core
 
 from ...actors import shapes
-from .. import closed_forms as exact
+from ..physics import closed_forms as exact
 from .case import Cases
 from .repeat import small_street
 from .scenes import METAL, POWER, ROUGH, decibels, edge_points, level_of, make_radar, misses, scene_of, traced

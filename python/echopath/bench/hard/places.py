@@ -6,7 +6,7 @@ import numpy as np
 import echopath as ep
 
 from ...actors import shapes
-from .. import closed_forms as exact
+from ..physics import closed_forms as exact
 from .case import Cases
 from .scenes import (METAL, POWER, ROUGH, broadside_rcs, decibels, field, make_radar, plate_at, rcs_of, scene_of, traced,
                      traced_quietly)

@@ -9,7 +9,7 @@ import echopath as ep
 from echopath import _core
 
 from ...actors import shapes
-from .. import closed_forms as exact
+from ..physics import closed_forms as exact
 
 UTM = np.array([450_000.0, 5_400_000.0, 120.0])  # m, a place in coordinates of maps
 NO_MESH = 2 ** 32 - 1  # of a ray that hits nothing

@@ -14,7 +14,7 @@ import numpy as np
 import echopath as ep
 
 from ...scene.materials import data_folder
-from ..crowd_scenes import flat_city, radar, rounded_car, street
+from ..crowd.scenes import flat_city, radar, rounded_car, street
 from ..suite import describe_judged, judged_row
 from ..timing import wall_time
 from .drive import MIB, resident_memory

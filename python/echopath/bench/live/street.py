@@ -7,7 +7,7 @@ import echopath as ep
 
 from ...actors import shapes
 from ...actors.surfaces import joined, parallelogram
-from ..closed_forms import FREQUENCY, WAVELENGTH
+from ..physics.closed_forms import FREQUENCY, WAVELENGTH
 
 LENGTH, QUICK_LENGTH = 200.0, 60.0       # m, of the street along +x
 ROAD_EDGE, HOUSE_FRONT = 6.0, 10.0       # m from the middle of the road

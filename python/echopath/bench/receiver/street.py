@@ -7,8 +7,8 @@ import numpy as np
 
 import echopath as ep
 
-from .. import crowd_scenes
-from ..closed_forms import WAVELENGTH
+from ..crowd import scenes as crowd_scenes
+from ..physics.closed_forms import WAVELENGTH
 
 NUM_TX, NUM_RX, NUM_CHIRPS = 3, 4, 128
 NUM_RAYS, QUICK_NUM_RAYS = 100_000, 20_000

@@ -12,7 +12,7 @@ import numpy as np
 
 import echopath as ep
 
-from ..speed_tracer import bare_share
+from ..speed.tracer import bare_share
 from ..timing import processor_time
 
 FREQUENCY = 24e9                         # Hz: every wall is larger than its Fresnel zone

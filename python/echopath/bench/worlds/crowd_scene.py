@@ -6,8 +6,8 @@ import numpy as np
 import echopath as ep
 
 from ...actors import shapes
-from ..closed_forms import FREQUENCY, WAVELENGTH
-from ..crowd_scenes import rounded_car
+from ..crowd.scenes import rounded_car
+from ..physics.closed_forms import FREQUENCY, WAVELENGTH
 
 LANES = (-4.5, -1.7, 1.7, 4.5)  # m
 WHEELS = ((1.35, 0.8), (1.35, -0.8), (-1.35, 0.8), (-1.35, -0.8))  # m, from the middle of a car

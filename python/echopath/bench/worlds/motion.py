@@ -14,7 +14,7 @@ import numpy as np
 import echopath as ep
 
 from ...actors import shapes
-from ..crowd_scenes import rounded_car
+from ..crowd.scenes import rounded_car
 from ..timing import processor_time
 from . import crowd_scene
 

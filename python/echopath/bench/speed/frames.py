@@ -7,11 +7,11 @@ import numpy as np
 
 import echopath as ep
 
-from ..base.stages import StageClock
-from ..scene.materials import data_folder
-from ..scene_file import load_scene
-from .speed_tracer import bare_share
-from .timing import processor_time, wall_time
+from ...base.stages import StageClock
+from ...scene.materials import data_folder
+from ...scene_file import load_scene
+from ..timing import processor_time, wall_time
+from .tracer import bare_share
 
 PATHS, QUICK_PATHS = (1_000, 10_000, 100_000, 1_000_000, 10_000_000), (1_000, 10_000)
 LINEAR_FROM, LINEAR_TARGET = 100_000, 0.10      # time per path from there on stays within that share

@@ -5,8 +5,8 @@ import numpy as np
 
 import echopath as ep
 
-from ..actors import shapes
-from .speed_synthesis import waveform
+from ...actors import shapes
+from .synthesis import waveform
 
 SUBDIVISIONS, QUICK_SUBDIVISIONS = (10, 32, 100), (10,)   # 10k, 102k and 1M triangles in all
 TARGETS = {10: 0.80, 32: 0.85, 100: 0.90}                 # of the bare loop

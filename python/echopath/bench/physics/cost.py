@@ -7,8 +7,8 @@ import numpy as np
 
 import echopath as ep
 
-from ..actors import shapes
-from .timing import fastest
+from ...actors import shapes
+from ..timing import fastest
 
 REPEATS = 3
 PATH_ARRAYS = ("offsets", "num_bounces", "diffuse", "weight", "stratum", "batch", "flags", "curved_cell", "jones")

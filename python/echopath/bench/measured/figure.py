@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..base.origin import FIXED_SEEDS
-from ..plots.style import CURVE_COLOURS, new_figure, save_png
+from ...base.origin import FIXED_SEEDS
+from ...plots.style import CURVE_COLOURS, new_figure, save_png
 
 SHOWN_DB = 58.0  # below the strongest level of a panel
 ROWS = 3         # of panels in a picture

@@ -8,7 +8,7 @@ import numpy as np
 
 import echopath as ep
 
-from ..actors import shapes
+from ...actors import shapes
 from . import closed_forms as exact
 
 CAR = (2.2, 0.9, 0.7)            # m, semi-axes of the ellipsoid

@@ -10,10 +10,10 @@ import numpy as np
 
 import echopath as ep
 
-from ..base.files import write_texts
-from .certificate_scenes import KINDS, random_scene
-from .machine import machine
-from .steps import told
+from ...base.files import write_texts
+from ..machine import machine
+from ..steps import told
+from .scenes import KINDS, random_scene
 
 SCENES, QUICK_SCENES = 40, 8
 RAYS = 12_000

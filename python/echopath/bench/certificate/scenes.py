@@ -7,7 +7,7 @@ import numpy as np
 
 import echopath as ep
 
-from ..actors import shapes
+from ...actors import shapes
 
 FREQUENCY = 77e9        # Hz
 CHIRPS = 64

@@ -10,13 +10,13 @@ import numpy as np
 
 import echopath as ep
 
-from ..base.files import write_texts
-from ..scene.materials import data_folder
-from ..scene_file import load_scene
-from ..signals.measures import residual
+from ...base.files import write_texts
+from ...scene.materials import data_folder
+from ...scene_file import load_scene
+from ...signals.measures import residual
+from ..machine import machine
+from ..timing import processor_time
 from .false_alarms import describe_false_alarms, measure_false_alarms
-from .machine import machine
-from .timing import processor_time
 
 RAYS, QUICK_RAYS = (5_000, 50_000), (1_000,)
 NUM_PARTS = (1, 4, 16, 64)
@@ -35,7 +35,7 @@ def run_labels(folder, *, quick: bool = False, progress=None) -> dict:
 
     quick: few rays, for a look; progress: callable (stage, fraction) or None
     """
-    from .labels_figure import draw_labels
+    from .figure import draw_labels
 
     began = time.perf_counter()
     with as_file(data_folder("scenes") / "street.toml") as path:

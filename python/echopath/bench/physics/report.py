@@ -4,8 +4,8 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from ..base.files import write_texts
-from .steps import csv_text
+from ...base.files import write_texts
+from ..steps import csv_text
 
 MUST_REACH = (  # target, rays, dB
     ("sphere_161", 2 ** 13, 0.1), ("sphere_3228", 2 ** 13, 0.1), ("ellipsoid", 2 ** 14, 0.1))

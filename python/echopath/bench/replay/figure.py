@@ -1,9 +1,9 @@
 """What replay gains and errs, in one picture."""
 from __future__ import annotations
 
-from ..base.origin import FIXED_SEEDS
-from ..plots.style import CURVE_COLOURS, new_figure, save_png
-from . import scale_ends
+from ...base.origin import FIXED_SEEDS
+from ...plots.style import CURVE_COLOURS, new_figure, save_png
+from .. import scale_ends
 
 MARKERS = {"interpolated, 1e-1 rad": "v", "interpolated, 1e-3 rad": "^", "interpolated, 1e-5 rad (default)": "o",
            "every chirp": "s",

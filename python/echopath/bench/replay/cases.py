@@ -5,7 +5,7 @@ import dataclasses
 
 import echopath as ep
 
-from ..actors import shapes
+from ...actors import shapes
 
 FREQUENCY = 77e9
 CHIRPS = 128

@@ -15,8 +15,9 @@ import numpy as np
 
 import echopath as ep
 
-from ..actors import shapes
-from . import closed_forms, crowd_scenes, targets
+from ...actors import shapes
+from ..physics import closed_forms, targets
+from . import scenes
 from .two_bounces import power_over_ellipsoids
 
 # centre and semi-axes of ellipsoids, m: a metal ball beside the long curved flank of a body
@@ -101,7 +102,7 @@ def _plate(seed: int):
 def _lofted_car(seed: int):
     draw = np.random.default_rng(seed)
     scene = ep.Scene()
-    scene.add(crowd_scenes.lofted_car(), name="car", material=ep.Material.metal(), smooth=True,
+    scene.add(scenes.lofted_car(), name="car", material=ep.Material.metal(), smooth=True,
               position=(draw.uniform(12.0, 50.0), 0.0, -0.7), yaw=draw.uniform(0.0, 2.0 * np.pi))
     return scene, None
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .closed_forms import WAVELENGTH
+from ..physics.closed_forms import WAVELENGTH
 
 _TURNS = np.linspace(-0.3, 0.3, 3001)  # rad, from the middle of the first body: where the search begins
 _STEP = 1e-7                           # rad, of launch directions

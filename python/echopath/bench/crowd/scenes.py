@@ -12,8 +12,8 @@ import numpy as np
 
 import echopath as ep
 
-from ..actors import shapes, surfaces
-from .closed_forms import FREQUENCY, WAVELENGTH
+from ...actors import shapes, surfaces
+from ..physics.closed_forms import FREQUENCY, WAVELENGTH
 
 RADAR_HEIGHT = 0.7                 # m
 BODY_EDGE, TUBE_EDGE = 0.05, 0.02  # m: what the tessellation rule asks for on radii of about 0.5 and 0.05 m

@@ -15,12 +15,12 @@ import numpy as np
 
 import echopath as ep
 
-from ..base.files import write_texts
-from ..scene.materials import data_folder
-from .measured_figure import draw_patterns
-from .measured_targets import INCH, Target, almond, camera_box, cobra_duct, cylindrical_duct, fan_in_a_duct, lying_sheet
-from .measured_targets import prime_aircraft, sheet, slab
-from .steps import csv_text, told
+from ...base.files import write_texts
+from ...scene.materials import data_folder
+from ..steps import csv_text, told
+from .figure import draw_patterns
+from .targets import INCH, Target, almond, camera_box, cobra_duct, cylindrical_duct, fan_in_a_duct, lying_sheet
+from .targets import prime_aircraft, sheet, slab
 
 NUM_RAYS, QUICK_NUM_RAYS = 2 ** 15, 2 ** 13
 STEP, QUICK_STEP = 1, 3                    # of the table's azimuths

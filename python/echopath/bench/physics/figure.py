@@ -1,9 +1,9 @@
 """Speed against error in one picture."""
 from __future__ import annotations
 
-from ..base.origin import FIXED_SEEDS
-from ..plots.style import new_figure, save_png
-from . import scale_ends
+from ...base.origin import FIXED_SEEDS
+from ...plots.style import new_figure, save_png
+from .. import scale_ends
 
 SHOWN = ("sphere_161", "sphere_3228", "ellipsoid", "plate_5", "plate_20.3", "dihedral")
 # Okabe and Ito: told apart with any colour vision. Label of the curve: (text, colour, line, width).

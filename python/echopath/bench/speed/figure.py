@@ -3,8 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..base.origin import FIXED_SEEDS
-from ..plots.style import new_figure, save_png
+from ...base.origin import FIXED_SEEDS
+from ...plots.style import new_figure, save_png
 
 OURS, OWN_SPEED, FINUFFT, SUMS, GREY = "#0072b2", "#56b4e9", "#d55e00", "#009e73", "#666666"  # Okabe and Ito
 SUM_WORDS = {"direct": "direct sum", "recurrence": "sum by a recurrence"}

@@ -5,8 +5,8 @@ import statistics
 
 import echopath as ep
 
-from .speed_frames import street
-from .timing import processor_time
+from ..timing import processor_time
+from .frames import street
 
 RAYS, QUICK_RAYS, REPEATS, QUICK_REPEATS = 60_000, 10_000, 11, 3
 TARGET = 0.03  # of the processor time of trace and signal: the most that the guard may cost, said only here

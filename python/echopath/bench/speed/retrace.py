@@ -8,9 +8,9 @@ import numpy as np
 
 import echopath as ep
 
-from ..actors import shapes
-from .speed_frames import street
-from .speed_synthesis import waveform
+from ...actors import shapes
+from .frames import street
+from .synthesis import waveform
 
 STEP = 5e-3                                # s from trace to trace
 REPETITIONS, QUICK_REPETITIONS = 5, 2

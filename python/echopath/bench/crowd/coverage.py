@@ -5,9 +5,9 @@ import numpy as np
 
 import echopath as ep
 
-from ..paths.resolution import interval_of
-from . import targets
-from .crowd_echoes import Echo, all_echoes
+from ...paths.resolution import interval_of
+from ..physics import targets
+from .echoes import Echo, all_echoes
 
 NUM_SEEDS, QUICK_SEEDS = 60, 4
 RAYS, QUICK_RAYS = (2 ** 12, 2 ** 14, 2 ** 16), (2 ** 12,)

@@ -3,8 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..base.origin import FIXED_SEEDS
-from ..plots.style import CURVE_COLOURS, new_figure, save_png
+from ...base.origin import FIXED_SEEDS
+from ...plots.style import CURVE_COLOURS, new_figure, save_png
 
 
 def draw_labels(results: dict, path, *, rate_target: float) -> None:

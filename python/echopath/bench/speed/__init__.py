@@ -10,11 +10,12 @@ import numpy as np
 
 import echopath as ep
 
-from ..base.files import write_texts
-from . import replay_cases, speed_frames, speed_guard, speed_retrace, speed_synthesis, speed_tracer
-from .machine import machine
-from .steps import csv_text
-from .timing import processor_time
+from ...base.files import write_texts
+from ..machine import machine
+from ..replay import cases as replay_cases
+from ..steps import csv_text
+from ..timing import processor_time
+from . import frames, guard, retrace, synthesis, tracer
 
 REPLAY_RAYS, QUICK_REPLAY_RAYS = 50_000, 1_000
 REPLAY_REPEATS = 7
@@ -28,38 +29,38 @@ def run_speed(folder, *, quick: bool = False, progress=None) -> dict:
 
     quick: few paths, for a look; progress: callable (stage, fraction) or None
     """
-    from .speed_figure import draw_frames, draw_synthesis
+    from .figure import draw_frames, draw_synthesis
 
     began = time.perf_counter()
     tell = _counter(progress, quick)
-    results = {"machine": machine(), "finufft": speed_synthesis.finufft_version(), "quick": quick}
-    results["synthesis"] = speed_synthesis.measure_synthesis(quick=quick, tell=tell)
-    results["frames"] = speed_frames.measure_frames(quick=quick, tell=tell)
-    results["linear"] = [] if quick else speed_frames.measure_linearity()
-    results["large"] = None if quick else speed_frames.measure_large()
+    results = {"machine": machine(), "finufft": synthesis.finufft_version(), "quick": quick}
+    results["synthesis"] = synthesis.measure_synthesis(quick=quick, tell=tell)
+    results["frames"] = frames.measure_frames(quick=quick, tell=tell)
+    results["linear"] = [] if quick else frames.measure_linearity()
+    results["large"] = None if quick else frames.measure_large()
     results["replay"] = [_replay(case, quick) for case in replay_cases.all_cases()]
     tell()
-    results["tracer"] = speed_tracer.measure_tracer(quick=quick)
+    results["tracer"] = tracer.measure_tracer(quick=quick)
     tell()
-    results["retrace"] = speed_retrace.measure_retrace(quick=quick)
+    results["retrace"] = retrace.measure_retrace(quick=quick)
     tell()
-    results["street"] = speed_frames.measure_street(quick=quick)
+    results["street"] = frames.measure_street(quick=quick)
     tell()
-    results["guard"] = speed_guard.measure_guard(quick=quick)
+    results["guard"] = guard.measure_guard(quick=quick)
     tell()
     results["must_reach"] = verdicts(results)
     results["seconds"] = time.perf_counter() - began
     folder = Path(folder)
     write_texts(folder, {"speed.json": json.dumps(results, indent=1) + "\n",
                          "speed.csv": csv_text(results["synthesis"]["rows"], COLUMNS)})
-    draw_synthesis(results, folder / "speed_synthesis.png")
-    draw_frames(results, folder / "speed_frames.png")
+    draw_synthesis(results, folder / "synthesis.png")
+    draw_frames(results, folder / "frames.png")
     return results
 
 
 def _counter(progress, quick: bool):
-    counts = (speed_synthesis.TOLERANCES, speed_frames.QUICK_PATHS if quick else speed_frames.PATHS, speed_frames.CHIRPS,
-              speed_frames.ARRAYS, speed_frames.PARTS)
+    counts = (synthesis.TOLERANCES, frames.QUICK_PATHS if quick else frames.PATHS, frames.CHIRPS,
+              frames.ARRAYS, frames.PARTS)
     steps, done = 5 + sum(map(len, counts)), 0
 
     def tell():
@@ -94,17 +95,17 @@ def verdicts(results: dict) -> list[dict]:
     """What must be reached: one row {what, limit, measured, holds} each; only what the run has measured."""
     rows = []
     for row in results["synthesis"]["rows"]:
-        target = speed_synthesis.TARGETS.get(row["tolerance"])
+        target = synthesis.TARGETS.get(row["tolerance"])
         if target and "gain" in row:
             rows.append(_row(f"synthesis at {row['tolerance']:.0e}, times FINUFFT", target, row["gain"]))
     fastest = max(results["synthesis"]["rates"], key=lambda row: (row["threads"], not row["scattered"]))
-    rows.append(_row(f"path-chirps/s at 1e-6, {fastest['threads']} threads", speed_synthesis.RATE_TARGET,
+    rows.append(_row(f"path-chirps/s at 1e-6, {fastest['threads']} threads", synthesis.RATE_TARGET,
                      fastest["per_second_of_free_cores"]))
     over = max(row["error"] / row["tolerance"] for row in results["synthesis"]["slow"])
     rows.append(_row("error of all methods over the tolerance, 1 to 1e6 echoes", 1.0, over, most=True))
-    excess = speed_frames.linearity(results["linear"])
+    excess = frames.linearity(results["linear"])
     if excess is not None:
-        rows.append(_row("time per path from 1e5 paths on, spread", speed_frames.LINEAR_TARGET, excess, most=True))
+        rows.append(_row("time per path from 1e5 paths on, spread", frames.LINEAR_TARGET, excess, most=True))
     rows += _memory_rows(results["frames"], results["large"])
     rows += [_row(f"tracer over bare loop, {row['triangles']:,} triangles, {row['threads']} threads", row["target"],
                   row["share"])
@@ -113,22 +114,22 @@ def verdicts(results: dict) -> list[dict]:
         replay_s = next(row["replay_s"] for row in case["rows"] if row["phase_tolerance"] == REPLAY_AIM)
         rows.append(_row(f"replay at {REPLAY_AIM:.0e} rad over the trace, {case['title']}", REPLAY_TARGET,
                          replay_s / case["trace_s"], most=True))
-    rows.append(_row("guard, share of trace and signal", speed_guard.TARGET, results["guard"]["share"], most=True))
+    rows.append(_row("guard, share of trace and signal", guard.TARGET, results["guard"]["share"], most=True))
     for street in results["street"]:
-        what, seconds = f"street frame, {street['rays']:,} rays", speed_frames.STREET_SECONDS.get(street["rays"])
+        what, seconds = f"street frame, {street['rays']:,} rays", frames.STREET_SECONDS.get(street["rays"])
         if seconds:
             rows.append(_row(f"{what}, s", seconds, street["frame_s"], most=True))
-        rows.append(_row(f"{what}, over its floor", speed_frames.STREET_TARGET, street["frame_s"] / street["floor_s"],
+        rows.append(_row(f"{what}, over its floor", frames.STREET_TARGET, street["frame_s"] / street["floor_s"],
                          most=True))
     return rows
 
 
 def _memory_rows(frames: dict, large: dict | None) -> list[dict]:
     most = max(row["peak_bytes"] for rows_of in frames.values() for row in rows_of)
-    rows = [_row("peak memory of any frame, bytes", speed_frames.MOST_MEMORY, most, most=True)]
+    rows = [_row("peak memory of any frame, bytes", frames.MOST_MEMORY, most, most=True)]
     if large:
         what = f"of {large['paths']:.0e} paths, {large['chirps']} chirps, {large['channels']} channels"
-        rows.append(_row(f"peak memory {what}", speed_frames.MOST_MEMORY, large["peak_bytes"], most=True))
+        rows.append(_row(f"peak memory {what}", frames.MOST_MEMORY, large["peak_bytes"], most=True))
     return rows
 
 
@@ -145,9 +146,9 @@ def describe(results: dict) -> list[str]:
              *_synthesis_lines(results["synthesis"]), *_frame_lines(results["frames"]), *_linear_lines(results["linear"]),
              *_large_lines(results["large"]),
              *_replay_lines(results["replay"]),
-             *_tracer_lines(results["tracer"]), *speed_retrace.describe_retrace(results["retrace"]),
+             *_tracer_lines(results["tracer"]), *retrace.describe_retrace(results["retrace"]),
              *(line for street in results["street"] for line in _street_lines(street)),
-             *speed_guard.describe_guard(results["guard"]), "",
+             *guard.describe_guard(results["guard"]), "",
              "must reach" + " " * 52 + "limit     measured"]
     lines += [f"  {row['what']:<54}{row['limit']:>12.4g}{row['measured']:>13.4g}  {'holds' if row['holds'] else 'MISSED'}"
               for row in results["must_reach"]]
@@ -165,7 +166,7 @@ def _synthesis_lines(found: dict) -> list[str]:
                   if "gain" in row else "")
         lines.append(f"{row['tolerance']:10.0e}{row['ns']:14.2f}{row['error']:12.1e}{row['scattered_ns']:12.2f}{theirs}")
     lines += [f"{row['method']:>10}{row['ns']:14.2f}{row['error']:12.1e}" for row in found["sums"]]
-    lines += ["", f"beside a slow sum, one chirp of {speed_synthesis.SLOW_SAMPLES} samples: rms error over the samples",
+    lines += ["", f"beside a slow sum, one chirp of {synthesis.SLOW_SAMPLES} samples: rms error over the samples",
               "    echoes      method  tolerance   of the sum of |a|   of the signal's rms",
               *(f"{row['echoes']:>10,}{row['method']:>12}{row['tolerance']:11.0e}{row['error']:20.1e}"
                 f"{row['error_of_signal']:22.1e}"
@@ -223,5 +224,5 @@ def _street_lines(street: dict) -> list[str]:
             f"has to be given its memory, {first['trace_s']:.3f} s and {first['decompose_s']:.3f} s",
             f"  besides: replay alone {street['replay_s']:.3f} s, signal without partitions {street['synthesize_s']:.3f} s",
             f"  floor {street['floor_s']:.3f} s: own Embree queries at the bare rate {floor['queries_s']:.3f} s, moving "
-            f"path-chirps x {speed_frames.MOVING_NS} ns {floor['moving_s']:.3f} s, static paths once "
+            f"path-chirps x {frames.MOVING_NS} ns {floor['moving_s']:.3f} s, static paths once "
             f"{floor['still_s']:.3f} s"]

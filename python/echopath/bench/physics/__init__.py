@@ -9,9 +9,9 @@ import numpy as np
 
 import echopath as ep
 
+from ..machine import machine
 from . import report
 from .cost import measure_costs
-from .machine import machine
 from .targets import Target, all_targets, plate, radar
 
 EXPONENTS = (10, 11, 12, 13, 14, 15, 16, 18, 20)   # of two: numbers of rays

@@ -9,11 +9,11 @@ import numpy as np
 
 import echopath as ep
 
-from ..actors import shapes
-from ..base.files import write_texts
-from .machine import machine
-from .replay_cases import CHIRPS, FREQUENCY, Case, all_cases, person_scene, radar
-from .timing import fastest
+from ...actors import shapes
+from ...base.files import write_texts
+from ..machine import machine
+from ..timing import fastest
+from .cases import CHIRPS, FREQUENCY, Case, all_cases, person_scene, radar
 
 RAYS, QUICK_RAYS = 100_000, 5_000               # of the times
 ERROR_RAYS = 3_000                              # of the errors, whose reference renews each chirp
@@ -30,7 +30,7 @@ def run_replay(folder, *, quick: bool = False, progress=None) -> dict:
 
     quick: few rays, for a look; progress: callable (stage, fraction) or None
     """
-    from .replay_figure import draw_replay
+    from .figure import draw_replay
 
     began = time.perf_counter()
     rays = QUICK_RAYS if quick else RAYS

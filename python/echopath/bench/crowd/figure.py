@@ -3,9 +3,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..base.origin import FIXED_SEEDS
-from ..plots.style import CURVE_COLOURS, new_figure, save_png
-from . import scale_ends
+from ...base.origin import FIXED_SEEDS
+from ...plots.style import CURVE_COLOURS, new_figure, save_png
+from .. import scale_ends
 
 SHOWN_DB = -12.0, 6.0  # of the errors
 

@@ -10,13 +10,13 @@ import numpy as np
 
 import echopath as ep
 
-from ..base.files import write_texts
-from . import crowd_scenes as scenes
-from .crowd_coverage import measure_coverage
-from .machine import machine
-from .speed_tracer import bare_share
-from .steps import told
-from .timing import processor_time
+from ...base.files import write_texts
+from ..machine import machine
+from ..speed.tracer import bare_share
+from ..steps import told
+from ..timing import processor_time
+from . import scenes
+from .coverage import measure_coverage
 
 RAYS, QUICK_RAYS = 300_000, 20_000
 SEEDS, QUICK_SEEDS = 3, 1
@@ -37,7 +37,7 @@ def run_crowd(folder, *, quick: bool = False, progress=None) -> dict:
 
     quick: few rays and seeds, for a look; progress: callable (stage, fraction) or None
     """
-    from .crowd_figure import draw_crowd
+    from .figure import draw_crowd
 
     began = time.perf_counter()
     works = {"streets": lambda: [measure_street(mirrors=mirrors, quick=quick) for mirrors in (True, False)],

@@ -156,7 +156,7 @@ check_cxx_compiler_flag(-fcx-limited-range ECHOPATH_HAS_LIMITED_RANGE)  # clang 
 set(echopath_finite_numbers $<$<BOOL:${ECHOPATH_HAS_LIMITED_RANGE}>:-fcx-limited-range> -fno-math-errno)
 
 # echopath_test(NAME [EACH_INSTRUCTION_SET [ONCE patterns...]] [COST seconds] [LIBS targets...] [HARD patterns...]): every
-# .cpp of this folder in one GoogleTest program, test_NAME.
+# .cpp of this folder and of those within in one GoogleTest program, test_NAME.
 # Tests that match a pattern are the test NAME_hard, with the label hard (ctest -L hard); all others the test NAME.
 # EACH_INSTRUCTION_SET: all of them again as NAME_baseline and NAME_avx2, where the machine's best is another.
 # ONCE: tests that are repeated neither so nor with sanitized modules: statistics over many runs of code that others run, too.
@@ -164,7 +164,7 @@ set(echopath_finite_numbers $<$<BOOL:${ECHOPATH_HAS_LIMITED_RANGE}>:-fcx-limited
 # Each is there a second time with sanitized modules: NAME_sanitized, NAME_hard_sanitized.
 function(echopath_test name)
   cmake_parse_arguments(ARG "EACH_INSTRUCTION_SET" "COST" "LIBS;HARD;ONCE" ${ARGN})
-  file(GLOB sources CONFIGURE_DEPENDS *.cpp)
+  file(GLOB sources CONFIGURE_DEPENDS *.cpp */*.cpp)
   add_executable(test_${name} ${sources})
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_compile_definitions(test_${name} PRIVATE ECHOPATH_TEST_DATA="${PROJECT_SOURCE_DIR}/data")

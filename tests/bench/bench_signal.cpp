@@ -5,12 +5,12 @@
 #include <random>
 #include <vector>
 
+#include "cpp/support/waveforms.h"
 #include "echopath/base/lanes/simd.h"
 #include "echopath/radar/radar.h"
 #include "echopath/signal/kernels/kernels.h"
 #include "echopath/signal/kernels/nufft_kernel.h"
 #include "echopath/signal/methods/method.h"
-#include "support/waveforms.h"
 
 namespace {
 

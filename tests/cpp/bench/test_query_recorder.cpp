@@ -5,10 +5,10 @@
 #include <cmath>
 #include <tuple>
 
+#include "cpp/support/scenes.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/bench/query_recorder.h"
 #include "echopath/trace/tracer.h"
-#include "support/scenes.h"
 
 namespace echopath::test_query_recorder {
 namespace {

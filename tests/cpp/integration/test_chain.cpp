@@ -5,12 +5,12 @@
 #include <cstdio>
 #include <fstream>
 
+#include "cpp/support/scenes.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/scene/readers/readers.h"
 #include "echopath/sim/decompose.h"
 #include "echopath/sim/synthesize.h"
 #include "echopath/spectrum/range_doppler.h"
-#include "support/scenes.h"
 
 namespace echopath::test_chain {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <cmath>
 
+#include "cpp/support/scenes.h"
 #include "echopath/base/constants.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/sim/rays/ray_allocation.h"
-#include "support/scenes.h"
 
 namespace echopath::test_glints {
 namespace {

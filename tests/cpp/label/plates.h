@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "cpp/support/scenes.h"
 #include "echopath/label/objects/visibility.h"
-#include "support/scenes.h"
 
 namespace echopath::testing {
 

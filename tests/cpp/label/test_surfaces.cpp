@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "cpp/label/hand_made_paths.h"
+#include "cpp/support/scenes.h"
 #include "echopath/label/objects/surfaces.h"
-#include "support/scenes.h"
 
 namespace echopath::test_surfaces {
 namespace {

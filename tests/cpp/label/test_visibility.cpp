@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "cpp/label/plates.h"
+#include "cpp/support/scenes.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/label/objects/appearing.h"
 #include "echopath/label/objects/visibility.h"
 #include "echopath/trace/embree/kept_geometry.h"
-#include "support/scenes.h"
 
 namespace echopath::test_visibility {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "cpp/support/expect_error.h"
 #include "echopath/base/constants.h"
 #include "echopath/motion/curve_motion.h"
-#include "support/expect_error.h"
 
 namespace echopath::test_curve_motion {
 namespace {

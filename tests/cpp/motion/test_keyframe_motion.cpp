@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
+#include "cpp/support/expect_error.h"
 #include "echopath/base/constants.h"
 #include "echopath/motion/motion.h"
-#include "support/expect_error.h"
 
 namespace echopath::test_keyframe_motion {
 namespace {

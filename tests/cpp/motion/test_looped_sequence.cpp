@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "cpp/support/expect_error.h"
 #include "echopath/base/constants.h"
 #include "echopath/motion/looped_sequence.h"
-#include "support/expect_error.h"
 
 namespace echopath::test_looped_sequence {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <cmath>
 
+#include "cpp/support/expect_error.h"
 #include "echopath/base/constants.h"
 #include "echopath/motion/curve_motion.h"
 #include "echopath/motion/morph_targets.h"
 #include "echopath/motion/skin.h"
-#include "support/expect_error.h"
 
 namespace echopath::test_morph_targets {
 namespace {

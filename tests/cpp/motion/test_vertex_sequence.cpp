@@ -3,10 +3,10 @@
 #include <cmath>
 #include <limits>
 
+#include "cpp/support/expect_error.h"
 #include "echopath/base/constants.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/motion/deformation.h"
-#include "support/expect_error.h"
 
 namespace echopath::test_vertex_sequence {
 namespace {

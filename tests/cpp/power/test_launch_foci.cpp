@@ -5,10 +5,10 @@
 #include <limits>
 #include <map>
 
+#include "cpp/support/scenes.h"
 #include "echopath/base/random.h"
 #include "echopath/power/received_power.h"
 #include "echopath/trace/launch/launch_focus.h"
-#include "support/scenes.h"
 
 namespace echopath::test_launch_foci {
 namespace {

@@ -4,10 +4,10 @@
 #include <bit>
 #include <numeric>
 
+#include "cpp/support/sanitized.h"
+#include "cpp/support/scenes.h"
 #include "echopath/power/power_interval.h"
 #include "echopath/power/received_power.h"
-#include "support/sanitized.h"
-#include "support/scenes.h"
 
 namespace echopath::test_received_power {
 namespace {

@@ -5,9 +5,9 @@
 #include <functional>
 #include <limits>
 
+#include "cpp/support/expect_error.h"
 #include "echopath/base/constants.h"
 #include "echopath/radar/radar.h"
-#include "support/expect_error.h"
 
 namespace echopath::test_gain_table {
 namespace {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "cpp/support/waveforms.h"
 #include "echopath/radar/radar.h"
-#include "support/waveforms.h"
 
 namespace echopath::test_radar {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <functional>
 
-#include "support/scenes.h"
+#include "cpp/support/scenes.h"
 
 namespace echopath::test_antennas {
 namespace {

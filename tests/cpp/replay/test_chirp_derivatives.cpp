@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "cpp/support/scenes.h"
 #include "echopath/replay/time/chirp_derivatives.h"
-#include "support/scenes.h"
 
 namespace echopath::test_chirp_derivatives {
 namespace {

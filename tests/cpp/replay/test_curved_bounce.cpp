@@ -3,9 +3,9 @@
 
 #include <tuple>
 
+#include "cpp/support/scenes.h"
 #include "echopath/trace/mirrors/mirror_paths.h"
 #include "echopath/trace/record/record_writer.h"
-#include "support/scenes.h"
 
 namespace echopath::test_curved_bounce {
 namespace {

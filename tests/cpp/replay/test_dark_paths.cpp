@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "cpp/support/scenes.h"
 #include "echopath/replay/time/node_tails.h"
-#include "support/scenes.h"
 
 namespace echopath::test_dark_paths {
 namespace {

@@ -4,8 +4,8 @@
 #include <atomic>
 #include <numeric>
 
+#include "cpp/support/scenes.h"
 #include "echopath/motion/skin.h"
-#include "support/scenes.h"
 
 namespace echopath::test_deforming {
 namespace {

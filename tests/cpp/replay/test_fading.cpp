@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <numeric>
 
+#include "cpp/support/scenes.h"
 #include "echopath/replay/replay.h"
 #include "echopath/signal/echoes/echo_states.h"
-#include "support/scenes.h"
 
 namespace echopath::test_fading {
 namespace {

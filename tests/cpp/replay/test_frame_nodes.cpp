@@ -3,8 +3,8 @@
 
 #include <functional>
 
+#include "cpp/support/scenes.h"
 #include "echopath/replay/time/frame_nodes.h"
-#include "support/scenes.h"
 
 namespace echopath::test_frame_nodes {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <numeric>
 
+#include "cpp/support/scenes.h"
 #include "echopath/replay/posed/hit_patches.h"
-#include "support/scenes.h"
 
 namespace echopath::test_joined_echoes {
 namespace {

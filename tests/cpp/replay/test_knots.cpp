@@ -1,9 +1,9 @@
 // Frames longer than the knots of a keyframe motion are followed by polynomials between the knots.
 #include <gtest/gtest.h>
 
+#include "cpp/support/scenes.h"
 #include "echopath/replay/time/motion_knots.h"
 #include "echopath/signal/echoes/echo_states.h"
-#include "support/scenes.h"
 
 namespace echopath::test_knots {
 namespace {

@@ -1,7 +1,7 @@
 // Levels of canonical targets against physical optics, image theory and energy conservation (77 GHz).
 #include <gtest/gtest.h>
 
-#include "support/scenes.h"
+#include "cpp/support/scenes.h"
 
 namespace echopath::test_levels {
 namespace {

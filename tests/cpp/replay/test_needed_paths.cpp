@@ -5,8 +5,8 @@
 #include <limits>
 #include <numeric>
 
+#include "cpp/support/scenes.h"
 #include "echopath/replay/replay.h"
-#include "support/scenes.h"
 
 namespace echopath::test_needed_paths {
 namespace {

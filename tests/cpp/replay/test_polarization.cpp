@@ -1,7 +1,7 @@
 // Polarised echoes: corners turned about the line of sight, and scalar and polarised traces beside each other.
 #include <gtest/gtest.h>
 
-#include "support/scenes.h"
+#include "cpp/support/scenes.h"
 
 namespace echopath::test_polarization {
 namespace {

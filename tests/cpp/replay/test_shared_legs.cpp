@@ -1,13 +1,13 @@
 // Paths put together from the legs that they share are those that are evaluated one by one.
 #include <gtest/gtest.h>
 
+#include "cpp/support/path_by_path.h"
+#include "cpp/support/scenes.h"
 #include "echopath/base/constants.h"
 #include "echopath/replay/evaluate/shared_leg_plan.h"
 #include "echopath/replay/evaluate/shared_legs.h"
 #include "echopath/replay/evaluate/single_bounces.h"
 #include "echopath/replay/posed/hit_patches.h"
-#include "support/path_by_path.h"
-#include "support/scenes.h"
 
 namespace echopath::test_shared_legs {
 namespace {

@@ -1,8 +1,8 @@
 // What sheets, the air and lobes make of the amplitudes of paths, against closed forms.
 #include <gtest/gtest.h>
 
+#include "cpp/support/scenes.h"
 #include "echopath/replay/factors/path_passages.h"
-#include "support/scenes.h"
 
 namespace echopath::test_sheet_passages {
 namespace {

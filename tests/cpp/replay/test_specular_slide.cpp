@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "support/scenes.h"
+#include "cpp/support/scenes.h"
 
 namespace echopath::test_specular_slide {
 namespace {

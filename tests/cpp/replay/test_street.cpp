@@ -5,7 +5,7 @@
 #include <memory>
 #include <set>
 
-#include "support/scenes.h"
+#include "cpp/support/scenes.h"
 
 namespace echopath::test_street {
 namespace {

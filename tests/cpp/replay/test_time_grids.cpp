@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
+#include "cpp/support/scenes.h"
 #include "echopath/base/constants.h"
 #include "echopath/replay/time/time_grids.h"
-#include "support/scenes.h"
 
 namespace echopath::test_time_grids {
 namespace {

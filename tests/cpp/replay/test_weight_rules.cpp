@@ -5,11 +5,11 @@
 #include <array>
 #include <bit>
 
+#include "cpp/support/sanitized.h"
+#include "cpp/support/scenes.h"
 #include "echopath/power/received_power.h"
 #include "echopath/trace/record/record_writer.h"
 #include "echopath/trace/sbr/sbr.h"
-#include "support/sanitized.h"
-#include "support/scenes.h"
 
 namespace echopath::test_weight_rules {
 namespace {

@@ -3,12 +3,12 @@
 #include <limits>
 #include <random>
 
+#include "cpp/support/expect_error.h"
 #include "echopath/base/constants.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/motion/motion.h"
 #include "echopath/scene/overlap/box_tree.h"
 #include "echopath/scene/overlap/coplanar.h"
-#include "support/expect_error.h"
 
 namespace echopath::test_coplanar {
 namespace {

@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
+#include "cpp/support/expect_error.h"
 #include "echopath/scene/mesh/mesh.h"
-#include "support/expect_error.h"
 
 namespace echopath::test_mesh {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <numeric>
 
+#include "cpp/support/expect_error.h"
 #include "echopath/scene/mesh/surface_patch.h"
 #include "echopath/scene/readers/skin_parts.h"
 #include "echopath/scene/scene.h"
 #include "echopath/scene/smooth/smooth.h"
-#include "support/expect_error.h"
 
 namespace echopath::test_mesh_part {
 namespace {

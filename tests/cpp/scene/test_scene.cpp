@@ -3,9 +3,9 @@
 #include <limits>
 
 #include "cpp/scene/small_nodes.h"
+#include "cpp/support/expect_error.h"
 #include "echopath/base/constants.h"
 #include "echopath/scene/scene.h"
-#include "support/expect_error.h"
 
 namespace echopath::test_scene {
 namespace {

@@ -4,8 +4,8 @@
 #include <stdexcept>
 
 #include "cpp/scene/small_nodes.h"
+#include "cpp/support/expect_error.h"
 #include "echopath/scene/scene.h"
-#include "support/expect_error.h"
 
 namespace echopath::test_scene_changes {
 namespace {

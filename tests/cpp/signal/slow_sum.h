@@ -5,9 +5,9 @@
 #include <random>
 #include <vector>
 
+#include "cpp/support/waveforms.h"
 #include "echopath/radar/radar.h"
 #include "echopath/signal/synthesizer.h"
-#include "support/waveforms.h"
 
 namespace echopath::testing {
 

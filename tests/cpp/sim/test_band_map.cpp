@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "cpp/support/scenes.h"
 #include "echopath/sim/stream/part_pass.h"
 #include "echopath/trace/trace.h"
-#include "support/scenes.h"
 
 namespace echopath::test_band_map {
 namespace {

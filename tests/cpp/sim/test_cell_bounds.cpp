@@ -3,9 +3,9 @@
 #include <random>
 
 #include "cpp/sim/slow_map.h"
+#include "cpp/support/scenes.h"
+#include "cpp/support/waveforms.h"
 #include "echopath/sim/stream/cell_bounds.h"
-#include "support/scenes.h"
-#include "support/waveforms.h"
 
 namespace echopath::test_cell_bounds {
 namespace {

@@ -1,13 +1,13 @@
 #include <gtest/gtest.h>
 
 #include "cpp/sim/slow_map.h"
+#include "cpp/support/path_by_path.h"
+#include "cpp/support/scenes.h"
+#include "cpp/support/waveforms.h"
 #include "echopath/base/constants.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/sim/stream/part_pass.h"
 #include "echopath/trace/trace.h"
-#include "support/path_by_path.h"
-#include "support/scenes.h"
-#include "support/waveforms.h"
 
 namespace echopath::test_part_pass {
 namespace {

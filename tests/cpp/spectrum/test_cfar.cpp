@@ -8,11 +8,11 @@
 #include <random>
 #include <thread>
 
+#include "cpp/support/expect_error.h"
+#include "cpp/support/sanitized.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/spectrum/cfar/cfar.h"
 #include "plane_waves.h"
-#include "support/expect_error.h"
-#include "support/sanitized.h"
 
 namespace echopath::test_cfar {
 namespace {

@@ -4,9 +4,9 @@
 #include <numbers>
 #include <numeric>
 
+#include "cpp/support/waveforms.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/spectrum/range_doppler.h"
-#include "support/waveforms.h"
 
 namespace echopath::test_range_doppler {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
+#include "cpp/support/scenes.h"
 #include "echopath/trace/embree/embree_scene.h"
 #include "echopath/trace/launch/launch.h"
 #include "echopath/trace/launch/launch_directions.h"
 #include "echopath/trace/launch/launch_lattice.h"
-#include "support/scenes.h"
 
 namespace echopath::test_batches {
 namespace {

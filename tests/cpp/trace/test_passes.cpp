@@ -1,8 +1,8 @@
 // The sheets through which paths go, against a loop over all triangles.
 #include <gtest/gtest.h>
 
+#include "cpp/support/scenes.h"
 #include "echopath/trace/sheets/passes.h"
-#include "support/scenes.h"
 
 namespace echopath::test_passes {
 namespace {

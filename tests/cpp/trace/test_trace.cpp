@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cstring>
 
+#include "cpp/support/scenes.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/trace/embree/embree_scene.h"
 #include "echopath/trace/launch/launch.h"
 #include "echopath/trace/launch/launch_directions.h"
 #include "echopath/trace/launch/launch_lattice.h"
-#include "support/scenes.h"
 
 namespace echopath::test_trace {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "cpp/support/scenes.h"
 #include "echopath/scene/smooth/smooth.h"
-#include "support/scenes.h"
 
 namespace echopath::test_surface_walk {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "cpp/support/expect_error.h"
 #include "echopath/base/errors.h"
 #include "echopath/scene/readers/readers.h"
-#include "support/expect_error.h"
 #include "temporary_file.h"
 
 namespace echopath::test {

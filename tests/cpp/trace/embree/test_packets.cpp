@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
+#include "cpp/support/scenes.h"
 #include "echopath/trace/embree/embree_scene.h"
 #include "echopath/trace/trace.h"
-#include "support/scenes.h"
 
 namespace echopath::test_packets {
 namespace {

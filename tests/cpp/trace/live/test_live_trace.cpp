@@ -6,8 +6,8 @@
 #include <map>
 #include <random>
 
+#include "cpp/support/scenes.h"
 #include "echopath/trace/live/live_trace.h"
-#include "support/scenes.h"
 
 namespace echopath::test_live_trace {
 namespace {

@@ -5,11 +5,11 @@
 #include <map>
 #include <set>
 
+#include "cpp/support/sanitized.h"
+#include "cpp/support/scenes.h"
+#include "cpp/support/slow_images.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/trace/trace.h"
-#include "support/sanitized.h"
-#include "support/scenes.h"
-#include "support/slow_images.h"
 
 namespace echopath::test_plane_images {
 namespace {

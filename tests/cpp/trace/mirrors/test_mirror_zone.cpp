@@ -4,9 +4,9 @@
 #include <cmath>
 #include <memory>
 
+#include "cpp/support/scenes.h"
 #include "echopath/base/constants.h"
 #include "echopath/trace/mirrors/mirror_zone.h"
-#include "support/scenes.h"
 
 namespace echopath::test_mirror_zone {
 namespace {

@@ -1,9 +1,9 @@
 // Which planes light which, as rays found them, and the ways between edges and antennas over them.
 #include <gtest/gtest.h>
 
+#include "cpp/support/scenes.h"
 #include "echopath/trace/edges/lit_planes.h"
 #include "echopath/trace/edges/plane_legs.h"
-#include "support/scenes.h"
 
 namespace echopath::test_lit_planes {
 namespace {

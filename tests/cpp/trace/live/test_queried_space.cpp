@@ -4,8 +4,8 @@
 
 #include <random>
 
+#include "cpp/support/scenes.h"
 #include "echopath/trace/live/queried_space.h"
-#include "support/scenes.h"
 
 namespace echopath::test_queried_space {
 namespace {

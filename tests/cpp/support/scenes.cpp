@@ -1,4 +1,4 @@
-#include "support/scenes.h"
+#include "cpp/support/scenes.h"
 
 #include <map>
 #include <numeric>

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "cpp/support/scenes.h"
 #include "echopath/radar/noise_power.h"
 #include "echopath/trace/edges/edge_power.h"
-#include "support/scenes.h"
 
 namespace echopath::test_edge_power {
 namespace {

@@ -8,10 +8,10 @@
 #include <random>
 
 #include "answers.h"
+#include "cpp/support/sanitized.h"
+#include "cpp/support/scenes.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/trace/embree/kept_geometry.h"
-#include "support/sanitized.h"
-#include "support/scenes.h"
 
 namespace echopath::test_kept_geometry {
 namespace {

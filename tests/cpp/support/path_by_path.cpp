@@ -1,4 +1,4 @@
-#include "support/path_by_path.h"
+#include "cpp/support/path_by_path.h"
 
 #include <algorithm>
 #include <cmath>

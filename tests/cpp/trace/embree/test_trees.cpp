@@ -7,9 +7,9 @@
 #include <set>
 
 #include "answers.h"
+#include "cpp/support/scenes.h"
 #include "echopath/trace/embree/mesh_clusters.h"
 #include "echopath/trace/embree/tree_shape.h"
-#include "support/scenes.h"
 
 namespace echopath::test_trees {
 namespace {

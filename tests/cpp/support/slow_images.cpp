@@ -1,4 +1,4 @@
-#include "support/slow_images.h"
+#include "cpp/support/slow_images.h"
 
 #include <algorithm>
 #include <cmath>

@@ -20,13 +20,16 @@ import echopath.dataset
 matplotlib.use("agg")
 ROOT = Path(__file__).parents[3]
 DOCS, EXAMPLES = ROOT / "python" / "docs", ROOT / "python" / "examples"
-PAGES = sorted((DOCS / "how_do_i").glob("*.md"))
+PAGES = sorted((DOCS / "how_do_i").rglob("*.md"))
 TRAINING = EXAMPLES / "training"  # needs PyTorch, and takes minutes: no part of the gallery
 SCRIPTS = sorted(path for path in EXAMPLES.glob("*/*.py") if path.parent != TRAINING)
 NOTEBOOKS = sorted((EXAMPLES / "notebooks").glob("*.ipynb"))
-TASKS = ("own_mesh", "through_a_pane", "foreign_scene", "car_with_speed", "trajectories", "antenna_pattern", "angle_map",
-         "frames_in_time", "transmit_codes", "receiver_faults", "sensor_file", "live_scene", "spectrogram", "arms_only",
-         "rcs_over_angle", "snr", "label_masks", "detections", "truth_and_tracks", "ego_motion", "several_processes", "dataset")
+TASKS = (*(f"scenes/{name}" for name in ("own_mesh", "through_a_pane", "foreign_scene", "car_with_speed", "trajectories",
+                                         "ego_motion", "live_scene")),
+         *(f"radars/{name}" for name in ("antenna_pattern", "transmit_codes", "receiver_faults", "sensor_file", "snr")),
+         *(f"results/{name}" for name in ("angle_map", "spectrogram", "arms_only", "rcs_over_angle", "label_masks", "detections",
+                                          "truth_and_tracks")),
+         *(f"runs/{name}" for name in ("frames_in_time", "several_processes", "dataset")))
 LARGEST_FILE = 200_000  # bytes
 
 
@@ -81,7 +84,7 @@ def test_docstrings_become_lists_and_paragraphs():
 
 
 def test_every_task_has_a_page():
-    assert {page.stem for page in PAGES} == {*TASKS, "index"}
+    assert {page.relative_to(DOCS / "how_do_i").with_suffix("").as_posix() for page in PAGES} == {*TASKS, "index"}
     contents = (DOCS / "how_do_i" / "index.md").read_text(encoding="utf-8")
     assert all(re.search(rf"^{task}$", contents, re.MULTILINE) for task in TASKS)
 
@@ -94,7 +97,7 @@ def test_lines_of_a_page_run(task, tmp_path, monkeypatch):
     names = {"__name__": "a_page"}
     exec(compile(code_of(DOCS / "how_do_i" / "index.md"), "index.md", "exec"), names)
     exec(compile(code_of(DOCS / "how_do_i" / f"{task}.md"), f"{task}.md", "exec"), names)
-    if task == "several_processes":  # a worker of its own would need the page as a file
+    if task == "runs/several_processes":  # a worker of its own would need the page as a file
         assert ep.load_frame(names["one_frame"](0.1)).paths.frame.start_time == 0.1
         ep.set_num_threads(0)
 

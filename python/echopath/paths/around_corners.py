@@ -9,6 +9,7 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import Progress, checked, count, real
 from ..base.made_by import made_by
+from ..base.mesh_names import object_of
 from ..tracing.polarization import polarization_of
 from .resolution import Interval
 from .surface_points import SurfacePoints, surface_points
@@ -87,18 +88,14 @@ class Hidden:
 
 def hidden_objects(scene, radar, time, progress=None) -> list[Hidden]:
     """Objects of which something else hides a part from the first antennas at a time in s."""
-    names = [name for name in dict.fromkeys(_object_of(mesh) for mesh in scene.meshes) if scene[name].visible]
+    names = [name for name in dict.fromkeys(object_of(mesh.name) for mesh in scene.meshes) if scene[name].visible]
     found = (_hidden(scene, radar, name, names, time, progress) for name in names)
     return [one for one in found if one.is_hidden.any()]
 
 
-def _object_of(mesh) -> str:
-    return mesh.name.split("/")[0]
-
-
 def _hidden(scene, radar, name, names, time, progress) -> Hidden:
     alone = _alone(scene, name, names)
-    points = surface_points(scene, [mesh for mesh in scene.meshes if _object_of(mesh) == name], time, NUM_POINTS)
+    points = surface_points(scene, [mesh for mesh in scene.meshes if object_of(mesh.name) == name], time, NUM_POINTS)
     places, ends = points.at(scene, time), (radar.transmitters[0], radar.receivers[0])
     facing = np.all([_is_free(ways_to(alone, radar, end, places, time, edges=False)) for end in ends], axis=0)
     ways = tuple(ways_to(scene, radar, end, places[facing], time, progress=progress) for end in ends)

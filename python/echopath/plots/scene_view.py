@@ -5,6 +5,7 @@ import dataclasses
 
 import numpy as np
 
+from ..base.mesh_names import object_of
 from ..paths.subset import first_group, strongest, strongest_of_each, subset
 from .clip import clip_triangles, outline
 from .style import BOUNCE_COLOURS, new_figure
@@ -80,14 +81,10 @@ def _collect(scene, shown, time: float) -> _Drawing:
     return drawing
 
 
-def _object_name(mesh) -> str:
-    return mesh.name.split("/")[0]
-
-
 def _chosen(scene, paths, power, num_rays: int):
     """Indices of the paths that are drawn."""
     numbers = {}
-    of_mesh = np.array([-1 if mesh.material.mirror else numbers.setdefault(_object_name(mesh), len(numbers))
+    of_mesh = np.array([-1 if mesh.material.mirror else numbers.setdefault(object_of(mesh.name), len(numbers))
                         for mesh in scene.meshes], np.int64)
     of_path = first_group(paths, of_mesh)
     return strongest_of_each(power, of_path, len(numbers), num_rays) if (of_path >= 0).any() else strongest(power, num_rays)
@@ -114,7 +111,7 @@ def _names(scene, time: float) -> dict:
     objects = {}
     for mesh_id, mesh in enumerate(scene.meshes):
         if not mesh.material.mirror:
-            objects.setdefault(_object_name(mesh), []).append(np.asarray(scene.world_vertices(mesh_id, time)))
+            objects.setdefault(object_of(mesh.name), []).append(np.asarray(scene.world_vertices(mesh_id, time)))
     if len(objects) > MOST_NAMES:
         return {}
     vertices = {name: np.concatenate(parts) for name, parts in objects.items()}
@@ -128,7 +125,7 @@ def _add_mesh(drawing: _Drawing, triangles, mesh) -> None:
         for edge in outline(polygons):
             (drawing.mirror_cuts if _is_cut(edge, drawing.low, drawing.high) else drawing.mirror_edges).append(edge)
         if polygons:
-            _add_mirror_name(drawing.mirror_names, _object_name(mesh), np.concatenate(polygons))
+            _add_mirror_name(drawing.mirror_names, object_of(mesh.name), np.concatenate(polygons))
         return
     drawing.bodies += polygons
     if polygons:

@@ -1,12 +1,10 @@
 """Whether a map holds the noise that detections are held against."""
 from __future__ import annotations
 
-import warnings
-
 import numpy as np
 
 from .. import _core
-from ..base.callers import level_of_user
+from ..base.callers import warn_user
 
 # A quarter of the cells of thermal noise alone has less than .29 of its mean power, of several channels more; clutter adds to
 # it. Maps of the fewest cells keep far above this share.
@@ -22,4 +20,4 @@ def warn_of_missing_noise(radar, power) -> None:
     if np.quantile(power, _QUANTILE) < _LEAST_SHARE * noise:
         text = (f"spectrum: holds no noise of the radar ({10.0 * np.log10(noise) + 30.0:.0f} dBm in a cell), so that detections "
                 "are sidelobes and rounding; make the map of ep.add_noise(cube, radar)")
-        warnings.warn(text, RuntimeWarning, stacklevel=level_of_user())
+        warn_user(text)

@@ -70,5 +70,5 @@ def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | 
                              window=window, zero_pad=zero_pad)
     run = FrameRun(scene, radar, tracing, signals, parts, angles, labels, detections, truth, guard)
     frame = run.frame_of(lambda: trace_scene(scene, radar, settings=tracing, progress=progress), progress)
-    warn_of(frame.checks, stacklevel=3)  # past what checks the arguments of this function
+    warn_of(frame.checks)
     return frame

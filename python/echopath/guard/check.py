@@ -2,7 +2,8 @@
 from __future__ import annotations
 
 import dataclasses
-import warnings
+
+from ..base.callers import warn_user
 from ..base.made_by import made_by
 
 
@@ -35,8 +36,8 @@ class Check:
         return f"{self.error:.2g} {self.unit}, promised {self.promise:.2g}{verdict} ({self.count:,} compared)"
 
 
-def warn_of(checks, stacklevel: int = 2) -> None:
+def warn_of(checks) -> None:
     """Warns (GuardWarning) of each of the `checks` that does not agree."""
     for check in checks:
         if not check.agrees:
-            warnings.warn(f"{check.name}: {check}", GuardWarning, stacklevel=stacklevel + 1)
+            warn_user(f"{check.name}: {check}", GuardWarning)

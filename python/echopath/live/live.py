@@ -173,7 +173,7 @@ class Live:
             with self._changes.still():
                 scene, radar, number = _core.Scene(self._scene), self._radar, self.number
                 window, zero_pad = self._window, self._zero_pad
-            warn_of_coarse_meshes(scene, radar.waveform.start_frequency, stacklevel=4)
+            warn_of_coarse_meshes(scene, radar.waveform.start_frequency)
             done = kept.update(scene, radar, progress)
             begin = time.perf_counter()
             spectrum = _core.range_doppler(kept.cube, radar, window, zero_pad)

@@ -1,18 +1,17 @@
 """Remarks on scenes whose lengths look like those of other units."""
 from __future__ import annotations
 
-import warnings
-
 import numpy as np
 
 from .. import _core
+from ..base.callers import warn_user
 
 LARGE = 1000.0     # m, all sides of an object that no scene has
 LONG = 250.0       # m, all sides of a closed body: mountains are as high, but open below
 SMALL = 0.5        # wavelengths, the longest side of an object
 
 
-def warn_of_sizes(scene: _core.Scene, wavelength: float, time: float, stacklevel: int = 2) -> None:
+def warn_of_sizes(scene: _core.Scene, wavelength: float, time: float) -> None:
     """Warns (RuntimeWarning) of an empty scene, and of objects that look as if their lengths were not in m.
 
     wavelength: m; time: s, at which the scene is looked at; one outside of its motions is not for this to tell of
@@ -23,7 +22,7 @@ def warn_of_sizes(scene: _core.Scene, wavelength: float, time: float, stacklevel
         return
     remark = _remark(scene, nodes, sides, closed, wavelength)
     if remark:
-        warnings.warn(remark, RuntimeWarning, stacklevel=stacklevel + 1)
+        warn_user(remark)
 
 
 def _remark(scene, nodes, sides, closed, wavelength: float) -> str:

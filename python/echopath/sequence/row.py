@@ -26,8 +26,8 @@ class Row(Generic[Item]):
     _start_time: float
     _interval: float
 
-    def _item(self, place: int, stacklevel: int) -> Item:
-        """What stands at a place; stacklevel: of warnings, 1 for who calls this method."""
+    def _item(self, place: int) -> Item:
+        """What stands at a place."""
         raise NotImplementedError
 
     def _with_numbers(self: Self, places: slice) -> Self:
@@ -61,7 +61,7 @@ class Row(Generic[Item]):
         """The frame at a place, from the end for a negative one; a slice gives the sequence of its frames."""
         if isinstance(place, slice):
             return self._with_numbers(place)
-        return self._item(_place_in(place, len(self)), stacklevel=2)
+        return self._item(_place_in(place, len(self)))
 
     def __iter__(self) -> Iterator[Item]:
         return self._items(range(len(self)))
@@ -72,7 +72,7 @@ class Row(Generic[Item]):
     def _items(self, places: Iterable[int]) -> Iterator[Item]:
         """What stands at some places, one after the other; warnings name the line that takes it."""
         for place in places:
-            yield self._item(place, stacklevel=2)
+            yield self._item(place)
 
     def _span(self) -> str:
         times = self.times

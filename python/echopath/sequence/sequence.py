@@ -100,20 +100,20 @@ class Sequence(Row[Frame]):
         """The radar that looks at it."""
         return self._run.radar
 
-    def _item(self, place: int, stacklevel: int, progress=None) -> Frame:
+    def _item(self, place: int, progress=None) -> Frame:
         """As Row has it; progress: as in `simulate`."""
         frame = self._run.frame_of_record(self._recorded(place, progress), progress)
-        warn_of(frame.checks, stacklevel=stacklevel + 1)
+        warn_of(frame.checks)
         return frame
 
-    def _items(self, places: Iterable[int], stacklevel: int = 2, progress=None) -> Iterator[Frame]:
+    def _items(self, places: Iterable[int], progress=None) -> Iterator[Frame]:
         """As Row has it; the record of the next frame is made while this one is used."""
         # The geometry of a frame is looked at when its objects are labelled, while that of the next is traced.
         geometries = itertools.cycle((_core.KeptGeometry(), _core.KeptGeometry()))
         works = (functools.partial(self._recorded, place, geometry=geometry) for place, geometry in zip(places, geometries))
         for recorded in one_ahead(works, progress):
             frame = self._run.frame_of_record(recorded, progress)
-            warn_of(frame.checks, stacklevel=stacklevel)
+            warn_of(frame.checks)
             yield frame
             del recorded, frame  # of which none is kept while the next is made
             give_back_memory()
@@ -163,7 +163,7 @@ class Sequence(Row[Frame]):
         if len(self) == 0:
             raise refused(ValueError, "frames", "at least 1 to be saved", 0)
         contents = Contents(self._run.scene, self._run.radar, self._settings() | {"keep": keep})
-        return saved_frames(self.times, folder, keep, lambda places: self._items(places, 4, progress), contents, shard)
+        return saved_frames(self.times, folder, keep, lambda places: self._items(places, progress), contents, shard)
 
     def _settings(self) -> dict[str, Any]:
         """{keyword: value} of what makes the frames, and which of them are taken."""

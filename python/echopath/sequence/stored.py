@@ -79,7 +79,7 @@ class StoredSequence(Row[Frame | FrameMaps]):
         """Whether the file of each frame is there, [K]."""
         return np.array([path.exists() for path in self.paths_of_files], bool)
 
-    def _item(self, place: int, stacklevel: int) -> Frame | FrameMaps:
+    def _item(self, place: int) -> Frame | FrameMaps:
         path = frame_path(self.folder, self._numbers[place])
         if not path.exists():
             raise _core.FileError(f"{path}: has not been simulated yet; the run that made {self.folder} goes on when it is "

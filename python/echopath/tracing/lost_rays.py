@@ -1,35 +1,34 @@
 """Remarks on rays and sequences of mirrors that a trace lost."""
 from __future__ import annotations
 
-import warnings
+from ..base.callers import warn_user
 
 LOST_SHARE = 0.01  # of the rays
 
 
-def warn_of_lost_rays(statistics, stacklevel: int = 2) -> None:
+def warn_of_lost_rays(statistics) -> None:
     """Warns (RuntimeWarning) where more than one ray in a hundred met a surface that the radar touches, or slivers."""
     near, lost, rays = statistics.num_near_antenna, statistics.num_false_hits, max(statistics.num_rays, 1)
     if near + lost > LOST_SHARE * rays:
-        warnings.warn(f"of {rays:,} rays, {near:,} met a surface within 1 mm of the radar and {lost:,} one that double "
-                      "precision does not confirm (in the plane of an antenna, or a long sliver): their echoes are left "
-                      "out. Antennas at least 1 mm off every surface see all", RuntimeWarning, stacklevel=stacklevel + 1)
+        warn_user(f"of {rays:,} rays, {near:,} met a surface within 1 mm of the radar and {lost:,} one that double precision "
+                  "does not confirm (in the plane of an antenna, or a long sliver): their echoes are left out. Antennas at "
+                  "least 1 mm off every surface see all")
 
 
-def warn_of_unfollowed_beams(statistics, stacklevel: int = 2) -> None:
+def warn_of_unfollowed_beams(statistics) -> None:
     """Warns (RuntimeWarning) where not every sequence of mirrors was tried."""
     text = unfollowed_beams(statistics)
     if text:
-        warnings.warn(f"{text}: echoes over more mirrors are left out. Fewer flagged mirrors or a smaller max_bounces see all",
-                      RuntimeWarning, stacklevel=stacklevel + 1)
+        warn_user(f"{text}: echoes over more mirrors are left out. Fewer flagged mirrors or a smaller max_bounces see all")
 
 
-def warn_of_unaimed(statistics, strata=(), stacklevel: int = 2) -> None:
+def warn_of_unaimed(statistics, strata=()) -> None:
     """Warns (RuntimeWarning) where objects have no rays of their own: there are more than a record can tell strata apart, or
     more than the rays reach for."""
     text = unaimed(statistics, [stratum for stratum in strata if stratum.num_mirrors == 0])
     if text:
-        warnings.warn(f"{text}: only rays of the field of view find them. More rays reach more objects, and objects put "
-                      "under one parent are aimed at as one", RuntimeWarning, stacklevel=stacklevel + 1)
+        warn_user(f"{text}: only rays of the field of view find them. More rays reach more objects, and objects put under "
+                  "one parent are aimed at as one")
 
 
 def unaimed(statistics, strata=()) -> str:

@@ -2,11 +2,11 @@
 from __future__ import annotations
 
 import dataclasses
-import warnings
 
 import numpy as np
 
 from .. import _core
+from ..base.callers import warn_user
 from .polarization import COHERENT_SHARE
 
 # Level error of a metal sphere of flat facets over edge / sqrt(radius wavelength), in dB (icospheres against pi a^2).
@@ -63,7 +63,7 @@ def _tessellation_of(mesh) -> Tessellation | None:
     return None if found is None else Tessellation(*found)
 
 
-def warn_of_coarse_meshes(scene, frequency: float, stacklevel: int = 2) -> None:
+def warn_of_coarse_meshes(scene, frequency: float) -> None:
     """Warns (TessellationWarning), once for all, of curved meshes whose coherent echo at `frequency` [Hz] would err by more
     than 0.3 dB; tells of the worst ones what edge would do."""
     found = coarse_meshes(scene, frequency)
@@ -73,7 +73,7 @@ def warn_of_coarse_meshes(scene, frequency: float, stacklevel: int = 2) -> None:
     text = "; ".join(one.text for one in worst)
     if len(found) > len(worst):
         text = f"{len(found)} meshes are too coarse for their coherent echo, the worst: " + text
-    warnings.warn(text, TessellationWarning, stacklevel=stacklevel + 1)
+    warn_user(text, TessellationWarning)
 
 
 @dataclasses.dataclass(frozen=True)

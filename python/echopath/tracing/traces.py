@@ -22,7 +22,6 @@ Channel = Literal["vv", "hh", "vh", "hv"]  # transmitted, received
 CrossSections = float | NDArray[np.float64]
 
 HIGHEST_FREQUENCY = 1e15  # Hz, of visible light
-_CALLER = 3  # stack level of who called a function that is `checked`
 
 
 @checked({"settings": TraceSettings}, **TraceSettings.RULES)
@@ -84,8 +83,8 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
     wavelength = _core.speed_of_light / radar.waveform.start_frequency
     is_first, geometry = _remembered(scene)
     if is_first:
-        warn_of_sizes(scene, wavelength, start_time, stacklevel=_CALLER)
-    warn_of_coarse_meshes(scene, radar.waveform.start_frequency, stacklevel=_CALLER)
+        warn_of_sizes(scene, wavelength, start_time)
+    warn_of_coarse_meshes(scene, radar.waveform.start_frequency)
     model = chosen_model(polarization, scene, wavelength, antennas_of(radar), argument="polarization")
     paths = _core.trace(scene, radar, num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
                         polarization=model, footprint=footprint, sampler=sampler, batches=batches,
@@ -94,8 +93,8 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
                         edges=looks_for_edges(edges, scene, radar, start_time),
                         attenuation=attenuation_of(scene, radar, effects), progress=progress, kept=geometry)
     for warn in (warn_of_lost_rays, warn_of_unfollowed_beams):
-        warn(paths.frame.statistics, stacklevel=_CALLER)
-    warn_of_unaimed(paths.frame.statistics, paths.frame.strata, stacklevel=_CALLER)
+        warn(paths.frame.statistics)
+    warn_of_unaimed(paths.frame.statistics, paths.frame.strata)
     return paths
 
 
@@ -154,7 +153,7 @@ def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observati
     (RuntimeWarning) where max_rays did not do, or, without target_error_db, where the footprints of the rays are too wide to
     know cross sections to 3 dB; of nulls between lobes they need not.
     """
-    warn_of_coarse_meshes(scene, frequency, stacklevel=_CALLER)
+    warn_of_coarse_meshes(scene, frequency)
     chosen = chosen_model(model, scene, _core.speed_of_light / frequency, argument="model")
     is_one = np.shape(polarization) == (3,) and not isinstance(polarization, list)
     if not is_one and model == SCALAR:

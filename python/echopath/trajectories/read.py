@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import os
-import warnings
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from numpy.typing import ArrayLike
 from .. import _core
 from ..arguments.checks import array, checked, is_writable, real, refused
 from ..arguments.checks import file as file_rule
+from ..base.callers import warn_user
 from .geodesy import east_north_up
 from .markup import read_fcd, read_gpx
 from .samples import Samples, refuse
@@ -105,8 +105,7 @@ def _check_order(path: Path, samples: Samples) -> None:
 def _trajectories(path: Path, tracks: dict[str, Samples], origin, smoothing: float) -> dict[str, Trajectory]:
     single = [name for name, samples in tracks.items() if len(samples.times) < 2]
     if single:
-        warnings.warn(f"{path}: {len(single)} objects have a single position and are left out, such as '{single[0][:60]}'",
-                      RuntimeWarning, stacklevel=4)
+        warn_user(f"{path}: {len(single)} objects have a single position and are left out, such as '{single[0][:60]}'")
     found = {}
     for name, samples in tracks.items():
         if len(samples.times) < 2:

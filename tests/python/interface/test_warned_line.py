@@ -66,3 +66,31 @@ def test_a_script_beside_a_package_behind_a_link(tmp_path):
     run = subprocess.run([sys.executable, beside / "run.py"], env={**os.environ, "PYTHONPATH": str(tmp_path)},
                          capture_output=True, text=True, check=True)
     assert run.stdout.split() == [str(tmp_path / "echopath" / "base" / "callers.py"), "2"]
+
+
+def test_an_empty_scene_traced_by_itself_and_in_sequences(radar, tmp_path):
+    with warnings.catch_warnings(record=True) as record:
+        warnings.simplefilter("always")
+        ep.trace(ep.Scene(), radar, num_rays=100)
+        ep.simulate(ep.Scene(), radar, num_rays=100)
+        ep.Sequence(ep.Scene(), radar, frames=1, interval=0.1, num_rays=100)[0]
+    assert _lines(record, "has no mesh that takes part") == 3 * [__file__]
+
+
+def test_a_ball_that_is_too_coarse(radar):
+    coarse = ep.Scene()
+    coarse.add(ep.actors.shapes.sphere(0.3, subdivisions=2), name="ball", material=METAL, smooth=True, position=(5, 0, 0))
+    with warnings.catch_warnings(record=True) as record:
+        warnings.simplefilter("always")
+        ep.trace(coarse, radar, num_rays=100)
+        ep.rcs(coarse, frequency=77e9, incidence=(1, 0, 0), observation=(-1, 0, 0), num_rays=100)
+    assert _lines(record, "too coarse") + _lines(record, "edges of") == 2 * [__file__]
+
+
+def test_an_object_with_a_single_position(tmp_path):
+    table = tmp_path / "tracks.csv"
+    table.write_text("id,t,x,y\na,0,0,0\na,1,1,0\na,2,2,0\nb,0,5,5\n")
+    with warnings.catch_warnings(record=True) as record:
+        warnings.simplefilter("always")
+        ep.read_trajectories(table)
+    assert _lines(record, "have a single position") == [__file__]

@@ -233,8 +233,8 @@ make_renderer() {
   tar -C "$folder" -xf "$folder"/mesa_*.orig.tar.*
   for option in llvm glx egl gbm gles1 gles2 shared-glapi zstd libunwind valgrind shader-cache; do options+=("-D$option=disabled"); done
   PATH=$PWD/.venv/bin:$PATH meson setup "$folder/build" "$folder"/mesa-* --buildtype=release -Db_ndebug=true -Dosmesa=true \
-    -Dgallium-drivers=swrast -Dvulkan-drivers= -Dplatforms= "${options[@]}" >"$folder/build.log"
-  PATH=$PWD/.venv/bin:$PATH ninja -C "$folder/build" >>"$folder/build.log"
+    -Dgallium-drivers=swrast -Dvulkan-drivers= -Dplatforms= "${options[@]}" >"$folder/build.log" 2>&1 || fail "see $folder/build.log"
+  PATH=$PWD/.venv/bin:$PATH ninja -C "$folder/build" >>"$folder/build.log" 2>&1 || fail "see $folder/build.log"
   cp "$folder"/mesa-*/docs/license.rst "$folder/mesa"
   cp "$folder/build/src/gallium/targets/osmesa/libOSMesa.so.8" "$folder"
 }

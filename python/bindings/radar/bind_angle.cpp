@@ -28,9 +28,8 @@ BeamMethod as_beam_method(const std::string& name) {
   return name == "bartlett" ? BeamMethod::kBartlett : BeamMethod::kCapon;
 }
 
-// A number, [N] or None for the default.
-std::vector<double> as_angles(const py::object& value, const char* argument, const std::vector<double>& otherwise) {
-  if (value.is_none()) return otherwise;
+// A number or [N].
+std::vector<double> as_angles(const py::object& value, const char* argument) {
   const bool is_number = py::cast<py::ssize_t>(py::module_::import("numpy").attr("ndim")(value)) == 0;
   if (is_number) return as_vector<double>(value, argument, "[]");
   return as_vector<double>(value, argument);
@@ -59,8 +58,9 @@ void def_beams(py::module_& m, const char* name, const py::object& elevation, do
                          Extra... extra, const std::string& method, const py::object& window, const std::string& overlaps,
                          bool compensate, double loading, int velocities, int ranges, bool forward_backward,
                          const py::object& progress) {
-    const AngleGrid standard = default_angles(virtual_array(radar), step);
-    const AngleGrid angles{as_angles(left, "azimuth", standard.azimuth), as_angles(up, "elevation", standard.elevation)};
+    const VirtualArray array = virtual_array(radar);
+    const AngleGrid angles{left.is_none() ? default_azimuths(array, step) : as_angles(left, "azimuth"),
+                           up.is_none() ? default_elevations(array, step) : as_angles(up, "elevation")};
     const BeamformOptions beams =
         beams_of(method, window, overlaps, compensate, loading, velocities, ranges, forward_backward);
     return call(map, radar, angles, beams, progress, extra...);
@@ -86,7 +86,7 @@ BeamPower beam_power(const RangeDoppler& map, const Radar& radar, const AngleGri
 
 // What all azimuths then show is the same.
 void warn_of_blindness(const Radar& radar) {
-  if (default_angles(virtual_array(radar)).azimuth.size() > 1) return;
+  if (tells_azimuths(virtual_array(radar))) return;
   warn_caller("range_azimuth: the antennas of this radar tell no azimuths apart (they stand in one place "
               "or one above the other): every azimuth of the map shows the same");
 }

@@ -65,8 +65,8 @@ py::array gaps_of(const VirtualArray& array) {
 }
 
 py::tuple default_axes(const VirtualArray& array, Arg<"largest_step", Real> largest_step) {
-  const AngleGrid grid = default_angles(array, *largest_step);
-  return py::make_tuple(to_numpy(grid.azimuth), to_numpy(grid.elevation));
+  return py::make_tuple(to_numpy(default_azimuths(array, *largest_step)),
+                        to_numpy(default_elevations(array, *largest_step)));
 }
 
 std::string text_of(const VirtualArray& array) {

@@ -129,9 +129,9 @@ def plot_rays(scene: _core.Scene | None, paths: _core.Paths, *, selection: str |
     plotter: a pyvista.Plotter to draw into, which is then not shown; window_size: (width, height) in pixels
     off_screen: True: without a screen; screenshot: PNG file to be written; return_plotter: instead of None
     Returns the pyvista.Plotter where one was given or asked for, else None. Raises TypeError or ValueError naming the
-    argument, ModuleNotFoundError where the viewer is not installed. Where nothing draws without a screen (OpenGL with
-    EGL does, Debian's libgl1 and libegl1), Matplotlib draws the screenshot, in views and colours of its own, with a
-    RuntimeWarning; a plotter raises OSError.
+    argument, ModuleNotFoundError where the viewer is not installed. Where nothing draws without a screen (wheels bring
+    what does, elsewhere OpenGL with EGL does, Debian's libgl1 and libegl1), Matplotlib draws the screenshot, in views
+    and colours of its own, with a RuntimeWarning; a plotter raises OSError.
     """
     return _viewer().plot_rays(scene, paths, selection=selection, num_rays=num_rays, color_by=color_by, cmap=cmap, clim=clim,
                                chirp=chirp, tx=tx, rx=rx, view=view, show_hits=show_hits, show_legend=show_legend,

@@ -17,7 +17,10 @@ constexpr double kPower = 1e-6;           // relative: second order in kFine, an
 constexpr double kBesideEachOther = 0.2;  // of powers of 1 and 4, near nulls of each other
 constexpr double kRounding = 1e-9;        // m/s
 
-AngleGrid search_grid(const Radar& radar) { return default_angles(virtual_array(radar), kSearchStep); }
+AngleGrid search_grid(const Radar& radar) {
+  const VirtualArray array = virtual_array(radar);
+  return {default_azimuths(array, kSearchStep), default_elevations(array, kSearchStep)};
+}
 
 Radar plane_radar(int columns, int rows) {
   std::vector<Vec3> receivers;

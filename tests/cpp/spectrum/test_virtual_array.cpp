@@ -145,16 +145,28 @@ TEST(VirtualArray, OneChannelIsAGridOfOnePoint) {
 }
 
 TEST(DefaultAngles, CoverWhatTheArrayTellsApart) {
-  const AngleGrid half = default_angles(virtual_array(testing::line_radar(12)));
-  EXPECT_NEAR(half.azimuth.front(), -0.5 * kPi, 1e-7);  // the arcsine of one within a rounding
-  EXPECT_EQ(half.azimuth.size(), 181u);
-  EXPECT_EQ(half.elevation, std::vector<double>{0.0});
+  const VirtualArray half = virtual_array(testing::line_radar(12));
+  EXPECT_NEAR(default_azimuths(half).front(), -0.5 * kPi, 1e-7);  // the arcsine of one within a rounding
+  EXPECT_EQ(default_azimuths(half).size(), 181u);
+  EXPECT_EQ(default_elevations(half), std::vector<double>{0.0});
   const double d = testing::wavelength();  // unambiguous to +-30 degrees
-  const AngleGrid whole = default_angles(virtual_array(radar_with({Vec3::Zero()}, line(4, Vec3(0, d, 0)))));
-  EXPECT_NEAR(whole.azimuth.back(), kPi / 6.0, kTurned);
-  const AngleGrid up = default_angles(virtual_array(radar_with({Vec3::Zero()}, line(4, Vec3(0, 0, kHalf)))));
-  EXPECT_EQ(up.azimuth, std::vector<double>{0.0});
-  EXPECT_NEAR(up.elevation.front(), -0.25 * kPi, kTurned);
+  const VirtualArray whole = virtual_array(radar_with({Vec3::Zero()}, line(4, Vec3(0, d, 0))));
+  EXPECT_NEAR(default_azimuths(whole).back(), kPi / 6.0, kTurned);
+  const VirtualArray up = virtual_array(radar_with({Vec3::Zero()}, line(4, Vec3(0, 0, kHalf))));
+  EXPECT_EQ(default_azimuths(up), std::vector<double>{0.0});
+  EXPECT_NEAR(default_elevations(up).front(), -0.25 * kPi, kTurned);
+}
+
+TEST(DefaultAngles, AreRefusedWhereThereWouldBeMillions) {
+  const VirtualArray wide = virtual_array(radar_with({Vec3::Zero()}, {Vec3::Zero(), Vec3(0, kHalf, 0), Vec3(0, 1e4, 0)}));
+  EXPECT_THROW(default_azimuths(wide), std::invalid_argument);
+  EXPECT_EQ(default_elevations(wide).size(), 1u);
+}
+
+TEST(SteeringVectors, AreRefusedWhereTheyWouldFillTheMemory) {
+  const VirtualArray pair = virtual_array(radar_with({Vec3::Zero()}, line(2, Vec3(0, kHalf, 0))));
+  const std::vector<double> axis(10'000, 0.0);
+  EXPECT_THROW(steering_vectors(pair, AngleGrid{axis, axis}), std::invalid_argument);
 }
 
 }  // namespace

@@ -320,11 +320,16 @@ def test_axes_may_be_numbers_lists_or_left_to_the_array():
 
 def test_bad_input_names_the_argument():
     radar = three_by_four()
+    kilometres = mimo([(0, 0), (1, 0), (1e7, 0)], [(0, 0)])
     spectrum = noise_map(radar)
     for call, error, text in [
             (lambda: ep.beamform(spectrum, radar, method="music"), ValueError, "^method: must be 'bartlett' or 'capon'"),
             (lambda: ep.beamform(spectrum, radar, [0.2, 0.1]), ValueError, "^azimuth: must be ascending"),
             (lambda: ep.beamform(spectrum, radar, elevation=2.0), ValueError, "^elevation: "),
+            (lambda: ep.range_azimuth(noise_map(kilometres), kilometres), ValueError,
+             "^azimuth: must be given for an array that tells millions of angles apart by its length in m, got 19"),
+            (lambda: ep.beamform(spectrum, radar, np.linspace(0, 1, 4000), np.linspace(0, 1, 4000)), ValueError,
+             "^azimuth: must have, times elevations and elements of the array, at most 134,217,728 angles, got 192000000"),
             (lambda: ep.beamform(spectrum, radar, cells=[[32, 0]]), IndexError, "^cells: .*got \\(32, 0\\)"),
             (lambda: ep.beamform(spectrum, radar, cells=[[0.5, 0]]), TypeError, "^cells: "),
             (lambda: ep.beamform(spectrum, radar, overlap="first"), TypeError, "the nearest right one is 'overlaps'"),

@@ -53,7 +53,7 @@ BeamKernel::Powers capon_strip(const BeamSource& source, const BeamKernel& beams
 // Returns the powers [directions, num_cells].
 std::vector<double> powers(const BeamSource& source, const AngleGrid& angles, BeamMethod method,
                            const std::vector<Strip>& strips, int64_t num_cells, Job* job) {
-  const BeamKernel beams(steering_vectors(source.array(), angles.directions()));
+  const BeamKernel beams(steering_vectors(source.array(), angles));
   std::vector<double> power(beams.num_directions() * num_cells);
   if (job) job->start(static_cast<int64_t>(strips.size()));
   parallel_for(static_cast<int64_t>(strips.size()), [&](int64_t task) {

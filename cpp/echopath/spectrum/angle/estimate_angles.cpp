@@ -28,7 +28,7 @@ struct CellPeaks {
 class PeakSearch {
  public:
   PeakSearch(const BeamSource& source, const AngleGrid& angles, const EstimateOptions& options)
-      : source_(source), angles_(angles), options_(options), beams_(steering_vectors(source.array(), angles.directions())) {}
+      : source_(source), angles_(angles), options_(options), beams_(steering_vectors(source.array(), angles)) {}
 
   CellPeaks find(const Cell& cell) const {
     CellPeaks best;

@@ -32,7 +32,7 @@ struct AngleEstimates {
 // its cell's range from the middle of the mean transmitter and the mean receiver.
 // An array without vertical extent cannot tell elevations apart: give it one elevation.
 // Runs in parallel over cells; the result does not depend on the number of threads. Raises as `beamform`.
-inline constexpr double kSearchStep = kPi;  // largest_step of default_angles for a search: the array sets the step
+inline constexpr double kSearchStep = kPi;  // largest_step of default axes for a search: the array sets the step
 AngleEstimates estimate_angles(const RangeDoppler& map, const Radar& radar, const std::vector<Cell>& cells,
                                const AngleGrid& angles, const EstimateOptions& options = {}, Job* job = nullptr);
 

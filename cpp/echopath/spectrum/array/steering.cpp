@@ -12,6 +12,8 @@ namespace {
 
 constexpr double kStepsPerBeam = 4.0;            // per wavelength / extent
 constexpr double kLargestElevation = kPi / 4.0;  // of the default grid
+constexpr double kMostSteps = 1e6;               // of a default axis, to either side
+constexpr double kMostTerms = 134217728.0;       // of steering vectors: 4 GiB with the copy that beams are formed from
 
 void require_axis(const std::vector<double>& axis, const char* name, double limit, const char* rule) {
   require(!axis.empty(), name, "must have at least one angle", axis.size());
@@ -21,11 +23,20 @@ void require_axis(const std::vector<double>& axis, const char* name, double limi
   }
 }
 
+bool tells_apart(double extent, double wavelength) { return extent >= kArrayTolerance * wavelength; }
+
+double width_of(const VirtualArray& array) { return std::hypot(array.extent().x(), array.extent().y()); }
+
 // Returns equal steps about 0 that a grid with `spacing` (0: none) and an aperture `extent` in m can tell apart.
-std::vector<double> default_axis(double limit, double spacing, double extent, double wavelength, double largest_step) {
-  if (extent < kArrayTolerance * wavelength) return {0.0};
+std::vector<double> default_axis(const char* name, double limit, double spacing, double extent, double wavelength,
+                                 double largest_step) {
+  require(largest_step > 0.0, "largest_step", "must be positive", largest_step);
+  if (!tells_apart(extent, wavelength)) return {0.0};
   if (spacing > 0.0) limit = std::min(limit, std::asin(std::min(1.0, 0.5 * wavelength / spacing)));
-  const int half = static_cast<int>(std::ceil(limit / std::min(largest_step, wavelength / (kStepsPerBeam * extent))));
+  const double steps = std::ceil(limit / std::min(largest_step, wavelength / (kStepsPerBeam * extent)));
+  require(steps <= kMostSteps, name, "must be given for an array that tells millions of angles apart by its length in m",
+          extent);
+  const int half = static_cast<int>(steps);
   std::vector<double> axis;
   for (int i = -half; i <= half; ++i) axis.push_back(limit * i / half);
   return axis;
@@ -51,12 +62,24 @@ std::vector<Vec3> AngleGrid::directions() const {
   return units;
 }
 
-AngleGrid default_angles(const VirtualArray& array, double largest_step) {
-  require(largest_step > 0.0, "largest_step", "must be positive", largest_step);
-  const Vec3 extent = array.extent();
-  const double column = array.grid ? array.grid->column_spacing : 0.0, row = array.grid ? array.grid->row_spacing : 0.0;
-  return {default_axis(0.5 * kPi, column, std::hypot(extent.x(), extent.y()), array.wavelength, largest_step),
-          default_axis(kLargestElevation, row, extent.z(), array.wavelength, largest_step)};
+bool tells_azimuths(const VirtualArray& array) { return tells_apart(width_of(array), array.wavelength); }
+
+std::vector<double> default_azimuths(const VirtualArray& array, double largest_step) {
+  return default_axis("azimuth", 0.5 * kPi, array.grid ? array.grid->column_spacing : 0.0, width_of(array), array.wavelength,
+                      largest_step);
+}
+
+std::vector<double> default_elevations(const VirtualArray& array, double largest_step) {
+  return default_axis("elevation", kLargestElevation, array.grid ? array.grid->row_spacing : 0.0, array.extent().z(),
+                      array.wavelength, largest_step);
+}
+
+Eigen::MatrixXcd steering_vectors(const VirtualArray& array, const AngleGrid& angles) {
+  const double terms = static_cast<double>(array.elements.size()) * static_cast<double>(angles.azimuth.size()) *
+                       static_cast<double>(angles.elevation.size());
+  require(terms <= kMostTerms, "azimuth",
+          "must have, times elevations and elements of the array, at most 134,217,728 angles", terms);
+  return steering_vectors(array, angles.directions());
 }
 
 Eigen::MatrixXcd steering_vectors(const VirtualArray& array, const std::vector<Vec3>& directions) {

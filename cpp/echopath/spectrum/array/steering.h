@@ -20,15 +20,20 @@ struct AngleGrid {
 
 Vec3 direction(double azimuth, double elevation);  // rad -> unit vector
 
-// Returns the directions that an array tells apart: azimuths up to +-90 degrees and elevations up to +-45 degrees, within
+// Return the angles in rad that an array tells apart: azimuths up to +-90 degrees and elevations up to +-45 degrees, within
 // the unambiguous field wavelength / (2 spacing) of its grid, in steps of a quarter of wavelength / extent, or of
 // `largest_step` rad where that is less; only 0 where the array has no extent (horizontal, vertical).
+// Raise invalid_argument where there would be more than two million.
 inline constexpr double kPictureStep = kPi / 180.0;
-AngleGrid default_angles(const VirtualArray& array, double largest_step = kPictureStep);
+std::vector<double> default_azimuths(const VirtualArray& array, double largest_step = kPictureStep);
+std::vector<double> default_elevations(const VirtualArray& array, double largest_step = kPictureStep);
+bool tells_azimuths(const VirtualArray& array);  // whether it has a horizontal extent
 
 // Returns e^{-j k (x - centre).u} [elements, directions], for the far field, exact positions and the centre frequency's
 // wavelength.
 Eigen::MatrixXcd steering_vectors(const VirtualArray& array, const std::vector<Vec3>& directions);
+// The same for the directions of a grid. Raises invalid_argument where elements times directions pass 2^27.
+Eigen::MatrixXcd steering_vectors(const VirtualArray& array, const AngleGrid& angles);
 
 // Returns weights [elements] of a window over the rows and the columns of the array's grid, whose sum is 1. Here windows are
 // symmetric and nowhere zero: cosines are sampled half-way between the steps.

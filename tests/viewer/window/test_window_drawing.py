@@ -62,6 +62,17 @@ def test_the_film_shows_every_step_however_slow_its_pictures_are(qtbot, window, 
     assert {1, 2, 3} <= set(pictures)
 
 
+def test_the_film_waits_for_the_picture_of_its_last_step(qtbot, window):
+    wait_for_pictures(qtbot, window)
+    window.session.set_chirp(3)
+    assert window.view3d.is_behind()
+    window.time_bar._timer.timeout.emit()
+    assert window.session.chirp == 3
+    wait_for_pictures(qtbot, window)
+    window.time_bar._timer.timeout.emit()
+    assert window.session.chirp > 3
+
+
 def test_a_step_in_time_selects_no_paths_anew(qtbot, window, monkeypatch):
     window.session.select_cells(CellBox(0, 60, 0, 31))
     window.session.select_ray(int(window.session.lit_rays(1)[0]))
@@ -75,6 +86,7 @@ def test_a_step_in_time_selects_no_paths_anew(qtbot, window, monkeypatch):
 def test_a_file_dropped_on_the_scene_is_opened_by_the_window(qtbot, window, monkeypatch, tmp_path):
     opened = []
     monkeypatch.setattr(window, "open_file", lambda path: opened.append(path))
+    (tmp_path / "frame.h5").touch()  # pyvistaqt would take what is a file
     data = QtCore.QMimeData()
     data.setUrls([QtCore.QUrl.fromLocalFile(str(tmp_path / "frame.h5"))])
     for widget in (window.view3d, window.filter_box.expression_edit, panel_of(window, *WHOLE_KEY)):

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath_viewer.model.maps.layers import BOX_EDGES, LAYERS, box_corners
+from echopath_viewer.model.maps.layers import BOX_EDGES, LAYERS, Marker, box_corners
 from echopath_viewer.window.qt import QtCore
 from support.window import LEFT, panel_of, settle
 
@@ -66,6 +66,18 @@ def test_detections_and_true_boxes_stand_in_the_scene(qtbot, layered, frame):
     assert np.sort(lengths, axis=1) == pytest.approx(np.sort(np.repeat(truth.size, 4, axis=1), axis=1))
     crosses = [marker for marker in panel_of(layered, *WHOLE).markers if marker.kind == "truth"]
     assert [marker.range for marker in crosses] == pytest.approx(list(truth.range))
+
+
+def test_names_of_objects_stand_on_no_others(qtbot, layered):
+    panel = panel_of(layered, *WHOLE)
+    spot = layered.session.parts.whole.spectrum
+    at = float(spot.range[20]), float(spot.velocity[16])
+    near = [Marker("object", at[0] + 0.01 * number, at[1], f"walker_{number}", (9, 9, 9)) for number in range(4)]
+    far = Marker("object", float(spot.range[60]), float(spot.velocity[4]), "far", (9, 9, 9))
+    panel.show_layers(None, [*near, far])
+    names = panel.names_of_objects(panel.fontMetrics())
+    assert [text for text, _ in names] == ["walker_0", "far"]
+    assert not names[0][1].intersects(names[1][1])
 
 
 def test_every_layer_comes_and_goes(qtbot, layered):

@@ -190,10 +190,22 @@ class MapPanel(MapMouse, QtWidgets.QWidget):
                     painter.drawLine(at + QtCore.QPointF(0, -6), at + QtCore.QPointF(0, 6))
                 else:
                     painter.drawEllipse(at, MARKER_RADIUS, MARKER_RADIUS)
-            if marker.kind == "object":
-                painter.setPen(QtGui.QColor("white"))
-                painter.drawText(at + QtCore.QPointF(8, 14), marker.text)
         painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.setPen(QtGui.QColor("white"))
+        for text, rect in self.names_of_objects(painter.fontMetrics()):
+            painter.drawText(rect, Qt.AlignmentFlag.AlignCenter, text)
+
+    def names_of_objects(self, metrics) -> list:
+        """(text, QRectF) of the names beside the markers of objects; those that would stand on others are told by the mouse."""
+        seen, found = self.plot_rect(), []
+        for marker in self.markers:
+            at = self.to_pixel(marker.range, marker.velocity)
+            if marker.kind != "object" or not seen.contains(at):
+                continue
+            rect = QtCore.QRectF(at + QtCore.QPointF(8, 2), QtCore.QSizeF(metrics.size(0, marker.text)))
+            if not any(rect.intersects(other) for _, other in found):
+                found.append((marker.text, rect))
+        return found
 
     def _paint_marks(self, painter) -> None:
         if self.box is not None:

@@ -52,6 +52,16 @@ def test_a_click_on_a_detection_lights_its_paths(qtbot, layered, frame):
     assert f"of detection {index}" in layered.filter_box.count_label.text()
 
 
+def test_a_click_takes_the_detection_below_the_marker_of_an_object(qtbot, layered, monkeypatch):
+    panel, spectrum, clicked = panel_of(layered, *WHOLE), layered.session.parts.whole.spectrum, []
+    at = float(spectrum.range[20]), float(spectrum.velocity[16])
+    layered.map_area.set_view(QtCore.QRectF(at[0] - 0.5, at[1] - 0.5, 1.0, 1.0))
+    panel.show_layers(None, [Marker("object", *at, "walker", (9, 9, 9)), Marker("detection", *at, "one", (9, 9, 9), detection=7)])
+    monkeypatch.setattr(layered.map_area, "_pick_detection", lambda key, index: clicked.append(index))
+    qtbot.mouseClick(panel, LEFT, pos=panel.to_pixel(*at).toPoint())
+    assert clicked == [7]
+
+
 def test_detections_and_true_boxes_stand_in_the_scene(qtbot, layered, frame):
     for layer in ("detections", "truth"):
         layered.layer_actions[layer].setChecked(True)

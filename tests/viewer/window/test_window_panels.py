@@ -76,5 +76,8 @@ def test_twins_of_ghosts_stand_in_the_scene(qtbot, window):
     window.layer_actions["ghost twins"].setChecked(True)
     plotter, twins = window.view3d, window.session.known_data("ghost twins")
     assert len(twins) > 0 and all(f"twin {number}" in plotter.actors for number in range(len(twins)))
+    legend = window.map_area.layer_legend
+    assert all(f"ghost, type {twin.ghost_type}" in legend.text() for twin in twins) and legend.isVisible()
     window.layer_actions["ghost twins"].setChecked(False)
+    assert legend.isHidden()
     assert not any(name.startswith("twin ") for name in plotter.actors)

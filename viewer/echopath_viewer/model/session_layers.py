@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from .maps.cell_index import CellBox
-from .maps.ghost_twins import ghost_twins
+from .maps.ghost_twins import ghost_twins, twin_rows
 from .maps.layers import (
     DETECTIONS,
     LABELS,
@@ -72,6 +72,8 @@ class SessionLayers:
             markers += truth_markers(self.known_data(TRUTH))
         if DETECTIONS in self.layers:
             markers += detection_markers(self.known_data(DETECTIONS), spectrum, self.object_colours())
+        if TWINS in self.layers:
+            rows += tuple(row for row in twin_rows(self.known_data(TWINS)) if row not in rows)
         return image, rows, markers
 
     def select_detection(self, index: int, reach: int = 0) -> None:

@@ -6,8 +6,10 @@ import dataclasses
 import numpy as np
 
 import echopath as ep
+from echopath.plots.labels import CLASSES
 from echopath.paths.subset import strongest, subset
 
+from ..palette import rgb_of
 from .attribution import name_of
 
 MOST_TWINS = 8
@@ -53,6 +55,11 @@ def ghost_twins(paths, columns) -> list[GhostTwin]:
         if place is not None and meshes:
             twins.append(GhostTwin(name_of(family), family.object, family.ghost_type, meshes, place - origin, power))
     return twins
+
+
+def twin_rows(twins) -> tuple:
+    """Legend rows ((name, rgb), ...) of the types that there are."""
+    return tuple((CLASSES[kind][0], rgb_of(CLASSES[kind][1])) for kind in sorted({twin.ghost_type for twin in twins}))
 
 
 def _apparent_place(paths, columns, mask):

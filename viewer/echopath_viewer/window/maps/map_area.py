@@ -5,6 +5,7 @@ from echopath.plots.maps import signal_extent
 from echopath.signals.measures import for_pictures
 
 from ...model import CellBox
+from ...model.maps.layers import TWINS
 from ...model.maps.part_set import WHOLE
 from .colour_bar import ColourBar
 from .map_panel import MapPanel, step_of
@@ -13,6 +14,7 @@ from ..qt import Qt, QtCore, QtGui, QtWidgets
 MIN_DYNAMIC_RANGE_DB, MAX_DYNAMIC_RANGE_DB = 10, 140
 MARKER_WORDS = {"object": "&#9679;&nbsp;object", "ghost": "&#9675;&nbsp;ghost", "truth": "+&nbsp;true centre",
                 "detection": "detections: &#9679;&nbsp;echo, &#9675;&nbsp;ghost, by object"}
+TWIN_WORDS = "ghosts in the scene by object, way and (type/order)"
 HINT = ("Click a cell or drag a rectangle: the rays behind it light up. Wheel: zoom, right button: move, double click: what "
         "moves or everything.")
 
@@ -148,6 +150,7 @@ class MapArea(QtWidgets.QWidget):
             panel.show_layers(image if has_layers else None, markers if has_layers else [])
         words = [f"<span style='color:{QtGui.QColor(*map(int, rgb)).name()}'>&#9632;</span>&nbsp;{name}" for name, rgb in rows]
         kinds = [text for kind, text in MARKER_WORDS.items() if any(marker.kind == kind for marker in markers)]
+        kinds += [TWIN_WORDS] if TWINS in self.session.layers else []
         self.layer_legend.setText(" &nbsp; ".join(words + kinds))
         self.layer_legend.setVisible(bool(words or kinds))
 

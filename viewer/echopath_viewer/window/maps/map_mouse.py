@@ -43,8 +43,8 @@ class MapMouse:
             return
         if (event.position() - press).manhattanLength() <= CLICK_REACH:
             self._is_clicked = True
-            marker = self.marker_at(press)
-            if marker is not None and marker.detection is not None:
+            marker = self.marker_at(press, "detection")  # whatever stands over it
+            if marker is not None:
                 self.detection_clicked.emit(marker.detection)
             else:
                 self.cell_clicked.emit(*self.cell_at(press))

@@ -76,10 +76,10 @@ class MapPanel(MapMouse, QtWidgets.QWidget):
                                          QtGui.QImage.Format.Format_RGBA8888)
         self.update()
 
-    def marker_at(self, at: QtCore.QPointF):
-        """The marker nearest to a pixel, None where none is near."""
+    def marker_at(self, at: QtCore.QPointF, kind: str | None = None):
+        """The marker nearest to a pixel, of one kind or of all, None where none is near."""
         near = [((self.to_pixel(marker.range, marker.velocity) - at).manhattanLength(), number)
-                for number, marker in enumerate(self.markers)]
+                for number, marker in enumerate(self.markers) if kind in (None, marker.kind)]
         distance, number = min(near, default=(MARKER_REACH + 1, 0))
         return self.markers[number] if distance <= MARKER_REACH else None
 

@@ -105,10 +105,10 @@ install_requirements() {
   pip_install --no-compile --no-build-isolation "${needed[@]}"
 }
 
-# Installs the project editable, so that changes of its Python code are seen at once.
+# Installs the project editable, so that changes of its Python code are seen at once; what it needs is there.
 install_project() {
   local extras=$1
-  pip_install --no-build-isolation -e ".${extras:+[$extras]}"
+  pip_install --no-build-isolation --no-deps -e .
   # On the path itself, too: in the folder above, the project's own folder would else be taken for the package.
   local packages_folder
   packages_folder=$("$python" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
@@ -153,8 +153,8 @@ run_pytest() {
   return "$status"
 }
 
-# On all processors, files as a whole, since the tests of a file share what is slow to make, and by name: xdist would begin
-# those of few tests last, which are the longest.
+# On all processors, files as a whole, since the tests of a file share what is slow to make, and in the order of
+# tests/python/conftest.py: xdist would begin those of few tests last, which are the longest.
 # NumPy and FINUFFT keep to one thread each: those of several processes would wait for each other at full speed.
 run_python_tests() {
   OPENBLAS_NUM_THREADS=1 OMP_NUM_THREADS=1 run_pytest python "$python" -m pytest --numprocesses "$(nproc)" --dist loadfile \

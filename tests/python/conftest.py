@@ -8,6 +8,18 @@ import echopath as ep
 from support import small_dataset as small
 from support.labelled import trace_plates_and_wall
 
+# Seconds each: whoever comes to one of them last would be waited for by all others.
+LONGEST_FILES = ("documents/test_docs_site.py", "replay/test_reference.py", "bench/test_hard.py", "actors/test_crowds.py",
+                 "trace/test_published.py", "labels/test_resolution.py", "dataset/test_dataset_kills.py",
+                 "trace/test_chain_glints.py", "replay/test_validity.py", "dataset/test_dataset_exports.py",
+                 "edges/test_corners.py", "trace/test_surface_scatterers.py", "bench/test_bench_crowd.py")
+
+
+def pytest_collection_modifyitems(items):
+    """Begins with the longest files; all others come by name."""
+    place = {name: index for index, name in enumerate(LONGEST_FILES)}
+    items.sort(key=lambda item: place.get("/".join(item.path.parts[-2:]), len(place)))
+
 
 @pytest.fixture
 def ctrl_c_is_heard():

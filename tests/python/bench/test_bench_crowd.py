@@ -117,7 +117,7 @@ def test_command_writes_numbers_and_picture(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(scenes, "street_names", lambda: names)
     for limit, rays in (("QUICK_RAYS", 4_000), ("QUICK_ALONE_RAYS", 2_000), ("QUICK_PERSON_RAYS", 2_000)):
         monkeypatch.setattr(crowd, limit, rays)
-    for limit, least in (("QUICK_SEEDS", 2), ("QUICK_RAYS", (2 ** 9,)), ("QUICK_TRUE_RAYS", 2 ** 12)):
+    for limit, least in (("QUICK_SEEDS", 1), ("QUICK_RAYS", (2 ** 9,)), ("QUICK_TRUE_RAYS", 2 ** 12)):
         monkeypatch.setattr(crowd_coverage, limit, least)
     assert main(["bench", "crowd", "--quick", "--out", str(tmp_path / "b")]) == 0
     results = json.loads((tmp_path / "b" / "crowd.json").read_text())

@@ -149,3 +149,10 @@ def test_no_name_is_defined_twice():
         for name in defined_names(path.read_text(encoding="utf-8")):
             homes[name].append(path.relative_to(ROOT).as_posix())
     assert len(homes) > 600 and not {name: files for name, files in homes.items() if len(files) > 1}
+
+
+def test_files_that_are_run_first_are_there():
+    tests = ROOT / "tests" / "python"
+    text = (tests / "conftest.py").read_text(encoding="utf-8")
+    names = re.findall(r'"(.*?)"', re.search(r"^LONGEST_FILES = \((.*?)\)$", text, re.DOTALL | re.MULTILINE)[1])
+    assert len(names) > 5 and [name for name in names if not (tests / name).is_file()] == []

@@ -114,9 +114,9 @@ class Sequence(Row[Frame]):
         for recorded in one_ahead(works, progress):
             frame = self._run.frame_of_record(recorded, progress)
             warn_of(frame.checks)
+            give_back_memory()
             yield frame
             del recorded, frame  # of which none is kept while the next is made
-            give_back_memory()
 
     def _recorded(self, place: int, progress=None, geometry=None) -> Recorded:
         """The record of the frame at a place; geometry: KeptGeometry where that of the scene is kept, None: as before."""

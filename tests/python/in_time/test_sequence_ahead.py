@@ -210,3 +210,9 @@ def resident() -> int:
 def test_memory_is_flat_over_a_soak():
     sizes = [resident() for frame in make_sequence(frames=SOAK, num_rays=2000) if frame is not None]
     assert max(sizes[SETTLED:]) < GROWTH * sizes[SETTLED - 1]
+
+
+def test_what_the_work_on_a_frame_has_left_goes_back_before_the_frame_is_handed_over(monkeypatch):
+    given_back = []
+    monkeypatch.setattr(sequence, "give_back_memory", lambda: given_back.append(True))
+    assert [len(given_back) for frame in make_sequence(frames=3) if frame is not None] == [1, 2, 3]

@@ -16,8 +16,9 @@ void TraceSettings::validate() const {
   guide.validate();
 }
 
-Paths trace(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job, KeptGeometry* kept) {
-  return Tracer(scene, radar, settings, job, kept).run(job);
+Paths trace(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job, KeptGeometry* kept,
+            FittedStrata* fitted) {
+  return Tracer(scene, radar, settings, job, kept, fitted).run(job);
 }
 
 }  // namespace echopath

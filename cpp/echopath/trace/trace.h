@@ -8,6 +8,7 @@
 namespace echopath {
 
 class KeptGeometry;  // trace/embree/kept_geometry.h
+class FittedStrata;  // trace/strata/fitted_strata.h
 
 inline constexpr int64_t kMostRays = 10000000000;
 
@@ -35,8 +36,9 @@ struct TraceSettings {
 // Deterministic: the same input gives the same bits for any number of threads. Raises invalid_argument for bad settings,
 // a radar without antennas, a smooth mirror that is not flat, or a motion that does not cover the frame; raises
 // DeviceError; raises Cancelled. With `kept`, the trace uses the geometry of the trace before where it can, and leaves
-// its own for the next: the record is the same and comes sooner, but the memory stays in use.
+// its own for the next: the record is the same and comes sooner, but the memory stays in use. `fitted` does the same for
+// the strata of surfaces that the trace before saw from the same place.
 Paths trace(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr,
-            KeptGeometry* kept = nullptr);
+            KeptGeometry* kept = nullptr, FittedStrata* fitted = nullptr);
 
 }  // namespace echopath

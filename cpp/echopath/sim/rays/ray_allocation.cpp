@@ -7,6 +7,7 @@
 #include "echopath/power/received_power.h"
 #include "echopath/signal/noise.h"
 #include "echopath/sim/rays/plan_foci.h"
+#include "echopath/trace/strata/fitted_strata.h"
 #include "echopath/trace/strata/ray_targets.h"
 
 namespace echopath {
@@ -179,12 +180,13 @@ Paths trace_by_need(const SceneSnapshot& scene, const Radar& radar, const TraceS
   if (!settings.guide.shares.empty() || launch.num_rays < kFewestPilotRays) return trace(scene, radar, settings, job, kept);
   KeptGeometry own;
   if (!kept) kept = &own;
+  FittedStrata fitted;
   Job unseen(job);  // its progress is that of the trace
-  const Paths pilot = trace(scene, radar, launch, &unseen, kept);
+  const Paths pilot = trace(scene, radar, launch, &unseen, kept, &fitted);
   launch.num_rays = settings.num_rays;
   launch.num_rays_to_come = 0;
   launch.guide = guide_rays(pilot, ray_needs(pilot, kResolvedDb, EchoFloor::kNoise, &unseen), settings.num_rays, &unseen);
-  return trace(scene, radar, launch, job, kept);
+  return trace(scene, radar, launch, job, kept, &fitted);
 }
 
 }  // namespace echopath

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "echopath/sim/rays/ray_allocation.h"
+#include "echopath/trace/strata/fitted_strata.h"
 
 namespace echopath {
 
@@ -19,9 +20,10 @@ Paths trace_to_error(const SceneSnapshot& scene, const Radar& radar, const Trace
   require(settings.num_rays <= target.max_rays, "num_rays", "must not exceed max_rays", settings.num_rays);
   KeptGeometry own;
   if (!kept) kept = &own;
+  FittedStrata fitted;
   TraceSettings launch = settings;
   for (;;) {
-    Paths paths = trace(scene, radar, launch, job, kept);
+    Paths paths = trace(scene, radar, launch, job, kept, &fitted);
     const RayNeeds needs = ray_needs(paths, target.error_db, target.floor, job);
     paths.frame.target_error_db = target.error_db;
     paths.frame.error_db = needs.worst_db;

@@ -164,9 +164,21 @@ void extend_along_arc(const Vec3& from, const Vec3& to, const Vec3& up, Range& h
   }
 }
 
-// Returns the strip along the direction `along` of the plane that holds the hull between the corners.
-Stratum strip_along(const Eigen::Vector2d& along, const GnomonicPlane& plane, const PlanePoints& hull,
-                    const std::vector<Vec3>& corners) {
+// Sets the extents of a strip, with their margins; it returns the middle of the azimuths.
+double set_extents(Range azimuths, Range heights, Stratum& strip) {
+  const double margin = kMarginOfLarger * std::max(azimuths.size(), heights.size());
+  azimuths.widen(margin + 0.5 * kMargin * azimuths.size());
+  heights.widen(margin + 0.5 * kMargin * heights.size());
+  strip.half_azimuth = 0.5 * azimuths.size();
+  strip.low = heights.low;
+  strip.high = heights.high;
+  return azimuths.middle();
+}
+
+// Returns the strip along the direction `along` of the plane that holds the hull between the corners, or nothing where it
+// is no smaller than `largest` sr: the corners alone may tell so, without the arcs between them.
+std::optional<Stratum> strip_along(const Eigen::Vector2d& along, const GnomonicPlane& plane, const PlanePoints& hull,
+                                   const std::vector<Vec3>& corners, double largest) {
   const Eigen::Vector2d aside(-along[1], along[0]);
   Range offsets{aside.dot(hull.front()), aside.dot(hull.front())};
   for (const Eigen::Vector2d& corner : hull) offsets.extend(aside.dot(corner));
@@ -176,18 +188,15 @@ Stratum strip_along(const Eigen::Vector2d& along, const GnomonicPlane& plane, co
   Range azimuths{1e9, -1e9}, heights{1e9, -1e9};
   for (size_t i = 0; i < corners.size(); ++i) {
     azimuths.extend(std::atan2(corners[i].dot(across), corners[i].dot(ahead)));
-    extend_along_arc(corners[i], corners[(i + 1) % corners.size()], up, heights);
+    heights.extend(corners[i].dot(up));
   }
-  const double margin = kMarginOfLarger * std::max(azimuths.size(), heights.size());
-  azimuths.widen(margin + 0.5 * kMargin * azimuths.size());
-  heights.widen(margin + 0.5 * kMargin * heights.size());
   Stratum strip;
-  const double turn = azimuths.middle();
+  set_extents(azimuths, heights, strip);
+  if (!(strip.solid_angle() < largest)) return std::nullopt;
+  for (size_t i = 0; i < corners.size(); ++i) extend_along_arc(corners[i], corners[(i + 1) % corners.size()], up, heights);
+  const double turn = set_extents(azimuths, heights, strip);
   strip.axis = std::cos(turn) * ahead + std::sin(turn) * across;
   strip.across = std::cos(turn) * across - std::sin(turn) * ahead;
-  strip.half_azimuth = 0.5 * azimuths.size();
-  strip.low = heights.low;
-  strip.high = heights.high;
   return strip;
 }
 
@@ -231,8 +240,8 @@ std::optional<Stratum> fit_stratum(const std::vector<Vec3>& vertices, const Vec3
   for (const Eigen::Vector2d& corner : hull) corners.push_back(plane.direction(corner));
   Stratum best = cone_around(plane.axis, corners);
   for (const Eigen::Vector2d& along : turns_to_try(hull, num_turns)) {
-    const Stratum strip = strip_along(along, plane, hull, corners);
-    if (serves(strip) && strip.solid_angle() < best.solid_angle()) best = strip;
+    const std::optional<Stratum> strip = strip_along(along, plane, hull, corners, best.solid_angle());
+    if (strip && serves(*strip) && strip->solid_angle() < best.solid_angle()) best = *strip;
   }
   best.name = std::move(name);
   return best;

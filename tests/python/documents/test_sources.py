@@ -40,7 +40,7 @@ def test_comments_are_as_narrow_as_the_code():
 
 def test_each_test_file_has_a_namespace_of_its_own():
     """Files of a module are compiled as one: what they name for themselves must not meet."""
-    tests = [path for path in SOURCES if path.parent.parent == ROOT / "tests" / "cpp" and path.suffix == ".cpp"]
+    tests = [path for path in SOURCES if ROOT / "tests" / "cpp" in path.parents and path.match("test_*.cpp")]
     wrong = [path.relative_to(ROOT).as_posix() for path in tests
              if f"namespace echopath::{path.stem} {{\n" not in path.read_text(encoding="utf-8")]
     assert len(tests) > 90 and not wrong

@@ -1,5 +1,7 @@
 #include "echopath/posed/mesh_places.h"
 
+#include "echopath/scene/chained_transforms.h"
+
 namespace echopath {
 
 PlacingNodes::PlacingNodes(const Scene& scene, std::span<const uint32_t> meshes) : scene_(scene) {
@@ -19,13 +21,11 @@ PlacingNodes::PlacingNodes(const Scene& scene, std::span<const uint32_t> meshes)
 }
 
 std::vector<Transform> PlacingNodes::world_from_meshes(double time) const {
-  std::vector<Transform> world, of_meshes;
-  world.reserve(nodes_.size());
+  const std::vector<Transform> world = chained_transforms(nodes_.size(), [&](size_t i) {
+    return scene_.local_transform(nodes_[i].node, time);
+  }, [&](size_t i) { return nodes_[i].parent; });
+  std::vector<Transform> of_meshes;
   of_meshes.reserve(of_mesh_.size());
-  for (const Placing& placing : nodes_) {
-    const Transform local = scene_.local_transform(placing.node, time);
-    world.push_back(placing.parent < 0 ? local : world[static_cast<size_t>(placing.parent)] * local);
-  }
   for (const size_t node : of_mesh_) of_meshes.push_back(world[node]);
   return of_meshes;
 }

@@ -36,9 +36,8 @@ class Replayer {
   // paths is below the rounding of the strongest path of the record.
   std::vector<Echoes> interpolated(std::span<const int64_t> paths, int polynomial,
                                    std::vector<UnfollowedPath>& unfollowed) const;
-  // Poses the scene at all nodes of a grid of chirps or samples, which both functions below take.
-  PosedGrid pose(const TimeGrid& grid) const { return posed_.pose(grid); }
-  // The same of meshes that some paths touch, as PartlyPosedGrid::with takes them; the replayer must outlive it.
+  // Poses meshes that some paths touch, as PartlyPosedGrid::with takes them, at all nodes of a grid of chirps or samples,
+  // which both functions below take; the replayer must outlive it.
   PartlyPosedGrid pose_partly(const TimeGrid& grid) const { return posed_.pose_partly(grid); }
   std::vector<uint32_t> meshes_of(std::span<const int64_t> paths) const;  // mesh IDs, ascending
   // Evaluates the channels of one transmitter [rx] at the nodes of a SampleGrid, which has several nodes in each of its

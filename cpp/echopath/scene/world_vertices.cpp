@@ -1,5 +1,6 @@
 #include <utility>
 
+#include "echopath/scene/chained_transforms.h"
 #include "echopath/scene/scene.h"
 
 namespace echopath {
@@ -17,16 +18,10 @@ Transform Scene::local_transform(int index, double time) const {
   return moved(node.placement, takes_part(index) ? node.motion.get() : nullptr, time);
 }
 
-// Parents come before their children, so one pass in order is enough.
 std::vector<Transform> world_from_nodes(const Scene& scene, double time) {
-  std::vector<Transform> result;
-  result.reserve(scene.nodes().size());
-  for (int index = 0; index < static_cast<int>(scene.nodes().size()); ++index) {
-    const int parent = scene.nodes()[static_cast<size_t>(index)].parent;
-    const Transform local = scene.local_transform(index, time);
-    result.push_back(parent < 0 ? local : result[static_cast<size_t>(parent)] * local);
-  }
-  return result;
+  const std::vector<Node>& nodes = scene.nodes();
+  return chained_transforms(nodes.size(), [&](size_t i) { return scene.local_transform(static_cast<int>(i), time); },
+                            [&](size_t i) { return nodes[i].parent; });
 }
 
 std::vector<Vec3> world_vertices(const Scene& scene, uint32_t mesh_id, double time) {

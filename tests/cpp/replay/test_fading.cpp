@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "cpp/replay/small_arrays.h"
 #include "cpp/support/scenes.h"
 #include "echopath/replay/replay.h"
 #include "echopath/signal/echoes/echo_states.h"
@@ -36,20 +37,11 @@ Paths record(const Radar& radar) {
   return trace(scene, radar, settings);
 }
 
-Radar two_by_two() {
-  Radar radar = plain_radar(Vec3::Zero(), Vec3(0, 0.01, 0));
-  radar.waveform.num_chirps = 64;
-  radar.transmitters.push_back(antenna_at(Vec3(0, 0.02, 0)));
-  radar.receivers.push_back(antenna_at(Vec3(0, 0.03, 0)));
-  return radar;
-}
-
 // Paths whose lengths follow a polynomial and whose amplitudes do not.
 std::vector<int64_t> fading(const Paths& paths, const Replayer& replayer, int polynomial) {
-  std::vector<int64_t> indices, found;
-  for (int64_t path = 0; path < paths.num_paths(); ++path) indices.push_back(path);
+  std::vector<int64_t> found;
   std::vector<UnfollowedPath> unfollowed;
-  replayer.interpolated(indices, polynomial, unfollowed);
+  replayer.interpolated(all_of(paths), polynomial, unfollowed);
   const PathGrids path_grids = replayer.path_grids();
   for (const UnfollowedPath& one : unfollowed) {
     if (path_grids.next(one, polynomial).by_chirp) found.push_back(one.path);
@@ -69,8 +61,8 @@ TEST(Fading, AmplitudesAreThoseOfTheChirps) {
   EchoStates state;
   double darkest = 1.0, brightest = 0.0;
   for (const int transmitter : {0, 1}) {
-    const PosedGrid chirps = replayer.pose(ChirpGrid{transmitter});
-    const std::vector<Echoes> echoes = replayer.by_chirp(indices, polynomial, chirps);
+    PartlyPosedGrid chirps = replayer.pose_partly(ChirpGrid{transmitter});
+    const std::vector<Echoes> echoes = replayer.by_chirp(indices, polynomial, chirps.with(replayer.meshes_of(indices)));
     for (const int chirp : {0, 20, 63}) {
       const double time = paths.frame.start_time + radar.chirp_time(transmitter, chirp), step = 1e-6;
       replayer.evaluate(indices, time, lengths, amplitudes);

@@ -3,6 +3,7 @@
 
 #include <numeric>
 
+#include "cpp/replay/small_arrays.h"
 #include "cpp/support/scenes.h"
 #include "echopath/replay/posed/hit_patches.h"
 
@@ -30,12 +31,6 @@ Paths record(bool wall_is_mirror = false) {
   settings.num_rays = 1500;
   settings.max_bounces = 2;
   return trace(scene, radar, settings);
-}
-
-std::vector<int64_t> all_of(const Paths& paths) {
-  std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
-  std::iota(indices.begin(), indices.end(), 0);
-  return indices;
 }
 
 std::vector<uint8_t> joined(const Paths& paths, const std::vector<int64_t>& indices,
@@ -158,7 +153,8 @@ TEST(JoinedEchoes, OfTheChirpsAreThoseOfTheirPaths) {
   const std::vector<uint8_t> found = joined(paths, indices);
   const Replayer replayer(paths, paths.radar);
   EXPECT_GT(num_joined(found), 0);
-  const PosedGrid chirps = replayer.pose(ChirpGrid{0});
+  PartlyPosedGrid partly = replayer.pose_partly(ChirpGrid{0});
+  const PosedGrid& chirps = partly.with(replayer.meshes_of(indices));
   const std::vector<Echoes> at_once = replayer.by_chirp(indices, 1, chirps, found);
   const std::vector<Echoes> after = replayer.joined(replayer.by_chirp(indices, 1, chirps), found);
   ASSERT_EQ(at_once.front().num_echoes, paths.num_paths() - num_joined(found));

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
+#include "cpp/replay/small_arrays.h"
 #include "cpp/support/scenes.h"
+#include "echopath/replay/posed/hit_patches.h"
 #include "echopath/replay/replay.h"
 
 namespace echopath::test_needed_paths {
@@ -35,24 +36,10 @@ Paths record(const Radar& radar) {
   return trace(scene, radar, settings);
 }
 
-Radar two_by_two() {
-  Radar radar = plain_radar(Vec3::Zero(), Vec3(0, 0.01, 0));
-  radar.waveform.num_chirps = 64;
-  radar.transmitters.push_back(antenna_at(Vec3(0, 0.02, 0)));
-  radar.receivers.push_back(antenna_at(Vec3(0, 0.03, 0)));
-  return radar;
-}
-
-std::vector<int64_t> all(const Paths& paths) {
-  std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
-  std::iota(indices.begin(), indices.end(), 0);
-  return indices;
-}
-
 // Returns the largest amplitude of each path over the frame and all channels.
 std::vector<double> largest(const Paths& paths, const Radar& radar, const Replayer& replayer) {
   constexpr int kTimes = 60;
-  const std::vector<int64_t> indices = all(paths);
+  const std::vector<int64_t> indices = all_of(paths);
   std::vector<double> most(indices.size()), lengths;
   std::vector<std::complex<double>> amplitudes;
   for (int i = 0; i <= kTimes; ++i) {
@@ -71,10 +58,10 @@ TEST(NeededPaths, ThoseThatAreLeftOutAreTogetherBelowTheRoundingOfTheStrongest) 
   Replayer replayer(paths, radar);
   const int polynomial = replayer.path_grids().first(0);
   std::vector<UnfollowedPath> before, left;
-  replayer.interpolated(all(paths), polynomial, before);
+  replayer.interpolated(all_of(paths), polynomial, before);
   for (const UnfollowedPath& path : before) EXPECT_FALSE(path.is_negligible);
   replayer.find_strongest();
-  const std::vector<Echoes> echoes = replayer.interpolated(all(paths), polynomial, left);
+  const std::vector<Echoes> echoes = replayer.interpolated(all_of(paths), polynomial, left);
   const std::vector<double> most = largest(paths, radar, replayer);
   const double strongest = *std::max_element(most.begin(), most.end());
   double sum = 0.0;
@@ -89,20 +76,27 @@ TEST(NeededPaths, ThoseThatAreLeftOutAreTogetherBelowTheRoundingOfTheStrongest) 
   EXPECT_EQ(echoes.front().num_echoes + std::ssize(left), paths.num_paths());
 }
 
+// Poses the whole scene, and one transmitter, at the nodes of samples of its chirps.
+PosedGrid whole_scene(const Paths& paths, const Radar& radar, const TimeGrids& grids, int transmitter) {
+  FrameNodes nodes = nodes_of(grids.samples(transmitter), radar, grids.start_time(), grids.derivatives());
+  auto scenes = pose_at(*paths.scene, radar, hit_patches(paths), paths.frame.transmitter, nodes.times);
+  for (PosedScene& scene : *scenes) scene.transmitters = {scene.transmitters[static_cast<size_t>(transmitter)]};
+  return {std::move(nodes), PosedNodes(std::move(scenes)), transmitter};
+}
+
 TEST(NeededPaths, MeshesThatArePosedLaterStandWhereAllWouldStand) {
   const Radar radar = two_by_two();
   const Paths paths = record(radar);
   const Replayer replayer(paths, radar);
-  const std::vector<int64_t> indices = all(paths);
+  const std::vector<int64_t> indices = all_of(paths);
   ASSERT_EQ(replayer.meshes_of(indices), (std::vector<uint32_t>{0, 1}));
   for (const int transmitter : {0, 1}) {
-    const TimeGrid samples = replayer.grids().samples(transmitter);
-    const PosedGrid whole = replayer.pose(samples);
-    PartlyPosedGrid partly = replayer.pose_partly(samples);
+    PartlyPosedGrid partly = replayer.pose_partly(replayer.grids().samples(transmitter));
     for (const uint32_t mesh : {1u, 0u}) partly.with(std::span(&mesh, 1));
     EXPECT_GT(partly.num_bytes(), 0);
-    const std::vector<Echoes> expected = replayer.exact(indices, whole), found = replayer.exact(indices, partly.with({}));
-    for (size_t channel = 0; channel < expected.size(); ++channel) {
+    const std::vector<Echoes> expected = replayer.exact(indices, whole_scene(paths, radar, replayer.grids(), transmitter));
+    const std::vector<Echoes> found = replayer.exact(indices, partly.with({}));
+    for (size_t channel = 0; channel < found.size(); ++channel) {
       EXPECT_EQ(found[channel].delay, expected[channel].delay);
       EXPECT_EQ(found[channel].amplitude, expected[channel].amplitude);
     }

@@ -1,6 +1,7 @@
 // Paths put together from the legs that they share are those that are evaluated one by one.
 #include <gtest/gtest.h>
 
+#include "cpp/replay/small_arrays.h"
 #include "cpp/support/path_by_path.h"
 #include "cpp/support/scenes.h"
 #include "echopath/base/constants.h"
@@ -80,12 +81,6 @@ Paths record(const Radar& radar, bool has_mirrors = true, PolarizationModel pola
   return trace(scene_of_all_kinds(has_mirrors), radar, settings);
 }
 
-std::vector<int64_t> all_of(const Paths& paths) {
-  std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
-  for (size_t i = 0; i < indices.size(); ++i) indices[i] = static_cast<int64_t>(i);
-  return indices;
-}
-
 // Largest differences to paths evaluated one by one, relative to each value, over all channels.
 struct Differences {
   double length = 0.0, diffuse = 0.0, coherent = 0.0;  // amplitudes of diffuse and of coherent paths
@@ -154,7 +149,8 @@ TEST(SharedLegs, PathsAtManyNodesAreThoseEvaluatedOneByOne) {
     settings.specular = specular;
     const Replayer replayer(paths, radar, settings);
     const std::vector<int64_t> indices = all_of(paths);
-    const PosedGrid samples = replayer.pose(replayer.grids().samples(1));
+    PartlyPosedGrid partly = replayer.pose_partly(replayer.grids().samples(1));
+    const PosedGrid& samples = partly.with(replayer.meshes_of(indices));
     const std::vector<Echoes> echoes = replayer.exact(indices, samples);
     const std::vector<double>& times = samples.nodes.times;
     const size_t num_receivers = radar.receivers.size(), node = times.size() / 2;

@@ -43,17 +43,8 @@ PosedGrids::PosedGrids(const TimeGrids& grids, const Paths& paths, const Radar& 
     : grids_(grids), paths_(paths), radar_(radar), preparer_(preparer),
       polynomials_(static_cast<size_t>(grids.num_polynomials())) {}
 
-// Poses only this `transmitter`, or all where it is -1.
-std::shared_ptr<const PosedScenes> PosedGrids::scenes_at(const std::vector<double>& times, int transmitter) const {
-  std::shared_ptr<PosedScenes> scenes = pose_at(*paths_.scene, radar_, preparer_.patches(), paths_.frame.transmitter, times);
-  for (PosedScene& posed : *scenes) keep_one_transmitter(posed, transmitter);
-  return scenes;
-}
-
-PosedGrid PosedGrids::pose(const TimeGrid& grid) const {
-  FrameNodes nodes = nodes_of(grid, radar_, grids_.start_time(), grids_.derivatives());
-  PosedNodes posed(scenes_at(nodes.times, transmitter_of(grid)));
-  return {std::move(nodes), std::move(posed), transmitter_of(grid)};
+std::shared_ptr<const PosedScenes> PosedGrids::scenes_at(const std::vector<double>& times) const {
+  return pose_at(*paths_.scene, radar_, preparer_.patches(), paths_.frame.transmitter, times);
 }
 
 PartlyPosedGrid PosedGrids::pose_partly(const TimeGrid& grid) const {
@@ -68,7 +59,7 @@ PartlyPosedGrid PosedGrids::pose_partly(const TimeGrid& grid) const {
   return {{std::move(nodes), std::move(posed), transmitter_of(grid)}, std::move(scenes), *paths_.scene, preparer_.patches()};
 }
 
-PosedNodes PosedGrids::pose(double time) const { return PosedNodes(scenes_at({time}, -1)); }
+PosedNodes PosedGrids::pose(double time) const { return PosedNodes(scenes_at({time})); }
 
 PosedNodes PosedGrids::pose(std::span<const double> times, std::span<const Radar> radars) const {
   auto scenes = std::make_shared<PosedScenes>();
@@ -80,14 +71,18 @@ PosedNodes PosedGrids::pose(std::span<const double> times, std::span<const Radar
 }
 
 const PosedGrid& PosedGrids::at_trace() const {
-  return at_trace_.get([&] { return pose(grids_.still()); });
+  return at_trace_.get([&] {
+    FrameNodes nodes = nodes_of(grids_.still(), radar_, grids_.start_time(), grids_.derivatives());
+    PosedNodes posed(scenes_at(nodes.times));
+    return PosedGrid{std::move(nodes), std::move(posed)};
+  });
 }
 
 const TrialGrid& PosedGrids::trial(int polynomial) const {
   return kept(polynomial).trial.get([&] {
     const PolynomialGrid& grid = grids_.polynomial(polynomial);
     FrameNodes nodes = unsampled_chebyshev_nodes(radar_, grids_.start_time(), grid.cuts, grid.order);
-    std::shared_ptr<const PosedScenes> scenes = scenes_at(nodes.times, -1);
+    std::shared_ptr<const PosedScenes> scenes = scenes_at(nodes.times);
     return TrialGrid{std::move(nodes), std::move(scenes)};
   });
 }

@@ -53,7 +53,6 @@ class PosedGrids {
   const PosedGrid& polynomial(int index) const;
   const TrialGrid& trial(int polynomial) const;
   // Raises what PosedScene does.
-  PosedGrid pose(const TimeGrid& grid) const;
   PartlyPosedGrid pose_partly(const TimeGrid& grid) const;
   PosedNodes pose(double time) const;  // s
   // Poses at each of the times (s) the antennas of the radar of that time, which must outlive the result.
@@ -64,7 +63,7 @@ class PosedGrids {
     Lazy<TrialGrid> trial;
     Lazy<PosedGrid> posed;
   };
-  std::shared_ptr<const PosedScenes> scenes_at(const std::vector<double>& times, int transmitter) const;
+  std::shared_ptr<const PosedScenes> scenes_at(const std::vector<double>& times) const;
   const Polynomial& kept(int polynomial) const { return polynomials_[static_cast<size_t>(polynomial) - 1]; }
 
   const TimeGrids& grids_;

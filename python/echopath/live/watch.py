@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 FIRST_PREVIEW_RAYS, FEWEST_PREVIEW_RAYS = 4096, 512
 QUIET = 0.1         # s without a change after a preview, before the full view begins: what is dragged would end it at once
 LONGEST_WAIT = 0.1  # s, until a thread that waits for changes looks whether it is to end
-_QUICK_SHARE = 0.25  # of the budget; a preview of all rays that takes less gets twice as many
+_QUICK_SHARE = 0.4  # of the budget; a preview of all rays that takes less gets twice as many, which then take less than all of it
 
 
 class _Superseded(Exception):
@@ -36,7 +36,7 @@ class Watch:
     def __init__(self, live: Live, changes: Changes, show: Callable[[LiveView], object], budget: float,
                  failed: Callable[[Exception], object] | None = None):
         self._live, self._changes, self._show, self._budget, self._failed = live, changes, show, budget, failed
-        self._preview_rays, self._full_seconds = FIRST_PREVIEW_RAYS, 0.0
+        self._preview_rays, self._full_seconds = min(FIRST_PREVIEW_RAYS, live.num_rays), 0.0
         self._shown, self._error = -1, None  # number of the change whose full view was shown
         self._stopping, self._shown_one = False, threading.Condition()
         self._thread = threading.Thread(target=self._run, name="echopath.Watch", daemon=True)
@@ -106,7 +106,7 @@ class Watch:
         view = self._live.preview(num_rays=self._preview_rays, progress=lambda stage, fraction: self._go_on(None))
         self._show(view)
         if view.seconds > self._budget:
-            self._preview_rays = max(self._preview_rays // 2, FEWEST_PREVIEW_RAYS)
+            self._preview_rays = min(max(self._preview_rays // 2, FEWEST_PREVIEW_RAYS), self._live.num_rays)
         elif view.num_rays_shot == view.num_rays and view.seconds < _QUICK_SHARE * self._budget:
             self._preview_rays = min(2 * self._preview_rays, self._live.num_rays)
         return view.number

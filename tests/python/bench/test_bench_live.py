@@ -74,6 +74,12 @@ def test_a_moved_object_is_measured_beside_a_fresh_scene():
     assert [line.split()[-1] for line in edits.describe(list(rows.values())) if "error" in line] == ["holds"]
 
 
+def test_a_dragged_object_is_timed_by_what_a_watch_shows():
+    rows = {row["what"]: row for row in edits.first_map_rows("sign", *edits.crowded_street(), 500, 2)}
+    assert rows["sign, 500 rays, dragged: first map, s"]["measured"] > 0.0
+    assert 0 < rows["sign, 500 rays, dragged: rays of it"]["measured"] <= 500
+
+
 def test_stages_go_by_the_names_of_the_table():
     frame = ep.simulate(street.city_street(0.2, num_cars=1, num_people=0, length=20.0), street.radar(), num_rays=500,
                         labels=True, guard=False)

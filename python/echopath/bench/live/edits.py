@@ -1,12 +1,15 @@
 """A scene that is changed while its map is watched: what a moved object costs, how near the view is to a fresh one, memory.
 
 An update is one object moved by 10 cm and the new range-Doppler map. Beside it stands a fresh Live of the same scene in the
-same run. Times are by the clock, medians: what a hand on a mouse feels.
+same run, and where nearly all rays meet what is moved the first map that a watch shows. Times are by the clock, medians: what
+a hand on a mouse feels.
 """
 from __future__ import annotations
 
 import multiprocessing
+import queue
 import statistics
+import time
 from importlib.resources import as_file
 
 import numpy as np
@@ -27,6 +30,9 @@ SOAK_FROM = 0.1                    # of the updates, after which memory is to be
 STEP = (0.1, 0.0, 0.0)             # m
 LIMITS = {"pedestrian of the demo street": 0.05, "sign of a street of 20 objects": 0.05, "car in a city of 2400 meshes": 0.1}
 MOST_SECONDS_OF_FEW = 0.05         # 20 updates a second
+WATCHED = "pedestrian of the demo street"
+MOST_SECONDS_OF_FIRST = 0.05       # that a watch takes to show the first map after a change
+FIRST_VIEWS = 5                    # of a watch, after which it has found how many rays its previews may have
 MOST_ERROR, MOST_GROWTH = 1e-12, 1.1
 
 
@@ -106,6 +112,25 @@ def moved_rows(name: str, scene: ep.Scene, of_scene: ep.Radar, moved: str, num_r
             judged_row(f"{what}: error", error, MOST_ERROR)]
 
 
+def first_map_rows(name: str, scene: ep.Scene, of_scene: ep.Radar, moved: str, num_rays: int, updates: int) -> list[dict]:
+    """Rows of one object that is dragged by STEP so many times, each time as soon as a watch has shown the last one."""
+    live, shown = ep.Live(scene, of_scene, num_rays=num_rays), queue.Queue()
+
+    def drag():
+        live.change(lambda of: setattr(of[moved], "position", of[moved].position + STEP))
+        begin = time.perf_counter()
+        while (view := shown.get()).number != live.number:
+            pass
+        return time.perf_counter() - begin, view.num_rays
+
+    with live.watch(shown.put) as watch:
+        watch.wait()
+        found = [drag() for _ in range(FIRST_VIEWS + updates)][FIRST_VIEWS:]
+    what = f"{name}, {num_rays} rays, dragged"
+    return [judged_row(f"{what}: first map, s", statistics.median(took for took, _ in found), MOST_SECONDS_OF_FIRST),
+            judged_row(f"{what}: rays of it", statistics.median(rays for _, rays in found), None)]
+
+
 def _set_material(node, material) -> None:
     if node.children:
         for child in node.children:
@@ -125,6 +150,7 @@ def _rows(quick: bool) -> list[dict]:
     for name, made in list(SCENES.items())[1:]:
         found += moved_rows(name, *made(), QUICK_RAYS if quick else FEW_RAYS, MOST_SECONDS_OF_FEW,
                             QUICK_UPDATES if quick else UPDATES)
+    found += first_map_rows(WATCHED, *SCENES[WATCHED](), QUICK_RAYS if quick else RAYS, QUICK_UPDATES if quick else UPDATES)
     edits, soak = (QUICK_EDITS, QUICK_SOAK) if quick else (EDITS, SOAK_UPDATES)
     found.append(judged_row(f"{edits} random edits of the street of 20 objects: error", _error_of_edits(edits), MOST_ERROR))
     found.append(judged_row(f"{soak} updates: memory over that after {int(SOAK_FROM * soak)}", _growth(soak), MOST_GROWTH))

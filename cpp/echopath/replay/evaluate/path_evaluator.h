@@ -17,6 +17,7 @@ class PathEvaluator {
   // Plans the paths that are evaluated next; the indices must outlive that evaluation.
   void plan(std::span<const int64_t> indices) {
     plan_ = &planner_(indices);
+    shared_legs_.begin_plan();
     indices_ = indices;
   }
   void evaluate(const PosedNodes& nodes, const RadioConstants& radio, const ChannelSpan& channels,

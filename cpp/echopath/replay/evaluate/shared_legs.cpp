@@ -28,17 +28,19 @@ void SharedLegEvaluation::operator()(const SharedLegPlan& plan, const PathPrepar
   if (plan.chains.empty() && plan.mirror_paths.empty()) return;
   num_receivers_ = nodes.at(0).receivers.size();
   paths_ = &preparer.paths();
-  tables_.find(plan, preparer, nodes);
+  if (posed_at_ != &nodes) tables_.find(plan, preparer, nodes);
+  posed_at_ = &nodes;
   values_.resize(kTogether, PathToCombine::kNumRows, nodes.size());
   kernels_ = &shared_leg_kernels(values_.stride());
   set_world(nodes.size(), world_);
   const TraceCells cells(plan, preparer, tables_.points);
+  if (cells_.empty()) find_cells(plan, cells);
   const double of_coherent = radio.coherent_scale(), of_diffuse = radio.diffuse_scale();
   for (CoherentPath& path : coherent_) path.filter = radio.filter();
   for (size_t first = 0; first < plan.chains.size(); first += kTogether) {
     const Chains chains(plan.chains.data() + first, std::min(kTogether, plan.chains.size() - first));
     for (size_t slot = 0; slot < chains.size(); ++slot) {
-      if (chains[slot].is_coherent) place_cell(plan, chains[slot], cells, nodes, slot);
+      if (chains[slot].is_coherent) place_cell(plan, first + slot, cells, nodes, slot);
     }
     for (size_t channel = 0; channel < channels.nodes.size(); ++channel) {
       for (size_t slot = 0; slot < chains.size(); ++slot) {
@@ -95,8 +97,19 @@ const double* SharedLegEvaluation::image_of(const SharedLegPlan& plan, uint32_t 
   return images.rows.row(images.entry(plan.legs[leg].image, antenna), 0);
 }
 
-void SharedLegEvaluation::place_cell(const SharedLegPlan& plan, const SharedLegPlan::ChainPath& chain,
-                                     const TraceCells& cells, const PosedNodes& nodes, size_t slot) {
+// Cells on rigid meshes are those of the trace at all times.
+void SharedLegEvaluation::find_cells(const SharedLegPlan& plan, const TraceCells& cells) {
+  cells_.resize(plan.chains.size());
+  for (size_t index = 0; index < plan.chains.size(); ++index) {
+    const SharedLegPlan::ChainPath& chain = plan.chains[index];
+    const bool is_rigid = !cells.may_stretch(plan.points[plan.legs[chain.end].point].mesh_id);
+    if (chain.is_coherent && is_rigid) cells_[index] = cells.on_rigid(chain);
+  }
+}
+
+void SharedLegEvaluation::place_cell(const SharedLegPlan& plan, size_t index, const TraceCells& cells,
+                                     const PosedNodes& nodes, size_t slot) {
+  const SharedLegPlan::ChainPath& chain = plan.chains[index];
   const uint32_t point = plan.legs[chain.end].point, mesh_id = plan.points[point].mesh_id;
   CoherentPath& path = coherent_[slot];
   path.point = tables_.points.rows.row(point, 0);
@@ -106,7 +119,7 @@ void SharedLegEvaluation::place_cell(const SharedLegPlan& plan, const SharedLegP
     stretching_[slot] = cells.on_stretching(chain, nodes);
   } else {
     path.mesh = nodes.meshes.row(mesh_id, 0);
-    set_cell(cells.on_rigid(chain), path);
+    set_cell(cells_[index], path);
   }
 }
 

@@ -42,7 +42,13 @@ struct ChannelSpan {
 // It keeps its memory from block to block and serves one thread at a time.
 class SharedLegEvaluation {
  public:
-  // Writes the chains and mirror paths of the plan.
+  // To be called before the first use of a plan: what is found for it serves until the next one.
+  void begin_plan() {
+    posed_at_ = nullptr;
+    cells_.clear();
+  }
+  // Writes the chains and mirror paths of the plan. Where the nodes are those of the last call, which must still be as they
+  // were, only what hangs on `radio` is evaluated again.
   void operator()(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes,
                   const RadioConstants& radio, const ChannelSpan& channels);
   // Reads the plan and the nodes of the last call: sets turned[place] to 1 where the surface at an end of the path turns its
@@ -72,8 +78,8 @@ class SharedLegEvaluation {
   MeasuredLeg end_of(const SharedLegPlan::ChainPath& chain, size_t antenna) const;
   const double* inner_of(const SharedLegPlan::ChainPath& chain, size_t antenna) const;
   const double* image_of(const SharedLegPlan& plan, uint32_t leg, size_t antenna) const;
-  void place_cell(const SharedLegPlan& plan, const SharedLegPlan::ChainPath& chain, const TraceCells& cells,
-                  const PosedNodes& nodes, size_t slot);
+  void find_cells(const SharedLegPlan& plan, const TraceCells& cells);
+  void place_cell(const SharedLegPlan& plan, size_t index, const TraceCells& cells, const PosedNodes& nodes, size_t slot);
   void evaluate_coherent(const SharedLegPlan& plan, const SharedLegPlan::ChainPath& chain, const Ends& ends, double scale,
                          size_t slot);
   void reflect_from_stretching(size_t slot);
@@ -91,8 +97,10 @@ class SharedLegEvaluation {
   double unfiltered(const SharedLegPlan::ChainPath& chain, const RadioConstants& radio) const;
 
   SharedLegTables tables_;
-  NodeRows values_;                                            // [slot], PathToCombine::Row
-  std::array<CoherentPath, kTogether> coherent_;               // [slot], the part that does not depend on the channel
+  const PosedNodes* posed_at_ = nullptr;          // of the tables; null: they hold nothing of the plan
+  std::vector<PlacedCell> cells_;                 // [chain] where it is coherent and on a rigid mesh; empty: unknown
+  NodeRows values_;                               // [slot], PathToCombine::Row
+  std::array<CoherentPath, kTogether> coherent_;  // [slot], the part that does not depend on the channel
   std::array<std::vector<PlacedCell>, kTogether> stretching_;  // [slot, node]; empty where the mesh is rigid
   NodeRows world_;                                             // a mesh whose frame is the world's, PointToPose::MeshRow
   LegTable mirror_legs_;  // of one channel: from the transmitter's image, from the receiver

@@ -45,6 +45,7 @@ is_installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" 
 
 install_packages() {
   local missing=() package
+  [ $# -gt 0 ] || return 0
   if ! command -v dpkg-query >/dev/null; then
     echo "This is not Debian: going on, in the hope that these are there under other names: $*"
     return
@@ -118,6 +119,9 @@ install_project() {
 
 pip_install() { "$python" -m pip install -q --disable-pip-version-check "$@"; }
 
+# Debian packages that building does without; they are installed beside it.
+packages_to_run=()
+
 prepare() {
   local extras=$1
   shift
@@ -125,14 +129,18 @@ prepare() {
   make_environment
   install_build_tools
   if is_project_installed "$extras"; then
+    install_packages "${packages_to_run[@]}"
     build_extension
     return
   fi
   say "installing what echopath needs into .venv, while the core is built"
-  install_requirements "$extras" &
+  (
+    install_packages "${packages_to_run[@]}"
+    install_requirements "$extras"
+  ) &
   local installing=$!
   build_extension || { wait "$installing"; fail "the core was not built"; }
-  wait "$installing" || fail "pip did not install what echopath needs"
+  wait "$installing" || fail "apt-get or pip did not install what echopath needs"
   install_project "$extras"
 }
 
@@ -332,8 +340,9 @@ case $verb in
     exec .venv/bin/echopath demo "$@"
     ;;
   test)
-    if has_viewer_tests
-    then prepare test,viewer,test-viewer "${packages[@]}" "${viewer_packages[@]}" "${screen_packages[@]}"
+    if has_viewer_tests; then
+      packages_to_run=("${viewer_packages[@]}" "${screen_packages[@]}")
+      prepare test,viewer,test-viewer "${packages[@]}"
     else prepare test "${packages[@]}"
     fi
     run_tests "$@"

@@ -53,8 +53,8 @@ def run_speed(folder, *, quick: bool = False, progress=None) -> dict:
     folder = Path(folder)
     write_texts(folder, {"speed.json": json.dumps(results, indent=1) + "\n",
                          "speed.csv": csv_text(results["synthesis"]["rows"], COLUMNS)})
-    draw_synthesis(results, folder / "synthesis.png")
-    draw_frames(results, folder / "frames.png")
+    draw_synthesis(results, folder / "speed_synthesis.png")
+    draw_frames(results, folder / "speed_frames.png")
     return results
 
 
@@ -124,8 +124,8 @@ def verdicts(results: dict) -> list[dict]:
     return rows
 
 
-def _memory_rows(frames: dict, large: dict | None) -> list[dict]:
-    most = max(row["peak_bytes"] for rows_of in frames.values() for row in rows_of)
+def _memory_rows(by_kind: dict, large: dict | None) -> list[dict]:
+    most = max(row["peak_bytes"] for rows_of in by_kind.values() for row in rows_of)
     rows = [_row("peak memory of any frame, bytes", frames.MOST_MEMORY, most, most=True)]
     if large:
         what = f"of {large['paths']:.0e} paths, {large['chirps']} chirps, {large['channels']} channels"
@@ -178,9 +178,9 @@ def _synthesis_lines(found: dict) -> list[str]:
     return lines
 
 
-def _frame_lines(frames: dict) -> list[str]:
+def _frame_lines(by_kind: dict) -> list[str]:
     lines = ["", "street, whole signal, medians             wall s  processor s   peak MiB"]
-    for kind, rows in frames.items():
+    for kind, rows in by_kind.items():
         for row in rows:
             each = f"   {1e9 * row['processor_s'] / row['paths']:8.1f} ns per path" if kind == "paths" else ""
             lines.append(f"  {row[kind]:>12,} {kind:<22}{row['wall_s']:12.3f}{row['processor_s']:13.3f}"

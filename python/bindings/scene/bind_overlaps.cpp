@@ -24,7 +24,8 @@ struct NamedOverlap {
 
 std::vector<NamedOverlap> named_overlaps(const Scene& scene, Arg<"time", Real> time,
                                          Arg<"max_distance", Real> max_distance) {
-  const Scene kept = scene;  // others may change it while the work runs
+  // Others may change the scene while the work runs.
+  const Scene kept = scene;  // NOLINT(performance-unnecessary-copy-initialization)
   const auto found = run_job("coplanar overlaps", py::none(),
                              [&](Job& job) { return coplanar_overlaps(kept, *time, *max_distance, &job); });
   std::vector<NamedOverlap> named;

@@ -98,6 +98,23 @@ def test_a_file_dropped_on_the_scene_is_opened_by_the_window(qtbot, window, monk
     assert opened == [str(tmp_path / "frame.h5")] * 3
 
 
+def test_a_change_of_another_widget_does_not_touch_the_scene(qtbot, window):
+    """Else it has the whole window composed with OpenGL, as slow as a picture where there is no graphics card."""
+    if QtGui.QGuiApplication.platformName() != "xcb":
+        pytest.skip("the scene has a window of its own on X11 alone")
+    wait_for_pictures(qtbot, window)
+    swapped = []
+    window.view3d.frameSwapped.connect(lambda: swapped.append(True))
+    for value in range(20, 60, 5):
+        window.filter_box.hits_check.setText(str(value))
+        settle(qtbot)
+    window.filter_box.hits_check.setText("hit points")
+    assert not swapped
+    window.view3d.render_soon()
+    wait_for_pictures(qtbot, window)
+    assert swapped
+
+
 def test_space_on_a_check_box_checks_it(qtbot, window):
     check = window.filter_box.hits_check
     check.setFocus()

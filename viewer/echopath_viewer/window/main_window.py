@@ -26,6 +26,7 @@ from .panels import Panels
 from .qt import QtCore, QtWidgets
 from .scene.ray_table import RayTable
 from .files.remembered import remember_layout, restore_layout
+from .scene.own_window import give_own_window
 from .scene.scene_tree import SceneTree
 from .timeline.time_bar import TimeBar
 from .timeline.time_control import TimeControl
@@ -67,6 +68,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         if remembers:
             restore_layout(self)
         self.show_content(False)
+        give_own_window(self.view3d)
 
     # --- frames ---
 
@@ -151,7 +153,6 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
             self._dragged_from = self.live.position(name)
             return
         self.live.move(name, self._dragged_from + way)
-        self.live_panel.read()
 
     def show_message(self, text: str) -> None:
         """Shows a line above everything until it is clicked away; "" takes it away."""

@@ -164,6 +164,9 @@ class LivePanel(QtWidgets.QWidget):
             self._change(lambda name: self.control.set_material(name, rough))
 
     def _tell(self, view) -> None:
+        """Takes over, too, where the object was dragged to: not at each step of the mouse, as each change of a widget has the
+        whole window composed anew, which takes software as long as a picture."""
+        self.read()
         words = "preview, full quality follows" if view.is_preview else "full quality"
         shot = f"{view.num_rays:,} rays, {view.num_rays_shot:,} shot anew"
         self.state_label.setText(f"{words}: {shot}, {1e3 * view.seconds:.0f} ms; {ALONE}")

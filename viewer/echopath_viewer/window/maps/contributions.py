@@ -25,6 +25,7 @@ class ContributionsPanel(QtWidgets.QWidget):
     def __init__(self, parent=None):
         super().__init__(parent)
         self.session, self._rows, self._cell, self._told = None, [], None, []
+        self._cell_told = None  # its level and what makes most of it, in words
         self._is_seen = False
         self.is_playing = lambda: False  # frames: nobody reads then what takes seconds to make
         self.title, self.without = QtWidgets.QLabel(HINT), QtWidgets.QLabel()
@@ -98,6 +99,17 @@ class ContributionsPanel(QtWidgets.QWidget):
         super().resizeEvent(event)
         self.table.setColumnHidden(len(COLUMNS) - 1, self.width() < WIDE)
         self._break_lines()
+        self._break_title()
+
+    def _break_title(self) -> None:
+        """In two lines where there is no room for one."""
+        if self._cell_told is None:
+            return
+        level, kind = self._cell_told
+        bold = self.title.font()
+        bold.setBold(True)
+        width = QtGui.QFontMetrics(bold).horizontalAdvance(f"{level}, {kind}")
+        self.title.setText(f"<b>{level}</b>,{' ' if width < self.width() - 16 else '<br>'}{kind}")
 
     def _break_lines(self) -> None:
         """What is told of the level, in lines as wide as the panel: a layout gives a label that wraps by itself too few."""
@@ -126,7 +138,7 @@ class ContributionsPanel(QtWidgets.QWidget):
         self._show_nothing(text)
 
     def _show_nothing(self, text: str) -> None:
-        self._cell = None
+        self._cell = self._cell_told = None
         self.title.setText(text)
         self._told = []
         self._break_lines()
@@ -139,7 +151,8 @@ class ContributionsPanel(QtWidgets.QWidget):
         place = f"{spectrum.range[distance]:.2f} m, {spectrum.velocity[velocity]:+.2f} m/s"
         if self.session.beam is not None:
             place += ", beam at {:+.1f}\u00b0, {:+.1f}\u00b0".format(*np.degrees(self.session.beam))
-        self.title.setText(for_pictures(f"<b>{place}: {cell.level_dbm:.1f} dBm</b>, mostly {kind_of(cell.strongest)}"))
+        self._cell_told = (for_pictures(f"{place}: {cell.level_dbm:.1f} dBm"), for_pictures(f"mostly {kind_of(cell.strongest)}"))
+        self._break_title()
         self._told = [for_pictures(f"without {name} {change:+.1f} dB") for name, change in cell.without
                       if abs(change) >= LEAST_CHANGE_DB]
         self._break_lines()

@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import time
-from contextlib import contextmanager
 
 import numpy as np
 import pyvista as pv
@@ -11,6 +10,7 @@ from vtkmodules.vtkRenderingCore import vtkCellPicker
 
 from ...model.rays.picking import nearest_segment
 from ...scene_builder import SceneBuilder
+from .coarse_pixels import coarse_pixels
 from .compass import Compass
 from .legend_box import LegendBox
 from .pace import FEW_RAYS, MANY_RAYS, Pace, Smoothing
@@ -138,29 +138,13 @@ class View3D(QtInteractor):
         interactor = self.iren.interactor
         interactor.EnableRenderOn()
         try:
-            with self._coarse_pixels():
+            with coarse_pixels(self.render_window, 1 if self._pace is None else self._pace.coarseness):
                 super().paintGL()
         finally:
             interactor.EnableRenderOff()
         if self.builder is not None:  # a picture may come after the window was closed
             self._learn(self.clock() - begin)
             self.compass.follow(self.camera, self.height())
-
-    @contextmanager
-    def _coarse_pixels(self):
-        """As coarse as the pace of the camera asks for: pyvistaqt stretches what VTK has drawn over the widget."""
-        times, window = 1 if self._pace is None else self._pace.coarseness, self.render_window
-        if times == 1:
-            yield
-            return
-        size, dpi = window.GetSize(), window.GetDPI()
-        window.SetSize(*(max(length // times, 1) for length in size))
-        window.SetDPI(max(dpi // times, 1))  # names keep their size
-        try:
-            yield
-        finally:
-            window.SetSize(*size)
-            window.SetDPI(dpi)
 
     def _learn(self, seconds: float) -> None:
         """How much the next pictures may have, from what one took."""

@@ -1,0 +1,16 @@
+"""The scene as a window of its own on the screen."""
+from __future__ import annotations
+
+from ..qt import Qt, QtGui
+
+
+def give_own_window(widget) -> None:
+    """Has the screen hold a widget that draws with OpenGL as a window of its own inside the one around it.
+
+    Else each change of any widget has the whole window composed with OpenGL, which takes software as long as a picture of the
+    scene: a slider that is dragged would halve the rate of a live scene. Before the window is shown, and after its panels have
+    their places.
+    """
+    if QtGui.QGuiApplication.platformName() == "xcb":
+        widget.setAttribute(Qt.WidgetAttribute.WA_DontCreateNativeAncestors)
+        widget.setAttribute(Qt.WidgetAttribute.WA_NativeWindow)

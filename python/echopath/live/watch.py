@@ -1,6 +1,7 @@
 """A thread that shows the changes of a live scene, the latest first."""
 from __future__ import annotations
 
+import math
 import threading
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -94,7 +95,11 @@ class Watch:
         if self._full_seconds > self._budget and self._changes.wait_for_other(self._show_preview(), QUIET):
             return
         number = self._changes.number
-        view = self._live.update(progress=lambda stage, fraction: self._go_on(number))
+        try:
+            view = self._live.update(progress=lambda stage, fraction: self._go_on(number))
+        except _Superseded:
+            self._full_seconds = math.inf  # changes come quicker: the next one has a preview, or none would ever be shown
+            raise
         self._full_seconds = view.seconds
         self._show(view)
         with self._shown_one:

@@ -209,6 +209,29 @@ def test_a_watch_shows_a_preview_first_where_a_view_takes_longer_than_its_budget
     assert shown[1].num_rays < shown[2].num_rays == 20_000
 
 
+def test_a_watch_shows_previews_while_changes_come_quicker_than_views(live, monkeypatch):
+    """Also where the view before them took less than its budget: that of another object may take far longer."""
+    update, shown = live.update, Shown()
+
+    def slow(progress):
+        for _ in range(300):
+            progress("rays", 0.5)
+            time.sleep(0.01)
+        return update(progress=progress)
+
+    with live.watch(shown, budget=LONG) as watch:
+        assert watch.wait(LONG)
+        with monkeypatch.context() as patch:
+            patch.setattr(live, "update", slow)
+            end = time.monotonic() + LONG
+            while not (len(shown) > 3 or time.monotonic() > end):
+                live.change(lambda scene: setattr(scene["sign_30"], "position", scene["sign_30"].position + (1e-3, 0.0, 0.0)))
+                time.sleep(0.02)
+        assert all(view.is_preview for view in shown[1:]) and len(shown) > 3
+        assert watch.wait(LONG)
+    assert not shown[-1].is_preview
+
+
 def test_threads_that_change_beside_each_other_lose_no_change(live):
     def push():
         for _ in range(25):

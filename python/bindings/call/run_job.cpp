@@ -79,7 +79,7 @@ class Listener {
       throw py::type_error("progress: must be None, True or a callable (stage, fraction), got " +
                            std::string(Py_TYPE(told_.ptr())->tp_name));
   }
-  ~Listener() {
+  ~Listener() {  // NOLINT(bugprone-exception-escape): pybind11 throws there only where it is broken itself
     if (!is_ours_) return;
     const py::error_scope pending;
     try {

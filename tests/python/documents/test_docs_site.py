@@ -184,9 +184,9 @@ def test_links_between_pages_lead_somewhere():
 
 def is_a_page(folder: Path, target: str) -> bool:
     """Whether a link leads to a page, or to one that is made of a script."""
-    made_of = {"../generated/gallery": EXAMPLES, "generated/gallery": EXAMPLES}
-    for prefix, source in made_of.items():
-        if target.startswith(prefix):
-            rest = target.removeprefix(prefix).strip("/")
-            return rest == "index" or (source / f"{rest}.py").is_file()
+    above = len(folder.relative_to(DOCS).parts)
+    gallery = above * "../" + "generated/gallery/"
+    if target.startswith(gallery):
+        rest = target.removeprefix(gallery)
+        return rest == "index" or (EXAMPLES / f"{rest}.py").is_file()
     return any((folder / f"{target}{suffix}").is_file() for suffix in ("", ".md", ".rst"))

@@ -68,7 +68,7 @@ class FrameBar(QtWidgets.QWidget):
         with QtCore.QSignalBlocker(self.slider):
             self.slider.setRange(0, max(len(moments) - 1, 0))
             self.slider.setValue(place)
-        count = str(len(moments)) if expected in (None, len(moments)) else f"{len(moments)}, {expected} to come in all"
+        count = str(len(moments)) if expected in (None, len(moments)) else f"{len(moments)} so far, {expected} in all"
         name = moments[place].name
         number = "" if name == f"frame {place}" else f" ({name})"
         text = f"frame {place + 1} of {count}{number}, {moments[place].start_time:.3f} s"

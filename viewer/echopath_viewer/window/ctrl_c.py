@@ -43,7 +43,7 @@ def closing_on_ctrl_c(application):
     sys.excepthook = lambda kind, *told: None if kind is KeyboardInterrupt else print_exception(kind, *told)
     # Python sees signals only while it runs, not while Qt waits for events.
     watch = QtCore.QTimer(interval=CHECK_MS)
-    watch.timeout.connect(lambda: application.closeAllWindows() if is_heard() and not _at_work else None)
+    watch.timeout.connect(lambda: _look(application))
     watch.start()
     try:
         yield
@@ -54,6 +54,14 @@ def closing_on_ctrl_c(application):
     if is_heard():
         _heard.clear()
         raise KeyboardInterrupt
+
+
+def _look(application) -> None:
+    """Ends the event loop on Ctrl-C and with the last window: Qt takes the scene inside of a closed one for one that is open."""
+    if is_heard() and not _at_work:
+        application.closeAllWindows()
+    if not any(widget.isVisible() for widget in application.topLevelWidgets()):
+        application.quit()
 
 
 def _hear(number, frame) -> None:

@@ -72,15 +72,15 @@ GainTable::GainTable(std::vector<double> azimuth, std::vector<double> elevation,
     : azimuth_(std::move(azimuth)), elevation_(std::move(elevation)), gain_(std::move(gain)), phase_(std::move(phase)) {
   require_axis(azimuth_, "azimuth");
   require_axis(elevation_, "elevation");
-  require(azimuth_.back() - azimuth_.front() <= kTwoPi + kAngleTolerance, "azimuth", "must cover at most 2 pi",
+  require(azimuth_.back() - azimuth_.front() <= kTwoPi + kAngleTolerance, "azimuth", "must cover at most 2 pi rad",
           azimuth_.back() - azimuth_.front());
   for (const double angle : {elevation_.front(), elevation_.back()}) {
-    require(std::abs(angle) <= 0.5 * kPi + kAngleTolerance, "elevation", "must lie in [-pi/2, pi/2]", angle);
+    require(std::abs(angle) <= 0.5 * kPi + kAngleTolerance, "elevation", "must lie in [-pi/2, pi/2] rad", angle);
   }
   const size_t count = azimuth_.size() * elevation_.size();
   require_samples(gain_, count, "gain");
   if (!phase_.empty()) require_samples(phase_, count, "phase");
-  for (const double value : gain_) require(value >= 0.0, "gain", "must not be negative", value);
+  for (const double value : gain_) require(value >= 0.0, "gain", "must not be negative: it is a ratio of powers, no dB", value);
   require(peak_gain() > 0.0, "gain", "must not be 0 everywhere", peak_gain());
 
   set_field();

@@ -42,7 +42,7 @@ def refuse_misplaced(callee: str, signature: inspect.Signature, values: Sequence
                             zip([name for name in by_name if name not in given], surplus))
         said = [name for name in by_place if name != "self"]
         takes = f"{', '.join(said)} alone" if said else "nothing"
-        raise TypeError(f"{callee}: takes {takes} without a name" + (f"; write {written}" if written else "")
+        raise TypeError(f"{callee}: takes {takes} without a name" + (f"; write {written} if that is meant" if written else "")
                         + f", got {shown(surplus[0])}")
     placed = set(by_place[:len(values)])
     for one in signature.parameters.values():

@@ -19,7 +19,7 @@ def named_globs(objects: Objects) -> list | None:
         return None
     found = objects if isinstance(objects, Mapping) else listed(objects)
     if not isinstance(found, (Mapping, list)):
-        raise refused(TypeError, "objects", "a dict or a list of globs", objects)
+        raise refused(TypeError, "objects", "a dict or a list of globs, as ['walker']", objects)
     pairs = found.items() if isinstance(found, Mapping) else [_pair(glob) for glob in found]
     return list({_name(name): _globs_of(globs) for name, globs in pairs}.items())
 

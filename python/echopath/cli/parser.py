@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import argparse
 
+from ..scene.materials import data_folder
 from . import commands as work
 from .numbers import natural, number_range, positive, seconds, shard
 
@@ -43,7 +44,7 @@ def command_parser() -> argparse.ArgumentParser:
     demo.set_defaults(command=work.demo)
 
     run = commands.add_parser("run", help="simulate a scene file")
-    run.add_argument("scene", metavar="SCENE.toml", help="scene file (keys: data/README.md)")
+    run.add_argument("scene", metavar="SCENE.toml", help=f"scene file (keys: {data_folder('README.md')})")
     run.add_argument("--out", required=True, metavar="DIR", help="folder of the results")
     _add_trace_options(run, default_rays=None)
     _add_part_option(run)
@@ -131,7 +132,7 @@ def _add_labels(commands) -> None:
 
 def _add_dataset(commands) -> None:
     dataset = commands.add_parser("dataset", help="make the labelled frames of a template, each scene drawn anew")
-    dataset.add_argument("template", metavar="DATASET.toml", help="template (keys: data/README.md)")
+    dataset.add_argument("template", metavar="DATASET.toml", help=f"template (keys: {data_folder('README.md')})")
     dataset.add_argument("--out", required=True, metavar="DIR",
                          help="folder of the dataset; the same command goes on where it was stopped")
     dataset.add_argument("--workers", type=positive, default=1, metavar="N",

@@ -23,6 +23,7 @@ from .received import received_parts
 
 if TYPE_CHECKING:
     from ..base.foreign_types import Axes, Page
+    from ..frame_file import LeftOut
 
 _WHOLE = object()  # a partition of one part, beside those that have names
 
@@ -113,6 +114,15 @@ class Frame:
         """Echoes that come to the receivers, without noise: of transmitters that send at once their sum."""
         cube = self.cube if self.coded_cube is None else self.coded_cube
         return cube if self.rain_cube is None else cube + self.rain_cube
+
+    def save(self, path: str | os.PathLike[str], min_power: float = 0.0) -> LeftOut:
+        """Writes the frame to an HDF5 file, which `ep.load_frame` reads: what `ep.save_frame` does, with its errors.
+
+        path, min_power (W) and what is returned are as in `Paths.save`
+        """
+        from ..frame_file import save_frame
+
+        return save_frame(self, path, min_power)
 
     def save_raw(self, path: str | os.PathLike[str]) -> int:
         """Writes what the converter gives as a DCA1000 would: signed 16-bit words, I0 I1 Q0 Q1, slot by slot.
@@ -227,7 +237,9 @@ class Frame:
     def __repr__(self) -> str:
         partitions = ", ".join(self.parts) or "none"
         cube = None if self.cube is None else list(self.cube.shape)
-        return f"Frame(paths={self.paths.num_paths}, cube={cube}, partitions: {partitions})"
+        labels = f", labels: {', '.join(self.labels)}" if self.labels else ""
+        found = "" if self.detections is None else f", {len(self.detections)} detections"
+        return f"Frame(paths={self.paths.num_paths}, cube={cube}, partitions: {partitions}{labels}{found})"
 
 
 def with_spectra(frame: Frame) -> Frame:

@@ -22,6 +22,7 @@ from ..receiver.channels import require_channels
 from ..signals.beside import cubes_beside
 from ..signals.interference_of_frame import has_interference, interference_cube, require_interferers
 from ..signals.parts import ONLY_PARTITION, as_partitions, check_partitions, decompose
+from ..signals.silence import warn_of_silence
 from ..spectra.azimuth_map import checked_settings, sees_azimuth
 from ..tracing.traces import keep_geometry
 from ..transmit import coded_cube, is_coded, synthesize_slots
@@ -84,6 +85,7 @@ class FrameRun:
             probe = _core.SignalProbe(seed=self.trace.seed) if self.guard and not has_steps(self.radar) else None
             families = find_families(paths, self._request.objects) if self._request else None
             cubes, whole, owners = _cubes(paths, self.radar, self.partitions, families, self._request, settings, probe)
+        warn_of_silence(paths, self.radar, whole)
         with clock("parts of paths"):
             groups = {partition: part_of_path(paths, group) for partition, group in self.partitions.items()}
         frame = self._bare_frame(paths, whole, cubes, groups, probe, clock.stages)

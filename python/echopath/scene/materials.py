@@ -12,11 +12,11 @@ from ..arguments.checks import refused
 
 
 def data_folder(name: str):
-    """A folder of the data that comes with echopath: of the installed package, or of the source tree beside it."""
+    """A folder or file of the data that comes with echopath: of the installed package, or of the source tree beside it."""
     try:
         return resources.files("echopath.data") / name
     except ModuleNotFoundError:
-        return Path(__file__).resolve().parents[2] / "data" / name
+        return Path(__file__).resolve().parents[3] / "data" / name
 
 
 class MaterialLibrary(Mapping):

@@ -37,6 +37,11 @@ def test_the_example_prints_what_stands_below_it(blocks, names, capsys):
     assert capsys.readouterr().out == printed
 
 
+def test_labels_of_the_example_print_what_stands_below_them(names):
+    printed = re.search(r"`print\(labels\)` prints\n```\n(.*?)\n```", TEXT, re.DOTALL)[1]
+    assert str(ep.annotate(names["paths"], names["parts"])) == printed
+
+
 def test_detections_of_the_example_are_what_the_scene_holds(blocks, names):
     """The map has noise, so that what is found is the person or, at rest, the wall."""
     exec(blocks[1], names)

@@ -50,7 +50,8 @@ def test_windows_of_other_libraries(frame, given, meant):
 
 
 def test_values_without_their_names_are_told_the_name(scene, frame):
-    with pytest.raises(TypeError, match=r"^trace: takes scene, radar alone without a name; write num_rays=1000, got 1000$"):
+    told = r"^trace: takes scene, radar alone without a name; write num_rays=1000 if that is meant, got 1000$"
+    with pytest.raises(TypeError, match=told):
         ep.trace(scene, RADAR, 1000)
     with pytest.raises(TypeError, match=r"^add: takes mesh_or_actor alone without a name; write name='second'"):
         scene.add(ep.actors.plate(1, 1), "second")
@@ -70,7 +71,7 @@ def test_positions_and_names_of_any_function():
         return first, second, third
 
     assert made(1, third=5) == (1, 2, 5)
-    with pytest.raises(TypeError, match="made: takes first, second alone without a name; write third=9, got 9"):
+    with pytest.raises(TypeError, match="made: takes first, second alone without a name; write third=9 if that is meant, got 9"):
         made(1, 2, 9)
     with pytest.raises(TypeError, match="made: takes first, second alone without a name, got 9"):
         made(1, 2, 9, third=4)

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.scene.materials import data_folder
 
 TWO_PLACES = 0.005     # the material file says it with two places
 THREE_PLACES = 0.0005  # with three
@@ -134,3 +135,11 @@ def test_reprs_are_short():
     assert repr(ep.Material.metal(mirror=True)) == "Material(conductor=True, mirror=True)"
     assert repr(ep.Material(permittivity=5 - 0.3j, scattering=0.4)) == "Material(permittivity=(5-0.3j), scattering=0.4)"
     assert repr(ep.materials).startswith("materials(asphalt, ")
+
+
+def test_the_data_are_found_beside_a_source_tree_that_is_not_installed(monkeypatch):
+    def not_installed(name):
+        raise ModuleNotFoundError(name)
+
+    monkeypatch.setattr("echopath.scene.materials.resources.files", not_installed)
+    assert (data_folder("materials") / "metal.toml").is_file()

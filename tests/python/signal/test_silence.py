@@ -1,0 +1,40 @@
+"""Paths without a signal are told of: of an oblique metal face few rays meet none of its coherent echo."""
+import warnings
+
+import numpy as np
+import pytest
+
+import echopath as ep
+
+TOLD = r"^no signal of [0-9,]+ paths: they lie beyond the last range of the waveform, 38\.37 m, or rays too few"
+
+
+@pytest.fixture(scope="module")
+def pyramid():
+    corners = [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0), (0, 0, 1.5)]
+    scene = ep.Scene()
+    scene.add(ep.Mesh(np.array(corners, float), [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [0, 2, 1], [0, 3, 2]]),
+              name="pyramid", material="metal", position=(10, 0, 0))
+    radar = ep.Radar(ep.ChirpSequence(num_samples=256, num_chirps=8), transmitters=[ep.Antenna()],
+                     receivers=[ep.Antenna((0, 0.01, 0))], position=(0, 0, 1))
+    return scene, radar
+
+
+def test_paths_without_power_are_told_of(pyramid):
+    paths = ep.trace(*pyramid, num_rays=20_000)
+    assert paths.num_paths > 0
+    with pytest.warns(RuntimeWarning, match=TOLD) as told:
+        assert not ep.synthesize(paths).any()
+    assert told[0].filename == __file__
+    with pytest.warns(RuntimeWarning, match=TOLD):
+        ep.simulate(*pyramid, num_rays=20_000)
+
+
+def test_silence_of_an_empty_scene_and_a_signal_are_not(pyramid):
+    scene, radar = pyramid
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ep.synthesize(ep.trace(scene, radar, num_rays=20_000).select("T 'pyramid' 'pyramid' R"))
+        plate = ep.Scene()
+        plate.add(ep.actors.plate(0.2, 0.2), name="plate", material="metal", position=(10, 0, 1), yaw=np.pi)
+        assert ep.synthesize(ep.trace(plate, radar, num_rays=20_000)).any()

@@ -1552,7 +1552,7 @@ class VirtualArray:
 
         Azimuths up to +-90 degrees and elevations up to +-45 degrees within the unambiguous field of its grid, in steps of a
         quarter of wavelength / extent, or of largest_step in rad where that is less; 0 alone where it has no extent. Raises TypeError
-        or ValueError naming the argument.
+        or ValueError naming the argument, or the angle of which there would be more than 200,000.
         """
     @property
     def centre(self) -> numpy.typing.NDArray[numpy.float64]:
@@ -1618,6 +1618,16 @@ class VirtualArray:
     def positions(self) -> numpy.typing.NDArray[numpy.float64]:
         """
         [tx, rx, 3] m, sums of the antennas' positions
+        """
+    @property
+    def tells_azimuths(self) -> bool:
+        """
+        whether it has a horizontal extent, so that azimuths differ
+        """
+    @property
+    def tells_elevations(self) -> bool:
+        """
+        whether it has a vertical extent
         """
     @property
     def wavelength(self) -> float:

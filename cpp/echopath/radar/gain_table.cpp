@@ -80,7 +80,8 @@ GainTable::GainTable(std::vector<double> azimuth, std::vector<double> elevation,
   const size_t count = azimuth_.size() * elevation_.size();
   require_samples(gain_, count, "gain");
   if (!phase_.empty()) require_samples(phase_, count, "phase");
-  for (const double value : gain_) require(value >= 0.0, "gain", "must not be negative: it is a ratio of powers, no dB", value);
+  for (const double value : gain_)
+    require(value >= 0.0, "gain", "must not be negative: it is a ratio of powers, no dB", value);
   require(peak_gain() > 0.0, "gain", "must not be 0 everywhere", peak_gain());
 
   set_field();

@@ -119,6 +119,9 @@ as the array's plane allows.)");
           "grid_deviation",
           [](const VirtualArray& self) -> py::object { return self.grid ? py::cast(self.grid->deviation) : py::none(); },
           "m, largest distance of an element from its point of the grid, or None")
+      .def_property_readonly("tells_azimuths", &tells_azimuths,
+                             "whether it has a horizontal extent, so that azimuths differ")
+      .def_property_readonly("tells_elevations", &tells_elevations, "whether it has a vertical extent")
       .def_property_readonly("gaps", &gaps_of, "[G, 2] rows and columns of the grid without an element")
       .def_property_readonly(
           "centre", [](const VirtualArray& self) { return to_numpy(self.centre()); }, "[3] m, mean of the elements")
@@ -131,7 +134,7 @@ as the array's plane allows.)");
 
 Azimuths up to +-90 degrees and elevations up to +-45 degrees within the unambiguous field of its grid, in steps of a
 quarter of wavelength / extent, or of largest_step in rad where that is less; 0 alone where it has no extent. Raises TypeError
-or ValueError naming the argument.)");
+or ValueError naming the argument, or the angle of which there would be more than 200,000.)");
   m.def("virtual_array", &virtual_array, py::arg("radar"), "What ep.virtual_array calls.");
 }
 

@@ -20,14 +20,14 @@ def directions_of(spectrum, radar, cells, settings: dict, progress) -> dict:
     Returns index [D] of the cell, azimuth, elevation [D] in rad (NaN where the antennas cannot tell), fold [D] m/s, to be
     added to the velocity, power [D] W, NaN where no beams were made.
     """
-    azimuths, elevations = _core.virtual_array(radar).default_angles()
+    array = _core.virtual_array(radar)
     count = len(cells)
     unknown = {"index": np.arange(count), "azimuth": np.full(count, np.nan), "elevation": np.full(count, np.nan),
                "fold": np.zeros(count), "power": np.full(count, np.nan)}
-    if count == 0 or len(azimuths) == len(elevations) == 1:
+    if count == 0 or not (array.tells_azimuths or array.tells_elevations):
         return unknown
     found = estimate_angles(spectrum, radar, cells=cells, progress=progress, **settings)
-    sees = {"azimuth": len(azimuths) > 1, "elevation": len(elevations) > 1}
+    sees = {"azimuth": array.tells_azimuths, "elevation": array.tells_elevations}
     known = {"index": found.cell, "fold": found.velocity - spectrum.velocity[cells[found.cell, 0]], "power": found.power}
     known |= {name: getattr(found, name) if seen else np.full(len(found), np.nan) for name, seen in sees.items()}
     return _with_the_rest(known, unknown)

@@ -187,7 +187,7 @@ class Frame:
     @cached_property
     def range_azimuth(self):
         """Range-azimuth map of the cube with noise, power [azimuth, range] in W; None where the radar sees no azimuth."""
-        return self.range_azimuth_of(self.spectrum) if sees_azimuth(self.radar) else None
+        return self.range_azimuth_of(self.spectrum) if sees_azimuth(self.radar, self.angle_settings) else None
 
     def range_azimuth_of(self, spectrum, progress=None):
         """Range-azimuth map of a part by the settings of the frame, power [azimuth, range] in W.

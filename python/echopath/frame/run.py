@@ -97,7 +97,7 @@ class FrameRun:
                                               **self.signal.of_replay())
         with clock("spectra"):
             with_spectra(frame)
-        if sees_azimuth(self.radar):
+        if sees_azimuth(self.radar, self.angle_settings):
             with clock("angles"):
                 frame.range_azimuth = frame.range_azimuth_of(frame.spectrum, progress)
         if self._request:

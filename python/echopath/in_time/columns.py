@@ -71,9 +71,10 @@ def angle_time(frames: Frames, radar: _core.Radar | None = None, *, combine: Com
     that see no azimuth.
     """
     columns = _Columns(bursts(frames, radar, part=part, start_times=start_times), window_length, hop)
-    if not sees_azimuth(columns.radar):
-        raise ValueError("frames: angle_time needs antennas side by side, got a radar that sees no azimuth")
     settings = checked_settings(columns.radar, angles, velocity_gate)
+    if not sees_azimuth(columns.radar, settings):
+        raise ValueError("frames: angle_time needs antennas side by side, and angles with an azimuth where they stand tens of "
+                         "metres apart, got a radar that sees no azimuth")
     spread = noise_bandwidth(of_range(window), columns.radar.waveform.num_samples) * zero_pad
 
     def map_of(spectrum, one):

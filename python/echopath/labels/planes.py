@@ -51,9 +51,10 @@ class RangeAzimuthPlane:
 
     def __init__(self, radar, window, zero_pad, angles):
         """window, zero_pad: as in `range_doppler`; angles: keywords of `range_azimuth`, None: {"combine": "peak"}"""
-        if not sees_azimuth(radar):
-            raise ValueError("plane: 'range_azimuth' needs antennas side by side, got a radar that sees no azimuth")
         self._angles = checked_settings(radar, angles)
+        if not sees_azimuth(radar, self._angles):
+            raise ValueError("plane: 'range_azimuth' needs antennas side by side, and angles with an azimuth where they stand "
+                             "tens of metres apart, got a radar that sees no azimuth")
         if self._angles.get("method", "bartlett") != "bartlett":
             raise ValueError("angles: method must be 'bartlett' for labels (Capon beams adapt to what they receive: those "
                              f"of a part are not those of the whole), got {self._angles['method']!r}")

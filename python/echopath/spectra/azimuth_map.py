@@ -16,10 +16,22 @@ DEFAULTS = {"combine": "peak"}  # noise as low as in the cells of the range-Dopp
 _KEYWORDS = keywords("range_azimuth", parameters_of(range_azimuth)[2:])  # all but spectrum and radar
 
 
-def sees_azimuth(radar) -> bool:
-    """Whether the antennas of a radar tell azimuths apart."""
-    azimuth, _ = _core.virtual_array(radar).default_angles()
-    return len(azimuth) > 1
+def sees_azimuth(radar, settings) -> bool:
+    """Whether the antennas of a radar tell azimuths apart, and how many to show is known.
+
+    settings: keywords of `ep.range_azimuth`; arrays of tens of metres, for which a map of all angles is too large, need
+        azimuths of their own
+    """
+    array = _core.virtual_array(radar)
+    return array.tells_azimuths and (settings.get("azimuth") is not None or _has_default(array))
+
+
+def _has_default(array) -> bool:
+    try:
+        array.default_angles()
+    except ValueError:
+        return False
+    return True
 
 
 def checked_settings(radar, settings, velocity_gate=None) -> dict:
@@ -39,10 +51,13 @@ def checked_settings(radar, settings, velocity_gate=None) -> dict:
     if velocity is not None and abs(velocity) > limit:
         raise ValueError(f"velocity: must be within +-{limit:.6g} m/s, got {velocity}")
     small = _with_one_sample(radar)
+    checked = settings | {"velocity": None, "velocity_gate": None}
+    if not sees_azimuth(radar, settings):  # it gets no map
+        checked |= {"azimuth": 0.0 if settings.get("azimuth") is None else settings["azimuth"]}
     cube = np.zeros((len(radar.transmitters), len(radar.receivers), 1, 1))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # a radar that sees no azimuth gets no map: `sees_azimuth`
-        range_azimuth(_core.range_doppler(cube, small), small, **settings | {"velocity": None, "velocity_gate": None})
+        range_azimuth(_core.range_doppler(cube, small), small, **checked)
     return settings
 
 

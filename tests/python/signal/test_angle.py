@@ -283,6 +283,17 @@ def test_frames_of_one_channel_have_no_map_of_azimuth():
     assert frame.range_azimuth is None
 
 
+def test_frames_of_arrays_longer_than_a_map_have_none_unless_azimuths_are_given():
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.3), name="sphere", position=(10, 0, 0), material="concrete")
+    radar = mimo([(0, 0)], [(0, 0), (1, 0), (359_000, 0)])  # 700 m
+    assert ep.simulate(scene, radar, num_rays=500, guard=False).range_azimuth is None
+    frame = ep.simulate(scene, radar, num_rays=500, guard=False, angles={"azimuth": [-0.1, 0.0, 0.1]})
+    assert frame.range_azimuth.power.shape[0] == 3
+    with pytest.raises(ValueError, match="^plane: 'range_azimuth' needs antennas side by side, and angles with an azimuth"):
+        ep.annotate(frame.paths, plane="range_azimuth")
+
+
 def test_a_map_of_azimuth_by_one_antenna_is_warned_of():
     radar = mimo([(0, 0)], [(0, 0)])
     spectrum = ep.range_doppler(np.zeros((1, 1, radar.waveform.num_chirps, radar.waveform.num_samples)), radar)
@@ -327,9 +338,9 @@ def test_bad_input_names_the_argument():
             (lambda: ep.beamform(spectrum, radar, [0.2, 0.1]), ValueError, "^azimuth: must be ascending"),
             (lambda: ep.beamform(spectrum, radar, elevation=2.0), ValueError, "^elevation: "),
             (lambda: ep.range_azimuth(noise_map(kilometres), kilometres), ValueError,
-             "^azimuth: must be given for an array that tells millions of angles apart by its length in m, got 19"),
+             "^azimuth: must be given: an array of this length in m tells more than 200,000 angles apart, got 19"),
             (lambda: ep.beamform(spectrum, radar, np.linspace(0, 1, 4000), np.linspace(0, 1, 4000)), ValueError,
-             "^azimuth: must have, times elevations and elements of the array, at most 134,217,728 angles, got 192000000"),
+             "^azimuth, elevation: must have at most 134,217,728 directions times elements of the array, got 192000000"),
             (lambda: ep.beamform(spectrum, radar, cells=[[32, 0]]), IndexError, "^cells: .*got \\(32, 0\\)"),
             (lambda: ep.beamform(spectrum, radar, cells=[[0.5, 0]]), TypeError, "^cells: "),
             (lambda: ep.beamform(spectrum, radar, overlap="first"), TypeError, "the nearest right one is 'overlaps'"),

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kStepsPerBeam = 4.0;            // per wavelength / extent
 constexpr double kLargestElevation = kPi / 4.0;  // of the default grid
-constexpr double kMostSteps = 1e6;               // of a default axis, to either side
+constexpr double kMostSteps = 1e5;               // of a default axis, to either side
 constexpr double kMostTerms = 134217728.0;       // of steering vectors: 4 GiB with the copy that beams are formed from
 
 void require_axis(const std::vector<double>& axis, const char* name, double limit, const char* rule) {
@@ -34,7 +34,7 @@ std::vector<double> default_axis(const char* name, double limit, double spacing,
   if (!tells_apart(extent, wavelength)) return {0.0};
   if (spacing > 0.0) limit = std::min(limit, std::asin(std::min(1.0, 0.5 * wavelength / spacing)));
   const double steps = std::ceil(limit / std::min(largest_step, wavelength / (kStepsPerBeam * extent)));
-  require(steps <= kMostSteps, name, "must be given for an array that tells millions of angles apart by its length in m",
+  require(steps <= kMostSteps, name, "must be given: an array of this length in m tells more than 200,000 angles apart",
           extent);
   const int half = static_cast<int>(steps);
   std::vector<double> axis;
@@ -64,6 +64,8 @@ std::vector<Vec3> AngleGrid::directions() const {
 
 bool tells_azimuths(const VirtualArray& array) { return tells_apart(width_of(array), array.wavelength); }
 
+bool tells_elevations(const VirtualArray& array) { return tells_apart(array.extent().z(), array.wavelength); }
+
 std::vector<double> default_azimuths(const VirtualArray& array, double largest_step) {
   return default_axis("azimuth", 0.5 * kPi, array.grid ? array.grid->column_spacing : 0.0, width_of(array), array.wavelength,
                       largest_step);
@@ -77,8 +79,8 @@ std::vector<double> default_elevations(const VirtualArray& array, double largest
 Eigen::MatrixXcd steering_vectors(const VirtualArray& array, const AngleGrid& angles) {
   const double terms = static_cast<double>(array.elements.size()) * static_cast<double>(angles.azimuth.size()) *
                        static_cast<double>(angles.elevation.size());
-  require(terms <= kMostTerms, "azimuth",
-          "must have, times elevations and elements of the array, at most 134,217,728 angles", terms);
+  require(terms <= kMostTerms, "azimuth, elevation", "must have at most 134,217,728 directions times elements of the array",
+          terms);
   return steering_vectors(array, angles.directions());
 }
 

@@ -23,11 +23,12 @@ Vec3 direction(double azimuth, double elevation);  // rad -> unit vector
 // Return the angles in rad that an array tells apart: azimuths up to +-90 degrees and elevations up to +-45 degrees, within
 // the unambiguous field wavelength / (2 spacing) of its grid, in steps of a quarter of wavelength / extent, or of
 // `largest_step` rad where that is less; only 0 where the array has no extent (horizontal, vertical).
-// Raise invalid_argument where there would be more than two million.
+// Raise invalid_argument where there would be more than 200,000.
 inline constexpr double kPictureStep = kPi / 180.0;
 std::vector<double> default_azimuths(const VirtualArray& array, double largest_step = kPictureStep);
 std::vector<double> default_elevations(const VirtualArray& array, double largest_step = kPictureStep);
-bool tells_azimuths(const VirtualArray& array);  // whether it has a horizontal extent
+bool tells_azimuths(const VirtualArray& array);    // whether it has a horizontal extent
+bool tells_elevations(const VirtualArray& array);  // and a vertical one
 
 // Returns e^{-j k (x - centre).u} [elements, directions], for the far field, exact positions and the centre frequency's
 // wavelength.

@@ -25,7 +25,7 @@ class SideMap:
 
 def range_azimuth_map(spectrum, radar, name: str, progress=None) -> SideMap:
     """The strongest velocity at each range and azimuth. Raises ValueError where the antennas tell no azimuths apart."""
-    if len(ep.virtual_array(radar).default_angles()[0]) < 2:
+    if not ep.virtual_array(radar).tells_azimuths:
         raise ValueError("the antennas of this radar tell no azimuths apart")
     found = ep.range_azimuth(spectrum, radar, combine="peak", progress=progress)
     return SideMap(f"range-azimuth, {name}", _level(found.power), np.asarray(found.range), np.degrees(found.azimuth))
@@ -33,9 +33,10 @@ def range_azimuth_map(spectrum, radar, name: str, progress=None) -> SideMap:
 
 def range_elevation_map(spectrum, radar, name: str, progress=None) -> SideMap:
     """The strongest velocity at each range and elevation, at azimuth 0. Raises ValueError where the antennas tell none apart."""
-    elevation = np.asarray(ep.virtual_array(radar).default_angles()[1])
-    if len(elevation) < 2:
+    array = ep.virtual_array(radar)
+    if not array.tells_elevations:
         raise ValueError("the antennas of this radar tell no elevations apart")
+    elevation = np.asarray(array.default_angles()[1])
     elevation = elevation[::-(-len(elevation) // MOST_BEAMS)]
     beams = ep.beamform(spectrum, radar, 0.0, elevation, progress=progress)
     power = np.asarray(beams.power)[:, 0].max(axis=1)

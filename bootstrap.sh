@@ -212,14 +212,14 @@ run_tidy() {
   "$python" .venv/bin/run-clang-tidy.py -quiet -p "$tidy_dir" -clang-tidy-binary .venv/bin/clang-tidy -j "$(nproc)"
 }
 
-# The libraries that the core is linked with come into the wheel, with their licences, so that it runs where none of them is
-# installed.
-# The source of a Debian package -> FOLDER/*.orig.tar.*. apt keeps lists of its own for it: those of the machine stay as they are.
+# The source of a Debian package -> FOLDER/*.orig.tar.* and FOLDER/*.diff.gz. apt keeps lists of its own for it: those of the machine
+# stay as they are.
 fetch_source() {
   local package=$1 folder=$2 lists=$PWD/build/source_lists file
+  rm -rf "$lists/parts"
   mkdir -p "$folder" "$lists/parts" "$lists/state" "$lists/cache"
   for file in /etc/apt/sources.list /etc/apt/sources.list.d/*.list; do
-    [ ! -f "$file" ] || sed -n 's/^deb /deb-src /p' "$file" >"$lists/parts/$(basename "$file" .list).list"
+    [ ! -f "$file" ] || sed -n 's/^deb[[:space:]]/deb-src /p' "$file" >>"$lists/parts/machine.list"
   done
   for file in /etc/apt/sources.list.d/*.sources; do
     [ ! -f "$file" ] || sed 's/^Types:.*/Types: deb-src/' "$file" >"$lists/parts/$(basename "$file")"
@@ -230,23 +230,32 @@ fetch_source() {
   (cd "$folder" && "${get[@]}" source --download-only "$package")
 }
 
-# Mesa without LLVM (softpipe): VTK's wheel draws by whatever OpenGL is there, and a machine with Python alone has none.
+# Mesa without LLVM (softpipe): VTK's wheel draws by whatever OpenGL is there, and a machine with Python alone has none. Debian's
+# changes are not applied, but its list of licences is taken. The mark names what it was made by, and stands there once all is done.
 make_renderer() {
-  local folder=build/renderer option options=()
-  [ ! -f "$folder/libOSMesa.so.8" ] || return 0
+  local folder=build/renderer option options=() mark
+  mark=$folder/made-$(declare -f fetch_source make_renderer | sha256sum | cut -c1-12)
+  [ ! -f "$mark" ] || return 0
   install_packages "${renderer_packages[@]}"
   say "what draws pictures without a screen (minutes the first time)"
   pip_install meson mako
+  rm -rf "$folder"
   fetch_source mesa "$folder"
-  tar -C "$folder" -xf "$folder"/mesa_*.orig.tar.*
+  mkdir "$folder/source"
+  tar -C "$folder/source" --strip-components=1 -xf "$folder"/mesa_*.orig.tar.*
   for option in llvm glx egl gbm gles1 gles2 shared-glapi zstd libunwind valgrind shader-cache; do options+=("-D$option=disabled"); done
-  PATH=$PWD/.venv/bin:$PATH meson setup "$folder/build" "$folder"/mesa-* --buildtype=release -Db_ndebug=true -Dosmesa=true \
+  PATH=$PWD/.venv/bin:$PATH meson setup "$folder/build" "$folder/source" --buildtype=release -Db_ndebug=true -Dosmesa=true \
     -Dgallium-drivers=swrast -Dvulkan-drivers= -Dplatforms= "${options[@]}" >"$folder/build.log" 2>&1 || fail "see $folder/build.log"
   PATH=$PWD/.venv/bin:$PATH ninja -C "$folder/build" >>"$folder/build.log" 2>&1 || fail "see $folder/build.log"
-  cp "$folder"/mesa-*/docs/license.rst "$folder/mesa"
+  gzip -dc "$folder"/mesa_*.diff.gz | awk '/^--- / {on = 0} on && /^[+]/ {print substr($0, 2)} /^[+][+][+] .*debian.copyright/ {on = 1}' \
+    >"$folder/mesa"
+  grep -q '^License: ' "$folder/mesa" || fail "the licences of Mesa were not found in $folder"
   cp "$folder/build/src/gallium/targets/osmesa/libOSMesa.so.8" "$folder"
+  touch "$mark"
 }
 
+# The libraries that the core is linked with come into the wheel, with their licences, so that it runs where none of them is
+# installed.
 make_wheel() {
   local open=build/wheel/open library owner licences
   say "the wheel"

@@ -116,9 +116,10 @@ class Frame:
         return cube if self.rain_cube is None else cube + self.rain_cube
 
     def save(self, path: str | os.PathLike[str], min_power: float = 0.0) -> LeftOut:
-        """Writes the frame to an HDF5 file, which `ep.load_frame` reads: what `ep.save_frame` does, with its errors.
+        """Writes the frame to an HDF5 file, which `ep.load_frame` reads: what `ep.save_frame` does.
 
-        path, min_power (W) and what is returned are as in `Paths.save`
+        path, min_power (W) and what is returned are as in `Paths.save`. Raises ep.FileError when the file cannot be written,
+        ValueError for a frame without signals.
         """
         from ..frame_file import save_frame
 

@@ -15,6 +15,7 @@ CLOSING = {
     ("echopath.frame.frame", "echopath_viewer"): "Frame.show makes a page with what draws scenes in the viewer",
     ("echopath.scene.scene", "echopath_viewer"): "Scene.to_pyvista makes blocks with the viewer's code",
     ("echopath.frame.frame", "echopath.truth"): "Frame.truth asks for the truth, which also takes rows of frames",
+    ("echopath.frame.frame", "echopath.frame_file"): "Frame.save writes with what also reads frames",
     ("echopath.frame.frame", "echopath.sensor_files"): "Frame.save_raw writes with what writes several frames",
     ("echopath.readers.model", "echopath.readers.along"): "Model.along makes another model of its nodes",
     ("echopath.cli.commands", "echopath_viewer"): "`echopath view` starts the viewer, whose demo is that of the command line",

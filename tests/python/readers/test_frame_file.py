@@ -64,7 +64,7 @@ def frame():
 @pytest.fixture
 def saved(frame, tmp_path):
     path = tmp_path / "frame.h5"
-    ep.save_frame(frame, path)
+    frame.save(path)
     return path
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from ..arguments.checks import anything, checked, optional, positive
 from .changes import Changes
 from .view import LiveView
+from ..base.callers import at_line_of_user
 from ..base.made_by import made_by
 
 if TYPE_CHECKING:
@@ -31,6 +32,7 @@ class Watch:
     After a change comes a preview with as many rays as the budget allows, unless the last full view took no longer than
     that, and then, once nothing has changed for 0.1 s, the full view. A change that comes meanwhile ends a full view, so that
     the latest change is shown first; changes in between may not be shown at all.
+    Warnings of its views name the line that called `Live.watch`.
     What a view or `show` raises ends the watch, is told to `failed` and raised by `wait` and `stop`. Made by `Live.watch`.
     """
 
@@ -40,7 +42,7 @@ class Watch:
         self._preview_rays, self._full_seconds = min(FIRST_PREVIEW_RAYS, live.num_rays), 0.0
         self._shown, self._error = -1, None  # number of the change whose full view was shown
         self._stopping, self._shown_one = False, threading.Condition()
-        self._thread = threading.Thread(target=self._run, name="echopath.Watch", daemon=True)
+        self._thread = threading.Thread(target=at_line_of_user(self._run), name="echopath.Watch", daemon=True)
         self._thread.start()
 
     def __enter__(self) -> Watch:

@@ -1,10 +1,12 @@
 """Work on the next of some things while the caller uses the one before."""
 from __future__ import annotations
 
+import functools
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, Generic, TypeVar
 
+from ..base.callers import at_line_of_user
 from ..base.threads import num_threads
 
 Result = TypeVar("Result")
@@ -17,8 +19,9 @@ def one_ahead(works: Iterable[Work[Result]], progress=None) -> Iterator[Result]:
     """What `work(progress)` of each returns, in order; while the caller uses one result, a thread works on the next.
 
     A work is taken from `works` when the one before has ended, so there is one result at most that nobody has asked for.
-    What a work raises is raised in its turn. Who leaves early stops the thread, which waits for its end. With one thread for
-    all loops (ep.set_num_threads) nothing is done ahead.
+    What a work raises is raised in its turn; its warnings name the line of the user, who asked for the result before it. Who
+    leaves early stops the thread, which waits for its end. With one thread for all loops (ep.set_num_threads) nothing is done
+    ahead.
     progress: callable (stage, fraction) or None; it is called in the thread of the caller, while that waits
     """
     if num_threads() == 1:
@@ -55,7 +58,8 @@ class _Ahead(Generic[Result]):
         self._result: list[Result] = []
         self._failure: BaseException | None = None
         self._told, self._is_stopped, self._has_ended = None, False, threading.Event()
-        self._thread = threading.Thread(target=self._run, args=(work,), daemon=True, name="echopath-ahead")
+        self._thread = threading.Thread(target=at_line_of_user(functools.partial(self._run, work)), daemon=True,
+                                        name="echopath-ahead")
         self._thread.start()
 
     def result(self, progress) -> Result:

@@ -8,6 +8,8 @@ from pathlib import Path
 import pytest
 
 import echopath as ep
+from echopath.base import callers
+from echopath.sequence.ahead import one_ahead
 
 METAL = ep.Material.metal()
 
@@ -28,6 +30,17 @@ def scene():
 
 def _lines(record, words: str) -> list[str]:
     return [one.filename for one in record if words in str(one.message)]
+
+
+def _coarse_ball() -> ep.Scene:
+    made = ep.Scene()
+    made.add(ep.actors.shapes.sphere(0.3, subdivisions=2), name="ball", material=METAL, smooth=True, position=(5, 0, 0))
+    return made
+
+
+def _line() -> int:
+    """Of the file, from which this is called."""
+    return sys._getframe(1).f_lineno
 
 
 def test_a_missed_target(scene, radar):
@@ -77,9 +90,55 @@ def test_an_empty_scene_traced_by_itself_and_in_sequences(radar, tmp_path):
     assert _lines(record, "has no mesh that takes part") == 3 * [__file__]
 
 
+def test_frames_in_a_loop_whose_records_a_thread_makes(radar):
+    with warnings.catch_warnings(record=True) as record:
+        warnings.simplefilter("always")
+        lines = range(_line() + 1, _line() + 3)
+        for _ in ep.Sequence(ep.Scene(), radar, frames=2, interval=0.1, num_rays=100):
+            pass
+    told = [one for one in record if "has no mesh that takes part" in str(one.message)]
+    assert [(one.filename, one.lineno in lines) for one in told] == [(__file__, True)]
+
+
+def test_warnings_of_the_core_in_a_loop_over_frames(scene, radar):
+    with warnings.catch_warnings(record=True) as record:
+        warnings.simplefilter("always")
+        for _ in ep.Sequence(scene, radar, frames=2, interval=0.1, num_rays=100, target_error_db=1e-3, max_rays=2000):
+            pass
+    assert _lines(record, "was reached at an error") == 2 * [__file__]
+
+
+def test_a_thread_says_once_what_python_says_once():
+    names = {"warn_user": callers.warn_user}
+    exec(compile("def work(progress): warn_user('the same')", callers.__file__, "exec"), names)
+
+    def warned_in_threads(action: str) -> list[str]:
+        with warnings.catch_warnings(record=True) as record:
+            warnings.simplefilter(action)
+            for _ in one_ahead(3 * [names["work"]]):
+                pass
+        return _lines(record, "the same")
+
+    assert warned_in_threads("always") == 3 * [__file__] and warned_in_threads("default") == [__file__]
+
+
+def test_warnings_that_are_errors_end_the_loop(radar):
+    with warnings.catch_warnings(), pytest.raises(RuntimeWarning, match="has no mesh that takes part"):
+        warnings.simplefilter("error")
+        next(iter(ep.Sequence(ep.Scene(), radar, frames=2, interval=0.1, num_rays=100)))
+
+
+def test_a_watched_scene(radar):
+    live = ep.Live(_coarse_ball(), radar, num_rays=100)
+    with warnings.catch_warnings(record=True) as record:
+        warnings.simplefilter("always")
+        with live.watch(lambda view: None) as watch:
+            assert watch.wait(60.0)
+    assert _lines(record, "edges of") == [__file__]
+
+
 def test_a_ball_that_is_too_coarse(radar):
-    coarse = ep.Scene()
-    coarse.add(ep.actors.shapes.sphere(0.3, subdivisions=2), name="ball", material=METAL, smooth=True, position=(5, 0, 0))
+    coarse = _coarse_ball()
     with warnings.catch_warnings(record=True) as record:
         warnings.simplefilter("always")
         ep.trace(coarse, radar, num_rays=100)

@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import numpy as np
+import pytest
 
 import echopath as ep
 from echopath.bench import live
@@ -78,6 +79,24 @@ def test_a_dragged_object_is_timed_by_what_a_watch_shows():
     rows = {row["what"]: row for row in edits.first_map_rows("sign", *edits.crowded_street(), 500, 2)}
     assert rows["sign, 500 rays, dragged: first map, s"]["measured"] > 0.0
     assert 0 < rows["sign, 500 rays, dragged: rays of it"]["measured"] <= 500
+
+
+class Broken(Exception):
+    pass
+
+
+def test_what_ends_the_watch_of_what_is_dragged_ends_the_measurement(monkeypatch):
+    update = ep.Live.update
+
+    def breaks_with_a_change(live, *, progress, num_rays=None):
+        if live.number > 0:
+            raise Broken
+        return update(live, progress=progress)
+
+    monkeypatch.setattr(ep.Live, "preview", breaks_with_a_change)
+    monkeypatch.setattr(ep.Live, "update", breaks_with_a_change)
+    with pytest.raises(Broken):
+        edits.first_map_rows("sign", *edits.crowded_street(), 500, 2)
 
 
 def test_stages_go_by_the_names_of_the_table():

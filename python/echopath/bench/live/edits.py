@@ -119,16 +119,24 @@ def first_map_rows(name: str, scene: ep.Scene, of_scene: ep.Radar, moved: str, n
     def drag():
         live.change(lambda of: setattr(of[moved], "position", of[moved].position + STEP))
         begin = time.perf_counter()
-        while (view := shown.get()).number != live.number:
+        while (view := _taken(shown)).number != live.number:
             pass
         return time.perf_counter() - begin, view.num_rays
 
-    with live.watch(shown.put) as watch:
+    with live.watch(shown.put, failed=shown.put) as watch:
         watch.wait()
         found = [drag() for _ in range(FIRST_VIEWS + updates)][FIRST_VIEWS:]
     what = f"{name}, {num_rays} rays, dragged"
     return [judged_row(f"{what}: first map, s", statistics.median(took for took, _ in found), MOST_SECONDS_OF_FIRST),
             judged_row(f"{what}: rays of it", statistics.median(rays for _, rays in found), None)]
+
+
+def _taken(shown: queue.Queue) -> ep.LiveView:
+    """The next view that a watch shows. Raises what has ended the watch: there is no other then."""
+    found = shown.get()
+    if isinstance(found, Exception):
+        raise found
+    return found
 
 
 def _set_material(node, material) -> None:

@@ -29,9 +29,10 @@ class _Superseded(Exception):
 class Watch:
     """Shows the views of a Live from a thread of its own: `with live.watch(show) as watch: live.change(...); watch.wait()`.
 
-    After a change comes a preview with as many rays as the budget allows, unless the last full view took no longer than
-    that, and then, once nothing has changed for 0.1 s, the full view. A change that comes meanwhile ends a full view, so that
-    the latest change is shown first; changes in between may not be shown at all.
+    After a change comes a preview with as many rays as the budget allows, where the last full view took longer than that or
+    another change ended it, and then, once nothing has changed for 0.1 s, the full view; where it took no longer, the full view
+    at once. A change that comes meanwhile ends a full view, so that the latest change is shown first; changes in between may
+    not be shown at all.
     Warnings of its views name the line that called `Live.watch`.
     What a view or `show` raises ends the watch, is told to `failed` and raised by `wait` and `stop`. Made by `Live.watch`.
     """

@@ -49,6 +49,42 @@ def test_what_is_moved_by_numbers_is_that_of_a_fresh_scene(qtbot, live_window):
     assert window.session.paths.num_paths == window.session.columns.power.size > 0
 
 
+def test_a_number_is_taken_when_it_is_typed_whatever_views_arrive_meanwhile(qtbot, live_window):
+    window, panel = live_window, live_window.live_panel
+    settled(qtbot, window)
+    panel.choose("plate")
+    view, seen = window.live.live.update(), []
+    window.live.live.change(lambda scene: setattr(scene["plate"], "position", (1.5, 0.0, 0.0)))
+    for box, field in ((panel.place_boxes[0], lambda: window.live.position("plate")[0]),
+                       (panel.yaw_box, lambda: np.degrees(window.live.yaw("plate")))):
+        before = field()
+        box.selectAll()
+        for key in "5.25":
+            qtbot.keyClicks(box, key)
+            window.live.shown.emit(window.session, view)
+            seen.append(field() - before)
+        qtbot.keyClick(box, Qt.Key.Key_Return)
+        assert field() == pytest.approx(5.25) and seen == [0.0] * len(seen)
+        window.live.shown.emit(window.session, view)
+        assert box.value() == 5.25
+        qtbot.keyClick(box, Qt.Key.Key_Up)  # a step acts at once
+        assert field() == pytest.approx(5.25 + box.singleStep())
+    window.live.move("plate", (2.0, 0.0, 0.0))  # as the mouse does
+    window.live.shown.emit(window.session, view)
+    assert panel.place_boxes[0].value() == 2.0
+    settled(qtbot, window)
+
+
+def test_a_half_typed_number_is_not_that_of_the_object_chosen_next(qtbot, live_window):
+    window, panel = live_window, live_window.live_panel
+    settled(qtbot, window)
+    panel.choose("plate")
+    panel.place_boxes[1].selectAll()
+    qtbot.keyClicks(panel.place_boxes[1], "7")
+    panel.choose("wall")
+    assert panel.place_boxes[1].value() == 0.0 == window.live.position("wall")[1] == window.live.position("plate")[1]
+
+
 def test_the_panel_tells_how_many_rays_there_are_and_what_is_left_out(qtbot, live_window):
     settled(qtbot, live_window)
     assert live_window.live_panel.rays_box.value() == live_window.live.live.num_rays == 3000

@@ -7,6 +7,7 @@ import echopath as ep
 
 from ...model.frames.live_session import DEFAULT_RAYS
 from .live_control import RADAR
+from .typed_box import TypedBox
 from ..qt import Qt, QtCore, QtWidgets
 
 STEP, FARTHEST = 0.1, 1e4    # m
@@ -28,8 +29,8 @@ class LivePanel(QtWidgets.QWidget):
         self.object_box, self.material_box = QtWidgets.QComboBox(), QtWidgets.QComboBox()
         self.material_box.addItems(["as it is", *ep.materials])
         limits = {"minimum": -FARTHEST, "maximum": FARTHEST, "singleStep": STEP, "decimals": 3, "suffix": " m"}
-        self.place_boxes = [QtWidgets.QDoubleSpinBox(prefix=f"{axis} ", **limits) for axis in "xyz"]
-        self.yaw_box = QtWidgets.QDoubleSpinBox(minimum=-360.0, maximum=360.0, singleStep=1.0, prefix="yaw ", suffix="\u00b0")
+        self.place_boxes = [TypedBox(prefix=f"{axis} ", **limits) for axis in "xyz"]
+        self.yaw_box = TypedBox(minimum=-360.0, maximum=360.0, singleStep=1.0, prefix="yaw ", suffix="\u00b0")
         self.rough_slider = QtWidgets.QSlider(Qt.Orientation.Horizontal, maximum=NUM_STEPS)
         self.rough_label, self.state_label = QtWidgets.QLabel(), QtWidgets.QLabel(HINT, wordWrap=True)
         self._arrange()
@@ -120,15 +121,15 @@ class LivePanel(QtWidgets.QWidget):
             widget.setEnabled(is_on)
         self.rays_box.setEnabled(not is_on)
 
-    def read(self) -> None:
-        """Takes over where the object is."""
+    def read(self, keeps_typed: bool = False) -> None:
+        """Takes over where the object is; keeps_typed: but for a box whose number is being typed."""
         name = self.object_box.currentText()
         if not self.control.is_on or not name:
             return
         self._is_filling = True
-        for box, value in zip(self.place_boxes, self.control.position(name)):
-            box.setValue(value)
-        self.yaw_box.setValue(np.degrees(self.control.yaw(name)))
+        values = [*self.control.position(name), np.degrees(self.control.yaw(name))]
+        for box, value in zip((*self.place_boxes, self.yaw_box), values):
+            (box.follow if keeps_typed else box.setValue)(value)
         for widget in (self.yaw_box, self.material_box, self.rough_slider):
             widget.setEnabled(name != RADAR)
         self._is_filling = False
@@ -166,7 +167,7 @@ class LivePanel(QtWidgets.QWidget):
     def _tell(self, view) -> None:
         """Takes over, too, where the object was dragged to: not at each step of the mouse, as each change of a widget has the
         whole window composed anew, which takes software as long as a picture."""
-        self.read()
+        self.read(keeps_typed=True)
         words = "preview, full quality follows" if view.is_preview else "full quality"
         shot = f"{view.num_rays:,} rays, {view.num_rays_shot:,} shot anew"
         self.state_label.setText(f"{words}: {shot}, {1e3 * view.seconds:.0f} ms; {ALONE}")

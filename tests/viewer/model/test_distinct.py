@@ -45,5 +45,19 @@ def test_segments_of_different_points_are_never_one():
     assert list(first_of_each(points, ends)) == list(range(21))
 
 
+@pytest.mark.parametrize("cell", [0.0, 0.5])
+def test_zeros_of_both_signs_are_one_point(cell):
+    points = np.float32([[0, 1, 2], [3, 4, 5], [-0.0, 1, 2]])
+    assert list(first_of_each(points, [(0, 1), (2, 1)], cell)) == [0]
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("cell", [0.0, 1e-9, 0.5])
+def test_points_that_are_nowhere_are_told_from_others_without_a_warning(cell):
+    points = np.float32([[0, 0, 0], [np.nan, 0, 0], [np.inf, 0, 0], [-np.inf, 0, 0], [3e38, 0, 0], [1, 0, 0]])
+    kept = first_of_each(points, [(0, 1), (0, 3), (0, 5), (1, 0)], cell)
+    assert list(kept) == [0, 1, 2]
+
+
 def test_nothing_is_a_normal_case():
     assert len(first_of_each(np.zeros((0, 3)), np.zeros((0, 2), int), 0.1)) == 0

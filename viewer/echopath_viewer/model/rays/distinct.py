@@ -7,6 +7,7 @@ import numpy as np
 OF_AXES = np.uint64([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9])
 MIXES = (np.uint64(30), np.uint64(0xBF58476D1CE4E5B9)), (np.uint64(27), np.uint64(0x94D049BB133111EB))
 LAST_SHIFT = np.uint64(31)
+FAR = 2.0**62  # cells: nothing that is drawn lies farther, and it fits into 64 bits
 
 
 def first_of_each(points, ends, cell: float = 0.0) -> np.ndarray:
@@ -14,13 +15,21 @@ def first_of_each(points, ends, cell: float = 0.0) -> np.ndarray:
 
     points: [V, 3] f32 m; ends: [S, 2] the two points of each segment; cell: m, ends in the same cube of a grid of that
     spacing count as one, 0: only equal ones do.
+    What is infinite or NaN counts as far away where there is a cell.
     Ends are compared by 64 random bits: of 100 000 segments one is taken for another once in 4e9 times.
     """
     points = np.ascontiguousarray(points, np.float32).reshape(-1, 3)
-    words = points.view(np.uint32) if cell == 0.0 else np.rint(points / np.float64(cell)).astype(np.int64).view(np.uint64)
-    of_point = _mixed((words * OF_AXES).sum(axis=1, dtype=np.uint64))
+    of_point = _mixed((_words(points, cell) * OF_AXES).sum(axis=1, dtype=np.uint64))
     begin, end = of_point[np.reshape(ends, (-1, 2))].T
     return np.sort(np.unique(_mixed(begin + end), return_index=True)[1])
+
+
+def _words(points, cell: float):
+    """[V, 3] unsigned, the same where points count as one."""
+    if cell == 0.0:
+        return (points + np.float32(0.0)).view(np.uint32)  # -0 becomes 0
+    cells = np.rint(points / np.float64(cell))
+    return np.fmax(np.fmin(cells, FAR), -FAR).astype(np.int64).view(np.uint64)
 
 
 def _mixed(bits):

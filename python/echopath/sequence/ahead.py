@@ -60,7 +60,12 @@ class _Ahead(Generic[Result]):
         self._told, self._is_stopped, self._has_ended = None, False, threading.Event()
         self._thread = threading.Thread(target=at_line_of_user(functools.partial(self._run, work)), daemon=True,
                                         name="echopath-ahead")
-        self._thread.start()
+        try:
+            self._thread.start()
+        except BaseException:  # Ctrl-C while this waits for the thread to run: nobody else knows of it
+            if self._thread.ident is not None:
+                self.stop()
+            raise
 
     def result(self, progress) -> Result:
         """Waits for the end; returns or raises what the work did. To be called once."""

@@ -161,6 +161,22 @@ def test_leaving_a_loop_stops_the_record_of_the_next_frame(monkeypatch):
     assert ended.is_set() and ahead_threads() == []
 
 
+def test_ctrl_c_while_the_thread_begins_stops_it(monkeypatch):
+    begun, ended = threading.Event(), threading.Event()
+    start = threading.Thread.start
+
+    def interrupted(thread):
+        start(thread)
+        if thread.name == "echopath-ahead":
+            assert begun.wait(WAIT)
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(threading.Thread, "start", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        next(one_ahead([endless(begun, ended)]))
+    assert ended.is_set() and ahead_threads() == []
+
+
 SCRIPT = """
 import sys, threading, time
 import echopath as ep

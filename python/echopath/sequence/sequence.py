@@ -102,21 +102,27 @@ class Sequence(Row[Frame]):
 
     def _item(self, place: int, progress=None) -> Frame:
         """As Row has it; progress: as in `simulate`."""
-        frame = self._run.frame_of_record(self._recorded(place, progress), progress)
-        warn_of(frame.checks)
-        return frame
+        return self._finished(self._recorded(place, progress), progress)
 
     def _items(self, places: Iterable[int], progress=None) -> Iterator[Frame]:
         """As Row has it; the record of the next frame is made while this one is used."""
         # The geometry of a frame is looked at when its objects are labelled, while that of the next is traced.
         geometries = itertools.cycle((_core.KeptGeometry(), _core.KeptGeometry()))
         works = (functools.partial(self._recorded, place, geometry=geometry) for place, geometry in zip(places, geometries))
-        for recorded in one_ahead(works, progress):
-            frame = self._run.frame_of_record(recorded, progress)
-            warn_of(frame.checks)
-            give_back_memory()
-            yield frame
-            del recorded, frame  # of which none is kept while the next is made
+        try:
+            for recorded in one_ahead(works, progress):
+                frame = self._finished(recorded, progress)
+                yield frame
+                del recorded, frame  # of which none is kept while the next is made
+        finally:
+            give_back_memory()  # of frames that the user has let go since, and of one made ahead that nobody takes
+
+    def _finished(self, recorded: Recorded, progress) -> Frame:
+        """The frame of a record, with the memory of the work on it given back."""
+        frame = self._run.frame_of_record(recorded, progress)
+        warn_of(frame.checks)
+        give_back_memory()
+        return frame
 
     def _recorded(self, place: int, progress=None, geometry=None) -> Recorded:
         """The record of the frame at a place; geometry: KeptGeometry where that of the scene is kept, None: as before."""

@@ -232,3 +232,14 @@ def test_what_the_work_on_a_frame_has_left_goes_back_before_the_frame_is_handed_
     given_back = []
     monkeypatch.setattr(sequence, "give_back_memory", lambda: given_back.append(True))
     assert [len(given_back) for frame in make_sequence(frames=3) if frame is not None] == [1, 2, 3]
+    assert len(given_back) == 4, "after the last one, too"
+    given_back.clear()
+    assert make_sequence(frames=3)[1] is not None and len(given_back) == 1
+
+
+def test_memory_of_a_frame_that_nobody_takes_goes_back_when_a_loop_is_left(monkeypatch):
+    working = []
+    monkeypatch.setattr(sequence, "give_back_memory", lambda: working.append(len(ahead_threads())))
+    for _ in make_sequence(frames=3):
+        break
+    assert len(working) == 2 and working[-1] == 0, "when the thread that made it has ended"

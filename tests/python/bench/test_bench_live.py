@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.base.mesh_names import object_of
 from echopath.bench import live
 from echopath.bench.live import drive, edits, street
 
@@ -22,14 +23,14 @@ def drive_scene() -> ep.Scene:
 
 def bounds_of(scene, name: str, time: float):
     """Lowest and highest corner [3] in m of an object."""
-    ids = [mesh.id for mesh in scene.meshes if mesh.name.split("/")[0] == name]
+    ids = [mesh.id for mesh in scene.meshes if object_of(mesh.name) == name]
     vertices = np.concatenate([np.asarray(scene.world_vertices(index, time)) for index in ids])
     return vertices.min(axis=0), vertices.max(axis=0)
 
 
 def test_the_street_has_the_triangles_cars_and_people_that_it_is_named_for():
     scene = drive_scene()
-    roots = {mesh.name.split("/")[0] for mesh in scene.meshes}
+    roots = {object_of(mesh.name) for mesh in scene.meshes}
     assert sum(name.startswith("car_") for name in roots) == 20 and sum(name.startswith("person_") for name in roots) == 20
     at_rest = sum(len(mesh.triangles) for mesh in scene.meshes if not mesh.name.startswith(("car_", "person_")))
     assert abs(at_rest - STREET_TRIANGLES) < 0.01 * STREET_TRIANGLES
@@ -38,7 +39,7 @@ def test_the_street_has_the_triangles_cars_and_people_that_it_is_named_for():
 
 def test_nobody_drives_or_walks_into_a_house_and_the_radar_meets_nobody():
     scene = drive_scene()
-    names = sorted({mesh.name.split("/")[0] for mesh in scene.meshes if mesh.name.startswith(("car_", "person_"))})
+    names = sorted({object_of(mesh.name) for mesh in scene.meshes if mesh.name.startswith(("car_", "person_"))})
     for time in np.linspace(0.0, SECONDS, 4):
         radar_x = street.RADAR_SPEED * time
         for name in names:

@@ -2,12 +2,12 @@
 from __future__ import annotations
 
 import os
-import warnings
 
 import numpy as np
 import pyvista as pv
 
 import echopath as ep
+from echopath.base.callers import warn_user
 from echopath.base.origin import mark_png, origin_texts
 
 from .model import Filters, PartSet, Session, Signals, ViewInput, from_frame, whole_part
@@ -16,6 +16,7 @@ from .scene_builder import SceneBuilder
 from .scene_builder.web_page import ScenePage
 
 NUM_RAYS = 300
+_FOLDER = os.path.dirname(__file__)
 
 
 def plot_rays(scene, paths, *, selection="", num_rays=NUM_RAYS, color_by="bounces", cmap=None, clim=None, chirp=None,
@@ -81,7 +82,7 @@ def _new_plotter(off_screen, window_size):
 
 def _draw_plainly(scene, paths, selection, num_rays: int, screenshot) -> None:
     """The picture where nothing draws in OpenGL: of Matplotlib, with three views and the colours of the bounces."""
-    warnings.warn(f"off_screen: drawn by Matplotlib, in its views and colours: {lacking()}", RuntimeWarning, stacklevel=6)
+    warn_user(f"off_screen: drawn by Matplotlib, in its views and colours: {lacking()}", RuntimeWarning, _FOLDER)
     chosen = paths.select(selection) if str(selection) else paths
     figure = ep.plots.plot_scene(paths.scene if scene is None else scene, chosen, num_rays=num_rays)
     ep.plots.save_png(figure, screenshot, seed=paths.frame.seed)

@@ -12,17 +12,21 @@ from collections.abc import Callable
 _PACKAGE = os.path.dirname(os.path.dirname(__file__)) + os.sep
 
 
-def level_of_user() -> int:
-    """The `stacklevel` with which the calling function warns at the line of the first caller outside the package."""
+def level_of_user(*beside: str) -> int:
+    """The `stacklevel` with which the calling function warns at the line of the first caller outside the package.
+
+    beside: folders of packages that belong to this one, whose lines are not the user's either
+    """
     frame, level = sys._getframe(1), 1
-    while frame.f_back is not None and frame.f_code.co_filename.startswith(_PACKAGE):
+    of_package = (_PACKAGE, *(os.path.join(folder, "") for folder in beside))
+    while frame.f_back is not None and frame.f_code.co_filename.startswith(of_package):
         frame, level = frame.f_back, level + 1
     return level
 
 
-def warn_user(text: str, category: type[Warning] = RuntimeWarning) -> None:
-    """Warns at the line of the user."""
-    warnings.warn(text, category, stacklevel=level_of_user())
+def warn_user(text: str, category: type[Warning] = RuntimeWarning, *beside: str) -> None:
+    """Warns at the line of the user. beside: as of `level_of_user`"""
+    warnings.warn(text, category, stacklevel=level_of_user(*beside))
 
 
 def at_line_of_user(work: Callable[[], object]) -> Callable[[], object]:

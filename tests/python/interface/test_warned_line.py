@@ -81,6 +81,17 @@ def test_a_script_beside_a_package_behind_a_link(tmp_path):
     assert run.stdout.split() == [str(tmp_path / "echopath" / "base" / "callers.py"), "2"]
 
 
+def test_a_package_beside_this_one_is_not_the_user():
+    names = {"warn_user": callers.warn_user}
+    exec(compile("def draw(*beside): warn_user('drawn', RuntimeWarning, *beside)", "/beside/plot.py", "exec"), names)
+    with warnings.catch_warnings(record=True) as record:
+        warnings.simplefilter("always")
+        names["draw"]()
+        names["draw"]("/besi")
+        names["draw"]("/beside")
+    assert _lines(record, "drawn") == ["/beside/plot.py", "/beside/plot.py", __file__]
+
+
 def test_an_empty_scene_traced_by_itself_and_in_sequences(radar, tmp_path):
     with warnings.catch_warnings(record=True) as record:
         warnings.simplefilter("always")

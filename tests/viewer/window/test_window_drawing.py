@@ -48,6 +48,44 @@ def test_a_turn_of_the_camera_is_drawn_once(qtbot, window, pictures):
     assert len(pictures) == 1
 
 
+def widest_loss(view) -> float:
+    """Pixels between the ends of any leg of the rays that are drawn and those of the drawn leg that is most like it."""
+    segments, clip = view.builder.rays.segments, view.clip_from_world()
+
+    def on_screen(points):
+        at = np.column_stack([points, np.ones(len(points))]) @ clip.T
+        return (at[:, :2] / at[:, 3:] * (view.width() / 2, view.height() / 2)).reshape(-1, 2, 2)
+    wanted = on_screen(segments.points[segments.ends[:segments.num_segments_of(view._pace.num_rays)]].reshape(-1, 3))
+    drawn = on_screen(view.builder.rays._rays.GetMapper().GetInput().points)
+    both = np.concatenate([drawn, drawn[:, ::-1]])
+    return max(np.abs(both - leg).max(axis=(1, 2)).min() for leg in wanted)
+
+
+def test_near_legs_are_told_apart_while_the_camera_moves_and_looks_far_away(qtbot, window, monkeypatch):
+    view, camera = window.view3d, window.view3d.camera
+    wait_for_pictures(qtbot, window)
+    pace = view._turning
+    monkeypatch.setattr(pace, "follow", lambda *_: False)
+    monkeypatch.setattr(pace, "begin", lambda: None)
+    pace.num_rays, pace.coarseness = 500, 3
+    counts = []
+    for position in ((-400.0, 10.0, 2.0), (-5.0, 0.0, 0.5), (-2.0, 0.3, 0.5), (2.0, 0.0, 0.2)):
+        camera.position, camera.focal_point, camera.view_angle = position, (500.0, 0.0, 0.0), 30.0
+        if view._pace is None:
+            view.set_moving(pace)
+        view.reset_camera_clipping_range()
+        view.render_soon()  # as while a button is held: no motion begins or ends
+        wait_for_pictures(qtbot, window)
+        counts.append(view.builder.rays._rays.GetMapper().GetInput().n_lines)
+        if position[0] < 0.0:
+            assert widest_loss(view) <= pace.coarseness
+    segments = view.builder.rays.segments
+    legs = segments.points[segments.ends[:segments.num_segments_of(500)]].tolist()
+    assert counts == sorted(counts) and counts[0] < counts[-1] == len({frozenset(map(tuple, leg)) for leg in legs})
+    view.set_moving(None)
+    window.look_fit()
+
+
 def test_the_film_shows_every_step_however_slow_its_pictures_are(qtbot, window, pictures):
     wait_for_pictures(qtbot, window)
     tag = window.view3d.renderer.AddObserver("StartEvent", lambda *_: time.sleep(SLOW_PICTURE))

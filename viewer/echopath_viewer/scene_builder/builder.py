@@ -107,6 +107,11 @@ class SceneBuilder:
         for layer in (self.rays, self.lit):
             layer.show_first(count, cell)
 
+    def nearest_ray(self) -> float:
+        """Distance in m in front of the camera of the nearest end of a leg: less than 0 where one lies behind it."""
+        camera = self.plotter.camera
+        return min(layer.nearest(camera.position, camera.direction) for layer in (self.rays, self.lit))
+
     def look(self, view: str) -> None:
         """Turns the camera: a name of VIEWS."""
         radar, time = self.session.radar, self.session.time

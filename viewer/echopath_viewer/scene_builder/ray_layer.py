@@ -55,6 +55,13 @@ class RayLayer:
             set_segment_colours(lines, self._rgb[kept])
         self._rays.GetMapper().SetInputDataObject(lines)
 
+    def nearest(self, origin, ahead) -> float:
+        """Smallest distance in m of any point of the rays from the plane through an origin [3], along its normal [3]: less than 0
+        where some lie behind it, inf without rays."""
+        if self.segments is None or not self._rays.GetVisibility():
+            return np.inf
+        return float(np.fmin.reduce(self.segments.points @ np.float32(ahead), initial=np.inf)) - float(np.dot(origin, ahead))
+
     def _drawn(self, count: int, cell: float):
         """Which of the first segments."""
         if not self._is_opaque:

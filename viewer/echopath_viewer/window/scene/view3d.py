@@ -13,13 +13,14 @@ from ...scene_builder import SceneBuilder
 from .coarse_pixels import coarse_pixels
 from .compass import Compass
 from .legend_box import LegendBox
+from .nearest import pixel_at
 from .pace import FEW_RAYS, MANY_RAYS, Pace, Smoothing
 from ..qt import Qt, QtCore, Signal
 
 GL_COLOR_BUFFER_BIT = 0x4000
 LONGEST_WAIT_MS = 2000  # for a picture, of what is to come after it
 COARSEST = 3  # pixels while the camera is turned, of the screen's
-ONE_PLACE = 0.5  # of a pixel at the distance that the camera looks at: ends so close are one while the camera moves
+ONE_PLACE = 0.5  # of a pixel, as wide as it is at the nearest ray: ends so close are one while the camera moves
 CLICK_REACH = 5.0  # pixels: a click moves no farther, and a ray that close is meant
 
 
@@ -41,6 +42,7 @@ class View3D(QtInteractor):
         self._press, self._drag, self.legend_box = None, None, LegendBox(self)
         self.clock, self._turning, self._passing = time.perf_counter, Pace(COARSEST, MANY_RAYS), Pace(1, FEW_RAYS)
         self._pace = None  # of the two, while the camera turns or frames pass
+        self._drawn_as = None  # number of rays and cell, while that is so
         self._smoothing = Smoothing()
         self.compass = Compass(self)
         self.setAcceptDrops(False)  # what is dropped here is the window's: pyvistaqt would read it with VTK
@@ -134,6 +136,8 @@ class View3D(QtInteractor):
         functions.glClear(GL_COLOR_BUFFER_BIT)
 
     def _draw(self) -> None:
+        if self._pace is not None and self.builder is not None:
+            self._show_moving()
         self._is_behind, begin = False, self.clock()
         interactor = self.iren.interactor
         interactor.EnableRenderOn()
@@ -148,8 +152,8 @@ class View3D(QtInteractor):
 
     def _learn(self, seconds: float) -> None:
         """How much the next pictures may have, from what one took."""
-        if self._pace is not None and self._pace.follow(seconds, len(self.builder.rays.segments.rays)):
-            self._show_moving()
+        if self._pace is not None:
+            self._pace.follow(seconds, len(self.builder.rays.segments.rays))
         if self._smoothing.follow(seconds):
             self.render_window.SetMultiSamples(self._smoothing.samples)
             self.render_soon()
@@ -172,7 +176,7 @@ class View3D(QtInteractor):
             return
         if pace not in (None, self._pace):
             pace.begin()
-        self._pace = pace
+        self._pace, self._drawn_as = pace, None
         if pace is not None:
             self._show_moving()
             return
@@ -181,10 +185,11 @@ class View3D(QtInteractor):
 
     def _show_moving(self) -> None:
         """As many rays as the pace allows; of those that no pixel tells apart the first."""
-        camera, pace = self.camera, self._pace
-        height = 2.0 * camera.distance * np.tan(np.radians(camera.view_angle) / 2.0)  # m, of what the view shows there
-        pixel = pace.coarseness * height / max(self.render_window.GetSize()[1], 1)
-        self.builder.show_first_rays(pace.num_rays, ONE_PLACE * pixel)
+        pixel = pixel_at(self.builder.nearest_ray(), self.camera.view_angle, self.render_window.GetSize()[1])
+        drawn_as = self._pace.num_rays, ONE_PLACE * self._pace.coarseness * pixel
+        if drawn_as != self._drawn_as:
+            self._drawn_as = drawn_as
+            self.builder.show_first_rays(*drawn_as)
 
     # --- picking ---
 

@@ -5,6 +5,7 @@ import ctypes
 import os
 import subprocess
 import sys
+import uuid
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -219,13 +220,13 @@ def test_the_renderer_that_is_there_is_asked_to_draw(lacking, monkeypatch):
 
 
 def test_the_renderer_of_the_wheel_is_found_by_those_who_ask_for_its_name(monkeypatch, tmp_path):
-    own = tmp_path / "libwheels.so.8"
+    own = tmp_path / f"lib{uuid.uuid4().hex}.so.8"  # of the run alone: what is loaded stays so, under this name
     subprocess.run(["gcc", "-shared", "-x", "c", "/dev/null", f"-Wl,-soname,{own.name}", "-o", own], check=True)
-    monkeypatch.setattr("echopath_viewer.off_screen.RENDERERS", {"egl": ("libnone.so.1",), "mesa": ("libwheels.so.8",)})
+    monkeypatch.setattr("echopath_viewer.off_screen.RENDERERS", {"egl": ("libnone.so.1",), "mesa": (own.name,)})
     assert renderer() == ""
     monkeypatch.setattr("echopath_viewer.off_screen.OWN", tmp_path)
     assert renderer() == "mesa"
-    ctypes.CDLL("libwheels.so.8")  # as VTK loads it; raises OSError where nothing of that name is loaded or found
+    ctypes.CDLL(own.name)  # as VTK loads it; raises OSError where nothing of that name is loaded or found
 
 
 def test_rays_that_are_drawn_opaque_have_their_colours_and_are_hidden_by_what_stands_before_them(plotter):

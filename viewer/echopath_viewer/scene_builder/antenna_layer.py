@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..model.antennas import world_from_antenna
-from .polydata import coloured_actor, lines_of, set_point_colours, set_segment_colours, vertices_of
+from .polydata import coloured_actor, loose_lines_of, set_point_colours, set_segment_colours, vertices_of
 
 AXIS_COLOURS = np.array([[204, 51, 17], [0, 136, 85], [0, 102, 204]], np.uint8)  # x (boresight), y, z
 TRANSMITTER_COLOUR, RECEIVER_COLOUR, IDLE_COLOUR = (204, 51, 17), (0, 102, 204), (120, 120, 120)
@@ -33,7 +33,8 @@ class AntennaLayer:
         frames = [world_from_antenna(self._radar, antenna, time) for antenna in self._antennas()]
         corners = [frame[:3, 3] + self._size * direction for frame in frames for direction in frame[:3, :3].T]
         origins = np.repeat([frame[:3, 3] for frame in frames], 3, axis=0)
-        lines = lines_of(np.stack([origins, corners], axis=1), np.arange(6 * len(frames)).reshape(-1, 2))
+        points = np.stack([origins, corners], axis=1).reshape(-1, 3)
+        lines = loose_lines_of(points, np.arange(len(points)).reshape(-1, 2))
         set_segment_colours(lines, np.tile(AXIS_COLOURS, (len(frames), 1)))
         dots = vertices_of(origins[::3])
         set_point_colours(dots, self._dot_colours(tx, rx))

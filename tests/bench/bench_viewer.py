@@ -20,6 +20,7 @@ from pathlib import Path
 import numpy as np
 
 import echopath as ep
+from echopath.base.mesh_names import object_of
 from echopath.live.watch import FEWEST_PREVIEW_RAYS
 from echopath.paths.subset import strongest, subset
 from echopath_viewer.model import CellBox, Filters, from_file
@@ -168,7 +169,7 @@ def bench_live(window) -> None:
     live = live_of(window.session, LIVE_RAYS)
     settings = window.session.signals.spectrum_settings
     window._take_live(session_of_view(live, live.update(), None, settings), live.update())
-    names = dict.fromkeys(mesh.name.partition("/")[0] for mesh in live.scene.meshes if not mesh.material.mirror)
+    names = dict.fromkeys(object_of(mesh.name) for mesh in live.scene.meshes if not mesh.material.mirror)
     print(f"live scene, {LIVE_RAYS:,} rays, previews of {FEWEST_PREVIEW_RAYS}")
     for what, change in {**{name: mover(live, name) for name in names}, "antenna": antenna_mover(live)}.items():
         for kind, view_of, limit in (("preview", lambda: live.preview(num_rays=FEWEST_PREVIEW_RAYS), MAX_PREVIEW),

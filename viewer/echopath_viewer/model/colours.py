@@ -5,6 +5,7 @@ import dataclasses
 
 import numpy as np
 
+from echopath.base.mesh_names import object_of
 from echopath.plots.style import BOUNCE_COLOURS
 
 from .palette import rgb_of
@@ -113,7 +114,7 @@ def _by_mesh(segments, palette, mesh_names) -> Colouring:
 
 def _legend_of_objects(segments, palette, mesh_names) -> Legend:
     """A row for each object that rays go to, those of most segments, in the mean of the shades of its meshes."""
-    tops = [name.partition("/")[0] for name in mesh_names]
+    tops = [object_of(name) for name in mesh_names]
     counts = np.bincount(segments.mesh_id[segments.mesh_id >= 0], minlength=len(tops))
     totals = dict.fromkeys(top for top, count in zip(tops, counts) if count)
     for name in totals:

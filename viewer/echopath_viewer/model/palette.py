@@ -5,6 +5,8 @@ import colorsys
 
 import numpy as np
 
+from echopath.base.mesh_names import object_of
+
 # Paul Tol's "muted" and "light" colours without the greys: told apart with most colour vision.
 _PALETTE = ("#cc6677", "#44aa99", "#aa4499", "#999933", "#88ccee", "#117733", "#ddcc77", "#882255", "#332288",
             "#77aadd", "#ee8866", "#eedd88", "#ffaabb", "#99ddff", "#bbcc33", "#aaaa00")
@@ -16,7 +18,7 @@ _ROUND_TURN = 0.037            # of the circle of hues, each time that the palet
 
 def objects_of(scene) -> tuple:
     """(names, object of each mesh [M]): the objects of a scene are the children of its root, in order."""
-    tops = [mesh.name.partition("/")[0] for mesh in scene.meshes]
+    tops = [object_of(mesh.name) for mesh in scene.meshes]
     names = tuple(dict.fromkeys(tops))
     number = {name: index for index, name in enumerate(names)}
     return names, np.array([number[top] for top in tops], np.int32)

@@ -3,6 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from echopath.base.mesh_names import object_of
+
 from ..model import Session
 from ..model.history import History
 from ..model.view_state import state_of
@@ -147,7 +149,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         if not self.live.is_on:
             self.show_message("Start the panel Live to move objects.")
             return
-        name = self.session.mesh_names[mesh].partition("/")[0]
+        name = object_of(self.session.mesh_names[mesh])
         if not np.any(way):
             self.live_panel.choose(name)
             self._dragged_from = self.live.position(name)

@@ -8,6 +8,7 @@ import numpy as np
 
 import echopath as ep
 from echopath import _core
+from echopath.base.mesh_names import object_of
 from echopath.signals.measures import SMALLEST_POWER, in_dbm
 from echopath.spectra.windows import of_range, of_velocity, samples_of
 from echopath.transmit.signals import decompose_slots
@@ -104,7 +105,7 @@ class Attribution:
             counts += np.bincount(mesh_id[at], minlength=len(counts))
         totals = {}
         for mesh, count in zip(self._paths.scene.meshes, counts):
-            top = mesh.name.partition("/")[0]
+            top = object_of(mesh.name)
             totals[top] = totals.get(top, 0) + int(count)
         return sorted((name for name, count in totals.items() if count), key=lambda name: -totals[name])[:MAX_MIRRORS]
 

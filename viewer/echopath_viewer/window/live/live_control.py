@@ -5,6 +5,8 @@ from collections import deque
 
 import numpy as np
 
+from echopath.base.mesh_names import object_of
+
 from ...model.frames.live_session import live_of, session_of_view, show_state
 from ..qt import QtCore, Signal
 
@@ -63,7 +65,7 @@ class LiveControl(QtCore.QObject):
 
     def objects(self) -> list[str]:
         """What can be moved: the radar and the children of the root."""
-        return [RADAR, *dict.fromkeys(mesh.name.partition("/")[0] for mesh in self.live.scene.meshes)]
+        return [RADAR, *dict.fromkeys(object_of(mesh.name) for mesh in self.live.scene.meshes)]
 
     def position(self, name: str):
         """[3] m."""

@@ -8,6 +8,7 @@ from pathlib import Path
 
 # Libraries that draw without a screen, by the window of VTK that they serve; the first that are there are taken.
 RENDERERS = {"vtkEGLRenderWindow": ("libGL.so.1", "libEGL.so.1"), "vtkOSOpenGLRenderWindow": ("libOSMesa.so.8",)}
+ASKED = "VTK_DEFAULT_OPENGL_WINDOW"  # variable with the window that VTK shall take
 OWN = Path(__file__).parent  # where wheels have libOSMesa.so.8
 
 
@@ -17,14 +18,23 @@ def needs_renderer(off_screen) -> bool:
 
 
 def renderer() -> str:
-    """The window of VTK that draws without a screen here, "" where none does."""
-    return next((window for window, libraries in RENDERERS.items() if all(map(_is_there, libraries))), "")
+    """The window of VTK that draws without a screen here, the one that the user asks VTK for where there is one; "" where none
+    does."""
+    return next((window for window, libraries in _windows().items() if all(map(_is_there, libraries))), "")
 
 
 def lacking() -> str:
     """What to install where no renderer is there."""
-    needed = ", or ".join(" and ".join(libraries) for libraries in RENDERERS.values())
+    needed = ", or ".join(" and ".join(libraries) for libraries in _windows().values())
+    if asked := os.environ.get(ASKED):
+        return f"{ASKED}={asked} needs {needed}, got none"
     return f"pictures without a screen need {needed}, got neither (Debian: libgl1 and libegl1)"
+
+
+def _windows() -> dict:
+    """Those that come into question; of one that is not known here VTK knows what it needs."""
+    asked = os.environ.get(ASKED)
+    return {asked: RENDERERS.get(asked, ())} if asked else RENDERERS
 
 
 def _is_there(library: str) -> bool:

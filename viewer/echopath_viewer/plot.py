@@ -11,7 +11,7 @@ from echopath.base.callers import warn_user
 from echopath.base.origin import mark_png, origin_texts
 
 from .model import Filters, PartSet, Session, Signals, ViewInput, from_frame, whole_part
-from .off_screen import lacking, needs_renderer, renderer
+from .off_screen import ASKED, lacking, needs_renderer, renderer
 from .scene_builder import SceneBuilder
 from .scene_builder.web_page import ScenePage
 
@@ -76,7 +76,7 @@ def _new_plotter(off_screen, window_size):
     if needs_renderer(off_screen):
         if not (window := renderer()):
             raise OSError(f"off_screen: {lacking()}")
-        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", window)
+        os.environ[ASKED] = window
     return pv.Plotter(off_screen=off_screen, window_size=list(window_size))
 
 

@@ -192,6 +192,7 @@ def test_pictures_are_as_they_were(drawn_paths, tmp_path, name, keywords):
 def lacking(monkeypatch) -> str:
     """What is said on a machine without a screen and without renderers, where VTK would end the process."""
     monkeypatch.delenv("DISPLAY", raising=False)
+    monkeypatch.delenv("VTK_DEFAULT_OPENGL_WINDOW", raising=False)
     monkeypatch.setattr("echopath_viewer.off_screen.RENDERERS", {"egl": ("libc.so.6", "libnone.so.1"), "mesa": ("libnone.so.8",)})
     return "pictures without a screen need libc.so.6 and libnone.so.1, or libnone.so.8, got neither .*libegl1"
 
@@ -219,7 +220,22 @@ def test_the_renderer_that_is_there_is_asked_to_draw(lacking, monkeypatch):
     assert os.environ["VTK_DEFAULT_OPENGL_WINDOW"] == "mesa"
 
 
+def test_the_renderer_that_the_user_asks_vtk_for_is_the_one_that_draws(lacking, monkeypatch):
+    both = {"egl": ("libc.so.6",), "mesa": ("libm.so.6",), "gone": ("libnone.so.1",)}
+    monkeypatch.setattr("echopath_viewer.off_screen.RENDERERS", both)
+    monkeypatch.setattr("echopath_viewer.plot.pv.Plotter", lambda **keywords: None)
+    for asked in ("mesa", "egl", "vtkXOpenGLRenderWindow"):  # the last: VTK's own, of which nothing is known here
+        monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", asked)
+        assert renderer() == asked
+        _new_plotter(True, (4, 3))
+        assert os.environ["VTK_DEFAULT_OPENGL_WINDOW"] == asked
+    monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", "gone")
+    with pytest.raises(OSError, match="^off_screen: VTK_DEFAULT_OPENGL_WINDOW=gone needs libnone.so.1, got none"):
+        _new_plotter(True, (4, 3))
+
+
 def test_the_renderer_of_the_wheel_is_found_by_those_who_ask_for_its_name(monkeypatch, tmp_path):
+    monkeypatch.delenv("VTK_DEFAULT_OPENGL_WINDOW", raising=False)
     own = tmp_path / f"lib{uuid.uuid4().hex}.so.8"  # of the run alone: what is loaded stays so, under this name
     subprocess.run(["gcc", "-shared", "-x", "c", "/dev/null", f"-Wl,-soname,{own.name}", "-o", own], check=True)
     monkeypatch.setattr("echopath_viewer.off_screen.RENDERERS", {"egl": ("libnone.so.1",), "mesa": (own.name,)})

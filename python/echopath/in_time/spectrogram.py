@@ -53,7 +53,8 @@ def spectrogram(frames: Frames, radar: _core.Radar | None = None, *, window_leng
     window_length: chirps of one transmitter in a window, None: 128, at most those of a frame; hop: chirps from window to
         window, None: a quarter of that
     window: as in `range_doppler`, over samples and chirps; zero_pad: 1 to 64, of the velocities
-    range_gate: (nearest, farthest) in m of the ranges whose powers are summed, None: all
+    range_gate: (nearest, farthest) in m of the ranges whose powers are summed, None: all, with the noise of all: that of 256
+        cells is 24 dB above that of one, so that weak bodies are seen with a gate, or as a `part`
     part: of frames, noise-free: a name in `frame.parts` ("arm" or "partition/arm"), an object of the scene, by its echoes
         that touch nothing else, or a Selection or its text; None: the whole signal
     channel: indices (tx, rx), None: the mean over all

@@ -52,8 +52,8 @@ def checked_settings(radar, settings, velocity_gate=None) -> dict:
         raise ValueError(f"velocity: must be within +-{limit:.6g} m/s, got {velocity}")
     small = _with_one_sample(radar)
     checked = settings | {"velocity": None, "velocity_gate": None}
-    if not sees_azimuth(radar, settings):  # it gets no map
-        checked |= {"azimuth": 0.0 if settings.get("azimuth") is None else settings["azimuth"]}
+    if settings.get("azimuth") is None and not sees_azimuth(radar, settings):
+        checked["azimuth"] = 0.0  # the radar gets no map: its default may be refused
     cube = np.zeros((len(radar.transmitters), len(radar.receivers), 1, 1))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # a radar that sees no azimuth gets no map: `sees_azimuth`

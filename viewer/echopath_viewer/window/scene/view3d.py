@@ -13,8 +13,8 @@ from ...scene_builder import SceneBuilder
 from .coarse_pixels import coarse_pixels
 from .compass import Compass
 from .legend_box import LegendBox
-from .nearest import pixel_at
 from .pace import FEW_RAYS, MANY_RAYS, Pace, Smoothing
+from .pixel_size import pixel_at
 from ..qt import Qt, QtCore, Signal
 
 GL_COLOR_BUFFER_BIT = 0x4000

@@ -23,6 +23,7 @@ from .targets import INCH, Target, almond, camera_box, cobra_duct, cylindrical_d
 from .targets import prime_aircraft, sheet, slab
 
 NUM_RAYS, QUICK_NUM_RAYS = 2 ** 15, 2 ** 13
+RAYS_OF_DUCTS = 2                          # as many: neighbouring rays grow apart from bounce to bounce in a duct
 STEP, QUICK_STEP = 1, 3                    # of the table's azimuths
 FLOOR_DB, SUITE_FLOOR_DB, PEAK_DB = 60.0, 80.0, 20.0
 LEAST = 1e-9                               # m^2, least cross section that is shown
@@ -127,12 +128,13 @@ def pattern_of(target: Target, frequency_ghz: float, polarization: str, table, *
                  & (table["polarization"] == polarization)][::QUICK_STEP if quick else STEP]
     scene = scene_of(target)
     toward = directions(np.radians(rows["azimuth_deg"]), np.radians(target.theta_deg))
-    num_rays = QUICK_NUM_RAYS if quick else NUM_RAYS
+    is_duct = target.name in DUCTS
+    num_rays = (QUICK_NUM_RAYS if quick else NUM_RAYS) * (RAYS_OF_DUCTS if is_duct else 1)
     levels, seconds = [], []
     for edges in (False, True):
         start = time.process_time()
         sigma = ep.rcs(scene, frequency=frequency_ghz * 1e9, incidence=toward, polarization=[polarization], num_rays=num_rays,
-                       max_bounces=DUCT_BOUNCES if target.name in DUCTS else BOUNCES, edges=edges)[:, 0]
+                       max_bounces=DUCT_BOUNCES if is_duct else BOUNCES, edges=edges)[:, 0]
         seconds.append(time.process_time() - start)
         levels.append(10.0 * np.log10(np.maximum(sigma, LEAST)))
     return Pattern(target.name, frequency_ghz, polarization, rows["azimuth_deg"], rows["measured_dbsm"], rows["moments_dbsm"],

@@ -7,6 +7,8 @@ import struct
 
 import numpy as np
 
+import echopath as ep
+
 COMPONENTS = {"i1": 5120, "u1": 5121, "i2": 5122, "u2": 5123, "u4": 5125, "f4": 5126}
 TYPES = {(): "SCALAR", (2,): "VEC2", (3,): "VEC3", (4,): "VEC4", (16,): "MAT4"}
 
@@ -125,3 +127,9 @@ def rig_file(times=(0.0, 1.0, 2.0), interpolation: str = "LINEAR", quantised: st
                   "scenes": [{"nodes": [0, 1]}]}
     file.animation((2, "rotation", times, turns, interpolation), name="bend")
     return file
+
+
+def loaded(tmp_path, file: GltfFile, **options):
+    path = tmp_path / "model.glb"
+    path.write_bytes(file.glb())
+    return ep.load_model(path, **options)

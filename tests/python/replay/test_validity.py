@@ -7,17 +7,15 @@ import pytest
 import echopath as ep
 from echopath.scene.materials import data_folder
 from support import shapes
-from support.radars import build_radar
 from support.slides import TRANSMITTER, ROUGH, Ball, Plane, excess_by_search, frozen, mirrors_over
+from support.validity_scenes import BALL, radar_of, scene_of
 
 WAVENUMBER = 2 * np.pi * shapes.FREQUENCY / ep.speed_of_light   # rad/m
 MIRROR = np.array([10.0, 3.0, 0.0])                             # middle of transmitter and target, 3 m aside
 NOTE_TOLERANCE = 0.012       # relative: the formulas of the note are second order in the slide and have two or three digits
 EXCESS_TOLERANCE = 0.01      # relative, up to 1 rad: e = g H^-1 g / 2 is second order in the slide
-GRAZING_SHARE = 1e-6         # of the power: rays within single precision of a facet's horizon
 SUMS = 1e-6             # relative: sums in single precision
 FEW = 0.02              # of the paths: horizons of the ball itself
-LITTLE = 1e-5           # rad: hits in single precision; 4e-7 found
 
 
 def phase_error(paths):
@@ -74,18 +72,6 @@ def test_phase_error_of_two_slides_is_that_of_a_search(radii):
 
 # --- a warning for each way in which one trace fails ---
 
-def radar_of(num_chirps=128, chirp_interval=40e-6, transmitters=((0, 0, 1),), receivers=((0, 0, 1),), motion=None):
-    return build_radar(transmitters, receivers, num_samples=512, num_chirps=num_chirps, chirp_interval=chirp_interval,
-                       motion=motion)
-
-
-def scene_of(**objects):
-    """Scene of name=(mesh, material, position, motion)."""
-    scene = ep.Scene()
-    for name, (mesh, material, position, motion) in objects.items():
-        scene.add(mesh, name=name, material=material, position=position, motion=motion)
-    return scene
-
 
 def moving(velocity=(0, 0, 0), turning=(0, 0, 0)):
     return ep.LinearMotion(velocity=velocity, angular_velocity=turning)
@@ -100,9 +86,6 @@ def only_warning(report):
     assert len(report.warnings) == 1, str(report)
     assert not report.ok and "does not serve" in str(report)
     return report.warnings[0]
-
-
-BALL = ep.actors.sphere(0.5)
 
 
 def test_one_trace_serves_what_stands_still():
@@ -282,55 +265,3 @@ def test_arrays_name_the_mirror_that_a_point_has_left():
         report = ep.validity(paths.select(f"T {select} R"), times=[paths.frame.trace_time + 0.01], arrays=True)
         hidden = (report.blocked != 0) | (report.receiver_blocked != 0)  # a few, by the ball's own horizon
         assert report.num_paths > 20 and np.mean(hidden) < FEW and np.all(report.left[~hidden] == left), select
-
-
-def test_nothing_is_wrong_at_the_trace_time():
-    """Each leg that the trace recorded is free, each point of reflection in its place, between co-located antennas."""
-    rough = ep.Material(permittivity=5 - 0.3j, scattering=0.5)
-    scene = shapes.scene_of(ball=(shapes.sphere((5, 0, 1), 0.5, 4), rough, True),
-                            plate=(shapes.plate((4.5, 1.5, 1), (-1, -0.3, 0), 1.0), rough),
-                            dish=(Ball((6, -2, 1), (-0.9, 0.3, 0.3), -2.0).mesh(12), rough, True),
-                            floor=(shapes.rectangle((0, -4, 0), (9, 0, 0), (0, 8, 0)), rough.replace(mirror=True)),
-                            wall=(shapes.rectangle((0, 4, 0), (9, 0, 0), (0, 0, 5)), rough.replace(mirror=True)))
-    paths = ep.trace(scene, radar_of(), num_rays=20000)
-    report = ep.validity(paths, times=[paths.frame.trace_time])
-    assert paths.num_bounces.max() == 4
-    for share in ("slid", "left", "blocked", "turned", "new_surface"):
-        assert getattr(report.shares, share) < GRAZING_SHARE, share
-    assert report.rms_phase_error < LITTLE
-
-
-@pytest.mark.hard
-def test_report_has_the_same_bits_for_any_number_of_threads():
-    with as_file(data_folder("scenes") / "street.toml") as path:
-        street = ep.load_scene(path)
-    paths = ep.trace(street.scene, street.radar, settings=street.trace, num_rays=1000, max_bounces=2)
-    middle = paths.frame.trace_time
-    texts = []
-    try:
-        for threads in (1, 3):
-            ep.set_num_threads(threads)
-            report = ep.validity(paths, street.radar, times=[0.3 * middle, 1.7 * middle], arrays=True)
-            texts.append((str(report), report.shares.power, report.shares.blocked, report.power.tobytes(),
-                          report.blocked.tobytes()))
-    finally:
-        ep.set_num_threads(0)
-    assert texts[0] == texts[1]
-
-
-@pytest.mark.hard
-def test_no_paths_make_an_empty_report():
-    scene = scene_of(ball=(BALL, ROUGH, (6, 0, 1), None))
-    paths = ep.trace(scene, radar_of(), num_rays=1000).select("T 'ball' 'ball' R")
-    report = ep.validity(paths, arrays=True)
-    assert report.ok and report.num_paths == 0 and report.power.shape == (0,)
-
-
-@pytest.mark.parametrize("keywords, error, text", [
-    ({"times": [np.nan]}, ValueError, "times"),
-    ({"time": [0.0]}, TypeError, "times"),
-])
-def test_bad_arguments_are_named(keywords, error, text):
-    paths = ep.trace(scene_of(ball=(BALL, ROUGH, (6, 0, 1), None)), radar_of(), num_rays=100)
-    with pytest.raises(error, match=text):
-        ep.validity(paths, **keywords)

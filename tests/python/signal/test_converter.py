@@ -1,0 +1,79 @@
+"""The converter behind the receiver, receivers as values, and what is refused of them."""
+import pickle
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from support.received_tones import COUNT, LEVEL, RATE, db, one_channel, received, tone
+
+
+@pytest.mark.parametrize("bits", [8, 10, 14])
+@pytest.mark.parametrize("real", [False, True])
+def test_quantisation_noise_is_6_db_a_bit(bits, real):
+    adc = ep.Adc(bits=bits, full_scale_dbm=0.0, gain_db=20.0)
+    radar = one_channel(64, real=real, receiver=ep.Receiver(adc=adc))
+    cell = 33.317 + np.arange(64)[:, None] * 0.713  # no two chirps alike
+    largest = 1.0 - 1.5 / 2 ** (bits - 1)  # beyond which the upper end clips
+    full = largest * np.sqrt(1e-5) * np.exp(2j * np.pi * cell * np.arange(COUNT) / COUNT)[None, None]
+    full = np.sqrt(2.0) * full.real + 0j if real else full
+    out = ep.receive(full, radar, seed=None)
+    noise = np.mean(np.abs(out.cube - full) ** 2)
+    assert db(noise / 1e-5) == pytest.approx(-6.0206 * bits - 1.7609, abs=LEVEL)
+    assert out.codes.dtype == np.int16 and out.gain_db == 20.0
+    assert np.abs(out.codes.astype(int)).max() <= 2 ** (bits - 1)
+
+
+def test_the_converter_saturates_and_its_gain_adapts():
+    adc = ep.Adc(bits=10, full_scale_dbm=0.0, gain_db=40.0)
+    out = received(tone(20, 1e-3), adc=adc)
+    assert out.codes.min() == -512 and out.codes.max() == 511
+    automatic = received(tone(20, 1e-3), adc=adc.replace(automatic_gain=True, headroom_db=3.0, gain_step_db=2.0))
+    assert automatic.gain_db == -4.0
+    assert np.abs(automatic.codes.astype(int)).max() == round(512 * 10 ** (-4.0 / 20))
+
+
+def test_jitter_makes_noise_by_the_square_of_the_frequency():
+    cell, jitter = 200, 50e-12
+    adc = ep.Adc(bits=16, full_scale_dbm=33.0, gain_db=0.0, clock_jitter=jitter)
+    radar = one_channel(64, receiver=ep.Receiver(adc=adc), noise_figure_db=0.0)
+    out = ep.receive(tone(cell, 1.0, 64), radar, seed=3).cube
+    noise = np.mean(np.abs(out - tone(cell, 1.0, 64)) ** 2)
+    assert db(noise) == pytest.approx(20 * np.log10(2 * np.pi * cell * RATE / COUNT * jitter), abs=LEVEL)
+
+
+def test_the_same_seed_gives_the_same_bits_and_frames_differ():
+    faults = dict(phase_noise=dict(offsets=[1e4, 1e6], levels=[-80, -100]), adc=dict(bits=12, clock_jitter=1e-12))
+    one, same = (received(tone(60), seed=4, **faults).cube for _ in range(2))
+    np.testing.assert_array_equal(one, same)
+    radar = one_channel(receiver=ep.Receiver(**faults))
+    assert not np.array_equal(one, ep.receive(tone(60), radar, seed=4, start_time=0.1).cube)
+
+
+def test_receivers_are_values_that_files_keep(tmp_path):
+    receiver = ep.Receiver(phase_noise=ep.PhaseNoise(offsets=[1e3, 1e6], levels=[-80, -100]), leakage_db=[[-30.0]],
+                           adc=ep.Adc(bits=14), dc_offset=(1e-6, 0.0), high_pass=[1e5])
+    radar = one_channel(1, receiver=receiver)
+    assert hash(receiver) == hash(ep.Receiver(**receiver.plain())) and ep.Receiver(**receiver.plain()) == receiver
+    assert pickle.loads(pickle.dumps(radar)) == radar
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(1, 1), name="plate", material="metal", position=(5, 0, 0))
+    ep.trace(scene, radar, num_rays=500).save(tmp_path / "f.h5")
+    assert ep.Paths.load(tmp_path / "f.h5").radar == radar
+
+
+@pytest.mark.parametrize("keywords, told", [
+    (dict(phase_noise=dict(offsets=[1e3, 1e2], levels=[0, 0])), "phase_noise.offsets: must be ascending"),
+    (dict(phase_noise=dict(offsets=[1e3], levels=[0, 0])), "phase_noise.offsets: must be as many as levels, 2"),
+    (dict(adc=dict(bits=17)), "adc.bits: must be"),
+    (dict(high_pass=[-1.0]), "high_pass: must be Hz above 0"),
+    (dict(iq_phase=2.0), "iq_phase: must be"),
+])
+def test_bad_receivers_are_refused_by_name(keywords, told):
+    with pytest.raises(ValueError, match=f"^{told}"):
+        ep.Receiver(**keywords)
+
+
+def test_tables_of_other_antennas_are_refused():
+    with pytest.raises(ValueError, match=r"^receiver.leakage_db: must be of the shape \(1, 1\)"):
+        received(tone(3), leakage_db=[[1.0, 2.0]])

@@ -4,10 +4,10 @@
 #include <random>
 
 #include "cpp/support/expect_error.h"
+#include "echopath/base/box_tree.h"
 #include "echopath/base/constants.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/motion/motion.h"
-#include "echopath/scene/overlap/box_tree.h"
 #include "echopath/scene/overlap/coplanar.h"
 
 namespace echopath::test_coplanar {
@@ -276,8 +276,8 @@ TEST(Coplanar, EmptySceneAndBadInput) {
 TEST(Coplanar, TreesHearCancellation) {
   Job job;
   job.cancel();
-  const std::vector<Corners> many(100'000, Corners{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY()});
-  EXPECT_THROW(BoxTree(many, &job), Cancelled);
+  const auto unit_box = [](uint32_t) { return Box(Vec3::Zero(), Vec3::Ones()); };
+  EXPECT_THROW(BoxTree(100'000, unit_box, 4, &job), Cancelled);
 }
 
 }  // namespace

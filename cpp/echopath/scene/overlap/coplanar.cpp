@@ -14,6 +14,7 @@ namespace echopath {
 namespace {
 
 constexpr int64_t kTrianglesPerBlock = 2048;
+constexpr uint32_t kTrianglesOfLeaf = 4;
 
 // Holds the triangles of a scene at one time, mesh after mesh, in m relative to one of their corners.
 struct PosedTriangles {
@@ -80,7 +81,16 @@ PosedTriangles without_copies(const PosedTriangles& posed, const std::vector<uin
 class OverlapSearch {
  public:
   OverlapSearch(const PosedTriangles& posed, double max_distance, const Job* job)
-      : tree_(posed.corners, job), mesh_id_(posed.mesh_id), max_distance_(max_distance) {}
+      : tree_(static_cast<uint32_t>(posed.corners.size()), [&](uint32_t i) { return box_of(posed.corners[i]); },
+              kTrianglesOfLeaf, job),
+        max_distance_(max_distance) {
+    triangles_.reserve(tree_.size());
+    mesh_id_.reserve(tree_.size());
+    for (uint32_t place = 0; place < tree_.size(); ++place) {
+      triangles_.push_back(posed.corners[tree_.input_index(place)]);
+      mesh_id_.push_back(posed.mesh_id[tree_.input_index(place)]);
+    }
+  }
 
   // Returns all pairs, in an order that does not depend on the threads.
   std::vector<OverlapPair> run(Job* job) const {
@@ -100,20 +110,29 @@ class OverlapSearch {
 
  private:
   void search_behind(uint32_t place, std::vector<OverlapPair>& found) const {
-    const FacetPlane plane(tree_.triangle(place));
-    tree_.visit_behind(place, [&](const Box& box) { return plane.may_meet(box, max_distance_); }, [&](uint32_t other) {
-      const auto overlap = plane.overlap(tree_.triangle(other), max_distance_);
-      if (overlap) found.push_back(overlap_pair(place, other, *overlap));
+    const FacetPlane plane(triangles_[place]);
+    const auto may_hold = [&](uint32_t index) {
+      const BoxTree::Branch& branch = tree_.branches()[index];
+      return branch.end > place + 1 && plane.may_meet(branch.box, max_distance_);
+    };
+    tree_.walk(may_hold, [&](const BoxTree::Branch& leaf) {
+      for (uint32_t other = std::max(leaf.begin, place + 1); other < leaf.end; ++other) {
+        if (!plane.may_meet(box_of(triangles_[other]), max_distance_)) continue;
+        const auto overlap = plane.overlap(triangles_[other], max_distance_);
+        if (overlap) found.push_back(overlap_pair(place, other, *overlap));
+      }
+      return true;
     });
   }
 
   OverlapPair overlap_pair(uint32_t one, uint32_t two, const FacetOverlap& overlap) const {
-    const uint32_t mesh_of_one = mesh_id_[tree_.input_index(one)], mesh_of_two = mesh_id_[tree_.input_index(two)];
+    const uint32_t mesh_of_one = mesh_id_[one], mesh_of_two = mesh_id_[two];
     if (mesh_of_two < mesh_of_one) return {mesh_of_two, mesh_of_one, two, one, overlap};
     return {mesh_of_one, mesh_of_two, one, two, overlap};
   }
 
   BoxTree tree_;
+  std::vector<Corners> triangles_;  // by place in the tree, as mesh_id_
   std::vector<uint32_t> mesh_id_;
   double max_distance_;
 };

@@ -62,6 +62,13 @@ bool is_parallel(const Corners& seen) {
 
 }  // namespace
 
+Box box_of(const Corners& corners) {
+  Box box(corners[0]);
+  box.extend(corners[1]);
+  box.extend(corners[2]);
+  return box;
+}
+
 FacetPlane::FacetPlane(const Corners& corners)
     : box_(box_of(corners)), origin_(corners[0]), across_((corners[1] - corners[0]).normalized()),
       normal_((corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized()), height_(height_of(corners)) {

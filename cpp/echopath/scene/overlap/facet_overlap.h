@@ -2,9 +2,14 @@
 // Measures where one triangle lies on another. Internal to the module.
 #include <optional>
 
-#include "echopath/scene/overlap/box_tree.h"
+#include "echopath/base/box_tree.h"
+#include "echopath/base/geometry.h"
 
 namespace echopath {
+
+using Corners = std::array<Vec3, 3>;
+
+Box box_of(const Corners& corners);
 
 // Describes the region where two triangles overlap.
 struct FacetOverlap {

@@ -1,16 +1,16 @@
 #include "echopath/scene/readers/corner_tree.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace echopath {
 namespace {
 
 // Rounding of `turn`, relative to the lengths that it multiplies, with room to spare.
 constexpr double kTurnRounding = 1e-14;
+constexpr uint32_t kCornersOfLeaf = 8;
 
 // Returns whether no point of the box can be to the left of the line from a to b, seen against the normal.
-bool is_right_of(const Eigen::AlignedBox3d& box, const Vec3& a, const Vec3& b, const Vec3& normal) {
+bool is_right_of(const Box& box, const Vec3& a, const Vec3& b, const Vec3& normal) {
   const Vec3 line = b - a, left = normal.cross(line);  // turn(a, b, p, normal) = (p - b) . left
   const Vec3 low = box.min() - b, high = box.max() - b;
   const double most = low.cwiseProduct(left).cwiseMax(high.cwiseProduct(left)).sum();
@@ -36,7 +36,7 @@ struct Slabs {
     }
   }
 
-  bool part(const Eigen::AlignedBox3d& box) const {
+  bool part(const Box& box) const {
     for (int axis = 0; axis < 3; ++axis) {
       const Vec3& direction = across[static_cast<size_t>(axis)];
       const Vec3 one = box.min().cwiseProduct(direction), other = box.max().cwiseProduct(direction);
@@ -46,7 +46,7 @@ struct Slabs {
   }
 };
 
-bool may_meet(const Eigen::AlignedBox3d& box, const Ear& ear, const Slabs& slabs) {
+bool may_meet(const Box& box, const Ear& ear, const Slabs& slabs) {
   for (size_t i = 0; i < 3; ++i) {
     if (is_right_of(box, ear.points[i], ear.points[(i + 1) % 3], ear.normal)) return false;
   }
@@ -63,68 +63,44 @@ bool Ear::holds(const Vec3& point) const {
 }
 
 CornerTree::CornerTree(const std::vector<Vec3>& vertices, const std::vector<uint32_t>& corners)
-    : vertices_(vertices), corners_(corners), order_(corners.size()), index_of_(corners.size()),
-      is_left_(corners.size(), 1) {
-  std::iota(order_.begin(), order_.end(), 0u);
-  halve(0, static_cast<uint32_t>(order_.size()));
-  for (uint32_t index = 0; index < order_.size(); ++index) index_of_[order_[index]] = index;
+    : vertices_(vertices), corners_(corners),
+      tree_(static_cast<uint32_t>(corners.size()), [&](uint32_t i) { return Box(vertices[corners[i]]); }, kCornersOfLeaf),
+      place_of_(corners.size()), is_left_(corners.size(), 1) {
+  for (uint32_t place = 0; place < tree_.size(); ++place) place_of_[tree_.input_index(place)] = place;
+  for (const BoxTree::Branch& branch : tree_.branches()) num_left_.push_back(branch.end - branch.begin);
 }
 
-void CornerTree::halve(uint32_t begin, uint32_t end) {
-  const size_t index = branches_.size();
-  Branch branch{Eigen::AlignedBox3d(), begin, end, 0, end - begin};
-  for (uint32_t i = begin; i < end; ++i) branch.box.extend(vertices_[corners_[order_[i]]]);
-  branches_.push_back(branch);
-  if (end - begin <= kLeafSize) return;
-  Eigen::Index axis = 0;
-  branch.box.sizes().maxCoeff(&axis);
-  const uint32_t half = begin + (end - begin) / 2;
-  std::nth_element(order_.data() + begin, order_.data() + half, order_.data() + end, [&](uint32_t a, uint32_t b) {
-    const double at_a = vertices_[corners_[a]][axis], at_b = vertices_[corners_[b]][axis];
-    return at_a != at_b ? at_a < at_b : a < b;
-  });
-  halve(begin, half);
-  branches_[index].second_half = static_cast<uint32_t>(branches_.size());
-  halve(half, end);
-}
-
-void CornerTree::remove(uint32_t place) {
-  const uint32_t at = index_of_[place];
-  is_left_[at] = 0;
+void CornerTree::remove(uint32_t corner) {
+  const uint32_t place = place_of_[corner];
+  is_left_[place] = 0;
   for (uint32_t index = 0;;) {
-    Branch& branch = branches_[index];
-    --branch.num_left;
-    if (branch.second_half == 0) return;
-    index = at < branches_[branch.second_half].begin ? index + 1 : branch.second_half;
+    --num_left_[index];
+    const uint32_t second_half = tree_.branches()[index].second_half;
+    if (second_half == 0) return;
+    index = place < tree_.branches()[second_half].begin ? index + 1 : second_half;
   }
 }
 
-bool CornerTree::has_corner_in(const Ear& ear, const Branch& leaf) const {
-  for (uint32_t index = leaf.begin; index < leaf.end; ++index) {
-    const uint32_t vertex = corners_[order_[index]];
+bool CornerTree::has_corner_in(const Ear& ear, const BoxTree::Branch& leaf) const {
+  for (uint32_t place = leaf.begin; place < leaf.end; ++place) {
+    const uint32_t vertex = corners_[tree_.input_index(place)];
     const bool is_own = std::find(ear.vertices.begin(), ear.vertices.end(), vertex) != ear.vertices.end();
-    if (is_left_[index] && !is_own && ear.holds(vertices_[vertex])) return true;
+    if (is_left_[place] && !is_own && ear.holds(vertices_[vertex])) return true;
   }
   return false;
 }
 
 bool CornerTree::has_corner_in(const Ear& ear) const {
-  std::array<uint32_t, 64> open;  // a depth-first walk keeps one open branch per level, of at most 32 levels
-  size_t num_open = 0;
-  open[num_open++] = 0;
   const Slabs slabs(ear);
-  while (num_open > 0) {
-    const uint32_t index = open[--num_open];
-    const Branch& branch = branches_[index];
-    if (branch.num_left == 0 || !may_meet(branch.box, ear, slabs)) continue;
-    if (branch.second_half == 0) {
-      if (has_corner_in(ear, branch)) return true;
-      continue;
-    }
-    open[num_open++] = branch.second_half;
-    open[num_open++] = index + 1;
-  }
-  return false;
+  const auto may_hold = [&](uint32_t branch) {
+    return num_left_[branch] > 0 && may_meet(tree_.branches()[branch].box, ear, slabs);
+  };
+  bool found = false;
+  tree_.walk(may_hold, [&](const BoxTree::Branch& leaf) {
+    found = has_corner_in(ear, leaf);
+    return !found;
+  });
+  return found;
 }
 
 }  // namespace echopath

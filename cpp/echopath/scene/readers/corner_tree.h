@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "echopath/base/box_tree.h"
 #include "echopath/scene/mesh/mesh.h"
 
 namespace echopath {
@@ -28,28 +29,20 @@ class CornerTree {
   // corners [n] are indices into `vertices`; both must outlive the tree.
   CornerTree(const std::vector<Vec3>& vertices, const std::vector<uint32_t>& corners);
 
-  // Takes the corner at `place` [0, n) out.
-  void remove(uint32_t place);
+  // Takes one of the corners [0, n) out.
+  void remove(uint32_t corner);
   // Returns whether a corner that was not taken out lies in the ear or on its edges.
   bool has_corner_in(const Ear& ear) const;
 
  private:
-  static constexpr uint32_t kLeafSize = 8;
-  struct Branch {
-    Eigen::AlignedBox3d box;
-    uint32_t begin = 0, end = 0;  // range in order_
-    uint32_t second_half = 0;     // index of the second half, 0 for a leaf; the first half follows this branch
-    uint32_t num_left = 0;
-  };
-  void halve(uint32_t begin, uint32_t end);
-  bool has_corner_in(const Ear& ear, const Branch& leaf) const;
+  bool has_corner_in(const Ear& ear, const BoxTree::Branch& leaf) const;
 
   const std::vector<Vec3>& vertices_;
   const std::vector<uint32_t>& corners_;
-  std::vector<uint32_t> order_;     // [n] places
-  std::vector<uint32_t> index_of_;  // [n] index in order_ of each place
-  std::vector<uint8_t> is_left_;    // [n] by index in order_
-  std::vector<Branch> branches_;    // each stands before those within it
+  BoxTree tree_;
+  std::vector<uint32_t> place_of_;  // [n] in the tree, of each corner
+  std::vector<uint8_t> is_left_;    // [n] by place in the tree
+  std::vector<uint32_t> num_left_;  // of each branch
 };
 
 }  // namespace echopath

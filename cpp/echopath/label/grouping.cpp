@@ -9,7 +9,7 @@ namespace {
 
 Partition partition_by_batches(const Paths& paths) {
   Partition partition;
-  const auto num_batches = static_cast<uint32_t>(paths.frame.num_batches);
+  const auto num_batches = static_cast<uint32_t>(paths.frame.batches);
   for (uint32_t batch = 0; batch < num_batches; ++batch) {
     for (const char* kind : {" coherent", " diffuse"}) partition.names.push_back("batch " + std::to_string(batch) + kind);
   }

@@ -90,7 +90,7 @@ class KnownKinds {
 class Sums {
  public:
   Sums(const Paths& paths, size_t num_groups) : paths_(paths), open_(num_groups), kinds_(num_groups), groups_(num_groups) {
-    const auto num_entries = static_cast<size_t>(paths.frame.num_batches) + 1;
+    const auto num_entries = static_cast<size_t>(paths.frame.batches) + 1;
     for (GroupSums& group : groups_) {
       group.field.resize(num_entries);
       group.power.resize(num_entries);
@@ -139,7 +139,7 @@ class Sums {
 
  private:
   size_t batch_of(int64_t path) const {
-    return std::min<size_t>(paths_.batch[static_cast<size_t>(path)], static_cast<size_t>(paths_.frame.num_batches));
+    return std::min<size_t>(paths_.batch[static_cast<size_t>(path)], static_cast<size_t>(paths_.frame.batches));
   }
 
   void close(size_t group) {

@@ -112,23 +112,9 @@ void add_shots(const Target& target, const RcsDirections& pair, double distance,
   }
 }
 
-TraceSettings tracing_of(const RcsSettings& settings) {
-  TraceSettings tracing;
-  tracing.num_rays = settings.num_rays;
-  tracing.max_bounces = settings.max_bounces;
-  tracing.seed = settings.seed;
-  tracing.polarization = settings.model;
-  tracing.footprint = settings.footprint;
-  tracing.sampler = settings.sampler;
-  tracing.batches = settings.batches;
-  tracing.edges = settings.edges;
-  return tracing;
-}
-
 Paths shoot(const SceneSnapshot& scene, const Radar& radar, const RcsSettings& settings, Job* job, KeptGeometry* kept) {
-  const TraceSettings tracing = tracing_of(settings);
-  return settings.target ? trace_to_error(scene, radar, tracing, *settings.target, job, kept)
-                         : trace(scene, radar, tracing, job, kept);
+  return settings.target ? trace_to_error(scene, radar, settings.tracing, *settings.target, job, kept)
+                         : trace(scene, radar, settings.tracing, job, kept);
 }
 
 // `scale` is in m^2 per W at the antenna port for 1 W transmitted.
@@ -157,10 +143,10 @@ void RcsSettings::validate() const {
       const double length = polarization->vector.norm();
       require(std::isfinite(length) && length > 0, "polarization", "must be finite and not zero, length", length);
     }
-    require(model == PolarizationModel::kJones || channel.transmit == channel.receive, "polarization",
+    require(tracing.polarization == PolarizationModel::kJones || channel.transmit == channel.receive, "polarization",
             "must be the same for both antennas in the scalar model, receive", channel.receive.vector.transpose());
   }
-  tracing_of(*this).validate();
+  tracing.validate();
   if (target) target->validate();
 }
 

@@ -35,16 +35,11 @@ struct RcsChannel {
 struct RcsSettings {
   double frequency = 77e9;  // Hz
   std::vector<RcsChannel> channels = {RcsChannel{}};
-  PolarizationModel model = PolarizationModel::kScalar;  // kScalar has no cross-polarised reception
-  int64_t num_rays = 1 << 17;                            // per pair of directions and transmit polarisation
-  int max_bounces = 4;                                   // 1 to 64
-  uint64_t seed = 1;
-  Footprint footprint = Footprint::kSecondOrder;
-  Sampler sampler = Sampler::kLattice;
-  int batches = 1;  // 1 to 64; from 2 on cross sections have standard errors
+  // Of each pair of directions and transmit polarisation. The scalar model has no cross-polarised reception; from two batches
+  // on cross sections have standard errors.
+  TraceSettings tracing{.num_rays = 1 << 17};
   // Doubles the rays until the first channel of each transmit polarisation is known that well (sim/rays/trace_to_error.h).
   std::optional<ErrorTarget> target;
-  bool edges = false;  // TraceSettings::edges
 
   // Raises invalid_argument naming the field, the rule and the value.
   void validate() const;

@@ -12,22 +12,11 @@ class FittedStrata;  // trace/strata/fitted_strata.h
 
 inline constexpr int64_t kMostRays = 10000000000;
 
-struct TraceSettings {
+struct TraceSettings : RecordSettings {
   int64_t num_rays = 1000000;    // 1 to kMostRays, and so few that the machine has memory for their record
   int64_t num_rays_to_come = 0;  // of a trace of the same scene that this one prepares; the memory must do for it too
-  int max_bounces = 4;           // 1 to 64; hits on mirrors count
-  uint64_t seed = 1;
-  double start_time = 0.0;  // s, first sample of the frame
-  PolarizationModel polarization = PolarizationModel::kScalar;
-  Footprint footprint = Footprint::kSecondOrder;  // filter of the ray's footprint on coherent echoes, applied in replay
-  // 1 to 64: independent lattices that share the rays; errors follow from their differences. Each is as fine as its share of
-  // the rays.
-  int batches = 1;
-  Sampler sampler = Sampler::kLattice;  // of the launch directions
-  LaunchGuide guide;                    // by default the rule of launch.h
-  Scatterers scatterers = Scatterers::kRays;
-  bool edges = false;        // also find the echoes of sharp edges (edges/edge_paths.h)
-  double attenuation = 0.0;  // Np/m, of fields in the air between the surfaces
+  double start_time = 0.0;       // s, first sample of the frame
+  LaunchGuide guide = {};        // by default the rule of launch.h
 
   void validate() const;  // raises invalid_argument naming the field, the rule and the value
 };

@@ -33,20 +33,12 @@ void set_field_of_view(const Radar& radar, const Transform& world_from_radar, La
 
 TraceFrame make_frame(const Radar& radar, const TraceSettings& settings) {
   TraceFrame frame;
+  static_cast<RecordSettings&>(frame) = settings;
   frame.start_time = settings.start_time;
   frame.trace_time = settings.start_time + 0.5 * radar.frame_duration();
   const Transform world_from_radar = radar.world_from_radar(frame.trace_time);
   frame.transmitter = mean_position(radar.transmitters, world_from_radar);
   frame.receiver = mean_position(radar.receivers, world_from_radar);
-  frame.seed = settings.seed;
-  frame.max_bounces = settings.max_bounces;
-  frame.footprint = settings.footprint;
-  frame.sampler = settings.sampler;
-  frame.num_batches = settings.batches;
-  frame.polarization = settings.polarization;
-  frame.scatterers = settings.scatterers;
-  frame.edges = settings.edges;
-  frame.attenuation = settings.attenuation;
   return frame;
 }
 

@@ -151,27 +151,28 @@ py::object rcs_of(Scene scene, double frequency, const py::object& incidence, co
   bool is_one = false;
   const std::vector<RcsDirections> pairs = pairs_of(incidence, observation, is_one);
   const Channels channels = channels_of(polarization);
-  const RcsSettings defaults;
-  const int num_batches = batches.value_or(return_error ? kErrorBatches : defaults.batches);
+  RcsSettings settings;
+  TraceSettings& tracing = settings.tracing;
+  const int num_batches = batches.value_or(return_error ? kErrorBatches : tracing.batches);
   const Effort effort = target_error_db
                             ? toward(ErrorTarget{*target_error_db, max_rays}, num_rays, num_batches)
-                            : Effort{num_rays.value_or(defaults.num_rays * num_batches), num_batches, std::nullopt};
+                            : Effort{num_rays.value_or(tracing.num_rays * num_batches), num_batches, std::nullopt};
   require(!return_error || effort.batches > 1, "batches", "must be >= 2 for return_error", effort.batches);
-  const RcsSettings settings{frequency,
-                             channels.rows,
-                             channels.model,
-                             effort.num_rays,
-                             max_bounces,
-                             seed,
-                             kFootprint.value_of(footprint),
-                             kSampler.value_of(sampler),
-                             effort.batches,
-                             effort.target,
-                             edges};
+  settings.frequency = frequency;
+  settings.channels = channels.rows;
+  settings.target = effort.target;
+  tracing.num_rays = effort.num_rays;
+  tracing.max_bounces = max_bounces;
+  tracing.seed = seed;
+  tracing.polarization = channels.model;
+  tracing.footprint = kFootprint.value_of(footprint);
+  tracing.sampler = kSampler.value_of(sampler);
+  tracing.batches = effort.batches;
+  tracing.edges = edges;
   const auto entries = run_job("rcs", progress, [&](Job& job) { return rcs(scene, pairs, settings, &job); });
   if (target_error_db) {
     warn_of_missed_targets(entries, *target_error_db);
-  } else if (settings.footprint != Footprint::kNone) {  // without one nothing tells whether they are few
+  } else if (tracing.footprint != Footprint::kNone) {  // without one nothing tells whether they are few
     warn_of_few_rays(entries, channels.rows.size(), effort.num_rays);
   }
   Shape shape;

@@ -58,9 +58,9 @@ TraceFrame frame_of(Arg<"start_time", Real> start_time, Arg<"trace_time", Real> 
                     Arg<"error_db", Number> error_db, Arg<"sampler", OneOf<kSampler>> sampler,
                     Arg<"scatterers", OneOf<kScatterers>> scatterers, Arg<"edges", Flag> edges,
                     Arg<"attenuation", Real> attenuation) {
-  return {*start_time,      *trace_time,   *transmitter, *receiver, *strata,     *seed,
-          *max_bounces,     *polarization, *footprint,   *sampler,  *statistics, *num_batches,
-          *target_error_db, *error_db,     *scatterers,  *edges,    *attenuation};
+  const RecordSettings settings{*seed,        *max_bounces, *polarization, *footprint,  *sampler,
+                                *num_batches, *scatterers,  *edges,        *attenuation};
+  return {settings, *start_time, *trace_time, *transmitter, *receiver, *strata, *statistics, *target_error_db, *error_db};
 }
 
 }  // namespace
@@ -161,7 +161,7 @@ void bind_trace_frame(py::module_& m) {
       .def_property_readonly(
           "footprint", [](const TraceFrame& self) { return kFootprint.name_of(self.footprint); },
           "\"second_order\", \"edges\", \"first_order\" or \"none\"")
-      .def_readonly("num_batches", &TraceFrame::num_batches, "independent parts of the rays")
+      .def_readonly("num_batches", &TraceFrame::batches, "independent parts of the rays")
       .def_readonly("target_error_db", &TraceFrame::target_error_db,
                     "dB, error of the received power that was asked for; 0: none")
       .def_readonly("error_db", &TraceFrame::error_db,
@@ -179,7 +179,7 @@ void bind_trace_frame(py::module_& m) {
              field("transmitter", &TraceFrame::transmitter), field("receiver", &TraceFrame::receiver),
              field("strata", &TraceFrame::strata), field("seed", &TraceFrame::seed),
              field("max_bounces", &TraceFrame::max_bounces), field("statistics", &TraceFrame::statistics),
-             field("num_batches", &TraceFrame::num_batches), field("target_error_db", &TraceFrame::target_error_db),
+             field("num_batches", &TraceFrame::batches), field("target_error_db", &TraceFrame::target_error_db),
              field("error_db", &TraceFrame::error_db), field("polarization", &TraceFrame::polarization, kPolarization),
              field("footprint", &TraceFrame::footprint, kFootprint), field("sampler", &TraceFrame::sampler, kSampler),
              field("scatterers", &TraceFrame::scatterers, kScatterers), field("edges", &TraceFrame::edges),

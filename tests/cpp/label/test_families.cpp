@@ -125,7 +125,7 @@ TEST(Families, CancelledJobStops) {
 
 TEST(Grouping, BatchesTellCoherentFromDiffuseAndImagesFromRays) {
   Paths paths = make_paths({{{kFloor, false}}, {{kFloor, true}}, {{kFloor, false}}, {{kFloor, false}, {kTorso, true}}});
-  paths.frame.num_batches = 2;
+  paths.frame.batches = 2;
   paths.batch = {0, 0, kNoBatch, 1};
   const Partition partition = by_batches()(paths, nullptr);
   const std::vector<std::string> names{"batch 0 coherent", "batch 0 diffuse", "batch 1 coherent", "batch 1 diffuse",

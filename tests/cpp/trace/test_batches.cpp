@@ -96,7 +96,7 @@ TEST(Batches, MarkPathsAndLeaveImagesOut) {
   settings.num_rays = 4000;
   settings.batches = 5;
   const Paths paths = trace(rough_ball_and_wall(), plain_radar({0, 0, 0}, {0, 0.1, 0}), settings);
-  EXPECT_EQ(paths.frame.num_batches, 5);
+  EXPECT_EQ(paths.frame.batches, 5);
   EXPECT_NO_THROW(paths.validate());
   std::vector<int64_t> count(256);
   for (int64_t i = 0; i < paths.num_paths(); ++i) {

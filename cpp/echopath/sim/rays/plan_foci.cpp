@@ -158,9 +158,9 @@ void set_foci(const TraceFrame& frame, const std::vector<KnownEcho>& echoes, con
     plan.name = stratum.name;
     plan.rays = guide.shares.at(stratum.name);
     plan.solid_angle = stratum.solid_angle();
-    const double of_each_batch = (1.0 - kLargestShare) * std::max(plan.rays, 1.0) / frame.num_batches;
+    const double of_each_batch = (1.0 - kLargestShare) * std::max(plan.rays, 1.0) / frame.batches;
     plan.cell = std::sqrt(plan.solid_angle / of_each_batch);
-    plan.num_batches = frame.num_batches;
+    plan.num_batches = frame.batches;
     plan.echo = echoes[k];
   }
   for (const Glint& glint : glints) {

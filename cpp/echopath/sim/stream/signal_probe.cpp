@@ -144,7 +144,7 @@ void PassProbe::end_blocks() {
   }
 }
 
-size_t PassProbe::num_shares() const { return 2 * static_cast<size_t>(paths_.frame.num_batches) + 1; }
+size_t PassProbe::num_shares() const { return 2 * static_cast<size_t>(paths_.frame.batches) + 1; }
 
 void PassProbe::add(const EchoTally& some, EchoTally& all) {
   for (size_t row = 0; row < all.rows.size(); ++row) {

@@ -148,7 +148,7 @@ void Paths::validate() const {
                                                     {"jones", jones.empty() ? size : jones.size()}};
   for (const auto& [name, length] : lengths)
     require(length == size, name, "must have one entry per path, as many as offsets: " + std::to_string(size), length);
-  require(frame.num_batches >= 1 && frame.num_batches <= 64, "num_batches", "must lie in [1, 64]", frame.num_batches);
+  require(frame.batches >= 1 && frame.batches <= 64, "num_batches", "must lie in [1, 64]", frame.batches);
   require(size == 0 || !jones.empty() == (frame.polarization == PolarizationModel::kJones), "jones",
           "must be given for a frame that follows field vectors, and for no other, matrices", jones.size());
   validate_foci(frame.strata);
@@ -167,8 +167,7 @@ void Paths::validate_path(size_t path) const {
   require(count >= 1 && count <= 64, "num_bounces", "must lie in [1, 64]", count);
   require(offsets[path] >= 0 && offsets[path] <= num_hits() - count, "offsets", "must lead to hits", offsets[path]);
   require(count == 64 || diffuse[path] >> count == 0, "diffuse", "must have no bits beyond num_bounces", diffuse[path]);
-  require(batch[path] == kNoBatch || batch[path] < frame.num_batches, "batch", "must be one of the frame's",
-          int{batch[path]});
+  require(batch[path] == kNoBatch || batch[path] < frame.batches, "batch", "must be one of the frame's", int{batch[path]});
   require(stratum[path] == kNoStratum || stratum[path] < frame.strata.size(), "stratum", "must be one of the frame's",
           int{stratum[path]});
   require(is_finite(weight[path]), "weight", "must be finite", weight[path]);

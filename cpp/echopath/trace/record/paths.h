@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "echopath/base/threads/job.h"
@@ -90,29 +89,35 @@ struct TraceStatistics {
   int64_t num_stopped_passes = 0;    // legs of paths that are taken to end at a sheet, behind kMostPasses others
 };
 
+// Holds the settings of a trace on which the record depends, besides the number of rays.
+struct RecordSettings {
+  uint64_t seed = 1;
+  int max_bounces = 4;  // 1 to 64; hits on mirrors count
+  PolarizationModel polarization = PolarizationModel::kScalar;
+  Footprint footprint = Footprint::kSecondOrder;  // filter of the ray's footprint on coherent echoes, applied in replay
+  Sampler sampler = Sampler::kLattice;            // of the launch directions
+  // 1 to 64: independent lattices that share the rays; errors follow from their differences. Each is as fine as its share of
+  // the rays.
+  int batches = 1;
+  Scatterers scatterers = Scatterers::kRays;
+  bool edges = false;        // also find the echoes of sharp edges (edges/edge_paths.h)
+  double attenuation = 0.0;  // Np/m, of fields in the air at the radar's frequency; replay applies it to each whole length
+};
+
 // Holds the values to which a path's amplitude and length refer.
-struct TraceFrame {
+struct TraceFrame : RecordSettings {
   double start_time = 0.0;                                   // s, first sample of the frame
   double trace_time = 0.0;                                   // s, the time the rays saw the scene at (mid-frame)
   Vec3 transmitter = Vec3::Zero(), receiver = Vec3::Zero();  // world, mean positions at trace_time
   std::vector<Stratum> strata;
-  uint64_t seed = 0;
-  int max_bounces = 4;
-  PolarizationModel polarization = PolarizationModel::kScalar;
-  Footprint footprint = Footprint::kSecondOrder;
-  Sampler sampler = Sampler::kLattice;
   TraceStatistics statistics;
-  int num_batches = 1;           // independent lattices of launch directions, which share the rays of each stratum
   double target_error_db = 0.0;  // dB, the error of the received power that was asked for; 0: none
   double error_db = 0.0;         // dB, the one that was reached (sim/rays/trace_to_error.h); 0: not looked at
-  Scatterers scatterers = Scatterers::kRays;
-  bool edges = false;        // sharp edges were looked for
-  double attenuation = 0.0;  // Np/m, of fields in the air at the radar's frequency; replay applies it to each whole length
 
   // Returns the rays per sr of one batch of a stratum, from which its launch cells are made. Filters for the cells of all
   // batches together would leave each batch its aliases, which do not cancel, because the lattices are independent of each
   // other.
-  double lattice_density(size_t stratum_index) const { return strata[stratum_index].ray_density / num_batches; }
+  double lattice_density(size_t stratum_index) const { return strata[stratum_index].ray_density / batches; }
 };
 
 struct Paths {

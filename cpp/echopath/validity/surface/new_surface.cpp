@@ -23,16 +23,8 @@ Radar instant_radar(const Paths& record, const Radar& radar, size_t antenna) {
 
 TraceSettings settings_like(const TraceFrame& frame) {
   TraceSettings settings;
+  static_cast<RecordSettings&>(settings) = frame;
   settings.num_rays = std::max<int64_t>(1, frame.statistics.num_rays);
-  settings.max_bounces = frame.max_bounces;
-  settings.seed = frame.seed;
-  settings.polarization = frame.polarization;
-  settings.footprint = frame.footprint;
-  settings.batches = frame.num_batches;
-  settings.sampler = frame.sampler;
-  settings.scatterers = frame.scatterers;
-  settings.edges = frame.edges;
-  settings.attenuation = frame.attenuation;
   return settings;
 }
 

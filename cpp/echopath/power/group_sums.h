@@ -9,15 +9,13 @@
 
 namespace echopath {
 
-struct GroupSums {
+// Holds, beside the evidence that it gathers, what the estimates of that evidence follow from.
+struct GroupSums : PowerEvidence {
   // [batches + 1] each; the last entry belongs to the paths that are in no batch.
-  std::vector<std::complex<double>> field;            // sqrt(W), coherent paths as they arrive
-  std::vector<double> power;                          // W, of diffuse hits
-  std::vector<CoherentKind> kinds;                    // in the order in which they occur
-  double steady_power = 0.0, steady_squares = 0.0;    // W, W^2, of coherent paths that cells hardly change (PowerEvidence)
-  double lattice_squares = 0.0, drawn_squares = 0.0;  // W^2, of the powers of diffuse hits (PowerEvidence)
-  double strongest_hit = 0.0;                         // W, of a diffuse hit
-  double largest_field = 0.0;                         // sqrt(W), sum of |a| of coherent paths that have a launch cell
+  std::vector<std::complex<double>> field;  // sqrt(W), coherent paths as they arrive
+  std::vector<double> power;                // W, of diffuse hits
+  double strongest_hit = 0.0;               // W, of a diffuse hit
+  double largest_field = 0.0;               // sqrt(W), sum of |a| of coherent paths that have a launch cell
   int64_t num_coherent_paths = 0, num_diffuse_hits = 0;
 };
 

@@ -88,14 +88,9 @@ ReceivedPower estimate(const GroupSums& sums) {
 }
 
 PowerEvidence evidence_of(const GroupSums& sums, const ReceivedPower& power, Footprint footprint) {
-  PowerEvidence evidence;
+  PowerEvidence evidence = sums;
   evidence.coherent = power.coherent;
   evidence.diffuse = power.diffuse;
-  evidence.kinds = sums.kinds;
-  evidence.steady_power = sums.steady_power;
-  evidence.steady_squares = sums.steady_squares;
-  evidence.lattice_squares = sums.lattice_squares;
-  evidence.drawn_squares = sums.drawn_squares;
   evidence.num_batches = power.num_batches;
   evidence.standard_error = power.standard_error;
   if (footprint == Footprint::kNone && sums.largest_field > 0.0)
@@ -106,11 +101,7 @@ PowerEvidence evidence_of(const GroupSums& sums, const ReceivedPower& power, Foo
 ReceivedPower with_interval(const GroupSums& sums, Footprint footprint) {
   ReceivedPower out = estimate(sums);
   const PowerEvidence evidence = evidence_of(sums, out, footprint);
-  const PowerInterval interval = power_interval(evidence);
-  out.low = interval.low;
-  out.high = interval.high;
-  out.bias = interval.bias;
-  out.chance = interval.chance;
+  static_cast<PowerInterval&>(out) = power_interval(evidence);
   for (const CoherentKind& kind : evidence.kinds) {
     out.field += kind.field[kAsLaunched];
     out.half_density_field += kind.field[kHalfDensity];

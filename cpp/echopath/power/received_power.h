@@ -14,8 +14,9 @@ namespace echopath {
 inline constexpr double kResolvedDb = 0.3;  // how far the interval of a resolved power may reach from it, dB
 
 // Holds the power at the trace time, between two antennas, at the start frequency. The mean is over the random phases of
-// diffuse hits.
-struct ReceivedPower {
+// diffuse hits. The 95 % interval, of bias and chance together, is [0, 0] where no path arrives, which tells nothing about
+// what no ray has met.
+struct ReceivedPower : PowerInterval {
   double power = 0.0;           // W, coherent + diffuse
   double standard_error = 0.0;  // W, of `power`, by the batches; NaN for less than two
   // W: |field|^2 of the coherent paths; with batches free of the bias by noise, which can take it below zero.
@@ -26,12 +27,6 @@ struct ReceivedPower {
   double diffuse = 0.0;
   double diffuse_error = 0.0;  // W
   int num_batches = 1;
-
-  // The 95 % interval of the power, of bias and chance together (power_interval.h), W. It is [0, 0] where no path arrives,
-  // which tells nothing about what no ray has met.
-  double low = 0.0, high = 0.0;
-  double bias = 0.0;    // W, that finer launch cells may add to the coherent power
-  double chance = 0.0;  // W, standard error; for one batch estimated from the record
 
   // The estimates rest on these: the field of the coherent paths (sqrt(W), all batches), as it is and through the footprint
   // filter of cells of half the density of rays, and the sum of |a|^2 of the coherent paths without the filter, W.

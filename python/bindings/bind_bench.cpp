@@ -9,7 +9,6 @@
 #include "call/run_job.h"
 #include "echopath/bench/bare_queries.h"
 #include "echopath/bench/moved_geometry.h"
-#include "echopath/bench/read_hits.h"
 #include "echopath/bench/replay_only.h"
 #include "echopath/bench/single_rays.h"
 #include "echopath/bench/synthesis_trial.h"
@@ -107,8 +106,6 @@ that move are fitted. Raises ValueError naming the argument.)");
         py::arg("method") = "auto", py::arg("tolerance") = SynthesisOptions{}.tolerance,
         "What synthesis of echoes costs that polynomials give over a frame: delays [K, P] in s and amplitudes [K, P] in "
         "sqrt(W) at trial_node_times -> (wall seconds, processor seconds, samples [chirp, sample]).");
-  m.def("read_hits", &read_hits, py::arg("paths"),
-        "Reads what matching of path expressions reads, on one thread, and returns a sum of it.");
 }
 
 void bind_rays(py::module_& m) {

@@ -126,11 +126,17 @@ def _rates(title: str, paths) -> dict:
     threads = ep.num_threads()
     ep.set_num_threads(1)
     try:
-        bare = hits / _least_time(lambda: ep._core.bench.read_hits(paths))
+        bare = hits / _least_time(lambda: _read_hits(paths))
         rates = {text: hits / _least_time(lambda text=text: ep.Selection(text).matches(paths)) for text in EXPRESSIONS}
     finally:
         ep.set_num_threads(threads)
     return {"title": title, "paths": paths.num_paths, "hits": hits, "bare_hits_per_second": bare, "hits_per_second": rates}
+
+
+def _read_hits(paths) -> None:
+    """Reads what matching reads of every path, on one thread: mesh IDs and events."""
+    np.bitwise_xor.reduce(paths.mesh_id)
+    np.bitwise_xor.reduce(paths.diffuse)
 
 
 def _least_time(work) -> float:

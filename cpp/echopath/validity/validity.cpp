@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <map>
 #include <numeric>
 #include <span>
 
 #include "echopath/base/errors.h"
 #include "echopath/base/threads/parallel.h"
-#include "echopath/replay/replay.h"
-#include "echopath/signal/noise.h"
+#include "echopath/radar/noise_power.h"
 #include "echopath/validity/frame/path_sample.h"
 #include "echopath/validity/power_sums.h"
-#include "echopath/validity/surface/new_surface.h"
+#include "echopath/validity/surface/surface_looks.h"
 #include "echopath/validity/validity_objects.h"
 
 namespace echopath {
@@ -22,9 +20,6 @@ namespace {
 constexpr int64_t kPathsPerBlock = 2048;
 constexpr int64_t kBlocksInFlight = 64;  // fixed: sums must not depend on the number of threads
 constexpr size_t kTimesAtOnce = kBaseCheckTimes;
-constexpr int64_t kSearchRays = 1 << 17;      // for new surface, over all times and antennas
-constexpr int64_t kMinSearchRays = 1 << 12;   // of one look
-constexpr uint64_t kSearchSeed = 0x6c6f6f6b;  // combined with the trace's seed, so that the lattice differs from the trace's
 
 bool is_field(const LocalPath& path) { return path.diffuse == 0 && path.last_material >= 0; }
 
@@ -44,7 +39,7 @@ class ValidityCheck {
     findings_.resize(sample_.paths.size());
     for (size_t first = 0; first < report_.times.size(); first += kTimesAtOnce) check_times_from(first);
     sum_findings();
-    search_new_surface();
+    seen_ = look_for_new_surface(paths_, radar_, check_, at_times_, job_);
     make_objects();
     return std::move(report_);
   }
@@ -56,15 +51,6 @@ class ValidityCheck {
     size_t object = 0;  // node index
     bool is_field = false;
     Echo at_trace;
-  };
-
-  // These hold what is seen of an object.
-  struct SeenNow {
-    BandSum seen, fresh;  // by one look: everything, and new surface
-  };
-  struct SeenSums {
-    double seen = 0.0, fresh = 0.0;  // W, over times and antennas
-    double largest = 0.0;            // W, of what is seen from the antennas of the trace
   };
 
   size_t num_base() const { return static_cast<size_t>(check_.times().num_base); }
@@ -182,69 +168,6 @@ class ValidityCheck {
     arrays.cosine_change[path] = static_cast<float>(found.state.cosine_change);
   }
 
-  // Looks for new surface at each of the times, from the antennas of the trace and from those at the rim.
-  void search_new_surface() {
-    if (!check_.anything_moves() && !check_.has_array()) return;
-    const size_t num_pairs = check_.num_antenna_pairs(), num_times = report_.times.size();
-    SurfaceSearchSettings look;
-    look.num_rays =
-        std::max(kMinSearchRays, kSearchRays / std::max<int64_t>(1, static_cast<int64_t>(num_pairs * num_times)));
-    look.seed = paths_.frame.seed ^ kSearchSeed;
-    KeptGeometry then, now;
-    for (size_t time = 0; time < num_times; ++time) {
-      look.time = report_.times[time];
-      for (look.antenna = 0; look.antenna < num_pairs; ++look.antenna) {
-        add_search(trace_new_surface(paths_, radar_, look, job_, &then, &now), time, look.antenna == 0);
-      }
-    }
-  }
-
-  // Adds what a look finds. What rim antennas see counts for shares alone.
-  void add_search(const SurfaceSearch& found, size_t time, bool is_own) {
-    Radar pair_radar = is_own ? check_.first_radar() : found.paths.radar;
-    pair_radar.waveform.num_chirps = pair_radar.waveform.num_samples = 1;
-    std::vector<int64_t> all(static_cast<size_t>(found.paths.num_paths()));
-    std::iota(all.begin(), all.end(), 0);
-    std::vector<double> lengths;
-    std::vector<std::complex<double>> amplitudes;
-    Replayer(found.paths, pair_radar).evaluate(all, found.paths.frame.trace_time, lengths, amplitudes, job_);
-    std::map<size_t, SeenNow> seen;
-    for (size_t i = 0; i < all.size(); ++i) {
-      const Hit* hits = found.paths.hits_of(all[i]);
-      const auto [object, is_field] = end_of(found.paths, i, hits);
-      const Echo echo{amplitudes[i], lengths[i], false};
-      seen[object].seen.add(echo, is_field, 1.0, band_);
-      if (found.is_new[i]) seen[object].fresh.add(echo, is_field, 1.0, band_);
-    }
-    for (const auto& [object, at] : seen) {
-      SeenSums& sums = seen_[object];
-      const double power = at.seen.power();
-      sums.seen += power;
-      sums.fresh += at.fresh.power();
-      if (is_own) raise(sums.largest, power);
-      if (!is_own || time >= num_base()) continue;
-      at_times_[object].resize(num_base());
-      at_times_[object][time].fresh.add(at.fresh);
-    }
-  }
-
-  // Returns the object of the last hit that is no image, as the path was traced, and whether its echo adds up as a field.
-  std::pair<size_t, bool> end_of(const Paths& paths, size_t path, const Hit* hits) const {
-    const int count = paths.num_bounces[path];
-    const bool is_reversed = (paths.flags[path] & kReversedPath) != 0;
-    int last = edge_hit(paths.flags[path]);
-    if (last >= 0 && !is_reversed) last += num_edge_hits(paths.flags[path]) - 1;
-    for (int k = 0; k < count && last < 0; ++k) {
-      const int hit = is_reversed ? k : count - 1 - k;
-      const bool is_image =
-          (paths.stratum[path] == kNoStratum || paths_.scene->node_of(hits[hit].mesh_id).material->mirror) &&
-          !(paths.diffuse[path] >> hit & 1);
-      if (!is_image) last = hit;
-    }
-    const Hit& end = hits[last >= 0 ? last : is_reversed ? count - 1 : 0];
-    return {static_cast<size_t>(paths_.scene->meshes()[end.mesh_id].object), last >= 0 && paths.diffuse[path] == 0};
-  }
-
   void make_objects() {
     std::vector<double> turn(of_object_.size());
     std::vector<uint8_t> is_too_fast(of_object_.size());
@@ -275,9 +198,11 @@ class ValidityCheck {
     object.has_paths = object.power > 0;
     const bool is_whole = paths_.num_paths() == paths_.frame.statistics.num_paths;
     object.is_asked = is_whole || object.has_paths;
-    const SeenSums& looks = seen_[node];
+    const SeenObject& looks = seen_[node];
     object.new_surface = looks.seen > 0 ? looks.fresh / looks.seen : 0.0;
-    report_.shares.new_surface += all_seen() > 0 ? looks.fresh / all_seen() : 0.0;
+    const double all_seen =
+        std::accumulate(seen_.begin(), seen_.end(), 0.0, [](double sum, const auto& one) { return sum + one.second.seen; });
+    report_.shares.new_surface += all_seen > 0 ? looks.fresh / all_seen : 0.0;
     double replayed = 0.0, kept = 0.0, truth = 0.0;
     for (const ObjectAtTime& at : at_times_[node]) {
       BandSum left = at.replayed;
@@ -292,12 +217,6 @@ class ValidityCheck {
     return object;
   }
 
-  double all_seen() const {
-    double sum = 0.0;
-    for (const auto& [object, looks] : seen_) sum += looks.seen;
-    return sum;
-  }
-
   const Paths& paths_;
   const Radar& radar_;
   FrameCheck check_;
@@ -308,7 +227,7 @@ class ValidityCheck {
   std::vector<Finding> findings_;                                  // of the sample
   std::vector<KindSums> of_object_{paths_.scene->nodes().size()};  // by node index
   ObjectsAtTimes at_times_;                                        // at the base times, for the first antennas
-  std::map<size_t, SeenSums> seen_;                                // by node index
+  std::map<size_t, SeenObject> seen_;                              // by node index
   Validity report_;
 };
 

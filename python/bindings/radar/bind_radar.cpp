@@ -1,9 +1,9 @@
-#include <pybind11/complex.h>
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
 #include <cmath>
-#include <complex>
+#include <memory>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -12,260 +12,190 @@
 #include "call/plausible.h"
 #include "echopath/base/errors.h"
 #include "echopath/radar/radar.h"
+#include "radar/place_text.h"
+#include "values/array.h"
+#include "values/choice.h"
+#include "values/held_object.h"
+#include "values/in_package.h"
 #include "values/value.h"
 
 namespace echopath::bindings {
 namespace {
 
-constexpr double kUnitTolerance = 1e-6;  // of directions
+constexpr auto kMultiplexing = choice<Multiplexing>("multiplexing", "tdm", "bpm", "ddm", "cdm");
 
-constexpr auto kPatternKind = choice<AntennaPattern::Kind>("kind", "isotropic", "cosine_power", "table");
-
-ChirpSequence chirp_sequence(Arg<"start_frequency", Real> start_frequency, Arg<"bandwidth", Real> bandwidth,
-                             Arg<"num_samples", Positive> num_samples, Arg<"sampling_rate", Real> sampling_rate,
-                             Arg<"num_chirps", Positive> num_chirps, Arg<"chirp_interval", Real> chirp_interval,
-                             Arg<"real", Flag> real, Arg<"extra_idle", VectorOf<double>> extra_idle,
-                             Arg<"frequency_steps", VectorOf<double>> frequency_steps,
-                             Arg<"bandwidth_steps", VectorOf<double>> bandwidth_steps) {
-  const ChirpSequence waveform{*start_frequency, *bandwidth, *num_samples, *sampling_rate,   *num_chirps,
-                               *chirp_interval,  *real,      *extra_idle,  *frequency_steps, *bandwidth_steps};
-  waveform.validate();
-  require_plausible(waveform);
-  return waveform;
-}
-
-double velocity_resolution(const ChirpSequence& self, Arg<"num_slots", Positive> num_slots) {
-  return self.velocity_resolution(*num_slots);
-}
-
-double slot_start(const ChirpSequence& self, Arg<"slot", Count> slot) { return self.slot_start(*slot); }
-
-double max_velocity(const ChirpSequence& self, Arg<"num_slots", Positive> num_slots) {
-  return self.max_velocity(*num_slots);
-}
-
-AntennaPattern isotropic(Arg<"gain", Real> gain) { return AntennaPattern::isotropic(*gain); }
-
-AntennaPattern cosine_power(Arg<"exponent", Real> exponent, Arg<"peak_gain", Optional<Real>> peak_gain) {
-  require(!*peak_gain || **peak_gain > 0.0, "peak_gain", "must be positive, or None", peak_gain->value_or(0.0));
-  return AntennaPattern::cosine_power(*exponent, peak_gain->value_or(0.0));
-}
-
-AntennaPattern gain_table(Arg<"azimuth", VectorOf<double>> azimuth, Arg<"elevation", VectorOf<double>> elevation,
-                          Arg<"gain", Array<double, "[E, A]">> gain, Arg<"phase", Optional<Array<double, "[E, A]">>> phase,
-                          Arg<"normalize", Flag> normalize) {
-  const auto samples = [&](const py::array_t<double>& given, const char* argument) {
-    const bool fits = given.shape(0) == static_cast<py::ssize_t>(elevation->size()) &&
-                      given.shape(1) == static_cast<py::ssize_t>(azimuth->size());
-    require(fits, argument, "must have a row for each elevation and a column for each azimuth",
-            std::to_string(given.shape(0)) + " x " + std::to_string(given.shape(1)));
-    return std::vector<double>(given.data(), given.data() + given.size());
-  };
-  const std::vector<double> gains = samples(*gain, "gain");
-  const std::vector<double> phases = *phase ? samples(**phase, "phase") : std::vector<double>{};
-  return AntennaPattern::of_table(GainTable(*azimuth, *elevation, gains, phases,
-                                            *normalize ? GainTable::Scale::kMeanOfOne : GainTable::Scale::kAsGiven));
-}
-
-const char* kind_of(const AntennaPattern& pattern) { return kPatternKind.name_of(pattern.kind); }
-
-// One of the arrays of a table, in a new NumPy array; None for other patterns and where there is no phase.
-py::object axis_of(const AntennaPattern& pattern, const std::vector<double>& (GainTable::*getter)() const) {
-  if (!pattern.table) return py::none();
-  return to_numpy(((*pattern.table).*getter)());
-}
-
-py::object samples_of(const AntennaPattern& pattern, const std::vector<double>& (GainTable::*getter)() const) {
-  if (!pattern.table || ((*pattern.table).*getter)().empty()) return py::none();
-  const GainTable& table = *pattern.table;
-  return numpy_take(std::vector<double>((table.*getter)()),
-                    {static_cast<py::ssize_t>(table.elevation().size()), static_cast<py::ssize_t>(table.azimuth().size())});
-}
-
-double gain_of(const AntennaPattern& pattern, Arg<"cos_boresight", Real> cos_boresight) {
-  return pattern.gain(*cos_boresight);
-}
-
-py::array_t<std::complex<double>> field_of(const AntennaPattern& pattern, Arg<"directions", Points> directions) {
-  std::vector<std::complex<double>> field;
-  for (const Vec3& direction : *directions) {
-    const double norm = direction.norm();
-    require(std::abs(norm - 1.0) <= kUnitTolerance, "directions", "must have norm 1 within 1e-6", norm);
-    const AntennaGain gain = pattern.toward(direction);
-    field.push_back(std::polar(std::sqrt(gain.power), gain.phase));
+// What the package knows as ep.Receiver, which the core carries along.
+struct ReceiverKind {
+  using Value = std::shared_ptr<const void>;
+  static constexpr auto type_name = py::detail::const_name("object");
+  static Value from(py::handle value, const char* argument) {
+    if (!value.is_none() && !py::isinstance(value, py::module_::import("echopath.receiver").attr("Receiver")))
+      refuse_type(argument, "must be a Receiver or None", value);
+    return hold(py::reinterpret_borrow<py::object>(value));
   }
-  return numpy_take(std::move(field));
-}
+};
 
-py::tuple tuple_of(const std::vector<double>& values) { return py::tuple(py::cast(values)); }
-
-py::dict keywords_of(const ChirpSequence& w) {
-  return py::dict(py::arg("start_frequency") = w.start_frequency, py::arg("bandwidth") = w.bandwidth,
-                  py::arg("num_samples") = w.num_samples, py::arg("sampling_rate") = w.sampling_rate,
-                  py::arg("num_chirps") = w.num_chirps, py::arg("chirp_interval") = w.chirp_interval,
-                  py::arg("real") = w.real, py::arg("extra_idle") = tuple_of(w.extra_idle),
-                  py::arg("frequency_steps") = tuple_of(w.frequency_steps),
-                  py::arg("bandwidth_steps") = tuple_of(w.bandwidth_steps));
-}
-
-py::dict keywords_of(const AntennaPattern& pattern) {
-  if (pattern.kind == AntennaPattern::Kind::kIsotropic) return py::dict(py::arg("gain") = pattern.peak_gain);
-  if (!pattern.table) {
-    return py::dict(py::arg("exponent") = pattern.exponent, py::arg("peak_gain") = pattern.peak_gain);
+std::vector<std::vector<double>> rows_of(const std::optional<py::array_t<double, py::array::c_style>>& table) {
+  std::vector<std::vector<double>> rows;
+  if (!table) return rows;
+  const auto length = static_cast<size_t>(table->shape(1));
+  for (py::ssize_t row = 0; row < table->shape(0); ++row) {
+    const double* const first = table->data() + static_cast<size_t>(row) * length;
+    rows.emplace_back(first, first + length);
   }
-  return py::dict(py::arg("azimuth") = axis_of(pattern, &GainTable::azimuth),
-                  py::arg("elevation") = axis_of(pattern, &GainTable::elevation),
-                  py::arg("gain") = samples_of(pattern, &GainTable::gain),
-                  py::arg("phase") = samples_of(pattern, &GainTable::phase));
+  return rows;
 }
 
-// The function that makes the pattern with those keywords.
-py::object maker_of_pattern(const py::dict& keywords) {
-  const char* name = keywords.contains("azimuth")    ? "GainTable"
-                     : keywords.contains("exponent") ? "CosinePower"
-                                                     : "Isotropic";
-  return py::module_::import("echopath._core").attr(name);
+// Level, the way the radar faces: a vehicle drives on the ground, wherever its radar looks up to.
+std::shared_ptr<const Motion> motion_of(const std::optional<std::shared_ptr<Motion>>& motion,
+                                        const std::optional<double>& speed, double yaw) {
+  if (!speed) return motion.value_or(nullptr);
+  require(!motion, "speed", "must not be given together with motion", *speed);
+  require_below_light(*speed, "speed");
+  return std::make_shared<LinearMotion>(*speed * Vec3(std::cos(yaw), std::sin(yaw), 0.0));
 }
 
-std::string text_of(const ChirpSequence& w) {
+Radar radar(const Arg<"waveform", Instance<ChirpSequence>>& waveform,
+            const Arg<"transmitters", List<Instance<Antenna>>>& transmitters,
+            const Arg<"receivers", List<Instance<Antenna>>>& receivers, const Arg<"position", Vector3>& position,
+            const Arg<"yaw", Real>& yaw, const Arg<"pitch", Real>& pitch,
+            const Arg<"motion", Optional<Instance<std::shared_ptr<Motion>>>>& motion,
+            const Arg<"speed", Optional<Real>>& speed, const Arg<"transmit_power", Real>& transmit_power,
+            const Arg<"noise_figure_db", Real>& noise_figure_db,
+            const Arg<"multiplexing", OneOf<kMultiplexing>>& multiplexing, const Arg<"empty_slots", Positive>& empty_slots,
+            const Arg<"code_phases", Optional<Array<double, "[tx, slots]">>>& code_phases,
+            const Arg<"receiver", ReceiverKind>& receiver) {
+  Radar made{*waveform,        *transmitters,
+             *receivers,       *transmit_power,
+             *noise_figure_db, *multiplexing,
+             *position,        *yaw,
+             *pitch,           motion_of(*motion, *speed, *yaw),
+             *empty_slots,     rows_of(*code_phases),
+             *receiver};
+  made.validate();
+  made.validate_code_fits();
+  require(made.code_phases.empty() || made.code_phases.size() == made.transmitters.size(), "code_phases",
+          "must have one row for each transmitter", made.code_phases.size());
+  warn_of_turns(made.yaw);
+  return made;
+}
+
+py::object motion_object(const Radar& self) { return py::cast(std::const_pointer_cast<Motion>(self.motion)); }
+
+// Phases [tx, slots] in a new array, None where there is no code.
+py::object code_phases_of(const Radar& self) {
+  if (self.code_phases.empty()) return py::none();
+  std::vector<double> values;
+  for (const std::vector<double>& row : self.code_phases) values.insert(values.end(), row.begin(), row.end());
+  const auto num_rows = static_cast<py::ssize_t>(self.code_phases.size());
+  const auto length = static_cast<py::ssize_t>(self.code_phases.front().size());
+  return numpy_take(std::move(values), {num_rows, length});
+}
+
+py::dict keywords_of(const Radar& self) {
+  return py::dict(py::arg("waveform") = self.waveform, py::arg("transmitters") = self.transmitters,
+                  py::arg("receivers") = self.receivers, py::arg("position") = tuple_of(self.position),
+                  py::arg("yaw") = self.yaw, py::arg("pitch") = self.pitch, py::arg("motion") = motion_object(self),
+                  py::arg("transmit_power") = self.transmit_power, py::arg("noise_figure_db") = self.noise_figure_db,
+                  py::arg("multiplexing") = kMultiplexing.name_of(self.multiplexing),
+                  py::arg("empty_slots") = self.empty_slots, py::arg("code_phases") = code_phases_of(self),
+                  py::arg("receiver") = held(self.receiver));
+}
+
+py::object replace_in_radar(const Radar& self, const py::kwargs& changes) {
+  py::dict keywords = keywords_of(self);
+  if (changes.contains("speed")) keywords["motion"] = py::none();
+  return detail::remade(py::type::of<Radar>(), keywords, changes);
+}
+
+double chirp_time(const Radar& self, const Arg<"tx", Count>& tx, const Arg<"chirp", Count>& chirp) {
+  return self.chirp_time(*tx, *chirp);
+}
+
+py::array_t<double> world_from_radar(const Radar& self, const Arg<"time", Real>& time) {
+  return to_numpy(self.world_from_radar(*time));
+}
+
+std::string text_of(const Radar& r) {
   std::ostringstream text;
-  text << "ChirpSequence(" << w.start_frequency * 1e-9 << " GHz + " << w.bandwidth * 1e-9 << " GHz, " << w.num_samples
-       << (w.real ? " real" : " complex") << " samples at " << w.sampling_rate * 1e-6 << " MHz, " << w.num_chirps
-       << " chirps every " << w.chirp_interval * 1e6 << " us"
-       << (w.extra_idle.empty() && w.frequency_steps.empty() && w.bandwidth_steps.empty() ? ")" : ", slots differ)");
+  text << "Radar(" << part_text(r.waveform) << ", " << r.transmitters.size() << " transmitters, " << r.receivers.size()
+       << " receivers, at " << place_text(r.position, r.yaw, r.pitch) << ", " << r.transmit_power << " W, noise figure "
+       << r.noise_figure_db << " dB" << (r.takes_turns() ? "" : std::string(", ") + kMultiplexing.name_of(r.multiplexing))
+       << (r.receiver ? ", receiver with faults" : "") << (r.motion ? ", moving" : "") << ")";
   return text.str();
-}
-
-std::string text_of(const AntennaPattern& pattern) {
-  std::ostringstream text;
-  if (pattern.kind == AntennaPattern::Kind::kIsotropic) {
-    text << "Isotropic(gain=" << pattern.peak_gain << ")";
-  } else if (pattern.table) {
-    text << "GainTable(" << pattern.table->azimuth().size() << " azimuths x " << pattern.table->elevation().size()
-         << " elevations, peak gain " << pattern.peak_gain << (pattern.table->phase().empty() ? "" : ", with phase") << ")";
-  } else {
-    text << "CosinePower(exponent=" << pattern.exponent << ", peak_gain=" << pattern.peak_gain << ")";
-  }
-  return text.str();
-}
-
-void bind_waveform(py::module_& m) {
-  py::class_<ChirpSequence> type(m, "ChirpSequence", R"(A frame of linear up-chirps.
-
-start_frequency: Hz, at the first sample
-bandwidth: Hz, swept by the samples of a chirp
-num_samples: of a chirp
-sampling_rate: Hz
-num_chirps: per transmitter
-chirp_interval: s between neighbouring slots, at least num_samples / sampling_rate
-real: real IF samples instead of complex ones
-extra_idle: s, 0 or more, by which the slot after this one begins later: slot i takes entry i modulo their number (staggered
-    pulse repetition); () for none
-frequency_steps: Hz added to the start frequency of a slot, likewise (frequency hopping)
-bandwidth_steps: Hz added to the bandwidth of a slot, likewise; maps keep the axes of the waveform without steps
-Raises TypeError or ValueError naming the argument, for a start_frequency below 1 MHz, too. Warns (RuntimeWarning) of a
-bandwidth above start_frequency or below 1 kHz and of a chirp_interval above 1 s, which look like other units.)");
-  define_init(type, &chirp_sequence, py::kw_only(), py::arg("start_frequency") = 77e9, py::arg("bandwidth") = 1e9,
-              py::arg("num_samples") = 512, py::arg("sampling_rate") = 20e6, py::arg("num_chirps") = 128,
-              py::arg("chirp_interval") = 60e-6, py::arg("real") = false, py::arg("extra_idle") = py::make_tuple(),
-              py::arg("frequency_steps") = py::make_tuple(), py::arg("bandwidth_steps") = py::make_tuple())
-      .def_readonly("start_frequency", &ChirpSequence::start_frequency, "Hz, at the first sample")
-      .def_readonly("bandwidth", &ChirpSequence::bandwidth, "Hz, sampled")
-      .def_readonly("num_samples", &ChirpSequence::num_samples, "of a chirp")
-      .def_readonly("sampling_rate", &ChirpSequence::sampling_rate, "Hz")
-      .def_readonly("num_chirps", &ChirpSequence::num_chirps, "per transmitter")
-      .def_readonly("chirp_interval", &ChirpSequence::chirp_interval, "s, between neighbouring slots")
-      .def_readonly("real", &ChirpSequence::real, "whether samples are real")
-      .def_property_readonly(
-          "extra_idle", [](const ChirpSequence& self) { return tuple_of(self.extra_idle); }, "s, after each slot, repeated")
-      .def_property_readonly(
-          "frequency_steps", [](const ChirpSequence& self) { return tuple_of(self.frequency_steps); },
-          "Hz, of each slot, repeated")
-      .def_property_readonly(
-          "bandwidth_steps", [](const ChirpSequence& self) { return tuple_of(self.bandwidth_steps); },
-          "Hz, of each slot, repeated")
-      .def_property_readonly("mean_interval", &ChirpSequence::mean_interval, "s, between neighbouring slots in the mean")
-      .def_property_readonly("slope", &ChirpSequence::slope, "Hz/s")
-      .def_property_readonly("chirp_duration", &ChirpSequence::chirp_duration, "s, sampled")
-      .def_property_readonly("window_centre", &ChirpSequence::window_centre, "s from the first sample to the middle")
-      .def_property_readonly("centre_frequency", &ChirpSequence::centre_frequency, "Hz")
-      .def_property_readonly("wavelength", &ChirpSequence::wavelength, "m, at the centre frequency")
-      .def_property_readonly("range_resolution", &ChirpSequence::range_resolution, "m, c / (2 bandwidth)")
-      .def_property_readonly("max_range", &ChirpSequence::max_range, "m, unambiguous")
-      .def("__repr__", [](const ChirpSequence& self) { return text_of(self); });
-  define(type, "slot_start", &slot_start, py::arg("slot"), R"(When a slot begins.
-
-slot: index, 0 or more
-Returns s after the start of the first slot. Raises TypeError or ValueError naming the argument.)");
-  define(type, "velocity_resolution", &velocity_resolution, py::arg("num_slots") = 1,
-         "m/s, when `num_slots` transmitters take turns. Raises TypeError or ValueError naming the argument.");
-  define(
-      type, "max_velocity", &max_velocity, py::arg("num_slots") = 1,
-      "m/s, unambiguous up to +- this, when `num_slots` transmitters take turns. Raises TypeError or ValueError naming the "
-      "argument.");
-  define_value<ChirpSequence>(type, &keywords_of);
-  define_replace<ChirpSequence>(type, &keywords_of);
-}
-
-void bind_patterns(py::module_& m) {
-  py::class_<AntennaPattern> type(m, "AntennaPattern",
-                                  "Power gain over direction; made by Isotropic, CosinePower or GainTable.");
-  define_no_init(type, "ep.Isotropic, ep.CosinePower, ep.GainTable and ep.load_antenna");
-  define(type, "gain", &gain_of, py::arg("cos_boresight"),
-         "Linear power gain where cos_boresight is the cosine of the angle from the boresight. A table raises ValueError.");
-  define(type, "field", &field_of, py::arg("directions"),
-         "sqrt(gain) e^{j phase} [N], complex, toward unit directions [N, 3] in the antenna's frame. Raises TypeError or "
-         "ValueError naming the argument.");
-  define_value<AntennaPattern>(type, &keywords_of, &maker_of_pattern);
-  define_replace<AntennaPattern>(type, &keywords_of, &maker_of_pattern);
-  type.def_property_readonly("kind", &kind_of, "\"isotropic\", \"cosine_power\" or \"table\"")
-      .def_readonly("peak_gain", &AntennaPattern::peak_gain, "linear; of a table its largest sample")
-      .def_readonly("exponent", &AntennaPattern::exponent, "of the cosine; 0 when isotropic")
-      .def_property_readonly("efficiency", &AntennaPattern::efficiency,
-                             "integral of the gain over the sphere / 4 pi; at most 1 for a power gain")
-      .def_property_readonly(
-          "azimuth", [](const AntennaPattern& self) { return axis_of(self, &GainTable::azimuth); },
-          "[A] rad of a table, else None")
-      .def_property_readonly(
-          "elevation", [](const AntennaPattern& self) { return axis_of(self, &GainTable::elevation); },
-          "[E] rad of a table, else None")
-      .def_property_readonly(
-          "table_gain", [](const AntennaPattern& self) { return samples_of(self, &GainTable::gain); },
-          "[E, A] linear power gain of a table, else None")
-      .def_property_readonly(
-          "table_phase", [](const AntennaPattern& self) { return samples_of(self, &GainTable::phase); },
-          "[E, A] rad of a table with phases, else None")
-      .def("__repr__", [](const AntennaPattern& self) { return text_of(self); });
-  define(m, "Isotropic", &isotropic, py::arg("gain") = 1.0,
-         "The same linear power gain in every direction.\n\n"
-         "gain: linear, at most 1 (1.02 for rounding): without a direction to prefer it is the efficiency of the antenna\n"
-         "Raises TypeError or ValueError naming the argument.");
-  define(m, "CosinePower", &cosine_power, py::arg("exponent"), py::arg("peak_gain") = py::none(),
-         "Gain peak_gain cos^exponent of the angle from the boresight, nothing behind.\n\n"
-         "exponent: 0 or more\npeak_gain: linear, None for that of a lossless antenna, 2 (exponent + 1), which is the most\n"
-         "Raises ValueError naming the argument.");
-  define(m, "GainTable", &gain_table, py::kw_only(), py::arg("azimuth"), py::arg("elevation"), py::arg("gain"),
-         py::arg("phase") = py::none(), py::arg("normalize") = false,
-         R"(Gain sampled over direction; there is none outside the table.
-
-azimuth: [A] rad, ascending, about z from the boresight +x to the left, over at most a turn
-elevation: [E] rad, ascending, from the xy-plane, in [-pi/2, pi/2]
-gain: [E, A] linear power gain
-phase: [E, A] rad of the far field (e^{+jwt}) relative to the antenna's position, or None: 0 everywhere. It turns the
-    amplitudes of paths by e^{j phase}, in transmission and in reception.
-normalize: True scales the gain to a mean of 1 over the sphere, that of an antenna without losses, as for tables whose level
-    is unknown; False takes the gain as it is
-The field sqrt(gain) e^{j phase} is interpolated by bicubics; phases of neighbours should differ by less than 1 rad.
-Azimuths that cover the whole turn up to one step are closed to a ring.
-Returns an AntennaPattern. Raises TypeError or ValueError naming the argument, also where the mean gain over the sphere is more
-than 1.02 (0.09 dB): an antenna cannot radiate more power than it is fed.)");
 }
 
 }  // namespace
 
 void bind_radar(py::module_& m) {
-  bind_waveform(m);
-  bind_patterns(m);
+  py::class_<Radar> type(m, "Radar", R"(Waveform, antennas, and where the radar that carries them is.
+
+waveform: ChirpSequence
+transmitters, receivers: Antenna, at least one each, placed in the radar's frame: x ahead, y left, z up
+position: [3] m, in the world: the origin of the radar's frame
+yaw: rad about the world's z, left positive, as in scene.add: yaw = pi / 2 looks along +y
+pitch: rad, -pi/2 to pi/2, up positive: then about the radar's own +y, which stays level. The radar's +x becomes
+    (cos pitch cos yaw, cos pitch sin yaw, sin pitch) in the world.
+motion: Motion of the placed radar, or None at rest. Its axes are the world's, wherever the radar looks, as those of what
+    scene.add places at the root are: at time t a point p of the radar's frame is at position + translation(t) +
+    rotation(t) R_z(yaw) R_y(-pitch) p.
+speed: m/s ahead, instead of a motion: level, along (cos yaw, sin yaw, 0), negative backwards; `motion` is then the
+    LinearMotion of that velocity, which a later change of yaw leaves as it is
+transmit_power: W per transmitter
+noise_figure_db: dB, single sideband
+multiplexing: "tdm": transmitters take turns, one slot each. With the others all send in every slot, and `synthesize` gives
+    what a receiver has, [1, rx, slots, sample], until `demultiplex` takes it apart: "bpm": signs of a Hadamard matrix over
+    num_slots slots, which make one of the num_chirps; "ddm": transmitter m turns by m / (transmitters + empty_slots) of a
+    cycle from chirp to chirp; "cdm": by code_phases
+empty_slots: of "ddm", at least 1: shares of the Doppler axis to which no transmitter is moved, which tell velocities apart;
+    num_chirps must be a multiple of transmitters + empty_slots
+code_phases: of "cdm", [tx, slots] rad: transmitter m turns by code_phases[m, i] in slot i, repeated
+receiver: Receiver, the faults of the front end and the converter that follow the ideal signal, or None
+Angles that are estimated count in the radar's axes. Radars of equal arguments are equal, and pickle.
+Raises ValueError or TypeError naming the argument, for a speed of light or more, too. Warns (RuntimeWarning) of a yaw beyond
+a turn, which looks like degrees.)");
+  define_init(type, &radar, py::arg("waveform"), py::kw_only(), py::arg("transmitters"), py::arg("receivers"),
+              py::arg("position") = py::make_tuple(0.0, 0.0, 0.0), py::arg("yaw") = 0.0, py::arg("pitch") = 0.0,
+              py::arg("motion") = py::none(), py::arg("speed") = py::none(), py::arg("transmit_power") = 0.01,
+              py::arg("noise_figure_db") = 12.0, py::arg("multiplexing") = "tdm", py::arg("empty_slots") = 1,
+              py::arg("code_phases") = py::none(), py::arg("receiver") = py::none());
+  type.def_readonly("waveform", &Radar::waveform, "ChirpSequence")
+      .def_readonly("transmitters", &Radar::transmitters, "list of Antenna, a copy")
+      .def_readonly("receivers", &Radar::receivers, "list of Antenna, a copy")
+      .def_property_readonly(
+          "position", [](const Radar& self) { return to_numpy(self.position); }, "[3] m, in the world, without `motion`")
+      .def_readonly("yaw", &Radar::yaw, "rad, left positive, without `motion`")
+      .def_readonly("pitch", &Radar::pitch, "rad, up positive, without `motion`")
+      .def_property_readonly("motion", &motion_object, "Motion of the placed radar in world axes, or None")
+      .def_readonly("transmit_power", &Radar::transmit_power, "W per transmitter")
+      .def_readonly("noise_figure_db", &Radar::noise_figure_db, "dB, single sideband")
+      .def_property_readonly(
+          "multiplexing", [](const Radar& self) { return kMultiplexing.name_of(self.multiplexing); },
+          "\"tdm\", \"bpm\", \"ddm\" or \"cdm\"")
+      .def_readonly("empty_slots", &Radar::empty_slots, "of \"ddm\": shares of the Doppler axis without a transmitter")
+      .def_property_readonly("code_phases", &code_phases_of, "[tx, slots] rad of \"cdm\", or None")
+      .def_property_readonly(
+          "receiver", [](const Radar& self) { return held(self.receiver); }, "Receiver, or None")
+      .def_property_readonly("num_slots", &Radar::num_slots,
+                             "slots that make one of the num_chirps: of \"tdm\" one per transmitter, of \"bpm\" the length "
+                             "of its code, else 1")
+      .def_property_readonly("frame_duration", &Radar::frame_duration, "s, from the first sample to the last")
+      .def("__repr__", [](const Radar& self) { return text_of(self); });
+  define(type, "_repr_html_", from_package("presentation.notebook", "radar_html"), "A table for notebooks.");
+  define(type, "chirp_time", &chirp_time, py::arg("tx"), py::arg("chirp"), R"(Time of the middle of a chirp.
+
+tx, chirp: indices of the transmitter and of its chirp
+Returns s after the frame's start. Raises IndexError.)");
+  define(type, "world_from_radar", &world_from_radar, py::arg("time"), R"(Where the radar's frame is in the world.
+
+time: s
+Returns [4, 4], translation in m. Raises ValueError where `motion` is not defined.)");
+  define_value<Radar>(type, &keywords_of);
+  define_no_change(type);
+  define(type, "replace", &replace_in_radar, R"(A copy with some arguments of the constructor changed.
+
+changes: keywords of Radar; a speed takes the place of the motion
+Returns a Radar. Raises what Radar raises.)");
 }
 
 }  // namespace echopath::bindings

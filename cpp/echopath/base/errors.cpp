@@ -1,17 +1,30 @@
 #include "echopath/base/errors.h"
 
 #include <algorithm>
+#include <tuple>
+#include <utility>
 
 #include "echopath/base/text/edit_distance.h"
 
 namespace echopath {
+namespace {
+
+// Returns how many letters two paths share from their beginning, 0 where they do not share the first part.
+size_t shared_path(std::string_view a, std::string_view b) {
+  const auto end = std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first;
+  const std::string_view shared = a.substr(0, static_cast<size_t>(end - a.begin()));
+  return shared.find('/') == std::string_view::npos ? 0 : shared.size();
+}
+
+}  // namespace
 
 std::vector<std::string> nearest_names(std::string_view word, const std::vector<std::string>& candidates, int count) {
-  using Rank = std::pair<bool, size_t>;  // not begun by the word, edits
+  using Rank = std::tuple<bool, size_t, size_t>;  // not begun by the word, letters not shared by the paths, edits
   std::vector<std::pair<Rank, std::string>> ranked;
   ranked.reserve(candidates.size());
   for (const std::string& name : candidates) {
-    ranked.emplace_back(Rank(word.empty() || !name.starts_with(word), edit_distance(word, name)), name);
+    const bool begins = !word.empty() && name.starts_with(word);
+    ranked.emplace_back(Rank(!begins, word.size() - shared_path(word, name), edit_distance(word, name)), name);
   }
   std::stable_sort(ranked.begin(), ranked.end(), [](const auto& x, const auto& y) { return x.first < y.first; });
   std::vector<std::string> nearest;

@@ -39,6 +39,11 @@ TEST(NearestNames, WhatTheWordBeginsComesFirst) {
   EXPECT_EQ(nearest_names("ped", {"bed", "pedestrian", "red"}, 2), (Names{"pedestrian", "bed"}));
 }
 
+TEST(NearestNames, OfAWrongPartAreTheOtherPartsOfItsWhole) {
+  const Names parts = {"walker", "walker/leg_left", "parker/arms", "walker/arm_left", "walker/arm_right"};
+  EXPECT_EQ(nearest_names("walker/arms", parts), (Names{"walker/arm_left", "walker/arm_right", "walker/leg_left"}));
+}
+
 TEST(NearestNames, KeepsTheGivenOrderAmongEquals) { EXPECT_EQ(nearest_names("x", {"b", "a", "c"}), (Names{"b", "a", "c"})); }
 
 TEST(NearestNames, GivesAtMostTheCountAskedFor) {

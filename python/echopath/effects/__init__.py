@@ -19,7 +19,13 @@ OUT_OF_SCOPE = [
 
 
 class Effects(list):
-    """A list of Effect, which notebooks show as a table."""
+    """A list of Effect, which prints a line for each and which notebooks show as a table."""
+
+    def __repr__(self) -> str:
+        modelled = sum(effect.modelled for effect in self)
+        width = max((len(effect.name) for effect in self), default=0)
+        lines = [f"{'yes' if effect.modelled else 'no':3} {effect.name:{width}} {effect.reason}" for effect in self]
+        return "\n".join([f"Effects: {modelled} of {len(self)} modelled", *lines])
 
     def _repr_html_(self) -> str:
         from ..presentation.notebook import effects_html

@@ -210,6 +210,9 @@ def test_the_printed_report_has_every_effect_with_its_reason():
     for effect in effects:
         assert sum(line.startswith(f"  {effect.name} ") for line in lines) == 1, effect.name
         assert effect.reason in text
+    of_each = str(effects).splitlines()[1:]
+    assert [line.split()[0] == "yes" for line in of_each] == [effect.modelled for effect in effects]
+    assert all(effect.name in line and line.endswith(effect.reason) for effect, line in zip(effects, of_each, strict=True))
     assert lines.index("effects not modelled") > 10
     assert all(len(line) <= 120 for line in lines)
 

@@ -101,13 +101,13 @@ class Detections:
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """Writes a table with a row for each detection, whole or not at all.
 
-        path: of the file. Columns in m, m/s, rad, W and dB as the fields, then the indices of the cell and the seeds;
-        unknown numbers are left empty. Raises ep.FileError.
+        path: of the file. Columns in m, m/s, rad, W and dB as the fields, whose names end with the unit (range_m,
+        velocity_m_per_s), then the indices of the cell and the seeds; unknown numbers are left empty. Raises ep.FileError.
         """
         flags = [self.is_noise.astype(int), self.is_resolved.astype(int)]
         seeds = [["" if seed is None else str(seed)] * len(self) for seed in (self.seed, self.noise_seed)]
         columns = [*(getattr(self, name) for name in _FIELDS), *flags, *self.cells.T, *seeds]
-        write_csv(path, dict(zip(COLUMNS, columns)))
+        write_csv(path, dict(zip(COLUMNS, columns)), UNITS)
 
     def to_pcd(self, path: str | os.PathLike[str]) -> None:
         """Writes a point cloud as the Point Cloud Library reads it (PCD 0.7, binary, float32), whole or not at all.
@@ -134,8 +134,8 @@ class Detections:
     def to_dataframe(self) -> DataFrame:
         """A pandas.DataFrame with a row for each detection.
 
-        Columns as in `to_csv`, in m, m/s, rad, W and dB, without the seeds, which stand in `attrs["seed"]` and
-        `attrs["noise_seed"]`; units in `attrs["units"]`. Needs pandas, raises ModuleNotFoundError without it.
+        Columns as in `to_csv`, named as the fields, in m, m/s, rad, W and dB, without the seeds, which stand in
+        `attrs["seed"]` and `attrs["noise_seed"]`; units in `attrs["units"]`. Needs pandas, raises ModuleNotFoundError without it.
         """
         columns = {name: getattr(self, name) for name in (*_FIELDS, "is_noise", "is_resolved")}
         columns |= {"velocity_index": self.cells[:, 0], "range_index": self.cells[:, 1]}

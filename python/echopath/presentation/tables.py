@@ -1,4 +1,5 @@
-"""Results as tables: what their methods `to_dataframe` do. Units stand in `table.attrs["units"]`, {column: unit}."""
+"""Results as tables: what their methods `to_dataframe` and `to_csv` do. Units stand in `table.attrs["units"]`, {column: unit},
+and in files at the end of the names of columns."""
 from __future__ import annotations
 
 import csv
@@ -14,6 +15,7 @@ _REVERSED, _EDGE = 1, 4  # bits of Paths.flags
 _NO_MESH = -1         # beyond the last hit of a path
 _BETWEEN = " > "      # names of meshes along a path
 PATH_UNITS = {"length": "m", "power": "W"}
+_UNIT_IN_NAME = {"m": "m", "s": "s", "rad": "rad", "m/s": "m_per_s", "rad/s": "rad_per_s", "W": "w", "m^2": "m2", "dB": "db"}
 
 
 def make_table(columns: dict, units: dict):
@@ -23,11 +25,18 @@ def make_table(columns: dict, units: dict):
     return table
 
 
-def write_csv(path, columns: dict) -> None:
-    """Writes {name: values [N]} as a table with a header, whole or not at all; NaN as nothing. Raises ep.FileError."""
+def name_with_unit(name: str, units: dict) -> str:
+    """What a column is called in a file: range_m, velocity_m_per_s, snr_db; the name alone where it has no unit."""
+    end = "_" + _UNIT_IN_NAME[units[name]] if name in units else ""
+    return name if name.endswith(end) else name + end
+
+
+def write_csv(path, columns: dict, units: dict) -> None:
+    """Writes {name: values [N]} with {name: unit} as a table with a header, whole or not at all; NaN as nothing. Raises
+    ep.FileError."""
     with written_whole(file("path", path)) as temporary, open(temporary, "w", encoding="utf-8", newline="") as stream:
         writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(columns)
+        writer.writerow([name_with_unit(name, units) for name in columns])
         writer.writerows([_as_text(value) for value in row] for row in zip(*columns.values()))
 
 

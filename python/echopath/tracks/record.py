@@ -74,8 +74,11 @@ class Tracks:
         return make_table(self._columns(), _UNITS)
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
-        """Writes the same table, whole or not at all. path: of the file. Raises ep.FileError."""
-        write_csv(path, self._columns() | {"is_detected": self.is_detected.astype(int)})
+        """Writes the same table, whole or not at all; names of columns end with the unit (time_s, vx_m_per_s).
+
+        path: of the file. Raises ep.FileError.
+        """
+        write_csv(path, self._columns() | {"is_detected": self.is_detected.astype(int)}, _UNITS)
 
     def plot(self, *, ax: Axes | None = None, title: str = "Tracks from above") -> Axes:
         """Draws each track as a line from above, with its number and the object that it follows most.

@@ -30,6 +30,7 @@ _COLUMNS = {
     "radial_velocity": (("radial_velocity",), "m/s"), "visible_share": (("visible_share",), ""),
     "received": (("received",), "W"), "rcs": (("rcs",), "m^2"), "rcs_low": (("rcs_low",), "m^2"),
     "rcs_high": (("rcs_high",), "m^2"), "rotation": (tuple(f"rotation_{row}{column}" for row in _XYZ for column in _XYZ), "")}
+_UNITS = {column: unit for columns, unit in _COLUMNS.values() for column in columns if unit}
 
 
 @made_by("ep.truth")
@@ -115,15 +116,14 @@ class Truth:
         rcs (m^2) with its interval, rotation row by row; units in `attrs["units"]`. Needs pandas, raises ModuleNotFoundError
         without it.
         """
-        units = {column: unit for columns, unit in _COLUMNS.values() for column in columns if unit}
-        return make_table(self._columns(), units)
+        return make_table(self._columns(), _UNITS)
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
-        """Writes the same table, whole or not at all.
+        """Writes the same table, whole or not at all; names of columns end with the unit (range_m, vx_m_per_s).
 
         path: of the file; unknown numbers are left empty. Raises ep.FileError.
         """
-        write_csv(path, self._columns())
+        write_csv(path, self._columns(), _UNITS)
 
     def to_xarray(self) -> Dataset:
         """The same as an xarray.Dataset over time (middle of each frame, s), object and, of vectors, axis (x, y, z) or side of

@@ -163,7 +163,7 @@ def test_tracks_travel_and_are_drawn(tmp_path):
     assert pickle.loads(pickle.dumps(tracks)) == tracks and "2 tracks" in repr(tracks)
     tracks.to_csv(tmp_path / "tracks.csv")
     rows = list(csv.DictReader((tmp_path / "tracks.csv").open(encoding="utf-8")))
-    assert len(rows) == 2 * FRAMES and float(rows[5]["x"]) == tracks.state[5, 0] and rows[0]["object"] in ("up", "down")
+    assert len(rows) == 2 * FRAMES and float(rows[5]["x_m"]) == tracks.state[5, 0] and rows[0]["object"] in ("up", "down")
     ax = tracks.plot(title="Mine")
     assert ax.get_title() == "Mine" and len(ax.get_legend().get_texts()) == 2
     pyplot.close(ax.figure)

@@ -332,9 +332,10 @@ def test_csv_holds_what_the_arrays_hold(spheres, tmp_path):
         rows = list(csv.DictReader(stream))
     assert len(rows) == len(found)
     for i, row in enumerate(rows):
-        for name in ("range", "velocity", "azimuth", "power", "snr_db", "share"):
-            assert float(row[name]) == getattr(found, name)[i]
-        assert row["elevation"] == "" and row["part"] == found.part[i]
+        for name, column in (("range", "range_m"), ("velocity", "velocity_m_per_s"), ("azimuth", "azimuth_rad"),
+                             ("power", "power_w"), ("snr_db", "snr_db"), ("share", "share")):
+            assert float(row[column]) == getattr(found, name)[i]
+        assert row["elevation_rad"] == "" and row["part"] == found.part[i]
         assert (int(row["velocity_index"]), int(row["range_index"])) == tuple(found.cells[i])
 
 

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.presentation.tables import name_with_unit
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +82,8 @@ def test_detections_are_the_rows_of_their_csv(paths, tmp_path):
     assert len(table) == len(found) > 0
     for name in table.columns:
         if table[name].dtype.kind in "fiub":
-            assert np.array_equal(read[name].to_numpy(float), table[name].to_numpy(float), equal_nan=True), name
+            written = read[name_with_unit(name, table.attrs["units"])].to_numpy(float)
+            assert np.array_equal(written, table[name].to_numpy(float), equal_nan=True), name
     assert table.attrs["seed"] == paths.frame.seed and table.attrs["units"]["snr_db"] == "dB"
 
 

@@ -230,7 +230,8 @@ def test_tables_have_names_and_units(frame, tmp_path):
     assert table.attrs["units"]["rcs"] == "m^2" and table.attrs["units"]["vx"] == "m/s"
     frame.truth.to_csv(tmp_path / "truth.csv")
     rows = list(csv.DictReader((tmp_path / "truth.csv").open(encoding="utf-8")))
-    assert list(rows[0]) == list(table.columns) and float(rows[0]["yaw"]) == frame.truth.yaw[0] and rows[0]["heading"] == ""
+    assert len(rows[0]) == len(table.columns) and {"frame", "time_s", "vx_m_per_s", "rcs_m2", "received_w"} < set(rows[0])
+    assert float(rows[0]["yaw_rad"]) == frame.truth.yaw[0] and rows[0]["heading_rad"] == ""
 
 
 def test_a_scene_without_objects_has_no_rows():

@@ -2,7 +2,6 @@
 // A material says what a surface does to a wave.
 #include <complex>
 #include <optional>
-#include <string>
 #include <vector>
 
 namespace echopath {

@@ -1,6 +1,5 @@
 #include "echopath/em/mie.h"
 
-#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <vector>

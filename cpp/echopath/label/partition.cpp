@@ -1,6 +1,5 @@
 #include "echopath/label/partition.h"
 
-#include <algorithm>
 #include <limits>
 #include <set>
 

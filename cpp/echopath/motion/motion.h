@@ -1,6 +1,5 @@
 #pragma once
 // A motion maps time to a transform, mostly a rigid one, in the axes of the parent of its node, about the node's own origin.
-#include <cstdint>
 #include <memory>
 #include <vector>
 

@@ -2,7 +2,6 @@
 // Says which meshes of a scene are posed, and where each stands among them.
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <span>
 #include <vector>
 

@@ -1,6 +1,5 @@
 #pragma once
 // Measures how large the objects of a scene are.
-#include <cstdint>
 #include <vector>
 
 #include "echopath/scene/scene.h"

@@ -1,7 +1,6 @@
 #pragma once
 // Computes the 95 % interval of a received power from what the launch cells take away and what chance adds.
 #include <complex>
-#include <cstdint>
 #include <optional>
 #include <vector>
 

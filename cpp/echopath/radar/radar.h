@@ -2,7 +2,6 @@
 // Describes the waveform, the antennas and the radar that carries them.
 #include <cstdint>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "echopath/base/geometry.h"

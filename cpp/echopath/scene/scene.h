@@ -1,6 +1,5 @@
 #pragma once
 // A scene is a tree of named nodes with placements, motions and meshes; a pose is its geometry at one time.
-#include <array>
 #include <memory>
 #include <optional>
 #include <string>

@@ -1,6 +1,5 @@
 #pragma once
 // Looks for slips of units: what no radar can be raises ValueError, what is merely unlikely is warned of.
-#include "echopath/base/geometry.h"
 #include "echopath/radar/radar.h"
 
 namespace echopath::bindings {

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <limits>
 #include <variant>
-#include <vector>
 
 #include "call/argument.h"
 #include "echopath/trace/record/paths.h"

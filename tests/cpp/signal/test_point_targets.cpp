@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "cpp/signal/slow_sum.h"
-#include "echopath/signal/noise.h"
 
 namespace echopath::test_point_targets {
 namespace {

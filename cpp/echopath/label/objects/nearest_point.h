@@ -3,7 +3,6 @@
 #include <array>
 #include <map>
 #include <span>
-#include <vector>
 
 #include "echopath/base/memory/lazy.h"
 #include "echopath/trace/embree/embree_scene.h"

@@ -1,7 +1,6 @@
 #pragma once
 // Shows one object of a scene from one point: where it would be met if it were alone, and what is nearer there.
 #include <array>
-#include <optional>
 #include <vector>
 
 #include "echopath/label/objects/surfaces.h"

@@ -2,7 +2,6 @@
 // Holds everything that the paths of a block share, at all nodes: posed points, images of antennas, legs, inner parts.
 // Tables keep their memory from block to block.
 #include <deque>
-#include <span>
 
 #include "echopath/replay/evaluate/shared_leg_plan.h"
 #include "echopath/replay/posed/posed_nodes.h"

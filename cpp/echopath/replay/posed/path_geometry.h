@@ -1,6 +1,5 @@
 #pragma once
 // Poses the hits of paths: points, normals and the legs between them, with images for flagged mirrors.
-#include <vector>
 
 #include "echopath/posed/posed_scene.h"
 #include "echopath/trace/record/paths.h"

@@ -1,5 +1,4 @@
 #include <bit>
-#include <cstring>
 #include <iterator>
 #include <string_view>
 #include <utility>

@@ -2,7 +2,6 @@
 // Models the curved surface that a triangle mesh stands for: vertex normals, and per triangle a normal, a position and a
 // curvature.
 #include <array>
-#include <optional>
 #include <vector>
 
 #include "echopath/scene/mesh/mesh.h"

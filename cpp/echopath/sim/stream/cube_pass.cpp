@@ -1,6 +1,5 @@
 #include "echopath/sim/stream/cube_pass.h"
 
-#include <algorithm>
 #include <optional>
 #include <span>
 

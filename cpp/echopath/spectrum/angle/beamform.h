@@ -2,7 +2,6 @@
 // Forms beams of any array toward any directions: Bartlett (delay and sum) and Capon (minimum variance, distortionless).
 #include <array>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "echopath/base/threads/job.h"

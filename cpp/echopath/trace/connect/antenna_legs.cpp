@@ -1,7 +1,5 @@
 #include "echopath/trace/connect/antenna_legs.h"
 
-#include <algorithm>
-
 namespace echopath {
 namespace {
 

@@ -2,7 +2,6 @@
 // Knows which planes rays found to light other planes, for the echoes of edges behind mirrors that nobody flagged.
 #include <map>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include "echopath/base/plane.h"

@@ -3,7 +3,6 @@
 // only those anew that differ.
 #include <functional>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "echopath/posed/posed_scene.h"

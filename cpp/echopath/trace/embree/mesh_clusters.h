@@ -4,8 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "echopath/base/geometry.h"
-
 namespace echopath {
 
 // A mesh at rest with few triangles.

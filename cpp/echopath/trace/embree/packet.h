@@ -1,6 +1,5 @@
 #pragma once
 // Holds rays side by side, quantity by quantity, so that compilers make vectors of loops over their lanes.
-#include <cstddef>
 
 #include "echopath/base/geometry.h"
 #include "echopath/base/vector_of.h"

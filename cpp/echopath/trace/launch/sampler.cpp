@@ -1,6 +1,5 @@
 #include "echopath/trace/launch/sampler.h"
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 

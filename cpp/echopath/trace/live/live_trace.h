@@ -7,7 +7,6 @@
 // one now; rays of which no stretch meets either box have the same paths as before. Where a change reaches what all rays
 // share (antennas, mirrors, the number of objects, the settings), all are shot again.
 #include <memory>
-#include <vector>
 
 #include "echopath/trace/embree/kept_geometry.h"
 #include "echopath/trace/strata/fitted_strata.h"

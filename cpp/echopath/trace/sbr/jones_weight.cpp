@@ -1,5 +1,4 @@
 // Finds the matrices of polarised paths (Paths::jones) along a ray.
-#include <algorithm>
 #include <cmath>
 
 #include "echopath/trace/sbr/weight.h"

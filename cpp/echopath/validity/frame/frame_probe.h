@@ -1,7 +1,6 @@
 #pragma once
 // Finds what has become of recorded paths at one instant of a frame: how far their frozen points of reflection are off,
 // which legs something blocks, how the surfaces have turned.
-#include <memory>
 
 #include "echopath/replay/posed/local_paths.h"
 #include "echopath/replay/posed/specular_slide.h"

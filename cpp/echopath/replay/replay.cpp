@@ -18,6 +18,7 @@ namespace {
 
 // With this many paths, the legs and what these are made of stay in the second-level cache.
 constexpr size_t kPlannedTogether = 2000;
+constexpr size_t kBlock = 8192;  // paths of a task
 
 // Chebyshev coefficients fall about geometrically from these values. A tail and its order give the rate, and the rate gives
 // the next order to try.
@@ -253,6 +254,22 @@ void Replayer::raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::
   }
 }
 
+void Replayer::evaluate(std::span<const int64_t> indices, std::span<const Moment> moments, Job* job) const {
+  std::vector<double> times;
+  for (const Moment& moment : moments) times.push_back(moment.time);
+  if (times.empty()) return;
+  const PosedNodes posed = posed_.pose(times);
+  parallel_for(static_cast<int64_t>((indices.size() + kBlock - 1) / kBlock), [&](int64_t i) {
+    const size_t begin = static_cast<size_t>(i) * kBlock, size = std::min(kBlock, indices.size() - begin);
+    std::vector<Echoes> echoes = take_echoes(size, 1, times.size());
+    Target target{posed, 0, rows_of(echoes)};
+    target.nodes[0].scale = 1.0;  // lengths in place of delays
+    evaluate_at(indices.subspan(begin, size), {&target, 1});
+    for (size_t node = 0; node < times.size(); ++node) moments[node].take(echoes[0], node * size, size, begin);
+    recycle(echoes);
+  }, job);
+}
+
 void Replayer::evaluate(std::span<const int64_t> indices, double time, std::vector<double>& lengths,
                         std::vector<std::complex<double>>& amplitudes, Job* job) const {
   const CellView as_launched;
@@ -261,8 +278,7 @@ void Replayer::evaluate(std::span<const int64_t> indices, double time, std::vect
 
 void Replayer::evaluate(std::span<const int64_t> indices, double time, std::span<const CellView> cells,
                         std::vector<double>& lengths, std::vector<std::complex<double>>& amplitudes, Job* job) const {
-  constexpr size_t kBlock = 8192;
-  const PosedNodes single = posed_.pose(time);
+  const PosedNodes single = posed_.pose({&time, 1});
   const auto channels = static_cast<size_t>(num_channels());
   lengths.resize(channels * indices.size());
   amplitudes.resize(cells.size() * lengths.size());

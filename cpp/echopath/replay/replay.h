@@ -4,6 +4,8 @@
 // Material points (diffuse hits and the physical-optics hit) move with their triangles, exactly; hits on flagged mirrors are
 // replayed by images, exactly; other specular hits stay where they were recorded (second-order error in the slide) or move
 // with the point of reflection by one Newton step (specular_slide.h).
+#include <algorithm>
+#include <complex>
 #include <span>
 
 #include "echopath/replay/evaluate/path_evaluator.h"
@@ -15,6 +17,19 @@ namespace echopath {
 
 class Replayer {
  public:
+  // Names a time, and where the values of the paths then are written, [P] each; null: they are not wanted.
+  struct Moment {
+    double time;                       // s
+    double* lengths;                   // m
+    std::complex<double>* amplitudes;  // sqrt(W)
+
+    // Copies `count` values of echoes from one place on to another; lengths stand there in place of delays.
+    void take(const Echoes& echoes, size_t from, size_t count, size_t to) const {
+      if (lengths) std::copy_n(echoes.delay.data() + from, count, lengths + to);
+      if (amplitudes) std::copy_n(echoes.amplitude.data() + from, count, amplitudes + to);
+    }
+  };
+
   // The radar may differ from the one of the trace in its waveform, antennas and motion. Both must outlive the replayer.
   // Raises invalid_argument when a motion does not cover the frame.
   Replayer(const Paths& paths, const Radar& radar, const ReplaySettings& settings = {});
@@ -65,6 +80,10 @@ class Replayer {
   // Takes back echoes that are no longer needed, so that their memory is used again.
   void recycle(std::span<Echoes> echoes) const;
 
+  // Computes lengths and amplitudes of `paths` between the first antennas at a few times, which together take little more
+  // than one, as the kernels work on several nodes at once. Lengths have the same bits with other times beside them,
+  // amplitudes are rounded in another way. Raises Cancelled when the job is cancelled.
+  void evaluate(std::span<const int64_t> paths, std::span<const Moment> moments, Job* job = nullptr) const;
   // Computes lengths [channel, P] in m and amplitudes [channel, P] in sqrt(W) at one `time` (s). Raises Cancelled when the
   // job is cancelled.
   void evaluate(std::span<const int64_t> paths, double time, std::vector<double>& lengths,

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <complex>
 #include <numeric>
+#include <span>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -23,6 +24,7 @@ namespace echopath::bindings {
 namespace {
 
 constexpr int64_t kHitsPerTask = 1 << 19;
+constexpr size_t kTimesTogether = 16;  // more would take memory and save no time
 
 size_t antenna_index(int64_t index, const char* argument, size_t count) {
   if (index >= 0 && index < static_cast<int64_t>(count)) return static_cast<size_t>(index);
@@ -38,16 +40,13 @@ Antenna antenna_of(const AntennaOrPosition::Value& value, const char* argument, 
   return made;
 }
 
-struct Series {
-  std::vector<double> lengths;                   // [T, P]
-  std::vector<std::complex<double>> amplitudes;  // [T, P]
-};
+using Moments = std::vector<Replayer::Moment>;
 
-// Of all paths. Runs beside Python, so that Ctrl-C is answered.
-Series evaluate_one_channel(const Paths& paths, const std::vector<double>& times, const Antenna& transmitter,
-                            const Antenna& receiver, SpecularPoints specular = SpecularPoints::kMaterial) {
-  for (const double time : times) require(std::isfinite(time), "times", "must be finite", time);
-  return run_job("replay", py::none(), [&](Job& job) {
+// Evaluates all paths at the moments, so many of them together. Runs beside Python, so that Ctrl-C is answered.
+void evaluate_one_channel(const Paths& paths, const Moments& moments, size_t together, const Antenna& transmitter,
+                          const Antenna& receiver, SpecularPoints specular) {
+  for (const Replayer::Moment& moment : moments) require(std::isfinite(moment.time), "times", "must be finite", moment.time);
+  run_job("replay", py::none(), [&](Job& job) {
     Radar radar = paths.radar;
     radar.transmitters = {transmitter};
     radar.receivers = {receiver};
@@ -56,16 +55,22 @@ Series evaluate_one_channel(const Paths& paths, const std::vector<double>& times
     const Replayer replayer(paths, radar, settings);
     std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
     std::iota(indices.begin(), indices.end(), 0);
-    Series series;
-    std::vector<double> lengths;
-    std::vector<std::complex<double>> amplitudes;
-    for (const double time : times) {
-      replayer.evaluate(indices, time, lengths, amplitudes, &job);
-      series.lengths.insert(series.lengths.end(), lengths.begin(), lengths.end());
-      series.amplitudes.insert(series.amplitudes.end(), amplitudes.begin(), amplitudes.end());
+    for (size_t first = 0; first < moments.size(); first += together) {
+      replayer.evaluate(indices, std::span(moments).subspan(first, std::min(together, moments.size() - first)), &job);
     }
-    return series;
   });
+}
+
+// [T, P]. Each time by itself: its bits are the same whatever the other times.
+std::vector<std::complex<double>> series_of_amplitudes(const Paths& paths, const std::vector<double>& times,
+                                                       const Antenna& transmitter, const Antenna& receiver,
+                                                       SpecularPoints specular = SpecularPoints::kMaterial) {
+  const auto num_paths = static_cast<size_t>(paths.num_paths());
+  std::vector<std::complex<double>> amplitudes(times.size() * num_paths);
+  Moments moments;
+  for (size_t i = 0; i < times.size(); ++i) moments.push_back({times[i], nullptr, amplitudes.data() + i * num_paths});
+  evaluate_one_channel(paths, moments, 1, transmitter, receiver, specular);
+  return amplitudes;
 }
 
 Shape series_shape(const Paths& paths, const std::vector<double>& times) {
@@ -87,14 +92,12 @@ py::array amplitudes_of(const Paths& paths, Arg<"times", VectorOf<double>> times
                         Arg<"replay", OneOf<kSpecularPoints>> replay) {
   const Antenna transmitter = paths.radar.transmitters[antenna_index(*tx, "tx", paths.radar.transmitters.size())];
   const Antenna receiver = paths.radar.receivers[antenna_index(*rx, "rx", paths.radar.receivers.size())];
-  return numpy_take(evaluate_one_channel(paths, *times, transmitter, receiver, *replay).amplitudes,
-                    series_shape(paths, *times));
+  return numpy_take(series_of_amplitudes(paths, *times, transmitter, receiver, *replay), series_shape(paths, *times));
 }
 
 py::array amplitude_of(const Paths& paths) {
   const Radar& radar = paths.radar;
-  return numpy_take(
-      evaluate_one_channel(paths, {paths.frame.trace_time}, radar.transmitters[0], radar.receivers[0]).amplitudes);
+  return numpy_take(series_of_amplitudes(paths, {paths.frame.trace_time}, radar.transmitters[0], radar.receivers[0]));
 }
 
 py::array path_power_of(const Paths& paths) {
@@ -106,7 +109,12 @@ py::array lengths_of(const Paths& paths, Arg<"times", VectorOf<double>> times,
                      Arg<"replay", OneOf<kSpecularPoints>> replay) {
   const Antenna from = antenna_of(*transmitter, "transmitter", paths.radar.transmitters);
   const Antenna to = antenna_of(*receiver, "receiver", paths.radar.receivers);
-  return numpy_take(evaluate_one_channel(paths, *times, from, to, *replay).lengths, series_shape(paths, *times));
+  const auto num_paths = static_cast<size_t>(paths.num_paths());
+  std::vector<double> lengths((*times).size() * num_paths);
+  Moments moments;
+  for (const double time : *times) moments.push_back({time, lengths.data() + moments.size() * num_paths, nullptr});
+  evaluate_one_channel(paths, moments, kTimesTogether, from, to, *replay);
+  return numpy_take(std::move(lengths), series_shape(paths, *times));
 }
 
 py::tuple placed_echoes_of(const Paths& paths, Arg<"times", VectorOf<double>> times,

@@ -41,6 +41,7 @@ class KeptSignal:
         self._whole: _core.Paths | None = None  # of which the cube is to be made anew
         self._pending: list[tuple[float, _core.Paths]] = []  # what is still to be added to the cube, and its sign
         self._num_differences = 0
+        self._made: _core.Paths | None = None  # the whole record where an update has made it, until it is asked for
 
     @property
     def cube(self) -> np.ndarray:
@@ -50,7 +51,7 @@ class KeptSignal:
 
     def update(self, scene: _core.Scene, radar: _core.Radar, progress=None) -> Update:
         """Brings record and cube to this scene and radar. progress: callable (stage, fraction), True for bars, or None"""
-        begin = time.perf_counter()
+        begin, self._made = time.perf_counter(), None
         keywords = self._trace_keywords | {"polarization": self._model(scene, radar),
                                            "attenuation": attenuation_of(scene, radar)}
         change = self._record.update(scene, radar, num_rays=self.num_rays, progress=progress, **keywords)
@@ -77,6 +78,7 @@ class KeptSignal:
         if self._whole is not None:
             num_paths = self._whole.num_paths
             self._set_cube(synthesize_slots(self._whole, radar, progress=progress, **self._signal_keywords))
+            self._made = self._whole
             self._radar, self._whole, self._pending, self._num_differences = radar, None, [], 0
         while self._pending:
             sign, paths = self._pending[-1]
@@ -93,7 +95,8 @@ class KeptSignal:
 
     def paths(self, progress=None) -> _core.Paths:
         """The whole record, Paths."""
-        return self._record.paths(progress)
+        made, self._made = self._made, None
+        return self._record.paths(progress) if made is None else made
 
     def _model(self, scene: _core.Scene, radar: _core.Radar) -> str:
         wavelength = _core.speed_of_light / radar.waveform.start_frequency

@@ -11,6 +11,8 @@ from ..base.made_by import made_by
 
 OUTSIDE = -1  # index of a path that the anti-alias filter removes, or that lies beyond the axis
 _ENDS = array("[2]", kind="whole")
+_BLOCK = 1 << 15  # paths whose numbers stay in the cache
+_PLACES = "range", "velocity", "range_index", "velocity_index"
 
 
 @made_by("ep.path_cells")
@@ -54,27 +56,35 @@ def path_cells(paths: _core.Paths, spectrum: _core.RangeDoppler, *, tx: int = 0,
     Returns PathCells, ranges in m, velocities in m/s. Raises IndexError for antennas that are not there.
     """
     row_of_channel(paths, tx, rx)
-    waveform = paths.radar.waveform
-    length, rate = _length_and_rate(paths, tx, rx)
+    before, length, after = _lengths(paths, tx, rx)
+    cells = PathCells(length, *(np.empty(len(length), kind) for kind in (float, float, np.int32, np.int32)))
+    for first in range(0, len(length), _BLOCK):
+        some = slice(first, first + _BLOCK)
+        _place(length[some], after[some] - before[some], paths.radar, spectrum, *(getattr(cells, name)[some] for name in _PLACES))
+    return cells
+
+
+def _place(length, longer, radar, spectrum, distance, velocity, range_index, velocity_index) -> None:
+    """Fills in the last four, [P] each, for paths of some length in m that becomes `longer` by so many m during a chirp."""
+    waveform = radar.waveform
+    rate = longer / waveform.chirp_duration
     delay, delay_rate = length / _core.speed_of_light, rate / _core.speed_of_light
     carrier = waveform.start_frequency + waveform.slope * (waveform.window_centre - delay)
     beat = waveform.slope * delay + carrier * delay_rate  # Hz, fast time
     doppler = carrier * delay_rate                        # Hz, slow time
-    distance = beat * _core.speed_of_light / (2.0 * waveform.slope)
-    range_index = _range_index(beat, waveform, spectrum.range)
-    velocity_index = _velocity_index(0.5 * waveform.wavelength * doppler, spectrum.velocity, paths.radar)
+    distance[:] = beat * _core.speed_of_light / (2.0 * waveform.slope)
+    velocity[:] = 0.5 * rate
+    range_index[:] = _range_index(beat, waveform, spectrum.range)
+    velocity_index[:] = _velocity_index(0.5 * waveform.wavelength * doppler, spectrum.velocity, radar)
     velocity_index[range_index == OUTSIDE] = OUTSIDE
-    return PathCells(length=length, range=distance, velocity=0.5 * rate, range_index=range_index,
-                     velocity_index=velocity_index)
 
 
-def _length_and_rate(paths, tx: int, rx: int):
-    """Length [P] in m in the middle of the frame, and its rate [P] in m/s over a chirp."""
+def _lengths(paths, tx: int, rx: int):
+    """Lengths [3, P] in m at the beginning, the middle and the end of a chirp in the middle of the frame."""
     radar = paths.radar
     first, last = (radar.chirp_time(tx, chirp) for chirp in (0, radar.waveform.num_chirps - 1))
     middle, half = paths.frame.start_time + 0.5 * (first + last), 0.5 * radar.waveform.chirp_duration
-    before, length, after = paths.lengths([middle - half, middle, middle + half], tx, rx)
-    return length, (after - before) / (2.0 * half)
+    return paths.lengths([middle - half, middle, middle + half], tx, rx)
 
 
 def _range_index(beat, waveform, axis):

@@ -283,6 +283,17 @@ def test_wrong_arguments_are_named(live, call, named):
         call(live)
 
 
+def test_the_record_that_an_update_has_made_is_handed_out_and_is_that_of_the_scene_now():
+    live = make_live()
+    for step in (0.0, 0.1):
+        live.radar = live.radar.replace(position=(0.0, step, 0.0))  # all rays are shot again
+        live.update()
+        handed, made = live.paths(), live.paths()
+        for name in ("offsets", "num_bounces", "mesh_id", "triangle_id", "u", "v", "weight"):
+            assert np.array_equal(getattr(handed, name), getattr(made, name))
+        assert handed.radar.position[1] == step == made.radar.position[1]
+
+
 def test_paths_come_after_the_first_update():
     with pytest.raises(ValueError, match="updated"):
         make_live().paths()

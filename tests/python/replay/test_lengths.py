@@ -85,3 +85,14 @@ def test_lengths_are_those_of_an_independent_evaluation(build, radar_motion):
             for rx, receiver in enumerate(RECEIVERS):
                 expected = slow_lengths.lengths(paths, time, np.array(transmitter), np.array(receiver))
                 assert np.abs(paths.lengths([time], tx, rx)[0] - expected).max() < LENGTH_TOLERANCE
+
+
+def test_values_at_a_time_have_the_same_bits_whatever_other_times_stand_beside_it():
+    scene = ep.Scene()
+    everything(scene)
+    paths = ep.trace(scene, make_radar(), num_rays=3000, seed=4, max_bounces=3)
+    times = list(np.linspace(0.0, 0.006, 21))  # more than are evaluated together
+    for values in (paths.lengths, paths.amplitudes):
+        together, alone = values(times, 1, 2), [values([time], 1, 2)[0] for time in times]
+        assert together.shape == (21, paths.num_paths) and np.array_equal(together, alone)
+    assert paths.lengths([]).shape == (0, paths.num_paths)

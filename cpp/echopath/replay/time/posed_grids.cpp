@@ -43,7 +43,7 @@ PosedGrids::PosedGrids(const TimeGrids& grids, const Paths& paths, const Radar& 
     : grids_(grids), paths_(paths), radar_(radar), preparer_(preparer),
       polynomials_(static_cast<size_t>(grids.num_polynomials())) {}
 
-std::shared_ptr<const PosedScenes> PosedGrids::scenes_at(const std::vector<double>& times) const {
+std::shared_ptr<const PosedScenes> PosedGrids::scenes_at(std::span<const double> times) const {
   return pose_at(*paths_.scene, radar_, preparer_.patches(), paths_.frame.transmitter, times);
 }
 
@@ -59,7 +59,7 @@ PartlyPosedGrid PosedGrids::pose_partly(const TimeGrid& grid) const {
   return {{std::move(nodes), std::move(posed), transmitter_of(grid)}, std::move(scenes), *paths_.scene, preparer_.patches()};
 }
 
-PosedNodes PosedGrids::pose(double time) const { return PosedNodes(scenes_at({time})); }
+PosedNodes PosedGrids::pose(std::span<const double> times) const { return PosedNodes(scenes_at(times)); }
 
 PosedNodes PosedGrids::pose(std::span<const double> times, std::span<const Radar> radars) const {
   auto scenes = std::make_shared<PosedScenes>();

@@ -54,7 +54,7 @@ class PosedGrids {
   const TrialGrid& trial(int polynomial) const;
   // Raises what PosedScene does.
   PartlyPosedGrid pose_partly(const TimeGrid& grid) const;
-  PosedNodes pose(double time) const;  // s
+  PosedNodes pose(std::span<const double> times) const;  // s
   // Poses at each of the times (s) the antennas of the radar of that time, which must outlive the result.
   PosedNodes pose(std::span<const double> times, std::span<const Radar> radars) const;
 
@@ -63,7 +63,7 @@ class PosedGrids {
     Lazy<TrialGrid> trial;
     Lazy<PosedGrid> posed;
   };
-  std::shared_ptr<const PosedScenes> scenes_at(const std::vector<double>& times) const;
+  std::shared_ptr<const PosedScenes> scenes_at(std::span<const double> times) const;
   const Polynomial& kept(int polynomial) const { return polynomials_[static_cast<size_t>(polynomial) - 1]; }
 
   const TimeGrids& grids_;

@@ -20,6 +20,7 @@ BACKGROUND = "white"
 RAY_WIDTH, LIT_WIDTH, CHOSEN_WIDTH = 1.0, 2.0, 4.0  # pixels
 RAY_OPACITY = 0.5
 QUICK_OPACITY = 0.7      # share of a ray's own colour where it is mixed with the background
+COARSE_PIXELS = 2.0      # that triangles of meshes which move may fill without being drawn each
 MAX_UNLIT_RAYS = 400     # around lit ones: they only show where those are
 # Of rays that are not lit and of the chosen one, before a light and a dark background.
 UNLIT_COLOURS, CHOSEN_COLOURS = ((208, 208, 208), (72, 74, 78)), ((20, 20, 20), (245, 245, 245))
@@ -44,6 +45,8 @@ class SceneBuilder:
         self.set_background(background)
         self.meshes = MeshLayer(plotter, session.scene, session.palette, session.time)
         self._is_quick = is_quick
+        if is_quick:  # see-through surfaces blend in their order: to blend without one takes software a sixth of a picture
+            plotter.renderer.SetUseOIT(False)
         self.rays = RayLayer(plotter, "all", width=RAY_WIDTH, opacity=1.0 if is_quick else RAY_OPACITY)
         self.lit = RayLayer(plotter, "lit", width=LIT_WIDTH, in_front=True)
         self.chosen = RayLayer(plotter, "chosen", width=CHOSEN_WIDTH, in_front=True)
@@ -101,6 +104,19 @@ class SceneBuilder:
     def set_show_hits(self, is_shown: bool) -> None:
         self.show_hits = is_shown
         self._draw_rays()
+
+    def show_quick_meshes(self, pixels_per_radian: float | None) -> None:
+        """Draws no more of the meshes than pixels show, as many to a radian; None: all of them again."""
+        if pixels_per_radian is None:
+            self.meshes.show_each()
+            return
+        position, ahead = (np.array(vector) for vector in (self.plotter.camera.position, self.plotter.camera.direction))
+
+        def cells(low, high):
+            nearest = np.minimum(low * ahead, high * ahead).sum(axis=1) - position @ ahead
+            return COARSE_PIXELS * np.maximum(nearest, 0.0) / pixels_per_radian
+
+        self.meshes.show_quick(cells)
 
     def show_first_rays(self, count: int | None, cell: float = 0.0) -> None:
         """Draws the first rays alone, None: all again; cell: m, those no farther apart may be drawn once."""

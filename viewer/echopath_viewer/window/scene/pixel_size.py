@@ -15,4 +15,9 @@ def pixel_at(distance: float, view_angle: float, height: int) -> float:
     if not 0.0 < distance < math.inf:
         return 0.0
     step = 2.0**(math.floor(STEPS * math.log2(distance)) / STEPS)
-    return 2.0 * step * math.tan(math.radians(view_angle) / 2.0) / max(height, 1)
+    return step / pixels_per_radian(view_angle, height)
+
+
+def pixels_per_radian(view_angle: float, height: int) -> float:
+    """Of a small angle in the middle of the picture; arguments as above."""
+    return max(height, 1) / (2.0 * math.tan(math.radians(view_angle) / 2.0))

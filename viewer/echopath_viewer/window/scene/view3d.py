@@ -6,25 +6,23 @@ import time
 import numpy as np
 import pyvista as pv
 from pyvistaqt import QtInteractor
-from vtkmodules.vtkRenderingCore import vtkCellPicker
 
-from ...model.rays.picking import nearest_segment
 from ...scene_builder import SceneBuilder
 from .coarse_pixels import coarse_pixels
 from .compass import Compass
 from .legend_box import LegendBox
 from .pace import FEW_RAYS, MANY_RAYS, Pace, Smoothing
-from .pixel_size import pixel_at
+from .picks import CLICK_REACH, Picks
+from .pixel_size import pixel_at, pixels_per_radian
 from ..qt import Qt, QtCore, Signal
 
 GL_COLOR_BUFFER_BIT = 0x4000
 LONGEST_WAIT_MS = 2000  # for a picture, of what is to come after it
 COARSEST = 3  # pixels while the camera is turned, of the screen's
 ONE_PLACE = 0.5  # of a pixel, as wide as it is at the nearest ray: ends so close are one while the camera moves
-CLICK_REACH = 5.0  # pixels: a click moves no farther, and a ray that close is meant
 
 
-class View3D(QtInteractor):
+class View3D(Picks, QtInteractor):
     """Draws a session; tells what is clicked: a ray, else the body under the cursor; with Ctrl always the mesh."""
 
     ray_clicked = Signal(int)
@@ -178,50 +176,22 @@ class View3D(QtInteractor):
             pace.begin()
         self._pace, self._drawn_as = pace, None
         if pace is not None:
-            self._show_moving()
-            return
+            return  # the next picture shows it
         self.builder.show_first_rays(None)
+        self.builder.show_quick_meshes(None)
         self.render_soon()
 
     def _show_moving(self) -> None:
         """As many rays as the pace allows; of those that no pixel tells apart the first."""
-        pixel = pixel_at(self.builder.nearest_ray(), self.camera.view_angle, self.render_window.GetSize()[1])
+        seen = self.camera.view_angle, self.render_window.GetSize()[1]
+        self.builder.show_quick_meshes(pixels_per_radian(*seen) / self._pace.coarseness)
+        pixel = pixel_at(self.builder.nearest_ray(), *seen)
         drawn_as = self._pace.num_rays, ONE_PLACE * self._pace.coarseness * pixel
         if drawn_as != self._drawn_as:
             self._drawn_as = drawn_as
             self.builder.show_first_rays(*drawn_as)
 
     # --- picking ---
-
-    def clip_from_world(self):
-        """[4, 4] of the camera with its perspective."""
-        matrix = self.camera.GetCompositeProjectionTransformMatrix(self.width() / max(self.height(), 1), -1.0, 1.0)
-        return np.array([[matrix.GetElement(row, column) for column in range(4)] for row in range(4)])
-
-    def ray_at(self, x: float, y: float) -> int | None:
-        """The path whose ray is drawn at a pixel from the upper left, None where there is none."""
-        for layer in self.builder.drawn_layers():
-            segments = layer.segments
-            row = nearest_segment(segments.points, segments.ends, self.clip_from_world(), (self.width(), self.height()),
-                                  (x, y), CLICK_REACH)
-            if row is not None:
-                return int(segments.rays[segments.ray[row]])
-        return None
-
-    def mesh_at(self, x: float, y: float, with_mirrors: bool) -> int | None:
-        """The mesh drawn at a pixel; bodies come before mirrors, which are large and see-through."""
-        session, actors = self.builder.session, self.builder.meshes.actors
-        is_mirror = [mesh.material.mirror for mesh in session.scene.meshes]
-        for mirrors in (False, True)[:1 + with_mirrors]:
-            picker = vtkCellPicker()
-            picker.PickFromListOn()
-            for mesh, actor in enumerate(actors):
-                if is_mirror[mesh] == mirrors and actor.GetVisibility():
-                    picker.AddPickList(actor)
-            scale = self.devicePixelRatioF()
-            if picker.Pick(x * scale, (self.height() - 1 - y) * scale, 0.0, self.renderer):
-                return next(mesh for mesh, actor in enumerate(actors) if actor is picker.GetActor())
-        return None
 
     def _click(self, x: float, y: float, wants_mesh: bool) -> None:
         ray = None if wants_mesh else self.ray_at(x, y)
@@ -242,22 +212,13 @@ class View3D(QtInteractor):
             self.compass.place()
             self.render_soon()
 
-    def _world_at(self, at, height: float):
-        """[3] m of a pixel on the horizontal plane at a height; None where that lies behind the camera."""
-        across, up = 2.0 * at.x() / self.width() - 1.0, 1.0 - 2.0 * at.y() / self.height()
-        world = np.linalg.inv(self.clip_from_world())
-        near, far = (world @ (across, up, depth, 1.0) for depth in (-1.0, 1.0))
-        near, far = near[:3] / near[3], far[:3] / far[3]
-        share = (height - near[2]) / (far[2] - near[2]) if far[2] != near[2] else -1.0
-        return near + share * (far - near) if 0.0 < share <= 1.0 else None
-
     def _take_hold(self, at) -> bool:
         """Of the mesh under the cursor, to drag its object."""
         mesh = self.mesh_at(at.x(), at.y(), False)
         if mesh is None:
             return False
-        height = self.builder.meshes.actors[mesh].center[2]
-        self._drag = mesh, height, self._world_at(at, height)
+        height = float(self.builder.meshes.bounds_of([mesh])[0][:, 2].mean())
+        self._drag = mesh, height, self.world_at(at.x(), at.y(), height)
         if self._drag[2] is None:
             self._drag = None
             return False
@@ -269,7 +230,7 @@ class View3D(QtInteractor):
             super().mouseMoveEvent(event)
             return
         mesh, height, begin = self._drag
-        at = self._world_at(event.position(), height)
+        at = self.world_at(event.position().x(), event.position().y(), height)
         if at is not None:
             self.mesh_dragged.emit(mesh, at - begin)
 

@@ -1,0 +1,123 @@
+"""Meshes that are drawn together and with fewer triangles while something moves."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import pyvista as pv
+
+import echopath as ep
+from echopath_viewer.model import mesh_palette
+from echopath_viewer.scene_builder.mesh_layer import MeshLayer
+from echopath_viewer.scene_builder.quick_meshes import coarse_shape
+from support import shapes
+
+RADIUS = 0.5  # m
+SIZE = (300, 300)  # pixels
+TO_THE_LEFT = ep.LinearMotion(velocity=(0.0, 1.0, 0.0))
+
+
+def ball(subdivisions: int):
+    poly = pv.Icosphere(radius=RADIUS, nsub=subdivisions)
+    return np.asarray(poly.points, float), np.asarray(poly.regular_faces)
+
+
+def area_of(points, triangles) -> float:
+    corners = points[triangles]
+    return 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum()
+
+
+def test_a_coarse_ball_has_fewer_triangles_and_the_area_of_a_ball():
+    points, triangles = ball(5)
+    rows, coarse = coarse_shape(points, triangles, 0.05)
+    assert len(coarse) < 0.3 * len(triangles)
+    assert area_of(points[rows], coarse) == pytest.approx(4.0 * np.pi * RADIUS**2, rel=0.05)
+    sides = np.sort(coarse, axis=1)
+    assert (np.diff(sides, axis=1) > 0).all() and sides.max() < len(rows)
+    nearest = np.linalg.norm(points[:, None] - points[rows], axis=2).min(axis=1)
+    assert nearest.max() <= np.sqrt(3.0) * 0.05  # two places in one cube are no farther apart
+
+
+def test_without_cells_a_shape_stays_as_it_is():
+    points, triangles = ball(2)
+    rows, coarse = coarse_shape(points, triangles, 0.0)
+    assert np.array_equal(rows, np.arange(len(points))) and np.array_equal(coarse, triangles)
+
+
+def test_a_body_smaller_than_a_cell_has_no_triangles():
+    rows, coarse = coarse_shape(*ball(2), 10.0)
+    assert len(rows) == 1 and len(coarse) == 0
+
+
+@pytest.fixture
+def layer():
+    """Two balls beside each other over a mirror, before a camera."""
+    scene, mesh = ep.Scene(), ep.Mesh(*ball(4))
+    for name, side in (("left", -0.7), ("right", 0.7)):
+        scene.add(mesh, name=name, material="plastic", position=(0.0, side, 0.5), motion=TO_THE_LEFT)
+    scene.add(shapes.rectangle((-1.5, -1.5, -0.2), (3.0, 0.0, 0.0), (0.0, 3.0, 0.0)), name="floor",
+              material=ep.Material.metal(mirror=True))
+    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+    plotter.set_background("white")
+    made = MeshLayer(plotter, scene, mesh_palette(scene), 0.0)
+    made.show(set(), set())
+    plotter.camera_position = "iso"
+    plotter.reset_camera()
+    made.plotter = plotter
+    yield made
+    plotter.close()
+
+
+def picture(layer):
+    layer.plotter.render()
+    return layer.plotter.screenshot(None, return_img=True).astype(int)
+
+
+def share_that_differs(one, other) -> float:
+    """Of the pixels."""
+    return float((np.abs(one - other).max(axis=-1) > 24).mean())
+
+
+def cells_of(size: float):
+    return lambda low, high: np.full(len(low), size)
+
+
+def test_quick_meshes_look_like_each_mesh_drawn_by_itself(layer):
+    each = picture(layer)
+    layer.show_quick(cells_of(0.02))
+    quick = picture(layer)
+    assert share_that_differs(each, np.full_like(each, 255)) > 0.05
+    assert share_that_differs(each, quick) < 0.02
+    layer.show_each()
+    assert np.array_equal(picture(layer), each)
+
+
+def test_quick_meshes_move_and_the_others_are_there_when_it_is_over(layer):
+    layer.show_quick(cells_of(0.02))
+    before = picture(layer)
+    layer.move(0.5)
+    layer.show_quick(cells_of(0.02))
+    moved = picture(layer)
+    assert share_that_differs(before, moved) > 0.05
+    layer.show_each()
+    assert share_that_differs(picture(layer), moved) < 0.02
+
+
+def test_what_is_hidden_stays_hidden_and_what_is_chosen_keeps_its_edges(layer):
+    layer.show_quick(cells_of(0.02))
+    layer.show({0, 1}, set())
+    layer.show_quick(cells_of(0.02))
+    without = picture(layer)
+    layer.show_each()
+    assert share_that_differs(picture(layer), without) < 0.005
+    layer.show({1}, {0})
+    layer.show_quick(cells_of(0.02))
+    assert [bool(actor.GetVisibility()) for actor in layer.actors] == [True, False, False]
+
+
+def test_meshes_that_are_looked_for_have_their_own_places_meanwhile(layer):
+    layer.show_quick(cells_of(0.02))
+    layer.move(0.5)
+    with layer.each() as actors:
+        assert [bool(actor.GetVisibility()) for actor in actors] == [True] * 3
+        assert actors[0].center == pytest.approx((0.0, -0.2, 0.5), abs=1e-3)
+    assert not any(actor.GetVisibility() for actor in actors)

@@ -119,11 +119,13 @@ std::vector<ObjectVisibility> visibility_of(Scene scene, const Radar& radar, con
 
 constexpr int kDirectionsInTrace = 512;  // on each object: labels and truth look at all objects of each frame
 
-// At the time of the trace and of the objects that families_of finds, whatever the radar.
+// Of the objects that families_of finds, whatever the radar, at the time of the trace where there is no other. The geometry
+// of the trace serves where it is kept: it is brought to that time, which costs what moves.
 std::vector<ObjectVisibility> visibility_in_trace(const Paths& paths, const Radar& radar,
-                                                  const std::optional<Objects>& objects, const py::object& progress) {
+                                                  const std::optional<Objects>& objects, std::optional<double> time,
+                                                  int num_directions, const py::object& progress) {
   const SurfaceMap surfaces = surfaces_of(*paths.scene, objects, paths.frame.trace_time, paths.frame.transmitter);
-  const VisibilitySettings settings{paths.frame.trace_time, kDirectionsInTrace};
+  const VisibilitySettings settings{time.value_or(paths.frame.trace_time), num_directions};
   const std::shared_ptr<KeptGeometry> kept = geometry_of(paths.scene);
   return run_job("visibility", progress,
                  [&](Job& job) { return visibility(*paths.scene, radar, surfaces, settings, &job, kept.get()); });
@@ -171,11 +173,13 @@ void bind_visibility(py::module_& m) {
       py::arg("objects"), "Raises what find_families would for objects [(name, [glob, ...]), ...].");
   m.def(
       "visibility_in_trace",
-      [](const Paths& paths, const Radar& radar, const std::optional<Objects>& objects, const py::object& progress) {
-        return sight_list(visibility_in_trace(paths, radar, objects, progress));
+      [](const Paths& paths, const Radar& radar, const std::optional<Objects>& objects, std::optional<double> time,
+         int num_directions, const py::object& progress) {
+        return sight_list(visibility_in_trace(paths, radar, objects, time, num_directions, progress));
       },
-      py::arg("paths"), py::arg("radar"), py::arg("objects"), py::arg("progress"),
-      "As visibility, at the time of a trace and of the objects that find_families has for it.");
+      py::arg("paths"), py::arg("radar"), py::arg("objects"), py::arg("time") = py::none(),
+      py::arg("num_directions") = kDirectionsInTrace, py::arg("progress") = py::none(),
+      "As visibility, of the objects that find_families has for a trace; time: s, None: that of the trace.");
   m.def("may_appear_in_frame", &may_appear_in_frame, py::arg("paths"), py::arg("radar"), py::arg("objects"),
         py::arg("hidden"), py::arg("shares"), py::arg("hidden_share"),
         "Of the objects named in hidden, those that may be in sight at shares of the frame: the others are not.");

@@ -106,7 +106,7 @@ def visibility_in_trace(paths, radar, objects=None, *, progress=None) -> list:
 
     paths: of `trace`; radar: whose antennas look, not necessarily that of the trace; progress: as in `visibility`
     """
-    return _as_objects(_core.visibility_in_trace(paths, radar, named_globs(objects), progress))
+    return _as_objects(_core.visibility_in_trace(paths, radar, named_globs(objects), progress=progress))
 
 
 def appearing_in_frame(paths, radar, hidden, objects=None, *, progress=None) -> set:
@@ -123,8 +123,9 @@ def appearing_in_frame(paths, radar, hidden, objects=None, *, progress=None) -> 
     for share in FRAME_PLACES:
         rest = {name: objects[name] if isinstance(objects, dict) else name for name in sorted(hidden - appearing)}
         if rest:
-            seen = visibility(scene, radar, rest, time=paths.frame.start_time + share * radar.frame_duration,
-                              num_directions=DIRECTIONS_OF_PLACES, progress=progress)
+            time = paths.frame.start_time + share * radar.frame_duration
+            seen = _as_objects(_core.visibility_in_trace(paths, radar, named_globs(rest), time, DIRECTIONS_OF_PLACES,
+                                                         progress=progress))
             appearing |= {one.name for one in seen if one.visible_share > HIDDEN_SHARE}
     return appearing
 

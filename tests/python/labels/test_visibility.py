@@ -1,6 +1,9 @@
 """Which objects a radar can see, against geometry."""
 import echopath as ep
+import numpy as np
 import pytest
+from echopath.paths.visibility import appearing_in_frame, visibility_in_trace
+from echopath.tracing.traces import keep_geometry
 from support.radars import build_radar
 
 SHARE_ERROR = 1e-3  # of 4096 directions: 24 plates behind screens at random had 4e-4 rms, 9e-4 at most
@@ -71,3 +74,27 @@ def test_bad_objects_are_named():
         ep.visibility(person_and_car(0.0), radar_at((0, 0, 0.6)), ["cart"])
     with pytest.raises(ValueError, match="num_directions: must be a whole number from 1 to 16777216, got 0"):
         ep.visibility(person_and_car(0.0), radar_at((0, 0, 0.6)), num_directions=0)
+
+
+def test_what_appears_within_a_frame_leaves_the_next_trace_as_it_is():
+    """A screen drives aside and bares one plate, but not the one behind a wall; geometry is kept from trace to trace."""
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(2.0, 2.0), name="screen", material="metal", position=(6.0, 0.0, 1.0),
+              motion=ep.LinearMotion(velocity=(0.0, 400.0, 0.0)))
+    scene.add(ep.actors.plate(4.0, 2.0), name="wall", material="concrete", position=(8.0, 4.5, 1.0))
+    for name, aside in (("bared", 0.0), ("hidden", 6.0)):
+        scene.add(ep.actors.plate(0.5, 0.5), name=name, material="metal", position=(10.0, aside, 1.0))
+    antennas = [ep.Antenna((0.0, 0.0, 1.0))]
+    radar = build_radar(antennas, antennas, num_samples=16, sampling_rate=1e6, num_chirps=256)
+    middle = 0.5 * radar.frame_duration
+    keep_geometry(scene)
+    paths = ep.trace(scene, radar, num_rays=500, start_time=-middle)  # at the middle the screen is before the radar
+    hidden = {one.name for one in visibility_in_trace(paths, radar) if one.visible_share == 0.0}
+    assert hidden == {"bared", "hidden"}
+    assert 400.0 * middle > 1.5  # beyond what hides the plate
+    assert appearing_in_frame(paths, radar, hidden) == {"bared"}
+    again = ep.trace(scene, radar, num_rays=500, start_time=-middle)
+    assert again.num_paths == paths.num_paths > 0
+    for one, other in ((paths.mesh_id, again.mesh_id), (paths.u, again.u), (paths.v, again.v)):
+        np.testing.assert_array_equal(one, other)
+    np.testing.assert_array_equal(again.weight, paths.weight)

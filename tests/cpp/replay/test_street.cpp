@@ -1,6 +1,8 @@
 // A rough body between two mirror walls over a mirror floor: levels of the ghost families against independent quadrature.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <map>
 #include <memory>
 #include <set>
@@ -57,31 +59,39 @@ using Families = std::map<std::multiset<std::string>, double>;
 Families family_powers(const Paths& paths, int max_leg_mirrors) {
   const Replayed replay = replayed(paths);
   const double wavenumber = kTwoPi * paths.radar.waveform.start_frequency / kSpeedOfLight;
-  std::map<std::pair<std::multiset<std::string>, Key>, std::complex<double>> fields;
+  constexpr int kMostHits = 4;
+  using Mirrors = std::array<uint32_t, kMostHits>;  // mesh IDs plus 1, descending, then 0
+  std::map<std::pair<Mirrors, Key>, std::complex<double>> fields;
   for (int64_t i = 0; i < paths.num_paths(); ++i) {
     const auto p = static_cast<size_t>(i);
     const Hit* hits = paths.hits_of(i);
     const int count = paths.num_bounces[p];
     const Hit* body_hit = nullptr;
     int num_body_hits = 0, body_at = 0;
-    std::multiset<std::string> mirrors;
+    Mirrors mirrors{};
     for (int k = 0; k < count; ++k) {
-      const std::string& name = paths.scene->node_of(hits[k].mesh_id).name;
-      if (name.starts_with("body")) {
+      if (!paths.scene->node_of(hits[k].mesh_id).material->mirror) {
         body_hit = hits + k;
         body_at = k;
         ++num_body_hits;
       } else {
-        mirrors.insert(name);
+        mirrors.at(static_cast<size_t>(k)) = hits[k].mesh_id + 1;
       }
     }
     const bool is_family = num_body_hits == 1 && std::max(body_at, count - 1 - body_at) <= max_leg_mirrors;
     if (!is_family || paths.diffuse[p] != uint64_t{1} << body_at) continue;
+    std::sort(mirrors.rbegin(), mirrors.rend());
     const Key key{body_hit->mesh_id, body_hit->triangle_id, body_hit->u, body_hit->v};
     fields[{mirrors, key}] += replay.amplitudes[p] * std::polar(1.0, -std::fmod(wavenumber * replay.lengths[p], kTwoPi));
   }
   Families powers;
-  for (const auto& [family, field] : fields) powers[family.first] += std::norm(field);
+  for (const auto& [family, field] : fields) {
+    std::multiset<std::string> names;
+    for (const uint32_t mirror : family.first) {
+      if (mirror > 0) names.insert(paths.scene->node_of(mirror - 1).name);
+    }
+    powers[names] += std::norm(field);
+  }
   return powers;
 }
 
@@ -100,7 +110,7 @@ class Street : public ::testing::TestWithParam<PolarizationModel> {
     const auto [entry, is_new] = traced_.try_emplace(GetParam());
     if (is_new) {
       TraceSettings settings;
-      settings.num_rays = 60000;
+      settings.num_rays = 40000;
       settings.polarization = GetParam();
       entry->second = trace(street(), plain_radar({0, 0, 1}, {0, 0, 1}), settings);
     }

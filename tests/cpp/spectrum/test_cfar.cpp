@@ -115,6 +115,15 @@ Complex correlation(const std::vector<double>& samples, int size, int lag) {
   return sum / power;
 }
 
+// Correlations of cells -most to most apart, each summed once.
+std::vector<std::complex<double>> correlations(const std::vector<double>& samples, int zero_pad, int most) {
+  std::vector<std::complex<double>> found;
+  for (int lag = -most; lag <= most; ++lag) {
+    found.push_back(correlation(samples, static_cast<int>(samples.size()) * zero_pad, lag));
+  }
+  return found;
+}
+
 // Probability that |z_0|^2 > alpha sum |z_i|^2 for jointly Gaussian cells: with the eigenvalues of this indefinite form, one
 // of them positive, it is prod 1 / (1 + |negative| / positive) (Turin 1960).
 double exact_rate(const CfarDesign& design, int range, double factor) {
@@ -122,14 +131,15 @@ double exact_rate(const CfarDesign& design, int range, double factor) {
   const auto cells = training_cells(design.cells, range, noise.num_samples * noise.zero_pad);
   std::vector<Place> all = {{0, range}};
   all.insert(all.end(), cells.begin(), cells.end());
-  const auto velocity = window_samples(noise.window.velocity, noise.num_chirps);
-  const auto distance = window_samples(noise.window.range, noise.num_samples);
+  const int rows = design.cells.num_rows(), columns = design.cells.num_columns();
+  const auto along_velocity = correlations(window_samples(noise.window.velocity, noise.num_chirps), noise.zero_pad, rows);
+  const auto along_range = correlations(window_samples(noise.window.range, noise.num_samples), noise.zero_pad, columns);
   const Eigen::Index n = static_cast<Eigen::Index>(all.size());
   Eigen::MatrixXcd covariance(n, n);
   for (Eigen::Index i = 0; i < n; ++i) {
     for (Eigen::Index j = 0; j < n; ++j) {
-      covariance(i, j) = correlation(velocity, noise.num_chirps * noise.zero_pad, all[i].velocity - all[j].velocity) *
-                         correlation(distance, noise.num_samples * noise.zero_pad, all[i].range - all[j].range);
+      covariance(i, j) = along_velocity.at(static_cast<size_t>(rows + all[i].velocity - all[j].velocity)) *
+                         along_range.at(static_cast<size_t>(columns + all[i].range - all[j].range));
     }
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd> solver(covariance);

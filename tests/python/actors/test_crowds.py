@@ -34,7 +34,8 @@ def test_poles_and_people_of_a_street_are_those_alone(mirrors, request):
              else request.getfixturevalue("street_without_mirrors"))
     assert sum(stratum.num_rays for stratum in paths.frame.strata) == 300_000
     for name in names:
-        alone = ep.trace(crowd_scenes.alone(name, mirrors=mirrors), radar, num_rays=2**17)
+        many = 2**15 if name.startswith("pole") else 2**17  # of a pole alone they know the power to 0.06 dB
+        alone = ep.trace(crowd_scenes.alone(name, mirrors=mirrors), radar, num_rays=many)
         here, truth = (ep.received_power(crowd.direct(one, name)) for one in (paths, alone))
         error = abs(decibels(here.power, truth.power))
         assert error < ALONE_DB or not here.resolved, name

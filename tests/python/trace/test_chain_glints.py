@@ -21,13 +21,17 @@ def test_the_ray_off_one_ball_has_its_closed_form():
     assert power_over_ellipsoids([((distance, 0.0, 0.0), (radius,) * 3)], 2.0) == pytest.approx(2.0 * field ** 2, rel=ROUNDING)
 
 
+@pytest.fixture(scope="module")
+def records():
+    scene = ellipsoids(FLANK_AND_BALL)
+    return [ep.trace(scene, radar(), num_rays=RAYS, max_bounces=2, seed=seed) for seed in range(1, SEEDS + 1)]
+
+
 @pytest.mark.parametrize("order", [("ball", "flank"), ("flank", "ball")])
-def test_the_echo_over_two_curved_bodies_is_that_of_geometrical_optics(order):
+def test_the_echo_over_two_curved_bodies_is_that_of_geometrical_optics(records, order):
     truth = power_over_ellipsoids([FLANK_AND_BALL[name] for name in order], radar().transmit_power)
     expression = "T '{}' '{}' R".format(*order)
-    scene = ellipsoids(FLANK_AND_BALL)
-    found = [ep.received_power(ep.trace(scene, radar(), num_rays=RAYS, max_bounces=2, seed=seed).select(expression))
-             for seed in range(1, SEEDS + 1)]
+    found = [ep.received_power(paths.select(expression)) for paths in records]
     error_db = 10.0 * np.log10([one.power / truth for one in found])
     assert abs(error_db.mean()) < LEVEL_DB and np.abs(error_db).max() < SCATTER_DB
     assert all(one.low <= truth <= one.high for one in found)

@@ -62,12 +62,18 @@ def test_the_speckle_of_a_road_goes_on_for_a_radar_that_drives():
     assert max(over_edges(scene, radar(speed=10), "T 'road' R", "rays")) < 0.8
 
 
-@pytest.mark.parametrize("expression", ["T 'walker' R", "T 'wall' R", "T 'walker' 'wall' R", "T 'walker' 'walker' R"])
-def test_mean_powers_are_those_of_rays(expression):
+@pytest.fixture(scope="module")
+def records():
+    """{scatterers: paths of each seed} of the walker by the wall."""
     scene = walker_by_a_wall()
-    powers = {scatterers: [ep.received_power(diffuse(ep.trace(scene, radar(), num_rays=RAYS, seed=seed,
-                                                              scatterers=scatterers), expression)).diffuse
-                           for seed in range(1, NUM_SEEDS + 1)] for scatterers in ("rays", "surface")}
+    return {scatterers: [ep.trace(scene, radar(), num_rays=RAYS, seed=seed, scatterers=scatterers)
+                         for seed in range(1, NUM_SEEDS + 1)] for scatterers in ("rays", "surface")}
+
+
+@pytest.mark.parametrize("expression", ["T 'walker' R", "T 'wall' R", "T 'walker' 'wall' R", "T 'walker' 'walker' R"])
+def test_mean_powers_are_those_of_rays(records, expression):
+    powers = {scatterers: [ep.received_power(diffuse(paths, expression)).diffuse for paths in of_seeds]
+              for scatterers, of_seeds in records.items()}
     means = {name: np.mean(found) for name, found in powers.items()}
     error = np.sqrt(sum(np.var(found, ddof=1) / NUM_SEEDS for found in powers.values()))
     assert means["rays"] > 0

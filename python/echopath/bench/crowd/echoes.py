@@ -9,6 +9,7 @@ wall, and what is diffuse, coverage tells how well runs know what more rays woul
 from __future__ import annotations
 
 import dataclasses
+import functools
 from collections.abc import Callable
 
 import numpy as np
@@ -65,9 +66,14 @@ def ellipsoids(bodies: dict):
     """Scene of smooth metal ellipsoids. bodies: {name: (centre, semi-axes)} in m."""
     scene = ep.Scene()
     for name, (centre, semi_axes) in bodies.items():
-        mesh = shapes.ellipsoid(semi_axes, edge=_edge(semi_axes))
-        scene.add(mesh, name=name, material=ep.Material.metal(), position=tuple(centre), smooth=True)
+        scene.add(_body(tuple(semi_axes)), name=name, material=ep.Material.metal(), position=tuple(centre), smooth=True)
     return scene
+
+
+@functools.lru_cache(maxsize=4)
+def _body(semi_axes: tuple) -> ep.Mesh:
+    """Two bodies stand elsewhere for each of hundreds of seeds: they are made, and looked over, once."""
+    return shapes.ellipsoid(semi_axes, edge=_edge(semi_axes))
 
 
 def _edge(semi_axes) -> float:

@@ -70,7 +70,7 @@ class PosedScene {
   bool is_in_patches_ = false;  // of deforming meshes only patches are posed
   Vec3 origin_ = Vec3::Zero();
   std::shared_ptr<const MeshPlaces> places_;  // null: all meshes are posed, in their order
-  // By place.
+  // These are indexed by the place of a mesh (places_).
   std::vector<Mat3> linear_, normal_matrix_;
   std::vector<Vec3> world_translation_;
   std::vector<std::vector<Vec3>> deformed_, deformed_normals_;  // empty where rigid

@@ -34,7 +34,7 @@ SurfaceResponse respond(const Material& material, double frequency, double cos_i
 struct ModeCoefficients;  // em/polarization/jones.h
 class LayerStack;         // em/layers/layer_stack.h
 
-// The side from which a wave meets a sheet: that of the surface's normals, or the other one.
+// Names the side from which a wave meets a sheet: kFront is that of the surface's normals.
 enum class SheetSide { kFront, kBack };
 
 // Models a material at one frequency and works out once what does not depend on the wave. `material` must outlive it.

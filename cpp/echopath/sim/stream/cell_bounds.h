@@ -37,7 +37,7 @@ class CellBounds {
   ChirpSequence waveform_;
   CarrierModel model_;
   bool per_sample_;
-  // By path: the largest amplitude in sqrt(W), lowest and highest beat in cells.
+  // These hold, by path, the largest amplitude in sqrt(W) and the lowest and highest beat frequency in cells.
   std::vector<float> amplitude_, lowest_, highest_;
 };
 

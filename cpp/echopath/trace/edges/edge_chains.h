@@ -32,7 +32,7 @@ class EdgeChains {
   void follow(size_t edge, const Hit& point, const Vec3& position, const Vec3& in, int most, const Visit& visit) const;
 
  private:
-  // A face at an edge.
+  // Describes a face at an edge.
   struct OnPlane {
     size_t edge;
     int face;

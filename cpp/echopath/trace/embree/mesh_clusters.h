@@ -6,7 +6,7 @@
 
 namespace echopath {
 
-// A mesh at rest with few triangles.
+// Describes a mesh at rest that has few triangles.
 struct SmallMesh {
   static constexpr size_t kMostTriangles = 256;
   uint32_t mesh_id;

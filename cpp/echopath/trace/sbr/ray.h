@@ -12,7 +12,7 @@
 
 namespace echopath {
 
-// The ray left the transmitter over something else than the mirrors of a leg.
+// Marks a ray that has left the transmitter over something else than the flagged mirrors of a leg.
 inline constexpr MirrorSequence kOther = -1;
 
 using RayHits = std::array<Hit, 64>;
@@ -61,7 +61,7 @@ struct Ray {
   FieldPair fields;                        // the same for field vectors, where polarised
   // These describe the unflagged bounces so far and tell the sign of the field that comes back (ScalarWeight).
   bool has_dielectric_tm = false, has_odd_conductors = false;
-  // Of a coherent ray: the factors of the field beside its coefficients, 1/q of every bounce and j of every caustic.
+  // Holds the factors of a coherent ray's field beside its coefficients: 1/q of every bounce and j of every caustic.
   std::complex<double> field_factor = 1.0;
   RayDifferential differential;  // of coherent rays, where the scene has smooth meshes
   bool is_curved = false;        // some bounce so far was on a curved surface

@@ -33,9 +33,10 @@ inline LobeProbabilities lobe_probabilities(const SurfaceModel& model, const Sur
 // Returns whether a coherent ray goes on both ways where a surface mirrors and scatters: the wave that it mirrors always,
 // the power that it scatters by its share. If chance chose between them, the gaps that it leaves among neighbouring rays
 // would keep the phases across a point of reflection from cancelling: a person's limbs that mirror each other then err by
-// 8 % of his coherent power, however many the rays. Rays that are asked for other odds, or pass over flagged mirrors, choose
-// one way. So do those that would be mirrored next to never, and all behind the first hits, which bounds what one ray of the
-// launch becomes: four rays, however many bounces it may take. depth: hits so far, this one among them.
+// 8 % of his coherent power, however many the rays. Rays with a specular_probability of their own, and those that pass over
+// flagged mirrors, choose one way. So do those that would be mirrored next to never, and all behind the first hits, which
+// bounds what one ray of the launch becomes: four rays, however many bounces it may take. depth: hits so far, this one among
+// them.
 inline bool goes_both_ways(const SurfaceModel& model, const LobeProbabilities& lobes, double specular_probability,
                            int depth) {
   constexpr int kDeepest = 3;

@@ -94,7 +94,7 @@ class FrameCheck {
   std::vector<std::shared_ptr<EmbreeScene>> geometries_;  // [posed times], updated from time to time
   std::unique_ptr<const View> trace_view_;
   std::vector<std::unique_ptr<const View>> views_;  // posed
-  // The first antennas and all meshes at the time of the trace, and at the posed times.
+  // Poses the first antennas and all meshes; they are kept for the time of the trace and for the posed times.
   PosedNodes posed_nodes(std::span<const double> times) const;
   PosedNodes traced_nodes_, posed_nodes_;
   size_t first_posed_ = 0;

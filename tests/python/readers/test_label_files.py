@@ -310,7 +310,7 @@ def test_commands_write_labels(scene_path, tmp_path, capsys):
     assert main(["run", str(scene_path), "--out", str(tmp_path / "run"), "--part", "one=T . R"]) == 0
     told = capsys.readouterr().out
     assert "cells labelled, by" in told and "label_maps/parts_by.png" in told and "ghosts " in told
-    assert "detections, detections.csv" in told and (tmp_path / "run" / "detections.csv").read_text().startswith("range,")
+    assert "detections, detections.csv" in told and (tmp_path / "run" / "detections.csv").read_text().startswith("range_m,")
     assert (tmp_path / "run" / "objects_and_ghosts.png").exists()
     assert (tmp_path / "run" / "label_maps" / "parts_power.json").exists()
     arguments = ["labels", str(tmp_path / "run" / "frame.h5"), "--out", str(tmp_path / "more"), "--part", "near=T . R",

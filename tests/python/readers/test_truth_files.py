@@ -159,7 +159,7 @@ def test_a_run_writes_a_table(tmp_path, capsys):
     (tmp_path / "scene.toml").write_text(SCENE)
     assert main(["run", str(tmp_path / "scene.toml"), "--out", str(tmp_path / "out"), "--truth"]) == 0
     rows = rows_of(tmp_path / "out" / "truth.csv")
-    assert [row["name"] for row in rows] == ["near", "far"] and float(rows[1]["vx"]) == pytest.approx(2.0)
+    assert [row["name"] for row in rows] == ["near", "far"] and float(rows[1]["vx_m_per_s"]) == pytest.approx(2.0)
     assert "truth" in capsys.readouterr().out
     assert main(["info", str(tmp_path / "out" / "frame.h5")]) == 0
     said = [line.split() for line in capsys.readouterr().out.splitlines()]
@@ -172,7 +172,7 @@ def test_a_scene_file_may_ask_for_it(tmp_path, capsys):
                  "--keep", "maps"]) == 0
     rows = rows_of(tmp_path / "out" / "truth.csv")
     assert [(row["frame"], row["name"]) for row in rows] == [("0", "far"), ("1", "far")]
-    assert float(rows[1]["x"]) - float(rows[0]["x"]) == pytest.approx(0.2)
+    assert float(rows[1]["x_m"]) - float(rows[0]["x_m"]) == pytest.approx(0.2)
     capsys.readouterr()
     (tmp_path / "bad.toml").write_text(SCENE + '[truth]\nobjects = ["lorry"]\n')
     assert main(["run", str(tmp_path / "bad.toml"), "--out", str(tmp_path / "out")]) == 2

@@ -13,8 +13,8 @@ namespace echopath {
 using Box = Eigen::AlignedBox3d;
 
 // Halves its things at the median of the centres of their boxes, so that neither large things nor distant ones unbalance it.
-// It takes n log n steps and keeps 40 bytes a thing, besides 12 while it is built. It sorts the things in an order of its own
-// and names each by its place in it.
+// It takes n log n steps and keeps about 40 bytes a thing, and 12 more while it is built. It sorts the things in an order of
+// its own and names each by its place in it.
 class BoxTree {
  public:
   struct Branch {

@@ -35,8 +35,8 @@ struct RcsChannel {
 struct RcsSettings {
   double frequency = 77e9;  // Hz
   std::vector<RcsChannel> channels = {RcsChannel{}};
-  // Of each pair of directions and transmit polarisation. The scalar model has no cross-polarised reception; from two batches
-  // on cross sections have standard errors.
+  // Each pair of directions and transmit polarisation is traced so. The scalar model has no cross-polarised reception; from
+  // two batches on cross sections have standard errors.
   TraceSettings tracing{.num_rays = 1 << 17};
   // Doubles the rays until the first channel of each transmit polarisation is known that well (sim/rays/trace_to_error.h).
   std::optional<ErrorTarget> target;

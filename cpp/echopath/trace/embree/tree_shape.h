@@ -21,7 +21,8 @@ struct TreeShape {
 
 // Returns the shape of the tree of a rigid mesh for the linear part of its pose.
 TreeShape shape_of_rigid(const Mesh& mesh, const Mat3& linear, const std::vector<Vec3>& vertices);
-// Returns the shape of the tree of a mesh that deforms, from its present vertices. Cost: 5 ns a triangle, where a tree costs 200 and its fit 6.
+// Returns the shape of the tree of a mesh that deforms, from its present vertices. Cost: 5 ns a triangle, where a tree costs
+// 200 and its fit 6.
 TreeShape shape_of_deformed(const Mesh& mesh, const std::vector<Vec3>& vertices);
 
 }  // namespace echopath

@@ -6,9 +6,10 @@ from ..session import Session
 from ..view_state import apply_state
 
 
-def make_ready(session: Session) -> Session:
-    """The session, once it has made what its picture and its lists need: for a thread."""
-    session.node_counts()
+def make_ready(session: Session, is_passing: bool = False) -> Session:
+    """The session, once it has made what its picture and its lists need: for a thread. is_passing: its picture alone."""
+    if not is_passing:
+        session.node_counts()
     session.segments(session.shown_rays())
     return session
 

@@ -25,7 +25,7 @@ def session_of_view(live, view, state, spectrum_settings: dict):
     state: as of `state_of`, or None
     """
     shown = input_of_view(live, view, spectrum_settings)
-    return make_ready(session_like(None if state is None else _without_parts(state), shown))
+    return make_ready(session_like(None if state is None else _without_parts(state), shown), view.is_preview)
 
 
 def show_state(session, state: dict, made_for: dict) -> None:

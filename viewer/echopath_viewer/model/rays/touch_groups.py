@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
+_BLOCK = 1 << 15  # paths whose numbers stay in the cache
 _STRIDE = 97  # of the paths that are looked at first: they know most sets
 
 
@@ -52,6 +53,14 @@ def _keys_of_sets(offsets, num_bounces, mesh_id, num_meshes: int):
     """A number for each path that says which meshes it hits: random words of the meshes, each taken once; u64 [P]."""
     words = np.random.default_rng(0).integers(1, 2**63, num_meshes, dtype=np.uint64)
     keys = np.zeros(len(offsets), np.uint64)
+    for first in range(0, len(offsets), _BLOCK):
+        some = slice(first, first + _BLOCK)
+        _add_words(keys[some], offsets[some], num_bounces[some], mesh_id, words)
+    return keys
+
+
+def _add_words(keys, offsets, num_bounces, mesh_id, words) -> None:
+    """Adds the words of their meshes to the keys [P] of some paths."""
     for hit in range(int(num_bounces.max(initial=0))):
         paths = np.flatnonzero(num_bounces > hit)
         at = offsets[paths]
@@ -60,16 +69,17 @@ def _keys_of_sets(offsets, num_bounces, mesh_id, num_meshes: int):
         for earlier in range(hit):
             is_new &= mesh_id[at + earlier] != mesh
         keys[paths[is_new]] ^= words[mesh[is_new]]
-    return keys
 
 
 def _numbered(keys):
     """(the different keys, sorted; which of them each one is, i32): faster than np.unique where there are few."""
-    known = np.unique(keys[::_STRIDE])
-    while len(keys):
-        at = np.minimum(np.searchsorted(known, keys), len(known) - 1).astype(np.int32)
-        missing = known[at] != keys
-        if not missing.any():
+    known, at = np.unique(keys[::_STRIDE]), np.zeros(len(keys), np.int32)
+    blocks = [slice(first, first + _BLOCK) for first in range(0, len(keys), _BLOCK)]
+    while True:
+        missing = []
+        for some in blocks:
+            at[some] = np.minimum(np.searchsorted(known, keys[some]), len(known) - 1)
+            missing.append(keys[some][known[at[some]] != keys[some]])
+        if not any(map(len, missing)):
             return known, at
-        known = np.union1d(known, keys[missing])
-    return known, np.zeros(0, np.int32)
+        known = np.union1d(known, np.concatenate(missing))

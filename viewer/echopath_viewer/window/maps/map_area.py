@@ -95,14 +95,18 @@ class MapArea(QtWidgets.QWidget):
         self.rebuild()
 
     def follow_session(self, session, is_passing: bool = False) -> None:
-        """Another frame of the same time line: what is seen of the maps stays, unless their axes are others."""
+        """Another frame of the same time line: what is seen of the maps stays, unless their axes are others.
+
+        is_passing: the next one comes at once, and where there is signal is not looked for
+        """
         before, view = self.session.parts.whole.spectrum, self.view
         after = session.parts.whole.spectrum
         if before.values.shape != after.values.shape or before.range[-1] != after.range[-1]:
             self.show_session(session)
             return
         self.session = session
-        self._find_views()
+        if not is_passing:
+            self._find_views()
         self.view = view
         self.rebuild()
 

@@ -134,6 +134,28 @@ def test_radar_material_and_turns_follow(qtbot, live_window):
     assert window.session.radar.position[1] == 0.5 and window.live.yaw("wall") == pytest.approx(np.radians(5.0))
 
 
+def test_material_and_roughness_are_those_of_the_object_that_is_chosen(qtbot, live_window):
+    window, panel = live_window, live_window.live_panel
+    settled(qtbot, window)
+    window.live.set_material("wall", ep.Material(permittivity=5.0, roughness_height=1e-3))
+    window.live.set_material("plate", ep.Material.metal())
+    panel.choose("plate")
+    panel.choose("wall")
+    assert panel.rough_slider.value() == 20 and panel.rough_label.text() == "1.00 mm"
+    panel.rough_slider.setValue(60)
+    panel.material_box.setCurrentText("glass")
+    panel.choose("plate")
+    assert (panel.rough_slider.value(), panel.rough_label.text()) == (0, "0.00 mm") and panel.material_box.currentIndex() == 0
+    panel.choose("wall")
+    assert (panel.rough_slider.value(), panel.rough_label.text()) == (60, "3.00 mm")
+    assert window.live.materials("plate")[0] == ep.Material.metal()  # a slider that only shows changes nothing
+    window.live.set_material("wall", ep.Material(permittivity=5.0, scattering=0.5))  # says how rough it is in another way
+    panel.choose("plate")
+    panel.choose("wall")
+    assert panel.rough_label.text() == ""
+    settled(qtbot, window)
+
+
 def test_a_frame_becomes_live_and_another_one_ends_it(qtbot, window, frame):
     window.live_panel.rays_box.setValue(2000)
     window.live_panel.start_button.setChecked(True)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from echopath.signals.measures import for_pictures
-from echopath_viewer.model import WHOLE, CellBox
+from echopath_viewer.model import WHOLE, CellBox, from_paths
 from echopath_viewer.window.qt import Qt, QtCore, QtGui, QtWidgets
 from support.window import LEFT, PATIENCE_MS, panel_of, settle, strongest_cell
 
@@ -90,6 +90,15 @@ def test_a_double_click_leaves_part_and_selection_as_they_were(qtbot, window):
     assert window.session.part_key == ("route", "ghost")
     qtbot.mouseDClick(panel, LEFT, pos=at)
     assert window.session.part_key == (WHOLE, WHOLE) and window.session.box == CellBox(3, 4, 5, 6)
+
+
+def test_without_partitions_there_is_no_choice_of_one_and_room_for_the_names_of_parts(window, frame):
+    area = window.map_area
+    assert area.partition_box.isVisible() and area.by_label.isVisible()
+    window.show_input(from_paths(frame.scene, frame.paths))
+    QtWidgets.QApplication.processEvents()
+    assert not area.partition_box.isVisible() and not area.by_label.isVisible()
+    assert area.part_box.width() >= min(area.part_box.sizeHint().width(), area.part_box.maximumWidth())
 
 
 # --- time ---

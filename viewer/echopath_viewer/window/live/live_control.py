@@ -75,6 +75,10 @@ class LiveControl(QtCore.QObject):
         """rad"""
         return 0.0 if name == RADAR else float(self.live.scene[name].yaw)
 
+    def materials(self, name: str) -> list:
+        """Of the meshes of an object; the radar has none."""
+        return [] if name == RADAR else [mesh.material for mesh in self.live.scene[name].meshes]
+
     def move(self, name: str, position) -> None:
         """To a position in m."""
         if name == RADAR:

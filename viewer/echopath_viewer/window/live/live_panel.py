@@ -59,7 +59,7 @@ class LivePanel(QtWidgets.QWidget):
 
     def _connect(self) -> None:
         self.start_button.toggled.connect(self._toggle)
-        self.object_box.currentTextChanged.connect(lambda _: self.read())
+        self.object_box.currentTextChanged.connect(lambda _: self._show_object())
         for box in self.place_boxes:
             box.valueChanged.connect(lambda _: self._move())
         self.yaw_box.valueChanged.connect(self._turn)
@@ -114,7 +114,7 @@ class LivePanel(QtWidgets.QWidget):
         self.rays_box.setValue(self.control.live.num_rays)
         self.start_button.setChecked(True)
         self._enable(True)
-        self.read()
+        self._show_object()
 
     def _enable(self, is_on: bool) -> None:
         for widget in (self.object_box, *self.place_boxes, self.yaw_box, self.material_box, self.rough_slider):
@@ -133,6 +133,20 @@ class LivePanel(QtWidgets.QWidget):
         for widget in (self.yaw_box, self.material_box, self.rough_slider):
             widget.setEnabled(name != RADAR)
         self._is_filling = False
+
+    def _show_object(self) -> None:
+        """Takes over where the object that was chosen is, and what it is made of."""
+        self.read()
+        name = self.object_box.currentText()
+        if not self.control.is_on or not name:
+            return
+        heights = {material.roughness_height if material.scattering is None else None  # else a share of power tells
+                   for material in self.control.materials(name)}
+        height = heights.pop() if len(heights) == 1 else None
+        with QtCore.QSignalBlocker(self.rough_slider):
+            self.rough_slider.setValue(0 if height is None else round(NUM_STEPS * height / ROUGHEST))
+        self.rough_label.setText("" if height is None else f"{1e3 * height:.2f} mm")
+        self.material_box.setCurrentIndex(0)
 
     def choose(self, name: str) -> None:
         """An object of the scene."""
@@ -158,9 +172,7 @@ class LivePanel(QtWidgets.QWidget):
         self.rough_label.setText(f"{1e3 * height:.2f} mm")
         if not self.control.is_on:
             return
-        name = self.object_box.currentText()
-        material = next((mesh.material for mesh in self.control.live.scene[name].meshes), None)
-        if material is not None:
+        for material in self.control.materials(self.object_box.currentText())[:1]:
             rough = material.replace(scattering=None, roughness_height=height)  # either of them says how rough it is
             self._change(lambda name: self.control.set_material(name, rough))
 

@@ -40,6 +40,7 @@ class MapArea(QtWidgets.QWidget):
         self.range_slider.setMinimumWidth(60)
         self.range_slider.setToolTip("Dynamic range of the colours, below the peak that is in view.")
         self.range_slider.setRange(MIN_DYNAMIC_RANGE_DB, MAX_DYNAMIC_RANGE_DB)
+        self.by_label = QtWidgets.QLabel("by")
         self.range_label, self.read_out = QtWidgets.QLabel(), QtWidgets.QLabel(HINT)
         self.layer_legend = QtWidgets.QLabel(wordWrap=True, visible=False, textFormat=Qt.TextFormat.RichText)
         self.colour_bar = ColourBar()
@@ -52,7 +53,7 @@ class MapArea(QtWidgets.QWidget):
             box.setMinimumWidth(70)
             box.setMaximumWidth(190)
         first, second = QtWidgets.QHBoxLayout(), QtWidgets.QHBoxLayout()
-        for row, items in ((first, ("Maps:", self.layout_box, "by", self.partition_box, "Part:", self.part_box)),
+        for row, items in ((first, ("Maps:", self.layout_box, self.by_label, self.partition_box, "Part:", self.part_box)),
                            (second, (self.channel_box, self.reach_box,
                                      self.range_slider, self.range_label))):
             for item in items:
@@ -168,7 +169,8 @@ class MapArea(QtWidgets.QWidget):
             self.partition_box.clear()
             self.partition_box.addItems(session.parts.partitions or ["-"])
             self.partition_box.setCurrentText(session.partition or "-")
-            self.partition_box.setEnabled(bool(session.parts.partitions))
+            for widget in (self.by_label, self.partition_box):  # the others need the room
+                widget.setVisible(bool(session.parts.partitions))
             self.channel_box.setCurrentText("TX {}, RX {}".format(*session.channel))
             self.range_slider.setValue(round(session.dynamic_range_db))
         self.range_label.setText(f"{session.dynamic_range_db:.0f} dB")

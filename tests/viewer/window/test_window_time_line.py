@@ -75,8 +75,15 @@ def test_the_film_goes_round(qtbot, line_window):
     window.time_line.read.connect(lambda session: seen.append(window.time_line.place))
     qtbot.keyClick(window, Qt.Key.Key_Space, Qt.KeyboardModifier.ShiftModifier)
     qtbot.waitUntil(lambda: len(seen) >= 4, timeout=2 * PATIENCE_MS)
+    assert window._is_passing and window.view3d._pace is not None and window.view3d.builder.session is window.session
+    assert window.map_area.session is window.session
     window.toggle_play_frames()
     assert seen[:4] == [1, 2, 0, 1] and not window.time_line.is_playing
+    assert not window._is_passing and window.view3d._pace is None  # the frame at which it stopped is shown whole
+    qtbot.waitUntil(lambda: not window.time_line.is_busy, timeout=PATIENCE_MS)
+    counts = {node.name: count for node, count in zip(window.session.scene.nodes, window.session.node_counts())}
+    assert {name: item.text(1) for name, item in window.tree._items.items()} == {
+        name: f"{count:,}" for name, count in counts.items()}
 
 
 def test_the_strip_has_all_frames_and_goes_to_one(qtbot, line_window):

@@ -139,8 +139,17 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         else:
             self._follow(session)
 
-    def _end_live(self) -> None:
-        """The preview that no full view follows any more is shown whole."""
+    def _take_read(self, session) -> None:
+        """Of a film that plays, what is quick and the maps that are looked at; the rest when it stops."""
+        if not self.time_line.is_playing:
+            self._follow(session)
+            return
+        self._take(session, is_passing=True)
+        for panel in self.side_panels.values():
+            panel.follow_session(session)
+
+    def _end_passing(self) -> None:
+        """What no other view follows at once any more is shown whole."""
         if self._is_passing:
             self._follow(self.session)
 
@@ -238,10 +247,11 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         self.loading.done.connect(self._take_rest)
         self.loading.failed.connect(self._end_loading)
         self.keeping.done.connect(self._take_kept)
-        self.time_line.read.connect(self._follow)
+        self.time_line.read.connect(self._take_read)
+        self.time_line.stopped.connect(self._end_passing)
         self.live.shown.connect(self._take_live)
         self.live.failed.connect(self.show_message)
-        self.live.stopped.connect(self._end_live)
+        self.live.stopped.connect(self._end_passing)
         self.view3d.mesh_dragged.connect(self._drag_mesh)
         self.time_line.glanced.connect(self._show_tracks)
         self.time_line.failed.connect(self.show_message)
@@ -262,8 +272,8 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
             remember_layout(self)
         self.time_bar.stop()
         self.file_watch.watch(None)
-        self.time_line.stop()
         self._is_passing = False
+        self.time_line.stop()
         for work in (self.contributions.work, self.loading, self.keeping, self.live_panel):
             work.stop()
         for panel in self.side_panels.values():

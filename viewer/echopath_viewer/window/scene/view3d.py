@@ -176,7 +176,8 @@ class View3D(Picks, QtInteractor):
             pace.begin()
         self._pace, self._drawn_as = pace, None
         if pace is not None:
-            return  # the next picture shows it
+            self._show_moving()
+            return
         self.builder.show_first_rays(None)
         self.builder.show_quick_meshes(None)
         self.render_soon()

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import echopath as ep
 
-from ...model.frames.carried import session_like
+from ...model.frames.carried import make_ready, session_like
 from ...model.frames.overview import glance_at
 from ..background_work import BackgroundWork
 from ..qt import QtCore, Signal
@@ -17,7 +17,7 @@ GONE = "{}: its files are gone; what is shown is the last frame that was read"
 class TimeControl(QtCore.QObject):
     """Goes through a TimeLine; at most two frames are held: that on display and the one that is read."""
 
-    read, failed, glanced = Signal(object), Signal(str), Signal()  # Session
+    read, failed, glanced, stopped = Signal(object), Signal(str), Signal(), Signal()  # Session; stopped: the film
 
     def __init__(self, bar, state_now, is_behind):
         """bar: FrameBar; state_now: callable () -> state of the view to be taken over; is_behind: callable () -> whether the
@@ -126,9 +126,9 @@ class TimeControl(QtCore.QObject):
     # --- reading ---
 
     def _start(self, place: int) -> None:
-        moment, state = self.line.moments[place], self._state_now()
+        moment, state, is_passing = self.line.moments[place], self._state_now(), self.is_playing
         self._reading = moment
-        self.work.start(lambda progress: session_like(state, moment.read()))
+        self.work.start(lambda progress: make_ready(session_like(state, moment.read()), is_passing))
 
     def _take(self, session) -> None:
         self._shown, wanted, self._wanted = self._reading, self._wanted, None
@@ -151,8 +151,9 @@ class TimeControl(QtCore.QObject):
     def _play(self, is_on: bool) -> None:
         if is_on and self.line is not None:
             self._film.start()
-        else:
+        elif self._film.isActive():
             self._film.stop()
+            self.stopped.emit()
 
     def _play_on(self) -> None:
         if self._is_behind() or self.is_busy:

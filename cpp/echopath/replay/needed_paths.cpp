@@ -29,6 +29,10 @@ std::vector<uint32_t> Replayer::meshes_of(std::span<const int64_t> paths) const 
   return meshes;
 }
 
+void Replayer::pose_polynomial(int polynomial, std::span<const int64_t> paths) {
+  if (!posed_.is_whole(polynomial)) posed_.pose_polynomial(polynomial, meshes_of(paths));
+}
+
 void Replayer::find_strongest() {
   if (strongest_ > 0.0) return;
   std::vector<int64_t> some;

@@ -45,6 +45,9 @@ class Replayer {
   // Finds the amplitude of the strongest of some paths at the time of the trace, between the first antennas. From then on
   // interpolated() leaves out paths that it may.
   void find_strongest();
+  // Poses at the nodes of a polynomial the meshes that some paths touch, unless all are posed there. From then on
+  // interpolated() and by_chirp() take only paths for which this was called; without it they pose all meshes.
+  void pose_polynomial(int polynomial, std::span<const int64_t> paths);
   // Interpolates the echoes of `paths` by a polynomial (grids()). Paths are left out and added to `unfollowed`, in their
   // order, where the last two coefficients of their length or of their amplitude exceed the tolerance; or where they are
   // negligible: their amplitudes stay so small in all channels, throughout the frame (is_dark), that the sum of all such

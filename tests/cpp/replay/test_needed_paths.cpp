@@ -103,5 +103,27 @@ TEST(NeededPaths, MeshesThatArePosedLaterStandWhereAllWouldStand) {
   }
 }
 
+TEST(NeededPaths, PolynomialsPosedForSomePathsGiveThemTheSameEchoes) {
+  const Radar radar = two_by_two();
+  const Paths paths = record(radar);
+  const Replayer whole(paths, radar);
+  Replayer partly(paths, radar);
+  std::vector<std::vector<int64_t>> of_mesh(2);
+  for (const int64_t path : all_of(paths)) of_mesh[paths.hits_of(path)->mesh_id].push_back(path);
+  const int polynomial = whole.grids().num_polynomials();  // where no motion was tried
+  for (const std::vector<int64_t>& some : {of_mesh[1], of_mesh[0]}) {
+    ASSERT_FALSE(some.empty());
+    partly.pose_polynomial(polynomial, some);
+    std::vector<UnfollowedPath> left, expected_left;
+    const std::vector<Echoes> expected = whole.interpolated(some, polynomial, expected_left);
+    const std::vector<Echoes> found = partly.interpolated(some, polynomial, left);
+    ASSERT_GT(found.front().num_echoes, 0);
+    for (size_t channel = 0; channel < found.size(); ++channel) {
+      EXPECT_EQ(found[channel].delay, expected[channel].delay);
+      EXPECT_EQ(found[channel].amplitude, expected[channel].amplitude);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace echopath::test_needed_paths

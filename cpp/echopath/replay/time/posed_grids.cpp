@@ -87,7 +87,20 @@ const TrialGrid& PosedGrids::trial(int polynomial) const {
   });
 }
 
+bool PosedGrids::is_whole(int polynomial) const {
+  const Polynomial& own = kept(polynomial);
+  return !own.partly && (own.trial.is_made() || own.posed.is_made());
+}
+
+void PosedGrids::pose_polynomial(int index, std::span<const uint32_t> meshes) {
+  if (is_whole(index)) return;
+  Polynomial& own = polynomials_[static_cast<size_t>(index) - 1];
+  if (!own.partly) own.partly = std::make_unique<PartlyPosedGrid>(pose_partly(grids_.polynomial(index)));
+  own.of_meshes = &own.partly->with(meshes);
+}
+
 const PosedGrid& PosedGrids::polynomial(int index) const {
+  if (kept(index).of_meshes) return *kept(index).of_meshes;
   return kept(index).posed.get([&] {
     return PosedGrid{nodes_of(grids_.polynomial(index), radar_, grids_.start_time(), grids_.derivatives()),
                      PosedNodes(trial(index).scenes)};

@@ -51,6 +51,11 @@ class PosedGrids {
 
   const PosedGrid& at_trace() const;
   const PosedGrid& polynomial(int index) const;
+  // Returns whether all meshes are posed at the nodes of a polynomial, because motions were tried there or it was asked for.
+  bool is_whole(int polynomial) const;
+  // Makes polynomial() the grid of these meshes and those of earlier calls alone, unless it is whole: most polynomials serve a
+  // few paths. To be called while no other thread uses the grid. Raises what PosedScene does.
+  void pose_polynomial(int index, std::span<const uint32_t> meshes);
   const TrialGrid& trial(int polynomial) const;
   // Raises what PosedScene does.
   PartlyPosedGrid pose_partly(const TimeGrid& grid) const;
@@ -62,6 +67,8 @@ class PosedGrids {
   struct Polynomial {
     Lazy<TrialGrid> trial;
     Lazy<PosedGrid> posed;
+    std::unique_ptr<PartlyPosedGrid> partly;
+    const PosedGrid* of_meshes = nullptr;  // of `partly`
   };
   std::shared_ptr<const PosedScenes> scenes_at(std::span<const double> times) const;
   const Polynomial& kept(int polynomial) const { return polynomials_[static_cast<size_t>(polynomial) - 1]; }

@@ -128,8 +128,10 @@ void ReplayStream::add_moving(const PathGrids& grids, std::vector<std::vector<in
   if (!std::all_of(by_grid.begin() + 1, by_grid.end(), is_empty)) replayer_.find_strongest();
   for (int polynomial = 1; polynomial <= replayer_.grids().num_polynomials(); ++polynomial) {
     const Extent extent{0, num_channels(), replayer_.grids().polynomial(polynomial).num_nodes};
+    const std::vector<int64_t>& paths = by_grid[static_cast<size_t>(polynomial)];
+    if (!paths.empty()) replayer_.pose_polynomial(polynomial, paths);
     const Replay replay = [&](auto part, auto, auto& left) { return replayer_.interpolated(part, polynomial, left); };
-    for (const UnfollowedPath& path : run_blocks(by_grid[static_cast<size_t>(polynomial)], extent, replay, out)) {
+    for (const UnfollowedPath& path : run_blocks(paths, extent, replay, out)) {
       if (path.is_negligible) continue;
       const NextGrid next = grids.next(path, polynomial);
       (next.by_chirp ? by_chirp : by_grid)[static_cast<size_t>(next.polynomial)].push_back(path.path);

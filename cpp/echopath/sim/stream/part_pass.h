@@ -37,7 +37,7 @@ class PartPass {
   // Its memory is at most group_bytes() for each group, and a few maps of a channel for each thread. Where some of the sets
   // have several groups it keeps all signals, as long as these are no more than kKeptSignals, for sets of these groups
   // alone. Raises invalid_argument where the ranges do not match the sets and the map.
-  static constexpr size_t kKeptSignals = size_t{64} << 20;  // bytes
+  static constexpr size_t kKeptSignals = size_t{128} << 20;  // bytes
   using Ranges = std::vector<std::vector<uint8_t>>;
   std::vector<SetPower> powers(const Sets& sets, const MapWindows& window, int zero_pad, double least, Job* job,
                                const Ranges& ranges = {});

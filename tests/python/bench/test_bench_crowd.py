@@ -111,6 +111,22 @@ def test_intervals_of_what_no_ray_has_met_count_too():
     assert interval.power == 0.0 < interval.high and half_db == np.inf
 
 
+def test_scenes_whose_truth_is_not_known_are_no_truth(monkeypatch):
+    """Traces of every other seed do not know the power themselves."""
+    echo = crowd_coverage.Echo("coherent, drawn", lambda seed: (seed, None), "T 'body' R", differs=True)
+
+    def power_of(_, seed, **settings):
+        half_db = 0.05 if seed % 2 else 3.0
+        return Interval(float(seed), 0.9 * seed, 1.1 * seed), half_db
+
+    monkeypatch.setattr(crowd_coverage, "power_of", power_of)
+    first = crowd_coverage.FIRST_SEED
+    wanted = [first + 1, first + 3, first + 5]
+    assert crowd_coverage._known(echo, 3, 2 ** 12, 0.1) == [(seed, seed, float(seed)) for seed in wanted]
+    with pytest.raises(ValueError, match="0 scenes only is known"):
+        crowd_coverage._known(echo, 3, 2 ** 12, 0.01)
+
+
 def test_command_writes_numbers_and_picture(tmp_path, capsys, monkeypatch):
     names = ["car_smooth_15", "pole_20", "pedestrian_10", "wall_left"]
     assert set(names) <= set(scenes.street_names())

@@ -10,7 +10,7 @@ constexpr double kNormal = 1.959964;  // two-sided 95 % quantile
 constexpr double kOfHalving = 1.2, kOfHalvingMore = 3.0, kMostOfHalving = 5.0;
 constexpr double kAliases = 0.007, kOfFiner = 4.0;
 constexpr double kGone = 0.5, kOfEdges = 1.25, kFaded = 0.2;
-constexpr double kPointsTimesField = 4.0, kMostOfPoints = 2.5;
+constexpr double kPointsTimesField = 6.0, kMostOfPoints = 2.5;
 constexpr double kOfSurface = 0.0025;
 constexpr double kOfAHit = 0.5;
 constexpr double kEdgeCells = 8.0;  // twice the outline of a square, 4 sqrt(n) of n cells

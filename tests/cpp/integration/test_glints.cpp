@@ -95,7 +95,7 @@ TEST(GuideRays, AddUpAndDoNotDependOnTheNumberOfThreads) {
   std::vector<LaunchGuide> guides;
   for (const int threads : {1, 2}) {
     set_num_threads(threads);
-    guides.push_back(guide_rays(pilot, ray_needs(pilot, 0.3, EchoFloor::kStrongest), 100000));
+    guides.push_back(guide_rays(pilot, ray_needs(pilot, WantedError{}), 100000));
   }
   set_num_threads(0);
   double rays = 0.0;

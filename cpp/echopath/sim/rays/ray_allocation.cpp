@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "echopath/power/received_power.h"
 #include "echopath/signal/noise.h"
@@ -15,11 +16,12 @@ namespace {
 
 constexpr double kDynamicRange = 1e-6;  // of the strongest echo
 constexpr double kMinGrowth = 1.0 / 16.0;
-constexpr double kUnseenGrowth = 0.25;    // of strata that send nothing back
-constexpr double kMovingTarget = 0.25;    // of the target: what moves is what a radar looks for
-constexpr double kImageWeight = 0.5;      // beside that of the target
-constexpr double kObjectsFirst = 0.5;     // of the rays, where they are too few for objects and images
-constexpr double kServedFirst = 0.75;     // of the rays of either
+constexpr double kUnseenGrowth = 0.25;            // of strata that send nothing back
+constexpr double kMovingTarget = 0.25;            // of the target: what moves is what a radar looks for
+constexpr double kImageWeight = 0.5;              // beside that of the target
+constexpr double kObjectsFirst = 0.65;            // of the rays, where they are too few for objects and images
+constexpr double kServedFirst = 0.75;             // of the rays of either
+constexpr double kPlannedDb = 0.8 * kResolvedDb;  // a margin: what a pilot foretells may come out larger
 constexpr double kGlintFieldShare = 0.1;  // of the field of view, at least, where it has a glint that is not resolved
 constexpr int64_t kPilotDivisor = 8;
 constexpr int64_t kFewestPilotRays = 2048;
@@ -63,13 +65,19 @@ std::vector<bool> moving_objects(const Scene& scene) {
   return moves;
 }
 
-RayNeed need_of(const Stratum& stratum, double num_rays, const ReceivedPower& power, double missing, double target_db) {
+// Returns how many times the rays bring an error to the target.
+double growth_of(double missing_db, double target_db, RayLaw law) {
+  if (law == RayLaw::kByDecibels) return missing_db / target_db;
+  return (std::pow(10.0, 0.1 * missing_db) - 1.0) / (std::pow(10.0, 0.1 * target_db) - 1.0);
+}
+
+RayNeed need_of(const Stratum& stratum, double num_rays, const ReceivedPower& power, double growth) {
   RayNeed need;
   need.stratum = stratum.name;
   need.echo = {power.power, power.high};
   need.is_image = stratum.num_mirrors > 0;
   need.weight = weight_of_target(stratum.num_mirrors) * (need.is_image ? kImageWeight : 1.0);
-  double growth = power.high > 0 ? std::clamp(missing / target_db, kMinGrowth, kMaxGrowth) : kUnseenGrowth;
+  growth = power.high > 0 ? std::clamp(growth, kMinGrowth, kMaxGrowth) : kUnseenGrowth;
   // The field of view sees many surfaces, of which the strongest would speak for all, so it keeps the rays that it has.
   if (stratum.object < 0) growth = 1.0;
   need.is_bounded = growth < kMaxGrowth;
@@ -85,21 +93,27 @@ double rays_of(const RayNeeds& needs, bool is_image) {
 
 // Shares out `num_rays` rays among images, or among what is none.
 void share_out_among(const RayNeeds& needs, bool is_image, double num_rays, RayShares& shares) {
-  double bounded = 0.0, others = 0.0, weights = 0.0;
+  std::vector<const RayNeed*> all;
   for (const RayNeed& need : needs.strata) {
-    if (need.is_image != is_image) continue;
-    (need.is_bounded ? bounded : others) += need.rays;
-    weights += need.is_bounded ? 0.0 : need.weight;
+    if (need.is_image == is_image) all.push_back(&need);
   }
-  const bool is_scarce = bounded + others > num_rays;
-  const double to_bounded =
-      is_scarce && others > 0 ? std::min(bounded, kServedFirst * num_rays) : std::min(bounded, num_rays);
-  for (const RayNeed& need : needs.strata) {
-    if (need.is_image != is_image) continue;
-    const bool shares_rest = is_scarce && !need.is_bounded;
-    const double of_bounded = need.is_bounded && bounded > 0 ? to_bounded / bounded : 1.0;
-    shares[need.stratum] = shares_rest ? need.weight * (num_rays - to_bounded) / weights : need.rays * of_bounded;
+  std::stable_sort(all.begin(), all.end(), [](const RayNeed* a, const RayNeed* b) {
+    return std::pair(!a->is_bounded, a->rays) < std::pair(!b->is_bounded, b->rays);
+  });
+  const bool is_scarce = rays_of(needs, is_image) > num_rays;
+  double to_serve = kServedFirst * num_rays, left = num_rays, weights = 0.0;
+  std::vector<const RayNeed*> unserved;
+  for (const RayNeed* need : all) {
+    if (is_scarce && !(need->is_bounded && need->rays <= to_serve)) {
+      unserved.push_back(need);
+      weights += need->weight;
+      continue;
+    }
+    shares[need->stratum] = need->rays;
+    to_serve -= need->rays;
+    left -= need->rays;
   }
+  for (const RayNeed* need : unserved) shares[need->stratum] = need->weight * left / weights;
 }
 
 // Raises the rays of the field of view where its echo is not resolved and a glint makes it.
@@ -132,9 +146,10 @@ double RayNeeds::num_rays() const {
   return sum;
 }
 
-RayNeeds ray_needs(const Paths& paths, double target_db, EchoFloor floor, Job* job) {
+RayNeeds ray_needs(const Paths& paths, const WantedError& wanted, Job* job) {
   const std::vector<ReceivedPower> powers = power_of_strata(paths, job);
-  const double least = floor == EchoFloor::kNoise ? noise_power_in_cell(paths.radar) : kDynamicRange * strongest_of(powers);
+  const double least =
+      wanted.floor == EchoFloor::kNoise ? noise_power_in_cell(paths.radar) : kDynamicRange * strongest_of(powers);
   const std::vector<bool> moves = moving_objects(*paths.scene);
   const RayShares launched = shares_of(paths.frame.strata);
   RayNeeds needs;
@@ -143,8 +158,9 @@ RayNeeds ray_needs(const Paths& paths, double target_db, EchoFloor floor, Job* j
     if (stratum.is_focus()) continue;
     const double missing = missing_db(powers[k], least);
     const bool is_moving = stratum.object >= 0 && moves[static_cast<size_t>(stratum.object)];
-    const double target = is_moving && stratum.num_mirrors == 0 ? kMovingTarget * target_db : target_db;
-    needs.strata.push_back(need_of(stratum, launched.at(stratum.name), powers[k], missing, target));
+    const double target = is_moving && stratum.num_mirrors == 0 ? kMovingTarget * wanted.db : wanted.db;
+    const double growth = growth_of(missing, target, wanted.law);
+    needs.strata.push_back(need_of(stratum, launched.at(stratum.name), powers[k], growth));
     needs.strata.back().is_resolved = missing <= target || powers[k].high <= least;
     if (powers[k].high > least) needs.worst_db = std::max(needs.worst_db, missing);
   }
@@ -185,7 +201,8 @@ Paths trace_by_need(const SceneSnapshot& scene, const Radar& radar, const TraceS
   const Paths pilot = trace(scene, radar, launch, &unseen, kept, &fitted);
   launch.num_rays = settings.num_rays;
   launch.num_rays_to_come = 0;
-  launch.guide = guide_rays(pilot, ray_needs(pilot, kResolvedDb, EchoFloor::kNoise, &unseen), settings.num_rays, &unseen);
+  const WantedError wanted{.db = kPlannedDb, .floor = EchoFloor::kNoise, .law = RayLaw::kByPower};
+  launch.guide = guide_rays(pilot, ray_needs(pilot, wanted, &unseen), settings.num_rays, &unseen);
   return trace(scene, radar, launch, job, kept, &fitted);
 }
 

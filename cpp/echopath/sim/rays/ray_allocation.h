@@ -27,6 +27,18 @@ enum class EchoFloor {
   kStrongest,  // those down to 60 dB below the strongest
 };
 
+// Says how many rays an error asks for.
+enum class RayLaw {
+  kByDecibels,  // few where much is missing, for a trace that others may follow with more
+  kByPower,     // as many as the error relative to the power is too large, for the last trace
+};
+
+struct WantedError {
+  double db = 0.3;  // half the 95 % interval of each echo
+  EchoFloor floor = EchoFloor::kStrongest;
+  RayLaw law = RayLaw::kByDecibels;
+};
+
 struct RayNeeds {
   std::vector<RayNeed> strata;  // in the order of the trace's, without foci
   double worst_db = 0.0;        // largest half interval of an echo above the floor
@@ -35,16 +47,16 @@ struct RayNeeds {
 };
 
 // Returns for every stratum whose echo may stand above the floor as many rays as bring its interval (power/received_power.h)
-// to `target_db`, for objects that move, but not for their images, to a quarter of it. The interval of a coherent echo falls
-// about with the rays, that of a diffuse one with their root; both get rays in proportion to the error over the target,
-// within a factor of kMaxGrowth. An echo that is known better gives rays back, down to a sixteenth; a stratum that sends
-// nothing back keeps a quarter. Raises Cancelled.
-RayNeeds ray_needs(const Paths& paths, double target_db, EchoFloor floor, Job* job = nullptr);
+// to what is wanted, for objects that move, but not for their images, to a quarter of it. The interval of a coherent echo
+// falls about with the rays, that of a diffuse one with their root; both get rays in proportion to the error over the
+// target, within a factor of kMaxGrowth. An echo that is known better gives rays back, down to a sixteenth; a stratum that
+// sends nothing back keeps a quarter. Raises Cancelled.
+RayNeeds ray_needs(const Paths& paths, const WantedError& wanted, Job* job = nullptr);
 inline constexpr double kMaxGrowth = 32.0;
 
 // Returns the shares of `num_rays` rays. Where they are too few, what the radar sees itself is served before images, up to
-// kObjectsFirst of the rays. Among either, needs that are bounded are served first, up to three quarters of their rays, so
-// that most get what they need. The others share what is left by their weights.
+// kObjectsFirst of the rays. Among either, needs that are bounded are served in full, the smallest first, up to three
+// quarters of their rays, so that as many as possible get what they need. The others share what is left by their weights.
 RayShares share_out(const RayNeeds& needs, double num_rays);
 
 // Returns the guide for a trace of that many rays by the needs that one of fewer rays shows, with foci about its glints
@@ -52,8 +64,9 @@ RayShares share_out(const RayNeeds& needs, double num_rays);
 LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_rays, Job* job = nullptr);
 
 // Traces with rays shared out by what each stratum above the noise needs for kResolvedDb (power/received_power.h). A pilot
-// trace of an eighth of settings.num_rays tells the needs and is thrown away. Where settings.guide gives the shares, or rays
-// are few, there is no pilot, and rays are shared as in `trace`. Raises as `trace`.
+// trace of an eighth of settings.num_rays tells the needs, with a margin for what it does not foresee, and is thrown away.
+// Where settings.guide gives the shares, or rays are few, there is no pilot, and rays are shared as in `trace`. Raises as
+// `trace`.
 Paths trace_by_need(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr,
                     KeptGeometry* kept = nullptr);
 

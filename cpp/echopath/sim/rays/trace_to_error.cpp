@@ -24,7 +24,7 @@ Paths trace_to_error(const SceneSnapshot& scene, const Radar& radar, const Trace
   TraceSettings launch = settings;
   for (;;) {
     Paths paths = trace(scene, radar, launch, job, kept, &fitted);
-    const RayNeeds needs = ray_needs(paths, target.error_db, target.floor, job);
+    const RayNeeds needs = ray_needs(paths, {.db = target.error_db, .floor = target.floor}, job);
     paths.frame.target_error_db = target.error_db;
     paths.frame.error_db = needs.worst_db;
     const bool is_met = needs.worst_db <= target.error_db;

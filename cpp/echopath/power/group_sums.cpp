@@ -52,9 +52,10 @@ struct OpenHit {
   std::complex<double> field = 0.0;
 };
 
+constexpr uint64_t kMirrorsAlone = ~uint64_t{0};  // the kind of paths over flagged mirrors alone
+
 // Returns the kind of a coherent path: the mesh that radiates and whether other surfaces come before it.
 uint64_t kind_of(const Paths& paths, int64_t path) {
-  constexpr uint64_t kMirrorsAlone = ~uint64_t{0};
   const auto p = static_cast<size_t>(path);
   const Hit* hits = paths.hits_of(path);
   if (paths.stratum[p] == kNoStratum) return kMirrorsAlone;
@@ -68,6 +69,8 @@ uint64_t kind_of(const Paths& paths, int64_t path) {
   }
   return count == 0 ? kMirrorsAlone : radiating << 1 | (count > 1);
 }
+
+bool has_bounced_before(uint64_t kind) { return kind != kMirrorsAlone && (kind & 1) != 0; }
 
 // Numbers the kinds that a group has so far. Paths that follow each other are mostly of one kind.
 class KnownKinds {
@@ -114,6 +117,7 @@ class Sums {
     CoherentKind& of_kind = sums.kinds[kinds_[group].index_of(kind, sums.kinds)];
     const bool has_cell = paths_.stratum[static_cast<size_t>(path)] != kNoStratum;  // others hold nothing between rays
     of_kind.has_cells = of_kind.has_cells || has_cell;
+    of_kind.has_bounced = has_bounced_before(kind);
     const size_t num_views = has_cell ? kNumCellViews : kPoints;
     for (size_t view = 0; view < num_views; ++view) {
       const std::complex<double> field = arriving[view * stride];

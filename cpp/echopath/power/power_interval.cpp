@@ -10,7 +10,8 @@ constexpr double kNormal = 1.959964;  // two-sided 95 % quantile
 constexpr double kOfHalving = 1.2, kOfHalvingMore = 3.0, kMostOfHalving = 5.0;
 constexpr double kAliases = 0.007, kOfFiner = 4.0;
 constexpr double kGone = 0.5, kOfEdges = 1.25, kFaded = 0.2;
-constexpr double kPointsTimesField = 6.0, kMostOfPoints = 2.5;
+constexpr double kPointsTimesField = 4.0, kPointsTimesFieldOfSeveral = 6.0;  // of one bounce and of several
+constexpr double kMostOfPoints = 2.5;
 constexpr double kOfSurface = 0.0025;
 constexpr double kOfAHit = 0.5;
 constexpr double kEdgeCells = 8.0;  // twice the outline of a square, 4 sqrt(n) of n cells
@@ -52,10 +53,12 @@ double between_edges(const CoherentKind& kind, int num_batches, double in_phase)
   return num_batches * edges * std::lerp(of_each, 1.0, in_phase) * std::min(1.0, num_cells / kFewCells);
 }
 
-// Returns by how much the field of that size may grow by what waves of points hold between rays, sqrt(W).
-double missing_of_points(double size, double points) {
+// Returns by how much the field of a kind may grow by what waves of points hold between rays, sqrt(W).
+double missing_of_points(const CoherentKind& kind, int num_batches) {
+  const double size = std::abs(kind.field[kAsLaunched]), points = between_points(kind, num_batches);
+  const double times_field = kind.has_bounced ? kPointsTimesFieldOfSeveral : kPointsTimesField;
   const double most = kMostOfPoints * std::sqrt(points);
-  return size > 0.0 ? std::clamp(points / (kPointsTimesField * size) - size, 0.0, most) : most;
+  return size > 0.0 ? std::clamp(points / (times_field * size) - size, 0.0, most) : most;
 }
 
 FieldBias field_bias(const PowerEvidence& evidence) {
@@ -63,7 +66,7 @@ FieldBias field_bias(const PowerEvidence& evidence) {
   double finer = 0.0, gone = 0.0, surface = 0.0;  // W
   for (const CoherentKind& kind : evidence.kinds) {
     const double size = std::abs(kind.field[kAsLaunched]);
-    gone += squared(missing_of_points(size, between_points(kind, evidence.num_batches)));
+    gone += squared(missing_of_points(kind, evidence.num_batches));
     if (kind.has_cells) surface += squared(kOfSurface * size);
     if (size == 0.0) {
       gone += squared(kOfEdges) * between_edges(kind, evidence.num_batches, 1.0);

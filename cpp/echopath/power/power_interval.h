@@ -23,6 +23,7 @@ struct CoherentKind {
   double power[kNumCellViews] = {};           // W, sum of |a|^2
   double edge_squares = 0.0;                  // W^2, sum of |a|^4 of kEdges
   bool has_cells = false;                     // else its paths are images, which are exact
+  bool has_bounced = false;                   // off other surfaces before, flagged mirrors aside
 };
 
 // Holds what the record tells of the power of a set of paths, with all rays.

@@ -115,9 +115,9 @@ def test_scenes_whose_truth_is_not_known_are_no_truth(monkeypatch):
     """Traces of every other seed do not know the power themselves."""
     echo = crowd_coverage.Echo("coherent, drawn", lambda seed: (seed, None), "T 'body' R", differs=True)
 
-    def power_of(_, seed, **settings):
-        half_db = 0.05 if seed % 2 else 3.0
-        return Interval(float(seed), 0.9 * seed, 1.1 * seed), half_db
+    def power_of(_, scene, **settings):
+        half_db = 0.05 if scene % 2 else 3.0
+        return Interval(float(scene), 0.9 * scene, 1.1 * scene), half_db
 
     monkeypatch.setattr(crowd_coverage, "power_of", power_of)
     first = crowd_coverage.FIRST_SEED
@@ -125,6 +125,9 @@ def test_scenes_whose_truth_is_not_known_are_no_truth(monkeypatch):
     assert crowd_coverage._known(echo, 3, 2 ** 12, 0.1) == [(seed, seed, float(seed)) for seed in wanted]
     with pytest.raises(ValueError, match="0 scenes only is known"):
         crowd_coverage._known(echo, 3, 2 ** 12, 0.01)
+    monkeypatch.setattr(crowd_coverage, "all_echoes", lambda: [echo])
+    monkeypatch.setattr(crowd_coverage, "NUM_SEEDS", 3)
+    assert crowd_coverage.measure_coverage(quick=False)["left_out"] == {echo.kind: 3}
 
 
 def test_command_writes_numbers_and_picture(tmp_path, capsys, monkeypatch):

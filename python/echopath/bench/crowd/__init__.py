@@ -240,6 +240,8 @@ def _describe_coverage(coverage: dict) -> list[str]:
         rays = f"{row['rays']:,}" if "rays" in row else "all"
         lines.append(f"  {row['kind']:<30}{rays:>9}{row['coverage']:>10.3f} {row['coverage_error']:>5.3f}"
                      f"{row['mean_error_db']:>+16.3f}{row['claimed_db']:>13.3f}{row['unresolved']:>12}")
+    lines += [f"  {kind}: {number} scenes more were drawn and left out, whose power even many rays do not know"
+              for kind, number in coverage["left_out"].items()]
     return lines
 
 

@@ -26,7 +26,7 @@ class ContributionsPanel(QtWidgets.QWidget):
         super().__init__(parent)
         self.session, self._rows, self._cell, self._told = None, [], None, []
         self._cell_told = None  # its level and what makes most of it, in words
-        self._is_seen = False
+        self._is_seen = self._is_passing = False
         self.is_playing = lambda: False  # frames: nobody reads then what takes seconds to make
         self.title, self.without = QtWidgets.QLabel(HINT), QtWidgets.QLabel()
         for label in (self.title, self.without):
@@ -66,17 +66,20 @@ class ContributionsPanel(QtWidgets.QWidget):
     def show_session(self, session) -> None:
         self.work.stop()
         self.bar.hide()
-        self.session, self._cell = session, None
+        self.session, self._cell, self._is_passing = session, None, False
         self.refresh()
 
     def follow_session(self, session, is_passing: bool = False) -> None:
-        """Another frame. is_passing: the next one comes at once; what is made for the one before is not of this one."""
-        if is_passing:
-            self.work.stop()
-            self.bar.hide()
-            self.session = session
-        else:
+        """Another frame. is_passing: the next one comes at once, and nothing is told; what was is of another frame."""
+        if not is_passing:
             self.show_session(session)
+            return
+        self.work.stop()
+        self.bar.hide()
+        self.session, was_passing, self._is_passing = session, self._is_passing, True
+        if not was_passing:
+            self._cell = None
+            self.refresh()
 
     def refresh(self) -> None:
         """Tells of the cell that is selected now, if anyone looks."""
@@ -89,6 +92,8 @@ class ContributionsPanel(QtWidgets.QWidget):
             self._show(session.cell_attribution())
         elif session.note or self.is_playing():
             self._show_nothing(session.note or "Pause the frames to see what makes the cell.")
+        elif self._is_passing:
+            self._show_nothing("What makes the cell is told when nothing moves any more.")
         elif not self.work.is_running:
             self._show_nothing("The signals of all families of paths are made, once ...")
             self.bar.begin()

@@ -49,16 +49,14 @@ class SceneTree(QtWidgets.QTreeWidget):
 
     def follow_session(self, session, is_passing: bool = False) -> None:
         """Another frame: rows that are open stay so where its scene has the same. is_passing: the next one comes at once, and
-        the rows keep what they tell."""
-        if is_passing:
-            self.session = session
-            return
+        rows of the same scene keep what they tell."""
         same = self.session is not None and [node.name for node in session.scene.nodes] == list(self._items)
         if not same:
             self.show_session(session)
             return
         self.session = session
-        self.refresh()
+        if not is_passing:
+            self.refresh()
 
     def refresh(self) -> None:
         """Check marks, colours and counts as they are now."""

@@ -52,7 +52,8 @@ class View3D(Picks, QtInteractor):
         style.AddObserver("EndInteractionEvent", lambda *_: self.set_moving(None))
 
     def show_session(self, session) -> None:
-        """Replaces what is drawn."""
+        """Replaces what is drawn; nothing moves any more."""
+        self._pace = self._drawn_as = None
         self.clear()
         self.enable_3_lights()
         self.builder = SceneBuilder(self, session, legend=self.legend_box, background=self.background(), is_quick=True)

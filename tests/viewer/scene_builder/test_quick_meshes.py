@@ -6,7 +6,8 @@ import pytest
 import pyvista as pv
 
 import echopath as ep
-from echopath_viewer.model import mesh_palette
+from echopath_viewer.model import Session, from_frame, mesh_palette
+from echopath_viewer.scene_builder import SceneBuilder
 from echopath_viewer.scene_builder.mesh_layer import MeshLayer
 from echopath_viewer.scene_builder.quick_meshes import coarse_shape
 from support import shapes
@@ -121,3 +122,27 @@ def test_meshes_that_are_looked_for_have_their_own_places_meanwhile(layer):
         assert [bool(actor.GetVisibility()) for actor in actors] == [True] * 3
         assert actors[0].center == pytest.approx((0.0, -0.2, 0.5), abs=1e-3)
     assert not any(actor.GetVisibility() for actor in actors)
+
+
+def test_pictures_of_what_rests_do_not_depend_on_the_order_of_triangles(moving_sequence):
+    """What lies behind shines through: blended in that order the far side of a ball may lie over the near one."""
+    points, triangles = ball(3)
+    order = np.argsort(points[triangles].mean(axis=1) @ (1.0, 1.0, 1.0))
+    pictures = []
+    for sorted_triangles in (triangles[order], triangles[order[::-1]]):
+        scene = ep.Scene()
+        scene.add(ep.Mesh(points, sorted_triangles), name="ball", material=shapes.lambert(0.8), position=(2.0, 0.0, 0.0))
+        frame = ep.simulate(scene, moving_sequence.radar, num_rays=500, max_bounces=1, seed=1)
+        plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+        builder = SceneBuilder(plotter, Session(from_frame(frame)), show_legend=False, is_quick=True)
+        builder.show_quick_meshes(100.0)
+        assert not plotter.renderer.GetUseOIT()
+        builder.show_quick_meshes(None)
+        builder.rays.show_first(0)
+        plotter.camera_position = "iso"
+        plotter.reset_camera()
+        plotter.render()
+        pictures.append(plotter.screenshot(None, return_img=True).astype(int))
+        plotter.close()
+    assert share_that_differs(pictures[0], np.full_like(pictures[0], 255)) > 0.05
+    assert np.abs(pictures[0] - pictures[1]).max() <= 1

@@ -43,6 +43,7 @@ def pass_to(qtbot, window, place: int) -> None:
     control.go(place)
     qtbot.waitUntil(lambda: control.place == place and not control.is_busy, timeout=PATIENCE_MS)
     assert control.is_playing and window._is_passing and window.view3d._pace is not None
+    assert not window.view3d.renderer.GetUseOIT()
 
 
 def test_another_file_that_is_opened_is_drawn_whole(playing, stored_run):
@@ -51,6 +52,7 @@ def test_another_file_that_is_opened_is_drawn_whole(playing, stored_run):
     playing.settle()
     meshes = playing.view3d.builder.meshes
     assert all(actor.GetVisibility() for actor in meshes.actors) and not meshes._is_quick
+    assert playing.view3d.renderer.GetUseOIT()
 
 
 def test_a_row_of_what_made_a_cell_is_not_there_for_another_frame(qtbot, shared_window, stored_run):

@@ -45,8 +45,6 @@ class SceneBuilder:
         self.set_background(background)
         self.meshes = MeshLayer(plotter, session.scene, session.palette, session.time)
         self._is_quick = is_quick
-        if is_quick:  # see-through surfaces blend in their order: to blend without one takes software a sixth of a picture
-            plotter.renderer.SetUseOIT(False)
         self.rays = RayLayer(plotter, "all", width=RAY_WIDTH, opacity=1.0 if is_quick else RAY_OPACITY)
         self.lit = RayLayer(plotter, "lit", width=LIT_WIDTH, in_front=True)
         self.chosen = RayLayer(plotter, "chosen", width=CHOSEN_WIDTH, in_front=True)

@@ -53,7 +53,7 @@ class View3D(Picks, QtInteractor):
 
     def show_session(self, session) -> None:
         """Replaces what is drawn; nothing moves any more."""
-        self._pace = self._drawn_as = None
+        self.set_moving(None)
         self.clear()
         self.enable_3_lights()
         self.builder = SceneBuilder(self, session, legend=self.legend_box, background=self.background(), is_quick=True)

@@ -29,7 +29,8 @@ def area_of(points, triangles) -> float:
 
 def test_a_coarse_ball_has_fewer_triangles_and_the_area_of_a_ball():
     points, triangles = ball(5)
-    rows, coarse = coarse_shape(points, triangles, 0.05)
+    shape = coarse_shape(points, triangles, 0.05)
+    rows, coarse = shape.rows, shape.triangles
     assert len(coarse) < 0.3 * len(triangles)
     assert area_of(points[rows], coarse) == pytest.approx(4.0 * np.pi * RADIUS**2, rel=0.05)
     sides = np.sort(coarse, axis=1)
@@ -40,13 +41,13 @@ def test_a_coarse_ball_has_fewer_triangles_and_the_area_of_a_ball():
 
 def test_without_cells_a_shape_stays_as_it_is():
     points, triangles = ball(2)
-    rows, coarse = coarse_shape(points, triangles, 0.0)
-    assert np.array_equal(rows, np.arange(len(points))) and np.array_equal(coarse, triangles)
+    shape = coarse_shape(points, triangles, 0.0)
+    assert np.array_equal(shape.rows, np.arange(len(points))) and np.array_equal(shape.triangles, triangles)
 
 
 def test_a_body_smaller_than_a_cell_has_no_triangles():
-    rows, coarse = coarse_shape(*ball(2), 10.0)
-    assert len(rows) == 1 and len(coarse) == 0
+    shape = coarse_shape(*ball(2), 10.0)
+    assert len(shape.rows) == 1 and len(shape.triangles) == 0
 
 
 @pytest.fixture
@@ -146,3 +147,36 @@ def test_pictures_of_what_rests_do_not_depend_on_the_order_of_triangles(moving_s
         plotter.close()
     assert share_that_differs(pictures[0], np.full_like(pictures[0], 255)) > 0.05
     assert np.abs(pictures[0] - pictures[1]).max() <= 1
+
+
+def test_a_body_of_another_form_is_not_drawn_with_the_triangles_of_the_one_before():
+    """Two balls that touch in the first frame and part: each vertex is drawn no farther away than a cell's diagonal."""
+    (points, triangles), cell = ball(4), 0.2
+    both = np.concatenate([triangles, triangles + len(points)])
+    plotter = pv.Plotter(off_screen=True, window_size=SIZE)
+    layer = MeshLayer(plotter, pair_of_balls(points, points, both), np.uint8([[90, 90, 90]]), 0.0)
+    layer.show_quick(cells_of(cell))
+    for size, distance in ((1.0, 2.0), (1.0, 2.0), (3.0, 4.0), (1.0, 0.0)):
+        scene = pair_of_balls(size * points, size * points + (0.0, distance, 0.0), both)
+        assert layer.fits(scene)
+        layer.take(scene, np.uint8([[90, 90, 90]]), 0.0)
+        layer.show_quick(cells_of(cell))
+        drawn = np.asarray(layer._quick._drawn["bodies"][1].points)
+        apart = np.linalg.norm(np.asarray(scene.world_vertices(0, 0.0))[:, None] - drawn, axis=2).min(axis=1)
+        assert apart.max() <= np.sqrt(3.0) * cell * 1.001
+    plotter.close()
+
+
+def pair_of_balls(one, other, triangles):
+    scene = ep.Scene()
+    scene.add(ep.Mesh(np.concatenate([one, other]), triangles), name="balls", material="plastic")
+    return scene
+
+
+def test_a_stiff_body_keeps_its_triangles_wherever_it_moves():
+    points, triangles = ball(4)
+    shape, random = coarse_shape(np.float32(points), triangles, 0.1), np.random.default_rng(1)
+    for _ in range(20):
+        turn, _ = np.linalg.qr(random.normal(size=(3, 3)))
+        assert shape.fits(np.float32(points @ turn.T + random.uniform(-100.0, 100.0, 3)))
+    assert not shape.fits(np.float32(3.0 * points)) and not shape.fits(np.float32(points[:-1]))

@@ -7,6 +7,8 @@ import numpy as np
 
 from .polydata import coloured_actor, loose_lines_of, set_point_colours, set_segment_colours, triangles_of
 
+ROUNDING = 1e-4  # of a cell's diagonal: vertices are float32, and a body that turns may seem to become longer by that
+
 
 class QuickMeshes:
     """Draws what a picture of this size can show of many triangles: software takes most of the time of a picture for triangles,
@@ -42,20 +44,22 @@ class QuickMeshes:
         cells: [N] m, of each mesh: vertices in the same cube of a grid of that spacing may be drawn at one place; 0: none may
         """
         shapes = [self._shape_of(mesh, vertices[mesh], triangles[mesh], cell) for mesh, cell in zip(meshes, cells)]
-        points, counts = [vertices[mesh][rows] for mesh, (rows, _) in zip(meshes, shapes)], [len(rows) for rows, _ in shapes]
-        key, drawn = [(mesh, self._coarse[mesh][0]) for mesh in meshes], self._drawn.get(name)
-        if drawn is None or drawn[0] != key:
+        points = [vertices[mesh][shape.rows] for mesh, shape in zip(meshes, shapes)]
+        counts = [len(of_mesh) for of_mesh in points]
+        drawn = self._drawn.get(name)
+        if drawn is None or drawn[0] != shapes:
             begins = np.cumsum([0, *counts])
-            drawn = key, triangles_of(_joined(points), _joined([faces + at for (_, faces), at in zip(shapes, begins)])), None
+            faces = _joined([shape.triangles + begin for shape, begin in zip(shapes, begins)])
+            drawn = shapes, triangles_of(_joined(points), faces), None
         elif points:
             drawn[1].points = _joined(points)
         self._paint(name, drawn, np.repeat(colours, counts, axis=0))
 
     def _paint(self, name: str, drawn, rgb) -> None:
-        key, poly, before = drawn
+        shapes, poly, before = drawn
         if before is None or not np.array_equal(before, rgb):
             set_point_colours(poly, rgb)
-        self._drawn[name] = key, poly, rgb
+        self._drawn[name] = shapes, poly, rgb
         self._actors[name].GetMapper().SetInputDataObject(poly)
         self._actors[name].SetVisibility(poly.n_points > 0)
 
@@ -67,33 +71,60 @@ class QuickMeshes:
         self._actors[name].GetMapper().SetInputDataObject(lines)
         self._actors[name].SetVisibility(len(ends) > 0)
 
-    def _shape_of(self, mesh: int, vertices, triangles, cell: float):
-        """(rows of the vertices that are drawn, the triangles between these): kept until the cell is another octave, as a body
-        that moves does not change its triangles."""
+    def _shape_of(self, mesh: int, vertices, triangles, cell: float) -> CoarseShape:
+        """Kept until the cell is another octave or the body another one: one that only moves does not change its triangles."""
         octave = math.floor(math.log2(cell)) if 0.0 < cell < math.inf else None
         kept = self._coarse.get(mesh)
-        if kept is None or kept[0] != octave:
-            shape = coarse_shape(vertices, triangles, 0.0 if octave is None else 2.0**octave)
-            self._coarse[mesh] = kept = octave, shape
+        if kept is None or kept[0] != octave or not kept[1].fits(vertices):
+            self._coarse[mesh] = kept = octave, coarse_shape(vertices, triangles, 0.0 if octave is None else 2.0**octave)
         return kept[1]
 
 
-def coarse_shape(vertices, triangles, cell: float):
-    """(rows [W] of the vertices, one in each cube of a grid, triangles [E, 3] between them): without those that have become
-    lines or points.
+class CoarseShape:
+    """A body of few triangles: several vertices are drawn at the place of one.
+
+    rows: [W] of the vertices that are drawn; triangles: [E, 3] between these
+    """
+
+    def __init__(self, vertices, rows, triangles, place, cell: float):
+        """vertices: [V, 3] m, of which it was made; place: [V] of each vertex in rows; cell: m, 0: each has its own place"""
+        self.rows, self.triangles = rows, triangles
+        self._fitted, self._drawn_at, self._farthest = vertices, rows[place], math.sqrt(3.0) * cell * (1.0 + ROUNDING)
+
+    def fits(self, vertices) -> bool:
+        """Whether it may draw vertices [V, 3] in m, too: each is within a cell's diagonal of the place where it is drawn. That is
+        so wherever a stiff body moves, but not where parts that lay in one cube part, or of a larger body."""
+        if vertices is self._fitted:
+            return True
+        if len(vertices) != len(self._drawn_at):
+            return False
+        away = vertices - vertices[self._drawn_at]
+        if len(away) and np.einsum("ij,ij->i", away, away).max() > self._farthest**2:
+            return False
+        self._fitted = vertices
+        return True
+
+
+def coarse_shape(vertices, triangles, cell: float) -> CoarseShape:
+    """A body whose vertices in the same cube of a grid are drawn at one place, without triangles that become lines or points.
 
     vertices: [V, 3] m; triangles: [F, 3]; cell: m, spacing of the grid, 0: all as it is
     """
-    triangles = np.asarray(triangles)
+    triangles, each = np.asarray(triangles), np.arange(len(vertices))
     if cell == 0.0 or not len(vertices):
-        return np.arange(len(vertices)), triangles
-    corner = np.asarray(vertices, np.float64)
+        return CoarseShape(vertices, each, triangles, each, 0.0)
+    return CoarseShape(vertices, *_clustered(np.asarray(vertices, np.float64), triangles, cell), cell)
+
+
+def _clustered(corner, triangles, cell: float) -> tuple:
+    """(rows, triangles, place) of a CoarseShape."""
     at = np.floor((corner - corner.min(axis=0)) / cell).astype(np.int64)
     size = at.max(axis=0) + 1
     _, rows, place = np.unique((at[:, 0] * size[1] + at[:, 1]) * size[2] + at[:, 2], return_index=True, return_inverse=True)
-    faces = np.ravel(place)[triangles]
+    place = np.ravel(place)
+    faces = place[triangles]
     is_face = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
-    return rows, faces[is_face]
+    return rows, faces[is_face], place
 
 
 def _joined(arrays):

@@ -50,6 +50,22 @@ def test_a_body_smaller_than_a_cell_has_no_triangles():
     assert len(shape.rows) == 1 and len(shape.triangles) == 0
 
 
+@pytest.mark.parametrize("radius, height, subdivisions", [(0.05, 4.0, 0), (0.04, 0.25, 3), (0.003, 10.0, 0)])
+@pytest.mark.parametrize("direction", [(0.0, 0.0, 1.0), (1.0, 0.5, 0.2)])
+@pytest.mark.parametrize("cell", [0.125, 0.2, 1.0])
+def test_thin_bodies_that_are_longer_than_a_cell_are_seen_over_their_length(radius, height, subdivisions, direction, cell):
+    """Poles, limbs and wires."""
+    poly = pv.Cylinder(radius=radius, height=height, direction=direction, resolution=24).triangulate().subdivide(subdivisions)
+    points, triangles = np.asarray(poly.points, float), np.asarray(poly.regular_faces)
+    shape = coarse_shape(points, triangles, cell)
+    if np.ptp(points, axis=0).max() <= cell:
+        assert len(shape.triangles) == 0
+        return
+    axis = np.array(direction) / np.linalg.norm(direction)
+    along = points[shape.rows][shape.triangles].reshape(-1, 3) @ axis
+    assert np.ptp(along) >= height - 2.0 * cell
+
+
 @pytest.fixture
 def layer():
     """Two balls beside each other over a mirror, before a camera."""

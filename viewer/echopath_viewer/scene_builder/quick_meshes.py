@@ -9,6 +9,8 @@ from .polydata import coloured_actor, loose_lines_of, set_point_colours, set_seg
 
 ROUNDING = 1e-4  # of a cell's diagonal: vertices are float32, and a body that turns may seem to become longer by that
 
+MOST_FINER = 10  # times a grid is halved for a thin body
+
 
 class QuickMeshes:
     """Draws what a picture of this size can show of many triangles: software takes most of the time of a picture for triangles,
@@ -108,12 +110,19 @@ class CoarseShape:
 def coarse_shape(vertices, triangles, cell: float) -> CoarseShape:
     """A body whose vertices in the same cube of a grid are drawn at one place, without triangles that become lines or points.
 
-    vertices: [V, 3] m; triangles: [F, 3]; cell: m, spacing of the grid, 0: all as it is
+    vertices: [V, 3] m; triangles: [F, 3]; cell: m, spacing of the grid, 0: all as it is. A body longer than a cell of which
+        nothing would be left, as a pole, has a finer grid: it is thin, but seen
     """
     triangles, each = np.asarray(triangles), np.arange(len(vertices))
     if cell == 0.0 or not len(vertices):
         return CoarseShape(vertices, each, triangles, each, 0.0)
-    return CoarseShape(vertices, *_clustered(np.asarray(vertices, np.float64), triangles, cell), cell)
+    corner = np.asarray(vertices, np.float64)
+    is_longer = np.ptp(corner, axis=0).max() > cell
+    for finer in range(MOST_FINER + 1 if is_longer else 1):
+        rows, faces, place = _clustered(corner, triangles, cell / 2.0**finer)
+        if len(faces):
+            break
+    return CoarseShape(vertices, rows, faces, place, cell / 2.0**finer)
 
 
 def _clustered(corner, triangles, cell: float) -> tuple:

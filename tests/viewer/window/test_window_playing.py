@@ -27,15 +27,18 @@ def played(qtbot, window, folder):
         window.open_file(folder)
         open_on_screen(qtbot, window)
     control = window.time_line
-    before = control._film.interval()
-    control._film.setInterval(NEVER_MS)
+    timers = control._film, control._rest
+    before = [timer.interval() for timer in timers]
+    for timer in timers:
+        timer.setInterval(NEVER_MS)
     window.toggle_play_frames()
     try:
         pass_to(qtbot, window, 1)
         yield window
     finally:
         control.show(None)
-        control._film.setInterval(before)
+        for timer, interval in zip(timers, before):
+            timer.setInterval(interval)
 
 
 def pass_to(qtbot, window, place: int) -> None:
@@ -97,3 +100,23 @@ def test_filters_that_change_while_other_scenes_pass_count_the_objects_of_the_fr
             settle(qtbot)
             counts = {node.name: f"{count:,}" for node, count in zip(window.session.scene.nodes, window.session.node_counts())}
             assert {name: item.text(1) for name, item in window.tree._items.items()} == counts
+
+
+def test_a_frame_whose_next_one_is_long_in_coming_is_shown_whole(qtbot, playing):
+    window, control = playing, playing.time_line
+    assert control._rest.isActive() and control._rest.isSingleShot()
+    window.settle()
+    control._rest.timeout.emit()
+    assert control.is_playing and not window._is_passing and window.view3d._pace is None
+    counts = {node.name: f"{count:,}" for node, count in zip(window.session.scene.nodes, window.session.node_counts())}
+    assert {name: item.text(1) for name, item in window.tree._items.items()} == counts
+    pass_to(qtbot, window, 2)
+    window.toggle_play_frames()
+    assert not control._rest.isActive() and not window._is_passing
+
+
+def test_a_frame_that_is_still_to_be_drawn_does_not_rest(playing, monkeypatch):
+    monkeypatch.setattr(playing.time_line, "_is_behind", lambda: True)
+    playing.time_line._rest.stop()
+    playing.time_line._rest.timeout.emit()
+    assert playing._is_passing and playing.time_line._rest.isActive()

@@ -10,6 +10,7 @@ from ..qt import QtCore, Signal
 
 POLL_MS = 1000      # between looks for new frames
 FILM_MS = 100       # from frame to frame at least
+REST_MS = 500       # without a next frame of a film, after which the one on display is shown whole
 MOST_GLANCES = 4    # that are read in one piece of work
 GONE = "{}: its files are gone; what is shown is the last frame that was read"
 
@@ -17,7 +18,8 @@ GONE = "{}: its files are gone; what is shown is the last frame that was read"
 class TimeControl(QtCore.QObject):
     """Goes through a TimeLine; at most two frames are held: that on display and the one that is read."""
 
-    read, failed, glanced, stopped = Signal(object), Signal(str), Signal(), Signal()  # Session; stopped: the film
+    # read: Session; stopped: the film, or its next frame is long in coming.
+    read, failed, glanced, stopped = Signal(object), Signal(str), Signal(), Signal()
 
     def __init__(self, bar, state_now, is_behind):
         """bar: FrameBar; state_now: callable () -> state of the view to be taken over; is_behind: callable () -> whether the
@@ -30,6 +32,8 @@ class TimeControl(QtCore.QObject):
         self._poll, self._film = QtCore.QTimer(self, interval=POLL_MS), QtCore.QTimer(self, interval=FILM_MS)
         self._poll.timeout.connect(self.look)
         self._film.timeout.connect(self._play_on)
+        self._rest = QtCore.QTimer(self, singleShot=True, interval=REST_MS)
+        self._rest.timeout.connect(self._rest_there)
         self.work.done.connect(self._take)
         self.work.failed.connect(self._fail)
         self._glancing.done.connect(self._take_glances)
@@ -63,7 +67,7 @@ class TimeControl(QtCore.QObject):
     def stop(self) -> None:
         """Ends the film, the reading and what makes frames."""
         self.bar.play_button.setChecked(False)
-        for timer in (self._poll, self._film):
+        for timer in (self._poll, self._film, self._rest):
             timer.stop()
         for work in (self.work, self._glancing):
             work.stop()
@@ -134,6 +138,8 @@ class TimeControl(QtCore.QObject):
         self._shown, wanted, self._wanted = self._reading, self._wanted, None
         self.place = self._place_of(self._shown)
         self.read.emit(session)
+        if self.is_playing:
+            self._rest.start()
         self._show_place()
         if wanted is not None:
             self.go(wanted)
@@ -153,6 +159,7 @@ class TimeControl(QtCore.QObject):
             self._film.start()
         elif self._film.isActive():
             self._film.stop()
+            self._rest.stop()
             self.stopped.emit()
 
     def _play_on(self) -> None:
@@ -161,7 +168,16 @@ class TimeControl(QtCore.QObject):
         is_last = self.place == len(self.line) - 1
         if is_last and self.line.expected not in (None, len(self.line)):
             return  # further ones are being written
+        if self._rest.isActive():
+            self._rest.start()  # a frame may take long to be drawn: what counts is how long the next one is read
         self.go(0 if is_last else self.place + 1)
+
+    def _rest_there(self) -> None:
+        """The film waits for its next frame."""
+        if self._is_behind():
+            self._rest.start()
+        else:
+            self.stopped.emit()
 
     # --- all at a glance ---
 

@@ -7,6 +7,7 @@ import pytest
 
 import echopath as ep
 from echopath_viewer.model import CellBox, Filters
+from echopath_viewer.window.files.exporting import film_pictures
 from support import shapes
 from support.window import PATIENCE_MS, open_on_screen, settle
 
@@ -120,3 +121,12 @@ def test_a_frame_that_is_still_to_be_drawn_does_not_rest(playing, monkeypatch):
     playing.time_line._rest.stop()
     playing.time_line._rest.timeout.emit()
     assert playing._is_passing and playing.time_line._rest.isActive()
+
+
+def test_an_exported_film_has_all_frames_whole_though_the_time_line_plays(playing):
+    seen = []
+    for _ in film_pictures(playing):
+        seen.append((playing.time_line.place, playing._is_passing, playing.view3d._pace))
+    assert seen == [(place, False, None) for place in range(3)]
+    playing.settle()
+    assert playing.time_line.place == 1 and not playing.time_line.is_playing

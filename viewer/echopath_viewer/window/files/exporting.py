@@ -74,6 +74,7 @@ def _chirps(window):
 
 def _frames(window):
     control = window.time_line
+    control.pause()  # its own frames would come between, and be shown in part
     before = control.place
     yield len(control.line)
     try:

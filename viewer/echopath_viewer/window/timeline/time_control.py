@@ -66,7 +66,7 @@ class TimeControl(QtCore.QObject):
 
     def stop(self) -> None:
         """Ends the film, the reading and what makes frames."""
-        self.bar.play_button.setChecked(False)
+        self.pause()
         for timer in (self._poll, self._film, self._rest):
             timer.stop()
         for work in (self.work, self._glancing):
@@ -75,6 +75,10 @@ class TimeControl(QtCore.QObject):
         if self.line is not None:
             self.line.close()
         self.line = None
+
+    def pause(self) -> None:
+        """Ends the film at the frame on display."""
+        self.bar.play_button.setChecked(False)
 
     def step(self, by: int) -> None:
         """To a frame before or after."""
@@ -146,7 +150,7 @@ class TimeControl(QtCore.QObject):
 
     def _fail(self, text: str) -> None:
         self._wanted = None
-        self.bar.play_button.setChecked(False)
+        self.pause()
         self._show_place()
         self.failed.emit(text)
 

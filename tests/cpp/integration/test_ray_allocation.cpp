@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -8,7 +10,7 @@
 namespace echopath::test_ray_allocation {
 namespace {
 
-constexpr double kRounding = 1e-9;  // rays
+constexpr double kRounding = 1e-9;  // rays, or relative
 
 RayNeed need(const std::string& name, double rays, bool is_image = false, bool is_bounded = true) {
   RayNeed out;
@@ -44,6 +46,44 @@ TEST(ShareOut, LeavesAQuarterToWhatMayNeedAnyNumber) {
   EXPECT_DOUBLE_EQ(shares.at("a"), 40.0);  // b would leave less than a quarter
   EXPECT_DOUBLE_EQ(shares.at("b"), 30.0);
   EXPECT_DOUBLE_EQ(shares.at("any"), 30.0);
+}
+
+// Seven needs of 10 are served, p is the first that three quarters of the rays do not reach. Half of the 30 rays that are
+// left would be 4 more than it asks.
+TEST(ShareOut, GivesNoBoundedNeedMoreThanItAsks) {
+  RayNeeds needs{{need("p", 11), need("any", 3200, false, false)}};
+  for (int i = 0; i < 7; ++i) needs.strata.push_back(need("small " + std::to_string(i), 10));
+  const RayShares shares = share_out(needs, 100.0);
+  EXPECT_DOUBLE_EQ(shares.at("p"), 11.0);
+  EXPECT_DOUBLE_EQ(shares.at("any"), 19.0);
+}
+
+// Of 70 rays that are left, 6 parts of 9 would be 46.7. What it does not ask goes to the others, two parts to one.
+TEST(ShareOut, SharesAgainByWeightWhatANeedLeaves) {
+  RayNeeds needs{{need("served", 30), need("met", 46), need("lacks", 50), need("any", 3200, false, false)}};
+  needs.strata[1].weight = 6.0;
+  needs.strata[2].weight = 2.0;
+  const RayShares shares = share_out(needs, 100.0);
+  EXPECT_EQ(shares, (RayShares{{"served", 30.0}, {"met", 46.0}, {"lacks", 16.0}, {"any", 8.0}}));
+}
+
+// Over random needs and weights, too many for their rays.
+TEST(ShareOut, NoBoundedNeedGetsMoreThanItAsksWhileAnotherLacks) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> magnitude(0.0, 3.0), weight(0.1, 2.0);
+  for (int trial = 0; trial < 300; ++trial) {
+    RayNeeds needs;
+    for (int i = 0; i < 12; ++i) {
+      needs.strata.push_back(need(std::to_string(i), std::pow(10.0, magnitude(random)), i % 2 == 0, i % 5 != 0));
+      needs.strata.back().weight = weight(random);
+    }
+    const double num_rays = 0.9 * needs.num_rays();
+    const RayShares shares = share_out(needs, num_rays);
+    EXPECT_NEAR(sum_of(shares), num_rays, kRounding * num_rays);
+    for (const RayNeed& one : needs.strata) {
+      if (one.is_bounded) EXPECT_LE(shares.at(one.stratum), one.rays * (1.0 + kRounding)) << trial << " " << one.stratum;
+    }
+  }
 }
 
 TEST(ShareOut, ServesObjectsBeforeImagesAndAddsUp) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -91,6 +93,24 @@ double rays_of(const RayNeeds& needs, bool is_image) {
   return sum;
 }
 
+// Shares `left` rays out by weight, but gives no bounded need more than it asks: what that leaves goes to the others.
+void fill_by_weight(std::vector<const RayNeed*> unserved, double left, RayShares& shares) {
+  const auto level_of = [](const RayNeed* need) {
+    return need->is_bounded ? need->rays / need->weight : std::numeric_limits<double>::infinity();
+  };
+  std::stable_sort(unserved.begin(), unserved.end(),
+                   [&](const RayNeed* a, const RayNeed* b) { return level_of(a) < level_of(b); });
+  std::vector<double> weights(unserved.size());  // of each need and all after it
+  std::transform_inclusive_scan(unserved.rbegin(), unserved.rend(), weights.rbegin(), std::plus<>(),
+                                [](const RayNeed* need) { return need->weight; });
+  for (size_t i = 0; i < unserved.size(); ++i) {
+    const RayNeed& need = *unserved[i];
+    const double share = need.weight * left / weights[i];
+    shares[need.stratum] = need.is_bounded ? std::min(need.rays, share) : share;
+    left -= shares[need.stratum];
+  }
+}
+
 // Shares out `num_rays` rays among images, or among what is none.
 void share_out_among(const RayNeeds& needs, bool is_image, double num_rays, RayShares& shares) {
   std::vector<const RayNeed*> all;
@@ -101,19 +121,18 @@ void share_out_among(const RayNeeds& needs, bool is_image, double num_rays, RayS
     return std::pair(!a->is_bounded, a->rays) < std::pair(!b->is_bounded, b->rays);
   });
   const bool is_scarce = rays_of(needs, is_image) > num_rays;
-  double to_serve = kServedFirst * num_rays, left = num_rays, weights = 0.0;
+  double to_serve = kServedFirst * num_rays, left = num_rays;
   std::vector<const RayNeed*> unserved;
   for (const RayNeed* need : all) {
     if (is_scarce && !(need->is_bounded && need->rays <= to_serve)) {
       unserved.push_back(need);
-      weights += need->weight;
       continue;
     }
     shares[need->stratum] = need->rays;
     to_serve -= need->rays;
     left -= need->rays;
   }
-  for (const RayNeed* need : unserved) shares[need->stratum] = need->weight * left / weights;
+  fill_by_weight(std::move(unserved), left, shares);
 }
 
 // Raises the rays of the field of view where its echo is not resolved and a glint makes it.

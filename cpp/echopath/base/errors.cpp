@@ -9,17 +9,20 @@
 namespace echopath {
 namespace {
 
-// Returns how many letters two paths share from their beginning, 0 where they do not share the first part.
+// Returns how many letters the parts have that two paths share from their beginning, each with the slash after it. Letters
+// of a part that they share no further tell nothing: a typo may stand early in it.
 size_t shared_path(std::string_view a, std::string_view b) {
   const auto end = std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first;
   const std::string_view shared = a.substr(0, static_cast<size_t>(end - a.begin()));
-  return shared.find('/') == std::string_view::npos ? 0 : shared.size();
+  const size_t slash = shared.rfind('/');
+  return slash == std::string_view::npos ? 0 : slash + 1;
 }
 
 }  // namespace
 
 std::vector<std::string> nearest_names(std::string_view word, const std::vector<std::string>& candidates, int count) {
-  using Rank = std::tuple<bool, size_t, size_t>;  // not begun by the word, letters not shared by the paths, edits
+  using Rank =
+      std::tuple<bool, size_t, size_t>;  // not begun by the word, letters outside the parts that the paths share, edits
   std::vector<std::pair<Rank, std::string>> ranked;
   ranked.reserve(candidates.size());
   for (const std::string& name : candidates) {

@@ -44,6 +44,12 @@ TEST(NearestNames, OfAWrongPartAreTheOtherPartsOfItsWhole) {
   EXPECT_EQ(nearest_names("walker/arms", parts), (Names{"walker/arm_left", "walker/arm_right", "walker/leg_left"}));
 }
 
+// One edit, early in the last part: names that share more letters with the typo are further away.
+TEST(NearestNames, OfATypoInAPartIsThePartWithFewestEdits) {
+  const Names parts = {"street/post1", "street/pole", "street/police", "street/pedestrian", "street/parking"};
+  EXPECT_EQ(nearest_names("street/poedestrian", parts, 1), Names{"street/pedestrian"});
+}
+
 TEST(NearestNames, KeepsTheGivenOrderAmongEquals) { EXPECT_EQ(nearest_names("x", {"b", "a", "c"}), (Names{"b", "a", "c"})); }
 
 TEST(NearestNames, GivesAtMostTheCountAskedFor) {

@@ -13,9 +13,12 @@ constexpr uint32_t kThingsBetweenChecks = 1 << 14;  // larger branches check for
 BoxTree::BoxTree(uint32_t size, const std::function<Box(uint32_t)>& box_of, uint32_t leaf_size, const Job* job)
     : order_(size) {
   std::iota(order_.begin(), order_.end(), 0u);
+  if (size == 0) return;
   std::vector<Middle> middles(size);
-  for (uint32_t i = 0; i < size; ++i) Eigen::Map<Eigen::Vector3f>(middles[i].data()) = box_of(i).center().cast<float>();
-  if (size > 0) halve(0, size, middles, leaf_size, job);
+  const Eigen::Vector3d origin = box_of(0).center();
+  for (uint32_t i = 0; i < size; ++i)
+    Eigen::Map<Eigen::Vector3f>(middles[i].data()) = (box_of(i).center() - origin).cast<float>();
+  halve(0, size, middles, leaf_size, job);
   for (size_t index = branches_.size(); index-- > 0;) {
     Branch& branch = branches_[index];
     if (branch.second_half != 0) branch.box = branches_[index + 1].box.merged(branches_[branch.second_half].box);

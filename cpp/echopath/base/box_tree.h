@@ -37,7 +37,7 @@ class BoxTree {
   void walk(const Enters& enters, const Visit& visit) const;
 
  private:
-  using Middle = std::array<float, 3>;
+  using Middle = std::array<float, 3>;  // from that of thing 0, as floats in m lose half a metre at 5e6 m
   void halve(uint32_t begin, uint32_t end, const std::vector<Middle>& middles, uint32_t leaf_size, const Job* job);
 
   std::vector<uint32_t> order_;

@@ -259,10 +259,12 @@ void Replayer::evaluate(std::span<const int64_t> indices, std::span<const Moment
   for (const Moment& moment : moments) times.push_back(moment.time);
   if (times.empty()) return;
   const PosedNodes posed = posed_.pose(times);
+  Wanted wanted;
+  wanted.with_amplitudes = std::any_of(moments.begin(), moments.end(), [](const Moment& one) { return one.amplitudes; });
   parallel_for(static_cast<int64_t>((indices.size() + kBlock - 1) / kBlock), [&](int64_t i) {
     const size_t begin = static_cast<size_t>(i) * kBlock, size = std::min(kBlock, indices.size() - begin);
     std::vector<Echoes> echoes = take_echoes(size, 1, times.size());
-    Target target{posed, 0, rows_of(echoes)};
+    Target target{posed, 0, rows_of(echoes), wanted};
     target.nodes[0].scale = 1.0;  // lengths in place of delays
     evaluate_at(indices.subspan(begin, size), {&target, 1});
     for (size_t node = 0; node < times.size(); ++node) moments[node].take(echoes[0], node * size, size, begin);

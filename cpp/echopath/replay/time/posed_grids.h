@@ -42,8 +42,9 @@ class PartlyPosedGrid {
   int64_t num_bytes_ = 0;
 };
 
-// Poses grids when they are asked for. Polynomials and the time of the trace are posed once and kept; grids of chirps, which
-// are large, belong to the caller. Its functions are thread-safe.
+// Poses grids when they are asked for. Those of the time of the trace and of polynomials are kept, and of a polynomial all
+// meshes are posed at once, or more of them with each pose_polynomial(); grids of chirps, which are large, belong to the
+// caller. Its const functions are thread-safe, except is_whole().
 class PosedGrids {
  public:
   // All arguments must outlive it.
@@ -52,6 +53,7 @@ class PosedGrids {
   const PosedGrid& at_trace() const;
   const PosedGrid& polynomial(int index) const;
   // Returns whether all meshes are posed at the nodes of a polynomial, because motions were tried there or it was asked for.
+  // To be called while no other thread uses the grid.
   bool is_whole(int polynomial) const;
   // Makes polynomial() the grid of these meshes and those of earlier calls alone, unless it is whole: most polynomials serve a
   // few paths. To be called while no other thread uses the grid. Raises what PosedScene does.

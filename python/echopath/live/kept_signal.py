@@ -41,7 +41,9 @@ class KeptSignal:
         self._whole: _core.Paths | None = None  # of which the cube is to be made anew
         self._pending: list[tuple[float, _core.Paths]] = []  # what is still to be added to the cube, and its sign
         self._num_differences = 0
-        self._made: _core.Paths | None = None  # the whole record where an update has made it, until it is asked for
+        # The whole record where an update has made it, so that `paths` need not: held until `paths` gives it or the next update
+        # begins, beside the parts of which it was made, whether or not anyone asks.
+        self._made: _core.Paths | None = None
 
     @property
     def cube(self) -> np.ndarray:

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "echopath/base/constants.h"
 #include "echopath/replay/replay.h"
 #include "echopath/replay/time/node_tails.h"
 
@@ -11,6 +12,21 @@ namespace {
 
 // The strongest path is looked for among so many, evenly spaced: a weaker one in its place leaves out fewer paths.
 constexpr int64_t kStrongestAmong = 1 << 14;
+
+// Chebyshev coefficients fall about geometrically from these values. A tail and its order give the rate, and the rate gives
+// the next order to try.
+constexpr double kFirstPhase = 100.0;    // rad
+constexpr double kFirstAmplitude = 1.0;  // relative to the largest
+
+// A path whose launch cell filters its amplitude down to this share of the tolerance, of what it would be without the
+// filter, needs no polynomial that follows it.
+constexpr double kDarkShare = 1e-5;
+
+// Returns the order at which a tail found at `order` would be within its tolerance.
+double order_for(double tolerance, double tail, double first, int order) {
+  if (tail >= first) return TimeGrids::kHighestOrder;
+  return order * std::log(tolerance / first) / std::log(tail / first);
+}
 
 }  // namespace
 
@@ -42,6 +58,23 @@ void Replayer::find_strongest() {
   std::vector<std::complex<double>> amplitudes;
   evaluate(some, paths_.frame.trace_time, lengths, amplitudes);
   for (size_t i = 0; i < some.size(); ++i) strongest_ = std::max(strongest_, std::abs(amplitudes[i]));
+}
+
+// Raises the orders that paths need whose length or amplitude in one channel the polynomial does not follow.
+void Replayer::raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::span<const double> unfiltered,
+                            std::vector<UnfollowedPath>& needed) const {
+  const NodeTails tails = node_tails(nodes, echoes);
+  const auto raise = [&](double tolerance, double tail, double first, double& order) {
+    if (tail > tolerance) order = std::max(order, order_for(tolerance, tail, first, nodes.order));
+  };
+  for (size_t p = 0; p < needed.size(); ++p) {
+    raise(settings_.phase_tolerance, radio_.wavenumber * kSpeedOfLight * tails.delay[p], kFirstPhase,
+          needed[p].order_for_length);
+    if (tails.amplitude[p] <= settings_.amplitude_tolerance) continue;
+    const double dark = settings_.amplitude_tolerance * kDarkShare * unfiltered[p];
+    if (is_dark(nodes, echoes, p, dark)) continue;
+    raise(settings_.amplitude_tolerance, tails.amplitude[p], kFirstAmplitude, needed[p].order_for_amplitude);
+  }
 }
 
 // Returns [P], 1 for paths that are negligible in all channels.

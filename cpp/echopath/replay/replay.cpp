@@ -1,7 +1,6 @@
 #include "echopath/replay/replay.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "echopath/base/constants.h"
@@ -11,7 +10,6 @@
 #include "echopath/replay/factors/attenuation.h"
 #include "echopath/replay/spare_echoes.h"
 #include "echopath/replay/time/chirp_derivatives.h"
-#include "echopath/replay/time/node_tails.h"
 
 namespace echopath {
 namespace {
@@ -19,21 +17,6 @@ namespace {
 // With this many paths, the legs and what these are made of stay in the second-level cache.
 constexpr size_t kPlannedTogether = 2000;
 constexpr size_t kBlock = 8192;  // paths of a task
-
-// Chebyshev coefficients fall about geometrically from these values. A tail and its order give the rate, and the rate gives
-// the next order to try.
-constexpr double kFirstPhase = 100.0;    // rad
-constexpr double kFirstAmplitude = 1.0;  // relative to the largest
-
-// A path whose launch cell filters its amplitude down to this share of the tolerance, of what it would be without the
-// filter, needs no polynomial that follows it.
-constexpr double kDarkShare = 1e-5;
-
-// Returns the order at which a tail found at `order` would be within its tolerance.
-double order_for(double tolerance, double tail, double first, int order) {
-  if (tail >= first) return TimeGrids::kHighestOrder;
-  return order * std::log(tolerance / first) / std::log(tail / first);
-}
 
 const Radar& checked(const Radar& radar, const Paths& paths, const ReplaySettings& settings) {
   radar.validate();
@@ -235,23 +218,6 @@ std::vector<Echoes> Replayer::interpolated(std::span<const int64_t> indices, int
   if (followed.size() == indices.size()) return echoes;
   for (Echoes& channel : echoes) keep(followed, channel);
   return echoes;
-}
-
-// Raises the orders that paths need whose length or amplitude in one channel the polynomial does not follow.
-void Replayer::raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::span<const double> unfiltered,
-                            std::vector<UnfollowedPath>& needed) const {
-  const NodeTails tails = node_tails(nodes, echoes);
-  const auto raise = [&](double tolerance, double tail, double first, double& order) {
-    if (tail > tolerance) order = std::max(order, order_for(tolerance, tail, first, nodes.order));
-  };
-  for (size_t p = 0; p < needed.size(); ++p) {
-    raise(settings_.phase_tolerance, radio_.wavenumber * kSpeedOfLight * tails.delay[p], kFirstPhase,
-          needed[p].order_for_length);
-    if (tails.amplitude[p] <= settings_.amplitude_tolerance) continue;
-    const double dark = settings_.amplitude_tolerance * kDarkShare * unfiltered[p];
-    if (is_dark(nodes, echoes, p, dark)) continue;
-    raise(settings_.amplitude_tolerance, tails.amplitude[p], kFirstAmplitude, needed[p].order_for_amplitude);
-  }
 }
 
 void Replayer::evaluate(std::span<const int64_t> indices, std::span<const Moment> moments, Job* job) const {

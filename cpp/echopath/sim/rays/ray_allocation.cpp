@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -95,20 +93,19 @@ double rays_of(const RayNeeds& needs, bool is_image) {
 
 // Shares `left` rays out by weight, but gives no bounded need more than it asks: what that leaves goes to the others.
 void fill_by_weight(std::vector<const RayNeed*> unserved, double left, RayShares& shares) {
-  const auto level_of = [](const RayNeed* need) {
-    return need->is_bounded ? need->rays / need->weight : std::numeric_limits<double>::infinity();
-  };
-  std::stable_sort(unserved.begin(), unserved.end(),
-                   [&](const RayNeed* a, const RayNeed* b) { return level_of(a) < level_of(b); });
-  std::vector<double> weights(unserved.size());  // of each need and all after it
-  std::transform_inclusive_scan(unserved.rbegin(), unserved.rend(), weights.rbegin(), std::plus<>(),
-                                [](const RayNeed* need) { return need->weight; });
-  for (size_t i = 0; i < unserved.size(); ++i) {
-    const RayNeed& need = *unserved[i];
-    const double share = need.weight * left / weights[i];
-    shares[need.stratum] = need.is_bounded ? std::min(need.rays, share) : share;
-    left -= shares[need.stratum];
+  double weights = 0.0;
+  for (bool has_changed = true; has_changed;) {
+    weights = std::accumulate(unserved.begin(), unserved.end(), 0.0,
+                              [](double sum, const RayNeed* need) { return sum + need->weight; });
+    const double level = left / weights;
+    const auto met = std::stable_partition(unserved.begin(), unserved.end(), [&](const RayNeed* need) {
+      return !need->is_bounded || need->rays >= need->weight * level;
+    });
+    for (auto need = met; need != unserved.end(); ++need) left -= shares[(*need)->stratum] = (*need)->rays;
+    has_changed = met != unserved.end();
+    unserved.erase(met, unserved.end());
   }
+  for (const RayNeed* need : unserved) shares[need->stratum] = need->weight * left / weights;
 }
 
 // Shares out `num_rays` rays among images, or among what is none.

@@ -46,8 +46,8 @@ class Replayer {
   // interpolated() leaves out paths that it may.
   void find_strongest();
   // Poses at the nodes of a polynomial the meshes that some paths touch, unless all are posed there. From then on
-  // interpolated() and by_chirp() take only paths for which this was called, which they do not check; without it they pose all
-  // meshes.
+  // interpolated() and by_chirp() take only paths for which this was called, which they do not check; without it they pose
+  // all meshes.
   void pose_polynomial(int polynomial, std::span<const int64_t> paths);
   // Interpolates the echoes of `paths` by a polynomial (grids()). Paths are left out and added to `unfollowed`, in their
   // order, where the last two coefficients of their length or of their amplitude exceed the tolerance; or where they are

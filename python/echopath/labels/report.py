@@ -34,7 +34,12 @@ def _header(labels) -> str:
 
 def _parts(labels) -> list[str]:
     counts = np.bincount(labels.dominant[labels.mask].astype(np.int64), minlength=len(labels.part_names))
-    return [f"part   {name}: {count} cells" for name, count in zip(labels.part_names, counts)]
+    return [f"part   {name}: {cell_words(count)}" for name, count in zip(labels.part_names, counts)]
+
+
+def cell_words(count) -> str:
+    """1 cell, 2 cells."""
+    return f"{count} cell" if count == 1 else f"{count} cells"
 
 
 def _object(label) -> str:
@@ -63,7 +68,7 @@ def _resolution(label) -> str:
 def _cells(label) -> str:
     if label.peak is None:
         return ""
-    return f", {label.cells} cells, peak {peak_words(label.peak)} {in_dbm(label.peak.power):.0f} dBm"
+    return f", {cell_words(label.cells)}, peak {peak_words(label.peak)} {in_dbm(label.peak.power):.0f} dBm"
 
 
 def peak_words(peak, width: int = 0) -> str:

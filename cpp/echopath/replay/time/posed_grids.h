@@ -55,8 +55,8 @@ class PosedGrids {
   // Returns whether all meshes are posed at the nodes of a polynomial, because motions were tried there or it was asked for.
   // To be called while no other thread uses the grid.
   bool is_whole(int polynomial) const;
-  // Makes polynomial() the grid of these meshes and those of earlier calls alone, unless it is whole: most polynomials serve a
-  // few paths. To be called while no other thread uses the grid. Raises what PosedScene does.
+  // Makes polynomial() the grid of these meshes and those of earlier calls alone, unless it is whole: most polynomials
+  // serve a few paths. To be called while no other thread uses the grid. Raises what PosedScene does.
   void pose_polynomial(int index, std::span<const uint32_t> meshes);
   const TrialGrid& trial(int polynomial) const;
   // Raises what PosedScene does.

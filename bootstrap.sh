@@ -152,11 +152,14 @@ wants_viewer() {
 
 has_viewer_tests() { compgen -G 'tests/viewer/*/test_*.py' >/dev/null; }
 
-# No test that OPTIONS select is no fault.
+# No test that OPTIONS select is no fault. pyproject.toml bounds each test; the bound here, in s, is for what hangs between or after
+# them, as at the end of a program.
+longest_run=2400
 run_pytest() {
   local name=$1 status=0
   shift
-  "$@" 2>&1 | tee "$build_dir/pytest_$name.log" || status=$?
+  timeout --foreground --kill-after=30 "$longest_run" "$@" 2>&1 | tee "$build_dir/pytest_$name.log" || status=$?
+  [ "$status" -ne 124 ] || printf 'stopped: no end after %s s\n' "$longest_run" | tee -a "$build_dir/pytest_$name.log"
   [ "$status" -ne 5 ] || status=0
   return "$status"
 }
@@ -170,11 +173,12 @@ run_python_tests() {
 }
 
 # They share one screen, in one process, which keeps a processor busy that waits for the last of the other tests. What they
-# print comes after what those print.
+# print comes after what those print. The screen does not begin anew when the last program leaves it, as it would by itself: the
+# next one could come too early.
 viewer_tests=
 run_viewer_tests_beside() {
   has_viewer_tests || return 0
-  QT_API=pyside6 run_pytest viewer xvfb-run -a -s "-screen 0 1600x1000x24" "$python" -m pytest tests/viewer "$@" >/dev/null &
+  QT_API=pyside6 run_pytest viewer xvfb-run -a -s "-screen 0 1600x1000x24 -noreset" "$python" -m pytest tests/viewer "$@" >/dev/null &
   viewer_tests=$!
 }
 

@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 import pytest
@@ -80,7 +81,10 @@ def test_ctrl_c_ends_the_work_and_closes_the_window(frame, tmp_path, name):
     command = [sys.executable, "-c", ANNOUNCED.format(work=WORK[name]), str(tmp_path / "frame.h5")]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                           preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler)) as viewer:
+        watchdog = threading.Timer(PATIENCE, viewer.kill)  # where the window never comes up
+        watchdog.start()
         assert viewer.stdout.readline() == "up\n"
+        watchdog.cancel()
         time.sleep(HEAD_START)
         viewer.send_signal(signal.SIGINT)
         begin = time.monotonic()

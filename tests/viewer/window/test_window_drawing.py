@@ -262,3 +262,21 @@ def test_the_title_of_a_scale_in_the_window_stands_over_none_of_its_labels(qtbot
         pictures.append(rows[:, :3 * image.width()].reshape(image.height(), image.width(), 3).astype(int))
     is_title = np.abs(pictures[1] - pictures[0]).max(axis=-1) > 60
     assert is_title.sum() > 50 and pictures[0][is_title].min() > 200
+
+
+def test_a_window_that_does_not_come_to_rest_says_what_is_late(window, monkeypatch):
+    monkeypatch.setattr(window.view3d, "is_behind", lambda: True)
+    with pytest.raises(TimeoutError, match=r"within 0.1 s, but late are: scene$"):
+        window.settle(patience=0.1)
+
+
+def test_a_picture_that_was_asked_for_in_vain_is_asked_for_again(window, monkeypatch):
+    asked_for = []
+    window.settle()
+    monkeypatch.setattr(type(window.view3d), "update", lambda self: asked_for.append(self))
+    window.view3d.render_soon()
+    assert asked_for and window.view3d.is_behind()
+    asked_for.clear()
+    with pytest.raises(TimeoutError):
+        window.settle(patience=1.0)
+    assert asked_for

@@ -30,6 +30,7 @@ from .scene.ray_table import RayTable
 from .files.remembered import remember_layout, restore_layout
 from .scene.own_window import give_own_window
 from .scene.scene_tree import SceneTree
+from .settling import settle
 from .timeline.time_bar import TimeBar
 from .timeline.time_control import TimeControl
 from .scene.view3d import View3D
@@ -220,15 +221,9 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
             self.view3d.builder.set_show_hits(is_shown)
             self.view3d.render_soon()
 
-    def settle(self) -> None:
-        """Returns when lists, signals and the scene show what the session shows now."""
-        QtWidgets.QApplication.processEvents()
-        while (self._listing.isActive() or self._pause.isActive() or self.view3d.is_behind()
-               or self.contributions.work.is_running or self.time_line.is_busy or self.is_to_load or self.loading.is_running
-               or self.keeping.is_running):
-            QtWidgets.QApplication.processEvents(QtCore.QEventLoop.ProcessEventsFlag.WaitForMoreEvents)
-        # Rows of tabs that docks no longer have are there until then.
-        QtWidgets.QApplication.sendPostedEvents(None, QtCore.QEvent.Type.DeferredDelete)
+    def settle(self, patience: float = 300.0) -> None:
+        """Returns when lists, signals and the scene show what the session shows now. Raises TimeoutError after `patience` s."""
+        settle(self, patience)
 
     def _connect(self) -> None:
         self._listing.timeout.connect(self._refresh_lists)

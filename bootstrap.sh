@@ -172,13 +172,29 @@ run_python_tests() {
     --no-loadscope-reorder tests/python "$@"
 }
 
+# Runs a command with a screen of its own, which does not begin anew when a program leaves it, as it would by itself: the next one
+# could come too early. It holds nothing of what the command prints to, so that nobody waits for it.
+with_screen() {
+  local named=$build_dir/display status=0 screen waited
+  : >"$named"
+  Xvfb -displayfd 3 -screen 0 1600x1000x24 -noreset -nolisten tcp 3>"$named" >/dev/null 2>&1 &
+  screen=$!
+  for ((waited = 0; waited < 600; ++waited)); do
+    [ ! -s "$named" ] && kill -0 "$screen" 2>/dev/null || break
+    sleep 0.1
+  done
+  [ -s "$named" ] || { echo "Xvfb made no screen"; return 1; }
+  DISPLAY=:$(cat "$named") "$@" || status=$?
+  kill "$screen"
+  return "$status"
+}
+
 # They share one screen, in one process, which keeps a processor busy that waits for the last of the other tests. What they
-# print comes after what those print. The screen does not begin anew when the last program leaves it, as it would by itself: the
-# next one could come too early.
+# print comes after what those print.
 viewer_tests=
 run_viewer_tests_beside() {
   has_viewer_tests || return 0
-  QT_API=pyside6 run_pytest viewer xvfb-run -a -s "-screen 0 1600x1000x24 -noreset" "$python" -m pytest tests/viewer "$@" >/dev/null &
+  QT_API=pyside6 with_screen run_pytest viewer "$python" -m pytest tests/viewer "$@" >/dev/null &
   viewer_tests=$!
 }
 

@@ -48,6 +48,20 @@ def frame():
 
 
 @pytest.fixture(autouse=True)
+def no_question_to_nobody(request, monkeypatch):
+    """Who asks for a file by a dialog would wait for ever; a test that chooses one puts it in the dialog's place."""
+    if not request.path.name.startswith(NEEDS_SCREEN):
+        return
+    from echopath_viewer.window.qt import QtWidgets
+
+    def refuse(*_):
+        raise AssertionError("a dialog asks for a file, and nobody is there to answer")
+
+    for name in ("getOpenFileName", "getOpenFileNames", "getSaveFileName", "getExistingDirectory"):
+        monkeypatch.setattr(QtWidgets.QFileDialog, name, refuse)
+
+
+@pytest.fixture(autouse=True)
 def close_plotters(request):
     """VTK keeps plotters that were not closed; windows close their own."""
     yield

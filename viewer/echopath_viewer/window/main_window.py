@@ -12,6 +12,7 @@ from .background_work import BackgroundWork
 from .banner import Banner, ThinBar
 from .busy import run_with_progress
 from .choices import Choices
+from .collector import Collector
 from .maps.contributions import ContributionsPanel
 from .empty_page import EmptyPage
 from .files.file_actions import FileActions
@@ -48,6 +49,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         """remembers: whether its sizes are those of the last time, and those of the next."""
         super().__init__()
         self.session, self._remembers, self._had_content = None, remembers, True
+        self._collector = Collector(self)
         self.setWindowTitle(TITLE)
         self.resize(*SIZE)
         self.setAcceptDrops(True)
@@ -265,6 +267,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
     def closeEvent(self, event):
         if self._remembers and self._had_content:
             remember_layout(self)
+        self._collector.end()
         self.time_bar.stop()
         self.file_watch.watch(None)
         self._is_passing = False

@@ -12,7 +12,7 @@ RING_SAMPLES = 256       # points that the perimeter of a section is measured wi
 MERIDIAN_SAMPLES = 600   # likewise of the length of a swept surface
 ROW_HEIGHT = 0.87        # distance of the rings of near-equilateral triangles, in edges
 WELD = 1e-9              # m: vertices nearer than that are one
-MAX_TRIANGLES = 5_000_000
+MAX_TRIANGLES = 20_000_000
 
 
 def edge_length(value, size, triangles_per_square=4.0):

@@ -130,7 +130,7 @@ def test_ground_looks_up_and_wall_towards_the_street():
     (lambda: ep.actors.capsule(0.5, 0.6), "length: must be at least twice the radius"),
     (lambda: ep.actors.ground(10.0, edge=1e-6), "edge: must be long enough"),
     (lambda: ep.actors.sphere(0.3, subdivisions=501), "subdivisions: must be a whole number from 1 to 500"),
-    (lambda: ep.actors.trihedral(64.0, edge=0.05), "edge: must be long enough for less than 5000000 triangles"),
+    (lambda: ep.actors.trihedral(64.0, edge=0.02), "edge: must be long enough for less than 20000000 triangles"),
     (lambda: ep.actors.wall("5", 1.0), "length: must be a finite number from 1e-09 to 1000000000 m, got '5'"),
 ])
 def test_bad_sizes_name_argument_rule_and_value(make, message):

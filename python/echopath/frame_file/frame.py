@@ -27,7 +27,7 @@ from .h5 import (blames_group, blaming, length_of, read_array, read_attribute, r
 from .labels import read_all_labels, write_all_labels
 from .paths import read_paths, write_paths
 from .radar import read_radar, write_radar
-from .scene import read_scene, write_scene
+from .scene import KeptMeshes, read_scene, write_scene
 from .scene.interferers import read_interferers, write_interferers
 from .scene.weather import read_effect_choices, scene_in_weather, write_weather
 from .seeds import read_optional_seed, write_seed
@@ -98,14 +98,19 @@ def save_frame(frame: Frame, path: str | os.PathLike[str], min_power: float = 0.
 
 
 @checked()
-@interrupts_are_kept()
 def load_frame(path: str | os.PathLike[str]) -> Frame:
     """Reads the frame file at `path`: the same bits that were written. Raises ep.FileError.
 
     A file of `Paths.save` gives a frame whose cube and spectrum are None.
     """
+    return read_frame(path)
+
+
+@interrupts_are_kept()
+def read_frame(path, meshes: KeptMeshes | None = None) -> Frame:
+    """What `load_frame` reads; meshes: of the file that was read before, which are shared where this one has the same."""
     with file_with_paths(path) as file:
-        paths = _read_record(file)
+        paths = _read_record(file, meshes)
         of_scene = read_group(file, "scene")
         frame = Frame(scene=scene_in_weather(of_scene, paths.scene), radar=paths.radar, paths=paths, cube=None, parts={},
                       selections={}, part_of_path={}, noise_seed=None, spectrum_settings={},
@@ -152,8 +157,8 @@ def _write_effects(group, effects) -> None:
     write_texts(group, "reason", [effect.reason for effect in effects])
 
 
-def _read_record(file):
-    scene, radar = read_scene(read_group(file, "scene")), read_radar(read_group(file, "radar"))
+def _read_record(file, meshes: KeptMeshes | None = None):
+    scene, radar = read_scene(read_group(file, "scene"), meshes), read_radar(read_group(file, "radar"))
     return read_paths(read_group(file, "record"), scene, radar)
 
 

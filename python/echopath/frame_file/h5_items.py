@@ -7,6 +7,8 @@ from __future__ import annotations
 import functools
 import math
 
+import numpy as np
+
 BLOCK_BYTES = 1 << 23   # written or read at a time: between two blocks Ctrl-C is answered
 
 
@@ -20,6 +22,24 @@ def item_of(group, name: str):
         if name.encode() in group.id:
             raise
         return None
+
+
+def integers_of(group, attributes) -> list | None:
+    """The integers that are attributes of items below a group; None where there is not each of them.
+
+    attributes: [(name of the item, name of its attribute)]
+    """
+    import h5py
+
+    value, found = np.empty((), np.int64), []
+    kind = memory_type(value.dtype)
+    try:
+        for item, name in attributes:
+            h5py.h5a.open(group.id, name.encode(), obj_name=item.encode()).read(value, kind)
+            found.append(int(value))
+    except (KeyError, OSError, TypeError, ValueError, RuntimeError):  # for what is damaged, too
+        return None
+    return found
 
 
 def name_of(item) -> str:

@@ -13,7 +13,7 @@ from echopath.base.files import file_state
 from echopath.frame_file import kept
 from echopath.frame_file.h5 import write_array
 from echopath_viewer.model import CellBox, Filters, Session, from_file, from_frame
-from echopath_viewer.model.frames import kept_orders, preview
+from echopath_viewer.model.frames import inputs, kept_orders, preview
 from echopath_viewer.model.frames.kept_orders import COLUMNS, ORDERS, keep_orders
 
 BOXES = ((0, 40, 0, 20), (3, 9, 2, 9), (20, 90, 12, 31))
@@ -174,7 +174,7 @@ def test_what_is_made_of_the_frame_before_is_not_kept_with_the_next(kept_file):
 def test_what_is_kept_of_the_next_frame_is_not_read_to_the_one_before(kept_file, monkeypatch):
     power = Session(from_file(kept_file)).columns.power
 
-    def load_and_write(path):
+    def load_and_write(path, meshes=None):
         frame = load(path)
         write_next_frame(path)
         assert keep_orders(path, Session(from_file_unwatched(path)))
@@ -182,11 +182,11 @@ def test_what_is_kept_of_the_next_frame_is_not_read_to_the_one_before(kept_file,
 
     def from_file_unwatched(path):
         with monkeypatch.context() as patch:
-            patch.setattr(ep, "load_frame", load)
+            patch.setattr(inputs, "read_frame", load)
             return from_file(path)
 
-    load = ep.load_frame
-    monkeypatch.setattr(ep, "load_frame", load_and_write)
+    load = inputs.read_frame
+    monkeypatch.setattr(inputs, "read_frame", load_and_write)
     view_input = from_file(kept_file)
     assert view_input.kept is None and np.array_equal(Session(view_input).columns.power, power)
 

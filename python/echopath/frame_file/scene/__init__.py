@@ -7,6 +7,7 @@ from ... import _core
 from ...scene.scene import Scene
 from ..h5 import blames_group, read_array, read_attribute, read_group, read_texts, write_array, write_attribute, write_texts
 from .deformation import read_deformation, write_deformation
+from .kept_meshes import KeptMeshes
 from .motion import read_motion, write_motion
 
 NONE = -1  # index that means "has none"
@@ -48,8 +49,8 @@ def write_scene(group, scene) -> None:
 
 
 @blames_group
-def read_scene(group):
-    """The scene of a group, with the mesh IDs it had."""
+def read_scene(group, meshes: KeptMeshes | None = None):
+    """The scene of a group, with the mesh IDs it had; meshes: those of the scene that was read before it, None: of none."""
     names = read_texts(group, "name")
     count = len(names)
     material_names = read_texts(group, "material_name", count)
@@ -57,7 +58,7 @@ def read_scene(group):
     visible = read_array(group, "visible", np.uint8, (count,))
     parents = read_array(group, "parent", np.int32, (count,))
     placements = read_array(group, "placement", np.float64, (count, 4, 4))
-    shared = {kind: _read_shared(group, kind, count) for kind in _SHARED}
+    shared = {kind: _read_shared(group, kind, count, meshes) for kind in _SHARED}
     nodes = []
     for index in range(count):
         parent = int(parents[index])
@@ -78,18 +79,26 @@ def _write_pool(group, pool: _Pool, write) -> None:
         write(group.create_group(str(index)), item, pool)
 
 
-def _read_shared(group, kind: str, count: int) -> list:
+def _read_shared(group, kind: str, count: int, meshes: KeptMeshes | None) -> list:
     """What each node has of one kind, None where it has none."""
     folder, _, read = _SHARED[kind]
     indices = read_array(group, kind, np.int32, (count,))
     source = read_group(group, folder)
-    items = []
-    for index in range(len(source)):
-        items.append(read(read_group(source, str(index)), items))
+    if kind == "mesh" and meshes is not None:
+        items = meshes.of(source, lambda: _read_pool(source, read))
+    else:
+        items = _read_pool(source, read)
     if count and not (indices.min() >= NONE and indices.max() < len(items)):
         raise _core.FileError(f"{group.name}/{kind}: must lie in {NONE} to {len(items) - 1}, as there are {len(items)} "
                               f"{group.name}/{folder}")
     return [None if index == NONE else items[index] for index in indices]
+
+
+def _read_pool(source, read) -> list:
+    items = []
+    for index in range(len(source)):
+        items.append(read(read_group(source, str(index)), items))
+    return items
 
 
 def _write_mesh(group, mesh, pool: _Pool) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 
 import echopath as ep
 from echopath.base.files import file_state
+from echopath.frame_file import KeptMeshes, read_frame
 from echopath.paths.subset import part_of_path
 from echopath.signals.same_radar import difference
 
@@ -37,10 +38,13 @@ class ViewInput:
     file_state: tuple | None = None
 
 
-def from_file(path) -> ViewInput:
-    """Reads a frame file. Raises ep.FileError, with its name, where it is not ours or damaged."""
+def from_file(path, meshes: KeptMeshes | None = None) -> ViewInput:
+    """Reads a frame file. Raises ep.FileError, with its name, where it is not ours or damaged.
+
+    meshes: of the frame before, which this one shares where its file has the same; None: of none
+    """
     state = file_state(path)
-    frame = ep.load_frame(path)
+    frame = read_frame(path, meshes)
     try:
         view_input = from_frame(frame, title=str(path))
     except (ValueError, IndexError) as error:  # what it holds does not fit together

@@ -9,6 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import echopath as ep
+from echopath.frame_file import KeptMeshes
 from echopath.frame_file.container import our_file
 from echopath.frame_file.h5 import read_attribute, read_group
 from echopath.frame_file.maps import load_maps
@@ -36,12 +37,12 @@ class Moment:
     stored: object = dataclasses.field(default=None, compare=False)
     remake: Callable | None = dataclasses.field(default=None, compare=False)
 
-    def read(self) -> ViewInput:
-        """What is shown of it. Raises ep.FileError."""
+    def read(self, meshes: KeptMeshes | None = None) -> ViewInput:
+        """What is shown of it; meshes: of the frame before, to be shared, None: of none. Raises ep.FileError."""
         if self.remake is not None:
             return self._remade()
         if self.stored is None or self.stored.keep == "all":
-            return from_file(self.path)
+            return from_file(self.path, meshes)
         return from_maps(load_maps(self.path), self.stored, title=str(self.path))
 
     def _remade(self) -> ViewInput:
@@ -52,8 +53,10 @@ class Moment:
 
 
 class TimeLine:
-    """The frames that are there, in order; `refresh` finds those that were written since. None is kept.
+    """The frames that are there, in order; `refresh` finds those that were written since.
 
+    None is kept but for its meshes: reading them takes most of the time that reading a frame does, and a film has the same
+    ones in all of its files.
     title: of what they are; moments: tuple of Moment; expected: how many there will be, None: nobody knows
     """
 
@@ -61,6 +64,7 @@ class TimeLine:
         """find: callable () -> list of Moment that are there now"""
         self.title, self._find, self.expected = title, find, expected
         self.moments: tuple = ()
+        self.meshes = KeptMeshes()
         self.refresh()
 
     def __len__(self) -> int:
@@ -74,7 +78,7 @@ class TimeLine:
 
     def read(self, place: int) -> ViewInput:
         """The frame at a place. Raises ep.FileError."""
-        return self.moments[place].read()
+        return self.moments[place].read(self.meshes)
 
     def close(self) -> None:
         """Ends whatever makes further frames."""

@@ -135,8 +135,8 @@ class TimeControl(QtCore.QObject):
 
     def _start(self, place: int) -> None:
         moment, state, is_passing = self.line.moments[place], self._state_now(), self.is_playing
-        self._reading = moment
-        self.work.start(lambda progress: make_ready(session_like(state, moment.read()), is_passing))
+        meshes, self._reading = self.line.meshes, moment
+        self.work.start(lambda progress: make_ready(session_like(state, moment.read(meshes)), is_passing))
 
     def _take(self, session) -> None:
         self._shown, wanted, self._wanted = self._reading, self._wanted, None

@@ -280,3 +280,20 @@ def test_a_picture_that_was_asked_for_in_vain_is_asked_for_again(window, monkeyp
     with pytest.raises(TimeoutError):
         window.settle(patience=1.0)
     assert asked_for
+
+
+def test_the_legend_over_the_rays_is_dark_in_a_dark_theme(qtbot):
+    for paper, ink in (("#ffffff", "#000000"), ("#19191c", "#ffffff")):
+        parent = QtWidgets.QWidget()
+        qtbot.addWidget(parent)
+        palette = parent.palette()
+        palette.setColor(palette.ColorRole.Base, QtGui.QColor(paper))
+        palette.setColor(palette.ColorRole.Text, QtGui.QColor(ink))
+        palette.setColor(palette.ColorRole.Window, QtGui.QColor(paper))
+        parent.setPalette(palette)
+        box = LegendBox(parent)
+        box.show(Legend("Object", rows=(("wall", (200, 30, 30)),)))
+        grey = box.grab().toImage().convertToFormat(QtGui.QImage.Format.Format_Grayscale8)
+        levels = {grey.pixelColor(x, y).red() for x in range(grey.width()) for y in range(grey.height())}
+        assert abs(grey.pixelColor(1, 1).red() - QtGui.QColor(paper).red()) < 8
+        assert min(abs(level - QtGui.QColor(ink).red()) for level in levels) < 8

@@ -59,6 +59,16 @@ def test_another_file_that_is_opened_is_drawn_whole(playing, stored_run):
     assert playing.view3d.renderer.GetUseOIT()
 
 
+def test_rays_that_a_film_drew_are_not_drawn_whole_before_another_file(playing, stored_run):
+    before = playing.view3d.builder
+    before.show_first_rays(3, 0.0)
+    drawn = before.rays._rays.GetMapper().GetInput()
+    playing.open_file(stored_run.paths_of_files[0])
+    playing.settle()
+    assert playing.view3d.builder is not before and before.rays.segments.num_segments > drawn.n_lines
+    assert before.rays._rays.GetMapper().GetInput() is drawn
+
+
 def test_a_row_of_what_made_a_cell_is_not_there_for_another_frame(qtbot, shared_window, stored_run):
     window, panel = shared_window, shared_window.contributions
     window.open_file(stored_run.folder)
@@ -114,6 +124,19 @@ def test_a_frame_whose_next_one_is_long_in_coming_is_shown_whole(qtbot, playing)
     pass_to(qtbot, window, 2)
     window.toggle_play_frames()
     assert not control._rest.isActive() and not window._is_passing
+
+
+def test_a_film_that_waits_tells_what_makes_the_cell(qtbot, playing):
+    window, panel = playing, playing.contributions
+    window.docks["What makes the cell"].raise_()
+    window.session.select_cells(CellBox(3, 9, 2, 9))
+    qtbot.waitUntil(lambda: panel.title.text().startswith("Pause the frames"), timeout=PATIENCE_MS)
+    assert not panel.work.is_running
+    window.time_line._rest.timeout.emit()
+    qtbot.waitUntil(lambda: panel.table.rowCount() > 0, timeout=PATIENCE_MS)
+    assert window.time_line.is_playing and "dBm" in panel.title.text()
+    pass_to(qtbot, window, 2)
+    assert panel.table.rowCount() == 0 and panel.title.text().startswith("Pause the frames") and not panel.work.is_running
 
 
 def test_a_frame_that_is_still_to_be_drawn_does_not_rest(playing, monkeypatch):

@@ -26,6 +26,7 @@ class MeshLayer:
     def __init__(self, plotter, scene, palette, time: float):
         self._plotter, self._creases, self._hidden, self._chosen = plotter, {}, set(), set()
         self._quick, self._is_quick, self._moved = None, False, set()  # meshes whose actors are not where they were placed
+        plotter.renderer.SetUseOIT(True)
         self._set_scene(scene)
         self._polys, self._placed, self.actors, self._outlines, self._edges = [], [], [], {}, {}
         self._colours, self._boxes = np.full((len(self._is_moving), 3), -1), np.zeros((2, len(self._is_moving), 3))
@@ -111,7 +112,6 @@ class MeshLayer:
 
     def remove(self) -> None:
         """Takes all of it out of the picture."""
-        self._plotter.renderer.SetUseOIT(True)
         for actor in (*self.actors, *self._outlines.values(), *self._creases.values(), *(self._quick or ())):
             self._plotter.remove_actor(actor, render=False)
 

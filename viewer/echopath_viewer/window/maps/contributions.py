@@ -12,6 +12,8 @@ from .phasors import COLOURS, MAX_ARROWS, PhasorDiagram
 from ..qt import Qt, QtGui, QtWidgets
 
 HINT = "Click a cell of the map: which echoes make it?"
+PLAYING_HINT = "Pause the frames to see what makes the cell."
+MOVING_HINT = "What makes the cell is told when nothing moves any more."
 COLUMNS = ("Echoes (ghost type/order)", "dBm", "Without", "Own peak at")
 SHOWN_BELOW_DB = 60.0   # the strongest: weaker rows are told as one
 LEAST_CHANGE_DB = 0.05  # of a level, that is told
@@ -27,7 +29,7 @@ class ContributionsPanel(QtWidgets.QWidget):
         self.session, self._rows, self._cell, self._told = None, [], None, []
         self._cell_told = None  # its level and what makes most of it, in words
         self._is_seen = self._is_passing = False
-        self.is_playing = lambda: False  # frames: nobody reads then what takes seconds to make
+        self.is_playing = lambda: False  # frames
         self.title, self.without = QtWidgets.QLabel(HINT), QtWidgets.QLabel()
         for label in (self.title, self.without):
             label.setSizePolicy(QtWidgets.QSizePolicy.Policy.Ignored, QtWidgets.QSizePolicy.Policy.Fixed)
@@ -70,7 +72,8 @@ class ContributionsPanel(QtWidgets.QWidget):
         self.refresh()
 
     def follow_session(self, session, is_passing: bool = False) -> None:
-        """Another frame. is_passing: the next one comes at once, and nothing is told; what was is of another frame."""
+        """Another frame. is_passing: the next one comes at once, and nothing is told: nobody reads then what takes seconds to
+        make, and what was is of another frame."""
         if not is_passing:
             self.show_session(session)
             return
@@ -90,10 +93,10 @@ class ContributionsPanel(QtWidgets.QWidget):
             self._show_nothing(HINT)
         elif session.attribution is not None:
             self._show(session.cell_attribution())
-        elif session.note or self.is_playing():
-            self._show_nothing(session.note or "Pause the frames to see what makes the cell.")
+        elif session.note:
+            self._show_nothing(session.note)
         elif self._is_passing:
-            self._show_nothing("What makes the cell is told when nothing moves any more.")
+            self._show_nothing(PLAYING_HINT if self.is_playing() else MOVING_HINT)
         elif not self.work.is_running:
             self._show_nothing("The signals of all families of paths are made, once ...")
             self.bar.begin()

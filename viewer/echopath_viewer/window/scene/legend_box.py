@@ -7,12 +7,12 @@ from ..maps.ticks import nice_ticks, tick_text
 
 EDGE, MARGIN, SWATCH = 10, 8, 12   # pixels
 SCALE_WIDTH, BAR_HEIGHT = 240, 12
-PAPER, INK = QtGui.QColor(255, 255, 255, 225), QtGui.QColor(0, 0, 0)
+PAPER_ALPHA = 225                  # of 255: rays behind it are seen a little
 HINT = "Click an object: show it alone, again: show all"
 
 
 class LegendBox(QtWidgets.QWidget):
-    """Rows of colours or a scale in the lower right corner of its parent, black on white in every theme."""
+    """Rows of colours or a scale in the lower right corner of its parent, in the colours of the theme."""
 
     row_clicked = Signal(str)
 
@@ -55,8 +55,10 @@ class LegendBox(QtWidgets.QWidget):
 
     def paintEvent(self, _event):
         painter = QtGui.QPainter(self)
-        painter.fillRect(self.rect(), PAPER)
-        painter.setPen(INK)
+        paper = self.palette().base().color()
+        paper.setAlpha(PAPER_ALPHA)
+        painter.fillRect(self.rect(), paper)
+        painter.setPen(self.palette().text().color())
         painter.drawText(QtCore.QRect(MARGIN, MARGIN, self.width(), self._line()), Qt.AlignmentFlag.AlignLeft, self.legend.title)
         if self.legend.clim is None:
             self._paint_rows(painter)

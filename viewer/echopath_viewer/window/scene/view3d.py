@@ -52,8 +52,8 @@ class View3D(Picks, QtInteractor):
         style.AddObserver("EndInteractionEvent", lambda *_: self.set_moving(None))
 
     def show_session(self, session) -> None:
-        """Replaces what is drawn; nothing moves any more."""
-        self.set_moving(None)
+        """Replaces what is drawn; nothing moves any more. What was drawn is thrown away as it is."""
+        self._pace = self._drawn_as = None
         self.clear()
         self.enable_3_lights()
         self.builder = SceneBuilder(self, session, legend=self.legend_box, background=self.background(), is_quick=True)

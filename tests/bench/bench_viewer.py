@@ -28,12 +28,13 @@ from echopath_viewer.model.maps.attribution import Attribution
 from echopath_viewer.model.frames.live_session import live_of, session_of_view
 from echopath_viewer.model.view_state import state_of
 from echopath_viewer.window import MainWindow
-from echopath_viewer.window.files.demo import simulate_demo
+from echopath_viewer.window.files.demo import NUM_RAYS, simulate_demo
 from echopath_viewer.window.qt import QtWidgets
 
 NUM_REPETITIONS, NUM_STARTS = 7, 3
 MAX_GROWTH = 1.1   # of memory, from the first opening of a file to the next ones
 MAX_START = 2.0  # s, promised for scene and map of a file of 3 million paths, whose rays follow
+MORE_RAYS = 1.02   # than paths ask for: their number grows a little less than that of the rays
 NUM_TURNS, ORBIT_RATE = 60, 15.0  # pictures; pictures/s promised for 20,000 rays
 LIVE_RAYS, NUM_MOVES = 50_000, 4
 # s, promised for scene, rays and map of a dragged object, and of full quality; watch and window share the cores.
@@ -81,11 +82,10 @@ def main() -> None:
         bench_memory(Path(given.frame))
         bench_changes(Path(given.frame))
         return
-    num_paths = given.paths
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "frame.h5"
-        save_street(path, num_paths)
-        print(f"street demo, {num_paths:,} paths, {path.stat().st_size / 2**20:.0f} MiB")
+        save_street(path, given.paths)
+        print(f"street demo, {given.paths:,} paths, {path.stat().st_size / 2**20:.0f} MiB")
         bench_start(path)
         bench_memory(path)
         bench_changes(path)
@@ -93,14 +93,21 @@ def main() -> None:
 
 def save_street(path: Path, num_paths: int) -> None:
     """The strongest paths of the demo, with its whole signal and one partition."""
-    frame = simulate_demo(None)
-    assert frame.paths.num_paths >= num_paths, "the demo has too few paths"
+    frame = demo_of(num_paths)
     keep = np.zeros(frame.paths.num_paths, bool)
     keep[strongest(frame.path_power, num_paths)] = True
     frame.paths = subset(frame.paths, keep)
     frame.part_of_path = {name: labels[keep] for name, labels in frame.part_of_path.items()}
     del frame.path_power
     ep.save_frame(frame, path)
+
+
+def demo_of(num_paths: int):
+    """The frame of the demo with as many rays as it takes to have so many paths."""
+    num_rays = NUM_RAYS
+    while (frame := simulate_demo(None, num_rays)).paths.num_paths < num_paths:
+        num_rays = 1 + int(MORE_RAYS * num_rays * num_paths / max(frame.paths.num_paths, 1))
+    return frame
 
 
 def bench_start(path: Path) -> None:
@@ -252,9 +259,9 @@ def bench_drawing(window) -> None:
 
 def bench_orbit(window) -> None:
     """The camera turns, as by the mouse: pictures a second of processor time, once their number of rays has settled."""
-    view, seconds = window.view3d, []
+    view, pace, seconds = window.view3d, window.view3d._turning, []
     view.clock = time.process_time  # as fast as on a machine that does nothing else
-    view.set_moving(view._turning)
+    view.set_moving(pace)
     for _ in range(NUM_TURNS):
         watch = Stopwatch()
         view.camera.azimuth += 1.0
@@ -265,7 +272,6 @@ def bench_orbit(window) -> None:
     view.clock = time.perf_counter
     picture(window)
     taken, waited = np.median(seconds[NUM_TURNS // 2:], axis=0)
-    pace = view._turning
     num_rays = min(pace.num_rays, window.session.max_rays)
     text = f"  {'orbit':28} {1.0 / taken:7.1f} pictures/s ({1.0 / waited:.1f} by the clock), {num_rays:,} rays, pixels"
     text += f" {pace.coarseness} wide"

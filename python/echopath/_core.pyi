@@ -1600,6 +1600,11 @@ class VirtualArray:
         (row, column) step in m, 0 where there is one, or None
         """
     @property
+    def has_default_azimuths(self) -> bool:
+        """
+        whether `default_angles` has azimuths: no more than 200,000 differ
+        """
+    @property
     def num_overlaps(self) -> int:
         """
         channels beyond the first of each element

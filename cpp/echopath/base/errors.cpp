@@ -21,8 +21,8 @@ size_t shared_path(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::vector<std::string> nearest_names(std::string_view word, const std::vector<std::string>& candidates, int count) {
-  using Rank =
-      std::tuple<bool, size_t, size_t>;  // not begun by the word, letters outside the parts that the paths share, edits
+  // Whether the name does not begin with the word, letters outside the parts that the two paths share, edits between them.
+  using Rank = std::tuple<bool, size_t, size_t>;
   std::vector<std::pair<Rank, std::string>> ranked;
   ranked.reserve(candidates.size());
   for (const std::string& name : candidates) {

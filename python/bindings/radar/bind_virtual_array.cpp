@@ -121,6 +121,9 @@ as the array's plane allows.)");
           "m, largest distance of an element from its point of the grid, or None")
       .def_property_readonly("tells_azimuths", &tells_azimuths,
                              "whether it has a horizontal extent, so that azimuths differ")
+      .def_property_readonly(
+          "has_default_azimuths", [](const VirtualArray& self) { return has_default_azimuths(self); },
+          "whether `default_angles` has azimuths: no more than 200,000 differ")
       .def_property_readonly("tells_elevations", &tells_elevations, "whether it has a vertical extent")
       .def_property_readonly("gaps", &gaps_of, "[G, 2] rows and columns of the grid without an element")
       .def_property_readonly(

@@ -59,8 +59,10 @@ def run(options) -> None:
     if options.raw is not None:
         print(raw_line(options.raw, frame.save_raw(options.raw)))
     for text in [scene_file.title or options.scene, *report.counts(frame.paths),
-                 *report.overlaps(frame.scene, frame.paths.frame.trace_time), *report.effects(frame.effects),
-                 *report.stages(frame.stages), *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
+                 *report.overlaps(frame.scene, frame.paths.frame.trace_time),
+                 *report.folded_velocities(frame.scene, frame.radar, frame.paths.frame.trace_time),
+                 *report.effects(frame.effects), *report.stages(frame.stages),
+                 *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
                  *report.labels(frame.labels), *report.detections(frame.detections),
                  *report.truth(frame.kept_truth), *report.checks(frame.checks), *report.validity(certificate),
                  *report.files(written), *report.unresolved(frame.unresolved)]:

@@ -92,8 +92,9 @@ def _describe_scene_file(scene_file) -> list[str]:
     trace = scene_file.trace
     trace_time = trace.start_time + 0.5 * scene_file.radar.frame_duration
     lines = [scene_file.title or str(scene_file.path), *_describe_scene(scene_file.scene, trace_time),
-             *_describe_radar(scene_file.radar), "trace", report.line("rays", _rays_of(trace)),
-             report.line("bounces at most", str(trace.max_bounces))]
+             *_describe_radar(scene_file.radar),
+             *report.folded_velocities(scene_file.scene, scene_file.radar, trace_time),
+             "trace", report.line("rays", _rays_of(trace)), report.line("bounces at most", str(trace.max_bounces))]
     if trace.batches is not None:
         lines.append(report.line("batches", str(trace.batches)))
     if trace.target_error_db is not None:
@@ -165,7 +166,8 @@ def _describe_frame(path: Path, selections) -> list[str]:
     missing = left_out(path)
     frame = load_frame(path)
     chosen = [line for selection in selections for line in _describe_selection(frame, selection)]
-    lines = [str(path), *_describe_scene(frame.scene, frame.paths.frame.trace_time), *_describe_radar(frame.radar), "record",
+    lines = [str(path), *_describe_scene(frame.scene, frame.paths.frame.trace_time), *_describe_radar(frame.radar),
+             *report.folded_velocities(frame.scene, frame.radar, frame.paths.frame.trace_time), "record",
              *report.counts(frame.paths), report.omissions(missing, path), *report.effects(frame.effects)]
     if frame.cube is not None:
         shape = report.line("shape [tx, rx, chirp, sample]", str(list(frame.cube.shape)))

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..labels.report import peak_words
 from ..paths.resolution import FAINT, RESOLVED_DB
+from ..scene.closing_speeds import closing_speeds
 from ..signals.measures import in_dbm, power_dbm, velocity_extent, with_error
 
 LABEL_WIDTH = 34
@@ -15,6 +16,7 @@ MAX_LISTED = 40  # nodes or meshes named one by one
 MAX_UNRESOLVED = 20  # echoes named one by one
 UNRESOLVED_MEAN = "mean over random phases where not resolved (95 %)"
 ON_EACH_OTHER = "surfaces on each other"
+FOLDED = "velocities that are ambiguous"
 
 
 def _power_text(power: float) -> str:
@@ -50,6 +52,18 @@ def overlaps(scene, time: float, names=None) -> list[str]:
                   f"{overlap.num_triangles:,} triangles, {overlap.area:.4g} m^2") for overlap in found[:MAX_LISTED]]
     more = [f"    and {len(found) - MAX_LISTED} more"] if len(found) > MAX_LISTED else []
     return [f"{ON_EACH_OTHER} (rounding decides which of the two a ray meets)", *lines, *more] if found else []
+
+
+def folded_velocities(scene, radar, time: float) -> list[str]:
+    """Objects of a scene that move faster at `time` (s) than a map of velocity tells, and where it shows them; nothing where
+    none do."""
+    limit = radar.waveform.max_velocity(radar.num_slots)
+    speeds = {name: speed for name, speed in closing_speeds(scene, radar, time).items() if abs(speed) > limit}
+    found = sorted(speeds.items(), key=lambda item: -abs(item[1]))
+    lines = [line("  " + name, f"{speed:+.2f} m/s, shown at {(speed + limit) % (2.0 * limit) - limit:+.2f} m/s")
+             for name, speed in found[:MAX_LISTED]]
+    more = [f"    and {len(found) - MAX_LISTED} more"] if len(found) > MAX_LISTED else []
+    return [f"{FOLDED} (the map of velocity repeats itself every {2.0 * limit:.4g} m/s)", *lines, *more] if found else []
 
 
 def effects(all_effects) -> list[str]:

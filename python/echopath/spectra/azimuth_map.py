@@ -23,15 +23,7 @@ def sees_azimuth(radar, settings) -> bool:
         azimuths of their own
     """
     array = _core.virtual_array(radar)
-    return array.tells_azimuths and (settings.get("azimuth") is not None or _has_default(array))
-
-
-def _has_default(array) -> bool:
-    try:
-        array.default_angles()
-    except ValueError:
-        return False
-    return True
+    return array.tells_azimuths and (settings.get("azimuth") is not None or array.has_default_azimuths)
 
 
 def checked_settings(radar, settings, velocity_gate=None) -> dict:

@@ -160,7 +160,26 @@ TEST(DefaultAngles, CoverWhatTheArrayTellsApart) {
 TEST(DefaultAngles, AreRefusedWhereThereWouldBeMillions) {
   const VirtualArray wide = virtual_array(radar_with({Vec3::Zero()}, {Vec3::Zero(), Vec3(0, kHalf, 0), Vec3(0, 1e4, 0)}));
   EXPECT_THROW(default_azimuths(wide), std::invalid_argument);
+  EXPECT_FALSE(has_default_azimuths(wide));
   EXPECT_EQ(default_elevations(wide).size(), 1u);
+}
+
+TEST(DefaultAngles, OfAzimuthAreThereForAnArrayThatIsTooTallForThoseOfElevation) {
+  const VirtualArray tall =
+      virtual_array(radar_with({Vec3::Zero()}, {Vec3::Zero(), Vec3(0, kHalf, 0), Vec3(0, 0, kHalf), Vec3(0, 0, 1e4)}));
+  EXPECT_TRUE(has_default_azimuths(tall));
+  EXPECT_EQ(default_azimuths(tall).size(), 181u);
+  EXPECT_THROW(default_elevations(tall), std::invalid_argument);
+}
+
+TEST(DefaultAngles, AreThereUpToTwoHundredThousand) {
+  // Steps of a quarter of wavelength / extent up to 90 degrees: 100,000 of them are 25,000 / (pi / 2) wavelengths long.
+  const double longest = 25'000.0 / (0.5 * kPi) * testing::wavelength();
+  for (const double share : {0.999, 1.001}) {
+    const VirtualArray array = virtual_array(
+        radar_with({Vec3::Zero()}, {Vec3::Zero(), Vec3(0, share * longest, 0), Vec3(0, 0.3819 * share * longest, 0)}));
+    EXPECT_EQ(has_default_azimuths(array), share < 1.0);
+  }
 }
 
 TEST(SteeringVectors, AreRefusedWhereTheyWouldFillTheMemory) {

@@ -6,6 +6,8 @@ import pytest
 import echopath as ep
 from echopath import dataset
 from echopath.cli.info import describe_file
+from echopath.cli.report import folded_velocities
+from echopath.scene.closing_speeds import closing_speeds
 from support.radars import build_radar
 from support.shapes import quad
 
@@ -49,6 +51,59 @@ def test_info_tells_code_receiver_and_weather_of_a_frame(tmp_path):
     ep.save_frame(ep.simulate(wet_scene(), coded_radar(), num_rays=200), tmp_path / "frame.h5")
     told = "\n".join(describe_file(tmp_path / "frame.h5"))
     assert "ddm" in told and "iq_gain_db" in told and "rain_mm_per_hour 20" in told
+
+
+FAST = -19.0  # m/s
+ALIKE = 1e-3  # m/s: speeds are told to 1/100, differences over 1e-4 s bend by less
+
+
+def fast_frame(num_transmitters: int):
+    """A small plate that drives at a radar whose transmitters take turns, before a wall; the map tells 16.2 m/s of one of
+    them."""
+    scene = ep.Scene()
+    scene.add(quad((5, -0.05, -0.05), (5, 0.05, -0.05), (5, 0.05, 0.05), (5, -0.05, 0.05)), name="plate", material="metal",
+              motion=ep.LinearMotion(velocity=(FAST, 0.0, 0.0)))
+    scene.add(quad((9, -1, -1), (9, 1, -1), (9, 1, 1), (9, -1, 1)), name="wall", material="concrete")
+    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=200e6, num_samples=32, sampling_rate=2e6, num_chirps=64,
+                                chirp_interval=60e-6)
+    radar = ep.Radar(waveform, transmitters=[ep.Antenna((0, 0.002 * k, 0)) for k in range(num_transmitters)],
+                     receivers=[ep.Antenna((0, 0, 0))])
+    return ep.simulate(scene, radar, num_rays=2000, guard=False)
+
+
+@pytest.mark.parametrize("num_transmitters", [1, 2, 3])
+def test_info_tells_what_the_map_of_velocity_folds_and_where_it_shows_it(tmp_path, num_transmitters):
+    frame = fast_frame(num_transmitters)
+    frame.save(tmp_path / "frame.h5")
+    told = [line for line in describe_file(tmp_path / "frame.h5") if " shown at " in line]
+    name, speed, *_, shown, _ = told[0].split()
+    assert len(told) == 1 and (name, speed) == ("plate", f"{FAST:+.2f}")
+    power = abs(frame.spectrum.values[0, 0]) ** 2
+    near = abs(frame.spectrum.range - 4.9) < 1.0  # where the plate is in the middle of the frame
+    peak = frame.spectrum.velocity[power[:, near].max(axis=1).argmax()]
+    assert float(shown) == pytest.approx(peak, rel=0, abs=0.51 * abs(frame.spectrum.velocity[1] - frame.spectrum.velocity[0]))
+
+
+def test_velocities_that_a_map_tells_are_not_told_of():
+    frame = fast_frame(1)
+    slower = frame.radar.replace(waveform=frame.radar.waveform.replace(chirp_interval=50e-6))  # +- 19.4 m/s
+    assert folded_velocities(frame.scene, frame.radar, 0.0) and not folded_velocities(frame.scene, slower, 0.0)
+
+
+def test_closing_speeds_are_those_of_the_fastest_point():
+    """A rod of 0.4 m that turns by 30 rad/s across the line of sight has 30 x 0.2 m/s at its ends; a radar that drives by 5 m/s
+    has all that stands still come towards it."""
+    scene = ep.Scene()
+    rod = quad((-0.01, -0.2, 0.0), (0.01, -0.2, 0.0), (0.01, 0.2, 0.0), (-0.01, 0.2, 0.0))
+    scene.add(rod, name="rod", material="metal", position=(50.0, 0.0, 0.0),
+              motion=ep.LinearMotion(angular_velocity=(0.0, 0.0, 30.0)))
+    scene.add(quad((9, -1, -1), (9, 1, -1), (9, 1, 1), (9, -1, 1)), name="wall", material="metal")
+    radar = build_radar([(0, 0, 0)], [(0, 0, 0)], num_samples=16, num_chirps=16)
+    found = closing_speeds(scene, radar, 0.0)
+    assert set(found) == {"rod"} and abs(found["rod"]) == pytest.approx(6.0, rel=ALIKE, abs=0)
+    driving = closing_speeds(scene, radar.replace(motion=ep.LinearMotion(velocity=(5.0, 0.0, 0.0))), 0.0)
+    assert driving["rod"] == pytest.approx(-11.0, rel=ALIKE, abs=0)
+    assert driving["wall"] == pytest.approx(-5.0 * 9.0 / 81.0 ** 0.5, rel=0.02, abs=0)  # of its corners, 9.1 m away
 
 
 def test_a_template_tells_what_it_makes():

@@ -294,6 +294,16 @@ def test_frames_of_arrays_longer_than_a_map_have_none_unless_azimuths_are_given(
         ep.annotate(frame.paths, plane="range_azimuth")
 
 
+def test_frames_of_arrays_too_high_for_all_elevations_have_their_map_of_azimuth():
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.3), name="sphere", position=(10, 0, 0), material="concrete")
+    radar = mimo([(0, 0)], [(0, 0), (1, 0), (0, 1), (0, 359_000)])  # 700 m
+    frame = ep.simulate(scene, radar, num_rays=500, guard=False)
+    assert frame.range_azimuth.azimuth == pytest.approx(np.radians(np.arange(-90.0, 91.0)), rel=0, abs=1e-7)
+    with pytest.raises(ValueError, match="^elevation: must be given"):
+        ep.virtual_array(radar).default_angles()
+
+
 def test_a_map_of_azimuth_by_one_antenna_is_warned_of():
     radar = mimo([(0, 0)], [(0, 0)])
     spectrum = ep.range_doppler(np.zeros((1, 1, radar.waveform.num_chirps, radar.waveform.num_samples)), radar)

@@ -27,19 +27,38 @@ bool tells_apart(double extent, double wavelength) { return extent >= kArrayTole
 
 double width_of(const VirtualArray& array) { return std::hypot(array.extent().x(), array.extent().y()); }
 
-// Returns equal steps about 0 that a grid with `spacing` (0: none) and an aperture `extent` in m can tell apart.
-std::vector<double> default_axis(const char* name, double limit, double spacing, double extent, double wavelength,
-                                 double largest_step) {
+// Holds the equal steps about 0 that a grid of antennas can tell apart along one axis.
+struct DefaultAxis {
+  double limit;  // rad, angle of the last step
+  double steps;  // to either side, maybe more than there may be; 0 where the array has no extent
+};
+
+// Works them out for a grid with `spacing` (0: none) and an aperture `extent` in m.
+DefaultAxis default_axis(double limit, double spacing, double extent, double wavelength, double largest_step) {
   require(largest_step > 0.0, "largest_step", "must be positive", largest_step);
-  if (!tells_apart(extent, wavelength)) return {0.0};
+  if (!tells_apart(extent, wavelength)) return {0.0, 0.0};
   if (spacing > 0.0) limit = std::min(limit, std::asin(std::min(1.0, 0.5 * wavelength / spacing)));
-  const double steps = std::ceil(limit / std::min(largest_step, wavelength / (kStepsPerBeam * extent)));
-  require(steps <= kMostSteps, name, "must be given: an array of this length in m tells more than 200,000 angles apart",
+  return {limit, std::ceil(limit / std::min(largest_step, wavelength / (kStepsPerBeam * extent)))};
+}
+
+DefaultAxis azimuth_axis(const VirtualArray& array, double largest_step) {
+  const double spacing = array.grid ? array.grid->column_spacing : 0.0;
+  return default_axis(0.5 * kPi, spacing, width_of(array), array.wavelength, largest_step);
+}
+
+DefaultAxis elevation_axis(const VirtualArray& array, double largest_step) {
+  const double spacing = array.grid ? array.grid->row_spacing : 0.0;
+  return default_axis(kLargestElevation, spacing, array.extent().z(), array.wavelength, largest_step);
+}
+
+std::vector<double> angles_of(const DefaultAxis& axis, const char* name, double extent) {
+  require(axis.steps <= kMostSteps, name, "must be given: an array of this length in m tells more than 200,000 angles apart",
           extent);
-  const int half = static_cast<int>(steps);
-  std::vector<double> axis;
-  for (int i = -half; i <= half; ++i) axis.push_back(limit * i / half);
-  return axis;
+  const int half = static_cast<int>(axis.steps);
+  if (half == 0) return {0.0};
+  std::vector<double> angles;
+  for (int i = -half; i <= half; ++i) angles.push_back(axis.limit * i / half);
+  return angles;
 }
 
 }  // namespace
@@ -66,14 +85,16 @@ bool tells_azimuths(const VirtualArray& array) { return tells_apart(width_of(arr
 
 bool tells_elevations(const VirtualArray& array) { return tells_apart(array.extent().z(), array.wavelength); }
 
+bool has_default_azimuths(const VirtualArray& array, double largest_step) {
+  return azimuth_axis(array, largest_step).steps <= kMostSteps;
+}
+
 std::vector<double> default_azimuths(const VirtualArray& array, double largest_step) {
-  return default_axis("azimuth", 0.5 * kPi, array.grid ? array.grid->column_spacing : 0.0, width_of(array), array.wavelength,
-                      largest_step);
+  return angles_of(azimuth_axis(array, largest_step), "azimuth", width_of(array));
 }
 
 std::vector<double> default_elevations(const VirtualArray& array, double largest_step) {
-  return default_axis("elevation", kLargestElevation, array.grid ? array.grid->row_spacing : 0.0, array.extent().z(),
-                      array.wavelength, largest_step);
+  return angles_of(elevation_axis(array, largest_step), "elevation", array.extent().z());
 }
 
 Eigen::MatrixXcd steering_vectors(const VirtualArray& array, const AngleGrid& angles) {

@@ -27,6 +27,7 @@ Vec3 direction(double azimuth, double elevation);  // rad -> unit vector
 inline constexpr double kPictureStep = kPi / 180.0;
 std::vector<double> default_azimuths(const VirtualArray& array, double largest_step = kPictureStep);
 std::vector<double> default_elevations(const VirtualArray& array, double largest_step = kPictureStep);
+bool has_default_azimuths(const VirtualArray& array, double largest_step = kPictureStep);  // whether there are so few
 bool tells_azimuths(const VirtualArray& array);    // whether it has a horizontal extent
 bool tells_elevations(const VirtualArray& array);  // and a vertical one
 

@@ -1,0 +1,116 @@
+"""What detections are written to, and which calls of detect are refused or warned of."""
+from __future__ import annotations
+
+import csv
+import warnings
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from support.scenes.small_spheres import radar_with
+
+
+def test_csv_holds_what_the_arrays_hold(spheres, tmp_path):
+    radar, paths, spectrum = spheres
+    found = ep.detect(spectrum, radar, parts=ep.decompose(paths, radar, {"near": "T 'near' R"}))
+    found.to_csv(tmp_path / "points.csv")
+    with open(tmp_path / "points.csv", encoding="utf-8", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    assert len(rows) == len(found)
+    for i, row in enumerate(rows):
+        for name, column in (("range", "range_m"), ("velocity", "velocity_m_per_s"), ("azimuth", "azimuth_rad"),
+                             ("power", "power_w"), ("snr_db", "snr_db"), ("share", "share")):
+            assert float(row[column]) == getattr(found, name)[i]
+        assert row["elevation_rad"] == "" and row["part"] == found.part[i]
+        assert (int(row["velocity_index"]), int(row["range_index"])) == tuple(found.cells[i])
+
+
+def test_a_file_that_cannot_be_written_leaves_none(spheres, tmp_path):
+    radar, _, spectrum = spheres
+    (tmp_path / "file").write_text("")
+    with pytest.raises(ep.FileError):
+        ep.detect(spectrum, radar).to_csv(tmp_path / "file" / "points.csv")
+
+
+def test_nothing_found_is_a_well_shaped_result(spheres, tmp_path):
+    radar, paths, _ = spheres
+    empty = ep.range_doppler(np.zeros((1, 8, 64, 256), complex), radar)
+    found = ep.detect(empty, radar, paths=paths, parts=ep.decompose(paths, radar, {}))
+    assert len(found) == 0 and found.points.shape == (0, 3) and found.cells.shape == (0, 2)
+    assert repr(found) == "Detections(0)"
+    found.to_csv(tmp_path / "none.csv")
+    assert len((tmp_path / "none.csv").read_text().splitlines()) == 1
+
+
+def test_the_text_counts_the_parts(spheres):
+    radar, paths, spectrum = spheres
+    assert "1 near" in repr(ep.detect(spectrum, radar, parts=ep.decompose(paths, radar, {"near": "T 'near' R"})))
+
+
+def test_unknown_keywords_name_the_nearest_right_one(spheres):
+    radar, paths, spectrum = spheres
+    for call, word, nearest_right in (
+            (lambda **words: ep.detect(spectrum, radar, **words), "false_alarm", "false_alarm_rate"),
+            (lambda **words: ep.detect(spectrum, radar, **words), "path", "paths"),
+            (lambda **words: ep.detect_frame(None, **words), "max_peak", "max_peaks"),
+            (lambda **words: ep.detect_frame(None, **words), "guard_ranges", "guard_range"),
+            (lambda **words: ep.families(paths, **words), "object", "objects"),
+            (lambda **words: ep.visibility(None, radar, **words), "num_direction", "num_directions")):
+        with pytest.raises(TypeError, match=f"unknown keyword '{word}', the nearest right one is '{nearest_right}'"):
+            call(**{word: 1})
+
+
+@pytest.mark.parametrize("objects", [{"a": 3}, {3: "near"}, [3], 5, "near", {"a": ["near", None]}, [["near"]]])
+def test_objects_that_are_no_globs_are_named(spheres, objects):
+    with pytest.raises(TypeError, match="objects: .*got"):
+        ep.families(spheres[1], objects)
+
+
+def test_bad_arguments_are_named(spheres):
+    radar, paths, spectrum = spheres
+    parts = ep.decompose(paths, radar, {"near": "T 'near' R"})
+    with pytest.raises(TypeError, match="labels: must be Labels"):
+        ep.detect(spectrum, radar, labels=object())
+    with pytest.raises(ValueError, match="labels: cannot be given beside parts"):
+        ep.detect(spectrum, radar, parts=parts, labels=ep.annotate(paths, parts))
+    with pytest.raises(ValueError, match="paths: must be traced with the radar"):
+        other = radar_with(num_chirps=32)
+        ep.detect(ep.range_doppler(np.zeros((1, 8, 32, 256), complex), other), other, paths=paths)
+    with pytest.raises(ValueError, match="parts: must be those of one view"):
+        ep.detect(spectrum, radar, parts={"view": parts})
+    with pytest.raises(ValueError, match="parts: maps must be as"):
+        ep.detect(spectrum, radar, parts={name: ep.range_doppler(cube, radar, zero_pad=2) for name, cube in parts.items()})
+    with pytest.raises(ValueError, match="false_alarm_rate"):
+        ep.detect(spectrum, radar, false_alarm_rate=2.0)
+    found = ep.detect(spectrum, radar)
+    with pytest.raises(ValueError, match="paths"):
+        found.paths(0)
+    with pytest.raises(IndexError, match="i: must be"):
+        ep.detect(spectrum, radar, paths=paths).paths(99)
+
+
+def test_a_map_without_noise_is_told_of(spheres):
+    """Echoes of the three, as `synthesize` gives them; with noise there is no word."""
+    radar, paths, noisy = spheres
+    with pytest.warns(RuntimeWarning, match=r"spectrum: holds no noise of the radar .* ep.add_noise\(cube, radar\)") as told:
+        ep.detect(ep.range_doppler(ep.synthesize(paths, radar), radar), radar)
+    assert [warning.filename for warning in told] == [__file__]  # the line that called, not one behind it
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ep.detect(noisy, radar)
+        ep.detect(ep.range_doppler(ep.add_noise(np.zeros((1, 8, 64, 256)), radar, seed=3), radar, zero_pad=2), radar)
+
+
+@pytest.mark.parametrize("other", [{"chirp_interval": 60e-6}, {"num_samples": 128}, {"num_chirps": 32}])
+def test_a_map_of_other_chirps_is_refused(spheres, other):
+    with pytest.raises(ValueError, match="spectrum: must have been made with the chirps of this radar"):
+        ep.detect(spheres[2], radar_with(**other))
+
+
+def test_a_map_that_is_not_finite_is_refused():
+    radar = radar_with(receivers=1)
+    cube = np.array(ep.add_noise(np.zeros((1, 1, 64, 256)), radar, seed=3))
+    cube[0, 0, 5, 7] = np.nan
+    with pytest.raises(ValueError, match="spectrum: must have values whose power is finite, got nan"):
+        ep.detect(ep.range_doppler(cube, radar), radar)

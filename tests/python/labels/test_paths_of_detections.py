@@ -1,0 +1,133 @@
+"""The paths behind a detection, against the signal that they make by themselves."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath.detections.echo_fields import Response
+from support.scenes.small_spheres import TARGETS, at, nearest, radar_with
+from support.shapes import lambert
+
+TABLE = 0.006  # of the peak: straight lines between the steps of the table
+NEAREST_SWEEP = 0.04  # of the peak: 0.1 rad at the ends of the frame, where it is most, averaged over the frame
+MODEL = 0.1    # of fields: the third derivative of a length, and the first antennas' states for all chirps
+HELD = 0.95    # of a cell's power, by the paths named
+
+
+def synthesised_power(paths, chosen, radar, spectrum, cell):
+    """Power in W of the chosen paths alone in a cell, mean over channels."""
+    mask = np.zeros(paths.num_paths, bool)
+    mask[chosen] = True
+    cube = ep.synthesize(paths.select(mask), radar)
+    part = ep.range_doppler(cube, radar, window=spectrum.window, zero_pad=spectrum.zero_pad)
+    return np.mean(np.abs(part.values[:, :, cell[0], cell[1]]) ** 2)
+
+
+def expect_paths_hold(found, paths, radar, spectrum, i):
+    """Synthesised alone they make the cell, and all others little of it."""
+    index, share = found.paths(i)
+    assert len(index) and np.all(np.diff(share) <= 0.0) and 0.99 < share.sum() <= 1.0 + 1e-12
+    whole = synthesised_power(paths, np.arange(paths.num_paths), radar, spectrum, found.cells[i])
+    others = np.setdiff1d(np.arange(paths.num_paths), index)
+    assert synthesised_power(paths, index, radar, spectrum, found.cells[i]) == pytest.approx(whole, rel=1.0 - HELD, abs=0)
+    assert synthesised_power(paths, others, radar, spectrum, found.cells[i]) < (1.0 - HELD) * whole
+    return index
+
+
+def test_the_paths_behind_a_detection_make_its_cell_and_the_others_do_not(spheres):
+    radar, paths, spectrum = spheres
+    found = ep.detect(spectrum, radar, paths=paths)
+    mesh = paths.mesh_id[paths.offsets]
+    for number, name in enumerate(TARGETS):
+        index = expect_paths_hold(found, paths, radar, spectrum, nearest(found, name))
+        assert set(mesh[index]) == {number}
+
+
+@pytest.fixture(scope="module")
+def movers():
+    """(radar, paths, signal) of limbs, which speed up during the frame, and of a plate at 30 m/s, which shows three axes
+    away and goes on by three cells of range; two transmitters in turn."""
+    radar = radar_with(receivers=2, transmitters=2, num_chirps=128, chirp_interval=60e-6)
+    scene = ep.Scene()
+    scene.add(ep.actors.pedestrian(height=1.78, speed=1.5), name="walker", position=(8, 0, -1), yaw=np.pi)
+    scene.add(ep.actors.plate(0.3, 0.3), name="plate", material=lambert(0.27), position=(14, -1, 0),
+              motion=ep.LinearMotion(velocity=(30.0, 0, 0)))
+    paths = ep.trace(scene, radar, num_rays=3000, max_bounces=2)
+    return radar, paths, ep.synthesize(paths, radar)
+
+
+@pytest.mark.parametrize("window, zero_pad", [("hann", 1), ("rect", 1), ("hann", 2),
+                                              ((("chebyshev", 50), "rect"), 1)])
+def test_the_paths_behind_limbs_and_folded_speeds_are_found(movers, window, zero_pad):
+    radar, paths, cube = movers
+    spectrum = ep.range_doppler(ep.add_noise(cube, radar, seed=2), radar, window=window, zero_pad=zero_pad)
+    found = ep.detect(spectrum, radar, paths=paths)
+    for i in np.argsort(-found.snr_db)[:4]:
+        expect_paths_hold(found, paths, radar, spectrum, i)
+    assert {"walker", "plate"} <= set(found.object)
+
+
+def test_the_fields_of_all_paths_add_up_to_the_map(movers):
+    """In each channel, also in the sidelobes of a window without taper, far from the echo."""
+    radar, paths, cube = movers
+    clean = ep.range_doppler(cube, radar, window="rect")
+    found = ep.detect(ep.range_doppler(ep.add_noise(cube, radar, seed=2), radar, window="rect"), radar, paths=paths)
+    exact = clean.values[:, :, found.cells[:, 0], found.cells[:, 1]].reshape(4, -1)
+    model = np.array([found.echoes.fields(cell)[1].sum(axis=1) for cell in found.cells]).T
+    assert np.all(np.median(np.abs(np.abs(model) / np.abs(exact) - 1.0), axis=1) < MODEL)
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_strong_echoes_are_not_noise_where_they_fade_in_single_antennas(seed):
+    """Rough plates far apart enough from one antenna to the next that their random phases add up differently."""
+    radar = radar_with(receivers=8, spacing=0.02)
+    scene = ep.Scene()
+    for k in range(12):
+        scene.add(ep.actors.plate(1.0, 1.0), name=f"plate {k}", material=ep.Material(permittivity=4 - 0.2j, scattering=1.0),
+                  position=tuple(at(6.0 + 2.0 * k, 1.1 - 0.2 * k)))
+    paths = ep.trace(scene, radar, num_rays=10_000, max_bounces=1, seed=seed)
+    spectrum = ep.range_doppler(ep.add_noise(ep.synthesize(paths, radar), radar, seed=seed), radar)
+    found = ep.detect(spectrum, radar, paths=paths)
+    strong = np.flatnonzero(found.snr_db > 20.0)
+    assert len(strong) >= 10 and "noise" not in found.part[strong] and "" not in found.object[strong]
+    assert all(len(found.paths(i)[0]) for i in strong)
+
+
+@pytest.mark.parametrize("n", [16, 15])
+def test_the_response_of_a_swept_tone_is_its_slow_sum(n):
+    """Also whole turns of the axis away, and in segments."""
+    y, sweep = np.array([0.0, -0.37, 2.81, n + 1.3, -2 * n - 0.6]), np.array([0.0, 2.25, -2.25, 2.25, -2.25])
+    place = (np.arange(n) - 0.5 * (n - 1)) / n
+    terms = np.exp(-2j * np.pi * np.outer(y, place) + 1j * np.pi * np.outer(sweep, place ** 2)) / n
+    parts = Response("rect", n, largest_sweep=2.25, segments=3)(y, sweep)  # its step
+    np.testing.assert_allclose(parts.sum(axis=0), terms.sum(axis=1), rtol=0, atol=TABLE)
+    for part, samples in zip(parts, np.array_split(np.arange(n), 3)):
+        np.testing.assert_allclose(part, terms[:, samples].sum(axis=1), rtol=0, atol=TABLE)
+
+
+@pytest.mark.parametrize("segments", [1, 2, 5, 32])
+def test_responses_of_any_sweep_come_from_a_small_table(segments):
+    """The error is that of the nearest sweep in the table, whatever the number of segments."""
+    n, rng = 512, np.random.default_rng(3)
+    sweep, y = rng.uniform(-32.0, 32.0, 300), rng.uniform(-20.0, 20.0, 300)
+    place = (np.arange(n) - 0.5 * (n - 1)) / n
+    terms = np.exp(-2j * np.pi * np.outer(y, place) + 1j * np.pi * sweep[:, None] * place ** 2) / n
+    response = Response("rect", n, largest_sweep=32.0, segments=segments)
+    assert response.table_bytes < 20 * 2 ** 20
+    error = np.abs(response(y, sweep).sum(axis=0) - terms.sum(axis=1))
+    assert error.max() < NEAREST_SWEEP + TABLE
+
+
+def test_detections_do_not_depend_on_the_number_of_threads(movers):
+    radar, paths, cube = movers
+    spectrum = ep.range_doppler(ep.add_noise(cube, radar, seed=2), radar)
+    found = []
+    try:
+        for count in (1, 4):
+            ep.set_num_threads(count)
+            found.append(ep.detect(spectrum, radar, method="os", paths=paths))
+    finally:
+        ep.set_num_threads(0)
+    for name in ("range", "velocity", "azimuth", "power", "noise", "object"):
+        np.testing.assert_array_equal(getattr(found[0], name), getattr(found[1], name))

@@ -26,10 +26,18 @@ ECHOPATH_INLINE Real first_order_footprint_of(const FootprintPhaseOf<Real>& phas
   return Math::exp((phase.g1 * phase.g1 + phase.g2 * phase.g2) * (-1.0 / 24.0));
 }
 
+// Holds a footprint as (root.re - j root.im) size e^{j turn}: behind curved bounces the turn can go through many cycles while
+// a body moves by a few wavelengths, and all else changes slowly.
+template <class Real>
+struct TurningFootprint {
+  ComplexOf<Real> root;
+  Real size, turn;  // 1; rad
+};
+
 // Returns the second-order footprint: the exact mean of e^{-j(g.x + x.h.x/2)} over a Gaussian of covariance spread^2
 // (cells^2). |F| <= 1, and F -> 1 for small cells. `spread` is 0.6 for spherical Fibonacci points.
 template <class Math, class Real>
-ECHOPATH_INLINE ComplexOf<Real> second_order_footprint_of(const FootprintPhaseOf<Real>& phase, double spread) {
+ECHOPATH_INLINE TurningFootprint<Real> turning_footprint_of(const FootprintPhaseOf<Real>& phase, double spread) {
   const double variance = spread * spread;
   const Real a11 = variance * phase.h11, a12 = variance * phase.h12, a22 = variance * phase.h22;
   const Real det = a11 * a22 - a12 * a12, trace = a11 + a22, rest = 1.0 - det;
@@ -47,10 +55,14 @@ ECHOPATH_INLINE ComplexOf<Real> second_order_footprint_of(const FootprintPhaseOf
   // be so large that rounding makes it positive.
   const Real scale = (-0.5 * variance) * inverse * inverse;
   const Real fading = Math::smaller(scale * (g_squared * rest + turned * trace), g_squared * 0.0);
-  const Real size = Math::exp(fading) * inverse;
-  const ComplexOf<Real> phasor = Math::cis(scale * (turned * rest - g_squared * trace));
-  const Real c = size * phasor.re, s = size * phasor.im;
-  return {root_real * c + root_imag * s, root_real * s - root_imag * c};
+  return {{root_real, root_imag}, Math::exp(fading) * inverse, scale * (turned * rest - g_squared * trace)};
+}
+template <class Math, class Real>
+ECHOPATH_INLINE ComplexOf<Real> second_order_footprint_of(const FootprintPhaseOf<Real>& phase, double spread) {
+  const TurningFootprint<Real> found = turning_footprint_of<Math>(phase, spread);
+  const ComplexOf<Real> phasor = Math::cis(found.turn);
+  const Real c = found.size * phasor.re, s = found.size * phasor.im;
+  return {found.root.re * c + found.root.im * s, found.root.re * s - found.root.im * c};
 }
 
 // Returns 3 F(s^2) - 3 F(2 s^2) + F(3 s^2), with F of the second order. Its response is flat near g = 0, so that phases that

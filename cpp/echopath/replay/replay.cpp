@@ -35,20 +35,6 @@ std::vector<ChannelNodes> rows_of(std::span<Echoes> echoes, size_t step = 1) {
   return rows;
 }
 
-// Keeps the echoes at `places` (ascending) and drops all others.
-void keep(std::span<const size_t> places, Echoes& echoes) {
-  const auto count = static_cast<size_t>(echoes.num_echoes), num_nodes = echoes.delay.size() / count;
-  for (size_t node = 0; node < num_nodes; ++node) {
-    for (size_t i = 0; i < places.size(); ++i) {
-      echoes.delay[node * places.size() + i] = echoes.delay[node * count + places[i]];
-      echoes.amplitude[node * places.size() + i] = echoes.amplitude[node * count + places[i]];
-    }
-  }
-  echoes.num_echoes = static_cast<int64_t>(places.size());
-  echoes.delay.resize(num_nodes * places.size());
-  echoes.amplitude.resize(num_nodes * places.size());
-}
-
 }  // namespace
 
 struct Replayer::Target {
@@ -119,9 +105,9 @@ RadioConstants Replayer::radio_of(const Target& target) const {
   return radio;
 }
 
-void Replayer::evaluate_at(std::span<const int64_t> paths, std::span<Target> targets) const {
+void Replayer::evaluate_at(std::span<const int64_t> paths, std::span<Target> targets, bool as_chains) const {
   std::unique_ptr<PathEvaluator> evaluator = KeptMemory::of_process().take<PathEvaluator>();
-  evaluator->begin(preparer_, radar_, sheets_, settings_.specular);
+  evaluator->begin(preparer_, radar_, sheets_, settings_.specular, as_chains);
   for (size_t begin = 0; begin < paths.size(); begin += kPlannedTogether) {
     evaluator->plan(paths.subspan(begin, std::min(kPlannedTogether, paths.size() - begin)));
     for (Target& target : targets) {
@@ -216,8 +202,16 @@ std::vector<Echoes> Replayer::interpolated(std::span<const int64_t> indices, int
     unfollowed.push_back(needed[p]);
   }
   if (followed.size() == indices.size()) return echoes;
-  for (Echoes& channel : echoes) keep(followed, channel);
+  for (Echoes& channel : echoes) keep_echoes(followed, channel);
   return echoes;
+}
+
+// Writes the amplitudes without their turns, and the turns (rad) beside.
+void Replayer::evaluate_turning(std::span<const int64_t> indices, const PosedGrid& grid, std::span<Echoes> channels,
+                                std::span<std::vector<double>> turns) const {
+  Target target{grid.posed, 0, rows_of(channels)};
+  for (size_t channel = 0; channel < channels.size(); ++channel) target.nodes[channel].turn = turns[channel].data();
+  evaluate_at(indices, {&target, 1}, true);
 }
 
 void Replayer::evaluate(std::span<const int64_t> indices, std::span<const Moment> moments, Job* job) const {

@@ -55,6 +55,13 @@ class Replayer {
   // paths is below the rounding of the strongest path of the record.
   std::vector<Echoes> interpolated(std::span<const int64_t> paths, int polynomial,
                                    std::vector<UnfollowedPath>& unfollowed) const;
+  // Returns whether a path can have an echo by turning(): where its amplitude is that of a launch cell.
+  bool can_turn(int64_t path) const;
+  // Interpolates the logarithms of amplitudes by a polynomial that follows the lengths: it follows the steep or turning
+  // phases of waves from curved surfaces that leave amplitudes no polynomial of few nodes (TimeSampling::has_logarithms). All
+  // paths must be able to. Those whose logarithms the polynomial does not follow are left out and added to `unfollowed`, in
+  // their order, with no more said than their index.
+  std::vector<Echoes> turning(std::span<const int64_t> paths, int polynomial, std::vector<UnfollowedPath>& unfollowed) const;
   // Poses meshes that some paths touch, as PartlyPosedGrid::with takes them, at all nodes of a grid of chirps or samples,
   // which both functions below take; the replayer must outlive it.
   PartlyPosedGrid pose_partly(const TimeGrid& grid) const { return posed_.pose_partly(grid); }
@@ -105,9 +112,11 @@ class Replayer {
   using Wanted = PathEvaluator::Wanted;
   std::vector<Echoes> at_nodes(std::span<const int64_t> paths, const PosedGrid& grid, const Wanted& wanted) const;
   RadioConstants radio_of(const Target& target) const;
-  void evaluate_at(std::span<const int64_t> paths, std::span<Target> targets) const;
+  void evaluate_at(std::span<const int64_t> paths, std::span<Target> targets, bool as_chains = false) const;
   void raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::span<const double> unfiltered,
                     std::vector<UnfollowedPath>& needed) const;
+  void evaluate_turning(std::span<const int64_t> paths, const PosedGrid& grid, std::span<Echoes> channels,
+                        std::span<std::vector<double>> turns) const;
   std::vector<uint8_t> negligible_ones(const FrameNodes& nodes, std::span<const Echoes> channels) const;
 
   const Paths& paths_;

@@ -26,6 +26,19 @@ Echoes take_echoes(size_t num_values) {
   return echoes;
 }
 
+void keep_echoes(std::span<const size_t> places, Echoes& echoes) {
+  const auto count = static_cast<size_t>(echoes.num_echoes), num_nodes = echoes.delay.size() / count;
+  for (size_t node = 0; node < num_nodes; ++node) {
+    for (size_t i = 0; i < places.size(); ++i) {
+      echoes.delay[node * places.size() + i] = echoes.delay[node * count + places[i]];
+      echoes.amplitude[node * places.size() + i] = echoes.amplitude[node * count + places[i]];
+    }
+  }
+  echoes.num_echoes = static_cast<int64_t>(places.size());
+  echoes.delay.resize(num_nodes * places.size());
+  echoes.amplitude.resize(num_nodes * places.size());
+}
+
 void leave_echoes(std::span<Echoes> echoes) {
   for (Echoes& one : echoes) {
     auto spare = std::make_unique<SpareEchoes>();

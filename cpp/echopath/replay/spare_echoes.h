@@ -10,6 +10,8 @@ namespace echopath {
 
 // Echoes without group and with room for that many delays and amplitudes each, which are not set.
 Echoes take_echoes(size_t num_values);
+// Keeps the echoes at `places` (ascending) and drops all others, at all nodes.
+void keep_echoes(std::span<const size_t> places, Echoes& echoes);
 // Echoes that are done with.
 void leave_echoes(std::span<Echoes> echoes);
 

@@ -181,7 +181,8 @@ void Synthesizer::add_tile(const EchoTiles::Tile& tile, const TimeSampling& samp
                         static_cast<int>(chirps.end - chirps.begin),
                         &sampling.first_row[static_cast<size_t>(chirps.begin)],
                         &sampling.value[weights],
-                        &sampling.slope[weights]};
+                        &sampling.slope[weights],
+                        sampling.has_logarithms};
   signal_kernels().add_tile(*model_, spread_->spreading(), at, room);
 }
 

@@ -62,7 +62,8 @@ TEST(Kernels, RowsOfTilesEqualThoseOfTheBaseline) {
                               4,
                               echoes.sampling.first_row.data(),
                               echoes.sampling.value.data(),
-                              echoes.sampling.slope.data()};
+                              echoes.sampling.slope.data(),
+                              false};
         TileRows to{rows[i].data(), 1064, 2 * 1064};
         const RowRoom room{[](void* of, const CellRange&) { return *static_cast<const TileRows*>(of); }, &to};
         spoil_stack();

@@ -176,7 +176,7 @@ struct LaneMath {
     return found != 0;
   }
 
-  // Returns e^x for x <= 0 with a relative error of 4e-16: 2^k times the series of the rest, |rest| <= ln(2)/2.
+  // Returns e^x for x <= 700 with a relative error of 4e-16: 2^k times the series of the rest, |rest| <= ln(2)/2.
   static ECHOPATH_INLINE Vec exp(Vec x) {
     constexpr double kLog2E = 1.4426950408889634, kLn2High = 0.6931471803691238, kLn2Low = 1.9082149292705877e-10;
     const Vec shifted = larger(x, all(kMaxNegativeExponent)) * kLog2E + kRoundingShift, k = shifted - kRoundingShift;

@@ -6,10 +6,10 @@
 namespace echopath {
 
 void PathEvaluator::begin(const PathPreparer& preparer, const Radar& radar, const SheetPassages& sheets,
-                          SpecularPoints specular) {
+                          SpecularPoints specular, bool as_chains) {
   preparer_ = &preparer;
   sheets_ = &sheets;
-  planner_.begin(preparer.paths(), preparer, specular, can_evaluate_single_bounces(radar));
+  planner_.begin(preparer.paths(), preparer, specular, !as_chains && can_evaluate_single_bounces(radar));
 }
 
 void PathEvaluator::evaluate(const PosedNodes& nodes, const RadioConstants& radio, const ChannelSpan& channels,

@@ -13,7 +13,10 @@ class PathEvaluator {
   // Sets the record whose blocks are evaluated from now on, the `radar` to which it is played back, and what its sheets do.
   // All must outlive this use. With SpecularPoints::kFermat, lengths, cosines, gains and spreading are those over the moved
   // points, for each antenna at which a path begins; reflection coefficients and launch cells stay those of the trace.
-  void begin(const PathPreparer& preparer, const Radar& radar, const SheetPassages& sheets, SpecularPoints specular);
+  // With `as_chains` paths of one point are evaluated as all others are, which alone can have their turns apart
+  // (ChannelNodes).
+  void begin(const PathPreparer& preparer, const Radar& radar, const SheetPassages& sheets, SpecularPoints specular,
+             bool as_chains = false);
   // Plans the paths that are evaluated next; the indices must outlive that evaluation.
   void plan(std::span<const int64_t> indices) {
     plan_ = &planner_(indices);

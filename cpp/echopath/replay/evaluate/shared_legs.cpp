@@ -46,7 +46,8 @@ void SharedLegEvaluation::operator()(const SharedLegPlan& plan, const PathPrepar
       for (size_t slot = 0; slot < chains.size(); ++slot) {
         const SharedLegPlan::ChainPath& chain = chains[slot];
         const Ends ends = ends_of(chain, channels.first + channel);
-        if (chain.is_coherent) evaluate_coherent(plan, chain, ends, of_coherent, slot);
+        if (chain.is_coherent)
+          evaluate_coherent(plan, chain, ends, of_coherent, slot, channels.nodes[channel].turn != nullptr);
         else evaluate_diffuse(chain, ends, of_diffuse, slot);
         turn(chain.path, start_of(chain, ends.start), end_of(chain, ends.end), slot);
       }
@@ -124,24 +125,27 @@ void SharedLegEvaluation::place_cell(const SharedLegPlan& plan, size_t index, co
 }
 
 void SharedLegEvaluation::evaluate_coherent(const SharedLegPlan& plan, const SharedLegPlan::ChainPath& chain,
-                                            const Ends& ends, double scale, size_t slot) {
+                                            const Ends& ends, double scale, size_t slot, bool has_turn_apart) {
   CoherentPath& path = coherent_[slot];
   path.path = path_of(chain, ends, scale, slot);
   path.start_image = image_of(plan, chain.start, ends.start);
   path.end_image = image_of(plan, chain.end, ends.end);
-  if (stretching_[slot].empty()) kernels_->reflect(path, 0, values_.stride(), values_.stride());
-  else reflect_from_stretching(slot);
+  if (!stretching_[slot].empty()) return reflect_from_stretching(slot, has_turn_apart);
+  const auto reflect = has_turn_apart ? kernels_->reflect_with_turn_apart : kernels_->reflect;
+  reflect(path, 0, values_.stride(), values_.stride());
 }
 
 // Cells differ from node to node, and so does the area for which the ray stands.
-void SharedLegEvaluation::reflect_from_stretching(size_t slot) {
+void SharedLegEvaluation::reflect_from_stretching(size_t slot, bool has_turn_apart) {
+  const SharedLegKernels& kernels = shared_leg_kernels_of_one();
+  const auto reflect = has_turn_apart ? kernels.reflect_with_turn_apart : kernels.reflect;
   CoherentPath path = coherent_[slot];
   const ComplexOf<double> weight = path.path.weight;
   for (size_t node = 0; node < values_.num_nodes(); ++node) {
     set_cell(stretching_[slot][node], path);
     const double area_ratio = path.point[PointToPose::kAreaRatio * values_.stride() + node];
     path.path.weight = {area_ratio * weight.re, area_ratio * weight.im};
-    shared_leg_kernels_of_one().reflect(path, node, node + 1, values_.stride());
+    reflect(path, node, node + 1, values_.stride());
   }
 }
 
@@ -256,6 +260,7 @@ void SharedLegEvaluation::put(std::span<const Path> paths, const ChannelNodes& t
     for (const Path& path : paths) {
       to.set(node, path.place, value[PathToCombine::kLength * stride],
              {value[PathToCombine::kRe * stride], value[PathToCombine::kIm * stride]});
+      if (to.turn) to.turn[node * to.stride + to.echo(path.place)] = value[PathToCombine::kTurn * stride];
       value += of_slot;
     }
   }

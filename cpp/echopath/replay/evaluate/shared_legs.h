@@ -18,6 +18,9 @@ struct ChannelNodes {
   size_t first_path;  // places count from there
   double scale;
   const uint32_t* echo_of = nullptr;  // [path] echo that it is added to, which begins at 0; null: each has its own
+  // Null, or where the turn of the launch cell's filter (TurnApart) is written, in rad: the amplitude then lacks it. For
+  // coherent chains alone.
+  double* turn = nullptr;
 
   size_t echo(size_t place) const { return echo_of ? echo_of[first_path + place] : first_path + place; }
   void set(size_t node, size_t place, double length_there, std::complex<double> amplitude_there) const {
@@ -81,8 +84,8 @@ class SharedLegEvaluation {
   void find_cells(const SharedLegPlan& plan, const TraceCells& cells);
   void place_cell(const SharedLegPlan& plan, size_t index, const TraceCells& cells, const PosedNodes& nodes, size_t slot);
   void evaluate_coherent(const SharedLegPlan& plan, const SharedLegPlan::ChainPath& chain, const Ends& ends, double scale,
-                         size_t slot);
-  void reflect_from_stretching(size_t slot);
+                         size_t slot, bool has_turn_apart);
+  void reflect_from_stretching(size_t slot, bool has_turn_apart);
   void evaluate_diffuse(const SharedLegPlan::ChainPath& chain, const Ends& ends, double scale, size_t slot);
   template <class Path>
   void put(std::span<const Path> paths, const ChannelNodes& to) const;  // from the first slots on

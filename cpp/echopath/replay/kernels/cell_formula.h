@@ -73,36 +73,66 @@ ECHOPATH_INLINE FootprintPhaseOf<Real> cell_phase(const Shape& cell, const CellW
   return phase;
 }
 
-template <class Math, class Real>
-ECHOPATH_INLINE ComplexOf<Real> quadratic_footprint(const FootprintPhaseOf<Real>& phase, const CellFilter& filter) {
+// Takes the turn of a filter (TurningFootprint) as part of the filter.
+struct WithTurn {
+  template <class Math, class Real>
+  ECHOPATH_INLINE ComplexOf<Real> second_order(const FootprintPhaseOf<Real>& phase, double spread) {
+    return second_order_footprint_of<Math>(phase, spread);
+  }
+  template <class Mask>
+  ECHOPATH_INLINE void keep_where(const Mask& /*is_quadratic*/) {}
+};
+
+// Leaves the turn out of the filter and keeps it: 0 where the filter has none.
+template <class Real>
+struct TurnApart {
+  Real turn{};  // rad
+
+  template <class Math, class>
+  ECHOPATH_INLINE ComplexOf<Real> second_order(const FootprintPhaseOf<Real>& phase, double spread) {
+    const TurningFootprint<Real> found = turning_footprint_of<Math>(phase, spread);
+    turn = found.turn;
+    return {found.root.re * found.size, -(found.root.im * found.size)};
+  }
+  template <class Mask>
+  ECHOPATH_INLINE void keep_where(const Mask& is_quadratic) {
+    turn = is_quadratic ? turn : turn * 0.0;
+  }
+};
+
+// Turn is WithTurn or TurnApart, here and below. Footprint::kEdges sums up several turns, so that none stands apart.
+template <class Math, class Real, class Turn>
+ECHOPATH_INLINE ComplexOf<Real> quadratic_footprint(const FootprintPhaseOf<Real>& phase, const CellFilter& filter,
+                                                    Turn& turn) {
   return filter.order == Footprint::kEdges ? edges_footprint_of<Math>(phase, filter.spread)
-                                           : second_order_footprint_of<Math>(phase, filter.spread);
+                                           : turn.template second_order<Math, Real>(phase, filter.spread);
 }
 
 // A flat facet has a flat-top filter where the phase is nearly linear, else the quadratic one.
-template <class Math, class Real>
-ECHOPATH_INLINE ComplexOf<Real> flat_cell_filter(const FootprintPhaseOf<Real>& phase, const CellFilter& filter) {
+template <class Math, class Real, class Turn>
+ECHOPATH_INLINE ComplexOf<Real> flat_cell_filter(const FootprintPhaseOf<Real>& phase, const CellFilter& filter, Turn& turn) {
   constexpr double kFlatPhase = 0.05;  // rad: quadratic phase (spread^2 h) below which a flat facet is flat-top
   const Real largest =
       Math::larger(Math::larger(Math::magnitude(phase.h11), Math::magnitude(phase.h22)), Math::magnitude(phase.h12));
   const auto is_bent = largest * (filter.spread * filter.spread) >= kFlatPhase;
   const Real flat = flat_top_of<Math>(phase.g1) * flat_top_of<Math>(phase.g2);
   if (!Math::any(is_bent)) return {flat, flat * 0.0};
-  const ComplexOf<Real> bent = quadratic_footprint<Math>(phase, filter);
+  const ComplexOf<Real> bent = quadratic_footprint<Math>(phase, filter, turn);
+  turn.keep_where(is_bent);
   return {is_bent ? bent.re : flat, is_bent ? bent.im : flat * 0.0};
 }
 
 // Along the axis of a cylinder the facets are as long as the cylinder: the filter is flat-top there and of second order
 // across.
-template <class Math, class Real>
+template <class Math, class Real, class Turn>
 ECHOPATH_INLINE ComplexOf<Real> cylinder_cell_filter(const CellShape& cell, const FootprintPhaseOf<Real>& phase,
-                                                     const CellFilter& filter) {
+                                                     const CellFilter& filter, Turn& turn) {
   const double x = cell.across[0], y = cell.across[1];
   FootprintPhaseOf<Real> across{};
   across.g1 = x * phase.g1 + y * phase.g2;
   across.h11 = x * x * phase.h11 + 2.0 * x * y * phase.h12 + y * y * phase.h22;
   const Real flat = flat_top_of<Math>(x * phase.g2 - y * phase.g1);
-  const ComplexOf<Real> bent = quadratic_footprint<Math>(across, filter);
+  const ComplexOf<Real> bent = quadratic_footprint<Math>(across, filter, turn);
   return {flat * bent.re, flat * bent.im};
 }
 
@@ -138,8 +168,9 @@ ECHOPATH_INLINE Real between_rays_of_cell(const Shape& cell, const Mask& is_coar
   return is_coarse ? zero : found.edges;
 }
 
-template <class Math, class Real>
-ECHOPATH_INLINE ComplexOf<Real> cell_filter_of(const CellShape& cell, const CellWaves<Real>& at, const CellFilter& filter) {
+template <class Math, class Real, class Turn>
+ECHOPATH_INLINE ComplexOf<Real> cell_filter_of(const CellShape& cell, const CellWaves<Real>& at, const CellFilter& filter,
+                                               Turn& turn) {
   const Real zero = at.cos_in * 0.0;
   const bool is_filter = filter.view.weight == CellWeight::kFilter;
   if (filter.order == Footprint::kNone || !cell.is_known) return {is_filter ? zero + 1.0 : zero, zero};
@@ -147,13 +178,19 @@ ECHOPATH_INLINE ComplexOf<Real> cell_filter_of(const CellShape& cell, const Cell
   const FootprintPhaseOf<Real> phase = cell_phase(cell, at, filter);
   if (filter.order == Footprint::kFirstOrder) return {first_order_footprint_of<Math>(phase), zero};
   if (cell.flatness == Flatness::kFlat) {
-    return cell.is_curved ? quadratic_footprint<Math>(phase, filter) : flat_cell_filter<Math>(phase, filter);
+    return cell.is_curved ? quadratic_footprint<Math>(phase, filter, turn) : flat_cell_filter<Math>(phase, filter, turn);
   }
   const ComplexOf<Real> factor = cell.flatness == Flatness::kFlatOneWay && !cell.is_curved
-                                     ? cylinder_cell_filter<Math>(cell, phase, filter)
-                                     : quadratic_footprint<Math>(phase, filter);
+                                     ? cylinder_cell_filter<Math>(cell, phase, filter, turn)
+                                     : quadratic_footprint<Math>(phase, filter, turn);
   const Real taper = shadow_taper(at);
   return {taper * factor.re, taper * factor.im};
+}
+
+template <class Math, class Real>
+ECHOPATH_INLINE ComplexOf<Real> cell_filter_of(const CellShape& cell, const CellWaves<Real>& at, const CellFilter& filter) {
+  WithTurn turn;
+  return cell_filter_of<Math>(cell, at, filter, turn);
 }
 
 }  // namespace echopath

@@ -41,7 +41,7 @@ struct InnerRows {
 
 // Describes a path of two legs and the part between them.
 struct PathToCombine {
-  enum Row { kLength, kRe, kIm, kNumRows };  // m, sqrt(W)
+  enum Row { kLength, kRe, kIm, kTurn, kNumRows };  // m, sqrt(W), rad
   const double *start, *end;
   const double* inner;       // null: one material point
   ComplexOf<double> weight;  // with all that does not change
@@ -87,6 +87,8 @@ struct SharedLegKernels {
   void (*combine)(const DiffusePath& path, size_t stride);
   void (*connect)(const PathToCombine& path, size_t stride);                           // over flagged mirrors alone
   void (*reflect)(const CoherentPath& path, size_t begin, size_t end, size_t stride);  // nodes [begin, end)
+  // Leaves the turn of the launch cell's filter (TurnApart) out of the amplitude and writes it beside.
+  void (*reflect_with_turn_apart)(const CoherentPath& path, size_t begin, size_t end, size_t stride);
   void (*find_components)(const ComponentsToFind& leg, size_t stride);
   void (*polarize)(const PathToPolarize& path, size_t stride);
 };

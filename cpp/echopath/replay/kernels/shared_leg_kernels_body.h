@@ -125,6 +125,14 @@ void connect(const PathToCombine& path, size_t stride) {
 }
 
 template <class Math>
+ECHOPATH_INLINE void set_turn(const PathToCombine&, const At<Math>&, const WithTurn&) {}
+template <class Math>
+ECHOPATH_INLINE void set_turn(const PathToCombine& path, const At<Math>& at, const TurnApart<typename Math::Real>& apart) {
+  at.set(path.out, PathToCombine::kTurn, apart.turn);
+}
+
+// Turn is WithTurn or TurnApart.
+template <class Math, class Turn>
 void reflect(const CoherentPath& coherent, size_t begin, size_t end, size_t stride) {
   using Real = typename Math::Real;
   const PathToCombine& path = coherent.path;
@@ -147,7 +155,9 @@ void reflect(const CoherentPath& coherent, size_t begin, size_t end, size_t stri
       waves.along_arrival[a] = dot(tangent, arrival);
       waves.along_departure[a] = dot(tangent, departure);
     }
-    const ComplexOf<Real> filter = cell_filter_of<Math>(coherent.cell, waves, coherent.filter);
+    Turn turn;
+    const ComplexOf<Real> filter = cell_filter_of<Math>(coherent.cell, waves, coherent.filter, turn);
+    set_turn<Math>(path, at, turn);
     const Real inverse_tube = coherent.cell.is_curved ? 1.0 / (coherent.root_area * Math::root(waves.cos_in)) : inverse_in;
     const Real gains = at.value(path.start, LegToMeasure::kGain) * at.value(path.end, LegToMeasure::kGain);
     const ComplexOf<Real> factor = coherent_factor(waves, gains, inverse_tube, filter, is_lit(cos_in, cos_out, first, out));
@@ -186,8 +196,14 @@ void polarize(const PathToPolarize& path, size_t stride) {
 }
 
 template <class Math>
-constexpr SharedLegKernels kChainKernels = {pose<Math>,    measure<Math>,         combine<Math>, connect<Math>,
-                                            reflect<Math>, find_components<Math>, polarize<Math>};
+constexpr SharedLegKernels kChainKernels = {pose<Math>,
+                                            measure<Math>,
+                                            combine<Math>,
+                                            connect<Math>,
+                                            reflect<Math, WithTurn>,
+                                            reflect<Math, TurnApart<typename Math::Real>>,
+                                            find_components<Math>,
+                                            polarize<Math>};
 constexpr ForRows<SharedLegKernels> kChains = {kChainKernels<LaneMath>, kChainKernels<OneMath>};
 
 }  // namespace

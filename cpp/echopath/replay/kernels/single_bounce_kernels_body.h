@@ -77,7 +77,8 @@ ECHOPATH_INLINE ComplexOf<Vec> flat_filter_of(const SingleBounceSlots& slots, si
   } else if (filter.order == Footprint::kFirstOrder) {
     found.re = first_order_footprint_of<LaneMath>(cell_phase(cell, waves, filter));
   } else {
-    found = flat_cell_filter<LaneMath>(cell_phase(cell, waves, filter), filter);
+    WithTurn turn;
+    found = flat_cell_filter<LaneMath>(cell_phase(cell, waves, filter), filter, turn);
   }
   const Mask has_cell = load(slots.has_cell + slot) > 0.0;
   return {has_cell ? found.re : without, has_cell ? found.im : Vec{}};

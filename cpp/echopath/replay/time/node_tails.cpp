@@ -106,6 +106,21 @@ NodeTails node_tails(const FrameNodes& nodes, const Echoes& echoes) {
   return tails;
 }
 
+std::vector<double> tails_of_logarithms(const FrameNodes& nodes, const Echoes& echoes) {
+  const auto num_paths = static_cast<size_t>(echoes.num_echoes);
+  const auto* amplitude = reinterpret_cast<const double*>(echoes.amplitude.data());
+  std::vector<double> tails(num_paths);
+  Coefficients coefficients(nodes, 2 * kTogether);
+  for (size_t begin = 0; begin < num_paths; begin += kTogether) {
+    const size_t count = std::min(kTogether, num_paths - begin);
+    for (int piece = 0; piece < nodes.num_pieces(); ++piece) {
+      coefficients.find(amplitude + 2 * begin, piece, 2 * num_paths, 2 * count);
+      run_simd<raise_by_amplitudes>(coefficients.before_last(), coefficients.last(), count, tails.data() + begin);
+    }
+  }
+  return tails;
+}
+
 namespace {
 
 constexpr double kBendMargin = 2.0;  // by how much the parabola may bend more than the nodes tell

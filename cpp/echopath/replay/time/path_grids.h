@@ -12,9 +12,10 @@ namespace echopath {
 struct UnfollowedPath {
   int64_t path;
   // Orders at which polynomials would follow it; 0 where this one does.
-  double order_for_length, order_for_amplitude;
-  bool is_turned;      // the surface at an end of it shows its other side within the frame
-  bool is_negligible;  // all such paths together are below the rounding of the strongest: it needs no other polynomial
+  double order_for_length = 0.0, order_for_amplitude = 0.0;
+  bool is_turned = false;  // the surface at an end of it shows its other side within the frame
+  bool is_negligible =
+      false;  // all such paths together are below the rounding of the strongest: it needs no other polynomial
 };
 
 // Says how to go on with such a path.

@@ -1,6 +1,7 @@
 #include "echopath/signal/echoes/echo_states.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "echopath/base/lanes/lanes.h"
 #include "echopath/signal/echoes/echoes.h"
@@ -54,6 +55,14 @@ void copy_nodes(const Nodes& nodes, int count, EchoStates& state) {
   std::copy_n(nodes.amplitude, 2 * count, state.amplitude);
 }
 
+void undo_logarithms(int count, double* amplitude) {
+  for (int p = 0; p < count; ++p, amplitude += 2) {
+    const double size = std::exp(amplitude[0]), phase = amplitude[1];
+    amplitude[0] = size * std::cos(phase);
+    amplitude[1] = size * std::sin(phase);
+  }
+}
+
 // Takes as many chirps at once as there are registers for.
 template <int kChirps>
 void interpolate_at(const Nodes& nodes, int count, EchoStates* states) {
@@ -93,6 +102,7 @@ void evaluate_states(const Echoes& echoes, int chirp, int num_chirps, int64_t be
     else if (shared > 1) interpolate_at<2>(nodes, count, states);
     else interpolate_at<1>(nodes, count, states);
     const int done = shared == 3 ? 2 : shared;
+    for (int i = 0; sampling.has_logarithms && i < done; ++i) undo_logarithms(count, states[i].amplitude);
     chirp += done;
     states += done;
   }

@@ -224,8 +224,10 @@ struct Source {
   int64_t stride;           // echoes, from node to node
 };
 
+constexpr double kLogarithmOfNothing = -1e4;  // of an amplitude that is 0
+
 // Gathers all nodes of one vector of echoes. It prefetches those of the next, which are far apart in memory.
-void gather_vector(const Source* from, const Source* next, int count, int num_nodes, double* out) {
+void gather_vector(const Source* from, const Source* next, int count, int num_nodes, double nothing, double* out) {
   for (int k = 0; k < num_nodes; ++k, out += 3 * kLanes) {
     for (int lane = 0; lane < kLanes; ++lane) {
       const Source& source = from[lane];
@@ -233,16 +235,16 @@ void gather_vector(const Source* from, const Source* next, int count, int num_no
       __builtin_prefetch(next[lane].delay + next_at);
       __builtin_prefetch(next[lane].amplitude + 2 * next_at);
       out[lane] = source.delay[at];
-      out[kLanes + lane] = lane < count ? source.amplitude[2 * at] : 0.0;
+      out[kLanes + lane] = lane < count ? source.amplitude[2 * at] : nothing;
       out[2 * kLanes + lane] = lane < count ? source.amplitude[2 * at + 1] : 0.0;
     }
   }
 }
 
-// `source_of` takes the index of an echo in the tile, which may lie beyond the last. The last vector is filled up with zero
-// amplitudes.
+// `source_of` takes the index of an echo in the tile, which may lie beyond the last. The last vector is filled up with
+// amplitudes (nothing, 0).
 template <class SourceOf>
-void gather_tile(int count, int num_nodes, SourceOf source_of, double* out) {
+void gather_tile(int count, int num_nodes, double nothing, SourceOf source_of, double* out) {
   Source sources[2][kLanes];
   const auto find_sources = [&](int begin) {
     for (int lane = 0; lane < kLanes; ++lane) sources[begin / kLanes % 2][lane] = source_of(begin + lane);
@@ -251,7 +253,7 @@ void gather_tile(int count, int num_nodes, SourceOf source_of, double* out) {
   for (int begin = 0; begin < count; begin += kLanes, out += int64_t{num_nodes} * 3 * kLanes) {
     find_sources(begin + kLanes);
     const int now = begin / kLanes % 2;
-    gather_vector(sources[now], sources[1 - now], count - begin, num_nodes, out);
+    gather_vector(sources[now], sources[1 - now], count - begin, num_nodes, nothing, out);
   }
 }
 
@@ -259,6 +261,7 @@ void gather_tile(int count, int num_nodes, SourceOf source_of, double* out) {
 
 void EchoTiles::gather(std::span<const Echoes> blocks) {
   const uint64_t local_mask = (uint64_t{1} << local_bits_) - 1, index_mask = (uint64_t{1} << index_bits_) - 1;
+  const double nothing = blocks.front().sampling.has_logarithms ? kLogarithmOfNothing : 0.0;
   parallel_for(static_cast<int64_t>(tiles_.size()), [&](int64_t i) {
     const Tile& tile = tiles_[static_cast<size_t>(i)];
     const auto source_of = [&](int p) {
@@ -268,7 +271,7 @@ void EchoTiles::gather(std::span<const Echoes> blocks) {
       const auto* amplitude = reinterpret_cast<const double*>(block.amplitude.data() + echo);
       return Source{block.delay.data() + echo, amplitude, block.num_echoes};
     };
-    gather_tile(tile.count, num_nodes_, source_of, nodes_.get() + tile.vector * num_nodes_ * 3 * kLanes);
+    gather_tile(tile.count, num_nodes_, nothing, source_of, nodes_.get() + tile.vector * num_nodes_ * 3 * kLanes);
   });
 }
 

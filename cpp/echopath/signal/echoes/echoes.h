@@ -21,6 +21,9 @@ struct TimeSampling {
   // Where this is set, the rows of a chirp do not hold values at several nodes but the chirp's own value, slope, second and
   // third derivative, as many as the order.
   bool holds_derivatives = false;
+  // Where this is set, amplitudes stand as (natural logarithm of the size, phase in rad) and are interpolated as such: so few
+  // rows hold a phase that turns through many cycles. Phases go on beyond one turn from row to row.
+  bool has_logarithms = false;
   // Returns whether all chirps see the one row: then the echoes do not move, and are synthesised once for all chirps.
   bool is_static() const { return num_rows == 1; }
 };
@@ -34,7 +37,7 @@ struct Echoes {
   TimeSampling sampling;
   int64_t num_echoes = 0;
   std::vector<double> delay;                    // [num_rows, num_echoes] s, at the window centre, round trip
-  std::vector<std::complex<double>> amplitude;  // [num_rows, num_echoes] sqrt(W)
+  std::vector<std::complex<double>> amplitude;  // [num_rows, num_echoes] sqrt(W), unless has_logarithms
   std::vector<uint32_t> group;                  // [num_echoes], or empty: all in group 0
 };
 

@@ -19,6 +19,18 @@ ECHOPATH_INLINE void store_places(const Spreading& spreading, const Tones<kChirp
   }
 }
 
+// Turns logarithms of sizes and phases in rad into amplitudes.
+template <int kChirps>
+ECHOPATH_INLINE void undo_logarithms(States<kChirps>& states) {
+#pragma GCC unroll 4
+  for (int c = 0; c < kChirps; ++c) {
+    const Vec size = LaneMath::exp(states.re.of[c]);
+    const ComplexOf<Vec> phasor = LaneMath::cis(states.im.of[c]);
+    states.re.of[c] = size * phasor.re;
+    states.im.of[c] = size * phasor.im;
+  }
+}
+
 // Finds the places of a tile at kChirps chirps from `chirp` on, which interpolate between the same nodes.
 template <PhasorError kError, int kChirps>
 ECHOPATH_INLINE void place_tile(const CarrierModel& model, const Spreading& spreading, const TileAtChirps& tile, int chirp,
@@ -42,6 +54,7 @@ ECHOPATH_INLINE void place_tile(const CarrierModel& model, const Spreading& spre
         states.im.of[c] = multiply_add(weight, i, states.im.of[c]);
       }
     }
+    if (tile.has_logarithms) undo_logarithms(states);
     store_places(spreading, tones_of<kError>(model, states), p, places);
   }
 }

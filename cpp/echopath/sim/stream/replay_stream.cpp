@@ -131,7 +131,7 @@ void ReplayStream::add_moving(const PathGrids& grids, std::vector<std::vector<in
     const std::vector<int64_t>& paths = by_grid[static_cast<size_t>(polynomial)];
     if (!paths.empty()) replayer_.pose_polynomial(polynomial, paths);
     const Replay replay = [&](auto part, auto, auto& left) { return replayer_.interpolated(part, polynomial, left); };
-    for (const UnfollowedPath& path : run_blocks(paths, extent, replay, out)) {
+    for (const UnfollowedPath& path : without_turning(run_blocks(paths, extent, replay, out), polynomial, out)) {
       if (path.is_negligible) continue;
       const NextGrid next = grids.next(path, polynomial);
       (next.by_chirp ? by_chirp : by_grid)[static_cast<size_t>(next.polynomial)].push_back(path.path);
@@ -142,6 +142,34 @@ void ReplayStream::add_moving(const PathGrids& grids, std::vector<std::vector<in
     add_chirps(by_chirp, transmitter, out);
     add_samples(by_grid.back(), transmitter, out);
   }
+}
+
+// Sends on those paths whose amplitudes the polynomial did not follow, but whose logarithms it does. Returns the others, in
+// their order.
+std::vector<UnfollowedPath> ReplayStream::without_turning(std::vector<UnfollowedPath> left, int polynomial,
+                                                          WindowPipeline& out) const {
+  std::vector<int64_t> may_turn;
+  for (const UnfollowedPath& path : left) {
+    const bool lacks_amplitude_alone = path.order_for_length == 0.0 && !path.is_negligible && !path.is_turned;
+    if (lacks_amplitude_alone && replayer_.can_turn(path.path)) may_turn.push_back(path.path);
+  }
+  if (may_turn.empty()) return left;
+  Extent extent{0, num_channels(), replayer_.grids().polynomial(polynomial).num_nodes};
+  extent.has_logarithms = true;
+  const Replay replay = [&](auto part, auto, auto& some) { return replayer_.turning(part, polynomial, some); };
+  const std::vector<UnfollowedPath> unfollowed = run_blocks(may_turn, extent, replay, out);
+  // Both lists are in the order of `left`.
+  auto tried = may_turn.begin();
+  auto failed = unfollowed.begin();
+  std::vector<UnfollowedPath> rest;
+  for (const UnfollowedPath& path : left) {
+    const bool was_tried = tried != may_turn.end() && *tried == path.path;
+    const bool has_failed = failed != unfollowed.end() && failed->path == path.path;
+    if (was_tried) ++tried;
+    if (has_failed) ++failed;
+    if (!was_tried || has_failed) rest.push_back(path);
+  }
+  return rest;
 }
 
 // Holds only the scene as posed at the chirps of one transmitter.
@@ -235,7 +263,7 @@ ReplayStream::Block ReplayStream::run_block(std::span<const int64_t> paths, size
       const int channel = extent.first_channel + i;
       if (watcher_->watches(channel)) watcher_->see(channel, index, block.channels[static_cast<size_t>(i)], block.paths);
     }
-    if (!join_rule_) return block;
+    if (!join_rule_ || extent.has_logarithms) return block;
     joined = (*join_rule_)(block.paths);
     block.channels = replayer_.joined(std::move(block.channels), joined);
   }

@@ -71,15 +71,16 @@ class ReplayStream {
   void run(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, const Sink& sink);
   void add_still(const std::vector<int64_t>& paths, WindowPipeline& out) const;
   void add_moving(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, WindowPipeline& out);
+  std::vector<UnfollowedPath> without_turning(std::vector<UnfollowedPath> left, int polynomial, WindowPipeline& out) const;
   const PosedGrid& posed(const TimeGrid& grid, std::span<const int64_t> paths, std::unique_ptr<PartlyPosedGrid>& kept) const;
   void add_chirps(const std::vector<std::vector<int64_t>>& by_grid, int transmitter, WindowPipeline& out);
   void add_samples(const std::vector<int64_t>& paths, int transmitter, WindowPipeline& out);
-  // Describes the channels that `replay` makes echoes of, the number of rows, and whether it joins paths itself on
-  // request.
+  // Describes the channels that `replay` makes echoes of, the number of rows, whether it joins paths itself on request, and
+  // whether echoes hold logarithms, which cannot be joined.
   struct Extent {
     int first_channel, num_channels;
     int64_t num_rows;
-    bool joins = false;
+    bool joins = false, has_logarithms = false;
   };
   std::vector<UnfollowedPath> run_blocks(const std::vector<int64_t>& paths, const Extent& extent, const Replay& replay,
                                          WindowPipeline& out) const;

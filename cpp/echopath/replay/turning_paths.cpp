@@ -1,0 +1,70 @@
+// The part of the replayer that interpolates logarithms of amplitudes.
+#include <cmath>
+#include <vector>
+
+#include "echopath/replay/replay.h"
+#include "echopath/replay/spare_echoes.h"
+#include "echopath/replay/time/node_tails.h"
+
+namespace echopath {
+namespace {
+
+// Of the tolerance of amplitudes, so that what is left out of logarithms adds nothing to what is left out of amplitudes.
+constexpr double kShareOfTolerance = 0.1;
+
+// What is left of the phase without its turn changes by less from node to node, or its turn is not all that turns.
+constexpr double kLargestStep = 1.0;  // rad
+
+// Turns the amplitudes of one echo into logarithms, (size, phase) at each node. Returns whether they have any.
+bool take_logarithms(size_t num_nodes, size_t stride, const double* turn, std::complex<double>* amplitude) {
+  double before = 0.0;
+  for (size_t node = 0; node < num_nodes; ++node, turn += stride, amplitude += stride) {
+    const double size = std::abs(*amplitude), own = std::arg(*amplitude);
+    if (!(size > 0.0)) return false;
+    const double phase = node == 0 ? own : before + std::remainder(own - before, 2.0 * M_PI);
+    if (node > 0 && std::abs(phase - before) > kLargestStep) return false;
+    before = phase;
+    *amplitude = {std::log(size), phase + *turn};
+  }
+  return true;
+}
+
+}  // namespace
+
+// Images have no launch cell, and edges have a filter of their own.
+bool Replayer::can_turn(int64_t path) const {
+  const auto p = static_cast<size_t>(path);
+  return radio_.footprint != Footprint::kEdges && paths_.diffuse[p] == 0 && paths_.stratum[p] != kNoStratum &&
+         (paths_.flags[p] & kEdgePath) == 0;
+}
+
+std::vector<Echoes> Replayer::turning(std::span<const int64_t> indices, int index,
+                                      std::vector<UnfollowedPath>& unfollowed) const {
+  const PosedGrid& grid = posed_.polynomial(index);
+  const size_t num_nodes = grid.posed.size();
+  std::vector<Echoes> echoes = take_echoes(indices.size(), static_cast<size_t>(num_channels()), num_nodes);
+  std::vector<std::vector<double>> turns(echoes.size(), std::vector<double>(indices.size() * num_nodes));
+  evaluate_turning(indices, grid, echoes, turns);
+  std::vector<uint8_t> is_followed(indices.size(), 1);
+  for (size_t channel = 0; channel < echoes.size(); ++channel) {
+    Echoes& here = echoes[channel];
+    here.sampling = grid.nodes.sampling[channel / num_receivers()];
+    here.sampling.has_logarithms = true;
+    for (size_t p = 0; p < indices.size(); ++p) {
+      is_followed[p] &= take_logarithms(num_nodes, indices.size(), &turns[channel][p], &here.amplitude[p]);
+    }
+    const std::vector<double> tails = tails_of_logarithms(grid.nodes, here);
+    const double tolerance = kShareOfTolerance * settings_.amplitude_tolerance;
+    for (size_t p = 0; p < indices.size(); ++p) is_followed[p] &= tails[p] <= tolerance;
+  }
+  std::vector<size_t> followed;
+  for (size_t p = 0; p < indices.size(); ++p) {
+    if (is_followed[p]) followed.push_back(p);
+    else unfollowed.push_back({.path = indices[p]});
+  }
+  if (followed.size() == indices.size()) return echoes;
+  for (Echoes& channel : echoes) keep_echoes(followed, channel);
+  return echoes;
+}
+
+}  // namespace echopath

@@ -153,14 +153,16 @@ wants_viewer() {
 has_viewer_tests() { compgen -G 'tests/viewer/*/test_*.py' >/dev/null; }
 
 # No test that OPTIONS select is no fault. pyproject.toml bounds each test; the bound here, in s, is for what hangs between or after
-# them, as at the end of a program.
+# them, as at the end of a program. What it started ends with it, or would keep the pipe open.
 longest_run=2400
 run_pytest() {
   local name=$1 status=0
   shift
-  timeout --foreground --kill-after=30 "$longest_run" "$@" 2>&1 | tee "$build_dir/pytest_$name.log" || status=$?
-  [ "$status" -ne 124 ] || printf 'stopped: no end after %s s\n' "$longest_run" | tee -a "$build_dir/pytest_$name.log"
-  [ "$status" -ne 5 ] || status=0
+  timeout --kill-after=30 "$longest_run" "$@" 2>&1 | tee "$build_dir/pytest_$name.log" || status=$?
+  case $status in
+    5) return 0 ;;
+    124 | 137) printf 'stopped: no end after %s s\n' "$longest_run" | tee -a "$build_dir/pytest_$name.log" ;;
+  esac
   return "$status"
 }
 
@@ -172,22 +174,22 @@ run_python_tests() {
     --no-loadscope-reorder tests/python "$@"
 }
 
-# Runs a command with a screen of its own, which does not begin anew when a program leaves it, as it would by itself: the next one
-# could come too early. It holds nothing of what the command prints to, so that nobody waits for it.
-with_screen() {
-  local named=$build_dir/display status=0 screen waited
+# Runs a command with a screen of its own, in a shell of its own, which ends it however it ends. The screen does not begin anew
+# when a program leaves it, as it would by itself: the next one could come too early. It holds nothing of what the command
+# prints to, so that nobody waits for it.
+with_screen() (
+  named=$build_dir/display
   : >"$named"
   Xvfb -displayfd 3 -screen 0 1600x1000x24 -noreset -nolisten tcp 3>"$named" >/dev/null 2>&1 &
   screen=$!
+  trap 'kill "$screen" 2>/dev/null || :' EXIT
   for ((waited = 0; waited < 600; ++waited)); do
     [ ! -s "$named" ] && kill -0 "$screen" 2>/dev/null || break
     sleep 0.1
   done
-  [ -s "$named" ] || { echo "Xvfb made no screen"; return 1; }
-  DISPLAY=:$(cat "$named") "$@" || status=$?
-  kill "$screen"
-  return "$status"
-}
+  [ -s "$named" ] || { echo "Xvfb made no screen"; exit 1; }
+  DISPLAY=:$(cat "$named") "$@"
+)
 
 # They share one screen, in one process, which keeps a processor busy that waits for the last of the other tests. What they
 # print comes after what those print.

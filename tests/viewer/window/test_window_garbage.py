@@ -4,7 +4,9 @@ from __future__ import annotations
 import gc
 import threading
 
-from echopath_viewer.window import MainWindow
+import pytest
+
+from echopath_viewer.window import MainWindow, collector
 from echopath_viewer.window.background_work import BackgroundWork
 from support.window import PATIENCE_MS
 
@@ -29,15 +31,35 @@ def test_garbage_is_let_go_in_the_thread_of_the_window(qtbot, shared_window):
     assert set(let_go_by) == {threading.main_thread()}
 
 
-def test_python_finds_garbage_by_itself_once_the_last_window_is_closed(qtbot, shared_window):
-    usual = shared_window._collector
+@pytest.mark.parametrize("end", ["close", "close twice", "destroy"])
+def test_python_finds_garbage_by_itself_once_the_last_window_is_gone(qtbot, shared_window, end):
     before = gc.get_threshold()
-    other = MainWindow(remembers=False)
-    other.close()
-    other.close()  # a window may be closed twice
-    assert gc.get_threshold() == before and before[0] > 100_000 and usual.isActive()
-    usual.end()
+    shared_window._collector.end()
     try:
-        assert gc.get_threshold()[0] < 100_000
+        usual = gc.get_threshold()
+        window = MainWindow(remembers=False)
+        assert gc.get_threshold() == before and before[0] > 100_000 > usual[0]
+        if end == "destroy":
+            gone = window._collector.destroyed
+            with qtbot.waitSignal(gone, timeout=PATIENCE_MS):
+                window.deleteLater()
+        else:
+            for _ in end.split():
+                window.close()
+        assert gc.get_threshold() == usual
     finally:
-        shared_window._collector = type(usual)(shared_window)
+        shared_window._collector = type(shared_window._collector)(shared_window)
+
+
+def test_nobody_looks_for_garbage_where_the_user_wants_none(qtbot, shared_window, monkeypatch):
+    searches = []
+    monkeypatch.setattr(collector.gc, "collect", lambda *generation: searches.append(generation))
+    gc.disable()
+    try:
+        kept = [Knot([]) for _ in range(NUM_OBJECTS)]
+        collector._collect()
+        assert searches == []
+    finally:
+        gc.enable()
+    collector._collect()
+    assert searches and kept

@@ -1,15 +1,23 @@
 """Python's search for garbage, kept to the thread of the windows."""
 from __future__ import annotations
 
+import functools
 import gc
+import itertools
+import time
 
 from .qt import QtCore
 
 LOOK_MS = 200
-RARELY = 200_000  # objects more than there were, before threads look for garbage on their own: where no event comes for long
+BETWEEN_WHOLE = 10.0  # s at least between searches through all objects, which take as long as a picture
+# A thread looks for garbage of its own accord when there are so many objects more than at the last search: where no event comes
+# for long, so that nobody else looks.
+RARELY = 200_000
 
-_running = set()  # Collectors
-_usual = ()       # thresholds before the first one began
+_numbers = itertools.count()
+_running = set()           # numbers of Collectors
+_usual = ()                # thresholds before the first one began
+_last_whole = -float("inf")  # s
 
 
 class Collector(QtCore.QTimer):
@@ -20,29 +28,45 @@ class Collector(QtCore.QTimer):
     """
 
     def __init__(self, parent=None):
-        """Runs from now on."""
-        global _usual
+        """Runs from now on, until `end` or until it is destroyed with its parent."""
         super().__init__(parent, interval=LOOK_MS)
-        if not _running:
-            _usual = gc.get_threshold()
-            gc.set_threshold(max(RARELY, _usual[0]), *_usual[1:])
-        _running.add(self)
+        self._number = next(_numbers)
+        _begin(self._number)
+        self.destroyed.connect(functools.partial(_end, self._number))
         self.timeout.connect(_collect)
         self.start()
 
     def end(self) -> None:
         """Python's own search comes back with the end of the last one."""
         self.stop()
-        if self not in _running:
-            return
-        _running.remove(self)
-        if not _running:
-            gc.set_threshold(*_usual)
+        _end(self._number)
+
+
+def _begin(number: int) -> None:
+    global _usual
+    if not _running:
+        _usual = gc.get_threshold()
+        if _usual[0] > 0:  # 0: nobody is to look
+            gc.set_threshold(max(RARELY, _usual[0]), *_usual[1:])
+    _running.add(number)
+
+
+def _end(number: int, *_) -> None:
+    if number not in _running:
+        return
+    _running.remove(number)
+    if not _running:
+        gc.set_threshold(*_usual)
 
 
 def _collect() -> None:
-    """As Python would by itself: the oldest generation that has grown by enough, and those before."""
-    for generation, count in reversed(list(enumerate(gc.get_count()))):
-        if count > _usual[generation]:
-            gc.collect(generation)
-            return
+    """The oldest generation that has grown by as much as Python waits for, and those before."""
+    global _last_whole
+    if not gc.isenabled() or _usual[0] == 0:
+        return
+    young, middle, old = (count > most for count, most in zip(gc.get_count(), _usual))
+    if old and time.monotonic() - _last_whole > BETWEEN_WHOLE:
+        gc.collect()
+        _last_whole = time.monotonic()
+    elif middle or young:
+        gc.collect(1 if middle else 0)

@@ -1,6 +1,8 @@
 """The window of the viewer."""
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from echopath.base.mesh_names import object_of
@@ -223,7 +225,7 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
             self.view3d.builder.set_show_hits(is_shown)
             self.view3d.render_soon()
 
-    def settle(self, patience: float = 300.0) -> None:
+    def settle(self, patience: float = math.inf) -> None:
         """Returns when lists, signals and the scene show what the session shows now. Raises TimeoutError after `patience` s."""
         settle(self, patience)
 
@@ -265,9 +267,9 @@ class MainWindow(Opening, Panels, Menus, ViewActions, FileActions, Choices, QtWi
         return super().event(event)
 
     def closeEvent(self, event):
+        self._collector.end()
         if self._remembers and self._had_content:
             remember_layout(self)
-        self._collector.end()
         self.time_bar.stop()
         self.file_watch.watch(None)
         self._is_passing = False

@@ -8,8 +8,9 @@ from ..h5_items import integers_of
 class KeptMeshes:
     """The meshes of the scene that was read last: a scene of the next file shares them where that has the same ones.
 
-    They are the same where each array of theirs has the same check sum. A `Mesh` cannot be changed, so those who share one
-    need not know of each other. Several threads may read with one object.
+    They are the same where each array of theirs has the same check sum; arrays that were damaged after they were written are not
+    noticed then, as they are not read. A `Mesh` cannot be changed, so those who share one need not know of each other. Several
+    threads may read with one object.
     """
 
     def __init__(self):
@@ -19,7 +20,7 @@ class KeptMeshes:
         """The meshes of a group "meshes"; read: callable () -> list of Mesh, which reads all of them."""
         if self._kept is not None:
             attributes, values, meshes = self._kept
-            if len(group) == len(meshes) and integers_of(group, attributes) == values:
+            if values is not None and len(group) == len(meshes) and integers_of(group, attributes) == values:
                 return meshes
         meshes = read()
         attributes = [attribute for index, mesh in enumerate(meshes) for attribute in _attributes_of(index, mesh)]

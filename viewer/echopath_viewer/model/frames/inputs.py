@@ -41,7 +41,7 @@ class ViewInput:
 def from_file(path, meshes: KeptMeshes | None = None) -> ViewInput:
     """Reads a frame file. Raises ep.FileError, with its name, where it is not ours or damaged.
 
-    meshes: of the frame before, which this one shares where its file has the same; None: of none
+    meshes: of the frame before, which this one shares, unread, where its file has the same; None: of none
     """
     state = file_state(path)
     frame = read_frame(path, meshes)

@@ -80,8 +80,8 @@ function(echopath_parse_headers_once target owner)
 endfunction()
 
 # A module's files are compiled some at a time: most of the time goes into reading the same templates, so that six at a time
-# halve it, and twelve take a tenth less again. Tests and bindings, whose files are long, are compiled six at a time. Names in
-# unnamed namespaces are therefore unique within a module; each test file has a namespace named after it.
+# halve it, and twelve take a tenth less again, of tests a sixth. Bindings, which take 2 GB at twelve, are compiled six at a time.
+# Names in unnamed namespaces are therefore unique within a module; each test file has a namespace named after it.
 set(ECHOPATH_UNITY_FILES 12 CACHE STRING "Number of files of a module that are compiled as one, 0 for each by itself")
 function(echopath_compile_together target files)
   if(ECHOPATH_UNITY_FILES GREATER 0)
@@ -171,7 +171,7 @@ function(echopath_test name)
   target_compile_options(test_${name} PRIVATE ${echopath_quickly_compiled})
   target_link_libraries(test_${name} PRIVATE ${ARG_LIBS} GTest::gtest_main echopath_options)
   echopath_twin(test_${name} LIBS ${ARG_LIBS})
-  echopath_compile_together(test_${name} 6)
+  echopath_compile_together(test_${name} ${ECHOPATH_UNITY_FILES})
   echopath_parse_headers_once(test_${name} test_base ${echopath_test_headers})
   list(JOIN ARG_HARD ":" hard)
   list(JOIN ARG_ONCE ":" once)

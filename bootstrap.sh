@@ -166,6 +166,13 @@ run_pytest() {
   return "$status"
 }
 
+# Python keeps what it has compiled, also where the machine says that it shall not, in the build folder: tests start hundreds of
+# processes, each of which would compile the same modules again, of others too, which pip has not compiled.
+keep_bytecode() {
+  unset PYTHONDONTWRITEBYTECODE
+  export PYTHONPYCACHEPREFIX=$build_dir/bytecode
+}
+
 # On all processors, files as a whole, since the tests of a file share what is slow to make, and in the order of
 # tests/python/conftest.py: xdist would begin those of few tests last, which are the longest.
 # NumPy and FINUFFT keep to one thread each: those of several processes would wait for each other at full speed.
@@ -371,6 +378,7 @@ case $verb in
     exec .venv/bin/echopath demo "$@"
     ;;
   test)
+    keep_bytecode
     if has_viewer_tests; then
       packages_to_run=("${viewer_packages[@]}" "${screen_packages[@]}")
       prepare test,viewer,test-viewer "${packages[@]}"

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kNormal = 1.959964;  // two-sided 95 % quantile
 constexpr double kOfHalving = 1.2, kOfHalvingMore = 3.0, kMostOfHalving = 5.0;
-constexpr double kAliases = 0.007, kOfFiner = 4.0;
+constexpr double kAliases = 0.007, kOfFiner = 4.5, kHalvingPerFiner = 2.8;
 constexpr double kGone = 0.5, kOfEdges = 1.25, kFaded = 0.2;
 constexpr double kPointsTimesField = 4.0, kPointsTimesFieldOfSeveral = 6.0;  // of one bounce and of several
 constexpr double kMostOfPoints = 2.5;
@@ -80,9 +80,11 @@ FieldBias field_bias(const PowerEvidence& evidence) {
     finer += squared(kOfFiner * std::max(0.0, of_finer - kAliases * size));
     const double in_phase = std::max(0.0, 1.0 - std::abs(kind.field[kHalfDensity]) / (kFaded * size));
     const double edges = squared(kOfEdges) * between_edges(kind, evidence.num_batches, in_phase);
-    gone += squared(squared(std::min(halving / kGone, 1.0))) * edges;
+    const double still_changes = std::max(halving, kHalvingPerFiner * of_finer / size);
+    gone += squared(squared(std::min(still_changes / kGone, 1.0))) * edges;
   }
-  return {std::hypot(above.size(), std::sqrt(finer + gone + surface)), std::hypot(below.size(), std::sqrt(finer + surface))};
+  const double changes = std::max(above.size(), std::sqrt(finer)), shrinks = std::max(below.size(), std::sqrt(finer));
+  return {std::hypot(changes, std::sqrt(gone + surface)), std::hypot(shrinks, std::sqrt(surface))};
 }
 
 std::complex<double> field_of(const PowerEvidence& evidence) {

@@ -6,7 +6,6 @@
 
 #include "cpp/support/sanitized.h"
 #include "cpp/support/scenes.h"
-#include "echopath/power/power_interval.h"
 #include "echopath/power/received_power.h"
 
 namespace echopath::test_received_power {
@@ -255,52 +254,11 @@ TEST(ReceivedPower, IntervalHoldsWhatTheFilterTakesAway) {
   EXPECT_FALSE(coarse.resolved());
 }
 
-// Two-sided 95 % quantiles as any table of Student's t has them.
-TEST(PowerInterval, QuantilesOfStudent) {
-  constexpr double kThreeDigits = 1e-3;
-  const std::pair<int, double> table[] = {{1, 12.706}, {3, 3.182},  {4, 2.776}, {5, 2.571},
-                                          {7, 2.365},  {10, 2.228}, {63, 1.998}};
-  for (const auto& [degrees, quantile] : table) EXPECT_NEAR(student_t95(degrees) / quantile, 1.0, kThreeDigits) << degrees;
-}
-
 TEST(ReceivedPower, OfNothingIsZero) {
   const ReceivedPower power = received_power(shot(Scene(), plain_radar(Vec3::Zero(), Vec3::Zero()), 100, 1, 4));
   EXPECT_EQ(power.power, 0.0);
   EXPECT_EQ(power.standard_error, 0.0);
   EXPECT_FALSE(power.resolved());
-}
-
-// An echo that is known to a thousandth says nothing of one whose rays are too far apart, for which the filter leaves
-// nothing.
-TEST(PowerInterval, AKindThatIsKnownDoesNotSpeakForAnother) {
-  CoherentKind known, lost;
-  for (std::complex<double>& field : known.field) field = 1.0;
-  known.field[kHalfDensity] = 0.999;
-  known.power[kAsLaunched] = known.power[kUnfiltered] = 1e-3;
-  lost.field[kAsLaunched] = 1e-6;
-  lost.power[kPoints] = 0.01;
-  PowerEvidence evidence;
-  evidence.coherent = 1.0;
-  evidence.kinds = {known};
-  EXPECT_LT(power_interval(evidence).high, 1.02);
-  evidence.kinds = {known, lost};
-  EXPECT_GT(power_interval(evidence).high, 1.2);  // the field may be a tenth larger at least
-}
-
-// Two kinds that cancel, each known to a hundredth: the sum is known to a hundredth of either, not of itself.
-TEST(PowerInterval, KindsThatCancelAreKnownAsWellAsOneByOne) {
-  PowerEvidence evidence;
-  for (const double sign : {1.0, -0.95}) {
-    CoherentKind kind;
-    for (std::complex<double>& field : kind.field) field = sign;
-    kind.field[kHalfDensity] = 0.99 * sign;
-    kind.power[kPoints] = 1.0;
-    evidence.kinds.push_back(kind);
-  }
-  evidence.coherent = 0.05 * 0.05;
-  const double above = std::sqrt(power_interval(evidence).high) - 0.05;
-  EXPECT_GT(above, 1.2 * 0.01);
-  EXPECT_LT(above, 2.0 * 1.4 * 0.01 + 0.01);
 }
 
 }  // namespace

@@ -1,0 +1,98 @@
+// Intervals of powers: against laws that say how fields change with launch cells.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <utility>
+
+#include "echopath/power/power_interval.h"
+
+namespace echopath::test_power_interval {
+namespace {
+
+// Two-sided 95 % quantiles as any table of Student's t has them.
+TEST(PowerInterval, QuantilesOfStudent) {
+  constexpr double kThreeDigits = 1e-3;
+  const std::pair<int, double> table[] = {{1, 12.706}, {3, 3.182},  {4, 2.776}, {5, 2.571},
+                                          {7, 2.365},  {10, 2.228}, {63, 1.998}};
+  for (const auto& [degrees, quantile] : table) EXPECT_NEAR(student_t95(degrees) / quantile, 1.0, kThreeDigits) << degrees;
+}
+
+// An echo that is known to a thousandth says nothing of one whose rays are too far apart, for which the filter leaves
+// nothing.
+TEST(PowerInterval, AKindThatIsKnownDoesNotSpeakForAnother) {
+  CoherentKind known, lost;
+  for (std::complex<double>& field : known.field) field = 1.0;
+  known.field[kHalfDensity] = 0.999;
+  known.power[kAsLaunched] = known.power[kUnfiltered] = 1e-3;
+  lost.field[kAsLaunched] = 1e-6;
+  lost.power[kPoints] = 0.01;
+  PowerEvidence evidence;
+  evidence.coherent = 1.0;
+  evidence.kinds = {known};
+  EXPECT_LT(power_interval(evidence).high, 1.02);
+  evidence.kinds = {known, lost};
+  EXPECT_GT(power_interval(evidence).high, 1.2);  // the field may be a tenth larger at least
+}
+
+// Two kinds that cancel, each known to a hundredth: the sum is known to a hundredth of either, not of itself.
+TEST(PowerInterval, KindsThatCancelAreKnownAsWellAsOneByOne) {
+  PowerEvidence evidence;
+  for (const double sign : {1.0, -0.95}) {
+    CoherentKind kind;
+    for (std::complex<double>& field : kind.field) field = sign;
+    kind.field[kHalfDensity] = 0.99 * sign;
+    kind.power[kPoints] = 1.0;
+    evidence.kinds.push_back(kind);
+  }
+  evidence.coherent = 0.05 * 0.05;
+  const double above = std::sqrt(power_interval(evidence).high) - 0.05;
+  EXPECT_GT(above, 1.2 * 0.01);
+  EXPECT_LT(above, 2.0 * 1.4 * 0.01 + 0.01);
+}
+
+// A kind whose field is `truth` - `lost` s^2 in cells of side s.
+CoherentKind falls_with_the_square(double truth, double lost) {
+  CoherentKind kind;
+  kind.has_cells = true;
+  for (const CellViewIndex view : {kAsLaunched, kFiner, kHalfDensity}) {
+    kind.field[view] = truth - lost * std::pow(kCellViews[view].side, 2);
+  }
+  return kind;
+}
+
+// Coarser and finer cells tell of the same error: it is held, but not counted twice.
+TEST(PowerInterval, TwoMeasuresOfOneErrorCountOnce) {
+  for (const double lost : {0.01, 0.03, 0.1}) {
+    PowerEvidence evidence;
+    evidence.kinds = {falls_with_the_square(1.0, lost)};
+    evidence.coherent = std::norm(evidence.kinds.front().field[kAsLaunched]);
+    const double above = std::sqrt(power_interval(evidence).high) - (1.0 - lost);
+    EXPECT_GT(above, lost);
+    EXPECT_LT(above, 1.75 * lost);
+  }
+}
+
+// A field that changes with finer cells is not known, even where coarser cells leave it as it is. It may lack what cells
+// hold of edges, here a field as large as its own.
+TEST(PowerInterval, EdgesCountWhereFinerCellsChangeTheField) {
+  for (const double change : {0.0, 0.2}) {
+    CoherentKind kind = falls_with_the_square(1.0, 0.0);
+    kind.field[kFiner] = 1.0 + change;
+    kind.power[kEdges] = 1.0;
+    kind.edge_squares = 1e-3;
+    PowerEvidence evidence;
+    evidence.coherent = 1.0;
+    evidence.kinds = {kind};
+    const double without = [&] {
+      PowerEvidence plain = evidence;
+      plain.kinds.front().power[kEdges] = 0.0;
+      return power_interval(plain).high;
+    }();
+    const double with = power_interval(evidence).high;
+    if (change == 0.0) EXPECT_EQ(with, without);
+    else EXPECT_GT(with, 1.1 * without);
+  }
+}
+
+}  // namespace
+}  // namespace echopath::test_power_interval

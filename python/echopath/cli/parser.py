@@ -103,6 +103,8 @@ def command_parser() -> argparse.ArgumentParser:
     bench.add_argument("--rays-max", type=positive, default=2**16, metavar="N",
                        help="physics: most rays of a trace (default: %(default)s)")
     bench.add_argument("--scenes", type=positive, default=None, metavar="N", help="certificate: how many (default: a few dozen)")
+    bench.add_argument("--seeds", type=positive, default=None, metavar="N",
+                       help="crowd: scenes of each echo whose coverage is measured (default: 20 to 60, some ten minutes in all)")
     bench.add_argument("--suite", default=None, metavar="DIR",
                        help="measured: a checkout of the Austin RCS Benchmark Suite, for its PRIME aircraft, too")
     bench.set_defaults(command=work.bench)

@@ -126,8 +126,10 @@ def test_scenes_whose_truth_is_not_known_are_no_truth(monkeypatch):
     with pytest.raises(ValueError, match="0 scenes only is known"):
         crowd_coverage._known(echo, 3, 2 ** 12, 0.01)
     monkeypatch.setattr(crowd_coverage, "all_echoes", lambda: [echo])
-    monkeypatch.setattr(crowd_coverage, "NUM_SEEDS", 3)
-    assert crowd_coverage.measure_coverage(quick=False)["left_out"] == {echo.kind: 3}
+    assert crowd_coverage.measure_coverage(quick=False, seeds=3)["left_out"] == {echo.kind: 3}
+    monkeypatch.setattr(crowd_coverage, "NUM_SEEDS", {"coherent": 4})
+    found = crowd_coverage.measure_coverage(quick=False)
+    assert found["left_out"] == {echo.kind: 4} and [row["count"] for row in found["rows"]] == [4] * len(crowd_coverage.RAYS)
 
 
 def test_command_writes_numbers_and_picture(tmp_path, capsys, monkeypatch):

@@ -20,7 +20,7 @@ OPTIONS = {
                "--false-alarm-rate": NUMBERS, "--cfar": ["", "ca", "\udce9"]},
     "info": {"--select": ["", "T", "(", "power > nan", "T '\udce9' R", "\0"]},
     "view": {"--state": ["junk.toml", "missing.json", "a\0"], "--picture": FOLDERS},
-    "bench": {"--rays-max": NUMBERS, "--scenes": NUMBERS},
+    "bench": {"--rays-max": NUMBERS, "--scenes": NUMBERS, "--seeds": NUMBERS},
     "nonsense": {"--rays": NUMBERS},
 }
 

@@ -32,18 +32,19 @@ CITY_ASKED = ((80, 3), (500, 2))
 PERSON_ERROR = 0.01                  # relative, standard error of his direct power
 
 
-def run_crowd(folder, *, quick: bool = False, progress=None) -> dict:
+def run_crowd(folder, *, quick: bool = False, seeds: int | None = None, progress=None) -> dict:
     """Measures everything, writes crowd.json and crowd.png into `folder` and returns what the JSON holds.
 
-    quick: few rays and seeds, for a look; progress: callable (stage, fraction) or None
+    quick: few rays and seeds, for a look; seeds: scenes of each echo whose coverage is measured, None: as many as end in some
+    ten minutes (coverage.NUM_SEEDS); progress: callable (stage, fraction) or None
     """
     from .figure import draw_crowd
 
     began = time.perf_counter()
-    works = {"streets": lambda: [measure_street(mirrors=mirrors, quick=quick) for mirrors in (True, False)],
+    works = {"streets": lambda: measure_streets(quick=quick, progress=progress),
              "ground": lambda: measure_ground(quick=quick), "person": lambda: measure_person(quick=quick),
              "mirrors": lambda: measure_mirrors(quick=quick),
-             "coverage": lambda: measure_coverage(quick=quick)}
+             "coverage": lambda: measure_coverage(quick=quick, seeds=seeds, progress=progress)}
     results = {"machine": machine(), "quick": quick} | {name: works[name]() for name in told(list(works), "crowd", progress)}
     results["must_reach"] = verdicts(results)
     results["seconds"] = time.perf_counter() - began
@@ -83,10 +84,19 @@ def decibels(power: float, truth: float) -> float:
 
 # --- the street ---
 
-def measure_street(*, mirrors: bool, quick: bool) -> dict:
-    """Seconds of the trace and of its bare queries, and a row for each object."""
+def measure_streets(*, quick: bool, progress=None) -> list[dict]:
+    """Both streets, with flagged mirrors and with rough concrete; progress: callable (stage, fraction) or None."""
+    names, radar = scenes.street_names(), scenes.radar()
+    objects = [(name, False) for name in names] + [(name, True) for name in names if name in scenes.BACKDROPS]
+    alone = {of: _alone(of[0], radar, of[1], quick) for of in told(objects, "objects alone", progress)}
+    return [measure_street({name: alone[name, mirrors and name in scenes.BACKDROPS] for name in names}, mirrors=mirrors,
+                           quick=quick) for mirrors in told([True, False], "streets", progress)]
+
+
+def measure_street(alone: dict, *, mirrors: bool, quick: bool) -> dict:
+    """Seconds of the trace and of its bare queries, and a row for each object. alone: what `_alone` says of each, by name."""
     radar, scene = scenes.radar(), scenes.street(mirrors=mirrors)
-    rays, names = QUICK_RAYS if quick else RAYS, scenes.street_names()
+    rays, names = QUICK_RAYS if quick else RAYS, list(alone)
 
     def levels_of(seed: int) -> dict:
         paths = ep.trace(scene, radar, num_rays=rays, max_bounces=MAX_BOUNCES, seed=seed)
@@ -94,7 +104,7 @@ def measure_street(*, mirrors: bool, quick: bool) -> dict:
 
     runs = [levels_of(seed) for seed in range(1, (QUICK_SEEDS if quick else SEEDS) + 1)]
     noise = ep._core.noise_power_in_cell(radar)
-    rows = [_row(name, *_alone(name, radar, mirrors, quick), [levels[name] for levels in runs], noise) for name in names]
+    rows = [_row(name, *alone[name], [levels[name] for levels in runs], noise) for name in names]
     return {"title": "flagged mirrors" if mirrors else "rough concrete", "rays": rays, "rows": rows,
             **bare_share(scene, radar, rays, repetitions=1 if quick else 3)}
 
@@ -234,11 +244,12 @@ def describe(results: dict) -> list[str]:
 
 
 def _describe_coverage(coverage: dict) -> list[str]:
-    lines = [f"coverage of the true value by the 95 % interval, {coverage['seeds']} seeds",
-             f"  {'':<30}{'rays':>9}{'coverage':>10} {'+-':>5}{'mean error, dB':>16}{'claimed, dB':>13}{'unresolved':>12}"]
+    lines = ["coverage of the true value by the 95 % interval",
+             f"  {'':<30}{'rays':>9}{'runs':>6}{'coverage':>10} {'+-':>5}{'mean error, dB':>16}{'claimed, dB':>13}"
+             f"{'unresolved':>12}"]
     for row in [*coverage["rows"], *coverage["classes"]]:
         rays = f"{row['rays']:,}" if "rays" in row else "all"
-        lines.append(f"  {row['kind']:<30}{rays:>9}{row['coverage']:>10.3f} {row['coverage_error']:>5.3f}"
+        lines.append(f"  {row['kind']:<30}{rays:>9}{row['count']:>6}{row['coverage']:>10.3f} {row['coverage_error']:>5.3f}"
                      f"{row['mean_error_db']:>+16.3f}{row['claimed_db']:>13.3f}{row['unresolved']:>12}")
     lines += [f"  {kind}: {number} scenes more were drawn and left out, whose power even many rays do not know"
               for kind, number in coverage["left_out"].items()]

@@ -7,9 +7,12 @@ import echopath as ep
 
 from ...paths.resolution import interval_of
 from ..physics import targets
-from .echoes import Echo, all_echoes
+from ..steps import told
+from .echoes import Echo, all_echoes, class_of
 
-NUM_SEEDS, QUICK_SEEDS = 60, 4
+# Scenes of each body, by class of echoes: the slow ones get fewer, so that all together take some ten minutes.
+NUM_SEEDS = {"coherent": 40, "diffuse": 60, "ghost": 40, "two bounces": 20}
+QUICK_SEEDS = 4
 RAYS, QUICK_RAYS = (2 ** 12, 2 ** 14, 2 ** 16), (2 ** 12,)
 TRUE_RAYS, TRUE_RAYS_OF_EACH, QUICK_TRUE_RAYS = 2 ** 22, 2 ** 20, 2 ** 16
 TRUE_DB = 0.1           # a trace that does not know a power to this is no truth, half its own interval
@@ -20,16 +23,21 @@ WANTED_OF_ONE = 0.80    # at least, of one body and number of rays
 FIRST_SEED = 1000
 
 
-def measure_coverage(*, quick: bool) -> dict:
+def measure_coverage(*, quick: bool, seeds: int | None = None, progress=None) -> dict:
     """A row for each echo and number of rays, and one for each class of echoes, over all of its bodies; left_out: of how many
-    scenes that were drawn the truth is not known, by the kind of echo."""
-    count = QUICK_SEEDS if quick else NUM_SEEDS
+    scenes that were drawn the truth is not known, by the kind of echo.
+
+    seeds: scenes of each body, None: NUM_SEEDS of its class; progress: callable (stage, fraction) or None
+    """
     rays = QUICK_RAYS if quick else RAYS
-    drawn = [(echo, _drawn(echo, count, quick)) for echo in all_echoes()]
-    claims = {(echo.kind, of): found for echo, scenes in drawn for of, found in _claims(echo, scenes, rays).items()}
+    claims, left_out = {}, {}
+    for echo in told(all_echoes(), "coverage", progress):
+        count = QUICK_SEEDS if quick else seeds or NUM_SEEDS[echo.of_class]
+        drawn = _drawn(echo, count, quick)
+        left_out[echo.kind] = drawn[-1][0] - FIRST_SEED + 1 - count
+        claims |= {(echo.kind, of): found for of, found in _claims(echo, drawn, rays).items()}
     rows = [{"kind": kind, "rays": of, **covered(*found)} for (kind, of), found in claims.items()]
-    left_out = {echo.kind: scenes[-1][0] - FIRST_SEED + 1 - count for echo, scenes in drawn}
-    return {"seeds": count, "left_out": {kind: number for kind, number in left_out.items() if number > 0},
+    return {"left_out": {kind: number for kind, number in left_out.items() if number > 0},
             "wanted": WANTED, "wanted_of_one": WANTED_OF_ONE, "rows": rows, "classes": _by_class(claims)}
 
 
@@ -72,16 +80,17 @@ def _by_class(claims: dict) -> list[dict]:
     """Rows over all bodies and numbers of rays of a class: what the promise of the intervals is about."""
     together = {}
     for (kind, _), (found, truths) in claims.items():
-        all_found, all_truths = together.setdefault(kind.split(",")[0], ([], []))
+        all_found, all_truths = together.setdefault(class_of(kind), ([], []))
         all_found += found
         all_truths += truths
     num_counts = len({count for _, count in claims})
-    return [{"kind": name, "count": len(found), **covered(found, truths, len(found) // num_counts)}
+    return [{"kind": name, **covered(found, truths, len(found) // num_counts)}
             for name, (found, truths) in together.items()]
 
 
 def covered(found: list, truths: list, num_independent: int | None = None) -> dict:
-    """Share of the powers whose interval holds the truth with its standard error, and how far they are from it, in dB.
+    """Count of the powers, share of them whose interval holds the truth with its standard error, and how far they are from it,
+    in dB.
 
     found: (Interval in W, half of it in dB) of each seed; truths: W; num_independent: how many of them are, None: all. Runs of
     one scene with more rays err alike.
@@ -90,7 +99,8 @@ def covered(found: list, truths: list, num_independent: int | None = None) -> di
     ratios = [one.power / truth for (one, _), truth in zip(found, truths)]
     count = num_independent or len(holds)
     share = (count * np.mean(holds) + 2.0) / (count + 4.0)  # Agresti and Coull 1998: no error of zero where all hold
-    return {"coverage": float(np.mean(holds)), "coverage_error": float(np.sqrt(share * (1.0 - share) / (count + 4.0))),
+    return {"count": len(holds), "coverage": float(np.mean(holds)),
+            "coverage_error": float(np.sqrt(share * (1.0 - share) / (count + 4.0))),
             "mean_error_db": float(10.0 * np.log10(max(np.mean(ratios), 1e-12))),
             "claimed_db": float(np.median([half for _, half in found])),
             "unresolved": int(sum(not one.resolved for one, _ in found))}

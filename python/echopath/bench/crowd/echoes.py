@@ -43,6 +43,15 @@ class Echo:
     max_bounces: int = 1
     differs: bool = False
 
+    @property
+    def of_class(self) -> str:
+        return class_of(self.kind)
+
+
+def class_of(kind: str) -> str:
+    """What stands before the comma of an `Echo.kind`."""
+    return kind.split(",")[0]
+
 
 def all_echoes() -> list[Echo]:
     plate = next(target for target in targets.all_targets() if target.name == "lambert_plate")

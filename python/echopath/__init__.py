@@ -22,6 +22,7 @@ from ._core import (
 from .actors import Actor, Part
 from .arguments.settings import LabelSettings, SignalSettings, TraceSettings
 from .base.threads import num_threads, set_num_threads
+from .cavities.cavity import Cavity
 from .detections import Detections, detect, detect_frame
 from .effects import Effect, effects
 from .frame.frame import Frame
@@ -77,7 +78,7 @@ from .weather import Weather
 
 __all__ = [
     "Actor", "Adc", "AngleEstimates", "AngleSpectrum", "AngleTime", "Antenna", "AntennaPattern", "AroundCorner", "BeamPower",
-    "CfarResult", "Check", "ChirpSequence", "CoplanarOverlap", "CosinePower", "Curve", "CurveMotion", "Deformation",
+    "Cavity", "CfarResult", "Check", "ChirpSequence", "CoplanarOverlap", "CosinePower", "Curve", "CurveMotion", "Deformation",
     "Detections", "DeviceError", "Effect", "Families", "Family", "FileError", "Frame", "FrameMaps", "GainTable",
     "GhostLabel", "GuardWarning", "Interferer", "Interval", "Isotropic", "Joint", "KeyframeMotion", "LabelSettings",
     "Labels", "Lane", "Layer", "LinearMotion", "Live", "LiveView", "Material", "Mesh", "Model", "ModelNode",

@@ -15,6 +15,7 @@ constexpr double kPhaseError = 1e-3;      // rad, of the spherical wave fronts o
 constexpr double kAmplitudeError = 1e-4;  // relative, of their spreading
 constexpr double kReachOfBias = 1.96;     // the bias reaches to the end of a 95 % interval
 constexpr double kSmallestSine = 1e-3;    // of the angle between line of sight and polarization
+constexpr double kInPlane = 1e-6;         // of the target's radius, how far from a plane points of it may lie
 
 struct Target {
   Vec3 centre = Vec3::Zero();
@@ -117,8 +118,53 @@ Paths shoot(const SceneSnapshot& scene, const Radar& radar, const RcsSettings& s
                          : trace(scene, radar, settings.tracing, job, kept);
 }
 
+// Returns how far a wave that would touch the world's origin on its way would go, m.
+double length_over_origin(const Paths& paths, int receiver, const Vec3& centre) {
+  const auto leg = [&](const Antenna& antenna) {
+    const Vec3 sight = antenna.position - centre;
+    return sight.norm() + sight.normalized().dot(centre);
+  };
+  return leg(paths.radar.transmitters.front()) + leg(paths.radar.receivers[static_cast<size_t>(receiver)]);
+}
+
+// Tells which paths stay outside of the cavities.
+class OutsideOfCavities {
+ public:
+  // The scene must outlive it.
+  OutsideOfCavities(const Scene& scene, const std::vector<RcsCavity>& cavities, double tolerance)
+      : pose_(scene, 0.0), cavities_(cavities), tolerance_(tolerance), cavity_of_(scene.meshes().size(), -1) {
+    for (size_t i = 0; i < cavities.size(); ++i) {
+      for (const uint32_t wall : cavities[i].walls) cavity_of_.at(wall) = static_cast<int>(i);
+    }
+  }
+
+  Paths select(const Paths& paths, Job* job) const {
+    std::vector<uint8_t> keep(static_cast<size_t>(paths.num_paths()));
+    for (int64_t path = 0; path < paths.num_paths(); ++path) {
+      const Hit* hits = paths.hits_of(path);
+      const int count = paths.num_bounces[static_cast<size_t>(path)];
+      keep[static_cast<size_t>(path)] = std::none_of(hits, hits + count, [&](const Hit& hit) { return is_inside(hit); });
+    }
+    return paths.select(keep, job);
+  }
+
+ private:
+  bool is_inside(const Hit& hit) const {
+    const int cavity = cavity_of_[hit.mesh_id];
+    if (cavity < 0) return false;
+    const auto [a, b, c] = pose_.world_triangle(hit.mesh_id, hit.triangle_id);
+    const Vec3 point = a + double{hit.u} * (b - a) + double{hit.v} * (c - a);
+    return std::abs(cavities_[static_cast<size_t>(cavity)].mouth.height(point)) > tolerance_;
+  }
+
+  PosedScene pose_;
+  const std::vector<RcsCavity>& cavities_;
+  double tolerance_;            // m
+  std::vector<int> cavity_of_;  // [mesh_id], -1: none
+};
+
 // `scale` is in m^2 per W at the antenna port for 1 W transmitted.
-RadarCrossSection cross_section(const Paths& paths, int receiver, double scale, Job* job) {
+RadarCrossSection cross_section(const Paths& paths, int receiver, const Vec3& centre, double scale, Job* job) {
   const ReceivedPower power = received_power(paths, job, {0, receiver});
   const double bias = power.bias / kReachOfBias;
   RadarCrossSection out;
@@ -130,6 +176,9 @@ RadarCrossSection cross_section(const Paths& paths, int receiver, double scale, 
   out.diffuse_error = scale * power.diffuse_error;
   out.error_db = paths.frame.error_db;
   out.high = scale * power.high;
+  const double wavenumber = kTwoPi * paths.radar.waveform.start_frequency / kSpeedOfLight;
+  out.field = power.field * std::sqrt(scale / (4.0 * kPi)) *
+              std::polar(1.0, wavenumber * length_over_origin(paths, receiver, centre));
   return out;
 }
 
@@ -164,15 +213,18 @@ std::vector<RadarCrossSection> rcs(const Scene& scene, std::span<const RcsDirect
     add_shots(target, directions[i], distance, settings, i * settings.channels.size(), shots);
   }
 
+  std::optional<OutsideOfCavities> outside;
+  if (!settings.cavities.empty()) outside.emplace(scene, settings.cavities, kInPlane * target.radius);
   std::vector<RadarCrossSection> out(directions.size() * settings.channels.size());
   const bool is_one = shots.size() == 1;  // its progress is that of its trace, else by shots
   if (job) job->start(static_cast<int64_t>(shots.size()));
   KeptGeometry kept;
   for (const Shot& shot : shots) {
     Job part(job);
-    const Paths paths = shoot(snapshot, shot.radar, settings, is_one && job ? job : &part, &kept);
+    Paths paths = shoot(snapshot, shot.radar, settings, is_one && job ? job : &part, &kept);
+    if (outside) paths = outside->select(paths, &part);
     for (size_t i = 0; i < shot.channels.size(); ++i) {
-      out[shot.channels[i]] = cross_section(paths, static_cast<int>(i), scale, &part);
+      out[shot.channels[i]] = cross_section(paths, static_cast<int>(i), target.centre, scale, &part);
     }
     if (job && !is_one) job->advance(1);
   }

@@ -1,9 +1,11 @@
 #pragma once
 // Computes radar cross sections: what a target alone returns to antennas far away.
+#include <complex>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "echopath/base/plane.h"
 #include "echopath/base/threads/job.h"
 #include "echopath/scene/scene.h"
 #include "echopath/sim/rays/trace_to_error.h"
@@ -32,6 +34,12 @@ struct RcsChannel {
   RcsPolarization transmit, receive;
 };
 
+// Describes a cavity whose inside someone else computes.
+struct RcsCavity {
+  std::vector<uint32_t> walls;  // mesh IDs
+  Plane mouth;                  // the plane in which it opens
+};
+
 struct RcsSettings {
   double frequency = 77e9;  // Hz
   std::vector<RcsChannel> channels = {RcsChannel{}};
@@ -40,6 +48,8 @@ struct RcsSettings {
   TraceSettings tracing{.num_rays = 1 << 17};
   // Doubles the rays until the first channel of each transmit polarisation is known that well (sim/rays/trace_to_error.h).
   std::optional<ErrorTarget> target;
+  // Leaves out the paths that touch walls of a cavity anywhere but in the plane of its mouth.
+  std::vector<RcsCavity> cavities;
 
   // Raises invalid_argument naming the field, the rule and the value.
   void validate() const;
@@ -55,6 +65,9 @@ struct RadarCrossSection {
   double diffuse = 0.0, diffuse_error = 0.0;
   double error_db = 0.0;  // dB, what was reached where there is a target; else 0
   double high = 0.0;      // upper end of the 95 % interval of `total`, of bias and chance together
+  // m: a wave of 1 V/m whose phase is 0 at the world's origin has the coherent echo field e^{-jkr}/r V/m. With one batch
+  // `coherent` is 4 pi |field|^2.
+  std::complex<double> field = 0.0;
 };
 
 // Computes sigma = |sum a e^{-jkL}|^2 (4 pi)^3 R^4 / (Q^2 lambda^2) for each pair, of the scene at time 0, from isotropic
@@ -62,7 +75,8 @@ struct RadarCrossSection {
 // amplitude to 1e-4. Returns [pair * channels + channel]. Each pair and transmit polarisation costs a trace of its own,
 // which the channels of that polarisation share.
 // Raises invalid_argument for bad settings, a zero direction, a direction along a polarization vector, a scene without
-// meshes and one with mirrors: they stand for planes without end, which have no cross section.
+// meshes and one with mirrors: they stand for planes without end, which have no cross section. Raises out_of_range for walls
+// of cavities that are no meshes of the scene.
 std::vector<RadarCrossSection> rcs(const Scene& scene, std::span<const RcsDirections> directions,
                                    const RcsSettings& settings, Job* job = nullptr);
 

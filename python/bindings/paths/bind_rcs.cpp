@@ -2,9 +2,13 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
+#include <complex>
 #include <optional>
 #include <sstream>
 #include <string>
+#include <tuple>
+#include <vector>
 
 #include "call/run_job.h"
 #include "call/warn.h"
@@ -104,6 +108,31 @@ py::object columns(const std::vector<RadarCrossSection>& entries, const Shape& s
   return parts;
 }
 
+// The coherent echoes as fields in m, and the diffuse ones as cross sections in m^2.
+py::dict fields_of(const std::vector<RadarCrossSection>& entries, const Shape& shape) {
+  std::vector<std::complex<double>> fields;
+  std::vector<double> diffuse;
+  for (const RadarCrossSection& entry : entries) {
+    fields.push_back(entry.field);
+    diffuse.push_back(entry.diffuse);
+  }
+  py::dict parts;
+  parts["field"] = numpy_take(std::move(fields), shape);
+  parts["diffuse"] = numpy_take(std::move(diffuse), shape);
+  return parts;
+}
+
+// Mesh IDs of the walls; a point of the mouth, its normal.
+using CavityTuple = std::tuple<std::vector<uint32_t>, std::array<double, 3>, std::array<double, 3>>;
+
+std::vector<RcsCavity> cavities_of(const std::vector<CavityTuple>& tuples) {
+  std::vector<RcsCavity> cavities;
+  for (const auto& [walls, point, normal] : tuples) {
+    cavities.push_back({walls, {Vec3(point.data()), Vec3(normal.data())}});
+  }
+  return cavities;
+}
+
 void warn_of_missed_targets(const std::vector<RadarCrossSection>& entries, double target_error_db) {
   int64_t missed = 0;
   double worst = 0.0;
@@ -147,7 +176,7 @@ py::object rcs_of(Scene scene, double frequency, const py::object& incidence, co
                   const py::object& polarization, std::optional<int64_t> num_rays, int max_bounces, uint64_t seed,
                   const std::string& footprint, const std::string& sampler, std::optional<int> batches,
                   std::optional<double> target_error_db, int64_t max_rays, bool edges, bool components, bool return_error,
-                  const py::object& progress) {
+                  const std::vector<CavityTuple>& cavities, const py::object& progress) {
   bool is_one = false;
   const std::vector<RcsDirections> pairs = pairs_of(incidence, observation, is_one);
   const Channels channels = channels_of(polarization);
@@ -161,6 +190,7 @@ py::object rcs_of(Scene scene, double frequency, const py::object& incidence, co
   settings.frequency = frequency;
   settings.channels = channels.rows;
   settings.target = effort.target;
+  settings.cavities = cavities_of(cavities);
   tracing.num_rays = effort.num_rays;
   tracing.max_bounces = max_bounces;
   tracing.seed = seed;
@@ -178,6 +208,7 @@ py::object rcs_of(Scene scene, double frequency, const py::object& incidence, co
   Shape shape;
   if (!is_one) shape.push_back(static_cast<py::ssize_t>(pairs.size()));
   if (channels.is_list) shape.push_back(static_cast<py::ssize_t>(channels.rows.size()));
+  if (!cavities.empty()) return fields_of(entries, shape);
   const py::object values = columns(entries, shape, components, false);
   return return_error ? py::make_tuple(values, columns(entries, shape, components, true)) : values;
 }
@@ -194,8 +225,10 @@ void bind_rcs(py::module_& m) {
         py::arg("num_rays") = py::none(), py::arg("max_bounces") = 4, py::arg("seed") = 1,
         py::arg("footprint") = "second_order", py::arg("sampler") = "lattice", py::arg("batches") = py::none(),
         py::arg("target_error_db") = py::none(), py::arg("max_rays") = kMaxRays, py::arg("edges") = false,
-        py::arg("components") = false, py::arg("return_error") = false, py::arg("progress") = py::none(),
-        "What ep.rcs calls.");
+        py::arg("components") = false, py::arg("return_error") = false, py::arg("cavities") = py::list(),
+        py::arg("progress") = py::none(),
+        "What ep.rcs calls. cavities: list of (mesh IDs of the walls, a point of the mouth, its normal); with any, returns "
+        "{field: complex, m; diffuse: m^2} of what stays outside of them.");
   m.def("mie_rcs", &mie_rcs_of, py::arg("radius"), py::arg("frequency"), py::arg("bistatic_angle") = 0.0,
         py::arg("plane") = "H", "What ep.mie_rcs calls.");
 }

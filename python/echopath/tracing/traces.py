@@ -11,6 +11,8 @@ from .. import _core
 from ..arguments.checks import ArrayLike, Progress, array, checked, flag, one_of, optional, positive, real, shown
 from ..arguments.effects import Choices
 from ..arguments.settings import Edges, Footprint, Polarization, Sampler, Scatterers, TraceSettings
+from ..cavities.cavity import Cavity
+from ..cavities.cross_sections import rcs_with_cavities
 from ..scene.sizes import warn_of_sizes
 from ..weather.weather import attenuation_of
 from .edges import looks_for_edges
@@ -107,19 +109,28 @@ def _polarization(argument: str, value):
     return array("[3]", "[2, 3]", finite=True)(argument, value)
 
 
+def _cavities(argument: str, value) -> tuple[Cavity, ...]:
+    """None, a Cavity or several."""
+    if value is None or isinstance(value, Cavity):
+        return () if value is None else (value,)
+    if not isinstance(value, (list, tuple)) or not all(isinstance(one, Cavity) for one in value):
+        raise TypeError(f"{argument}: must be a Cavity, a list of them or None, got {shown(value)}")
+    return tuple(value)
+
+
 _DIRECTIONS = array("[3]", "[N, 3]", finite=True)
 _FREQUENCY = real(above=0.0, high=HIGHEST_FREQUENCY, unit="Hz")
 
 
 @checked(**TraceSettings.RULES | {
     "frequency": _FREQUENCY, "incidence": _DIRECTIONS, "observation": optional(_DIRECTIONS), "polarization": _polarization,
-    "model": one_of(Polarization), "edges": flag, "components": flag, "return_error": flag})
+    "model": one_of(Polarization), "edges": flag, "cavities": _cavities, "components": flag, "return_error": flag})
 def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observation: ArrayLike | None = None,
         polarization: ArrayLike | Channel | Sequence[Channel] = (0.0, 0.0, 1.0), model: Polarization = "auto",
         num_rays: int | float | None = None, max_bounces: int = TraceSettings.max_bounces, seed: int = TraceSettings.seed,
         footprint: Footprint = TraceSettings.footprint, sampler: Sampler = TraceSettings.sampler, batches: int | None = None,
         target_error_db: float | None = None, max_rays: int | float = TraceSettings.max_rays,
-        edges: bool = False, components: bool = False,
+        edges: bool = False, cavities: Cavity | Sequence[Cavity] | None = None, components: bool = False,
         return_error: bool = False, progress: Progress = None
         ) -> CrossSections | dict[str, CrossSections] | tuple[CrossSections | dict[str, CrossSections], ...]:
     """Radar cross section of a scene in m^2, far field, at time 0.
@@ -140,6 +151,11 @@ def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observati
     batches: as in `trace`; None: 8 for return_error, else 1
     target_error_db: dB; doubles the rays, from num_rays (16 384 unless given) to at most max_rays, as `trace` does, until
         each cross section, of a list of polarizations the first with each transmitter, is known that well
+    cavities: hollows in perfect conductors, of which rays know little where they are a few wavelengths wide: a Cavity or
+        several. Rays go on outside of them, and their edges count at the mouth alone; what the mouth lets in is a wave, whose
+        currents on the walls an equation of twice as many unknowns as there are facets of a quarter of a wavelength tells (at
+        most 8000 facets; time goes as their cube, memory as their square). What stands in a mouth's way is not seen by
+        these waves, nor do they go from one cavity to another. Not with several batches, return_error or target_error_db
     components: True returns {"coherent": ..., "diffuse": ...}, which add up to the cross section
     return_error: True returns (cross section, standard error), alike in shape; the error, in m^2, is that of the batches and,
         as root sum of squares, what the footprints of too few rays may leave out. Each batch has a part of the rays alone,
@@ -159,6 +175,12 @@ def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observati
     if not is_one and model == SCALAR:
         raise ValueError(f"model: 'scalar' takes one vector for both antennas as polarization, got {shown(polarization)}")
     both = np.array([polarization, polarization]) if is_one and chosen == FIELD_VECTORS else polarization
+    if cavities:
+        if return_error or target_error_db is not None or (batches or 1) > 1:
+            raise ValueError("cavities: must be left out with return_error, target_error_db or several batches")
+        return rcs_with_cavities(scene, cavities, frequency=frequency, incidence=incidence, observation=observation,
+                                 polarization=both, num_rays=num_rays, max_bounces=max_bounces, seed=seed,
+                                 footprint=footprint, sampler=sampler, edges=edges, components=components, progress=progress)
     return _core.rcs(scene, frequency=frequency, incidence=incidence, observation=observation, polarization=both,
                      num_rays=num_rays, max_bounces=max_bounces, seed=seed, footprint=footprint, sampler=sampler,
                      batches=batches, target_error_db=target_error_db, max_rays=max_rays, edges=edges, components=components,

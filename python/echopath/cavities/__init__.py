@@ -1,0 +1,1 @@
+"""Hollows in metal whose inside is computed by waves in place of rays."""

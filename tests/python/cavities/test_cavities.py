@@ -1,0 +1,126 @@
+"""Waves in cavities against the modes of a shorted guide."""
+import numpy as np
+import pytest
+
+import echopath as ep
+from support.rcs_targets import in_plane
+from support.references.guide_modes import echo_of_shorted_guide
+from support.shapes import METAL, plate, rectangle, scene_of
+
+FREQUENCY = 10e9  # Hz
+WAVENUMBER = 2.0 * np.pi * FREQUENCY / ep.speed_of_light
+WIDTH, HEIGHT, DEPTH = 0.115, 0.085, 0.05  # m: 3.8 by 2.8 by 1.7 wavelengths; no mode is near its cut-off
+AZIMUTHS = np.arange(0.0, 65.0, 8.0)       # deg
+MODES_TOLERANCE = 0.1    # of the strongest field: modes that are cut off, and what the mouth sends back; .04 to .085 found
+RECIPROCITY = 1e-9      # of the strongest field: rounding
+
+
+def guide(**other):
+    """Five walls, and the cavity that they line."""
+    low = np.array([-DEPTH, -WIDTH / 2, -HEIGHT / 2])
+    x, y, z = np.diag([DEPTH, WIDTH, HEIGHT])
+    walls = {"left": (low, x, z), "right": (low + y, x, z), "floor": (low, x, y), "top": (low + z, x, y), "rear": (low, y, z)}
+    scene = scene_of(**{name: (rectangle(*one), METAL) for name, one in walls.items()}, **other)
+    mouth = low + x
+    return scene, ep.Cavity(tuple(walls), [mouth, mouth + y, mouth + y + z, mouth + z])
+
+
+def echoes(scene, cavity, polarization, azimuths=AZIMUTHS, **keywords):
+    return ep.rcs(scene, frequency=FREQUENCY, incidence=in_plane(azimuths), polarization=polarization, num_rays=4096,
+                  cavities=cavity, **keywords)
+
+
+def modes(polarization):
+    """Fields over AZIMUTHS; the first is along the axis."""
+    return echo_of_shorted_guide(WAVENUMBER, WIDTH, HEIGHT, DEPTH, np.radians(AZIMUTHS), polarization)
+
+
+@pytest.mark.parametrize("polarization", ["vv", "hh"])
+def test_a_shorted_guide_has_the_echo_of_its_modes(polarization):
+    expected = np.abs(modes(polarization))
+    found = np.sqrt(echoes(*guide(), polarization) / (4.0 * np.pi))
+    assert np.abs(found - expected).max() < MODES_TOLERANCE * expected.max()
+
+
+@pytest.mark.parametrize("polarization", ["vv", "hh", (0.0, 0.0, 1.0)])
+def test_waves_inside_add_to_rays_outside_as_fields(polarization):
+    """A plate beside the mouth is moved along its normal: its own echo is -jk A/(2 pi), and the fringes tell the other field."""
+    side, wavelength = 0.06, ep.speed_of_light / FREQUENCY
+    of_plate = -1j * WAVENUMBER * side ** 2 / (2.0 * np.pi)
+    fringes = []
+    for shift in np.arange(4) / 8.0 * wavelength:
+        scene, cavity = guide(plate=(plate((shift, 0.0, 0.3), (1, 0, 0), side), METAL))
+        fringes.append(echoes(scene, cavity, polarization, [0.0])[0] / (4.0 * np.pi))
+    product = 0.25 * (fringes[0] - fringes[2] + 1j * (fringes[3] - fringes[1]))  # of the plate and the conjugate of the guide
+    expected = modes("hh" if polarization == "hh" else "vv")
+    assert abs(np.conj(product / of_plate) - expected[0]) < MODES_TOLERANCE * np.abs(expected).max()
+
+
+def test_both_directions_may_change_places():
+    scene, cavity = guide()
+    one, other = in_plane([10.0, 40.0, 55.0]), in_plane([-25.0, 0.0, 20.0])
+    one[:, 2], other[:, 2] = 0.3, -0.2
+    for channel, back in (("vv", "vv"), ("hh", "hh"), ("vh", "hv")):
+        there, opposite = (ep.rcs(scene, frequency=FREQUENCY, incidence=i, observation=o, polarization=p, num_rays=4096,
+                                  cavities=[cavity]) for i, o, p in ((one, other, channel), (other, one, back)))
+        assert np.abs(np.sqrt(there) - np.sqrt(opposite)).max() < RECIPROCITY * np.sqrt(there).max()
+
+
+def test_names_of_channels_are_those_of_vectors():
+    """Of the waves alone, off the horizontal plane and along the z axis."""
+    from echopath.cavities.cross_sections import _polarization
+
+    sight = np.array([[0.6, 0.0, 0.8], [0.0, 0.6, -0.8], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])
+    horizontal, vertical = (_polarization(part, sight) for part in "hv")
+    assert horizontal == pytest.approx(np.array([[0, 1, 0], [-1, 0, 0], [1, 0, 0], [-1, 0, 0]]), abs=1e-12)
+    assert vertical == pytest.approx(np.cross(sight, horizontal), abs=1e-12)
+    assert vertical[0] == pytest.approx([-0.8, 0.0, 0.6])
+
+
+def test_nothing_comes_out_behind_the_mouth():
+    scene, cavity = guide()
+    assert echoes(scene, cavity, "vv", [120.0, 180.0]) == pytest.approx(0.0, abs=1e-15)
+
+
+def test_parts_and_shapes_are_those_of_other_cross_sections():
+    scene, cavity = guide()
+    both = echoes(scene, cavity, ["vv", "hh"], [0.0, 10.0])
+    assert both.shape == (2, 2) and both[:, 1] == pytest.approx(echoes(scene, cavity, "hh", [0.0, 10.0]))
+    parts = ep.rcs(scene, frequency=FREQUENCY, incidence=(1, 0, 0), polarization="vv", cavities=cavity, components=True)
+    assert parts == {"coherent": pytest.approx(both[0, 0], rel=1e-6), "diffuse": 0.0}
+    assert isinstance(parts["coherent"], float)
+
+
+def test_a_cavity_is_a_value():
+    cavity = guide()[1]
+    assert cavity == guide()[1] and hash(cavity) == hash(guide()[1]) and cavity != ep.Cavity("left", cavity.mouth)
+
+
+@pytest.mark.parametrize("mouth", [[(0, 0, 0), (0, 1, 0)], [(0, 0, 0), (0, 1, 0), (0, 2, 0)],
+                                   [(0, 0, 0), (0, 1, 0), (0, 0, 1), (0, 1, 1)], [(0, 0, 0), (0, 1, 0), (0.1, 1, 1), (0, 0, 1)]])
+def test_mouths_are_flat_and_convex(mouth):
+    with pytest.raises(ValueError, match="^mouth: "):
+        ep.Cavity("wall", mouth)
+
+
+def test_wrong_cavities_are_told_of():
+    scene, cavity = guide()
+    with pytest.raises(TypeError, match="^walls: "):
+        ep.Cavity(3, cavity.mouth)
+    with pytest.raises(KeyError, match="celing"):
+        echoes(scene, ep.Cavity("celing", cavity.mouth), "vv")
+    with pytest.raises(ValueError, match="must close the cavity"):
+        echoes(scene, ep.Cavity(cavity.walls[:-1], cavity.mouth), "vv")
+    with pytest.raises(TypeError, match="^cavities: "):
+        echoes(scene, "left", "vv")
+    with pytest.raises(ValueError, match="^cavities: .*return_error"):
+        echoes(scene, cavity, "vv", return_error=True)
+    with pytest.raises(ValueError, match="facets"):
+        ep.rcs(scene, frequency=100e9, incidence=(1, 0, 0), num_rays=1024, cavities=cavity)
+
+
+def test_walls_are_perfect_conductors():
+    scene, cavity = guide()
+    scene["left"].material = "concrete"
+    with pytest.raises(ValueError, match="perfect conductors, mesh 'left'"):
+        echoes(scene, cavity, "vv")

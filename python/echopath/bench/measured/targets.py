@@ -12,7 +12,8 @@ import echopath as ep
 
 INCH, BOX_LENGTH = 0.0254, 0.4             # m
 ARC = np.radians(2.5)                      # between the bends of round walls
-DUCT_RADIUS, DUCT_DEPTH = 0.375, 0.75      # of the round duct, over the length of its box
+DUCT_HALF_WIDTH, DUCT_HALF_HEIGHT = 0.1375, 0.105  # of the cobra duct, over the length of its box
+DUCT_RADIUS, DUCT_DEPTH = 0.375, 0.75      # of the round duct, likewise
 HUB_RADIUS, BLADE_RADIUS, BLADE_HALF = 0.1875, 0.35, np.radians(2.5)
 FAN_FROM, FAN_TO, FAN_STEM = 0.25 + 0.00381, 0.25 + 0.25381, 0.18228  # from the rear of the box, over its length
 ALMOND_LENGTH = 9.936 * INCH               # m
@@ -23,7 +24,8 @@ PRIME_LENGTH = 9.1875 * INCH               # m
 class Target:
     """A body of metal, and the name of its measurements.
 
-    theta_deg: of the radar, from +z; smooth: of its mesh
+    theta_deg: of the radar, from +z; smooth: of its mesh; cavity: whose inside is computed by waves, or None; its walls are
+    meshes `part_1` and on
     """
 
     name: str
@@ -31,6 +33,7 @@ class Target:
     make: Callable[[], list[ep.Mesh]]
     theta_deg: float = 90.0
     smooth: bool = False
+    cavity: ep.Cavity | None = None
 
 
 def mesh_of(polygons) -> ep.Mesh:
@@ -106,8 +109,8 @@ def at(x, outline) -> np.ndarray:
 
 
 def cobra_duct() -> list[ep.Mesh]:
-    """Set IIIS-B: a box with a duct that bends twice by 35 degrees, 0.275 wide and 0.21 high."""
-    half, bend, width = 0.105, np.radians(35.0), 0.1375
+    """Set IIIS-B: a box with a duct that bends twice by 35 degrees; the box, and the flat and both bent walls of the duct."""
+    half, bend, width = DUCT_HALF_HEIGHT, np.radians(35.0), DUCT_HALF_WIDTH
     turn = np.linspace(0.0, bend, 1 + round(bend / ARC))
     middle, down = [np.array([1.0, 0.0])], [0.0]
     for angle in turn:  # 0.025 straight, then about a centre below
@@ -127,8 +130,14 @@ def cobra_duct() -> list[ep.Mesh]:
     top_wall, right, bottom_wall, left = (wall(corners[k], corners[(k + 1) % 4]) for k in range(4))
     opening = np.array([(y, z) for y, z in ((-width, half), (width, half), (width, -half), (-width, -half), (-width, half))])
     nose = wall(at(1.0, opening), at(1.0, opening * (0.325 / 2.0 / width, 0.13 / half)))
-    rest = [*hull(0.325, 0.8, 0.26, 0.27, True), *nose, *right, *left, np.array([line[-1] for line in corners])]
-    return box_mesh(rest, top_wall, bottom_wall)
+    rest, rear = [*hull(0.325, 0.8, 0.26, 0.27, True), *nose], np.array([line[-1] for line in corners])
+    return box_mesh(rest, [*right, *left, rear], top_wall, bottom_wall)
+
+
+def cavity_of_cobra_duct() -> ep.Cavity:
+    """Its duct, which opens in the nose of the box."""
+    corners = [(0.5, y * DUCT_HALF_WIDTH, z * DUCT_HALF_HEIGHT) for y, z in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+    return ep.Cavity(("part_1", "part_2", "part_3"), np.array(corners) * BOX_LENGTH)
 
 
 def round_duct_walls() -> list[list[np.ndarray]]:

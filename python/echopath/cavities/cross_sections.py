@@ -15,6 +15,7 @@ def rcs_with_cavities(scene: _core.Scene, cavities: tuple[Cavity, ...], *, frequ
                       components, **tracing):
     """What `ep.rcs` returns, of rays that stay outside of the cavities and the waves in these, in m^2."""
     walls = [([mesh.id for mesh in one.meshes_in(scene)], one.mouth[0], _normal_of(one)) for one in cavities]
+    _check_walls(scene, [mesh for meshes, _, _ in walls for mesh in meshes])
     rays = _core.rcs(scene, frequency=frequency, incidence=incidence, observation=observation, polarization=polarization,
                      cavities=walls, **tracing)
     wavenumber = 2.0 * np.pi * frequency / _core.speed_of_light
@@ -31,6 +32,13 @@ def rcs_with_cavities(scene: _core.Scene, cavities: tuple[Cavity, ...], *, frequ
     parts = {name: float(part) if np.ndim(part) == 0 else part
              for name, part in (("coherent", coherent), ("diffuse", rays["diffuse"]))}
     return parts if components else parts["coherent"] + parts["diffuse"]
+
+
+def _check_walls(scene, meshes: list) -> None:
+    """Raises ValueError for a mesh that lines two cavities. meshes: IDs of the walls of all"""
+    twice = [mesh.name for mesh in scene.meshes if meshes.count(mesh.id) > 1]
+    if twice:
+        raise ValueError(f"cavities: each mesh must line one cavity, {twice[0]!r} lines two")
 
 
 def _normal_of(cavity) -> np.ndarray:

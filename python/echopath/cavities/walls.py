@@ -17,6 +17,7 @@ OFFSET = 0.3719          # of that part: normals along the axes do not lie betwe
 ROUNDS = 12
 POINTS_AT_ONCE = 4096
 MOST_FACETS = 8000       # of the walls: 4 GB
+MOST_TRIANGLES = 5000    # of walls and mouth as they are given: each is looked at from each
 LIFT = 1e-4              # of the root of a triangle's area, from which it is seen which of its sides is inside
 TRIANGLES_AT_ONCE = 64
 # No directions of a body's symmetry; a hole shows in one of them at least.
@@ -47,14 +48,17 @@ def facets_of(scene: _core.Scene, cavity: Cavity, wavelength: float) -> tuple[Fa
     """Those of the walls, and of the mouth, at time 0.
 
     wavelength: m. Raises KeyError for names that the scene does not have; ValueError for walls that are no perfect
-    conductors, that do not close the cavity but for its mouth, or that are too large.
+    conductors, that do not close the cavity but for its mouth, or that are too large or too fine.
     """
     walls = np.concatenate([_corners_of(scene, mesh) for mesh in cavity.meshes_in(scene)])
     mouth = cavity.triangles_of_mouth
+    if len(walls) + len(mouth) > MOST_TRIANGLES:
+        raise ValueError(f"cavities: walls must have at most {MOST_TRIANGLES} triangles, got {len(walls)}")
+    for name, corners, side in (("walls", walls, SIDE), ("mouth", mouth, SIDE_IN_MOUTH)):
+        least = int(areas_of(corners).sum() / (side * wavelength) ** 2)
+        if least > MOST_FACETS:
+            raise ValueError(f"cavities: {name} must have at most {MOST_FACETS} facets of {side} wavelengths, got {least}")
     normals = inward_normals(np.concatenate([walls, mouth]))
-    least = int(areas_of(walls).sum() / (SIDE * wavelength) ** 2)
-    if least > MOST_FACETS:
-        raise ValueError(f"cavities: walls must have at most {MOST_FACETS} facets of {SIDE} wavelengths, got {least}")
     return (_parted(walls, normals[:len(walls)], SIDE * wavelength),
             _parted(mouth, normals[len(walls):], SIDE_IN_MOUTH * wavelength))
 

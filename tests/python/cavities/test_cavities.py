@@ -117,6 +117,11 @@ def test_wrong_cavities_are_told_of():
         echoes(scene, cavity, "vv", return_error=True)
     with pytest.raises(ValueError, match="facets"):
         ep.rcs(scene, frequency=100e9, incidence=(1, 0, 0), num_rays=1024, cavities=cavity)
+    with pytest.raises(ValueError, match="^cavities: each mesh must line one cavity, 'left' lines two"):
+        echoes(scene, [cavity, ep.Cavity("left", cavity.mouth)], "vv")
+    fine = scene_of(wall=(ep.actors.plate(0.1, 0.1, edge=0.00196), METAL))
+    with pytest.raises(ValueError, match="at most 5000 triangles, got 5408"):
+        echoes(fine, ep.Cavity("wall", cavity.mouth), "vv")
 
 
 def test_walls_are_perfect_conductors():

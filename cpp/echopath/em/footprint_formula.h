@@ -26,8 +26,8 @@ ECHOPATH_INLINE Real first_order_footprint_of(const FootprintPhaseOf<Real>& phas
   return Math::exp((phase.g1 * phase.g1 + phase.g2 * phase.g2) * (-1.0 / 24.0));
 }
 
-// Holds a footprint as (root.re - j root.im) size e^{j turn}: behind curved bounces the turn can go through many cycles while
-// a body moves by a few wavelengths, and all else changes slowly.
+// Holds a footprint as (root.re - j root.im) size e^{j turn}: behind curved bounces the turn can go through many cycles
+// while a body moves by a few wavelengths, and all else changes slowly.
 template <class Real>
 struct TurningFootprint {
   ComplexOf<Real> root;

@@ -58,9 +58,9 @@ class Replayer {
   // Returns whether a path can have an echo by turning(): where its amplitude is that of a launch cell.
   bool can_turn(int64_t path) const;
   // Interpolates the logarithms of amplitudes by a polynomial that follows the lengths: it follows the steep or turning
-  // phases of waves from curved surfaces that leave amplitudes no polynomial of few nodes (TimeSampling::has_logarithms). All
-  // paths must be able to. Those whose logarithms the polynomial does not follow are left out and added to `unfollowed`, in
-  // their order, with no more said than their index.
+  // phases of waves from curved surfaces, of which no polynomial of few nodes follows the amplitudes
+  // (TimeSampling::has_logarithms). All paths must be able to. Those whose logarithms it does not follow are left out and
+  // added to `unfollowed`, in their order, with no more said than their index.
   std::vector<Echoes> turning(std::span<const int64_t> paths, int polynomial, std::vector<UnfollowedPath>& unfollowed) const;
   // Poses meshes that some paths touch, as PartlyPosedGrid::with takes them, at all nodes of a grid of chirps or samples,
   // which both functions below take; the replayer must outlive it.

@@ -21,8 +21,8 @@ struct TimeSampling {
   // Where this is set, the rows of a chirp do not hold values at several nodes but the chirp's own value, slope, second and
   // third derivative, as many as the order.
   bool holds_derivatives = false;
-  // Where this is set, amplitudes stand as (natural logarithm of the size, phase in rad) and are interpolated as such: so few
-  // rows hold a phase that turns through many cycles. Phases go on beyond one turn from row to row.
+  // Where this is set, amplitudes stand as (natural logarithm of the size, phase in rad) and are interpolated as such: so
+  // few rows hold a phase that turns through many cycles. Phases go on beyond one turn from row to row.
   bool has_logarithms = false;
   // Returns whether all chirps see the one row: then the echoes do not move, and are synthesised once for all chirps.
   bool is_static() const { return num_rows == 1; }

@@ -20,7 +20,7 @@ bool take_logarithms(size_t num_nodes, size_t stride, const double* turn, std::c
   double before = 0.0;
   for (size_t node = 0; node < num_nodes; ++node, turn += stride, amplitude += stride) {
     const double size = std::abs(*amplitude), own = std::arg(*amplitude);
-    if (!(size > 0.0)) return false;
+    if (!(size > 0.0) || !std::isfinite(*turn)) return false;
     const double phase = node == 0 ? own : before + std::remainder(own - before, 2.0 * M_PI);
     if (node > 0 && std::abs(phase - before) > kLargestStep) return false;
     before = phase;
@@ -34,8 +34,7 @@ bool take_logarithms(size_t num_nodes, size_t stride, const double* turn, std::c
 // Images have no launch cell, and edges have a filter of their own.
 bool Replayer::can_turn(int64_t path) const {
   const auto p = static_cast<size_t>(path);
-  return radio_.footprint != Footprint::kEdges && paths_.diffuse[p] == 0 && paths_.stratum[p] != kNoStratum &&
-         (paths_.flags[p] & kEdgePath) == 0;
+  return radio_.footprint != Footprint::kEdges && paths_.diffuse[p] == 0 && paths_.stratum[p] != kNoStratum;
 }
 
 std::vector<Echoes> Replayer::turning(std::span<const int64_t> indices, int index,

@@ -47,7 +47,7 @@ struct TileAtChirps {
   static constexpr int kCapacity = 256;  // echoes: carriers of kMaxChirps chirps stay in the first-level cache
   static constexpr int kMaxChirps = 4;   // for which the nodes are read once
   const double* nodes;                   // [vectors of kLanes echoes, num_nodes, (delay, re, im), kLanes]
-  int count;                             // echoes; the last vector is filled up with zero amplitudes
+  int count;                             // echoes; the last vector is filled up with echoes of amplitude 0
   int num_nodes, order;
   int num_chirps;        // 1 to kMaxChirps
   const int* first_row;  // [num_chirps], as in TimeSampling

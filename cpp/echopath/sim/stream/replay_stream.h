@@ -42,7 +42,7 @@ class ReplayStream {
         kept_samples_(radar.transmitters.size()) {}
 
   // From now on paths over the same hits make one echo where they agree in all of `labels` ([P] each, which must outlive
-  // the stream).
+  // the stream), but for those whose logarithms are interpolated (Replayer::turning).
   void join(std::vector<const std::vector<uint32_t>*> labels) { join_rule_.emplace(replayer_.join_rule(std::move(labels))); }
   // The watcher must outlive the stream.
   void watch(PathWatcher* watcher) { watcher_ = watcher; }
@@ -53,8 +53,8 @@ class ReplayStream {
   // Sends the paths to the sink, all of them or some (indices, of which those that are to be joined follow each other). A
   // stream that sends some at a time keeps the meshes as posed in each chirp, where paths need them, and at the samples of
   // all chirps where that is no more than kKeptSamples. Memory is bounded by the blocks in flight, 0.2 GiB of delays and
-  // amplitudes at 32 nodes a path, whatever the number of paths, chirps and channels; a sink that sorts them needs at most
-  // as much again. Beside these each thread works on 320 B for each channel and node of a block (SingleBounceEvaluation),
+  // amplitudes at 32 nodes a path (a third more of logarithms, for their turns), whatever the number of paths, chirps and
+  // channels; a sink that sorts them needs at most as much again. Beside these each thread works on 320 B for each channel and node of a block (SingleBounceEvaluation),
   // and on what chains of its paths share. `sink` is called from one thread at a time, while the next blocks are replayed.
   // Raises Cancelled.
   void run(const Sink& sink);

@@ -39,8 +39,9 @@ int draw(uint64_t seed, int64_t index, int dimension, int count) {
   return std::min(count - 1, static_cast<int>(unit * count));
 }
 
-// Returns whether the amplitude of an echo is 0 at all nodes.
+// Returns whether the amplitude of an echo is 0 at all nodes, of which there is no logarithm.
 bool is_dark(const Echoes& echoes, int64_t echo) {
+  if (echoes.sampling.has_logarithms) return false;
   for (size_t i = static_cast<size_t>(echo); i < echoes.amplitude.size(); i += static_cast<size_t>(echoes.num_echoes)) {
     if (echoes.amplitude[i] != 0.0) return false;
   }

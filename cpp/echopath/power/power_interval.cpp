@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kNormal = 1.959964;  // two-sided 95 % quantile
 constexpr double kOfHalving = 1.2, kOfHalvingMore = 3.0, kMostOfHalving = 5.0;
-constexpr double kAliases = 0.007, kOfFiner = 4.5, kHalvingPerFiner = 2.8;
+constexpr double kAliases = 0.007, kOfFiner = 4.0, kHalvingPerFiner = 2.8;
 constexpr double kGone = 0.5, kOfEdges = 1.25, kFaded = 0.2;
 constexpr double kPointsTimesField = 4.0, kPointsTimesFieldOfSeveral = 6.0;  // of one bounce and of several
 constexpr double kMostOfPoints = 2.5;
@@ -61,6 +61,10 @@ double missing_of_points(const CoherentKind& kind, int num_batches) {
   return size > 0.0 ? std::clamp(points / (times_field * size) - size, 0.0, most) : most;
 }
 
+// Returns the square of an error of which there are two estimates, from their squares. They are not independent, so that the
+// smaller one counts by half.
+double of_one_error(double one, double other) { return std::max(one, other) + 0.5 * std::min(one, other); }
+
 FieldBias field_bias(const PowerEvidence& evidence) {
   SumOfChanges above, below;
   double finer = 0.0, gone = 0.0, surface = 0.0;  // W
@@ -80,11 +84,11 @@ FieldBias field_bias(const PowerEvidence& evidence) {
     finer += squared(kOfFiner * std::max(0.0, of_finer - kAliases * size));
     const double in_phase = std::max(0.0, 1.0 - std::abs(kind.field[kHalfDensity]) / (kFaded * size));
     const double edges = squared(kOfEdges) * between_edges(kind, evidence.num_batches, in_phase);
-    const double still_changes = std::max(halving, kHalvingPerFiner * of_finer / size);
+    const double still_changes = kind.has_bounced ? std::max(halving, kHalvingPerFiner * of_finer / size) : halving;
     gone += squared(squared(std::min(still_changes / kGone, 1.0))) * edges;
   }
-  const double changes = std::max(above.size(), std::sqrt(finer)), shrinks = std::max(below.size(), std::sqrt(finer));
-  return {std::hypot(changes, std::sqrt(gone + surface)), std::hypot(shrinks, std::sqrt(surface))};
+  return {std::sqrt(of_one_error(squared(above.size()), finer) + gone + surface),
+          std::sqrt(of_one_error(squared(below.size()), finer) + surface)};
 }
 
 std::complex<double> field_of(const PowerEvidence& evidence) {

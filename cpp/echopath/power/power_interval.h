@@ -57,14 +57,14 @@ double power_between_rays(const CoherentKind& kind, int num_batches);
 // With d the change relative to |F|, the field may be off by kOfHalving d |F| where d is small, and by kOfHalvingMore d
 // times as much more where cells are too wide. Cells a little finer tell where the filter takes edges for a surface without
 // end: the field may be off by kOfFiner times the change there, of which kAliases |F| is the lattice showing through. Both
-// changes measure one error, of which the larger estimate counts.
+// changes measure one error: of the two estimates the square of the smaller one counts by half.
 // Between rays: the filter fades the wave of a point of reflection as cells outgrow its Fresnel zone, about as fast as what
 // cells hold of such points, P (power_between_rays), outgrows |F|^2. The field may then be as large as
 // P / (kPointsTimesField |F|), but larger than it is by no more than kMostOfPoints sqrt(P). Of waves of edges it may lack
-// kOfEdges times as much as cells hold, in full where d reaches kGone, or where kHalvingPerFiner times the change to finer
-// cells does: so much smaller is that change where errors fall with the square of a cell's side. Where cells twice as large
-// leave less than kFaded of the field, cells along an edge may be in phase, as are those of a straight edge across the line
-// of sight.
+// kOfEdges times as much as cells hold, in full where d reaches kGone; behind other bounces also where kHalvingPerFiner
+// times the change to finer cells does, by which that change is smaller where errors fall with the square of a cell's side.
+// Where cells twice as large leave less than kFaded of the field, cells along an edge may be in phase, as are those of a
+// straight edge across the line of sight.
 // The changes of all kinds add up as fields, but to no less than their root sum of squares, and all else as powers: kinds
 // whose echoes cancel are known as well as they are one by one. No field of a kind is known better than to kOfSurface,
 // however fine the cells: that is what the lattice and interpolated normals leave.

@@ -60,7 +60,7 @@ CoherentKind falls_with_the_square(double truth, double lost) {
   return kind;
 }
 
-// Coarser and finer cells tell of the same error: it is held, but not counted twice.
+// Coarser and finer cells tell of the same error: it is held, but not counted as two.
 TEST(PowerInterval, TwoMeasuresOfOneErrorCountOnce) {
   for (const double lost : {0.01, 0.03, 0.1}) {
     PowerEvidence evidence;
@@ -68,15 +68,16 @@ TEST(PowerInterval, TwoMeasuresOfOneErrorCountOnce) {
     evidence.coherent = std::norm(evidence.kinds.front().field[kAsLaunched]);
     const double above = std::sqrt(power_interval(evidence).high) - (1.0 - lost);
     EXPECT_GT(above, lost);
-    EXPECT_LT(above, 1.75 * lost);
+    EXPECT_LT(above, 1.8 * lost);
   }
 }
 
-// A field that changes with finer cells is not known, even where coarser cells leave it as it is. It may lack what cells
-// hold of edges, here a field as large as its own.
-TEST(PowerInterval, EdgesCountWhereFinerCellsChangeTheField) {
+// A field over several bounces that changes with finer cells is not known, even where coarser cells leave it as it is. It
+// may lack what cells hold of edges, here a field as large as its own.
+TEST(PowerInterval, EdgesOfSeveralBouncesCountWhereFinerCellsChangeTheField) {
   for (const double change : {0.0, 0.2}) {
     CoherentKind kind = falls_with_the_square(1.0, 0.0);
+    kind.has_bounced = true;
     kind.field[kFiner] = 1.0 + change;
     kind.power[kEdges] = 1.0;
     kind.edge_squares = 1e-3;

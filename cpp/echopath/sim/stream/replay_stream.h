@@ -54,9 +54,9 @@ class ReplayStream {
   // stream that sends some at a time keeps the meshes as posed in each chirp, where paths need them, and at the samples of
   // all chirps where that is no more than kKeptSamples. Memory is bounded by the blocks in flight, 0.2 GiB of delays and
   // amplitudes at 32 nodes a path (a third more of logarithms, for their turns), whatever the number of paths, chirps and
-  // channels; a sink that sorts them needs at most as much again. Beside these each thread works on 320 B for each channel and node of a block (SingleBounceEvaluation),
-  // and on what chains of its paths share. `sink` is called from one thread at a time, while the next blocks are replayed.
-  // Raises Cancelled.
+  // channels; a sink that sorts them needs at most as much again. Beside these each thread works on 320 B for each channel
+  // and node of a block (SingleBounceEvaluation), and on what chains of its paths share. `sink` is called from one thread at
+  // a time, while the next blocks are replayed. Raises Cancelled.
   void run(const Sink& sink);
   void run(std::span<const int64_t> paths, const Sink& sink);
   // Sets the job that is told from now on.

@@ -40,10 +40,8 @@ class Cavity:
 
     def meshes_in(self, scene: _core.Scene) -> list:
         """Its walls in a scene, a list of SceneMesh. Raises KeyError naming what the scene does not have."""
-        for name in self.walls:
-            scene[name]
-        return [mesh for mesh in scene.meshes
-                if any(mesh.name == name or mesh.name.startswith(name + "/") for name in self.walls)]
+        found = {mesh.id: mesh for name in self.walls for mesh in scene[name].meshes}
+        return [found[number] for number in sorted(found)]
 
     @property
     def triangles_of_mouth(self) -> np.ndarray:

@@ -16,10 +16,10 @@ def rcs_with_cavities(scene: _core.Scene, cavities: tuple[Cavity, ...], *, frequ
     """What `ep.rcs` returns, of rays that stay outside of the cavities and the waves in these, in m^2."""
     walls = [([mesh.id for mesh in one.meshes_in(scene)], one.mouth[0], _normal_of(one)) for one in cavities]
     _check_walls(scene, [mesh for meshes, _, _ in walls for mesh in meshes])
+    wavenumber = 2.0 * np.pi * frequency / _core.speed_of_light
+    facets = [facets_of(scene, one, 2.0 * np.pi / wavenumber) for one in cavities]  # before the rays: it may refuse them
     rays = _core.rcs(scene, frequency=frequency, incidence=incidence, observation=observation, polarization=polarization,
                      cavities=walls, **tracing)
-    wavenumber = 2.0 * np.pi * frequency / _core.speed_of_light
-    facets = [facets_of(scene, one, 2.0 * np.pi / wavenumber) for one in cavities]
     channels, is_list = _channels_of(polarization)
     toward, back = _directions_of(incidence, observation)
     pairs = [_across(toward, back, channel) for channel in channels]

@@ -2,9 +2,10 @@
 from __future__ import annotations
 
 import os
+import secrets
 import shutil
 import tempfile
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from .. import _core
@@ -25,24 +26,21 @@ def written_whole(path, suffix: str | None = None):
 
 
 def _written(path: Path, suffix: str | None):
-    temporary = None
+    ending = path.suffix if suffix is None else suffix
+    temporary = path.parent / f".{path.stem}-{secrets.token_hex(4)}{ending}"  # named before it is there: Ctrl-C may come between
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, temporary = tempfile.mkstemp(prefix=f".{path.stem}-", suffix=path.suffix if suffix is None else suffix,
-                                             dir=path.parent)
-        os.close(handle)
-        os.chmod(temporary, 0o666 & ~_umask())
-        yield Path(temporary)
+        temporary.touch(exist_ok=False)
+        yield temporary
         heed()
         flush(temporary)
         os.replace(temporary, path)
-        temporary = None
         flush(path.parent)
     except OSError as error:
         raise _core.FileError(f"{path}: cannot be written ({error.strerror or error})") from None
     finally:
-        if temporary is not None:
-            Path(temporary).unlink(missing_ok=True)
+        with suppress(OSError):
+            temporary.unlink(missing_ok=True)
 
 
 @contextmanager
@@ -106,12 +104,6 @@ def file_state(path) -> tuple | None:
     except (OSError, TypeError):
         return None
     return found.st_mtime_ns, found.st_size, found.st_ino
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
 
 
 def flush(path) -> None:

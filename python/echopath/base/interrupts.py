@@ -10,7 +10,7 @@ import sys
 import threading
 from contextlib import contextmanager
 
-_heard = threading.Event()
+_heard = False  # a plain value: an Event's lock may be held by the very line that the signal interrupts
 
 
 @contextmanager
@@ -22,7 +22,7 @@ def interrupts_are_kept():
         return
 
     def remember(number, frame):
-        _heard.set()
+        _note(True)
         before(number, frame)
 
     print_ignored = sys.unraisablehook
@@ -34,10 +34,15 @@ def interrupts_are_kept():
     finally:
         sys.unraisablehook = print_ignored
         signal.signal(signal.SIGINT, before)
-        _heard.clear()
+        _note(False)
 
 
 def heed() -> None:
     """Raises KeyboardInterrupt where Ctrl-C was pressed in the block around and nobody has seen it."""
-    if _heard.is_set():
+    if _heard:
         raise KeyboardInterrupt
+
+
+def _note(heard: bool) -> None:
+    global _heard
+    _heard = heard

@@ -6,6 +6,7 @@ import sys
 
 from .. import DeviceError
 from .._startup import EXIT_INTERRUPTED, STOPPED, loading_is_over
+from ..base.interrupts import interrupts_are_kept
 from .parser import command_parser
 
 EXIT_BAD_INPUT = 2
@@ -16,7 +17,8 @@ def main(arguments=None) -> int:
     try:
         loading_is_over()
         options = command_parser().parse_args(arguments)
-        options.command(options)
+        with interrupts_are_kept():
+            options.command(options)
         sys.stdout.flush()
     except KeyboardInterrupt:
         print(f"\n{STOPPED}", file=sys.stderr)

@@ -35,6 +35,7 @@ def view(options) -> None:
 def run(options) -> None:
     from . import report
     from ..base.progress import progress_bars
+    from .resumable import print_resumable
     from .run import certify, chosen_partition, raw_line, simulate_file, write_outputs
     from .run_sequence import is_sequence, run_sequence
     from ..scene_file import load_scene
@@ -48,8 +49,7 @@ def run(options) -> None:
                          "with one, where [[objects]] names it as model")
     chosen = chosen_partition(options.part, scene_file.partitions())
     if is_sequence(scene_file, options):
-        for line in run_sequence(scene_file, options, chosen):
-            print(line, flush=True)
+        print_resumable(run_sequence(scene_file, options, chosen), options.out)
         return
     with progress_bars() as progress:
         frame = simulate_file(scene_file, num_rays=options.rays, seed=options.seed,
@@ -103,9 +103,9 @@ def labels(options) -> None:
 
 def dataset(options) -> None:
     from .dataset import lines_of
+    from .resumable import print_resumable
 
-    for line in lines_of(options):
-        print(line, flush=True)
+    print_resumable(lines_of(options), options.out)
 
 
 def dataset_report(options) -> None:

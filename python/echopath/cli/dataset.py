@@ -1,7 +1,6 @@
 """Makes a dataset, on the command line."""
 from __future__ import annotations
 
-import sys
 from collections import Counter
 from collections.abc import Iterator
 
@@ -13,18 +12,14 @@ from .numbers import duration_words
 def lines_of(options) -> Iterator[str]:
     """Makes what the options ask for; yields a line for each scene that is made, and what came of all."""
     counts: Counter[str] = Counter()
-    try:
-        for told in make(options.template, options.out, workers=options.workers, shard=options.shard, frames=options.frames,
-                         only_failed=options.only_failed, scheduler=options.scheduler):
-            if isinstance(told, Forecast):
-                yield _forecast_line(told)
-                continue
-            counts["there" if told.was_there and told.record.state == "done" else told.record.state] += 1
-            if not told.was_there:
-                yield _line(told)
-    except KeyboardInterrupt:
-        print(f"\nthe same command goes on in {options.out}", file=sys.stderr)
-        raise
+    for told in make(options.template, options.out, workers=options.workers, shard=options.shard, frames=options.frames,
+                     only_failed=options.only_failed, scheduler=options.scheduler):
+        if isinstance(told, Forecast):
+            yield _forecast_line(told)
+            continue
+        counts["there" if told.was_there and told.record.state == "done" else told.record.state] += 1
+        if not told.was_there:
+            yield _line(told)
     yield ", ".join(f"{count} scenes {state}" for state, count in sorted(counts.items())) or "no scene was to be made"
     if counts["failed"]:
         yield f"{options.out}/{MANIFEST} says why; --only-failed tries again"

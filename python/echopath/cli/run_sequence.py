@@ -1,7 +1,6 @@
 """Frames in time of a scene file, on the command line."""
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator
 
 from ..base.progress import progress_bars
@@ -40,13 +39,9 @@ def run_sequence(scene_file: SceneFile, options, extra_parts: dict) -> Iterator[
         keywords["labels"] = True
     sequence = Sequence(scene_file.scene, scene_file.radar, frames=frames, interval=interval, **keywords)
     yield f"{scene_file.title or scene_file.path}: {frames} frames every {interval:g} s"
-    try:
-        with progress_bars() as progress:
-            for saved in sequence.save_frames(options.out, keep=keep or "all", shard=options.shard, progress=progress):
-                yield _line(saved, frames)
-    except KeyboardInterrupt:
-        print(f"\nthe same command goes on in {options.out}", file=sys.stderr)
-        raise
+    with progress_bars() as progress:
+        for saved in sequence.save_frames(options.out, keep=keep or "all", shard=options.shard, progress=progress):
+            yield _line(saved, frames)
     stored = load_sequence(options.out)
     yield f"wrote {stored}"
     if options.raw is not None:

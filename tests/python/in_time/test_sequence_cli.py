@@ -5,7 +5,6 @@ import re
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -105,15 +104,25 @@ def test_ctrl_c_leaves_a_folder_that_goes_on(scene_path, tmp_path):
     command = [sys.executable, "-m", "echopath", "run", scene_path, "--out", out, "--interval", "0.1", "--frames"]
     process = subprocess.Popen([*command, "2000"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                                preexec_fn=heed_ctrl_c)
-    deadline = time.monotonic() + WAIT
-    while not (out / "frame_0001.h5").exists() and time.monotonic() < deadline and process.poll() is None:
-        time.sleep(0.005)
+    told = [process.stdout.readline() for _ in range(3)]
     process.send_signal(signal.SIGINT)
-    told, said = process.communicate(timeout=WAIT)
+    said = process.communicate(timeout=WAIT)[1]
     assert process.returncode == 130 and f"the same command goes on in {out}" in said
     assert "no file was left half written" in said and "Traceback" not in said
-    assert not list(out.glob(".*")) and told.splitlines()[1].startswith("frame 1 of 2000 at 0 s: ")
+    assert not list(out.glob(".*")) and told[1].startswith("frame 1 of 2000 at 0 s: ")
     assert ep.load_sequence(out)[1].cube is not None
+
+
+def test_ctrl_c_while_a_line_is_printed_says_so_too(scene_path, tmp_path, monkeypatch, capsys):
+    def print_until_stopped(text, **keywords):
+        print(text, **keywords)
+        if text.startswith("frame 1 of 3"):
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr("echopath.cli.resumable.print", print_until_stopped, raising=False)
+    assert run(scene_path, tmp_path / "out", "--frames", 3, "--interval", 0.1) == 130
+    assert f"the same command goes on in {tmp_path / 'out'}" in capsys.readouterr().err
+    assert [path.name for path in (tmp_path / "out").glob("frame*")] == ["frame_0000.h5"]
 
 
 def test_the_viewer_takes_a_folder_or_several_files(monkeypatch):

@@ -3352,7 +3352,7 @@ def range_doppler(cube: typing.Any, radar: Radar, window: typing.Any = 'hann', z
     """
 def rcs(scene: Scene, *, frequency: float, incidence: typing.Any, observation: typing.Any = None, polarization: typing.Any = (0, 0, 1), num_rays: int | None = None, max_bounces: int = 4, seed: int = 1, footprint: str = 'second_order', sampler: str = 'lattice', batches: int | None = None, target_error_db: float | None = None, max_rays: int = 16777216, edges: bool = False, components: bool = False, return_error: bool = False, cavities: collections.abc.Sequence[tuple[collections.abc.Sequence[int], typing.Annotated[collections.abc.Sequence[float], "FixedSize(3)"], typing.Annotated[collections.abc.Sequence[float], "FixedSize(3)"]]] = [], progress: typing.Any = None) -> typing.Any:
     """
-    What ep.rcs calls. cavities: list of (mesh IDs of the walls, a point of the mouth, its normal); with any, returns {field: complex, m; diffuse: m^2} of what stays outside of them.
+    What ep.rcs calls. cavities: list of (mesh IDs of the walls, a point of the mouth, its normal); with any, returns {field: complex, m; diffuse: m^2} of what stays outside of them and, each [E, 3], unit vectors of all E waves: incidence, observation, transmitted, received.
     """
 def received_power(paths: Paths, *, tx: int = 0, rx: int = 0, progress: typing.Any = None) -> ReceivedPower:
     """

@@ -53,17 +53,6 @@ double far_distance(const Target& target, double wavenumber) {
   return distance;
 }
 
-// Returns a unit vector across the line of sight; the unit vector `toward` points to the antenna.
-Vec3 across(const RcsPolarization& polarization, const Vec3& toward) {
-  const TransverseBasis basis = transverse_basis(toward);
-  if (polarization.kind == RcsPolarization::Kind::kHorizontal) return basis.horizontal;
-  if (polarization.kind == RcsPolarization::Kind::kVertical) return basis.vertical;
-  const Vec3 unit = polarization.vector.normalized();
-  const Vec3 rest = unit - toward.dot(unit) * toward;
-  require(rest.norm() > kSmallestSine, "polarization", "must not lie along a direction, sine of the angle", rest.norm());
-  return rest.normalized();
-}
-
 Antenna far_antenna(const Target& target, const Vec3& direction, double distance, const RcsPolarization& polarization,
                     const char* name) {
   const double length = direction.norm();
@@ -71,7 +60,7 @@ Antenna far_antenna(const Target& target, const Vec3& direction, double distance
   const Vec3 toward = direction / length;
   Antenna antenna;
   antenna.position = target.centre + distance * toward;
-  antenna.polarization = across(polarization, toward);
+  antenna.polarization = polarization.across(toward);
   return antenna;
 }
 
@@ -183,6 +172,16 @@ RadarCrossSection cross_section(const Paths& paths, int receiver, const Vec3& ce
 }
 
 }  // namespace
+
+Vec3 RcsPolarization::across(const Vec3& toward) const {
+  const TransverseBasis basis = transverse_basis(toward);
+  if (kind == Kind::kHorizontal) return basis.horizontal;
+  if (kind == Kind::kVertical) return basis.vertical;
+  const Vec3 unit = vector.normalized();
+  const Vec3 rest = unit - toward.dot(unit) * toward;
+  require(rest.norm() > kSmallestSine, "polarization", "must not lie along a direction, sine of the angle", rest.norm());
+  return rest.normalized();
+}
 
 void RcsSettings::validate() const {
   require(std::isfinite(frequency) && frequency > 0, "frequency", "must be finite and > 0 Hz", frequency);

@@ -28,6 +28,9 @@ struct RcsPolarization {
   Kind kind = Kind::kVector;
   Vec3 vector = Vec3::UnitZ();  // kVector: world axes; its part across the line of sight counts
   bool operator==(const RcsPolarization&) const = default;
+  // Returns the unit vector of the polarisation of an antenna toward which the unit vector `toward` points. Raises
+  // invalid_argument for a `vector` along it.
+  Vec3 across(const Vec3& toward) const;
 };
 
 struct RcsChannel {

@@ -108,17 +108,34 @@ py::object columns(const std::vector<RadarCrossSection>& entries, const Shape& s
   return parts;
 }
 
-// The coherent echoes as fields in m, and the diffuse ones as cross sections in m^2.
-py::dict fields_of(const std::vector<RadarCrossSection>& entries, const Shape& shape) {
+// The coherent echoes as fields in m, the diffuse ones as cross sections in m^2, and beside each what the waves of both
+// antennas are: [E, 3] unit vectors toward them and of their polarisations, E entries with the channels of a pair together.
+py::dict fields_of(const std::vector<RadarCrossSection>& entries, const std::vector<RcsDirections>& pairs,
+                   const std::vector<RcsChannel>& channels, const Shape& shape) {
   std::vector<std::complex<double>> fields;
-  std::vector<double> diffuse;
+  std::vector<double> diffuse, incidence, observation, transmitted, received;
   for (const RadarCrossSection& entry : entries) {
     fields.push_back(entry.field);
     diffuse.push_back(entry.diffuse);
   }
+  const auto append = [](std::vector<double>& rows, const Vec3& row) { rows.insert(rows.end(), row.begin(), row.end()); };
+  for (const RcsDirections& pair : pairs) {
+    const Vec3 there = pair.incidence.normalized(), back = pair.observation.normalized();
+    for (const RcsChannel& channel : channels) {
+      append(incidence, there);
+      append(observation, back);
+      append(transmitted, channel.transmit.across(there));
+      append(received, channel.receive.across(back));
+    }
+  }
+  const Shape rows{static_cast<py::ssize_t>(entries.size()), 3};
   py::dict parts;
   parts["field"] = numpy_take(std::move(fields), shape);
   parts["diffuse"] = numpy_take(std::move(diffuse), shape);
+  parts["incidence"] = numpy_take(std::move(incidence), rows);
+  parts["observation"] = numpy_take(std::move(observation), rows);
+  parts["transmitted"] = numpy_take(std::move(transmitted), rows);
+  parts["received"] = numpy_take(std::move(received), rows);
   return parts;
 }
 
@@ -208,7 +225,7 @@ py::object rcs_of(Scene scene, double frequency, const py::object& incidence, co
   Shape shape;
   if (!is_one) shape.push_back(static_cast<py::ssize_t>(pairs.size()));
   if (channels.is_list) shape.push_back(static_cast<py::ssize_t>(channels.rows.size()));
-  if (!cavities.empty()) return fields_of(entries, shape);
+  if (!cavities.empty()) return fields_of(entries, pairs, channels.rows, shape);
   const py::object values = columns(entries, shape, components, false);
   return return_error ? py::make_tuple(values, columns(entries, shape, components, true)) : values;
 }
@@ -228,7 +245,8 @@ void bind_rcs(py::module_& m) {
         py::arg("components") = false, py::arg("return_error") = false, py::arg("cavities") = py::list(),
         py::arg("progress") = py::none(),
         "What ep.rcs calls. cavities: list of (mesh IDs of the walls, a point of the mouth, its normal); with any, returns "
-        "{field: complex, m; diffuse: m^2} of what stays outside of them.");
+        "{field: complex, m; diffuse: m^2} of what stays outside of them and, each [E, 3], unit vectors of all E waves: "
+        "incidence, observation, transmitted, received.");
   m.def("mie_rcs", &mie_rcs_of, py::arg("radius"), py::arg("frequency"), py::arg("bistatic_angle") = 0.0,
         py::arg("plane") = "H", "What ep.mie_rcs calls.");
 }

@@ -10,6 +10,9 @@ electric one, magnetic ones times 377 ohm; e^{jwt}.
 """
 from __future__ import annotations
 
+import threading
+from concurrent.futures import Future
+
 import numpy as np
 
 from .walls import Facets
@@ -37,11 +40,25 @@ def cavity_field(walls: Facets, mouth: Facets, wavenumber: float, incidence, obs
     seen = [_along(first, second, magnetic_field_at(walls.centres, mouth, wavenumber, toward, -magnetic, electric))
             for toward, electric, magnetic in ends]  # the electric field, by duality
     excited = 2.0 * np.concatenate([np.concatenate([-across, along]) for along, across in lit], axis=1)
-    solved = np.linalg.solve(_equation(walls, first, second, wavenumber), excited).reshape(2, len(walls), 2, -1)
+    solved = _solved(_equation(walls, first, second, wavenumber), excited).reshape(2, len(walls), 2, -1)
     weights = -1j * wavenumber / (4.0 * np.pi) * walls.areas
     there, back = (sum(weights @ (solved[axis, :, end] * seen[1 - end][axis]) for axis in range(2)) for end in range(2))
     field[is_open] = 0.5 * (there + back)
     return field
+
+
+def _solved(matrix, excited) -> np.ndarray:
+    """numpy.linalg.solve, in a thread: it hears no Ctrl-C, but whoever waits for it does; then it ends by itself, unheeded."""
+    found = Future()
+
+    def solve():
+        try:
+            found.set_result(np.linalg.solve(matrix, excited))
+        except Exception as error:
+            found.set_exception(error)
+
+    threading.Thread(target=solve, daemon=True).start()
+    return found.result()
 
 
 def _along(first, second, fields) -> tuple[np.ndarray, np.ndarray]:

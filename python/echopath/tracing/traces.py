@@ -161,8 +161,8 @@ def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observati
         as root sum of squares, what the footprints of too few rays may leave out. Each batch has a part of the rays alone,
         so give enough of them. An estimate from batches is free of bias by chance, so that it may fall below zero where it
         is smaller than its error
-    progress: callable (stage, fraction), True for bars, or None; it tells of rays alone, and once waves in cavities are
-        computed, after these, Ctrl-C waits for them
+    progress: callable (stage, fraction), True for bars, or None; it tells of rays alone, not of the waves in cavities,
+        which are computed after these
     Returns a number, or [N] where directions are [N, 3], with a last axis [C] for a list of polarizations. Each direction
     and transmit polarization costs a trace of its own. Raises TypeError or ValueError naming the argument, also for a zero
     direction, one along the polarization, an empty scene, and mirrors, which have no cross section. Warns

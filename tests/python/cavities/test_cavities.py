@@ -1,4 +1,8 @@
 """Waves in cavities against the modes of a shorted guide."""
+import os
+import signal
+import threading
+
 import numpy as np
 import pytest
 
@@ -67,14 +71,12 @@ def test_both_directions_may_change_places():
 
 
 def test_names_of_channels_are_those_of_vectors():
-    """Of the waves alone, off the horizontal plane and along the z axis."""
-    from echopath.cavities.cross_sections import _polarization
-
-    sight = np.array([[0.6, 0.0, 0.8], [0.0, 0.6, -0.8], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0]])
-    horizontal, vertical = (_polarization(part, sight) for part in "hv")
-    assert horizontal == pytest.approx(np.array([[0, 1, 0], [-1, 0, 0], [1, 0, 0], [-1, 0, 0]]), abs=1e-12)
-    assert vertical == pytest.approx(np.cross(sight, horizontal), abs=1e-12)
-    assert vertical[0] == pytest.approx([-0.8, 0.0, 0.6])
+    """Of the waves too: horizontal is level, vertical across it."""
+    scene, cavity = guide()
+    asked = {"frequency": FREQUENCY, "incidence": (0.768, 0.576, 0.28), "num_rays": 4096, "cavities": cavity}
+    by_name = ep.rcs(scene, polarization=["vv", "hh"], **asked)
+    for found, across in zip(by_name, [(-0.224, -0.168, 0.96), (-0.6, 0.8, 0.0)]):
+        assert found == pytest.approx(ep.rcs(scene, polarization=np.array([across, across]), **asked), rel=1e-6)
 
 
 def test_nothing_comes_out_behind_the_mouth():
@@ -129,3 +131,19 @@ def test_walls_are_perfect_conductors():
     scene["left"].material = "concrete"
     with pytest.raises(ValueError, match="perfect conductors, mesh 'left'"):
         echoes(scene, cavity, "vv")
+
+
+def test_ctrl_c_does_not_wait_for_the_equation(monkeypatch, ctrl_c_is_heard):
+    scene, cavity = guide()
+    goes_on, solved = threading.Event(), threading.Event()
+
+    def solve_until_told(*matrices):
+        os.kill(os.getpid(), signal.SIGINT)
+        assert goes_on.wait(60.0)
+        solved.set()
+
+    monkeypatch.setattr("echopath.cavities.waves.np.linalg.solve", solve_until_told)
+    with pytest.raises(KeyboardInterrupt):
+        echoes(scene, cavity, "vv", [0.0])
+    assert not solved.is_set()
+    goes_on.set()

@@ -3,8 +3,10 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "echopath/posed/enclosures.h"
 #include "echopath/posed/object_sizes.h"
 #include "echopath/scene/coherent_meshes.h"
 #include "echopath/scene/mesh_traits.h"
@@ -31,6 +33,14 @@ py::tuple sizes_of_objects(const Scene& scene, double time) {
   return py::make_tuple(node, sides, closed);
 }
 
+// Returns [(node, of receivers)].
+std::vector<std::pair<int, bool>> bodies_around(const Scene& scene, const Radar& radar, double time) {
+  std::vector<std::pair<int, bool>> found;
+  for (const Enclosure& enclosure : enclosures(scene, radar, time))
+    found.emplace_back(enclosure.node, enclosure.of_receivers);
+  return found;
+}
+
 // Returns (materials, index of each mesh's [M], smooth [M], moving [M], deforming [M]).
 py::tuple traits_of_meshes(const Scene& scene) {
   const MeshTraits traits = mesh_traits(scene);
@@ -54,6 +64,8 @@ void bind_scene_reports(py::module_& m) {
   m.def("coherent_meshes", &coherent_meshes, py::arg("scene"), py::arg("wavelength"), py::arg("least_share"),
         py::arg("without_planes") = false,
         "IDs of the meshes that reflect this share of the power in phase at a wavelength in m, mirrors left out.");
+  m.def("enclosures", &bodies_around, py::arg("scene"), py::arg("radar"), py::arg("time"),
+        "Bodies in which the first transmitter stands, or the first receiver: [(node, whether it is the receiver)].");
   m.def("object_sizes", &sizes_of_objects, py::arg("scene"), py::arg("time"),
         "Of the children of the root: (node [N], sides [N, 2] in m, shortest and longest, closed [N]).");
   m.def(

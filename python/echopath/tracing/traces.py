@@ -16,6 +16,7 @@ from ..cavities.cross_sections import rcs_with_cavities
 from ..scene.sizes import warn_of_sizes
 from ..weather.weather import attenuation_of
 from .edges import looks_for_edges
+from .enclosed import warn_of_enclosed_antennas
 from .lost_rays import warn_of_lost_rays, warn_of_unaimed, warn_of_unfollowed_beams
 from .polarization import FIELD_VECTORS, SCALAR, antennas_of, chosen_model
 from .tessellation import warn_of_coarse_meshes
@@ -79,13 +80,14 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
     Returns Paths. Raises TypeError or ValueError naming the argument, also for smooth mirrors that are not flat and motions
     that do not cover the frame. Warns (TessellationWarning, once) of curved meshes that err by more than 0.3 dB, with the
     edge length in m that would do, and (RuntimeWarning) where over 1 % of the rays are lost to a surface that the radar
-    touches, not every sequence of mirrors was tried, objects have no rays of their own, the scene is empty, or the lengths of
-    an object look like those of another unit.
+    touches, not every sequence of mirrors was tried, objects have no rays of their own, the scene is empty, the radar stands
+    in a closed body that hides the rest, or the lengths of an object look like those of another unit.
     """
     wavelength = _core.speed_of_light / radar.waveform.start_frequency
     is_first, geometry = _remembered(scene)
     if is_first:
         warn_of_sizes(scene, wavelength, start_time)
+        warn_of_enclosed_antennas(scene, radar, start_time)
     warn_of_coarse_meshes(scene, radar.waveform.start_frequency)
     model = chosen_model(polarization, scene, wavelength, antennas_of(radar), argument="polarization")
     paths = _core.trace(scene, radar, num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,

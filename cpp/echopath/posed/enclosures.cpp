@@ -1,0 +1,83 @@
+#include "echopath/posed/enclosures.h"
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "echopath/base/constants.h"
+#include "echopath/posed/posed_scene.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kWholeSphere = 0.99;  // of 4 pi sr; seams between the parts of a body may be open by less
+
+// Describes a child of the root with all that is below it.
+struct Body {
+  int node = 0;
+  Eigen::AlignedBox3d box;  // m, world
+  std::vector<uint32_t> meshes;
+};
+
+std::vector<Body> bodies_of(const Scene& scene, const PosedScene& pose) {
+  std::vector<Body> bodies;
+  std::vector<int> index(scene.nodes().size(), -1);  // into bodies, by node
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
+    const int object = scene.meshes()[id].object;
+    int& at = index[static_cast<size_t>(object)];
+    if (at < 0) {
+      at = static_cast<int>(bodies.size());
+      bodies.push_back({object, {}, {}});
+    }
+    Body& body = bodies[static_cast<size_t>(at)];
+    body.meshes.push_back(id);
+    for (const Vec3& vertex : pose.world_vertices(id)) body.box.extend(vertex);
+  }
+  return bodies;
+}
+
+// Returns the solid angle of a triangle in sr, negative where its back is seen.
+double solid_angle(const std::array<Vec3, 3>& corners, const Vec3& eye) {
+  const Vec3 a = corners[0] - eye, b = corners[1] - eye, c = corners[2] - eye;
+  const double la = a.norm(), lb = b.norm(), lc = c.norm();
+  return 2.0 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+}
+
+bool encloses(const Scene& scene, const PosedScene& pose, const Body& body, const Vec3& eye) {
+  if (!body.box.contains(eye)) return false;
+  double angle = 0.0;
+  for (const uint32_t id : body.meshes) {
+    if (scene.node_of(id).material->is_sheet()) continue;
+    const auto count = static_cast<uint32_t>(scene.node_of(id).mesh->triangles().size());
+    for (uint32_t triangle = 0; triangle < count; ++triangle) angle += solid_angle(pose.world_triangle(id, triangle), eye);
+  }
+  return std::abs(angle) > kWholeSphere * 4.0 * kPi;
+}
+
+bool is_anything_outside(const std::vector<Body>& bodies, const Body& body) {
+  for (const Body& other : bodies) {
+    if (&other != &body && !body.box.contains(other.box)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<Enclosure> enclosures(const Scene& scene, const Radar& radar, double time) {
+  const PosedScene pose(scene, time);
+  const Transform world_from_radar = radar.world_from_radar(time);
+  const std::vector<Body> bodies = bodies_of(scene, pose);
+  std::vector<Enclosure> found;
+  for (const bool of_receivers : {false, true}) {
+    const std::vector<Antenna>& antennas = of_receivers ? radar.receivers : radar.transmitters;
+    if (antennas.empty()) continue;
+    const Vec3 eye = world_from_radar * antennas.front().position;
+    for (const Body& body : bodies) {
+      if (encloses(scene, pose, body, eye) && is_anything_outside(bodies, body)) found.push_back({body.node, of_receivers});
+    }
+  }
+  return found;
+}
+
+}  // namespace echopath

@@ -1,0 +1,22 @@
+#pragma once
+// Finds bodies in which antennas stand.
+#include <vector>
+
+#include "echopath/radar/radar.h"
+#include "echopath/scene/scene.h"
+
+namespace echopath {
+
+// Describes a body without openings in which an antenna stands while something stands outside of it, which is not seen.
+struct Enclosure {
+  int node = 0;               // index into Scene::nodes(), of a child of the root
+  bool of_receivers = false;  // the antenna is the first of the receivers, else of the transmitters
+};
+
+// Returns the bodies that hold the first transmitter or the first receiver at `time` (s). Seen from a point inside, a closed
+// surface fills the sphere: the solid angles of its triangles add up to 4 pi. Sheets, through which waves pass, are
+// openings. Raises invalid_argument where a motion is not defined then.
+// Source: van Oosterom and Strackee 1983 (solid angle of a triangle).
+std::vector<Enclosure> enclosures(const Scene& scene, const Radar& radar, double time);
+
+}  // namespace echopath

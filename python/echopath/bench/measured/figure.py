@@ -29,7 +29,7 @@ def _draw(rows, path) -> None:
                 _draw_panel(axes, one)
             for axes in places[len(row):]:
                 axes.set_visible(False)
-        panels[0, 0].legend(loc="upper right", fontsize=7)
+        figure.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
         figure.suptitle("Monostatic cross section, and its mean error beside the method of moments, without \N{RIGHTWARDS ARROW} "
                         "with the echoes of edges\n"
                         f"(data: Austin RCS Benchmark Suite; what is {SHOWN_DB:g} dB below the strongest goes below the panels)")

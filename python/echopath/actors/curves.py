@@ -42,17 +42,23 @@ class PeriodicCurve:
 
 
 def monotone_cubic(knots, values, at):
-    """Cubic Hermite through the knots whose extremes are its knots (Fritsch and Carlson 1980, harmonic mean slopes)."""
-    step = np.diff(knots)
-    secant = np.diff(values) / step
+    """Cubic Hermite through the knots whose extremes are its knots (Fritsch and Carlson 1980, harmonic mean slopes).
+
+    knots [N]; values [N] or [N, K], of K curves; at [T]. Returns [T] or [T, K].
+    """
+    values, each = np.asarray(values), (slice(None),) + (None,) * (np.ndim(values) - 1)
+    steps = np.diff(knots)
+    step = steps[each]
+    secant = np.diff(values, axis=0) / step
     before, after = secant[:-1], secant[1:]
     weight_before, weight_after = step[:-1] + 2 * step[1:], 2 * step[:-1] + step[1:]
     same_sign = before * after > 0
     with np.errstate(divide="ignore", invalid="ignore"):
         mean = (weight_before + weight_after) / (weight_before / before + weight_after / after)
-    slope = np.concatenate([[0.0], np.where(same_sign, mean, 0.0), [0.0]])
-    k = np.clip(np.searchsorted(knots, at, side="right") - 1, 0, len(step) - 1)
-    s, h = (at - knots[k]) / step[k], step[k]
+    slope = np.zeros(values.shape)
+    slope[1:-1] = np.where(same_sign, mean, 0.0)
+    k = np.clip(np.searchsorted(knots, at, side="right") - 1, 0, len(steps) - 1)
+    s, h = ((at - knots[k]) / steps[k])[each], step[k]
     return ((1 + 2 * s) * (1 - s) ** 2 * values[k] + s * (1 - s) ** 2 * h * slope[k]
             + s**2 * (3 - 2 * s) * values[k + 1] + s**2 * (s - 1) * h * slope[k + 1])
 

@@ -98,7 +98,7 @@ def table_section(table, begin_cap, end_cap):
     begin, end = table[0, 0], table[-1, 0]
 
     def section(t):
-        values = np.stack([monotone_cubic(table[:, 0], table[:, k], t) for k in range(1, 6)], axis=-1)
+        values = monotone_cubic(table[:, 0], table[:, 1:6], t)
         lack = np.maximum(1.0 - (t - begin) / begin_cap, 0.0) ** 2 + np.maximum(1.0 - (end - t) / end_cap, 0.0) ** 2
         values[:, 2:4] *= np.sqrt(np.maximum(1.0 - lack, 0.0))[:, None]
         return values
@@ -151,26 +151,42 @@ def _ring_places(section, begin, end, edge):
 
 def _ring(value, edge, offset):
     """Points [M, 2] at equal distances on a superellipse, counter-clockwise; the first `offset` distances from +u."""
-    angle = np.linspace(0.0, 2.0 * np.pi, RING_SAMPLES + 1)
-    steps = np.diff(_superellipse(value, angle), axis=0)
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(steps, axis=1))])
+    angle, circle = _measured_circle()
+    u, v = _superellipse(value, circle)
+    du, dv = u[1:] - u[:-1], v[1:] - v[:-1]
+    along = np.zeros(len(angle))
+    np.cumsum(np.sqrt(du * du + dv * dv), out=along[1:])
     count = max(5, int(round(along[-1] / edge)))
     at = (np.arange(count) + offset) / count * along[-1]
-    return _superellipse(value, np.interp(at, along, angle))
+    return np.stack(_superellipse(value, _circle(np.interp(at, along, angle))), axis=-1)
 
 
-def _superellipse(value, angle):
-    """Points [M, 2] of the section `value` [5] (see swept) at angles [M] in rad of its parameter."""
+@functools.cache
+def _measured_circle():
+    """The angles [M] in rad that the perimeter of a section is measured at, and what `_circle` says of them."""
+    angle = np.linspace(0.0, 2.0 * np.pi, RING_SAMPLES + 1)
+    return angle, _circle(angle)
+
+
+def _circle(angle):
+    """Signs and magnitudes of the cosine and the sine of angles [M] in rad, four arrays."""
     cosine, sine = np.cos(angle), np.sin(angle)
+    return np.sign(cosine), np.abs(cosine), np.sign(sine), np.abs(sine)
+
+
+def _superellipse(value, circle):
+    """Coordinates u [M] and v [M] of the section `value` [5] (see swept) at the angles of `circle`, which `_circle` says."""
+    sign_u, size_u, sign_v, size_v = circle
     power = 2.0 / value[4]
-    return np.column_stack([value[0] + value[2] * np.sign(cosine) * np.abs(cosine) ** power,
-                            value[1] + value[3] * np.sign(sine) * np.abs(sine) ** power])
+    return value[0] + value[2] * sign_u * size_u ** power, value[1] + value[3] * sign_v * size_v ** power
 
 
+@functools.lru_cache(maxsize=1024)
 def _band(num_lower, num_upper, lower_offset, upper_offset):
     """Triangles between two rings of vertices 0.. and num_lower.., by merging their steps around the axis.
 
-    A ring of one vertex is a tip and has no steps.
+    A ring of one vertex is a tip and has no steps. The triangles are kept, as neighbours of a body and bodies have the same
+    counts: nobody changes them.
     """
     lower = (np.arange(num_lower) + 1 + lower_offset) / num_lower if num_lower > 1 else np.empty(0)
     upper = (np.arange(num_upper) + 1 + upper_offset) / num_upper if num_upper > 1 else np.empty(0)

@@ -3,6 +3,8 @@
 Each part lies in the frame of its proximal joint at rest: x forward, y left, z up; limbs hang down along -z. Parts
 reach past their joints with round ends, so that no gap opens when a joint bends. Left and right parts are alike.
 """
+import functools
+
 import numpy as np
 
 from ..curves import monotone_cubic
@@ -55,12 +57,17 @@ FOOT_POWER = 2.6             # of the sections: a flat sole under a round upper
 ROUNDEST = 0.6
 
 
-def surface(part, body, edge):
-    """Vertices [V, 3] and triangles [F, 3] of a body part, e.g. "arm_left/hand", with sides of about `edge` m or, where it is
-    thin, as short as its roundness asks for."""
-    kind = part.rsplit("/")[-1]
-    if kind == "foot":
-        return _foot(body, edge)
+@functools.lru_cache(maxsize=32)
+def surface(kind, body, edge):
+    """Vertices [V, 3] and triangles [F, 3] of a kind of body part, e.g. "hand", with sides of about `edge` m or, where it is
+    thin, as short as its roundness asks for. They are kept for the next person of that size, and cannot be written to."""
+    vertices, triangles = _foot(body, edge) if kind == "foot" else _limb(kind, body, edge)
+    for array in (vertices, triangles):
+        array.flags.writeable = False
+    return vertices, triangles
+
+
+def _limb(kind, body, edge):
     stations, begin_cap, end_cap = TABLES[kind]
     table = np.array(stations, dtype=float)
     table[:, :5] *= body.height

@@ -108,13 +108,10 @@ def walk_along(body, gait_at, speeds, trajectory, *, edge, keyframe_rate, clothi
 
 def body_arrays(body, frames, times, *, edge, clothing, skin):
     """The parts of a body at frames {name: Frames} of times [T], as plain arrays; times None: placed once, at rest."""
-    surfaces = {}
     parts = []
     for name, frame in frames.items():
         kind = name.rsplit("/")[-1]
-        if kind not in surfaces:
-            surfaces[kind] = surface(name, body, edge)
-        vertices, triangles = surfaces[kind]
+        vertices, triangles = surface(kind, body, edge)
         material = skin if kind in SKIN_PARTS else clothing
         if times is None:
             placed = vertices @ frame.rotation[0].T + frame.origin[0]

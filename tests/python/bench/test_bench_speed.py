@@ -100,6 +100,9 @@ def test_command_writes_numbers_and_pictures_without_finufft_too(tmp_path, capsy
     monkeypatch.setattr(speed_frames, "CHIRPS", (2, 4))
     monkeypatch.setattr(speed_frames, "ARRAYS", ((1, 1), (1, 2)))
     monkeypatch.setattr(speed_frames, "QUICK_PATHS", (500, 1_000))
+    monkeypatch.setattr(speed_frames, "MEASURED_PATHS", 1)
+    monkeypatch.setattr(speed_frames, "PARTS", (1, 4))
+    monkeypatch.setattr(speed, "REPLAY_REPEATS", 1)
     monkeypatch.setattr(speed.guard, "QUICK_RAYS", 2_000)
     monkeypatch.setattr(speed.guard, "QUICK_REPEATS", 1)
     cases = speed.replay_cases.all_cases()[:1]

@@ -8,6 +8,7 @@ from echopath.bench import receiver
 def test_a_quick_run_holds_its_bounds_and_writes_them(tmp_path, monkeypatch):
     monkeypatch.setattr(receiver.faults, "DISTANCES", (10.0,))
     monkeypatch.setattr(receiver.street, "QUICK_NUM_RAYS", 4_000)
+    monkeypatch.setattr(receiver.street, "NUM_CHIRPS", 32)
     monkeypatch.setattr(receiver.cost, "FAULTS", {"none": None, "filters": {"high_pass": [1e5]}})
     monkeypatch.setattr(receiver.off, "CASES", {"a Receiver without faults": ep.Receiver()})
     results = receiver.run_receiver(tmp_path, quick=True)

@@ -5,6 +5,7 @@ import pytest
 
 import echopath as ep
 from support.scenes.saved_frame import PARTS, make_radar, make_scene
+from support.scenes.sensor_text import CONFIGURATION
 
 
 @pytest.fixture(scope="module")
@@ -20,3 +21,16 @@ def saved(frame, tmp_path):
     path = tmp_path / "frame.h5"
     frame.save(path)
     return path
+
+
+@pytest.fixture
+def written(tmp_path):
+    """write(text) -> path of a configuration; write(old=new) replaces in CONFIGURATION."""
+    def write(text=None, **lines):
+        text = CONFIGURATION if text is None else text
+        for command, line in lines.items():
+            text = "\n".join(line if one.split()[:1] == [command] else one for one in text.splitlines()) + "\n"
+        path = tmp_path / "sensor.cfg"
+        path.write_text(text)
+        return path
+    return write

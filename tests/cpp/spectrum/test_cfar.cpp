@@ -1,228 +1,23 @@
-// CFAR against closed forms, exact probabilities of correlated Gaussian cells, and slow loops over all cells.
+// CFAR of maps against slow loops over all cells.
 #include <gtest/gtest.h>
-#include <pthread.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <random>
-#include <thread>
 
 #include "cpp/support/expect_error.h"
-#include "cpp/support/sanitized.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/spectrum/cfar/cfar.h"
 #include "plane_waves.h"
+#include "training_cells.h"
 
 namespace echopath::test_cfar {
 namespace {
 
 using testing::Complex;
-
-constexpr double kRounding = 1e-9;  // of a probability, from factors solved to 1e-13
-constexpr double kExact = 1e-3;     // phases of the windows' centres: Hamming's end sample is not 0
-
-CfarDesign design_of(WindowKind kind, int zero_pad, CfarWindow cells, double rate, int num_channels = 1) {
-  CfarDesign design;
-  design.false_alarm_rate = rate;
-  design.cells = cells;
-  design.noise = {Window{kind, 80.0}, 64, 128, zero_pad, num_channels};
-  return design;
-}
-
-TEST(Cfar, CellAveragingOfIndependentCellsHasTheTextbookFactor) {
-  for (const double rate : {1e-2, 1e-4, 1e-6}) {
-    const CfarFactors factors = cfar_factors(design_of(WindowKind::kRect, 1, {1, 1, 2, 4}, rate));
-    const double n = 7 * 11 - 9;
-    for (const double factor : factors.factor) EXPECT_NEAR(factor, n * (std::pow(rate, -1.0 / n) - 1.0), 1e-8 * factor);
-    EXPECT_EQ(factors.statistic, 1.0);
-  }
-}
-
-// P(S > alpha T), S and T sums of n and m unit exponential powers: integral of the density of T times the tail of S.
-double integrated(double alpha, int n, double m) {
-  const int steps = 4000;
-  const double end = m + 12.0 * std::sqrt(m) + 40.0;
-  double sum = 0.0;
-  for (int i = 0; i < steps; ++i) {
-    const double t = (i + 0.5) * end / steps, x = alpha * t;
-    double tail = 0.0;
-    for (int k = 0; k < n; ++k) tail += std::exp(k * std::log(x) - std::lgamma(k + 1.0) - x);
-    sum += tail * std::exp((m - 1.0) * std::log(t) - t - std::lgamma(m)) * end / steps;
-  }
-  return sum;
-}
-
-TEST(Cfar, SeveralChannelsHaveTheBetaDistribution) {
-  for (const int n : {2, 3, 12}) {
-    const double alpha = 2.2 / 50.0;
-    EXPECT_NEAR(false_alarm_probability(alpha, std::vector<double>(50, 1.0), n) / integrated(alpha, n, 50.0 * n), 1.0, 1e-7)
-        << n;
-  }
-}
-
-TEST(Cfar, ManyChannelsNeitherOverflowNorUnderflow) {
-  // The sum of 1000 powers against the mean of 100 such: 1 + 4.7 sigma, sigma^2 = (1 + 1/100) / 1000, and skewness.
-  const double alpha = (1.0 + 4.7 * std::sqrt(1.01 / 1000.0)) / 100.0;
-  const double probability = false_alarm_probability(alpha, std::vector<double>(100, 1.0), 1000);
-  EXPECT_NEAR(probability / integrated(alpha, 1000, 1e5), 1.0, 1e-6);
-}
-
-TEST(Cfar, OrderedStatisticOfIndependentCellsHasRohlingsProduct) {
-  // Three standard errors: eight sets of draws scatter by 0.6 % at 1e-3 and by 2 % at 1e-6.
-  for (const auto& [rate, draws_error] : {std::pair{1e-3, 0.02}, std::pair{1e-6, 0.06}}) {
-    CfarDesign design = design_of(WindowKind::kRect, 1, {1, 1, 2, 4}, rate);
-    design.method = CfarMethod::kOrderedStatistic;
-    const double factor = cfar_factors(design).factor.back();
-    double probability = 1.0;
-    for (int i = 0; i < design.order(); ++i) probability *= (68.0 - i) / (68.0 - i + factor);
-    EXPECT_NEAR(probability / rate, 1.0, draws_error) << rate;
-  }
-}
-
-struct Place {
-  int velocity, range;
-};
-
-// Training cells of (0, range) from the words of the header, cell by cell.
-std::vector<Place> training_cells(const CfarWindow& w, int range, int num_ranges) {
-  std::vector<Place> cells;
-  const int reach = w.reach_range(), middle = std::clamp(range, reach, num_ranges - 1 - reach);
-  for (int v = -w.reach_velocity(); v <= w.reach_velocity(); ++v) {
-    if (std::abs(v) > w.guard_velocity) {
-      for (int r = middle - reach; r <= middle + reach; ++r) cells.push_back({v, r});
-      continue;
-    }
-    int left = 0;
-    for (int r = range - w.guard_range - 1; r >= 0 && left < w.training_range; --r, ++left) cells.push_back({v, r});
-    int right = 0;
-    for (int r = range + w.guard_range + 1; r < num_ranges && right < 2 * w.training_range - left; ++r, ++right) {
-      cells.push_back({v, r});
-    }
-    for (int r = range - w.guard_range - 1 - left; left + right < 2 * w.training_range; --r, ++left) cells.push_back({v, r});
-  }
-  return cells;
-}
-
-// E z_a conj z_b of one axis for cells `lag` apart
-Complex correlation(const std::vector<double>& samples, int size, int lag) {
-  Complex sum;
-  double power = 0.0;
-  for (size_t i = 0; i < samples.size(); ++i) {
-    sum += samples[i] * samples[i] * std::polar(1.0, -kTwoPi * static_cast<double>(i) * lag / size);
-    power += samples[i] * samples[i];
-  }
-  return sum / power;
-}
-
-// Correlations of cells -most to most apart, each summed once.
-std::vector<std::complex<double>> correlations(const std::vector<double>& samples, int zero_pad, int most) {
-  std::vector<std::complex<double>> found;
-  for (int lag = -most; lag <= most; ++lag) {
-    found.push_back(correlation(samples, static_cast<int>(samples.size()) * zero_pad, lag));
-  }
-  return found;
-}
-
-// Probability that |z_0|^2 > alpha sum |z_i|^2 for jointly Gaussian cells: with the eigenvalues of this indefinite form, one
-// of them positive, it is prod 1 / (1 + |negative| / positive) (Turin 1960).
-double exact_rate(const CfarDesign& design, int range, double factor) {
-  const MapNoise& noise = design.noise;
-  const auto cells = training_cells(design.cells, range, noise.num_samples * noise.zero_pad);
-  std::vector<Place> all = {{0, range}};
-  all.insert(all.end(), cells.begin(), cells.end());
-  const int rows = design.cells.num_rows(), columns = design.cells.num_columns();
-  const auto along_velocity = correlations(window_samples(noise.window.velocity, noise.num_chirps), noise.zero_pad, rows);
-  const auto along_range = correlations(window_samples(noise.window.range, noise.num_samples), noise.zero_pad, columns);
-  const Eigen::Index n = static_cast<Eigen::Index>(all.size());
-  Eigen::MatrixXcd covariance(n, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index j = 0; j < n; ++j) {
-      covariance(i, j) = along_velocity.at(static_cast<size_t>(rows + all[i].velocity - all[j].velocity)) *
-                         along_range.at(static_cast<size_t>(columns + all[i].range - all[j].range));
-    }
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd> solver(covariance);
-  const Eigen::MatrixXcd root = solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-  Eigen::VectorXd form = Eigen::VectorXd::Constant(n, -factor / static_cast<double>(cells.size()));
-  form[0] = 1.0;
-  const Eigen::VectorXd values =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXcd>(root.adjoint() * form.asDiagonal() * root, Eigen::EigenvaluesOnly)
-          .eigenvalues();
-  double probability = 1.0;
-  for (Eigen::Index i = 0; i + 1 < n; ++i) probability /= 1.0 + std::abs(values[i]) / values[n - 1];
-  return probability;
-}
-
-TEST(Cfar, CellAveragingIsExactForWindowedAndPaddedNoise) {
-  struct Case {
-    WindowKind kind;
-    int zero_pad;
-    CfarWindow cells;
-  };
-  const Case cases[] = {{WindowKind::kHann, 1, {2, 2, 2, 3}},
-                        {WindowKind::kChebyshev, 1, {4, 4, 1, 3}},
-                        {WindowKind::kRect, 2, {2, 2, 3, 4}},
-                        {WindowKind::kHamming, 2, {4, 4, 1, 5}},
-                        {WindowKind::kBlackmanHarris, 1, {0, 4, 0, 8}}};
-  for (const Case& c : cases) {
-    for (const double rate : {1e-3, 1e-6}) {
-      const CfarDesign design = design_of(c.kind, c.zero_pad, c.cells, rate);
-      const CfarFactors factors = cfar_factors(design);
-      for (const int range : {0, 3, c.cells.reach_range()}) {
-        const double factor = factors.factor[range];
-        EXPECT_NEAR(exact_rate(design, range, factor) / rate, 1.0, kExact)
-            << static_cast<int>(c.kind) << " " << rate << " at " << range;
-      }
-    }
-  }
-}
-
-TEST(Cfar, LargeWindowsAreExactBetweenTheColumnsComputedToo) {
-  constexpr double kBetween = 2e-3;  // of the rate: straight lines where factors have all but come to that of the middle
-  const CfarDesign design = design_of(WindowKind::kHann, 1, {2, 2, 3, 20}, 1e-6);
-  const CfarFactors factors = cfar_factors(design);
-  ASSERT_EQ(factors.factor.size(), 23u);
-  for (const int range : {0, 6, 21}) {
-    EXPECT_NEAR(exact_rate(design, range, factors.factor[range]) / design.false_alarm_rate, 1.0, kBetween) << range;
-  }
-}
-
-TEST(Cfar, TheLargestWindowsHearACancellation) {
-  if (test::kIsSanitized) GTEST_SKIP() << "a bound of processor time, of code at full speed";
-  constexpr double kSoon = 1.0;  // s of this thread's processor time, which other work does not lengthen: half of one
-  CfarDesign design = design_of(WindowKind::kHann, 1, {2, 2, 12, 31}, 1e-6);
-  clockid_t own_clock;
-  ASSERT_EQ(pthread_getcpuclockid(pthread_self(), &own_clock), 0);
-  const auto processor_time = [own_clock] {
-    timespec now;
-    clock_gettime(own_clock, &now);
-    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-  };
-  for (const CfarMethod method : {CfarMethod::kCellAveraging, CfarMethod::kOrderedStatistic}) {
-    design.method = method;
-    Job job;
-    double cancelled = 0.0;
-    std::thread other([&] {
-      std::this_thread::sleep_for(std::chrono::milliseconds(100));
-      cancelled = processor_time();
-      job.cancel();
-    });
-    EXPECT_THROW(cfar_factors(design, &job), Cancelled);
-    const double thrown = processor_time();
-    other.join();
-    EXPECT_LT(thrown - cancelled, kSoon);
-  }
-}
-
-TEST(Cfar, CorrelatedTrainingCellsNeedAHigherFactor) {
-  const CfarWindow cells{2, 2, 2, 3};
-  const double hann = cfar_factors(design_of(WindowKind::kHann, 1, cells, 1e-6)).factor.back();
-  const double rect = cfar_factors(design_of(WindowKind::kRect, 1, cells, 1e-6)).factor.back();
-  EXPECT_GT(hann, 1.1 * rect);
-}
+using testing::design_of;
+using testing::Place;
+using testing::training_cells;
 
 TEST(Cfar, EachCellHasAsManyTrainingCellsInsideTheMapAndBeyondTheGuard) {
   for (const CfarWindow& w : {CfarWindow{1, 2, 2, 3}, CfarWindow{0, 0, 1, 0}, CfarWindow{0, 3, 0, 2}}) {

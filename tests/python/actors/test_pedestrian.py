@@ -7,37 +7,13 @@ from echopath.actors.human.anthropometry import Proportions
 from echopath.actors.human.boulic import Cycle, Walk
 from echopath.actors.human.gait import Gait
 from echopath.base.rotations import about_x, about_y, about_z, quaternions
+from support.scenes.pedestrians import HEIGHT, SPEED, Person
 
-HEIGHT, SPEED = 1.78, 1.4
 HIP_HEIGHT = 0.530                       # of the body height: Drillis and Contini (1966), in Winter (2009)
 SLIDE = 0.02                             # m a stance: what the pedestrian promises
 SINK = 0.015                             # m
 CONTACT = 0.002                          # m: triangles of 2.4 cm lie up to 1 mm above the round sole they stand for
 WALKERS = [(1.78, 1.4), (1.78, 0.5), (1.10, 1.0), (1.95, 2.2)]   # height in m, speed in m/s
-
-
-class Person:
-    """A pedestrian's parts evaluated at many times, as a scene does it."""
-
-    def __init__(self, height, speed, **options):
-        self.actor = ep.actors.pedestrian(height=height, speed=speed, start_time=-0.1, duration=4.0, **options)
-        self.scene = ep.Scene()
-        self.scene.add(self.actor, name="pedestrian")
-        self.ids = {mesh.name.removeprefix("pedestrian/"): mesh.id for mesh in self.scene.meshes}
-        self.parts = {part.name: part for part in self.actor.parts}
-
-    def vertices(self, name, times):
-        """[T, V, 3]"""
-        return np.stack([self.scene.world_vertices(self.ids[name], float(t)) for t in times])
-
-    def center(self, name, times):
-        """[T, 3]"""
-        return self.vertices(name, times).mean(axis=1)
-
-
-@pytest.fixture(scope="module")
-def person():
-    return Person(HEIGHT, SPEED)
 
 
 def cycle_of(height, speed):
@@ -170,78 +146,6 @@ def test_knee_bends_as_measured_ones_do(person):
     assert bend[(phase > 0.3) & (phase < 0.45)].min() < 12.0
 
 
-SEGMENTS = [   # parent part, its child, length as a share of the height (Drillis and Contini)
-    ("leg_left/thigh", "leg_left/shank", 0.245), ("leg_right/shank", "leg_right/foot", 0.246),
-    ("arm_left/upper", "arm_left/forearm", 0.186), ("arm_right/forearm", "arm_right/hand", 0.146)]
-
-
-@pytest.mark.parametrize("parent, child, share", SEGMENTS)
-def test_segments_have_the_published_lengths_all_the_time(person, parent, child, share):
-    joints = [np.asarray(person.parts[name].motion.translations) for name in (parent, child)]
-    np.testing.assert_allclose(np.linalg.norm(joints[0] - joints[1], axis=1), share * HEIGHT, rtol=1e-9)
-
-
-def test_body_stands_its_height_and_foot_has_its_length(person):
-    top = person.vertices("head", np.linspace(0.0, 1.2, 25))[:, :, 2].max()
-    assert 0.96 * HEIGHT < top < 1.0 * HEIGHT                    # bent knees take a few per cent
-    assert np.ptp(person.parts["leg_left/foot"].mesh.vertices[:, 0]) == pytest.approx(0.152 * HEIGHT, rel=0.01, abs=0)
-
-
-def test_every_part_is_closed_and_faces_outwards(person):
-    assert len(person.parts) >= 16
-    for part in person.actor.parts:
-        triangles = np.asarray(part.mesh.triangles).astype(np.int64)
-        directed = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-        keys = directed[:, 0] * len(part.mesh.vertices) + directed[:, 1]
-        back = directed[:, 1] * len(part.mesh.vertices) + directed[:, 0]
-        assert len(np.unique(keys)) == len(keys) and np.isin(back, keys).all()
-        a, b, c = np.moveaxis(np.asarray(part.mesh.vertices)[triangles], 1, 0)
-        assert np.sum(a * np.cross(b, c)) > 0
-        assert part.mesh.num_removed_triangles == 0
-
-
-def test_triangles_are_many_enough_and_even(person):
-    assert 12_000 <= person.actor.num_triangles <= 25_000  # forearms want edges below 20 mm (TessellationWarning)
-    finer = ep.actors.pedestrian(edge=0.009)
-    assert finer.num_triangles == pytest.approx(4 * person.actor.num_triangles, rel=0.15, abs=0)
-    sides = np.concatenate([np.linalg.norm(c - np.roll(c, 1, axis=1), axis=-1).ravel() for c in
-                            (np.asarray(p.mesh.vertices)[np.asarray(p.mesh.triangles)] for p in finer.parts)])
-    assert np.quantile(sides, 0.99) < 1.6 * 0.009
-
-
-def winding(mesh, point):
-    """Times that a closed surface goes round a point: its solid angle over 4 pi (Van Oosterom and Strackee 1983)."""
-    r = np.asarray(mesh.vertices)[np.asarray(mesh.triangles)] - point
-    d = np.linalg.norm(r, axis=-1)
-    a, b, c = np.moveaxis(r, 1, 0)
-    below = (np.prod(d, axis=1) + np.sum(a * b, 1) * d[:, 2] + np.sum(b * c, 1) * d[:, 0] + np.sum(c * a, 1) * d[:, 1])
-    return np.sum(np.arctan2(np.sum(a * np.cross(b, c), 1), below)) / (2.0 * np.pi)
-
-
-JOINTS = [("leg_{}/thigh", "leg_{}/shank"), ("leg_{}/shank", "leg_{}/foot"), ("arm_{}/upper", "arm_{}/forearm"),
-          ("arm_{}/forearm", "arm_{}/hand"), ("pelvis", "leg_{}/thigh"), ("torso", "arm_{}/upper"), ("torso", "neck"),
-          ("neck", "head"), ("pelvis", "torso")]
-
-
-@pytest.mark.parametrize("parent, child", JOINTS)
-def test_parts_overlap_at_their_joint_through_the_cycle(person, parent, child):
-    parent, child = parent.format("right"), child.format("right")
-    motion = person.parts[child].motion
-    for k in range(0, 140, 20):
-        joint = np.asarray(motion.translations)[k]
-        for name in (parent, child):
-            own = person.parts[name].motion
-            local = rotation(np.asarray(own.rotations)[k]).T @ (joint - np.asarray(own.translations)[k])
-            assert winding(person.parts[name].mesh, local) == pytest.approx(1.0, abs=1e-6), (name, k)
-
-
-def rotation(q):
-    """Rotation matrix of a unit quaternion (w, x, y, z)."""
-    w, v = q[0], q[1:]
-    cross = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
-    return np.eye(3) + 2 * w * cross + 2 * cross @ cross
-
-
 def test_limb_speeds_are_those_of_a_walker(person):
     # Radar and motion capture: feet reach about three times the walking speed, arms swing by about one.
     duration = cycle_of(HEIGHT, SPEED)[1]
@@ -313,15 +217,6 @@ def test_motion_is_the_same_walk_whatever_the_phase_and_start():
         expected = np.asarray(a.motion.translations)[30:131]
         np.testing.assert_allclose(np.asarray(b.motion.translations), expected, atol=1e-9)
         np.testing.assert_allclose(np.asarray(c.motion.translations), expected - [0.3 * SPEED, 0, 0], atol=1e-9)
-
-
-def test_parts_are_smooth_bodies_of_cloth_and_skin(person):
-    assert all(part.smooth for part in person.actor.parts)
-    assert all(node.smooth for node in person.scene.nodes if node.mesh is not None)
-    by_material = {part.name: part.material for part in person.actor.parts}
-    assert {name for name, material in by_material.items() if material == "skin"} == {
-        "head", "neck", "arm_left/hand", "arm_right/hand"}
-    assert set(by_material.values()) == {"clothing", "skin"}
 
 
 @pytest.mark.parametrize("arguments, message", [

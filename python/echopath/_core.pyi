@@ -3112,7 +3112,7 @@ class PartPass:
         sets: lists of groups whose fields add up; least: cells at ranges where one can show no more than that, in W, may be 0;
         ranges: of each set[typing.Any], 1 or 0 [R], whether cells of that range are asked for: the others may have no power; empty: all are.
         Returns for each (power [V * R] in W, mean over the channels, mean square of its
-        samples in W).
+        samples in W, which sets of several groups do not have: 0).
         """
     def set_adds_up(self, adds_up: bool) -> None:
         """

@@ -180,7 +180,7 @@ of which is to be asked for once.)")
 sets: lists of groups whose fields add up; least: cells at ranges where one can show no more than that, in W, may be 0;
 ranges: of each set, 1 or 0 [R], whether cells of that range are asked for: the others may have no power; empty: all are.
 Returns for each (power [V * R] in W, mean over the channels, mean square of its
-samples in W).)")
+samples in W, which sets of several groups do not have: 0).)")
       .def("cubes", &cubes_of_pass, py::arg("sets"), py::arg("progress"),
            "Signals [tx, rx, chirp, sample] of sets of groups.")
       .def("bounds", &bounds_of_pass, py::arg("groups"), py::arg("window"), py::arg("zero_pad"), py::arg("progress"),

@@ -32,11 +32,15 @@ class CellOwners:
         self.received, self.peak = np.zeros(len(self.families)), np.zeros(len(self.families))
 
     def add(self, rival: int, power, received: float) -> None:
-        """rival: index; power: [V, R] W, of the sum of the fields of its families; received: W, of the same."""
+        """rival: index; power: [V, R] W, of the sum of the fields of its families; received: W, of that of one family."""
         wins = (power > self.best) | ((power == self.best) & (power > 0.0) & (rival < self._rival))
         self.best[wins], self._rival[wins] = power[wins], rival
         if len(self.rivals[rival]) == 1:
             self.received[self.rivals[rival]], self.peak[self.rivals[rival]] = received, power.max(initial=0.0)
+
+    def wins(self, rival: int, least: float):
+        """bool [R], the ranges where a rival is the strongest so far, with more than `least` W."""
+        return np.any((self._rival == rival) & (self.best > least), axis=0)
 
     def give(self, mask) -> list:
         """Gives the cells of rivals of one family to it. mask: bool [V, R], what counts. Returns the rivals of several that
@@ -51,9 +55,9 @@ class CellOwners:
         stronger = power > self.best
         self.family[stronger], self.own[stronger] = NONE, 0.0
 
-    def ranges_of(self, rival: int) -> list:
-        """[R] 1 at the ranges where a rival has cells, else 0; after `give`."""
-        return np.any(self._mask & (self._rival == rival), axis=0).astype(np.uint8).tolist()
+    def ranges_of(self, rival: int):
+        """bool [R], the ranges where a rival has cells; after `give`."""
+        return np.any(self._mask & (self._rival == rival), axis=0)
 
     def divide(self, rival: int, own, received) -> None:
         """Gives the cells of a rival to its strongest family by itself, the first of those that are alike.

@@ -8,6 +8,8 @@ those that all families would give.
 """
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from .. import _core
@@ -19,7 +21,23 @@ from .powers import ViewPowers, mean_square, parts_by_rival
 SIGNALS_IN_MEMORY = 128 << 20  # bytes that the signals of families may take at a time, unless one needs more
 STEP = 0.1                     # ratio of powers: how far each round goes below the last
 SHOWN = 1e-3                   # of the noise floor: ranges where a family can show less are left out of its map at first
+APART = 0.1                    # of the floor of the mask, as far as it is known: power with which cells are divided early
 _OF_PASS = ("tolerance", "method", "replay", "evaluate", "phase_tolerance")
+
+
+class _Apart(NamedTuple):
+    """What each family of a rival shows by itself: powers [V, ranges] in W, at some of the ranges (bool [R]), and its mean
+    power received in W."""
+
+    ranges: np.ndarray
+    own: list
+    received: tuple
+
+    def maps(self, shape: tuple) -> tuple:
+        """(powers [V, R] in W, 0 at other ranges, mean powers received)."""
+        maps = np.zeros((len(self.own), *shape))
+        maps[:, :, self.ranges] = self.own
+        return maps, self.received
 
 
 class FamilyPass:
@@ -39,6 +57,7 @@ class FamilyPass:
         self._is_made = np.zeros(len(self._owners.rivals), bool)
         self._bounds = np.zeros((len(families), len(plane.range)))
         self._least = SHOWN * request.noise_floor
+        self._apart = {}  # {rival: _Apart}
         self._make_likely(paths, families)
         if adds_up and probe is not None:
             self._pass.finish_probe()
@@ -61,11 +80,10 @@ class FamilyPass:
             self._make_open(mask)
         self._note_left_out(intervals)
         shared = owners.give(mask)
-        alone = [[number] for rival in shared for number in owners.rivals[rival]]
-        powers = self._powers(alone, 0.0, [owners.ranges_of(rival) for rival in shared for _ in owners.rivals[rival]])
+        self._see_apart([(rival, ranges) for rival in shared
+                         if not self._is_known_apart(rival, ranges := owners.ranges_of(rival))])
         for rival in shared:
-            own, received = zip(*(next(powers) for _ in owners.rivals[rival]))
-            owners.divide(rival, own, received)
+            owners.divide(rival, *self._apart.pop(rival).maps(owners.best.shape))
         return owners
 
     def _make_likely(self, paths, families) -> None:
@@ -73,8 +91,8 @@ class FamilyPass:
         floor, rivals = self._request.noise_floor, self._owners.rivals
         powers, strongest = self._likely_powers(paths, families)
         mask_floor = max(floor, self._request.dynamic_range * strongest)
-        likely = [rival for rival, power in enumerate(powers)
-                  if power > 0.0 and power >= (floor if self._is_direct(rival) else mask_floor)]
+        likely = [rival for rival in np.argsort(-powers, kind="stable").tolist()
+                  if powers[rival] > 0.0 and powers[rival] >= (floor if self._is_direct(rival) else mask_floor)]
         rest = np.setdiff1d(np.arange(len(families)), [number for rival in likely for number in rivals[rival]])
         if len(rest) > 0:
             self._bounds[rest] = self._pass.bounds(rest, *self._request.plane.window_and_padding, self._progress)
@@ -131,12 +149,36 @@ class FamilyPass:
         members = self._owners.rivals
         for shares in (False, True):
             some = [rival for rival in rivals if (len(members[rival]) > 1) == shares]
-            for rival, (power, received) in zip(some, self._powers([members[rival] for rival in some], self._least)):
-                self._owners.add(rival, power, received)
-                self._is_made[rival] = True
+            for first, powers in self._powers([members[rival] for rival in some], self._least):
+                made = some[first:first + len(powers)]
+                for rival, (power, received) in zip(made, powers):
+                    self._owners.add(rival, power, received)
+                    self._is_made[rival] = True
+                if shares and self._request.plane.takes_receiver_sets:
+                    self._see_winners(made)
+
+    def _see_winners(self, rivals: list) -> None:
+        """Looks at the families of rivals that may keep the cells they win, while their signals are there."""
+        owners, request = self._owners, self._request
+        least = APART * max(request.noise_floor, request.dynamic_range * owners.best.max())
+        found = [(rival, owners.wins(rival, least)) for rival in rivals]
+        self._see_apart([(rival, ranges) for rival, ranges in found if ranges.any()])
+
+    def _is_known_apart(self, rival: int, ranges) -> bool:
+        return rival in self._apart and not np.any(ranges & ~self._apart[rival].ranges)
+
+    def _see_apart(self, some: list) -> None:
+        """Keeps what each family of some rivals shows by itself. some: [(rival, ranges bool [R]), ...]"""
+        members = self._owners.rivals
+        alone = [([number], ranges) for rival, ranges in some for number in members[rival]]
+        asked = [ranges.astype(np.uint8).tolist() for _, ranges in alone]
+        powers = (found for _, batch in self._powers([one for one, _ in alone], 0.0, asked) for found in batch)
+        for rival, ranges in some:
+            own, received = zip(*(next(powers) for _ in members[rival]))
+            self._apart[rival] = _Apart(ranges, [power[:, ranges] for power in own], received)
 
     def _powers(self, sets: list, least: float, ranges: list | None = None):
-        """(power [V, R], mean square) in W of the signal of each set of families.
+        """(index of the first, [(power [V, R], mean square), ...] in W) of the signals of some sets of families after others.
 
         least: W; cells at ranges where a set can show no more may be 0
         ranges: of each set, [R] 1 where its power is asked for, else 0: there it may be 0; None: everywhere
@@ -147,11 +189,11 @@ class FamilyPass:
             some = sets[first:first + most]
             if plane.takes_receiver_sets:
                 asked = [] if ranges is None else ranges[first:first + most]
-                for power, received in self._pass.powers(some, *plane.window_and_padding, least, self._progress, asked):
-                    yield power.reshape(shape), received
+                powers = self._pass.powers(some, *plane.window_and_padding, least, self._progress, asked)
+                yield first, [(power.reshape(shape), received) for power, received in powers]
             else:
-                for cube in self._pass.cubes(some, self._progress):
-                    yield plane.power(cube, self._radar), mean_square(cube)
+                yield first, [(plane.power(cube, self._radar), mean_square(cube))
+                              for cube in self._pass.cubes(some, self._progress)]
 
     def _note_left_out(self, intervals: dict) -> None:
         """Tells what was left out; powers of families that were not made by themselves are means over the random phases."""

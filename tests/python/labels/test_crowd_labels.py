@@ -145,3 +145,16 @@ def test_what_maps_of_families_leave_out_at_first_owns_its_cells_all_the_same(pa
     for one, another in zip(usual.objects + usual.ghosts, other.objects + other.ghosts):
         assert (one.cells, one.box) == (another.cells, another.box)
         assert another.power == pytest.approx(one.power, rel=SUM, abs=0.0)
+
+
+@pytest.mark.parametrize("apart", [0.0, 1e12])
+def test_cells_are_divided_among_families_early_or_late(paths, radar, monkeypatch, apart):
+    """With 0 families are looked at where their rival wins any cell so far, with 1e12 only once the owners are known."""
+    usual = ep.annotate(paths, None, radar)
+    assert any(ghost.cells for ghost in usual.ghosts)
+    monkeypatch.setattr(family_pass, "APART", apart)
+    other = ep.annotate(paths, None, radar)
+    assert np.array_equal(other.object_map, usual.object_map) and np.array_equal(other.ghost_map, usual.ghost_map)
+    for one, another in zip(usual.objects + usual.ghosts, other.objects + other.ghosts):
+        assert (one.cells, one.box) == (another.cells, another.box)
+        assert another.power == pytest.approx(one.power, rel=SUM, abs=0.0)

@@ -132,7 +132,7 @@ bool BandMap::power(const SummedGroups& of, int num_channels, double least, std:
   for (int channel = 0; channel < num_channels; ++channel) {
     gather(of, channel, band, lanes);
     add_columns(lanes, band, columns, out.cells);
-    out.mean_square += sum_of_squares(lanes, band.count);
+    if (of.groups.size() == 1) out.mean_square += sum_of_squares(lanes, band.count);
   }
   for (double& cell : out.cells) cell /= num_channels;
   const auto num_samples = static_cast<double>(spread_->grid().correction.size());

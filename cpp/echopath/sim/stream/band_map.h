@@ -22,7 +22,7 @@ namespace echopath {
 // Holds the power of a signal in the cells of a range-Doppler map, mean over the channels.
 struct SetPower {
   std::vector<double> cells;  // [V * R] W
-  double mean_square = 0.0;   // W, mean over channels, chirps and samples
+  double mean_square = 0.0;   // W, mean over channels, chirps and samples, of one group; of several 0
 };
 
 // Names groups of a synthesizer whose fields add up.

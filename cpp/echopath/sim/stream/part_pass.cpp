@@ -108,15 +108,20 @@ std::vector<SummedGroups> PartPass::summed(const Sets& sets, const Sorted& sorte
   return sums;
 }
 
+void PartPass::forget() {
+  kept_.clear();
+  kept_signals_.reset();
+}
+
 // Keeps the signals where some of them were added to others.
 void PartPass::keep(const Sets& sets, const Sorted& sorted, Synthesizer signals) {
-  if (sorted.num_signals == sorted.num_sets || kept_bytes_ + signals.num_band_bytes() > kKeptSignals) return;
-  kept_bytes_ += signals.num_band_bytes();
+  if (sorted.num_signals == sorted.num_sets) return;
+  forget();
   signals.leave_scratch();
-  const auto& kept = kept_signals_.emplace_back(std::make_unique<const Synthesizer>(std::move(signals)));
+  kept_signals_.emplace(std::move(signals));
   for (const std::vector<uint32_t>& set : sets) {
     for (const uint32_t group : set)
-      kept_.try_emplace(group, SummedGroups{kept.get(), {static_cast<int>(sorted.local[group])}});
+      kept_.try_emplace(group, SummedGroups{&*kept_signals_, {static_cast<int>(sorted.local[group])}});
   }
 }
 
@@ -169,6 +174,8 @@ std::vector<SetPower> PartPass::powers(const Sets& sets, const MapWindows& windo
     require(std::ssize(asked) == map.num_ranges(), "ranges", "must have one entry for each range of the map", asked.size());
   }
   const Sorted some = sorted(sets, whole_.spread() != nullptr);
+  const auto is_known = [&](const std::vector<uint32_t>& set) { return is_kept(set); };
+  if (some.num_signals > some.num_sets && std::none_of(sets.begin(), sets.end(), is_known)) forget();
   Synthesizer signals = synthesizer(std::max(kFewestSignals, some.num_signals));
   run(some, false, &signals, nullptr, job);
   if (adds_up_) whole_.absorb(signals, some.num_signals);
@@ -197,7 +204,7 @@ SetPower PartPass::power_of(const SummedGroups& of, const MapTransform& map, std
     const auto any = [&](auto is_so) { return std::any_of(of.groups.begin(), of.groups.end(), is_so); };
     if (!any([&](int group) { return of.signals->has_echoes(channel, group); })) continue;
     of.signals->write_samples(channel, of.groups, samples.data());
-    power.mean_square += sum_of_squares(samples);
+    if (of.groups.size() == 1) power.mean_square += sum_of_squares(samples);
     const bool moves = any([&](int group) { return !of.signals->is_still(channel, group); });
     if (moves) map.transform(samples.data(), profiles, values.data(), asked);
     else map.transform_still(samples.data(), profiles, values.data());

@@ -34,10 +34,9 @@ class PartPass {
   using Sets = std::vector<std::vector<uint32_t>>;  // groups whose fields add up
   // Returns the power of the signal of each set. Cells at ranges where a set can show no more than `least` W may be 0. With
   // `ranges` [set][R] only those cells are looked at whose range is asked for (1, else 0), and the others may have no power.
-  // Its memory is at most group_bytes() for each group, and a few maps of a channel for each thread. Where some of the sets
-  // have several groups it keeps all signals, as long as these are no more than kKeptSignals, for sets of these groups
-  // alone. Raises invalid_argument where the ranges do not match the sets and the map.
-  static constexpr size_t kKeptSignals = size_t{128} << 20;  // bytes
+  // Only sets of one group have a mean square. Memory is at most group_bytes() for each group, and a few maps of a channel
+  // for each thread. Where some of the sets have several groups it keeps all signals, for sets of these groups alone, until
+  // there are such sets again. Raises invalid_argument where the ranges do not match the sets and the map.
   using Ranges = std::vector<std::vector<uint8_t>>;
   std::vector<SetPower> powers(const Sets& sets, const MapWindows& window, int zero_pad, double least, Job* job,
                                const Ranges& ranges = {});
@@ -53,6 +52,7 @@ class PartPass {
   Sorted sorted(const Sets& sets, bool apart) const;
   bool is_kept(const std::vector<uint32_t>& set) const { return set.size() == 1 && kept_.contains(set.front()); }
   std::vector<SummedGroups> summed(const Sets& sets, const Sorted& sorted, const Synthesizer& signals) const;
+  void forget();
   void keep(const Sets& sets, const Sorted& sorted, Synthesizer signals);
   Synthesizer synthesizer(int num_groups) const;
   void run(const Sorted& sorted, bool as_one, Synthesizer* out, CellBounds* bounds, Job* job);
@@ -67,8 +67,7 @@ class PartPass {
   std::optional<PassProbe> probe_;
   bool adds_up_ = true;
   Synthesizer whole_;
-  std::vector<std::unique_ptr<const Synthesizer>> kept_signals_;
-  size_t kept_bytes_ = 0;
+  std::optional<const Synthesizer> kept_signals_;
   std::unordered_map<uint32_t, SummedGroups> kept_;  // by group, of these signals
 };
 

@@ -62,25 +62,27 @@ ECHOPATH_INLINE void combine_cells(const double* lanes, int64_t num_lanes, int64
   }
 }
 
-// Adds to out [2] the sum over lanes and cells i of g_{i + distance} conj(g_i).
-ECHOPATH_INLINE void correlate_cells(const double* lanes, int64_t num_lanes, int64_t count, int64_t distance,
-                                     double* __restrict out) {
+// Adds to out [1] the real part of the sum over lanes, cells i and distances d of overlap_d g_{i + d} conj(g_i); overlap
+// [count, re/im]. Lanes are taken some at a time, which stay in the first-level cache.
+ECHOPATH_INLINE void add_overlaps(const double* lanes, int64_t num_lanes, int64_t count, const double* overlap,
+                                  double* __restrict out) {
   const int64_t stride = num_lanes + kApart;
-  double re[kLanes] = {}, im[kLanes] = {};
-  for (int64_t i = 0; i + distance < count; ++i) {
-    const double* const near = lanes + 2 * i * stride;
-    const double* const far = near + 2 * distance * stride;
-    for (int64_t first = 0; first < num_lanes; first += kLanes) {
-      for (int64_t c = first; c < first + kLanes; ++c) {
-        re[c - first] += far[c] * near[c] + far[stride + c] * near[stride + c];
-        im[c - first] += far[stride + c] * near[c] - far[c] * near[stride + c];
+  double sum[kLanes] = {};
+  for (int64_t first = 0; first < num_lanes; first += kLanes) {
+    for (int64_t i = 0; i < count; ++i) {
+      const double* const near = lanes + 2 * i * stride + first;
+      double re[kLanes] = {}, im[kLanes] = {};
+      for (int64_t d = 0; i + d < count; ++d) {
+        const double* const far = near + 2 * d * stride;
+        for (int64_t c = 0; c < kLanes; ++c) {
+          re[c] += overlap[2 * d] * far[c] - overlap[2 * d + 1] * far[stride + c];
+          im[c] += overlap[2 * d] * far[stride + c] + overlap[2 * d + 1] * far[c];
+        }
       }
+      for (int64_t c = 0; c < kLanes; ++c) sum[c] += near[c] * re[c] + near[stride + c] * im[c];
     }
   }
-  for (int64_t c = 0; c < kLanes; ++c) {
-    out[0] += re[c];
-    out[1] += im[c];
-  }
+  for (int64_t c = 0; c < kLanes; ++c) out[0] += sum[c];
 }
 
 }  // namespace
@@ -221,13 +223,12 @@ void BandMap::add_columns(const std::vector<double>& lanes, const Band& band, co
 
 // Returns the sum over chirps and samples of |sample|^2.
 double BandMap::sum_of_squares(const std::vector<double>& lanes, int64_t count) const {
-  double sum = 0.0;
+  std::vector<std::complex<double>> overlap;
   for (int64_t distance = 0; distance < count; ++distance) {
-    std::complex<double> found = 0.0;
-    run_simd<correlate_cells>(lanes.data(), num_lanes_, count, distance, reinterpret_cast<double*>(&found));
-    const std::complex<double> overlap = overlap_[static_cast<size_t>(distance) % overlap_.size()];
-    sum += (distance > 0 ? 2.0 : 1.0) * (found * overlap).real();
+    overlap.push_back((distance > 0 ? 2.0 : 1.0) * overlap_[static_cast<size_t>(distance) % overlap_.size()]);
   }
+  double sum = 0.0;
+  run_simd<add_overlaps>(lanes.data(), num_lanes_, count, reinterpret_cast<const double*>(overlap.data()), &sum);
   return sum;
 }
 

@@ -9,6 +9,7 @@
 #include "echopath/base/constants.h"
 #include "echopath/base/lanes/phasor.h"
 #include "echopath/base/threads/parallel.h"
+#include "echopath/power/facet_phase.h"
 #include "echopath/replay/replay.h"
 
 namespace echopath {
@@ -84,6 +85,12 @@ class KnownKinds {
     return last_index_;
   }
 
+  void set_facet_phases(FacetPhases& phases, std::vector<CoherentKind>& kinds) const {
+    for (const auto& [kind, index] : index_) {
+      if (kind != kMirrorsAlone) kinds[index].facet_phase = phases.of(static_cast<uint32_t>(kind >> 1));
+    }
+  }
+
  private:
   std::unordered_map<uint64_t, size_t> index_;
   uint64_t last_ = 0;
@@ -136,8 +143,11 @@ class Sums {
     ++sums.num_coherent_paths;
   }
 
-  std::vector<GroupSums> finish() {
-    for (size_t group = 0; group < groups_.size(); ++group) close(group);
+  std::vector<GroupSums> finish(FacetPhases& phases) {
+    for (size_t group = 0; group < groups_.size(); ++group) {
+      close(group);
+      kinds_[group].set_facet_phases(phases, groups_[group].kinds);
+    }
     return std::move(groups_);
   }
 
@@ -238,8 +248,9 @@ std::vector<std::vector<GroupSums>> sum_groups(const Paths& paths, const Radar& 
     });
     if (job) job->advance(end - begin);
   }
+  FacetPhases phases(*paths.scene, kTwoPi * radar.waveform.start_frequency / kSpeedOfLight, paths.frame.trace_time);
   std::vector<std::vector<GroupSums>> found;
-  for (Sums& of_sorting : sums) found.push_back(of_sorting.finish());
+  for (Sums& of_sorting : sums) found.push_back(of_sorting.finish(phases));
   return found;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 namespace echopath {
 namespace {
@@ -9,14 +11,17 @@ namespace {
 constexpr double kNormal = 1.959964;  // two-sided 95 % quantile
 constexpr double kOfHalving = 1.2, kOfHalvingMore = 3.0, kMostOfHalving = 5.0;
 constexpr double kAliases = 0.007, kOfFiner = 4.0, kHalvingPerFiner = 2.8;
-constexpr double kGone = 0.5, kOfEdges = 1.25, kFaded = 0.2;
+constexpr double kGone = 0.5, kOfEdges = 1.25, kFaded = 0.2, kKnownAbove = 0.8;
 constexpr double kPointsTimesField = 4.0, kPointsTimesFieldOfSeveral = 6.0;  // of one bounce and of several
 constexpr double kMostOfPoints = 2.5;
-constexpr double kOfSurface = 0.0025;
+constexpr double kOfSurface = 0.0025, kOfFacets = 0.01, kMostOfFacets = 0.015;
 constexpr double kOfAHit = 0.5;
 constexpr double kEdgeCells = 8.0;  // twice the outline of a square, 4 sqrt(n) of n cells
 constexpr double kFewCells = 600.0;
 constexpr double kOutline = 0.6, kOutlineOfFields = 0.29;
+
+// Says whether an interval counts what more rays hardly mend.
+enum class Lasting { kCounted, kLeftOut };
 
 double squared(double x) { return x * x; }
 
@@ -61,17 +66,31 @@ double missing_of_points(const CoherentKind& kind, int num_batches) {
   return size > 0.0 ? std::clamp(points / (times_field * size) - size, 0.0, most) : most;
 }
 
+// Returns how well, relative to the field of a kind, the facets of its surface let it be known at best.
+double of_facets(const CoherentKind& kind, Lasting lasting) {
+  return lasting == Lasting::kCounted ? std::min(kOfFacets * kind.facet_phase, kMostOfFacets) : 0.0;
+}
+
 // Returns the square of an error of which there are two estimates, from their squares. They are not independent, so that the
 // smaller one counts by half.
 double of_one_error(double one, double other) { return std::max(one, other) + 0.5 * std::min(one, other); }
 
-FieldBias field_bias(const PowerEvidence& evidence) {
+// Returns how much of the power that edges may add counts, from 0 to 1. `change`: of the field with the cells, relative to
+// it. Behind other bounces a field that is weaker than what edges may add tells nothing: by chance it changes little, too.
+double share_of_edges(const CoherentKind& kind, double change, double edges, Lasting lasting) {
+  const double by_change = squared(squared(std::min(change / kGone, 1.0))), power = std::norm(kind.field[kAsLaunched]);
+  const bool may_hide = kind.has_bounced && lasting == Lasting::kCounted;
+  if (!may_hide || edges <= kKnownAbove * power) return by_change;
+  return std::max(by_change, std::min(edges / (kKnownAbove * power) - 1.0, 1.0));
+}
+
+FieldBias field_bias(const PowerEvidence& evidence, Lasting lasting) {
   SumOfChanges above, below;
   double finer = 0.0, gone = 0.0, surface = 0.0;  // W
   for (const CoherentKind& kind : evidence.kinds) {
     const double size = std::abs(kind.field[kAsLaunched]);
     gone += squared(missing_of_points(kind, evidence.num_batches));
-    if (kind.has_cells) surface += squared(kOfSurface * size);
+    if (kind.has_cells) surface += squared(kOfSurface * size) + squared(of_facets(kind, lasting) * size);
     if (size == 0.0) {
       gone += squared(kOfEdges) * between_edges(kind, evidence.num_batches, 1.0);
       continue;
@@ -85,7 +104,7 @@ FieldBias field_bias(const PowerEvidence& evidence) {
     const double in_phase = std::max(0.0, 1.0 - std::abs(kind.field[kHalfDensity]) / (kFaded * size));
     const double edges = squared(kOfEdges) * between_edges(kind, evidence.num_batches, in_phase);
     const double still_changes = kind.has_bounced ? std::max(halving, kHalvingPerFiner * of_finer / size) : halving;
-    gone += squared(squared(std::min(still_changes / kGone, 1.0))) * edges;
+    gone += share_of_edges(kind, still_changes, edges, lasting) * edges;
   }
   return {std::sqrt(of_one_error(squared(above.size()), finer) + gone + surface),
           std::sqrt(of_one_error(squared(below.size()), finer) + surface)};
@@ -140,9 +159,9 @@ Reach chance_reach(const PowerEvidence& evidence, double power, double standard_
 }
 
 // Returns the reach by what the rays have in common.
-Reach bias_reach(const PowerEvidence& evidence, double coherent) {
+Reach bias_reach(const PowerEvidence& evidence, double coherent, Lasting lasting) {
   if (evidence.coherent_at_most) return {std::max(*evidence.coherent_at_most - coherent, 0.0), coherent};
-  const FieldBias bias = field_bias(evidence);
+  const FieldBias bias = field_bias(evidence, lasting);
   const double size = std::sqrt(coherent);
   return {squared(size + bias.above) - coherent, coherent - squared(std::max(size - bias.below, 0.0))};
 }
@@ -168,10 +187,14 @@ PowerInterval power_interval(const PowerEvidence& evidence) {
   PowerInterval out;
   out.chance = has_batches ? evidence.standard_error : chance_of_record(evidence);
   const Reach chance = chance_reach(evidence, power, out.chance);
-  const Reach bias = bias_reach(evidence, coherent);
+  const auto bounds = [&](const Reach& bias) {
+    return std::pair(std::max(power - std::hypot(bias.below, chance.below), 0.0),
+                     power + std::hypot(bias.above, chance.above));
+  };
+  const Reach bias = bias_reach(evidence, coherent, Lasting::kCounted);
   out.bias = bias.above;
-  out.low = std::max(power - std::hypot(bias.below, chance.below), 0.0);
-  out.high = power + std::hypot(bias.above, chance.above);
+  std::tie(out.low, out.high) = bounds(bias);
+  std::tie(out.low_of_rays, out.high_of_rays) = bounds(bias_reach(evidence, coherent, Lasting::kLeftOut));
   return out;
 }
 

@@ -22,6 +22,7 @@ struct CoherentKind {
   std::complex<double> field[kNumCellViews];  // sqrt(W)
   double power[kNumCellViews] = {};           // W, sum of |a|^2
   double edge_squares = 0.0;                  // W^2, sum of |a|^4 of kEdges
+  double facet_phase = 0.0;                   // rad, by which the facets stray from a smooth surface (facet_phase.h)
   bool has_cells = false;                     // else its paths are images, which are exact
   bool has_bounced = false;                   // off other surfaces before, flagged mirrors aside
 };
@@ -43,8 +44,11 @@ struct PowerEvidence {
 
 struct PowerInterval {
   double low = 0.0, high = 0.0;  // W
-  double bias = 0.0;             // W, by which the coherent power may change with finer launch cells
-  double chance = 0.0;           // W, standard error of the power; for one batch estimated from the record
+  // W: the same without what more rays hardly mend, which are facets and edges of several bounces behind a weak field. It
+  // tells where rays are needed.
+  double low_of_rays = 0.0, high_of_rays = 0.0;
+  double bias = 0.0;    // W, by which the coherent power may change with finer launch cells
+  double chance = 0.0;  // W, standard error of the power; for one batch estimated from the record
 };
 
 // Returns the power that launch cells may hold between rays, W. It sums |a|^2 as for random phases, so that a few cells
@@ -62,12 +66,15 @@ double power_between_rays(const CoherentKind& kind, int num_batches);
 // cells hold of such points, P (power_between_rays), outgrows |F|^2. The field may then be as large as
 // P / (kPointsTimesField |F|), but larger than it is by no more than kMostOfPoints sqrt(P). Of waves of edges it may lack
 // kOfEdges times as much as cells hold, in full where d reaches kGone; behind other bounces also where kHalvingPerFiner
-// times the change to finer cells does, by which that change is smaller where errors fall with the square of a cell's side.
+// times the change to finer cells does, by which that change is smaller where errors fall with the square of a cell's side,
+// and where the field is weaker than the edges: it may then change little by chance.
 // Where cells twice as large leave less than kFaded of the field, cells along an edge may be in phase, as are those of a
 // straight edge across the line of sight.
 // The changes of all kinds add up as fields, but to no less than their root sum of squares, and all else as powers: kinds
 // whose echoes cancel are known as well as they are one by one. No field of a kind is known better than to kOfSurface,
-// however fine the cells: that is what the lattice and interpolated normals leave.
+// however fine the cells: that is what the lattice and interpolated normals leave. Where facets stray from the smooth
+// surface that they stand for, rays closer than facets see another field than rays farther apart: it is known to kOfFacets
+// for each radian by which they do, up to kMostOfFacets.
 // Without a footprint filter nothing tells how coarse the rays are for the phases of a surface: its waves may cancel, or add
 // up as coherent_at_most has them.
 // Chance: with batches it is Student's t of these, and no less than half a hit in each of them, which errs by itself. For

@@ -59,9 +59,9 @@ struct Channel {
 // with s^2 the variance of the C_b, and m in the direction of their mean. For noise that is the same in all directions the
 // coherent part is 2 |m|^2 s^2/B + s^4/(B (B - 1)), but the error of a lattice may lie along its field. Pure noise gets an
 // error up to 40 % too large. One batch gives |sum a|^2 and no standard errors. What all batches have in common, such as
-// what the footprint filter takes away, shows in no standard error but in the bias, and with it in the interval; the
-// coarseness of a mesh shows in none. A job advances by paths. Raises out_of_range for antennas that the radar of the trace
-// does not have; raises Cancelled.
+// what the footprint filter takes away, shows in no standard error but in the bias, and with it in the interval. That holds
+// the truth for the mesh: how far facets stray from the body that somebody meant shows in none. A job advances by paths.
+// Raises out_of_range for antennas that the radar of the trace does not have; raises Cancelled.
 ReceivedPower received_power(const Paths& paths, Job* job = nullptr, Channel channel = {});
 
 // Returns the powers of groups of paths, [sorting, group], in one pass over the record; that of each group is, to the last

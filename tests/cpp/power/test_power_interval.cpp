@@ -95,5 +95,41 @@ TEST(PowerInterval, EdgesOfSeveralBouncesCountWhereFinerCellsChangeTheField) {
   }
 }
 
+// Facets that stray from the surface that they stand for limit what rays know of it, but never so much that the body could
+// not be resolved.
+TEST(PowerInterval, FacetsLimitWhatIsKnownByLessThanAResolvedEchoMayErr) {
+  constexpr double kResolvedDb = 0.3;
+  const auto interval_db = [](double phase) {
+    CoherentKind kind = falls_with_the_square(1.0, 0.0);
+    kind.facet_phase = phase;
+    PowerEvidence evidence;
+    evidence.coherent = 1.0;
+    evidence.kinds = {kind};
+    const PowerInterval found = power_interval(evidence);
+    return 10.0 * std::log10(std::max(found.high, 1.0 / found.low));
+  };
+  EXPECT_LT(interval_db(0.0), interval_db(0.3));
+  EXPECT_LT(interval_db(0.3), interval_db(0.9));
+  EXPECT_LT(interval_db(100.0), 0.5 * kResolvedDb);
+}
+
+// A field over several bounces that is weaker than what its cells hold of edges may hardly change by chance. Edges that hold
+// a quarter of its power do not hide it.
+TEST(PowerInterval, AWeakFieldOfSeveralBouncesMayLackItsEdgesHoweverLittleItChanges) {
+  constexpr double kOneCell = 1e-3;  // of the edges' power: of each of 1000 cells, 8/sqrt(1000) = .25 count
+  CoherentKind kind = falls_with_the_square(1.0, 0.0);
+  kind.has_bounced = true;
+  PowerEvidence evidence;
+  evidence.coherent = 1.0;
+  const auto above = [&](double edges) {
+    kind.power[kEdges] = edges / 0.253;
+    kind.edge_squares = kOneCell * kind.power[kEdges] * kind.power[kEdges];
+    evidence.kinds = {kind};
+    return std::sqrt(power_interval(evidence).high) - 1.0;
+  };
+  EXPECT_EQ(above(0.25), above(0.0));
+  EXPECT_GT(above(4.0), std::sqrt(4.0));
+}
+
 }  // namespace
 }  // namespace echopath::test_power_interval

@@ -52,7 +52,8 @@ double strongest_of(const std::vector<ReceivedPower>& powers) {
 // Returns half the interval relative to the power, in dB; a power below the floor counts as if it were as strong as the
 // floor.
 double missing_db(const ReceivedPower& power, double least) {
-  const double level = std::max(power.power, least), half = std::max(power.high - power.power, power.power - power.low);
+  const double level = std::max(power.power, least),
+               half = std::max(power.high_of_rays - power.power, power.power - power.low_of_rays);
   return level > 0 ? 10.0 * std::log10(1.0 + half / level) : 0.0;
 }
 
@@ -74,10 +75,10 @@ double growth_of(double missing_db, double target_db, RayLaw law) {
 RayNeed need_of(const Stratum& stratum, double num_rays, const ReceivedPower& power, double growth) {
   RayNeed need;
   need.stratum = stratum.name;
-  need.echo = {power.power, power.high};
+  need.echo = {power.power, power.high_of_rays};
   need.is_image = stratum.num_mirrors > 0;
   need.weight = weight_of_target(stratum.num_mirrors) * (need.is_image ? kImageWeight : 1.0);
-  growth = power.high > 0 ? std::clamp(growth, kMinGrowth, kMaxGrowth) : kUnseenGrowth;
+  growth = power.high_of_rays > 0 ? std::clamp(growth, kMinGrowth, kMaxGrowth) : kUnseenGrowth;
   // The field of view sees many surfaces, of which the strongest would speak for all, so it keeps the rays that it has.
   if (stratum.object < 0) growth = 1.0;
   need.is_bounded = growth < kMaxGrowth;
@@ -177,8 +178,8 @@ RayNeeds ray_needs(const Paths& paths, const WantedError& wanted, Job* job) {
     const double target = is_moving && stratum.num_mirrors == 0 ? kMovingTarget * wanted.db : wanted.db;
     const double growth = growth_of(missing, target, wanted.law);
     needs.strata.push_back(need_of(stratum, launched.at(stratum.name), powers[k], growth));
-    needs.strata.back().is_resolved = missing <= target || powers[k].high <= least;
-    if (powers[k].high > least) needs.worst_db = std::max(needs.worst_db, missing);
+    needs.strata.back().is_resolved = missing <= target || powers[k].high_of_rays <= least;
+    if (powers[k].high_of_rays > least) needs.worst_db = std::max(needs.worst_db, missing);
   }
   return needs;
 }

@@ -34,7 +34,7 @@ enum class RayLaw {
 };
 
 struct WantedError {
-  double db = 0.3;  // half the 95 % interval of each echo
+  double db = 0.3;  // half the 95 % interval of each echo, as far as rays mend it
   EchoFloor floor = EchoFloor::kStrongest;
   RayLaw law = RayLaw::kByDecibels;
 };
@@ -46,11 +46,11 @@ struct RayNeeds {
   double num_rays() const;
 };
 
-// Returns for every stratum whose echo may stand above the floor as many rays as bring its interval (power/received_power.h)
-// to what is wanted, for objects that move, but not for their images, to a quarter of it. The interval of a coherent echo
-// falls about with the rays, that of a diffuse one with their root; both get rays in proportion to the error over the
-// target, within a factor of kMaxGrowth. An echo that is known better gives rays back, down to a sixteenth; a stratum that
-// sends nothing back keeps a quarter. Raises Cancelled.
+// Returns for every stratum whose echo may stand above the floor as many rays as bring its interval, as far as rays mend it
+// (PowerInterval::high_of_rays), to what is wanted, for objects that move, but not for their images, to a quarter of it.
+// The interval of a coherent echo falls about with the rays, that of a diffuse one with their root; both get rays in
+// proportion to the error over the target, within a factor of kMaxGrowth. An echo that is known better gives rays back,
+// down to a sixteenth; a stratum that sends nothing back keeps a quarter. Raises Cancelled.
 RayNeeds ray_needs(const Paths& paths, const WantedError& wanted, Job* job = nullptr);
 inline constexpr double kMaxGrowth = 32.0;
 

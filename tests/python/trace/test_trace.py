@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.actors import shapes
 from support.radars import build_radar
 from support.references.slow_rays import closest_hit, segment_is_free
 
@@ -167,3 +168,16 @@ def test_antenna_index_out_of_range():
     paths = ep.trace(soup_scene(triangle_soup(seed=8), reflectivity=0.5, scattering=1.0), make_radar(), num_rays=100)
     with pytest.raises(IndexError, match="rx: must lie in 0 to 0, got 1"):
         paths.amplitudes([0.0], 0, 1)
+
+
+def test_facets_are_told_but_ask_for_no_rays():
+    """The facets of a coarse ball leave more than is wanted; a fine ball needs as many rays."""
+    paths = {}
+    for edge in (0.012, 0.06):
+        scene, ball = ep.Scene(), shapes.sphere(0.4, edge=edge)
+        scene.add(ball, name="ball", material=ep.Material.metal(), position=(15.0, 0.0, 0.0), smooth=True)
+        paths[edge] = ep.trace(scene, make_radar(), target_error_db=0.05, max_bounces=1)
+    fine, coarse = (ep.received_power(one).interval_db for one in paths.values())
+    assert fine <= 0.05 and 2.0 * fine < coarse <= 0.15
+    assert len({one.frame.statistics.num_rays for one in paths.values()}) == 1
+    assert max(one.frame.error_db for one in paths.values()) <= 0.05

@@ -5,6 +5,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/replay/replay.h"
+#include "echopath/replay/spare_echoes.h"
 #include "echopath/replay/time/node_tails.h"
 
 namespace echopath {
@@ -77,16 +78,52 @@ void Replayer::raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::
   }
 }
 
+// Returns the amplitude in sqrt(W) below which a path is negligible; 0 where the strongest was not looked for.
+double Replayer::negligible_amplitude() const {
+  const double rounding = std::numeric_limits<double>::epsilon() * strongest_;
+  return rounding / static_cast<double>(std::max<int64_t>(1, paths_.num_paths()));
+}
+
 // Returns [P], 1 for paths that are negligible in all channels.
 std::vector<uint8_t> Replayer::negligible_ones(const FrameNodes& nodes, std::span<const Echoes> channels) const {
   std::vector<uint8_t> is_negligible(static_cast<size_t>(channels.front().num_echoes), 1);
-  const double rounding = std::numeric_limits<double>::epsilon() * strongest_;
-  const double limit = rounding / static_cast<double>(std::max<int64_t>(1, paths_.num_paths()));
+  const double limit = negligible_amplitude();
   for (const Echoes& channel : channels) {
     for (size_t p = 0; p < is_negligible.size(); ++p)
       is_negligible[p] = is_negligible[p] && is_dark(nodes, channel, p, limit);
   }
   return is_negligible;
+}
+
+std::vector<Echoes> Replayer::interpolated(std::span<const int64_t> indices, int index,
+                                           std::vector<UnfollowedPath>& unfollowed) const {
+  const PosedGrid& polynomial = posed_.polynomial(index);
+  std::vector<uint8_t> dark, turned(indices.size());
+  std::vector<double> unfiltered(indices.size());
+  std::vector<Echoes> echoes = not_dark(indices, polynomial, {turned.data(), unfiltered.data()}, dark);
+  const auto num_left = static_cast<size_t>(echoes.front().num_echoes);
+  std::vector<UnfollowedPath> needed(num_left);
+  for (const Echoes& channel : echoes) raise_orders(polynomial.nodes, channel, unfiltered, needed);
+  const std::vector<uint8_t> is_negligible = negligible_ones(polynomial.nodes, echoes);
+  std::vector<size_t> followed;
+  size_t p = 0;  // among those that are left
+  for (size_t place = 0; place < indices.size(); ++place) {
+    if (dark[place]) {
+      unfollowed.push_back({.path = indices[place], .is_negligible = true});
+      continue;
+    }
+    if (!is_negligible[p] && needed[p].order_for_length == 0.0 && needed[p].order_for_amplitude == 0.0) {
+      followed.push_back(p++);
+      continue;
+    }
+    needed[p].path = indices[place];
+    needed[p].is_turned = turned[p] != 0;
+    needed[p].is_negligible = is_negligible[p] != 0;
+    unfollowed.push_back(needed[p++]);
+  }
+  if (followed.size() == num_left) return echoes;
+  for (Echoes& channel : echoes) keep_echoes(followed, channel);
+  return echoes;
 }
 
 }  // namespace echopath

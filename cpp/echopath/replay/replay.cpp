@@ -87,13 +87,19 @@ std::vector<Echoes> Replayer::joined(std::vector<Echoes> of_paths, std::span<con
   return echoes;
 }
 
-// Evaluates all channels of the grid's transmitters.
-std::vector<Echoes> Replayer::at_nodes(std::span<const int64_t> paths, const PosedGrid& grid, const Wanted& wanted) const {
+// Makes room for all channels of the grid's transmitters.
+std::vector<Echoes> Replayer::take_echoes_of(const PosedGrid& grid, size_t num_echoes) const {
   const size_t num_channels = grid.posed.at(0).transmitters.size() * num_receivers();
-  std::vector<Echoes> echoes = take_echoes(paths.size(), num_channels, grid.posed.size());
+  std::vector<Echoes> echoes = take_echoes(num_echoes, num_channels, grid.posed.size());
   for (size_t channel = 0; channel < num_channels; ++channel) {
     echoes[channel].sampling = grid.nodes.sampling[channel / num_receivers()];
   }
+  return echoes;
+}
+
+// Evaluates all channels of the grid's transmitters.
+std::vector<Echoes> Replayer::at_nodes(std::span<const int64_t> paths, const PosedGrid& grid, const Wanted& wanted) const {
+  std::vector<Echoes> echoes = take_echoes_of(grid, paths.size());
   Target target{grid.posed, 0, rows_of(echoes), wanted};
   evaluate_at(paths, {&target, 1});
   return echoes;
@@ -105,24 +111,38 @@ RadioConstants Replayer::radio_of(const Target& target) const {
   return radio;
 }
 
-void Replayer::evaluate_at(std::span<const int64_t> paths, std::span<Target> targets, bool as_chains) const {
+std::unique_ptr<PathEvaluator> Replayer::take_evaluator(bool as_chains) const {
   std::unique_ptr<PathEvaluator> evaluator = KeptMemory::of_process().take<PathEvaluator>();
   evaluator->begin(preparer_, radar_, sheets_, settings_.specular, as_chains);
+  return evaluator;
+}
+
+void Replayer::evaluate_at(std::span<const int64_t> paths, std::span<Target> targets, bool as_chains) const {
+  std::unique_ptr<PathEvaluator> evaluator = take_evaluator(as_chains);
   for (size_t begin = 0; begin < paths.size(); begin += kPlannedTogether) {
     evaluator->plan(paths.subspan(begin, std::min(kPlannedTogether, paths.size() - begin)));
-    for (Target& target : targets) {
-      for (ChannelNodes& channel : target.nodes) channel.first_path = begin;
-      Wanted wanted = target.wanted;
-      if (wanted.turned) wanted.turned += begin;
-      if (wanted.unfiltered) wanted.unfiltered += begin;
-      evaluator->evaluate(target.posed, radio_of(target), target.channels(), wanted);
-    }
+    evaluate_planned(*evaluator, begin, targets);
   }
   KeptMemory::of_process().leave(std::move(evaluator));
-  if (paths_.frame.attenuation == 0.0 || paths.empty()) return;
+  attenuate_all(paths.size(), targets);
+}
+
+// Writes the paths of the plan to the places from `first` on.
+void Replayer::evaluate_planned(PathEvaluator& evaluator, size_t first, std::span<Target> targets) const {
+  for (Target& target : targets) {
+    for (ChannelNodes& channel : target.nodes) channel.first_path = first;
+    Wanted wanted = target.wanted;
+    if (wanted.turned) wanted.turned += first;
+    if (wanted.unfiltered) wanted.unfiltered += first;
+    evaluator.evaluate(target.posed, radio_of(target), target.channels(), wanted);
+  }
+}
+
+void Replayer::attenuate_all(size_t num_paths, std::span<const Target> targets) const {
+  if (paths_.frame.attenuation == 0.0 || num_paths == 0) return;
   for (const Target& target : targets) {
     if (target.wanted.with_amplitudes)
-      attenuate(target.channels(), paths.size(), target.posed.size(), paths_.frame.attenuation);
+      attenuate(target.channels(), num_paths, target.posed.size(), paths_.frame.attenuation);
   }
 }
 
@@ -181,28 +201,20 @@ int64_t Replayer::num_rows_by_chirp() const {
   return int64_t{radar_.waveform.num_chirps} * rows_of_chirp(grids_.derivatives());
 }
 
-std::vector<Echoes> Replayer::interpolated(std::span<const int64_t> indices, int index,
-                                           std::vector<UnfollowedPath>& unfollowed) const {
-  const PosedGrid& polynomial = posed_.polynomial(index);
-  std::vector<uint8_t> turned(indices.size());
-  std::vector<double> unfiltered(indices.size());
-  std::vector<Echoes> echoes = at_nodes(indices, polynomial, {turned.data(), unfiltered.data()});
-  std::vector<UnfollowedPath> needed(indices.size());
-  for (const Echoes& channel : echoes) raise_orders(polynomial.nodes, channel, unfiltered, needed);
-  const std::vector<uint8_t> is_negligible = negligible_ones(polynomial.nodes, echoes);
-  std::vector<size_t> followed;
-  for (size_t p = 0; p < indices.size(); ++p) {
-    if (!is_negligible[p] && needed[p].order_for_length == 0.0 && needed[p].order_for_amplitude == 0.0) {
-      followed.push_back(p);
-      continue;
-    }
-    needed[p].path = indices[p];
-    needed[p].is_turned = turned[p] != 0;
-    needed[p].is_negligible = is_negligible[p] != 0;
-    unfollowed.push_back(needed[p]);
-  }
-  if (followed.size() == indices.size()) return echoes;
-  for (Echoes& channel : echoes) keep_echoes(followed, channel);
+// Evaluates the paths less those that are negligible by what is known without evaluating them, of which dark [P] gets 1.
+std::vector<Echoes> Replayer::not_dark(std::span<const int64_t> indices, const PosedGrid& grid, const Wanted& wanted,
+                                       std::vector<uint8_t>& dark) const {
+  dark.assign(indices.size(), 0);
+  if (strongest_ == 0.0 || indices.size() > kPlannedTogether) return at_nodes(indices, grid, wanted);
+  std::unique_ptr<PathEvaluator> evaluator = take_evaluator();
+  evaluator->plan(indices);
+  dark = evaluator->leave_out_dark(grid.posed, grid.nodes, radio_, negligible_amplitude());
+  const auto num_left = static_cast<size_t>(std::count(dark.begin(), dark.end(), 0));
+  std::vector<Echoes> echoes = take_echoes_of(grid, num_left);
+  Target target{grid.posed, 0, rows_of(echoes), wanted};
+  evaluate_planned(*evaluator, 0, {&target, 1});
+  KeptMemory::of_process().leave(std::move(evaluator));
+  attenuate_all(num_left, {&target, 1});
   return echoes;
 }
 

@@ -109,10 +109,17 @@ class Replayer {
   struct Target;
   size_t num_receivers() const { return radar_.receivers.size(); }
   std::vector<Echoes> take_echoes(size_t num_echoes, size_t num_channels, size_t num_nodes) const;
+  std::vector<Echoes> take_echoes_of(const PosedGrid& grid, size_t num_echoes) const;
   using Wanted = PathEvaluator::Wanted;
   std::vector<Echoes> at_nodes(std::span<const int64_t> paths, const PosedGrid& grid, const Wanted& wanted) const;
   RadioConstants radio_of(const Target& target) const;
+  std::unique_ptr<PathEvaluator> take_evaluator(bool as_chains = false) const;
   void evaluate_at(std::span<const int64_t> paths, std::span<Target> targets, bool as_chains = false) const;
+  void evaluate_planned(PathEvaluator& evaluator, size_t first, std::span<Target> targets) const;
+  void attenuate_all(size_t num_paths, std::span<const Target> targets) const;
+  double negligible_amplitude() const;
+  std::vector<Echoes> not_dark(std::span<const int64_t> paths, const PosedGrid& grid, const Wanted& wanted,
+                               std::vector<uint8_t>& dark) const;
   void raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::span<const double> unfiltered,
                     std::vector<UnfollowedPath>& needed) const;
   void evaluate_turning(std::span<const int64_t> paths, const PosedGrid& grid, std::span<Echoes> channels,

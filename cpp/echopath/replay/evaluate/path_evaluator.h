@@ -23,6 +23,11 @@ class PathEvaluator {
     shared_legs_.begin_plan();
     indices_ = indices;
   }
+  // Leaves those of the planned paths out whose amplitudes stay below `limit` (sqrt(W)) at the nodes of a polynomial and between
+  // them, as far as this shows without evaluating them (SharedLegEvaluation::find_dark). Returns 1 for each of them, else 0,
+  // [P]; values of the others are then written without gaps.
+  std::vector<uint8_t> leave_out_dark(const PosedNodes& nodes, const FrameNodes& times, const RadioConstants& radio,
+                                      double limit);
   void evaluate(const PosedNodes& nodes, const RadioConstants& radio, const ChannelSpan& channels,
                 const Wanted& wanted = {});
   size_t num_bytes() const { return shared_legs_.num_bytes() + single_bounces_.num_bytes(); }  // of its memory, nearly all
@@ -32,6 +37,7 @@ class PathEvaluator {
   SharedLegEvaluation shared_legs_;
   SingleBounceEvaluation single_bounces_;
   std::span<const int64_t> indices_;
+  std::vector<int64_t> left_;  // of the indices
   const PathPreparer* preparer_ = nullptr;
   const SheetPassages* sheets_ = nullptr;
   const SharedLegPlan* plan_ = nullptr;

@@ -73,6 +73,28 @@ const SharedLegPlan& SharedLegPlanner::operator()(std::span<const int64_t> indic
   return plan_;
 }
 
+void SharedLegPlanner::leave_out(const std::vector<uint8_t>& places) {
+  std::vector<size_t> place_of(places.size());
+  size_t num_left = 0;
+  for (size_t place = 0; place < places.size(); ++place) {
+    place_of[place] = num_left;
+    if (!places[place]) ++num_left;
+  }
+  const auto close_ranks = [&](auto& some) {
+    std::erase_if(some, [&](const auto& path) { return places[path.place] != 0; });
+    for (auto& path : some) path.place = place_of[path.place];
+  };
+  close_ranks(plan_.chains);
+  close_ranks(plan_.mirror_paths);
+  close_ranks(plan_.edge_paths);
+  close_ranks(plan_.lobed_paths);
+  for (SharedLegPlan::SingleBounce& bounce : plan_.single_bounces) {
+    for (const size_t kind : {0u, 1u}) {
+      if (bounce.has_path(kind)) bounce.place[kind] = place_of[bounce.place[kind]];
+    }
+  }
+}
+
 void SharedLegPlanner::clear() {
   plan_.clear();
   last_start_ = last_end_ = {};

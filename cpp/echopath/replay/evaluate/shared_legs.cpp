@@ -26,17 +26,9 @@ void set_world(size_t num_nodes, NodeRows& world) {
 void SharedLegEvaluation::operator()(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes,
                                      const RadioConstants& radio, const ChannelSpan& channels) {
   if (plan.chains.empty() && plan.mirror_paths.empty()) return;
-  num_receivers_ = nodes.at(0).receivers.size();
-  paths_ = &preparer.paths();
-  if (posed_at_ != &nodes) tables_.find(plan, preparer, nodes);
-  posed_at_ = &nodes;
-  values_.resize(kTogether, PathToCombine::kNumRows, nodes.size());
-  kernels_ = &shared_leg_kernels(values_.stride());
-  set_world(nodes.size(), world_);
+  prepare(plan, preparer, nodes, radio);
   const TraceCells cells(plan, preparer, tables_.points);
-  if (cells_.empty()) find_cells(plan, cells);
   const double of_coherent = radio.coherent_scale(), of_diffuse = radio.diffuse_scale();
-  for (CoherentPath& path : coherent_) path.filter = radio.filter();
   for (size_t first = 0; first < plan.chains.size(); first += kTogether) {
     const Chains chains(plan.chains.data() + first, std::min(kTogether, plan.chains.size() - first));
     for (size_t slot = 0; slot < chains.size(); ++slot) {
@@ -56,6 +48,20 @@ void SharedLegEvaluation::operator()(const SharedLegPlan& plan, const PathPrepar
   }
   for (const SharedLegPlan::MirrorPath& path : plan.mirror_paths)
     evaluate_mirrors(path, nodes, channels, radio.mirror_scale());
+}
+
+// Finds what the paths share at these nodes, unless it is known.
+void SharedLegEvaluation::prepare(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes,
+                                  const RadioConstants& radio) {
+  num_receivers_ = nodes.at(0).receivers.size();
+  paths_ = &preparer.paths();
+  if (posed_at_ != &nodes) tables_.find(plan, preparer, nodes);
+  posed_at_ = &nodes;
+  values_.resize(kTogether, PathToCombine::kNumRows, nodes.size());
+  kernels_ = &shared_leg_kernels(values_.stride());
+  set_world(nodes.size(), world_);
+  if (cells_.empty()) find_cells(plan, TraceCells(plan, preparer, tables_.points));
+  for (CoherentPath& path : coherent_) path.filter = radio.filter();
 }
 
 SharedLegEvaluation::Ends SharedLegEvaluation::ends_of(const SharedLegPlan::ChainPath& chain, size_t channel) const {

@@ -6,6 +6,7 @@
 #include "echopath/replay/evaluate/shared_leg_tables.h"
 #include "echopath/replay/factors/radio_constants.h"
 #include "echopath/replay/factors/trace_cells.h"
+#include "echopath/replay/time/frame_nodes.h"
 
 namespace echopath {
 
@@ -50,6 +51,13 @@ class SharedLegEvaluation {
     posed_at_ = nullptr;
     cells_.clear();
   }
+  // Sets dark[place] to 1 for coherent chains whose amplitude, whatever the antennas, stays below `limit` (sqrt(W)) at the nodes
+  // and between them (stays_below, node_tails.h): the filter of their launch cell is bounded for all antennas at once
+  // (filter_bound.h), at the largest gains. It leaves out some whose amplitudes it would have to evaluate to tell.
+  void find_dark(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, const FrameNodes& times,
+                 const RadioConstants& radio, double limit, std::vector<uint8_t>& dark);
+  // Is told that the plan is about to leave out the paths of these places ([P], 1 or 0).
+  void leave_out(const SharedLegPlan& plan, const std::vector<uint8_t>& places);
   // Writes the chains and mirror paths of the plan. Where the nodes are those of the last call, which must still be as they
   // were, only what hangs on `radio` is evaluated again.
   void operator()(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes,
@@ -75,6 +83,11 @@ class SharedLegEvaluation {
     size_t leg;
     const double* rows() const { return table.rows.row(leg, 0); }
   };
+  struct Around;
+  void prepare(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes,
+               const RadioConstants& radio);
+  bool is_dark(const SharedLegPlan& plan, const SharedLegPlan::ChainPath& chain, const FrameNodes& times, double scale,
+               double limit, const Around (&around)[2]);
   Ends ends_of(const SharedLegPlan::ChainPath& chain, size_t channel) const;
   PathToCombine path_of(const SharedLegPlan::ChainPath& chain, const Ends& ends, double scale, size_t slot);
   MeasuredLeg start_of(const SharedLegPlan::ChainPath& chain, size_t antenna) const;
@@ -103,6 +116,7 @@ class SharedLegEvaluation {
   const PosedNodes* posed_at_ = nullptr;          // of the tables; null: they hold nothing of the plan
   std::vector<PlacedCell> cells_;                 // [chain] where it is coherent and on a rigid mesh; empty: unknown
   NodeRows values_;                               // [slot], PathToCombine::Row
+  NodeRows bounds_;                               // of one path, AmplitudeToBound::Row
   std::array<CoherentPath, kTogether> coherent_;  // [slot], the part that does not depend on the channel
   std::array<std::vector<PlacedCell>, kTogether> stretching_;  // [slot, node]; empty where the mesh is rigid
   NodeRows world_;                                             // a mesh whose frame is the world's, PointToPose::MeshRow

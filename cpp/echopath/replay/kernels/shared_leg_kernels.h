@@ -64,6 +64,18 @@ struct CoherentPath {
   double root_area;  // of curved cells, sqrt(|T_1 x T_2| density), m sr^-1/2
 };
 
+// Asks how large the amplitude of a coherent path can be between any antennas that stand so far (m, at most) from those at
+// the two ends of `path`.
+struct AmplitudeToBound {
+  // The logarithm of the filter at most, and the square of the distance over which a wave spreads at least: the product of
+  // both legs in m^2 or, where the cell is curved, the leg from the point to the antenna in m. A spreading that is not
+  // positive tells that there is no bound.
+  enum Row { kFilter, kSpreading, kNumRows };
+  const CoherentPath& path;
+  double around_start, around_end;
+  double* out;
+};
+
 // Describes the polarisation of an antenna across a leg, as the wave departs: its horizontal and vertical components at the
 // antenna. For a wave that arrives over the same leg the horizontal component changes its sign.
 struct ComponentsToFind {
@@ -89,6 +101,7 @@ struct SharedLegKernels {
   void (*reflect)(const CoherentPath& path, size_t begin, size_t end, size_t stride);  // nodes [begin, end)
   // Leaves the turn of the launch cell's filter (TurnApart) out of the amplitude and writes it beside.
   void (*reflect_with_turn_apart)(const CoherentPath& path, size_t begin, size_t end, size_t stride);
+  void (*bound)(const AmplitudeToBound& work, size_t stride);
   void (*find_components)(const ComponentsToFind& leg, size_t stride);
   void (*polarize)(const PathToPolarize& path, size_t stride);
 };

@@ -2,6 +2,7 @@
 // Holds the inner loops of replay, compiled once per instruction set (base/lanes/lane_math.h).
 #include "echopath/base/lanes/lane_math.h"
 #include "echopath/base/vector_of.h"
+#include "echopath/replay/kernels/filter_bound.h"
 #include "echopath/replay/kernels/path_formula.h"
 #include "echopath/replay/kernels/shared_leg_kernels.h"
 
@@ -131,6 +132,40 @@ ECHOPATH_INLINE void set_turn(const PathToCombine& path, const At<Math>& at, con
   at.set(path.out, PathToCombine::kTurn, apart.turn);
 }
 
+// Holds a coherent path at some nodes: waves with signed cosines.
+template <class Real>
+struct CoherentWaves {
+  Real first, in, out;  // m: the leg from the first antenna, all before the point, and all behind it
+  Real cos_in, cos_out;
+  CellWaves<Real> waves;  // as set_waves sets them
+};
+
+template <class Math>
+ECHOPATH_INLINE CoherentWaves<typename Math::Real> waves_of(const CoherentPath& coherent, const At<Math>& at) {
+  using Real = typename Math::Real;
+  const PathToCombine& path = coherent.path;
+  CoherentWaves<Real> of;
+  of.first = at.value(path.start, LegToMeasure::kLength);
+  of.out = at.value(path.end, LegToMeasure::kLength);
+  const VectorOf<Real> point = at.vector(coherent.point, PointToPose::kPosition),
+                       normal = at.vector(coherent.point, PointToPose::kNormal);
+  of.in = path.inner ? of.first + at.value(path.inner, InnerRows::kLength) : of.first;
+  const Real inverse_in = 1.0 / of.in, inverse_out = 1.0 / of.out;
+  const VectorOf<Real> arrival = path.inner
+                                     ? at.vector(path.inner, InnerRows::kArrival)
+                                     : inverse_in * (point - at.vector(coherent.start_image, LegToMeasure::kImagePosition));
+  const VectorOf<Real> departure = inverse_out * (at.vector(coherent.end_image, LegToMeasure::kImagePosition) - point);
+  of.cos_in = -dot(normal, arrival);
+  of.cos_out = dot(normal, departure);
+  set_waves<Math>(of.cos_in, of.cos_out, inverse_in, inverse_out, of.waves);
+  for (int a = 0; a < 2; ++a) {
+    const VectorOf<Real> tangent = at.turned(coherent.mesh, coherent.tangent[a]);
+    of.waves.along_arrival[a] = dot(tangent, arrival);
+    of.waves.along_departure[a] = dot(tangent, departure);
+  }
+  return of;
+}
+
 // Turn is WithTurn or TurnApart.
 template <class Math, class Turn>
 void reflect(const CoherentPath& coherent, size_t begin, size_t end, size_t stride) {
@@ -138,31 +173,39 @@ void reflect(const CoherentPath& coherent, size_t begin, size_t end, size_t stri
   const PathToCombine& path = coherent.path;
   for (size_t node = begin; node < end; node += Math::kCount) {
     const At<Math> at{node, stride};
-    const Real first = at.value(path.start, LegToMeasure::kLength), out = at.value(path.end, LegToMeasure::kLength);
-    const VectorOf<Real> point = at.vector(coherent.point, PointToPose::kPosition),
-                         normal = at.vector(coherent.point, PointToPose::kNormal);
-    const Real in = path.inner ? first + at.value(path.inner, InnerRows::kLength) : first;
-    const Real inverse_in = 1.0 / in, inverse_out = 1.0 / out;
-    const VectorOf<Real> arrival =
-        path.inner ? at.vector(path.inner, InnerRows::kArrival)
-                   : inverse_in * (point - at.vector(coherent.start_image, LegToMeasure::kImagePosition));
-    const VectorOf<Real> departure = inverse_out * (at.vector(coherent.end_image, LegToMeasure::kImagePosition) - point);
-    const Real cos_in = -dot(normal, arrival), cos_out = dot(normal, departure);
-    CellWaves<Real> waves;
-    set_waves<Math>(cos_in, cos_out, inverse_in, inverse_out, waves);
-    for (int a = 0; a < 2; ++a) {
-      const VectorOf<Real> tangent = at.turned(coherent.mesh, coherent.tangent[a]);
-      waves.along_arrival[a] = dot(tangent, arrival);
-      waves.along_departure[a] = dot(tangent, departure);
-    }
+    const CoherentWaves<Real> of = waves_of<Math>(coherent, at);
     Turn turn;
-    const ComplexOf<Real> filter = cell_filter_of<Math>(coherent.cell, waves, coherent.filter, turn);
+    const ComplexOf<Real> filter = cell_filter_of<Math>(coherent.cell, of.waves, coherent.filter, turn);
     set_turn<Math>(path, at, turn);
-    const Real inverse_tube = coherent.cell.is_curved ? 1.0 / (coherent.root_area * Math::root(waves.cos_in)) : inverse_in;
+    const Real inverse_tube =
+        coherent.cell.is_curved ? 1.0 / (coherent.root_area * Math::root(of.waves.cos_in)) : of.waves.inverse_in;
     const Real gains = at.value(path.start, LegToMeasure::kGain) * at.value(path.end, LegToMeasure::kGain);
-    const ComplexOf<Real> factor = coherent_factor(waves, gains, inverse_tube, filter, is_lit(cos_in, cos_out, first, out));
-    const Real length = in + out;
+    const ComplexOf<Real> factor =
+        coherent_factor(of.waves, gains, inverse_tube, filter, is_lit(of.cos_in, of.cos_out, of.first, of.out));
+    const Real length = of.in + of.out;
     set_path(path, at, length, amplitude_of<Math>(path.weight, factor));
+  }
+}
+
+template <class Math>
+void bound(const AmplitudeToBound& work, size_t stride) {
+  using Real = typename Math::Real;
+  const CoherentPath& coherent = work.path;
+  for (size_t node = 0; node < stride; node += Math::kCount) {
+    const At<Math> at{node, stride};
+    CoherentWaves<Real> of = waves_of<Math>(coherent, at);
+    // Antennas that see the point from one side bend both waves by their cosines, whatever the sign of these here.
+    of.waves.cos_in = of.cos_in;
+    of.waves.cos_out = of.cos_out;
+    of.waves.side = of.cos_in * 0.0 + 1.0;
+    const Real in = of.in - work.around_start, out = of.out - work.around_end;
+    at.set(work.out, AmplitudeToBound::kSpreading,
+           coherent.cell.is_curved        ? out
+           : Math::smaller(in, out) > 0.0 ? in * out
+                                          : in * 0.0);
+    at.set(work.out, AmplitudeToBound::kFilter,
+           largest_cell_filter<Math>(coherent.cell, of.waves, {work.around_start / in, work.around_end / out},
+                                     coherent.filter));
   }
 }
 
@@ -196,14 +239,10 @@ void polarize(const PathToPolarize& path, size_t stride) {
 }
 
 template <class Math>
-constexpr SharedLegKernels kChainKernels = {pose<Math>,
-                                            measure<Math>,
-                                            combine<Math>,
-                                            connect<Math>,
-                                            reflect<Math, WithTurn>,
-                                            reflect<Math, TurnApart<typename Math::Real>>,
-                                            find_components<Math>,
-                                            polarize<Math>};
+constexpr SharedLegKernels kChainKernels = {
+    pose<Math>,    measure<Math>,           combine<Math>,
+    connect<Math>, reflect<Math, WithTurn>, reflect<Math, TurnApart<typename Math::Real>>,
+    bound<Math>,   find_components<Math>,   polarize<Math>};
 constexpr ForRows<SharedLegKernels> kChains = {kChainKernels<LaneMath>, kChainKernels<OneMath>};
 
 }  // namespace

@@ -172,6 +172,15 @@ bool is_dark(const FrameNodes& nodes, const Echoes& echoes, size_t echo, double 
   return true;
 }
 
+bool stays_below(const FrameNodes& nodes, const double* values, double limit) {
+  const auto order = static_cast<size_t>(nodes.order), count = nodes.times.size();
+  if (!std::all_of(values, values + count, [&](double value) { return value < limit; })) return false;
+  for (size_t first = 0; first + order <= count; first += order) {
+    if (!(bound_of_parabolas(&nodes.times[first], values + first, order) < limit)) return false;
+  }
+  return true;
+}
+
 double tail_of(const FrameNodes& nodes, const std::vector<double>& values) {
   Coefficients coefficients(nodes, 1);
   double tail = 0.0;

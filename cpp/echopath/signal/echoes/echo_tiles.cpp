@@ -17,8 +17,8 @@ namespace {
 constexpr int kLanes = TileAtChirps::kLanes;
 constexpr int kDelayBits = 16;  // 64 places in each cell of 512 samples
 constexpr int kMaxDrifts = 64;
-constexpr int kEchoesOfCell = 4;  // least mean number for each class of drift, so that moments are worth while
-constexpr int kDigitBits = 11;    // of a pass of the radix sort
+constexpr int kEchoesOfCell = 16;  // least mean number for each class of drift, so that moments are worth while
+constexpr int kDigitBits = 11;     // of a pass of the radix sort
 
 // Sorts by bits [first_bit, end_bit); equal keys keep their order. `sorted` is scratch memory.
 void radix_sort(std::vector<uint64_t>& keys, std::vector<uint64_t>& sorted, int first_bit, int end_bit) {

@@ -23,11 +23,19 @@ struct Places {
 // bits.
 constexpr double kCellShift = 2.0 * kRoundingShift;
 
-ECHOPATH_INLINE void locate(const Spreading& spreading, Vec frequency, int p, Places& places) {
+// Holds the cell, in the lowest bits of `shifted`, and the place in it, [-1, 1].
+struct Located {
+  Vec shifted, t;
+};
+ECHOPATH_INLINE Located located(const Spreading& spreading, Vec frequency) {
   const Vec twice = multiply_add(frequency, all(2.0 * spreading.grid_size), all(spreading.width - 1.0));
   const Vec shifted = twice + kCellShift;
-  store_lanes(places.cell + p, __builtin_convertvector(bits(shifted), Lanes<int32_t, kLanes>));
-  store(places.t + p, (shifted - kCellShift) - twice);
+  return {shifted, (shifted - kCellShift) - twice};
+}
+ECHOPATH_INLINE void locate(const Spreading& spreading, Vec frequency, int p, Places& places) {
+  const Located found = located(spreading, frequency);
+  store_lanes(places.cell + p, __builtin_convertvector(bits(found.shifted), Lanes<int32_t, kLanes>));
+  store(places.t + p, found.t);
 }
 
 // Marks where runs of one cell end: bit p of the words is set where the echo behind p has another cell or there is none.

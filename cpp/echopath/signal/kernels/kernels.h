@@ -44,8 +44,8 @@ struct RowRoom {
 // Holds echoes of one group, near each other in delay, in the layout of EchoTiles, at a few chirps.
 struct TileAtChirps {
   static constexpr int kLanes = 8;       // of the layout, whatever the instruction set
-  static constexpr int kCapacity = 256;  // echoes: carriers of kMaxChirps chirps stay in the first-level cache
-  static constexpr int kMaxChirps = 4;   // for which the nodes are read once
+  static constexpr int kCapacity = 256;  // echoes: carriers of kMaxChirps chirps stay in the second-level cache
+  static constexpr int kMaxChirps = 8;   // for which the nodes are read once
   const double* nodes;                   // [vectors of kLanes echoes, num_nodes, (delay, re, im), kLanes]
   int count;                             // echoes; the last vector is filled up with echoes of amplitude 0
   int num_nodes, order;

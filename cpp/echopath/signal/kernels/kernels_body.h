@@ -1,5 +1,6 @@
 #pragma once
 // Holds the inner loops of synthesis, compiled once per instruction set (base/lanes/lane_math.h).
+#include "echopath/signal/kernels/chirps_body.h"
 #include "echopath/signal/kernels/spreader_body.h"
 #include "echopath/signal/kernels/tones_body.h"
 
@@ -16,18 +17,6 @@ ECHOPATH_INLINE void store_places(const Spreading& spreading, const Tones<kChirp
     locate(spreading, tones.frequency.of[c], p, places[c]);
     store(places[c].re + p, tones.re.of[c]);
     store(places[c].im + p, tones.im.of[c]);
-  }
-}
-
-// Turns logarithms of sizes and phases in rad into amplitudes.
-template <int kChirps>
-ECHOPATH_INLINE void undo_logarithms(States<kChirps>& states) {
-#pragma GCC unroll 4
-  for (int c = 0; c < kChirps; ++c) {
-    const Vec size = LaneMath::exp(states.re.of[c]);
-    const ComplexOf<Vec> phasor = LaneMath::cis(states.im.of[c]);
-    states.re.of[c] = size * phasor.re;
-    states.im.of[c] = size * phasor.im;
   }
 }
 
@@ -90,12 +79,11 @@ FirstCells range_of(const Places* places, const TileAtChirps& tile) {
   return all;
 }
 
-void add_tile(const CarrierModel& model, const Spreading& spreading, const TileAtChirps& tile, const RowRoom& room) {
+// Adds a tile to the rows of some chirps, whose echoes take other nodes at each.
+template <PhasorError kError>
+void add_echo_lanes(const CarrierModel& model, const Spreading& spreading, const TileAtChirps& tile, const RowRoom& room) {
   Places places[TileAtChirps::kMaxChirps];
-  // These phasor errors are far below the error of the kernel, which is 1e-7 and 9e-4 at these widths.
-  if (spreading.width <= 4) place_tile_at_all<PhasorError::k7em6>(model, spreading, tile, places);
-  else if (spreading.width <= 8) place_tile_at_all<PhasorError::k1em12>(model, spreading, tile, places);
-  else place_tile_at_all<PhasorError::kRounding>(model, spreading, tile, places);
+  place_tile_at_all<kError>(model, spreading, tile, places);
   const FirstCells cells = range_of(places, tile);
   const TileRows rows = room.rows_for(room.of, {cells.lowest, cells.highest + NufftKernel::padded(spreading.width)});
   const Spreading there{spreading.width, spreading.coefficients, spreading.grid_size, rows.row_length};
@@ -103,6 +91,34 @@ void add_tile(const CarrierModel& model, const Spreading& spreading, const TileA
     kSpreadTile[spreading.width - NufftKernel::kMinWidth](there, places[chirp], tile.count,
                                                           rows.rows + chirp * rows.chirp_stride);
   }
+}
+
+// Adds a tile whose echoes take the same nodes at all chirps.
+template <PhasorError kError>
+void add_chirp_lanes(const CarrierModel& model, const Spreading& spreading, const TileAtChirps& tile, const RowRoom& room) {
+  for (int first = 0; first < tile.num_chirps; first += kLanes) {
+    ChirpPlaces places;
+    place_at_chirps<kError>(model, spreading, tile, first, places);
+    TileRows rows =
+        room.rows_for(room.of, {places.range.lowest, places.range.highest + NufftKernel::padded(spreading.width)});
+    rows.rows += first * rows.chirp_stride;
+    const int num_chirps = tile.num_chirps - first < kLanes ? tile.num_chirps - first : kLanes;
+    kSpreadChirps[spreading.width - NufftKernel::kMinWidth](spreading, places, tile.count, num_chirps, rows);
+  }
+}
+
+template <PhasorError kError>
+void add_tile_to(const CarrierModel& model, const Spreading& spreading, const TileAtChirps& tile, const RowRoom& room) {
+  const bool fills_lanes = 2 * tile.num_chirps > kLanes && tile.order <= ChirpWeights::kMaxOrder;
+  const auto add = fills_lanes && same_nodes(tile, 0, tile.num_chirps) ? add_chirp_lanes<kError> : add_echo_lanes<kError>;
+  add(model, spreading, tile, room);
+}
+
+void add_tile(const CarrierModel& model, const Spreading& spreading, const TileAtChirps& tile, const RowRoom& room) {
+  // These phasor errors are far below the error of the kernel, which is 1e-7 and 9e-4 at these widths.
+  if (spreading.width <= 4) add_tile_to<PhasorError::k7em6>(model, spreading, tile, room);
+  else if (spreading.width <= 8) add_tile_to<PhasorError::k1em12>(model, spreading, tile, room);
+  else add_tile_to<PhasorError::kRounding>(model, spreading, tile, room);
 }
 
 constexpr SignalKernels kSignalKernels = {modulate, spread, add_tile};

@@ -35,17 +35,20 @@ struct Spreader {
   }
 
   ECHOPATH_INLINE void add_echo(const Places& places, int p, double* first) const {
-    const Vec t = all(places.t[p]);
+    add_at(places.t[p], places.re[p], places.im[p], first + places.cell[p]);
+  }
+  ECHOPATH_INLINE void add_at(double place, double amplitude_re, double amplitude_im, double* row) const {
+    const Vec t = all(place);
     Vec re[kVectors], im[kVectors];
 #pragma GCC unroll 8
     for (int v = 0; v < kVectors; ++v) {
       Vec value = load(coefficients + v * kLanes);
 #pragma GCC unroll 16
       for (int d = 1; d < kTerms; ++d) value = multiply_add(value, t, load(coefficients + d * kPadded + v * kLanes));
-      re[v] = value * places.re[p];
-      im[v] = value * places.im[p];
+      re[v] = value * amplitude_re;
+      im[v] = value * amplitude_im;
     }
-    add_window(re, im, first + places.cell[p]);
+    add_window(re, im, row);
   }
 
   // Holds the sums over echoes of one cell of (re + j im) t^d, d < kTerms.
@@ -118,13 +121,18 @@ struct Spreader {
 
   // The kernel is a polynomial in t, so the echoes of a cell need its values once.
   ECHOPATH_INLINE void add_kernels(const Moments& moments, Vec* re, Vec* im) const {
+    add_kernels_of<1>(moments.re, moments.im, re, im);
+  }
+  // Moments stand kStep doubles apart.
+  template <int kStep>
+  ECHOPATH_INLINE void add_kernels_of(const double* moment_re, const double* moment_im, Vec* re, Vec* im) const {
 #pragma GCC unroll 16
     for (int d = 0; d < kTerms; ++d) {
 #pragma GCC unroll 8
       for (int v = 0; v < kVectors; ++v) {
         const Vec coefficient = load(coefficients + (kTerms - 1 - d) * kPadded + v * kLanes);
-        re[v] = multiply_add(coefficient, all(moments.re[d]), re[v]);
-        im[v] = multiply_add(coefficient, all(moments.im[d]), im[v]);
+        re[v] = multiply_add(coefficient, all(moment_re[d * kStep]), re[v]);
+        im[v] = multiply_add(coefficient, all(moment_im[d * kStep]), im[v]);
       }
     }
   }

@@ -42,6 +42,18 @@ ECHOPATH_INLINE Tones<kCount> tones_of(const CarrierModel& model, const States<k
   return out;
 }
 
+// Turns logarithms of sizes and phases in rad into amplitudes.
+template <int kChirps>
+ECHOPATH_INLINE void undo_logarithms(States<kChirps>& states) {
+#pragma GCC unroll 4
+  for (int c = 0; c < kChirps; ++c) {
+    const Vec size = LaneMath::exp(states.re.of[c]);
+    const ComplexOf<Vec> phasor = LaneMath::cis(states.im.of[c]);
+    states.re.of[c] = size * phasor.re;
+    states.im.of[c] = size * phasor.im;
+  }
+}
+
 void modulate(const CarrierModel& model, const EchoStates& states, int count, Carriers& out) {
   for (int p = 0; p < count; p += kLanes) {
     const Vec first = load(states.amplitude + 2 * p), second = load(states.amplitude + 2 * p + kLanes);

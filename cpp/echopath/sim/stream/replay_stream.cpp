@@ -11,8 +11,8 @@ namespace echopath {
 namespace {
 
 constexpr int64_t kBlocksInFlight = ReplayStream::kBlocksInFlight;
-constexpr int64_t kEchoesInFlight = 1 << 17;  // paths x channels; as many are handed over meanwhile
-constexpr int64_t kNodesOfAPath = 32;         // with more nodes per path, fewer echoes are in flight
+constexpr int64_t kEchoesInFlight = 1 << 18;  // paths x channels; as many are handed over meanwhile
+constexpr int64_t kNodesOfAPath = 16;         // with more nodes per path, fewer echoes are in flight
 // The values of a block at its nodes stay in the second-level cache. No power of two: rows of nodes would share the sets of
 // the first.
 constexpr int64_t kLargestBlock = 1000;
@@ -24,7 +24,7 @@ constexpr int64_t kValuesInFlight = 150000;  // no power of two, as above
 constexpr int64_t kMinBlock = 64;            // fills the registers with vectors of joined echoes
 
 int64_t block_size(int64_t num_channels, int64_t num_rows) {
-  const int64_t values = num_channels * std::max<int64_t>(1, num_rows / kNodesOfAPath);
+  const int64_t values = num_channels * ((num_rows + kNodesOfAPath - 1) / kNodesOfAPath);
   const int64_t most = std::clamp<int64_t>(kEchoesInFlight / (kBlocksInFlight * values), 1, kLargestBlock);
   if (num_rows <= kNodesOfChirps) return most;
   return std::min(most, std::max(kMinBlock, kValuesInFlight / (kBlocksInFlight * num_channels * num_rows)));

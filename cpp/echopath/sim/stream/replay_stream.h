@@ -25,7 +25,7 @@ class PathWatcher {
 // Hands the echoes of all paths over in an order and in blocks that depend on the paths alone, many blocks at a time.
 class ReplayStream {
  public:
-  static constexpr int64_t kBlocksInFlight = 16;  // fixed: results must not depend on the number of threads
+  static constexpr int64_t kBlocksInFlight = 32;  // fixed: results must not depend on the number of threads
 
   // Tells which paths the echoes of some blocks belong to.
   struct EchoPaths {

@@ -55,10 +55,10 @@ void Replayer::find_strongest() {
   std::vector<int64_t> some;
   const int64_t step = std::max<int64_t>(1, paths_.num_paths() / kStrongestAmong);
   for (int64_t path = 0; path < paths_.num_paths(); path += step) some.push_back(path);
-  std::vector<double> lengths;
-  std::vector<std::complex<double>> amplitudes;
-  evaluate(some, paths_.frame.trace_time, lengths, amplitudes);
-  for (size_t i = 0; i < some.size(); ++i) strongest_ = std::max(strongest_, std::abs(amplitudes[i]));
+  std::vector<std::complex<double>> amplitudes(some.size());
+  const Moment moment{paths_.frame.trace_time, nullptr, amplitudes.data()};
+  evaluate(some, {&moment, 1});
+  for (const std::complex<double>& amplitude : amplitudes) strongest_ = std::max(strongest_, std::abs(amplitude));
 }
 
 // Raises the orders that paths need whose length or amplitude in one channel the polynomial does not follow.

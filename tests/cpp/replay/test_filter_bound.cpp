@@ -1,5 +1,5 @@
-// Launch cells that are dark to a whole array are found from its first antennas. Truth is the filter itself, for antennas drawn
-// at random around these.
+// Launch cells that are dark to a whole array are found from its first antennas. Truth is the filter itself, for antennas
+// drawn at random around these.
 #include <gtest/gtest.h>
 
 #include <cmath>

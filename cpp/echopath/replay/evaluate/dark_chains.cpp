@@ -41,8 +41,8 @@ struct SharedLegEvaluation::Around {
   }
 };
 
-// A filter of kEdges is a sum of several. Paths with points of reflection that move, on meshes that stretch or through sheets
-// are evaluated to tell.
+// A filter of kEdges is a sum of several. Paths with points of reflection that move, on meshes that stretch or through
+// sheets are evaluated to tell.
 void SharedLegEvaluation::find_dark(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes,
                                     const FrameNodes& times, const RadioConstants& radio, double limit,
                                     std::vector<uint8_t>& dark) {

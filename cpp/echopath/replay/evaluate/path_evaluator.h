@@ -23,9 +23,9 @@ class PathEvaluator {
     shared_legs_.begin_plan();
     indices_ = indices;
   }
-  // Leaves those of the planned paths out whose amplitudes stay below `limit` (sqrt(W)) at the nodes of a polynomial and between
-  // them, as far as this shows without evaluating them (SharedLegEvaluation::find_dark). Returns 1 for each of them, else 0,
-  // [P]; values of the others are then written without gaps.
+  // Leaves those of the planned paths out whose amplitudes stay below `limit` (sqrt(W)) at the nodes of a polynomial and
+  // between them, as far as this shows without evaluating them (SharedLegEvaluation::find_dark). Returns 1 for each of them,
+  // else 0, [P]; values of the others are then written without gaps.
   std::vector<uint8_t> leave_out_dark(const PosedNodes& nodes, const FrameNodes& times, const RadioConstants& radio,
                                       double limit);
   void evaluate(const PosedNodes& nodes, const RadioConstants& radio, const ChannelSpan& channels,

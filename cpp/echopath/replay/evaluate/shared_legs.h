@@ -51,8 +51,8 @@ class SharedLegEvaluation {
     posed_at_ = nullptr;
     cells_.clear();
   }
-  // Sets dark[place] to 1 for coherent chains whose amplitude, whatever the antennas, stays below `limit` (sqrt(W)) at the nodes
-  // and between them (stays_below, node_tails.h): the filter of their launch cell is bounded for all antennas at once
+  // Sets dark[place] to 1 for coherent chains whose amplitude, whatever the antennas, stays below `limit` (sqrt(W)) at the
+  // nodes and between them (stays_below, node_tails.h): the filter of their launch cell is bounded for all antennas at once
   // (filter_bound.h), at the largest gains. It leaves out some whose amplitudes it would have to evaluate to tell.
   void find_dark(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, const FrameNodes& times,
                  const RadioConstants& radio, double limit, std::vector<uint8_t>& dark);

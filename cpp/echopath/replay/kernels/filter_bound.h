@@ -1,6 +1,6 @@
 #pragma once
-// Bounds what the filter of a launch cell leaves of a path between any antennas near some, from the waves of these alone: most
-// launch cells are dark to a whole array. Math and Real are as in base/lanes/scalar_math.h.
+// Bounds what the filter of a launch cell leaves of a path between any antennas near some, from the waves of these alone:
+// most launch cells are dark to a whole array. Math and Real are as in base/lanes/scalar_math.h.
 //
 // A filter of second order is |F| <= exp(-s^2 n^2 / 2), n = |(I + jA)^-1 g| with A = s^2 h, s the spread. As A is real and
 // symmetric, |(I + jA)^-1| <= 1, and for g + dg and A + dA

@@ -22,8 +22,8 @@ std::vector<double> tails_of_logarithms(const FrameNodes& nodes, const Echoes& e
 // that would flare up between two nodes is not dark, however little it has at the nodes.
 bool is_dark(const FrameNodes& nodes, const Echoes& echoes, size_t echo, double limit);
 
-// Returns whether a function stays below `limit` likewise, of which `values` has the logarithms at the nodes, [num_nodes], or
-// what lies above them. `limit` is a logarithm too.
+// Returns whether a function stays below `limit` likewise, of which `values` has the logarithms at the nodes, [num_nodes],
+// or what lies above them. `limit` is a logarithm too.
 bool stays_below(const FrameNodes& nodes, const double* values, double limit);
 
 // Returns the tail of one sequence of values, [num_nodes].

@@ -2515,6 +2515,11 @@ class ReceivedPower:
         W, that finer launch cells may add to the coherent power
         """
     @property
+    def bias_of_rays(self) -> float:
+        """
+        W, the part of it that more rays mend: not what facets that stray from a smooth surface leave open, and edges behind other bounces
+        """
+    @property
     def chance(self) -> float:
         """
         W, standard error; of one batch estimated from the record

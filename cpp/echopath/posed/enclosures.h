@@ -13,9 +13,11 @@ struct Enclosure {
   bool of_receivers = false;  // the antenna is the first of the receivers, else of the transmitters
 };
 
-// Returns the bodies that hold the first transmitter or the first receiver at `time` (s). Seen from a point inside, a closed
-// surface fills the sphere: the solid angles of its triangles add up to 4 pi. Sheets, through which waves pass, are
-// openings. Raises invalid_argument where a motion is not defined then.
+// Returns the bodies that hold the first transmitter or the first receiver at `time` (s). Seen from a point inside, a
+// closed surface fills the sphere: the solid angles of its triangles add up to 4 pi. Sheets, through which waves pass,
+// are openings. What is wound against its neighbours, and shells whose inner side is wound against the outer one, add
+// up to less and are not found; a hole of less than a hundredth of the sphere (20 by 20 degrees) is no opening. Raises
+// invalid_argument where a motion is not defined then.
 // Source: van Oosterom and Strackee 1983 (solid angle of a triangle).
 std::vector<Enclosure> enclosures(const Scene& scene, const Radar& radar, double time);
 

@@ -194,7 +194,9 @@ PowerInterval power_interval(const PowerEvidence& evidence) {
   const Reach bias = bias_reach(evidence, coherent, Lasting::kCounted);
   out.bias = bias.above;
   std::tie(out.low, out.high) = bounds(bias);
-  std::tie(out.low_of_rays, out.high_of_rays) = bounds(bias_reach(evidence, coherent, Lasting::kLeftOut));
+  const Reach of_rays = bias_reach(evidence, coherent, Lasting::kLeftOut);
+  out.bias_of_rays = of_rays.above;
+  std::tie(out.low_of_rays, out.high_of_rays) = bounds(of_rays);
   return out;
 }
 

@@ -47,8 +47,9 @@ struct PowerInterval {
   // W: the same without what more rays hardly mend, which are facets and edges of several bounces behind a weak field. It
   // tells where rays are needed.
   double low_of_rays = 0.0, high_of_rays = 0.0;
-  double bias = 0.0;    // W, by which the coherent power may change with finer launch cells
-  double chance = 0.0;  // W, standard error of the power; for one batch estimated from the record
+  double bias = 0.0;          // W, by which the coherent power may change with finer launch cells
+  double bias_of_rays = 0.0;  // W, the same without what more rays hardly mend
+  double chance = 0.0;        // W, standard error of the power; for one batch estimated from the record
 };
 
 // Returns the power that launch cells may hold between rays, W. It sums |a|^2 as for random phases, so that a few cells

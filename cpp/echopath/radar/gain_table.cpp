@@ -111,6 +111,21 @@ void GainTable::set_field() {
 
 double GainTable::peak_gain() const { return *std::max_element(gain_.begin(), gain_.end()); }
 
+double GainTable::most_beyond_samples() const {
+  const auto largest_ratio = [](const std::vector<double>& axis, double gap) {
+    std::vector<double> steps;
+    for (size_t i = 1; i < axis.size(); ++i) steps.push_back(axis[i] - axis[i - 1]);
+    if (gap > kAngleTolerance) steps.insert(steps.end(), {gap, steps.front()});
+    double ratio = 1.0;
+    for (size_t i = 1; i < steps.size(); ++i) {
+      ratio = std::max({ratio, steps[i] / steps[i - 1], steps[i - 1] / steps[i]});
+    }
+    return ratio;
+  };
+  const double gap = period_ ? azimuth_.front() + kTwoPi - azimuth_.back() : 0.0;
+  return (4.0 + largest_ratio(azimuth_, gap)) * (4.0 + largest_ratio(elevation_, 0.0));
+}
+
 void GainTable::close_ring() {
   const auto columns = static_cast<int>(azimuth_.size());
   double step = 0.0;

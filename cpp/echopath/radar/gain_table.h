@@ -35,7 +35,10 @@ class GainTable {
 
   // Returns sqrt(gain) e^{j phase} toward a unit direction in the antenna's frame.
   std::complex<double> field(const Vec3& direction) const;
-  double peak_gain() const;                             // of the samples
+  double peak_gain() const;  // of the samples
+  // Returns a bound of |field| anywhere over the largest |field| of the samples. It is the larger the less even the samples
+  // are: with q the largest ratio of neighbouring steps, the weights along an axis add up to at most 4 + q by size.
+  double most_beyond_samples() const;
   double efficiency() const { return efficiency_; }     // mean gain over the sphere: its integral / 4 pi
   bool is_dark_behind() const { return dark_behind_; }  // no gain where x < 0
 

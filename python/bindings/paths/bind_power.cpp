@@ -73,6 +73,10 @@ and are NaN for one batch.)");
       .def_readonly("low", &ReceivedPower::low, "W, lower end of the 95 % interval, of bias and chance together")
       .def_readonly("high", &ReceivedPower::high, "W, upper end of it")
       .def_readonly("bias", &ReceivedPower::bias, "W, that finer launch cells may add to the coherent power")
+      .def_readonly(
+          "bias_of_rays", &ReceivedPower::bias_of_rays,
+          "W, the part of it that more rays mend: not what facets that stray from a smooth surface leave open, and "
+          "edges behind other bounces")
       .def_readonly("chance", &ReceivedPower::chance, "W, standard error; of one batch estimated from the record")
       .def_readonly("field", &ReceivedPower::field, "sqrt(W), sum of the coherent paths as they arrive")
       .def_readonly("half_density_field", &ReceivedPower::half_density_field,
@@ -98,8 +102,8 @@ and are NaN for one batch.)");
              field("diffuse", &ReceivedPower::diffuse), field("diffuse_error", &ReceivedPower::diffuse_error),
              field("num_batches", &ReceivedPower::num_batches), field("low", &ReceivedPower::low),
              field("high", &ReceivedPower::high), field("bias", &ReceivedPower::bias),
-             field("chance", &ReceivedPower::chance), field("field", &ReceivedPower::field),
-             field("half_density_field", &ReceivedPower::half_density_field),
+             field("bias_of_rays", &ReceivedPower::bias_of_rays), field("chance", &ReceivedPower::chance),
+             field("field", &ReceivedPower::field), field("half_density_field", &ReceivedPower::half_density_field),
              field("unfiltered", &ReceivedPower::unfiltered), field("between_rays", &ReceivedPower::between_rays),
              field("num_coherent_paths", &ReceivedPower::num_coherent_paths),
              field("num_diffuse_hits", &ReceivedPower::num_diffuse_hits),

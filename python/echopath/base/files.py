@@ -27,7 +27,7 @@ def written_whole(path, suffix: str | None = None):
 
 def _written(path: Path, suffix: str | None):
     ending = path.suffix if suffix is None else suffix
-    temporary = path.parent / f".{path.stem}-{secrets.token_hex(4)}{ending}"  # named before it is there: Ctrl-C may come between
+    temporary = path.parent / f".{path.stem}-{secrets.token_hex(8)}{ending}"  # named before it is there: Ctrl-C may come between
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         temporary.touch(exist_ok=False)

@@ -17,7 +17,7 @@ _heard = False  # a plain value: an Event's lock may be held by the very line th
 def interrupts_are_kept():
     """Makes sure that Ctrl-C ends the block: at a `heed` in it, or behind it."""
     before = signal.getsignal(signal.SIGINT)
-    if threading.current_thread() is not threading.main_thread() or not callable(before):
+    if not _is_main_thread() or not callable(before):
         yield
         return
 
@@ -38,11 +38,15 @@ def interrupts_are_kept():
 
 
 def heed() -> None:
-    """Raises KeyboardInterrupt where Ctrl-C was pressed in the block around and nobody has seen it."""
-    if _heard:
+    """Raises KeyboardInterrupt where Ctrl-C was pressed in the block around and got lost; not where what it ends cleans up."""
+    if _heard and _is_main_thread() and not isinstance(sys.exc_info()[1], KeyboardInterrupt):
         raise KeyboardInterrupt
 
 
 def _note(heard: bool) -> None:
     global _heard
     _heard = heard
+
+
+def _is_main_thread() -> bool:
+    return threading.current_thread() is threading.main_thread()

@@ -48,7 +48,8 @@ def cavity_field(walls: Facets, mouth: Facets, wavenumber: float, incidence, obs
 
 
 def _solved(matrix, excited) -> np.ndarray:
-    """numpy.linalg.solve, in a thread: it hears no Ctrl-C, but whoever waits for it does; then it ends by itself, unheeded."""
+    """numpy.linalg.solve, in a thread: it hears no Ctrl-C, but whoever waits for it does. Python itself ends with it, no sooner:
+    a library that is left while it works crashes."""
     found = Future()
 
     def solve():
@@ -57,7 +58,7 @@ def _solved(matrix, excited) -> np.ndarray:
         except Exception as error:
             found.set_exception(error)
 
-    threading.Thread(target=solve, daemon=True).start()
+    threading.Thread(target=solve).start()
     return found.result()
 
 

@@ -145,6 +145,8 @@ def _advice(paths, families, family, power) -> str:
         return f"mirror=True for {', '.join(planes)}"
     if paths.frame.footprint == "none" and power.bias > power.chance:
         return "a footprint: without one nothing tells how coarse the rays are"
+    if _is_known_but_for_the_mesh(power):
+        return "a finer mesh; more rays hardly mend what facets, and edges behind other bounces, leave open"
     times = _times_the_rays(power)
     if times > MOST_TIMES:
         return f"more than {MOST_TIMES:g} times the rays"
@@ -158,13 +160,23 @@ def _rays(paths, times: float) -> str:
     return f"about {round(rays / step) * step:,.0f} rays"
 
 
+def _is_known_but_for_the_mesh(power) -> bool:
+    bias, chance = _missing(power)
+    return math.hypot(bias, chance) < 1.0
+
+
 def _times_the_rays(power) -> float:
     """Bias falls about as 1/rays, chance as their root at the latest."""
-    if not power.power > 0.0 or not power.low > 0.0:
-        return math.inf
-    wanted = 10.0 ** (0.1 * RESOLVED_DB) - 1.0
-    bias, chance = power.bias / power.power / wanted, 2.0 * power.chance / power.power / wanted
-    return max(2.0, bias, chance ** 2)
+    bias, chance = _missing(power)
+    return max(2.0, bias, chance ** 2) if power.low > 0.0 else math.inf
+
+
+def _missing(power) -> tuple[float, float]:
+    """Bias and chance that more rays mend, over what a resolved power may have; infinite where it has none."""
+    if not power.power > 0.0:
+        return math.inf, math.inf
+    wanted = power.power * (10.0 ** (0.1 * RESOLVED_DB) - 1.0)
+    return power.bias_of_rays / wanted, 2.0 * power.chance / wanted
 
 
 def _belongs(mesh, name: str) -> bool:

@@ -59,8 +59,8 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
         fine as its share of the rays; None: 1
     target_error_db: dB; adds rays where they are missing, from num_rays (16 384 unless given) to at most max_rays, until the
         echo of each object and image, down to 60 dB below the strongest, is known that well: half its 95 % interval
-        (`received_power`), without what facets of a coarse mesh leave there, which no rays mend. A RuntimeWarning and
-        `paths.frame.error_db` tell where max_rays did not do
+        (`received_power`), without what facets of a coarse mesh and edges behind other bounces leave there, which
+        more rays hardly mend. A RuntimeWarning and `paths.frame.error_db` tell where max_rays did not do
     scatterers: of rough surfaces: "rays", the points that rays happen to meet, other ones in each trace; "surface", points of
         the surfaces, the same in all traces of a scene with one seed, so that the speckle of what moves goes on from frame
         to frame; or "auto": "surface" in a `Sequence`, else "rays". Points of surfaces are less even: 5000 of them tell the

@@ -131,5 +131,22 @@ TEST(PowerInterval, AWeakFieldOfSeveralBouncesMayLackItsEdgesHoweverLittleItChan
   EXPECT_GT(above(4.0), std::sqrt(4.0));
 }
 
+// What more rays mend lies within the whole interval, and is all of it where facets are what they are.
+TEST(PowerInterval, WhatRaysMendIsAPartOfTheInterval) {
+  for (const double phase : {0.0, 0.5}) {
+    CoherentKind kind = falls_with_the_square(1.0, 0.01);
+    kind.facet_phase = phase;
+    PowerEvidence evidence;
+    evidence.coherent = 1.0;
+    evidence.kinds = {kind};
+    const PowerInterval found = power_interval(evidence);
+    EXPECT_EQ(found.low < found.low_of_rays, phase > 0.0);
+    EXPECT_EQ(found.high > found.high_of_rays, phase > 0.0);
+    EXPECT_EQ(found.bias > found.bias_of_rays, phase > 0.0);
+    EXPECT_LE(found.low, found.low_of_rays);
+    EXPECT_GE(found.high, found.high_of_rays);
+  }
+}
+
 }  // namespace
 }  // namespace echopath::test_power_interval

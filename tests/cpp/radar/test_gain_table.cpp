@@ -1,6 +1,7 @@
 // Gain tables against the closed forms they were sampled from.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -170,6 +171,30 @@ TEST(AntennaPattern, KnowsItsEfficiency) {
   EXPECT_EQ(pattern.efficiency(), pattern.table->efficiency());
   EXPECT_EQ(pattern.peak_gain, 10.0);
   EXPECT_THROW(pattern.gain(1.0), std::invalid_argument);
+}
+
+// Samples that alternate in sign, at steps of 2 and 40 degrees: the cubic between them goes far beyond.
+TEST(GainTable, NothingIsBeyondTheSamplesByMoreThanItSays) {
+  const std::vector<double> azimuth = {0.0, 2 * kDegree, 42 * kDegree, 44 * kDegree, 84 * kDegree};
+  const std::vector<double> elevation = {-20 * kDegree, 0.0, 5 * kDegree, 30 * kDegree};
+  std::vector<double> gain, phase;
+  for (size_t row = 0; row < elevation.size(); ++row) {
+    for (size_t column = 0; column < azimuth.size(); ++column) {
+      gain.push_back(0.01);
+      phase.push_back((row + column) % 2 ? kPi : 0.0);
+    }
+  }
+  const GainTable table(azimuth, elevation, gain, phase);
+  double most = 0.0;
+  for (double a = 0.0; a <= 84.0; a += 0.5) {
+    for (double e = -20.0; e <= 30.0; e += 0.5) {
+      most = std::max(most, std::abs(table.field({std::cos(e * kDegree) * std::cos(a * kDegree),
+                                                  std::cos(e * kDegree) * std::sin(a * kDegree), std::sin(e * kDegree)})));
+    }
+  }
+  const double beyond = most / std::sqrt(table.peak_gain());
+  EXPECT_GT(beyond, 2.0);
+  EXPECT_LE(beyond, table.most_beyond_samples());
 }
 
 }  // namespace

@@ -1,12 +1,16 @@
 """Waves in cavities against the modes of a shorted guide."""
 import os
 import signal
+import subprocess
+import sys
 import threading
+import time
 
 import numpy as np
 import pytest
 
 import echopath as ep
+from support.background import heed_ctrl_c
 from support.rcs_targets import in_plane
 from support.references.guide_modes import echo_of_shorted_guide
 from support.shapes import METAL, plate, rectangle, scene_of
@@ -147,3 +151,27 @@ def test_ctrl_c_does_not_wait_for_the_equation(monkeypatch, ctrl_c_is_heard):
         echoes(scene, cavity, "vv", [0.0])
     assert not solved.is_set()
     goes_on.set()
+
+
+STOPPED = """
+import sys
+import numpy as np
+from echopath.cavities import waves
+
+matrix = np.eye(1500) + 1j * np.random.default_rng(1).normal(size=(1500, 1500)) / 1500
+print("begun", flush=True)
+try:
+    while True:
+        waves._solved(matrix, np.ones((1500, 1)))
+except KeyboardInterrupt:
+    sys.exit(130)
+"""
+
+
+def test_a_program_that_is_stopped_in_the_equation_ends():
+    process = subprocess.Popen([sys.executable, "-c", STOPPED], stdout=subprocess.PIPE, preexec_fn=heed_ctrl_c)
+    process.stdout.readline()
+    time.sleep(0.5)
+    process.send_signal(signal.SIGINT)
+    process.communicate(timeout=60.0)
+    assert process.returncode == 130

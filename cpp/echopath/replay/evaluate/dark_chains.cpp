@@ -8,10 +8,11 @@
 namespace echopath {
 namespace {
 
-// Returns the root of a gain that no direction exceeds; bicubics go beyond the samples of a table by less.
+// Returns the root of a gain that no direction exceeds.
 double largest_root_gain(const AntennaPattern& pattern) {
-  constexpr double kBeyondSamples = 2.0;
-  if (pattern.kind == AntennaPattern::Kind::kTable) return kBeyondSamples * std::sqrt(pattern.table->peak_gain());
+  if (pattern.kind == AntennaPattern::Kind::kTable) {
+    return pattern.table->most_beyond_samples() * std::sqrt(pattern.table->peak_gain());
+  }
   return std::sqrt(pattern.peak_gain);
 }
 
@@ -70,12 +71,16 @@ bool SharedLegEvaluation::is_dark(const SharedLegPlan& plan, const SharedLegPlan
   path.end_image = image_of(plan, chain.end, 0);
   const Around &start = around[chain.is_reversed], &end = around[!chain.is_reversed];
   kernels_->bound({path, start.distance, end.distance, bounds_.row(0, 0)}, bounds_.stride());
+  const double size = kPolarized * scale * size_of_weight(chain) * start.root_gain * end.root_gain;
+  const double most = std::log(limit / (path.cell.is_curved ? size / path.root_area : size));
+  double* logarithm = bounds_.row(0, AmplitudeToBound::kFilter);
   const double* spreading = bounds_.row(0, AmplitudeToBound::kSpreading);
-  const double least = *std::min_element(spreading, spreading + bounds_.num_nodes());
-  if (!(least > 0.0)) return false;
-  const double size = kPolarized * scale * size_of_weight(chain) * start.root_gain * end.root_gain / least;
-  const double unfiltered = path.cell.is_curved ? size / path.root_area : size;
-  return stays_below(times, bounds_.row(0, AmplitudeToBound::kFilter), std::log(limit / unfiltered));
+  for (size_t node = 0; node < bounds_.num_nodes(); ++node) {
+    if (!(spreading[node] > 0.0)) return false;
+    logarithm[node] -= std::log(spreading[node]);
+    if (!(logarithm[node] < most)) return false;
+  }
+  return stays_below(times, logarithm, most);
 }
 
 // The cells that were found are by chain.

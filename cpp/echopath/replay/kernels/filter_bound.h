@@ -7,7 +7,10 @@
 //   n' >= (n - |dg|) / (1 + |dA|).
 // With directions of travel that turn by no more than a on arrival and b on departure, in rad, and t^2 = |T_1|^2 + |T_2|^2,
 //   |dg| <= k t (a + b),  |dA| <= s^2 k (3 t^2 (a / in + b / out) + |II| (a + b)),
-// where in and out are the shortest legs: the projections of T_a turn by a, and one over the leg changes by a / in.
+// where T_1, T_2 are the sides of the cell (CellShape), II its second fundamental form over them (CellShape::bend), and
+// in and out the shortest legs to and from the point: h has squares of the sides' projections across each leg over its
+// length; the projections turn by a, which is two of the three parts, and one over the length changes by a / in, which
+// is the third.
 #include "echopath/replay/kernels/cell_formula.h"
 
 namespace echopath {
@@ -51,12 +54,11 @@ ECHOPATH_INLINE Real largest_cell_filter(const CellShape& cell, const CellWaves<
       __builtin_sqrt(cell.bend[0] * cell.bend[0] + 2.0 * cell.bend[1] * cell.bend[1] + cell.bend[2] * cell.bend[2]);
   const double per_side = filter.wavenumber * filter.view.side;
   const Real turn = turned.arrival + turned.departure;
-  // One over the shortest leg is at most (1 + a) over the leg.
-  const Real shorter = 3.0 * square *
-                       (turned.arrival * (1.0 + turned.arrival) * at.inverse_in +
-                        turned.departure * (1.0 + turned.departure) * at.inverse_out);
-  const Real slack_g = (per_side * side) * turn,
-             slack_a = (variance * per_side * filter.view.side) * (shorter + bend * turn);
+  // The change of h; one over the shortest leg is at most (1 + a) over the leg.
+  const Real change = 3.0 * square *
+                      (turned.arrival * (1.0 + turned.arrival) * at.inverse_in +
+                       turned.departure * (1.0 + turned.departure) * at.inverse_out);
+  const Real slack_g = (per_side * side) * turn, slack_a = (variance * per_side * filter.view.side) * (change + bend * turn);
   const FootprintPhaseOf<Real> phase = cell_phase(cell, at, filter);
   if (filter.order == Footprint::kFirstOrder) {
     const Real g = Math::root(phase.g1 * phase.g1 + phase.g2 * phase.g2), least = Math::larger(g - slack_g, zero);

@@ -199,10 +199,11 @@ void bound(const AmplitudeToBound& work, size_t stride) {
     of.waves.cos_out = of.cos_out;
     of.waves.side = of.cos_in * 0.0 + 1.0;
     const Real in = of.in - work.around_start, out = of.out - work.around_end;
+    // An antenna may stand anywhere about a point that is nearer than the array is wide: nothing bounds how waves turn.
     at.set(work.out, AmplitudeToBound::kSpreading,
-           coherent.cell.is_curved        ? out
-           : Math::smaller(in, out) > 0.0 ? in * out
-                                          : in * 0.0);
+           !(Math::smaller(in, out) > 0.0) ? in * 0.0
+           : coherent.cell.is_curved       ? out
+                                           : in * out);
     at.set(work.out, AmplitudeToBound::kFilter,
            largest_cell_filter<Math>(coherent.cell, of.waves, {work.around_start / in, work.around_end / out},
                                      coherent.filter));

@@ -31,6 +31,7 @@ def error_of(work):
     return "no error"
 """
 PATIENCE = 120.0  # s
+PROMISED = 0.5  # s, from Ctrl-C to its KeyboardInterrupt
 STUCK = 10.0      # s after which nobody has heard Ctrl-C
 
 
@@ -169,11 +170,19 @@ except KeyboardInterrupt:
 
 
 @cases("Ctrl-C", "time from Ctrl-C to KeyboardInterrupt in trace, synthesis and, three times, file writing; no half-written "
-       "file is left; half a second is promised, the rest is for a machine with other work", bound=8.0, unit="s",
+       "file is left; the least of up to five tries each, as the machine may have other work", bound=1.5, unit="s",
        broken="a job that cannot be cancelled: no answer within 10 s")
 def ctrl_c() -> float:
     moments = (("trace", 0.3), ("synthesis", 0.3), ("file", 0.3), ("file", 0.4), ("file", 0.5))
-    return max(stopped_after(work, delay) for work, delay in moments)
+    return max(least_of_tries(work, delay) for work, delay in moments)
+
+
+def least_of_tries(work: str, delay: float) -> float:
+    """`stopped_after`, of a try that keeps the promise or the best of five; infinity as soon as one does not stop."""
+    found: list[float] = []
+    while len(found) < 5 and (not found or PROMISED < min(found) and max(found) < float("inf")):
+        found.append(stopped_after(work, delay))
+    return max(found) if max(found) == float("inf") else min(found)
 
 
 def stopped_after(work: str, delay: float) -> float:

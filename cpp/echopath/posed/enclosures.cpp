@@ -1,41 +1,16 @@
 #include "echopath/posed/enclosures.h"
 
-#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <cstdint>
 
 #include "echopath/base/constants.h"
-#include "echopath/posed/posed_scene.h"
+#include "echopath/posed/bodies.h"
 
 namespace echopath {
 namespace {
 
 constexpr double kWholeSphere = 0.99;  // of 4 pi sr; seams between the parts of a body may be open by less
-
-// Describes a child of the root with all that is below it.
-struct Body {
-  int node = 0;
-  Eigen::AlignedBox3d box;  // m, world
-  std::vector<uint32_t> meshes;
-};
-
-std::vector<Body> bodies_of(const Scene& scene, const PosedScene& pose) {
-  std::vector<Body> bodies;
-  std::vector<int> index(scene.nodes().size(), -1);  // into bodies, by node
-  for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
-    const int object = scene.meshes()[id].object;
-    int& at = index[static_cast<size_t>(object)];
-    if (at < 0) {
-      at = static_cast<int>(bodies.size());
-      bodies.push_back({object, {}, {}});
-    }
-    Body& body = bodies[static_cast<size_t>(at)];
-    body.meshes.push_back(id);
-    for (const Vec3& vertex : pose.world_vertices(id)) body.box.extend(vertex);
-  }
-  return bodies;
-}
 
 // Returns the solid angle of a triangle in sr, negative where its back is seen.
 double solid_angle(const std::array<Vec3, 3>& corners, const Vec3& eye) {

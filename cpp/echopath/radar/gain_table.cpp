@@ -99,6 +99,7 @@ GainTable::GainTable(std::vector<double> azimuth, std::vector<double> elevation,
           "normalize=True scales it to a mean of 1",
           in_words(efficiency_));
   dark_behind_ = all_cells_in_front();
+  largest_field_ = most_beyond_samples() * std::sqrt(peak_gain());
 }
 
 void GainTable::set_field() {

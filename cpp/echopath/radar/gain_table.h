@@ -36,9 +36,9 @@ class GainTable {
   // Returns sqrt(gain) e^{j phase} toward a unit direction in the antenna's frame.
   std::complex<double> field(const Vec3& direction) const;
   double peak_gain() const;  // of the samples
-  // Returns a bound of |field| anywhere over the largest |field| of the samples. It is the larger the less even the samples
-  // are: with q the largest ratio of neighbouring steps, the weights along an axis add up to at most 4 + q by size.
-  double most_beyond_samples() const;
+  // Returns a bound of |field| anywhere. It is the farther above the samples the less even these are: with q the largest
+  // ratio of neighbouring steps, the weights along an axis add up to at most 4 + q by size.
+  double largest_field() const { return largest_field_; }
   double efficiency() const { return efficiency_; }     // mean gain over the sphere: its integral / 4 pi
   bool is_dark_behind() const { return dark_behind_; }  // no gain where x < 0
 
@@ -57,12 +57,13 @@ class GainTable {
   void set_field();
   void close_ring();
   double integrate() const;
+  double most_beyond_samples() const;  // the largest |field| anywhere over that of the samples, at most
   bool all_cells_in_front() const;
 
   std::vector<double> azimuth_, elevation_, gain_, phase_;
   std::vector<std::complex<double>> field_;  // [E, A]
   int period_ = 0;                           // columns of a closed ring, 0: open
-  double efficiency_ = 0.0;
+  double efficiency_ = 0.0, largest_field_ = 0.0;
   bool dark_behind_ = false;
 };
 

@@ -95,6 +95,14 @@ TEST(PowerInterval, EdgesOfSeveralBouncesCountWhereFinerCellsChangeTheField) {
   }
 }
 
+// Of a coherent power of 1 W, all of this kind.
+PowerInterval interval_of(const CoherentKind& kind) {
+  PowerEvidence evidence;
+  evidence.coherent = 1.0;
+  evidence.kinds = {kind};
+  return power_interval(evidence);
+}
+
 // Facets that stray from the surface that they stand for limit what rays know of it, but never so much that the body could
 // not be resolved.
 TEST(PowerInterval, FacetsLimitWhatIsKnownByLessThanAResolvedEchoMayErr) {
@@ -102,10 +110,7 @@ TEST(PowerInterval, FacetsLimitWhatIsKnownByLessThanAResolvedEchoMayErr) {
   const auto interval_db = [](double phase) {
     CoherentKind kind = falls_with_the_square(1.0, 0.0);
     kind.facet_phase = phase;
-    PowerEvidence evidence;
-    evidence.coherent = 1.0;
-    evidence.kinds = {kind};
-    const PowerInterval found = power_interval(evidence);
+    const PowerInterval found = interval_of(kind);
     return 10.0 * std::log10(std::max(found.high, 1.0 / found.low));
   };
   EXPECT_LT(interval_db(0.0), interval_db(0.3));
@@ -119,13 +124,10 @@ TEST(PowerInterval, AWeakFieldOfSeveralBouncesMayLackItsEdgesHoweverLittleItChan
   constexpr double kOneCell = 1e-3;  // of the edges' power: of each of 1000 cells, 8/sqrt(1000) = .25 count
   CoherentKind kind = falls_with_the_square(1.0, 0.0);
   kind.has_bounced = true;
-  PowerEvidence evidence;
-  evidence.coherent = 1.0;
   const auto above = [&](double edges) {
     kind.power[kEdges] = edges / 0.253;
     kind.edge_squares = kOneCell * kind.power[kEdges] * kind.power[kEdges];
-    evidence.kinds = {kind};
-    return std::sqrt(power_interval(evidence).high) - 1.0;
+    return std::sqrt(interval_of(kind).high) - 1.0;
   };
   EXPECT_EQ(above(0.25), above(0.0));
   EXPECT_GT(above(4.0), std::sqrt(4.0));
@@ -136,10 +138,7 @@ TEST(PowerInterval, WhatRaysMendIsAPartOfTheInterval) {
   for (const double phase : {0.0, 0.5}) {
     CoherentKind kind = falls_with_the_square(1.0, 0.01);
     kind.facet_phase = phase;
-    PowerEvidence evidence;
-    evidence.coherent = 1.0;
-    evidence.kinds = {kind};
-    const PowerInterval found = power_interval(evidence);
+    const PowerInterval found = interval_of(kind);
     EXPECT_EQ(found.low < found.low_of_rays, phase > 0.0);
     EXPECT_EQ(found.high > found.high_of_rays, phase > 0.0);
     EXPECT_EQ(found.bias > found.bias_of_rays, phase > 0.0);

@@ -10,10 +10,7 @@ namespace {
 
 // Returns the root of a gain that no direction exceeds.
 double largest_root_gain(const AntennaPattern& pattern) {
-  if (pattern.kind == AntennaPattern::Kind::kTable) {
-    return pattern.table->most_beyond_samples() * std::sqrt(pattern.table->peak_gain());
-  }
-  return std::sqrt(pattern.peak_gain);
+  return pattern.kind == AntennaPattern::Kind::kTable ? pattern.table->largest_field() : std::sqrt(pattern.peak_gain);
 }
 
 // Returns the largest distance (m) of any antenna from the first, at any node.

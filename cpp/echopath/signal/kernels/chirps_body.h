@@ -70,18 +70,8 @@ struct ChirpSpreader {
     Vec sum_re[kCount] = {}, sum_im[kCount] = {};
     for (int i = 0; i < count; ++i) {
       const int at = echo[i] * kLanes;
-      const Vec t = load(places.t + at), re = load(places.re + at), im = load(places.im + at);
-      const Vec square = t * t, re_t = re * t, im_t = im * t;
-      Vec power = all(1.0);
-#pragma GCC unroll 16
-      for (int d = 0; d + 1 < kFirst; d += 2) power = power * square;
-#pragma GCC unroll 16
-      for (int d = 0; d < kCount; ++d) {
-        const bool is_odd = (kFirst + d) % 2 != 0;
-        sum_re[d] = multiply_add(power, is_odd ? re_t : re, sum_re[d]);
-        sum_im[d] = multiply_add(power, is_odd ? im_t : im, sum_im[d]);
-        if (is_odd) power = power * square;
-      }
+      Spreader<kWidth>::template add_powers<kFirst, kCount>(load(places.t + at), load(places.re + at), load(places.im + at),
+                                                            sum_re, sum_im);
     }
 #pragma GCC unroll 16
     for (int d = 0; d < kCount; ++d) {

@@ -80,6 +80,23 @@ struct Spreader {
     store(im, load(im) + sums(moment_im + d));
   }
 
+  // Adds (re + j im) t^d, kFirst <= d < kFirst + kCount, of an echo in each lane.
+  template <int kFirst, int kCount>
+  ECHOPATH_INLINE static void add_powers(Vec t, Vec re, Vec im, Vec* sum_re, Vec* sum_im) {
+    // Even powers take the amplitude times powers of t^2, odd ones the amplitude times t likewise.
+    const Vec square = t * t, re_t = re * t, im_t = im * t;
+    Vec power = all(1.0);
+#pragma GCC unroll 16
+    for (int d = 0; d + 1 < kFirst; d += 2) power = power * square;
+#pragma GCC unroll 16
+    for (int d = 0; d < kCount; ++d) {
+      const bool is_odd = (kFirst + d) % 2 != 0;
+      sum_re[d] = multiply_add(power, is_odd ? re_t : re, sum_re[d]);
+      sum_im[d] = multiply_add(power, is_odd ? im_t : im, sum_im[d]);
+      if (is_odd) power = power * square;
+    }
+  }
+
   // Adds terms [kFirst, kFirst + kCount) of echoes [begin, end), which share a cell.
   template <int kFirst, int kCount>
   ECHOPATH_INLINE static void add_moments(const Places& places, int begin, int end, Moments& to) {
@@ -95,18 +112,7 @@ struct Spreader {
         re = kept ? re : Vec{};
         im = kept ? im : Vec{};
       }
-      // Even moments take the amplitude times powers of t^2, odd ones the amplitude times t likewise.
-      const Vec square = t * t, re_t = re * t, im_t = im * t;
-      Vec power = all(1.0);
-#pragma GCC unroll 16
-      for (int d = 0; d + 1 < kFirst; d += 2) power = power * square;
-#pragma GCC unroll 16
-      for (int d = 0; d < kCount; ++d) {
-        const bool is_odd = (kFirst + d) % 2 != 0;
-        moment_re[d] = multiply_add(power, is_odd ? re_t : re, moment_re[d]);
-        moment_im[d] = multiply_add(power, is_odd ? im_t : im, moment_im[d]);
-        if (is_odd) power = power * square;
-      }
+      add_powers<kFirst, kCount>(t, re, im, moment_re, moment_im);
     }
 #pragma GCC unroll 16
     for (int d = 0; d < kCount; d += kLanes) add_up<kFirst, kCount>(d, moment_re, moment_im, to);

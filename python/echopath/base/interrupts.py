@@ -1,7 +1,8 @@
 """Ctrl-C that nothing swallows.
 
 Python raises KeyboardInterrupt in whatever runs when the signal comes. In a finaliser or a callback of a weak reference, of
-which h5py has many, it is printed and lost. Within `interrupts_are_kept` it is raised again at the next `heed`.
+which h5py has many, it is printed and lost; in a model that pydantic builds it becomes an error of the model. Within
+`interrupts_are_kept` it is raised again at the next `heed`, and in the place of any error that leaves the block.
 """
 from __future__ import annotations
 
@@ -31,6 +32,9 @@ def interrupts_are_kept():
     try:
         yield
         heed()
+    except Exception:
+        heed()
+        raise
     finally:
         sys.unraisablehook = print_ignored
         signal.signal(signal.SIGINT, before)

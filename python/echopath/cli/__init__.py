@@ -15,12 +15,13 @@ EXIT_BAD_INPUT = 2
 def main(arguments=None) -> int:
     """Runs one command and returns its exit code: 0, 2 for bad input, 130 after Ctrl-C."""
     try:
-        loading_is_over()
         options = command_parser().parse_args(arguments)
+        loading_is_over()
         with interrupts_are_kept():
             options.command(options)
         sys.stdout.flush()
     except KeyboardInterrupt:
+        exec("")  # after a Ctrl-C within the text of an `exec`, Python ends by the signal, until another text has run
         print(f"\n{STOPPED}", file=sys.stderr)
         return EXIT_INTERRUPTED
     except BrokenPipeError:

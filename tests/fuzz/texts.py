@@ -6,11 +6,13 @@ from pathlib import Path
 from random import Random
 
 import echopath as ep
+from echopath.actors import surfaces
 from echopath.scene_file.load import scene_file_of
 from fuzz.folder import memory_folder
 from fuzz.mutate import damaged, mistaken
 from fuzz.tables import Tables
 
+MANY_TRIANGLES = 1_000_000  # of an actor: up to 20 million are made, at a microsecond or two each, which is no fault of a reader
 DATA = Path(__file__).parents[2] / "data"
 ANTENNA = ("# of a patch\nazimuth_deg,elevation_deg,gain_db,phase_deg\n" +
            "\n".join(f"{azimuth},{elevation},{3 - abs(azimuth) / 20:g},0"
@@ -148,6 +150,7 @@ def feed_scene():
     One in sixteen is a text with mistakes; the others are tables with mistakes, which reach the reader behind the syntax of
     TOML, and one in eight of them is as full as the texts.
     """
+    surfaces.MAX_TRIANGLES = MANY_TRIANGLES
     folder = memory_folder()
     base = Path(folder.name)
     (base / "wall.obj").write_text("v 0 0 0\nv 1000 0 0\nv 1000 1000 0\nv 0 1000 0\ng left\nf 1 2 3 4\n")

@@ -123,23 +123,37 @@ def directions(azimuth, theta) -> np.ndarray:
     return np.stack([np.sin(theta) * np.cos(azimuth), np.sin(theta) * np.sin(azimuth), np.cos(theta) + 0.0 * azimuth], axis=-1)
 
 
+def rows_of(target: Target, frequency_ghz: float, polarization: str, table, *, quick: bool = False) -> np.ndarray:
+    """The table's rows of a target at one frequency and polarisation, every third one where it is quick."""
+    rows = table[(table["target"] == target.measured_as) & (table["frequency_ghz"] == frequency_ghz)
+                 & (table["polarization"] == polarization)]
+    return rows[::QUICK_STEP if quick else STEP]
+
+
+def rays_for(target: Target, quick: bool) -> int:
+    """Rays for each direction."""
+    return (QUICK_NUM_RAYS if quick else NUM_RAYS) * (RAYS_OF_DUCTS if target.name in DUCTS else 1)
+
+
+def levels_of(target: Target, rows, *, edges: bool, quick: bool = False) -> np.ndarray:
+    """Levels [N] in dBsm at the azimuths of rows of one frequency and polarisation, without or with edges."""
+    toward = directions(np.radians(rows["azimuth_deg"]), np.radians(target.theta_deg))
+    sigma = ep.rcs(scene_of(target), frequency=rows["frequency_ghz"][0] * 1e9, incidence=toward,
+                   polarization=[str(rows["polarization"][0])], num_rays=rays_for(target, quick),
+                   max_bounces=DUCT_BOUNCES if target.name in DUCTS else BOUNCES, edges=edges, cavities=target.cavity)[:, 0]
+    return 10.0 * np.log10(np.maximum(sigma, LEAST))
+
+
 def pattern_of(target: Target, frequency_ghz: float, polarization: str, table, *, quick: bool = False) -> Pattern:
     """One target at one frequency and polarisation."""
-    rows = table[(table["target"] == target.measured_as) & (table["frequency_ghz"] == frequency_ghz)
-                 & (table["polarization"] == polarization)][::QUICK_STEP if quick else STEP]
-    scene = scene_of(target)
-    toward = directions(np.radians(rows["azimuth_deg"]), np.radians(target.theta_deg))
-    is_duct = target.name in DUCTS
-    num_rays = (QUICK_NUM_RAYS if quick else NUM_RAYS) * (RAYS_OF_DUCTS if is_duct else 1)
+    rows = rows_of(target, frequency_ghz, polarization, table, quick=quick)
     levels, seconds = [], []
     for edges in (False, True):
         start = time.process_time()
-        sigma = ep.rcs(scene, frequency=frequency_ghz * 1e9, incidence=toward, polarization=[polarization], num_rays=num_rays,
-                       max_bounces=DUCT_BOUNCES if is_duct else BOUNCES, edges=edges, cavities=target.cavity)[:, 0]
+        levels.append(levels_of(target, rows, edges=edges, quick=quick))
         seconds.append(time.process_time() - start)
-        levels.append(10.0 * np.log10(np.maximum(sigma, LEAST)))
     return Pattern(target.name, frequency_ghz, polarization, rows["azimuth_deg"], rows["measured_dbsm"], rows["moments_dbsm"],
-                   *levels, num_rays, tuple(seconds))
+                   *levels, rays_for(target, quick), tuple(seconds))
 
 
 def row_of(one: Pattern) -> dict:

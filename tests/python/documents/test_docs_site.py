@@ -113,13 +113,16 @@ def test_the_gallery_has_its_pages():
         assert 15 <= len([line for line in text.splitlines() if line.strip()]) <= 65, script
 
 
-def with_few_rays(text: str) -> str:
-    """The text of a script with an eighth of its rays, where they are many: the site is built with all of them."""
-    return re.sub(r"\bnum_rays=(\d[\d_]*)", lambda found: f"num_rays={few(int(found[1].replace('_', '')))}", text)
+def with_little_work(text: str) -> str:
+    """The text of a script with an eighth of its rays and a fourth of its frames, where they are many: the site is built with all
+    of them."""
+    for name, many, part in (("num_rays", 5000, 8), ("frames", 20, 4)):
+        text = re.sub(rf"\b{name}=(\d[\d_]*)", lambda found: f"{name}={fewer(int(found[1].replace('_', '')), many, part)}", text)
+    return text
 
 
-def few(rays: int) -> int:
-    return rays if rays < 5000 else rays // 8
+def fewer(count: int, many: int, part: int) -> int:
+    return count if count < many else count // part
 
 
 @pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
@@ -128,7 +131,7 @@ def test_scripts_of_the_gallery_run_without_a_warning_and_draw(script, monkeypat
     names = {"__name__": "a_script"}
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        exec(compile(with_few_rays(script.read_text(encoding="utf-8")), str(script), "exec"), names)
+        exec(compile(with_little_work(script.read_text(encoding="utf-8")), str(script), "exec"), names)
     figures = [value for value in names.values() if isinstance(value, Figure)]
     assert figures
     assert all(len(titles_and_labels(figure)) >= 2 for figure in figures)

@@ -80,7 +80,7 @@ function(echopath_parse_headers_once target owner)
 endfunction()
 
 # A module's files are compiled some at a time: most of the time goes into reading the same templates, so that six at a time
-# halve it, and twelve take a tenth less again, of tests a sixth. Bindings, which take 2 GB at twelve, are compiled six at a time.
+# halve it, and twelve take a tenth less again, of tests a sixth. Bindings, which take 2 GB at twelve, are compiled nine at a time.
 # Names in unnamed namespaces are therefore unique within a module; each test file has a namespace named after it.
 set(ECHOPATH_UNITY_FILES 12 CACHE STRING "Number of files of a module that are compiled as one, 0 for each by itself")
 function(echopath_compile_together target files)
@@ -89,7 +89,8 @@ function(echopath_compile_together target files)
   endif()
 endfunction()
 
-# What makes the compiler's work quick where nobody waits for the code: the extension hands over arrays, tests sum slowly.
+# What makes the compiler's work quick where nobody waits for the code: tests sum slowly. They call so much from headers that -Og
+# takes as long to compile.
 set(echopath_quickly_compiled $<$<CONFIG:Release>:-O1>)
 
 # echopath_module(NAME [DEPENDS modules...] [PUBLIC targets...] [PRIVATE targets...] [OPTIONS compile options...])

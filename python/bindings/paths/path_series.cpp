@@ -14,16 +14,15 @@
 
 #include "call/run_job.h"
 #include "echopath/base/errors.h"
-#include "echopath/base/threads/parallel.h"
 #include "echopath/power/path_power.h"
 #include "echopath/replay/replay.h"
+#include "echopath/trace/record/hit_points.h"
 #include "values/array.h"
 #include "values/choice.h"
 
 namespace echopath::bindings {
 namespace {
 
-constexpr int64_t kHitsPerTask = 1 << 19;
 constexpr size_t kTimesTogether = 16;  // more would take memory and save no time
 
 size_t antenna_index(int64_t index, const char* argument, size_t count) {
@@ -141,21 +140,7 @@ py::tuple placed_echoes_of(const Paths& paths, Arg<"times", VectorOf<double>> ti
 }
 
 py::array points_of(const Paths& paths, Arg<"time", Real> time) {
-  std::vector<double> coordinates = run_job("points", py::none(), [&](Job& job) {
-    const PosedScene pose(*paths.scene, *time);
-    std::vector<double> out(3 * static_cast<size_t>(paths.num_hits()));
-    parallel_for((paths.num_hits() + kHitsPerTask - 1) / kHitsPerTask,
-                 [&](int64_t block) {
-                   const int64_t end = std::min((block + 1) * kHitsPerTask, paths.num_hits());
-                   for (int64_t i = block * kHitsPerTask; i < end; ++i) {
-                     const Hit& hit = (*paths.hits)[static_cast<size_t>(i)];
-                     const auto [a, b, c] = pose.world_triangle(hit.mesh_id, hit.triangle_id);
-                     Eigen::Map<Vec3>(out.data() + 3 * i) = a + double{hit.u} * (b - a) + double{hit.v} * (c - a);
-                   }
-                 },
-                 &job);
-    return out;
-  });
+  std::vector<double> coordinates = run_job("points", py::none(), [&](Job& job) { return hit_points(paths, *time, &job); });
   return numpy_take(std::move(coordinates), {static_cast<py::ssize_t>(paths.num_hits()), 3});
 }
 

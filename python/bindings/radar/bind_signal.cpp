@@ -15,10 +15,8 @@
 namespace echopath::bindings {
 namespace {
 
-using Complex = std::complex<double>;
-
 py::array noisy_cube(const py::object& cube, const Radar& radar, uint64_t seed, double start_time) {
-  std::vector<Complex> values = as_cube(cube, radar);
+  std::vector<std::complex<double>> values = as_cube(cube, radar);
   const uint64_t of_frame = noise_seed_of_frame(seed, start_time);
   run_job("add_noise", py::none(), [&](Job& job) { add_noise(values, radar, of_frame, &job); });
   return numpy_take(std::move(values), cube_shape(radar));
@@ -37,7 +35,7 @@ TimeSampling sampling_of_rows(const ChirpSequence& waveform, py::ssize_t num_row
 py::array synthesize_echoes(const ChirpSequence& waveform, const py::object& delays, const py::object& amplitudes,
                             const std::string& method, double tolerance, int num_slots) {
   const auto delay = checked_array<double>(delays, "delays", "[T, P]");
-  const auto amplitude = checked_array<Complex>(amplitudes, "amplitudes", "[T, P]");
+  const auto amplitude = checked_array<std::complex<double>>(amplitudes, "amplitudes", "[T, P]");
   require(delay.shape(0) == amplitude.shape(0) && delay.shape(1) == amplitude.shape(1), "amplitudes",
           "must have the shape of delays, rows", amplitude.shape(0));
   Echoes echoes;

@@ -1,0 +1,29 @@
+#include "echopath/trace/record/hit_points.h"
+
+#include <algorithm>
+
+#include "echopath/base/threads/parallel.h"
+#include "echopath/posed/posed_scene.h"
+
+namespace echopath {
+namespace {
+
+constexpr int64_t kHitsPerTask = 1 << 19;
+
+}  // namespace
+
+std::vector<double> hit_points(const Paths& paths, double time, Job* job) {
+  const PosedScene pose(*paths.scene, time);
+  std::vector<double> out(3 * static_cast<size_t>(paths.num_hits()));
+  parallel_for((paths.num_hits() + kHitsPerTask - 1) / kHitsPerTask, [&](int64_t block) {
+    const int64_t end = std::min((block + 1) * kHitsPerTask, paths.num_hits());
+    for (int64_t i = block * kHitsPerTask; i < end; ++i) {
+      const Hit& hit = (*paths.hits)[static_cast<size_t>(i)];
+      const auto [a, b, c] = pose.world_triangle(hit.mesh_id, hit.triangle_id);
+      Eigen::Map<Vec3>(out.data() + 3 * i) = a + double{hit.u} * (b - a) + double{hit.v} * (c - a);
+    }
+  }, job);
+  return out;
+}
+
+}  // namespace echopath

@@ -19,7 +19,7 @@ import numpy.typing
 import os
 import typing
 bench: types.ModuleType
-__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Curve', 'CurveMotion', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'Layer', 'LinearMotion', 'LiveTrace', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'MorphTargets', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'PartPass', 'Paths', 'Power', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'are_clear', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'coherent_meshes', 'coherent_share', 'compensate_tdm', 'decompose', 'enclosures', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'load_mesh', 'load_meshes', 'load_surfaces', 'looks_for_signals', 'may_appear_in_frame', 'mean_power', 'meant_name', 'mesh_names', 'mesh_traits', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'object_sizes', 'partition_groups', 'power', 'power_and_length', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'renew', 'set_num_threads', 'share_errors', 'speed_of_light', 'strongest_edge', 'strongest_part', 'synthesize', 'synthesize_echoes', 'tessellation', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'warn_of_turns', 'ways_around_edges', 'window']
+__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Curve', 'CurveMotion', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'Layer', 'LinearMotion', 'LiveTrace', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'MorphTargets', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'PartPass', 'Paths', 'Power', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'are_clear', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'coherent_meshes', 'coherent_share', 'compensate_tdm', 'decompose', 'enclosures', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'load_mesh', 'load_meshes', 'load_surfaces', 'looks_for_signals', 'may_appear_in_frame', 'mean_power', 'meant_name', 'mesh_names', 'mesh_traits', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'object_sizes', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'renew', 'set_num_threads', 'share_errors', 'speed_of_light', 'strongest_edge', 'strongest_part', 'synthesize', 'synthesize_echoes', 'tessellation', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'warn_of_turns', 'ways_around_edges', 'window']
 class Motion:
     """
     Time -> rigid transform, in the axes of the node's parent about the node's own origin.
@@ -3096,9 +3096,9 @@ class PartPass:
         """
         group: uint32 [P] below num_groups; the other arguments are those of ep.synthesize.
         """
-    def bounds(self, groups: collections.abc.Sequence[int], window: typing.Any, zero_pad: int, progress: typing.Any) -> numpy.ndarray[typing.Any, typing.Any]:
+    def bounds(self, sets: collections.abc.Sequence[collections.abc.Sequence[int]], window: typing.Any, zero_pad: int, progress: typing.Any) -> numpy.ndarray[typing.Any, typing.Any]:
         """
-        Adds groups to the whole and bounds what each can show, [group, R] in W, at any velocity or azimuth.
+        Adds sets of groups to the whole and bounds what each can show, [set, R] in W, at any velocity or azimuth.
 
         cpp/echopath/sim/stream/cell_bounds.h has the rule.
         """
@@ -3343,10 +3343,6 @@ def partition_groups(paths: typing.Any, parts: collections.abc.Sequence[tuple[st
     Returns the names with "other" last, and uint32 [P], indices into them. Raises ValueError for names that are empty,
     "other" or given twice.
     """
-def power_and_length(paths: Paths) -> tuple[typing.Any, ...]:
-    """
-    (power in W, length in m) of each path, [P], at the trace time for the first antennas.
-    """
 def power_shares(power: typing.Any) -> numpy.ndarray[typing.Any, typing.Any]:
     """
     Shares of the powers [K, V, R] in their sums.
@@ -3371,9 +3367,9 @@ def received_powers(paths: Paths, group_of_path: typing.Annotated[numpy.typing.A
     """
     What ep.received_powers calls.
     """
-def received_powers_of_sortings(paths: Paths, sortings: collections.abc.Sequence[tuple[typing.Annotated[numpy.typing.ArrayLike, numpy.uint32], int]], progress: typing.Any = None) -> list[list[ReceivedPower]]:
+def received_powers_of_sortings(paths: Paths, sortings: collections.abc.Sequence[tuple[typing.Annotated[numpy.typing.ArrayLike, numpy.uint32], int]], progress: typing.Any = None) -> tuple[typing.Any, ...]:
     """
-    received_powers of several (group_of_path, num_groups) in one pass: list [sorting, group] of ReceivedPower, in W.
+    received_powers of several (group_of_path, num_groups) in one pass: (list [sorting, group] of ReceivedPower in W, power [P] in W, length [P] in m), the last two of each path at the trace time for the first antennas.
     """
 def renew(paths: Paths, radar: Radar | None = None, *, time: float, progress: typing.Any = None) -> Renewal:
     """

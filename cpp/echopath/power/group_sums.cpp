@@ -182,7 +182,7 @@ class Block {
   Block(const Paths& paths, const Radar& radar)
       : paths_(paths), replayer_(paths, radar), turns_per_metre_(radar.waveform.start_frequency / kSpeedOfLight) {}
 
-  void evaluate(int64_t begin, int64_t end) {
+  void evaluate(int64_t begin, int64_t end, PowerAndLength* of_paths) {
     diffuse_.clear();
     coherent_.clear();
     kinds_.clear();
@@ -191,8 +191,10 @@ class Block {
     }
     for (const int64_t path : coherent_) kinds_.push_back(kind_of(paths_, path));
     replayer_.evaluate(diffuse_, paths_.frame.trace_time, lengths_, diffuse_fields_);
+    if (of_paths) note(diffuse_, diffuse_fields_, *of_paths);
     arrive(diffuse_.size(), 1, diffuse_fields_);
     replayer_.evaluate(coherent_, paths_.frame.trace_time, kCellViews, lengths_, coherent_fields_);
+    if (of_paths) note(coherent_, coherent_fields_, *of_paths);
     arrive(coherent_.size(), kNumCellViews, coherent_fields_);
   }
 
@@ -207,6 +209,15 @@ class Block {
   }
 
  private:
+  // The first of the amplitudes [copy, path] are those of the cells as launched.
+  void note(std::span<const int64_t> paths, const std::vector<std::complex<double>>& amplitudes, PowerAndLength& out) const {
+    static_assert(kAsLaunched == 0);
+    for (size_t i = 0; i < paths.size(); ++i) {
+      out.power[static_cast<size_t>(paths[i])] = std::norm(amplitudes[i]);
+      out.length[static_cast<size_t>(paths[i])] = lengths_[i];
+    }
+  }
+
   // Turns amplitudes [copy, path] by the phases of the lengths.
   void arrive(size_t num_paths, size_t num_copies, std::vector<std::complex<double>>& fields) const {
     constexpr size_t kTogether = 8192;
@@ -232,7 +243,11 @@ class Block {
 }  // namespace
 
 std::vector<std::vector<GroupSums>> sum_groups(const Paths& paths, const Radar& radar, std::span<const Sorting> sortings,
-                                               Job* job) {
+                                               Job* job, PowerAndLength* of_paths) {
+  if (of_paths) {
+    const auto num_paths = static_cast<size_t>(paths.num_paths());
+    *of_paths = {std::vector<double>(num_paths), std::vector<double>(num_paths)};
+  }
   std::vector<Sums> sums;
   for (const Sorting& sorting : sortings) sums.emplace_back(paths, sorting.num_groups);
   if (job) job->start(paths.num_paths());
@@ -241,7 +256,7 @@ std::vector<std::vector<GroupSums>> sum_groups(const Paths& paths, const Radar& 
   for (int64_t begin = 0; begin < paths.num_paths(); begin += kBlock) {
     if (job) job->throw_if_cancelled();
     const int64_t end = std::min(begin + kBlock, paths.num_paths());
-    block->evaluate(begin, end);
+    block->evaluate(begin, end, of_paths);
     parallel_for(std::ssize(sums), [&](int64_t i) {
       const auto at = static_cast<size_t>(i);
       block->add_to(sums[at], sortings[at].group_of_path);

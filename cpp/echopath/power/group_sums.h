@@ -25,10 +25,17 @@ struct Sorting {
   size_t num_groups = 0;
 };
 
+// Holds what is found beside of each path by itself.
+struct PowerAndLength {
+  std::vector<double> power;   // [P] W, |amplitude|^2
+  std::vector<double> length;  // [P] m
+};
+
 // Returns sums [sorting, group] at the trace time, for the first antennas of `radar`. A diffuse hit counts with the field of
 // all paths over it in its group, as they share its random phase. The sums of a group are those of its paths alone, to the
-// last bit. A job advances by paths. Raises Cancelled.
+// last bit. `of_paths`, where given, gets the power and the length of each path between these antennas. A job advances by
+// paths. Raises Cancelled.
 std::vector<std::vector<GroupSums>> sum_groups(const Paths& paths, const Radar& radar, std::span<const Sorting> sortings,
-                                               Job* job);
+                                               Job* job, PowerAndLength* of_paths = nullptr);
 
 }  // namespace echopath

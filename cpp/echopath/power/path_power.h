@@ -1,5 +1,5 @@
 #pragma once
-// Computes the power and the length of each path of a record.
+// Computes the power of each path of a record.
 #include <vector>
 
 #include "echopath/base/threads/job.h"
@@ -10,12 +10,5 @@ namespace echopath {
 // Returns |amplitude|^2 [P] in W at the trace time for the first antennas of the radar that traced. It works in blocks and
 // needs no more memory than the result. Raises Cancelled.
 std::vector<double> path_power(const Paths& paths, Job* job = nullptr);
-
-struct PowerAndLength {
-  std::vector<double> power;   // [P] W, as path_power has it
-  std::vector<double> length;  // [P] m, likewise
-};
-// Returns both for the time of one. Raises Cancelled.
-PowerAndLength power_and_length(const Paths& paths, Job* job = nullptr);
 
 }  // namespace echopath

@@ -150,10 +150,10 @@ std::vector<ReceivedPower> received_powers(const Paths& paths, const Sorting& so
 }
 
 std::vector<std::vector<ReceivedPower>> received_powers(const Paths& paths, std::span<const Sorting> sortings, Job* job,
-                                                        Channel channel) {
+                                                        Channel channel, PowerAndLength* of_paths) {
   for (const Sorting& sorting : sortings) check(sorting, paths);
   std::vector<std::vector<ReceivedPower>> powers;
-  for (const std::vector<GroupSums>& groups : sum_groups(paths, radar_of(paths.radar, channel), sortings, job)) {
+  for (const std::vector<GroupSums>& groups : sum_groups(paths, radar_of(paths.radar, channel), sortings, job, of_paths)) {
     std::transform(groups.begin(), groups.end(), std::back_inserter(powers.emplace_back()),
                    [&](const GroupSums& sums) { return with_interval(sums, paths.frame.footprint); });
   }

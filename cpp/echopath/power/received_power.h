@@ -65,10 +65,11 @@ struct Channel {
 ReceivedPower received_power(const Paths& paths, Job* job = nullptr, Channel channel = {});
 
 // Returns the powers of groups of paths, [sorting, group], in one pass over the record; that of each group is, to the last
-// bit, received_power of its paths alone. Raises invalid_argument for other sizes or a group that is not there; raises
-// Cancelled.
+// bit, received_power of its paths alone. `of_paths`, where given, gets the power and the length of each path between these
+// antennas. Raises invalid_argument for other sizes or a group that is not there; raises Cancelled.
 std::vector<std::vector<ReceivedPower>> received_powers(const Paths& paths, std::span<const Sorting> sortings,
-                                                        Job* job = nullptr, Channel channel = {});
+                                                        Job* job = nullptr, Channel channel = {},
+                                                        PowerAndLength* of_paths = nullptr);
 // Returns the powers [group] of one sorting.
 std::vector<ReceivedPower> received_powers(const Paths& paths, const Sorting& sorting, Job* job = nullptr,
                                            Channel channel = {});

@@ -7,7 +7,6 @@
 
 #include "call/define.h"
 #include "call/run_job.h"
-#include "echopath/power/path_power.h"
 #include "echopath/power/received_power.h"
 #include "values/array.h"
 #include "values/travel.h"
@@ -31,17 +30,14 @@ std::vector<ReceivedPower> powers_of(const Paths& paths, const Groups& groups, s
   return run_job("received power", progress, [&](Job& job) { return received_powers(paths, sorting, &job, {tx, rx}); });
 }
 
-std::vector<std::vector<ReceivedPower>> powers_of_sortings(const Paths& paths,
-                                                           const std::vector<std::pair<Groups, size_t>>& given,
-                                                           const py::object& progress) {
+py::tuple powers_of_sortings(const Paths& paths, const std::vector<std::pair<Groups, size_t>>& given,
+                             const py::object& progress) {
   std::vector<Sorting> sortings;
   for (const auto& [groups, num_groups] : given) sortings.push_back(as_sorting(groups, num_groups));
-  return run_job("received power", progress, [&](Job& job) { return received_powers(paths, sortings, &job); });
-}
-
-py::tuple power_and_length_of(const Paths& paths) {
-  PowerAndLength found = run_job("replay", py::none(), [&](Job& job) { return power_and_length(paths, &job); });
-  return py::make_tuple(numpy_take(std::move(found.power)), numpy_take(std::move(found.length)));
+  PowerAndLength of_paths;
+  auto powers =
+      run_job("received power", progress, [&](Job& job) { return received_powers(paths, sortings, &job, {}, &of_paths); });
+  return py::make_tuple(std::move(powers), numpy_take(std::move(of_paths.power)), numpy_take(std::move(of_paths.length)));
 }
 
 std::string power_text(const ReceivedPower& self) {
@@ -112,11 +108,10 @@ and are NaN for one batch.)");
         py::arg("progress") = py::none(), "What ep.received_power calls.");
   m.def("received_powers", &powers_of, py::arg("paths"), py::arg("group_of_path"), py::arg("num_groups"), py::kw_only(),
         py::arg("tx") = 0, py::arg("rx") = 0, py::arg("progress") = py::none(), "What ep.received_powers calls.");
-  m.def("power_and_length", &power_and_length_of, py::arg("paths"),
-        "(power in W, length in m) of each path, [P], at the trace time for the first antennas.");
   m.def("received_powers_of_sortings", &powers_of_sortings, py::arg("paths"), py::arg("sortings"),
         py::arg("progress") = py::none(),
-        "received_powers of several (group_of_path, num_groups) in one pass: list [sorting, group] of ReceivedPower, in W.");
+        "received_powers of several (group_of_path, num_groups) in one pass: (list [sorting, group] of ReceivedPower in W, "
+        "power [P] in W, length [P] in m), the last two of each path at the trace time for the first antennas.");
 }
 
 }  // namespace echopath::bindings

@@ -142,12 +142,12 @@ py::list cubes_of_pass(PartPass& pass, const PartPass::Sets& sets, const py::obj
   return out;
 }
 
-py::array bounds_of_pass(PartPass& pass, const std::vector<uint32_t>& groups, const py::object& window, int zero_pad,
+py::array bounds_of_pass(PartPass& pass, const PartPass::Sets& sets, const py::object& window, int zero_pad,
                          const py::object& progress) {
   const MapWindows taper = as_map_windows(window);
   std::vector<double> bounds =
-      run_job("families", progress, [&](Job& job) { return pass.bounds(groups, taper, zero_pad, &job); });
-  const auto rows = static_cast<py::ssize_t>(groups.size());
+      run_job("families", progress, [&](Job& job) { return pass.bounds(sets, taper, zero_pad, &job); });
+  const auto rows = static_cast<py::ssize_t>(sets.size());
   const py::ssize_t columns = rows > 0 ? static_cast<py::ssize_t>(bounds.size()) / rows : 0;
   return numpy_take(std::move(bounds), {rows, columns});
 }
@@ -183,8 +183,8 @@ Returns for each (power [V * R] in W, mean over the channels, mean square of its
 samples in W, which sets of several groups do not have: 0).)")
       .def("cubes", &cubes_of_pass, py::arg("sets"), py::arg("progress"),
            "Signals [tx, rx, chirp, sample] of sets of groups.")
-      .def("bounds", &bounds_of_pass, py::arg("groups"), py::arg("window"), py::arg("zero_pad"), py::arg("progress"),
-           R"(Adds groups to the whole and bounds what each can show, [group, R] in W, at any velocity or azimuth.
+      .def("bounds", &bounds_of_pass, py::arg("sets"), py::arg("window"), py::arg("zero_pad"), py::arg("progress"),
+           R"(Adds sets of groups to the whole and bounds what each can show, [set, R] in W, at any velocity or azimuth.
 
 cpp/echopath/sim/stream/cell_bounds.h has the rule.)");
 }

@@ -12,7 +12,7 @@ from ..base.stages import StageClock
 from ..detections.checks import checked_keywords
 from ..detections.of_frame import detect_frame
 from ..guard import check_rays, check_signal
-from ..labels.annotate import as_label_settings, label_frame, make_request, owners_of_cubes
+from ..labels.annotate import as_label_settings, label_frame, make_request, owners_of_cubes, powers_received
 from ..labels.family_pass import FamilyPass
 from ..paths.families import check_objects
 from ..paths.families import families as find_families
@@ -84,7 +84,8 @@ class FrameRun:
             settings = self.signal.of_replay() | {"progress": progress}
             probe = _core.SignalProbe(seed=self.trace.seed) if self.guard and not has_steps(self.radar) else None
             families = find_families(paths, self._request.objects) if self._request else None
-            cubes, whole, owners = _cubes(paths, self.radar, self.partitions, families, self._request, settings, probe)
+            mean = powers_received(paths, families, self.partitions) if self._request else None
+            cubes, whole, owners = _cubes(paths, self.radar, self.partitions, families, self._request, settings, probe, mean)
         warn_of_silence(paths, self.radar, whole)
         with clock("parts of paths"):
             groups = {partition: part_of_path(paths, group) for partition, group in self.partitions.items()}
@@ -103,7 +104,7 @@ class FrameRun:
         if self._request:
             with clock("labels of cells"):
                 parts_of = cubes or {ONLY_PARTITION: {"other": whole}}
-                frame.labels = label_frame(self._request, paths, families, parts_of, owners, self.partitions, settings,
+                frame.labels = label_frame(self._request, paths, families, parts_of, owners, self.partitions, settings, mean,
                                            cubes_beside(frame))
         if self.detect_keywords is not None:
             with clock("detections"):
@@ -152,20 +153,20 @@ def _check_radar(radar) -> None:
         require_channels(radar.receiver, radar)
 
 
-def _cubes(paths, radar, partitions: dict, families, request, settings: dict, probe):
+def _cubes(paths, radar, partitions: dict, families, request, settings: dict, probe, mean):
     """{partition: {part: cube}}, the whole, and what finds the owners of cells, as `label_frame` takes it.
 
-    families, request: None: no labels, and no owners
+    families, request, mean: None: no labels, and no owners
     """
     if not partitions and families is None:
         return {}, synthesize_slots(paths, radar, **settings, probe=probe), None
     if families is None or settings["retrace"] != "never" or has_steps(radar):
         return _decomposed(paths, radar, partitions, families, request, settings | {"probe": probe})
     if not partitions:
-        signals = FamilyPass(paths, radar, families, request, settings, adds_up=True, probe=probe)
+        signals = FamilyPass(paths, radar, families, request, settings, mean, adds_up=True, probe=probe)
         return {}, signals.whole(), signals.settle
     cubes, whole, _ = _decomposed(paths, radar, partitions, None, None, settings | {"probe": probe})
-    return cubes, whole, FamilyPass(paths, radar, families, request, settings, adds_up=False).settle
+    return cubes, whole, FamilyPass(paths, radar, families, request, settings, mean, adds_up=False).settle
 
 
 def _decomposed(paths, radar, partitions: dict, families, request, settings: dict):

@@ -17,7 +17,7 @@ from ..paths.resolution import Interval, interval_of, mean_powers
 from ..paths.subset import part_of_path
 from ..paths.visibility import appearing_in_frame, visibility_in_trace
 from ..signals import same_radar
-from ..signals.parts import selection_rule
+from ..signals.parts import ONLY_PARTITION, selection_rule
 from ..transmit.signals import has_steps
 from .family_pass import FamilyPass, owners_of_views
 from .labels import Labels
@@ -76,16 +76,24 @@ def annotate(paths: _core.Paths, parts: Mapping | None = None, radar: _core.Rada
     replayed = {"tolerance": tolerance, "method": method, "replay": replay, "evaluate": evaluate,
                 "phase_tolerance": phase_tolerance, "retrace": retrace, "keyframes": keyframes, "progress": progress}
     families = find_families(paths, objects)
-    owners, powers = owners_and_powers(request, paths, families, {} if cubes else {_PARTS: selections}, replayed)
+    mean = powers_received(paths, families, {_PARTS: selections})
+    owners, powers = owners_and_powers(request, paths, families, {} if cubes else {_PARTS: selections}, replayed, mean)
     if cubes:
         powers = add_powers([CubeSet(radar, 1.0, {_PARTS: cubes})], request.plane)
-    return label_partitions(request, paths, families, owners, powers, {_PARTS: selections}, replayed)[_PARTS]
+    return label_partitions(request, paths, families, owners, powers, {_PARTS: selections}, replayed, mean)[_PARTS]
 
 
-def owners_and_powers(request: Request, paths, families, partitions: dict, settings: dict):
+def powers_received(paths, families, selections: dict):
+    """MeanPowers of the families and of the parts of partitions {partition: {name: selection}}; without any, of all paths."""
+    groups = {partition: (part_of_path(paths, chosen), len(chosen) + 1)
+              for partition, chosen in (selections or {ONLY_PARTITION: {}}).items()}
+    return mean_powers(paths, families, groups)
+
+
+def owners_and_powers(request: Request, paths, families, partitions: dict, settings: dict, mean):
     """What finds the owners of cells, as `label_partitions` takes it, and {partition: ViewPowers} of partitions.
 
-    partitions: {partition: {name: selection}}; settings: signal settings
+    partitions: {partition: {name: selection}}; settings: signal settings; mean: MeanPowers of the paths
     """
     radar, plane = request.radar, request.plane
     # Families of later records are not known before, and those of chirps that differ have no common bounds.
@@ -95,7 +103,7 @@ def owners_and_powers(request: Request, paths, families, partitions: dict, setti
         powers = add_powers(decomposed(paths, radar, views, num_parts, plane, settings), plane)
         return owners_of_powers(request, powers.pop(_FAMILIES)), powers
     is_whole = len(partitions) == 1 and not any(partitions.values())
-    signals = FamilyPass(paths, radar, families, request, settings, adds_up=is_whole)
+    signals = FamilyPass(paths, radar, families, request, settings, mean, adds_up=is_whole)
     if is_whole:
         cubes = {partition: {"other": signals.whole()} for partition in partitions}
         return signals.settle, add_powers([CubeSet(radar, 1.0, cubes)], plane)
@@ -169,24 +177,20 @@ def make_request(radar, num_batches: int, settings: LabelSettings, *, window=Sig
 
 
 def label_partitions(request: Request, paths, families, owners, powers: dict, selections: dict, settings: dict,
-                     beside=()) -> dict:
+                     mean, beside=()) -> dict:
     """{partition: Labels} from {partition: ViewPowers}; objects and ghosts are the same in all.
 
     beside: names of the parts, last in each view, that no path makes
 
     owners: callable (power of the whole [V, R] in W, {Family: Interval}) that gives CellOwners of the families
     selections: {partition: {name: selection}}; settings: signal settings
+    mean: MeanPowers of the families and of the parts of selections
     """
     first = next(iter(powers.values()))
     whole = first.whole
-    groups = {}  # of the partitions whose parts are those of selections
-    for partition, of_parts in powers.items():
-        chosen = selections.get(partition, {})
-        if [*chosen, "other", *beside] == list(of_parts.cells):
-            groups[partition] = part_of_path(paths, chosen), len(chosen) + 1
-    mean = mean_powers(paths, families, groups)
     known = [Interval(power, power, power) for power in (first.received[name] for name in beside)]
-    received = {partition: [*map(interval_of, found), *known] for partition, found in mean.of_parts.items()}
+    received = {partition: [*map(interval_of, mean.of_parts[partition]), *known] for partition, of_parts in powers.items()
+                if [*selections.get(partition, {}), "other", *beside] == list(of_parts.cells)}
     intervals = dict(zip(families.families, map(interval_of, mean.of_families)))
     owned = owners(whole, intervals)
     for name in beside:
@@ -233,16 +237,16 @@ def _label_parts(request: Request, paths, powers, selections: dict, received, sc
     return _with_errors(labels, request, paths, selections, settings, beside) if request.errors else labels
 
 
-def label_frame(request: Request, paths, families, cubes: dict, owners, selections: dict, settings: dict,
+def label_frame(request: Request, paths, families, cubes: dict, owners, selections: dict, settings: dict, mean,
                 beside: dict) -> dict:
     """{partition: Labels} from {partition: {part: cube}}, cubes [tx, rx, chirp, sample] in sqrt(W).
 
     owners: as in `label_partitions`; selections: {partition: {name: selection}}; settings: signal settings; beside: {name:
-    cube} of what no path makes, which every partition gets as parts.
+    cube} of what no path makes, which every partition gets as parts; mean: as in `label_partitions`.
     """
     views = {partition: {**parts, **beside} for partition, parts in cubes.items()}
     powers = add_powers([CubeSet(request.radar, 1.0, views)], request.plane)
-    return label_partitions(request, paths, families, owners, powers, selections, settings, tuple(beside))
+    return label_partitions(request, paths, families, owners, powers, selections, settings, mean, tuple(beside))
 
 
 def _with_errors(labels: Labels, request: Request, paths, selections: dict, settings: dict, beside) -> Labels:

@@ -5,7 +5,7 @@ import numpy as np
 
 from .labels import NONE
 from .left_out import LeftOut
-from .powers import parts_by_rival
+from .powers import rival_of
 
 ALIKE = 10.0 ** -0.01  # ratio of powers: 0.1 dB do not tell one way from the same one back
 
@@ -25,8 +25,10 @@ class CellOwners:
 
     def __init__(self, shape: tuple, families):
         self.families = list(families)
-        index = {family: number for number, family in enumerate(self.families)}
-        self.rivals = [[index[family] for family in members] for members in parts_by_rival(self.families).values()]
+        rivals = {}
+        for number, family in enumerate(self.families):
+            rivals.setdefault(rival_of(family), []).append(number)
+        self.rivals = list(rivals.values())
         self.best, self.own = np.zeros(shape), np.zeros(shape)
         self._rival, self.family = np.full(shape, NONE, np.int32), np.full(shape, NONE, np.int32)
         self.received, self.peak = np.zeros(len(self.families)), np.zeros(len(self.families))

@@ -44,10 +44,10 @@ class FamilyPass:
     """Makes the signals of families, some at a time, and keeps of each cell only who owns it.
 
     families: Families of the paths; request: how cells are labelled; settings: signal settings of `decompose`, retrace "never"
-    adds_up: whether `whole` is wanted; probe: SignalProbe of that whole
+    mean: MeanPowers of the paths; adds_up: whether `whole` is wanted; probe: SignalProbe of that whole
     """
 
-    def __init__(self, paths, radar, families, request, settings: dict, *, adds_up: bool, probe=None):
+    def __init__(self, paths, radar, families, request, settings: dict, mean, *, adds_up: bool, probe=None):
         signal = {name: settings.get(name, getattr(SignalSettings, name)) for name in _OF_PASS}
         self._pass = _core.PartPass(paths, radar, families.family_of_path, len(families), probe=probe, **signal)
         self._pass.set_adds_up(adds_up)
@@ -55,10 +55,11 @@ class FamilyPass:
         plane = request.plane
         self._owners = CellOwners((len(plane.rows), len(plane.range)), families.families)
         self._is_made = np.zeros(len(self._owners.rivals), bool)
-        self._bounds = np.zeros((len(families), len(plane.range)))
+        self._bound_of_rival = np.zeros((len(self._owners.rivals), len(plane.range)))  # W, the most it can show at a range
+        self._is_direct = np.array([_is_direct(families.families[members[0]]) for members in self._owners.rivals], bool)
         self._least = SHOWN * request.noise_floor
         self._apart = {}  # {rival: _Apart}
-        self._make_likely(paths, families)
+        self._make_likely(families, mean)
         if adds_up and probe is not None:
             self._pass.finish_probe()
 
@@ -86,25 +87,24 @@ class FamilyPass:
             owners.divide(rival, *self._apart.pop(rival).maps(owners.best.shape))
         return owners
 
-    def _make_likely(self, paths, families) -> None:
+    def _make_likely(self, families, mean) -> None:
         """Makes those that may reach the noise, or the dynamic range below the strongest path, and bounds all others."""
         floor, rivals = self._request.noise_floor, self._owners.rivals
-        powers, strongest = self._likely_powers(paths, families)
+        powers, strongest = self._likely_powers(families, mean)
         mask_floor = max(floor, self._request.dynamic_range * strongest)
         likely = [rival for rival in np.argsort(-powers, kind="stable").tolist()
-                  if powers[rival] > 0.0 and powers[rival] >= (floor if self._is_direct(rival) else mask_floor)]
-        rest = np.setdiff1d(np.arange(len(families)), [number for rival in likely for number in rivals[rival]])
+                  if powers[rival] > 0.0 and powers[rival] >= (floor if self._is_direct[rival] else mask_floor)]
+        rest = np.setdiff1d(np.arange(len(rivals)), likely)
         if len(rest) > 0:
-            self._bounds[rest] = self._pass.bounds(rest, *self._request.plane.window_and_padding, self._progress)
-        self._bound_of_rival = self._bounds_of_rivals()
+            sets = [rivals[rival] for rival in rest]
+            self._bound_of_rival[rest] = self._pass.bounds(sets, *self._request.plane.window_and_padding, self._progress)
         self._make(likely)
 
-    def _likely_powers(self, paths, families) -> tuple:
+    def _likely_powers(self, families, mean) -> tuple:
         """Power [rivals] in W where the paths of a rival in two neighbouring cells of range add up in phase, at the time of the
         trace and for the first antennas, and the power of the strongest path in W."""
-        power, length = _core.power_and_length(paths)
-        amplitude, waveform = np.sqrt(power), self._radar.waveform
-        cell = length * (waveform.slope * waveform.num_samples / (waveform.sampling_rate * _core.speed_of_light))
+        amplitude, waveform = np.sqrt(mean.of_paths), self._radar.waveform
+        cell = mean.lengths * (waveform.slope * waveform.num_samples / (waveform.sampling_rate * _core.speed_of_light))
         rival_of = np.zeros(len(families), np.int64)
         for rival, members in enumerate(self._owners.rivals):
             rival_of[members] = rival
@@ -115,26 +115,13 @@ class FamilyPass:
             np.maximum.at(powers, places >> 32, np.bincount(index, amplitude) ** 2 if len(index) else np.zeros(0))
         return powers, float(amplitude.max(initial=0.0)) ** 2
 
-    def _is_direct(self, rival: int) -> bool:
-        family = self._owners.families[self._owners.rivals[rival][0]]
-        return bool(family.object) and not family.is_ghost
-
-    def _bounds_of_rivals(self):
-        """[rivals, R] W, the most that each can show in cells of a range."""
-        roots, rivals = np.sqrt(self._bounds), self._owners.rivals
-        found = roots[[members[0] for members in rivals]] if rivals else roots
-        for rival, members in enumerate(rivals):
-            if len(members) > 1:
-                found[rival] = np.sum(roots[members], axis=0)
-        return found ** 2
-
     def _open_rivals(self, mask) -> list:
         """[(largest bound in W, rival), ...] of those not made that may own a cell, or tell of an object above the noise."""
         least = np.where(mask, np.maximum(self._owners.best, self._least), np.inf).min(axis=0)
         bounds = self._bound_of_rival
         largest = bounds.max(axis=1, initial=0.0)
-        may_own = np.any((bounds >= least) & (bounds > 0.0), axis=1)
-        tells = (largest > self._request.noise_floor) & [self._is_direct(rival) for rival in range(len(largest))]
+        may_own = np.any(bounds >= np.maximum(least, np.finfo(float).tiny), axis=1)
+        tells = (largest > self._request.noise_floor) & self._is_direct
         return [(float(largest[rival]), rival) for rival in np.flatnonzero(~self._is_made & (may_own | tells)).tolist()]
 
     def _make_open(self, mask) -> None:
@@ -206,6 +193,11 @@ class FamilyPass:
         alone = [members[0] for members, made in zip(owners.rivals, self._is_made) if made and len(members) == 1]
         mean[alone] = owners.received[alone]
         owners.received = mean
+
+
+def _is_direct(family) -> bool:
+    """Whether it holds the direct echoes of an object."""
+    return bool(family.object) and not family.is_ghost
 
 
 def owners_of_views(powers: ViewPowers, mask) -> CellOwners:

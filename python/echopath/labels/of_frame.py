@@ -11,7 +11,7 @@ from ..frame.frame import Frame
 from ..paths.families import families as find_families
 from ..signals.beside import cubes_beside
 from ..signals.parts import ONLY_PARTITION, as_partitions, check_partitions
-from .annotate import label_partitions, make_request, owners_and_powers
+from .annotate import label_partitions, make_request, owners_and_powers, powers_received
 from .labels import Labels
 from .powers import CubeSet, add_powers, join
 
@@ -40,7 +40,8 @@ def annotate_frame(frame: Frame, parts: Mapping | None = None, *, plane: Plane =
     chosen = _as_new_partitions(parts, frame)
     replayed = {name: getattr(frame, name) for name in FRAME_KEYWORDS} | {"progress": progress}
     families = find_families(paths, request.objects)
-    owners, powers = owners_and_powers(request, paths, families, chosen, replayed)
+    mean = powers_received(paths, families, frame.selections | chosen)
+    owners, powers = owners_and_powers(request, paths, families, chosen, replayed, mean)
     kept = {partition: cubes for partition, cubes in frame.parts.items() if partition not in chosen}
     powers |= add_powers([CubeSet(frame.radar, 1.0, kept)], request.plane)
     selections = frame.selections | chosen
@@ -48,7 +49,7 @@ def annotate_frame(frame: Frame, parts: Mapping | None = None, *, plane: Plane =
     beside = cubes_beside(frame)
     if beside:
         join(powers.values(), beside, frame.cube, frame.radar, request.plane)
-    return label_partitions(request, paths, families, owners, powers, selections, replayed, tuple(beside))
+    return label_partitions(request, paths, families, owners, powers, selections, replayed, mean, tuple(beside))
 
 
 def _as_new_partitions(parts, frame) -> dict:

@@ -87,10 +87,15 @@ def interval_of(power) -> Interval:
 
 
 class MeanPowers(NamedTuple):
-    """of_families: list [F] of ep.ReceivedPower, in W; of_parts: {partition: list [part] of the same}"""
+    """of_families: list [F] of ep.ReceivedPower, in W; of_parts: {partition: list [part] of the same}
+
+    of_paths, lengths: power [P] in W and length [P] in m of each path, at the trace time for the first antennas
+    """
 
     of_families: list
     of_parts: dict
+    of_paths: np.ndarray
+    lengths: np.ndarray
 
 
 def mean_powers(paths, families, groups: dict, progress=None) -> MeanPowers:
@@ -99,8 +104,8 @@ def mean_powers(paths, families, groups: dict, progress=None) -> MeanPowers:
     families: Families of the paths; groups: {partition: (part_of_path [P], number of parts)}
     """
     sortings = [(families.family_of_path, len(families.families)), *groups.values()]
-    of_families, *of_parts = _core.received_powers_of_sortings(paths, sortings, progress)
-    return MeanPowers(of_families, dict(zip(groups, of_parts)))
+    (of_families, *of_parts), of_paths, lengths = _core.received_powers_of_sortings(paths, sortings, progress)
+    return MeanPowers(of_families, dict(zip(groups, of_parts)), of_paths, lengths)
 
 
 @checked(objects=objects_rule, least_power=real(0.0, unit="W"))

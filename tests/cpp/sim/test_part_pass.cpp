@@ -136,8 +136,7 @@ TEST(PartPass, EveryGroupMadeOnceAddsUpToTheWhole) {
   PartPass pass(paths, radar, every_third(paths), 3, {});
   const std::vector<Cube> some = pass.cubes({{1}}, nullptr);
   pass.powers({{0}}, Window{}, 1, 0.0, nullptr);
-  const std::vector<uint32_t> left{2};
-  pass.bounds(left, Window{}, 1, nullptr);
+  pass.bounds({{2}}, Window{}, 1, nullptr);
   pass.set_adds_up(false);
   pass.cubes({{0}, {2}}, nullptr);
   std::vector<std::complex<double>> expected = slow_samples(paths, radar, 1, std::vector<uint32_t>(paths.num_paths()), {0});
@@ -168,14 +167,15 @@ TEST(PartPass, BoundsHoldForThePowers) {
   const Radar radar = radar_of();
   const Paths paths = paths_of(radar);
   PartPass pass(paths, radar, every_third(paths), 3, {});
-  const std::vector<uint32_t> groups{0, 1, 2};
-  const std::vector<double> bounds = pass.bounds(groups, Window{}, 1, nullptr);
   pass.set_adds_up(false);
-  const std::vector<SetPower> powers = pass.powers({{0}, {1}, {2}}, Window{}, 1, 0.0, nullptr);
-  const auto num_ranges = bounds.size() / 3;
-  for (size_t g = 0; g < 3; ++g) {
-    for (size_t i = 0; i < powers[g].cells.size(); ++i)
-      EXPECT_LE(powers[g].cells[i], bounds[g * num_ranges + i % num_ranges]);
+  for (const PartPass::Sets& sets : {PartPass::Sets{{0}, {1}, {2}}, PartPass::Sets{{1}, {0, 2}}}) {
+    const std::vector<double> bounds = pass.bounds(sets, Window{}, 1, nullptr);
+    const std::vector<SetPower> powers = pass.powers(sets, Window{}, 1, 0.0, nullptr);
+    const auto num_ranges = bounds.size() / sets.size();
+    for (size_t set = 0; set < sets.size(); ++set) {
+      for (size_t i = 0; i < powers[set].cells.size(); ++i)
+        EXPECT_LE(powers[set].cells[i], bounds[set * num_ranges + i % num_ranges]);
+    }
   }
 }
 

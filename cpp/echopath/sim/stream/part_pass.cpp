@@ -140,10 +140,8 @@ void PartPass::run(const Sorted& sorted, bool as_one, Synthesizer* out, CellBoun
   stream_.set_job(nullptr);
 }
 
-std::vector<double> PartPass::bounds(std::span<const uint32_t> groups, const MapWindows& window, int zero_pad, Job* job) {
-  Sets alone;
-  for (const uint32_t group : groups) alone.push_back({group});
-  Sorted some = sorted(alone, false);
+std::vector<double> PartPass::bounds(const Sets& sets, const MapWindows& window, int zero_pad, Job* job) {
+  Sorted some = sorted(sets, false);
   std::sort(some.paths.begin(),
             some.paths.end());  // they go into one signal, for which neighbours among the rays are better
   CellBounds bounds(paths_.num_paths(), radar_, settings_.synthesis.per_sample);

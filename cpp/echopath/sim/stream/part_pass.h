@@ -42,9 +42,9 @@ class PartPass {
                                const Ranges& ranges = {});
   // Returns the signal of each set.
   std::vector<Cube> cubes(const Sets& sets, Job* job);
-  // Adds some groups as one to the whole, where that is wanted, and returns bounds of what each can show (CellBounds):
-  // [group, R] in W.
-  std::vector<double> bounds(std::span<const uint32_t> groups, const MapWindows& window, int zero_pad, Job* job);
+  // Adds some sets as one to the whole, where that is wanted, and returns bounds of what each can show (CellBounds):
+  // [set, R] in W.
+  std::vector<double> bounds(const Sets& sets, const MapWindows& window, int zero_pad, Job* job);
   size_t group_bytes() const;
 
  private:

@@ -14,7 +14,7 @@ constexpr double kSinglePrecision = 1e-6;  // of barycentric coordinates
 
 struct Walker {
   Scene scene;
-  std::vector<std::vector<Vec3>> normals;
+  NormalsOfMeshes normals;
 
   void add(const Surface& surface, bool smooth) {
     Node node;
@@ -23,7 +23,9 @@ struct Walker {
     node.material = share(Material::metal());
     node.smooth = smooth;
     scene.add(node);
-    normals = {smooth ? vertex_normals(node.mesh->vertices(), node.mesh->triangles()) : std::vector<Vec3>()};
+    normals = {nullptr};
+    if (!smooth) return;
+    normals = {std::make_shared<const std::vector<Vec3>>(vertex_normals(node.mesh->vertices(), node.mesh->triangles()))};
   }
   const Mesh& mesh() const { return *scene.node_of(0).mesh; }
   std::optional<SurfaceWalk::Spot> walk(uint32_t triangle, const Vec3& point) const {

@@ -40,6 +40,7 @@ PathPreparer::PathPreparer(const Paths& paths, std::vector<SurfacePatch> patches
       at_trace_(*paths.scene, paths.radar, patches_, paths.frame.transmitter, paths.frame.trace_time) {
   if (paths.frame.edges) edges_.emplace(*paths.scene);
   for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) {
+    shapes_.push_back(shape_at_trace(id));
     mesh_is_mirror_.push_back(paths.scene->node_of(id).material->mirror);
     mesh_may_stretch_.push_back(paths.scene->may_stretch(id));
     mesh_is_plane_.push_back(!paths.scene->node_of(id).smooth && !paths.scene->node_of(id).deformation);
@@ -65,32 +66,39 @@ double PathPreparer::facet_area_at_trace(uint32_t mesh_id) const {
   return at_rest * std::pow(std::abs(at_trace_.linear(mesh_id).determinant()), 2.0 / 3.0);
 }
 
-std::vector<Vec3> PathPreparer::normals_at_trace(uint32_t mesh_id) const {
+NormalsOfMeshes::value_type PathPreparer::normals_at_trace(uint32_t mesh_id) const {
   const Node& node = paths_.scene->node_of(mesh_id);
-  if (!node.smooth) return {};
-  if (!node.deformation) return *kept_vertex_normals(node.mesh);
+  if (!node.smooth) return nullptr;
+  if (!node.deformation) return kept_vertex_normals(node.mesh);
   std::vector<Vec3> normals;
   for (const uint32_t place : patches_[mesh_id].place) {
     const bool is_posed = place != SurfacePatch::kAbsent;
     normals.push_back(is_posed ? at_trace_.deformed_normals(mesh_id)[place] : Vec3(Vec3::Zero()));
   }
-  return normals;
+  if (normals.empty()) return nullptr;
+  return std::make_shared<const std::vector<Vec3>>(std::move(normals));
+}
+
+PathPreparer::Shape PathPreparer::shape_at_trace(uint32_t mesh_id) const {
+  const Node& node = paths_.scene->node_of(mesh_id);
+  const bool deforms = node.deformation != nullptr;
+  return {node.mesh->triangles().data(), (deforms ? at_trace_.local_vertices(mesh_id) : node.mesh->vertices()).data(),
+          deforms};
 }
 
 LocalHit PathPreparer::hit(const Hit& hit) const {
-  const Node& node = paths_.scene->node_of(hit.mesh_id);
-  const Triangle& triangle = node.mesh->triangles()[hit.triangle_id];
+  const Shape& shape = shapes_[hit.mesh_id];
+  const Triangle& triangle = shape.triangles[hit.triangle_id];
   LocalHit local;
   local.mesh_id = hit.mesh_id;
   local.triangle_id = hit.triangle_id;
-  local.deformed = node.deformation != nullptr;
+  local.deformed = shape.deforms;
   local.triangle = local.deformed ? patches_[hit.mesh_id].corners(triangle) : triangle;
   local.u = hit.u;
   local.v = hit.v;
-  const std::vector<Vec3>& vertices = local.deformed ? at_trace_.local_vertices(hit.mesh_id) : node.mesh->vertices();
-  local.corner = vertices[local.triangle[0]];
-  local.edge_u = vertices[local.triangle[1]] - local.corner;
-  local.edge_v = vertices[local.triangle[2]] - local.corner;
+  local.corner = shape.vertices[local.triangle[0]];
+  local.edge_u = shape.vertices[local.triangle[1]] - local.corner;
+  local.edge_v = shape.vertices[local.triangle[2]] - local.corner;
   local.point = local.corner + local.u * local.edge_u + local.v * local.edge_v;
   local.normal = local.edge_u.cross(local.edge_v).normalized();
   if (mesh_may_stretch_[hit.mesh_id]) {
@@ -116,9 +124,9 @@ LocalHit PathPreparer::edge_hit(const Hit& hit, int num_pieces) const {
 }
 
 bool PathPreparer::find_smooth_normals(const LocalHit& hit, std::array<Vec3, 3>& out) const {
-  const std::vector<Vec3>& of_vertices = smooth_normals_[hit.mesh_id];
-  if (of_vertices.empty()) return false;
-  const Triangle& triangle = paths_.scene->node_of(hit.mesh_id).mesh->triangles()[hit.triangle_id];
+  if (!smooth_normals_[hit.mesh_id]) return false;
+  const std::vector<Vec3>& of_vertices = *smooth_normals_[hit.mesh_id];
+  const Triangle& triangle = shapes_[hit.mesh_id].triangles[hit.triangle_id];
   out = {of_vertices[triangle[0]], of_vertices[triangle[1]], of_vertices[triangle[2]]};
   return is_smooth_facet(hit.normal, out);
 }

@@ -2,6 +2,7 @@
 // Holds a block of a record's paths with all that does not depend on time: its hits stand in the frames of their meshes.
 #include <array>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -12,6 +13,9 @@
 #include "echopath/scene/scene_edges.h"
 
 namespace echopath {
+
+// The unit vertex normals by mesh ID; null where the mesh is not smooth, or deforms and has no patch.
+using NormalsOfMeshes = std::vector<std::shared_ptr<const std::vector<Vec3>>>;
 
 struct LocalPaths {
   std::vector<LocalPath> paths;
@@ -28,6 +32,8 @@ class PathPreparer {
   // The record must outlive it. `patches` are those of its deforming meshes (hit_patches.h), the same with which the scenes
   // are posed that pose its paths.
   PathPreparer(const Paths& paths, std::vector<SurfacePatch> patches);
+  PathPreparer(const PathPreparer&) = delete;
+  PathPreparer& operator=(const PathPreparer&) = delete;
   // Returns the paths of these indices, with their hits in the order in which they were traced.
   LocalPaths operator()(std::span<const int64_t> indices) const;
   // Returns a hit in the frame of its mesh, without its normals.
@@ -49,9 +55,9 @@ class PathPreparer {
   // Finds the normals at the corners of the hit's triangle; returns false where the mesh is not smooth or the crease guard
   // refuses this triangle.
   bool find_smooth_normals(const LocalHit& hit, std::array<Vec3, 3>& out) const;
-  // Returns the unit vertex normals by mesh ID; they are empty where the mesh is not smooth. The mesh is as the rays saw it:
-  // at rest, or deformed as at the trace, and then normals outside of its patch are zero.
-  const std::vector<std::vector<Vec3>>& smooth_normals() const { return smooth_normals_; }
+  // Returns the normals of meshes as the rays saw them: at rest, or deformed as at the trace, and then normals outside of
+  // the patch are zero.
+  const NormalsOfMeshes& smooth_normals() const { return smooth_normals_; }
   const std::vector<SurfacePatch>& patches() const { return patches_; }
   const PosedScene& at_trace() const { return at_trace_; }
   // Returns the inverse of the matrix that the mesh had at the time of the trace.
@@ -63,7 +69,14 @@ class PathPreparer {
   bool has_lobe(int64_t path) const { return !lobes_.empty() && meets_lobe(path); }
 
  private:
-  std::vector<Vec3> normals_at_trace(uint32_t mesh_id) const;
+  // Holds the shape of a mesh as the rays saw it: vertices are those of the patch where it deforms.
+  struct Shape {
+    const Triangle* triangles;
+    const Vec3* vertices;
+    bool deforms;
+  };
+  Shape shape_at_trace(uint32_t mesh_id) const;
+  NormalsOfMeshes::value_type normals_at_trace(uint32_t mesh_id) const;
   double facet_area_at_trace(uint32_t mesh_id) const;
   LocalPath local_path(int64_t index, LocalPaths& block) const;
   bool meets_lobe(int64_t path) const;
@@ -72,8 +85,9 @@ class PathPreparer {
   std::vector<SurfacePatch> patches_;                                       // by mesh ID
   std::vector<uint8_t> mesh_is_mirror_, mesh_may_stretch_, mesh_is_plane_;  // by mesh ID
   PosedScene at_trace_;
+  std::vector<Shape> shapes_;          // by mesh ID
   std::vector<Mat3> mesh_from_trace_;  // by mesh ID
-  std::vector<std::vector<Vec3>> smooth_normals_;
+  NormalsOfMeshes smooth_normals_;
   std::vector<double> facet_area_;  // by mesh ID
   std::vector<DiffuseLobe> lobes_;
   std::optional<SceneEdges> edges_;  // where the trace looked for them

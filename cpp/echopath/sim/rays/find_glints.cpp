@@ -44,35 +44,40 @@ struct SeenPath {
 
 class GlintSearch {
  public:
-  GlintSearch(const Paths& paths, Job* job)
-      : paths_(paths), pose_(*paths.scene, paths.frame.trace_time), triangles_(paths.scene->meshes().size()) {
+  GlintSearch(const Paths& paths, Job* job) : paths_(paths), pose_(*paths.scene, paths.frame.trace_time) {
     sort_paths(job);
     weigh_paths(job);
-    std::vector<uint8_t> is_met(triangles_.size(), 0);
-    for (const auto& [kind, seen] : kinds_) is_met[kind.mesh] = 1;
-    Job unseen(job);
-    parallel_for(std::ssize(is_met), [&](int64_t mesh) {
-      if (is_met[static_cast<size_t>(mesh)])
-        triangles_[static_cast<size_t>(mesh)] = triangles_of(static_cast<uint32_t>(mesh));
-    }, &unseen);
   }
 
   std::vector<Glint> find(Job* job) const {
-    std::vector<const Kinds::value_type*> kinds;
-    for (const auto& kind : kinds_) kinds.push_back(&kind);
-    std::vector<std::vector<Glint>> found(kinds.size());
+    std::vector<Route> routes;
+    std::map<uint32_t, std::vector<size_t>> of_mesh;  // indices of routes
+    for (const auto& [kind, seen] : kinds_) {
+      of_mesh[kind.mesh].push_back(routes.size());
+      routes.push_back(route_of(kind, seen));
+    }
+    std::vector<std::pair<uint32_t, std::vector<size_t>>> meshes(of_mesh.begin(), of_mesh.end());
     Job unseen(job);
-    parallel_for(std::ssize(kinds), [&](int64_t i) {
-      const auto k = static_cast<size_t>(i);
-      found[k] = glints_of(kinds[k]->first, kinds[k]->second);
+    parallel_for(std::ssize(meshes), [&](int64_t i) {
+      const auto& [mesh, of_routes] = meshes[static_cast<size_t>(i)];
+      find_on_mesh(mesh, of_routes, routes);
     }, &unseen);
     std::vector<Glint> glints;
-    for (std::vector<Glint>& of_kind : found) std::move(of_kind.begin(), of_kind.end(), std::back_inserter(glints));
+    for (Route& route : routes) std::move(route.glints.begin(), route.glints.end(), std::back_inserter(glints));
     return glints;
   }
 
  private:
   using Kinds = std::map<RouteKind, std::vector<SeenPath>>;
+
+  // Holds the planes of the mirrors before the mesh of a kind, both antennas as that mesh sees them, and what is found.
+  struct Route {
+    const std::vector<SeenPath>& seen;
+    uint16_t stratum;
+    std::vector<Plane> before;
+    Vec3 first, second;
+    std::vector<Glint> glints;
+  };
 
   void sort_paths(Job* job) {
     constexpr int64_t kTogether = 1 << 16;
@@ -126,16 +131,6 @@ class GlintSearch {
     }
   }
 
-  std::vector<ReflectingTriangle> triangles_of(uint32_t mesh_id) const {
-    const std::vector<Vec3> vertices = pose_.world_vertices(mesh_id), normals = pose_.world_normals(mesh_id);
-    std::vector<ReflectingTriangle> out;
-    for (const Triangle& t : paths_.scene->node_of(mesh_id).mesh->triangles()) {
-      out.push_back(reflecting_triangle({vertices[t[0]], vertices[t[1]], vertices[t[2]]},
-                                        {normals[t[0]], normals[t[1]], normals[t[2]]}));
-    }
-    return out;
-  }
-
   MirrorFace face_of(const Hit& hit) const {
     return {hit.mesh_id, paths_.scene->node_of(hit.mesh_id).mesh->is_flat() ? kWholeMesh : hit.triangle_id};
   }
@@ -158,25 +153,40 @@ class GlintSearch {
     return largest;
   }
 
-  std::vector<Glint> glints_of(const RouteKind& kind, const std::vector<SeenPath>& seen) const {
-    std::vector<Plane> before;
-    for (const MirrorFace& mirror : kind.before) before.push_back(plane_of(mirror));
-    Vec3 first = paths_.frame.transmitter, second = paths_.frame.receiver;
-    for (const Plane& plane : before) first = plane.image(first);
-    for (size_t k = kind.behind.size(); k-- > 0;) second = plane_of(kind.behind[k]).image(second);
-    std::vector<Glint> glints;
-    for (const ReflectingTriangle& triangle : triangles_[kind.mesh]) {
-      const std::optional<ReflectionPoint> point = find_reflection(triangle, first, second);
-      if (!point) continue;
-      Glint glint = glint_at(*point, first, kind.stratum);
-      for (size_t k = before.size(); k-- > 0;) glint.direction = before[k].mirrored(glint.direction);
-      if (const SeenPath* beside = nearest(seen, glint, cell_of(kind.stratum))) {
-        const double field = beside->amplitude * glint.narrow * glint.wide * paths_.frame.strata[kind.stratum].ray_density;
-        glint.power = field * field;
-        glints.push_back(glint);
+  Route route_of(const RouteKind& kind, const std::vector<SeenPath>& seen) const {
+    Route route{seen, kind.stratum, {}, paths_.frame.transmitter, paths_.frame.receiver, {}};
+    for (const MirrorFace& mirror : kind.before) route.before.push_back(plane_of(mirror));
+    for (const Plane& plane : route.before) route.first = plane.image(route.first);
+    for (size_t k = kind.behind.size(); k-- > 0;) route.second = plane_of(kind.behind[k]).image(route.second);
+    return route;
+  }
+
+  // Most triangles turn their back to one end of every route, which is told before anything else is found out about them.
+  void find_on_mesh(uint32_t mesh_id, const std::vector<size_t>& of_mesh, std::vector<Route>& routes) const {
+    const std::vector<Vec3> vertices = pose_.world_vertices(mesh_id), normals = pose_.world_normals(mesh_id);
+    for (const Triangle& t : paths_.scene->node_of(mesh_id).mesh->triangles()) {
+      const std::array<Vec3, 3> corners = {vertices[t[0]], vertices[t[1]], vertices[t[2]]};
+      const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+      std::optional<ReflectingTriangle> triangle;
+      for (const size_t index : of_mesh) {
+        Route& route = routes[index];
+        if (!(normal.dot(route.first - corners[0]) * normal.dot(route.second - corners[0]) > 0.0)) continue;
+        if (!triangle) triangle = reflecting_triangle(corners, {normals[t[0]], normals[t[1]], normals[t[2]]});
+        add_glint(*triangle, route);
       }
     }
-    return glints;
+  }
+
+  void add_glint(const ReflectingTriangle& triangle, Route& route) const {
+    const std::optional<ReflectionPoint> point = find_reflection(triangle, route.first, route.second);
+    if (!point) return;
+    Glint glint = glint_at(*point, route.first, route.stratum);
+    for (size_t k = route.before.size(); k-- > 0;) glint.direction = route.before[k].mirrored(glint.direction);
+    if (const SeenPath* beside = nearest(route.seen, glint, cell_of(route.stratum))) {
+      const double field = beside->amplitude * glint.narrow * glint.wide * paths_.frame.strata[route.stratum].ray_density;
+      glint.power = field * field;
+      route.glints.push_back(glint);
+    }
   }
 
   Glint glint_at(const ReflectionPoint& point, const Vec3& first, size_t stratum) const {
@@ -206,7 +216,6 @@ class GlintSearch {
   const Paths& paths_;
   const PosedScene pose_;
   Kinds kinds_;
-  std::vector<std::vector<ReflectingTriangle>> triangles_;  // by mesh, of those that are met
 };
 
 // Neighbouring triangles, and several records of one way, find the same point.

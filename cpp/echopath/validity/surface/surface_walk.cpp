@@ -37,7 +37,7 @@ bool share_corner(const Triangle& a, const Triangle& b, const std::vector<Vec3>&
 struct SurfaceWalk::Surface {
   const std::vector<Triangle>& triangles;
   std::vector<std::array<uint32_t, 3>> neighbours;
-  const std::vector<Vec3>& normals;  // of vertices, at rest; empty for meshes of facets
+  const std::vector<Vec3>* normals;  // of vertices, at rest; null for meshes of facets
 
   std::array<Vec3, 3> corners(uint32_t t, const std::vector<Vec3>& vertices) const {
     return {vertices[triangles[t][0]], vertices[triangles[t][1]], vertices[triangles[t][2]]};
@@ -47,7 +47,7 @@ struct SurfaceWalk::Surface {
     return (b - a).cross(c - a);
   }
   bool is_smooth(uint32_t t, const std::vector<Vec3>& vertices) const {
-    return !normals.empty() && is_smooth_facet(cross(t, vertices).normalized(), corners(t, normals));
+    return normals && is_smooth_facet(cross(t, vertices).normalized(), corners(t, *normals));
   }
   bool is_one_plane(uint32_t a, uint32_t b, const std::vector<Vec3>& vertices) const {  // windings may differ
     return std::abs(cross(a, vertices).normalized().dot(cross(b, vertices).normalized())) > 1.0 - kOnePlane;
@@ -69,7 +69,7 @@ Crossing SurfaceWalk::Surface::cross_toward(uint32_t at, const Vec3& weights, co
   return {};
 }
 
-SurfaceWalk::SurfaceWalk(const Scene& scene, const std::vector<std::vector<Vec3>>& smooth_normals)
+SurfaceWalk::SurfaceWalk(const Scene& scene, const NormalsOfMeshes& smooth_normals)
     : scene_(scene), smooth_normals_(smooth_normals), surfaces_(scene.meshes().size()) {}
 
 SurfaceWalk::~SurfaceWalk() = default;
@@ -78,7 +78,7 @@ const SurfaceWalk::Surface& SurfaceWalk::surface(uint32_t mesh_id) const {
   return *surfaces_[mesh_id].get([&] {
     const Mesh& mesh = *scene_.node_of(mesh_id).mesh;
     return std::make_unique<const Surface>(
-        Surface{mesh.triangles(), edge_neighbours(mesh.vertices(), mesh.triangles()), smooth_normals_[mesh_id]});
+        Surface{mesh.triangles(), edge_neighbours(mesh.vertices(), mesh.triangles()), smooth_normals_[mesh_id].get()});
   });
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "echopath/base/memory/lazy.h"
+#include "echopath/replay/posed/local_paths.h"
 #include "echopath/scene/mesh/adjacency.h"
 #include "echopath/trace/record/paths.h"
 
@@ -12,8 +13,8 @@ namespace echopath {
 
 class SurfaceWalk {
  public:
-  // smooth_normals: unit vertex normals by mesh ID, empty for meshes of facets. Both must outlive it.
-  SurfaceWalk(const Scene& scene, const std::vector<std::vector<Vec3>>& smooth_normals);
+  // Both must outlive it.
+  SurfaceWalk(const Scene& scene, const NormalsOfMeshes& smooth_normals);
   ~SurfaceWalk();
 
   struct Spot {
@@ -29,7 +30,7 @@ class SurfaceWalk {
   const Surface& surface(uint32_t mesh_id) const;
 
   const Scene& scene_;
-  const std::vector<std::vector<Vec3>>& smooth_normals_;
+  const NormalsOfMeshes& smooth_normals_;
   std::vector<Lazy<std::unique_ptr<const Surface>>> surfaces_;  // by mesh ID
 };
 

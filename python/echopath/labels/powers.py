@@ -64,7 +64,8 @@ class ViewPowers:
         for rival, parts in parts_by_rival(cubes).items():
             joint = powers[parts[0]] if len(parts) == 1 else self._plane.power(sum(cubes[part] for part in parts), radar)
             self.rivals[rival] = self.rivals.get(rival, 0.0) + weight * joint
-        self.whole = self.whole + weight * self._plane.power(sum(cubes.values()), radar)
+        whole = next(iter(powers.values())) if len(cubes) == 1 else self._plane.power(sum(cubes.values()), radar)
+        self.whole = self.whole + weight * whole
 
 
 def mean_square(cube) -> float:

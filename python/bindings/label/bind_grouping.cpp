@@ -180,6 +180,16 @@ void bind_visibility(py::module_& m) {
       py::arg("paths"), py::arg("radar"), py::arg("objects"), py::arg("time") = py::none(),
       py::arg("num_directions") = kDirectionsInTrace, py::arg("progress") = py::none(),
       "As visibility, of the objects that find_families has for a trace; time: s, None: that of the trace.");
+  m.def(
+      "remember_geometry",
+      [](const Paths& paths, const std::shared_ptr<KeptGeometry>& kept) {
+        if (geometry_of(paths.scene)) return false;
+        remember_geometry(paths.scene, kept);
+        return true;
+      },
+      py::arg("paths"), py::arg("kept"),
+      "Has visibility_in_trace and may_appear_in_frame keep geometry there, unless the trace kept its own. Returns "
+      "whether.");
   m.def("may_appear_in_frame", &may_appear_in_frame, py::arg("paths"), py::arg("radar"), py::arg("objects"),
         py::arg("hidden"), py::arg("shares"), py::arg("hidden_share"),
         "Of the objects named in hidden, those that may be in sight at shares of the frame: the others are not.");

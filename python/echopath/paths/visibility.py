@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+import weakref
 
 from .. import _core
 from ..arguments.checks import Progress, checked, count, optional, real
@@ -10,6 +11,7 @@ from ..base.made_by import made_by
 
 HIDDEN_SHARE = 0.05  # an object of which no more than this is in sight counts as hidden
 DIRECTIONS_OF_PLACES = 256  # on each object: shares to .004 rms, for the question whether they are above HIDDEN_SHARE
+_KEPT: weakref.WeakKeyDictionary = weakref.WeakKeyDictionary()  # {record: geometry}, one entry at most
 FRAME_PLACES = (0.0, 1.0, 0.618, 0.236, 0.854)  # shares of a frame: its ends and irrational ones
 
 
@@ -106,6 +108,7 @@ def visibility_in_trace(paths, radar, objects=None, *, progress=None) -> list:
 
     paths: of `trace`; radar: whose antennas look, not necessarily that of the trace; progress: as in `visibility`
     """
+    _keep_geometry(paths)
     return _as_objects(_core.visibility_in_trace(paths, radar, named_globs(objects), progress=progress))
 
 
@@ -128,6 +131,15 @@ def appearing_in_frame(paths, radar, hidden, objects=None, *, progress=None) -> 
                                                          progress=progress))
             appearing |= {one.name for one in seen if one.visible_share > HIDDEN_SHARE}
     return appearing
+
+
+def _keep_geometry(paths) -> None:
+    """Keeps the geometry of the record looked at last from look to look, where its trace did not keep any."""
+    if paths not in _KEPT:
+        kept = _core.KeptGeometry()
+        if _core.remember_geometry(paths, kept):
+            _KEPT.clear()
+            _KEPT[paths] = kept
 
 
 def _as_objects(found) -> list:

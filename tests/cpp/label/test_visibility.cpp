@@ -110,6 +110,35 @@ TEST(Visibility, EachEndSeesForItself) {
   EXPECT_NEAR(seen.receiver.distance, std::hypot(10.0, 7.0), kRounding);  // the middle of an edge
 }
 
+// The receiver is 0.05 m beside the transmitter, near enough to see the same outline. The edge of the screen's shadow on the
+// plate lies at y = 0.4 m for the one and at 0.35 m for the other.
+TEST(Visibility, EndsNearEachOtherSeeAroundAScreenForThemselves) {
+  constexpr double kApart = 0.05;
+  Scene scene;
+  add_facing(scene, "plate", 10, -1, 1, -1, 1);
+  add_facing(scene, "screen", 5, -2, 0.2, -2, 2);
+  const ObjectVisibility seen = seen_in(scene, {"plate"}, plain_radar(Vec3::Zero(), {0, kApart, 0})).front();
+  const double from_transmitter = rectangle_angle(-1, 1, -1, 1, 10);
+  const double from_receiver = rectangle_angle(-1 - kApart, 1 - kApart, -1, 1, 10);
+  EXPECT_NEAR(seen.transmitter.visible_share, rectangle_angle(0.4, 1, -1, 1, 10) / from_transmitter, kShareError);
+  EXPECT_NEAR(seen.receiver.visible_share, rectangle_angle(0.35 - kApart, 1 - kApart, -1, 1, 10) / from_receiver,
+              kShareError);
+  EXPECT_NEAR(occluded_by(seen.receiver, "screen"), 1.0 - seen.receiver.visible_share, kSum);
+  EXPECT_NEAR(seen.receiver.solid_angle, from_receiver, kAngleError * from_receiver);
+}
+
+// A part before the plate belongs to the object with it; the receiver's way to what the transmitter meets leads
+// through it.
+TEST(Visibility, ObjectsDoNotHideThemselvesFromTheOtherEnd) {
+  Scene scene;
+  add_facing(scene, "back", 10, -1, 1, -1, 1);
+  add_facing(scene, "front", 6, 0.05, 0.5, -1, 1);
+  const SurfaceMap both = map_surfaces(scene, {{"both", {"front", "back"}}});
+  const ObjectVisibility seen = visibility(scene, plain_radar(Vec3::Zero(), {0, 0.05, 0}), both).front();
+  EXPECT_EQ(seen.transmitter.visible_share, 1.0);
+  EXPECT_EQ(seen.receiver.visible_share, 1.0);
+}
+
 TEST(Visibility, AntennasLookForwardOnly) {
   Scene scene;
   add_facing(scene, "ahead", 10, -1, 1, -1, 1);

@@ -1,8 +1,10 @@
 """Which objects a radar can see, against geometry."""
+import gc
+
 import echopath as ep
 import numpy as np
 import pytest
-from echopath.paths.visibility import appearing_in_frame, visibility_in_trace
+from echopath.paths.visibility import _KEPT, appearing_in_frame, visibility_in_trace
 from echopath.tracing.traces import keep_geometry
 from support.radars import build_radar
 
@@ -98,3 +100,18 @@ def test_what_appears_within_a_frame_leaves_the_next_trace_as_it_is():
     for one, other in ((paths.mesh_id, again.mesh_id), (paths.u, again.u), (paths.v, again.v)):
         np.testing.assert_array_equal(one, other)
     np.testing.assert_array_equal(again.weight, paths.weight)
+
+
+def test_what_is_looked_at_again_is_the_same_and_frees_its_geometry():
+    """A trace that kept no geometry; the second look goes by what the first one built."""
+    radar, scene = radar_at((0, 0, 0.6)), person_and_car(gap=2.0)
+    paths = ep.trace(scene, radar, num_rays=500)
+    once, again = (visibility_in_trace(paths, radar) for _ in range(2))
+    assert once == again and 0.0 < once[1].visible_share < 1.0
+    assert list(_KEPT) == [paths]
+    other = ep.trace(person_and_car(gap=0.0), radar, num_rays=500)
+    visibility_in_trace(other, radar)
+    assert list(_KEPT) == [other]
+    del other
+    gc.collect()
+    assert not list(_KEPT)

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "echopath/base/lanes/simd.h"
+#include "echopath/trace/embree/packet.h"
+
 namespace echopath {
 namespace {
 
@@ -28,6 +31,19 @@ double longest_edge_of(const std::vector<Vec3>& vertices, const std::vector<Tria
                         (vertices[c] - vertices[a]).squaredNorm()});
   }
   return std::sqrt(longest);
+}
+
+ECHOPATH_INLINE void square_distances(const double* vertices, size_t count, VectorOf<double> from, double* squares) {
+  ECHOPATH_SIDE_BY_SIDE
+  for (size_t i = 0; i < count; ++i) {
+    const double x = vertices[3 * i] - from.x, y = vertices[3 * i + 1] - from.y, z = vertices[3 * i + 2] - from.z;
+    squares[i] = x * x + y * y + z * z;
+  }
+}
+
+ECHOPATH_INLINE void mark_below(const double* values, size_t count, double limit, uint8_t* is_below) {
+  ECHOPATH_SIDE_BY_SIDE
+  for (size_t i = 0; i < count; ++i) is_below[i] = values[i] <= limit ? 1 : 0;
 }
 
 double largest_stretch(const Mat3& linear) { return Eigen::JacobiSVD<Mat3>(linear).singularValues()[0]; }
@@ -72,16 +88,19 @@ std::array<double, 2> NearestPoints::distances(const Points& points, std::span<c
 void NearestPoints::look_at_mesh(const Points& points, uint32_t mesh, std::array<double, 2>& least) const {
   const std::vector<Vec3>& vertices = geometry_.vertices(mesh);
   std::vector<double> squares(vertices.size());
-  for (size_t i = 0; i < vertices.size(); ++i) squares[i] = (vertices[i] - points[0]).squaredNorm();
+  const VectorOf<double> from = unpacked(points[0]);
+  run_simd<&square_distances>(vertices.front().data(), vertices.size(), from, squares.data());
   const Vec3& nearest = vertices[static_cast<size_t>(std::min_element(squares.begin(), squares.end()) - squares.begin())];
   for (size_t k = 0; k < 2; ++k) least[k] = std::min(least[k], (nearest - points[k]).norm());
   const double reach =
       std::max(least[0], least[1] + (points[1] - points[0]).norm()) + longest_edge(mesh) / std::numbers::sqrt3;
-  const double limit = reach * reach * (1.0 + 1e-9);
+  std::vector<uint8_t> is_near(vertices.size());
+  run_simd<&mark_below>(static_cast<const double*>(squares.data()), squares.size(), reach * reach * (1.0 + 1e-9),
+                        is_near.data());
   const std::vector<Triangle>& triangles = scene_.node_of(mesh).mesh->triangles();
   for (uint32_t i = 0; i < triangles.size(); ++i) {
     const auto& [a, b, c] = triangles[i];
-    if (std::min({squares[a], squares[b], squares[c]}) > limit) continue;
+    if ((is_near[a] | is_near[b] | is_near[c]) == 0) continue;
     const std::array<Vec3, 3> corners = geometry_.corners(mesh, i);
     for (size_t k = 0; k < 2; ++k) least[k] = std::min(least[k], distance_to_triangle(points[k], corners));
   }

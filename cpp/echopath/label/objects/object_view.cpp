@@ -168,6 +168,34 @@ void ObjectView::look_for(const LaneVectors& directions, int count, uint32_t* su
   }
 }
 
+void ObjectView::look_from(const Vec3& from, const LaneVectors& directions, const Seen& seen, int count,
+                           uint32_t* surface) const {
+  EmbreeScene::Stretches way{};
+  LaneVectors turned = directions;
+  for (int lane = 0; lane < count; ++lane) {
+    surface[lane] = kNothing;
+    if (seen.mesh[static_cast<size_t>(lane)] == kNothing) continue;
+    const Vec3 line = apex_ + seen.distance[lane] * directions[lane] - from;
+    const double distance = line.norm();
+    turned.set(lane, unpacked(line / distance));
+    way.end[lane] = distance * (1.0 - kSameDepth);
+    surface[lane] = object_;
+  }
+  EmbreeScene::Looks next;
+  while (is_any(way)) {
+    geometry_.look(from, turned, way, kHiding, next);
+    for (int lane = 0; lane < count; ++lane) {
+      const uint32_t mesh = next.mesh_id[static_cast<size_t>(lane)];
+      if (mesh != kNothing && is_own(mesh)) {
+        way.begin[lane] = next.distance[lane] * kAfter;
+        continue;
+      }
+      if (mesh != kNothing) surface[lane] = surfaces_.of_mesh[mesh];
+      way.end[lane] = 0.0;
+    }
+  }
+}
+
 // Finds the object in stretches that begin at what is nearer. Others may share its bit: behind these the search goes on.
 void ObjectView::find_object(const LaneVectors& directions, EmbreeScene::Stretches stretches, Seen& seen) const {
   EmbreeScene::Looks next;

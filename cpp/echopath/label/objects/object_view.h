@@ -36,6 +36,9 @@ class ObjectView {
   // Returns the one surface that is met before the object's box in all of the directions that reach it, kNothing where none
   // of them does, and kSeveral where there are several or some meet none.
   uint32_t only_hiding(const LaneVectors& directions, int count) const;
+  // Writes what is nearest on the way from another point (m, relative to the geometry's origin) to those of the object that
+  // `seen` tells of: the object where nothing else is, kNothing where it was not seen.
+  void look_from(const Vec3& from, const LaneVectors& directions, const Seen& seen, int count, uint32_t* surface) const;
 
  private:
   EmbreeScene::Stretches stretches_in_boxes(const LaneVectors& directions, int count) const;

@@ -1,7 +1,11 @@
 #include "echopath/label/objects/visibility.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
 #include <optional>
+#include <span>
 
 #include "echopath/base/errors.h"
 #include "echopath/base/threads/parallel.h"
@@ -18,6 +22,8 @@ constexpr double kLeastFill = 0.25;                    // share of cells on the 
 constexpr double kLooseFill = 0.2;                     // below which the stratum is fitted to the vertices
 constexpr double kMostCells = 16.0;                    // for each direction asked for
 constexpr int kFewerIfHidden = 16, kLeastCells = 256;  // cells of a grid that serves the solid angle alone
+// Ends that are nearer to each other than this share of the distance to an object see the same outline of it.
+constexpr double kNearEnds = 0.01;
 
 // Holds the antennas of one end of the radar.
 struct End {
@@ -30,35 +36,50 @@ struct End {
   }
 };
 
-// Finds what hides one object from one end.
+// Finds what hides one object from one end, or from both where they are near each other. Its outline is that which the first
+// one sees.
 class ObjectScanner {
  public:
-  ObjectScanner(const EmbreeScene& geometry, const SurfaceMap& surfaces, uint32_t object, const End& end)
-      : geometry_(geometry), surfaces_(surfaces), object_(object), end_(end),
-        view_(geometry, surfaces, object, end.position) {}
+  ObjectScanner(const EmbreeScene& geometry, const SurfaceMap& surfaces, uint32_t object, std::span<const End> ends)
+      : geometry_(geometry), surfaces_(surfaces), object_(object), ends_(ends) {
+    for (const End& end : ends) views_.emplace_back(geometry, surfaces, object, end.position);
+  }
 
-  Sight sight(int num_directions) {
-    const SightGrid::FindMet find_met = [this](const LaneVectors& directions, int count, uint32_t* met) {
-      see(directions, count, met);
-    };
-    const Stratum stratum = view_.stratum(false);
-    if (const std::optional<uint32_t> hiding = hidden_by(stratum, num_directions)) {
-      return hidden_sight(stratum, *hiding, num_directions);
-    }
-    const SightGrid grid = looked_at(stratum, num_directions, find_met);
-    return sight_of(grid.counts(surfaces_.names.size()), grid.cell_angle());
+  // Returns what each end sees, but for the distances.
+  std::vector<Sight> sights(int num_directions) {
+    const Stratum stratum = views_.front().stratum(false);
+    const std::optional<Met> hiding = hidden_by(stratum, num_directions);
+    const SightGrid grid = hiding ? hidden_grid(stratum, *hiding, num_directions) : looked_at(stratum, num_directions);
+    std::vector<Sight> sights;
+    for (size_t end = 0; end < ends_.size(); ++end) sights.push_back(sight_of(end, grid));
+    return sights;
   }
 
  private:
+  // Names what the ends meet in one direction, the object or what hides it.
+  using Met = std::array<uint32_t, 2>;
+
+  // Returns the surfaces that hide the object from each end wherever it is.
+  std::optional<Met> hidden_by(const Stratum& stratum, int num_directions) const {
+    Met hiding{};
+    for (size_t end = 0; end < ends_.size(); ++end) {
+      const std::optional<uint32_t> one =
+          hidden_by(views_[end], end == 0 ? stratum : views_[end].stratum(false), num_directions);
+      if (!one) return std::nullopt;
+      hiding[end] = *one;
+    }
+    return hiding;
+  }
+
   // Returns the surface that hides the object wherever it is: one that is met before its boxes in one direction of each
   // block of a grid.
-  std::optional<uint32_t> hidden_by(const Stratum& stratum, int num_directions) const {
+  static std::optional<uint32_t> hidden_by(const ObjectView& view, const Stratum& stratum, int num_directions) {
     uint32_t hiding = ObjectView::kNothing;
     SightGrid grid(stratum, int64_t{kGridCells} * num_directions);
     grid.start([&](const LaneVectors& directions, int count, uint32_t* met) {
       std::fill_n(met, count, SightGrid::kNothing);
       if (hiding == ObjectView::kSeveral) return;
-      const uint32_t here = view_.only_hiding(directions, count);
+      const uint32_t here = view.only_hiding(directions, count);
       if (hiding == ObjectView::kNothing) hiding = here;
       if (here != ObjectView::kNothing && here != hiding) hiding = ObjectView::kSeveral;
     });
@@ -67,73 +88,93 @@ class ObjectScanner {
   }
 
   // Looks only for the solid angle of an object that `hiding` hides.
-  Sight hidden_sight(const Stratum& stratum, uint32_t hiding, int num_directions) {
+  SightGrid hidden_grid(const Stratum& stratum, const Met& hiding, int num_directions) {
     SightGrid grid(stratum, std::max(kLeastCells, num_directions / kFewerIfHidden));
     grid.finish_everywhere([&](const LaneVectors& directions, int count, uint32_t* met) {
-      view_.look_for(directions, count, met);
+      views_.front().look_for(directions, count, met);
       for (int lane = 0; lane < count; ++lane) {
         if (met[lane] == SightGrid::kNothing) continue;
-        met[lane] = hiding;
-        in_view_ = in_view_ || end_.has_gain_toward(directions[lane]);
+        met[lane] = number_of(hiding);
+        look_for_gain(directions[lane]);
       }
     });
-    return sight_of(grid.counts(surfaces_.names.size()), grid.cell_angle());
+    return grid;
   }
 
   // Looks at as many cells as it takes to have so many directions on the object.
-  static SightGrid looked_at(const Stratum& stratum, double fill, int num_directions, const SightGrid::FindMet& find_met) {
+  SightGrid looked_at(Stratum stratum, int num_directions) {
+    const SightGrid::FindMet find_met = [this](const LaneVectors& directions, int count, uint32_t* met) {
+      see(directions, count, met);
+    };
+    SightGrid grid(stratum, int64_t{kGridCells} * num_directions);
+    double fill = grid.start(find_met);
+    if (fill < kLooseFill) {
+      stratum = views_.front().stratum(true);
+      grid = SightGrid(stratum, int64_t{kGridCells} * num_directions);
+      fill = grid.start(find_met);
+    }
+    if (fill >= kLeastFill) {
+      grid.finish(find_met);
+      return grid;
+    }
     const double cells = fill > 0.0 ? std::min(kMostCells, 1.0 / fill) : kMostCells;
-    SightGrid grid(stratum, static_cast<int64_t>(cells * num_directions));
+    grid = SightGrid(stratum, static_cast<int64_t>(cells * num_directions));
     if (grid.start(find_met) > 0.0) grid.finish(find_met);
     else grid.finish_everywhere(find_met);
     return grid;
   }
 
-  SightGrid looked_at(Stratum stratum, int num_directions, const SightGrid::FindMet& find_met) const {
-    SightGrid grid(stratum, int64_t{kGridCells} * num_directions);
-    double fill = grid.start(find_met);
-    if (fill < kLooseFill) {
-      stratum = view_.stratum(true);
-      grid = SightGrid(stratum, int64_t{kGridCells} * num_directions);
-      fill = grid.start(find_met);
-    }
-    if (fill < kLeastFill) return looked_at(stratum, fill, num_directions, find_met);
-    grid.finish(find_met);
-    return grid;
-  }
-
   void see(const LaneVectors& directions, int count, uint32_t* met) {
     ObjectView::Seen seen;
-    view_.look(directions, count, seen);
-    std::copy_n(seen.surface.begin(), count, met);
-    for (int lane = 0; !in_view_ && lane < count; ++lane) {
-      in_view_ = met[lane] != SightGrid::kNothing && end_.has_gain_toward(directions[lane]);
+    views_.front().look(directions, count, seen);
+    std::array<uint32_t, kPacketSize> others{};
+    if (ends_.size() > 1) views_.front().look_from(ends_[1].position, directions, seen, count, others.data());
+    for (int lane = 0; lane < count; ++lane) {
+      const auto k = static_cast<size_t>(lane);
+      met[lane] = seen.surface[k] == ObjectView::kNothing ? SightGrid::kNothing : number_of({seen.surface[k], others[k]});
+      if (met[lane] != SightGrid::kNothing) look_for_gain(directions[lane]);
     }
   }
 
-  Sight sight_of(const std::vector<int64_t>& counts, double solid_angle_each) const {
+  // Returns the number under which the grid knows what is met.
+  uint32_t number_of(const Met& met) {
+    const auto found = std::find(met_.begin(), met_.end(), met);
+    const auto number = static_cast<uint32_t>(found - met_.begin());
+    if (found == met_.end()) met_.push_back(met);
+    return number;
+  }
+
+  void look_for_gain(const Vec3& direction) {
+    for (size_t end = 0; end < ends_.size(); ++end) in_view_[end] = in_view_[end] || ends_[end].has_gain_toward(direction);
+  }
+
+  Sight sight_of(size_t end, const SightGrid& grid) const {
+    const std::vector<int64_t> numbers = grid.counts(met_.size());
+    std::map<uint32_t, int64_t> counts;  // by surface
     int64_t num_found = 0;
-    for (const int64_t count : counts) num_found += count;
+    for (size_t number = 0; number < numbers.size(); ++number) {
+      if (numbers[number] > 0) counts[met_[number][end]] += numbers[number];
+      num_found += numbers[number];
+    }
     Sight sight;
-    sight.in_view = num_found > 0 ? in_view_ : has_gain_toward_a_vertex();
-    if (num_found == 0) return sight;
+    sight.in_view = num_found > 0 ? in_view_[end] : has_gain_toward_a_vertex(ends_[end]);
     const auto found = static_cast<double>(num_found);
-    sight.solid_angle = found * solid_angle_each;
-    sight.visible_share = static_cast<double>(counts[object_]) / found;
-    for (size_t i = 0; i < counts.size(); ++i) {
-      const auto hidden = static_cast<double>(counts[i]);
-      if (i != object_ && hidden > 0) sight.occluders.emplace_back(surfaces_.names[i], hidden / found);
+    sight.solid_angle = found * grid.cell_angle();
+    for (const auto& [surface, count] : counts) {
+      const double share = static_cast<double>(count) / found;
+      if (surface == object_) sight.visible_share = share;
+      else sight.occluders.emplace_back(surfaces_.names[surface], share);
     }
     std::stable_sort(sight.occluders.begin(), sight.occluders.end(),
                      [](const auto& a, const auto& b) { return a.second > b.second; });
     return sight;
   }
 
-  bool has_gain_toward_a_vertex() const {
-    return std::any_of(view_.mesh_ids().begin(), view_.mesh_ids().end(), [&](uint32_t mesh) {
+  bool has_gain_toward_a_vertex(const End& end) const {
+    return std::any_of(views_.front().mesh_ids().begin(), views_.front().mesh_ids().end(), [&](uint32_t mesh) {
       const std::vector<Vec3>& vertices = geometry_.vertices(mesh);
       return std::any_of(vertices.begin(), vertices.end(), [&](const Vec3& vertex) {
-        return vertex != end_.position && end_.has_gain_toward((vertex - end_.position).normalized());
+        return vertex != end.position && end.has_gain_toward((vertex - end.position).normalized());
       });
     });
   }
@@ -141,10 +182,28 @@ class ObjectScanner {
   const EmbreeScene& geometry_;
   const SurfaceMap& surfaces_;
   uint32_t object_;
-  const End& end_;
-  ObjectView view_;
-  bool in_view_ = false;
+  std::span<const End> ends_;
+  std::vector<ObjectView> views_;  // [end]
+  std::vector<Met> met_;
+  std::array<bool, 2> in_view_{};
 };
+
+// Returns what both ends see of an object at these distances in m.
+std::array<Sight, 2> sights_of(const EmbreeScene& geometry, const SurfaceMap& surfaces, uint32_t object,
+                               const std::array<End, 2>& ends, const std::array<double, 2>& distances, int num_directions) {
+  const double apart = (ends[1].position - ends[0].position).norm();
+  const bool are_near = apart <= kNearEnds * std::min(distances[0], distances[1]);
+  const size_t at_a_time = are_near ? 2 : 1;
+  std::array<Sight, 2> found;
+  for (size_t begin = 0; begin < 2; begin += at_a_time) {
+    ObjectScanner scanner(geometry, surfaces, object, std::span(ends).subspan(begin, at_a_time));
+    std::vector<Sight> sights = scanner.sights(num_directions);
+    std::move(sights.begin(), sights.end(), found.begin() + static_cast<ptrdiff_t>(begin));
+  }
+  if (are_near && apart > 0.0) found[1].solid_angle *= std::pow(distances[0] / distances[1], 2);
+  for (size_t end = 0; end < 2; ++end) found[end].distance = distances[end];
+  return found;
+}
 
 std::vector<uint32_t> meshes_of_objects(const SurfaceMap& surfaces) {
   std::vector<uint32_t> meshes;
@@ -179,12 +238,8 @@ std::vector<ObjectVisibility> visibility(const Scene& scene, const Radar& radar,
   parallel_for(surfaces.num_objects, [&](int64_t i) {
     const auto object = static_cast<uint32_t>(i);
     const auto distances = nearest.distances({ends[0].position, ends[1].position}, surfaces.meshes_of(object));
-    const auto from = [&](size_t end) {
-      Sight sight = ObjectScanner(*geometry, surfaces, object, ends[end]).sight(settings.num_directions);
-      sight.distance = distances[end];
-      return sight;
-    };
-    seen[object] = {surfaces.names[object], from(0), from(1)};
+    const auto sights = sights_of(*geometry, surfaces, object, ends, distances, settings.num_directions);
+    seen[object] = {surfaces.names[object], sights[0], sights[1]};
   }, job);
   return seen;
 }

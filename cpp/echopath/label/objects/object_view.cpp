@@ -181,18 +181,12 @@ void ObjectView::look_from(const Vec3& from, const LaneVectors& directions, cons
     way.end[lane] = distance * (1.0 - kSameDepth);
     surface[lane] = object_;
   }
-  EmbreeScene::Looks next;
-  while (is_any(way)) {
-    geometry_.look(from, turned, way, kHiding, next);
-    for (int lane = 0; lane < count; ++lane) {
-      const uint32_t mesh = next.mesh_id[static_cast<size_t>(lane)];
-      if (mesh != kNothing && is_own(mesh)) {
-        way.begin[lane] = next.distance[lane] * kAfter;
-        continue;
-      }
-      if (mesh != kNothing) surface[lane] = surfaces_.of_mesh[mesh];
-      way.end[lane] = 0.0;
-    }
+  if (!is_any(way)) return;
+  EmbreeScene::Looks first;
+  geometry_.look(from, turned, way, kHiding, first);
+  for (int lane = 0; lane < count; ++lane) {
+    const uint32_t mesh = first.mesh_id[static_cast<size_t>(lane)];
+    if (mesh != kNothing) surface[lane] = surfaces_.of_mesh[mesh];  // another part of the object is as good as the point
   }
 }
 

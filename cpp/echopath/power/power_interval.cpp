@@ -11,7 +11,7 @@ namespace {
 constexpr double kNormal = 1.959964;  // two-sided 95 % quantile
 constexpr double kOfHalving = 1.2, kOfHalvingMore = 3.0, kMostOfHalving = 5.0;
 constexpr double kAliases = 0.007, kOfFiner = 4.0, kHalvingPerFiner = 2.8;
-constexpr double kGone = 0.5, kOfEdges = 1.25, kFaded = 0.2, kKnownAbove = 0.8;
+constexpr double kGone = 0.5, kOfEdges = 1.25, kOfSmoothEdges = 0.5, kFaded = 0.2, kKnownAbove = 0.8;
 constexpr double kPointsTimesField = 4.0, kPointsTimesFieldOfSeveral = 6.0;  // of one bounce and of several
 constexpr double kMostOfPoints = 2.5;
 constexpr double kOfSurface = 0.0025, kOfFacets = 0.01, kMostOfFacets = 0.015;
@@ -84,15 +84,19 @@ double share_of_edges(const CoherentKind& kind, double change, double edges, Las
   return std::max(by_change, std::min(edges / (kKnownAbove * power) - 1.0, 1.0));
 }
 
+// Returns whether the edges of a kind are the outlines of smooth surfaces that the wave has met first.
+bool has_smooth_edges(const CoherentKind& kind) { return kind.facet_phase > 0.0 && !kind.has_bounced; }
+
 FieldBias field_bias(const PowerEvidence& evidence, Lasting lasting) {
   SumOfChanges above, below;
-  double finer = 0.0, gone = 0.0, surface = 0.0;  // W
+  double finer = 0.0, points = 0.0, edges = 0.0, edges_below = 0.0, surface = 0.0;  // W
   for (const CoherentKind& kind : evidence.kinds) {
     const double size = std::abs(kind.field[kAsLaunched]);
-    gone += squared(missing_of_points(kind, evidence.num_batches));
+    points += squared(missing_of_points(kind, evidence.num_batches));
+    const double of_edges = squared(has_smooth_edges(kind) ? kOfSmoothEdges : kOfEdges);
     if (kind.has_cells) surface += squared(kOfSurface * size) + squared(of_facets(kind, lasting) * size);
     if (size == 0.0) {
-      gone += squared(kOfEdges) * between_edges(kind, evidence.num_batches, 1.0);
+      edges += of_edges * between_edges(kind, evidence.num_batches, 1.0);
       continue;
     }
     const std::complex<double> change = kind.field[kHalfDensity] - kind.field[kAsLaunched];
@@ -102,12 +106,14 @@ FieldBias field_bias(const PowerEvidence& evidence, Lasting lasting) {
     const double of_finer = std::abs(kind.field[kFiner] - kind.field[kAsLaunched]);
     finer += squared(kOfFiner * std::max(0.0, of_finer - kAliases * size));
     const double in_phase = std::max(0.0, 1.0 - std::abs(kind.field[kHalfDensity]) / (kFaded * size));
-    const double edges = squared(kOfEdges) * between_edges(kind, evidence.num_batches, in_phase);
+    const double most = of_edges * between_edges(kind, evidence.num_batches, in_phase);
     const double still_changes = kind.has_bounced ? std::max(halving, kHalvingPerFiner * of_finer / size) : halving;
-    gone += share_of_edges(kind, still_changes, edges, lasting) * edges;
+    const double missing = share_of_edges(kind, still_changes, most, lasting) * most;
+    edges += missing;
+    if (has_smooth_edges(kind)) edges_below += missing;
   }
-  return {std::sqrt(of_one_error(squared(above.size()), finer) + gone + surface),
-          std::sqrt(of_one_error(squared(below.size()), finer) + surface)};
+  return {std::sqrt(of_one_error(squared(above.size()), finer) + points + edges + surface),
+          std::sqrt(of_one_error(squared(below.size()), finer) + edges_below + surface)};
 }
 
 std::complex<double> field_of(const PowerEvidence& evidence) {

@@ -68,7 +68,9 @@ double power_between_rays(const CoherentKind& kind, int num_batches);
 // P / (kPointsTimesField |F|), but larger than it is by no more than kMostOfPoints sqrt(P). Of waves of edges it may lack
 // kOfEdges times as much as cells hold, in full where d reaches kGone; behind other bounces also where kHalvingPerFiner
 // times the change to finer cells does, by which that change is smaller where errors fall with the square of a cell's side,
-// and where the field is weaker than the edges: it may then change little by chance.
+// and where the field is weaker than the edges: it may then change little by chance. Smooth surfaces end where they are
+// steeper than on average, so that their edges hold less, in any phase: what people lack of them is kOfSmoothEdges / 2 times
+// as much, root mean square. Their field may be off by kOfSmoothEdges times as much to either side.
 // Where cells twice as large leave less than kFaded of the field, cells along an edge may be in phase, as are those of a
 // straight edge across the line of sight.
 // The changes of all kinds add up as fields, but to no less than their root sum of squares, and all else as powers: kinds

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 #include <utility>
 
 #include "echopath/power/power_interval.h"
@@ -131,6 +132,35 @@ TEST(PowerInterval, AWeakFieldOfSeveralBouncesMayLackItsEdgesHoweverLittleItChan
   };
   EXPECT_EQ(above(0.25), above(0.0));
   EXPECT_GT(above(4.0), std::sqrt(4.0));
+}
+
+// Waves of any phase, each of a tenth of what cells hold of edges, are missing of the field of a smooth surface, and change
+// it as often to less as to more. The wave of a straight edge of flat facets, where all cells are in phase, is as strong as
+// what cells hold.
+TEST(PowerInterval, EdgesOfSmoothSurfacesMayTakeAwayAsMuchAsTheyAddAndLessThanThoseOfFacets) {
+  constexpr double kNumCells = 1000.0, kCounted = 0.253;  // of the power of 1000 cells 8/sqrt(1000) counts
+  constexpr double kShare = 0.1, kEdgePower = 4.0;        // W
+  const auto of_edges = [&](double phase) {
+    CoherentKind kind = falls_with_the_square(1.0, 0.0);
+    kind.field[kHalfDensity] = std::polar(1.0, 0.5);  // so that the edges count in full
+    kind.facet_phase = phase;
+    kind.power[kEdges] = kEdgePower / kCounted;
+    kind.edge_squares = kind.power[kEdges] * kind.power[kEdges] / kNumCells;
+    return interval_of(kind);
+  };
+  const PowerInterval smooth = of_edges(0.5), facets = of_edges(0.0);
+  std::mt19937 draw(1);
+  std::normal_distribution<double> part(0.0, std::sqrt(0.5 * kShare * kEdgePower));
+  int num_held = 0;
+  constexpr int kDrawn = 1000;
+  for (int k = 0; k < kDrawn; ++k) {
+    const double power = std::norm(1.0 + std::complex<double>(part(draw), part(draw)));
+    num_held += smooth.low <= power && power <= smooth.high;
+  }
+  EXPECT_GT(num_held, 0.93 * kDrawn);
+  EXPECT_LT(smooth.low, 0.05);
+  EXPECT_LT(smooth.high, 0.6 * facets.high);
+  EXPECT_GT(std::sqrt(facets.high), 1.0 + std::sqrt(kEdgePower));
 }
 
 // What more rays mend lies within the whole interval, and is all of it where facets are what they are.

@@ -48,7 +48,7 @@ struct RcsSettings {
   std::vector<RcsChannel> channels = {RcsChannel{}};
   // Each pair of directions and transmit polarisation is traced so. The scalar model has no cross-polarised reception; from
   // two batches on cross sections have standard errors.
-  TraceSettings tracing{.num_rays = 1 << 17};
+  TraceSettings tracing = {RecordSettings{}, 1 << 17};
   // Doubles the rays until the first channel of each transmit polarisation is known that well (sim/rays/trace_to_error.h).
   std::optional<ErrorTarget> target;
   // Leaves out the paths that touch walls of a cavity anywhere but in the plane of its mouth.

@@ -81,7 +81,9 @@ TEST(ShareOut, NoBoundedNeedGetsMoreThanItAsksWhileAnotherLacks) {
     const RayShares shares = share_out(needs, num_rays);
     EXPECT_NEAR(sum_of(shares), num_rays, kRounding * num_rays);
     for (const RayNeed& one : needs.strata) {
-      if (one.is_bounded) EXPECT_LE(shares.at(one.stratum), one.rays * (1.0 + kRounding)) << trial << " " << one.stratum;
+      if (one.is_bounded) {
+        EXPECT_LE(shares.at(one.stratum), one.rays * (1.0 + kRounding)) << trial << " " << one.stratum;
+      }
     }
   }
 }

@@ -36,7 +36,7 @@ struct VisibilitySettings {
   // The approximate number of directions on each object, as if all were looked at: a grid over the stratum that holds it
   // (sight_grid.h), of up to 16 times as many cells where the object fills little of the stratum.
   // The error of a share is 4e-4 rms for half hidden plates and 4096 directions, and falls with the power -0.75; of people
-  // and cars that hide each other it is 2e-3 rms and 4e-3 at most with 512, 6e-4 and 2e-3 with 4096. What hides
+  // and cars that hide each other it is 2e-3 rms and 8e-3 at most with 512, 7e-4 and 3e-3 with 4096. What hides
   // less than a block of the grid, 1/500 of the stratum, and nothing beside it, may be missed.
   // An object before whose boxes one surface is met in each block is hidden by it; then only its solid angle is looked for,
   // with a 16th of the directions, 256 at least (1.4 % rms for people, 9 % at most).

@@ -25,7 +25,7 @@ struct Sorting {
   size_t num_groups = 0;
 };
 
-// Holds what is found beside of each path by itself.
+// Holds what is found of each path by itself, beside the sums.
 struct PowerAndLength {
   std::vector<double> power;   // [P] W, |amplitude|^2
   std::vector<double> length;  // [P] m

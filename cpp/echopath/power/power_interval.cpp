@@ -12,6 +12,7 @@ constexpr double kNormal = 1.959964;  // two-sided 95 % quantile
 constexpr double kOfHalving = 1.2, kOfHalvingMore = 3.0, kMostOfHalving = 5.0;
 constexpr double kAliases = 0.007, kOfFiner = 4.0, kHalvingPerFiner = 2.8;
 constexpr double kGone = 0.5, kOfEdges = 1.25, kOfSmoothEdges = 0.5, kFaded = 0.2, kKnownAbove = 0.8;
+constexpr double kBentFacets = 0.1;                                          // rad
 constexpr double kPointsTimesField = 4.0, kPointsTimesFieldOfSeveral = 6.0;  // of one bounce and of several
 constexpr double kMostOfPoints = 2.5;
 constexpr double kOfSurface = 0.0025, kOfFacets = 0.01, kMostOfFacets = 0.015;
@@ -84,8 +85,11 @@ double share_of_edges(const CoherentKind& kind, double change, double edges, Las
   return std::max(by_change, std::min(edges / (kKnownAbove * power) - 1.0, 1.0));
 }
 
-// Returns whether the edges of a kind are the outlines of smooth surfaces that the wave has met first.
-bool has_smooth_edges(const CoherentKind& kind) { return kind.facet_phase > 0.0 && !kind.has_bounced; }
+// Returns how far the edges of a kind are the outlines of smooth surfaces that the wave has met first, from 0 to 1: panels
+// that hardly bend end as planes do.
+double smoothness_of_edges(const CoherentKind& kind) {
+  return kind.has_bounced ? 0.0 : std::min(kind.facet_phase / kBentFacets, 1.0);
+}
 
 FieldBias field_bias(const PowerEvidence& evidence, Lasting lasting) {
   SumOfChanges above, below;
@@ -93,7 +97,8 @@ FieldBias field_bias(const PowerEvidence& evidence, Lasting lasting) {
   for (const CoherentKind& kind : evidence.kinds) {
     const double size = std::abs(kind.field[kAsLaunched]);
     points += squared(missing_of_points(kind, evidence.num_batches));
-    const double of_edges = squared(has_smooth_edges(kind) ? kOfSmoothEdges : kOfEdges);
+    const double smoothness = smoothness_of_edges(kind);
+    const double of_edges = squared(std::lerp(kOfEdges, kOfSmoothEdges, smoothness));
     if (kind.has_cells) surface += squared(kOfSurface * size) + squared(of_facets(kind, lasting) * size);
     if (size == 0.0) {
       edges += of_edges * between_edges(kind, evidence.num_batches, 1.0);
@@ -110,7 +115,7 @@ FieldBias field_bias(const PowerEvidence& evidence, Lasting lasting) {
     const double still_changes = kind.has_bounced ? std::max(halving, kHalvingPerFiner * of_finer / size) : halving;
     const double missing = share_of_edges(kind, still_changes, most, lasting) * most;
     edges += missing;
-    if (has_smooth_edges(kind)) edges_below += missing;
+    edges_below += smoothness * missing;
   }
   return {std::sqrt(of_one_error(squared(above.size()), finer) + points + edges + surface),
           std::sqrt(of_one_error(squared(below.size()), finer) + edges_below + surface)};

@@ -70,7 +70,8 @@ double power_between_rays(const CoherentKind& kind, int num_batches);
 // times the change to finer cells does, by which that change is smaller where errors fall with the square of a cell's side,
 // and where the field is weaker than the edges: it may then change little by chance. Smooth surfaces end where they are
 // steeper than on average, so that their edges hold less, in any phase: what people lack of them is kOfSmoothEdges / 2 times
-// as much, root mean square. Their field may be off by kOfSmoothEdges times as much to either side.
+// as much, root mean square. Their field may be off by kOfSmoothEdges times as much to either side. A surface is that smooth
+// where its facets stray by kBentFacets from it, and ends as a plane does where they do not at all.
 // Where cells twice as large leave less than kFaded of the field, cells along an edge may be in phase, as are those of a
 // straight edge across the line of sight.
 // The changes of all kinds add up as fields, but to no less than their root sum of squares, and all else as powers: kinds

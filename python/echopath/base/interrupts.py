@@ -11,12 +11,14 @@ import sys
 import threading
 from contextlib import contextmanager
 
+_depth = 0      # blocks within each other
 _heard = False  # a plain value: an Event's lock may be held by the very line that the signal interrupts
 
 
 @contextmanager
 def interrupts_are_kept():
-    """Makes sure that Ctrl-C ends the block: at a `heed` in it, or behind it."""
+    """Makes sure that Ctrl-C ends the block: at a `heed` in it, or behind it, and all such blocks around it."""
+    global _depth
     before = signal.getsignal(signal.SIGINT)
     if not _is_main_thread() or not callable(before):
         yield
@@ -29,6 +31,7 @@ def interrupts_are_kept():
     print_ignored = sys.unraisablehook
     signal.signal(signal.SIGINT, remember)
     sys.unraisablehook = lambda told: None if isinstance(told.exc_value, KeyboardInterrupt) else print_ignored(told)
+    _depth += 1
     try:
         yield
         heed()
@@ -38,7 +41,8 @@ def interrupts_are_kept():
     finally:
         sys.unraisablehook = print_ignored
         signal.signal(signal.SIGINT, before)
-        _note(False)
+        _depth -= 1
+        _note(_heard and _depth > 0)
 
 
 def heed() -> None:

@@ -131,11 +131,15 @@ def test_ctrl_c_while_the_program_loads_is_one_line(delay, tmp_path):
     "in_a_text": "exec('raise KeyboardInterrupt')",
     # pydantic-core tells it as an error of the model that it builds, a library in C as one of its own.
     "as_another_error": "try: signal.raise_signal(signal.SIGINT)\n    except KeyboardInterrupt: raise ValueError('no model')",
+    "as_another_error_around_a_block": """try:
+        with interrupts_are_kept(): signal.raise_signal(signal.SIGINT)
+    except KeyboardInterrupt: raise ValueError('no file')""",
     "in_a_callback": "weakref.finalize(Thing(), signal.raise_signal, signal.SIGINT)",
 }.items())
 def test_ctrl_c_ends_a_command_wherever_it_comes(module, lines, tmp_path):
     (tmp_path / f"{module}.py").write_text(f"""
 import signal, sys, weakref
+from echopath.base.interrupts import interrupts_are_kept
 from echopath.cli import commands, main
 class Thing: pass
 def work(options):

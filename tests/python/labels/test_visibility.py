@@ -102,6 +102,25 @@ def test_what_appears_within_a_frame_leaves_the_next_trace_as_it_is():
     np.testing.assert_array_equal(again.weight, paths.weight)
 
 
+@pytest.mark.parametrize("turn", [0.0, 0.001, -0.004, 0.05, 0.5])
+def test_each_end_sees_a_plate_at_its_own_slant(turn):
+    """A plate in the line of sight of one end: the other one, 5 cm aside, sees its front, or its back."""
+    side, middle = 0.7, np.array([10.0, 0.0, 1.0])
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(side, side), name="sign", material="metal", position=middle, yaw=np.pi / 2 + turn)
+    normal = np.array([-np.sin(turn), np.cos(turn), 0.0])
+    ends = (0.0, 0.0, 1.0), (0.0, 0.05, 1.0)
+    for places in (ends, ends[::-1]):
+        transmitter, receiver = places
+        radar = ep.Radar(radar_at(transmitter).waveform, transmitters=[ep.Antenna(transmitter)], receivers=[ep.Antenna(receiver)])
+        seen = ep.visibility(scene, radar)[0]
+        for end, place in ((seen.transmitter, transmitter), (seen.receiver, receiver)):
+            away = middle - place
+            angle = side ** 2 * abs(normal @ away) / np.linalg.norm(away) ** 3  # of a small plate
+            assert end.solid_angle == pytest.approx(angle, rel=0.03, abs=1e-9)
+            assert end.visible_share == (1.0 if angle > 1e-9 else 0.0)
+
+
 def test_what_is_looked_at_again_is_the_same_and_frees_its_geometry():
     """A trace that kept no geometry; the second look goes by what the first one built."""
     radar, scene = radar_at((0, 0, 0.6)), person_and_car(gap=2.0)
@@ -109,6 +128,7 @@ def test_what_is_looked_at_again_is_the_same_and_frees_its_geometry():
     once, again = (visibility_in_trace(paths, radar) for _ in range(2))
     assert once == again and 0.0 < once[1].visible_share < 1.0
     assert list(_KEPT) == [paths]
+    assert not ep._core.remember_geometry(paths, ep._core.KeptGeometry())  # there is one
     other = ep.trace(person_and_car(gap=0.0), radar, num_rays=500)
     visibility_in_trace(other, radar)
     assert list(_KEPT) == [other]

@@ -71,6 +71,12 @@ ObjectView::ObjectView(const EmbreeScene& geometry, const SurfaceMap& surfaces, 
   for (Eigen::AlignedBox3d& box : boxes_) box = {box.min() - margin, box.max() + margin};
 }
 
+double ObjectView::extent() const {
+  Eigen::AlignedBox3d all;
+  for (const Eigen::AlignedBox3d& box : boxes_) all.extend(box);
+  return all.isEmpty() ? 0.0 : all.diagonal().norm();
+}
+
 Stratum ObjectView::stratum(bool closely) const {
   size_t num_vertices = 0;
   for (const uint32_t mesh : mesh_ids_) num_vertices += geometry_.vertices(mesh).size();

@@ -27,6 +27,7 @@ class ObjectView {
 
   const std::vector<uint32_t>& mesh_ids() const { return mesh_ids_; }
   const Vec3& apex() const { return apex_; }
+  double extent() const;  // m, no less than between any two of its points
   // Returns a stratum that holds the object, or all directions where it surrounds the apex: by the boxes of its meshes, or
   // `closely` by their vertices.
   Stratum stratum(bool closely) const;

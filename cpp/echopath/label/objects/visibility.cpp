@@ -22,8 +22,9 @@ constexpr double kLeastFill = 0.25;                    // share of cells on the 
 constexpr double kLooseFill = 0.2;                     // below which the stratum is fitted to the vertices
 constexpr double kMostCells = 16.0;                    // for each direction asked for
 constexpr int kFewerIfHidden = 16, kLeastCells = 256;  // cells of a grid that serves the solid angle alone
-// Ends that are nearer to each other than this share of the distance to an object see the same outline of it.
-constexpr double kNearEnds = 0.01;
+// Ends that are nearer to each other than kNearEnds of the distance to an object may see the same outline of it. They do if
+// it moves, which goes by the depth of the object, by no more than kSameOutline of its width from one end to the other.
+constexpr double kNearEnds = 0.01, kSameOutline = 0.05;
 
 // Holds the antennas of one end of the radar.
 struct End {
@@ -54,6 +55,8 @@ class ObjectScanner {
     for (size_t end = 0; end < ends_.size(); ++end) sights.push_back(sight_of(end, grid));
     return sights;
   }
+
+  double extent() const { return views_.front().extent(); }  // m, of the object
 
  private:
   // Names what the ends meet in one direction, the object or what hides it.
@@ -191,18 +194,19 @@ class ObjectScanner {
 // Returns what both ends see of an object at these distances in m.
 std::array<Sight, 2> sights_of(const EmbreeScene& geometry, const SurfaceMap& surfaces, uint32_t object,
                                const std::array<End, 2>& ends, const std::array<double, 2>& distances, int num_directions) {
-  const double apart = (ends[1].position - ends[0].position).norm();
-  const bool are_near = apart <= kNearEnds * std::min(distances[0], distances[1]);
-  const size_t at_a_time = are_near ? 2 : 1;
-  std::array<Sight, 2> found;
-  for (size_t begin = 0; begin < 2; begin += at_a_time) {
-    ObjectScanner scanner(geometry, surfaces, object, std::span(ends).subspan(begin, at_a_time));
-    std::vector<Sight> sights = scanner.sights(num_directions);
-    std::move(sights.begin(), sights.end(), found.begin() + static_cast<ptrdiff_t>(begin));
+  const double apart = (ends[1].position - ends[0].position).norm(), distance = std::min(distances[0], distances[1]);
+  const bool are_near = apart <= kNearEnds * distance;
+  ObjectScanner scanner(geometry, surfaces, object, std::span(ends).first(are_near ? 2 : 1));
+  std::vector<Sight> sights = scanner.sights(num_directions);
+  const double seen = sights.front().solid_angle;
+  if (are_near && apart * std::pow(scanner.extent(), 2) <= kSameOutline * seen * std::pow(distance, 3)) {
+    if (apart > 0.0) sights[1].solid_angle *= std::pow(distances[0] / distances[1], 2);
+  } else {
+    sights.resize(1);
+    sights.push_back(ObjectScanner(geometry, surfaces, object, std::span(ends).last(1)).sights(num_directions).front());
   }
-  if (are_near && apart > 0.0) found[1].solid_angle *= std::pow(distances[0] / distances[1], 2);
-  for (size_t end = 0; end < 2; ++end) found[end].distance = distances[end];
-  return found;
+  for (size_t end = 0; end < 2; ++end) sights[end].distance = distances[end];
+  return {sights[0], sights[1]};
 }
 
 std::vector<uint32_t> meshes_of_objects(const SurfaceMap& surfaces) {

@@ -29,8 +29,8 @@ struct ObjectVisibility {
   Sight transmitter, receiver;
 };
 
-// Ends that are nearer to each other than a hundredth of the distance to an object share the outline that the transmitter
-// sees; what hides it they look for each for itself.
+// Ends that are so near each other that the outline of an object moves by a twentieth of its width at most share the outline
+// that the transmitter sees; what hides it they look for each for itself.
 struct VisibilitySettings {
   double time = 0.0;  // s
   // The approximate number of directions on each object, as if all were looked at: a grid over the stratum that holds it

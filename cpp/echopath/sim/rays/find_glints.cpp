@@ -5,6 +5,7 @@
 #include <iterator>
 #include <map>
 #include <optional>
+#include <span>
 #include <tuple>
 
 #include "echopath/base/constants.h"
@@ -56,12 +57,17 @@ class GlintSearch {
       of_mesh[kind.mesh].push_back(routes.size());
       routes.push_back(route_of(kind, seen));
     }
-    std::vector<std::pair<uint32_t, std::vector<size_t>>> meshes(of_mesh.begin(), of_mesh.end());
     Job unseen(job);
-    parallel_for(std::ssize(meshes), [&](int64_t i) {
-      const auto& [mesh, of_routes] = meshes[static_cast<size_t>(i)];
-      find_on_mesh(mesh, of_routes, routes);
+    const std::vector<MeshRoutes> meshes = posed(of_mesh, unseen);
+    const std::vector<Task> tasks = tasks_of(meshes);
+    std::vector<std::vector<FoundGlint>> found(tasks.size());
+    parallel_for(std::ssize(tasks), [&](int64_t i) {
+      const auto task = static_cast<size_t>(i);
+      found[task] = glints_of(tasks[task], routes);
     }, &unseen);
+    for (const std::vector<FoundGlint>& some : found) {
+      for (const FoundGlint& one : some) routes[one.route].glints.push_back(one.glint);
+    }
     std::vector<Glint> glints;
     for (Route& route : routes) std::move(route.glints.begin(), route.glints.end(), std::back_inserter(glints));
     return glints;
@@ -77,6 +83,24 @@ class GlintSearch {
     std::vector<Plane> before;
     Vec3 first, second;
     std::vector<Glint> glints;
+  };
+
+  // Holds a mesh in the world and the indices of the routes over it.
+  struct MeshRoutes {
+    uint32_t mesh;
+    std::vector<size_t> routes;
+    std::vector<Vec3> vertices, normals;
+  };
+
+  // Names some triangles of a mesh.
+  struct Task {
+    const MeshRoutes& of;
+    std::span<const Triangle> triangles;
+  };
+
+  struct FoundGlint {
+    size_t route;
+    Glint glint;
   };
 
   void sort_paths(Job* job) {
@@ -161,32 +185,58 @@ class GlintSearch {
     return route;
   }
 
+  std::vector<MeshRoutes> posed(const std::map<uint32_t, std::vector<size_t>>& of_mesh, Job& job) const {
+    std::vector<MeshRoutes> meshes;
+    for (const auto& [mesh, routes] : of_mesh) meshes.push_back({mesh, routes, {}, {}});
+    parallel_for(std::ssize(meshes), [&](int64_t i) {
+      MeshRoutes& one = meshes[static_cast<size_t>(i)];
+      one.vertices = pose_.world_vertices(one.mesh);
+      one.normals = pose_.world_normals(one.mesh);
+    }, &job);
+    return meshes;
+  }
+
+  std::vector<Task> tasks_of(const std::vector<MeshRoutes>& meshes) const {
+    constexpr size_t kTogether = 1 << 17;  // triangles times routes of a task
+    std::vector<Task> tasks;
+    for (const MeshRoutes& one : meshes) {
+      const std::span<const Triangle> triangles(paths_.scene->node_of(one.mesh).mesh->triangles());
+      const size_t step = std::max<size_t>(kTogether / one.routes.size(), 1);
+      for (size_t begin = 0; begin < triangles.size(); begin += step)
+        tasks.push_back({one, triangles.subspan(begin, std::min(step, triangles.size() - begin))});
+    }
+    return tasks;
+  }
+
   // Most triangles turn their back to one end of every route, which is told before anything else is found out about them.
-  void find_on_mesh(uint32_t mesh_id, const std::vector<size_t>& of_mesh, std::vector<Route>& routes) const {
-    const std::vector<Vec3> vertices = pose_.world_vertices(mesh_id), normals = pose_.world_normals(mesh_id);
-    for (const Triangle& t : paths_.scene->node_of(mesh_id).mesh->triangles()) {
+  std::vector<FoundGlint> glints_of(const Task& task, const std::vector<Route>& routes) const {
+    const std::vector<Vec3>&vertices = task.of.vertices, &normals = task.of.normals;
+    std::vector<FoundGlint> found;
+    for (const Triangle& t : task.triangles) {
       const std::array<Vec3, 3> corners = {vertices[t[0]], vertices[t[1]], vertices[t[2]]};
       const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
       std::optional<ReflectingTriangle> triangle;
-      for (const size_t index : of_mesh) {
-        Route& route = routes[index];
+      for (const size_t index : task.of.routes) {
+        const Route& route = routes[index];
         if (!(normal.dot(route.first - corners[0]) * normal.dot(route.second - corners[0]) > 0.0)) continue;
         if (!triangle) triangle = reflecting_triangle(corners, {normals[t[0]], normals[t[1]], normals[t[2]]});
-        add_glint(*triangle, route);
+        if (const std::optional<Glint> glint = glint_of(*triangle, route)) found.push_back({index, *glint});
       }
     }
+    return found;
   }
 
-  void add_glint(const ReflectingTriangle& triangle, Route& route) const {
+  // Returns none where the triangle has no point of reflection, or no path ran beside it.
+  std::optional<Glint> glint_of(const ReflectingTriangle& triangle, const Route& route) const {
     const std::optional<ReflectionPoint> point = find_reflection(triangle, route.first, route.second);
-    if (!point) return;
+    if (!point) return std::nullopt;
     Glint glint = glint_at(*point, route.first, route.stratum);
     for (size_t k = route.before.size(); k-- > 0;) glint.direction = route.before[k].mirrored(glint.direction);
-    if (const SeenPath* beside = nearest(route.seen, glint, cell_of(route.stratum))) {
-      const double field = beside->amplitude * glint.narrow * glint.wide * paths_.frame.strata[route.stratum].ray_density;
-      glint.power = field * field;
-      route.glints.push_back(glint);
-    }
+    const SeenPath* beside = nearest(route.seen, glint, cell_of(route.stratum));
+    if (!beside) return std::nullopt;
+    const double field = beside->amplitude * glint.narrow * glint.wide * paths_.frame.strata[route.stratum].ray_density;
+    glint.power = field * field;
+    return glint;
   }
 
   Glint glint_at(const ReflectionPoint& point, const Vec3& first, size_t stratum) const {

@@ -7,6 +7,7 @@
 #include "echopath/base/range_of_coordinates.h"
 #include "echopath/posed/posed_scene.h"
 #include "echopath/power/received_power.h"
+#include "echopath/trace/record/hit_points.h"
 
 namespace echopath {
 namespace {
@@ -141,9 +142,7 @@ class OutsideOfCavities {
   bool is_inside(const Hit& hit) const {
     const int cavity = cavity_of_[hit.mesh_id];
     if (cavity < 0) return false;
-    const auto [a, b, c] = pose_.world_triangle(hit.mesh_id, hit.triangle_id);
-    const Vec3 point = a + double{hit.u} * (b - a) + double{hit.v} * (c - a);
-    return std::abs(cavities_[static_cast<size_t>(cavity)].mouth.height(point)) > tolerance_;
+    return std::abs(cavities_[static_cast<size_t>(cavity)].mouth.height(hit_point(pose_, hit))) > tolerance_;
   }
 
   PosedScene pose_;

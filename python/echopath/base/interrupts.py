@@ -28,21 +28,30 @@ def interrupts_are_kept():
         _note(True)
         before(number, frame)
 
-    print_ignored = sys.unraisablehook
-    signal.signal(signal.SIGINT, remember)
-    sys.unraisablehook = lambda told: None if isinstance(told.exc_value, KeyboardInterrupt) else print_ignored(told)
-    _depth += 1
+    print_ignored, depth = sys.unraisablehook, _depth
+
+    def restore():
+        global _depth
+        sys.unraisablehook = print_ignored
+        signal.signal(signal.SIGINT, before)
+        _depth = depth
+        _note(_heard and depth > 0)
+
     try:
+        signal.signal(signal.SIGINT, remember)
+        sys.unraisablehook = lambda told: None if isinstance(told.exc_value, KeyboardInterrupt) else print_ignored(told)
+        _depth = depth + 1
         yield
         heed()
     except Exception:
         heed()
         raise
     finally:
-        sys.unraisablehook = print_ignored
-        signal.signal(signal.SIGINT, before)
-        _depth -= 1
-        _note(_heard and _depth > 0)
+        try:
+            restore()
+        except KeyboardInterrupt:  # it came just now
+            restore()
+            raise
 
 
 def heed() -> None:

@@ -104,8 +104,8 @@ def visibility(scene: _core.Scene, radar: _core.Radar, objects: Objects = None, 
 
 def visibility_in_trace(paths, radar, objects=None, *, progress=None) -> list:
     """The same at the time of a trace, of the very objects that `families(paths, objects)` has, in their order, by 512
-    directions on each: shares are known to 2e-3 rms and 8e-3 at most. Where the trace kept
-    no geometry, that of the record looked at last stays in memory with it, some 200 bytes a triangle.
+    directions on each: shares are known to 2e-3 rms and 8e-3 at most. Where the trace kept no geometry, that of the record
+    looked at last stays in memory with it, some 200 bytes a triangle.
 
     paths: of `trace`; radar: whose antennas look, not necessarily that of the trace; progress: as in `visibility`
     """

@@ -53,8 +53,7 @@ class SharedLegEvaluation {
   }
   // Sets dark[place] to 1 for coherent chains whose amplitude, whatever the antennas, stays below `limit` (sqrt(W)) at the
   // nodes and between them (stays_below, node_tails.h): the filter of their launch cell is bounded for all antennas at once
-  // (filter_bound.h), at the largest gains. It does not find those of
-  // which only their amplitudes tell.
+  // (filter_bound.h), at the largest gains. It does not find those of which only their amplitudes tell.
   void find_dark(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, const FrameNodes& times,
                  const RadioConstants& radio, double limit, std::vector<uint8_t>& dark);
   // Is told that the plan is about to leave out the paths of these places ([P], 1 or 0).

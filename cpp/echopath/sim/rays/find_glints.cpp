@@ -14,6 +14,7 @@
 #include "echopath/replay/replay.h"
 #include "echopath/scene/smooth/reflection_point.h"
 #include "echopath/sim/rays/chain_glints.h"
+#include "echopath/trace/record/hit_points.h"
 
 namespace echopath {
 namespace {
@@ -65,24 +66,24 @@ class GlintSearch {
       const auto task = static_cast<size_t>(i);
       found[task] = glints_of(tasks[task], routes);
     }, &unseen);
+    std::vector<std::vector<Glint>> of_route(routes.size());
     for (const std::vector<FoundGlint>& some : found) {
-      for (const FoundGlint& one : some) routes[one.route].glints.push_back(one.glint);
+      for (const FoundGlint& one : some) of_route[one.route].push_back(one.glint);
     }
     std::vector<Glint> glints;
-    for (Route& route : routes) std::move(route.glints.begin(), route.glints.end(), std::back_inserter(glints));
+    for (const std::vector<Glint>& some : of_route) glints.insert(glints.end(), some.begin(), some.end());
     return glints;
   }
 
  private:
   using Kinds = std::map<RouteKind, std::vector<SeenPath>>;
 
-  // Holds the planes of the mirrors before the mesh of a kind, both antennas as that mesh sees them, and what is found.
+  // Holds the planes of the mirrors before the mesh of a kind, and both antennas as that mesh sees them.
   struct Route {
     const std::vector<SeenPath>& seen;
     uint16_t stratum;
     std::vector<Plane> before;
     Vec3 first, second;
-    std::vector<Glint> glints;
   };
 
   // Holds a mesh in the world and the indices of the routes over it.
@@ -132,9 +133,7 @@ class GlintSearch {
   }
 
   Vec3 direction_of_launch(int64_t path) const {
-    const Hit& first = paths_.hits_of(path)[0];
-    const auto [a, b, c] = pose_.world_triangle(first.mesh_id, first.triangle_id);
-    return (a + first.u * (b - a) + first.v * (c - a) - paths_.frame.transmitter).normalized();
+    return (hit_point(pose_, paths_.hits_of(path)[0]) - paths_.frame.transmitter).normalized();
   }
 
   // Computes amplitudes without a filter, which are what one launch cell sends.
@@ -178,7 +177,7 @@ class GlintSearch {
   }
 
   Route route_of(const RouteKind& kind, const std::vector<SeenPath>& seen) const {
-    Route route{seen, kind.stratum, {}, paths_.frame.transmitter, paths_.frame.receiver, {}};
+    Route route{seen, kind.stratum, {}, paths_.frame.transmitter, paths_.frame.receiver};
     for (const MirrorFace& mirror : kind.before) route.before.push_back(plane_of(mirror));
     for (const Plane& plane : route.before) route.first = plane.image(route.first);
     for (size_t k = kind.behind.size(); k-- > 0;) route.second = plane_of(kind.behind[k]).image(route.second);

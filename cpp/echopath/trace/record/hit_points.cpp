@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "echopath/base/threads/parallel.h"
-#include "echopath/posed/posed_scene.h"
 
 namespace echopath {
 namespace {
@@ -18,9 +17,7 @@ std::vector<double> hit_points(const Paths& paths, double time, Job* job) {
   parallel_for((paths.num_hits() + kHitsPerTask - 1) / kHitsPerTask, [&](int64_t block) {
     const int64_t end = std::min((block + 1) * kHitsPerTask, paths.num_hits());
     for (int64_t i = block * kHitsPerTask; i < end; ++i) {
-      const Hit& hit = (*paths.hits)[static_cast<size_t>(i)];
-      const auto [a, b, c] = pose.world_triangle(hit.mesh_id, hit.triangle_id);
-      Eigen::Map<Vec3>(out.data() + 3 * i) = a + double{hit.u} * (b - a) + double{hit.v} * (c - a);
+      Eigen::Map<Vec3>(out.data() + 3 * i) = hit_point(pose, (*paths.hits)[static_cast<size_t>(i)]);
     }
   }, job);
   return out;

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from echopath.base.files import written_whole
-from echopath.base.optional import needed_module
+from echopath.base.libraries import needed_module
 
 KINDS = (".gif", ".mp4")
 

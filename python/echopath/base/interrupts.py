@@ -54,6 +54,23 @@ def interrupts_are_kept():
             raise
 
 
+@contextmanager
+def interrupts_wait():
+    """Ctrl-C that comes within the block is answered behind it: for what is short and must not be cut."""
+    answer = signal.getsignal(signal.SIGINT)
+    if not _is_main_thread() or not callable(answer):
+        yield
+        return
+    came = []
+    signal.signal(signal.SIGINT, lambda number, frame: came.append(number))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, answer)
+        if came:
+            signal.raise_signal(signal.SIGINT)
+
+
 def heed() -> None:
     """Raises KeyboardInterrupt where Ctrl-C was pressed in the block around and got lost; not where what it ends cleans up."""
     if _heard and _is_main_thread() and not isinstance(sys.exc_info()[1], KeyboardInterrupt):

@@ -5,7 +5,7 @@ import numpy as np
 
 from ..arguments.checks import file
 from ..base.files import written_whole
-from ..base.optional import needed_module
+from ..base.libraries import needed_module
 
 # Name in the file, what it is of the detections; LAS has them as extra dimensions.
 _EXTRA = {"velocity": "velocity", "range": "range", "azimuth": "azimuth", "elevation": "elevation", "snr_db": "snr_db"}

@@ -16,6 +16,7 @@ import numpy as np
 
 from .. import _core
 from ..base.interrupts import heed, interrupts_are_kept
+from ..base.libraries import load_whole
 from .h5_items import is_chunked, item_of, memory_type, name_of, read_blocks, row_blocks, shape_of
 
 CHUNK_BYTES = 1 << 20   # of compression
@@ -39,7 +40,7 @@ def writing(path):
     HDF5 cannot give up a file that it fails to write: the process would end with a crash. So a full disk is told here, by
     an OSError, and the file is cut to its size at the end.
     """
-    import h5py  # with files alone: it takes a fifth of the time to import the package
+    h5py = load_whole("h5py")  # with files alone: it takes a fifth of the time to import the package
 
     _take_space(path)
     with h5py.File(path, "w", libver=LAYOUT) as file:
@@ -284,7 +285,7 @@ def _checked_item(group, name: str, kind: str, identifier):
 @contextmanager
 def reading(path):
     """Opens an HDF5 file; whatever is wrong with it becomes an ep.FileError that names the file and the reason."""
-    import h5py
+    h5py = load_whole("h5py")
 
     try:
         with interrupts_are_kept(), h5py.File(path, "r") as file:

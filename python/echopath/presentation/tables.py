@@ -8,7 +8,7 @@ import numpy as np
 
 from ..arguments.checks import file
 from ..base.files import written_whole
-from ..base.optional import needed_module
+from ..base.libraries import needed_module
 from ..paths.families import families
 
 _REVERSED, _EDGE = 1, 4  # bits of Paths.flags

@@ -90,6 +90,8 @@ def seconds_to_stop(work) -> float:
         time.sleep(0.01)
     except KeyboardInterrupt:
         return time.perf_counter() - sent[0]
+    finally:
+        timer.cancel()  # an error of the work is told as it is, not as a Ctrl-C that comes later
     return 0.0
 
 
@@ -149,3 +151,29 @@ sys.exit(main(["info", "scene.toml"]))
 """)
     done = subprocess.run([sys.executable, "-m", module], cwd=tmp_path, preexec_fn=heed_ctrl_c, capture_output=True, text=True)
     assert (done.returncode, done.stderr.split("\n")[1:-1]) == (130, STOPPED)
+
+
+@pytest.mark.parametrize("module", ["h5py", "h5py.h5f", "h5py._hl.files"])
+def test_ctrl_c_while_h5py_loads_leaves_it_whole(module, tmp_path):
+    """Modules made by Cython cannot be loaded twice: a notebook could read no file any more after a Ctrl-C at the first."""
+    (tmp_path / "first_file.py").write_text(f"""
+import signal, sys
+import echopath as ep
+class Interrupting:
+    def find_spec(name, path, target=None):
+        if name == "{module}" and Interrupting in sys.meta_path:
+            sys.meta_path.remove(Interrupting)
+            signal.raise_signal(signal.SIGINT)
+sys.meta_path.insert(0, Interrupting)
+scene = ep.Scene()
+scene.add(ep.actors.plate(1.0, 1.0), name="plate", position=(6.0, 0.0, 0.0), material="metal")
+radar = ep.Radar(ep.ChirpSequence(), transmitters=[ep.Antenna((0, 0, 0))], receivers=[ep.Antenna((0, 0, 0))])
+paths = ep.trace(scene, radar, num_rays=100, max_bounces=1)
+try:
+    paths.save("paths.h5")
+except KeyboardInterrupt:
+    paths.save("paths.h5")
+    print(ep.Paths.load("paths.h5").num_paths == paths.num_paths)
+""")
+    done = subprocess.run([sys.executable, "first_file.py"], cwd=tmp_path, preexec_fn=heed_ctrl_c, capture_output=True, text=True)
+    assert (done.stdout, done.stderr) == ("True\n", "")

@@ -131,5 +131,5 @@ def test_faults_of_packed_views_are_told_with_their_places(tmp_path, change, sai
 def test_what_to_install_is_said_without_the_library(tmp_path, monkeypatch, library, extra, make):
     file = make()
     monkeypatch.setitem(sys.modules, library, None)
-    with pytest.raises(ModuleNotFoundError, match=rf"need {library}, which is not installed: pip install 'echopath\[{extra}\]'"):
+    with pytest.raises(ModuleNotFoundError, match=rf"needs {library}, which is not installed: pip install 'echopath\[{extra}\]'"):
         loaded(tmp_path, file)

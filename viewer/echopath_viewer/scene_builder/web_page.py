@@ -6,7 +6,7 @@ import json
 import numpy as np
 
 from echopath.base.files import written_whole
-from echopath.base.optional import needed_module
+from echopath.base.libraries import needed_module
 from echopath.base.origin import origin_texts
 
 from ..model.palette import objects_of

@@ -12,7 +12,7 @@ from ...arguments import part_names
 from ...arguments.checks import checked
 from ...arguments.checks import path as folder_rule
 from ...base.files import written_whole
-from ...base.optional import needed_module
+from ...base.libraries import needed_module
 from ...detections.detections import Detections
 from ...truth.cross_section import isotropic_power
 from ..classes import classes_of

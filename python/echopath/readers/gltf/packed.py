@@ -4,11 +4,11 @@ Extensions KHR_draco_mesh_compression and EXT_meshopt_compression of glTF (Khron
 """
 from __future__ import annotations
 
-from importlib import import_module
 from types import ModuleType
 
 import numpy as np
 
+from ...base.libraries import needed_module
 from .item import Item
 
 DRACO, MESHOPT = "KHR_draco_mesh_compression", "EXT_meshopt_compression"
@@ -19,13 +19,7 @@ EXTRAS = {"DracoPy": "gltf", "meshoptimizer": "meshopt"}  # library -> extra of 
 
 def _library(name: str, extension: str) -> ModuleType:
     """An optional library. Raises ModuleNotFoundError that says what to install."""
-    try:
-        return import_module(name)
-    except ModuleNotFoundError as error:
-        if error.name != name:
-            raise
-        text = f"glTF files packed by {extension} need {name}, which is not installed: pip install 'echopath[{EXTRAS[name]}]'"
-        raise ModuleNotFoundError(text, name=name) from None
+    return needed_module(name, f"a glTF file packed by {extension}", extra=EXTRAS[name])
 
 
 def draco_mesh(content: bytes, item: Item) -> tuple[np.ndarray, dict[int, np.ndarray]]:

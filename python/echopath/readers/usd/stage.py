@@ -3,13 +3,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ... import _core
+from ...base.libraries import needed_module
 
 LEFT_OUT = ("guide", "proxy")  # purposes that are not part of the scene
 LONGEST, SHORTEST = 1e6, 1e-5  # s, from the first frame and between two samples
@@ -17,13 +17,7 @@ LONGEST, SHORTEST = 1e6, 1e-5  # s, from the first frame and between two samples
 
 def pxr_module(name: str):
     """A module of usd-core. Raises ModuleNotFoundError that says what to install."""
-    try:
-        return import_module(f"pxr.{name}")
-    except ModuleNotFoundError as error:
-        if (error.name or "").partition(".")[0] != "pxr":
-            raise
-        text = "reading USD files needs usd-core, which is not installed: pip install 'echopath[usd]'"
-        raise ModuleNotFoundError(text, name="usd-core") from None
+    return needed_module(f"pxr.{name}", "reading USD files", library="usd-core", extra="usd")
 
 
 @contextmanager

@@ -47,6 +47,7 @@ std::vector<uint32_t> EmbreeMeshes::take_sources(const Scene& scene, const Posed
 
 void EmbreeMeshes::place_in_world(const PosedScene& pose, uint32_t mesh_id) {
   Posed& posed = meshes_[mesh_id];
+  posed.width = std::make_unique<Lazy<double>>();
   posed.vertices = pose.world_vertices(mesh_id);
   Eigen::AlignedBox3d box;
   for (const Vec3& vertex : posed.vertices) box.extend(vertex);

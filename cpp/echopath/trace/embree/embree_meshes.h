@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "echopath/base/memory/lazy.h"
 #include "echopath/posed/posed_scene.h"
 
 namespace echopath {
@@ -39,6 +40,10 @@ class EmbreeMeshes {
     return uint32_t{1} << (static_cast<unsigned>(meshes_[mesh_id].source.object) % 31u);
   }
   Eigen::AlignedBox3d box(uint32_t mesh_id) const;  // m
+  // Returns the width in m that `measure` gives for the mesh, or gave since its vertices were last computed.
+  double width(uint32_t mesh_id, const std::function<double()>& measure) const {
+    return meshes_[mesh_id].width->get(measure);
+  }
   const Eigen::AlignedBox3d& world_box(uint32_t mesh_id) const { return world_boxes_[mesh_id]; }
 
   struct Extent {
@@ -64,6 +69,7 @@ class EmbreeMeshes {
   struct Posed {
     Source source;
     std::vector<Vec3> vertices, normals;
+    std::unique_ptr<Lazy<double>> width;  // m
   };
   static Source source_of(const Scene& scene, const PosedScene& pose, uint32_t mesh_id);
   std::vector<uint32_t> take_sources(const Scene& scene, const PosedScene& pose);

@@ -130,6 +130,8 @@ class EmbreeScene {
   // Returns vertices relative to the origin.
   const std::vector<Vec3>& vertices(uint32_t mesh_id) const { return meshes_.vertices(mesh_id); }
   Eigen::AlignedBox3d box(uint32_t mesh_id) const { return meshes_.box(mesh_id); }
+  // As EmbreeMeshes::width.
+  double width(uint32_t mesh_id, const std::function<double()>& measure) const { return meshes_.width(mesh_id, measure); }
 
  private:
   struct Device;    // embree_device.h

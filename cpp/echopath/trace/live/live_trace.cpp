@@ -20,13 +20,30 @@ bool is_any_mirror(const Scene& scene, const ChangedMeshes& changed) {
   return false;
 }
 
+double surface_of(const FloatBox& box) {
+  const Eigen::Vector3d sizes = box.sizes().cast<double>();
+  return 2.0 * (sizes.x() * sizes.y() + sizes.y() * sizes.z() + sizes.z() * sizes.x());
+}
+
+// Adds the boxes of where a mesh was and is; where they lie together, one that holds both. A box is met by stretches about
+// as often as its surface is large.
+void add_boxes(const Eigen::AlignedBox3d& was, const Eigen::AlignedBox3d& is, std::vector<FloatBox>& boxes) {
+  std::vector<FloatBox> own;
+  for (const Eigen::AlignedBox3d* box : {&was, &is}) {
+    if (!box->isEmpty()) own.push_back(box->cast<float>());
+  }
+  if (own.size() == 2) {
+    const FloatBox both = own[0].merged(own[1]);
+    if (surface_of(both) < surface_of(own[0]) + surface_of(own[1])) own = {both};
+  }
+  boxes.insert(boxes.end(), own.begin(), own.end());
+}
+
 // Returns where the changed meshes were and are.
 std::vector<FloatBox> changed_boxes(const LiveRecord& before, const LiveRecord& after, const ChangedMeshes& changed) {
   std::vector<FloatBox> boxes;
   for (size_t id = 0; id < changed.size(); ++id) {
-    for (const LiveRecord* record : {&before, &after}) {
-      if (changed[id] && !record->boxes[id].isEmpty()) boxes.push_back(record->boxes[id].cast<float>());
-    }
+    if (changed[id]) add_boxes(before.boxes[id], after.boxes[id], boxes);
   }
   return boxes;
 }

@@ -1,7 +1,9 @@
 #include "echopath/trace/live/path_difference.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -76,14 +78,35 @@ class PathSums {
   const bool has_changed_edges_ = finds_changed_edges();
 };
 
-std::vector<size_t> sorted_by(const std::vector<uint64_t>& sums) {
-  std::vector<size_t> order;
-  for (size_t i = 0; i < sums.size(); ++i) {
-    if (sums[i] != kUnlike) order.push_back(i);
+// Gives paths away by their sums; of equal ones the first comes first.
+class PathsBySum {
+ public:
+  explicit PathsBySum(const std::vector<uint64_t>& sums)
+      : sums_(sums), first_(std::bit_ceil(2 * sums.size() + 1), kNone), next_(sums.size(), kNone) {
+    for (auto i = static_cast<uint32_t>(sums.size()); i-- > 0;) {
+      if (sums[i] == kUnlike) continue;
+      uint32_t& first = first_[place_of(sums[i])];
+      next_[i] = first;
+      first = i;
+    }
   }
-  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return std::pair(sums[a], a) < std::pair(sums[b], b); });
-  return order;
-}
+
+  static constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
+  // Returns the index of a path with this sum that was not given away yet, else kNone.
+  uint32_t take(uint64_t sum) {
+    for (uint32_t* link = &first_[place_of(sum)]; *link != kNone; link = &next_[*link]) {
+      if (sums_[*link] == sum) return std::exchange(*link, next_[*link]);
+    }
+    return kNone;
+  }
+
+ private:
+  size_t place_of(uint64_t sum) const { return static_cast<size_t>(sum) & (first_.size() - 1); }
+
+  const std::vector<uint64_t>& sums_;
+  std::vector<uint32_t> first_;  // path of a chain, by the last bits of its sum
+  std::vector<uint32_t> next_;   // in its chain, by path
+};
 
 }  // namespace
 
@@ -91,13 +114,11 @@ void leave_out_common(Paths& before, Paths& after, const ChangedMeshes& changed,
   const std::vector<bool> same = same_strata(before.frame, after.frame);
   const std::vector<uint64_t> old_sums = PathSums(before, changed, same).all(job),
                               new_sums = PathSums(after, changed, same).all(job);
-  const std::vector<size_t> old_order = sorted_by(old_sums), new_order = sorted_by(new_sums);
+  PathsBySum old_paths(old_sums);
   std::vector<uint8_t> keep_old(old_sums.size(), 1), keep_new(new_sums.size(), 1);
-  for (size_t i = 0, k = 0; i < old_order.size() && k < new_order.size();) {
-    const uint64_t a = old_sums[old_order[i]], b = new_sums[new_order[k]];
-    if (a == b) keep_old[old_order[i]] = keep_new[new_order[k]] = 0;
-    if (a <= b) ++i;
-    if (b <= a) ++k;
+  for (size_t i = 0; i < new_sums.size(); ++i) {
+    const uint32_t same_path = new_sums[i] == kUnlike ? PathsBySum::kNone : old_paths.take(new_sums[i]);
+    if (same_path != PathsBySum::kNone) keep_old[same_path] = keep_new[i] = 0;
   }
   before = before.select(keep_old, job);
   after = after.select(keep_new, job);

@@ -51,6 +51,7 @@ void QueriedSpace::add(const Point& from, const Point& to) {
   FloatBox& box = boxes_.back();
   box.extend(Eigen::Vector3f(from.x, from.y, from.z));
   box.extend(Eigen::Vector3f(to.x, to.y, to.z));
+  whole_.extend(box);
   ++num_in_last_;
 }
 
@@ -72,18 +73,22 @@ bool QueriedSpace::meets(const Pack& pack, const FloatBox& box) const {
   return met != 0;
 }
 
-bool QueriedSpace::meets(std::span<const FloatBox> boxes) const {
+bool QueriedSpace::meets(const FloatBox& box) const {
+  if (!whole_.intersects(box)) return false;
   for (size_t i = 0; i < packs_.size(); ++i) {
-    for (const FloatBox& box : boxes) {
-      if (boxes_[i].intersects(box) && meets(packs_[i], box)) return true;
-    }
+    if (boxes_[i].intersects(box) && meets(packs_[i], box)) return true;
   }
   return false;
+}
+
+bool QueriedSpace::meets(std::span<const FloatBox> boxes) const {
+  return std::any_of(boxes.begin(), boxes.end(), [&](const FloatBox& box) { return meets(box); });
 }
 
 void QueriedSpace::clear() {
   packs_.clear();
   boxes_.clear();
+  whole_.setEmpty();
   num_in_last_ = kPacketSize;
 }
 

@@ -28,10 +28,12 @@ class QueriedSpace {
   struct alignas(64) Pack {  // of stretches side by side: middle and half of the vector from end to end
     float middle[3][kPacketSize], half[3][kPacketSize];
   };
+  bool meets(const FloatBox& box) const;
   bool meets(const Pack& pack, const FloatBox& box) const;
 
   std::vector<Pack> packs_;      // the lanes of the last one that are not in use hold its first stretch
   std::vector<FloatBox> boxes_;  // of each pack
+  FloatBox whole_;               // of all packs
   int num_in_last_ = kPacketSize;
 };
 

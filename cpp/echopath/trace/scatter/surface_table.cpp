@@ -28,13 +28,12 @@ bool is_unflagged_smooth(const Node& node) { return node.smooth && !node.materia
 // Finds how wide smooth surfaces are.
 class SmoothWidths {
  public:
-  double width_of(const Node& node, const std::vector<Vec3>& vertices) {
-    if (!is_unflagged_smooth(node)) return 0.0;
+  double width_of(const Mesh& mesh, const std::vector<Vec3>& vertices) {
     const double width = middle_extent(vertices);
-    if (!node.mesh->whole()) return width;
+    if (!mesh.whole()) return width;
     // The whole surface is scaled as this part of it is.
-    const double at_rest = middle_extent(node.mesh->vertices());
-    return at_rest > 0 ? extent_of_whole(*node.mesh->whole()) * (width / at_rest) : width;
+    const double at_rest = middle_extent(mesh.vertices());
+    return at_rest > 0 ? extent_of_whole(*mesh.whole()) * (width / at_rest) : width;
   }
 
  private:
@@ -57,7 +56,8 @@ SurfaceTable::SurfaceTable(const Scene& scene, const EmbreeScene& geometry, cons
     const Node& node = scene.node_of(id);
     models_.emplace_back(*node.material, frequency);
     if (node.material->layers.size() > 1) backs_.emplace(id, SurfaceModel(*node.material, frequency, SheetSide::kBack));
-    smooth_width_.push_back(widths.width_of(node, geometry.vertices(id)));
+    const auto measure = [&] { return widths.width_of(*node.mesh, geometry.vertices(id)); };
+    smooth_width_.push_back(is_unflagged_smooth(node) ? geometry.width(id, measure) : 0.0);
     has_lobes_ = has_lobes_ || !models_.back().lobe().is_lambert();
     has_smooth_ = has_smooth_ || is_unflagged_smooth(node);
   }

@@ -15,13 +15,42 @@ constexpr size_t kMaxAims = 65000;
 // Strata are the same within this difference of axes and solid angles, relative to the latter.
 constexpr double kSameStratum = 1e-6;
 
-struct Target {
-  int object = 0, node = 0;
-  std::string name;
-  std::vector<Vec3> vertices;
-  uint64_t bits = 0;  // sum of those of the vertices
+class Target {
+ public:
+  Target(const Scene& scene, const EmbreeScene& geometry, const SceneObject& of, int index)
+      : object(index), node(of.node), name(scene.nodes()[static_cast<size_t>(of.node)].name), geometry_(geometry),
+        mesh_ids_(of.mesh_ids) {
+    sphere = bounding_sphere([&](uint32_t id) -> const std::vector<Vec3>& { return geometry.vertices(id); }, mesh_ids_);
+    BitSum sum;
+    for (const uint32_t id : mesh_ids_) {
+      const std::vector<Vec3>& own = geometry.vertices(id);
+      sum.add(own.size());
+      sum.add_bytes(own.data(), own.size() * sizeof(Vec3));
+      moves = moves || scene.is_moving(id);
+    }
+    bits = sum.value();
+  }
+
+  // Returns the vertices of all its meshes, which are put together when they are first asked for.
+  const std::vector<Vec3>& vertices() const {
+    for (; num_together_ < mesh_ids_.size(); ++num_together_) {
+      const std::vector<Vec3>& own = geometry_.vertices(mesh_ids_[num_together_]);
+      vertices_.insert(vertices_.end(), own.begin(), own.end());
+    }
+    return vertices_;
+  }
+
+  const int object, node;
+  const std::string name;
   Sphere sphere;
+  uint64_t bits = 0;  // sum of those of the vertices
   bool moves = false;
+
+ private:
+  const EmbreeScene& geometry_;
+  const std::vector<uint32_t>& mesh_ids_;
+  mutable std::vector<Vec3> vertices_;  // of the first meshes
+  mutable size_t num_together_ = 0;
 };
 
 // Returns the image of the point as the antenna sees it over a sequence of mirrors (in travel order from the antenna).
@@ -43,18 +72,19 @@ class RayTargetFinder {
 
   std::optional<RayTarget> at_object(const Target& target) const {
     return target_at(target, input_of(target, {}), target.name, 0,
-                     [&]() -> const std::vector<Vec3>& { return target.vertices; });
+                     [&]() -> const std::vector<Vec3>& { return target.vertices(); });
   }
 
   // RayTargets at each image that a frustum may show.
   std::vector<RayTarget> at_images(const Target& target) const {
     std::vector<RayTarget> images;
-    std::vector<Vec3> vertices(target.vertices.size());
+    std::vector<Vec3> vertices;
     for (const MirrorFrustum& frustum : settings_.frusta) {
       if (!frustum.reaches(target.sphere.centre, target.sphere.radius)) continue;
       const int num_mirrors = static_cast<int>(frustum.mirrors.size());
       const auto images_of_vertices = [&]() -> const std::vector<Vec3>& {
-        std::transform(target.vertices.begin(), target.vertices.end(), vertices.begin(),
+        vertices.resize(target.vertices().size());
+        std::transform(target.vertices().begin(), target.vertices().end(), vertices.begin(),
                        [&](const Vec3& vertex) { return image_of(vertex, mirrors_, frustum.mirrors); });
         return vertices;
       };
@@ -116,24 +146,6 @@ class RayTargetFinder {
   const RayTargetSettings& settings_;
 };
 
-Target target_of(const Scene& scene, const EmbreeScene& geometry, const SceneObject& object, int index) {
-  Target target;
-  target.object = index;
-  target.node = object.node;
-  target.name = scene.nodes()[static_cast<size_t>(object.node)].name;
-  target.sphere =
-      bounding_sphere([&](uint32_t id) -> const std::vector<Vec3>& { return geometry.vertices(id); }, object.mesh_ids);
-  for (const uint32_t id : object.mesh_ids) {
-    const std::vector<Vec3>& vertices = geometry.vertices(id);
-    target.vertices.insert(target.vertices.end(), vertices.begin(), vertices.end());
-    target.moves = target.moves || scene.is_moving(id);
-  }
-  BitSum bits;
-  bits.add_bytes(target.vertices.data(), target.vertices.size() * sizeof(Vec3));
-  target.bits = bits.value();
-  return target;
-}
-
 // Leaves out the images over the most mirrors first, then the objects that fill the least of the view.
 void limit(std::vector<RayTarget>& objects, std::vector<RayTarget>& images, RayTargets& out) {
   const size_t all = objects.size() + images.size();
@@ -170,7 +182,7 @@ RayTargets find_ray_targets(const Scene& scene, const EmbreeScene& geometry, con
   for (int index = 0; index < out.num_objects; ++index) {
     const SceneObject& object = scene_objects[static_cast<size_t>(index)];
     for (const uint32_t id : object.mesh_ids) out.object_of_mesh[id] = index;
-    const Target target = target_of(scene, geometry, object, index);
+    const Target target(scene, geometry, object, index);
     std::optional<RayTarget> direct = finder.at_object(target);
     if (!direct) {
       out.any_unaimed = true;

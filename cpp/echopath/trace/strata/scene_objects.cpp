@@ -1,6 +1,7 @@
 #include "echopath/trace/strata/scene_objects.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace echopath {
 
@@ -25,11 +26,12 @@ Sphere bounding_sphere(const VerticesOf& vertices_of, const std::vector<uint32_t
   for (const uint32_t id : mesh_ids) {
     for (const Vec3& vertex : vertices_of(id)) box.extend(vertex);
   }
-  Sphere sphere{box.center(), 0.0};
+  const Vec3 centre = box.center();
+  double square = 0.0;  // m^2, of the radius
   for (const uint32_t id : mesh_ids) {
-    for (const Vec3& vertex : vertices_of(id)) sphere.radius = std::max(sphere.radius, (vertex - sphere.centre).norm());
+    for (const Vec3& vertex : vertices_of(id)) square = std::max(square, (vertex - centre).squaredNorm());
   }
-  return sphere;
+  return {centre, std::sqrt(square)};
 }
 
 }  // namespace echopath

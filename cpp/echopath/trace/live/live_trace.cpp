@@ -91,12 +91,14 @@ std::vector<std::pair<int64_t, int64_t>> block_bounds(const LaunchPlan& plan) {
 }
 
 LiveBlockPtr shot(const Tracer& tracer, int64_t begin, int64_t end) {
-  auto block = std::make_shared<LiveBlock>();
-  block->begin = begin;
-  block->end = end;
-  const QueryWatch::OfThread watching(block->space);
-  tracer.shoot(begin, end, block->paths);
-  return block;
+  thread_local LiveBlock scratch;  // a block grows in memory that is there, and is copied when its sizes are known
+  scratch.begin = begin;
+  scratch.end = end;
+  scratch.space.clear();
+  scratch.paths.clear();
+  const QueryWatch::OfThread watching(scratch.space);
+  tracer.shoot(begin, end, scratch.paths);
+  return std::make_shared<const LiveBlock>(scratch);
 }
 
 // Fills the blocks, those that are kept and those that are shot; it returns the number of rays shot.

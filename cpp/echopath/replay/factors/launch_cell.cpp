@@ -1,8 +1,9 @@
 #include "echopath/replay/factors/launch_cell.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "echopath/base/principal_axes.h"
 
 namespace echopath {
 namespace {
@@ -26,9 +27,9 @@ Flatness flatness_of(const PosedHit& hit) {
 void find_across(const CellShape& cell, double* across) {
   Eigen::Matrix2d bend;
   bend << cell.bend[0], cell.bend[1], cell.bend[1], cell.bend[2];
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(bend);
-  const int bent = std::abs(axes.eigenvalues()[0]) < std::abs(axes.eigenvalues()[1]) ? 1 : 0;
-  for (int a = 0; a < 2; ++a) across[a] = axes.eigenvectors()(a, bent);
+  const PrincipalAxes principal = principal_axes(bend);
+  const int bent = std::abs(principal.values[0]) < std::abs(principal.values[1]) ? 1 : 0;
+  for (int a = 0; a < 2; ++a) across[a] = principal.axes(a, bent);
 }
 
 }  // namespace

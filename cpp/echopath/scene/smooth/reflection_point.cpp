@@ -1,9 +1,9 @@
 #include "echopath/scene/smooth/reflection_point.h"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "echopath/base/principal_axes.h"
 #include "echopath/scene/smooth/smooth.h"
 
 namespace echopath {
@@ -107,10 +107,10 @@ std::optional<ReflectionPoint> find_reflection(const ReflectingTriangle& triangl
   if (!place || !is_inside((*place)[0], (*place)[1], kOutside)) return std::nullopt;
   const SmoothPoint at = point_at(triangle, (*place)[0], (*place)[1]);
   const PathLength path_length = path_length_at(at, first, second);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(path_length.hessian);
-  ReflectionPoint found{at.position, {}, {solver.eigenvalues()[0], solver.eigenvalues()[1]}};
+  const PrincipalAxes principal = principal_axes(path_length.hessian);
+  ReflectionPoint found{at.position, {}, {principal.values[0], principal.values[1]}};
   for (int i = 0; i < 2; ++i) {
-    const Eigen::Vector2d axis = solver.eigenvectors().col(i);
+    const Eigen::Vector2d axis = principal.axes.col(i);
     found.axes[static_cast<size_t>(i)] = axis[0] * path_length.tangents[0] + axis[1] * path_length.tangents[1];
   }
   return found;

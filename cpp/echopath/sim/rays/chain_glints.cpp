@@ -1,6 +1,5 @@
 #include "echopath/sim/rays/chain_glints.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include <utility>
 
 #include "echopath/base/constants.h"
+#include "echopath/base/principal_axes.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/replay/factors/launch_cell.h"
 #include "echopath/replay/kernels/path_formula.h"
@@ -37,9 +37,8 @@ struct CellPhase {
 CellPhase along_axes(const FootprintPhaseOf<double>& phase) {
   Eigen::Matrix2d h;
   h << phase.h11, phase.h12, phase.h12, phase.h22;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(h);
-  return {solver.eigenvectors().transpose() * Eigen::Vector2d(phase.g1, phase.g2), solver.eigenvalues(),
-          solver.eigenvectors()};
+  const PrincipalAxes principal = principal_axes(h);
+  return {principal.axes.transpose() * Eigen::Vector2d(phase.g1, phase.g2), principal.values, principal.axes};
 }
 
 class ChainGlintSearch {

@@ -106,20 +106,21 @@ class Reference(ReferenceLegs):
     def _turned(self, length):
         return np.exp(-2j * np.pi * np.mod(length / self.wavelength, 1.0))
 
-    def cube(self):
-        """Coherent IF samples [chirp, sample]: delays at every sample, amplitudes at the middle of each chirp, shadows at
-        the trace time, of the mean antennas. Transmitters take turns."""
+    def cube(self, step):
+        """Coherent IF samples [chirp, sample], the first of every `step` of a chirp: delays at every sample, amplitudes at the
+        middle of each chirp, shadows at the trace time, of the mean antennas. Transmitters take turns."""
         waveform = self.radar.waveform
         t = np.arange(waveform.num_samples) / waveform.sampling_rate
+        kept = t[::step]
         self.is_mean = True
         seen = [field != 0 for _, field, _ in self.pairs(self.trace_time)[1]]
         seen_alone = [field != 0 for _, field in self.planes_alone(self.trace_time)]
         self.is_mean = self.sees_shadows = False
-        out = np.zeros((waveform.num_chirps, waveform.num_samples), complex)
+        out = np.zeros((waveform.num_chirps, len(kept)), complex)
         for j in range(waveform.num_chirps):
             begin = (j * len(self.radar.transmitters) + self.channel[0]) * waveform.chirp_interval
             fields = [field * mask for (_, field, _), mask in zip(self.pairs(begin + t.mean())[1], seen)]
-            for n, offset in enumerate(t):
+            for n, offset in enumerate(kept):
                 alone = [(length, field * mask)
                          for (length, field), mask in zip(self.planes_alone(begin + offset), seen_alone)]
                 echoes = [*zip(self._lengths(begin + offset), fields), *alone]

@@ -46,6 +46,17 @@ def scene_path(tmp_path):
     return path
 
 
+@pytest.fixture(scope="module")
+def finished_run(tmp_path_factory):
+    """(scene file, folder) of what `echopath run` makes of it; nobody changes them."""
+    folder = tmp_path_factory.mktemp("finished")
+    (folder / "plate.obj").write_text(PLATE)
+    path = folder / "plate.toml"
+    path.write_text(SCENE)
+    assert call("run", path, "--out", folder / "out").returncode == 0
+    return path, folder / "out"
+
+
 def command(*arguments) -> list:
     return [sys.executable, "-m", "echopath", *map(str, arguments)]
 
@@ -105,7 +116,8 @@ def test_run_writes_the_frame_and_its_pictures(scene_path, tmp_path):
     assert [path.name for path in files] == ["frame.h5", "map.png", "overview.png", "route.png", "scene.png"]
     assert all(path.read_bytes().startswith(b"\x89PNG") for path in files[1:])
     assert ep.Paths.load(tmp_path / "out" / "frame.h5").frame.statistics.num_rays == 500
-    assert "rays                              500" in done.stdout and done.stderr == ""
+    assert "rays                              500" in done.stdout
+    assert done.stderr == ""  # no bar without a terminal
 
 
 def test_an_array_gives_a_picture_from_above(scene_path, tmp_path):
@@ -119,19 +131,19 @@ def test_an_array_gives_a_picture_from_above(scene_path, tmp_path):
 
 
 @pytest.mark.hard
-def test_run_twice_gives_the_same_bytes(scene_path, tmp_path):
-    for out in ("one", "two"):
-        assert call("run", scene_path, "--out", tmp_path / out).returncode == 0
+def test_run_twice_gives_the_same_bytes(finished_run, tmp_path):
+    scene, first = finished_run
+    assert call("run", scene, "--out", tmp_path / "again").returncode == 0
     for name in ("frame.h5", "map.png", "overview.png", "route.png", "scene.png"):
-        assert (tmp_path / "one" / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
+        assert (first / name).read_bytes() == (tmp_path / "again" / name).read_bytes()
 
 
-def test_info_tells_scenes_frames_and_meshes_apart(scene_path, tmp_path):
-    call("run", scene_path, "--out", tmp_path / "out")
-    assert "a plate" in call("info", scene_path).stdout
-    told = call("info", tmp_path / "out" / "frame.h5").stdout
+def test_info_tells_scenes_frames_and_meshes_apart(finished_run):
+    scene, out = finished_run
+    assert "a plate" in call("info", scene).stdout
+    told = call("info", out / "frame.h5").stdout
     assert "paths" in told and "95 % interval" in told
-    assert "1 m^2, open" in call("info", tmp_path / "plate.obj").stdout
+    assert "1 m^2, open" in call("info", scene.with_name("plate.obj")).stdout
 
 
 def test_surfaces_on_each_other_are_told(scene_path, tmp_path):
@@ -237,7 +249,7 @@ def test_ctrl_c_stops_soon_and_leaves_nothing_half_written(scene_path, tmp_path,
     os.close(follower)
     try:
         drawn = b""
-        while b"trace" not in drawn:
+        while b"trace" not in drawn or b"%" not in drawn:  # on a terminal a bar is drawn
             drawn += os.read(leader, 4096)
         time.sleep(delay)
         begin = time.monotonic()
@@ -249,17 +261,3 @@ def test_ctrl_c_stops_soon_and_leaves_nothing_half_written(scene_path, tmp_path,
     assert os.read(leader, 65536).decode().strip().endswith("echopath: stopped; no file was left half written")
     os.close(leader)
     assert not (tmp_path / "out").exists() or list((tmp_path / "out").iterdir()) == []
-
-
-def test_no_bar_is_drawn_without_a_terminal(scene_path, tmp_path):
-    assert call_apart("run", scene_path, "--out", tmp_path / "out").stderr == ""
-
-
-def test_bars_are_drawn_on_a_terminal(scene_path, tmp_path):
-    leader, follower = os.openpty()
-    arguments = command("run", scene_path, "--out", tmp_path / "out")
-    done = subprocess.run(arguments, stdout=subprocess.PIPE, stderr=follower, timeout=120)
-    os.close(follower)
-    drawn = os.read(leader, 65536).decode()
-    os.close(leader)
-    assert done.returncode == 0 and "trace" in drawn and "%" in drawn

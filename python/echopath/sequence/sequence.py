@@ -33,7 +33,7 @@ from .record import record_of, start_time_of
 from .row import Row
 from .saving import SavedFrame, Shard, places_of, saved_frames, shard_rule
 from .stored import StoredSequence
-from .unused_memory import give_back_memory
+from .unused_memory import MemoryOfFrames, give_back_memory
 
 _ROUNDING = 1e-9  # relative, of an interval that is the duration of a frame by another sum
 
@@ -89,6 +89,7 @@ class Sequence(Row[Frame]):
         require_interferers(scene, radar, effects, (start_time, end))
         self._run = FrameRun(Scene(scene), radar, tracing, signals, parts, angles, labels, detections, truth, guard)
         self._numbers, self._start_time, self._interval = range(frames), start_time, interval
+        self._memory = MemoryOfFrames()
 
     @property
     def scene(self) -> Scene:
@@ -118,10 +119,10 @@ class Sequence(Row[Frame]):
             give_back_memory()  # of frames that the user has let go since, and of one made ahead that nobody takes
 
     def _finished(self, recorded: Recorded, progress) -> Frame:
-        """The frame of a record, with the memory of the work on it given back."""
+        """The frame of a record; the memory of the work on it stays for the next one, or is given back."""
         frame = self._run.frame_of_record(recorded, progress)
         warn_of(frame.checks)
-        give_back_memory()
+        self._memory.end_frame()
         return frame
 
     def _recorded(self, place: int, progress=None, geometry=None) -> Recorded:

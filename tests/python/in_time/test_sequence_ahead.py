@@ -14,7 +14,7 @@ import pytest
 
 import echopath as ep
 from echopath.guard.check import Check, warn_of
-from echopath.sequence import ahead, sequence
+from echopath.sequence import ahead, sequence, unused_memory
 from echopath.sequence.ahead import one_ahead
 from support.background import heed_ctrl_c
 from support.frames_in_time import INTERVAL, SETTINGS, make_radar, make_scene, make_sequence, signal_of
@@ -228,13 +228,27 @@ def test_memory_is_flat_over_a_soak():
     assert max(sizes[SETTLED:]) < GROWTH * sizes[SETTLED - 1]
 
 
-def test_what_the_work_on_a_frame_has_left_goes_back_before_the_frame_is_handed_over(monkeypatch):
-    given_back = []
+def test_a_process_that_grows_beyond_its_first_frames_gives_unused_memory_back(monkeypatch):
+    given_back, resident = [], [100]
+    monkeypatch.setattr(unused_memory, "resident_memory", lambda: resident[0])
+    monkeypatch.setattr(unused_memory, "give_back_memory", lambda: given_back.append(resident[0]))
+    memory = unused_memory.MemoryOfFrames()
+    for now in (60, 110, 100, 90, 116, 117, 200):  # the first three settle it
+        resident[0] = now
+        memory.end_frame()
+    assert given_back == [117, 200], "more than 1.06 times what the first frames took"
+    monkeypatch.setattr(unused_memory, "resident_memory", lambda: None)
+    memory.end_frame()
+    assert len(given_back) == 3, "each time where the system does not tell"
+
+
+def test_each_frame_that_is_handed_over_has_been_looked_at_and_the_end_of_a_loop_gives_memory_back(monkeypatch):
+    ended, given_back = [], []
+    monkeypatch.setattr(unused_memory.MemoryOfFrames, "end_frame", lambda self: ended.append(True))
     monkeypatch.setattr(sequence, "give_back_memory", lambda: given_back.append(True))
-    assert [len(given_back) for frame in make_sequence(frames=3) if frame is not None] == [1, 2, 3]
-    assert len(given_back) == 4, "after the last one, too"
-    given_back.clear()
-    assert make_sequence(frames=3)[1] is not None and len(given_back) == 1
+    assert [len(ended) for frame in make_sequence(frames=3) if frame is not None] == [1, 2, 3] and len(given_back) == 1
+    ended.clear()
+    assert make_sequence(frames=3)[1] is not None and len(ended) == 1
 
 
 def test_memory_of_a_frame_that_nobody_takes_goes_back_when_a_loop_is_left(monkeypatch):
@@ -242,4 +256,4 @@ def test_memory_of_a_frame_that_nobody_takes_goes_back_when_a_loop_is_left(monke
     monkeypatch.setattr(sequence, "give_back_memory", lambda: working.append(len(ahead_threads())))
     for _ in make_sequence(frames=3):
         break
-    assert len(working) == 2 and working[-1] == 0, "when the thread that made it has ended"
+    assert len(working) == 1 and working[-1] == 0, "when the thread that made it has ended"

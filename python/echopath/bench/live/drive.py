@@ -14,6 +14,7 @@ import numpy as np
 import echopath as ep
 
 from ...sequence.keep import write_frame
+from ...sequence.unused_memory import resident_memory
 from ..suite import describe_judged, judged
 from ..timing import processor_time, wall_time
 from . import street
@@ -128,9 +129,3 @@ def _person(frames: int) -> dict:
     made = person_sequence(frames)
     seconds, picture = processor_time(lambda: ep.spectrogram(made, span_frames=True))
     return {"person, frames": frames, "person, columns of the spectrogram": len(picture.times), "person, s": seconds}
-
-
-def resident_memory() -> int:
-    """Bytes of this process that are in memory now."""
-    status = Path("/proc/self/status").read_text(encoding="ascii")
-    return int(status.partition("VmRSS:")[2].split()[0]) << 10

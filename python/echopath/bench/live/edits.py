@@ -20,7 +20,8 @@ from ...scene.materials import data_folder
 from ..crowd.scenes import flat_city, radar, rounded_car, street
 from ..suite import describe_judged, judged_row
 from ..timing import wall_time
-from .drive import MIB, resident_memory
+from ...sequence.unused_memory import resident_memory
+from .drive import MIB
 
 RAYS, QUICK_RAYS, FEW_RAYS = 100_000, 2_000, 20_000
 UPDATES, QUICK_UPDATES = 15, 2

@@ -116,10 +116,17 @@ EmbreeScene::Verdict EmbreeScene::intersect_from_surface(const Vec3& from, const
   return intersect(from, {from, begin}, direction, sees, out);
 }
 
+// Embree's distances are those of single precision, as far off as points that are confirmed.
+EmbreeScene::Verdict EmbreeScene::intersect_near(const Vec3& from, const Vec3& direction, double reach, RayHit& out,
+                                                 Sees sees) const {
+  const double spare = 4.0 * (kFalseHitAbsolute + kFalseHitRelative * reach);
+  return intersect(from, {from, 0.0, reach + spare}, direction, sees, out);
+}
+
 EmbreeScene::Verdict EmbreeScene::intersect(const Vec3& from, const RayStart& start, const Vec3& direction, Sees sees,
                                             RayHit& out) const {
   RTCRayHit query;
-  set_ray(query.ray, unpacked(start.at), unpacked(direction), kInfinity);
+  set_ray(query.ray, unpacked(start.at), unpacked(direction), static_cast<float>(start.end));
   query.ray.tnear = static_cast<float>(start.begin);
   query.ray.mask = static_cast<uint32_t>(sees);
   forget_hit(query.hit);

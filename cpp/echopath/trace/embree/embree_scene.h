@@ -63,6 +63,9 @@ class EmbreeScene {
   // sees and no nearer than `begin` (m).
   Verdict intersect_from_surface(const Vec3& from, const Vec3& direction, RayHit& out, Sees sees = Sees::kOpaque,
                                  double begin = 0.0) const;
+  // The same where only what lies within `reach` (m) counts: a short ray passes most of the scene by. It may meet what lies
+  // a little farther.
+  Verdict intersect_near(const Vec3& from, const Vec3& direction, double reach, RayHit& out, Sees sees) const;
   // Returns from where on a ray meets what lies behind a hit at `distance`, both in m.
   double behind(double distance) const { return distance * (1.0 + 0x1.0p-20) + 2.0 * lift_; }
   bool has_sheets() const { return has_sheets_; }
@@ -157,7 +160,7 @@ class EmbreeScene {
   // Embree has the ray begin at `start`.
   struct RayStart {
     Vec3 at;
-    double begin;  // m, from there
+    double begin, end = std::numeric_limits<double>::infinity();  // m, from there
   };
   Verdict intersect(const Vec3& from, const RayStart& start, const Vec3& direction, Sees sees, RayHit& out) const;
   Verdict confirm(const Vec3& from, const Vec3& direction, RayHit& hit) const;

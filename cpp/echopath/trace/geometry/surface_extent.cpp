@@ -7,7 +7,7 @@
 namespace echopath {
 namespace {
 
-const double kCosBend = std::sqrt(0.75);  // 30 degrees, the crease guard of smooth surfaces
+const double kCosBend = std::sqrt(0.75), kTanBend = 1.0 / std::sqrt(3.0);  // 30 degrees, the crease guard of smooth surfaces
 
 }  // namespace
 
@@ -30,7 +30,7 @@ double TriangleRim::distance(const Vec3& from, const Vec3& along) const {
 double SurfaceAround::distance_to_wall(const Vec3& along, double reach) const {
   RayHit met;
   ++num_queries_;
-  const bool meets = geometry_.intersect_from_surface(above(along, 0.0), along, met, sees_) == EmbreeScene::Verdict::kHit;
+  const bool meets = geometry_.intersect_near(above(along, 0.0), along, reach, met, sees_) == EmbreeScene::Verdict::kHit;
   return meets ? std::min(met.distance, reach) : reach;
 }
 
@@ -38,7 +38,7 @@ bool SurfaceAround::wall_rises(const Vec3& along, double distance, double height
   RayHit met;
   ++num_queries_;
   const Vec3 from = point_.position + height * point_.normal;
-  if (geometry_.intersect_from_surface(from, along, met, sees_) != EmbreeScene::Verdict::kHit) return false;
+  if (geometry_.intersect_near(from, along, distance + height, met, sees_) != EmbreeScene::Verdict::kHit) return false;
   if (met.distance > distance + height) return false;
   // What stands behind a low wall is not that wall, however high.
   const double aside = (from + met.distance * along - above(along, distance)).dot(met.normal);
@@ -50,7 +50,8 @@ double SurfaceAround::end_of_triangle_at(const Vec3& along, double distance) con
   RayHit met;
   ++num_queries_;
   const Vec3 from = above(along, distance);
-  if (geometry_.intersect_from_surface(from, -point_.normal, met, sees_) != EmbreeScene::Verdict::kHit) return -1.0;
+  const double reach = 2.0 * gap_ + kTanBend * distance;  // where the surface may lie below (depth)
+  if (geometry_.intersect_near(from, -point_.normal, reach, met, sees_) != EmbreeScene::Verdict::kHit) return -1.0;
   const double cos_bend = std::min(1.0, point_.normal.dot(met.normal));
   if (cos_bend < kCosBend) return -1.0;
   // A surface that has turned by an angle has sunk by no more than the tangent of it per length.

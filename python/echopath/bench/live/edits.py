@@ -17,10 +17,10 @@ import numpy as np
 import echopath as ep
 
 from ...scene.materials import data_folder
+from ...sequence.unused_memory import resident_memory
 from ..crowd.scenes import flat_city, radar, rounded_car, street
 from ..suite import describe_judged, judged_row
 from ..timing import wall_time
-from ...sequence.unused_memory import resident_memory
 from .drive import MIB
 
 RAYS, QUICK_RAYS, FEW_RAYS = 100_000, 2_000, 20_000

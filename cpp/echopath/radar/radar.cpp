@@ -121,7 +121,8 @@ double ChirpSequence::slot_start(int64_t slot) const {
   const double even = static_cast<double>(slot) * chirp_interval;
   if (extra_idle.empty()) return even;
   const auto length = static_cast<int64_t>(extra_idle.size());
-  return even + static_cast<double>(slot / length) * sum_of(extra_idle, extra_idle.size()) +
+  const int64_t num_whole = slot / length;
+  return even + static_cast<double>(num_whole) * sum_of(extra_idle, extra_idle.size()) +
          sum_of(extra_idle, static_cast<size_t>(slot % length));
 }
 

@@ -11,8 +11,8 @@ namespace {
 
 template <class Number>
 bool reads_whole(std::string_view word, Number& value) {
-  const char* const last = word.data() + word.size();
-  const auto [end, error] = std::from_chars(word.data(), last, value);
+  const char *const first = word.data(), *const last = first + word.size();
+  const auto [end, error] = std::from_chars(first, last, value);
   return error == std::errc() && end == last;
 }
 

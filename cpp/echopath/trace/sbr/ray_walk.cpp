@@ -192,13 +192,15 @@ template <class Weight>
 void RayWalk<Weight>::go_on_among_sheets(const ScatterSample& sample, Scratch& scratch, PathBlock& block) const {
   if (!scatterer_.leave(scratch.ray, scratch.surface, sample, scratch.legs)) return;
   RayHit met;
-  for (double begin = 0.0; meets_next(sample, begin, scratch, met, block); begin = context_.geometry.behind(met.distance)) {
+  double begin = 0.0;
+  while (meets_next(sample, begin, scratch, met, block)) {
     if (!context_.geometry.is_sheet(met.hit.mesh_id)) {
       if (arrive(met, scratch, block)) follow_among_sheets(scratch, block);
       return;
     }
     reflect_at_sheet(met, scratch, block);
     ++scratch.ray.num_splits;
+    begin = context_.geometry.behind(met.distance);
   }
 }
 

@@ -59,11 +59,10 @@ constexpr uint64_t kMirrorsAlone = ~uint64_t{0};  // the kind of paths over flag
 uint64_t kind_of(const Paths& paths, int64_t path) {
   const auto p = static_cast<size_t>(path);
   const Hit* hits = paths.hits_of(path);
-  if (paths.stratum[p] == kNoStratum) return kMirrorsAlone;
-  const bool is_reversed = (paths.flags[p] & kReversedPath) != 0;
+  if (!paths.is_of_a_ray(p)) return kMirrorsAlone;
   uint64_t radiating = 0, count = 0;
   for (int k = 0; k < paths.num_bounces[p]; ++k) {
-    const uint32_t mesh = hits[is_reversed ? paths.num_bounces[p] - 1 - k : k].mesh_id;
+    const uint32_t mesh = hits[paths.is_reversed(p) ? paths.num_bounces[p] - 1 - k : k].mesh_id;
     if (paths.scene->node_of(mesh).material->mirror) continue;
     radiating = mesh;
     ++count;
@@ -122,7 +121,7 @@ class Sums {
     GroupSums& sums = groups_[group];
     sums.field[batch_of(path)] += arriving[kAsLaunched * stride];
     CoherentKind& of_kind = sums.kinds[kinds_[group].index_of(kind, sums.kinds)];
-    const bool has_cell = paths_.stratum[static_cast<size_t>(path)] != kNoStratum;  // others hold nothing between rays
+    const bool has_cell = paths_.is_of_a_ray(static_cast<size_t>(path));  // others hold nothing between rays
     of_kind.has_cells = of_kind.has_cells || has_cell;
     of_kind.has_bounced = has_bounced_before(kind);
     const size_t num_views = has_cell ? kNumCellViews : kPoints;

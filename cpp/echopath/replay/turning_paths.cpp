@@ -34,7 +34,7 @@ bool take_logarithms(size_t num_nodes, size_t stride, const double* turn, std::c
 // Images have no launch cell, and edges have a filter of their own.
 bool Replayer::can_turn(int64_t path) const {
   const auto p = static_cast<size_t>(path);
-  return radio_.footprint != Footprint::kEdges && paths_.diffuse[p] == 0 && paths_.stratum[p] != kNoStratum;
+  return radio_.footprint != Footprint::kEdges && paths_.is_coherent_with_cell(p);
 }
 
 std::vector<Echoes> Replayer::turning(std::span<const int64_t> indices, int index,

@@ -97,6 +97,8 @@ class Synthesizer {
   void assign_tiles(std::span<const Echoes> blocks);
   void start_bands();
   int chirps_of_piece(int piece) const;
+  template <class Add>
+  void for_tiles(Range chirps, Job* job, const Add& add) const;
   void add_to_bands(const TimeSampling& sampling, int channel, Range chirps, Job* job);
   size_t band_row(int channel, int group) const;
   void add_tiles(const TimeSampling& sampling, Range chirps, const RowsOfGroups& rows, Job* job) const;

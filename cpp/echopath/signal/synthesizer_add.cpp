@@ -146,14 +146,21 @@ size_t Synthesizer::band_row(int channel, int group) const {
   return static_cast<size_t>(channel) * static_cast<size_t>(num_groups_) + static_cast<size_t>(group);
 }
 
-void Synthesizer::add_to_bands(const TimeSampling& sampling, int channel, Range chirps, Job* job) {
+// Calls `add(tile, chirps)` for each tile at up to kChirpGroup chirps at a time.
+template <class Add>
+void Synthesizer::for_tiles(Range chirps, Job* job, const Add& add) const {
   for (const EchoTiles::Tile& tile : tiles_->tiles()) {
     if (job) job->throw_if_cancelled();
-    for (int64_t chirp = chirps.begin; chirp < chirps.end; chirp += kChirpGroup) {
-      BandRow row{*bands_[static_cast<size_t>(chirp / kChirpGroup)], band_row(channel, static_cast<int>(tile.group))};
-      add_tile(tile, sampling, {chirp, std::min(chirp + kChirpGroup, chirps.end)}, {rows_of_band, &row});
-    }
+    for (int64_t chirp = chirps.begin; chirp < chirps.end; chirp += kChirpGroup)
+      add(tile, Range{chirp, std::min(chirp + kChirpGroup, chirps.end)});
   }
+}
+
+void Synthesizer::add_to_bands(const TimeSampling& sampling, int channel, Range chirps, Job* job) {
+  for_tiles(chirps, job, [&](const EchoTiles::Tile& tile, Range here) {
+    BandRow row{*bands_[static_cast<size_t>(here.begin / kChirpGroup)], band_row(channel, static_cast<int>(tile.group))};
+    add_tile(tile, sampling, here, {rows_of_band, &row});
+  });
 }
 
 // Returns the delay of the last cell.
@@ -161,13 +168,10 @@ double Synthesizer::longest_delay() const { return waveform_.sampling_rate / wav
 
 void Synthesizer::add_tiles(const TimeSampling& sampling, Range chirps, const RowsOfGroups& rows, Job* job) const {
   const int64_t stride = row_size(true);
-  for (const EchoTiles::Tile& tile : tiles_->tiles()) {
-    if (job) job->throw_if_cancelled();
-    for (int64_t chirp = chirps.begin; chirp < chirps.end; chirp += kChirpGroup) {
-      TileRows there{rows[tile.group] + chirp * stride, stride / 2, stride};
-      add_tile(tile, sampling, {chirp, std::min(chirp + kChirpGroup, chirps.end)}, {rows_given, &there});
-    }
-  }
+  for_tiles(chirps, job, [&](const EchoTiles::Tile& tile, Range here) {
+    TileRows there{rows[tile.group] + here.begin * stride, stride / 2, stride};
+    add_tile(tile, sampling, here, {rows_given, &there});
+  });
 }
 
 // Adds a tile at up to kChirpGroup chirps.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "echopath/base/packed.h"
 #include "echopath/base/plane.h"
 #include "echopath/em/polarization/hit_modes.h"
 
@@ -17,9 +18,6 @@ Vec3 plane_normal(const Vec3& direction, const Vec3& other) {
   const double sine = across.norm();
   return sine > 1e-9 ? Vec3(across / sine) : direction.unitOrthogonal();
 }
-
-VectorOf<double> unpacked(const Vec3& v) { return {v[0], v[1], v[2]}; }
-Vec3 packed(const VectorOf<double>& v) { return {v.x, v.y, v.z}; }
 
 HitGeometryOfModes geometry_of(const Vec3& direction, const Vec3& normal, const Vec3& out) {
   return hit_geometry(unpacked(direction), unpacked(normal), unpacked(out));

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "echopath/base/lanes/simd.h"
-#include "echopath/trace/embree/packet.h"
+#include "echopath/base/packed.h"
 
 namespace echopath {
 namespace {

@@ -122,12 +122,11 @@ SharedLegPlanner::Ends SharedLegPlanner::ends_of(const TracedHits& hits) const {
 }
 
 bool SharedLegPlanner::is_single_bounce(size_t path) const {
-  if (!with_single_bounces_ || paths_->num_bounces[path] != 1 || (paths_->flags[path] & kReversedPath) != 0) return false;
+  if (!with_single_bounces_ || paths_->num_bounces[path] != 1 || paths_->is_reversed(path)) return false;
   const uint32_t mesh = paths_->hits_of(static_cast<int64_t>(path))->mesh_id;
   if (!preparer_->is_plane(mesh) || preparer_->may_stretch(mesh)) return false;
   if (paths_->diffuse[path] != 0) return true;
-  if (preparer_->is_mirror(mesh) || paths_->stratum[path] >= paths_->frame.strata.size()) return false;
-  return paths_->curved_cell.empty() || paths_->curved_cell[path] == std::array<float, 7>{};
+  return !preparer_->is_mirror(mesh) && paths_->is_of_a_ray(path) && !paths_->curved_cell_of(path);
 }
 
 // The coherent and the diffuse path of a point follow each other in the record.
@@ -147,8 +146,8 @@ bool SharedLegPlanner::add_single_bounce(size_t place, int64_t path) {
 
 void SharedLegPlanner::add_chain(size_t place, int64_t path) {
   const auto p = static_cast<size_t>(path);
-  const TracedHits hits{paths_->hits_of(path), paths_->num_bounces[p], paths_->diffuse[p],
-                        (paths_->flags[p] & kReversedPath) != 0, paths_->stratum[p]};
+  const TracedHits hits{paths_->hits_of(path), paths_->num_bounces[p], paths_->diffuse[p], paths_->is_reversed(p),
+                        paths_->stratum[p]};
   const Ends ends = ends_of(hits);
   const std::complex<double> weight(paths_->weight[p]);
   if (ends.first < 0) {

@@ -36,16 +36,13 @@ double TraceCells::density_of(const SharedLegPlan::ChainPath& chain) const {
 }
 
 const std::array<float, 7>* TraceCells::curved_cell_of(const SharedLegPlan::ChainPath& chain) const {
-  const Paths& paths = preparer_.paths();
-  const auto p = static_cast<size_t>(chain.path);
-  const bool is_flat = paths.curved_cell.empty() || paths.curved_cell[p] == std::array<float, 7>{};
-  return is_flat ? nullptr : &paths.curved_cell[p];
+  return preparer_.paths().curved_cell_of(static_cast<size_t>(chain.path));
 }
 
 bool TraceCells::has_cell(const SharedLegPlan::ChainPath& chain) const {
   const Paths& paths = preparer_.paths();
-  if (paths.stratum[static_cast<size_t>(chain.path)] >= paths.frame.strata.size()) return false;
-  return curved_cell_of(chain) || paths.frame.footprint != Footprint::kNone;
+  return paths.is_of_a_ray(static_cast<size_t>(chain.path)) &&
+         (curved_cell_of(chain) || paths.frame.footprint != Footprint::kNone);
 }
 
 TraceCells::Arrival TraceCells::arrival_of(const SharedLegPlan::ChainPath& chain) const {

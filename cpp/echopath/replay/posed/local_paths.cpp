@@ -150,7 +150,7 @@ LocalPath PathPreparer::local_path(int64_t index, LocalPaths& block) const {
   path.hits = block.hits.data() + block.hits.size();
   path.recorded = paths_.hits_of(index);
   path.count = paths_.num_bounces[p];
-  path.is_reversed = (paths_.flags[p] & kReversedPath) != 0;
+  path.is_reversed = paths_.is_reversed(p);
   path.edge = echopath::edge_hit(paths_.flags[p]);
   path.num_edges = num_edge_hits(paths_.flags[p]);
   if (path.edge >= 0 && path.is_reversed) path.edge = path.count - path.edge - path.num_edges;

@@ -136,8 +136,9 @@ double quick_log(double x) {
 }
 
 // Returns the logarithm of the size of an amplitude, whose square may be too small for a number.
-double log_of_size(std::complex<double> amplitude, double norm) {
+double log_of_size(std::complex<double> amplitude) {
   constexpr double kLeastNorm = 1e-280;
+  const double norm = std::norm(amplitude);
   if (norm > kLeastNorm) return 0.5 * quick_log(norm);
   return quick_log(std::max(std::abs(amplitude), std::numeric_limits<double>::min()));
 }
@@ -156,29 +157,32 @@ double bound_of_parabolas(const double* times, const double* values, size_t orde
   return *std::max_element(values, values + order) + kBendMargin * bend * widest * widest / 8.0;
 }
 
-}  // namespace
-
-bool is_dark(const FrameNodes& nodes, const Echoes& echoes, size_t echo, double limit) {
-  const auto order = static_cast<size_t>(nodes.order), count = static_cast<size_t>(echoes.num_echoes);
-  std::array<double, TimeGrids::kHighestOrder> logarithms;
+// Returns whether a function stays below `limit` between its nodes too, of which `value_at(node)` is the value at a node.
+template <class ValueAt>
+bool stays_below(const FrameNodes& nodes, const ValueAt& value_at, double limit) {
+  const auto order = static_cast<size_t>(nodes.order);
+  std::array<double, TimeGrids::kHighestOrder> values;
   for (size_t first = 0; first + order <= nodes.times.size(); first += order) {
-    for (size_t k = 0; k < order; ++k) {
-      const double norm = std::norm(echoes.amplitude[(first + k) * count + echo]);
-      if (!(norm < limit * limit)) return false;
-      logarithms[k] = log_of_size(echoes.amplitude[(first + k) * count + echo], norm);
-    }
-    if (bound_of_parabolas(&nodes.times[first], logarithms.data(), order) >= std::log(limit)) return false;
+    for (size_t k = 0; k < order; ++k) values[k] = value_at(first + k);
+    if (!(bound_of_parabolas(&nodes.times[first], values.data(), order) < limit)) return false;
   }
   return true;
 }
 
-bool stays_below(const FrameNodes& nodes, const double* values, double limit) {
-  const auto order = static_cast<size_t>(nodes.order), count = nodes.times.size();
-  if (!std::all_of(values, values + count, [&](double value) { return value < limit; })) return false;
-  for (size_t first = 0; first + order <= count; first += order) {
-    if (!(bound_of_parabolas(&nodes.times[first], values + first, order) < limit)) return false;
+}  // namespace
+
+bool is_dark(const FrameNodes& nodes, const Echoes& echoes, size_t echo, double limit) {
+  const auto amplitude_at = [&](size_t node) {
+    return echoes.amplitude[node * static_cast<size_t>(echoes.num_echoes) + echo];
+  };
+  for (size_t node = 0; node < nodes.times.size(); ++node) {
+    if (!(std::norm(amplitude_at(node)) < limit * limit)) return false;
   }
-  return true;
+  return stays_below(nodes, [&](size_t node) { return log_of_size(amplitude_at(node)); }, std::log(limit));
+}
+
+bool stays_below(const FrameNodes& nodes, const double* values, double limit) {
+  return stays_below(nodes, [&](size_t node) { return values[node]; }, limit);
 }
 
 double tail_of(const FrameNodes& nodes, const std::vector<double>& values) {

@@ -91,9 +91,8 @@ ReflectingTriangle reflecting_triangle(const std::array<Vec3, 3>& corners, const
 }
 
 std::optional<ReflectionPoint> find_reflection(const ReflectingTriangle& triangle, const Vec3& first, const Vec3& second) {
+  if (!faces_both(triangle.centre, triangle.facet_normal, first, second)) return std::nullopt;
   const Vec3 to_first = first - triangle.centre, to_second = second - triangle.centre;
-  const double side = triangle.facet_normal.dot(to_first);
-  if (!(side * triangle.facet_normal.dot(to_second) > 0.0)) return std::nullopt;
   // Where the path length is stationary, the sum of the unit vectors to both ends lies along the normal. Over the triangle
   // these vectors turn by no more than its radius over their distances, and the normal turns by no more than `turn`.
   const double near = to_first.norm() - triangle.radius, far = to_second.norm() - triangle.radius;

@@ -22,6 +22,12 @@ struct ReflectingTriangle {
 // triangle is flat.
 ReflectingTriangle reflecting_triangle(const std::array<Vec3, 3>& corners, const std::array<Vec3, 3>& normals);
 
+// Returns whether both ends lie on one side of the plane through a point: what stands there can reflect from one to the
+// other. The normal may have any length.
+inline bool faces_both(const Vec3& point, const Vec3& normal, const Vec3& first, const Vec3& second) {
+  return normal.dot(first - point) * normal.dot(second - point) > 0.0;
+}
+
 struct ReflectionPoint {
   Vec3 position;
   // Second derivatives of the path length, m^-1, along its two principal axes, which are unit vectors in the tangent plane.

@@ -1,10 +1,10 @@
 #include "echopath/signal/echoes/echo_states.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "echopath/base/lanes/lanes.h"
 #include "echopath/signal/echoes/echoes.h"
+#include "echopath/signal/echoes/logarithms.h"
 
 namespace echopath {
 namespace {
@@ -57,9 +57,9 @@ void copy_nodes(const Nodes& nodes, int count, EchoStates& state) {
 
 void undo_logarithms(int count, double* amplitude) {
   for (int p = 0; p < count; ++p, amplitude += 2) {
-    const double size = std::exp(amplitude[0]), phase = amplitude[1];
-    amplitude[0] = size * std::cos(phase);
-    amplitude[1] = size * std::sin(phase);
+    const ComplexOf<double> plain = without_logarithm<ScalarMath>(amplitude[0], amplitude[1]);
+    amplitude[0] = plain.re;
+    amplitude[1] = plain.im;
   }
 }
 

@@ -2,6 +2,7 @@
 // Computes the frequency and the phasor of echoes within a chirp, for a vector of echoes at a time.
 #include "echopath/base/lanes/lane_math.h"
 #include "echopath/base/lanes/phasor.h"
+#include "echopath/signal/echoes/logarithms.h"
 #include "echopath/signal/kernels/kernels.h"
 #include "echopath/signal/vecs.h"
 
@@ -42,15 +43,13 @@ ECHOPATH_INLINE Tones<kCount> tones_of(const CarrierModel& model, const States<k
   return out;
 }
 
-// Turns logarithms of sizes and phases in rad into amplitudes.
 template <int kChirps>
 ECHOPATH_INLINE void undo_logarithms(States<kChirps>& states) {
 #pragma GCC unroll 4
   for (int c = 0; c < kChirps; ++c) {
-    const Vec size = LaneMath::exp(states.re.of[c]);
-    const ComplexOf<Vec> phasor = LaneMath::cis(states.im.of[c]);
-    states.re.of[c] = size * phasor.re;
-    states.im.of[c] = size * phasor.im;
+    const ComplexOf<Vec> amplitude = without_logarithm<LaneMath>(states.re.of[c], states.im.of[c]);
+    states.re.of[c] = amplitude.re;
+    states.im.of[c] = amplitude.im;
   }
 }
 

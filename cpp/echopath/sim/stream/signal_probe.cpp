@@ -8,7 +8,6 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/random.h"
-#include "echopath/base/threads/parallel.h"
 #include "echopath/signal/echoes/echo_states.h"
 #include "echopath/signal/kernels/carrier.h"
 #include "echopath/signal/kernels/kernels.h"
@@ -40,7 +39,7 @@ int draw(uint64_t seed, int64_t index, int dimension, int count) {
 }
 
 // Returns whether the amplitude of an echo is 0 at all nodes, of which there is no logarithm.
-bool is_dark(const Echoes& echoes, int64_t echo) {
+bool has_no_amplitude(const Echoes& echoes, int64_t echo) {
   if (echoes.sampling.has_logarithms) return false;
   for (size_t i = static_cast<size_t>(echo); i < echoes.amplitude.size(); i += static_cast<size_t>(echoes.num_echoes)) {
     if (echoes.amplitude[i] != 0.0) return false;
@@ -226,7 +225,8 @@ void PassProbe::draw_echoes(const ChirpTarget& target, const Echoes& block, std:
   std::sort(echoes.begin(), echoes.end());
   echoes.erase(std::unique(echoes.begin(), echoes.end()), echoes.end());
   for (const int64_t echo : echoes) {
-    if (!is_dark(block, echo)) tally.drawn.push_back(state_of(block, target.chirp, echo, paths[static_cast<size_t>(echo)]));
+    if (!has_no_amplitude(block, echo))
+      tally.drawn.push_back(state_of(block, target.chirp, echo, paths[static_cast<size_t>(echo)]));
   }
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "echopath/trace/record/hit_points.h"
+
 namespace echopath {
 namespace {
 
@@ -34,8 +36,7 @@ void LitPlanes::add_chains(const PathBlock& block) {
     Boxes& boxes = chains_[facets];
     boxes.resize(hits.size());
     for (size_t k = 0; k < hits.size(); ++k) {
-      const auto [a, b, c] = geometry_.corners(hits[k].mesh_id, hits[k].triangle_id);
-      const Vec3 point = a + double{hits[k].u} * (b - a) + double{hits[k].v} * (c - a);
+      const Vec3 point = hit_point(geometry_.corners(hits[k].mesh_id, hits[k].triangle_id), hits[k]);
       const Vec3 around = Vec3::Constant(kRaysBeside * double{chain.spacing});
       boxes[k].extend(point - around).extend(point + around);
     }

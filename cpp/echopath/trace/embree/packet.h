@@ -1,8 +1,6 @@
 #pragma once
 // Holds rays side by side, quantity by quantity, so that compilers make vectors of loops over their lanes.
-
-#include "echopath/base/geometry.h"
-#include "echopath/base/vector_of.h"
+#include "echopath/base/packed.h"
 
 namespace echopath {
 
@@ -33,8 +31,5 @@ struct LaneVectors {
   }
   Vec3 operator[](int lane) const { return {x[lane], y[lane], z[lane]}; }
 };
-
-ECHOPATH_INLINE VectorOf<double> unpacked(const Vec3& v) { return {v[0], v[1], v[2]}; }
-ECHOPATH_INLINE Vec3 packed(const VectorOf<double>& v) { return {v.x, v.y, v.z}; }
 
 }  // namespace echopath

@@ -5,7 +5,6 @@
 #include <map>
 #include <utility>
 
-#include "echopath/base/constants.h"
 #include "echopath/base/random.h"
 #include "echopath/trace/launch/launch_directions.h"
 #include "echopath/trace/record/paths.h"

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "echopath/trace/record/hit_points.h"
+
 namespace echopath {
 namespace {
 
@@ -87,8 +89,7 @@ bool LegFinder::bounce(int index, const Vec3& from, const Vec3& image, Leg& leg,
   const std::optional<Hit> hit = mirror.mesh.locate(from + before / (before - behind) * (image - from));
   if (!hit) return false;
   // The point is moved to the facet itself, which may lie a little beside the plane.
-  const auto [a, b, c] = geometry_.corners(hit->mesh_id, hit->triangle_id);
-  met = a + double{hit->u} * (b - a) + double{hit->v} * (c - a);
+  met = hit_point(geometry_.corners(hit->mesh_id, hit->triangle_id), *hit);
   LegBounce& bounce = leg.bounces[static_cast<size_t>(leg.num_bounces++)];
   bounce.mirror = index;
   bounce.hit = *hit;

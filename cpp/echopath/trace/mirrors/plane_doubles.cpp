@@ -29,7 +29,7 @@ void PlaneDoubles::add(OrdersAboutCorners orders) {
 }
 
 bool PlaneDoubles::is_double(const Paths& paths, size_t path) const {
-  if (paths.diffuse[path] != 0 || paths.stratum[path] == kNoStratum) return false;
+  if (!paths.is_coherent_with_cell(path)) return false;
   const Hit* hits = paths.hits_of(static_cast<int64_t>(path));
   std::vector<int> sequence;
   for (int k = 0; k < paths.num_bounces[path]; ++k) {

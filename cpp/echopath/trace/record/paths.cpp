@@ -7,7 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
 #include "echopath/scene/scene_edges.h"
 
@@ -70,7 +69,7 @@ void validate_edges(const Paths& paths, size_t path, const SceneEdges* edges) {
   require(edges != nullptr, "flags", "must name no edges in a frame without edges, path", path);
   require(end <= paths.num_bounces[path] && paths.diffuse[path] == 0, "flags",
           "must name a hit of a coherent path as its edge, hit", at);
-  const bool is_past = (paths.flags[path] & kPastEdge) != 0, is_reversed = (paths.flags[path] & kReversedPath) != 0;
+  const bool is_past = (paths.flags[path] & kPastEdge) != 0, is_reversed = paths.is_reversed(path);
   const bool has_mirror_behind = is_reversed ? at > 0 : end < paths.num_bounces[path];
   require(!is_past || (end == at + 1 && has_mirror_behind), "flags", "must name an edge before a mirror, path", path);
   require(paths.stratum[path] == kNoStratum, "stratum", "must be 65535 where a path has an edge", int{paths.stratum[path]});

@@ -152,6 +152,14 @@ struct Paths {
   int64_t num_paths() const { return static_cast<int64_t>(offsets.size()); }
   int64_t num_hits() const { return hits ? static_cast<int64_t>(hits->size()) : 0; }
   const Hit* hits_of(int64_t path) const { return hits->data() + offsets[static_cast<size_t>(path)]; }
+  bool is_reversed(size_t path) const { return (flags[path] & kReversedPath) != 0; }
+  // Returns whether a ray found the path; its amplitude, where it is coherent, then is that of the ray's launch cell.
+  bool is_of_a_ray(size_t path) const { return stratum[path] != kNoStratum; }
+  bool is_coherent_with_cell(size_t path) const { return diffuse[path] == 0 && is_of_a_ray(path); }
+  // Returns the launch cell that the path brings along, behind curved bounces, or null: then it follows from its stratum.
+  const std::array<float, 7>* curved_cell_of(size_t path) const {
+    return curved_cell.empty() || curved_cell[path] == std::array<float, 7>{} ? nullptr : &curved_cell[path];
+  }
 
   std::span<const Pass> passes_of(size_t path) const {
     if (pass_offsets.empty()) return {};

@@ -6,6 +6,7 @@
 #include "echopath/base/threads/parallel.h"
 #include "echopath/em/layers/sheet_model.h"
 #include "echopath/trace/embree/embree_scene.h"
+#include "echopath/trace/record/hit_points.h"
 
 namespace echopath {
 namespace {
@@ -81,9 +82,10 @@ class PassFinder {
   };
 
   LegEnd end_of(const Hit& hit) const {
-    const auto [a, b, c] = pose_.world_triangle(hit.mesh_id, hit.triangle_id);
-    const Vec3 at = a + double{hit.u} * (b - a) + double{hit.v} * (c - a) - origin_;
-    return {at, models_.contains(hit.mesh_id) ? Vec3((b - a).cross(c - a).normalized()) : Vec3(Vec3::Zero())};
+    const std::array<Vec3, 3> corners = pose_.world_triangle(hit.mesh_id, hit.triangle_id);
+    const auto& [a, b, c] = corners;
+    return {hit_point(corners, hit) - origin_,
+            models_.contains(hit.mesh_id) ? Vec3((b - a).cross(c - a).normalized()) : Vec3(Vec3::Zero())};
   }
 
   // Moves the end of a leg off its sheet, toward the other end.
@@ -113,8 +115,9 @@ class PassFinder {
     const Vec3 direction = line / length;
     RayHit met;
     int count = 0;
-    for (double begin = 0.0; sheets_.meets(from, direction, begin, met) && met.distance < length;
-         begin = sheets_.behind(met.distance)) {
+    double begin = 0.0;
+    while (sheets_.meets(from, direction, begin, met) && met.distance < length) {
+      begin = sheets_.behind(met.distance);
       if (++count > kMostPasses) {
         paths_.weight[path] = 0.0f;
         ++block.num_stopped;
@@ -130,7 +133,7 @@ class PassFinder {
   // which the leg lies.
   void polarize(size_t path, const LegPlace& leg, const Vec3& direction, const RayHit& met) const {
     const SheetPassage passage = models_.at(met.hit.mesh_id).passage(std::min(1.0, std::abs(direction.dot(met.normal))));
-    const bool is_reversed = (paths_.flags[path] & kReversedPath) != 0;
+    const bool is_reversed = paths_.is_reversed(path);
     const TransverseBasis basis = transverse_basis(is_reversed ? Vec3(-direction) : direction);
     const Vec3 across = direction.cross(met.normal);
     const std::complex<double> co_polar = sheet_factor(passage, te_share(polarization_, direction, met.normal)).field;

@@ -23,12 +23,12 @@ struct SeenNow {
 std::pair<size_t, bool> end_of(const Paths& paths, size_t path) {
   const Hit* hits = paths.hits_of(static_cast<int64_t>(path));
   const int count = paths.num_bounces[path];
-  const bool is_reversed = (paths.flags[path] & kReversedPath) != 0;
+  const bool is_reversed = paths.is_reversed(path);
   int last = edge_hit(paths.flags[path]);
   if (last >= 0 && !is_reversed) last += num_edge_hits(paths.flags[path]) - 1;
   for (int k = 0; k < count && last < 0; ++k) {
     const int hit = is_reversed ? k : count - 1 - k;
-    const bool is_image = (paths.stratum[path] == kNoStratum || paths.scene->node_of(hits[hit].mesh_id).material->mirror) &&
+    const bool is_image = (!paths.is_of_a_ray(path) || paths.scene->node_of(hits[hit].mesh_id).material->mirror) &&
                           !(paths.diffuse[path] >> hit & 1);
     if (!is_image) last = hit;
   }

@@ -14,7 +14,7 @@
 #include "echopath/replay/factors/launch_cell.h"
 #include "echopath/replay/kernels/path_formula.h"
 #include "echopath/replay/posed/local_paths.h"
-#include "echopath/replay/replay.h"
+#include "echopath/sim/rays/glint_routes.h"
 
 namespace echopath {
 namespace {
@@ -86,7 +86,7 @@ class ChainGlintSearch {
     std::vector<PosedHit> posed(paths_.num_bounces[p]);
     for (size_t k = 0; k < posed.size(); ++k)
       pose_hit(preparer_.hit(paths_.hits_of(path)[k], normals), preparer_.at_trace(), true, posed[k]);
-    if (paths_.flags[p] & kReversedPath) std::reverse(posed.begin(), posed.end());
+    if (paths_.is_reversed(p)) std::reverse(posed.begin(), posed.end());
     return posed;
   }
 
@@ -121,21 +121,9 @@ class ChainGlintSearch {
 // receiver.
 bool is_chain(const Paths& paths, int64_t path) {
   const auto p = static_cast<size_t>(path);
-  if (paths.diffuse[p] != 0 || paths.stratum[p] == kNoStratum || paths.num_bounces[p] < 2) return false;
-  if (paths.curved_cell.empty() || paths.curved_cell[p] == std::array<float, 7>{}) return false;
-  const bool is_reversed = (paths.flags[p] & kReversedPath) != 0;
-  const Hit& last = paths.hits_of(path)[is_reversed ? 0 : paths.num_bounces[p] - 1];
+  if (!paths.is_coherent_with_cell(p) || paths.num_bounces[p] < 2 || !paths.curved_cell_of(p)) return false;
+  const Hit& last = paths.hits_of(path)[paths.is_reversed(p) ? 0 : paths.num_bounces[p] - 1];
   return !paths.scene->node_of(last.mesh_id).material->mirror;
-}
-
-std::vector<double> unfiltered_amplitudes(const Paths& paths, const std::vector<int64_t>& chains, Job* job) {
-  const CellView unfiltered{0.0};
-  std::vector<double> lengths, sizes;
-  std::vector<std::complex<double>> amplitudes;
-  const Radar radar = radar_of_rays(paths.radar);
-  Replayer(paths, radar).evaluate(chains, paths.frame.trace_time, {&unfiltered, 1}, lengths, amplitudes, job);
-  for (const std::complex<double>& amplitude : amplitudes) sizes.push_back(std::abs(amplitude));
-  return sizes;
 }
 
 // Returns at most kMostOfStratum glints of each stratum, strongest first.

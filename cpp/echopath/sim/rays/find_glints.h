@@ -24,7 +24,4 @@ struct Glint {
 std::vector<Glint> find_glints(const Paths& paths, Job* job = nullptr);
 inline constexpr size_t kMaxGlints = 64;
 
-// Returns the radar with one antenna each, where rays start and end.
-Radar radar_of_rays(const Radar& radar);
-
 }  // namespace echopath

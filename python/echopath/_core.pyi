@@ -19,7 +19,7 @@ import numpy.typing
 import os
 import typing
 bench: types.ModuleType
-__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Curve', 'CurveMotion', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'Layer', 'LinearMotion', 'LiveTrace', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'MorphTargets', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'PartPass', 'Paths', 'Power', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'are_clear', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'coherent_meshes', 'coherent_share', 'compensate_tdm', 'decompose', 'enclosures', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'load_mesh', 'load_meshes', 'load_surfaces', 'looks_for_signals', 'may_appear_in_frame', 'mean_power', 'meant_name', 'mesh_names', 'mesh_traits', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'object_sizes', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'remember_geometry', 'renew', 'set_num_threads', 'share_errors', 'speed_of_light', 'strongest_edge', 'strongest_part', 'synthesize', 'synthesize_echoes', 'tessellation', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'warn_of_turns', 'ways_around_edges', 'window']
+__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Curve', 'CurveMotion', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'Layer', 'LinearMotion', 'LiveTrace', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'MorphTargets', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'PartPass', 'Paths', 'Power', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'are_clear', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'coherent_meshes', 'coherent_share', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'load_mesh', 'load_meshes', 'load_surfaces', 'look_at_bodies', 'looks_for_signals', 'may_appear_in_frame', 'mean_power', 'meant_name', 'mesh_names', 'mesh_traits', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'remember_geometry', 'renew', 'set_num_threads', 'share_errors', 'speed_of_light', 'strongest_edge', 'strongest_part', 'synthesize', 'synthesize_echoes', 'tessellation', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'warn_of_turns', 'ways_around_edges', 'window']
 class Motion:
     """
     Time -> rigid transform, in the axes of the node's parent about the node's own origin.
@@ -3227,10 +3227,6 @@ def decompose(paths: Paths, radar: Radar, views: collections.abc.Sequence[Groupi
     Returns a list of {key: cube}, one for each view, the cubes [tx, rx, chirp, sample] of each adding up to the whole. radar,
     The other arguments are those of ep.synthesize.
     """
-def enclosures(scene: Scene, radar: typing.Any, time: float) -> list[tuple[int, bool]]:
-    """
-    Bodies in which the first transmitter stands, or the first receiver: [(node, whether it is the receiver)].
-    """
 def estimate_angles(spectrum: RangeDoppler, radar: Radar, azimuth: typing.Any = None, elevation: typing.Any = None, *, cells: typing.Any, max_peaks: int = 1, peak_range_db: float = 10.0, folds: int = 0, method: str = 'bartlett', window: typing.Any = 'rect', overlaps: str = 'average', compensate: bool = True, diagonal_loading: float = 0.01, velocity_neighbours: int = 1, range_neighbours: int = 2, forward_backward: bool = False, progress: typing.Any = None) -> AngleEstimates:
     """
     What the function of that name in ep calls.
@@ -3287,6 +3283,10 @@ def load_surfaces(path: os.PathLike[str] | str | bytes, unit: float = 1.0) -> tu
     """
     ([(name, name of the material, Mesh)], [what lines `mtllib` name]): groups of a mesh file by material.
     """
+def look_at_bodies(scene: Scene, radar: typing.Any, time: float) -> tuple[typing.Any, ...]:
+    """
+    Of the children of the root: (node [N]; sides [N, 2] in m, shortest and longest; closed [N]; those in which the first transmitter stands, or the first receiver, [(node, whether it is the receiver)]).
+    """
 def looks_for_signals() -> bool:
     """
     Whether work of the core is looking for signals right now: an exception that a handler raises then ends it.
@@ -3330,10 +3330,6 @@ def noise_power_in_cell(radar: Radar) -> float:
 def num_threads() -> int:
     """
     Number of threads of the parallel loops.
-    """
-def object_sizes(scene: Scene, time: float) -> tuple[typing.Any, ...]:
-    """
-    Of the children of the root: (node [N], sides [N, 2] in m, shortest and longest, closed [N]).
     """
 def partition_groups(paths: typing.Any, parts: collections.abc.Sequence[tuple[str, Selection]]) -> tuple[typing.Any, ...]:
     """

@@ -39,10 +39,9 @@ bool is_anything_outside(const std::vector<Body>& bodies, const Body& body) {
 
 }  // namespace
 
-std::vector<Enclosure> enclosures(const Scene& scene, const Radar& radar, double time) {
-  const PosedScene pose(scene, time);
-  const Transform world_from_radar = radar.world_from_radar(time);
-  const std::vector<Body> bodies = bodies_of(scene, pose);
+std::vector<Enclosure> enclosures(const Scene& scene, const PosedScene& pose, const std::vector<Body>& bodies,
+                                  const Radar& radar) {
+  const Transform world_from_radar = radar.world_from_radar(pose.time());
   std::vector<Enclosure> found;
   for (const bool of_receivers : {false, true}) {
     const std::vector<Antenna>& antennas = of_receivers ? radar.receivers : radar.transmitters;

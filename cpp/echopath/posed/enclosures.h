@@ -2,8 +2,8 @@
 // Finds bodies in which antennas stand.
 #include <vector>
 
+#include "echopath/posed/bodies.h"
 #include "echopath/radar/radar.h"
-#include "echopath/scene/scene.h"
 
 namespace echopath {
 
@@ -13,12 +13,13 @@ struct Enclosure {
   bool of_receivers = false;  // the antenna is the first of the receivers, else of the transmitters
 };
 
-// Returns the bodies that hold the first transmitter or the first receiver at `time` (s). Seen from a point inside, a
-// closed surface fills the sphere: the solid angles of its triangles add up to 4 pi. Sheets, through which waves pass,
-// are openings. What is wound against its neighbours, and shells whose inner side is wound against the outer one, add
+// Returns the bodies, as `pose` has them, that hold the first transmitter or the first receiver then. Seen from a point
+// inside, a closed surface fills the sphere: the solid angles of its triangles add up to 4 pi. Sheets, through which waves
+// pass, are openings. What is wound against its neighbours, and shells whose inner side is wound against the outer one, add
 // up to less and are not found; a hole of less than a hundredth of the sphere (20 by 20 degrees) is no opening. Raises
 // invalid_argument where a motion is not defined then.
 // Source: van Oosterom and Strackee 1983 (solid angle of a triangle).
-std::vector<Enclosure> enclosures(const Scene& scene, const Radar& radar, double time);
+std::vector<Enclosure> enclosures(const Scene& scene, const PosedScene& pose, const std::vector<Body>& bodies,
+                                  const Radar& radar);
 
 }  // namespace echopath

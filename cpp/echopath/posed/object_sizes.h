@@ -2,7 +2,7 @@
 // Measures how large the objects of a scene are.
 #include <vector>
 
-#include "echopath/scene/scene.h"
+#include "echopath/posed/bodies.h"
 
 namespace echopath {
 
@@ -13,8 +13,7 @@ struct ObjectSize {
   bool is_closed = true;                 // all its meshes are (Mesh::is_closed)
 };
 
-// Returns the sizes at `time` (s) of all objects that take part and have meshes, in the order of their first meshes. Raises
-// invalid_argument where a motion is not defined then.
-std::vector<ObjectSize> object_sizes(const Scene& scene, double time);
+// Returns the sizes of all bodies, in their order.
+std::vector<ObjectSize> object_sizes(const Scene& scene, const std::vector<Body>& bodies);
 
 }  // namespace echopath

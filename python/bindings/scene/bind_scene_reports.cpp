@@ -16,9 +16,11 @@
 namespace echopath::bindings {
 namespace {
 
-// Returns (node [N], sides [N, 2], closed [N]).
-py::tuple sizes_of_objects(const Scene& scene, double time) {
-  const std::vector<ObjectSize> sizes = object_sizes(scene, time);
+// Returns (node [N], sides [N, 2], closed [N], [(node, of receivers)]).
+py::tuple look_at_bodies(const Scene& scene, const Radar& radar, double time) {
+  const PosedScene pose(scene, time);
+  const std::vector<Body> bodies = bodies_of(scene, pose);
+  const std::vector<ObjectSize> sizes = object_sizes(scene, bodies);
   const auto count = static_cast<py::ssize_t>(sizes.size());
   py::array_t<int32_t> node(count);
   py::array_t<double> sides({count, py::ssize_t{2}});
@@ -30,15 +32,10 @@ py::tuple sizes_of_objects(const Scene& scene, double time) {
     sides.mutable_at(i, 1) = size.longest;
     closed.mutable_at(i) = size.is_closed;
   }
-  return py::make_tuple(node, sides, closed);
-}
-
-// Returns [(node, of receivers)].
-std::vector<std::pair<int, bool>> bodies_around(const Scene& scene, const Radar& radar, double time) {
-  std::vector<std::pair<int, bool>> found;
-  for (const Enclosure& enclosure : enclosures(scene, radar, time))
-    found.emplace_back(enclosure.node, enclosure.of_receivers);
-  return found;
+  std::vector<std::pair<int, bool>> around;
+  for (const Enclosure& enclosure : enclosures(scene, pose, bodies, radar))
+    around.emplace_back(enclosure.node, enclosure.of_receivers);
+  return py::make_tuple(node, sides, closed, around);
 }
 
 // Returns (materials, index of each mesh's [M], smooth [M], moving [M], deforming [M]).
@@ -64,10 +61,10 @@ void bind_scene_reports(py::module_& m) {
   m.def("coherent_meshes", &coherent_meshes, py::arg("scene"), py::arg("wavelength"), py::arg("least_share"),
         py::arg("without_planes") = false,
         "IDs of the meshes that reflect this share of the power in phase at a wavelength in m, mirrors left out.");
-  m.def("enclosures", &bodies_around, py::arg("scene"), py::arg("radar"), py::arg("time"),
-        "Bodies in which the first transmitter stands, or the first receiver: [(node, whether it is the receiver)].");
-  m.def("object_sizes", &sizes_of_objects, py::arg("scene"), py::arg("time"),
-        "Of the children of the root: (node [N], sides [N, 2] in m, shortest and longest, closed [N]).");
+  m.def("look_at_bodies", &look_at_bodies, py::arg("scene"), py::arg("radar"), py::arg("time"),
+        "Of the children of the root: (node [N]; sides [N, 2] in m, shortest and longest; closed [N]; those in which the "
+        "first "
+        "transmitter stands, or the first receiver, [(node, whether it is the receiver)]).");
   m.def(
       "mesh_traits", &traits_of_meshes, py::arg("scene"),
       "Of all meshes: (materials, each once; index of each mesh's [M]; whether it is smooth [M], moves [M], deforms [M]).");

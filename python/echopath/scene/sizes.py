@@ -1,4 +1,4 @@
-"""Remarks on scenes whose lengths look like those of other units."""
+"""Remarks on scenes whose lengths look like those of other units, and on radars that stand in a body."""
 from __future__ import annotations
 
 import numpy as np
@@ -11,18 +11,23 @@ LONG = 250.0       # m, all sides of a closed body: mountains are as high, but o
 SMALL = 0.5        # wavelengths, the longest side of an object
 
 
-def warn_of_sizes(scene: _core.Scene, wavelength: float, time: float) -> None:
-    """Warns (RuntimeWarning) of an empty scene, and of objects that look as if their lengths were not in m.
+def warn_of_bodies(scene: _core.Scene, radar: _core.Radar, time: float) -> None:
+    """Warns (RuntimeWarning) of an empty scene, of objects that look as if their lengths were not in m, and of a closed body
+    around the radar that hides the rest of the scene.
 
-    wavelength: m; time: s, at which the scene is looked at; one outside of its motions is not for this to tell of
+    time: s, at which the scene is looked at; one outside of its motions is not for this to tell of
     """
     try:
-        nodes, sides, closed = _core.object_sizes(scene, time)
+        nodes, sides, closed, around = _core.look_at_bodies(scene, radar, time)
     except ValueError:
         return
-    remark = _remark(scene, nodes, sides, closed, wavelength)
+    remark = _remark(scene, nodes, sides, closed, _core.speed_of_light / radar.waveform.start_frequency)
     if remark:
         warn_user(remark)
+    if around:
+        node, of_receivers = around[0]
+        warn_user(f"radar: its first {'receiver' if of_receivers else 'transmitter'} stands inside of "
+                  f"'{scene._node(node).name}', which is closed: what is outside of it is not seen")
 
 
 def _remark(scene, nodes, sides, closed, wavelength: float) -> str:

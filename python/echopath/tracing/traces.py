@@ -13,10 +13,9 @@ from ..arguments.effects import Choices
 from ..arguments.settings import Edges, Footprint, Polarization, Sampler, Scatterers, TraceSettings
 from ..cavities.cavity import Cavity
 from ..cavities.cross_sections import rcs_with_cavities
-from ..scene.sizes import warn_of_sizes
+from ..scene.sizes import warn_of_bodies
 from ..weather.weather import attenuation_of
 from .edges import looks_for_edges
-from .enclosed import warn_of_enclosed_antennas
 from .lost_rays import warn_of_lost_rays, warn_of_unaimed, warn_of_unfollowed_beams
 from .polarization import FIELD_VECTORS, SCALAR, antennas_of, chosen_model
 from .tessellation import warn_of_coarse_meshes
@@ -87,8 +86,7 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
     wavelength = _core.speed_of_light / radar.waveform.start_frequency
     is_first, geometry = _remembered(scene)
     if is_first:
-        warn_of_sizes(scene, wavelength, start_time)
-        warn_of_enclosed_antennas(scene, radar, start_time)
+        warn_of_bodies(scene, radar, start_time)
     warn_of_coarse_meshes(scene, radar.waveform.start_frequency)
     model = chosen_model(polarization, scene, wavelength, antennas_of(radar), argument="polarization")
     paths = _core.trace(scene, radar, num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,

@@ -45,6 +45,11 @@ Radar radar_at(const Vec3& transmitter, const Vec3& receiver) {
   return radar;
 }
 
+std::vector<Enclosure> enclosures_at(const Scene& scene, const Radar& radar, double time) {
+  const PosedScene pose(scene, time);
+  return enclosures(scene, pose, bodies_of(scene, pose), radar);
+}
+
 const Radar kInside = radar_at({0.3, -0.6, 0.9}, {3, 0, 0});
 
 // A scene whose first object is `mesh`, with a box beside it.
@@ -58,28 +63,28 @@ Scene beside(MeshPtr mesh) {
 TEST(Enclosures, AClosedBodyHoldsWhatIsInsideHoweverItIsWound) {
   for (const bool is_inward : {false, true}) {
     const Scene scene = beside(box(12, is_inward));
-    const auto found = enclosures(scene, kInside, 0.0);
+    const auto found = enclosures_at(scene, kInside, 0.0);
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0].node, 0);
     EXPECT_FALSE(found[0].of_receivers);
-    const auto swapped = enclosures(scene, radar_at({3, 0, 0}, {0.3, -0.6, 0.9}), 0.0);
+    const auto swapped = enclosures_at(scene, radar_at({3, 0, 0}, {0.3, -0.6, 0.9}), 0.0);
     ASSERT_EQ(swapped.size(), 1u);
     EXPECT_TRUE(swapped[0].of_receivers);
   }
 }
 
 TEST(Enclosures, NoneWhereTheBodyIsOpenOrTheAntennaOutside) {
-  EXPECT_TRUE(enclosures(beside(box(11)), kInside, 0.0).empty());
-  EXPECT_TRUE(enclosures(beside(box()), radar_at({1.01, 0, 0}, {0, -1.01, 0}), 0.0).empty());
-  EXPECT_TRUE(enclosures(Scene(), kInside, 0.0).empty());
+  EXPECT_TRUE(enclosures_at(beside(box(11)), kInside, 0.0).empty());
+  EXPECT_TRUE(enclosures_at(beside(box()), radar_at({1.01, 0, 0}, {0, -1.01, 0}), 0.0).empty());
+  EXPECT_TRUE(enclosures_at(Scene(), kInside, 0.0).empty());
 }
 
 TEST(Enclosures, NoneWhereNothingIsOutside) {
   Scene room;
   add(room, "room", box(), Vec3::Zero());
-  EXPECT_TRUE(enclosures(room, kInside, 0.0).empty());
+  EXPECT_TRUE(enclosures_at(room, kInside, 0.0).empty());
   add(room, "other", box(), Vec3(1.5, 0, 0));
-  EXPECT_EQ(enclosures(room, kInside, 0.0).size(), 1u) << "a box that reaches out of the room";
+  EXPECT_EQ(enclosures_at(room, kInside, 0.0).size(), 1u) << "a box that reaches out of the room";
 }
 
 // Two open halves that close each other, below one parent; a pane in place of one of them lets waves out.
@@ -96,7 +101,7 @@ TEST(Enclosures, PartsCloseABodyTogetherAndSheetsOpenIt) {
     add(scene, "front", half(false), Vec3::Zero(), body);
     add(scene, "rear", half(true), Vec3::Zero(), body, is_pane ? glass() : metal());
     add(scene, "other", box(), Vec3(10, 0, 0));
-    EXPECT_EQ(enclosures(scene, kInside, 0.0).size(), is_pane ? 0u : 1u);
+    EXPECT_EQ(enclosures_at(scene, kInside, 0.0).size(), is_pane ? 0u : 1u);
   }
 }
 
@@ -104,8 +109,8 @@ TEST(Enclosures, TheTimeTells) {
   Scene scene;
   add(scene, "body", box(), Vec3::Zero(), -1, metal(), std::make_shared<const LinearMotion>(Vec3(0, 4, 0)));
   add(scene, "other", box(), Vec3(10, 0, 0));
-  EXPECT_EQ(enclosures(scene, kInside, 0.0).size(), 1u);
-  EXPECT_TRUE(enclosures(scene, kInside, 1.0).empty());
+  EXPECT_EQ(enclosures_at(scene, kInside, 0.0).size(), 1u);
+  EXPECT_TRUE(enclosures_at(scene, kInside, 1.0).empty());
 }
 
 }  // namespace

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 
@@ -103,13 +104,24 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     peaks = _core.find_peaks(spectrum, radar, found, progress)
     cells, power = peaks["cells"], found.power[tuple(peaks["cells"].T)]
     echoes = None if paths is None else EchoFields(paths, spectrum)
-    columns = _labels_of(spectrum, cells, power, paths, parts, labels, beside, objects, echoes)
+    columns = _labels_of(spectrum, cells, power, _Makers(paths, parts, labels, beside, objects), echoes)
     found = _joined(radar, peaks, power, directions_of(spectrum, radar, cells, angles or {}, progress), columns, echoes)
     return found if paths is None else dataclasses.replace(found, seed=paths.frame.seed)
 
 
-def _labels_of(spectrum, cells, power, paths, parts, labels, beside: dict, objects, echoes) -> dict:
+class _Makers(NamedTuple):
+    """What may have made a detection, as in `detect`."""
+
+    paths: _core.Paths | None
+    parts: dict | None
+    labels: Labels | None
+    beside: dict
+    objects: object
+
+
+def _labels_of(spectrum, cells, power, makers: _Makers, echoes) -> dict:
     """part, share, object, ghost_type, order and class_code [N] of cells [N, 2]."""
+    paths, parts, labels, beside, objects = makers
     found = labelling.CellLabels(len(cells))
     if paths is not None:
         of_paths = find_families(paths, objects)

@@ -60,23 +60,24 @@ def path_cells(paths: _core.Paths, spectrum: _core.RangeDoppler, *, tx: int = 0,
     cells = PathCells(length, *(np.empty(len(length), kind) for kind in (float, float, np.int32, np.int32)))
     for first in range(0, len(length), _BLOCK):
         some = slice(first, first + _BLOCK)
-        _place(length[some], after[some] - before[some], paths.radar, spectrum, *(getattr(cells, name)[some] for name in _PLACES))
+        places = _places(length[some], after[some] - before[some], paths.radar, spectrum)
+        for name, values in zip(_PLACES, places, strict=True):
+            getattr(cells, name)[some] = values
     return cells
 
 
-def _place(length, longer, radar, spectrum, distance, velocity, range_index, velocity_index) -> None:
-    """Fills in the last four, [P] each, for paths of some length in m that becomes `longer` by so many m during a chirp."""
+def _places(length, longer, radar, spectrum) -> tuple:
+    """_PLACES, [P] each, of paths of some length in m that becomes `longer` by so many m during a chirp."""
     waveform = radar.waveform
     rate = longer / waveform.chirp_duration
     delay, delay_rate = length / _core.speed_of_light, rate / _core.speed_of_light
     carrier = waveform.start_frequency + waveform.slope * (waveform.window_centre - delay)
     beat = waveform.slope * delay + carrier * delay_rate  # Hz, fast time
     doppler = carrier * delay_rate                        # Hz, slow time
-    distance[:] = beat * _core.speed_of_light / (2.0 * waveform.slope)
-    velocity[:] = 0.5 * rate
-    range_index[:] = _range_index(beat, waveform, spectrum.range)
-    velocity_index[:] = _velocity_index(0.5 * waveform.wavelength * doppler, spectrum.velocity, radar)
+    range_index = _range_index(beat, waveform, spectrum.range)
+    velocity_index = _velocity_index(0.5 * waveform.wavelength * doppler, spectrum.velocity, radar)
     velocity_index[range_index == OUTSIDE] = OUTSIDE
+    return beat * _core.speed_of_light / (2.0 * waveform.slope), 0.5 * rate, range_index, velocity_index
 
 
 def _lengths(paths, tx: int, rx: int):

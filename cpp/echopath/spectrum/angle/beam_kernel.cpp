@@ -26,15 +26,19 @@ ECHOPATH_INLINE void add_elements(const double* weight_re, const double* weight_
   }
 }
 
+// Holds real and imaginary parts.
+struct Parts {
+  const double *re, *im;
+};
+
 // weights [directions, padded], columns [padded, kColumns]
-ECHOPATH_INLINE void add_squares_of_block(int64_t directions, int64_t padded, const double* weight_re,
-                                          const double* weight_im, const double* re, const double* im, Combine combine,
+ECHOPATH_INLINE void add_squares_of_block(int64_t directions, int64_t padded, Parts weights, Parts columns, Combine combine,
                                           double* power) {
   for (int64_t d = 0; d < directions; ++d) {
     alignas(64) double out_re[kColumns] = {}, out_im[kColumns] = {};
     for (int64_t e = 0; e < padded; e += kElements) {
-      const double *row_re = weight_re + d * padded + e, *row_im = weight_im + d * padded + e;
-      add_elements(row_re, row_im, re + e * kColumns, im + e * kColumns, out_re, out_im);
+      const double *row_re = weights.re + d * padded + e, *row_im = weights.im + d * padded + e;
+      add_elements(row_re, row_im, columns.re + e * kColumns, columns.im + e * kColumns, out_re, out_im);
     }
     double* total = power + d * kColumns;
     for (int c = 0; c < kColumns; ++c) {
@@ -66,8 +70,8 @@ void BeamKernel::add_squares(const Eigen::Ref<const Eigen::MatrixXcd>& columns, 
       im[e * kColumns + c] = columns(e, c).imag();
     }
   }
-  run_simd<add_squares_of_block>(num_directions(), padded_, re_.data(), im_.data(), re.data(), im.data(), combine,
-                                 power.data());
+  run_simd<add_squares_of_block>(num_directions(), padded_, Parts{re_.data(), im_.data()}, Parts{re.data(), im.data()},
+                                 combine, power.data());
 }
 
 Eigen::VectorXd BeamKernel::power(const Eigen::MatrixXcd& columns, Combine combine, const Job* job) const {

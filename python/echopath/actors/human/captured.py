@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -80,17 +81,26 @@ def captured_body(path: Path, *, unit: float | None, up: str | None, height: flo
     positions = capture.positions[:, list(found.values())][..., order]
     rotations = capture.rotations[:, list(found.values())][..., order, :][..., order]
     notes = [] if up or vertical == "y" else [f"its vertical axis is taken to be {vertical}, along which the body is"]
-    return CapturedBody(path, vertical, notes, capture.times, dict(zip(found, positions.swapaxes(0, 1))),
-                        dict(zip(found, rotations.swapaxes(0, 1))), unit, height)
+    joints = CapturedJoints(capture.times, dict(zip(found, positions.swapaxes(0, 1))),
+                            dict(zip(found, rotations.swapaxes(0, 1))))
+    return CapturedBody(path, vertical, notes, joints, unit=unit, height=height)
+
+
+class CapturedJoints(NamedTuple):
+    """Places [T, 3] in units of the file and rotations [T, 3, 3] of joints by name, at times [T] in s."""
+
+    times: np.ndarray
+    places: dict
+    rotations: dict
 
 
 class CapturedBody:
     """Joints over time in the axes of a scene. unit: m per unit of the file; notes: what was guessed or left out."""
 
-    def __init__(self, path: Path, up: str, notes: list, times, joints: dict, rotations: dict, unit: float | None,
+    def __init__(self, path: Path, up: str, notes: list, joints: CapturedJoints, *, unit: float | None,
                  height: float | None):
         self._path, self.up, self.notes = path, up, notes
-        self.times, self._joints, self._rotations = _without_first_pose(times, joints, rotations, self.notes)
+        self.times, self._joints, self._rotations = _without_first_pose(*joints, self.notes)
         tall = self._length("hip", "knee", "ankle") / (HIP_HEIGHT - ANKLE_HEIGHT)
         if not 1e-9 < tall < 1e9:
             raise _core.FileError(f"{path}: its legs have no length")

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -37,6 +38,13 @@ class Rig:
     chain: list
     place: np.ndarray
     bound: dict
+
+
+class Blend(NamedTuple):
+    """Which joints move each vertex: joints [V, K], places in the chain of a Rig, and their weights [V, K]."""
+
+    joints: np.ndarray
+    weights: np.ndarray
 
 
 class Surfaces:
@@ -141,7 +149,7 @@ class Surfaces:
             primitive.item["attributes"].fail(
                 f"must name joints 0 to {len(rig.place) - 1} of {self._skins[index].place}, names {used.max()}")
         joints = rig.place[np.minimum(primitive.joints, len(rig.place) - 1)]
-        return self._made(primitive, vertices, shape, rig.chain, rig.bound, joints, primitive.weights)
+        return self._made(primitive, vertices, shape, rig, Blend(joints, primitive.weights))
 
     def _rig(self, skin: Item) -> Rig:
         members = self._members(skin)
@@ -152,13 +160,15 @@ class Surfaces:
 
     def _jointed(self, primitive: Primitive, vertices: np.ndarray, shape, chain: list[int]) -> Surface | None:
         joints = np.full((len(vertices), 1), len(chain) - 1)
-        made = self._made(primitive, vertices, shape, chain, {}, joints, np.ones((len(vertices), 1)))
+        rig = Rig(chain, np.arange(len(chain)), {})
+        made = self._made(primitive, vertices, shape, rig, Blend(joints, np.ones((len(vertices), 1))))
         if made is None or made.regions:
             return made
         everything = np.arange(len(made.mesh.triangles))
         return Surface(made.mesh.part(everything), made.deformation, primitive)
 
-    def _made(self, primitive, vertices, shape, chain, bound, joints, weights) -> Surface | None:
+    def _made(self, primitive, vertices, shape, rig: Rig, blend: Blend) -> Surface | None:
+        chain, bound, (joints, weights) = rig.chain, rig.bound, blend
         self._document.spend(JOINT_BYTES * len(chain) + 100 * weights.size, primitive.item)
         skin = _core.Skin(vertices, self._joints(self._motions, chain, bound), weights, joints, shape)
         if shape is None and not any(self._motions.moves(member) for member in chain):

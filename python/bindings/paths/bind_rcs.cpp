@@ -67,14 +67,9 @@ struct Channels {
   bool is_list = false;
 };
 
-Channels channels_of(const py::object& value) {
+// A name, [3] or [2, 3].
+Channels one_channel(const py::handle& value) {
   if (py::isinstance<py::str>(value)) return {{channel_of(value.cast<std::string>())}};
-  if (py::isinstance<py::sequence>(value) && py::len(value) > 0 && py::isinstance<py::str>(value[py::int_(0)])) {
-    Channels channels;
-    for (const auto& name : value.cast<std::vector<std::string>>()) channels.rows.push_back(channel_of(name));
-    channels.is_list = true;
-    return channels;
-  }
   bool is_one = false;
   const std::vector<Vec3> vectors = directions_of(value, "polarization", is_one);
   require(is_one || vectors.size() == 2, "polarization", "must be [3] or, of transmitter and receiver, [2, 3], rows",
@@ -83,6 +78,21 @@ Channels channels_of(const py::object& value) {
   channel.transmit.vector = vectors.front();
   channel.receive.vector = vectors.back();
   return {{channel}, is_one ? PolarizationModel::kScalar : PolarizationModel::kJones};
+}
+
+// A list holds names and pairs of vectors.
+bool is_list(const py::object& value) {
+  if (!py::isinstance<py::list>(value) || py::len(value) == 0) return false;
+  const py::object first = value[py::int_(0)];
+  return py::isinstance<py::str>(first) || py::cast<py::ssize_t>(py::module_::import("numpy").attr("ndim")(first)) == 2;
+}
+
+Channels channels_of(const py::object& value) {
+  if (!is_list(value)) return one_channel(value);
+  Channels channels;
+  channels.is_list = true;
+  for (const py::handle& one : value) channels.rows.push_back(one_channel(one).rows.front());
+  return channels;
 }
 
 // Of one quantity: a number, [N], [C] or [N, C] for N pairs of directions and C polarisations.

@@ -102,12 +102,18 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
 
 
 def _polarization(argument: str, value):
-    """One vector [3], two [2, 3], the name of a channel, or a list of these."""
+    """One vector [3], two [2, 3], the name of a channel, or a list of names and pairs of vectors."""
     if isinstance(value, str):
         return one_of(Channel)(argument, value)
-    if isinstance(value, (list, tuple)) and value and all(isinstance(name, str) for name in value):
-        return [one_of(Channel)(argument, name) for name in value]
+    if _depth(value) == 3 or isinstance(value, (list, tuple)) and any(isinstance(one, str) for one in value):
+        return [one_of(Channel)(argument, one) if isinstance(one, str) else array("[2, 3]", finite=True)(argument, one)
+                for one in value]
     return array("[3]", "[2, 3]", finite=True)(argument, value)
+
+
+def _depth(value) -> int:
+    """How deep lists or arrays are nested, by their first entries."""
+    return 1 + _depth(value[0]) if isinstance(value, (list, tuple, np.ndarray)) and len(value) > 0 else 0
 
 
 def _cavities(argument: str, value) -> tuple[Cavity, ...]:
@@ -127,7 +133,7 @@ _FREQUENCY = real(above=0.0, high=HIGHEST_FREQUENCY, unit="Hz")
     "frequency": _FREQUENCY, "incidence": _DIRECTIONS, "observation": optional(_DIRECTIONS), "polarization": _polarization,
     "model": one_of(Polarization), "edges": flag, "cavities": _cavities, "components": flag, "return_error": flag})
 def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observation: ArrayLike | None = None,
-        polarization: ArrayLike | Channel | Sequence[Channel] = (0.0, 0.0, 1.0), model: Polarization = "auto",
+        polarization: ArrayLike | Channel | Sequence[Channel | ArrayLike] = (0.0, 0.0, 1.0), model: Polarization = "auto",
         num_rays: int | float | None = None, max_bounces: int = TraceSettings.max_bounces, seed: int = TraceSettings.seed,
         footprint: Footprint = TraceSettings.footprint, sampler: Sampler = TraceSettings.sampler, batches: int | None = None,
         target_error_db: float | None = None, max_rays: int | float = TraceSettings.max_rays,
@@ -143,8 +149,8 @@ def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observati
     incidence: toward the transmitter, seen from the target, [3] or [N, 3], any length
     observation: toward the receiver, likewise; None: monostatic
     polarization: [3] of both antennas; or, with field vectors: [2, 3] of transmitter and receiver, "vv", "hh", "vh", "hv"
-        (transmitted, received: "v" points up, "h" lies in the xy-plane, both across the line of sight) or a list [C] of
-        these. Of a vector its part across the line of sight counts
+        (transmitted, received: "v" points up, "h" lies in the xy-plane, both across the line of sight), or a list [C] of
+        such pairs [2, 3] and names. Of a vector its part across the line of sight counts
     model: with a polarization of [3], "scalar" (one coefficient a hit), "jones" (field vectors) or "auto", as in `trace`
     num_rays: rays per direction and transmit polarization, for all batches together; 131 072 for each batch unless given;
         max_bounces: 1 to 64
@@ -173,7 +179,7 @@ def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observati
     """
     warn_of_coarse_meshes(scene, frequency)
     chosen = chosen_model(model, scene, _core.speed_of_light / frequency, argument="model")
-    is_one = np.shape(polarization) == (3,) and not isinstance(polarization, list)
+    is_one = not isinstance(polarization, list) and np.shape(polarization) == (3,)
     if not is_one and model == SCALAR:
         raise ValueError(f"model: 'scalar' takes one vector for both antennas as polarization, got {shown(polarization)}")
     both = np.array([polarization, polarization]) if is_one and chosen == FIELD_VECTORS else polarization

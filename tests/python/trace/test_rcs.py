@@ -238,6 +238,21 @@ def test_vectors_and_lists_are_the_named_polarizations():
     assert isinstance(up, float)  # no direction is without a vertical and a horizontal
 
 
+def test_a_list_holds_pairs_of_vectors_and_names():
+    keywords = dict(frequency=FREQUENCY, incidence=in_plane([0, 10]), num_rays=1000, max_bounces=2)
+    target = turned_dihedral(30)
+    up, aside, slanted = (0.0, 0.0, 1.0), (0.3, 1.0, 0.0), (0.1, 0.6, 0.8)
+    pairs = [(up, aside), (slanted, up), (up, up)]
+    table = ep.rcs(target, polarization=pairs, **keywords)
+    assert table.shape == (2, 3)
+    for column, pair in zip(table.T, pairs):
+        assert list(column) == list(ep.rcs(target, polarization=pair, **keywords))
+    assert table.tolist() == ep.rcs(target, polarization=np.array(pairs), **keywords).tolist()
+    mixed = ep.rcs(target, polarization=["hv", pairs[1]], **keywords)
+    assert list(mixed[:, 0]) == list(ep.rcs(target, polarization="hv", **keywords))
+    assert list(mixed[:, 1]) == list(table[:, 1])
+
+
 def test_flat_metal_returns_the_polarization_as_it_came():
     direction = (1, 0.01, 0.02)
     vv, hh, vh = ep.rcs(plate_scene(), frequency=FREQUENCY, incidence=direction, num_rays=1 << 13,

@@ -122,7 +122,8 @@ def test_a_target_seen_edge_on_returns_nothing(beside):
     (dict(frequency=-1.0), "frequency"), (dict(num_rays=0), "num_rays"), (dict(max_bounces=65), "max_bounces"),
     (dict(footprint="third"), "footprint"), (dict(polarization=(0, 0, 0)), "polarization"),
     (dict(polarization="vertical"), "polarization"), (dict(polarization=[(0, 0, 1)] * 3), "polarization"),
-    (dict(polarization=["vv", "left"]), "polarization"), (dict(sampler="sobol"), "sampler"),
+    (dict(polarization=["vv", "left"]), "polarization"), (dict(polarization=["vv", (0, 0, 1)]), "polarization"),
+    (dict(polarization=[[(0, 0, 1)] * 3]), "polarization"), (dict(sampler="sobol"), "sampler"),
     (dict(batches=65), "batches"), (dict(target_error_db=0.0), "target_error_db")])
 def test_bad_input_is_named(keywords, name):
     with pytest.raises(ValueError, match=name):

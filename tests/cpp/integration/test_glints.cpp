@@ -22,13 +22,7 @@ Radar radar() { return plain_radar(Vec3::Zero(), Vec3::Zero()); }
 double wavelength() { return kSpeedOfLight / radar().waveform.start_frequency; }
 
 void add_ball(Scene& scene, const std::string& name, const Vec3& centre, double radius) {
-  const Surface surface = ellipsoid(centre, {radius, radius, radius}, 4);
-  Node ball;
-  ball.name = name;
-  ball.mesh = std::make_shared<Mesh>(surface.vertices, surface.triangles);
-  ball.material = share(Material::metal());
-  ball.smooth = true;
-  scene.add(ball);
+  add_smooth_ball(scene, name, centre, radius, 4);
 }
 
 Paths shot(const Scene& scene, int batches = 1, int max_bounces = 1) {

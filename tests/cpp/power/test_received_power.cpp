@@ -38,14 +38,8 @@ Paths shot(const Scene& scene, const Radar& radar, int64_t num_rays, uint64_t se
 }
 
 Scene metal_sphere() {
-  const Surface surface = ellipsoid({10, 0, 0}, {0.1, 0.1, 0.1}, 3);
-  Node ball;
-  ball.name = "ball";
-  ball.mesh = std::make_shared<Mesh>(surface.vertices, surface.triangles);
-  ball.material = share(Material::metal());
-  ball.smooth = true;
   Scene scene;
-  scene.add(ball);
+  add_smooth_ball(scene, "ball", {10, 0, 0}, 0.1, 3);
   return scene;
 }
 

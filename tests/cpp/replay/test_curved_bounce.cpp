@@ -35,13 +35,7 @@ Scenery scenery(const Vec3& centre, double radius, const Vec3& plate) {
   const Vec3 normal = ((specular - plate).normalized() - plate.normalized()).normalized();
   const Vec3 a = normal.cross(Vec3::UnitZ()).normalized(), b = normal.cross(a);
   Scenery made;
-  Surface surface = ellipsoid(centre, Vec3::Constant(radius), 7);
-  Node ball;
-  ball.name = "ball";
-  ball.mesh = std::make_shared<Mesh>(std::move(surface.vertices), std::move(surface.triangles));
-  ball.material = share(Material::metal());
-  ball.smooth = true;
-  made.scene.add(ball);
+  add_smooth_ball(made.scene, "ball", centre, radius, 7);
   add_rectangle(made.scene, "plate", plate - 0.5 * kSide * (a + b), kSide * a, kSide * b, share(Material::metal()));
   Stratum cone;
   cone.axis = specular.normalized();

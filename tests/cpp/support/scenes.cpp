@@ -43,6 +43,16 @@ Surface ellipsoid(const Vec3& centre, const Vec3& semi_axes, int subdivisions) {
   return surface;
 }
 
+void add_smooth_ball(Scene& scene, const std::string& name, const Vec3& centre, double radius, int subdivisions) {
+  Surface surface = ellipsoid(centre, {radius, radius, radius}, subdivisions);
+  Node ball;
+  ball.name = name;
+  ball.mesh = std::make_shared<Mesh>(std::move(surface.vertices), std::move(surface.triangles));
+  ball.material = share(Material::metal());
+  ball.smooth = true;
+  scene.add(ball);
+}
+
 Replayed replayed(const Paths& paths) {
   std::vector<int64_t> all(static_cast<size_t>(paths.num_paths()));
   std::iota(all.begin(), all.end(), int64_t{0});

@@ -45,6 +45,9 @@ struct Surface {
 };
 Surface ellipsoid(const Vec3& centre, const Vec3& semi_axes, int subdivisions);
 
+// Adds a metal ball of 20 * 4^subdivisions triangles, whose normals are interpolated.
+void add_smooth_ball(Scene& scene, const std::string& name, const Vec3& centre, double radius, int subdivisions);
+
 inline Antenna antenna_at(const Vec3& position, double gain = 1.0) {
   Antenna antenna;
   antenna.position = position;

@@ -3,66 +3,18 @@
 
 #include <algorithm>
 
-#include "cpp/signal/slow_sum.h"
+#include "cpp/signal/crowds.h"
 #include "echopath/base/threads/parallel.h"
 
 namespace echopath::test_many_echoes {
 namespace {
 
-using testing::Complex;
+using namespace testing;
 
 // Of the direct sum itself: 512 samples of phase, relative to the sum of |a|.
 constexpr double kDirectRounding = 1e-12;
 constexpr double kAdditivity = 1e-12;
 constexpr double kWeakEchoDb = 0.1;
-
-ChirpSequence few_chirps(int num_chirps = 7) {
-  ChirpSequence w = testing::reference_waveform();
-  w.num_chirps = num_chirps;  // of which the last ones do not fill the lanes of a vector
-  return w;
-}
-
-double cell_delay(const ChirpSequence& w) { return w.sampling_rate / w.slope() / (2 * w.num_samples); }
-
-// Straight motion between two nodes: what replay hands over, with one polynomial for all chirps.
-Echoes two_node_echoes(const ChirpSequence& w, const std::vector<double>& delay, const std::vector<double>& drift,
-                       const std::vector<Complex>& amplitude) {
-  Echoes echoes;
-  echoes.num_echoes = static_cast<int64_t>(delay.size());
-  echoes.sampling.num_rows = echoes.sampling.order = 2;
-  echoes.sampling.first_row.assign(w.num_chirps, 0);
-  const double span = w.num_chirps * w.chirp_interval;
-  for (int j = 0; j < w.num_chirps; ++j) {
-    const double x = (j + 0.5) / w.num_chirps;
-    echoes.sampling.value.insert(echoes.sampling.value.end(), {1.0 - x, x});
-    echoes.sampling.slope.insert(echoes.sampling.slope.end(), {-1.0 / span, 1.0 / span});
-  }
-  echoes.delay = delay;
-  for (size_t p = 0; p < delay.size(); ++p) echoes.delay.push_back(delay[p] + drift[p]);
-  echoes.amplitude = amplitude;
-  for (const Complex& a : amplitude) echoes.amplitude.push_back(a * Complex(0.9, 0.1));
-  return echoes;
-}
-
-// Echoes over `cells` cells from a delay on, each drifting at random by up to `drift` cells over the frame.
-Echoes crowd(const ChirpSequence& w, int count, double from, double cells, double drift) {
-  std::mt19937_64 random(17);
-  std::uniform_real_distribution<double> unit(0.0, 1.0);
-  std::vector<double> delay, drifts;
-  std::vector<Complex> amplitude;
-  for (int p = 0; p < count; ++p) {
-    delay.push_back(from + cells * cell_delay(w) * unit(random));
-    drifts.push_back(drift * cell_delay(w) * (2.0 * unit(random) - 1.0));
-    amplitude.push_back(std::polar(std::pow(10.0, -2.0 * unit(random)), 6.283 * unit(random)));
-  }
-  return two_node_echoes(w, delay, drifts, amplitude);
-}
-
-double rms_error(const std::vector<Complex>& actual, const std::vector<Complex>& expected, double scale) {
-  double sum = 0.0;
-  for (size_t i = 0; i < actual.size(); ++i) sum += std::norm(actual[i] - expected[i]);
-  return std::sqrt(sum / static_cast<double>(actual.size())) / scale;
-}
 
 double error_against_direct(const ChirpSequence& w, const Echoes& echoes, double tolerance) {
   const auto direct = testing::synthesize(w, echoes, {.method = Method::kDirect});
@@ -150,67 +102,6 @@ TEST(ManyEchoes, EchoAHundredDecibelsDownKeepsItsLevel) {
     energy += std::norm(expected_weak[i]);
   }
   EXPECT_NEAR(20.0 * std::log10(std::abs(correlation) / energy), 0.0, kWeakEchoDb);
-}
-
-// Those of one group, by themselves.
-Echoes echoes_of_group(const Echoes& all, uint32_t group) {
-  Echoes part;
-  part.sampling = all.sampling;
-  for (int k = 0; k < all.sampling.num_rows; ++k) {
-    for (int64_t p = 0; p < all.num_echoes; ++p) {
-      if (all.group[static_cast<size_t>(p)] != group) continue;
-      part.delay.push_back(all.delay[static_cast<size_t>(k * all.num_echoes + p)]);
-      part.amplitude.push_back(all.amplitude[static_cast<size_t>(k * all.num_echoes + p)]);
-    }
-  }
-  part.num_echoes = static_cast<int64_t>(part.delay.size()) / all.sampling.num_rows;
-  return part;
-}
-
-TEST(ManyEchoes, GroupsOfACrowdHoldTheirOwnAndAddUpToIt) {
-  const ChirpSequence w = few_chirps();
-  constexpr double kTolerance = 1e-9;
-  Echoes echoes = crowd(w, 3000, 400 * cell_delay(w), 12, 1);
-  const auto whole = testing::synthesize(w, echoes, {kTolerance, Method::kNufft});
-  for (int p = 0; p < 3000; ++p) echoes.group.push_back(static_cast<uint32_t>(p * 7919 % 5));
-  Synthesizer parts(w, 1, 5, 3000, {kTolerance, Method::kNufft});
-  parts.add(0, echoes);
-  std::vector<Complex> sum(whole.size());
-  for (int g = 0; g < 5; ++g) {
-    const Echoes own = echoes_of_group(echoes, static_cast<uint32_t>(g));
-    const auto part = parts.cube(g), alone = testing::synthesize(w, own, {.method = Method::kDirect});
-    EXPECT_LT(rms_error(part, alone, testing::sum_of_magnitudes(own.amplitude)), kTolerance) << g;
-    for (size_t i = 0; i < sum.size(); ++i) sum[i] += part[i];
-  }
-  EXPECT_LT(testing::largest_difference(sum, whole), kAdditivity * 3000);
-}
-
-// The second channel is near the first, so it takes over its order; the third has other delays and the fourth other groups.
-TEST(ManyEchoes, ChannelsThatShareAnOrderAndOthersEqualTheDirectSum) {
-  const ChirpSequence w = few_chirps();
-  constexpr double kTolerance = 1e-9;
-  constexpr int kCount = 900;
-  std::vector<Echoes> channels(4, crowd(w, kCount, 400 * cell_delay(w), 40, 1));
-  for (Echoes& echoes : channels) {
-    for (int p = 0; p < kCount; ++p) echoes.group.push_back(static_cast<uint32_t>(p % 2));
-  }
-  for (double& delay : channels[1].delay) delay += 0.3 * cell_delay(w);
-  for (Complex& amplitude : channels[1].amplitude) amplitude *= Complex(0.0, 1.0);
-  for (double& delay : channels[2].delay) delay = 840 * cell_delay(w) - delay;
-  std::reverse(channels[3].group.begin() + kCount / 2, channels[3].group.end());
-  channels[3].group.front() = 1;
-  Synthesizer all(w, 4, 2, kCount, {kTolerance, Method::kNufft});
-  for (int channel = 0; channel < 4; ++channel) all.add(channel, channels[static_cast<size_t>(channel)]);
-  for (uint32_t group = 0; group < 2; ++group) {
-    const std::vector<Complex> found = all.cube(static_cast<int>(group));
-    for (size_t channel = 0; channel < 4; ++channel) {
-      const Echoes own = echoes_of_group(channels[channel], group);
-      const auto direct = testing::synthesize(w, own, {.method = Method::kDirect});
-      const auto first = found.begin() + static_cast<ptrdiff_t>(channel * direct.size());
-      const std::vector<Complex> here(first, first + static_cast<ptrdiff_t>(direct.size()));
-      EXPECT_LT(rms_error(here, direct, testing::sum_of_magnitudes(own.amplitude)), kTolerance) << channel;
-    }
-  }
 }
 
 // Echoes that others before them resemble are sorted on their own all the same.

@@ -1,14 +1,12 @@
 // Paths put together from the legs that they share are those that are evaluated one by one.
 #include <gtest/gtest.h>
 
+#include "cpp/replay/legs/all_kinds_of_paths.h"
 #include "cpp/replay/small_arrays.h"
 #include "cpp/support/path_by_path.h"
-#include "cpp/support/scenes.h"
 #include "echopath/base/constants.h"
-#include "echopath/replay/evaluate/shared_leg_plan.h"
 #include "echopath/replay/evaluate/shared_legs.h"
 #include "echopath/replay/evaluate/single_bounces.h"
-#include "echopath/replay/posed/hit_patches.h"
 
 namespace echopath::test_shared_legs {
 namespace {
@@ -23,63 +21,6 @@ constexpr double kGrazingRounding = 3e-11;
 // its own graze, stretch a thousandfold; edges are three footprints
 constexpr double kFilterRounding = 1e-6;
 constexpr double kFaintest = 1e-11;  // sqrt(W): flat-top footprints are differences from one, of echoes of 1e-6
-
-MaterialPtr rough(double diffuse_share, bool mirror) {
-  Material material;
-  material.permittivity = std::complex<double>(5.0, -0.3);
-  material.scattering = std::sqrt(diffuse_share);
-  material.mirror = mirror;
-  return share(material);
-}
-
-void add_body(Scene& scene, const std::string& name, const Vec3& centre, const Transform& placement,
-              std::shared_ptr<const Motion> motion, bool smooth = false) {
-  Surface surface = ellipsoid(Vec3::Zero(), {.4, .3, .5}, 3);
-  Node node;
-  node.name = name;
-  node.placement = Eigen::Translation3d(centre) * placement;
-  node.mesh = std::make_shared<Mesh>(std::move(surface.vertices), std::move(surface.triangles));
-  node.material = rough(0.5, false);
-  node.motion = std::move(motion);
-  node.smooth = smooth;
-  scene.add(node);
-}
-
-// Mirrors that scatter too, of which one drives away; bodies that turn, one of them smooth, one stretched along its way, one
-// that stands, all but flat.
-Scene scene_of_all_kinds(bool has_mirrors = true) {
-  Scene scene;
-  add_rectangle(scene, "left", {-20, 3, -1}, {60, 0, 0}, {0, 0, 12}, rough(0.2, has_mirrors));
-  add_rectangle(scene, "ground", {-20, -20, -1}, {60, 0, 0}, {0, 40, 0}, rough(0.1, has_mirrors));
-  add_rectangle(scene, "van", {14, -3, -1}, {0, 6, 0}, {0, 0, 3}, rough(0.2, has_mirrors),
-                std::make_shared<LinearMotion>(Vec3(12, 0, 0)));
-  const auto turns = std::make_shared<LinearMotion>(Vec3(-3, 1, 0), Vec3(0.5, 1, 4));
-  add_body(scene, "near", {6, 0.5, 0}, Transform::Identity(), turns);
-  add_body(scene, "smooth", {8, 1.5, 0.5}, Transform(Eigen::Scaling(0.7)), turns, true);
-  add_body(scene, "far", {9, -1, 0.3}, Transform(Eigen::Scaling(1.0, 2.0, 0.5)), turns);
-  add_body(scene, "plate", {7, -2, 0.2},
-           Transform(Eigen::AngleAxisd(0.7, Vec3(0.1, 0.2, 1).normalized()) * Eigen::Scaling(1.0, 3.0, 1e-6)), nullptr);
-  return scene;
-}
-
-Radar array() {
-  Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
-  radar.transmitters.push_back(antenna_at({0, 0.02, 0.01}));
-  for (const double y : {-0.02, 0.05}) radar.receivers.push_back(antenna_at({0, y, 0.02}));
-  for (Antenna& antenna : radar.receivers) antenna.pattern = AntennaPattern::cosine_power(3.0);
-  radar.transmitters[1].pattern = AntennaPattern::cosine_power(2.5);
-  radar.transmitters[1].orientation = Quaternion(Eigen::AngleAxisd(0.3, Vec3::UnitZ()));
-  radar.motion = std::make_shared<LinearMotion>(Vec3(5, 0, 0), Vec3(0, 0, 0.4));
-  return radar;
-}
-
-Paths record(const Radar& radar, bool has_mirrors = true, PolarizationModel polarization = PolarizationModel::kScalar) {
-  TraceSettings settings;
-  settings.polarization = polarization;
-  settings.num_rays = 1200;
-  settings.max_bounces = 4;
-  return trace(scene_of_all_kinds(has_mirrors), radar, settings);
-}
 
 // Largest differences to paths evaluated one by one, relative to each value, over all channels.
 struct Differences {
@@ -195,13 +136,6 @@ TEST(SharedLegs, TablesOfGainsAreReadInTheDirectionOfTheLeg) {
   expect_equal(differences(paths, radar, paths.frame.trace_time + 0.01));
 }
 
-// Gains that kernels raise to powers themselves.
-Radar array_of_powers() {
-  Radar radar = array();
-  radar.transmitters[1].pattern = AntennaPattern::cosine_power(2.0);
-  return radar;
-}
-
 TEST(SharedLegs, PathsOfOnePointAreThoseEvaluatedOneByOne) {
   const Radar radar = array_of_powers();
   ASSERT_TRUE(can_evaluate_single_bounces(radar));
@@ -243,74 +177,6 @@ TEST(SharedLegs, PolarizedPathsAreThoseEvaluatedOneByOne) {
       expect_equal(differences(paths, radar, paths.frame.trace_time + 0.02));
     }
   }
-}
-
-struct SingleBounceCounts {
-  size_t paths = 0, pairs = 0, others = 0;
-  std::vector<int> of_mesh;
-};
-
-SingleBounceCounts single_bounce_counts(const Paths& paths) {
-  const PathPreparer preparer(paths, hit_patches(paths));
-  SharedLegPlanner planner;
-  planner.begin(paths, preparer, SpecularPoints::kMaterial, true);
-  const SharedLegPlan& plan = planner(all_of(paths));
-  SingleBounceCounts counts;
-  counts.others = plan.chains.size() + plan.mirror_paths.size();
-  counts.of_mesh.resize(paths.scene->meshes().size());
-  for (const SharedLegPlan::SingleBounce& point : plan.single_bounces) {
-    const auto has = [&](size_t kind) { return size_t{point.path[kind] != SharedLegPlan::SingleBounce::kNoPath}; };
-    counts.paths += has(0) + has(1);
-    counts.pairs += has(0) & has(1);
-    ++counts.of_mesh[point.hit->mesh_id];
-  }
-  return counts;
-}
-
-TEST(SharedLegs, PolarizedPathsAreSharedAsScalarOnes) {
-  const Paths scalar = record(array_of_powers()), polarized = record(array_of_powers(), true, PolarizationModel::kJones);
-  ASSERT_EQ(scalar.num_paths(), polarized.num_paths());
-  EXPECT_EQ(scalar.hits->size(), polarized.hits->size());
-  EXPECT_EQ(single_bounce_counts(scalar).paths, single_bounce_counts(polarized).paths);
-  EXPECT_EQ(single_bounce_counts(scalar).others, single_bounce_counts(polarized).others);
-}
-
-TEST(SharedLegs, PathsOfOnePointStandApart) {
-  const Paths over_mirrors = record(array_of_powers()), paths = record(array_of_powers(), false);
-  for (const Paths* some : {&over_mirrors, &paths}) {
-    const SingleBounceCounts counts = single_bounce_counts(*some);
-    EXPECT_EQ(counts.paths + counts.others, static_cast<size_t>(some->num_paths()));
-    EXPECT_GT(counts.of_mesh[0] + counts.of_mesh[1] + counts.of_mesh[2], 20);  // walls, ground
-    EXPECT_GT(counts.of_mesh[3], 8);
-    EXPECT_EQ(counts.of_mesh[4], 0);  // smooth
-    EXPECT_EQ(counts.of_mesh[5], 0);  // stretched along its way
-    EXPECT_GT(counts.of_mesh[6], 3);
-  }
-  EXPECT_GT(single_bounce_counts(paths).pairs, 100u);
-}
-
-// The scene has all kinds of paths that the first test is about, and they do share.
-TEST(SharedLegs, RaysShareLegsAndPoints) {
-  const Radar radar = array();
-  const Paths paths = record(radar);
-  const std::vector<int64_t> indices = all_of(paths);
-  const PathPreparer preparer(paths, hit_patches(paths));
-  SharedLegPlanner planner;
-  planner.begin(paths, preparer, SpecularPoints::kMaterial, false);
-  const SharedLegPlan& plan = planner(indices);
-  EXPECT_EQ(plan.chains.size() + plan.mirror_paths.size(), indices.size());
-  EXPECT_GT(plan.mirror_paths.size(), 2u);
-  EXPECT_LT(plan.legs.size(), plan.chains.size());  // each has two
-  EXPECT_LT(plan.points.size(), plan.legs.size());
-  const auto any_chain = [&](auto is) { return std::any_of(plan.chains.begin(), plan.chains.end(), is); };
-  EXPECT_TRUE(any_chain([](const SharedLegPlan::ChainPath& chain) { return chain.is_reversed; }));
-  EXPECT_TRUE(any_chain([](const SharedLegPlan::ChainPath& chain) { return chain.inner == SharedLegPlan::kNone; }));
-  EXPECT_TRUE(any_chain([&](const SharedLegPlan::ChainPath& chain) {
-    return chain.inner != SharedLegPlan::kNone && (plan.inner[chain.inner].diffuse & 1) == 0;
-  }));
-  EXPECT_TRUE(
-      any_chain([&](const SharedLegPlan::ChainPath& chain) { return plan.images[plan.legs[chain.end].image].parent != 0; }));
-  EXPECT_GT(plan.inner.size(), 10u);
 }
 
 }  // namespace

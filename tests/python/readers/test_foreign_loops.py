@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from fuzz.foreign import archive
+from fuzz.foreign_seeds import archive
 from support.mesh_texts import obj
 
 LATE = 12345.625  # s, far beyond anything that is stored

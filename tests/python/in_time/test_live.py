@@ -1,38 +1,15 @@
 """Live scenes: the view after any change is that of a fresh one, and only what a change touches is done again."""
 import copy
 import pickle
-import threading
-import time
 
 import numpy as np
 import pytest
 
 import echopath as ep
 from echopath.bench.live.edits import crowded_street, edit_at_random
+from support.live import RAYS, difference, fresh_view, make_live
 
 ROUNDING = 1e-12   # of the largest sample: signals are added and taken away
-RAYS = 2000
-LONG = 60.0        # s, that a thread may take on a busy machine
-
-
-def make_live(**keywords) -> ep.Live:
-    scene, radar, _ = crowded_street()
-    return ep.Live(scene, radar.replace(waveform=radar.waveform.replace(num_chirps=8)), **{"num_rays": RAYS} | keywords)
-
-
-def difference(view: ep.LiveView, fresh: ep.LiveView) -> float:
-    return float(np.abs(view.cube - fresh.cube).max() / np.abs(fresh.cube).max())
-
-
-def fresh_view(live: ep.Live, **keywords) -> ep.LiveView:
-    return ep.Live(live.scene, live.radar, **{"num_rays": live.num_rays} | keywords).update()
-
-
-@pytest.fixture
-def live() -> ep.Live:
-    made = make_live()
-    made.update()
-    return made
 
 
 def test_a_moved_object_shoots_few_rays_and_gives_the_view_of_a_fresh_scene(live):
@@ -178,96 +155,6 @@ def test_a_preview_has_fewer_rays_and_is_that_of_a_fresh_scene(live):
     assert preview.is_preview and preview.num_rays == 500
     assert difference(preview, fresh_view(live, num_rays=500)) == 0.0
     assert not live.update().is_preview
-
-
-class Shown(list):
-    """Views in the order in which they were shown."""
-
-    def __call__(self, view: ep.LiveView) -> None:
-        self.append(view)
-
-
-def test_a_watch_shows_the_latest_change_last(live):
-    shown = Shown()
-    with live.watch(shown) as watch:
-        assert watch.wait(LONG)
-        for _ in range(20):
-            live.change(lambda scene: setattr(scene["sign_30"], "position", scene["sign_30"].position + (0.02, 0.0, 0.0)))
-        assert watch.wait(LONG)
-    assert [view.number for view in shown] == sorted(view.number for view in shown)
-    assert shown[-1].number == 20 and not shown[-1].is_preview
-    assert difference(shown[-1], fresh_view(live)) < ROUNDING
-
-
-def test_a_watch_shows_a_preview_first_where_a_view_takes_longer_than_its_budget():
-    live, shown = make_live(num_rays=20_000), Shown()
-    with live.watch(shown, budget=1e-4) as watch:
-        watch.wait(LONG)
-        live.change(lambda scene: scene.remove("sign_30"))
-        watch.wait(LONG)
-    assert [view.is_preview for view in shown] == [False, True, False]
-    assert shown[1].num_rays < shown[2].num_rays == 20_000
-
-
-def test_a_watch_shows_previews_while_changes_come_quicker_than_views(live, monkeypatch):
-    """Also where the view before them took less than its budget: that of another object may take far longer."""
-    update, shown = live.update, Shown()
-
-    def slow(progress):
-        for _ in range(300):
-            progress("rays", 0.5)
-            time.sleep(0.01)
-        return update(progress=progress)
-
-    with live.watch(shown, budget=LONG) as watch:
-        assert watch.wait(LONG)
-        with monkeypatch.context() as patch:
-            patch.setattr(live, "update", slow)
-            end = time.monotonic() + LONG
-            while not (len(shown) > 3 or time.monotonic() > end):
-                live.change(lambda scene: setattr(scene["sign_30"], "position", scene["sign_30"].position + (1e-3, 0.0, 0.0)))
-                time.sleep(0.02)
-        assert all(view.is_preview for view in shown[1:]) and len(shown) > 3
-        assert watch.wait(LONG)
-    assert not shown[-1].is_preview
-
-
-def test_threads_that_change_beside_each_other_lose_no_change(live):
-    def push():
-        for _ in range(25):
-            live.change(lambda scene: setattr(scene["sign_30"], "position", scene["sign_30"].position + (0.001, 0.0, 0.0)))
-
-    start = live.scene["sign_30"].position[0]
-    with live.watch(Shown()) as watch:
-        threads = [threading.Thread(target=push) for _ in range(4)]
-        for thread in threads:
-            thread.start()
-        for thread in threads:
-            thread.join()
-        assert watch.wait(LONG)
-    assert live.number == 100
-    assert live.scene["sign_30"].position[0] == pytest.approx(start + 0.1, abs=1e-12)
-    assert difference(live.update(), fresh_view(live)) < ROUNDING
-
-
-def test_what_a_watch_cannot_show_is_raised_by_wait_and_stop(live):
-    told = []
-    watch = live.watch(Shown(), failed=told.append)
-    watch.wait(LONG)
-    live.change(lambda scene: setattr(scene["sign_30"], "position", (1e30, 0.0, 0.0)))
-    with pytest.raises(ValueError, match="sign_30"):
-        watch.wait(LONG)
-    with pytest.raises(ValueError, match="sign_30") as raised:
-        watch.stop()
-    assert told == [raised.value]
-
-
-def test_a_stopped_watch_ends_soon():
-    live = make_live(num_rays=1_000_000)
-    watch = live.watch(Shown())
-    time.sleep(0.3)
-    watch.stop()
-    assert not watch.wait(0.1)
 
 
 @pytest.mark.parametrize("call, named", [

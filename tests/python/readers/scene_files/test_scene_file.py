@@ -1,8 +1,7 @@
-"""Scene files: what they mean and how their faults are named."""
+"""Scene files: what they mean."""
 from __future__ import annotations
 
 import math
-import re
 from pathlib import Path
 
 import numpy as np
@@ -12,41 +11,11 @@ import echopath as ep
 from echopath.cli.run import simulate_file
 from echopath.scene_file import motion_tables, object_tables, radar_tables, run_tables, schema
 from echopath.scene_file.table import Table
-from support.scene_text import WAVEFORM
+from support.scene_files import RADAR, fault_of, mesh_object
 
-RADAR = WAVEFORM + """\
-[[radar.transmitters]]
-position = [0.0, 0.0, 1.0]
-[[radar.receivers]]
-position = [0.0, 0.01, 1.0]
-"""
-QUAD = "v 0 0 0\nv 1000 0 0\nv 1000 500 0\nv 0 500 0\nf 1 2 3 4\n"
-DATA = Path(__file__).resolve().parents[3] / "data"
+DATA = Path(__file__).resolve().parents[4] / "data"
 ROUNDING = 1e-12  # m
 SWAY = 0.05       # relative: the torso sways by a few centimetres within a step
-
-
-@pytest.fixture
-def write(tmp_path):
-    """Writes a scene file with that text after a small radar and returns its path; quad.obj lies beside it."""
-    (tmp_path / "quad.obj").write_text(QUAD)
-
-    def write_text(text: str, radar: str = RADAR):
-        path = tmp_path / "scene.toml"
-        path.write_text(radar + text)
-        return path
-
-    return write_text
-
-
-def mesh_object(text: str) -> str:
-    return f'[[objects]]\nname = "quad"\nmesh = "quad.obj"\n{text}\n'
-
-
-def fault_of(path) -> str:
-    with pytest.raises(ValueError) as fault:
-        ep.load_scene(path)
-    return str(fault.value)
 
 
 def test_waveform_and_antennas_are_those_of_the_file(write):
@@ -189,122 +158,6 @@ def test_a_map_from_above_may_have_a_velocity_gate(write):
 
 def test_one_flat_table_of_parts_is_one_partition(write):
     assert ep.load_scene(write('[parts]\ndirect = "T . R"\n')).partitions() == {"parts": {"direct": "T . R"}}
-
-
-CIRCLE = "".join(f"[[radar.receivers]]\nposition = [0.0, {0.01 * math.cos(0.7 * i)}, {1.0 + 0.01 * math.sin(0.7 * i)}]\n"
-                 for i in range(9))
-FAULTS = [
-    (RADAR.replace("bandwidth", "bw"), "radar.waveform.bw: unknown key; did you mean 'bandwidth'?"),
-    (RADAR.replace("bandwidth", "bandwith"), "radar.waveform.bandwith: unknown key; did you mean 'bandwidth'?"),
-    (RADAR.replace("bandwidth = 1e9", ""), "radar.waveform.bandwidth: is missing"),
-    (RADAR.replace("1e9", "'1e9'"), "radar.waveform.bandwidth: must be a number, got '1e9'"),
-    (RADAR.replace("1e9", "-1.0"), "radar.waveform.bandwidth: must be greater than 0, got -1.0"),
-    (RADAR.replace("1e9", "nan"), "radar.waveform.bandwidth: must be finite, got nan"),
-    (RADAR.replace("num_chirps = 8", "num_chirps = 8.5"), "radar.waveform.num_chirps: must be an integer, got 8.5"),
-    (RADAR.replace("[0.0, 0.01, 1.0]", "[0.0, 1.0]"), "radar.receivers[0].position: must have at least 3 entries"),
-    ("guard = 'off'\n" + RADAR, "guard: must be true or false, got 'off'"),
-    ("guard = 0\n" + RADAR, "guard: must be true or false, got 0"),
-    (RADAR + "[tracer]\nnum_rays = 3", "tracer: unknown key; did you mean 'trace'?"),
-    (RADAR + "[trace]\nmax_bounces = 65", "trace.max_bounces: must be at most 64, got 65"),
-    (RADAR + "[trace]\nnum_rays = true", "trace.num_rays: must be an integer, got True"),
-    (RADAR + "[spectrum]\nwindow = 'hanning'", "spectrum.window: must be 'rect', 'hann', 'hamming', 'blackman_harris' or "
-     "('chebyshev', sidelobe level in dB) (nearest: hann), got 'hanning'"),
-    (RADAR + "[spectrum]\nwindow = ['chebyshev', -3]", "spectrum.window: must be 'rect', "),
-    (RADAR + "[angle]\nwindow = 3", "angle.window: must be 'rect', "),
-    (RADAR + "[angle]\nmethod = 'music'", "angle.method: must be 'bartlett' or 'capon', got 'music'"),
-    (RADAR + "[angle]\nazimuth_deg = [10, -10, 1]", "angle.azimuth_deg: must be [first, last, step] in degrees"),
-    (RADAR + "[angle]\nazimuth_deg = [0, 10, 0]", "angle.azimuth_deg: must be [first, last, step] in degrees"),
-    (RADAR + "[angle]\nazimuth_deg = [-60, 60, 1e-12]",
-     "angle.azimuth_deg: must be [first, last, step] in degrees, -180 <= first <= last <= 180, "
-     "step > 0 and at most 36000 steps"),
-    (RADAR + "[angle]\nazimuth_deg = [-60, 60, 1e-320]", "angle.azimuth_deg: must be [first, last, step] in degrees"),
-    (RADAR + "[angle]\nazimuth_deg = [0, 10, 1" + 400 * "0" + "]", "angle.azimuth_deg: must be [first, last, step] in degrees"),
-    (RADAR + "[angle]\nelevation_deg = [5, 5]", "angle.elevation_deg: must be a number or an ascending list"),
-    (RADAR + "[angle]\nmethod = 'capon'\nwindow = 'hann'", "angle.window: must be \"rect\" for capon"),
-    (RADAR + "[angle]\nvelocity = 10.0", "angle: velocity: must be within +-9.67"),
-    (RADAR + CIRCLE + "[angle]\nwindow = 'hann'", "angle: window: must be rect for an array that is no grid"),
-    (RADAR + "[parts]\na = 'T R'\nb = {c = 'T R'}",
-     "parts: must be all selections (one partition) or all tables of selections (several), got ['a', 'b']"),
-    (RADAR + "[parts]\na = 'T & R'",
-     "parts.a: path expression: expected a hit (. 'mesh' S D E P [...]) or '(', got &\n  T & R\n    ^"),
-    (RADAR + "[parts.b]\na = 'T . R & power > x'",
-     "parts.b.a: path expression: expected a power in W, such as 1e-15, got x\n"),
-    (RADAR + "[parts.b]\na = 'T . R & power > abc'",
-     "parts.b.a: path expression: expected a power in W, such as 1e-15, got 'abc'\n"),
-    (RADAR + mesh_object("material = 'metal'") + "\n[parts]\na = \"T 'wal' R\"",
-     "parts.a: path expression: expected a glob that takes a mesh, got 'wal'; nearest names: "),
-    (RADAR + "[parts]\nother = 'T . R'", "parts.other: must not use the name of the rest, got other"),
-    (RADAR + mesh_object("material = 'concret'"), "objects[0].material: unknown material 'concret'"),
-    (RADAR + mesh_object("material = {scatering = 0.3}"),
-     "objects[0].material.scatering: unknown key; did you mean 'scattering'?"),
-    (RADAR + mesh_object("material = {scattering = 1.3}"), "objects[0].material.scattering: must be at most 1"),
-    (RADAR + mesh_object("material = {cross_polarization = 0.6}"),
-     "objects[0].material.cross_polarization: must be at most 0.5"),
-    (RADAR + mesh_object(""), "objects[0]"),
-    (RADAR + mesh_object("material = 'metal'\nmotion = {kind = 'linaer'}"), "objects[0].motion: has an unknown kind"),
-    (RADAR + mesh_object("material = 'metal'\nmotion = {kind = 'linear', speed = 3}"),
-     "objects[0].motion.speed: unknown key"),
-    (RADAR + mesh_object("material = 'metal'\nactor = 'plate'"),
-     "objects[0].mesh: exactly one of mesh, model and actor must be given"),
-    (RADAR + mesh_object("material = 'metal'\nparent = 'nobody'"),
-     "objects[0]: parent: must be the full name of a node"),
-    (RADAR + "[[objects]]\nname = 'a'\nactor = 'pedestrain'",
-     "objects[0].actor: unknown actor 'pedestrain'; did you mean 'pedestrian'?"),
-    (RADAR + "[[objects]]\nname = 'a'\nactor = 'pedestrian'\nparameters = {heigth = 2.0}",
-     "objects[0].parameters.heigth: unknown key; did you mean 'height'?"),
-    (RADAR + "[[objects]]\nname = 'a'\nactor = 'pedestrian'\nparameters = {height = 'tall'}",
-     "objects[0].parameters: height: must be a finite number from 0.5 to 2.5 m, got 'tall'"),
-]
-
-
-@pytest.mark.parametrize("text, message", FAULTS, ids=[message[:40] for _, message in FAULTS])
-def test_faults_name_the_file_the_dotted_path_and_the_rule(write, text, message):
-    path = write(text, radar="")
-    assert fault_of(path).startswith(f"{path}: {message}")
-
-
-def test_every_fault_is_named_at_once(write):
-    path = write(RADAR.replace("bandwidth", "bandwith") + "[trace]\nseed = -1", radar="")
-    assert [line.split(": ")[1] for line in fault_of(path).splitlines()] == ["radar.waveform.bandwith", "trace.seed"]
-
-
-def test_syntax_errors_name_the_file_and_the_line(write):
-    path = write("[trace\n", radar="title = 'ok'\n")
-    assert str(path) in fault_of(path) and "line 2" in fault_of(path)
-
-
-def test_a_scene_file_may_begin_with_a_byte_order_mark(write):
-    path = write("")
-    path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
-    assert ep.load_scene(path).title == ""
-
-
-def test_a_gain_instead_of_a_loss_is_shown_as_the_file_has_it(write):
-    fault = fault_of(write(mesh_object("material = {permittivity = [5, -0.1]}")))
-    assert "objects[0].material.permittivity: " in fault and fault.endswith("must not be negative, got [5, -0.1]")
-
-
-def test_names_must_not_hold_nul(write):
-    fault = fault_of(write('[[objects]]\nname = "a\\u0000b"\nactor = "sphere"\nparameters = {radius = 1.0}\n'))
-    assert "objects[0].name: must not hold a NUL character, got 'a\\x00b'" in fault
-
-
-@pytest.mark.parametrize("text, message", [("a = " + "[" * 100_000, "nested too deeply"),
-                                           ("a = " + "1" * 10_000, "digits")])
-def test_texts_that_the_parser_cannot_take_name_the_file(tmp_path, text, message):
-    (tmp_path / "scene.toml").write_text(text)
-    with pytest.raises(ValueError, match=f"^{re.escape(str(tmp_path))}.*{message}"):
-        ep.load_scene(tmp_path / "scene.toml")
-
-
-def test_a_missing_scene_file_is_a_file_error(tmp_path):
-    with pytest.raises(ep.FileError, match="nowhere.toml"):
-        ep.load_scene(tmp_path / "nowhere.toml")
-
-
-def test_a_missing_mesh_file_is_a_file_error(write):
-    with pytest.raises(ep.FileError, match="quid.obj"):
-        ep.load_scene(write(mesh_object('material = "metal"').replace("quad.obj", "quid.obj")))
 
 
 def test_the_street_is_that_of_its_description():

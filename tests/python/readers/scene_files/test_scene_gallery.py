@@ -7,7 +7,7 @@ import pytest
 
 import echopath as ep
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 SCENES = sorted((ROOT / "data" / "scenes").glob("*.toml"))
 HIDDEN = {"ghost_corner": {"person"}}     # what no straight line reaches, and is meant so
 

@@ -1,21 +1,16 @@
 """Angles: against a slow beamformer, and of targets whose place is known, through the whole chain."""
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 import echopath as ep
 from echopath import _core
+from support.arrays import (
+    C, DEGREE, HALF, LINE, TARGET_RADIUS, at, mimo, scene_of_spheres, spectrum_of, three_by_four, waveform,
+)
 from support.references import slow_beams
 
-DATA = Path(__file__).resolve().parents[3] / "data"
-C = ep.speed_of_light
-WAVELENGTH = C / 77.5e9
-HALF = 0.5 * WAVELENGTH
-DEGREE = np.pi / 180.0
-TARGET_RADIUS = 0.05         # m, of the spheres that stand for points
 # A sphere's echo comes from its point nearest to the antennas, within the footprint's error; beams of 7 to 30 degrees.
 DIRECTION_TOLERANCE = 0.15 * DEGREE
 SPACING_PHASE = 5e-4  # rad: the phase across half a wavelength near broadside, of four digits
@@ -23,30 +18,8 @@ SAMPLED = 0.02        # relative: 2e4 independent cells of noise (0.7 %), or sid
 SAMPLED_LINE = 0.05   # relative: one map of noise instead of six
 SLOT_PHASE = 1e-4     # rad: of an echo beside the middle of its cell; 3e-5 found
 SPEED_CELL = 0.2      # m/s: of the nearest cell, which are 0.34 m/s wide
-NEAR_BEAM = 0.6       # degrees: from the nearest point of the grid, 1 degree wide
-WIDE_BEAM = 0.1       # degrees: the places are points of the grid
 ROUNDING = 1e-12      # relative to the peak, of sums of some hundred terms
-
-
-def waveform(num_chirps=32, num_samples=128, start_frequency=77e9):
-    return ep.ChirpSequence(start_frequency=start_frequency, bandwidth=1e9, num_samples=num_samples, sampling_rate=20e6,
-                            num_chirps=num_chirps, chirp_interval=30e-6)
-
-
-def mimo(transmitters, receivers, height=0.0, motion=None, chirps=None):
-    """Antennas at multiples (left, up) of half a wavelength."""
-    def antennas(steps):
-        return [ep.Antenna((0.0, left * HALF, height + up * HALF)) for left, up in steps]
-
-    return ep.Radar(chirps or waveform(), transmitters=antennas(transmitters), receivers=antennas(receivers), motion=motion)
-
-
-LINE = [(column, 0) for column in range(4)]
 PLANE = [(column, row) for row in range(2) for column in range(4)]
-
-
-def three_by_four(**changes):
-    return mimo([(0, 0), (4, 0), (8, 0)], LINE, **changes)
 
 
 def four_by_eight(**changes):
@@ -152,23 +125,6 @@ def test_the_edge_of_an_array_near_a_target_is_behind_by_its_published_phase():
     assert np.angle(right / middle) == pytest.approx(0.4035, abs=SPACING_PHASE)
 
 
-def scene_of_spheres(*centres, velocity=None):
-    scene = ep.Scene()
-    motion = ep.LinearMotion(velocity=velocity) if velocity is not None else None
-    for index, centre in enumerate(centres):
-        scene.add(ep.actors.sphere(TARGET_RADIUS), name=f"ball{index}", material="metal", position=tuple(centre),
-                  smooth=True, motion=motion)
-    return scene
-
-
-def at(distance, azimuth, elevation):
-    return distance * slow_beams.unit(np.array(azimuth), np.array(elevation))
-
-
-def spectrum_of(scene, radar, num_rays=3000):
-    return ep.range_doppler(ep.synthesize(ep.trace(scene, radar, num_rays=num_rays)), radar)
-
-
 @pytest.mark.parametrize("azimuth, elevation", [(25, 0), (-40, 0), (0, 20), (0, -15), (30, -12)])
 def test_a_sphere_is_found_where_it_is(azimuth, elevation):
     """Left and right, up and down: through trace, replay, synthesis and both transforms."""
@@ -236,79 +192,6 @@ def test_fast_targets_unfold_by_their_slots():
     assert found.velocity[0] == pytest.approx(14.0, abs=SPEED_CELL)
     assert found.azimuth[0] == pytest.approx(0.4, abs=DIRECTION_TOLERANCE)
     assert abs(ep.estimate_angles(spectrum, radar, cells=[cell]).azimuth[0] - 0.4) > 2 * DEGREE
-
-
-def test_a_map_shows_targets_at_their_range_azimuth_and_power():
-    radar = three_by_four(chirps=waveform(num_chirps=16))
-    centres = [at(5.0, 0.5, 0.0), at(8.0, -0.2, 0.0)]
-    spectrum = spectrum_of(scene_of_spheres(*centres), radar)
-    picture = ep.range_azimuth(spectrum, radar)
-    power = np.mean(np.abs(spectrum.values[:, :, 8]) ** 2, axis=(0, 1))
-    for distance, azimuth in ((5.0, 0.5), (8.0, -0.2)):
-        near = np.abs(picture.range - distance + TARGET_RADIUS) < 0.3
-        a, r = np.unravel_index(picture.power[:, near].argmax(), (len(picture.azimuth), near.sum()))
-        assert picture.azimuth[a] == pytest.approx(azimuth, abs=NEAR_BEAM * DEGREE)
-        assert picture.power[:, near][a, r] == pytest.approx(power[near][r], rel=SAMPLED, abs=0)
-
-
-def test_the_scene_of_corners_shows_each_target_at_its_place():
-    from echopath.cli.run import simulate_file
-
-    scene_file = ep.load_scene(DATA / "scenes" / "corners.toml")
-    frame = simulate_file(scene_file, num_rays=30_000)
-    maps = {name: frame.range_azimuth_of(spectrum) for name, spectrum in frame.part_spectra["target"].items()}
-    places = {"corner_right": (6, -35), "corner_left": (9, 10), "corner_far": (14, 30), "ball_approaching": (9.8, -15),
-              "ball_beside": (9, 20)}
-    for name, (distance, azimuth) in places.items():
-        one = maps["corners" if name.startswith("corner") else "balls"]
-        near = np.abs(one.range - distance) < 0.3
-        a, _ = np.unravel_index(one.power[:, near].argmax(), (len(one.azimuth), near.sum()))
-        assert one.azimuth[a] == pytest.approx(azimuth * DEGREE, abs=WIDE_BEAM * DEGREE), name
-    assert frame.range_azimuth.power.shape == (301, 256)
-
-
-def test_settings_of_a_map_are_checked_before_the_trace():
-    radar = mimo([(0, 0)], [(np.cos(0.7 * i), np.sin(0.7 * i)) for i in range(9)])
-    scene = scene_of_spheres([8.0, 0, 0])
-    stages = []
-    for angles, text in (({"window": "hann"}, "^window: "), ({"velocity": 99.0}, "^velocity: "),
-                         ({"azimuth": 9}, "^azimuth: "), ({"windw": "hann"}, "'windw'")):
-        with pytest.raises((ValueError, TypeError), match=text):
-            ep.simulate(scene, radar, angles=angles, progress=lambda stage, fraction: stages.append(stage))
-    assert "trace" not in stages
-
-
-def test_frames_of_one_channel_have_no_map_of_azimuth():
-    frame = ep.simulate(scene_of_spheres([8.0, 0, 0]), mimo([(0, 0)], [(0, 0)]), num_rays=100)
-    assert frame.range_azimuth is None
-
-
-def test_frames_of_arrays_longer_than_a_map_have_none_unless_azimuths_are_given():
-    scene = ep.Scene()
-    scene.add(ep.actors.sphere(0.3), name="sphere", position=(10, 0, 0), material="concrete")
-    radar = mimo([(0, 0)], [(0, 0), (1, 0), (359_000, 0)])  # 700 m
-    assert ep.simulate(scene, radar, num_rays=500, guard=False).range_azimuth is None
-    frame = ep.simulate(scene, radar, num_rays=500, guard=False, angles={"azimuth": [-0.1, 0.0, 0.1]})
-    assert frame.range_azimuth.power.shape[0] == 3
-    with pytest.raises(ValueError, match="^plane: 'range_azimuth' needs antennas side by side, and angles with an azimuth"):
-        ep.annotate(frame.paths, plane="range_azimuth")
-
-
-def test_frames_of_arrays_too_high_for_all_elevations_have_their_map_of_azimuth():
-    scene = ep.Scene()
-    scene.add(ep.actors.sphere(0.3), name="sphere", position=(10, 0, 0), material="concrete")
-    radar = mimo([(0, 0)], [(0, 0), (1, 0), (0, 1), (0, 359_000)])  # 700 m
-    frame = ep.simulate(scene, radar, num_rays=500, guard=False)
-    assert frame.range_azimuth.azimuth == pytest.approx(np.radians(np.arange(-90.0, 91.0)), rel=0, abs=1e-7)
-    with pytest.raises(ValueError, match="^elevation: must be given"):
-        ep.virtual_array(radar).default_angles()
-
-
-def test_a_map_of_azimuth_by_one_antenna_is_warned_of():
-    radar = mimo([(0, 0)], [(0, 0)])
-    spectrum = ep.range_doppler(np.zeros((1, 1, radar.waveform.num_chirps, radar.waveform.num_samples)), radar)
-    with pytest.warns(RuntimeWarning, match="range_azimuth: the antennas of this radar tell no azimuths apart"):
-        ep.range_azimuth(spectrum, radar)
 
 
 def test_virtual_arrays_tell_what_they_are():

@@ -1,0 +1,129 @@
+"""Other FMCW radars in the receivers of a radar."""
+import numpy as np
+import pytest
+from support.other_radars import C, COUNT, RATE, SLOPE, TONE, other, victim
+from support.radars import build_radar
+
+import echopath as ep
+
+LEVEL, SHARE = 0.2, 0.01  # dB and relative: promised
+
+
+def friis(power, distance, frequency):
+    return power * (C / frequency / (4 * np.pi * distance)) ** 2
+
+
+def test_a_crossing_has_the_level_and_the_length_of_its_slopes():
+    sender = other()
+    cube = ep.interference(victim(), sender)
+    power = np.abs(cube[0, 0, 0]) ** 2
+    level = friis(0.05, 20.0, sender.waveform.start_frequency)
+    length = RATE / (0.1 * SLOPE)  # s
+    assert np.sum(power) / RATE == pytest.approx(level * length, rel=SHARE)
+    inside = power > 0.25 * level
+    middle = np.flatnonzero(inside)[20:-20]
+    assert 10 * np.log10(power[middle].mean() / level) == pytest.approx(0.0, abs=LEVEL)
+    # From the crossing on: the difference of frequencies is in the band while it is from 0 to the sampling rate.
+    assert np.flatnonzero(inside)[0] / RATE == pytest.approx(12.8e-6, abs=2.0 / RATE)
+    assert inside.sum() / RATE == pytest.approx(length, abs=2.0 / RATE)
+
+
+def test_a_faster_slope_crosses_from_the_other_side():
+    power = np.abs(ep.interference(victim(), other(slope_ratio=1.1))[0, 0, 0]) ** 2
+    last = np.flatnonzero(power > 0.25 * power.max())[-1] / RATE
+    assert last == pytest.approx(12.8e-6, abs=2.0 / RATE)
+
+
+def test_parallel_chirps_are_a_tone_at_the_delay():
+    """One way of 20 m and 0.1 us that the other begins late."""
+    sender = build_radar(num_samples=COUNT, position=(20, 0, 0), yaw=np.pi)
+    cube = ep.interference(victim(), sender, offset=0.1e-6)[0, 0, 0]
+    steady = cube[40:]
+    beat = np.polyfit(np.arange(len(steady)), np.unwrap(np.angle(steady)), 1)[0] * RATE / (2 * np.pi)
+    assert beat == pytest.approx(SLOPE * (20.0 / C + 0.1e-6), rel=1e-3)
+    assert 10 * np.log10(np.mean(np.abs(steady[20:-20]) ** 2) / friis(0.01, 20.0, 77e9)) == pytest.approx(0.0, abs=LEVEL)
+
+
+@pytest.mark.parametrize("early", [0.9e-6, 1.1e-6, 2.0e-6])
+def test_far_radars_are_heard_until_the_end_of_their_chirps_has_come(early):
+    """From 750 m a chirp that ended before the radar's began is heard for what its delay is longer, as a tone of 2 MHz."""
+    delay, duration = 750.0 / C, COUNT / RATE
+    sender = build_radar(num_samples=COUNT, position=(750, 0, 0), yaw=np.pi,
+                         start_frequency=77e9 - SLOPE * (duration + early - delay) - 2e6)
+    power = np.abs(ep.interference(victim(num_chirps=1), sender, offset=-duration - early)[0, 0, 0]) ** 2
+    level = friis(0.01, 750.0, sender.waveform.start_frequency)
+    assert np.sum(power) / RATE == pytest.approx(level * (delay - early), rel=0.05)
+    assert np.flatnonzero(power > 0.25 * level)[-1] == pytest.approx((delay - early) * RATE, abs=1)
+
+
+def test_patterns_and_motion_of_both_count():
+    pattern = ep.CosinePower(2.0)
+    receiver = victim(receivers=[ep.Antenna(yaw=0.5, pattern=pattern)])
+    moving = other(transmitters=[ep.Antenna(pattern=pattern)]).replace(motion=ep.LinearMotion(velocity=(10.0, 0, 0)))
+    still = other(distance=30.0, transmitters=[ep.Antenna(pattern=pattern)])
+    now = ep.interference(receiver, moving, start_time=60e-6 * 16667)  # some slots later than 1 s: at 30 m
+    level = friis(0.05, 30.0, moving.waveform.start_frequency) * 6.0 * 6.0 * np.cos(0.5) ** 2
+    length = RATE / (0.1 * SLOPE)
+    assert np.sum(np.abs(now) ** 2) / RATE == pytest.approx(level * length, rel=2 * SHARE)
+    assert np.sum(np.abs(ep.interference(receiver, still)) ** 2) / RATE == pytest.approx(level * length, rel=2 * SHARE)
+
+
+def test_chirps_that_never_meet_leave_nothing():
+    assert not ep.interference(victim(), build_radar(num_samples=COUNT, start_frequency=79e9, position=(20, 0, 0))).any()
+
+
+def test_a_mirror_brings_the_radar_from_its_image():
+    """A wall 4 m aside: what comes over it is as direct from 8 m aside, with the sign of a conductor."""
+    receiver, sender = victim(num_chirps=1), other(num_chirps=1)
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(40.0, 40.0), name="wall", material=ep.Material.metal(mirror=True), position=(10, 4, 0),
+              yaw=-np.pi / 2)
+    paths = ep.trace(scene, ep.interference_radar(receiver, sender), num_rays=2000, max_bounces=1)
+    over = ep.interference(receiver, sender, paths)
+    image = sender.replace(position=(20, 8, 0))
+    direct = ep.interference(receiver, image)
+    powers = [np.sum(np.abs(cube) ** 2) for cube in (over, direct)]
+    assert 10 * np.log10(powers[0] / powers[1]) == pytest.approx(0.0, abs=LEVEL)
+    middle = np.abs(direct[0, 0, 0]) > 0.9 * np.abs(direct).max()
+    assert np.corrcoef(over[0, 0, 0][middle], direct[0, 0, 0][middle])[0, 1].real == pytest.approx(-1.0, abs=0.05)
+
+
+def test_labels_name_it_as_a_part():
+    radar = victim(num_chirps=32, transmit_power=1.0)
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.2), name="ball", material=ep.Material.metal(), smooth=True, position=(8, 0, 0))
+    paths = ep.trace(scene, radar, num_rays=1000, max_bounces=1)
+    parts = dict(ep.decompose(paths, radar, {"ball": "T 'ball' R"}))
+    parts["interference"] = ep.interference(radar, build_radar(num_samples=COUNT, position=(40, 3, 0), num_chirps=32))
+    noisy = ep.receive(sum(parts.values()), radar, seed=1).cube
+    found = ep.detect(ep.range_doppler(noisy, radar), radar, parts=parts)
+    assert {"ball", "interference"} <= set(found.part)
+    strongest = found.power.argmax()
+    assert found.part[strongest] == "interference" and found.range[strongest] == pytest.approx(20.0, abs=0.3)
+
+
+def test_rough_walls_send_what_all_of_their_paths_do():
+    """Parallel chirps: each path is a tone at the beat of its delay, here of all paths one by one; a thousandth is left out."""
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(4.0, 4.0), name="rough", material=ep.Material(reflectivity=1.0, scattering=1.0),
+              position=(10, 6, 0), yaw=-np.pi / 2)
+    receiver = victim(num_chirps=1)
+    paths = ep.trace(scene, ep.interference_radar(receiver, TONE), num_rays=1000, max_bounces=1)
+    powers = np.sort(paths.power)[::-1]
+    assert powers[:64].sum() < 0.6 * powers.sum()  # so many are not enough
+    middle = 0.5 * COUNT / RATE
+    delay, amplitude = paths.lengths([middle], 0, 0)[0] / C, paths.amplitudes([middle], 0, 0)[0]
+    time = np.arange(COUNT) / RATE
+    cycles = 77e9 * delay + SLOPE * np.outer(time, delay) - 0.5 * SLOPE * delay ** 2
+    slow = (np.exp(2j * np.pi * np.mod(cycles, 1.0)) @ np.conj(amplitude))[64:]
+    found = ep.interference(receiver, TONE, paths)[0, 0, 0, 64:]
+    assert np.mean(np.abs(found - slow) ** 2) < 0.01 * np.mean(np.abs(slow) ** 2)
+
+
+def test_chirps_that_hop_meet_as_their_steps_say():
+    """Every other chirp of the other radar lies 2 GHz higher, outside the band: half of the crossings are left."""
+    hopping = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=COUNT, sampling_rate=RATE, num_chirps=32,
+                               chirp_interval=60e-6, frequency_steps=(0.0, 2e9))
+    cube = ep.interference(victim(num_chirps=32), TONE.replace(waveform=hopping))
+    heard = np.abs(cube[0, 0]).max(axis=1) > 0
+    np.testing.assert_array_equal(heard, np.arange(32) % 2 == 0)

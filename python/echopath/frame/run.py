@@ -12,10 +12,10 @@ from ..base.stages import StageClock
 from ..detections.checks import checked_keywords
 from ..detections.of_frame import detect_frame
 from ..guard import check_rays, check_signal
-from ..labels.annotate import as_label_settings, label_frame, make_request, owners_of_cubes, powers_received
+from ..labels.annotate import label_frame, owners_of_cubes
 from ..labels.family_pass import FamilyPass
+from ..labels.request import Labelling, as_label_settings, labelling_of, make_request
 from ..paths.families import check_objects
-from ..paths.families import families as find_families
 from ..paths.subset import part_of_path
 from ..receiver.chain import transmitted_code
 from ..receiver.channels import require_channels
@@ -83,9 +83,8 @@ class FrameRun:
         with clock("synthesis"):
             settings = self.signal.of_replay() | {"progress": progress}
             probe = _core.SignalProbe(seed=self.trace.seed) if self.guard and not has_steps(self.radar) else None
-            families = find_families(paths, self._request.objects) if self._request else None
-            mean = powers_received(paths, families, self.partitions) if self._request else None
-            cubes, whole, owners = _cubes(paths, self.radar, self.partitions, families, self._request, settings, probe, mean)
+            work = labelling_of(self._request, paths, self.partitions, settings) if self._request else None
+            cubes, whole, owners = self._cubes(paths, work, settings, probe)
         warn_of_silence(paths, self.radar, whole)
         with clock("parts of paths"):
             groups = {partition: part_of_path(paths, group) for partition, group in self.partitions.items()}
@@ -104,8 +103,7 @@ class FrameRun:
         if self._request:
             with clock("labels of cells"):
                 parts_of = cubes or {ONLY_PARTITION: {"other": whole}}
-                frame.labels = label_frame(self._request, paths, families, parts_of, owners, self.partitions, settings, mean,
-                                           cubes_beside(frame))
+                frame.labels = label_frame(work, owners, parts_of, cubes_beside(frame))
         if self.detect_keywords is not None:
             with clock("detections"):
                 frame.detections = detect_frame(frame, progress=progress, **self.detect_keywords)
@@ -113,6 +111,29 @@ class FrameRun:
             with clock("truth"):
                 frame.kept_truth = truth_of_frame(frame, **self.truth_keywords)
         return frame
+
+    def _cubes(self, paths, work: Labelling | None, settings: dict, probe):
+        """{partition: {part: cube}}, the whole, and what finds the owners of cells, as `label_frame` takes it.
+
+        work: None: no labels, and no owners
+        """
+        if not self.partitions and work is None:
+            return {}, synthesize_slots(paths, self.radar, **settings, probe=probe), None
+        if work is None or settings["retrace"] != "never" or has_steps(self.radar):
+            return self._decomposed(paths, work, settings | {"probe": probe})
+        if not self.partitions:
+            signals = FamilyPass(work, adds_up=True, probe=probe)
+            return {}, signals.whole(), signals.settle
+        cubes, whole, _ = self._decomposed(paths, None, settings | {"probe": probe})
+        return cubes, whole, FamilyPass(work, adds_up=False).settle
+
+    def _decomposed(self, paths, work: Labelling | None, settings: dict):
+        """`_cubes` with the cubes of all parts, and of all families where there are any, from one pass."""
+        views = self.partitions if work is None else {**self.partitions, _FAMILIES: work.families}
+        cubes = decompose(paths, self.radar, views, **settings)
+        whole = sum(next(iter(cubes.values())).values())
+        owners = None if work is None else owners_of_cubes(work.request, cubes[_FAMILIES])
+        return {partition: cubes[partition] for partition in self.partitions}, whole, owners
 
     def _bare_frame(self, paths, whole, cubes: dict, groups: dict, probe, stages: list) -> Frame:
         """A frame without maps and what is made of them."""
@@ -151,31 +172,6 @@ def _check_radar(radar) -> None:
     """Raises ValueError, before the long work, for what no frame of a radar can have."""
     if radar.receiver is not None:
         require_channels(radar.receiver, radar)
-
-
-def _cubes(paths, radar, partitions: dict, families, request, settings: dict, probe, mean):
-    """{partition: {part: cube}}, the whole, and what finds the owners of cells, as `label_frame` takes it.
-
-    families, request, mean: None: no labels, and no owners
-    """
-    if not partitions and families is None:
-        return {}, synthesize_slots(paths, radar, **settings, probe=probe), None
-    if families is None or settings["retrace"] != "never" or has_steps(radar):
-        return _decomposed(paths, radar, partitions, families, request, settings | {"probe": probe})
-    if not partitions:
-        signals = FamilyPass(paths, radar, families, request, settings, mean, adds_up=True, probe=probe)
-        return {}, signals.whole(), signals.settle
-    cubes, whole, _ = _decomposed(paths, radar, partitions, None, None, settings | {"probe": probe})
-    return cubes, whole, FamilyPass(paths, radar, families, request, settings, mean, adds_up=False).settle
-
-
-def _decomposed(paths, radar, partitions: dict, families, request, settings: dict):
-    """`_cubes` with the cubes of all parts, and of all families where there are any, from one pass."""
-    views = partitions if families is None else {**partitions, _FAMILIES: families}
-    cubes = decompose(paths, radar, views, **settings)
-    whole = sum(next(iter(cubes.values())).values())
-    owners = None if families is None else owners_of_cubes(request, cubes[_FAMILIES])
-    return {partition: cubes[partition] for partition in partitions}, whole, owners
 
 
 def _checks(cube, probe, signals: SignalSettings, trace_frame) -> list:

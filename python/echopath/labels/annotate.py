@@ -8,23 +8,20 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import MapWindow, Progress, an, anything, checked, optional, refused, text
-from ..arguments.keywords import refuse_unknown
 from ..arguments.objects import Objects
 from ..arguments.part_names import require_names
 from ..arguments.settings import Evaluate, LabelSettings, Method, Plane, Replay, Retrace, SignalSettings
-from ..paths.families import families as find_families
-from ..paths.resolution import Interval, interval_of, mean_powers
-from ..paths.subset import part_of_path
+from ..paths.resolution import Interval, interval_of
 from ..paths.visibility import appearing_in_frame, visibility_in_trace
 from ..signals import same_radar
-from ..signals.parts import ONLY_PARTITION, selection_rule
+from ..signals.parts import selection_rule
 from ..transmit.signals import has_steps
 from .family_pass import FamilyPass, owners_of_views
 from .labels import Labels
 from .objects import family_cells, label_ghosts, label_objects, occluded_objects
-from .planes import make_plane
 from .powers import CubeSet, add_powers, decomposed
-from .standard_errors import require_batches, share_errors
+from .request import Labelling, Request, labelling_of, make_request
+from .standard_errors import share_errors
 
 _PARTS, _FAMILIES = "parts", "families"
 
@@ -75,26 +72,19 @@ def annotate(paths: _core.Paths, parts: Mapping | None = None, radar: _core.Rada
     require_names({_PARTS: selections})
     replayed = {"tolerance": tolerance, "method": method, "replay": replay, "evaluate": evaluate,
                 "phase_tolerance": phase_tolerance, "retrace": retrace, "keyframes": keyframes, "progress": progress}
-    families = find_families(paths, objects)
-    mean = powers_received(paths, families, {_PARTS: selections})
-    owners, powers = owners_and_powers(request, paths, families, {} if cubes else {_PARTS: selections}, replayed, mean)
+    work = labelling_of(request, paths, {_PARTS: selections}, replayed)
+    owners, powers = owners_and_powers(work, {} if cubes else {_PARTS: selections})
     if cubes:
         powers = add_powers([CubeSet(radar, 1.0, {_PARTS: cubes})], request.plane)
-    return label_partitions(request, paths, families, owners, powers, {_PARTS: selections}, replayed, mean)[_PARTS]
+    return label_partitions(work, owners, powers)[_PARTS]
 
 
-def powers_received(paths, families, selections: dict):
-    """MeanPowers of the families and of the parts of partitions {partition: {name: selection}}; without any, of all paths."""
-    groups = {partition: (part_of_path(paths, chosen), len(chosen) + 1)
-              for partition, chosen in (selections or {ONLY_PARTITION: {}}).items()}
-    return mean_powers(paths, families, groups)
+def owners_and_powers(work: Labelling, partitions: dict):
+    """What finds the owners of cells, as `label_partitions` takes it, and {partition: ViewPowers} of some partitions.
 
-
-def owners_and_powers(request: Request, paths, families, partitions: dict, settings: dict, mean):
-    """What finds the owners of cells, as `label_partitions` takes it, and {partition: ViewPowers} of partitions.
-
-    partitions: {partition: {name: selection}}; settings: signal settings; mean: MeanPowers of the paths
+    partitions: {partition: {name: selection}}
     """
+    request, paths, families, settings = work.request, work.paths, work.families, work.settings
     radar, plane = request.radar, request.plane
     # Families of later records are not known before, and those of chirps that differ have no common bounds.
     if settings.get("retrace", "never") != "never" or has_steps(radar):
@@ -103,7 +93,7 @@ def owners_and_powers(request: Request, paths, families, partitions: dict, setti
         powers = add_powers(decomposed(paths, radar, views, num_parts, plane, settings), plane)
         return owners_of_powers(request, powers.pop(_FAMILIES)), powers
     is_whole = len(partitions) == 1 and not any(partitions.values())
-    signals = FamilyPass(paths, radar, families, request, settings, mean, adds_up=is_whole)
+    signals = FamilyPass(work, adds_up=is_whole)
     if is_whole:
         cubes = {partition: {"other": signals.whole()} for partition in partitions}
         return signals.settle, add_powers([CubeSet(radar, 1.0, cubes)], plane)
@@ -122,91 +112,36 @@ def owners_of_powers(request: Request, powers):
     return lambda whole, intervals: owners_of_views(powers, request.masks(whole)[1])
 
 
-@dataclasses.dataclass(frozen=True)
-class Request:
-    """How the cells of a radar's map are to be labelled, checked; made by `make_request`. Fields as in `annotate`."""
-
-    radar: object
-    objects: object
-    plane: object
-    noise: bool
-    noise_margin_db: float
-    dynamic_range_db: float
-    errors: bool
-
-    @property
-    def dynamic_range(self) -> float:
-        """Ratio of powers, 0: no limit."""
-        return 10.0 ** (-self.dynamic_range_db / 10.0)
-
-    @property
-    def noise_floor(self) -> float:
-        """Power in W that cells above the noise exceed."""
-        return self.plane.noise_power * 10.0 ** (self.noise_margin_db / 10.0) if self.noise else 0.0
-
-    def masks(self, whole):
-        """(above_noise, mask), bool [V, R] of powers of the whole [V, R] in W."""
-        return _core.cell_masks(whole, self.noise_floor, self.dynamic_range)
-
-
-def as_label_settings(labels: bool | LabelSettings | Mapping | None) -> LabelSettings | None:
-    """How to label by what a caller gave as `labels`: True, or keywords of LabelSettings; None: not at all."""
-    if labels is None or labels is False:
-        return None
-    if labels is True or isinstance(labels, LabelSettings):
-        return LabelSettings() if labels is True else labels
-    if not isinstance(labels, Mapping):
-        raise refused(TypeError, "labels", "True, False, LabelSettings or a dict of their keywords", labels)
-    refuse_unknown("labels", labels, LabelSettings.RULES)
-    return LabelSettings(**labels)
-
-
-def make_request(radar, num_batches: int, settings: LabelSettings, *, window=SignalSettings.window,
-                 zero_pad=SignalSettings.zero_pad, angles=None) -> Request:
-    """Checks what can be checked before the long work. num_batches: of the trace; the others as in `annotate`.
-
-    Raises ValueError.
-    """
-    if settings.errors:
-        require_batches(num_batches)
-    made = make_plane(settings.plane, radar, window, zero_pad, angles)
-    if settings.errors:
-        made.require_errors()
-    dynamic_range_db = np.inf if settings.dynamic_range_db is None else settings.dynamic_range_db
-    return Request(radar, settings.objects, made, settings.noise, settings.noise_margin_db, dynamic_range_db, settings.errors)
-
-
-def label_partitions(request: Request, paths, families, owners, powers: dict, selections: dict, settings: dict,
-                     mean, beside=()) -> dict:
+def label_partitions(work: Labelling, owners, powers: dict, beside=()) -> dict:
     """{partition: Labels} from {partition: ViewPowers}; objects and ghosts are the same in all.
 
-    beside: names of the parts, last in each view, that no path makes
-
     owners: callable (power of the whole [V, R] in W, {Family: Interval}) that gives CellOwners of the families
-    selections: {partition: {name: selection}}; settings: signal settings
-    mean: MeanPowers of the families and of the parts of selections
+    beside: names of the parts, last in each view, that no path makes
     """
     first = next(iter(powers.values()))
-    whole = first.whole
     known = [Interval(power, power, power) for power in (first.received[name] for name in beside)]
-    received = {partition: [*map(interval_of, mean.of_parts[partition]), *known] for partition, of_parts in powers.items()
-                if [*selections.get(partition, {}), "other", *beside] == list(of_parts.cells)}
-    intervals = dict(zip(families.families, map(interval_of, mean.of_families)))
-    owned = owners(whole, intervals)
+    received = {partition: [*map(interval_of, work.mean.of_parts[partition]), *known]
+                for partition, of_parts in powers.items()
+                if [*work.selections.get(partition, {}), "other", *beside] == list(of_parts.cells)}
+    intervals = dict(zip(work.families.families, map(interval_of, work.mean.of_families)))
+    owned = owners(first.whole, intervals)
     for name in beside:
         owned.leave(first.cells[name])
-    scene_labels = _label_scene(request, paths, families, owned, intervals, whole, settings.get("progress"))
-    return {partition: _label_parts(request, paths, of_parts, selections.get(partition, {}), received.get(partition),
-                                    scene_labels, settings, beside)
-            for partition, of_parts in powers.items()}
+    scene_labels = _label_scene(work, owned, intervals, first.whole)
+    labels = {partition: _label_parts(work, of_parts, received.get(partition), scene_labels)
+              for partition, of_parts in powers.items()}
+    if not work.request.errors:
+        return labels
+    return {partition: _with_errors(found, work, work.selections.get(partition, {}), beside)
+            for partition, found in labels.items()}
 
 
-def _label_scene(request: Request, paths, families, owners, intervals: dict, whole, progress=None) -> dict:
+def _label_scene(work: Labelling, owners, intervals: dict, whole) -> dict:
     """The fields of Labels that tell of objects and ghosts.
 
     owners: CellOwners; intervals: {Family: Interval}; whole: power [V, R] in W
-    progress: callable (stage, fraction), True for bars, or None
     """
+    request, paths, families, progress = work.request, work.paths, work.families, work.settings.get("progress")
     found = family_cells(owners, request.masks(whole)[1], request.noise_floor, request.plane, intervals)
     seen = visibility_in_trace(paths, request.radar, request.objects, progress=progress)
     visibility = {of_object.name: of_object for of_object in seen}
@@ -218,40 +153,38 @@ def _label_scene(request: Request, paths, families, owners, intervals: dict, who
             "left_out": owners.left_out}
 
 
-def _label_parts(request: Request, paths, powers, selections: dict, received, scene_labels: dict, settings: dict,
-                 beside) -> Labels:
-    """Labels of a partition.
+def _label_parts(work: Labelling, powers, received, scene_labels: dict) -> Labels:
+    """Labels of a partition, without errors.
 
     powers: its ViewPowers; received: Interval in W of each part, None where the parts are not those of selections
-    scene_labels: of `_label_scene`; settings: signal settings
+    scene_labels: of `_label_scene`
     """
+    request = work.request
     names, plane = list(powers.cells), request.plane
     power = np.stack([powers.cells[name] for name in names])
     above_noise, mask = request.masks(powers.whole)
-    labels = Labels(plane=plane.name, velocity=plane.velocity, azimuth=plane.azimuth, range=plane.range,
-                    part_names=[str(name) for name in names], power=power, whole=powers.whole,
-                    share=_core.power_shares(power), dominant=_core.strongest_part(power, mask),
-                    noise_power=plane.noise_power, noise_margin_db=request.noise_margin_db,
-                    dynamic_range_db=request.dynamic_range_db, above_noise=above_noise, mask=mask, seed=paths.frame.seed,
-                    part_received=received, **scene_labels)
-    return _with_errors(labels, request, paths, selections, settings, beside) if request.errors else labels
+    return Labels(plane=plane.name, velocity=plane.velocity, azimuth=plane.azimuth, range=plane.range,
+                  part_names=[str(name) for name in names], power=power, whole=powers.whole,
+                  share=_core.power_shares(power), dominant=_core.strongest_part(power, mask),
+                  noise_power=plane.noise_power, noise_margin_db=request.noise_margin_db,
+                  dynamic_range_db=request.dynamic_range_db, above_noise=above_noise, mask=mask, seed=work.paths.frame.seed,
+                  part_received=received, **scene_labels)
 
 
-def label_frame(request: Request, paths, families, cubes: dict, owners, selections: dict, settings: dict, mean,
-                beside: dict) -> dict:
+def label_frame(work: Labelling, owners, cubes: dict, beside: dict) -> dict:
     """{partition: Labels} from {partition: {part: cube}}, cubes [tx, rx, chirp, sample] in sqrt(W).
 
-    owners: as in `label_partitions`; selections: {partition: {name: selection}}; settings: signal settings; beside: {name:
-    cube} of what no path makes, which every partition gets as parts; mean: as in `label_partitions`.
+    owners: as in `label_partitions`; beside: {name: cube} of what no path makes, which every partition gets as parts
     """
     views = {partition: {**parts, **beside} for partition, parts in cubes.items()}
-    powers = add_powers([CubeSet(request.radar, 1.0, views)], request.plane)
-    return label_partitions(request, paths, families, owners, powers, selections, settings, mean, tuple(beside))
+    powers = add_powers([CubeSet(work.request.radar, 1.0, views)], work.request.plane)
+    return label_partitions(work, owners, powers, tuple(beside))
 
 
-def _with_errors(labels: Labels, request: Request, paths, selections: dict, settings: dict, beside) -> Labels:
+def _with_errors(labels: Labels, work: Labelling, selections: dict, beside) -> Labels:
+    """Labels of a partition of selections {name: selection} with their errors."""
     known = {name: labels.power[labels.part_names.index(name)] for name in beside}
-    found = share_errors(paths, request.radar, selections, labels.part_names, labels.dominant, request.plane, settings, known)
+    found = share_errors(labels, work, selections, known)
     names = ("mean_power", "power_error", "mean_share", "share_error", "certain")
     return dataclasses.replace(labels, **dict(zip(names, found)))
 

@@ -43,13 +43,13 @@ class _Apart(NamedTuple):
 class FamilyPass:
     """Makes the signals of families, some at a time, and keeps of each cell only who owns it.
 
-    families: Families of the paths; request: how cells are labelled; settings: signal settings of `decompose`, retrace "never"
-    mean: MeanPowers of the paths; adds_up: whether `whole` is wanted; probe: SignalProbe of that whole
+    work: Labelling, of settings with retrace "never"; adds_up: whether `whole` is wanted; probe: SignalProbe of that whole
     """
 
-    def __init__(self, paths, radar, families, request, settings: dict, mean, *, adds_up: bool, probe=None):
+    def __init__(self, work, *, adds_up: bool, probe=None):
+        families, request, settings, radar = work.families, work.request, work.settings, work.request.radar
         signal = {name: settings.get(name, getattr(SignalSettings, name)) for name in _OF_PASS}
-        self._pass = _core.PartPass(paths, radar, families.family_of_path, len(families), probe=probe, **signal)
+        self._pass = _core.PartPass(work.paths, radar, families.family_of_path, len(families), probe=probe, **signal)
         self._pass.set_adds_up(adds_up)
         self._radar, self._request, self._progress = radar, request, settings.get("progress")
         plane = request.plane
@@ -59,7 +59,7 @@ class FamilyPass:
         self._is_direct = np.array([_is_direct(families.families[members[0]]) for members in self._owners.rivals], bool)
         self._least = SHOWN * request.noise_floor
         self._apart = {}  # {rival: _Apart}
-        self._make_likely(families, mean)
+        self._make_likely(families, work.mean)
         if adds_up and probe is not None:
             self._pass.finish_probe()
 

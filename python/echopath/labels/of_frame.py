@@ -8,12 +8,12 @@ from ..arguments.objects import Objects
 from ..arguments.part_names import require_names
 from ..arguments.settings import FRAME_KEYWORDS, LabelSettings, Plane
 from ..frame.frame import Frame
-from ..paths.families import families as find_families
 from ..signals.beside import cubes_beside
 from ..signals.parts import ONLY_PARTITION, as_partitions, check_partitions
-from .annotate import label_partitions, make_request, owners_and_powers, powers_received
+from .annotate import label_partitions, owners_and_powers
 from .labels import Labels
 from .powers import CubeSet, add_powers, join
+from .request import labelling_of, make_request
 
 
 @checked({"settings": LabelSettings}, **LabelSettings.RULES, frame=an(Frame), parts=anything)
@@ -39,17 +39,16 @@ def annotate_frame(frame: Frame, parts: Mapping | None = None, *, plane: Plane =
     request = make_request(frame.radar, paths.frame.num_batches, asked, **frame.spectrum_settings, angles=angles or None)
     chosen = _as_new_partitions(parts, frame)
     replayed = {name: getattr(frame, name) for name in FRAME_KEYWORDS} | {"progress": progress}
-    families = find_families(paths, request.objects)
-    mean = powers_received(paths, families, frame.selections | chosen)
-    owners, powers = owners_and_powers(request, paths, families, chosen, replayed, mean)
+    selections = frame.selections | chosen
+    work = labelling_of(request, paths, selections, replayed)
+    owners, powers = owners_and_powers(work, chosen)
     kept = {partition: cubes for partition, cubes in frame.parts.items() if partition not in chosen}
     powers |= add_powers([CubeSet(frame.radar, 1.0, kept)], request.plane)
-    selections = frame.selections | chosen
     powers = {partition: powers[partition] for partition in selections}
     beside = cubes_beside(frame)
     if beside:
         join(powers.values(), beside, frame.cube, frame.radar, request.plane)
-    return label_partitions(request, paths, families, owners, powers, selections, replayed, mean, tuple(beside))
+    return label_partitions(work, owners, powers, tuple(beside))
 
 
 def _as_new_partitions(parts, frame) -> dict:

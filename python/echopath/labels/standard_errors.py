@@ -53,19 +53,21 @@ def require_batches(num_batches: int) -> None:
         raise ValueError("errors: need independent batches of rays, trace(batches=8) (2 at least), got a trace with one")
 
 
-def share_errors(paths, radar, selections: dict, part_names, dominant, plane, settings: dict, known: dict):
+def share_errors(labels, work, selections: dict, known: dict):
     """(mean_power, power_error, mean_share, share_error [K, V, R], certain [V, R]) of the parts of a partition.
 
-    selections: {name: selection}; dominant: i16 [V, R], the part that each label names; known: {part: power [V, R] in W} of
-    those that no path makes, which have no error.
+    labels: of the partition; work: Labelling; selections: {name: selection}; known: {part: power [V, R] in W} of those that no
+    path makes, which have no error.
     """
+    paths, part_names = work.paths, labels.part_names
+    radar, plane = work.request.radar, work.request.plane
     num_batches = paths.frame.num_batches
     grouping = _core.Grouping
     view = grouping.all_of([grouping.selections(list(selections.items())), grouping.batches()])
     sums = BatchSums(part_names, num_batches, plane)
     num_parts = len(part_names) * (2 * num_batches + 1)
-    for cube_set in decomposed(paths, radar, {"batches": view}, num_parts, plane, settings):
+    for cube_set in decomposed(paths, radar, {"batches": view}, num_parts, plane, work.settings):
         sums.add(cube_set.views["batches"], cube_set.radar, cube_set.weight)
     for name, power in known.items():
         sums.diffuse[part_names.index(name)] = power
-    return _core.share_errors(sums.cross, sums.coherent, sums.diffuse, dominant)
+    return _core.share_errors(sums.cross, sums.coherent, sums.diffuse, labels.dominant)

@@ -6,7 +6,7 @@ import echopath as ep
 from echopath.actors import shapes
 from echopath.arguments.settings import LabelSettings
 from echopath.labels import family_pass
-from echopath.labels.annotate import make_request
+from echopath.labels.request import make_request
 from echopath.labels.cell_owners import ALIKE
 from echopath.labels.powers import parts_by_rival
 

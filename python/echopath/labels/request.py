@@ -1,0 +1,101 @@
+"""How cells are to be labelled, checked, and by what."""
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+
+import numpy as np
+
+from .. import _core
+from ..arguments.checks import refused
+from ..arguments.keywords import refuse_unknown
+from ..arguments.settings import LabelSettings, SignalSettings
+from ..paths.families import families as find_families
+from ..paths.resolution import mean_powers
+from ..paths.subset import part_of_path
+from ..signals.parts import ONLY_PARTITION
+from .planes import make_plane
+from .standard_errors import require_batches
+
+
+@dataclasses.dataclass(frozen=True)
+class Request:
+    """How the cells of a radar's map are to be labelled, checked; made by `make_request`. Fields as in `annotate`."""
+
+    radar: object
+    objects: object
+    plane: object
+    noise: bool
+    noise_margin_db: float
+    dynamic_range_db: float
+    errors: bool
+
+    @property
+    def dynamic_range(self) -> float:
+        """Ratio of powers, 0: no limit."""
+        return 10.0 ** (-self.dynamic_range_db / 10.0)
+
+    @property
+    def noise_floor(self) -> float:
+        """Power in W that cells above the noise exceed."""
+        return self.plane.noise_power * 10.0 ** (self.noise_margin_db / 10.0) if self.noise else 0.0
+
+    def masks(self, whole):
+        """(above_noise, mask), bool [V, R] of powers of the whole [V, R] in W."""
+        return _core.cell_masks(whole, self.noise_floor, self.dynamic_range)
+
+
+def as_label_settings(labels: bool | LabelSettings | Mapping | None) -> LabelSettings | None:
+    """How to label by what a caller gave as `labels`: True, or keywords of LabelSettings; None: not at all."""
+    if labels is None or labels is False:
+        return None
+    if labels is True or isinstance(labels, LabelSettings):
+        return LabelSettings() if labels is True else labels
+    if not isinstance(labels, Mapping):
+        raise refused(TypeError, "labels", "True, False, LabelSettings or a dict of their keywords", labels)
+    refuse_unknown("labels", labels, LabelSettings.RULES)
+    return LabelSettings(**labels)
+
+
+def make_request(radar, num_batches: int, settings: LabelSettings, *, window=SignalSettings.window,
+                 zero_pad=SignalSettings.zero_pad, angles=None) -> Request:
+    """Checks what can be checked before the long work. num_batches: of the trace; the others as in `annotate`.
+
+    Raises ValueError.
+    """
+    if settings.errors:
+        require_batches(num_batches)
+    made = make_plane(settings.plane, radar, window, zero_pad, angles)
+    if settings.errors:
+        made.require_errors()
+    dynamic_range_db = np.inf if settings.dynamic_range_db is None else settings.dynamic_range_db
+    return Request(radar, settings.objects, made, settings.noise, settings.noise_margin_db, dynamic_range_db, settings.errors)
+
+
+@dataclasses.dataclass(frozen=True)
+class Labelling:
+    """What cells are labelled by, beside the powers of the parts; made by `labelling_of`.
+
+    selections: {partition: {name: selection}}; settings: signal settings of `decompose`
+    families: Families of the paths; mean: MeanPowers of these and of the parts of selections
+    """
+
+    request: Request
+    paths: _core.Paths
+    families: object
+    selections: dict
+    settings: dict
+    mean: object
+
+
+def labelling_of(request: Request, paths, selections: dict, settings: dict) -> Labelling:
+    """What the cells of these paths are labelled by; arguments: fields of Labelling."""
+    families = find_families(paths, request.objects)
+    return Labelling(request, paths, families, selections, settings, _powers_received(paths, families, selections))
+
+
+def _powers_received(paths, families, selections: dict):
+    """MeanPowers of the families and of the parts of partitions {partition: {name: selection}}; without any, of all paths."""
+    groups = {partition: (part_of_path(paths, chosen), len(chosen) + 1)
+              for partition, chosen in (selections or {ONLY_PARTITION: {}}).items()}
+    return mean_powers(paths, families, groups)

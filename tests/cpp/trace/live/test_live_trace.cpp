@@ -6,6 +6,7 @@
 #include <map>
 #include <random>
 
+#include "cpp/support/sanitized.h"
 #include "cpp/support/scenes.h"
 #include "echopath/trace/live/live_trace.h"
 
@@ -127,9 +128,10 @@ void expect_as_fresh(bool mirrors, Scatterers scatterers, int num_changes, uint6
 }
 
 TEST(LiveTrace, HasTheRecordOfAFreshTraceAfterEveryChange) {
-  expect_as_fresh(false, Scatterers::kRays, 15, 1);
-  expect_as_fresh(true, Scatterers::kRays, 15, 2);
-  expect_as_fresh(false, Scatterers::kSurface, 10, 3);
+  const int num_changes = test::kIsSanitized ? 5 : 15;
+  expect_as_fresh(false, Scatterers::kRays, num_changes, 1);
+  expect_as_fresh(true, Scatterers::kRays, num_changes, 2);
+  expect_as_fresh(false, Scatterers::kSurface, num_changes, 3);
 }
 
 TEST(LiveTrace, ShootsNothingWhereNothingChanges) {
@@ -161,7 +163,7 @@ TEST(LiveTrace, WhatIsRemovedAndAddedMakesTheOneRecordTheOther) {
   Paths before = live.update(scene, radar(), settings).added;
   std::mt19937_64 draw(4);
   int num_compared = 0;
-  for (int k = 0; k < 20; ++k) {
+  for (int k = 0; k < (test::kIsSanitized ? 7 : 20); ++k) {
     change(scene, draw);
     const LiveTrace::Change change = live.update(scene, radar(), settings);
     const Paths after = live.paths();
@@ -176,7 +178,7 @@ TEST(LiveTrace, WhatIsRemovedAndAddedMakesTheOneRecordTheOther) {
     }
     before = after;
   }
-  EXPECT_GT(num_compared, 5);
+  EXPECT_GT(num_compared, test::kIsSanitized ? 2 : 5);
 }
 
 TEST(LiveTrace, AnOtherRadarOrOtherSettingsAreFollowed) {

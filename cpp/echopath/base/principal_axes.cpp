@@ -6,8 +6,8 @@
 
 namespace echopath {
 
-// Two rows are tridiagonal as they are. Eigen's `compute` would bring them to that form first, which changes no bit of them and
-// takes the compiler 5 s for each file that calls it.
+// Two rows are tridiagonal as they are. Eigen's `compute` would bring them to that form first, which changes no bit of
+// them and takes the compiler 5 s for each file that calls it.
 PrincipalAxes principal_axes(const Eigen::Matrix2d& symmetric) {
   const Eigen::Vector2d diagonal = symmetric.diagonal();
   const double beside = symmetric(1, 0);

@@ -10,7 +10,8 @@ struct PrincipalAxes {
   Eigen::Matrix2d axes;
 };
 
-// Reads the lower triangle alone. The values have the unit of the matrix. A multiple of the unit matrix has the axes x and y.
+// Reads the lower triangle alone. The values have the unit of the matrix. A multiple of the unit matrix has the axes x
+// and y.
 PrincipalAxes principal_axes(const Eigen::Matrix2d& symmetric);
 
 }  // namespace echopath

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <numeric>
 #include <random>
 
 #include "cpp/signal/slow_sum.h"
@@ -46,7 +47,7 @@ TEST(RowBands, RowsThatGrowInTurnHoldWhatWasAddedToThem) {
   std::mt19937_64 random(4);
   RowBands bands;
   for (int round = 0; round < 3; ++round) {  // what an earlier round left must not show
-    bands.start(5, kChirps);
+    bands.start(1, 5, kChirps);
     std::vector<Dense> expected(5, Dense(2 * kChirps * kLength));
     for (int i = 0; i < 60; ++i) {
       const size_t row = random() % 4;  // the last one stays empty
@@ -55,6 +56,40 @@ TEST(RowBands, RowsThatGrowInTurnHoldWhatWasAddedToThem) {
     for (size_t row = 0; row < 5; ++row) EXPECT_EQ(dense_row(bands, row), expected[row]) << row;
     EXPECT_TRUE(bands.has(0));
     EXPECT_FALSE(bands.has(4));
+  }
+}
+
+// Channels of an array need nearly the same cells, so that a row which takes those of the channel before grows but once. The
+// sums are those of rows that do not.
+TEST(RowBands, RowsTakeTheCellsOfTheChannelBefore) {
+  RowBands bands;
+  bands.start(2, 1, kChirps);
+  bands.room(0, {10, 12});
+  bands.room(0, {8, 20});
+  const TileRows rows = bands.room(1, {15, 16});
+  rows.rows[15] += 3.0;
+  EXPECT_EQ(bands.cells(1, 0).first, 8);
+  EXPECT_EQ(bands.cells(1, 0).count, 12);
+  EXPECT_EQ(bands.room(1, {8, 20}).rows, rows.rows);
+  Dense expected(2 * kChirps * kLength);
+  expected[15] = 3.0;
+  EXPECT_EQ(dense_row(bands, 1), expected);
+}
+
+// A row larger than what memory is handed out in, between small ones.
+TEST(RowBands, LongRowsHoldWhatWasAddedToThem) {
+  constexpr int64_t kLong = 1 << 17;
+  RowBands bands;
+  for (int round = 0; round < 2; ++round) {
+    bands.start(1, 3, kChirps);
+    bands.room(0, {0, 5}).rows[4] += 1.0;
+    bands.room(1, {0, kLong}).rows[kLong - 1] += 2.0;
+    bands.room(2, {7, 9}).rows[8] += 3.0;
+    bands.room(0, {0, kLong}).rows[6] += 4.0;
+    EXPECT_EQ(bands.cells(0, 0).re[4] + bands.cells(0, 0).re[6], 5.0);
+    EXPECT_EQ(bands.cells(1, 0).re[kLong - 1], 2.0);
+    EXPECT_EQ(bands.cells(2, 0).re[1], 3.0);
+    EXPECT_EQ(std::accumulate(bands.cells(0, 0).re, bands.cells(0, kChirps - 1).im + kLong, 0.0), 5.0);
   }
 }
 

@@ -70,6 +70,29 @@ TEST_P(BandMaps, ShownCellsAreThoseOfTheSamplesAndOthersAreWeak) {
   EXPECT_EQ(std::count(band.cells.begin(), band.cells.end(), 0.0) > 0, one.leaves_out);
 }
 
+// A few ranges that are asked for are those of the samples; others have no power.
+TEST_P(BandMaps, AskedRangesAreThoseOfTheSamples) {
+  const Case& one = GetParam();
+  const Radar radar = radar_of(one);
+  const Paths paths = paths_of(radar);
+  PartPass pass(paths, radar, std::vector<uint32_t>(paths.num_paths()), 2, {});
+  const Window window{one.window};
+  const SetPower whole = pass.powers({{0}}, window, one.zero_pad, 0.0, nullptr).front();
+  const double largest = *std::max_element(whole.cells.begin(), whole.cells.end());
+  const size_t num_ranges = whole.cells.size() / static_cast<size_t>(one.num_chirps * one.zero_pad);
+  for (const size_t num_asked : {size_t{3}, size_t{20}}) {
+    std::vector<uint8_t> asked(num_ranges);
+    std::fill_n(asked.begin() + 1, num_asked, 1);
+    const std::vector<SetPower> found = pass.powers({{0}, {1}}, window, one.zero_pad, 0.0, nullptr, {asked, asked});
+    for (size_t i = 0; i < whole.cells.size(); ++i) {
+      if (asked[i % num_ranges]) ASSERT_NEAR(found[0].cells[i], whole.cells[i], kRounding * largest) << i;
+      else ASSERT_EQ(found[0].cells[i], 0.0) << i;
+    }
+    EXPECT_NEAR(found[0].mean_square, whole.mean_square, kRounding * whole.mean_square);
+    EXPECT_EQ(found[1].mean_square, 0.0);  // no path is in that group
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Waveforms, BandMaps,
                          ::testing::Values(Case{256, 128, 1, WindowKind::kHann, false, true},
                                            Case{256, 40, 2, WindowKind::kHann, false, true},

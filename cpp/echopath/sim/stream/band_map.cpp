@@ -5,13 +5,14 @@
 #include <numeric>
 
 #include "echopath/base/lanes/simd.h"
+#include "echopath/sim/stream/band_loops.h"
 #include "echopath/spectrum/range_doppler.h"
 
 namespace echopath {
 namespace {
 
-constexpr int64_t kLanes = 32;              // chirps side by side
-constexpr int64_t kApart = 8;               // between rows of lanes: powers of two would share few sets of the cache
+constexpr int64_t kFewColumns = 4;          // up to which cells need not be sorted to lanes
+constexpr int kTogether = 8;                // chirps whose rows are read together
 constexpr int64_t kLongestTable = 1 << 16;  // of responses
 constexpr int64_t kMostProducts = 60000;    // of cells and columns, above which the samples are quicker
 
@@ -32,63 +33,29 @@ std::vector<std::complex<double>> tones_sum(const std::vector<double>& factor, i
   return {buffer.data(), buffer.data() + size};
 }
 
-ECHOPATH_INLINE void find_largest_squares(const double* re, const double* im, int64_t count, double* __restrict largest) {
-  for (int64_t i = 0; i < count; ++i) {
-    const double square = re[i] * re[i] + im[i] * im[i];
-    largest[i] = square > largest[i] ? square : largest[i];
+// Adds the rows of some chirps to lanes [cell from `first` on, re/im, stride], one chirp in each.
+template <int kRows>
+void add_lanes_of(const RowCells* rows, int64_t first, int64_t num_cells, int64_t stride, double* lanes) {
+  const int64_t begin = std::max(rows[0].first, first), end = std::min(rows[0].first + rows[0].count, first + num_cells);
+  for (int64_t cell = begin; cell < end; ++cell) {
+    double* const re = lanes + 2 * (cell - first) * stride;
+    const int64_t i = cell - rows[0].first;
+    for (int c = 0; c < kRows; ++c) re[c] += rows[c].re[i];
+    for (int c = 0; c < kRows; ++c) re[stride + c] += rows[c].im[i];
   }
 }
 
-// Adds up the cells of a band, each times a complex factor: lanes [count, re/im, num_lanes + kApart] to out [re/im,
-// num_lanes].
-ECHOPATH_INLINE void combine_cells(const double* lanes, int64_t num_lanes, int64_t count, const double* factor,
-                                   double* __restrict out) {
-  const int64_t stride = num_lanes + kApart;
-  for (int64_t first = 0; first < num_lanes; first += kLanes) {
-    double re[kLanes] = {}, im[kLanes] = {};
-    for (int64_t i = 0; i < count; ++i) {
-      const double* const cell_re = lanes + 2 * i * stride + first;
-      const double* const cell_im = cell_re + stride;
-      const double factor_re = factor[2 * i], factor_im = factor[2 * i + 1];
-      for (int64_t c = 0; c < kLanes; ++c) {
-        re[c] += factor_re * cell_re[c] - factor_im * cell_im[c];
-        im[c] += factor_re * cell_im[c] + factor_im * cell_re[c];
-      }
-    }
-    for (int64_t c = 0; c < kLanes; ++c) {
-      out[first + c] = re[c];
-      out[num_lanes + first + c] = im[c];
-    }
-  }
-}
-
-// Adds to out [1] the real part of the sum over lanes, cells i and distances d of overlap_d g_{i + d} conj(g_i); overlap
-// [count, re/im]. Lanes are taken some at a time, which stay in the first-level cache.
-ECHOPATH_INLINE void add_overlaps(const double* lanes, int64_t num_lanes, int64_t count, const double* overlap,
-                                  double* __restrict out) {
-  const int64_t stride = num_lanes + kApart;
-  double sum[kLanes] = {};
-  for (int64_t first = 0; first < num_lanes; first += kLanes) {
-    for (int64_t i = 0; i < count; ++i) {
-      const double* const near = lanes + 2 * i * stride + first;
-      double re[kLanes] = {}, im[kLanes] = {};
-      for (int64_t d = 0; i + d < count; ++d) {
-        const double* const far = near + 2 * d * stride;
-        for (int64_t c = 0; c < kLanes; ++c) {
-          re[c] += overlap[2 * d] * far[c] - overlap[2 * d + 1] * far[stride + c];
-          im[c] += overlap[2 * d] * far[stride + c] + overlap[2 * d + 1] * far[c];
-        }
-      }
-      for (int64_t c = 0; c < kLanes; ++c) sum[c] += near[c] * re[c] + near[stride + c] * im[c];
-    }
-  }
-  for (int64_t c = 0; c < kLanes; ++c) out[0] += sum[c];
+// The rows of chirps that are read together have the same cells.
+void add_lanes(const RowCells* rows, int count, int64_t first, int64_t num_cells, int64_t stride, double* lanes) {
+  if (count == kTogether) return add_lanes_of<kTogether>(rows, first, num_cells, stride, lanes);
+  for (int i = 0; i < count; ++i) add_lanes_of<1>(rows + i, first, num_cells, stride, lanes + i);
 }
 
 }  // namespace
 
 BandMap::BandMap(const Radar& radar, const MapWindows& window, int zero_pad, const SpreadMethod* spread)
-    : spread_(spread), num_chirps_(radar.waveform.num_chirps), num_lanes_((num_chirps_ + kLanes - 1) / kLanes * kLanes),
+    : spread_(spread), num_chirps_(radar.waveform.num_chirps),
+      num_lanes_((num_chirps_ + band_loops::kLanes - 1) / band_loops::kLanes * band_loops::kLanes),
       num_ranges_(static_cast<int64_t>(range_axis(radar.waveform, radar.waveform.num_samples * zero_pad).size())),
       num_bins_(int64_t{zero_pad} * radar.waveform.num_samples),
       doppler_taper_(unit_taper(window.velocity, radar.waveform.num_chirps)),
@@ -122,8 +89,9 @@ bool BandMap::power(const SummedGroups& of, int num_channels, double least, std:
       if (of.signals->has_still(channel, group)) return false;
     }
   }
-  const Band band = band_of(of, num_channels);
-  const std::vector<int64_t> columns = columns_of(band, least, asked);
+  const bool takes_all = least <= 0.0 && !asked.empty();
+  const Band band = takes_all ? extent_of(of, num_channels) : band_of(of, num_channels);
+  const std::vector<int64_t> columns = columns_of(band, takes_all ? -1.0 : least, asked);
   if (band.count * (std::ssize(columns) + band.count / 2) > kMostProducts) {
     asked.assign(static_cast<size_t>(num_ranges_), 0);
     for (const int64_t column : columns) asked[static_cast<size_t>(column)] = 1;
@@ -132,10 +100,14 @@ bool BandMap::power(const SummedGroups& of, int num_channels, double least, std:
   out = {std::vector<double>(static_cast<size_t>(doppler_fft_.size() * num_ranges_)), 0.0};
   std::vector<double> lanes;
   for (int channel = 0; channel < num_channels; ++channel) {
+    if (std::ssize(columns) <= kFewColumns) {
+      for (const int64_t column : columns) add_column(of, channel, band, column, out.cells);
+      continue;
+    }
     gather(of, channel, band, lanes);
     add_columns(lanes, band, columns, out.cells);
-    if (of.groups.size() == 1) out.mean_square += sum_of_squares(lanes, band.count);
   }
+  if (of.groups.size() == 1) out.mean_square = sum_of_squares(of, num_channels, band);
   for (double& cell : out.cells) cell /= num_channels;
   const auto num_samples = static_cast<double>(spread_->grid().correction.size());
   out.mean_square /= static_cast<double>(num_channels * num_chirps_) * num_samples;
@@ -148,7 +120,7 @@ std::vector<double> BandMap::magnitude_of(const Synthesizer& signals, int group,
   for (int channel = 0; channel < num_channels; ++channel) {
     for (int chirp = 0; !signals.is_still(channel, group) && chirp < num_chirps_; ++chirp) {
       const RowCells cells = signals.moving_cells(channel, group, chirp);
-      run_simd<find_largest_squares>(cells.re, cells.im, cells.count, largest.data() + cells.first);
+      run_simd<band_loops::find_largest_squares>(cells.re, cells.im, cells.count, largest.data() + cells.first);
     }
   }
   for (double& value : largest) value = std::sqrt(value);
@@ -167,12 +139,27 @@ BandMap::Band BandMap::band_of(const SummedGroups& of, int num_channels) const {
   return {begin - sum.begin(), end - begin, {begin, end}};
 }
 
+// Returns the cells that any of the rows has, without their magnitudes.
+BandMap::Band BandMap::extent_of(const SummedGroups& of, int num_channels) const {
+  int64_t first = spread_->row_length(), end = 0;
+  for (const int group : of.groups) {
+    for (int channel = 0; channel < num_channels; ++channel) {
+      for (int chirp = 0; !of.signals->is_still(channel, group) && chirp < num_chirps_; ++chirp) {
+        const RowCells cells = of.signals->moving_cells(channel, group, chirp);
+        first = std::min(first, cells.first);
+        end = std::max(end, cells.first + cells.count);
+      }
+    }
+  }
+  return {std::min(first, end), std::max<int64_t>(end - first, 0), {}};
+}
+
 std::vector<int64_t> BandMap::columns_of(const Band& band, double least, const std::vector<uint8_t>& asked) const {
   std::vector<int64_t> columns;
   for (int64_t column = 0; column < num_ranges_; ++column) {
     if (!asked.empty() && !asked[static_cast<size_t>(column)]) continue;
     double most = 0.0;
-    for (int64_t i = 0; i < band.count; ++i) {
+    for (int64_t i = 0; i < std::ssize(band.magnitude); ++i) {
       most += band.magnitude[static_cast<size_t>(i)] * std::abs(response(band.first + i, column));
     }
     if (most * most > least) columns.push_back(column);
@@ -180,22 +167,43 @@ std::vector<int64_t> BandMap::columns_of(const Band& band, double least, const s
   return columns;
 }
 
-// Sorts the cells of the band of all chirps to [cell, re/im, num_lanes + kApart].
+// Sorts the cells of the band of all chirps to [cell, re/im, num_lanes + band_loops::kApart].
 void BandMap::gather(const SummedGroups& of, int channel, const Band& band, std::vector<double>& lanes) const {
-  const int64_t stride = num_lanes_ + kApart;
+  const int64_t stride = num_lanes_ + band_loops::kApart;
   lanes.assign(static_cast<size_t>(2 * band.count * stride), 0.0);
   for (const int group : of.groups) {
-    for (int chirp = 0; !of.signals->is_still(channel, group) && chirp < num_chirps_; ++chirp) {
-      const RowCells cells = of.signals->moving_cells(channel, group, chirp);
-      const int64_t begin = std::max(cells.first, band.first);
-      const int64_t end = std::min(cells.first + cells.count, band.first + band.count);
-      double* lane = lanes.data() + 2 * (begin - band.first) * stride + chirp;
-      for (int64_t i = begin - cells.first; i < end - cells.first; ++i, lane += 2 * stride) {
-        lane[0] += cells.re[i];
-        lane[stride] += cells.im[i];
-      }
+    for (int chirp = 0; !of.signals->is_still(channel, group) && chirp < num_chirps_; chirp += kTogether) {
+      RowCells rows[kTogether];
+      const int count = static_cast<int>(std::min<int64_t>(kTogether, num_chirps_ - chirp));
+      for (int i = 0; i < count; ++i) rows[i] = of.signals->moving_cells(channel, group, chirp + i);
+      add_lanes(rows, count, band.first, band.count, stride, lanes.data() + chirp);
     }
   }
+}
+
+// Adds a column straight from the rows.
+void BandMap::add_column(const SummedGroups& of, int channel, const Band& band, int64_t column,
+                         std::vector<double>& cells) const {
+  std::vector<double> factor_re, factor_im;
+  for (int64_t i = 0; i < band.count; ++i) {
+    const std::complex<double> factor = response(band.first + i, column);
+    factor_re.push_back(factor.real());
+    factor_im.push_back(factor.imag());
+  }
+  std::vector<std::complex<double>> profile(static_cast<size_t>(num_chirps_));
+  for (const int group : of.groups) {
+    for (int chirp = 0; !of.signals->is_still(channel, group) && chirp < num_chirps_; ++chirp) {
+      const RowCells row = of.signals->moving_cells(channel, group, chirp);
+      const int64_t begin = std::max(row.first, band.first), end = std::min(row.first + row.count, band.first + band.count);
+      if (begin >= end) continue;
+      auto* const sum = reinterpret_cast<double*>(&profile[static_cast<size_t>(chirp)]);
+      run_simd<band_loops::add_product>(row.re + (begin - row.first), row.im + (begin - row.first),
+                                        &factor_re[begin - band.first], &factor_im[begin - band.first], end - begin, sum);
+    }
+  }
+  FftBuffer buffer(doppler_fft_.size());
+  std::copy(profile.begin(), profile.end(), buffer.data());
+  add_velocities(buffer, column, cells);
 }
 
 void BandMap::add_columns(const std::vector<double>& lanes, const Band& band, const std::vector<int64_t>& columns,
@@ -203,33 +211,57 @@ void BandMap::add_columns(const std::vector<double>& lanes, const Band& band, co
   std::vector<std::complex<double>> factor(static_cast<size_t>(band.count));
   std::vector<double> profile(static_cast<size_t>(2 * num_lanes_));
   FftBuffer buffer(doppler_fft_.size());
-  const int64_t size = buffer.size(), first = size - size / 2;  // row v holds frequency v - size / 2
   for (const int64_t column : columns) {
     for (int64_t i = 0; i < band.count; ++i) factor[static_cast<size_t>(i)] = response(band.first + i, column);
-    run_simd<combine_cells>(lanes.data(), num_lanes_, band.count, reinterpret_cast<const double*>(factor.data()),
-                            profile.data());
+    run_simd<band_loops::combine_cells>(lanes.data(), num_lanes_, band.count, reinterpret_cast<const double*>(factor.data()),
+                                        profile.data());
     for (int64_t chirp = 0; chirp < num_chirps_; ++chirp) {
-      buffer[chirp] =
-          doppler_taper_[static_cast<size_t>(chirp)] *
-          std::complex<double>(profile[static_cast<size_t>(chirp)], profile[static_cast<size_t>(num_lanes_ + chirp)]);
+      buffer[chirp] = {profile[static_cast<size_t>(chirp)], profile[static_cast<size_t>(num_lanes_ + chirp)]};
     }
-    std::fill(buffer.data() + num_chirps_, buffer.data() + size, 0.0);
-    doppler_fft_.transform(buffer);
-    for (int64_t v = 0; v < size; ++v) {
-      cells[static_cast<size_t>(v * num_ranges_ + column)] += std::norm(buffer[(first + v) % size]);
-    }
+    add_velocities(buffer, column, cells);
   }
 }
 
-// Returns the sum over chirps and samples of |sample|^2.
-double BandMap::sum_of_squares(const std::vector<double>& lanes, int64_t count) const {
-  std::vector<std::complex<double>> overlap;
-  for (int64_t distance = 0; distance < count; ++distance) {
-    overlap.push_back((distance > 0 ? 2.0 : 1.0) * overlap_[static_cast<size_t>(distance) % overlap_.size()]);
+// Adds the power of a column at all velocities. The buffer holds its value in every chirp, and is used up.
+void BandMap::add_velocities(FftBuffer& buffer, int64_t column, std::vector<double>& cells) const {
+  const int64_t size = buffer.size(), first = size - size / 2;  // row v holds frequency v - size / 2
+  for (int64_t chirp = 0; chirp < num_chirps_; ++chirp) buffer[chirp] *= doppler_taper_[static_cast<size_t>(chirp)];
+  std::fill(buffer.data() + num_chirps_, buffer.data() + size, 0.0);
+  doppler_fft_.transform(buffer);
+  for (int64_t v = 0; v < size; ++v) {
+    cells[static_cast<size_t>(v * num_ranges_ + column)] += std::norm(buffer[(first + v) % size]);
   }
-  double sum = 0.0;
-  run_simd<add_overlaps>(lanes.data(), num_lanes_, count, reinterpret_cast<const double*>(overlap.data()), &sum);
-  return sum;
+}
+
+// Returns the sum over channels, chirps and samples of |sample|^2 of a group. With the numbers r_d = sum_i g_{i + d} conj(g_i)
+// it is the real part of sum_d r_d overlap_d, and these are the Fourier transform of the squares of the transforms of all
+// rows, long enough for the distances of both signs.
+double BandMap::sum_of_squares(const SummedGroups& of, int num_channels, const Band& band) const {
+  if (band.count == 0) return 0.0;
+  const auto size = static_cast<int64_t>(fast_fft_size(static_cast<int>(2 * band.count)));
+  const Fft fft(static_cast<int>(size), FftDirection::kForward);
+  FftBuffer buffer(size);
+  std::vector<double> squares(static_cast<size_t>(size));
+  const int group = of.groups.front();
+  for (int channel = 0; channel < num_channels; ++channel) {
+    for (int chirp = 0; !of.signals->is_still(channel, group) && chirp < num_chirps_; ++chirp) {
+      const RowCells cells = of.signals->moving_cells(channel, group, chirp);
+      const int64_t begin = std::max(cells.first, band.first),
+                    end = std::min(cells.first + cells.count, band.first + band.count);
+      std::fill_n(buffer.data(), size, 0.0);
+      run_simd<band_loops::interleave>(cells.re + (begin - cells.first), cells.im + (begin - cells.first), end - begin,
+                                       reinterpret_cast<double*>(buffer.data()));
+      fft.transform(buffer);
+      run_simd<band_loops::add_squares>(reinterpret_cast<const double*>(buffer.data()), size, squares.data());
+    }
+  }
+  std::copy(squares.begin(), squares.end(), buffer.data());
+  fft.transform(buffer);  // conj(r_d) times its length at d, as all squares are real
+  double sum = buffer[0].real() * overlap_[0].real();
+  for (int64_t d = 1; d < band.count; ++d) {
+    sum += 2.0 * (std::conj(buffer[d]) * overlap_[static_cast<size_t>(d) % overlap_.size()]).real();
+  }
+  return sum / static_cast<double>(size);
 }
 
 }  // namespace echopath

@@ -45,16 +45,19 @@ class BandMap {
  private:
   struct Band {
     int64_t first = 0, count = 0;   // cells of a row
-    std::vector<double> magnitude;  // [count], the largest over chirps and channels, sums over the groups
+    std::vector<double> magnitude;  // [count], the largest over chirps and channels, sums over the groups; or empty
   };
   std::vector<double> magnitude_of(const Synthesizer& signals, int group, int num_channels) const;
   Band band_of(const SummedGroups& of, int num_channels) const;
+  Band extent_of(const SummedGroups& of, int num_channels) const;
   std::vector<int64_t> columns_of(const Band& band, double least, const std::vector<uint8_t>& asked) const;
   std::complex<double> response(int64_t cell, int64_t column) const;
   void gather(const SummedGroups& of, int channel, const Band& band, std::vector<double>& lanes) const;
+  void add_column(const SummedGroups& of, int channel, const Band& band, int64_t column, std::vector<double>& cells) const;
+  void add_velocities(FftBuffer& buffer, int64_t column, std::vector<double>& cells) const;
   void add_columns(const std::vector<double>& lanes, const Band& band, const std::vector<int64_t>& columns,
                    std::vector<double>& cells) const;
-  double sum_of_squares(const std::vector<double>& lanes, int64_t count) const;
+  double sum_of_squares(const SummedGroups& of, int num_channels, const Band& band) const;
 
   const SpreadMethod* spread_;
   int64_t num_chirps_, num_lanes_, num_ranges_, num_bins_, first_cell_ = 0;

@@ -1,0 +1,76 @@
+#pragma once
+// Holds the inner loops over the cells of a band, for run_simd. Internal to BandMap.
+#include <cstdint>
+
+#include "echopath/base/lanes/simd.h"
+
+namespace echopath::band_loops {
+
+inline constexpr int64_t kLanes = 32;  // chirps side by side
+inline constexpr int64_t kApart = 8;   // between rows of lanes: powers of two would share few sets of the cache
+
+ECHOPATH_INLINE void find_largest_squares(const double* re, const double* im, int64_t count, double* __restrict largest) {
+  for (int64_t i = 0; i < count; ++i) {
+    const double square = re[i] * re[i] + im[i] * im[i];
+    largest[i] = square > largest[i] ? square : largest[i];
+  }
+}
+
+// Adds up the cells of a band, each times a complex factor: lanes [count, re/im, num_lanes + kApart] to out [re/im,
+// num_lanes].
+ECHOPATH_INLINE void combine_cells(const double* lanes, int64_t num_lanes, int64_t count, const double* factor,
+                                   double* __restrict out) {
+  const int64_t stride = num_lanes + kApart;
+  for (int64_t first = 0; first < num_lanes; first += kLanes) {
+    double re[kLanes] = {}, im[kLanes] = {};
+    for (int64_t i = 0; i < count; ++i) {
+      const double* const cell_re = lanes + 2 * i * stride + first;
+      const double* const cell_im = cell_re + stride;
+      const double factor_re = factor[2 * i], factor_im = factor[2 * i + 1];
+      for (int64_t c = 0; c < kLanes; ++c) {
+        re[c] += factor_re * cell_re[c] - factor_im * cell_im[c];
+        im[c] += factor_re * cell_im[c] + factor_im * cell_re[c];
+      }
+    }
+    for (int64_t c = 0; c < kLanes; ++c) {
+      out[first + c] = re[c];
+      out[num_lanes + first + c] = im[c];
+    }
+  }
+}
+
+// Adds to out [re, im] the sum of some cells, each times a complex factor.
+ECHOPATH_INLINE void add_product(const double* re, const double* im, const double* factor_re, const double* factor_im,
+                                 int64_t count, double* __restrict out) {
+  constexpr int64_t kAtOnce = 8;
+  double sum_re[kAtOnce] = {}, sum_im[kAtOnce] = {};
+  int64_t i = 0;
+  for (; i + kAtOnce <= count; i += kAtOnce) {
+    for (int64_t c = 0; c < kAtOnce; ++c) {
+      sum_re[c] += factor_re[i + c] * re[i + c] - factor_im[i + c] * im[i + c];
+      sum_im[c] += factor_re[i + c] * im[i + c] + factor_im[i + c] * re[i + c];
+    }
+  }
+  for (int64_t c = 0; i < count; ++i, ++c) {
+    sum_re[c] += factor_re[i] * re[i] - factor_im[i] * im[i];
+    sum_im[c] += factor_re[i] * im[i] + factor_im[i] * re[i];
+  }
+  for (int64_t c = 0; c < kAtOnce; ++c) {
+    out[0] += sum_re[c];
+    out[1] += sum_im[c];
+  }
+}
+
+ECHOPATH_INLINE void interleave(const double* re, const double* im, int64_t count, double* __restrict out) {
+  for (int64_t i = 0; i < count; ++i) {
+    out[2 * i] = re[i];
+    out[2 * i + 1] = im[i];
+  }
+}
+
+// Adds the squares of `count` complex values.
+ECHOPATH_INLINE void add_squares(const double* values, int64_t count, double* __restrict sum) {
+  for (int64_t i = 0; i < count; ++i) sum[i] += values[2 * i] * values[2 * i] + values[2 * i + 1] * values[2 * i + 1];
+}
+
+}  // namespace echopath::band_loops

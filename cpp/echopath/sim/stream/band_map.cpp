@@ -1,6 +1,7 @@
 #include "echopath/sim/stream/band_map.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
@@ -21,6 +22,14 @@ std::vector<double> unit_taper(const Window& window, int count) {
   const double sum = std::accumulate(taper.begin(), taper.end(), 0.0);
   for (double& weight : taper) weight /= sum;
   return taper;
+}
+
+// Returns transforms of 1, 2, 4, ... values, up to twice as many as the widest band has cells.
+std::vector<Fft> ffts_of_rows() {
+  std::vector<Fft> ffts;
+  for (int64_t cells = 0; cells * (cells / 2) <= kMostProducts; cells = ffts.back().size() / 2)
+    ffts.emplace_back(1 << ffts.size(), FftDirection::kForward);
+  return ffts;
 }
 
 // Returns sum_n factor_n e^{j 2 pi k (n - reference) / size} for k = 0 ... size - 1.
@@ -59,7 +68,7 @@ BandMap::BandMap(const Radar& radar, const MapWindows& window, int zero_pad, con
       num_ranges_(static_cast<int64_t>(range_axis(radar.waveform, radar.waveform.num_samples * zero_pad).size())),
       num_bins_(int64_t{zero_pad} * radar.waveform.num_samples),
       doppler_taper_(unit_taper(window.velocity, radar.waveform.num_chirps)),
-      doppler_fft_(radar.waveform.num_chirps * zero_pad, FftDirection::kForward) {
+      doppler_fft_(radar.waveform.num_chirps * zero_pad, FftDirection::kForward), row_ffts_(ffts_of_rows()) {
   if (!spread || radar.waveform.real) return;  // a real sample is not linear in the grid
   const SpreadGrid grid = spread->grid();
   const int64_t size = std::lcm(grid.size, num_bins_);
@@ -98,14 +107,14 @@ bool BandMap::power(const SummedGroups& of, int num_channels, double least, std:
     return false;
   }
   out = {std::vector<double>(static_cast<size_t>(doppler_fft_.size() * num_ranges_)), 0.0};
-  std::vector<double> lanes;
-  for (int channel = 0; channel < num_channels; ++channel) {
-    if (std::ssize(columns) <= kFewColumns) {
-      for (const int64_t column : columns) add_column(of, channel, band, column, out.cells);
-      continue;
+  if (std::ssize(columns) <= kFewColumns) {
+    for (const int64_t column : columns) add_column(of, num_channels, band, column, out.cells);
+  } else {
+    std::vector<double> lanes;
+    for (int channel = 0; channel < num_channels; ++channel) {
+      gather(of, channel, band, lanes);
+      add_columns(lanes, band, columns, out.cells);
     }
-    gather(of, channel, band, lanes);
-    add_columns(lanes, band, columns, out.cells);
   }
   if (of.groups.size() == 1) out.mean_square = sum_of_squares(of, num_channels, band);
   for (double& cell : out.cells) cell /= num_channels;
@@ -181,8 +190,8 @@ void BandMap::gather(const SummedGroups& of, int channel, const Band& band, std:
   }
 }
 
-// Adds a column straight from the rows.
-void BandMap::add_column(const SummedGroups& of, int channel, const Band& band, int64_t column,
+// Adds a column of all channels straight from the rows.
+void BandMap::add_column(const SummedGroups& of, int num_channels, const Band& band, int64_t column,
                          std::vector<double>& cells) const {
   std::vector<double> factor_re, factor_im;
   for (int64_t i = 0; i < band.count; ++i) {
@@ -190,20 +199,22 @@ void BandMap::add_column(const SummedGroups& of, int channel, const Band& band, 
     factor_re.push_back(factor.real());
     factor_im.push_back(factor.imag());
   }
-  std::vector<std::complex<double>> profile(static_cast<size_t>(num_chirps_));
-  for (const int group : of.groups) {
-    for (int chirp = 0; !of.signals->is_still(channel, group) && chirp < num_chirps_; ++chirp) {
-      const RowCells row = of.signals->moving_cells(channel, group, chirp);
-      const int64_t begin = std::max(row.first, band.first), end = std::min(row.first + row.count, band.first + band.count);
-      if (begin >= end) continue;
-      auto* const sum = reinterpret_cast<double*>(&profile[static_cast<size_t>(chirp)]);
-      run_simd<band_loops::add_product>(row.re + (begin - row.first), row.im + (begin - row.first),
-                                        &factor_re[begin - band.first], &factor_im[begin - band.first], end - begin, sum);
-    }
-  }
   FftBuffer buffer(doppler_fft_.size());
-  std::copy(profile.begin(), profile.end(), buffer.data());
-  add_velocities(buffer, column, cells);
+  for (int channel = 0; channel < num_channels; ++channel) {
+    std::fill_n(buffer.data(), num_chirps_, 0.0);
+    for (const int group : of.groups) {
+      for (int chirp = 0; !of.signals->is_still(channel, group) && chirp < num_chirps_; ++chirp) {
+        const RowCells row = of.signals->moving_cells(channel, group, chirp);
+        const int64_t begin = std::max(row.first, band.first);
+        const int64_t count = std::min(row.first + row.count, band.first + band.count) - begin;
+        if (count <= 0) continue;
+        run_simd<band_loops::add_product>(row.re + (begin - row.first), row.im + (begin - row.first),
+                                          &factor_re[begin - band.first], &factor_im[begin - band.first], count,
+                                          reinterpret_cast<double*>(&buffer[chirp]));
+      }
+    }
+    add_velocities(buffer, column, cells);
+  }
 }
 
 void BandMap::add_columns(const std::vector<double>& lanes, const Band& band, const std::vector<int64_t>& columns,
@@ -238,8 +249,8 @@ void BandMap::add_velocities(FftBuffer& buffer, int64_t column, std::vector<doub
 // rows, long enough for the distances of both signs.
 double BandMap::sum_of_squares(const SummedGroups& of, int num_channels, const Band& band) const {
   if (band.count == 0) return 0.0;
-  const auto size = static_cast<int64_t>(fast_fft_size(static_cast<int>(2 * band.count)));
-  const Fft fft(static_cast<int>(size), FftDirection::kForward);
+  const Fft& fft = row_ffts_[static_cast<size_t>(std::bit_width(static_cast<uint64_t>(2 * band.count - 1)))];
+  const int64_t size = fft.size();
   FftBuffer buffer(size);
   std::vector<double> squares(static_cast<size_t>(size));
   const int group = of.groups.front();

@@ -53,7 +53,8 @@ class BandMap {
   std::vector<int64_t> columns_of(const Band& band, double least, const std::vector<uint8_t>& asked) const;
   std::complex<double> response(int64_t cell, int64_t column) const;
   void gather(const SummedGroups& of, int channel, const Band& band, std::vector<double>& lanes) const;
-  void add_column(const SummedGroups& of, int channel, const Band& band, int64_t column, std::vector<double>& cells) const;
+  void add_column(const SummedGroups& of, int num_channels, const Band& band, int64_t column,
+                  std::vector<double>& cells) const;
   void add_velocities(FftBuffer& buffer, int64_t column, std::vector<double>& cells) const;
   void add_columns(const std::vector<double>& lanes, const Band& band, const std::vector<int64_t>& columns,
                    std::vector<double>& cells) const;
@@ -63,6 +64,7 @@ class BandMap {
   int64_t num_chirps_, num_lanes_, num_ranges_, num_bins_, first_cell_ = 0;
   std::vector<double> doppler_taper_;  // [chirp]
   Fft doppler_fft_;
+  std::vector<Fft> row_ffts_;                   // of 2^k values, by k
   std::vector<std::complex<double>> response_;  // m at multiples of 1 / size, empty where there is no band
   std::vector<std::complex<double>> overlap_;   // sum_n c_n^2 e^{j 2 pi d (n - n0) / G} by d
 };

@@ -63,8 +63,7 @@ void bind_scene_reports(py::module_& m) {
         "IDs of the meshes that reflect this share of the power in phase at a wavelength in m, mirrors left out.");
   m.def("look_at_bodies", &look_at_bodies, py::arg("scene"), py::arg("radar"), py::arg("time"),
         "Of the children of the root: (node [N]; sides [N, 2] in m, shortest and longest; closed [N]; those in which the "
-        "first "
-        "transmitter stands, or the first receiver, [(node, whether it is the receiver)]).");
+        "first transmitter stands, or the first receiver, [(node, whether it is the receiver)]).");
   m.def(
       "mesh_traits", &traits_of_meshes, py::arg("scene"),
       "Of all meshes: (materials, each once; index of each mesh's [M]; whether it is smooth [M], moves [M], deforms [M]).");

@@ -89,7 +89,6 @@ class Sequence(Row[Frame]):
         require_interferers(scene, radar, effects, (start_time, end))
         self._run = FrameRun(Scene(scene), radar, tracing, signals, parts, angles, labels, detections, truth, guard)
         self._numbers, self._start_time, self._interval = range(frames), start_time, interval
-        self._memory = MemoryOfFrames()
 
     @property
     def scene(self) -> Scene:
@@ -103,26 +102,29 @@ class Sequence(Row[Frame]):
 
     def _item(self, place: int, progress=None) -> Frame:
         """As Row has it; progress: as in `simulate`."""
-        return self._finished(self._recorded(place, progress), progress)
+        frame = self._finished(self._recorded(place, progress), progress)
+        give_back_memory()  # of the work on it: nobody tells whether another frame follows
+        return frame
 
     def _items(self, places: Iterable[int], progress=None) -> Iterator[Frame]:
         """As Row has it; the record of the next frame is made while this one is used."""
         # The geometry of a frame is looked at when its objects are labelled, while that of the next is traced.
         geometries = itertools.cycle((_core.KeptGeometry(), _core.KeptGeometry()))
+        memory = MemoryOfFrames()
         works = (functools.partial(self._recorded, place, geometry=geometry) for place, geometry in zip(places, geometries))
         try:
             for recorded in one_ahead(works, progress):
                 frame = self._finished(recorded, progress)
+                memory.end_frame()
                 yield frame
                 del recorded, frame  # of which none is kept while the next is made
         finally:
             give_back_memory()  # of frames that the user has let go since, and of one made ahead that nobody takes
 
     def _finished(self, recorded: Recorded, progress) -> Frame:
-        """The frame of a record; the memory of the work on it stays for the next one, or is given back."""
+        """The frame of a record."""
         frame = self._run.frame_of_record(recorded, progress)
         warn_of(frame.checks)
-        self._memory.end_frame()
         return frame
 
     def _recorded(self, place: int, progress=None, geometry=None) -> Recorded:

@@ -113,7 +113,9 @@ def _polarization(argument: str, value):
 
 def _depth(value) -> int:
     """How deep lists or arrays are nested, by their first entries."""
-    return 1 + _depth(value[0]) if isinstance(value, (list, tuple, np.ndarray)) and len(value) > 0 else 0
+    if isinstance(value, np.ndarray):
+        return value.ndim
+    return 1 + _depth(value[0]) if isinstance(value, (list, tuple)) and value else 0
 
 
 def _cavities(argument: str, value) -> tuple[Cavity, ...]:

@@ -5,7 +5,9 @@
 namespace echopath {
 namespace {
 
-constexpr size_t kChunk = size_t{1} << 16;  // doubles, or as many as a larger row has
+// Doubles of the first chunk and of the largest one. Each has twice as many as the one before, or as many as a larger row
+// has.
+constexpr size_t kFirstChunk = size_t{1} << 12, kLargestChunk = size_t{1} << 16;
 
 }  // namespace
 
@@ -47,7 +49,8 @@ double* RowBands::take(size_t count) {
     size_t next = num_chunks_;
     while (next < chunks_.size() && chunks_[next].size < count) ++next;
     if (next == chunks_.size()) {
-      const size_t size = std::max(kChunk, count);
+      const size_t usual = chunks_.empty() ? kFirstChunk : std::min(2 * chunks_.back().size, kLargestChunk);
+      const size_t size = std::max(usual, count);
       chunks_.push_back({std::make_unique_for_overwrite<double[]>(size), size, 0});
     }
     std::swap(chunks_[num_chunks_], chunks_[next]);

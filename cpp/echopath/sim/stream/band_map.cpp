@@ -6,16 +6,17 @@
 #include <numeric>
 
 #include "echopath/base/lanes/simd.h"
+#include "echopath/signal/kernels/kernels.h"
 #include "echopath/sim/stream/band_loops.h"
 #include "echopath/spectrum/range_doppler.h"
 
 namespace echopath {
 namespace {
 
-constexpr int64_t kFewColumns = 4;          // up to which cells need not be sorted to lanes
-constexpr int kTogether = 8;                // chirps whose rows are read together
-constexpr int64_t kLongestTable = 1 << 16;  // of responses
-constexpr int64_t kMostProducts = 60000;    // of cells and columns, above which the samples are quicker
+constexpr int64_t kFewColumns = 4;                   // up to which cells need not be sorted to lanes
+constexpr int kTogether = TileAtChirps::kMaxChirps;  // chirps whose rows have the same cells
+constexpr int64_t kLongestTable = 1 << 16;           // of responses
+constexpr int64_t kMostProducts = 60000;             // of cells and columns, above which the samples are quicker
 
 std::vector<double> unit_taper(const Window& window, int count) {
   std::vector<double> taper = window_samples(window, count);
@@ -68,11 +69,12 @@ BandMap::BandMap(const Radar& radar, const MapWindows& window, int zero_pad, con
       num_ranges_(static_cast<int64_t>(range_axis(radar.waveform, radar.waveform.num_samples * zero_pad).size())),
       num_bins_(int64_t{zero_pad} * radar.waveform.num_samples),
       doppler_taper_(unit_taper(window.velocity, radar.waveform.num_chirps)),
-      doppler_fft_(radar.waveform.num_chirps * zero_pad, FftDirection::kForward), row_ffts_(ffts_of_rows()) {
+      doppler_fft_(radar.waveform.num_chirps * zero_pad, FftDirection::kForward) {
   if (!spread || radar.waveform.real) return;  // a real sample is not linear in the grid
   const SpreadGrid grid = spread->grid();
   const int64_t size = std::lcm(grid.size, num_bins_);
   if (size > kLongestTable) return;
+  row_ffts_ = ffts_of_rows();
   std::vector<double> factor = unit_taper(window.range, radar.waveform.num_samples), square = grid.correction;
   for (size_t n = 0; n < factor.size(); ++n) {
     factor[n] *= grid.correction[n];
@@ -244,9 +246,9 @@ void BandMap::add_velocities(FftBuffer& buffer, int64_t column, std::vector<doub
   }
 }
 
-// Returns the sum over channels, chirps and samples of |sample|^2 of a group. With the numbers r_d = sum_i g_{i + d} conj(g_i)
-// it is the real part of sum_d r_d overlap_d, and these are the Fourier transform of the squares of the transforms of all
-// rows, long enough for the distances of both signs.
+// Returns the sum over channels, chirps and samples of |sample|^2 of a group. It is the real part of sum_d r_d overlap_d
+// with the numbers r_d = sum_i g_{i + d} conj(g_i), and these are the Fourier transform of the squares of the transforms of
+// all rows, which are long enough for the distances of both signs.
 double BandMap::sum_of_squares(const SummedGroups& of, int num_channels, const Band& band) const {
   if (band.count == 0) return 0.0;
   const Fft& fft = row_ffts_[static_cast<size_t>(std::bit_width(static_cast<uint64_t>(2 * band.count - 1)))];
@@ -257,10 +259,11 @@ double BandMap::sum_of_squares(const SummedGroups& of, int num_channels, const B
   for (int channel = 0; channel < num_channels; ++channel) {
     for (int chirp = 0; !of.signals->is_still(channel, group) && chirp < num_chirps_; ++chirp) {
       const RowCells cells = of.signals->moving_cells(channel, group, chirp);
-      const int64_t begin = std::max(cells.first, band.first),
-                    end = std::min(cells.first + cells.count, band.first + band.count);
+      const int64_t begin = std::max(cells.first, band.first);
+      const int64_t count = std::min(cells.first + cells.count, band.first + band.count) - begin;
+      if (count <= 0) continue;
       std::fill_n(buffer.data(), size, 0.0);
-      run_simd<band_loops::interleave>(cells.re + (begin - cells.first), cells.im + (begin - cells.first), end - begin,
+      run_simd<band_loops::interleave>(cells.re + (begin - cells.first), cells.im + (begin - cells.first), count,
                                        reinterpret_cast<double*>(buffer.data()));
       fft.transform(buffer);
       run_simd<band_loops::add_squares>(reinterpret_cast<const double*>(buffer.data()), size, squares.data());

@@ -119,7 +119,7 @@ EmbreeScene::Verdict EmbreeScene::intersect_from_surface(const Vec3& from, const
 // Embree's distances are those of single precision, as far off as points that are confirmed.
 EmbreeScene::Verdict EmbreeScene::intersect_near(const Vec3& from, const Vec3& direction, double reach, RayHit& out,
                                                  Sees sees) const {
-  const double spare = 4.0 * (kFalseHitAbsolute + kFalseHitRelative * reach);
+  const double spare = 4.0 * (kFalseHitAbsolute + kFalseHitRelative * reach + lift_);
   return intersect(from, {from, 0.0, reach + spare}, direction, sees, out);
 }
 

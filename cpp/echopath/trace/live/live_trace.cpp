@@ -91,7 +91,8 @@ std::vector<std::pair<int64_t, int64_t>> block_bounds(const LaunchPlan& plan) {
 }
 
 LiveBlockPtr shot(const Tracer& tracer, int64_t begin, int64_t end) {
-  thread_local LiveBlock scratch;  // a block grows in memory that is there, and is copied when its sizes are known
+  // The block of so few rays grows in memory that stays with the thread, and is copied when its sizes are known.
+  thread_local LiveBlock scratch;
   scratch.begin = begin;
   scratch.end = end;
   scratch.space.clear();

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "echopath/base/bit_sum.h"
+#include "echopath/base/errors.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/scene/scene_edges.h"
 
@@ -83,6 +84,7 @@ class PathsBySum {
  public:
   explicit PathsBySum(const std::vector<uint64_t>& sums)
       : sums_(sums), first_(std::bit_ceil(2 * sums.size() + 1), kNone), next_(sums.size(), kNone) {
+    require(sums.size() < kNone, "live", "must change fewer than 2^32 - 1 paths at once", sums.size());
     for (auto i = static_cast<uint32_t>(sums.size()); i-- > 0;) {
       if (sums[i] == kUnlike) continue;
       uint32_t& first = first_[place_of(sums[i])];

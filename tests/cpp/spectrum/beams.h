@@ -1,9 +1,13 @@
 #pragma once
-// Settings and cells of beams.
+// Settings, cells and tolerances of beams.
 #include "echopath/spectrum/angle/beamform.h"
 #include "plane_waves.h"
 
 namespace echopath::testing {
+
+inline constexpr double kRounding = 1e-12;       // of unit waves
+inline constexpr double kSolved = 1e-9;          // relative: covariances are inverted
+inline const double kHalf = 0.5 * wavelength();  // m
 
 inline BeamformOptions capon(double loading, int velocities = 0, int ranges = 0) {
   BeamformOptions options;

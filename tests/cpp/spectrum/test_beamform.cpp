@@ -12,10 +12,10 @@ namespace {
 using testing::capon;
 using testing::Complex;
 using testing::kDegree;
+using testing::kHalf;
+using testing::kRounding;
+using testing::kSolved;
 using testing::power_at;
-constexpr double kRounding = 1e-12;  // of unit waves
-constexpr double kSolved = 1e-9;     // relative: covariances are inverted
-const double kHalf = 0.5 * testing::wavelength();
 
 std::vector<double> steps(double first, double last, int count) {
   std::vector<double> axis;

@@ -10,10 +10,10 @@ namespace {
 
 using testing::capon;
 using testing::kDegree;
+using testing::kHalf;
+using testing::kRounding;
+using testing::kSolved;
 using testing::power_at;
-constexpr double kRounding = 1e-12;  // of unit waves
-constexpr double kSolved = 1e-9;     // relative: covariances are inverted
-const double kHalf = 0.5 * testing::wavelength();
 
 // R = S a a^H + P I, made of one snapshot per element and one of the wave: the ranges of one velocity.
 RangeDoppler wave_in_noise(const Radar& radar, const Vec3& u, double wave, double noise) {

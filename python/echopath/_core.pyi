@@ -3433,7 +3433,7 @@ def visibility(scene: Scene, radar: Radar, objects: collections.abc.Sequence[tup
     """
     [(name, of the transmitter, of the receiver), ...], each a tuple of the fields of echopath.Sight.
     """
-def visibility_in_trace(paths: Paths, radar: Radar, objects: collections.abc.Sequence[tuple[str, collections.abc.Sequence[str]]] | None, time: float | None = None, num_directions: int = 512, progress: typing.Any = None) -> list[typing.Any]:
+def visibility_in_trace(paths: Paths, radar: Radar, objects: collections.abc.Sequence[tuple[str, collections.abc.Sequence[str]]] | None, time: float | None, num_directions: int, progress: typing.Any) -> list[typing.Any]:
     """
     As visibility, of the objects that find_families has for a trace; time: s, None: that of the trace.
     """

@@ -117,8 +117,6 @@ std::vector<ObjectVisibility> visibility_of(Scene scene, const Radar& radar, con
   });
 }
 
-constexpr int kDirectionsInTrace = 512;  // on each object: labels and truth look at all objects of each frame
-
 // Of the objects that families_of finds, whatever the radar, at the time of the trace where there is no other. The geometry
 // of the trace serves where it is kept: it is brought to that time, which costs what moves.
 std::vector<ObjectVisibility> visibility_in_trace(const Paths& paths, const Radar& radar,
@@ -177,8 +175,8 @@ void bind_visibility(py::module_& m) {
          int num_directions, const py::object& progress) {
         return sight_list(visibility_in_trace(paths, radar, objects, time, num_directions, progress));
       },
-      py::arg("paths"), py::arg("radar"), py::arg("objects"), py::arg("time") = py::none(),
-      py::arg("num_directions") = kDirectionsInTrace, py::arg("progress") = py::none(),
+      py::arg("paths"), py::arg("radar"), py::arg("objects"), py::arg("time"), py::arg("num_directions"),
+      py::arg("progress"),
       "As visibility, of the objects that find_families has for a trace; time: s, None: that of the trace.");
   m.def(
       "remember_geometry",

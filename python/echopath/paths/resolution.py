@@ -18,6 +18,7 @@ from .visibility import visibility_in_trace
 RESOLVED_DB = 0.3       # the 95 % interval of a resolved power reaches no further to either side
 MOST_TIMES = 100.0      # of the rays: what needs more is not a matter of rays
 UNSEEN_HITS = 3.0       # rays that may have met what none has met (95 % limit of a Poisson count)
+UNMET_DIRECTIONS = 512  # on each object: what is seen of it in slivers counts, too
 FRESNEL_ZONES = 4.0     # across a plane, from which on its image is the better answer
 FAINT = 0.01            # of the upper end of an interval
 SURROUNDINGS = "the surroundings"  # what belongs to no object
@@ -215,7 +216,7 @@ def _unseen(paths, objects, names, progress) -> list:
     if not names:
         return []
     found = []
-    for seen in visibility_in_trace(paths, paths.radar, objects, progress=progress):
+    for seen in visibility_in_trace(paths, paths.radar, objects, num_directions=UNMET_DIRECTIONS, progress=progress):
         interval = unmet_interval(paths, seen) if seen.name in names else Interval(0.0, 0.0, 0.0)
         if interval.high > 0.0:
             found.append(Unresolved(seen.name, (), 0, 1, interval, _advice_to_meet(paths, seen)))

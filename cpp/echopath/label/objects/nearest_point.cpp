@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
+#include "echopath/base/lanes/scalar_math.h"
 #include "echopath/base/lanes/simd.h"
 #include "echopath/base/packed.h"
 
@@ -24,21 +26,31 @@ double distance_to_triangle(const Vec3& point, const std::array<Vec3, 3>& corner
   return is_above ? std::abs(normal.dot(point - a)) : least;
 }
 
-double longest_edge_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
-  double longest = 0.0;
-  for (const auto& [a, b, c] : triangles) {
-    longest = std::max({longest, (vertices[a] - vertices[b]).squaredNorm(), (vertices[b] - vertices[c]).squaredNorm(),
-                        (vertices[c] - vertices[a]).squaredNorm()});
-  }
-  return std::sqrt(longest);
-}
-
-ECHOPATH_INLINE void square_distances(const double* vertices, size_t count, VectorOf<double> from, double* squares) {
+// Writes the squares of the distances of vertices, and the least of them.
+ECHOPATH_INLINE void square_distances(const double* vertices, size_t count, VectorOf<double> from, double* squares,
+                                      double* least) {
   ECHOPATH_SIDE_BY_SIDE
   for (size_t i = 0; i < count; ++i) {
     const double x = vertices[3 * i] - from.x, y = vertices[3 * i + 1] - from.y, z = vertices[3 * i + 2] - from.z;
     squares[i] = x * x + y * y + z * z;
   }
+  constexpr size_t kAtOnce = 8;
+  double of_lanes[kAtOnce];
+  std::fill_n(of_lanes, kAtOnce, std::numeric_limits<double>::infinity());
+  size_t i = 0;
+  for (; i + kAtOnce <= count; i += kAtOnce) {
+    for (size_t k = 0; k < kAtOnce; ++k) of_lanes[k] = ScalarMath::smaller(of_lanes[k], squares[i + k]);
+  }
+  for (; i < count; ++i) of_lanes[0] = ScalarMath::smaller(of_lanes[0], squares[i]);
+  *least = *std::min_element(of_lanes, of_lanes + kAtOnce);
+}
+
+// Returns whether a point is nearer than `least` (m) to the box about a triangle, which most triangles need not be asked
+// more about.
+bool is_box_nearer(const Vec3& point, const std::array<Vec3, 3>& corners, double least) {
+  const auto& [a, b, c] = corners;
+  const Vec3 below = a.cwiseMin(b).cwiseMin(c) - point, above = point - a.cwiseMax(b).cwiseMax(c);
+  return below.cwiseMax(above).cwiseMax(0.0).squaredNorm() < least * least;
 }
 
 ECHOPATH_INLINE void mark_below(const double* values, size_t count, double limit, uint8_t* is_below) {
@@ -50,25 +62,13 @@ double largest_stretch(const Mat3& linear) { return Eigen::JacobiSVD<Mat3>(linea
 
 }  // namespace
 
-NearestPoints::NearestPoints(const Scene& scene, const PosedScene& pose, const EmbreeScene& geometry,
-                             std::span<const uint32_t> mesh_ids)
-    : scene_(scene), geometry_(geometry), pose_(pose) {
-  for (const uint32_t id : mesh_ids) {
-    const Node& node = scene.node_of(id);
-    if (node.deformation) of_deformed_.try_emplace(id);
-    else of_meshes_.try_emplace(node.mesh.get());
-  }
-}
+NearestPoints::NearestPoints(const Scene& scene, const PosedScene& pose, const EmbreeScene& geometry)
+    : scene_(scene), geometry_(geometry), pose_(pose) {}
 
 double NearestPoints::longest_edge(uint32_t mesh_id) const {
   const Node& node = scene_.node_of(mesh_id);
-  const std::vector<Triangle>& triangles = node.mesh->triangles();
-  if (node.deformation) {
-    return of_deformed_.at(mesh_id).get([&] { return longest_edge_of(geometry_.vertices(mesh_id), triangles); });
-  }
-  const double at_rest =
-      of_meshes_.at(node.mesh.get()).get([&] { return longest_edge_of(node.mesh->vertices(), triangles); });
-  return at_rest * largest_stretch(pose_.linear(mesh_id));
+  if (node.deformation) return longest_edge_of(geometry_.vertices(mesh_id), node.mesh->triangles());
+  return node.mesh->longest_edge() * largest_stretch(pose_.linear(mesh_id));
 }
 
 std::array<double, 2> NearestPoints::distances(const Points& points, std::span<const uint32_t> mesh_ids) const {
@@ -84,16 +84,19 @@ std::array<double, 2> NearestPoints::distances(const Points& points, std::span<c
   return least;
 }
 
-// No point of a triangle is farther from its next corner than its longest edge over the root of 3.
+// No point of a triangle is farther from its next corner than its longest edge over the root of 3. The vertex that is
+// nearest to the first point bounds both distances, before any triangle is looked at.
 void NearestPoints::look_at_mesh(const Points& points, uint32_t mesh, std::array<double, 2>& least) const {
   const std::vector<Vec3>& vertices = geometry_.vertices(mesh);
+  const double apart = (points[1] - points[0]).norm();
   std::vector<double> squares(vertices.size());
-  const VectorOf<double> from = unpacked(points[0]);
-  run_simd<&square_distances>(vertices.front().data(), vertices.size(), from, squares.data());
-  const Vec3& nearest = vertices[static_cast<size_t>(std::min_element(squares.begin(), squares.end()) - squares.begin())];
-  for (size_t k = 0; k < 2; ++k) least[k] = std::min(least[k], (nearest - points[k]).norm());
-  const double reach =
-      std::max(least[0], least[1] + (points[1] - points[0]).norm()) + longest_edge(mesh) / std::numbers::sqrt3;
+  double nearest_square = 0.0;
+  run_simd<&square_distances>(vertices.front().data(), vertices.size(), unpacked(points[0]), squares.data(),
+                              &nearest_square);
+  const double nearest = std::sqrt(nearest_square);
+  least[0] = std::min(least[0], nearest);
+  least[1] = std::min(least[1], nearest + apart);
+  const double reach = std::max(least[0], least[1] + apart) + longest_edge(mesh) / std::numbers::sqrt3;
   std::vector<uint8_t> is_near(vertices.size());
   run_simd<&mark_below>(static_cast<const double*>(squares.data()), squares.size(), reach * reach * (1.0 + 1e-9),
                         is_near.data());
@@ -102,7 +105,10 @@ void NearestPoints::look_at_mesh(const Points& points, uint32_t mesh, std::array
     const auto& [a, b, c] = triangles[i];
     if ((is_near[a] | is_near[b] | is_near[c]) == 0) continue;
     const std::array<Vec3, 3> corners = geometry_.corners(mesh, i);
-    for (size_t k = 0; k < 2; ++k) least[k] = std::min(least[k], distance_to_triangle(points[k], corners));
+    for (size_t k = 0; k < 2; ++k) {
+      if (is_box_nearer(points[k], corners, least[k]))
+        least[k] = std::min(least[k], distance_to_triangle(points[k], corners));
+    }
   }
 }
 

@@ -147,33 +147,6 @@ void ObjectView::look(const LaneVectors& directions, int count, Seen& seen) cons
   }
 }
 
-uint32_t ObjectView::only_hiding(const LaneVectors& directions, int count) const {
-  const EmbreeScene::Stretches in_box = stretches_in_boxes(directions, count);
-  EmbreeScene::Stretches before = in_box;
-  before.begin = {};
-  for (int lane = 0; lane < kPacketSize; ++lane) before.end[lane] = lane < count ? in_box.begin[lane] : 0.0;
-  EmbreeScene::Looks first;
-  geometry_.look(apex_, directions, before, kHiding, first);
-  uint32_t hiding = kNothing;
-  for (int lane = 0; lane < count; ++lane) {
-    if (in_box.end[lane] <= in_box.begin[lane]) continue;
-    const uint32_t mesh = first.mesh_id[static_cast<size_t>(lane)];
-    if (mesh == kNothing) return kSeveral;
-    if (hiding == kNothing) hiding = surfaces_.of_mesh[mesh];
-    if (hiding != surfaces_.of_mesh[mesh]) return kSeveral;
-  }
-  return hiding;
-}
-
-void ObjectView::look_for(const LaneVectors& directions, int count, uint32_t* surface) const {
-  Seen seen;
-  seen.mesh.fill(kNothing);
-  find_object(directions, stretches_in_boxes(directions, count), seen);
-  for (int lane = 0; lane < count; ++lane) {
-    surface[lane] = seen.mesh[static_cast<size_t>(lane)] == kNothing ? kNothing : object_;
-  }
-}
-
 void ObjectView::look_from(const Vec3& from, const LaneVectors& directions, const Seen& seen, int count,
                            uint32_t* surface) const {
   EmbreeScene::Stretches way{};

@@ -15,7 +15,6 @@ class ObjectView {
   // Surfaces this near behind each other, relative to the distance, are one: a label on a box does not hide it.
   static constexpr double kSameDepth = 1e-5;
   static constexpr double kAfter = 1.0 + 1e-7;  // times a distance: one step of single precision
-  static constexpr uint32_t kSeveral = kNothing - 1;
   struct Seen {
     std::array<uint32_t, kPacketSize> surface;  // the object where nothing hides it, else what does; kNothing: not there
     std::array<uint32_t, kPacketSize> mesh, hiding;  // meshes of the object and of what hides it, or kNothing
@@ -32,11 +31,6 @@ class ObjectView {
   // `closely` by their vertices.
   Stratum stratum(bool closely) const;
   void look(const LaneVectors& directions, int count, Seen& seen) const;
-  // Writes the object where the directions meet it, hidden or not, else kNothing.
-  void look_for(const LaneVectors& directions, int count, uint32_t* surface) const;
-  // Returns the one surface that is met before the object's box in all of the directions that reach it, kNothing where none
-  // of them does, and kSeveral where there are several or some meet none.
-  uint32_t only_hiding(const LaneVectors& directions, int count) const;
   // Writes what is nearest on the way from another point (m, relative to the geometry's origin) to those of the object that
   // `seen` tells of: the object where nothing else is, kNothing where it was not seen.
   void look_from(const Vec3& from, const LaneVectors& directions, const Seen& seen, int count, uint32_t* surface) const;

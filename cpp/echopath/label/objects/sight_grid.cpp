@@ -10,7 +10,6 @@ namespace {
 
 constexpr int kCells = SightGrid::kSide * SightGrid::kSide;  // of a block; as many as a packet has lanes
 static_assert(kCells == kPacketSize);
-constexpr int kFirstCell = 5;  // the cell of a block that is looked at first
 // Two numbers whose multiples are even in both axes together (Roberts 2018, of the plastic number).
 constexpr double kAlong = 0.7548776662466927, kAcross = 0.5698402909980532;
 
@@ -27,18 +26,17 @@ SightGrid::SightGrid(const Stratum& stratum, int64_t num_cells) : directions_({s
   num_rows_ = static_cast<int>(std::max(1.0, std::round(num_blocks / num_columns_)));
   const double square = is_disc_ ? 4.0 / std::numbers::pi : 1.0;  // of the disc's own area
   cell_angle_ = stratum.solid_angle() * square / static_cast<double>(kCells * this->num_blocks());
+  while (step_ > 1 && num_first_rows() * num_first_columns() < kFewestFirst) step_ /= 2;
   const auto size = static_cast<size_t>(this->num_blocks());
-  first_met_.assign(size, kNothing);
+  first_met_.assign(static_cast<size_t>(num_first_rows() * num_first_columns()), kNothing);
   state_.assign(size, State::kUnseen);
   met_.resize(size * kCells);
 }
 
-// Sets the place of a cell's direction in the domain.
-void SightGrid::direct(int64_t block, int cell, LaneValues& x, LaneValues& y, int lane) const {
-  const auto column = static_cast<double>(block % num_columns_ * kSide + cell % kSide);
-  const int64_t whole_rows = block / num_columns_ * kSide + cell / kSide;
-  const auto row = static_cast<double>(whole_rows);
-  const double along = column + fraction(kAlong * row + 0.5), across = row + fraction(kAcross * column + 0.5);
+// Sets the place of a cell's direction in the domain; rows and columns are those of cells.
+void SightGrid::direct(int64_t row, int64_t column, int lane, LaneValues& x, LaneValues& y) const {
+  const auto r = static_cast<double>(row), c = static_cast<double>(column);
+  const double along = c + fraction(kAlong * r + 0.5), across = r + fraction(kAcross * c + 0.5);
   x[lane] = half_[0] * (2.0 * along / (kSide * num_columns_) - 1.0);
   y[lane] = half_[1] * (2.0 * across / (kSide * num_rows_) - 1.0);
 }
@@ -53,30 +51,44 @@ void SightGrid::look_at(const LaneValues& x, const LaneValues& y, int count, con
   }
 }
 
+// Looks at squares of them: nearly parallel rays are faster.
 double SightGrid::start(const FindMet& find_met) {
-  if (num_blocks() <= kFewBlocks) finish_everywhere(find_met);
-  else look_at_first_cells(find_met);
-  const auto& all = num_blocks() > kFewBlocks ? first_met_ : met_;
-  const auto num_found = std::ssize(all) - std::count(all.begin(), all.end(), kNothing);
-  return static_cast<double>(num_found) / static_cast<double>(all.size());
-}
-
-// Looks at squares of blocks: nearly parallel rays are faster.
-void SightGrid::look_at_first_cells(const FindMet& find_met) {
-  for (int row = 0; row < num_rows_; row += kSide) {
-    for (int column = 0; column < num_columns_; column += kSide) {
-      const int columns = std::min(kSide, num_columns_ - column), count = columns * std::min(kSide, num_rows_ - row);
-      const auto block = [&](int lane) { return int64_t{row + lane / columns} * num_columns_ + column + lane % columns; };
+  const int64_t rows = num_first_rows(), columns = num_first_columns();
+  const int middle = (step_ - 1) / 2;  // of the cells for which a first direction stands
+  for (int64_t row = 0; row < rows; row += kSide) {
+    for (int64_t column = 0; column < columns; column += kSide) {
+      const int64_t width = std::min<int64_t>(kSide, columns - column);
+      const auto count = static_cast<int>(width * std::min<int64_t>(kSide, rows - row));
       LaneValues x, y;
-      for (int lane = 0; lane < kPacketSize; ++lane) direct(block(std::min(lane, count - 1)), kFirstCell, x, y, lane);
+      for (int lane = 0; lane < kPacketSize; ++lane) {
+        const int64_t at = std::min(lane, count - 1);
+        direct((row + at / width) * step_ + middle, (column + at % width) * step_ + middle, lane, x, y);
+      }
       std::array<uint32_t, kPacketSize> met;
       look_at(x, y, count, find_met, met.data());
-      for (int lane = 0; lane < count; ++lane) first_met_[static_cast<size_t>(block(lane))] = met[static_cast<size_t>(lane)];
+      for (int64_t lane = 0; lane < count; ++lane) {
+        const int64_t first = (row + lane / width) * columns + column + lane % width;
+        first_met_[static_cast<size_t>(first)] = met[static_cast<size_t>(lane)];
+      }
     }
   }
+  const auto num_found = std::ssize(first_met_) - std::count(first_met_.begin(), first_met_.end(), kNothing);
+  return static_cast<double>(num_found) / static_cast<double>(first_met_.size());
+}
+
+std::optional<uint32_t> SightGrid::only_met(int64_t least) const {
+  uint32_t only = kNothing;
+  int64_t count = 0;
+  for (const uint32_t met : first_met_) {
+    if (met == kNothing) continue;
+    if (++count > 1 && met != only) return std::nullopt;
+    only = met;
+  }
+  return count > 0 && count >= least ? std::optional<uint32_t>(only) : std::nullopt;
 }
 
 void SightGrid::finish(const FindMet& find_met) {
+  if (step_ == 1) return;  // the first directions were all
   queue_changes();
   while (!queue_.empty()) {
     const int64_t block = queue_.back();
@@ -94,7 +106,8 @@ void SightGrid::see(int64_t block, const FindMet& find_met) {
   const auto at = static_cast<size_t>(block);
   if (state_[at] == State::kSeen) return;
   LaneValues x, y;
-  for (int cell = 0; cell < kCells; ++cell) direct(block, cell, x, y, cell);
+  const int64_t row = block / num_columns_ * kSide, column = block % num_columns_ * kSide;
+  for (int cell = 0; cell < kCells; ++cell) direct(row + cell / kSide, column + cell % kSide, cell, x, y);
   look_at(x, y, kCells, find_met, met_.data() + at * kCells);
   state_[at] = State::kSeen;
 }
@@ -106,36 +119,40 @@ void SightGrid::queue(int64_t block) {
   queue_.push_back(block);
 }
 
-// Queues one of two neighbours whose directions met different things: where the change is in the other one, the cells at
-// their border lead there. Around the domain nothing is met.
+// Queues the block of one of two neighbours among the first directions that met different things: where the change is in the
+// block of the other one, the cells at their border lead there. Around the domain nothing is met.
 void SightGrid::queue_changes() {
-  const auto met = [&](int64_t block) { return first_met_[static_cast<size_t>(block)]; };
-  for (int64_t block = 0; block < num_blocks(); ++block) {
-    const int64_t column = block % num_columns_;
-    const bool has_right = column + 1 < num_columns_, has_below = block + num_columns_ < num_blocks();
-    const bool is_at_rim = column == 0 || !has_right || block < num_columns_ || !has_below;
-    if (is_at_rim && met(block) != kNothing) queue(block);
-    const bool differs_right = has_right && met(block) != met(block + 1);
-    const bool differs_below = has_below && met(block) != met(block + num_columns_);
-    if (differs_right || differs_below) queue(block);
+  const int64_t rows = num_first_rows(), columns = num_first_columns(), of_block = kSide / step_;
+  for (int64_t row = 0; row < rows; ++row) {
+    for (int64_t column = 0; column < columns; ++column) {
+      const uint32_t* const met = &first_met_[static_cast<size_t>(row * columns + column)];
+      const bool has_right = column + 1 < columns, has_below = row + 1 < rows;
+      const bool is_at_rim = row == 0 || column == 0 || !has_right || !has_below;
+      const bool differs = (has_right && met[0] != met[1]) || (has_below && met[0] != met[columns]);
+      if (differs || (is_at_rim && *met != kNothing)) queue(row / of_block * num_columns_ + column / of_block);
+    }
   }
 }
 
-// Queues the neighbours of a block that was seen where cells at their border met something else than they did.
+// Queues the neighbours of a block that was seen where cells at their border met something else than their first directions
+// did.
 void SightGrid::queue_neighbours(int64_t block) {
   const uint32_t* const cells = met_.data() + block * kCells;
-  const int64_t column = block % num_columns_;
-  const auto compare = [&](bool is_there, int64_t other, int first, int step) {
+  const int64_t row = block / num_columns_, column = block % num_columns_, columns = num_first_columns();
+  const int64_t of_block = kSide / step_, first_row = row * of_block, first_column = column * of_block;
+  // `first` and `step` lead along the block's own cells, the last two along the first directions of the other one.
+  const auto compare = [&](bool is_there, int64_t other, int first, int step, int64_t other_first, int64_t other_step) {
     if (!is_there || state_[static_cast<size_t>(other)] != State::kUnseen) return;
-    const uint32_t met = first_met_[static_cast<size_t>(other)];
     for (int k = 0; k < kSide; ++k) {
-      if (cells[first + k * step] != met) return queue(other);
+      const auto of_other = static_cast<size_t>(other_first + k / step_ * other_step);
+      if (cells[first + k * step] != first_met_[of_other]) return queue(other);
     }
   };
-  compare(column > 0, block - 1, 0, kSide);
-  compare(column + 1 < num_columns_, block + 1, kSide - 1, kSide);
-  compare(block >= num_columns_, block - num_columns_, 0, 1);
-  compare(block + num_columns_ < num_blocks(), block + num_columns_, kCells - kSide, 1);
+  const int64_t corner = first_row * columns + first_column;
+  compare(column > 0, block - 1, 0, kSide, corner - 1, columns);
+  compare(column + 1 < num_columns_, block + 1, kSide - 1, kSide, corner + of_block, columns);
+  compare(row > 0, block - num_columns_, 0, 1, corner - columns, 1);
+  compare(row + 1 < num_rows_, block + num_columns_, kCells - kSide, 1, corner + of_block * columns, 1);
 }
 
 std::vector<int64_t> SightGrid::counts(size_t num_kinds) const {
@@ -143,10 +160,14 @@ std::vector<int64_t> SightGrid::counts(size_t num_kinds) const {
   const auto add = [&](uint32_t met, int64_t count) {
     if (met != kNothing) counts[met] += count;
   };
+  const int64_t columns = num_first_columns(), of_block = kSide / step_;
+  for (int64_t first = 0; first < std::ssize(first_met_); ++first) {
+    const int64_t block = first / columns / of_block * num_columns_ + first % columns / of_block;
+    if (state_[static_cast<size_t>(block)] != State::kSeen)
+      add(first_met_[static_cast<size_t>(first)], int64_t{step_} * step_);
+  }
   for (size_t block = 0; block < state_.size(); ++block) {
-    if (state_[block] != State::kSeen) add(first_met_[block], kCells);
-    else
-      for (int cell = 0; cell < kCells; ++cell) add(met_[block * kCells + static_cast<size_t>(cell)], 1);
+    for (size_t cell = 0; state_[block] == State::kSeen && cell < kCells; ++cell) add(met_[block * kCells + cell], 1);
   }
   return counts;
 }

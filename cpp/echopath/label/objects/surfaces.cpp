@@ -88,9 +88,12 @@ bool take_meshes(const std::string& glob, uint32_t object, const std::vector<std
 }
 
 // Returns a box that holds a mesh, a little larger than needed: that of the corners of its box in its own frame.
-Eigen::AlignedBox3d box_around(const PosedScene& pose, uint32_t mesh) {
+Eigen::AlignedBox3d box_around(const Scene& scene, const PosedScene& pose, uint32_t mesh) {
+  const Node& node = scene.node_of(mesh);
   Eigen::AlignedBox3d local, world;
-  for (const Vec3& vertex : pose.local_vertices(mesh)) local.extend(vertex);
+  if (!node.deformation) local = node.mesh->box();
+  else
+    for (const Vec3& vertex : pose.local_vertices(mesh)) local.extend(vertex);
   for (int i = 0; i < 8; ++i) {
     const Vec3 corner = local.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
     world.extend(pose.linear(mesh) * corner + pose.world_translation(mesh));
@@ -102,7 +105,7 @@ Eigen::AlignedBox3d box_around(const PosedScene& pose, uint32_t mesh) {
 // box that holds the object, and its centre lies in that box.
 bool surrounds(const Scene& scene, const PosedScene& pose, const SceneObject& object, const Vec3& point) {
   Eigen::AlignedBox3d box;
-  for (const uint32_t mesh : object.mesh_ids) box.extend(box_around(pose, mesh));
+  for (const uint32_t mesh : object.mesh_ids) box.extend(box_around(scene, pose, mesh));
   if (box.exteriorDistance(point) > kSureOutside * 0.5 * box.diagonal().norm()) return false;
   std::vector<std::vector<Vec3>> vertices(scene.meshes().size());
   for (const uint32_t mesh : object.mesh_ids) vertices[mesh] = pose.world_vertices(mesh);

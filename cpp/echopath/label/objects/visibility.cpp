@@ -17,11 +17,14 @@
 namespace echopath {
 namespace {
 
-constexpr int kGridCells = 2;                          // for each direction asked for, at first
-constexpr double kLeastFill = 0.25;                    // share of cells on the object below which there are to be more
-constexpr double kLooseFill = 0.2;                     // below which the stratum is fitted to the vertices
-constexpr double kMostCells = 16.0;                    // for each direction asked for
-constexpr int kFewerIfHidden = 16, kLeastCells = 256;  // cells of a grid that serves the solid angle alone
+constexpr int kGridCells = 2;        // for each direction asked for, at first
+constexpr double kLeastFill = 0.25;  // share of cells on the object below which there are to be more
+constexpr double kLooseFill = 0.2;   // below which the stratum is fitted to the vertices
+constexpr double kMostCells = 16.0;  // for each direction asked for
+// Directions on an object after which it is hidden, or in sight, if it was so in each of them: so many, or the number asked
+// for divided by the second one.
+constexpr int64_t kEnoughHidden = 64;
+constexpr int kFewerIfVisible = 8;
 // Ends that are nearer to each other than kNearEnds of the distance to an object may see the same outline of it. They do if
 // it moves, which goes by the depth of the object, by no more than kSameOutline of its width from one end to the other.
 constexpr double kNearEnds = 0.01, kSameOutline = 0.05;
@@ -48,9 +51,7 @@ class ObjectScanner {
 
   // Returns what each end sees, but for the distances.
   std::vector<Sight> sights(int num_directions) {
-    const Stratum stratum = views_.front().stratum(false);
-    const std::optional<Met> hiding = hidden_by(stratum, num_directions);
-    const SightGrid grid = hiding ? hidden_grid(stratum, *hiding, num_directions) : looked_at(stratum, num_directions);
+    const SightGrid grid = looked_at(views_.front().stratum(false), num_directions);
     std::vector<Sight> sights;
     for (size_t end = 0; end < ends_.size(); ++end) sights.push_back(sight_of(end, grid));
     return sights;
@@ -62,48 +63,6 @@ class ObjectScanner {
   // Names what the ends meet in one direction, the object or what hides it.
   using Met = std::array<uint32_t, 2>;
 
-  // Returns the surfaces that hide the object from each end wherever it is.
-  std::optional<Met> hidden_by(const Stratum& stratum, int num_directions) const {
-    Met hiding{};
-    for (size_t end = 0; end < ends_.size(); ++end) {
-      const std::optional<uint32_t> one =
-          hidden_by(views_[end], end == 0 ? stratum : views_[end].stratum(false), num_directions);
-      if (!one) return std::nullopt;
-      hiding[end] = *one;
-    }
-    return hiding;
-  }
-
-  // Returns the surface that hides the object wherever it is: one that is met before its boxes in one direction of each
-  // block of a grid.
-  static std::optional<uint32_t> hidden_by(const ObjectView& view, const Stratum& stratum, int num_directions) {
-    uint32_t hiding = ObjectView::kNothing;
-    SightGrid grid(stratum, int64_t{kGridCells} * num_directions);
-    grid.start([&](const LaneVectors& directions, int count, uint32_t* met) {
-      std::fill_n(met, count, SightGrid::kNothing);
-      if (hiding == ObjectView::kSeveral) return;
-      const uint32_t here = view.only_hiding(directions, count);
-      if (hiding == ObjectView::kNothing) hiding = here;
-      if (here != ObjectView::kNothing && here != hiding) hiding = ObjectView::kSeveral;
-    });
-    const bool is_one = hiding != ObjectView::kNothing && hiding != ObjectView::kSeveral;
-    return is_one ? std::optional<uint32_t>(hiding) : std::nullopt;
-  }
-
-  // Looks only for the solid angle of an object that `hiding` hides.
-  SightGrid hidden_grid(const Stratum& stratum, const Met& hiding, int num_directions) {
-    SightGrid grid(stratum, std::max(kLeastCells, num_directions / kFewerIfHidden));
-    grid.finish_everywhere([&](const LaneVectors& directions, int count, uint32_t* met) {
-      views_.front().look_for(directions, count, met);
-      for (int lane = 0; lane < count; ++lane) {
-        if (met[lane] == SightGrid::kNothing) continue;
-        met[lane] = number_of(hiding);
-        look_for_gain(directions[lane]);
-      }
-    });
-    return grid;
-  }
-
   // Looks at as many cells as it takes to have so many directions on the object.
   SightGrid looked_at(Stratum stratum, int num_directions) {
     const SightGrid::FindMet find_met = [this](const LaneVectors& directions, int count, uint32_t* met) {
@@ -111,20 +70,28 @@ class ObjectScanner {
     };
     SightGrid grid(stratum, int64_t{kGridCells} * num_directions);
     double fill = grid.start(find_met);
-    if (fill < kLooseFill) {
+    if (fill < kLooseFill && !is_known(grid, num_directions)) {
       stratum = views_.front().stratum(true);
       grid = SightGrid(stratum, int64_t{kGridCells} * num_directions);
       fill = grid.start(find_met);
     }
-    if (fill >= kLeastFill) {
-      grid.finish(find_met);
-      return grid;
+    if (fill < kLeastFill && !is_known(grid, num_directions)) {
+      const double cells = fill > 0.0 ? std::min(kMostCells, 1.0 / fill) : kMostCells;
+      grid = SightGrid(stratum, static_cast<int64_t>(cells * num_directions));
+      fill = grid.start(find_met);
     }
-    const double cells = fill > 0.0 ? std::min(kMostCells, 1.0 / fill) : kMostCells;
-    grid = SightGrid(stratum, static_cast<int64_t>(cells * num_directions));
-    if (grid.start(find_met) > 0.0) grid.finish(find_met);
-    else grid.finish_everywhere(find_met);
+    if (fill == 0.0) grid.finish_everywhere(find_met);
+    else if (!is_known(grid, num_directions)) grid.finish(find_met);
     return grid;
+  }
+
+  // Returns whether the same surface hides the object wherever it was looked for, or nothing anywhere, in enough directions.
+  bool is_known(const SightGrid& grid, int num_directions) const {
+    const std::optional<uint32_t> only = grid.only_met(kEnoughHidden);
+    if (!only) return false;
+    const std::span<const uint32_t> by_end = std::span(met_[*only]).first(ends_.size());
+    const bool is_hidden = std::find(by_end.begin(), by_end.end(), object_) == by_end.end();
+    return is_hidden || grid.only_met(num_directions / kFewerIfVisible);
   }
 
   void see(const LaneVectors& directions, int count, uint32_t* met) {
@@ -209,14 +176,6 @@ std::array<Sight, 2> sights_of(const EmbreeScene& geometry, const SurfaceMap& su
   return {sights[0], sights[1]};
 }
 
-std::vector<uint32_t> meshes_of_objects(const SurfaceMap& surfaces) {
-  std::vector<uint32_t> meshes;
-  for (uint32_t mesh = 0; mesh < surfaces.of_mesh.size(); ++mesh) {
-    if (surfaces.is_object(surfaces.of_mesh[mesh])) meshes.push_back(mesh);
-  }
-  return meshes;
-}
-
 End end_of(const std::vector<Antenna>& antennas, const Transform& world_from_radar, const Vec3& origin) {
   return {mean_position(antennas, world_from_radar) - origin, posed_antennas(antennas, world_from_radar, origin)};
 }
@@ -236,7 +195,7 @@ std::vector<ObjectVisibility> visibility(const Scene& scene, const Radar& radar,
   const GeometryLoan geometry(kept, scene, pose, near, radar.motion != nullptr, job);
   const std::array<End, 2> ends = {end_of(radar.transmitters, world_from_radar, (*geometry).origin()),
                                    end_of(radar.receivers, world_from_radar, (*geometry).origin())};
-  const NearestPoints nearest(scene, pose, *geometry, meshes_of_objects(surfaces));
+  const NearestPoints nearest(scene, pose, *geometry);
   std::vector<ObjectVisibility> seen(surfaces.num_objects);
   if (job) job->start(surfaces.num_objects);
   parallel_for(surfaces.num_objects, [&](int64_t i) {

@@ -9,6 +9,7 @@
 #pragma GCC diagnostic pop
 #endif
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 #include <stdexcept>
 #include <string>
@@ -123,6 +124,15 @@ bool lie_in_a_plane(const std::vector<Vec3>& vertices, const std::vector<Triangl
 
 }  // namespace
 
+double longest_edge_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+  double longest = 0.0;
+  for (const auto& [a, b, c] : triangles) {
+    longest = std::max({longest, (vertices[a] - vertices[b]).squaredNorm(), (vertices[b] - vertices[c]).squaredNorm(),
+                        (vertices[c] - vertices[a]).squaredNorm()});
+  }
+  return std::sqrt(longest);
+}
+
 struct Mesh::KeptEdges {
   std::once_flag found;
   std::vector<SharpEdge> edges;
@@ -160,8 +170,7 @@ Mesh::Mesh(std::vector<Vec3> vertices, std::vector<Triangle> triangles, std::vec
   vertices_.reserve(original_vertex_.size());
   for (const uint32_t vertex : original_vertex_) vertices_.push_back(vertices[vertex]);
   is_closed_ = !has_boundary(connect(vertices_, triangles_)) && num_duplicated_vertices_ == 0;
-  area_ = surface_area(vertices_, triangles_);
-  is_flat_ = lie_in_a_plane(vertices_, triangles_);
+  measure();
 }
 
 MeshPtr Mesh::part(const MeshPtr& whole, std::vector<uint32_t> triangles) {
@@ -186,12 +195,18 @@ MeshPtr Mesh::part(const MeshPtr& whole, std::vector<uint32_t> triangles) {
   }
   made->num_input_vertices_ = whole->num_input_vertices_;
   made->is_closed_ = made->num_duplicated_vertices_ == 0 && !has_boundary(made->triangles_);
-  made->area_ = surface_area(made->vertices_, made->triangles_);
-  made->is_flat_ = lie_in_a_plane(made->vertices_, made->triangles_);
+  made->measure();
   return made;
 }
 
 Mesh::~Mesh() = default;
+
+void Mesh::measure() {
+  area_ = surface_area(vertices_, triangles_);
+  is_flat_ = lie_in_a_plane(vertices_, triangles_);
+  for (const Vec3& vertex : vertices_) box_.extend(vertex);
+  longest_edge_ = longest_edge_of(vertices_, triangles_);
+}
 
 const std::vector<SharpEdge>& Mesh::sharp_edges() const {
   std::call_once(edges_->found, [&] { edges_->edges = find_sharp_edges(*this); });

@@ -1,5 +1,6 @@
 #pragma once
 // A mesh is one labelled surface of triangles, checked and repaired when it is made.
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -10,6 +11,9 @@
 namespace echopath {
 
 using Triangle = std::array<uint32_t, 3>;
+
+// Returns the length in m of the longest edge of some triangles.
+double longest_edge_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles);
 
 struct SharpEdge;  // scene/edges/sharp_edges.h
 
@@ -40,9 +44,11 @@ class Mesh {
   int64_t num_removed_triangles() const { return num_removed_triangles_; }
   int64_t num_input_vertices() const { return num_input_vertices_; }  // as many as a Deformation must have
   int64_t num_duplicated_vertices() const { return num_duplicated_vertices_; }
-  bool is_closed() const { return is_closed_; }  // no boundary edge, no duplicated vertex
-  double area() const { return area_; }          // m^2
-  bool is_flat() const { return is_flat_; }      // all vertices in one plane, to 1e-6 of the extent
+  bool is_closed() const { return is_closed_; }            // no boundary edge, no duplicated vertex
+  double area() const { return area_; }                    // m^2
+  bool is_flat() const { return is_flat_; }                // all vertices in one plane, to 1e-6 of the extent
+  const Eigen::AlignedBox3d& box() const { return box_; }  // m, of the vertices
+  double longest_edge() const { return longest_edge_; }    // m
   // Returns the edges that find_sharp_edges finds; it looks for them at the first call and is thread-safe.
   const std::vector<SharpEdge>& sharp_edges() const;
 
@@ -57,13 +63,15 @@ class Mesh {
 
  private:
   Mesh();
+  void measure();
 
   std::vector<Vec3> vertices_;
   std::vector<Triangle> triangles_;
   std::vector<uint32_t> original_triangle_, original_vertex_;
   int64_t num_input_vertices_ = 0, num_removed_triangles_ = 0, num_duplicated_vertices_ = 0;
   bool is_closed_ = false, is_flat_ = false;
-  double area_ = 0.0;  // m^2
+  double area_ = 0.0, longest_edge_ = 0.0;  // m^2 and m
+  Eigen::AlignedBox3d box_;                 // m
   MeshPtr whole_;
   std::vector<uint32_t> whole_triangle_, whole_vertex_;
   struct KeptEdges;

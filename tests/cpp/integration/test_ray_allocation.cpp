@@ -99,5 +99,22 @@ TEST(ShareOut, ServesObjectsBeforeImagesAndAddsUp) {
   EXPECT_LT(shares.at("car over wall"), 500.0);
 }
 
+// Needs of two machines differ in their last bits, or by a path or two of thousands.
+TEST(RoundedRays, HardlyEverTellPilotsOfTwoMachinesApart) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> of_exponent(0.0, 7.0);
+  int num_apart = 0;
+  constexpr int kTrials = 1000;
+  constexpr double kApart = 2e-5, kCoarsest = 1.0 / 64.0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const double rays = std::pow(10.0, of_exponent(random)), rounded = rounded_rays(rays);
+    EXPECT_NEAR(rounded, rays, kCoarsest * rays);
+    EXPECT_EQ(rounded_rays(rounded), rounded);
+    if (rounded_rays(rays * (1.0 + kApart)) != rounded) ++num_apart;
+  }
+  EXPECT_LE(num_apart, 10);  // 2e-5 of steps of 1/64 to 1/32: 1.8 expected, and never 10
+  EXPECT_EQ(rounded_rays(0.0), 0.0);
+}
+
 }  // namespace
 }  // namespace echopath::test_ray_allocation

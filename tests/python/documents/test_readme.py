@@ -26,6 +26,18 @@ def test_the_table_of_packages_names_every_package_and_the_home_of_every_public_
     assert named <= there
 
 
+NUMBER = re.compile(r"[+-]?\d+(?:\.(\d+))?")
+
+
+def assert_prints_the_same(found, printed):
+    """The same words, and numbers that differ by one in their last digit at most: machines with other instructions round
+    otherwise."""
+    assert NUMBER.sub("#", found) == NUMBER.sub("#", printed)
+    for one, other in zip(NUMBER.finditer(found), NUMBER.finditer(printed), strict=True):
+        unit = 10.0 ** -len(other[1] or "")
+        assert abs(float(one[0]) - float(other[0])) < 1.5 * unit, f"{one[0]} in place of {other[0]}"
+
+
 @pytest.fixture(scope="module")
 def names():
     return {}
@@ -34,12 +46,12 @@ def names():
 def test_the_example_prints_what_stands_below_it(blocks, names, capsys):
     exec(blocks[0], names)
     printed = re.search(r"```python\n.*?```\nprints\n```\n(.*?)```", TEXT, re.DOTALL)[1]
-    assert capsys.readouterr().out == printed
+    assert_prints_the_same(capsys.readouterr().out, printed)
 
 
 def test_labels_of_the_example_print_what_stands_below_them(names):
     printed = re.search(r"`print\(labels\)` prints\n```\n(.*?)\n```", TEXT, re.DOTALL)[1]
-    assert str(ep.annotate(names["paths"], names["parts"])) == printed
+    assert_prints_the_same(str(ep.annotate(names["paths"], names["parts"])), printed)
 
 
 def test_detections_of_the_example_are_what_the_scene_holds(blocks, names):

@@ -148,6 +148,13 @@ void give_rays(StratumPlan& plan) {
 
 }  // namespace
 
+double rounded_rays(double rays) {
+  constexpr double kSteps = 64.0;  // of the mantissa, which is 1/2 to 1
+  int exponent = 0;
+  const double mantissa = std::frexp(rays, &exponent);
+  return std::ldexp(std::round(kSteps * mantissa) / kSteps, exponent);
+}
+
 void set_foci(const TraceFrame& frame, const std::vector<KnownEcho>& echoes, const std::vector<Glint>& glints,
               LaunchGuide& guide) {
   std::vector<StratumPlan> plans(frame.strata.size());
@@ -170,7 +177,10 @@ void set_foci(const TraceFrame& frame, const std::vector<KnownEcho>& echoes, con
   for (StratumPlan& plan : plans) {
     if (!plan.foci.empty()) give_rays(plan);
     serve_chains(plan);
-    for (const LaunchFocus& focus : plan.foci) guide.shares.at(plan.name) -= focus.share;
+    for (LaunchFocus& focus : plan.foci) {
+      focus.share = rounded_rays(focus.share);
+      guide.shares.at(plan.name) -= focus.share;
+    }
     std::move(plan.foci.begin(), plan.foci.end(), std::back_inserter(guide.foci));
   }
 }

@@ -199,7 +199,7 @@ LaunchGuide guide_rays(const Paths& paths, const RayNeeds& needs, int64_t num_ra
   const std::vector<Glint> glints = find_glints(paths, job);
   raise_field_of_view(paths.frame, needs, glints, guide.shares);
   const double rays_per_share = static_cast<double>(num_rays) / sum_of(guide.shares);
-  for (auto& [name, share] : guide.shares) share *= rays_per_share;
+  for (auto& [name, share] : guide.shares) share = rounded_rays(rays_per_share * share);
   set_foci(paths.frame, echoes_of(paths.frame, needs), glints, guide);
   return guide;
 }

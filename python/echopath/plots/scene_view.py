@@ -143,8 +143,18 @@ def _is_cut(edge, low, high) -> bool:
     return any(np.isclose(edge, border, rtol=0.0, atol=CUT).all(axis=0).any() for border in (low, high))
 
 
+def _of_equal_length(polygons) -> np.ndarray:
+    """Polygons [N, K, D], which end with their last corner as often as the longest has more: Matplotlib takes an array at
+    once, but a list one by one."""
+    most = max(map(len, polygons), default=3)
+    corners = np.empty((len(polygons), most, polygons[0].shape[1] if polygons else 2))
+    for row, polygon in zip(corners, polygons):
+        row[:len(polygon)], row[len(polygon):] = polygon, polygon[-1]
+    return corners
+
+
 def _shaded(corners) -> list:
-    """Colours [N] of polygons under the lamp, both sides alike, from their first three corners [N, 3, 3]."""
+    """Colours [N, 4] of polygons under the lamp, both sides alike, from their first three corners [N, 3, 3]."""
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.linalg.norm(normal, axis=1)
     brightness = np.abs(normal @ LIGHT) / (np.where(length > 0.0, length, 1.0) * np.linalg.norm(LIGHT))
@@ -172,7 +182,7 @@ def _draw_perspective(axes, drawing: _Drawing) -> None:
     add(Line3DCollection, drawing.mirror_cuts, 1, colors=(*MIRROR_COLOUR, 0.9), linewidths=0.7, linestyles=[DASHES])
     for count, segments in reversed(drawing.segments.items()):
         add(Line3DCollection, segments, 2, colors=_colour(count), linewidths=0.6, alpha=_ray_opacity(segments))
-    add(Poly3DCollection, drawing.bodies, 3, facecolors=drawing.body_colours, edgecolors="none")
+    add(Poly3DCollection, _of_equal_length(drawing.bodies), 3, facecolors=np.array(drawing.body_colours), edgecolors="none")
     axes.plot(*drawing.radar[:, None], marker="s", color="black", markersize=5, zorder=4, clip_on=False)
     axes.text(*drawing.radar, f"{RADAR_LABEL}   ", zorder=5, horizontalalignment="right")
     for name, (low, high) in drawing.names.items():
@@ -230,8 +240,8 @@ def _draw_flat(axes, drawing: _Drawing, plane: tuple, title: str) -> None:
                                            alpha=_ray_opacity(segments)))
     toward_viewer = 1.0 if depth == 2 else -1.0
     order = np.argsort([toward_viewer * polygon[:, depth].mean() for polygon in drawing.bodies], kind="stable")
-    axes.add_collection(PolyCollection([drawing.bodies[i][:, columns] for i in order],
-                                       facecolors=[drawing.body_colours[i] for i in order], edgecolors="none"))
+    axes.add_collection(PolyCollection(_of_equal_length([drawing.bodies[i][:, columns] for i in order]),
+                                       facecolors=np.reshape(drawing.body_colours, (-1, 4))[order], edgecolors="none"))
     axes.plot(*drawing.radar[columns], marker="s", color="black", markersize=4)
     _draw_flat_names(axes, drawing, plane)
     axes.set_xlim(drawing.low[plane[0]], drawing.high[plane[0]])

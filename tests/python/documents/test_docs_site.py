@@ -96,7 +96,7 @@ def test_lines_of_a_page_run(task, tmp_path, monkeypatch):
     Path("car.obj").write_text(corners + "g body\nf 1 2 3\nf 1 2 4\ng roof\nf 2 3 4\n", encoding="utf-8")
     names = {"__name__": "a_page"}
     exec(compile(code_of(DOCS / "how_do_i" / "index.md"), "index.md", "exec"), names)
-    exec(compile(code_of(DOCS / "how_do_i" / f"{task}.md"), f"{task}.md", "exec"), names)
+    exec(compile(with_little_work(code_of(DOCS / "how_do_i" / f"{task}.md")), f"{task}.md", "exec"), names)
     if task == "runs/several_processes":  # a worker of its own would need the page as a file
         assert ep.load_frame(names["one_frame"](0.1)).paths.frame.start_time == 0.1
         ep.set_num_threads(0)
@@ -114,8 +114,8 @@ def test_the_gallery_has_its_pages():
 
 
 def with_little_work(text: str) -> str:
-    """The text of a script with an eighth of its rays and a fourth of its frames, where they are many: the site is built with all
-    of them."""
+    """The text of a script, a page or a notebook with an eighth of its rays and a fourth of its frames, where they are many:
+    the site is built, and read, with all of them."""
     for name, many, part in (("num_rays", 5000, 8), ("frames", 20, 4)):
         text = re.sub(rf"\b{name}=(\d[\d_]*)", lambda found: f"{name}={fewer(int(found[1].replace('_', '')), many, part)}", text)
     return text
@@ -167,7 +167,7 @@ def test_cells_of_a_notebook_run(notebook, monkeypatch):
     names = {"__name__": "a_notebook"}
     for number, cell in enumerate(cells_of(notebook)):
         lines = "".join(line for line in cell["source"] if not line.startswith("%"))  # without what IPython alone knows
-        exec(compile(lines, f"{notebook.name}, cell {number}", "exec"), names)
+        exec(compile(with_little_work(lines), f"{notebook.name}, cell {number}", "exec"), names)
     plt.close("all")
 
 

@@ -1,4 +1,5 @@
 """Fixtures of several tests."""
+import os
 import signal
 
 import numpy as np
@@ -15,10 +16,24 @@ LONGEST_FILES = ("documents/test_docs_site.py", "replay/test_reference.py", "ben
                  "edges/test_corners.py", "trace/test_surface_scatterers.py", "bench/test_bench_crowd.py")
 
 
+class _LastFirst(pytest.Dir):
+    """A folder whose files and folders are read from the last to the first."""
+
+    def collect(self):
+        return reversed(list(super().collect()))
+
+
+def pytest_collect_directory(path, parent):
+    """Every other process of xdist begins at the end: on a fresh machine, where all that tests import has yet to be compiled,
+    each then compiles one half and finds the other one done."""
+    number = os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw")
+    return _LastFirst.from_parent(parent, path=path) if int(number) % 2 else None
+
+
 def pytest_collection_modifyitems(items):
-    """Begins with the longest files; all others come by name."""
+    """Begins with the longest files; all others come by name, in all processes alike."""
     place = {name: index for index, name in enumerate(LONGEST_FILES)}
-    items.sort(key=lambda item: place.get("/".join(item.path.parts[-2:]), len(place)))
+    items.sort(key=lambda item: (place.get("/".join(item.path.parts[-2:]), len(place)), item.path))
 
 
 @pytest.fixture

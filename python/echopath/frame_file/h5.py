@@ -16,8 +16,7 @@ import numpy as np
 
 from .. import _core
 from ..base.interrupts import heed, interrupts_are_kept
-from ..base.libraries import load_whole
-from .h5_items import is_chunked, item_of, memory_type, name_of, read_blocks, row_blocks, shape_of
+from .h5_items import is_chunked, item_of, library, memory_type, name_of, read_blocks, row_blocks, shape_of
 
 CHUNK_BYTES = 1 << 20   # of compression
 SMALL_BYTES = 1 << 12   # up to it a dataset is not compressed
@@ -40,8 +39,7 @@ def writing(path):
     HDF5 cannot give up a file that it fails to write: the process would end with a crash. So a full disk is told here, by
     an OSError, and the file is cut to its size at the end.
     """
-    h5py = load_whole("h5py")  # with files alone: it takes a fifth of the time to import the package
-
+    h5py = library()
     _take_space(path)
     with h5py.File(path, "w", libver=LAYOUT) as file:
         reserve(file, 0)
@@ -112,8 +110,7 @@ def write_texts(group, name: str, texts) -> None:
 
 
 def _text_dtype(length: int):
-    import h5py
-
+    h5py = library()
     return h5py.string_dtype("utf-8", max(1, length))
 
 
@@ -223,8 +220,7 @@ def _values(dataset, shape: tuple | None, dtype):
 
 def _check_sum_of(dataset) -> int:
     """The check sum that a dataset has as an attribute: there are hundreds in a file, and their types say nothing more."""
-    import h5py
-
+    h5py = library()
     if not h5py.h5a.exists(dataset, CHECK_SUM.encode()):
         raise _core.FileError(f"{name_of(dataset)} has no attribute '{CHECK_SUM}'")
     value = np.full((), -1, np.int64)
@@ -234,8 +230,7 @@ def _check_sum_of(dataset) -> int:
 
 def check_sums(group) -> None:
     """Raises ep.FileError for the first dataset below a group whose values do not have its check sum."""
-    import h5py
-
+    h5py = library()
     for item in group.values():
         with blaming(item):
             if isinstance(item, h5py.Group):
@@ -246,8 +241,7 @@ def check_sums(group) -> None:
 
 def read_attribute(item, name: str, kind):
     """The attribute `name` of a group or dataset as a `kind` (int, float, bool, complex, str)."""
-    import h5py
-
+    h5py = library()
     place = item.id if isinstance(item, h5py.Group) else item
     if not h5py.h5a.exists(place, name.encode()):
         raise _core.FileError(f"{name_of(item)} has no attribute '{name}'")
@@ -262,14 +256,12 @@ def read_attribute(item, name: str, kind):
 
 def read_group(group, name: str):
     """The group `name` of a group."""
-    import h5py
-
+    h5py = library()
     return h5py.Group(_checked_item(group, name, "group", h5py.h5g.GroupID))
 
 
 def _dataset(group, name: str):
-    import h5py
-
+    h5py = library()
     return _checked_item(group, name, "dataset", h5py.h5d.DatasetID)
 
 
@@ -285,8 +277,7 @@ def _checked_item(group, name: str, kind: str, identifier):
 @contextmanager
 def reading(path):
     """Opens an HDF5 file; whatever is wrong with it becomes an ep.FileError that names the file and the reason."""
-    h5py = load_whole("h5py")
-
+    h5py = library()
     try:
         with interrupts_are_kept(), h5py.File(path, "r") as file:
             yield file

@@ -1,6 +1,6 @@
 """The items of an HDF5 file by the lower level of h5py: the upper one takes three times as long for the small ones of a frame.
 
-Its datasets are `h5py.h5d.DatasetID`, and groups `h5py.Group`. h5py is imported late, for files alone.
+Its datasets are `h5py.h5d.DatasetID`, and groups `h5py.Group`.
 """
 from __future__ import annotations
 
@@ -9,13 +9,20 @@ import math
 
 import numpy as np
 
+from ..base.libraries import load_whole
+
 BLOCK_BYTES = 1 << 23   # written or read at a time: between two blocks Ctrl-C is answered
+
+
+@functools.cache
+def library():
+    """h5py, with files alone: it takes a fifth of the time to import the package."""
+    return load_whole("h5py")
 
 
 def item_of(group, name: str):
     """The identifier of the item `name` of a group; None where there is none."""
-    import h5py
-
+    h5py = library()
     try:
         return h5py.h5o.open(group.id, name.encode())
     except KeyError:  # for what is damaged, too
@@ -29,8 +36,7 @@ def integers_of(group, attributes) -> list | None:
 
     attributes: [(name of the item, name of its attribute)]
     """
-    import h5py
-
+    h5py = library()
     value, found = np.empty((), np.int64), []
     kind = memory_type(value.dtype)
     try:
@@ -44,8 +50,7 @@ def integers_of(group, attributes) -> list | None:
 
 def name_of(item) -> str:
     """The name in its file of a group or of a dataset."""
-    import h5py
-
+    h5py = library()
     return item.name if isinstance(item, h5py.HLObject) else h5py.h5i.get_name(item).decode("utf-8", "replace")
 
 
@@ -56,15 +61,13 @@ def shape_of(dataset) -> tuple | None:
 
 def is_chunked(dataset) -> bool:
     """Whether a dataset lies in blocks, which may be compressed."""
-    import h5py
-
+    h5py = library()
     return dataset.get_create_plist().get_layout() == h5py.h5d.CHUNKED
 
 
 @functools.lru_cache
 def _number_type(dtype):
-    import h5py
-
+    h5py = library()
     return h5py.h5t.py_create(dtype)
 
 
@@ -75,8 +78,7 @@ def memory_type(dtype):
 
 def read_blocks(dataset, values):
     """Fills an array with the values of a dataset, and yields what is read at a time."""
-    import h5py
-
+    h5py = library()
     if 0 < values.nbytes <= BLOCK_BYTES:
         dataset.read(h5py.h5s.ALL, h5py.h5s.ALL, values, memory_type(values.dtype))
         yield values

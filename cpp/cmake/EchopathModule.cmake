@@ -30,6 +30,22 @@ if(ECHOPATH_SANITIZE)
   endif()
 endif()
 
+# Which instruction sets of base/lanes/simd.h this machine has: tests run with all of them.
+if(ECHOPATH_BUILD_TESTS)
+  include(CheckCXXSourceRuns)
+  foreach(level 3 4)
+    check_cxx_source_runs("int main() { return __builtin_cpu_supports(\"x86-64-v${level}\") ? 0 : 1; }" ECHOPATH_RUNS_V${level})
+  endforeach()
+  # Those below the best, which a test runs with unless told otherwise.
+  set(echopath_lesser_sets)
+  if(ECHOPATH_RUNS_V3)
+    list(APPEND echopath_lesser_sets baseline)
+  endif()
+  if(ECHOPATH_RUNS_V4)
+    list(APPEND echopath_lesser_sets avx2)
+  endif()
+endif()
+
 # Every module once more as NAME_sanitized, for the tests of that name: the objects of the tests are compiled once for both.
 # They are built by the target `sanitized` alone, and run by `ctest -C Sanitized -L sanitized`.
 set(ECHOPATH_SANITIZED_TWINS OFF)
@@ -41,6 +57,12 @@ if(ECHOPATH_BUILD_TESTS AND NOT ECHOPATH_SANITIZE)
   target_compile_options(echopath_looked_at_sanitized INTERFACE -Og -g1)
   # A machine without AVX-512 runs them as baseline code: between the widest lanes and the narrowest, AVX2 has no code of its own.
   target_compile_definitions(echopath_looked_at_sanitized INTERFACE ECHOPATH_WITHOUT_AVX2)
+  set(echopath_sanitized_sets baseline)
+  if(ECHOPATH_RUNS_V4)
+    list(APPEND echopath_sanitized_sets avx512)
+  else()
+    target_compile_definitions(echopath_looked_at_sanitized INTERFACE ECHOPATH_WITHOUT_AVX512)
+  endif()
   add_custom_target(sanitized)
 endif()
 
@@ -144,7 +166,7 @@ function(echopath_kernels name)
       COMPILE_DEFINITIONS "ECHOPATH_LANES=${CMAKE_MATCH_2};EIGEN_MAX_ALIGN_BYTES=16")
     file(CONFIGURE OUTPUT ${file} CONTENT "${includes}\n")
     target_sources(echopath_${name} PRIVATE ${file})
-    if(ECHOPATH_SANITIZED_TWINS AND NOT entry MATCHES avx2)
+    if(ECHOPATH_SANITIZED_TWINS AND CMAKE_MATCH_1 IN_LIST echopath_sanitized_sets)
       target_sources(echopath_${name}_sanitized PRIVATE ${file})
     endif()
   endforeach()
@@ -157,10 +179,20 @@ include(CheckCXXCompilerFlag)
 check_cxx_compiler_flag(-fcx-limited-range ECHOPATH_HAS_LIMITED_RANGE)  # clang has it from 18 on
 set(echopath_finite_numbers $<$<BOOL:${ECHOPATH_HAS_LIMITED_RANGE}>:-fcx-limited-range> -fno-math-errno)
 
+# A library or program of tests other than those of a module is compiled as these are: with other code for addresses, or another
+# definition, it could not take their parsed headers.
+function(echopath_compile_as_tests target)
+  set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE OFF)
+  target_compile_options(${target} PRIVATE -fPIE ${echopath_quickly_compiled})
+  target_compile_definitions(${target} PRIVATE ECHOPATH_TEST_DATA="${PROJECT_SOURCE_DIR}/data")
+  target_include_directories(${target} PUBLIC ${PROJECT_SOURCE_DIR}/tests)
+  echopath_parse_headers_once(${target} test_base ${echopath_test_headers})
+endfunction()
+
 # echopath_test(NAME [EACH_INSTRUCTION_SET [ONCE patterns...]] [COST seconds] [LIBS targets...] [HARD patterns...]): every
 # .cpp of this folder and of those within in one GoogleTest program, test_NAME.
 # Tests that match a pattern are the test NAME_hard, with the label hard (ctest -L hard); all others the test NAME.
-# EACH_INSTRUCTION_SET: all of them again as NAME_baseline and NAME_avx2, where the machine's best is another.
+# EACH_INSTRUCTION_SET: all of them again as NAME_baseline and NAME_avx2, each where the machine has a better one.
 # ONCE: tests that are repeated neither so nor with sanitized modules: statistics over many runs of code that others run, too.
 # COST: about how long it takes, so that the longest begin first; 1 where it is not said.
 # Each is there a second time with sanitized modules: NAME_sanitized, NAME_hard_sanitized.
@@ -183,7 +215,7 @@ function(echopath_test name)
     set_tests_properties(${name}_hard PROPERTIES LABELS hard FAIL_REGULAR_EXPRESSION "0 tests from 0 test suites ran")
   endif()
   if(ARG_EACH_INSTRUCTION_SET)
-    foreach(set baseline avx2)
+    foreach(set ${echopath_lesser_sets})
       add_test(NAME ${name}_${set} COMMAND test_${name} --gtest_filter=-${once})
       set_tests_properties(${name}_${set} PROPERTIES ENVIRONMENT ECHOPATH_INSTRUCTION_SET=${set}
         SKIP_REGULAR_EXPRESSION "must be one that this machine has")

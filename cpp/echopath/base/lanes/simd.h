@@ -42,7 +42,9 @@ template <class Call>
 ECHOPATH_INLINE decltype(auto) with_instruction_set(Call call) {
 #ifdef ECHOPATH_X86_KERNELS
   const InstructionSet set = instruction_set();
+#ifndef ECHOPATH_WITHOUT_AVX512
   if (set == InstructionSet::kAvx512) return call(std::integral_constant<InstructionSet, InstructionSet::kAvx512>{});
+#endif
 #ifndef ECHOPATH_WITHOUT_AVX2
   if (set == InstructionSet::kAvx2) return call(std::integral_constant<InstructionSet, InstructionSet::kAvx2>{});
 #endif

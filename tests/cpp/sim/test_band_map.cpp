@@ -34,11 +34,11 @@ Radar radar_of(const Case& one) {
   return radar;
 }
 
-// Paths over two plates that move, a few metres apart, and none at rest.
-Paths paths_of(const Radar& radar) {
+// Paths over two plates that move, the far one at some distance in m, and none at rest.
+Paths paths_of(const Radar& radar, double far = 7.0) {
   Scene still, moving;
   add_rectangle(still, "near", {4, -0.5, -0.5}, {0, 1, 0}, {0, 0, 1}, lambert(0.5));
-  add_rectangle(still, "far", {7, 1.6, -0.5}, {0, 1, 0}, {0, 0, 1}, lambert(0.5));
+  add_rectangle(still, "far", {far, 0.23 * far, -0.5}, {0, 1, 0}, {0, 0, 1}, lambert(0.5));
   for (Node plate : still.nodes()) {
     plate.motion = std::make_shared<LinearMotion>(Vec3(-20.0, 0.0, 0.0));
     moving.add(plate);
@@ -90,6 +90,20 @@ TEST_P(BandMaps, AskedRangesAreThoseOfTheSamples) {
     }
     EXPECT_NEAR(found[0].mean_square, whole.mean_square, kRounding * whole.mean_square);
     EXPECT_EQ(found[1].mean_square, 0.0);  // no path is in that group
+  }
+}
+
+// Two cells of the grid are 0.3 m: bands of 8 to some 120 cells, whose mean squares are found in different ways.
+TEST(BandMapSquares, MeanSquaresOfNarrowAndWideBandsAreThoseOfTheSamples) {
+  const Radar radar = radar_of({256, 33, 1, WindowKind::kHann, false, true});
+  for (const double far : {4.5, 7.0, 11.0, 12.0, 13.0, 16.0, 20.0}) {
+    const Paths paths = paths_of(radar, far);
+    PartPass pass(paths, radar, std::vector<uint32_t>(paths.num_paths()), 1, {});
+    const SetPower samples = pass.powers({{0}}, Window{WindowKind::kHann}, 1, 0.0, nullptr).front();
+    const double least = kLeast * *std::max_element(samples.cells.begin(), samples.cells.end());
+    const SetPower band = pass.powers({{0}}, Window{WindowKind::kHann}, 1, least, nullptr).front();
+    ASSERT_GT(std::count(band.cells.begin(), band.cells.end(), 0.0), 0) << far;  // it is a band
+    EXPECT_NEAR(band.mean_square, samples.mean_square, kRounding * samples.mean_square) << far;
   }
 }
 

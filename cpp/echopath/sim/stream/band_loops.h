@@ -6,13 +6,22 @@
 
 namespace echopath::band_loops {
 
-inline constexpr int64_t kLanes = 32;  // chirps side by side
-inline constexpr int64_t kApart = 8;   // between rows of lanes: powers of two would share few sets of the cache
+inline constexpr int64_t kLanes = 32;     // chirps side by side
+inline constexpr int64_t kFewLanes = 16;  // which divides it, where a loop has more to keep
+inline constexpr int64_t kApart = 8;      // between rows of lanes: powers of two would share few sets of the cache
 
-ECHOPATH_INLINE void find_largest_squares(const double* re, const double* im, int64_t count, double* __restrict largest) {
+// Looks at kRows rows, which stand `stride` apart.
+template <int kRows>
+ECHOPATH_INLINE void find_largest_squares(const double* re, const double* im, int64_t stride, int64_t count,
+                                          double* __restrict largest) {
   for (int64_t i = 0; i < count; ++i) {
-    const double square = re[i] * re[i] + im[i] * im[i];
-    largest[i] = square > largest[i] ? square : largest[i];
+    double most = largest[i];
+#pragma GCC unroll 8
+    for (int c = 0; c < kRows; ++c) {
+      const double a = re[c * stride + i], b = im[c * stride + i], square = a * a + b * b;
+      most = square > most ? square : most;
+    }
+    largest[i] = most;
   }
 }
 
@@ -37,6 +46,29 @@ ECHOPATH_INLINE void combine_cells(const double* lanes, int64_t num_lanes, int64
       out[num_lanes + first + c] = im[c];
     }
   }
+}
+
+// Adds to out [1] the real part of the sum over lanes, cells i and distances d of overlap_d g_{i + d} conj(g_i); overlap
+// [count, re/im].
+ECHOPATH_INLINE void add_overlaps(const double* lanes, int64_t num_lanes, int64_t count, const double* overlap,
+                                  double* __restrict out) {
+  const int64_t stride = num_lanes + kApart;
+  double sum[kFewLanes] = {};
+  for (int64_t first = 0; first < num_lanes; first += kFewLanes) {
+    for (int64_t i = 0; i < count; ++i) {
+      const double* const near = lanes + 2 * i * stride + first;
+      double re[kFewLanes] = {}, im[kFewLanes] = {};
+      for (int64_t d = 0; i + d < count; ++d) {
+        const double* const far = near + 2 * d * stride;
+        for (int64_t c = 0; c < kFewLanes; ++c) {
+          re[c] += overlap[2 * d] * far[c] - overlap[2 * d + 1] * far[stride + c];
+          im[c] += overlap[2 * d] * far[stride + c] + overlap[2 * d + 1] * far[c];
+        }
+      }
+      for (int64_t c = 0; c < kFewLanes; ++c) sum[c] += near[c] * re[c] + near[stride + c] * im[c];
+    }
+  }
+  for (int64_t c = 0; c < kFewLanes; ++c) out[0] += sum[c];
 }
 
 // Adds to out [re, im] the sum of some cells, each times a complex factor.

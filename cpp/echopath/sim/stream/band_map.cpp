@@ -1,7 +1,6 @@
 #include "echopath/sim/stream/band_map.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numeric>
 
@@ -82,14 +81,16 @@ BandMap::BandMap(const Radar& radar, const MapWindows& window, int zero_pad, con
   }
   first_cell_ = grid.first;
   response_ = tones_sum(factor, spread->reference_sample(), size);
+  for (const std::complex<double>& value : response_) size_of_response_.push_back(std::abs(value));
   overlap_ = tones_sum(square, spread->reference_sample(), grid.size);
 }
 
-std::complex<double> BandMap::response(int64_t cell, int64_t column) const {
+// Returns the place of what a cell adds to a column in the tables.
+size_t BandMap::place_of(int64_t cell, int64_t column) const {
   const auto size = static_cast<int64_t>(response_.size());
   const int64_t grid_size = static_cast<int64_t>(overlap_.size());
   const int64_t step = (cell + first_cell_) * (size / grid_size) - column * (size / num_bins_);
-  return response_[static_cast<size_t>((step % size + size) % size)];
+  return static_cast<size_t>((step % size + size) % size);
 }
 
 bool BandMap::power(const SummedGroups& of, int num_channels, double least, std::vector<uint8_t>& asked,
@@ -109,16 +110,18 @@ bool BandMap::power(const SummedGroups& of, int num_channels, double least, std:
     return false;
   }
   out = {std::vector<double>(static_cast<size_t>(doppler_fft_.size() * num_ranges_)), 0.0};
-  if (std::ssize(columns) <= kFewColumns) {
+  const bool is_one = of.groups.size() == 1, takes_pairs = is_one && is_quicker_over_pairs(band);
+  const bool needs_lanes = takes_pairs || std::ssize(columns) > kFewColumns;
+  if (!needs_lanes) {
     for (const int64_t column : columns) add_column(of, num_channels, band, column, out.cells);
-  } else {
-    std::vector<double> lanes;
-    for (int channel = 0; channel < num_channels; ++channel) {
-      gather(of, channel, band, lanes);
-      add_columns(lanes, band, columns, out.cells);
-    }
   }
-  if (of.groups.size() == 1) out.mean_square = sum_of_squares(of, num_channels, band);
+  std::vector<double> lanes;
+  for (int channel = 0; needs_lanes && channel < num_channels; ++channel) {
+    gather(of, channel, band, lanes);
+    add_columns(lanes, band, columns, out.cells);
+    if (takes_pairs) out.mean_square += sum_over_pairs(lanes, band.count);
+  }
+  if (is_one && !takes_pairs) out.mean_square = sum_of_transforms(of, num_channels, band);
   for (double& cell : out.cells) cell /= num_channels;
   const auto num_samples = static_cast<double>(spread_->grid().correction.size());
   out.mean_square /= static_cast<double>(num_channels * num_chirps_) * num_samples;
@@ -129,9 +132,18 @@ bool BandMap::power(const SummedGroups& of, int num_channels, double least, std:
 std::vector<double> BandMap::magnitude_of(const Synthesizer& signals, int group, int num_channels) const {
   std::vector<double> largest(static_cast<size_t>(spread_->row_length()));
   for (int channel = 0; channel < num_channels; ++channel) {
-    for (int chirp = 0; !signals.is_still(channel, group) && chirp < num_chirps_; ++chirp) {
+    for (int chirp = 0; !signals.is_still(channel, group) && chirp < num_chirps_; chirp += kTogether) {
       const RowCells cells = signals.moving_cells(channel, group, chirp);
-      run_simd<band_loops::find_largest_squares>(cells.re, cells.im, cells.count, largest.data() + cells.first);
+      double* const out = largest.data() + cells.first;
+      if (chirp + kTogether <= num_chirps_) {
+        const int64_t stride = signals.moving_cells(channel, group, chirp + 1).re - cells.re;
+        run_simd<band_loops::find_largest_squares<kTogether>>(cells.re, cells.im, stride, cells.count, out);
+        continue;
+      }
+      for (int last = chirp; last < num_chirps_; ++last) {
+        const RowCells row = signals.moving_cells(channel, group, last);
+        run_simd<band_loops::find_largest_squares<1>>(row.re, row.im, int64_t{0}, row.count, out);
+      }
     }
   }
   for (double& value : largest) value = std::sqrt(value);
@@ -155,7 +167,7 @@ BandMap::Band BandMap::extent_of(const SummedGroups& of, int num_channels) const
   int64_t first = spread_->row_length(), end = 0;
   for (const int group : of.groups) {
     for (int channel = 0; channel < num_channels; ++channel) {
-      for (int chirp = 0; !of.signals->is_still(channel, group) && chirp < num_chirps_; ++chirp) {
+      for (int chirp = 0; !of.signals->is_still(channel, group) && chirp < num_chirps_; chirp += kTogether) {
         const RowCells cells = of.signals->moving_cells(channel, group, chirp);
         first = std::min(first, cells.first);
         end = std::max(end, cells.first + cells.count);
@@ -171,7 +183,7 @@ std::vector<int64_t> BandMap::columns_of(const Band& band, double least, const s
     if (!asked.empty() && !asked[static_cast<size_t>(column)]) continue;
     double most = 0.0;
     for (int64_t i = 0; i < std::ssize(band.magnitude); ++i) {
-      most += band.magnitude[static_cast<size_t>(i)] * std::abs(response(band.first + i, column));
+      most += band.magnitude[static_cast<size_t>(i)] * size_of_response_[place_of(band.first + i, column)];
     }
     if (most * most > least) columns.push_back(column);
   }
@@ -197,7 +209,7 @@ void BandMap::add_column(const SummedGroups& of, int num_channels, const Band& b
                          std::vector<double>& cells) const {
   std::vector<double> factor_re, factor_im;
   for (int64_t i = 0; i < band.count; ++i) {
-    const std::complex<double> factor = response(band.first + i, column);
+    const std::complex<double> factor = response_[place_of(band.first + i, column)];
     factor_re.push_back(factor.real());
     factor_im.push_back(factor.imag());
   }
@@ -225,7 +237,7 @@ void BandMap::add_columns(const std::vector<double>& lanes, const Band& band, co
   std::vector<double> profile(static_cast<size_t>(2 * num_lanes_));
   FftBuffer buffer(doppler_fft_.size());
   for (const int64_t column : columns) {
-    for (int64_t i = 0; i < band.count; ++i) factor[static_cast<size_t>(i)] = response(band.first + i, column);
+    for (int64_t i = 0; i < band.count; ++i) factor[static_cast<size_t>(i)] = response_[place_of(band.first + i, column)];
     run_simd<band_loops::combine_cells>(lanes.data(), num_lanes_, band.count, reinterpret_cast<const double*>(factor.data()),
                                         profile.data());
     for (int64_t chirp = 0; chirp < num_chirps_; ++chirp) {
@@ -244,38 +256,6 @@ void BandMap::add_velocities(FftBuffer& buffer, int64_t column, std::vector<doub
   for (int64_t v = 0; v < size; ++v) {
     cells[static_cast<size_t>(v * num_ranges_ + column)] += std::norm(buffer[(first + v) % size]);
   }
-}
-
-// Returns the sum over channels, chirps and samples of |sample|^2 of a group. It is the real part of sum_d r_d overlap_d
-// with the numbers r_d = sum_i g_{i + d} conj(g_i), and these are the Fourier transform of the squares of the transforms of
-// all rows, which are long enough for the distances of both signs.
-double BandMap::sum_of_squares(const SummedGroups& of, int num_channels, const Band& band) const {
-  if (band.count == 0) return 0.0;
-  const Fft& fft = row_ffts_[static_cast<size_t>(std::bit_width(static_cast<uint64_t>(2 * band.count - 1)))];
-  const int64_t size = fft.size();
-  FftBuffer buffer(size);
-  std::vector<double> squares(static_cast<size_t>(size));
-  const int group = of.groups.front();
-  for (int channel = 0; channel < num_channels; ++channel) {
-    for (int chirp = 0; !of.signals->is_still(channel, group) && chirp < num_chirps_; ++chirp) {
-      const RowCells cells = of.signals->moving_cells(channel, group, chirp);
-      const int64_t begin = std::max(cells.first, band.first);
-      const int64_t count = std::min(cells.first + cells.count, band.first + band.count) - begin;
-      if (count <= 0) continue;
-      std::fill_n(buffer.data(), size, 0.0);
-      run_simd<band_loops::interleave>(cells.re + (begin - cells.first), cells.im + (begin - cells.first), count,
-                                       reinterpret_cast<double*>(buffer.data()));
-      fft.transform(buffer);
-      run_simd<band_loops::add_squares>(reinterpret_cast<const double*>(buffer.data()), size, squares.data());
-    }
-  }
-  std::copy(squares.begin(), squares.end(), buffer.data());
-  fft.transform(buffer);  // conj(r_d) times its length at d, as all squares are real
-  double sum = buffer[0].real() * overlap_[0].real();
-  for (int64_t d = 1; d < band.count; ++d) {
-    sum += 2.0 * (std::conj(buffer[d]) * overlap_[static_cast<size_t>(d) % overlap_.size()]).real();
-  }
-  return sum / static_cast<double>(size);
 }
 
 }  // namespace echopath

@@ -51,14 +51,17 @@ class BandMap {
   Band band_of(const SummedGroups& of, int num_channels) const;
   Band extent_of(const SummedGroups& of, int num_channels) const;
   std::vector<int64_t> columns_of(const Band& band, double least, const std::vector<uint8_t>& asked) const;
-  std::complex<double> response(int64_t cell, int64_t column) const;
+  size_t place_of(int64_t cell, int64_t column) const;
   void gather(const SummedGroups& of, int channel, const Band& band, std::vector<double>& lanes) const;
   void add_column(const SummedGroups& of, int num_channels, const Band& band, int64_t column,
                   std::vector<double>& cells) const;
   void add_velocities(FftBuffer& buffer, int64_t column, std::vector<double>& cells) const;
   void add_columns(const std::vector<double>& lanes, const Band& band, const std::vector<int64_t>& columns,
                    std::vector<double>& cells) const;
-  double sum_of_squares(const SummedGroups& of, int num_channels, const Band& band) const;
+  // The sums of |sample|^2 are found in one of two ways, whichever is quicker.
+  bool is_quicker_over_pairs(const Band& band) const;
+  double sum_over_pairs(const std::vector<double>& lanes, int64_t count) const;
+  double sum_of_transforms(const SummedGroups& of, int num_channels, const Band& band) const;
 
   const SpreadMethod* spread_;
   int64_t num_chirps_, num_lanes_, num_ranges_, num_bins_, first_cell_ = 0;
@@ -66,6 +69,7 @@ class BandMap {
   Fft doppler_fft_;
   std::vector<Fft> row_ffts_;                   // of 2^k values, by k
   std::vector<std::complex<double>> response_;  // m at multiples of 1 / size, empty where there is no band
+  std::vector<double> size_of_response_;        // |m| likewise
   std::vector<std::complex<double>> overlap_;   // sum_n c_n^2 e^{j 2 pi d (n - n0) / G} by d
 };
 

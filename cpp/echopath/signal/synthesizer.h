@@ -65,6 +65,9 @@ class Synthesizer {
   // Writes the samples of one channel and some groups together, so far, to `out`, [chirp, sample] in sqrt(W), without a
   // parallel loop.
   void write_samples(int channel, std::span<const int> groups, std::complex<double>* out) const;
+  // Adds the samples of what rests in one channel and some groups together, which are those of every chirp, to `out`,
+  // [sample] in sqrt(W).
+  void add_still_samples(int channel, std::span<const int> groups, std::complex<double>* out) const;
   // The method that spreads all echoes on grids, null where another one is at work; it lives as long as this.
   const SpreadMethod* spread() const { return spread_; }
   // What a group and channel with moving echoes has in the row of one chirp, so far.

@@ -74,15 +74,22 @@ void Synthesizer::add_moving_row(int channel, int group, int chirp, double* row)
   run_simd<add_values>(cells.im, cells.count, row + row_size(true) / 2 + cells.first);
 }
 
+void Synthesizer::add_still_samples(int channel, std::span<const int> groups, std::complex<double>* out) const {
+  std::vector<std::complex<double>> of_group(static_cast<size_t>(waveform_.num_samples));
+  for (const int group : groups) {
+    if (!has_still(channel, group)) continue;
+    write_row(channels_[static_cast<size_t>(channel)].still[static_cast<size_t>(group)].data(), false, of_group.data());
+    for (size_t n = 0; n < of_group.size(); ++n) out[n] += of_group[n];
+  }
+}
+
 void Synthesizer::write_samples(int channel, std::span<const int> groups, std::complex<double>* out) const {
   const int64_t num_samples = waveform_.num_samples;
-  std::vector<std::complex<double>> at_rest(static_cast<size_t>(num_samples)), of_group(at_rest.size());
+  std::vector<std::complex<double>> at_rest(static_cast<size_t>(num_samples));
+  add_still_samples(channel, groups, at_rest.data());
   std::vector<int> moving;
   for (const int group : groups) {
     if (!is_still(channel, group)) moving.push_back(group);
-    if (!has_still(channel, group)) continue;
-    write_row(channels_[static_cast<size_t>(channel)].still[static_cast<size_t>(group)].data(), false, of_group.data());
-    for (size_t n = 0; n < at_rest.size(); ++n) at_rest[n] += of_group[n];
   }
   std::vector<double> row(static_cast<size_t>(row_size(true)));
   for (int chirp = 0; chirp < waveform_.num_chirps; ++chirp, out += num_samples) {

@@ -167,14 +167,17 @@ void MapTransform::transform(const std::complex<double>* samples, std::vector<st
   }
 }
 
-void MapTransform::transform_still(const std::complex<double>* samples, std::vector<std::complex<double>>& profiles,
-                                   std::complex<double>* values) const {
-  const int64_t num_ranges = plan_->num_ranges;
-  profiles.resize(static_cast<size_t>(num_ranges));
+void MapTransform::add_still(const std::complex<double>* samples, std::vector<double>& power) const {
+  std::vector<std::complex<double>> profile(static_cast<size_t>(plan_->num_ranges));
   FftBuffer buffer(plan_->range_fft.size());
-  transform_row(plan_->range_fft, plan_->range_taper, samples, num_ranges, buffer, profiles.data());
+  transform_row(plan_->range_fft, plan_->range_taper, samples, plan_->num_ranges, buffer, profile.data());
+  for (size_t r = 0; r < profile.size(); ++r) power[r] += std::norm(profile[r]);
+}
+
+void MapTransform::spread_still(const std::vector<double>& power, double* cells) const {
   for (const std::complex<double>& response : plan_->at_rest) {
-    for (int64_t r = 0; r < num_ranges; ++r) *values++ = response * profiles[static_cast<size_t>(r)];
+    const double share = std::norm(response);
+    for (const double at_range : power) *cells++ += share * at_range;
   }
 }
 

@@ -54,9 +54,10 @@ class MapTransform {
   // be left as they are; empty: all are asked for.
   void transform(const std::complex<double>* samples, std::vector<std::complex<double>>& profiles,
                  std::complex<double>* values, std::span<const uint8_t> asked = {}) const;
-  // The same where all chirps are alike, by the first of them: nearly no work.
-  void transform_still(const std::complex<double>* samples, std::vector<std::complex<double>>& profiles,
-                       std::complex<double>* values) const;
+  // Where all chirps are alike: adds the power of one of them, [sample], at each range to `power`, [R] in W.
+  void add_still(const std::complex<double>* samples, std::vector<double>& power) const;
+  // Adds to `cells` [V, R] in W what such powers are at each velocity.
+  void spread_still(const std::vector<double>& power, double* cells) const;
 
  private:
   struct Plan;

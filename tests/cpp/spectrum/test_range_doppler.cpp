@@ -153,5 +153,18 @@ TEST(RangeDoppler, RefusesMapsThatNoTransformCanIndex) {
   }
 }
 
+// Of two channels whose chirps are alike, the maps of all chirps are the truth.
+TEST(RangeDoppler, PowersOfWhatRestsAreThoseOfRepeatedChirps) {
+  const Radar radar = small_radar(1, 2);
+  const std::vector<Complex> cube = tones(radar, 3.3, 0.0);
+  const MapWindows window = Window{WindowKind::kHann};
+  const std::vector<double> mean = mean_power(range_doppler(cube, radar, window, 2));
+  const MapTransform map(radar, window, 2);
+  std::vector<double> still(static_cast<size_t>(map.num_ranges())), cells(mean.size());
+  for (size_t channel = 0; channel < 2; ++channel) map.add_still(cube.data() + channel * cube.size() / 2, still);
+  map.spread_still(still, cells.data());
+  for (size_t i = 0; i < cells.size(); ++i) ASSERT_NEAR(0.5 * cells[i], mean[i], kRounding) << i;
+}
+
 }  // namespace
 }  // namespace echopath::test_range_doppler

@@ -193,26 +193,33 @@ std::vector<SetPower> PartPass::powers(const Sets& sets, const MapWindows& windo
 
 SetPower PartPass::power_of(const SummedGroups& of, const MapTransform& map, std::span<const uint8_t> asked) const {
   const auto num_cells = static_cast<size_t>(map.num_velocities() * map.num_ranges());
-  const int num_channels = stream_.num_channels();
-  std::vector<std::complex<double>> profiles, values(num_cells);
-  std::vector<std::complex<double>> samples(static_cast<size_t>(radar_.waveform.num_chirps) *
-                                            static_cast<size_t>(radar_.waveform.num_samples));
+  const int num_channels = stream_.num_channels(), num_chirps = radar_.waveform.num_chirps;
+  const auto num_samples = static_cast<size_t>(radar_.waveform.num_samples);
+  std::vector<std::complex<double>> profiles, values, samples;
+  std::vector<double> still(static_cast<size_t>(map.num_ranges()));  // power of channels where nothing moves
   SetPower power{std::vector<double>(num_cells), 0.0};
   for (int channel = 0; channel < num_channels; ++channel) {
     const auto any = [&](auto is_so) { return std::any_of(of.groups.begin(), of.groups.end(), is_so); };
     if (!any([&](int group) { return of.signals->has_echoes(channel, group); })) continue;
-    of.signals->write_samples(channel, of.groups, samples.data());
-    if (of.groups.size() == 1) power.mean_square += sum_of_squares(samples);
     const bool moves = any([&](int group) { return !of.signals->is_still(channel, group); });
-    if (moves) map.transform(samples.data(), profiles, values.data(), asked);
-    else map.transform_still(samples.data(), profiles, values.data());
+    samples.assign(num_samples * static_cast<size_t>(moves ? num_chirps : 1), 0.0);
+    if (moves) of.signals->write_samples(channel, of.groups, samples.data());
+    else of.signals->add_still_samples(channel, of.groups, samples.data());
+    if (of.groups.size() == 1) power.mean_square += (moves ? 1 : num_chirps) * sum_of_squares(samples);
+    if (!moves) {
+      map.add_still(samples.data(), still);
+      continue;
+    }
+    values.resize(num_cells);
+    map.transform(samples.data(), profiles, values.data(), asked);
     for (size_t cell = 0; cell < num_cells; ++cell) power.cells[cell] += std::norm(values[cell]);
   }
+  map.spread_still(still, power.cells.data());
   for (size_t cell = 0; !asked.empty() && cell < num_cells; ++cell) {
     if (!asked[cell % asked.size()]) power.cells[cell] = 0.0;
   }
   for (double& cell : power.cells) cell /= num_channels;
-  power.mean_square /= static_cast<double>(num_channels) * static_cast<double>(samples.size());
+  power.mean_square /= static_cast<double>(num_channels * num_chirps) * static_cast<double>(num_samples);
   return power;
 }
 

@@ -15,9 +15,9 @@ constexpr int64_t kFewCells = 64;  // up to which all pairs of cells are quicker
 
 bool BandMap::is_quicker_over_pairs(const Band& band) const { return band.count <= kFewCells; }
 
-// Returns the sum over the chirps and samples of a channel of |sample|^2, from its cells sorted to lanes. It is the real part
-// of sum_d r_d overlap_d over the distances d of both signs, with r_d = sum_i g_{i + d} conj(g_i) over the cells of all
-// rows.
+// Returns the sum over the chirps and samples of a channel of |sample|^2, from its cells sorted to lanes. It is the real
+// part of sum_d r_d overlap_d over the distances d of both signs, with r_d = sum_i g_{i + d} conj(g_i) over the cells of
+// all rows.
 double BandMap::sum_over_pairs(const std::vector<double>& lanes, int64_t count) const {
   // Of two distances +-d the real parts are the same.
   std::vector<std::complex<double>> overlap;

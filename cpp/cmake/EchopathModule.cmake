@@ -31,7 +31,7 @@ if(ECHOPATH_SANITIZE)
 endif()
 
 # Which instruction sets of base/lanes/simd.h this machine has: tests run with all of them.
-if(ECHOPATH_BUILD_TESTS)
+if(ECHOPATH_BUILD_TESTS AND NOT CMAKE_CROSSCOMPILING)
   include(CheckCXXSourceRuns)
   foreach(level 3 4)
     check_cxx_source_runs("int main() { return __builtin_cpu_supports(\"x86-64-v${level}\") ? 0 : 1; }" ECHOPATH_RUNS_V${level})

@@ -11,7 +11,7 @@ from ..base.made_by import made_by
 
 HIDDEN_SHARE = 0.05  # an object of which no more than this is in sight counts as hidden
 DIRECTIONS = 128  # on each object: labels and truth look at all objects of each frame
-DIRECTIONS_OF_PLACES = 256  # on each object: shares to .004 rms, for the question whether they are above HIDDEN_SHARE
+DIRECTIONS_OF_PLACES = 256  # on each object: shares to .006 rms, for the question whether they are above HIDDEN_SHARE
 _KEPT: weakref.WeakKeyDictionary = weakref.WeakKeyDictionary()  # {record: geometry}, one entry at most
 FRAME_PLACES = (0.0, 1.0, 0.618, 0.236, 0.854)  # shares of a frame: its ends and irrational ones
 

@@ -13,7 +13,7 @@ from ..arguments.effects import Choices
 from ..arguments.settings import Edges, Footprint, Polarization, Sampler, Scatterers, TraceSettings
 from ..cavities.cavity import Cavity
 from ..cavities.cross_sections import rcs_with_cavities
-from ..scene.sizes import warn_of_bodies
+from ..scene.bodies import warn_of_bodies
 from ..weather.weather import attenuation_of
 from .edges import looks_for_edges
 from .lost_rays import warn_of_lost_rays, warn_of_unaimed, warn_of_unfollowed_beams

@@ -13,10 +13,11 @@ namespace {
 
 using namespace testing;
 
-constexpr double kDirection = 2e-4;  // rad: a fifth of a Fresnel zone of the ball
-constexpr double kZone = 0.05;       // relative, of interpolated curvatures
-constexpr double kPowerDb = 0.5;     // of stationary phase with the amplitude of a path beside the point
-constexpr double kShares = 1e-9;     // relative: sums of some ten shares
+constexpr double kDirection = 2e-4;           // rad: a fifth of a Fresnel zone of the ball
+constexpr double kZone = 0.05;                // relative, of interpolated curvatures
+constexpr double kPowerDb = 0.5;              // of stationary phase with the amplitude of a path beside the point
+constexpr double kShares = 1e-9;              // relative: sums of some ten shares
+constexpr double kRoundedShare = 1.0 / 64.0;  // relative: rounded_rays
 
 Radar radar() { return plain_radar(Vec3::Zero(), Vec3::Zero()); }
 double wavelength() { return kSpeedOfLight / radar().waveform.start_frequency; }
@@ -95,7 +96,13 @@ TEST(GuideRays, AddUpAndDoNotDependOnTheNumberOfThreads) {
   double rays = 0.0;
   for (const auto& [name, share] : guides[0].shares) rays += share;
   for (const LaunchFocus& focus : guides[0].foci) rays += focus.share;
-  EXPECT_NEAR(rays / 100000.0, 1.0, kShares);
+  EXPECT_NEAR(rays / 100000.0, 1.0, kRoundedShare);
+  for (const LaunchFocus& focus : guides[0].foci) EXPECT_EQ(focus.share, rounded_rays(focus.share));
+  for (const auto& [name, share] : guides[0].shares) {
+    double with_foci = share;
+    for (const LaunchFocus& focus : guides[0].foci) with_foci += focus.of == name ? focus.share : 0.0;
+    EXPECT_NEAR(rounded_rays(with_foci), with_foci, kShares * with_foci) << name;
+  }
   ASSERT_GE(guides[0].foci.size(), 1u);
   EXPECT_EQ(guides[0].shares, guides[1].shares);
   ASSERT_EQ(guides[0].foci.size(), guides[1].foci.size());

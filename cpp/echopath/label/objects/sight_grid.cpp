@@ -33,10 +33,10 @@ SightGrid::SightGrid(const Stratum& stratum, int64_t num_cells) : directions_({s
   met_.resize(size * kCells);
 }
 
-// Sets the place of a cell's direction in the domain; rows and columns are those of cells.
-void SightGrid::direct(int64_t row, int64_t column, int lane, LaneValues& x, LaneValues& y) const {
+// Sets the place in the domain of the direction of a square, `size` cells on a side; rows and columns are those of squares.
+void SightGrid::direct(int64_t row, int64_t column, int size, int lane, LaneValues& x, LaneValues& y) const {
   const auto r = static_cast<double>(row), c = static_cast<double>(column);
-  const double along = c + fraction(kAlong * r + 0.5), across = r + fraction(kAcross * c + 0.5);
+  const double along = size * (c + fraction(kAlong * r + 0.5)), across = size * (r + fraction(kAcross * c + 0.5));
   x[lane] = half_[0] * (2.0 * along / (kSide * num_columns_) - 1.0);
   y[lane] = half_[1] * (2.0 * across / (kSide * num_rows_) - 1.0);
 }
@@ -54,7 +54,6 @@ void SightGrid::look_at(const LaneValues& x, const LaneValues& y, int count, con
 // Looks at squares of them: nearly parallel rays are faster.
 double SightGrid::start(const FindMet& find_met) {
   const int64_t rows = num_first_rows(), columns = num_first_columns();
-  const int middle = (step_ - 1) / 2;  // of the cells for which a first direction stands
   for (int64_t row = 0; row < rows; row += kSide) {
     for (int64_t column = 0; column < columns; column += kSide) {
       const int64_t width = std::min<int64_t>(kSide, columns - column);
@@ -62,7 +61,7 @@ double SightGrid::start(const FindMet& find_met) {
       LaneValues x, y;
       for (int lane = 0; lane < kPacketSize; ++lane) {
         const int64_t at = std::min(lane, count - 1);
-        direct((row + at / width) * step_ + middle, (column + at % width) * step_ + middle, lane, x, y);
+        direct(row + at / width, column + at % width, step_, lane, x, y);
       }
       std::array<uint32_t, kPacketSize> met;
       look_at(x, y, count, find_met, met.data());
@@ -107,7 +106,7 @@ void SightGrid::see(int64_t block, const FindMet& find_met) {
   if (state_[at] == State::kSeen) return;
   LaneValues x, y;
   const int64_t row = block / num_columns_ * kSide, column = block % num_columns_ * kSide;
-  for (int cell = 0; cell < kCells; ++cell) direct(row + cell / kSide, column + cell % kSide, cell, x, y);
+  for (int cell = 0; cell < kCells; ++cell) direct(row + cell / kSide, column + cell % kSide, 1, cell, x, y);
   look_at(x, y, kCells, find_met, met_.data() + at * kCells);
   state_[at] = State::kSeen;
 }

@@ -91,9 +91,11 @@ bool take_meshes(const std::string& glob, uint32_t object, const std::vector<std
 Eigen::AlignedBox3d box_around(const Scene& scene, const PosedScene& pose, uint32_t mesh) {
   const Node& node = scene.node_of(mesh);
   Eigen::AlignedBox3d local, world;
-  if (!node.deformation) local = node.mesh->box();
-  else
+  if (!node.deformation) {
+    local = node.mesh->box();
+  } else {
     for (const Vec3& vertex : pose.local_vertices(mesh)) local.extend(vertex);
+  }
   for (int i = 0; i < 8; ++i) {
     const Vec3 corner = local.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
     world.extend(pose.linear(mesh) * corner + pose.world_translation(mesh));

@@ -17,14 +17,11 @@
 namespace echopath {
 namespace {
 
-constexpr int kGridCells = 2;        // for each direction asked for, at first
-constexpr double kLeastFill = 0.25;  // share of cells on the object below which there are to be more
-constexpr double kLooseFill = 0.2;   // below which the stratum is fitted to the vertices
-constexpr double kMostCells = 16.0;  // for each direction asked for
-// Directions on an object after which it is hidden, or in sight, if it was so in each of them: so many, or the number asked
-// for divided by the second one.
-constexpr int64_t kEnoughHidden = 64;
-constexpr int kFewerIfVisible = 8;
+constexpr int kGridCells = 2;           // for each direction asked for, at first
+constexpr double kLeastFill = 0.25;     // share of cells on the object below which there are to be more
+constexpr double kLooseFill = 0.2;      // below which the stratum is fitted to the vertices
+constexpr double kMostCells = 16.0;     // for each direction asked for
+constexpr int64_t kEnoughHidden = 256;  // directions on an object, all hidden by one surface, after which all of it is
 // Ends that are nearer to each other than kNearEnds of the distance to an object may see the same outline of it. They do if
 // it moves, which goes by the depth of the object, by no more than kSameOutline of its width from one end to the other.
 constexpr double kNearEnds = 0.01, kSameOutline = 0.05;
@@ -70,28 +67,27 @@ class ObjectScanner {
     };
     SightGrid grid(stratum, int64_t{kGridCells} * num_directions);
     double fill = grid.start(find_met);
-    if (fill < kLooseFill && !is_known(grid, num_directions)) {
+    if (fill < kLooseFill && !is_hidden(grid)) {
       stratum = views_.front().stratum(true);
       grid = SightGrid(stratum, int64_t{kGridCells} * num_directions);
       fill = grid.start(find_met);
     }
-    if (fill < kLeastFill && !is_known(grid, num_directions)) {
+    if (fill < kLeastFill && !is_hidden(grid)) {
       const double cells = fill > 0.0 ? std::min(kMostCells, 1.0 / fill) : kMostCells;
       grid = SightGrid(stratum, static_cast<int64_t>(cells * num_directions));
       fill = grid.start(find_met);
     }
     if (fill == 0.0) grid.finish_everywhere(find_met);
-    else if (!is_known(grid, num_directions)) grid.finish(find_met);
+    else if (!is_hidden(grid)) grid.finish(find_met);
     return grid;
   }
 
-  // Returns whether the same surface hides the object wherever it was looked for, or nothing anywhere, in enough directions.
-  bool is_known(const SightGrid& grid, int num_directions) const {
+  // Returns whether one surface hides the object wherever it was looked for first, in enough directions.
+  bool is_hidden(const SightGrid& grid) const {
     const std::optional<uint32_t> only = grid.only_met(kEnoughHidden);
     if (!only) return false;
     const std::span<const uint32_t> by_end = std::span(met_[*only]).first(ends_.size());
-    const bool is_hidden = std::find(by_end.begin(), by_end.end(), object_) == by_end.end();
-    return is_hidden || grid.only_met(num_directions / kFewerIfVisible);
+    return std::find(by_end.begin(), by_end.end(), object_) == by_end.end();
   }
 
   void see(const LaneVectors& directions, int count, uint32_t* met) {

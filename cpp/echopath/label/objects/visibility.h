@@ -39,9 +39,8 @@ struct VisibilitySettings {
   // cars and poles that hide each other it is 8e-3 rms and 3e-2 at most with 128, 4e-3 and 2e-2 with 512, 7e-4 and 3e-3
   // with 4096 (238 in eight scenes at random). What hides less than a block of the grid, 1/500 of the stratum with 4096,
   // and nothing beside it, may be missed.
-  // An object that the same surface hides in all of the first directions, or nothing in any, is not looked at more closely
-  // once they are enough: 64 on it, or an eighth of those asked for where it is in sight. Then its solid angle is known to
-  // 2 % rms for people, cars and poles, 10 % at most.
+  // Up to 512 directions, all cells are looked at. Above, an object that one surface hides in all of the first directions,
+  // 256 of them on it at least, is hidden: then its solid angle is that of these alone.
   int num_directions = 4096;
 };
 

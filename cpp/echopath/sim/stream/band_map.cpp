@@ -110,6 +110,7 @@ bool BandMap::power(const SummedGroups& of, int num_channels, double least, std:
     return false;
   }
   out = {std::vector<double>(static_cast<size_t>(doppler_fft_.size() * num_ranges_)), 0.0};
+  if (band.count == 0) return true;  // all its rows are zero
   const bool is_one = of.groups.size() == 1, takes_pairs = is_one && is_quicker_over_pairs(band);
   const bool needs_lanes = takes_pairs || std::ssize(columns) > kFewColumns;
   if (!needs_lanes) {

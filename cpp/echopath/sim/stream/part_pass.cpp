@@ -219,7 +219,7 @@ SetPower PartPass::power_of(const SummedGroups& of, const MapTransform& map, std
     if (!asked[cell % asked.size()]) power.cells[cell] = 0.0;
   }
   for (double& cell : power.cells) cell /= num_channels;
-  power.mean_square /= static_cast<double>(num_channels * num_chirps) * static_cast<double>(num_samples);
+  power.mean_square /= static_cast<double>(num_channels) * num_chirps * static_cast<double>(num_samples);
   return power;
 }
 

@@ -26,14 +26,14 @@ ECHOPATH_INLINE void add_elements(const double* weight_re, const double* weight_
   }
 }
 
-// Holds real and imaginary parts.
-struct Parts {
+// Holds real and imaginary parts of complex numbers.
+struct SplitComplex {
   const double *re, *im;
 };
 
 // weights [directions, padded], columns [padded, kColumns]
-ECHOPATH_INLINE void add_squares_of_block(int64_t directions, int64_t padded, Parts weights, Parts columns, Combine combine,
-                                          double* power) {
+ECHOPATH_INLINE void add_squares_of_block(int64_t directions, int64_t padded, SplitComplex weights, SplitComplex columns,
+                                          Combine combine, double* power) {
   for (int64_t d = 0; d < directions; ++d) {
     alignas(64) double out_re[kColumns] = {}, out_im[kColumns] = {};
     for (int64_t e = 0; e < padded; e += kElements) {
@@ -70,8 +70,8 @@ void BeamKernel::add_squares(const Eigen::Ref<const Eigen::MatrixXcd>& columns, 
       im[e * kColumns + c] = columns(e, c).imag();
     }
   }
-  run_simd<add_squares_of_block>(num_directions(), padded_, Parts{re_.data(), im_.data()}, Parts{re.data(), im.data()},
-                                 combine, power.data());
+  run_simd<add_squares_of_block>(num_directions(), padded_, SplitComplex{re_.data(), im_.data()},
+                                 SplitComplex{re.data(), im.data()}, combine, power.data());
 }
 
 Eigen::VectorXd BeamKernel::power(const Eigen::MatrixXcd& columns, Combine combine, const Job* job) const {

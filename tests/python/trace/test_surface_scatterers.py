@@ -49,8 +49,9 @@ def test_the_speckle_of_a_walking_body_goes_on_over_the_edges_of_frames():
 
 
 def test_the_speckle_of_its_ghost_goes_on_too():
-    """But for the places that only the wall shows, which rays find anew."""
-    assert np.mean(over_edges(walker_by_a_wall(), radar(), "T 'walker' 'wall' R", "surface")) > 0.9
+    """But for the places that only the wall shows, which rays find anew: 20 edges of four seeds had 0.90 in the mean and 0.06
+    rms about it, so that the mean of three is within 0.1 of that."""
+    assert np.mean(over_edges(walker_by_a_wall(), radar(), "T 'walker' 'wall' R", "surface")) > 0.8
     assert np.mean(over_edges(walker_by_a_wall(), radar(), "T 'walker' 'wall' R", "rays")) < 0.75
 
 

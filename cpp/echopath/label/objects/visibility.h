@@ -39,8 +39,8 @@ struct VisibilitySettings {
   // cars and poles that hide each other it is 8e-3 rms and 3e-2 at most with 128, 4e-3 and 2e-2 with 512, 7e-4 and 3e-3
   // with 4096 (238 in eight scenes at random). What hides less than a block of the grid, 1/500 of the stratum with 4096,
   // and nothing beside it, may be missed.
-  // Up to 512 directions, all cells are looked at. Above, an object that one surface hides in all of the first directions,
-  // 256 of them on it at least, is hidden: then its solid angle is that of these alone.
+  // Of 512 cells or fewer, all are looked at; of more, 512 or more first (sight_grid.h). An object that one surface hides in
+  // all of the first directions, 256 of them on it at least, is hidden: then its solid angle is that of these alone.
   int num_directions = 4096;
 };
 

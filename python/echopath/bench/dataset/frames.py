@@ -36,7 +36,8 @@ def describe(rows: list[dict]) -> list[str]:
     lines = [f"{'template':<16}{'frames':>7}{'frames/s and core':>19}{'s a frame':>11}{'kB a frame':>12}"]
     for row in rows:
         limit = row["limit"]
-        verdict = "" if limit is None else f"  limit {limit} s: {'holds' if row['seconds'] <= limit else 'MISSED'}"
+        there = row["seconds"] / row.get("pace", 1.0)
+        verdict = "" if limit is None else f"  limit {limit} s: {'holds' if there <= limit else 'MISSED'}"
         lines.append(f"{row['template']:<16}{row['frames']:7d}{1.0 / row['seconds']:19.2f}{row['seconds']:11.3f}"
                      f"{row['bytes'] / 1e3:12.0f}{verdict}")
         lines.append("    " + ", ".join(f"{name} {100 * share:.0f} %" for name, share in row["shares"].items()))

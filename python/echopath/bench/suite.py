@@ -9,24 +9,29 @@ from types import ModuleType
 
 from ..base.files import write_texts
 from .machine import machine
-from .pace import REFERENCE, pace_of_machine
+from .pace import REFERENCE_MACHINE, pace, told_at_reference, verdict
 from .steps import told
 
-SECONDS = re.compile(r", (s|ms|us|ns)\b")  # what a figure in seconds is called ends so, or goes on with what it is for
+SECONDS = re.compile(r", (s|ms|us|ns)\b")  # names of figures in seconds end so, or go on with what the seconds are for
 
 
 def run_parts(name: str, parts: Mapping[str, ModuleType], folder, *, quick: bool, progress) -> dict:
     """Measures every part, writes `name`.json into `folder` and returns what it holds.
 
+    Limits of rows that are "timed" are those of the reference machine: such rows get "paces", of this machine before and
+    after their part, and are judged again. Quick runs are not.
+
     parts: modules with rows(quick=) and describe(rows); quick: small, for a look
     progress: callable (stage, fraction) or None
     """
-    found, paces, before = {}, {}, pace_of_machine()
+    found = {}
+    before = None if quick else pace()
     for part in told(list(parts), name, progress):
-        rows, after = parts[part].rows(quick=quick), pace_of_machine()
-        paces[part] = None if before is None else min(before, after)  # of its hour, the quicker end
-        found[part], before = at_reference_pace(rows, paces[part]), after
-    results = {"machine": machine(), "pace": paces, "quick": quick, "rows": found}
+        rows = parts[part].rows(quick=quick)
+        after = None if quick else pace()
+        found[part] = rows if before is None or after is None else at_reference(rows, sorted((before, after)))
+        before = after
+    results = {"machine": machine(), "quick": quick, "rows": found}
     write_texts(Path(folder), {f"{name}.json": json.dumps(results, indent=1) + "\n"})
     return results
 
@@ -37,21 +42,22 @@ def judged(found: Mapping[str, float], limits: Mapping[str, float]) -> list[dict
 
 
 def judged_row(what: str, measured: float, limit: float | None) -> dict:
-    """One row of `judged`."""
-    return {"what": what, "measured": measured, "limit": limit, "holds": None if limit is None else bool(measured <= limit)}
+    """One row of `judged`; it is "timed" where its name ends with a unit of seconds and it has a limit."""
+    holds = None if limit is None else bool(measured <= limit)
+    row = {"what": what, "measured": measured, "limit": limit, "holds": holds}
+    return row | {"timed": True} if limit is not None and SECONDS.search(what) else row
 
 
-def at_reference_pace(rows: list[dict], pace: float | None) -> list[dict]:
-    """Rows with the pace of the machine, over which limits in seconds are held; None: as they are."""
-    return rows if pace is None else [_at_reference_pace(row | {"pace": pace}) for row in rows]
+def at_reference(rows: list[dict], paces: list[float]) -> list[dict]:
+    """Rows of a machine of these paces, [least, most]: those that are timed have them, and what `judged` made is judged so."""
+    return [_at_reference(row, paces) if row.get("timed") else row for row in rows]
 
 
-def _at_reference_pace(row: dict) -> dict:
-    return row | {"holds": bool(row["measured"] / row["pace"] <= row["limit"])} if _is_timed(row) else row
-
-
-def _is_timed(row: dict) -> bool:
-    return "pace" in row and row.get("limit") is not None and SECONDS.search(row.get("what", "")) is not None
+def _at_reference(row: dict, paces: list[float]) -> dict:
+    if "measured" not in row:
+        return row | {"paces": paces}
+    holds = {"holds": True, "MISSED": False, "undecided": None}[verdict(row["measured"], row["limit"], paces)]
+    return row | {"paces": paces, "holds": holds}
 
 
 def describe_judged(rows: list[dict], title: str = "", *, width: int = 44, measured: str = "12.4g", limit: str = "10.3g"
@@ -62,20 +68,30 @@ def describe_judged(rows: list[dict], title: str = "", *, width: int = 44, measu
     """
     lines = [f"{title:<{width}}{'measured':>{measured.partition('.')[0]}}{'limit':>{limit.partition('.')[0]}}"]
     for row in rows:
-        verdict = "" if row["limit"] is None else f"{row['limit']:{limit}}  {'holds' if row['holds'] else 'MISSED'}"
-        there = f", {row['measured'] / row['pace']:.3g} at the reference's pace" if _is_timed(row) else ""
-        lines.append(f"{row['what']:<{width}}{row['measured']:{measured}}{verdict}{there}")
+        lines.append(f"{row['what']:<{width}}{row['measured']:{measured}}{_judgement(row, limit)}")
     return lines
+
+
+def _judgement(row: dict, form: str) -> str:
+    if row["limit"] is None:
+        return ""
+    said = {True: "holds", False: "MISSED", None: "undecided"}[row["holds"]]
+    return f"{row['limit']:{form}}  {said}{told_at_reference(row['measured'], row.get('paces'))}"
 
 
 def describe_parts(parts: Mapping[str, ModuleType], results: dict) -> list[str]:
     """Lines for people."""
     lines = [f"{results['machine']['processor']}, {results['machine']['threads']} threads"]
     for name, part in parts.items():
-        lines += ["", *part.describe(results["rows"][name]), *_pace_line(results.get("pace", {}).get(name))]
+        rows = results["rows"][name]
+        lines += ["", *part.describe(rows), *_told_paces(rows)]
     return lines
 
 
-def _pace_line(pace: float | None) -> list[str]:
-    return [] if pace is None else [f"pace: {pace:.2f} times as long as {REFERENCE}, for which limits in seconds are stated, "
-                                    "by FINUFFT's time before and after"]
+def _told_paces(rows: list[dict]) -> list[str]:
+    for row in rows:
+        if "paces" in row:
+            least, most = row["paces"]
+            return [f"pace: FINUFFT takes {least:.2f} to {most:.2f} times as long as on {REFERENCE_MACHINE}, for which limits in "
+                    "seconds are stated"]
+    return []

@@ -25,7 +25,8 @@ def test_street_that_moves_past_has_the_lengths_of_a_radar_that_drives():
 
 
 def test_rows_name_what_misses_its_limit():
-    row = {"name": "radar drives", "paths": 1, "ns": 2.0 * motion.LIMIT_NS, "over_reference": 1.0, "error": 0.0}
+    row = {"name": "radar drives", "paths": 1, "ns": 2.0 * motion.LIMIT_NS, "over_reference": 1.0, "error": 0.0,
+           "timed": True}
     lines = motion.describe([row, row | {"ns": 0.0}])
     assert lines[1].endswith("MISSED ns") and lines[2].endswith("holds")
 

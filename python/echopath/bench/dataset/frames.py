@@ -13,6 +13,7 @@ from ...dataset.folder import checksum
 from ...dataset.template import Template
 from ...scene.materials import data_folder
 from ...sequence.keep import write_frame
+from ..pace import told_at_reference, verdict
 
 SCENES, QUICK_SCENES = 6, 2
 STREET_LIMIT = 1.5  # s of a processor: a frame of a street with labels, 1e5 rays, 128 chirps, 3 x 4 antennas
@@ -36,10 +37,10 @@ def describe(rows: list[dict]) -> list[str]:
     lines = [f"{'template':<16}{'frames':>7}{'frames/s and core':>19}{'s a frame':>11}{'kB a frame':>12}"]
     for row in rows:
         limit = row["limit"]
-        there = row["seconds"] / row.get("pace", 1.0)
-        verdict = "" if limit is None else f"  limit {limit} s: {'holds' if there <= limit else 'MISSED'}"
+        judgement = "" if limit is None else f"  limit {limit} s: {verdict(row['seconds'], limit, row.get('paces'))}" + \
+            told_at_reference(row["seconds"], row.get("paces"))
         lines.append(f"{row['template']:<16}{row['frames']:7d}{1.0 / row['seconds']:19.2f}{row['seconds']:11.3f}"
-                     f"{row['bytes'] / 1e3:12.0f}{verdict}")
+                     f"{row['bytes'] / 1e3:12.0f}{judgement}")
         lines.append("    " + ", ".join(f"{name} {100 * share:.0f} %" for name, share in row["shares"].items()))
     return lines
 
@@ -94,7 +95,7 @@ def _row(name: str, template: Template, scenes: int) -> dict:
                 size, frames = size + path.stat().st_size, frames + 1
     whole = sum(spent.values())
     return {"template": name, "frames": frames, "seconds": whole / frames, "bytes": size / frames,
-            "limit": STREET_LIMIT if name in STREETS else None,
+            "limit": STREET_LIMIT if name in STREETS else None, "timed": name in STREETS,
             "shares": {stage: seconds / whole for stage, seconds in spent.most_common()}}
 
 

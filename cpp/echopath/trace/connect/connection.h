@@ -29,7 +29,7 @@ struct HitFields {
 };
 
 struct Connection {
-  const Ray& ray;
+  Ray& ray;
   const SurfaceHit& surface;
   HitLegs& legs;
   HitFields& fields;

@@ -25,7 +25,7 @@ bool Connector<Weight>::is_near_antenna(const Vec3& point) const {
 
 template <class Weight>
 void Connector<Weight>::connect(Connection& at) const {
-  const Ray& ray = at.ray;
+  Ray& ray = at.ray;
   const SurfaceHit& surface = at.surface;
   at.legs.receive.clear();
   at.legs.has_receive = false;
@@ -36,12 +36,15 @@ void Connector<Weight>::connect(Connection& at) const {
     return;
   }
   const bool radiates_field = ray.coherent && !surface.material->mirror && surface.response.coherent > 0;
-  const bool radiates_power = surface.response.diffuse > 0 && ray.holds_zones;
-  if (!radiates_field && !radiates_power) return;
-  const bool is_in_pairs = ray.coherent && ray.sequence != kOther && radiates_power;
+  const bool scatters = surface.response.diffuse > 0;
+  if (!radiates_field && !scatters) return;
+  const bool is_in_pairs = ray.coherent && ray.sequence != kOther && scatters;
   // Pairs need the receive legs for all transmit legs, some of which are shorter than the ray's own.
   legs_.find_receive(surface, context_.settings.max_bounces - (is_in_pairs ? 1 : ray.depth), at.legs);
   if (at.legs.receive.empty() && ray.coherent) return;
+  orders_.weigh_mirror(ray, surface, at.block.statistics.num_queries);
+  const bool radiates_power = scatters && ray.holds_zones;
+  if (!radiates_field && !radiates_power) return;
   weight_.find_receive_axes(at);
   if (radiates_field) {
     connect_coherent(at);

@@ -29,6 +29,9 @@ double share_of_own_order(double quality) {
   return std::clamp(std::log(quality / kReversed) / std::log(kOwn / kReversed), 0.0, 1.0);
 }
 
+// Of orders of the same quality each has its own rays alone.
+constexpr OrderShares kEqualOrders{1.0, 0.0};
+
 }  // namespace
 
 OrderShares order_shares(double cover, double opposite_cover) {
@@ -53,7 +56,9 @@ PathEnd MirrorOrders::end_at(const MirrorView& view, const ZoneCover& cover) con
 }
 
 void MirrorOrders::weigh_mirror(Ray& ray, const SurfaceHit& surface, int64_t& num_queries) const {
-  const MirrorView view{ray.mirror, ray.mirror_arrival, ray.leg_length, surface.point.distance};
+  if (!ray.is_mirror_unweighed) return;
+  ray.is_mirror_unweighed = false;
+  const MirrorView view{ray.mirror, ray.mirror_arrival, ray.mirror_length, surface.point.distance};
   const ZoneTarget target{surface.point, ray.direction};
   const ZoneCover cover = cover_of(view, ray.coherent ? &target : nullptr, num_queries);
   ray.field_factor *= cover.field;
@@ -65,6 +70,7 @@ OrderShares MirrorOrders::shares(const Ray& ray, const SurfaceHit& surface, cons
   const MirrorView view{surface.point, ray.direction, leg.length, surface.point.distance};
   const PathEnd last = end_at(view, cover_of(view, nullptr, num_queries));
   const double resolution = resolution_of(ray, surface, leg, last);
+  if (resolution == 1.0 && ray.first_mirror.cover == last.cover) return kEqualOrders;
   const double own = quality_of_order(ray.first_mirror.cover, last.cover, resolution);
   const double opposite = quality_of_order(last.cover, ray.first_mirror.cover, 1.0 / resolution);
   return {share_of_own_order(own), 1.0 - share_of_own_order(opposite)};

@@ -28,8 +28,8 @@ OrderShares order_shares(double cover, double opposite_cover);
 class MirrorOrders {
  public:
   explicit MirrorOrders(const RayContext& context) : context_(context) {}
-  // Weighs the last bounce, off an unflagged mirror, as soon as it is known which surface the ray meets behind it.
-  // `num_queries` counts the rays that measure the mirror.
+  // Weighs the last bounce of a ray, where that was off an unflagged mirror, at the surface that the ray meets behind it.
+  // This costs rays, which `num_queries` counts: it is asked for late, because most hits behind mirrors see no receiver.
   void weigh_mirror(Ray& ray, const SurfaceHit& surface, int64_t& num_queries) const;
   // Returns the shares of the coherent echo that the ray sends over `leg`: the share of its own family in its own order, and
   // that of the opposite family in the opposite order.

@@ -26,6 +26,14 @@ double TriangleRim::distance(const Vec3& from, const Vec3& along) const {
   return std::max(distance, 0.0);
 }
 
+bool TriangleRim::is_beyond(const Vec3& from, double squared) const {
+  for (size_t k = 0; k < 3; ++k) {
+    const double inside = (corners_[k] - from).dot(outward_[k]);
+    if (!(inside > 0.0 && inside * inside >= squared * outward_[k].squaredNorm())) return false;
+  }
+  return true;
+}
+
 // Returns where something that rises from the surface stands in the way, or `reach` if nothing is nearer.
 double SurfaceAround::distance_to_wall(const Vec3& along, double reach) const {
   RayHit met;

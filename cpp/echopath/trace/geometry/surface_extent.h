@@ -15,6 +15,8 @@ class TriangleRim {
   TriangleRim(const EmbreeScene& geometry, const Hit& hit);
   // Returns the distance in m from a point of the triangle along the unit tangent to the rim.
   double distance(const Vec3& from, const Vec3& along) const;
+  // Returns whether no point of the rim lies nearer to a point of the triangle than the root of `squared` (m^2).
+  bool is_beyond(const Vec3& from, double squared) const;
 
  private:
   std::array<Vec3, 3> corners_, outward_;
@@ -31,6 +33,8 @@ class SurfaceAround {
 
   // Returns how far the point's own triangle goes on.
   double distance_to_rim(const Vec3& along) const { return rim_.distance(point_.position, along); }
+  // Returns whether the point's own triangle holds a circle about it, by the square of the radius (m^2).
+  bool holds_circle(double radius_squared) const { return rim_.is_beyond(point_.position, radius_squared); }
   // Returns whether it is there at `distance` (m); this costs a ray.
   bool is_at(const Vec3& along, double distance) const { return end_of_triangle_at(along, distance) >= 0; }
   // Returns the same, without a ray where the point's own triangle reaches as far.

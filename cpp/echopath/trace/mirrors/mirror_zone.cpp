@@ -19,6 +19,14 @@ Vec3 shift_on_target(const MirrorView& view, const Vec3& along, const ZoneTarget
   return (view.before + view.behind) / view.before * across;
 }
 
+// Returns the square of the distance from the point of a flat mirror in m at which no edge is seen any more in any direction:
+// the zone is longest in the plane of incidence.
+double ample_squared(const MirrorView& view, double wavelength) {
+  const double cos_incidence = view.point.normal.dot(view.arrival);
+  const double flat = cos_incidence * cos_incidence * (view.before + view.behind);
+  return kAmple * kAmple * wavelength * view.before * view.behind / flat;
+}
+
 // Holds the surface that the wave lights, if fields are followed.
 struct LitSurface {
   const EmbreeScene& geometry;
@@ -123,8 +131,9 @@ ZoneCover cover_of_zone(const EmbreeScene& geometry, const MirrorView& view, con
                         int64_t& num_queries) {
   const double gap = std::max(kGap * wavelength, 4.0 * geometry.lift());
   const SurfaceAround mirror(geometry, view.point, gap, num_queries);
-  const LitSurface lit{geometry, view, target, gap, num_queries};
   ZoneCover cover;
+  if (!view.point.is_smooth && mirror.holds_circle(ample_squared(view, wavelength))) return cover;
+  const LitSurface lit{geometry, view, target, gap, num_queries};
   for (const ZoneAxis& axis : zone_axes(view, wavelength)) {
     const ZoneCover along = AxisCover(mirror, axis, lit).look();
     cover.share *= along.share;

@@ -15,6 +15,10 @@ std::vector<int> sorted(std::vector<int> planes) {
 
 }  // namespace
 
+struct PlaneDoubles::Sequence {
+  std::vector<int> planes, ascending;
+};
+
 bool OrdersAboutCorners::contain(const std::vector<int>& sequence) const {
   int64_t begin = 0;
   return std::all_of(ends.begin(), ends.end(), [&](int64_t end) {
@@ -28,19 +32,22 @@ void PlaneDoubles::add(OrdersAboutCorners orders) {
   left_out_[std::move(planes)].push_back(std::move(orders));
 }
 
-bool PlaneDoubles::is_double(const Paths& paths, size_t path) const {
+bool PlaneDoubles::is_double(const Paths& paths, size_t path, Sequence& of_path) const {
   if (!paths.is_coherent_with_cell(path)) return false;
   const Hit* hits = paths.hits_of(static_cast<int64_t>(path));
-  std::vector<int> sequence;
+  of_path.planes.clear();
   for (int k = 0; k < paths.num_bounces[path]; ++k) {
     const std::vector<int>& of_triangle = plane_of_triangle[hits[k].mesh_id];
     const int plane = of_triangle.empty() ? -1 : of_triangle[hits[k].triangle_id];
     if (plane < 0) return false;
-    sequence.push_back(plane);
+    of_path.planes.push_back(plane);
   }
-  const auto orders = left_out_.find(sorted(sequence));
-  return orders != left_out_.end() && std::any_of(orders->second.begin(), orders->second.end(),
-                                                  [&](const OrdersAboutCorners& one) { return one.contain(sequence); });
+  of_path.ascending = of_path.planes;
+  std::sort(of_path.ascending.begin(), of_path.ascending.end());
+  const auto orders = left_out_.find(of_path.ascending);
+  return orders != left_out_.end() &&
+         std::any_of(orders->second.begin(), orders->second.end(),
+                     [&](const OrdersAboutCorners& one) { return one.contain(of_path.planes); });
 }
 
 void PlaneDoubles::leave_out(Paths& paths, Job* job) const {
@@ -50,7 +57,9 @@ void PlaneDoubles::leave_out(Paths& paths, Job* job) const {
   Job own(job);
   parallel_for((paths.num_paths() + kTogether - 1) / kTogether, [&](int64_t task) {
     const size_t end = std::min(keep.size(), static_cast<size_t>((task + 1) * kTogether));
-    for (size_t path = static_cast<size_t>(task * kTogether); path < end; ++path) keep[path] = !is_double(paths, path);
+    Sequence of_path;
+    for (size_t path = static_cast<size_t>(task * kTogether); path < end; ++path)
+      keep[path] = !is_double(paths, path, of_path);
   }, &own);
   paths = paths.select(keep, &own);
   paths.frame.statistics.num_paths = paths.num_paths();  // what is left is the whole record

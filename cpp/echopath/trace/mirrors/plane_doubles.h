@@ -29,7 +29,9 @@ class PlaneDoubles {
   bool operator==(const PlaneDoubles&) const = default;
 
  private:
-  bool is_double(const Paths& paths, size_t path) const;
+  struct Sequence;  // the planes of a path, kept from path to path for its memory
+
+  bool is_double(const Paths& paths, size_t path, Sequence& of_path) const;
 
   // Sequences whose echoes by rays are left out, by their planes in ascending order.
   std::map<std::vector<int>, std::vector<OrdersAboutCorners>> left_out_;

@@ -63,16 +63,17 @@ struct Ray {
   bool has_dielectric_tm = false, has_odd_conductors = false;
   // Holds the factors of a coherent ray's field beside its coefficients: 1/q of every bounce and j of every caustic.
   std::complex<double> field_factor = 1.0;
-  RayDifferential differential;  // of coherent rays, where the scene has smooth meshes
-  bool is_curved = false;        // some bounce so far was on a curved surface
-  int num_mirrors = 0;           // specular bounces off unflagged surfaces since the last anchor
-  bool last_was_mirror = false;  // the last bounce was one of these
-  bool holds_zones = true;       // each of these mirrors covers enough of its Fresnel zone (kHeldShare)
-  RayHit mirror;                 // the last of these mirrors
-  Vec3 mirror_arrival;           // unit, direction of the ray there
-  PathEnd first_mirror;          // the first of these mirrors
-  double area = 1.0;             // product of the material areas of the diffuse anchors
-  DiffuseChain chain;            // of rays that have left a diffuse hit
+  RayDifferential differential;      // of coherent rays, where the scene has smooth meshes
+  bool is_curved = false;            // some bounce so far was on a curved surface
+  int num_mirrors = 0;               // specular bounces off unflagged surfaces since the last anchor
+  bool is_mirror_unweighed = false;  // the last bounce was one of these, and MirrorOrders has not weighed it yet
+  bool holds_zones = true;           // each mirror that is weighed covers enough of its Fresnel zone (kHeldShare)
+  RayHit mirror;                     // the last of these mirrors
+  Vec3 mirror_arrival;               // unit, direction of the ray there
+  double mirror_length = 0.0;        // m, `leg_length` there
+  PathEnd first_mirror;              // the first of these mirrors
+  double area = 1.0;                 // product of the material areas of the diffuse anchors
+  DiffuseChain chain;                // of rays that have left a diffuse hit
 
   Ray() {}  // leaves members without defaults unset, to save time
 };

@@ -11,8 +11,8 @@ bool Arrivals::arrive(Ray& ray, SurfaceHit& surface, TraceStatistics& statistics
     return false;
   }
   find_response(ray, surface);
-  if (ray.last_was_mirror) orders_.weigh_mirror(ray, surface, statistics.num_queries);
   const bool has_field = ray.coherent && surface.response.coherent > 0;
+  if (!has_field) orders_.weigh_mirror(ray, surface, statistics.num_queries);
   if (!ray.holds_zones && !has_field) {
     ++statistics.num_small_mirrors;
     return false;

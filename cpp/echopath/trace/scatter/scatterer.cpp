@@ -65,6 +65,7 @@ Vec3 Scatterer<Weight>::lobe_direction(const Ray& ray, const SurfaceHit& surface
 
 template <class Weight>
 bool Scatterer<Weight>::leave(Ray& ray, const SurfaceHit& surface, const ScatterSample& sample, HitLegs& legs) const {
+  orders_.weigh_mirror(ray, surface, legs.search.num_queries);
   if (!sample.is_specular && !ray.holds_zones) return false;
   if (sample.is_specular) reflect(ray, surface, sample);
   else scatter(ray, surface, sample, legs);
@@ -97,11 +98,12 @@ void Scatterer<Weight>::leave_mirror(Ray& ray, const SurfaceHit& surface, const 
   const bool is_leg = mirror >= 0 && ray.sequence != kOther && ray.depth <= kMaxLegMirrors;
   ray.sequence = is_leg ? extended(ray.sequence, mirror, context_.mirrors.size()) : kOther;
   if (is_leg) ray.is_owned = false;  // what is met next may have another owner
-  ray.last_was_mirror = mirror < 0;
   if (mirror >= 0) return;
   ++ray.num_mirrors;
+  ray.is_mirror_unweighed = true;
   ray.mirror = point;
   ray.mirror_arrival = ray.direction;
+  ray.mirror_length = ray.leg_length;
 }
 
 template <class Weight>
@@ -113,7 +115,6 @@ void Scatterer<Weight>::scatter(Ray& ray, const SurfaceHit& surface, const Scatt
   ray.coherent = false;
   ray.sequence = kOther;
   ray.num_mirrors = 0;
-  ray.last_was_mirror = false;
   chains_.scatter(ray, surface, sample);
   weight_.scatter(ray, surface, sample.direction);
   ray.leg_length = 0.0;

@@ -9,7 +9,7 @@ template <class Weight>
 class Scatterer {
  public:
   Scatterer(const RayContext& context, const AntennaLegs& legs)
-      : context_(context), legs_(legs), chains_(context), weight_(context) {}
+      : context_(context), legs_(legs), orders_(context), chains_(context), weight_(context) {}
   // Draws whether and where a ray goes on.
   ScatterSample sample(const Ray& ray, const SurfaceHit& surface, int batch) const;
   // Returns how the ray goes on that the hit mirrors beside `scattered`, which is split.
@@ -28,6 +28,7 @@ class Scatterer {
 
   const RayContext& context_;
   const AntennaLegs& legs_;
+  MirrorOrders orders_;
   DiffuseChainOrders chains_;
   Weight weight_;
 };

@@ -29,10 +29,12 @@ class Plates {
   }
   SurfaceEnd end(const Vec3& along) { return around().find_end(along, kReach); }
   bool reaches(const Vec3& along, double distance) { return around().reaches(along, distance); }
-  ZoneCover cover(double before, double behind) {
-    const MirrorView view{hit_, -Vec3::UnitZ(), before, behind};
+  bool holds_circle(double radius) { return around().holds_circle(radius * radius); }
+  ZoneCover cover(double before, double behind, const Vec3& arrival = -Vec3::UnitZ()) {
+    const MirrorView view{hit_, arrival, before, behind};
     return cover_of_zone(*geometry_, view, nullptr, kWavelength, num_queries_);
   }
+  int64_t num_queries() const { return num_queries_; }
 
  private:
   SurfaceAround around() { return SurfaceAround(*geometry_, hit_, kGap, num_queries_); }
@@ -111,6 +113,33 @@ TEST(MirrorZone, CoverIsTheShareOfTheZone) {
     EXPECT_NEAR(plates.cover(before, behind).share, share * share, 1e-5) << part;
     EXPECT_NEAR(plates.cover(behind, before).share, share * share, 1e-5) << part;
   }
+}
+
+// The two triangles of a plate lie on either side of one of its diagonals, from which these places are equally far.
+TEST(MirrorZone, ATriangleHoldsCirclesUpToItsNearestEdge) {
+  Plates plates;
+  plates.add("plate", Vec3(-1, -2, 0), Vec3(2, 0, 0), Vec3(0, 4, 0));
+  plates.look_at(0.9, 0.0);
+  EXPECT_TRUE(plates.holds_circle(0.1 - kRounding));
+  EXPECT_FALSE(plates.holds_circle(0.1 + kRounding));
+  plates.look_at(0.0, 1.0);
+  EXPECT_TRUE(plates.holds_circle(1.0 / std::sqrt(5.0) - kRounding));
+  EXPECT_FALSE(plates.holds_circle(1.0 / std::sqrt(5.0) + kRounding));
+}
+
+// A wave that comes at a slant lights a zone that is longer in the plane of incidence, by one over the cosine.
+TEST(MirrorZone, AStripIsNarrowerThanTheZoneOfASlantingWave) {
+  const double before = 4.0, behind = 1.0, across = std::sqrt(kWavelength / (1 / before + 1 / behind)), cosine = 0.25;
+  const double width = 3.0 * across, length = 400.0 * across;  // halves
+  Plates plates;
+  plates.add("strip", Vec3(-width, -length, 0), Vec3(2 * width, 0, 0), Vec3(0, 2 * length, 0));
+  plates.look_at(0.0, 0.5 * length);  // a quarter of the strip from its diagonal
+  const Vec3 slant(std::sqrt(1 - cosine * cosine), 0, -cosine);
+  EXPECT_NEAR(plates.cover(before, behind, slant).share, width / (across / cosine), 1e-5);
+  const int64_t num_of_slanting = plates.num_queries();
+  EXPECT_GT(num_of_slanting, 0);
+  EXPECT_EQ(plates.cover(before, behind).share, 1.0);
+  EXPECT_EQ(plates.num_queries(), num_of_slanting) << "the triangle holds the whole zone: this needs no ray";
 }
 
 // The floor of a square well between walls of 0.2 m.

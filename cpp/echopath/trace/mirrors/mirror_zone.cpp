@@ -19,8 +19,8 @@ Vec3 shift_on_target(const MirrorView& view, const Vec3& along, const ZoneTarget
   return (view.before + view.behind) / view.before * across;
 }
 
-// Returns the square of the distance from the point of a flat mirror in m at which no edge is seen any more in any direction:
-// the zone is longest in the plane of incidence.
+// Returns the square of the distance in m from the point of a flat mirror at which an edge counts as none, whatever its
+// direction: the zone is longest in the plane of incidence.
 double ample_squared(const MirrorView& view, double wavelength) {
   const double cos_incidence = view.point.normal.dot(view.arrival);
   const double flat = cos_incidence * cos_incidence * (view.before + view.behind);

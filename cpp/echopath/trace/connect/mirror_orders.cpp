@@ -55,8 +55,7 @@ PathEnd MirrorOrders::end_at(const MirrorView& view, const ZoneCover& cover) con
   return end;
 }
 
-void MirrorOrders::weigh_mirror(Ray& ray, const SurfaceHit& surface, int64_t& num_queries) const {
-  if (!ray.is_mirror_unweighed) return;
+void MirrorOrders::weigh(Ray& ray, const SurfaceHit& surface, int64_t& num_queries) const {
   ray.is_mirror_unweighed = false;
   const MirrorView view{ray.mirror, ray.mirror_arrival, ray.mirror_length, surface.point.distance};
   const ZoneTarget target{surface.point, ray.direction};

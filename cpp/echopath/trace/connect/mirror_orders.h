@@ -30,12 +30,15 @@ class MirrorOrders {
   explicit MirrorOrders(const RayContext& context) : context_(context) {}
   // Weighs the last bounce of a ray, where that was off an unflagged mirror, at the surface that the ray meets behind it.
   // This costs rays, which `num_queries` counts: it is asked for late, because most hits behind mirrors see no receiver.
-  void weigh_mirror(Ray& ray, const SurfaceHit& surface, int64_t& num_queries) const;
+  void weigh_mirror(Ray& ray, const SurfaceHit& surface, int64_t& num_queries) const {
+    if (ray.is_mirror_unweighed) weigh(ray, surface, num_queries);
+  }
   // Returns the shares of the coherent echo that the ray sends over `leg`: the share of its own family in its own order, and
   // that of the opposite family in the opposite order.
   OrderShares shares(const Ray& ray, const SurfaceHit& surface, const Leg& leg, int64_t& num_queries) const;
 
  private:
+  void weigh(Ray& ray, const SurfaceHit& surface, int64_t& num_queries) const;
   ZoneCover cover_of(const MirrorView& view, const ZoneTarget* target, int64_t& num_queries) const;
   PathEnd end_at(const MirrorView& view, const ZoneCover& cover) const;
   double resolution_of(const Ray& ray, const SurfaceHit& surface, const Leg& leg, const PathEnd& last) const;

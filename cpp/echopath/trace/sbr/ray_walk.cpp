@@ -77,6 +77,7 @@ void RayWalk<Weight>::shoot_lane(int lane, Scratch& scratch, PathBlock& block) c
 template <class Weight>
 template <class GoOn>
 void RayWalk<Weight>::take_beside(Scratch& scratch, PathBlock& block, const GoOn& go_on) const {
+  orders_.weigh_mirror(scratch.ray, scratch.surface, scratch.legs.search.num_queries);  // once for both
   const Ray ray = scratch.ray;
   const SurfaceHit surface = scratch.surface;
   scratch.ray.index = scratch.launch_index + kBranchOfWalk * ++scratch.num_branches;

@@ -19,8 +19,8 @@ template <class Weight>
 class RayWalk {
  public:
   RayWalk(const RayContext& context, const AntennaLegs& legs, const PacketFront& front)
-      : context_(context), front_(front), arrivals_(context), scatterer_(context, legs), connector_(context, legs),
-        weight_(context), has_straight_legs_(legs.are_straight()) {}
+      : context_(context), front_(front), orders_(context), arrivals_(context), scatterer_(context, legs),
+        connector_(context, legs), weight_(context), has_straight_legs_(legs.are_straight()) {}
   // Traces the rays [begin, end) of the plan and appends their paths.
   void shoot(int64_t begin, int64_t end, PathBlock& block) const;
 
@@ -45,6 +45,7 @@ class RayWalk {
 
   const RayContext& context_;
   const PacketFront& front_;
+  MirrorOrders orders_;
   Arrivals arrivals_;
   Scatterer<Weight> scatterer_;
   Connector<Weight> connector_;

@@ -2378,7 +2378,7 @@ class Paths:
     @property
     def curved_cell(self) -> numpy.typing.NDArray[numpy.float32]:
         """
-        [P, 7] or [0, 7]: launch cells behind curved specular bounces (trace/record/paths.h); zeros on flat chains
+        [P, 7] or [0, 7]: launch cells behind curved specular bounces (record/paths.h); zeros on flat chains
         """
     @property
     def diffuse(self) -> numpy.typing.NDArray[numpy.uint64]:

@@ -5,7 +5,7 @@
 
 #include "echopath/base/threads/job.h"
 #include "echopath/power/power_interval.h"
-#include "echopath/trace/record/paths.h"
+#include "echopath/record/paths.h"
 
 namespace echopath {
 

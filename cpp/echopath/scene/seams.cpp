@@ -61,7 +61,7 @@ void find_contacts(std::vector<Placed>& all) {
   }
 }
 
-// Returns an edge found in the frame of the group in that of the mesh (trace/edges/posed_edge.h goes the other way).
+// Returns an edge found in the frame of the group in that of the mesh (record/posed_edge.h goes the other way).
 SharpEdge in_mesh(SharpEdge edge, const Mat3& linear, const Vec3& along) {
   for (int face = 0; face < 2; ++face) {
     const Vec3 inward = linear.inverse() * edge.inward[face];

@@ -7,7 +7,7 @@
 #include "echopath/base/range_of_coordinates.h"
 #include "echopath/posed/posed_scene.h"
 #include "echopath/power/received_power.h"
-#include "echopath/trace/record/hit_points.h"
+#include "echopath/record/hit_points.h"
 
 namespace echopath {
 namespace {

@@ -1,9 +1,9 @@
 #pragma once
 // Traces a scene: rays that see scene and radar at mid-frame make the paths of the record.
 #include "echopath/base/threads/job.h"
+#include "echopath/record/paths.h"
 #include "echopath/scene/scene_snapshot.h"
 #include "echopath/trace/launch/launch_focus.h"
-#include "echopath/trace/record/paths.h"
 
 namespace echopath {
 

@@ -6,8 +6,8 @@
 #include "echopath/base/constants.h"
 #include "echopath/base/memory/machine_memory.h"
 #include "echopath/base/threads/parallel.h"
+#include "echopath/record/blocks/record_writer.h"
 #include "echopath/trace/mirrors/mirror_paths.h"
-#include "echopath/trace/record/record_writer.h"
 #include "echopath/trace/sheets/passes.h"
 #include "echopath/trace/strata/aimed_points.h"
 

@@ -1,8 +1,8 @@
 #pragma once
 // Brings a record up to another time of the frame: it keeps what was hit and renews what has become of the legs between.
 #include "echopath/base/threads/job.h"
+#include "echopath/record/paths.h"
 #include "echopath/trace/embree/kept_geometry.h"
-#include "echopath/trace/record/paths.h"
 
 namespace echopath {
 

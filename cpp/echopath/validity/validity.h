@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "echopath/base/threads/job.h"
+#include "echopath/record/paths.h"
 #include "echopath/replay/posed/specular_slide.h"
-#include "echopath/trace/record/paths.h"
 
 namespace echopath {
 

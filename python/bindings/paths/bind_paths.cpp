@@ -220,10 +220,9 @@ share hits; selections share all hits of their trace.)");
       .def_property_readonly("jones", &jones_of,
                              "[P, 2, 2] or [0, 2, 2] complex: (horizontal, vertical) at the receiver from the same at the "
                              "transmitter")
-      .def_property_readonly(
-          "curved_cell", &curved_cell_of,
-          "[P, 7] or [0, 7]: launch cells behind curved specular bounces (trace/record/paths.h); zeros on flat "
-          "chains")
+      .def_property_readonly("curved_cell", &curved_cell_of,
+                             "[P, 7] or [0, 7]: launch cells behind curved specular bounces (record/paths.h); zeros on flat "
+                             "chains")
       .def_property_readonly("passes", &passes_of,
                              "[N] structured: mesh_id, triangle_id, u, v and leg of each pass through a sheet, in order of "
                              "travel, path by path; leg k ends at hit k, the last one at the receiver")

@@ -7,7 +7,7 @@
 
 #include "call/argument.h"
 #include "call/define.h"
-#include "echopath/trace/record/paths.h"
+#include "echopath/record/paths.h"
 #include "values/array.h"
 #include "values/choice.h"
 #include "values/travel.h"

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "echopath/trace/record/paths.h"
+#include "echopath/record/paths.h"
 
 namespace echopath::bindings {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "call/argument.h"
-#include "echopath/trace/record/paths.h"
+#include "echopath/record/paths.h"
 #include "values/array.h"
 
 namespace echopath::bindings {

@@ -15,8 +15,8 @@
 #include "call/run_job.h"
 #include "echopath/base/errors.h"
 #include "echopath/power/path_power.h"
+#include "echopath/record/hit_points.h"
 #include "echopath/replay/replay.h"
-#include "echopath/trace/record/hit_points.h"
 #include "values/array.h"
 #include "values/choice.h"
 

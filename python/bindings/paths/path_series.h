@@ -8,7 +8,7 @@
 #include <variant>
 
 #include "call/argument.h"
-#include "echopath/trace/record/paths.h"
+#include "echopath/record/paths.h"
 #include "values/choice.h"
 
 namespace echopath::bindings {

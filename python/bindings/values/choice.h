@@ -9,10 +9,10 @@
 
 #include "echopath/em/footprint_formula.h"
 #include "echopath/em/polarization/jones.h"
+#include "echopath/record/sampler.h"
+#include "echopath/record/scatterers.h"
 #include "echopath/replay/posed/specular_slide.h"
 #include "echopath/signal/synthesizer.h"
-#include "echopath/trace/launch/sampler.h"
-#include "echopath/trace/scatter/scatterers.h"
 
 namespace echopath::bindings {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "echopath/record/paths.h"
 #include "echopath/scene/scene.h"
-#include "echopath/trace/record/paths.h"
 
 namespace echopath::testing {
 

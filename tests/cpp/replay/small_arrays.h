@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cpp/support/scenes.h"
-#include "echopath/trace/record/paths.h"
+#include "echopath/record/paths.h"
 
 namespace echopath::testing {
 

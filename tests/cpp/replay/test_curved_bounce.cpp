@@ -4,8 +4,8 @@
 #include <tuple>
 
 #include "cpp/support/scenes.h"
+#include "echopath/record/blocks/record_writer.h"
 #include "echopath/trace/mirrors/mirror_paths.h"
-#include "echopath/trace/record/record_writer.h"
 
 namespace echopath::test_curved_bounce {
 namespace {

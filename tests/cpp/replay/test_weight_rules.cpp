@@ -8,7 +8,7 @@
 #include "cpp/support/sanitized.h"
 #include "cpp/support/scenes.h"
 #include "echopath/power/received_power.h"
-#include "echopath/trace/record/record_writer.h"
+#include "echopath/record/blocks/record_writer.h"
 #include "echopath/trace/sbr/sbr.h"
 
 namespace echopath::test_weight_rules {

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
+#include "echopath/record/near_antenna.h"
 #include "echopath/replay/posed/hit_patches.h"
 #include "echopath/scene/smooth/smooth.h"
-#include "echopath/trace/near_antenna.h"
 
 namespace echopath::testing {
 // A straight line over the mirrors [first, last) of a path, unfolded.

@@ -10,7 +10,7 @@
 
 #include "echopath/base/threads/job.h"
 #include "echopath/label/expressions/expression.h"
-#include "echopath/trace/record/paths.h"
+#include "echopath/record/paths.h"
 
 namespace echopath {
 

@@ -8,7 +8,7 @@
 #include "echopath/label/objects/object_view.h"
 #include "echopath/trace/embree/kept_geometry.h"
 #include "echopath/trace/launch/launch_directions.h"
-#include "echopath/trace/launch/sampler.h"
+#include "echopath/trace/launch/launch_points.h"
 
 namespace echopath {
 namespace {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "echopath/label/objects/surfaces.h"
+#include "echopath/record/stratum.h"
 #include "echopath/trace/embree/embree_scene.h"
-#include "echopath/trace/strata/stratum.h"
 
 namespace echopath {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "echopath/trace/record/paths.h"
+#include "echopath/record/paths.h"
 
 namespace echopath {
 

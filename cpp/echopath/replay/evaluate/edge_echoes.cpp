@@ -9,8 +9,8 @@
 #include "echopath/em/edges/edge_diffraction.h"
 #include "echopath/em/edges/edge_shadow.h"
 #include "echopath/em/surface/surface_response.h"
+#include "echopath/record/posed_edge.h"
 #include "echopath/replay/kernels/path_formula.h"
-#include "echopath/trace/edges/posed_edge.h"
 
 namespace echopath {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
-#include "echopath/trace/sheets/passes.h"
+#include "echopath/record/sheet_polarization.h"
 
 namespace echopath {
 namespace {

@@ -1,7 +1,7 @@
 #pragma once
 // Holds the constants of the radar and of the replay settings that amplitudes depend on.
+#include "echopath/record/paths.h"
 #include "echopath/replay/kernels/cell_formula.h"
-#include "echopath/trace/record/paths.h"
 
 namespace echopath {
 
@@ -10,7 +10,7 @@ struct RadioConstants {
   double wavelength;      // m, at the start frequency
   double wavenumber;      // rad/m
   Footprint footprint = Footprint::kSecondOrder;
-  double spread = 0.65;  // of a launch cell (trace/launch/sampler.h)
+  double spread = 0.65;  // of a launch cell (record/sampler.h)
   CellView cells;
 
   CellFilter filter() const { return {wavenumber, spread, footprint, cells}; }

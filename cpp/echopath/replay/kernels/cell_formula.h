@@ -24,7 +24,7 @@ struct CellView {
 
 struct CellFilter {
   double wavenumber = 0.0;  // rad/m
-  double spread = 0.65;     // of the second order's Gaussian, in cells (trace/launch/sampler.h)
+  double spread = 0.65;     // of the second order's Gaussian, in cells (record/sampler.h)
   Footprint order = Footprint::kSecondOrder;
   CellView view;
 };

@@ -21,8 +21,8 @@
 // amplitude.
 #include "echopath/em/footprint_formula.h"
 #include "echopath/em/polarization/transverse_formula.h"
+#include "echopath/record/near_antenna.h"
 #include "echopath/replay/kernels/cell_formula.h"
-#include "echopath/trace/near_antenna.h"
 
 namespace echopath {
 

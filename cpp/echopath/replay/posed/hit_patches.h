@@ -2,8 +2,8 @@
 // Finds which vertices of deforming meshes a record needs.
 #include <vector>
 
+#include "echopath/record/paths.h"
 #include "echopath/scene/mesh/surface_patch.h"
-#include "echopath/trace/record/paths.h"
 
 namespace echopath {
 

@@ -1,8 +1,8 @@
 #include "echopath/replay/posed/path_geometry.h"
 
 #include "echopath/base/plane.h"
+#include "echopath/record/posed_edge.h"
 #include "echopath/scene/smooth/smooth.h"
-#include "echopath/trace/edges/posed_edge.h"
 
 namespace echopath {
 namespace {

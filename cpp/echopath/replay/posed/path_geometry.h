@@ -2,7 +2,7 @@
 // Poses the hits of paths: points, normals and the legs between them, with images for flagged mirrors.
 
 #include "echopath/posed/posed_scene.h"
-#include "echopath/trace/record/paths.h"
+#include "echopath/record/paths.h"
 
 namespace echopath {
 

@@ -2,9 +2,9 @@
 // Lists the time grids that a frame offers: polynomials by their number of nodes, and grids with nodes in every chirp.
 #include <vector>
 
+#include "echopath/record/paths.h"
 #include "echopath/replay/replay_settings.h"
 #include "echopath/replay/time/time_grid.h"
-#include "echopath/trace/record/paths.h"
 
 namespace echopath {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "echopath/base/threads/job.h"
-#include "echopath/trace/record/paths.h"
+#include "echopath/record/paths.h"
 
 namespace echopath {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <tuple>
 
+#include "echopath/record/hit_points.h"
 #include "echopath/replay/replay.h"
-#include "echopath/trace/record/hit_points.h"
 
 namespace echopath {
 namespace {

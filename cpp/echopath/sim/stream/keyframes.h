@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "echopath/base/threads/job.h"
+#include "echopath/record/paths.h"
 #include "echopath/replay/posed/specular_slide.h"
 #include "echopath/trace/embree/kept_geometry.h"
-#include "echopath/trace/record/paths.h"
 
 namespace echopath {
 
@@ -14,7 +14,7 @@ enum class Retrace {
   kNever,  // one record serves the frame
   // Hits stay, shadow rays and points of reflection are renewed (validity/renewal.h), and new surface gets paths.
   kInvalid,
-  // The scene is traced anew with the same rays. Unless scatterers are those of the surface (trace/scatter/scatterers.h),
+  // The scene is traced anew with the same rays. Unless scatterers are those of the surface (record/scatterers.h),
   // phases of rough surfaces then belong to rays, so that their echoes have wrong Doppler: a reference for coherent echoes.
   kAlways,
 };

@@ -1,8 +1,8 @@
 #pragma once
 // Describes a hit that is being connected to the receiver, with all that its paths are made of.
 #include "echopath/em/polarization/hit_modes.h"
+#include "echopath/record/blocks/path_block.h"
 #include "echopath/trace/connect/antenna_legs.h"
-#include "echopath/trace/record/path_block.h"
 
 namespace echopath {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "echopath/base/plane.h"
-#include "echopath/trace/near_antenna.h"
+#include "echopath/record/near_antenna.h"
 
 namespace echopath {
 namespace {

@@ -1,8 +1,8 @@
 #pragma once
 // Finds the echoes of plain first hits in all lanes at once: such a hit lies on no flagged mirror and has only straight
 // legs.
-#include "echopath/trace/near_antenna.h"
-#include "echopath/trace/record/path_block.h"
+#include "echopath/record/blocks/path_block.h"
+#include "echopath/record/near_antenna.h"
 #include "echopath/trace/sbr/first_hits.h"
 
 namespace echopath {

@@ -7,7 +7,7 @@
 #include "echopath/base/threads/parallel.h"
 #include "echopath/em/edges/edge_shadow.h"
 #include "echopath/posed/posed_scene.h"
-#include "echopath/trace/edges/posed_edge.h"
+#include "echopath/record/posed_edge.h"
 #include "echopath/trace/embree/embree_scene.h"
 
 namespace echopath {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "echopath/em/edges/edge_chain.h"
-#include "echopath/trace/edges/posed_edge.h"
-#include "echopath/trace/record/paths.h"
+#include "echopath/record/paths.h"
+#include "echopath/record/posed_edge.h"
 
 namespace echopath {
 

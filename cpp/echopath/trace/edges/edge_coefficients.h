@@ -7,7 +7,7 @@
 #include <complex>
 
 #include "echopath/em/polarization/jones.h"
-#include "echopath/trace/record/path_block.h"
+#include "echopath/record/blocks/path_block.h"
 
 namespace echopath {
 

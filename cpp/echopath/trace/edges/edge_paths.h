@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "echopath/base/threads/job.h"
+#include "echopath/record/blocks/path_block.h"
 #include "echopath/trace/edges/edge_power.h"
 #include "echopath/trace/frusta/antenna_frusta.h"
-#include "echopath/trace/record/path_block.h"
 
 namespace echopath {
 

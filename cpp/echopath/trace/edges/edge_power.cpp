@@ -5,7 +5,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/radar/noise_power.h"
-#include "echopath/trace/near_antenna.h"
+#include "echopath/record/near_antenna.h"
 
 namespace echopath {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "echopath/posed/posed_antenna.h"
 #include "echopath/radar/radar.h"
+#include "echopath/record/posed_edge.h"
 #include "echopath/scene/scene.h"
-#include "echopath/trace/edges/posed_edge.h"
 
 namespace echopath {
 

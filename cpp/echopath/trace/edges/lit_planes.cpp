@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "echopath/trace/record/hit_points.h"
+#include "echopath/record/hit_points.h"
 
 namespace echopath {
 namespace {

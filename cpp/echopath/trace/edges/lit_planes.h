@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "echopath/base/plane.h"
+#include "echopath/record/blocks/path_block.h"
 #include "echopath/trace/embree/embree_scene.h"
-#include "echopath/trace/record/path_block.h"
 
 namespace echopath {
 

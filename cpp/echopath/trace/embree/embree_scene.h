@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "echopath/base/threads/job.h"
+#include "echopath/record/paths.h"
 #include "echopath/scene/scene.h"
 #include "echopath/trace/embree/embree_meshes.h"
 #include "echopath/trace/embree/packet.h"
-#include "echopath/trace/record/paths.h"
 #include "echopath/trace/sbr/ray_formula.h"
 
 namespace echopath {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "echopath/trace/record/paths.h"
+#include "echopath/record/paths.h"
 
 namespace echopath {
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "echopath/base/random.h"
+#include "echopath/record/paths.h"
 #include "echopath/trace/launch/launch_directions.h"
-#include "echopath/trace/record/paths.h"
 #include "echopath/trace/strata/ray_targets.h"
 
 namespace echopath {

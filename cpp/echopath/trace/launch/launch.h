@@ -5,14 +5,14 @@
 #include <span>
 #include <vector>
 
+#include "echopath/record/stratum.h"
 #include "echopath/trace/embree/packet.h"
 #include "echopath/trace/frusta/mirror_frusta.h"
 #include "echopath/trace/launch/launch_focus.h"
-#include "echopath/trace/launch/sampler.h"
+#include "echopath/trace/launch/launch_points.h"
 #include "echopath/trace/scatter/surface_points.h"
 #include "echopath/trace/strata/fitted_strata.h"
 #include "echopath/trace/strata/ray_owners.h"
-#include "echopath/trace/strata/stratum.h"
 
 namespace echopath {
 

@@ -4,9 +4,9 @@
 
 #include "echopath/base/lanes/phasor.h"
 #include "echopath/base/lanes/scalar_math.h"
+#include "echopath/record/stratum.h"
 #include "echopath/trace/embree/packet.h"
-#include "echopath/trace/launch/sampler.h"
-#include "echopath/trace/strata/stratum.h"
+#include "echopath/trace/launch/launch_points.h"
 
 namespace echopath {
 

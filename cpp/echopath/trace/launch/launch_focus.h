@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "echopath/trace/strata/stratum.h"
+#include "echopath/record/stratum.h"
 
 namespace echopath {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "echopath/trace/launch/sampler.h"
+#include "echopath/trace/launch/launch_points.h"
 
 namespace echopath {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "echopath/trace/record/record_writer.h"
+#include "echopath/record/blocks/record_writer.h"
 #include "echopath/trace/sheets/passes.h"
 
 namespace echopath {

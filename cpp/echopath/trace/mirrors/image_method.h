@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "echopath/em/surface/surface_response.h"
+#include "echopath/record/blocks/path_block.h"
 #include "echopath/trace/embree/embree_scene.h"
 #include "echopath/trace/mirrors/mirrors.h"
-#include "echopath/trace/record/path_block.h"
 #include "echopath/trace/sbr/sbr_settings.h"
 
 namespace echopath {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "echopath/trace/record/hit_points.h"
+#include "echopath/record/hit_points.h"
 
 namespace echopath {
 namespace {

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "echopath/base/threads/job.h"
+#include "echopath/record/blocks/path_block.h"
 #include "echopath/trace/frusta/antenna_frusta.h"
-#include "echopath/trace/record/path_block.h"
 #include "echopath/trace/sbr/sbr.h"
 
 namespace echopath {

@@ -16,9 +16,9 @@
 #include <vector>
 
 #include "echopath/base/threads/job.h"
+#include "echopath/record/blocks/path_block.h"
 #include "echopath/trace/mirrors/image_method.h"
 #include "echopath/trace/mirrors/plane_doubles.h"
-#include "echopath/trace/record/path_block.h"
 
 namespace echopath {
 

@@ -11,9 +11,9 @@
 // Degli-Esposti et al. 2007 (effective roughness); Veach 1997 (balance heuristic).
 #include <memory>
 
+#include "echopath/record/blocks/path_block.h"
 #include "echopath/trace/frusta/antenna_frusta.h"
 #include "echopath/trace/launch/launch.h"
-#include "echopath/trace/record/path_block.h"
 #include "echopath/trace/sbr/sbr_settings.h"
 
 namespace echopath {

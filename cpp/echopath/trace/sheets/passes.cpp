@@ -5,8 +5,9 @@
 
 #include "echopath/base/threads/parallel.h"
 #include "echopath/em/layers/sheet_model.h"
+#include "echopath/record/hit_points.h"
+#include "echopath/record/sheet_polarization.h"
 #include "echopath/trace/embree/embree_scene.h"
-#include "echopath/trace/record/hit_points.h"
 
 namespace echopath {
 namespace {
@@ -169,12 +170,6 @@ void join(const std::vector<PassBlock>& blocks, Paths& paths) {
 }
 
 }  // namespace
-
-Vec3 sheet_polarization(const Paths& paths) {
-  const Antenna& first = paths.radar.transmitters.front();
-  const Transform world_from_radar = paths.radar.world_from_radar(paths.frame.trace_time);
-  return (world_from_radar.linear() * (first.orientation * first.polarization)).normalized();
-}
 
 void add_passes(Paths& paths, Job* job) {
   const SheetScene sheets(*paths.scene, paths.frame.trace_time, paths.frame.transmitter, job);

@@ -6,7 +6,7 @@
 // time and antenna (replay/factors/sheet_passages.h), of the polarisation of the first transmitter in that polarisation. In
 // a polarised trace the matrix gets what both modes do to the components at either end of the path, over that; between hits,
 // sheets are taken to leave the polarisation as it is. Replay follows the fields of edge paths itself (path_passages.h).
-#include "echopath/trace/record/paths.h"
+#include "echopath/record/paths.h"
 
 namespace echopath {
 
@@ -16,9 +16,5 @@ inline constexpr int kMostPasses = 64;
 // Does nothing where the scene has no sheets. The result is the same for any number of threads. Raises DeviceError and
 // Cancelled.
 void add_passes(Paths& paths, Job* job = nullptr);
-
-// Returns the polarisation in the world by which the scalar model and the legs between hits tell modes apart: that of the
-// first transmitter at the time of the trace.
-Vec3 sheet_polarization(const Paths& paths);
 
 }  // namespace echopath

@@ -5,7 +5,7 @@
 #include <optional>
 #include <unordered_map>
 
-#include "echopath/trace/strata/stratum.h"
+#include "echopath/record/stratum.h"
 
 namespace echopath {
 

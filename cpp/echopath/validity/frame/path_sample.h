@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "echopath/trace/record/paths.h"
+#include "echopath/record/paths.h"
 
 namespace echopath {
 

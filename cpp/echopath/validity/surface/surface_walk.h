@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "echopath/base/memory/lazy.h"
+#include "echopath/record/paths.h"
 #include "echopath/replay/posed/local_paths.h"
 #include "echopath/scene/mesh/adjacency.h"
-#include "echopath/trace/record/paths.h"
 
 namespace echopath {
 

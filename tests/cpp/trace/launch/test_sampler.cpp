@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
-#include "echopath/trace/launch/sampler.h"
+#include "echopath/trace/launch/launch_points.h"
 
 namespace echopath::test_sampler {
 namespace {

@@ -1,4 +1,4 @@
-#include "echopath/trace/record/path_fan.h"
+#include "echopath/record/blocks/path_fan.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "echopath/trace/strata/stratum.h"
+#include "echopath/record/stratum.h"
 
 #include <cmath>
 

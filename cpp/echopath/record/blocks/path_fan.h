@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "echopath/trace/record/paths.h"
+#include "echopath/record/paths.h"
 
 namespace echopath {
 

@@ -12,10 +12,10 @@
 #include "echopath/em/footprint_formula.h"
 #include "echopath/em/polarization/jones.h"
 #include "echopath/radar/radar.h"
+#include "echopath/record/sampler.h"
+#include "echopath/record/scatterers.h"
+#include "echopath/record/stratum.h"
 #include "echopath/scene/scene.h"
-#include "echopath/trace/launch/sampler.h"
-#include "echopath/trace/scatter/scatterers.h"
-#include "echopath/trace/strata/stratum.h"
 
 namespace echopath {
 

@@ -1,4 +1,4 @@
-#include "echopath/trace/record/path_block.h"
+#include "echopath/record/blocks/path_block.h"
 
 #include <algorithm>
 #include <utility>

@@ -6,8 +6,8 @@
 #include "echopath/em/edges/edge_diffraction.h"
 #include "echopath/em/material.h"
 #include "echopath/posed/posed_scene.h"
+#include "echopath/record/paths.h"
 #include "echopath/scene/scene_edges.h"
-#include "echopath/trace/record/paths.h"
 
 namespace echopath {
 

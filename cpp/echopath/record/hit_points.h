@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "echopath/posed/posed_scene.h"
-#include "echopath/trace/record/paths.h"
+#include "echopath/record/paths.h"
 
 namespace echopath {
 

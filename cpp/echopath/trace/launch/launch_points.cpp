@@ -1,4 +1,4 @@
-#include "echopath/trace/launch/sampler.h"
+#include "echopath/trace/launch/launch_points.h"
 
 #include <cmath>
 #include <numbers>
@@ -92,16 +92,6 @@ std::unique_ptr<const LaunchPoints> launch_points(Sampler sampler, const LaunchD
     case Sampler::kRandom: break;
   }
   return std::make_unique<RandomPoints>(num_points, shifts);
-}
-
-double footprint_spread(Sampler sampler) {
-  switch (sampler) {
-    case Sampler::kLattice: return 0.65;
-    case Sampler::kFibonacci: return 0.6;
-    case Sampler::kR2: return 0.95;
-    case Sampler::kRandom: break;
-  }
-  return 1.2;
 }
 
 }  // namespace echopath

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "echopath/trace/record/path_columns.h"
-#include "echopath/trace/record/path_fan.h"
+#include "echopath/record/blocks/path_columns.h"
+#include "echopath/record/blocks/path_fan.h"
 
 namespace echopath {
 

@@ -1,18 +1,13 @@
 #pragma once
-// Says how the rays of one stratum are spread over it.
+// Spreads the rays of one stratum over it, as a sampler says.
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
 #include <vector>
 
-namespace echopath {
+#include "echopath/record/sampler.h"
 
-enum class Sampler {
-  kLattice,    // shifted algebraic lattice (launch_lattice.h): even, and the same everywhere
-  kFibonacci,  // spherical Fibonacci spiral about the cone's axis
-  kR2,         // additive recurrence of the plastic number: any first part of it is even
-  kRandom,     // independent uniform points, the yardstick for even sets
-};
+namespace echopath {
 
 // The points of a stratum lie in the unit disc, from which the equal-area projection of a cone makes directions, or in a
 // rectangle of twice these half lengths about 0, from which that of a strip does.
@@ -46,12 +41,5 @@ class LaunchPoints {
 // seeds it (random). Only the lattice serves rectangles too.
 std::unique_ptr<const LaunchPoints> launch_points(Sampler sampler, const LaunchDomain& domain, int64_t num_points,
                                                   const std::vector<Eigen::Vector2d>& shifts);
-
-// Returns the standard deviation, in launch cells per axis, of the Gaussian that stands for one ray in the second-order
-// footprint: the wider it is, the less the gaps between rays show; the narrower, the less is lost where the surface bends
-// within a cell. The values are the best of a scan over spheres of ka 161 and 3228 and an ellipsoid of a car's size (2^10 to
-// 2^16 rays): on the spheres the lattice errs by 0.3 dB at 0.4, 0.06 at 0.5, below 0.01 from 0.6 to 0.8; on the ellipsoid
-// the loss at few rays grows with the square. R2 and random points have wide gaps for which no spread makes up.
-double footprint_spread(Sampler sampler);
 
 }  // namespace echopath

@@ -1,10 +1,10 @@
-#include "echopath/trace/edges/posed_edge.h"
+#include "echopath/record/posed_edge.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "echopath/em/surface/surface_response.h"
-#include "echopath/trace/near_antenna.h"
+#include "echopath/record/near_antenna.h"
 
 namespace echopath {
 namespace {

@@ -1,4 +1,4 @@
-#include "echopath/trace/record/hit_points.h"
+#include "echopath/record/hit_points.h"
 
 #include <algorithm>
 

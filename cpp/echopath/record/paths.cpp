@@ -1,4 +1,4 @@
-#include "echopath/trace/record/paths.h"
+#include "echopath/record/paths.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,4 +1,4 @@
-#include "echopath/trace/record/record_writer.h"
+#include "echopath/record/blocks/record_writer.h"
 
 #include <algorithm>
 #include <functional>

@@ -1,6 +1,6 @@
 #pragma once
 // Records of blocks that tests fill themselves.
-#include "echopath/trace/record/record_writer.h"
+#include "echopath/record/blocks/record_writer.h"
 
 namespace echopath {
 

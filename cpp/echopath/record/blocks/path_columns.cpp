@@ -1,4 +1,4 @@
-#include "echopath/trace/record/path_columns.h"
+#include "echopath/record/blocks/path_columns.h"
 
 namespace echopath {
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "echopath/trace/record/path_block.h"
+#include "echopath/record/blocks/path_block.h"
 
 namespace echopath {
 

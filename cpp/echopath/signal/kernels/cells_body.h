@@ -1,8 +1,8 @@
 #pragma once
 // Finds the places of echoes on the grid of frequencies, and their order by cells of that grid.
 #include "echopath/base/lanes/lane_math.h"
+#include "echopath/base/lanes/vecs.h"
 #include "echopath/signal/kernels/kernels.h"
-#include "echopath/signal/vecs.h"
 
 namespace echopath::ECHOPATH_KERNELS {
 namespace {

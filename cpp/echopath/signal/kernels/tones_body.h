@@ -2,9 +2,9 @@
 // Computes the frequency and the phasor of echoes within a chirp, for a vector of echoes at a time.
 #include "echopath/base/lanes/lane_math.h"
 #include "echopath/base/lanes/phasor.h"
+#include "echopath/base/lanes/vecs.h"
 #include "echopath/signal/echoes/logarithms.h"
 #include "echopath/signal/kernels/kernels.h"
-#include "echopath/signal/vecs.h"
 
 namespace echopath::ECHOPATH_KERNELS {
 namespace {

@@ -4,6 +4,7 @@
 
 #include "echopath/base/plane.h"
 #include "echopath/record/near_antenna.h"
+#include "echopath/trace/sbr/ray_formula.h"
 
 namespace echopath {
 namespace {

@@ -213,7 +213,7 @@ void EmbreeScene::ask_segments(const RayLanes& rays, ValidLanes& blocked) const 
   for (int lane = 0; lane < kPacketSize; ++lane) blocked.lanes[lane] = valid.lanes[lane] & (queries.tfar[lane] < 0 ? -1 : 0);
 }
 
-void EmbreeScene::occluded(const LaneVectors& from, const Vec3& to, const Lanes& asked, Lanes& blocked) const {
+void EmbreeScene::occluded(const LaneVectors& from, const Vec3& to, const LaneFlags& asked, LaneFlags& blocked) const {
   blocked.fill(false);
   const auto num_asked = std::count(asked.begin(), asked.end(), true);
   if (num_asked == 0) return;

@@ -11,7 +11,7 @@
 #include "echopath/scene/scene.h"
 #include "echopath/trace/embree/embree_meshes.h"
 #include "echopath/trace/embree/packet.h"
-#include "echopath/trace/sbr/ray_formula.h"
+#include "echopath/trace/embree/query_formula.h"
 
 namespace echopath {
 
@@ -76,7 +76,7 @@ class EmbreeScene {
     std::array<Hit, kPacketSize> met;
     LaneVectors position, normal;
     LaneValues distance, stretch;
-    std::array<bool, kPacketSize> is_smooth{};
+    LaneFlags is_smooth{};
     std::array<Mat3, kPacketSize> curvature;
 
     RayHit operator[](int lane) const;
@@ -105,8 +105,7 @@ class EmbreeScene {
   void occluded(const Segment* segments, size_t count, uint8_t* blocked) const;
   // Answers this between the points of a packet and one other point, in the lanes where `asked` is set; elsewhere nothing is
   // blocked.
-  using Lanes = std::array<bool, kPacketSize>;
-  void occluded(const LaneVectors& from, const Vec3& to, const Lanes& asked, Lanes& blocked) const;
+  void occluded(const LaneVectors& from, const Vec3& to, const LaneFlags& asked, LaneFlags& blocked) const;
   // All queries go through this interface to Embree, in single precision. Another one can take its place, for example one
   // that looks at the queries and hands them on. It must outlive its use, and no query may be under way.
   class Queries;  // embree_device.h

@@ -1,5 +1,7 @@
 #pragma once
 // Holds rays side by side, quantity by quantity, so that compilers make vectors of loops over their lanes.
+#include <array>
+
 #include "echopath/base/packed.h"
 
 namespace echopath {
@@ -19,6 +21,7 @@ struct alignas(64) LanesOf {
   ECHOPATH_INLINE Value operator[](int lane) const { return lanes[lane]; }
 };
 using LaneValues = LanesOf<double>;
+using LaneFlags = std::array<bool, kPacketSize>;
 
 struct LaneVectors {
   LaneValues x, y, z;

@@ -22,10 +22,10 @@ struct FirstHits {
   EmbreeScene::PacketHits hits;
   LaneVectors lifted;  // the hits, off their surfaces
   LaneValues cos_incidence;
-  LaneValues cos_receiver;                 // positive where the receiver is on the lit side; not divided by its distance
-  LaneValues near_squared;                 // m^2: to the nearest antenna
-  EmbreeScene::Lanes arrives;              // whether the ray is at a hit that its stratum owns, or passes over a mirror
-  std::array<bool, kPacketSize> is_owned;  // whether its stratum owns the hit
+  LaneValues cos_receiver;  // positive where the receiver is on the lit side; not divided by its distance
+  LaneValues near_squared;  // m^2: to the nearest antenna
+  LaneFlags arrives;        // whether the ray is at a hit that its stratum owns, or passes over a mirror
+  LaneFlags is_owned;       // whether its stratum owns the hit
   std::array<ShadowState, kPacketSize> receiver;  // as seen from the hit
   std::array<const SurfaceModel*, kPacketSize> models;
   std::array<PolarizationMode, kPacketSize> modes;
@@ -35,8 +35,8 @@ struct FirstHits {
   LaneValues receiver_reach;  // m^2: positive where the reflected ray meets the sphere around the receiver (plane_images.h)
   LaneVectors out;            // the direction in which it goes on
   LaneVectors mirrored;       // the direction in which the surface mirrors it
-  std::array<bool, kPacketSize> goes_both_ways;  // mirrored always, scattered by chance
-  std::array<bool, kPacketSize> goes_on;         // whether the ray goes on at all
+  LaneFlags goes_both_ways;   // mirrored always, scattered by chance
+  LaneFlags goes_on;          // whether the ray goes on at all
 
   // Returns the index of the lane's ray, and that in the random numbers of its hits: behind each sheet these are others,
   // unless they belong to the point at which the ray is aimed.

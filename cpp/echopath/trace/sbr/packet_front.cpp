@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "echopath/base/lanes/simd.h"
+#include "echopath/trace/sbr/ray_formula.h"
 
 namespace echopath {
 namespace {
@@ -196,7 +197,7 @@ void PacketFront::find_response(FirstHits& first, int lane) const {
 // Asks for the shadows of all first hits together, because these lie beside each other. The paths of a mirror's hit need
 // more than that.
 void PacketFront::see_receiver(FirstHits& first, TraceStatistics& statistics) const {
-  EmbreeScene::Lanes asked, blocked;
+  LaneFlags asked, blocked;
   for (size_t k = 0; k < kPacketSize; ++k) {
     asked[k] = first.arrives[k] && !first.models[k]->material().mirror && first.cos_receiver.lanes[k] > 0;
     statistics.num_queries += asked[k];

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "echopath/base/random.h"
+#include "echopath/trace/sbr/ray_formula.h"
 #include "echopath/trace/sbr/ray_tube.h"
 #include "echopath/trace/scatter/scatter_points.h"
 

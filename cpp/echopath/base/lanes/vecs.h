@@ -1,5 +1,5 @@
 #pragma once
-// Holds some vectors side by side, for kernels_body.h alone.
+// Holds some vectors side by side, for files that are compiled once per instruction set (lane_math.h).
 #include "echopath/base/lanes/lane_math.h"
 
 namespace echopath::ECHOPATH_KERNELS {

@@ -17,7 +17,7 @@ from echopath.frame_file.maps import load_maps, save_maps
 from fuzz.folder import memory_folder
 from fuzz.mutate import damaged
 from fuzz.seeds import frames
-from support.frame_edits import seal
+from support.files.frame_edits import seal
 
 ODD_VALUES = [0, -1, 1, 2**31, 2**63 - 1, -2**63, 255, 65535, 0.0, -0.1, float("nan"), float("inf"), 1e308, 1e19, 1 + 2j, True,
               "", "x", "linear", "T . R", "{}", "[]",

@@ -13,8 +13,8 @@ import numpy as np
 import echopath as ep
 from fuzz.folder import memory_folder
 from fuzz.mutate import damaged
-from support.gltf_files import BOX, GltfFile, box_file, rig_file
-from support.packed_gltf import draco_tube, meshopt_tube
+from support.files.gltf_files import BOX, GltfFile, box_file, rig_file
+from support.files.packed_gltf import draco_tube, meshopt_tube
 
 ODD = [0, -1, 1, 2, 7, 255, 256, 65535, 2**31 - 1, 2**31, 2**53, 2**63, -2**63, 10**400, 0.5, -0.1, 1e-320, 1e30, 1e300, 1e308,
        True, False, None, "", "x", "/", "a/b*", "\ud83d", "\x00", "VEC3", "SCALAR", "MAT4", "STEP", "CUBICSPLINE", "weights",

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support import small_dataset as small
+from support.files import small_dataset as small
 from support.labelled import trace_plates_and_wall
 
 # Seconds each: whoever comes to one of them last would be waited for by all others.

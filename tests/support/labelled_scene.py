@@ -1,7 +1,7 @@
 """A scene file whose frames have labels."""
 from __future__ import annotations
 
-from support.scene_text import WAVEFORM, moving_plate
+from support.files.scene_text import WAVEFORM, moving_plate
 
 SCENE = """
 title = "a person behind a van, beside a wall"

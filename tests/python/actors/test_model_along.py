@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support.gltf_files import BOX, BOX_SIDES, GltfFile, rig_file
-from support.scene_text import ANTENNAS, WAVEFORM
+from support.files.gltf_files import BOX, BOX_SIDES, GltfFile, rig_file
+from support.files.scene_text import ANTENNAS, WAVEFORM
 
 STEP = 0.6           # m, that a foot is pushed back while it stands, half a loop of 1 s
 WAY = 2 * STEP       # of a loop

@@ -9,7 +9,7 @@ import echopath as ep
 from echopath import dataset
 from echopath.cli.info import describe_file
 from echopath.dataset.folder import scene_folder
-from support.small_dataset import HEAD, SCENE, bytes_of, make, written
+from support.files.small_dataset import HEAD, SCENE, bytes_of, make, written
 
 
 @pytest.fixture

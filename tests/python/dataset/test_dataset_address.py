@@ -7,7 +7,7 @@ import pytest
 import echopath as ep
 from echopath import dataset
 from echopath.dataset.address import Address
-from support.scene_text import SMALL_WAVEFORM
+from support.files.scene_text import SMALL_WAVEFORM
 
 fsspec = pytest.importorskip("fsspec")
 TEMPLATE = """

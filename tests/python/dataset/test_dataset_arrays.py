@@ -8,7 +8,7 @@ import pytest
 from echopath import dataset
 from echopath.dataset.arrays import KINDS, _Kinds
 from echopath.frame_file.maps import load_maps
-from support.small_dataset import HEAD, SCENE, make, written
+from support.files.small_dataset import HEAD, SCENE, make, written
 
 
 def test_classes_of_cells_are_those_of_their_scene_in_every_thread():

@@ -11,7 +11,7 @@ import pytest
 
 from echopath import dataset
 from echopath.cli.dataset import _forecast_line
-from support.scene_text import SMALL_RADAR
+from support.files.scene_text import SMALL_RADAR
 
 pytest.importorskip("distributed")
 TEMPLATE = """

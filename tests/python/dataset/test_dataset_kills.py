@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from echopath.dataset.folder import scene_folder, write_record
-from support.small_dataset import bytes_of, make
+from support.files.small_dataset import bytes_of, make
 
 
 def command(path: Path, folder: Path, *options: str) -> subprocess.Popen:

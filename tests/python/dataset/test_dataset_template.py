@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from echopath import dataset
-from support.small_dataset import HEAD, SCENE, written
+from support.files.small_dataset import HEAD, SCENE, written
 
 
 @pytest.fixture

@@ -12,7 +12,7 @@ import pytest
 import echopath as ep
 from echopath.cli import main
 from support.background import heed_ctrl_c
-from support.scene_text import ANTENNAS, WAVEFORM
+from support.files.scene_text import ANTENNAS, WAVEFORM
 
 WAIT = 60.0  # s, for a process on a busy machine
 SCENE = """

@@ -17,7 +17,7 @@ from echopath.base.files import require_writable
 from echopath.cli import main
 from echopath.scene_file import load_scene
 from support.background import heed_ctrl_c
-from support.scene_text import ANTENNAS, WAVEFORM
+from support.files.scene_text import ANTENNAS, WAVEFORM
 
 STOP_SECONDS = 15.0  # half a second is promised; the rest is for a machine with other work
 MANY_RAYS = "50_000_000"  # more than a machine traces while the test waits

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support.gltf_files import box_file
+from support.files.gltf_files import box_file
 from support.odd_values import EXPECTED, ODD, SURROGATE, is_named, make_radar, make_scene
 
 # How many of the arguments tried must be wrong, so that the test cannot run empty.

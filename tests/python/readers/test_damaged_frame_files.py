@@ -7,7 +7,7 @@ import pytest
 
 import echopath as ep
 from echopath.frame_file import paths as frame_paths
-from support.frame_edits import edited
+from support.files.frame_edits import edited
 
 
 def refuse(path, reason):

@@ -8,7 +8,7 @@ import pytest
 
 import echopath as ep
 from fuzz.foreign_seeds import USD, archive
-from support.mesh_texts import npz, obj, off, ply, stl, stl_text, usda
+from support.files.mesh_texts import npz, obj, off, ply, stl, stl_text, usda
 
 SPHERE = ep.actors.sphere(0.5, subdivisions=4)
 VERTICES = SPHERE.vertices.astype(np.float32).astype(float)  # what every format can hold

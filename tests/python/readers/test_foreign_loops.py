@@ -6,7 +6,7 @@ import pytest
 
 import echopath as ep
 from fuzz.foreign_seeds import archive
-from support.mesh_texts import obj
+from support.files.mesh_texts import obj
 
 LATE = 12345.625  # s, far beyond anything that is stored
 ROUNDING = 1e-9   # m, of times of a day

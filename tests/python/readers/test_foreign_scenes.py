@@ -13,7 +13,7 @@ from echopath.readers.material_names import material_of, note_of_unknown
 from echopath.readers.sizes import unit_doubt
 from fuzz.foreign import SQUARE
 from fuzz.foreign_seeds import bvh_text, walk_frames
-from support.scene_text import WAVEFORM
+from support.files.scene_text import WAVEFORM
 
 ROUNDING = 1e-12
 

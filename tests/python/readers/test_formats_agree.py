@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support.gltf_files import GltfFile
-from support.mesh_texts import npz, obj, off, ply, stl, stl_text, usd_mesh, usda
+from support.files.gltf_files import GltfFile
+from support.files.mesh_texts import npz, obj, off, ply, stl, stl_text, usd_mesh, usda
 
 POINT = 1e-6  # m, of coordinates that formats keep in single precision
 POWER = 1e-6  # of the greatest one of a path

@@ -7,10 +7,10 @@ import pytest
 
 import echopath as ep
 from echopath.cli import main
-from support.frame_edits import edited
+from support.files.frame_edits import edited
+from support.files.scene_text import ANTENNAS, WAVEFORM, moving_plate
 from support.frames_in_time import make_sequence
 from support.radars import build_radar
-from support.scene_text import ANTENNAS, WAVEFORM, moving_plate
 
 SPEED = 3.0  # m/s
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support.scene_text import WAVEFORM
+from support.files.scene_text import WAVEFORM
 from support.shapes import lambert
 
 DATA = Path(__file__).resolve().parents[3] / "data" / "antennas"

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import echopath as ep
+from support.files.scene_text import WAVEFORM
 from support.radars import build_radar
-from support.scene_text import WAVEFORM
 
 pytestmark = pytest.mark.hard
 

@@ -6,10 +6,10 @@ import pytest
 
 import echopath as ep
 from echopath.signals import same_radar
-from support.placed_radar import antennas_in_world, make_radars, quaternion, turn
 from support.radars import build_radar
 from support.references import slow_lengths
 from support.shapes import lambert, quad
+from support.signals.placed_radar import antennas_in_world, make_radars, quaternion, turn
 
 ROUNDING = 1e-8          # relative: phases of 1e5 rad from coordinates that were rounded on different ways
 LENGTH_TOLERANCE = 1e-12  # m

@@ -6,7 +6,7 @@ import pytest
 
 import echopath as ep
 from echopath import _core
-from support.arrays import (
+from support.signals.arrays import (
     C, DEGREE, HALF, LINE, TARGET_RADIUS, at, mimo, scene_of_spheres, spectrum_of, three_by_four, waveform,
 )
 from support.references import slow_beams

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support.arrays import DEGREE, TARGET_RADIUS, at, mimo, scene_of_spheres, spectrum_of, three_by_four, waveform
+from support.signals.arrays import DEGREE, TARGET_RADIUS, at, mimo, scene_of_spheres, spectrum_of, three_by_four, waveform
 
 DATA = Path(__file__).resolve().parents[3] / "data"
 SAMPLED = 0.02        # relative: 2e4 independent cells of noise (0.7 %), or side lobes of a second target (1.2 %)

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support.received_tones import COUNT, LEVEL, RATE, db, one_channel, received, tone
+from support.signals.received_tones import COUNT, LEVEL, RATE, db, one_channel, received, tone
 
 
 @pytest.mark.parametrize("bits", [8, 10, 14])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support.frame_edits import edited
+from support.files.frame_edits import edited
 from support.frames_in_time import make_radar
 from support.shapes import quad
 

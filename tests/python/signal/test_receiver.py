@@ -7,7 +7,7 @@ from support.radars import build_radar
 import echopath as ep
 from echopath.receiver.oscillator import Oscillator
 from echopath.receiver.slots import SlotTimes
-from support.received_tones import COUNT, LEVEL, RATE, db, one_channel, received, tone
+from support.signals.received_tones import COUNT, LEVEL, RATE, db, one_channel, received, tone
 
 C = ep.speed_of_light
 SHARE = 0.01     # promised for amplitudes and times, relative

@@ -5,7 +5,7 @@ import pytest
 
 import echopath as ep
 from support.radars import build_radar
-from support.tones import random_cube, tone
+from support.signals.tones import random_cube, tone
 
 ROUNDING = 1e-11     # relative, of sums in another order
 

@@ -6,7 +6,7 @@ import pytest
 
 import echopath as ep
 from support.radars import build_radar
-from support.tones import random_cube, tone
+from support.signals.tones import random_cube, tone
 
 HANN_LOSS = 0.7205   # of a point half-way between two cells: 1.42 dB (Harris 1978, table 1)
 EDGE_DB = 8.0  # half the field, as at the ends of a band, and some ripple

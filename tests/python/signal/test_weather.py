@@ -10,8 +10,8 @@ import echopath as ep
 from echopath.arguments.effects import ATTENUATION, RAIN_ECHOES
 from echopath.weather import drops, echoes, fog, gas, rain
 from echopath.weather.weather import DB_PER_NEPER
+from support.files.scene_text import ANTENNAS, WAVEFORM
 from support.radars import build_radar
-from support.scene_text import ANTENNAS, WAVEFORM
 
 WET = ep.Weather(rain_mm_per_hour=20.0)
 NOISE_BANDWIDTH = 2.0044  # of the Blackman-Harris window, cells

@@ -3,7 +3,7 @@ import numpy as np
 
 import echopath as ep
 
-from ..placed_radar import turn as turned
+from ..signals.placed_radar import turn as turned
 
 CREASE_COSINE = np.cos(np.radians(30))
 

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import echopath as ep
-from support.scene_text import WAVEFORM
+from support.files.scene_text import WAVEFORM
 
 RADAR_FILE = WAVEFORM + """\
 [[radar.transmitters]]

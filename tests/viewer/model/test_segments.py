@@ -9,7 +9,7 @@ import echopath as ep
 from echopath_viewer.model import ray_segments
 from echopath_viewer.model.antennas import world_from_antenna
 from echopath_viewer.model.rays.picking import nearest_segment
-from support.placed_radar import make_radars
+from support.signals.placed_radar import make_radars
 
 ROUNDING = 1e-9
 SHADE = 0.2 * 255   # of a mesh of two from the colour of their object

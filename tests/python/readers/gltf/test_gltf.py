@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support.gltf_files import BOX, BOX_SIDES, GltfFile, box_file, loaded, tube
+from support.files.gltf_files import BOX, BOX_SIDES, GltfFile, box_file, loaded, tube
 
 TO_SCENE = [2, 0, 1]      # axes of a file, y up, that become x, y and z
 SINGLE = 1e-6             # of numbers in single precision of order 1

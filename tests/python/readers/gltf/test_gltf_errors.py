@@ -4,7 +4,7 @@ import json
 import pytest
 
 import echopath as ep
-from support.gltf_files import box_file, loaded
+from support.files.gltf_files import box_file, loaded
 
 
 def changed(place: str, value) -> dict:

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support.gltf_files import GltfFile, rig_file, tube
-from support.packed_gltf import MESHOPT, TRIANGLES, VERTICES, draco_tube, meshopt_tube, pack_by_draco, pack_view
+from support.files.gltf_files import GltfFile, rig_file, tube
+from support.files.packed_gltf import MESHOPT, TRIANGLES, VERTICES, draco_tube, meshopt_tube, pack_by_draco, pack_view
 
 DRACO = "KHR_draco_mesh_compression"
 BITS = 14

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support.frame_edits import edited
+from support.files.frame_edits import edited
 
 SAME_SHARES = 1e-9  # of doubles summed by other groups; of the strongest cell
 

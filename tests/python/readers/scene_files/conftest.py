@@ -1,7 +1,7 @@
 """What tests of scene files share."""
 import pytest
 
-from support.scene_files import QUAD, RADAR
+from support.files.scene_files import QUAD, RADAR
 
 
 @pytest.fixture

@@ -11,7 +11,7 @@ import echopath as ep
 from echopath.cli.run import simulate_file
 from echopath.scene_file import motion_tables, object_tables, radar_tables, run_tables, schema
 from echopath.scene_file.table import Table
-from support.scene_files import RADAR, fault_of, mesh_object
+from support.files.scene_files import RADAR, fault_of, mesh_object
 
 DATA = Path(__file__).resolve().parents[4] / "data"
 ROUNDING = 1e-12  # m

@@ -7,7 +7,7 @@ import re
 import pytest
 
 import echopath as ep
-from support.scene_files import RADAR, fault_of, mesh_object
+from support.files.scene_files import RADAR, fault_of, mesh_object
 
 CIRCLE = "".join(f"[[radar.receivers]]\nposition = [0.0, {0.01 * math.cos(0.7 * i)}, {1.0 + 0.01 * math.sin(0.7 * i)}]\n"
                  for i in range(9))

@@ -1,8 +1,8 @@
 """Other FMCW radars in the receivers of a radar."""
 import numpy as np
 import pytest
-from support.other_radars import C, COUNT, RATE, SLOPE, TONE, other, victim
 from support.radars import build_radar
+from support.signals.other_radars import C, COUNT, RATE, SLOPE, TONE, other, victim
 
 import echopath as ep
 

@@ -4,7 +4,7 @@ import pickle
 
 import numpy as np
 import pytest
-from support.other_radars import TONE, victim
+from support.signals.other_radars import TONE, victim
 
 import echopath as ep
 

@@ -3,7 +3,7 @@ import hashlib
 from pathlib import Path
 
 from echopath import dataset
-from support.scene_text import SMALL_RADAR
+from support.files.scene_text import SMALL_RADAR
 
 HEAD = """
 [dataset]

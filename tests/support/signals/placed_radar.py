@@ -2,8 +2,7 @@
 import numpy as np
 
 import echopath as ep
-
-from .radars import WAVEFORM
+from support.radars import WAVEFORM
 
 
 def turn(yaw, pitch):

@@ -5,7 +5,7 @@ import DracoPy
 import meshoptimizer
 import numpy as np
 
-from support.gltf_files import GltfFile, tube
+from support.files.gltf_files import GltfFile, tube
 
 DRACO, MESHOPT = "KHR_draco_mesh_compression", "EXT_meshopt_compression"
 VERTICES, TRIANGLES = tube(rings=30, around=24)

@@ -4,7 +4,7 @@ from __future__ import annotations
 import pytest
 
 import echopath as ep
-from support.scene_text import WAVEFORM
+from support.files.scene_text import WAVEFORM
 
 RADAR = WAVEFORM + """\
 [[radar.transmitters]]

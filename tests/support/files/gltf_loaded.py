@@ -2,7 +2,7 @@
 import numpy as np
 
 import echopath as ep
-from support.gltf_files import BOX, GltfFile, box_file
+from support.files.gltf_files import BOX, GltfFile, box_file
 
 TO_SCENE = [2, 0, 1]
 

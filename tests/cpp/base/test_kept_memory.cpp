@@ -3,10 +3,32 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cstdint>
+#include <cstdlib>
+#include <new>
 #include <set>
 #include <thread>
 #include <utility>
 #include <vector>
+
+namespace {
+
+// Allocations of this thread that still succeed; negative: all do.
+thread_local int64_t allocations_left = -1;
+
+}  // namespace
+
+// The allocations of the whole program, which can be made to fail. They are not inlined: the compiler would see memory of
+// new that free gives back.
+__attribute__((noinline)) void* operator new(size_t num_bytes) {
+  if (allocations_left == 0) throw std::bad_alloc();
+  if (allocations_left > 0) --allocations_left;
+  void* const memory = std::malloc(num_bytes > 0 ? num_bytes : 1);
+  if (!memory) throw std::bad_alloc();
+  return memory;
+}
+__attribute__((noinline)) void operator delete(void* memory) noexcept { std::free(memory); }
+__attribute__((noinline)) void operator delete(void* memory, size_t /*num_bytes*/) noexcept { std::free(memory); }
 
 namespace echopath::test_kept_memory {
 namespace {
@@ -21,6 +43,11 @@ struct Work {
 };
 using Rows = Work<0>;
 using Echoes = Work<1>;
+// Memory whose owner tells whether it was freed.
+struct Counted {
+  std::shared_ptr<int> owner;
+  size_t num_bytes() const { return owner ? 10 : 0; }
+};
 static_assert(noexcept(std::declval<KeptMemory&>().leave(std::unique_ptr<Rows>())), "destructors leave memory");
 
 constexpr size_t kObject = sizeof(Rows);  // bytes that one takes besides
@@ -152,6 +179,23 @@ TEST(KeptMemory, BelongsToOneThreadAtATime) {
   EXPECT_EQ(num_shared, 0);
   expect_distinct<Rows>(kept, kThreads);
   expect_distinct<Echoes>(kept, kThreads);
+}
+
+// Destructors leave memory: they must not throw where there is none for the entry that names it.
+TEST(KeptMemory, WhatItHasNoRoomToNameIsFreed) {
+  for (int64_t succeed = 0; succeed < 3; ++succeed) {  // entries of a list and of a map
+    KeptMemory kept;
+    auto of_freed = std::make_shared<int>();
+    auto counted = std::make_unique<Counted>(Counted{of_freed});
+    allocations_left = succeed;
+    kept.leave(std::move(counted));
+    allocations_left = -1;
+    const bool is_kept = of_freed.use_count() == 2;
+    EXPECT_EQ(is_kept, succeed == 2);
+    EXPECT_EQ(kept.take<Counted>()->owner != nullptr, is_kept);
+    kept.leave(work_of(10));
+    EXPECT_EQ(kept.take<Rows>()->bytes, 10u);
+  }
 }
 
 }  // namespace

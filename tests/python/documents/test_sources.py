@@ -1,4 +1,4 @@
-"""Comments of the C++ sources: files that they name exist, and no line is longer than what clang-format holds the code to."""
+"""Sources: files that comments name are there, lines are as narrow as clang-format holds them, names stand for one thing."""
 import re
 from collections import defaultdict
 from pathlib import Path
@@ -29,6 +29,34 @@ def test_comments_name_files_that_exist():
     missing = {path.relative_to(ROOT).as_posix(): found for path in SOURCES
                if (found := missing_names(path.read_text(encoding="utf-8"), paths))}
     assert not missing
+
+
+@pytest.mark.skipif(not SOURCES, reason="the sources are not there")
+def test_documents_that_comments_name_are_there():
+    kept = [path for path in (ROOT, ROOT / "data", *(ROOT / "python" / "docs").rglob("*")) if path.is_dir()]
+    documents = {path.name for folder in kept for path in folder.glob("*.md")}
+    python = [path for folder in ("python", "viewer", "tests") for path in (ROOT / folder).rglob("*.py")]
+    named = {(path.relative_to(ROOT).as_posix(), name) for path in (*SOURCES, *python) if path != Path(__file__)
+             for line in path.read_text(encoding="utf-8").splitlines() for name in re.findall(r"\b[A-Z]+\.md\b", line)}
+    assert named and not {(path, name) for path, name in named if name not in documents}
+
+
+def bound_twice(text: str) -> list[str]:
+    """Constants that a module in Python binds more than once, outside of branches."""
+    names = re.findall(r"^([A-Z][A-Z0-9_]*)(?:: [^=\n]*)? = ", text, re.M)
+    return sorted({name for name in names if names.count(name) > 1})
+
+
+def test_constants_bound_twice_are_found():
+    assert bound_twice("ROUNDING = 1e-13\nOTHER: int = 2\nROUNDING = 1e-12  # the last one counts\n") == ["ROUNDING"]
+
+
+def test_no_constant_is_bound_twice():
+    """The last value would quietly count for what stands above it, too."""
+    paths = [path for folder in ("python", "viewer", "tests") for path in (ROOT / folder).rglob("*.py")]
+    wrong = {path.relative_to(ROOT).as_posix(): names for path in paths
+             if (names := bound_twice(path.read_text(encoding="utf-8")))}
+    assert len(paths) > 500 and not wrong
 
 
 def test_comments_are_as_narrow_as_the_code():

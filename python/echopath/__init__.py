@@ -47,6 +47,7 @@ from .readers import Model, ModelNode, foreign_materials, load_model
 from .receiver import Adc, PhaseNoise, Receiver, Reception, receive, receive_parts
 from .scene.foreign import mesh_from
 from .scene.interferers import Interferer
+from .scene.large_planes import mark_mirrors
 from .scene.materials import materials
 from .scene.meshes import load_mesh, load_meshes
 from .scene.node import SceneNode
@@ -93,8 +94,8 @@ __all__ = [
     "beamform", "boltzmann", "cfar", "check_rays", "check_signal", "compensate_tdm", "decompose", "demultiplex",
     "detect", "detect_frame", "effects", "estimate_angles", "families", "first", "foreign_materials", "hits",
     "interference", "interference_radar", "last", "load_antenna", "load_frame", "load_labels", "load_mesh",
-    "load_meshes", "load_model", "load_radar", "load_scene", "load_sensor", "load_sequence", "materials", "mesh_from",
-    "mie_rcs", "music", "noise_power", "num_bounces", "num_threads", "passes", "path_cells", "plot_rays", "plots",
+    "load_meshes", "load_model", "load_radar", "load_scene", "load_sensor", "load_sequence", "mark_mirrors", "materials",
+    "mesh_from", "mie_rcs", "music", "noise_power", "num_bounces", "num_threads", "passes", "path_cells", "plot_rays", "plots",
     "power", "power_by_chirp", "range_azimuth", "range_doppler", "range_time", "rcs", "read_trajectories", "receive",
     "receive_parts",
     "received_power", "received_powers", "remove_clutter", "renew", "save_frame", "save_label_images", "save_labels",

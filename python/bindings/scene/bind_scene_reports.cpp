@@ -8,7 +8,9 @@
 
 #include "echopath/posed/enclosures.h"
 #include "echopath/posed/object_sizes.h"
+#include "echopath/posed/posed_antenna.h"
 #include "echopath/scene/coherent_meshes.h"
+#include "echopath/scene/large_planes.h"
 #include "echopath/scene/mesh_traits.h"
 #include "values/array.h"
 #include "values/shared.h"
@@ -48,6 +50,16 @@ py::tuple traits_of_meshes(const Scene& scene) {
                         flags(traits.deforming));
 }
 
+std::vector<uint32_t> large_planes(const Scene& scene, const Radar& radar, double wavelength, double time,
+                                   double least_coherent, double least_area) {
+  LargePlaneRule rule{{}, wavelength, time, least_coherent, least_area};
+  for (const auto& antennas : {radar.transmitters, radar.receivers}) {
+    for (const PosedAntenna& antenna : posed_antennas(antennas, radar.world_from_radar(time), Vec3::Zero()))
+      rule.antennas.push_back(antenna.position);
+  }
+  return meshes_of_large_planes(scene, rule);
+}
+
 std::vector<std::string> names_of_meshes(const Scene& scene, const std::vector<uint32_t>& mesh_ids) {
   std::vector<std::string> names;
   for (const uint32_t id : mesh_ids) names.push_back(scene.nodes()[static_cast<size_t>(scene.meshes().at(id).node)].name);
@@ -61,6 +73,9 @@ void bind_scene_reports(py::module_& m) {
   m.def("coherent_meshes", &coherent_meshes, py::arg("scene"), py::arg("wavelength"), py::arg("least_share"),
         py::arg("without_planes") = false,
         "IDs of the meshes that reflect this share of the power in phase at a wavelength in m, mirrors left out.");
+  m.def("meshes_of_large_planes", &large_planes, py::arg("scene"), py::arg("radar"), py::arg("wavelength"), py::arg("time"),
+        py::arg("least_coherent"), py::arg("least_area"),
+        "IDs of the meshes that planes larger than their Fresnel zone make up at a wavelength in m and a time in s.");
   m.def("look_at_bodies", &look_at_bodies, py::arg("scene"), py::arg("radar"), py::arg("time"),
         "Of the children of the root: (node [N]; sides [N, 2] in m, shortest and longest; closed [N]; those in which the "
         "first transmitter stands, or the first receiver, [(node, whether it is the receiver)]).");

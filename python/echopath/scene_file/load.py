@@ -10,6 +10,7 @@ from ..arguments.objects import named_globs
 from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
 from ..readers.load import is_foreign
 from ..scene.interferers import Interferer
+from ..scene.large_planes import mark_mirrors
 from ..sensor_files import load_radar
 from ..sensor_files.antenna_patterns import load_antenna
 from ..signals.parts import check_partitions
@@ -41,8 +42,10 @@ def scene_file_of(table: dict, path: Path) -> SceneFile:
         trajectories = Trajectories(path.parent)
         scene = build_scene(settings, path.parent, trajectories)
         scene.interferers = _build_interferers(settings, path.parent, trajectories)
-        scene_file = SceneFile(path=path, title=settings.title, scene=scene,
-                               radar=_build_radar(settings.radar, path.parent, trajectories), trace=_trace(settings),
+        radar = _build_radar(settings.radar, path.parent, trajectories)
+        if settings.mark_mirrors:
+            mark_mirrors(scene, radar, time=settings.trace.start_time)
+        scene_file = SceneFile(path=path, title=settings.title, scene=scene, radar=radar, trace=_trace(settings),
                                signal=_signal(settings), angle=settings.angle, parts=dict(settings.parts),
                                labels=_labels(settings), detections=settings.detections, guard=settings.guard,
                                sequence=settings.sequence, truth=settings.truth)

@@ -14,6 +14,7 @@ from .vantage import vantage
 
 CELLS = 256  # range cells up to the greatest distance
 TEXT = """title = {title}
+mark_mirrors = true  # what is made of planes larger than their Fresnel zone, so that ghosts over them are found
 
 [radar]  # 77 GHz, one transmitter and four receivers half a wavelength apart, in the open and looking along the longest way
 transmit_power = 0.01

@@ -1,0 +1,118 @@
+#include "echopath/scene/large_planes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/em/surface/coherent_share.h"
+#include "echopath/scene/edges/planar_patches.h"
+#include "echopath/scene/mesh/adjacency.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kFlatAbsolute = 1e-4;  // m, by which corners may stray from a plane, as of flagged mirrors (trace/mirrors)
+constexpr double kFlatRelative = 1e-6;  // of the mesh's extent
+constexpr double kZones = 2.0;          // widths of the Fresnel zone from which on a plane is large
+constexpr uint32_t kNoPatch = 0xFFFFFFFFu;
+
+// Measures the planes of one mesh.
+class PlaneMeasure {
+ public:
+  PlaneMeasure(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles, const LargePlaneRule& rule)
+      : vertices_(vertices), triangles_(triangles), rule_(rule) {}
+
+  bool is_large() const {
+    const Eigen::AlignedBox3d box = box_of_all();
+    const double extent = box.diagonal().norm();
+    if (!(extent >= least_width_at(nearest_distance(box)))) return false;  // most meshes are told by their boxes
+    const auto patches = planar_patches(vertices_, triangles_, kFlatAbsolute + kFlatRelative * extent);
+    const auto neighbours = edge_neighbours(vertices_, triangles_);
+    std::vector<uint32_t> patch_of(triangles_.size(), kNoPatch);
+    for (uint32_t patch = 0; patch < patches.size(); ++patch) {
+      for (const uint32_t triangle : patches[patch]) patch_of[triangle] = patch;
+    }
+    double whole = 0.0, large = 0.0;
+    for (const std::vector<uint32_t>& patch : patches) {
+      const double area = area_of(patch);
+      whole += area;
+      if (4.0 * area >= least_width_at(farthest_distance(patch)) * rim_of(patch, neighbours, patch_of)) large += area;
+    }
+    return whole > 0.0 && large >= rule_.least_area * whole;
+  }
+
+ private:
+  Eigen::AlignedBox3d box_of_all() const {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& vertex : vertices_) box.extend(vertex);
+    return box;
+  }
+
+  // Returns the width in m from which on a plane is large, at a distance in m from the antennas.
+  double least_width_at(double distance) const { return kZones * 2.0 * std::sqrt(rule_.wavelength * distance); }
+
+  double nearest_distance(const Eigen::AlignedBox3d& box) const {
+    double nearest = INFINITY;
+    for (const Vec3& antenna : rule_.antennas) nearest = std::min(nearest, box.exteriorDistance(antenna));
+    return nearest;
+  }
+
+  double farthest_distance(const std::vector<uint32_t>& patch) const {
+    double farthest = 0.0;
+    for (const uint32_t triangle : patch) {
+      for (const uint32_t corner : triangles_[triangle]) {
+        for (const Vec3& antenna : rule_.antennas) farthest = std::max(farthest, (vertices_[corner] - antenna).norm());
+      }
+    }
+    return farthest;
+  }
+
+  double area_of(const std::vector<uint32_t>& patch) const {
+    double twice = 0.0;
+    for (const uint32_t triangle : patch) {
+      const auto& [a, b, c] = triangles_[triangle];
+      twice += (vertices_[b] - vertices_[a]).cross(vertices_[c] - vertices_[a]).norm();
+    }
+    return 0.5 * twice;
+  }
+
+  // Returns the length in m of the edges that lead out of the patch.
+  double rim_of(const std::vector<uint32_t>& patch, const std::vector<std::array<uint32_t, 3>>& neighbours,
+                const std::vector<uint32_t>& patch_of) const {
+    double length = 0.0;
+    for (const uint32_t triangle : patch) {
+      for (size_t edge = 0; edge < 3; ++edge) {
+        const uint32_t next = neighbours[triangle][edge];
+        if (next != kNoTriangle && patch_of[next] == patch_of[triangle]) continue;
+        length += (vertices_[triangles_[triangle][(edge + 1) % 3]] - vertices_[triangles_[triangle][edge]]).norm();
+      }
+    }
+    return length;
+  }
+
+  const std::vector<Vec3>& vertices_;
+  const std::vector<Triangle>& triangles_;
+  const LargePlaneRule& rule_;
+};
+
+bool may_be_mirror(const Node& node, const LargePlaneRule& rule) {
+  const Material& material = *node.material;
+  return !material.mirror && !material.is_sheet() && !node.smooth && !node.deformation &&
+         coherent_share(material, rule.wavelength) >= rule.least_coherent;
+}
+
+}  // namespace
+
+std::vector<uint32_t> meshes_of_large_planes(const Scene& scene, const LargePlaneRule& rule) {
+  const std::vector<Transform> placed = world_from_nodes(scene, rule.time);
+  std::vector<uint32_t> found;
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
+    const Node& node = scene.node_of(id);
+    if (!may_be_mirror(node, rule)) continue;
+    std::vector<Vec3> vertices = node.mesh->vertices();
+    for (Vec3& vertex : vertices) vertex = placed[static_cast<size_t>(scene.meshes()[id].node)] * vertex;
+    if (PlaneMeasure(vertices, node.mesh->triangles(), rule).is_large()) found.push_back(id);
+  }
+  return found;
+}
+
+}  // namespace echopath

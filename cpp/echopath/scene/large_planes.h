@@ -1,0 +1,25 @@
+#pragma once
+// Finds the meshes whose planes are mirrors at a wavelength, so that nobody has to flag the walls of a city one by one.
+#include <vector>
+
+#include "echopath/scene/scene.h"
+
+namespace echopath {
+
+struct LargePlaneRule {
+  std::vector<Vec3> antennas;   // world positions in m, at `time`
+  double wavelength = 0.0;      // m
+  double time = 0.0;            // s
+  double least_coherent = 0.0;  // share of the reflected power that keeps its phase, from which on a surface is a mirror
+  double least_area = 0.0;      // share of a mesh's area that large planes must make up
+};
+
+// Returns the IDs of the meshes that large planes make up, ascending. A plane is large where it is at least twice as wide as
+// the first Fresnel zone of a wave that meets it head on at the vertex farthest from the antennas and goes on without end,
+// 2 sqrt(wavelength distance): its edges then matter next to nowhere. The width is four times the area over the length of
+// the rim, the side of a square and twice that of a long strip; holes count to the rim, so a front full of windows is as
+// wide as what is between them. Flagged mirrors, smooth meshes, sheets and what deforms are left out. A plane that several
+// meshes share is measured in each mesh by itself.
+std::vector<uint32_t> meshes_of_large_planes(const Scene& scene, const LargePlaneRule& rule);
+
+}  // namespace echopath

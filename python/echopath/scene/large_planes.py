@@ -1,0 +1,36 @@
+"""Planes that are large enough to be mirrors, found and flagged in whole scenes."""
+from __future__ import annotations
+
+from .. import _core
+from ..arguments.checks import an, checked, real
+from .scene import Scene
+
+LEAST_COHERENT = 0.1  # share of the reflected power that keeps its phase: rougher walls have next to no images
+LEAST_AREA = 0.95     # share of a mesh's area that large planes make up: the rest becomes mirrors with it
+
+
+@checked(scene=an(Scene), radar=an(_core.Radar), time=real(unit="s"))
+def mark_mirrors(scene: Scene, radar: _core.Radar, *, time: float = 0.0) -> tuple[str, ...]:
+    """Flags what is made of planes larger than their Fresnel zone as mirrors, as `Material(mirror=True)` does one by one.
+
+    Ghosts of small targets over walls and ground are then found by images, which rays alone nearly never hit. A mesh is
+    flagged where planes at least as wide as 4 sqrt(wavelength distance), twice the zone, make up 95 % of its area; the
+    distance is that of the antennas from the farthest corner of the plane, the width four times the area over the length of
+    the rim (the side of a square), windows and other holes counted to the rim. At least a tenth of what it reflects must keep
+    its phase. Smooth and deforming meshes and sheets stay as they are, and so do planes that only several meshes make up
+    together.
+    Each flagged plane costs time: paths go over up to two of them on each side of a target.
+
+    scene: is changed
+    radar: where its antennas are at `time`, and its wavelength at the start of the band
+    time: s, at which the meshes stand where they are looked at
+    Returns the names of the meshes that became mirrors, in the order of their mesh IDs. Raises TypeError or ValueError
+    naming the argument.
+    """
+    wavelength = _core.speed_of_light / radar.waveform.start_frequency
+    found = _core.meshes_of_large_planes(scene, radar, wavelength, time, LEAST_COHERENT, LEAST_AREA)
+    names = tuple(_core.mesh_names(scene, found))
+    for name in names:
+        node = scene[name]
+        node._change(material=node._node.material.replace(mirror=True))  # of its own mesh alone, not of those below it
+    return names

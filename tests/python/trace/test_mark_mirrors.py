@@ -1,0 +1,99 @@
+"""Planes that become mirrors by themselves: by the closed form of the Fresnel zone, and in whole scenes as people mark them."""
+from importlib.resources import as_file
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath.scene.materials import data_folder
+
+FREQUENCY = 77e9
+DISTANCE = 25.0                                                    # m, of a plate ahead
+ZONE = 2.0 * np.sqrt(ep.speed_of_light / FREQUENCY * DISTANCE)     # m, of what goes on without end
+SHIPPED = ("street", "corners", "ghost_corner", "parking_lot", "tunnel", "roundabout", "guard_rail", "indoor_gestures")
+
+
+def radar(**place):
+    waveform = ep.ChirpSequence(start_frequency=FREQUENCY, num_chirps=1)
+    return ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 0))], receivers=[ep.Antenna((0, 0, 0))], **place)
+
+
+def plate(side: float, distance: float = DISTANCE, *, hole: float = 0.0) -> ep.Mesh:
+    """A square that faces the radar, of eight triangles about a square hole; its corners are `distance` from the origin."""
+    ahead = np.sqrt(distance**2 - 0.5 * side**2)
+    ring = [(-1, -1), (1, -1), (1, 1), (-1, 1)]
+    vertices = [(ahead, 0.5 * size * y, 0.5 * size * z) for size in (side, hole or 1e-6) for y, z in ring]
+    return ep.Mesh(vertices, [t for k in range(4) for t in ((k, (k + 1) % 4, 4 + k), (4 + k, (k + 1) % 4, 4 + (k + 1) % 4))])
+
+
+def marked(mesh, *, material="concrete", at=None, **more):
+    scene = ep.Scene()
+    scene.add(mesh, name="plate", material=material, **more)
+    names = ep.mark_mirrors(scene, at or radar())
+    assert [name for name in scene if scene[name].material.mirror] == list(names)
+    return names
+
+
+def test_a_plate_is_a_mirror_from_twice_the_zone_on():
+    assert marked(plate(2.02 * ZONE)) == ("plate",)
+    assert marked(plate(1.98 * ZONE)) == ()
+
+
+def test_what_counts_is_the_distance_from_the_radar_where_it_stands():
+    near = radar(position=(DISTANCE - 1.0, 0.0, 0.0))
+    assert marked(plate(ZONE), at=near) == ("plate",) and marked(plate(ZONE)) == ()
+
+
+def test_a_frame_is_as_wide_as_what_is_about_its_hole():
+    """Four times the area over the length of both rims is the difference of the sides."""
+    side = 5.0 * ZONE
+    assert marked(plate(side, hole=side - 2.02 * ZONE)) == ("plate",)
+    assert marked(plate(side, hole=side - 1.98 * ZONE)) == ()
+
+
+def test_rough_smooth_thin_and_deforming_surfaces_stay():
+    side = 3.0 * ZONE
+    wavelength = ep.speed_of_light / FREQUENCY
+    height = wavelength * np.sqrt(-np.log(0.1)) / (4.0 * np.pi)  # Ament: a tenth keeps its phase
+    for factor, names in ((0.99, ("plate",)), (1.01, ())):
+        assert marked(plate(side), material=ep.Material(permittivity=5 - 0.3j, roughness_height=factor * height)) == names
+    assert marked(plate(side), smooth=True) == ()
+    assert marked(plate(side), material=ep.Material(layers=[ep.Layer(0.004, 6 - 0.1j)])) == ()
+    shape = plate(side)
+    bend = ep.VertexSequence(times=[0.0, 1.0], vertices=[shape.vertices, shape.vertices])
+    assert marked(shape, motion=bend) == ()
+
+
+def test_a_mesh_below_another_one_keeps_its_material():
+    scene = ep.Scene()
+    scene.add(plate(3.0 * ZONE), name="house", material="concrete")
+    scene.add(plate(0.1 * ZONE), name="bell", material="metal", parent="house")
+    assert ep.mark_mirrors(scene, radar()) == ("house",)
+    assert not scene["house/bell"].material.mirror and ep.mark_mirrors(scene, radar()) == ()  # once for all
+
+
+@pytest.mark.parametrize("name", SHIPPED)
+def test_in_scenes_of_this_repository_it_marks_what_people_marked(name):
+    with as_file(data_folder("scenes") / f"{name}.toml") as path:
+        file = ep.load_scene(path)
+    scene = file.scene
+    by_hand = [mesh.name for mesh in scene.meshes if mesh.material.mirror]
+    for mesh_name in by_hand:
+        scene[mesh_name].material = scene[mesh_name].material.replace(mirror=False)
+    assert list(ep.mark_mirrors(scene, file.radar)) == by_hand
+
+
+def test_a_scene_file_asks_for_it(tmp_path):
+    with as_file(data_folder("scenes") / "street.toml") as street:
+        text = street.read_text(encoding="utf-8").replace("mirror = true", "mirror = false")
+    for asked in (True, False):
+        path = tmp_path / "scene.toml"
+        path.write_text(f"mark_mirrors = {str(asked).lower()}\n{text}", encoding="utf-8")
+        assert ep.load_scene(path).scene["wall_left"].material.mirror is asked
+
+
+def test_wrong_arguments_are_named():
+    with pytest.raises(TypeError, match="radar"):
+        ep.mark_mirrors(ep.Scene(), None)
+    with pytest.raises(TypeError, match="scene"):
+        ep.mark_mirrors(None, radar())

@@ -40,7 +40,8 @@ def run(options) -> None:
     from .run_sequence import is_sequence, run_sequence
     from ..scene_file import load_scene
 
-    require_writable(options.out, "--out")
+    out = Path(options.out)
+    require_writable(out.parent if out.is_file() else out, "--out")
     if options.raw is not None:
         require_writable(Path(options.raw).parent, "--raw")
     scene_file = load_scene(options.scene)

@@ -10,18 +10,21 @@ import echopath as ep
 from .. import dataset
 from ..dataset.folder import TEMPLATE as DATASET_FILE
 from ..frame_file import left_out, load_frame
+from ..frame_file.container import SUFFIXES as FRAME_SUFFIXES
+from ..frame_file.container import is_of_kind
+from ..frame_file.opening import file_and_group
 from ..presentation.tables import edge_hits, event
 from ..readers.load import READERS, is_foreign
 from ..receiver.settings import receiver_text
 from ..scene_file import load_scene
 from ..scene_file.load import parse
-from ..sequence.contents import NAME as SEQUENCE_FILE
+from ..sequence.contents import KIND as SEQUENCE
+from ..sequence.folder import NAME as SEQUENCE_FILE
 from ..signals.measures import in_dbm, with_error
 from ..weather.weather import weather_of, weather_text
 from . import report
 from .model_info import describe_model
 
-FRAME_SUFFIXES = (".h5", ".hdf5")
 MESH_SUFFIXES = (".obj", ".ply", ".stl", ".off")
 
 
@@ -33,7 +36,7 @@ def describe_file(path, selections=()) -> list[str]:
     Raises ValueError for another kind of file and for bad selections, ep.FileError when it cannot be read.
     """
     path = Path(path)
-    suffix = path.suffix.lower()
+    suffix = file_and_group(path)[0].suffix.lower()
     selections = [ep.Selection(selection) for selection in selections]
     if selections and suffix not in FRAME_SUFFIXES:
         raise ValueError(f"{path}: must be a frame file (.h5) for --select, which asks for its paths")
@@ -43,8 +46,8 @@ def describe_file(path, selections=()) -> list[str]:
         return _describe_scene_file(load_scene(path))
     if (path / DATASET_FILE).exists():
         return _describe_dataset(dataset.open(path))
-    if path.name == SEQUENCE_FILE or (path / SEQUENCE_FILE).exists():
-        return _describe_sequence(ep.load_sequence(path if path.is_dir() else path.parent))
+    if (path / SEQUENCE_FILE).exists() or (suffix in FRAME_SUFFIXES and path.is_file() and is_of_kind(path, SEQUENCE)):
+        return _describe_sequence(ep.load_sequence(path))
     if suffix in FRAME_SUFFIXES:
         return _describe_frame(path, selections)
     if suffix in MESH_SUFFIXES:
@@ -55,7 +58,7 @@ def describe_file(path, selections=()) -> list[str]:
 
 
 def _describe_sequence(stored) -> list[str]:
-    lines = [str(stored.folder), "frames in time", report.line("frames", f"{len(stored)}, {int(stored.is_done.sum())} done"),
+    lines = [str(stored.path), "frames in time", report.line("frames", f"{len(stored)}, {int(stored.is_done.sum())} done"),
              report.line("starts", f"{stored.times[0]:.6g} to {stored.times[-1]:.6g} s, every {stored.interval:.6g} s"),
              report.line("kept", stored.keep + (", truth" if stored.settings.get("truth") is not None else ""))]
     return [*lines, *_describe_scene(stored.scene, float(stored.times[0])), *_describe_radar(stored.radar)]

@@ -45,7 +45,8 @@ def command_parser() -> argparse.ArgumentParser:
 
     run = commands.add_parser("run", help="simulate a scene file")
     run.add_argument("scene", metavar="SCENE.toml", help=f"scene file (keys: {data_folder('README.md')})")
-    run.add_argument("--out", required=True, metavar="DIR", help="folder of the results")
+    run.add_argument("--out", required=True, metavar="DIR",
+                     help="folder of the results; of frames in time also one file (.h5) of all")
     _add_trace_options(run, default_rays=None)
     _add_part_option(run)
     run.add_argument("--truth", action="store_true",

@@ -246,9 +246,9 @@ def files(written) -> list[str]:
 
 
 def omissions(left_out, path) -> str:
-    """Size of a frame file and what it leaves out."""
-    size = f"{path.stat().st_size / 2**20:,.0f} MiB"
+    """Size of a frame file, unless it is a part of one, and what it leaves out."""
+    size = f"{path.stat().st_size / 2**20:,.0f} MiB, " if path.is_file() else ""
     if left_out.num_paths == 0:
-        return line(path.name, f"{size}, all paths")
+        return line(path.name, f"{size}all paths")
     power = _power_text(in_dbm(left_out.power)).strip()
-    return line(path.name, f"{size}, without the {left_out.num_paths:,} weakest paths ({power} in sum)")
+    return line(path.name, f"{size}without the {left_out.num_paths:,} weakest paths ({power} in sum)")

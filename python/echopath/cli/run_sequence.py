@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 
 from ..base.progress import progress_bars
 from ..scene_file import SceneFile
@@ -24,7 +25,7 @@ def is_sequence(scene_file: SceneFile, options) -> bool:
 
 
 def run_sequence(scene_file: SceneFile, options, extra_parts: dict) -> Iterator[str]:
-    """Makes the frames that are missing in the folder of the options; yields a line for each.
+    """Makes the frames that are missing in the folder or file of the options; yields a line for each.
 
     extra_parts: as in `simulate_file`
     """
@@ -47,8 +48,15 @@ def run_sequence(scene_file: SceneFile, options, extra_parts: dict) -> Iterator[
     if options.raw is not None:
         yield raw_line(options.raw, save_raw(stored, options.raw))
     if keywords["truth"] is not None:
-        stored.truth.to_csv(stored.folder / TRUTH_NAME)
-        yield f"wrote {stored.folder / TRUTH_NAME}"
+        yield f"wrote {_write_truth(stored)}"
+
+
+def _write_truth(stored) -> Path:
+    """Writes the table into the folder, or beside the file of all frames."""
+    is_folder = stored.path.is_dir()
+    path = stored.path / TRUTH_NAME if is_folder else stored.path.with_name(f"{stored.path.stem}_{TRUTH_NAME}")
+    stored.truth.to_csv(path)
+    return path
 
 
 def _chosen(scene_file: SceneFile, options, name: str):

@@ -15,7 +15,7 @@ from .. import _core
 from ..arguments.checks import array, checked, count, flag, optional, refused, text
 from ..arguments.checks import path as file_or_folder
 from ..base.files import require_writable
-from ..sequence.contents import NAME as CONTENTS
+from ..sequence.folder import NAME as CONTENTS
 from ..sequence.saving import Shard, shard_rule
 from .address import Address, is_address
 from .cluster import in_dask

@@ -11,8 +11,8 @@ from pathlib import Path
 
 from .. import _core
 from ..base.files import write_texts
-from ..sequence.contents import NAME as CONTENTS
-from ..sequence.contents import frame_path
+from ..sequence.folder import NAME as CONTENTS
+from ..sequence.folder import frame_path
 from .folder import DRAWN, RECORD, SceneRecord, checksum, damaged_files, read_record, scene_folder, write_record
 from .template import Template
 

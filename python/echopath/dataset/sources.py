@@ -9,7 +9,7 @@ from typing import Protocol
 from ..frame.frame import Frame
 from ..frame.maps import FrameMaps
 from ..sequence import Sequence
-from ..sequence.contents import frame_path
+from ..sequence.folder import frame_path
 from ..sequence.keep import Keep, read_frame, write_frame
 from .folder import scene_folder
 from .template import Template

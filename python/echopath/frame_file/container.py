@@ -5,9 +5,11 @@ from contextlib import contextmanager
 
 from .. import _core
 from ..base.files import written_whole
-from .h5 import read_attribute, reading, write_attribute, writing
+from .h5 import read_attribute, write_attribute, writing
+from .opening import reading
 
 SCHEMA_VERSION = 4  # grows when a reader of the old layout would misread the new one
+SUFFIXES = (".h5", ".hdf5")
 OLD_LAYOUT = "; files before version 4 have no check sums on texts, settings and small arrays: simulate again"
 
 
@@ -42,11 +44,20 @@ def our_file(path, kind: str = "frame"):
         yield file
 
 
+def is_of_kind(path, kind: str) -> bool:
+    """Whether a file is one of ours of a kind."""
+    try:
+        with our_file(path, kind):
+            return True
+    except _core.FileError:
+        return False
+
+
 @contextmanager
 def file_with_paths(path):
     """A frame file open for reading that holds the paths of its frame, as small files of a sequence do not."""
     with our_file(path) as file:
         if "record" not in file and not file.keys().isdisjoint(("maps", "labels")):
             raise _core.FileError("holds no paths, only maps or labels of a frame: ep.load_labels reads its labels, "
-                                  "ep.load_sequence a folder of such files")
+                                  "ep.load_sequence all frames of its run")
         yield file

@@ -10,12 +10,11 @@ import math
 import os
 import zlib
 from contextlib import contextmanager
-from pathlib import Path
 
 import numpy as np
 
 from .. import _core
-from ..base.interrupts import heed, interrupts_are_kept
+from ..base.interrupts import heed
 from .h5_items import is_chunked, item_of, library, memory_type, name_of, read_blocks, row_blocks, shape_of
 
 CHUNK_BYTES = 1 << 20   # of compression
@@ -29,7 +28,7 @@ LAYOUT = ("v110", "v110")  # the first whose headers all have check sums
 _LETTERS = {int: "iu", float: "fiu", bool: "b", complex: "c", str: "S"}
 # What reading a damaged file may raise, in this program, in h5py and in the core. A fault of this program looks the same: the
 # error stays behind the FileError as its cause.
-_FAULTS = (OSError, ValueError, TypeError, KeyError, IndexError, AttributeError, ArithmeticError, RuntimeError, MemoryError)
+FAULTS = (OSError, ValueError, TypeError, KeyError, IndexError, AttributeError, ArithmeticError, RuntimeError, MemoryError)
 
 
 @contextmanager
@@ -144,8 +143,8 @@ class blaming:
         pass
 
     def __exit__(self, kind, error, traceback) -> None:
-        if isinstance(error, _FAULTS) and not isinstance(error, _core.FileError):
-            raise _core.FileError(f"{name_of(self._item)}: {_first_line(error)}") from error
+        if isinstance(error, FAULTS) and not isinstance(error, _core.FileError):
+            raise _core.FileError(f"{name_of(self._item)}: {first_line(error)}") from error
 
 
 def blames_group(function):
@@ -274,23 +273,14 @@ def _checked_item(group, name: str, kind: str, identifier):
     return item
 
 
-@contextmanager
-def reading(path):
-    """Opens an HDF5 file; whatever is wrong with it becomes an ep.FileError that names the file and the reason."""
-    h5py = library()
-    try:
-        with interrupts_are_kept(), h5py.File(path, "r") as file:
-            yield file
-    except _core.FileError as error:
-        raise _core.FileError(f"{path}: {error}") from error
-    except FileNotFoundError:
-        raise _core.FileError(f"{path}: no such file") from None
-    except _FAULTS as error:
-        if Path(path).suffix.lower() == ".toml":
-            raise _core.FileError(f"{path}: a scene file, where a frame file (.h5) is asked for; `echopath run {path} --out "
-                                  "DIR` makes DIR/frame.h5 of it") from None
-        raise _core.FileError(f"{path}: damaged or not an HDF5 file ({_first_line(error)})") from error
+def copy_items(source, target, but: str = "") -> None:
+    """Copies all items and attributes of a group into another one; but: name of an item that is left out."""
+    for name in source:
+        if name != but:
+            source.copy(source[name], target, name)
+    for key, value in source.attrs.items():
+        target.attrs.create(key, value, dtype=source.attrs.get_id(key).dtype)
 
 
-def _first_line(error) -> str:
+def first_line(error) -> str:
     return (str(error).splitlines() or [type(error).__name__])[0]

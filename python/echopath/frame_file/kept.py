@@ -15,7 +15,8 @@ import numpy as np
 from .. import _core
 from ..base.files import file_state, flush, written_whole
 from .container import our_file
-from .h5 import read_array, read_attribute, read_group, reading, reserve, write_array, write_attribute, writing
+from .h5 import copy_items, read_array, read_attribute, read_group, reserve, write_array, write_attribute, writing
+from .opening import reading
 
 CORE = _core.__file__, file_state(_core.__file__)  # while this program was loaded: it may be built anew meanwhile
 SOURCES = ("scene", "radar", "record")  # what all arrays are made of; of the map its axes and settings
@@ -36,7 +37,7 @@ def kept_arrays(path, state: tuple, name: str, version: int, dtypes: dict) -> di
             if read_attribute(group, "key", str) != _key(file, version):
                 return None
             arrays = {array: _read(group, array, dtype) for array, dtype in dtypes.items()}
-            return arrays if file_state(file.id.get_vfd_handle()) == state else None
+            return arrays if file_state(file.file.id.get_vfd_handle()) == state else None
     except _core.FileError:
         return None
 
@@ -67,11 +68,7 @@ def keep_arrays(path, state: tuple, name: str, version: int, arrays: dict) -> tu
 def _copy_with(path, temporary, name: str, version: int, arrays: dict) -> None:
     with reading(path) as source, writing(temporary) as target:
         reserve(target, path.stat().st_size)
-        for item in source:
-            if item != name:
-                source.copy(source[item], target, item)
-        for key, value in source.attrs.items():
-            target.attrs.create(key, value, dtype=source.attrs.get_id(key).dtype)
+        copy_items(source, target, but=name)
         group = target.create_group(name)
         write_attribute(group, "key", _key(source, version))
         for array, values in arrays.items():

@@ -26,9 +26,9 @@ _INDICES = {"dominant": "dominant", "object": "object_map", "ghost": "ghost_map"
 def dataset_of(stored):
     """A StoredSequence as a Dataset; see StoredSequence.to_xarray."""
     xarray = xarray_module()
-    files = [(time, path) for time, path in zip(stored.times, stored.paths_of_files) if path.exists()]
+    files = [(time, path) for time, path, is_done in zip(stored.times, stored.paths_of_files, stored.is_done) if is_done]
     if not files:
-        raise ValueError(f"{stored.folder}: must have frames, has none that is done")
+        raise ValueError(f"{stored.path}: must have frames, has none that is done")
     names: dict[str, list[str]] = {}
     frames = [_variables(path, names) for _, path in files]
     coords = {name: axis(name, values) for name, values in frames[0][1].items()}
@@ -41,17 +41,17 @@ def dataset_of(stored):
         truth, places = _truth_of([path for _, path in files], range(len(files)))
         variables |= truth_variables(truth, places, len(files), prefix="truth_")
         coords |= coordinates(truth, prefix="truth_")
-    return xarray.Dataset(variables, coords=coords, attrs={"folder": str(stored.folder), "keep": stored.keep})
+    return xarray.Dataset(variables, coords=coords, attrs={"path": str(stored.path), "keep": stored.keep})
 
 
 def truth_of_files(stored) -> Truth:
     """The Truth of the frames of a StoredSequence that are there; see StoredSequence.truth."""
-    files = [(place, path) for place, path in enumerate(stored.paths_of_files) if path.exists()]
+    files = [(place, stored.paths_of_files[place]) for place in np.flatnonzero(stored.is_done).tolist()]
     if stored.settings.get("truth") is None:
-        raise ValueError(f"{stored.folder}: must be of a run with truth=True, keeps no truth; ep.truth finds that of frames with "
+        raise ValueError(f"{stored.path}: must be of a run with truth=True, keeps no truth; ep.truth finds that of frames with "
                          "their paths")
     if not files:
-        raise ValueError(f"{stored.folder}: must have frames, has none that is done")
+        raise ValueError(f"{stored.path}: must have frames, has none that is done")
     places, paths = zip(*files)
     return _truth_of(paths, places)[0]
 

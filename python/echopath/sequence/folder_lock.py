@@ -14,16 +14,17 @@ PATIENCE, PAUSE = 5.0, 0.02  # s that a shard waits for others to begin, and bet
 
 
 @contextmanager
-def writing_to(folder: Path, is_shared: bool, prepare: Callable[[bool], None]) -> Iterator[None]:
+def writing_to(folder: Path, is_shared: bool, prepare: Callable[[bool], None], of: Path | None = None) -> Iterator[None]:
     """Keeps other processes from writing to a folder during the block: all, or where it is shared those that do not share.
 
     The system ends that when this process ends, however it does.
     prepare: called with whether this process is alone in the folder; processes that share one begin one after the other
-    Raises ValueError naming the folder where another process does not let this one in.
+    of: what the folder is there for, which an error tells of; None: itself
+    Raises ValueError naming the path where another process does not let this one in.
     """
     handle = os.open(folder, os.O_RDONLY)
     try:
-        is_alone = _enter(handle, folder, is_shared)
+        is_alone = _enter(handle, of or folder, is_shared)
         prepare(is_alone)
         if is_shared and is_alone:
             fcntl.flock(handle, fcntl.LOCK_SH)
@@ -32,7 +33,7 @@ def writing_to(folder: Path, is_shared: bool, prepare: Callable[[bool], None]) -
         os.close(handle)
 
 
-def _enter(handle: int, folder: Path, is_shared: bool) -> bool:
+def _enter(handle: int, told: Path, is_shared: bool) -> bool:
     """Takes the lock, and returns whether nobody else has it."""
     last_try = time.monotonic() + PATIENCE
     while True:
@@ -41,7 +42,7 @@ def _enter(handle: int, folder: Path, is_shared: bool) -> bool:
         if is_shared and _takes(handle, fcntl.LOCK_SH):
             return False
         if not is_shared or time.monotonic() > last_try:
-            raise refused(ValueError, "folder", "one that no other run is writing to, or all by shards", str(folder))
+            raise refused(ValueError, "path", "one that no other run is writing to, or all by shards", str(told))
         time.sleep(PAUSE)  # another shard is beginning
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from .. import _core
 from ..arguments.checks import LARGEST_COUNT, MapWindow, Progress, anything, checked, count, flag, one_of, real, refused
-from ..arguments.checks import path as folder_rule
+from ..arguments.checks import path as path_rule
 from ..arguments.effects import Choices
 from ..arguments.settings import (
     Edges, Evaluate, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings,
@@ -28,7 +28,9 @@ from ..tracing.traces import keep_geometry
 from ..weather.weather import weather_of
 from .ahead import one_ahead
 from .contents import Contents
+from .folder import NAME
 from .keep import Keep
+from .one_file import store_of
 from .record import record_of, start_time_of
 from .row import Row
 from .saving import SavedFrame, Shard, places_of, saved_frames, shard_rule
@@ -135,35 +137,38 @@ class Sequence(Row[Frame]):
         return run.recorded(lambda: record_of(run.scene, run.radar, run.trace, interval=self._interval, number=number,
                                               progress=progress))
 
-    @checked(self=anything, folder=folder_rule, keep=one_of(Keep), shard=shard_rule)
-    def save(self, folder: str | os.PathLike[str], *, keep: Keep = "all", shard: Shard | None = None,
+    @checked(self=anything, path=path_rule, keep=one_of(Keep), shard=shard_rule)
+    def save(self, path: str | os.PathLike[str], *, keep: Keep = "all", shard: Shard | None = None,
              progress: Progress = None) -> StoredSequence:
-        """Simulates all frames and writes each to a file of a folder, frame_0000.h5 and so on; sequence.h5 says of what.
+        """Simulates all frames and writes each to a file of a folder, or all to one file.
 
-        Each file is written whole or not at all. Where the run was ended (Ctrl-C, kill, a power cut), the same call goes on:
+        Each frame is written whole or not at all. Where the run was ended (Ctrl-C, kill, a power cut), the same call goes on:
         frames that are there and whole are not simulated again, and all have the same bits as without the break. So a
-        folder grows, too, with a sequence of more frames. Processes that write to one folder take shards of it.
-        folder: new, or of this sequence; keep: "all": frame files as of `save_frame`; "maps": range-Doppler map, labels and
+        folder or file grows, too, with a sequence of more frames. Processes that write to one folder take shards of it.
+        path: new, or of this sequence. One that ends in .h5 or .hdf5 is one HDF5 file of all frames, unless a folder has that
+            name; any other is a folder, with frame_0000.h5 and so on, and sequence.h5, which says of what
+        keep: "all": frame files as of `save_frame`; "maps": range-Doppler map, labels and
             detections; "labels": labels and detections alone; see FrameMaps; each with its truth where the frames have it
-        shard: (k, n), whole numbers 0 to n - 1 and 1 or more: of n processes, this one makes frames k, k + n, k + 2 n and so on;
-            None: all
+        shard: (k, n), whole numbers, k from 1 to n: the k-th of n processes makes the frames at places k - 1, k - 1 + n,
+            k - 1 + 2 n and so on; None: all; not for one file
         progress: callable (stage, fraction of the frames), True for bars with the time left in s, or None
-        Returns the StoredSequence of `load_sequence`. Raises ValueError naming the folder where it holds another sequence, and
-        naming `keep` where the sequence has no labels to be kept; ep.FileError when files cannot be written.
+        Returns the StoredSequence of `load_sequence`. Raises ValueError naming the path where it holds another sequence or
+        another process writes to it, and naming `keep` where the sequence has no labels to be kept; ep.FileError when files cannot
+        be written.
         """
         bars = automatic_bars() if progress is True else progress
         count = len(places_of(shard, len(self)))
-        for done, _ in enumerate(self.save_frames(folder, keep=keep, shard=shard), 1):
+        for done, _ in enumerate(self.save_frames(path, keep=keep, shard=shard), 1):
             if callable(bars):
                 bars("frames", done / count)
-        return StoredSequence(Path(folder))
+        return StoredSequence(Path(path))
 
-    @checked(self=anything, folder=folder_rule, keep=one_of(Keep), shard=shard_rule)
-    def save_frames(self, folder: str | os.PathLike[str], *, keep: Keep = "all", shard: Shard | None = None,
+    @checked(self=anything, path=path_rule, keep=one_of(Keep), shard=shard_rule)
+    def save_frames(self, path: str | os.PathLike[str], *, keep: Keep = "all", shard: Shard | None = None,
                     progress: Progress = None) -> Iterator[SavedFrame]:
-        """`save` frame by frame: yields a SavedFrame as soon as its file is there; what stops taking them stops the work.
+        """`save` frame by frame: yields a SavedFrame as soon as it is there; what stops taking them stops the work.
 
-        folder, keep, shard (pair of whole numbers): as in `save`
+        path, keep, shard (pair of whole numbers): as in `save`
         progress: of the stages of each frame, callable (stage, fraction), True for bars, or None
         Raises what `save` raises, with the first frame.
         """
@@ -171,8 +176,10 @@ class Sequence(Row[Frame]):
             raise refused(ValueError, "keep", "'all' or 'maps' for a sequence without labels", keep)
         if len(self) == 0:
             raise refused(ValueError, "frames", "at least 1 to be saved", 0)
+        if Path(path).name == NAME:
+            raise refused(ValueError, "path", f"a folder or a file of another name than {NAME}, which a folder has", str(path))
         contents = Contents(self._run.scene, self._run.radar, self._settings() | {"keep": keep})
-        return saved_frames(self.times, folder, keep, lambda places: self._items(places, progress), contents, shard)
+        return saved_frames(self.times, store_of(path), keep, lambda places: self._items(places, progress), contents, shard)
 
     def _settings(self) -> dict[str, Any]:
         """{keyword: value} of what makes the frames, and which of them are taken."""

@@ -1,4 +1,4 @@
-"""Frames in time, read from a folder when they are asked for."""
+"""Frames in time, read from a folder or a file when they are asked for."""
 from __future__ import annotations
 
 import os
@@ -10,15 +10,15 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..arguments.checks import checked
-from ..arguments.checks import path as folder_rule
+from ..arguments.checks import path as path_rule
 from ..frame.frame import Frame
 from ..frame.maps import FrameMaps
 from ..scene.scene import Scene
 from ..truth import Truth
 from ..weather import Weather
 from .arrays import dataset_of, truth_of_files
-from .contents import NAME, frame_path, read_contents
 from .keep import Keep, read_frame
+from .one_file import store_of
 from .row import Row
 
 if TYPE_CHECKING:
@@ -26,18 +26,19 @@ if TYPE_CHECKING:
 
 
 class StoredSequence(Row[Frame | FrameMaps]):
-    """The frames of a folder of `Sequence.save`, read when they are asked for and kept by nobody; made by `load_sequence`.
+    """The frames of a folder or a file of `Sequence.save`, read when they are asked for and kept by nobody; made by `load_sequence`.
 
     `for frame in stored`, `stored[k]`, `len(stored)`; a slice is a StoredSequence. A frame is a Frame where the files keep all,
     else FrameMaps. One that has not been simulated yet raises ep.FileError.
-    folder: Path; keep: "all", "maps" or "labels", what the files keep; scene, radar: what was simulated
+    path: Path of the folder or the file; keep: "all", "maps" or "labels", what the files keep; scene, radar: what was simulated
     settings: {keyword: value} of `Sequence`, with those that it was not given
     times: starts of the frames, [K] in s; interval: s, from start to start
     """
 
-    def __init__(self, folder: Path):
-        self.folder = Path(folder_rule("folder", folder))
-        contents = read_contents(self.folder)
+    def __init__(self, path: Path):
+        self._store = store_of(path_rule("path", path))
+        self.path = self._store.path
+        contents = self._store.contents()
         self.radar, self.settings = contents.radar, contents.settings
         self._scene = contents.scene
         self._take(self.settings)
@@ -52,7 +53,7 @@ class StoredSequence(Row[Frame | FrameMaps]):
             if self.keep not in get_args(Keep):
                 raise ValueError(f"keep {self.keep!r}")
         except (KeyError, TypeError, ValueError) as error:
-            raise _core.FileError(f"{self.folder / NAME}: damaged settings ({error})") from None
+            raise _core.FileError(f"{self.path}: damaged settings ({error})") from None
         self._numbers = range(len(self._of_place))
 
     def _time_of(self, number: int) -> float:
@@ -71,18 +72,22 @@ class StoredSequence(Row[Frame | FrameMaps]):
 
     @property
     def paths_of_files(self) -> list[Path]:
-        """The files of the frames, [K], whether they are there or not."""
-        return [frame_path(self.folder, number) for number in self._numbers]
+        """The files of the frames, [K], whether they are there or not.
+
+        In one file of all they are its groups, `drive.h5/frames/000012`, which functions that read frame files take, too.
+        """
+        return [self._store.frame_path(number) for number in self._numbers]
 
     @property
     def is_done(self) -> NDArray[np.bool_]:
-        """Whether the file of each frame is there, [K]."""
-        return np.array([path.exists() for path in self.paths_of_files], bool)
+        """Whether each frame is there, [K]."""
+        return np.array(self._store.are_there(self._numbers), bool)
 
     def _item(self, place: int) -> Frame | FrameMaps:
-        path = frame_path(self.folder, self._numbers[place])
-        if not path.exists():
-            raise _core.FileError(f"{path}: has not been simulated yet; the run that made {self.folder} goes on when it is "
+        number = self._numbers[place]
+        path = self._store.frame_path(number)
+        if not self._store.are_there([number])[0]:
+            raise _core.FileError(f"{path}: has not been simulated yet; the run that made {self.path} goes on when it is "
                                   "called again")
         return read_frame(path, self.keep)
 
@@ -108,20 +113,21 @@ class StoredSequence(Row[Frame | FrameMaps]):
         return dataset_of(self)
 
     def __repr__(self) -> str:
-        return (f"StoredSequence('{self.folder}', {len(self)} frames {self._span()}, {int(self.is_done.sum())} done, "
+        return (f"StoredSequence('{self.path}', {len(self)} frames {self._span()}, {int(self.is_done.sum())} done, "
                 f"keep='{self.keep}')")
 
     def _repr_html_(self) -> str:
         from ..presentation.notebook import sequence_html
 
-        facts = {"folder": self.folder, "kept": self.keep, "done": int(self.is_done.sum())}
+        facts = {"path": self.path, "kept": self.keep, "done": int(self.is_done.sum())}
         return sequence_html(self, "StoredSequence", facts)
 
 
-@checked(folder=folder_rule)
-def load_sequence(folder: str | os.PathLike[str]) -> StoredSequence:
-    """The frames that `Sequence.save` or `echopath run --frames` wrote to a folder, or has written so far.
+@checked(path=path_rule)
+def load_sequence(path: str | os.PathLike[str]) -> StoredSequence:
+    """The frames that `Sequence.save` or `echopath run --frames` wrote to a folder or a file, or has written so far.
 
-    Returns a StoredSequence. Raises ep.FileError where the folder has no sequence.h5, or a damaged one.
+    path: of the folder, or of the file (.h5) of all frames
+    Returns a StoredSequence. Raises ep.FileError where the folder has no sequence.h5, the file is no sequence, or is damaged.
     """
-    return StoredSequence(Path(folder))
+    return StoredSequence(Path(path))

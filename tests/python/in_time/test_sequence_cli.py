@@ -96,7 +96,7 @@ def test_another_scene_is_refused_by_the_folder(scene_path, tmp_path, capsys):
     assert run(scene_path, out, "--frames", 1, "--interval", 0.1) == 0
     scene_path.write_text(SCENE.replace("speed = 2.0", "speed = 3.0"))
     assert run(scene_path, out, "--frames", 1, "--interval", 0.1) == 2
-    assert capsys.readouterr().err.startswith("echopath: folder: must be new, or of this sequence (scene/motions/0")
+    assert capsys.readouterr().err.startswith("echopath: path: must be new, or of this sequence (scene/motions/0")
 
 
 def test_ctrl_c_leaves_a_folder_that_goes_on(scene_path, tmp_path):
@@ -144,6 +144,18 @@ def test_info_tells_of_a_folder_and_small_files_say_what_they_lack(scene_path, t
     for command in ("info", "view"):
         assert main([command, str(out / "frame_0001.h5")]) == 2
         assert "frame_0001.h5: holds no paths, only maps or labels of a frame" in capsys.readouterr().err
+
+
+def test_one_file_of_all_frames_is_written_goes_on_and_is_told_of(scene_path, tmp_path, capsys):
+    out = tmp_path / "drive.h5"
+    for frames in (1, 2):
+        assert run(scene_path, out, "--frames", frames, "--interval", 0.1, "--keep", "maps", "--truth") == 0
+    assert out.is_file() and (tmp_path / "drive_truth.csv").read_text().count("\n") == 3
+    capsys.readouterr()
+    assert main(["info", str(out)]) == 0
+    assert "frames 2, 2 done" in " ".join(capsys.readouterr().out.split())
+    assert main(["info", str(out / "frames" / "000001")]) == 2
+    assert "000001: holds no paths, only maps" in capsys.readouterr().err
 
 
 def test_a_shard_of_the_frames_says_which_it_made(scene_path, tmp_path, capsys):

@@ -109,7 +109,7 @@ OTHERS = {"interval is 0.1 there and 0.2 here": {"interval": 0.2}, "seed is 1 th
 @pytest.mark.parametrize("told, keywords", OTHERS.items())
 def test_a_folder_of_another_sequence_is_refused_by_name(unbroken, told, keywords):
     before = contents_of(unbroken["all"])
-    with pytest.raises(ValueError, match=f"^folder: must be new, or of this sequence .{told}"):
+    with pytest.raises(ValueError, match=f"^path: must be new, or of this sequence .{told}"):
         make_sequence(**keywords).save(unbroken["all"])
     assert contents_of(unbroken["all"]) == before
 
@@ -117,17 +117,17 @@ def test_a_folder_of_another_sequence_is_refused_by_name(unbroken, told, keyword
 def test_another_scene_or_radar_is_refused_by_name(unbroken):
     settings = {"frames": 4, "interval": INTERVAL, "num_rays": 500, "guard": False, "labels": True, "detections": True,
                 "parts": {"plate": "T 'plate' R"}}
-    with pytest.raises(ValueError, match="^folder: .*scene/motions/0.* differs"):
+    with pytest.raises(ValueError, match="^path: .*scene/motions/0.* differs"):
         ep.Sequence(make_scene(speed=2.0), make_radar(), **settings).save(unbroken["all"])
-    with pytest.raises(ValueError, match="^folder: .*radar transmit_power differs"):
+    with pytest.raises(ValueError, match="^path: .*radar transmit_power differs"):
         ep.Sequence(make_scene(), make_radar(transmit_power=0.5), **settings).save(unbroken["all"])
-    with pytest.raises(ValueError, match="^folder: .*keep is 'all' there and 'maps' here"):
+    with pytest.raises(ValueError, match="^path: .*keep is 'all' there and 'maps' here"):
         make_sequence().save(unbroken["all"], keep="maps")
 
 
 def test_frames_of_nothing_are_not_taken_over(tmp_path):
     (tmp_path / "frame_0000.h5").write_bytes(b"a user's own")
-    with pytest.raises(ValueError, match="^folder: .*frame_0000.h5 and no sequence.h5"):
+    with pytest.raises(ValueError, match="^path: .*frame_0000.h5 and no sequence.h5"):
         make_sequence().save(tmp_path)
     assert (tmp_path / "frame_0000.h5").read_bytes() == b"a user's own"
 
@@ -135,7 +135,7 @@ def test_frames_of_nothing_are_not_taken_over(tmp_path):
 def test_two_runs_into_one_folder_are_refused(tmp_path):
     first = make_sequence().save_frames(tmp_path)
     next(first)
-    with pytest.raises(ValueError, match="^folder: must be one that no other run is writing to"):
+    with pytest.raises(ValueError, match="^path: must be one that no other run is writing to"):
         make_sequence().save(tmp_path)
     first.close()
     make_sequence().save(tmp_path)
@@ -152,7 +152,7 @@ def test_wrong_arguments_are_named(tmp_path):
     with pytest.raises(ep.FileError, match="sequence.h5: no such file"):
         ep.load_sequence(tmp_path)
     (tmp_path / "file").write_text("")
-    with pytest.raises(ep.FileError, match="^folder: "):
+    with pytest.raises(ep.FileError, match="^path: "):
         make_sequence().save(tmp_path / "file")
 
 
@@ -193,9 +193,9 @@ def test_shards_do_not_wait_for_each_other_and_refuse_who_wants_the_folder_alone
     leftover.write_bytes(b"of the first, which is writing it")
     assert make_sequence().save(tmp_path, shard=(2, 2)).is_done.tolist() == [True, True, False, True]
     assert leftover.exists()
-    with pytest.raises(ValueError, match="^folder: must be one that no other run is writing to, or all by shards"):
+    with pytest.raises(ValueError, match="^path: must be one that no other run is writing to, or all by shards"):
         make_sequence().save(tmp_path)
-    with pytest.raises(ValueError, match="^folder: must be new, or of this sequence"):
+    with pytest.raises(ValueError, match="^path: must be new, or of this sequence"):
         make_sequence(seed=9).save(tmp_path, shard=(2, 2))
     first.close()
     make_sequence().save(tmp_path)
@@ -206,7 +206,7 @@ def test_a_shard_does_not_enter_where_one_run_wants_to_be_alone(tmp_path, monkey
     monkeypatch.setattr(folder_lock, "PATIENCE", 0.1)
     first = make_sequence().save_frames(tmp_path)
     next(first)
-    with pytest.raises(ValueError, match="^folder: must be one that no other run is writing to"):
+    with pytest.raises(ValueError, match="^path: must be one that no other run is writing to"):
         make_sequence().save(tmp_path, shard=(2, 2))
 
 

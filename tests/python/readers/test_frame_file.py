@@ -7,7 +7,7 @@ import pytest
 
 import echopath as ep
 from echopath import frame_file
-from echopath.frame_file import h5, paths as frame_paths
+from echopath.frame_file import h5, opening, paths as frame_paths
 from echopath.paths import subset as path_subset
 from echopath.paths.subset import power_of_strongest, strongest, subset
 from support.radars import build_radar
@@ -186,7 +186,7 @@ def test_long_settings_come_back(tmp_path):
     text = "x" * 100_000
     with h5.writing(tmp_path / "long.h5") as file:
         h5.write_attribute(file, "settings", text)
-    with h5.reading(tmp_path / "long.h5") as file:
+    with opening.reading(tmp_path / "long.h5") as file:
         assert h5.read_attribute(file, "settings", str) == text
 
 

@@ -112,7 +112,7 @@ def test_a_folder_has_the_truth_of_each_of_its_frames(tmp_path, keep):
     assert stored[1:].truth.frame.tolist() == [0, 1] and stored[2].kept_truth.frame.tolist() == [0]
     (tmp_path / "frames" / "frame_0001.h5").unlink()
     assert stored.truth.frame.tolist() == [0, 2]
-    with pytest.raises(ValueError, match="folder: must be new, or of this sequence .truth is"):
+    with pytest.raises(ValueError, match="path: must be new, or of this sequence .truth is"):
         make_sequence(frames=3).save(tmp_path / "frames", keep=keep)
 
 

@@ -82,7 +82,7 @@ def test_large_files_are_previewed(made, tmp_path, monkeypatch):
 def test_frames_of_maps_alone_are_shown(frame, multiplexing, tmp_path):
     run = ep.Sequence(frame.scene, radar_of(frame, multiplexing), frames=2, interval=0.1, num_rays=300, max_bounces=1)
     stored = run.save(tmp_path / "maps", keep="maps")
-    shown = time_line_of(stored.folder).read(1)
+    shown = time_line_of(stored.path).read(1)
     power = np.abs(shown.parts.whole.spectrum.values[TX, RX]) ** 2
     assert power == pytest.approx(stored[1].power, rel=1e-5, abs=0)
     assert shown.cube.shape == (2, 2, 30, 128)

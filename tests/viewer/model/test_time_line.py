@@ -29,7 +29,7 @@ def maps_of_run(moving_sequence, tmp_path_factory):
                                   lambda folder: f"{folder}/frame_*.h5",
                                   lambda folder: sorted(folder.glob("frame_*.h5"), reverse=True)])
 def test_folders_patterns_and_lists_are_lines_in_the_order_of_time(stored_run, what):
-    line = time_line_of(what(stored_run.folder))
+    line = time_line_of(what(stored_run.path))
     assert [moment.start_time for moment in line.moments] == list(stored_run.times)
     assert [moment.path for moment in line.moments] == stored_run.paths_of_files
     second = line.read(1)
@@ -38,6 +38,16 @@ def test_folders_patterns_and_lists_are_lines_in_the_order_of_time(stored_run, w
 
 def test_one_file_is_no_line(stored_run):
     assert time_line_of(stored_run.paths_of_files[0]) is None
+
+
+def test_one_file_of_all_frames_is_a_line(moving_sequence, stored_run, tmp_path):
+    moving_sequence[:2].save(tmp_path / "drive.h5")
+    line = time_line_of(tmp_path / "drive.h5")
+    assert [moment.name for moment in line.moments] == ["frame 0", "frame 1"] and line.expected == 2
+    assert line.read(1).paths.num_paths == stored_run[1].paths.num_paths
+    assert glance_at(line.moments[1]).by_range == pytest.approx(glance_at(time_line_of(stored_run.path).moments[1]).by_range)
+    session = Session(time_line_of(ep.load_sequence(tmp_path / "drive.h5")).read(0))
+    assert session.parts.whole.spectrum.values.tobytes() == stored_run[0].spectrum.values.tobytes()
 
 
 def test_folders_of_nothing_say_so(tmp_path):
@@ -49,7 +59,7 @@ def test_folders_of_nothing_say_so(tmp_path):
 
 def test_frames_appear_when_they_are_written(stored_run, tmp_path):
     for name in ("sequence.h5", "frame_0000.h5"):
-        shutil.copy(stored_run.folder / name, tmp_path / name)
+        shutil.copy(stored_run.path / name, tmp_path / name)
     line = time_line_of(tmp_path)
     assert (len(line), line.expected, line.refresh()) == (1, NUM_FRAMES, False)
     (tmp_path / "frame_0001.h5").write_bytes(b"")  # of another program: a frame is renamed into its place when it is whole
@@ -58,7 +68,7 @@ def test_frames_appear_when_they_are_written(stored_run, tmp_path):
 
 
 def test_a_glance_has_the_power_of_the_map(stored_run):
-    line = time_line_of(stored_run.folder)
+    line = time_line_of(stored_run.path)
     glance = glance_at(line.moments[1])
     power = np.abs(stored_run[1].spectrum.values) ** 2
     assert glance.by_velocity == pytest.approx(power.mean(axis=(0, 1)).sum(axis=1), rel=1e-5, abs=0)
@@ -69,7 +79,7 @@ def test_a_glance_has_the_power_of_the_map(stored_run):
 
 def test_tracks_go_with_the_object(stored_run):
     """The plate drives straight at the radar: its range falls by the way of a frame, its velocity is its speed."""
-    glances = [glance_at(moment) for moment in time_line_of(stored_run.folder).moments]
+    glances = [glance_at(moment) for moment in time_line_of(stored_run.path).moments]
     tracks = tracks_of(glances)
     assert tracks.num_tracks >= 1
     rows = tracks.of_track(int(tracks.track[0]))
@@ -117,7 +127,7 @@ def test_velocities_of_tracks_need_no_motion_beyond_the_last_frame(stored_run):
 
 
 def test_frames_of_maps_alone_show_maps_and_labels(stored_run, maps_of_run):
-    line = time_line_of(maps_of_run.folder)
+    line = time_line_of(maps_of_run.path)
     session = Session(line.read(1))
     kept = maps_of_run[1]
     shown = np.abs(session.parts.whole.spectrum.values) ** 2
@@ -126,12 +136,12 @@ def test_frames_of_maps_alone_show_maps_and_labels(stored_run, maps_of_run):
     session.set_layer("detections", True)
     assert len(session.known_data("detections")) == len(kept.detections)
     assert "keeps maps" in session.note
-    assert glance_at(line.moments[1]).by_range == pytest.approx(glance_at(time_line_of(stored_run.folder).moments[1]).by_range,
+    assert glance_at(line.moments[1]).by_range == pytest.approx(glance_at(time_line_of(stored_run.path).moments[1]).by_range,
                                                                 rel=1e-5, abs=0)
 
 
 def test_what_is_shown_goes_on_in_the_next_frame(stored_run):
-    line = time_line_of(stored_run.folder)
+    line = time_line_of(stored_run.path)
     first = Session(line.read(0))
     first.set_color_by("mesh")
     first.set_mesh_colour(0, (1, 2, 3))
@@ -144,7 +154,7 @@ def test_what_is_shown_goes_on_in_the_next_frame(stored_run):
 
 
 def test_frames_that_were_shown_are_forgotten(stored_run):
-    line, kept, state = time_line_of(stored_run.folder), [], None
+    line, kept, state = time_line_of(stored_run.path), [], None
     for place in (0, 1, 2, 0, 1):
         session = session_like(state, line.read(place))
         state = state_of(session)

@@ -17,7 +17,7 @@ NEVER_MS = 10**7  # between frames: the tests themselves say when the next one c
 @pytest.fixture
 def playing(qtbot, shared_window, stored_run):
     """Window whose time line plays; the second of three frames has passed and the film waits."""
-    with played(qtbot, shared_window, stored_run.folder) as window:
+    with played(qtbot, shared_window, stored_run.path) as window:
         yield window
 
 
@@ -71,7 +71,7 @@ def test_rays_that_a_film_drew_are_not_drawn_whole_before_another_file(playing, 
 
 def test_a_row_of_what_made_a_cell_is_not_there_for_another_frame(qtbot, shared_window, stored_run):
     window, panel = shared_window, shared_window.contributions
-    window.open_file(stored_run.folder)
+    window.open_file(stored_run.path)
     open_on_screen(qtbot, window)
     window.docks["What makes the cell"].raise_()
     window.session.select_cells(CellBox(3, 9, 2, 9))

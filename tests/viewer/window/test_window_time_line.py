@@ -15,7 +15,7 @@ LEFT = Qt.MouseButton.LeftButton
 
 @pytest.fixture
 def line_window(qtbot, shared_window, stored_run):
-    shared_window.open_file(stored_run.folder)
+    shared_window.open_file(stored_run.path)
     open_on_screen(qtbot, shared_window)
     yield shared_window
     shared_window.time_line.show(None)
@@ -100,7 +100,7 @@ def test_the_strip_has_all_frames_and_goes_to_one(qtbot, line_window):
 def test_new_frames_come_and_damaged_ones_are_told(qtbot, shared_window, stored_run, tmp_path):
     window = shared_window
     for name in ("sequence.h5", "frame_0000.h5"):
-        shutil.copy(stored_run.folder / name, tmp_path / name)
+        shutil.copy(stored_run.path / name, tmp_path / name)
     assert window.open_file(tmp_path)
     window.frame_bar.follow_check.setChecked(True)
     shutil.copy(stored_run.paths_of_files[1], tmp_path / "frame_0001.h5")

@@ -151,7 +151,7 @@ def test_sequences_and_files_keep_it(tmp_path):
     np.testing.assert_array_equal(stored[1].interference_cube, second.interference_cube)
     other = ep.Sequence(street(ep.Interferer(radar=moving)), victim(**SLOW), frames=2, interval=0.12, num_rays=500, labels=True,
                         detections=True)
-    with pytest.raises(ValueError, match="folder: must be new, or of this sequence .interferers/0 offset differs"):
+    with pytest.raises(ValueError, match="path: must be new, or of this sequence .interferers/0 offset differs"):
         other.save(tmp_path / "all")
 
 

@@ -10,11 +10,12 @@ from pathlib import Path
 
 import echopath as ep
 from echopath.frame_file import KeptMeshes
-from echopath.frame_file.container import our_file
+from echopath.frame_file.container import is_of_kind, our_file
 from echopath.frame_file.h5 import read_attribute, read_group
 from echopath.frame_file.maps import load_maps
-from echopath.sequence.contents import NAME as SEQUENCE_NAME
-from echopath.sequence.contents import frame_path
+from echopath.sequence.contents import KIND as SEQUENCE
+from echopath.sequence.folder import NAME as SEQUENCE_NAME
+from echopath.sequence.folder import frame_path
 
 from .inputs import ViewInput, from_file, from_frame
 from .maps_input import from_maps
@@ -85,9 +86,10 @@ class TimeLine:
 
 
 def time_line_of(what) -> TimeLine | None:
-    """The time line of a folder, of a pattern such as "out/*.h5", of a list of files, of a StoredSequence or of a Dataset.
+    """The time line of a folder, of a pattern such as "out/*.h5", of a list of files, of one file of a whole sequence, of a
+    StoredSequence or of a Dataset.
 
-    None for anything else, such as one file. Raises ep.FileError where there is no frame yet or a folder is damaged.
+    None for anything else, such as the file of one frame. Raises ep.FileError where there is no frame yet or a folder is damaged.
     """
     if isinstance(what, ep.StoredSequence):
         return _checked(_of_stored(what))
@@ -99,6 +101,8 @@ def time_line_of(what) -> TimeLine | None:
     path = Path(what)
     if path.is_dir():
         return _checked(_of_folder(path))
+    if path.is_file() and is_of_kind(path, SEQUENCE):
+        return _checked(_of_stored(ep.load_sequence(path)))
     if not path.exists() and any(letter in str(what) for letter in PATTERN_LETTERS):
         return _checked(TimeLine(str(what), lambda: _moments_of(map(Path, glob.glob(str(what))))))
     return None
@@ -122,13 +126,13 @@ def _of_folder(folder: Path) -> TimeLine:
 
 
 def _of_stored(stored) -> TimeLine:
-    return TimeLine(str(stored.folder), lambda: written_frames(stored), len(stored))
+    return TimeLine(str(stored.path), lambda: written_frames(stored), len(stored))
 
 
 def written_frames(stored) -> list[Moment]:
     """The frames of a StoredSequence that are there."""
-    return [Moment(f"frame {place}", float(time), path, stored)
-            for place, (time, path) in enumerate(zip(stored.times, stored.paths_of_files)) if path.exists()]
+    frames = zip(stored.times, stored.paths_of_files, stored.is_done)
+    return [Moment(f"frame {place}", float(time), path, stored) for place, (time, path, is_done) in enumerate(frames) if is_done]
 
 
 def _of_dataset(folder: Path, given=None) -> TimeLine:

@@ -1,0 +1,56 @@
+"""HDF5 files that are opened to be read, while others may be changing them."""
+from __future__ import annotations
+
+import time
+from contextlib import contextmanager
+from pathlib import Path
+
+from .. import _core
+from ..base.interrupts import interrupts_are_kept
+from .h5 import FAULTS, first_line, read_group
+from .h5_items import library
+
+PATIENCE, PAUSE = 5.0, 0.005  # s that a reader waits for who changes the file, which takes milliseconds, and between its tries
+
+
+def file_and_group(path) -> tuple[Path, str]:
+    """The file of a path and what of it is meant: a group is named as if it lay below the file, drive.h5/frames/000012."""
+    path = Path(path)
+    if not path.exists():
+        for file in path.parents:
+            if file.is_file():
+                return file, path.relative_to(file).as_posix()
+    return path, ""
+
+
+@contextmanager
+def reading(path):
+    """Opens an HDF5 file, or a group of one (`file_and_group`), which is what it yields.
+
+    Whatever is wrong with it becomes an ep.FileError that names the file and the reason.
+    """
+    place, group = file_and_group(path)
+    try:
+        with interrupts_are_kept(), _opened(place) as file:
+            yield read_group(file, group) if group else file
+    except _core.FileError as error:
+        raise _core.FileError(f"{path}: {error}") from error
+    except FileNotFoundError:
+        raise _core.FileError(f"{path}: no such file") from None
+    except FAULTS as error:
+        if Path(path).suffix.lower() == ".toml":
+            raise _core.FileError(f"{path}: a scene file, where a frame file (.h5) is asked for; `echopath run {path} --out "
+                                  "DIR` makes DIR/frame.h5 of it") from None
+        raise _core.FileError(f"{path}: damaged or not an HDF5 file ({first_line(error)})") from error
+
+
+def _opened(path):
+    """The file, as soon as nobody changes it."""
+    h5py, last_try = library(), time.monotonic() + PATIENCE
+    while True:
+        try:
+            return h5py.File(path, "r")
+        except BlockingIOError:
+            if time.monotonic() > last_try:
+                raise
+            time.sleep(PAUSE)

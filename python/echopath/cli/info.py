@@ -11,14 +11,13 @@ from .. import dataset
 from ..dataset.folder import TEMPLATE as DATASET_FILE
 from ..frame_file import left_out, load_frame
 from ..frame_file.container import SUFFIXES as FRAME_SUFFIXES
-from ..frame_file.container import is_of_kind
+from ..frame_file.container import SEQUENCE, kind_of
 from ..frame_file.opening import file_and_group
 from ..presentation.tables import edge_hits, event
 from ..readers.load import READERS, is_foreign
 from ..receiver.settings import receiver_text
 from ..scene_file import load_scene
 from ..scene_file.load import parse
-from ..sequence.contents import KIND as SEQUENCE
 from ..sequence.folder import NAME as SEQUENCE_FILE
 from ..signals.measures import in_dbm, with_error
 from ..weather.weather import weather_of, weather_text
@@ -46,7 +45,7 @@ def describe_file(path, selections=()) -> list[str]:
         return _describe_scene_file(load_scene(path))
     if (path / DATASET_FILE).exists():
         return _describe_dataset(dataset.open(path))
-    if (path / SEQUENCE_FILE).exists() or (suffix in FRAME_SUFFIXES and path.is_file() and is_of_kind(path, SEQUENCE)):
+    if (path / SEQUENCE_FILE).exists() or (suffix in FRAME_SUFFIXES and path.is_file() and kind_of(path) == SEQUENCE):
         return _describe_sequence(ep.load_sequence(path))
     if suffix in FRAME_SUFFIXES:
         return _describe_frame(path, selections)

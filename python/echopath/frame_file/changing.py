@@ -1,8 +1,9 @@
 """Changes of an HDF5 file that happen whole or not at all, at the cost of what changes rather than of the file.
 
-New bytes go behind the end of the file, where nothing of what it holds refers to them. The few old ones that HDF5 changes, such
-as its table of groups, are kept in memory, then written to a journal beside the file, and last into the file. A process that
-is killed before the journal is there leaves the file as it was; one that is killed later leaves a journal that `mend` carries out.
+New bytes go behind the end of the file, where nothing of what it holds refers to them. The few old ones that HDF5 changes,
+such as its table of groups, are kept in memory, then written to a journal beside the file, and last into the file. A process
+that is killed before the journal is there leaves the file as it was; one that is killed later leaves a journal that `mend`
+carries out.
 """
 from __future__ import annotations
 
@@ -41,8 +42,9 @@ def _journal_of(path) -> Path:
 def changing(path, num_bytes: int = 0) -> Iterator:
     """An HDF5 file open for changes, which it has all of when the block ends well, and else none.
 
-    One process at a time may do that, which has the folder `work_folder(path)` to itself. Who has the file open meanwhile is waited
-    for. num_bytes: that are about to be written, for which there must be space
+    One process at a time may do that, which has the folder `work_folder(path)` to itself. Who has the file open meanwhile is
+    waited for.
+    num_bytes: that are about to be written, for which there must be space
     Raises ep.FileError where the disk is full, or where another program keeps the file open.
     """
     h5py = library()

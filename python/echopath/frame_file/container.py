@@ -10,12 +10,13 @@ from .opening import reading
 
 SCHEMA_VERSION = 4  # grows when a reader of the old layout would misread the new one
 SUFFIXES = (".h5", ".hdf5")
+KINDS = FRAME, SEQUENCE = "frame", "sequence"
 OLD_LAYOUT = "; files before version 4 have no check sums on texts, settings and small arrays: simulate again"
 
 
 @contextmanager
-def new_file(path, kind: str = "frame"):
-    """A new HDF5 file of ours that takes its place when the block ends well; kind: "frame" or "sequence"."""
+def new_file(path, kind: str = FRAME):
+    """A new HDF5 file of ours that takes its place when the block ends well; kind: one of KINDS."""
     with written_whole(path) as temporary, writing(temporary) as file:
         write_head(file, kind)
         yield file
@@ -29,7 +30,7 @@ def write_head(file, kind: str) -> None:
 
 
 @contextmanager
-def our_file(path, kind: str = "frame"):
+def our_file(path, kind: str = FRAME):
     """A file of a kind open for reading, its format and version checked."""
     foreign = f"is an HDF5 file, but no {kind} file of echopath"
     with reading(path) as file:
@@ -44,13 +45,15 @@ def our_file(path, kind: str = "frame"):
         yield file
 
 
-def is_of_kind(path, kind: str) -> bool:
-    """Whether a file is one of ours of a kind."""
-    try:
-        with our_file(path, kind):
-            return True
-    except _core.FileError:
-        return False
+def kind_of(path) -> str | None:
+    """Which kind of file of ours a file is, or a group in it; None: none that can be read."""
+    for kind in KINDS:
+        try:
+            with our_file(path, kind):
+                return kind
+        except _core.FileError:
+            continue
+    return None
 
 
 @contextmanager

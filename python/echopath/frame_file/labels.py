@@ -46,6 +46,14 @@ def read_all_labels(group) -> dict:
     return {read_attribute(folder, "partition", str): read_labels(folder) for folder in folders}
 
 
+@blames_group
+def read_names(group) -> dict:
+    """{map of indices: what each index means} of the labels of one partition, without its maps; ghosts as GhostLabel."""
+    plane = _read_plane(group)
+    return {"dominant": read_texts(group, "part"), "object_map": read_texts(read_group(group, "objects"), "name"),
+            "ghost_map": _read_ghosts(read_group(group, "ghosts"), plane)}
+
+
 def write_labels(group, labels: Labels, compress: bool = False) -> None:
     """Writes the labels of one partition; compress: powers too."""
     plane = PLANES[labels.plane]

@@ -63,5 +63,10 @@ def start_time_in(path) -> float:
     """
     with our_file(path) as file:
         check_sums(file)
-        group = read_group(file, "maps") if "maps" in file else read_group(read_group(file, "record"), "frame")
-        return read_attribute(group, "start_time", float)
+        return start_time_in_file(file)
+
+
+def start_time_in_file(file) -> float:
+    """Start in s of the frame in an open file, of either kind. Raises ep.FileError."""
+    group = read_group(file, "maps") if "maps" in file else read_group(read_group(file, "record"), "frame")
+    return read_attribute(group, "start_time", float)

@@ -9,14 +9,13 @@ import numpy as np
 
 from .. import _core
 from ..arguments.shown import shown
-from ..frame_file.container import our_file, write_head
+from ..frame_file.container import SEQUENCE, our_file, write_head
 from ..frame_file.h5 import blames_group, read_attribute, read_group, write_attribute
 from ..frame_file.radar import read_radar, write_radar
 from ..frame_file.scene import read_scene, write_scene
 from ..frame_file.scene.interferers import read_interferers, write_interferers
 from ..scene.scene import Scene
 
-KIND = "sequence"
 FRAMES = "frames"           # group of the frames in a file of all
 _GROWS = "frames"           # the one setting in which two runs into one place may differ
 _APART = {"settings", FRAMES}  # items that are compared in another way, or not at all
@@ -32,7 +31,7 @@ class Contents(NamedTuple):
 
 def write_contents(file, contents: Contents) -> None:
     """Writes them to a new file."""
-    write_head(file, KIND)
+    write_head(file, SEQUENCE)
     write_scene(file.create_group("scene"), contents.scene)
     write_radar(file.create_group("radar"), contents.radar)
     write_interferers(file, contents.scene)
@@ -47,7 +46,7 @@ def write_settings(group, settings: dict[str, Any]) -> None:
 
 def read_contents(path) -> Contents:
     """What `write_contents` wrote to a file. Raises ep.FileError."""
-    with our_file(path, KIND) as file:
+    with our_file(path, SEQUENCE) as file:
         scene = Scene(read_scene(read_group(file, "scene")), interferers=read_interferers(file))
         return Contents(scene, read_radar(read_group(file, "radar")), read_settings(file))
 
@@ -70,7 +69,7 @@ def _plain(value) -> Any:
 def what_differs(mine: Path, theirs: Path) -> str:
     """What two files of contents do not share, in words; "" where a run of the first may go on in the place of the second."""
     try:
-        with our_file(mine, KIND) as ours, our_file(theirs, KIND) as there:
+        with our_file(mine, SEQUENCE) as ours, our_file(theirs, SEQUENCE) as there:
             return _other_setting(ours, there) or _other_item(ours, there)
     except _core.FileError as error:
         return str(error)

@@ -27,6 +27,11 @@ class FolderStore:
     def __init__(self, path: Path):
         self.path = path
 
+    @property
+    def head(self) -> Path:
+        """The file that says of which sequence the frames are."""
+        return self.path / NAME
+
     def frame_path(self, place: int) -> Path:
         """The file of the frame at a place."""
         return frame_path(self.path, place)
@@ -37,7 +42,7 @@ class FolderStore:
 
     def contents(self) -> Contents:
         """Of which sequence it is. Raises ep.FileError."""
-        return read_contents(self.path / NAME)
+        return read_contents(self.head)
 
     def writing(self, contents: Contents, is_shared: bool) -> AbstractContextManager[None]:
         """Keeps others from writing to it during the block, but for shards where it is shared.
@@ -62,7 +67,7 @@ class FolderStore:
 
     def _write_contents(self, contents: Contents) -> None:
         """A sequence of more frames than the folder had takes the folder over."""
-        path = self.path / NAME
+        path = self.head
         with written_whole(path) as temporary:
             with writing(temporary) as file:
                 write_contents(file, contents)

@@ -9,10 +9,10 @@ from ..arguments.checks import refused
 from ..base.files import require_writable, written_whole
 from ..frame.frame import Frame
 from ..frame_file.changing import changing, mend, mend_own, work_folder
-from ..frame_file.container import SUFFIXES, our_file
+from ..frame_file.container import SEQUENCE, SUFFIXES, our_file
 from ..frame_file.h5 import copy_items, read_group, writing
 from ..frame_file.opening import reading
-from .contents import FRAMES, KIND, Contents, read_contents, read_settings, what_differs, write_contents, write_settings
+from .contents import FRAMES, Contents, read_contents, read_settings, what_differs, write_contents, write_settings
 from .folder import NAME, FolderStore
 from .folder_lock import writing_to
 from .keep import Keep, write_frame
@@ -26,6 +26,11 @@ class FileStore:
     def __init__(self, path: Path):
         self.path = path
 
+    @property
+    def head(self) -> Path:
+        """The file that says of which sequence the frames are."""
+        return self.path
+
     def frame_path(self, place: int) -> Path:
         """The group of the frame at a place, named as if it lay below the file: readers of frame files take it."""
         return self.path / FRAMES / _name(place)
@@ -34,7 +39,7 @@ class FileStore:
         """Whether there is a frame at each of some places."""
         if not self.path.exists():
             return [False for _ in places]
-        with our_file(self.path, KIND) as file:
+        with our_file(self.path, SEQUENCE) as file:
             names = set(read_group(file, FRAMES))
         return [_name(place) in names for place in places]
 
@@ -88,7 +93,7 @@ class FileStore:
             return
         if differs := what_differs(mine, self.path):
             raise refused(ValueError, "path", f"new, or of this sequence ({differs})", str(self.path))
-        with our_file(mine, KIND) as ours, our_file(self.path, KIND) as there:
+        with our_file(mine, SEQUENCE) as ours, our_file(self.path, SEQUENCE) as there:
             grows = read_settings(ours) != read_settings(there)
         if grows:
             with changing(self.path) as file:

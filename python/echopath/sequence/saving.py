@@ -22,7 +22,8 @@ Shard = tuple[int, int]  # (k, n): the frames at places k - 1, k - 1 + n and so 
 class SavedFrame(NamedTuple):
     """One frame that is there now.
 
-    place: of the frame; start_time: s; path: of its file, or of its group in a file of all; seconds: that it took, None: it was there
+    place: of the frame; start_time: s; path: of its file, or of its group in a file of all
+    seconds: that it took, None: it was there
     seconds_left: for those that are missing, by the mean of those that were made; None: not known yet
     """
 

@@ -153,8 +153,8 @@ class Sequence(Row[Frame]):
             k - 1 + 2 n and so on; None: all; not for one file
         progress: callable (stage, fraction of the frames), True for bars with the time left in s, or None
         Returns the StoredSequence of `load_sequence`. Raises ValueError naming the path where it holds another sequence or
-        another process writes to it, and naming `keep` where the sequence has no labels to be kept; ep.FileError when files cannot
-        be written.
+        another process writes to it, and naming `keep` where the sequence has no labels to be kept; ep.FileError when files
+        cannot be written.
         """
         bars = automatic_bars() if progress is True else progress
         count = len(places_of(shard, len(self)))

@@ -26,10 +26,10 @@ if TYPE_CHECKING:
 
 
 class StoredSequence(Row[Frame | FrameMaps]):
-    """The frames of a folder or a file of `Sequence.save`, read when they are asked for and kept by nobody; made by `load_sequence`.
+    """The frames of a folder or a file of `Sequence.save`, read when they are asked for; made by `load_sequence`.
 
-    `for frame in stored`, `stored[k]`, `len(stored)`; a slice is a StoredSequence. A frame is a Frame where the files keep all,
-    else FrameMaps. One that has not been simulated yet raises ep.FileError.
+    None is kept. `for frame in stored`, `stored[k]`, `len(stored)`; a slice is a StoredSequence. A frame is a Frame where the
+    files keep all, else FrameMaps. One that has not been simulated yet raises ep.FileError.
     path: Path of the folder or the file; keep: "all", "maps" or "labels", what the files keep; scene, radar: what was simulated
     settings: {keyword: value} of `Sequence`, with those that it was not given
     times: starts of the frames, [K] in s; interval: s, from start to start
@@ -53,7 +53,7 @@ class StoredSequence(Row[Frame | FrameMaps]):
             if self.keep not in get_args(Keep):
                 raise ValueError(f"keep {self.keep!r}")
         except (KeyError, TypeError, ValueError) as error:
-            raise _core.FileError(f"{self.path}: damaged settings ({error})") from None
+            raise _core.FileError(f"{self._store.head}: damaged settings ({error})") from None
         self._numbers = range(len(self._of_place))
 
     def _time_of(self, number: int) -> float:
@@ -107,8 +107,10 @@ class StoredSequence(Row[Frame | FrameMaps]):
             `attrs["names"]`, the same in all frames; mask: bool; all [time, range, velocity] (or azimuth), -1: none; where there
             are labels
         truth_position [time, truth_object, truth_axis] and so on: the fields of Truth, where the files keep it
-        Times are the starts of the frames in s. Memory: 11 bytes for each cell of each frame. Needs xarray, raises
-        ModuleNotFoundError without it, ep.FileError for a damaged file, ValueError where no frame is there.
+        Times are the starts of the frames in s. Nothing is held: `maps.power[3]` reads one file, `maps.power.mean("time")` all,
+        `maps.load()` keeps them, 11 bytes for each cell of each frame, and `maps.chunk(time=1)` hands them to dask.
+        `xarray.open_dataset(path)` gives the same. Needs xarray, raises ModuleNotFoundError without it, ep.FileError for a
+        damaged file, here or where it is read, ValueError where no frame is there.
         """
         return dataset_of(self)
 

@@ -10,10 +10,9 @@ from pathlib import Path
 
 import echopath as ep
 from echopath.frame_file import KeptMeshes
-from echopath.frame_file.container import is_of_kind, our_file
+from echopath.frame_file.container import SEQUENCE, kind_of, our_file
 from echopath.frame_file.h5 import read_attribute, read_group
 from echopath.frame_file.maps import load_maps
-from echopath.sequence.contents import KIND as SEQUENCE
 from echopath.sequence.folder import NAME as SEQUENCE_NAME
 from echopath.sequence.folder import frame_path
 
@@ -101,7 +100,7 @@ def time_line_of(what) -> TimeLine | None:
     path = Path(what)
     if path.is_dir():
         return _checked(_of_folder(path))
-    if path.is_file() and is_of_kind(path, SEQUENCE):
+    if path.is_file() and kind_of(path) == SEQUENCE:
         return _checked(_of_stored(ep.load_sequence(path)))
     if not path.exists() and any(letter in str(what) for letter in PATTERN_LETTERS):
         return _checked(TimeLine(str(what), lambda: _moments_of(map(Path, glob.glob(str(what))))))

@@ -1,0 +1,110 @@
+"""The maps of frame files as arrays over time that read of each file what is asked for."""
+from __future__ import annotations
+
+import functools
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from .. import _core
+from ..frame.maps import mean_power
+from ..frame_file.container import our_file
+from ..frame_file.h5 import read_array, read_attribute, read_group
+from ..frame_file.labels import CELL_FIELDS, PLANES, read_names
+from ..labels.ghost_names import ghost_name
+from ..labels.labels import NONE
+from ..presentation.xarray_maps import xarray_module
+from ..signals.measures import SMALLEST_POWER, in_dbm
+
+_INDICES = {"dominant": "dominant", "object": "object_map", "ghost": "ghost_map"}  # variable: field of Labels
+
+
+class Map(NamedTuple):
+    """A variable of frames: its axes, type and shape in each, and how it is read from the open file of one.
+
+    dims: names of its axes; axes: {name: values}; dtype: of read(file, place) [range, row]; attrs: of the variable
+    """
+
+    dims: tuple
+    axes: dict
+    dtype: np.dtype
+    attrs: dict
+    read: Callable
+
+
+def maps_of(paths: list[Path]) -> dict[str, Map]:
+    """{variable: Map} of the files of frames of one sequence. Raises ep.FileError."""
+    with our_file(paths[0]) as file:
+        found = _power(file)
+        labels = read_group(file, "labels") if "labels" in file else {}
+        planes = {name: _partition(read_group(labels, name)) for name in labels}
+    words = [_words(path) for path in paths] if planes else []
+    for group, (partition, dims, axes) in planes.items():
+        for name, field in (_INDICES | {"mask": "mask"}).items():
+            known, attrs = None, {}
+            if name != "mask":
+                names, known = _numbered([one[group][field] for one in words])
+                attrs = {"names": names}
+            variable = name if len(planes) == 1 or name != "dominant" else f"{name}_{partition}"
+            read = functools.partial(_read_labels, f"labels/{group}", field, known)
+            found[variable] = Map(dims, axes, np.dtype(bool if known is None else np.int16), attrs, read)
+    return found
+
+
+def over_time(paths: list[Path], map: Map):
+    """A Map as an xarray.Variable [time, ...], which reads the files of the frames that are asked for, each time anew."""
+    from .frames_array import FramesArray  # late: a class of xarray's, which is not always installed
+
+    xarray = xarray_module()
+    return xarray.Variable(("time", *map.dims), xarray.core.indexing.LazilyIndexedArray(FramesArray(paths, map)), map.attrs)
+
+
+def _power(file) -> dict[str, Map]:
+    """The map with noise of a file that has one."""
+    group = read_group(file, "maps" if "maps" in file else "spectra")
+    if "maps" in file and "power" not in group:
+        return {}
+    axes = {name: read_array(group, name, np.float64, (None,)) for name in ("range", "velocity")}
+    attrs = {"units": "dBm", "long_name": "received power with noise, mean over channels"}
+    return {"power": Map(("range", "velocity"), axes, np.dtype(np.float32), attrs, _read_power)}
+
+
+def _read_power(file, _place: int) -> np.ndarray:
+    if "maps" in file:
+        power = read_array(read_group(file, "maps"), "power", np.float32, (None, None))
+    else:
+        power = mean_power(read_array(read_group(file, "spectra"), "values", np.complex128, (None,) * 4))
+    return in_dbm(power.T.astype(np.float64), SMALLEST_POWER).astype(np.float32)
+
+
+def _partition(group) -> tuple[str, tuple, dict]:
+    """(name, names of axes, {axis: values}) of the labels of a partition."""
+    row = PLANES[read_attribute(group, "plane", str)].rows
+    axes = {name: read_array(group, name, np.float64, (None,)) for name in ("range", row)}
+    return read_attribute(group, "partition", str), ("range", row), axes
+
+
+def _words(path: Path) -> dict:
+    """{group: {field: what its indices mean}} of the labels of a file."""
+    with our_file(path) as file:
+        labels = read_group(file, "labels")
+        found = {name: read_names(read_group(labels, name)) for name in labels}
+    return {name: words | {"ghost_map": [ghost_name(label) for label in words["ghost_map"]]} for name, words in found.items()}
+
+
+def _numbered(words: list[list[str]]) -> tuple[list[str], list[np.ndarray]]:
+    """(all words of frames, each once; the number of each word of each frame among them, that of none last)"""
+    names = list(dict.fromkeys(word for one in words for word in one))
+    number = {name: place for place, name in enumerate(names)}
+    return names, [np.array([*(number[word] for word in one), NONE], np.int16) for one in words]
+
+
+def _read_labels(group: str, field: str, numbers: list | None, file, place: int) -> np.ndarray:
+    values = read_array(read_group(file, group), field, CELL_FIELDS[field][0], (None, None)).T
+    if numbers is None:
+        return values.astype(bool)
+    if values.size and not -1 <= values.min() <= values.max() < len(numbers[place]) - 1:
+        raise _core.FileError(f"{group}/{field}: must be -1 to {len(numbers[place]) - 2}, its labels")
+    return numbers[place][values]

@@ -13,6 +13,7 @@ from ..presentation.xarray_maps import time_map_array
 
 if TYPE_CHECKING:
     from ..base.foreign_types import Axes, DataArray
+    from .spectrogram_labels import SpectrogramLabels
 
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -86,6 +87,8 @@ class Spectrogram(TimeMap):
     window_length, hop: chirps of one transmitter; window, zero_pad: as in `range_doppler`, padding of the velocities
     range_gate: (nearest, farthest) range that is summed, m
     part: what was asked for, as text, None: the whole; channel: (tx, rx), None: all
+    labels: {view: SpectrogramLabels} where they were asked for, else None: a view for each partition of the frames, "objects"
+        (objects by their own echoes, "ghosts", "other") and "families" (objects, each ghost, "other")
     """
 
     velocity: np.ndarray
@@ -95,6 +98,7 @@ class Spectrogram(TimeMap):
     hop: int
     range_gate: tuple
     channel: tuple | None = None
+    labels: dict[str, SpectrogramLabels] | None = None
 
     AXIS, TITLE = "velocity", "Received power by time and radial velocity"
 

@@ -25,7 +25,7 @@ _SAME = ("times", "velocity", "trains", "window_length", "hop", "window", "zero_
 @made_by("ep.spectrogram_labels")
 @dataclasses.dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class SpectrogramLabels(PartCells):
-    """Labels of all cells of a spectrogram [T, V]; made by `spectrogram_labels`.
+    """Labels of all cells of a spectrogram [T, V]; made by `spectrogram(labels=True)` and `spectrogram_labels`.
 
     times: [T] s, velocity: [V] m/s, receding positive; train: i32 [T], trains: [N, 2] s, as in Spectrogram; part_names: [K]
     power: [K, T, V] W of each part; whole: [T, V] W
@@ -83,6 +83,7 @@ def spectrogram_labels(parts: Mapping[str, Spectrogram], whole: Spectrogram | No
                        dynamic_range_db: float | None = LabelSettings.dynamic_range_db) -> SpectrogramLabels:
     """Which part owns each cell of a spectrogram, as `annotate` says of the cells of a map.
 
+    Of frames `spectrogram(frames, labels=True).labels` has the same of all their parts, objects and ghosts, from one pass.
     parts: {name: Spectrogram}, of one signal and all by the same windows: `spectrogram(frames, part=name)` of each
     whole: Spectrogram of all of them together, None: the sum of their powers, which leaves out how they interfere
     noise_margin_db: dB above the mean of the noise that the whole must be, -300 to 300
@@ -93,6 +94,13 @@ def spectrogram_labels(parts: Mapping[str, Spectrogram], whole: Spectrogram | No
     first = next(iter(parts.values()))
     for name, one in [*parts.items(), *([("whole", whole)] if whole is not None else [])]:
         _require_same(name, one, first)
+    return labels_of(parts, whole, noise_margin_db, dynamic_range_db)
+
+
+def labels_of(parts: dict[str, Spectrogram], whole: Spectrogram | None, noise_margin_db: float,
+              dynamic_range_db: float | None) -> SpectrogramLabels:
+    """What `spectrogram_labels` returns, of arguments that are right; noise_margin_db: minus infinity: no cell is in the noise"""
+    first = next(iter(parts.values()))
     power = np.stack([one.power for one in parts.values()])
     total = power.sum(axis=0) if whole is None else whole.power
     range_db = np.inf if dynamic_range_db is None else dynamic_range_db

@@ -12,7 +12,8 @@ TIME_LABEL = "Time in s"
 AXIS_LABELS = {"velocity": VELOCITY_LABEL, "range": RANGE_LABEL, "azimuth": "Azimuth in degrees (left: +)"}
 SIZE = 9.0, 4.4         # inches
 LABEL_FILL = 0.6        # opacity of a label over the map
-LEGEND_COLUMNS = 4
+LEGEND_COLUMNS, LEGEND_LETTERS = 4, 90  # at most, of all columns together
+LEGEND_ROW = 15.0       # points
 
 
 def draw_time_map(map, *, ax=None, vmin=None, vmax=None, title=""):
@@ -46,6 +47,7 @@ def draw_spectrogram_labels(labels, *, ax=None, title=""):
 
     level = in_dbm(labels.whole, SMALLEST_POWER)
     vmin, vmax = limits_of_level(level)
+    vmin = min(max(vmin, float(in_dbm(labels.noise_power, SMALLEST_POWER))), vmax - 1.0)
     names = labels.part_names
     colours = [tuple(channel / 255.0 for channel in colour) for colour in colours_of(names)]
     with axes_or_new(ax, *SIZE) as ax:
@@ -54,14 +56,15 @@ def draw_spectrogram_labels(labels, *, ax=None, title=""):
             grey = _image(ax, labels.times[columns], labels.velocity, level[columns], ends, cmap="gray", vmin=vmin, vmax=vmax)
             _image(ax, labels.times[columns], labels.velocity, owner[columns], ends, cmap=ListedColormap(colours), vmin=-0.5,
                    vmax=len(names) - 0.5, alpha=LABEL_FILL)
-        for number, name in enumerate(names):
-            if np.any(labels.dominant == number):
-                ax.fill_between([], [], color=colours[number], label=name)
+        seen = [number for number in range(len(names)) if np.any(labels.dominant == number)]
+        for number in seen:
+            ax.fill_between([], [], color=colours[number], label=names[number])
         _crop(ax, labels.velocity, level, vmin)
         ax.set(xlabel=TIME_LABEL, ylabel=VELOCITY_LABEL)
-        ax.set_title(title, pad=24.0)
-        if ax.get_legend_handles_labels()[1]:
-            ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=LEGEND_COLUMNS, frameon=False, borderaxespad=0.2)
+        columns = max(1, min(LEGEND_COLUMNS, LEGEND_LETTERS // max((len(names[number]) for number in seen), default=1)))
+        ax.set_title(title, pad=8.0 + LEGEND_ROW * -(-len(seen) // columns))
+        if seen:
+            ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, frameon=False, borderaxespad=0.2)
         ax.figure.colorbar(grey, ax=ax, label="Received power in dBm", extend="both", pad=0.02, aspect=30)
     return ax
 

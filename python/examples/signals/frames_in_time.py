@@ -25,7 +25,7 @@ maps = {}
 for title, one in radars.items():
     sequence = ep.Sequence(scene, one, frames=24, interval=0.1, num_rays=2000, guard=False)
     with tempfile.TemporaryDirectory() as folder:
-        maps[title] = sequence.save(folder, keep="maps").to_xarray().power  # [time, range, velocity] in dBm
+        maps[title] = sequence.save(folder, keep="maps").to_xarray().power.load()  # [time, range, velocity] in dBm
 
 # %%
 # Of each frame and range the strongest velocity. The backs of both cars are where the closed form puts them.

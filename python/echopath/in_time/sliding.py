@@ -1,0 +1,86 @@
+"""Short Fourier transforms over trains of chirps that come frame by frame."""
+from __future__ import annotations
+
+import numpy as np
+
+from .. import _core
+from ..arguments.gates import in_gate
+from ..spectra.windows import of_range
+from .bursts import chirp_period, text_of_part
+from .maps import Spectrogram
+from .stft import axes_of, noise_bandwidth, range_profiles, velocity_powers, with_chirps
+
+DEFAULT_LENGTH = 128     # chirps of a window, as far as a frame has them
+EVEN = 1e-3              # of a chirp period, by which the chirps of a frame may come early or late
+
+
+class Stft:
+    """Takes bursts one after the other and transforms each window as soon as it is whole, so that few profiles are kept."""
+
+    def __init__(self, window_length, hop, window, zero_pad, range_gate, span_frames, channel):
+        self._length, self._hop, self._window, self._zero_pad = window_length, hop, window, zero_pad
+        self._gate, self._span_frames, self._channel = range_gate, span_frames, channel
+        self._times, self._powers, self._trains, self._train = [], [], [], []
+        self._radar = self._profiles = self._begin = self._end = self._before = None
+
+    def add(self, burst) -> None:
+        if self._radar is None:
+            self._prepare(burst)
+        late = 0.0 if self._end is None else abs(burst.start_time - self._end)
+        if self._profiles is not None and not (late <= EVEN * self._period and self._joins(burst)):
+            self._end_train()
+        profiles = range_profiles(burst.cube, burst.radar, self._window, self._inside)
+        if self._profiles is None:
+            self._begin, self._middle = burst.start_time, burst.middle(0, self._length)
+            self._profiles, self._next = profiles, 0
+        else:
+            self._profiles = np.concatenate([self._profiles, profiles], axis=2)
+        self._transform()
+        self._end, self._before = burst.end_time, burst._replace(cube=None)
+
+    def _joins(self, burst) -> bool:
+        """Whether windows may span the burst before and this one, which goes on evenly."""
+        return burst.goes_on_from(self._before) if self._span_frames == "auto" else self._span_frames
+
+    def result(self, part) -> Spectrogram:
+        self._end_train()
+        if not self._times:
+            longest = max(round((end - begin) / self._period) for begin, end in self._trains)
+            may_join = len(self._trains) > 1 and self._span_frames is not True
+            hint = "; span_frames=True joins frames without gaps" if may_join else ""
+            raise ValueError(f"window_length: must be at most {longest}, the chirps of the longest train{hint}, got "
+                             f"{self._length}")
+        ranges = self._axes.range[self._inside]
+        return Spectrogram(times=np.concatenate(self._times), velocity=self._axes.velocity, power=np.concatenate(self._powers),
+                           noise_power=self._noise_power(), train=np.concatenate(self._train), trains=np.array(self._trains),
+                           window_length=self._length, hop=self._hop, window=self._window, zero_pad=self._zero_pad,
+                           range_gate=(float(ranges[0]), float(ranges[-1])), part=text_of_part(part), channel=self._channel)
+
+    def _prepare(self, burst) -> None:
+        self._radar, self._period = burst.radar, chirp_period(burst.radar)
+        self._length = min(DEFAULT_LENGTH, burst.cube.shape[2]) if self._length is None else self._length
+        self._hop = max(1, self._length // 4) if self._hop is None else self._hop
+        self._axes = axes_of(self._radar, self._length, self._zero_pad)
+        self._inside = in_gate("range_gate", self._axes.range, self._gate, "m")
+        waveform = self._radar.waveform
+        self._spread = noise_bandwidth(of_range(self._window), waveform.num_samples)
+
+    def _transform(self) -> None:
+        """The windows that are whole; what no later window needs is let go."""
+        starts = np.arange(0, self._profiles.shape[2] - self._length + 1, self._hop)
+        if not len(starts):
+            return
+        power = velocity_powers(self._profiles, starts, self._length, self._window, self._zero_pad)
+        self._times.append(self._middle + (self._next + starts) * self._period)
+        self._powers.append(power / self._spread)
+        self._train.append(np.full(len(starts), len(self._trains), np.int32))
+        done = min(int(starts[-1]) + self._hop, self._profiles.shape[2])
+        self._profiles, self._next = self._profiles[:, :, done:].copy(), self._next + done
+
+    def _end_train(self) -> None:
+        self._profiles = None
+        self._trains.append((self._begin, self._end))
+
+    def _noise_power(self) -> float:
+        of_cell = _core.cell_noise_power(with_chirps(self._radar, self._length), self._window)
+        return of_cell * np.count_nonzero(self._inside) / self._spread

@@ -1,0 +1,110 @@
+"""Which part, object and ghost made each cell of a spectrogram, found while its frames go by."""
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+
+import numpy as np
+
+from ..arguments.checks import refused
+from ..arguments.part_names import BESIDE
+from ..arguments.settings import FRAME_KEYWORDS, LabelSettings
+from ..frame.frame import Frame
+from ..labels.ghost_names import ghost_name
+from ..labels.planes import with_receivers
+from ..labels.powers import parts_by_rival
+from ..paths.families import families
+from ..signals.beside import cubes_beside
+from ..signals.parts import decompose
+from .bursts import Burst
+from .spectrogram_labels import SpectrogramLabels, labels_of
+
+OBJECTS, FAMILIES = "objects", "families"  # views beside the partitions of frames
+GHOSTS, REST = "ghosts", "other"           # parts of these
+
+
+class Views:
+    """The signals of all parts of all views of frames, transformed like the whole; parts may come and go with the frames."""
+
+    def __init__(self, settings: LabelSettings, make_stft: Callable, part, channel):
+        """make_stft: callable () that gives a new Stft; part, channel: as in `spectrogram`. Raises ValueError naming them."""
+        if part is not None:
+            raise refused(ValueError, "part", "None with labels, which tell of all parts", part)
+        for name, only in (("plane", "range_doppler"), ("errors", False)):
+            if getattr(settings, name) != only:
+                raise refused(ValueError, f"labels.{name}", f"{only!r} for spectrograms", getattr(settings, name))
+        self._settings, self._make_stft, self._channel = settings, make_stft, channel
+        self._whole, self._views = make_stft(), {}
+        self._frame, self._gone = None, []
+
+    def seen(self, frames: Iterable) -> Iterator:
+        """The frames, one after the other, each of which is remembered for `add`. Raises TypeError for cubes."""
+        for frame in frames:
+            if not isinstance(frame, Frame):
+                raise refused(TypeError, "labels", "None for cubes, of whose echoes nobody knows what made them", self._settings)
+            self._frame = frame
+            yield frame
+
+    def add(self, burst: Burst) -> None:
+        """Takes the signals of the frame that a burst is of."""
+        frame, self._frame = self._frame, None
+        beside = {name: self._of_channel(cube) for name, cube in cubes_beside(frame).items()}
+        whole = self._of_channel(frame.cube)
+        self._whole.add(burst._replace(cube=whole + sum(beside.values())))
+        nothing = np.zeros_like(whole)
+        for view, cubes in self._cubes(frame).items():
+            stfts = self._views.setdefault(view, {})
+            cubes |= beside
+            for name in [name for name in cubes if name not in stfts]:
+                stfts[name] = self._make_stft()
+                for before in self._gone:
+                    stfts[name].add(before._replace(cube=nothing))
+            for name, stft in stfts.items():
+                stft.add(burst._replace(cube=cubes.get(name, nothing)))
+        self._gone.append(burst._replace(cube=None))
+
+    def labels(self) -> dict[str, SpectrogramLabels]:
+        """{view: its labels}."""
+        margin = self._settings.noise_margin_db if self._settings.noise else -np.inf
+        whole = self._whole.result(None)
+        found = {}
+        for view, stfts in self._views.items():
+            last = [name for name in (GHOSTS, REST, *BESIDE) if name in stfts]  # those of later frames stand before them
+            parts = {name: stfts[name].result(None) for name in (*(name for name in stfts if name not in last), *last)}
+            found[view] = labels_of(parts, whole, margin, self._settings.dynamic_range_db)
+        return found
+
+    def _cubes(self, frame: Frame) -> dict[str, dict]:
+        """{view: {part: cube}} without what no path makes."""
+        taken = [name for name in (OBJECTS, FAMILIES) if name in frame.parts]
+        if taken:
+            raise refused(ValueError, "labels", f"None for frames whose partitions are called '{OBJECTS}' or '{FAMILIES}'", taken)
+        partitions = {view: {name: self._of_channel(cube) for name, cube in cubes.items()} for view, cubes in frame.parts.items()}
+        cubes = self._family_cubes(frame)
+        real = {family.object: cube for family, cube in cubes.items() if family.object and not family.is_ghost}
+        ghosts = {rival: group for rival, group in parts_by_rival(cubes).items() if group[0].is_ghost}
+        named = {_name_of(group): sum(cubes[family] for family in group) for group in ghosts.values()}
+        rest = {REST: sum(cube for family, cube in cubes.items() if not family.object)}
+        of_objects = real | ({GHOSTS: sum(named.values())} if named else {}) | rest
+        return partitions | {OBJECTS: of_objects, FAMILIES: real | named | rest}
+
+    def _family_cubes(self, frame: Frame) -> dict:
+        """{Family: cube [tx, rx, chirp, sample] of the channels that are asked for}"""
+        tx, rx = self._channel or (None, None)
+        radar = frame.radar if rx is None else with_receivers(frame.radar, slice(rx, rx + 1))
+        settings = {name: getattr(frame, name) for name in FRAME_KEYWORDS}
+        cubes = decompose(frame.paths, radar, families(frame.paths, self._settings.objects), **settings)
+        return {family: cube if tx is None else cube[tx:tx + 1] for family, cube in cubes.items()}
+
+    def _of_channel(self, cube):
+        if self._channel is None:
+            return cube
+        tx, rx = self._channel
+        return cube[tx:tx + 1, rx:rx + 1]
+
+
+def _name_of(ghosts: list) -> str:
+    """Of families that go over the same mirrors as often, there or back, which no map tells apart."""
+    if len(ghosts) == 1:
+        return ghost_name(ghosts[0])
+    first, types = ghosts[0], sorted({family.ghost_type for family in ghosts})
+    return f"{first.object}, type {' and '.join(map(str, types))}, order {first.order} via {', '.join(first.via)}"

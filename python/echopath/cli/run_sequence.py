@@ -4,6 +4,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+from .. import plots
 from ..base.progress import progress_bars
 from ..scene_file import SceneFile
 from ..sensor_files import save_raw
@@ -48,15 +49,25 @@ def run_sequence(scene_file: SceneFile, options, extra_parts: dict) -> Iterator[
     if options.raw is not None:
         yield raw_line(options.raw, save_raw(stored, options.raw))
     if keywords["truth"] is not None:
-        yield f"wrote {_write_truth(stored)}"
+        path = _beside(stored, TRUTH_NAME)
+        stored.truth.to_csv(path)
+        yield f"wrote {path}"
+    if stored.keep != "labels" and stored.is_done.all():
+        yield from _write_pictures(stored, scene_file.title)
 
 
-def _write_truth(stored) -> Path:
-    """Writes the table into the folder, or beside the file of all frames."""
-    is_folder = stored.path.is_dir()
-    path = stored.path / TRUTH_NAME if is_folder else stored.path.with_name(f"{stored.path.stem}_{TRUTH_NAME}")
-    stored.truth.to_csv(path)
-    return path
+def _write_pictures(stored, title: str) -> Iterator[str]:
+    """The frames at a glance and as a film; yields a line for each file."""
+    picture, film = _beside(stored, "overview.png"), _beside(stored, "film.gif")
+    plots.save_png(stored.plot(title=title), picture, seed=stored.settings["seed"], noise_seed=stored.settings["noise_seed"])
+    yield f"wrote {picture}"
+    stored.film(film)
+    yield f"wrote {film}"
+
+
+def _beside(stored, name: str) -> Path:
+    """A file in the folder of frames, or beside the file of all, which begins with its name."""
+    return stored.path / name if stored.path.is_dir() else stored.path.with_name(f"{stored.path.stem}_{name}")
 
 
 def _chosen(scene_file: SceneFile, options, name: str):

@@ -29,7 +29,7 @@ def draw_time_map(map, *, ax=None, vmin=None, vmax=None, title=""):
     values = np.degrees(map.axis) if map.AXIS == "azimuth" else map.axis
     with axes_or_new(ax, *SIZE) as ax:
         for columns, ends in _trains(map):
-            image = _image(ax, map.times[columns], values, level[columns], ends, cmap=MAP_COLOURS, vmin=vmin, vmax=vmax)
+            image = image_over_time(ax, map.times[columns], values, level[columns], ends, cmap=MAP_COLOURS, vmin=vmin, vmax=vmax)
         if map.AXIS == "velocity":
             _crop(ax, values, level, vmin)
         ax.set(xlabel=TIME_LABEL, ylabel=AXIS_LABELS[map.AXIS], title=title)
@@ -53,9 +53,10 @@ def draw_spectrogram_labels(labels, *, ax=None, title=""):
     with axes_or_new(ax, *SIZE) as ax:
         owner = np.ma.masked_less(labels.dominant, 0)
         for columns, ends in _trains(labels):
-            grey = _image(ax, labels.times[columns], labels.velocity, level[columns], ends, cmap="gray", vmin=vmin, vmax=vmax)
-            _image(ax, labels.times[columns], labels.velocity, owner[columns], ends, cmap=ListedColormap(colours), vmin=-0.5,
-                   vmax=len(names) - 0.5, alpha=LABEL_FILL)
+            cells = labels.times[columns], labels.velocity
+            grey = image_over_time(ax, *cells, level[columns], ends, cmap="gray", vmin=vmin, vmax=vmax)
+            image_over_time(ax, *cells, owner[columns], ends, cmap=ListedColormap(colours), vmin=-0.5, vmax=len(names) - 0.5,
+                            alpha=LABEL_FILL)
         seen = [number for number in range(len(names)) if np.any(labels.dominant == number)]
         for number in seen:
             ax.fill_between([], [], color=colours[number], label=names[number])
@@ -76,7 +77,7 @@ def _trains(map) -> list:
     return [(map.train == number, map.trains[number]) for number in np.unique(map.train)]
 
 
-def _image(ax, times, values, level, ends=None, **look):
+def image_over_time(ax, times, values, level, ends=None, **look):
     """The cells [T, X] as an image; ends: (begin, end) in s of the outermost columns, None: as wide as the others."""
     edges = _edges(times)
     if ends is not None:

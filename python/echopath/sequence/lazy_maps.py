@@ -33,6 +33,20 @@ class Map(NamedTuple):
     attrs: dict
     read: Callable
 
+    def read_file(self, path: Path, place: int = 0) -> np.ndarray:
+        """Its values of the frame in a file. Raises ep.FileError, also for maps of another size."""
+        with our_file(path) as file:
+            values, wanted = self.read(file, place), [len(self.axes[name]) for name in self.dims]
+            if list(values.shape) != wanted:
+                raise _core.FileError(f"must have maps of {wanted} cells, as the first frame, has {list(values.shape)}")
+        return values
+
+
+def power_of(path: Path) -> Map | None:
+    """The map with noise of the file of a frame; None: it has none. Raises ep.FileError."""
+    with our_file(path) as file:
+        return _power(file).get("power")
+
 
 def maps_of(paths: list[Path]) -> dict[str, Map]:
     """{variable: Map} of the files of frames of one sequence. Raises ep.FileError."""

@@ -2,14 +2,23 @@
 from __future__ import annotations
 
 import operator
+import os
 from collections.abc import Iterable, Iterator
-from typing import Any, Generic, SupportsIndex, TypeVar, overload
+from typing import TYPE_CHECKING, Any, Generic, SupportsIndex, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arguments.checks import refused
+from ..arguments.checks import Progress, anything, checked, count, optional, real, refused, text
+from ..arguments.checks import path as path_rule
+from ..base.progress import automatic_bars
 from .record import start_time_of
+
+if TYPE_CHECKING:
+    from ..base.foreign_types import Figure
+    from ..plots import Drive
+
+FASTEST = 25.0  # pictures of a film in a second
 
 Item = TypeVar("Item")
 Self = TypeVar("Self", bound="Row[Any]")
@@ -69,6 +78,63 @@ class Row(Generic[Item]):
     def __reversed__(self) -> Iterator[Item]:
         return self._items(reversed(range(len(self))))
 
+    @checked(self=anything)
+    def frames(self, *, progress: Progress = None) -> Iterator[Item]:
+        """The frames one after the other, as `for frame in sequence` has them, with progress.
+
+        progress: callable (stage, fraction of the frames), True for bars with the time left in s, or None
+        """
+        return with_progress(self, len(self), progress)
+
+    @checked(self=anything, num_frames=count(1, 16), vmin=anything, vmax=anything, title=text)
+    def plot(self, *, num_frames: int = 4, vmin: float | None = None, vmax: float | None = None, title: str = "",
+             progress: Progress = None) -> Figure:
+        """Draws all frames at a glance: some of their maps in a row, below them range and radial velocity over time.
+
+        num_frames: maps in the row, 1 to 16, evenly over time; title: above all
+        vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak
+        progress: callable (stage, fraction of the frames), True for bars, or None
+        Returns a Matplotlib figure: range in m, velocity in m/s (receding positive), time in s, and in each cell over time the
+        strongest of the other axis. Memory: 2 bytes for each cell of each frame. Raises TypeError or ValueError naming the
+        argument, ValueError without frames or maps.
+        """
+        from ..plots import plot_drive
+
+        return plot_drive(self._drive(progress), num_frames=num_frames, vmin=vmin, vmax=vmax, title=title)
+
+    @checked(self=anything, path=path_rule, frames_per_second=optional(real(0.1, 100.0, "1/s")), vmin=anything,
+             vmax=anything, title=text)
+    def film(self, path: str | os.PathLike[str], *, frames_per_second: float | None = None, vmin: float | None = None,
+             vmax: float | None = None, title: str = "", progress: Progress = None) -> None:
+        """Writes a film of the range-Doppler maps, whole or not at all, with the time in s above each.
+
+        path: of the film, .gif or .mp4 (which needs imageio-ffmpeg); frames_per_second: 0.1 to 100, None: in real time, 25 at
+            most
+        vmin, vmax (dBm), progress: as of `plot`; title: before the time
+        Memory: 2 bytes for each cell of each frame. Raises what `plot` raises, ValueError for another kind of file,
+        ModuleNotFoundError without imageio-ffmpeg, ep.FileError.
+        """
+        from ..base.film import require_kind, write_film
+        from ..plots import film_pictures
+
+        require_kind(path)
+        drive = self._drive(progress)
+        pace = min(1.0 / abs(self.interval), FASTEST) if frames_per_second is None else frames_per_second
+        write_film(path, film_pictures(drive, vmin=vmin, vmax=vmax, title=title), pace)
+
+    def _maps(self) -> Iterator[tuple]:
+        """(start in s, level [V, R] in dBm, velocity [V], range [R]) of the frames that are there."""
+        raise NotImplementedError
+
+    def _drive(self, progress: Progress) -> Drive:
+        from ..plots import Drive
+
+        maps = list(with_progress(self._maps(), len(self), progress))
+        if not maps:
+            raise ValueError("frames: must be one at least, got none")
+        times, levels, velocity, range = zip(*maps)
+        return Drive(np.array(times), np.stack(levels), velocity[0], range[0])
+
     def _items(self, places: Iterable[int]) -> Iterator[Item]:
         """What stands at some places, one after the other; warnings name the line that takes it."""
         for place in places:
@@ -77,6 +143,15 @@ class Row(Generic[Item]):
     def _span(self) -> str:
         times = self.times
         return f"from {times[0]:.6g} to {times[-1]:.6g} s" if len(times) else "none"
+
+
+def with_progress(items: Iterable[Item], num_items: int, progress: Progress) -> Iterator[Item]:
+    """The items, after each of which a progress callable is told the share of those that were there."""
+    bars = automatic_bars() if progress is True else progress
+    for done, item in enumerate(items, 1):
+        if callable(bars):
+            bars("frames", done / num_items)
+        yield item
 
 
 def _place_in(place, count: int) -> int:

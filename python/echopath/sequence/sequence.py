@@ -9,6 +9,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from .. import _core
 from ..arguments.checks import LARGEST_COUNT, MapWindow, Progress, anything, checked, count, flag, one_of, real, refused
 from ..arguments.checks import path as path_rule
@@ -122,6 +124,14 @@ class Sequence(Row[Frame]):
                 del recorded, frame  # of which none is kept while the next is made
         finally:
             give_back_memory()  # of frames that the user has let go since, and of one made ahead that nobody takes
+
+    def _maps(self) -> Iterator[tuple]:
+        from ..plots import power_dbm
+
+        for frame in self:
+            spectrum = frame.spectrum
+            yield (frame.paths.frame.start_time, power_dbm(spectrum).astype(np.float16), np.asarray(spectrum.velocity),
+                   np.asarray(spectrum.range))
 
     def _finished(self, recorded: Recorded, progress) -> Frame:
         """The frame of a record."""

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, get_args
 
@@ -18,6 +19,7 @@ from ..truth import Truth
 from ..weather import Weather
 from .arrays import dataset_of, truth_of_files
 from .keep import Keep, read_frame
+from .lazy_maps import power_of
 from .one_file import store_of
 from .row import Row
 
@@ -90,6 +92,15 @@ class StoredSequence(Row[Frame | FrameMaps]):
             raise _core.FileError(f"{path}: has not been simulated yet; the run that made {self.path} goes on when it is "
                                   "called again")
         return read_frame(path, self.keep)
+
+    def _maps(self) -> Iterator[tuple]:
+        there = np.flatnonzero(self.is_done)
+        paths, times = [self.paths_of_files[place] for place in there], self.times[there]
+        found = power_of(paths[0]) if paths else None
+        if paths and found is None:
+            raise ValueError(f"{self.path}: must keep maps to be drawn, keeps labels alone")
+        for path, time in zip(paths, times):
+            yield float(time), found.read_file(path).T.astype(np.float16), found.axes["velocity"], found.axes["range"]
 
     @property
     def truth(self) -> Truth:

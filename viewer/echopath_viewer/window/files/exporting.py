@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 
 from echopath.base.files import written_whole
+from echopath.base.film import KINDS as FILMS
+from echopath.base.film import write_film
 from echopath.base.origin import origin_texts
 
-from ...film import KINDS as FILMS
-from ...film import write_film
 from ...scene_builder.web_page import ScenePage
 from .pictures import drawing_of, picture_of, png_of
 from ..qt import QtGui

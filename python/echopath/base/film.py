@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from echopath.base.files import written_whole
-from echopath.base.libraries import needed_module
+from .files import written_whole
+from .libraries import needed_module
 
 KINDS = (".gif", ".mp4")
 
@@ -17,13 +17,18 @@ def write_film(path, pictures, frames_per_second: float) -> int:
     path: .gif (it goes round) or .mp4; pictures: taken one after the other, none is kept for an MP4
     Raises ValueError for another kind and for no picture, ModuleNotFoundError without imageio-ffmpeg, ep.FileError.
     """
-    kind = Path(path).suffix.lower()
-    if kind not in KINDS:
-        raise ValueError(f"path: must end in {' or '.join(KINDS)}, got {path}")
-    write = _write_gif if kind == ".gif" else _write_mp4
+    write = _write_gif if require_kind(path) == ".gif" else _write_mp4
     with written_whole(path) as temporary:
         count = write(temporary, iter(pictures), frames_per_second)
     return count
+
+
+def require_kind(path) -> str:
+    """The kind of film that a path names. Raises ValueError for another one."""
+    kind = Path(path).suffix.lower()
+    if kind not in KINDS:
+        raise ValueError(f"path: must end in {' or '.join(KINDS)}, got {path}")
+    return kind
 
 
 def _write_gif(path, pictures, frames_per_second: float) -> int:

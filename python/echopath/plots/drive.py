@@ -1,0 +1,132 @@
+"""Frames in time in one picture, and as a film."""
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from ..signals.measures import STATIC_SPEED
+from .maps import (
+    MAP_SIZE, NOISE_PEAK_DB, RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, chosen_limits, limits_of_level,
+)
+from .style import MAP_COLOURS, new_figure, set_title
+from .time_maps import TIME_LABEL, image_over_time
+
+SHEET_WIDTH, ROW_HEIGHT = 2.9, 3.0  # inches, of a map of the sheet, and of each row
+LEAST_WIDTH = 8.0                   # inches, of the sheet
+FILM_DPI = 110
+
+
+class Drive(NamedTuple):
+    """Maps of frames in time.
+
+    times: [T] s, starts of the frames; level: f16 [T, V, R] dBm, mean over channels, with noise
+    velocity: [V] m/s, receding positive; range: [R] m
+    """
+
+    times: np.ndarray
+    level: np.ndarray
+    velocity: np.ndarray
+    range: np.ndarray
+
+
+def plot_drive(drive: Drive, *, num_frames=4, vmin=None, vmax=None, title=""):
+    """Some of the maps in a row, evenly over time, and below them range and velocity over time, on one colour scale.
+
+    drive: Drive; num_frames: maps in the row; title: above all
+    vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak
+    Returns a matplotlib figure: range in m across and radial velocity in m/s up (receding positive), below them time in s across.
+    Raises TypeError or ValueError naming vmin or vmax.
+    """
+    vmin, vmax = chosen_limits(limits_of_level(drive.level.astype(np.float32)), vmin, vmax)
+    places = np.unique(np.linspace(0, len(drive.times) - 1, min(num_frames, len(drive.times))).round().astype(int))
+    with new_figure(max(SHEET_WIDTH * len(places) + 1.2, LEAST_WIDTH), 2.0 * ROW_HEIGHT) as figure:
+        upper, lower = figure.subfigures(2, 1)
+        panels = list(upper.subplots(1, len(places), sharex=True, sharey=True, squeeze=False).flat)
+        for axes, place in zip(panels, places):
+            image = _draw(axes, drive, place, vmin, vmax)
+            axes.set_title(f"{drive.times[place]:.3f} s")
+        _crop(panels, drive, vmin)
+        panels[0].set_ylabel(VELOCITY_LABEL)
+        upper.supxlabel(RANGE_LABEL, fontsize=9)
+        below = list(lower.subplots(1, 2))
+        for axes, column in zip(below, _columns(drive, vmin)):
+            image_over_time(axes, drive.times, column.values, column.level, cmap=MAP_COLOURS, vmin=vmin, vmax=vmax)
+            low, high = column.extent
+            axes.set(xlabel=TIME_LABEL, ylabel=column.label, ylim=(max(low, column.values[0]), min(high, column.values[-1])))
+            axes.set_title(column.title)
+        for part, shown in ((upper, panels), (lower, below)):
+            part.colorbar(image, ax=shown, label="Received power in dBm", extend="both", pad=0.02, aspect=25)
+        set_title(figure, title, 11)
+    return figure
+
+
+class _Column(NamedTuple):
+    """Of an axis over time: its values and label, level [T, X] in dBm, ends that are shown, title."""
+
+    values: np.ndarray
+    label: str
+    level: np.ndarray
+    extent: tuple
+    title: str
+
+
+def _columns(drive: Drive, floor: float) -> tuple[_Column, _Column]:
+    """Range over time of what moves, where something does, and velocity over time."""
+    ranges, velocities = _extent(drive, floor)
+    is_moving = np.abs(drive.velocity) > STATIC_SPEED
+    moves = is_moving.any() and (_stands_out(drive, floor)[is_moving]).any()
+    taken = is_moving if moves else np.ones_like(is_moving)
+    by_range = drive.level[:, taken].max(axis=1).astype(np.float32)
+    by_velocity = drive.level.max(axis=2).astype(np.float32)
+    return (_Column(drive.range, RANGE_LABEL, by_range, ranges, f"strongest of {'what moves' if moves else 'all velocities'}"),
+            _Column(drive.velocity, VELOCITY_LABEL, by_velocity, velocities, "strongest of all ranges"))
+
+
+def film_pictures(drive: Drive, *, vmin=None, vmax=None, title="") -> Iterator[np.ndarray]:
+    """The maps one after the other as pictures u8 [height, width, 3], with the time; arguments as of `plot_drive`."""
+    vmin, vmax = chosen_limits(limits_of_level(drive.level.astype(np.float32)), vmin, vmax)
+    with new_figure(*MAP_SIZE) as figure:
+        figure.set_dpi(FILM_DPI)
+        axes = figure.subplots()
+        image = _draw(axes, drive, 0, vmin, vmax)
+        _crop([axes], drive, vmin)
+        axes.set(xlabel=RANGE_LABEL, ylabel=VELOCITY_LABEL)
+        figure.colorbar(image, ax=axes, label="Received power in dBm", extend="both", pad=0.02, aspect=30)
+        for place, time in enumerate(drive.times):
+            image.set_data(drive.level[place].astype(np.float32))
+            axes.set_title(f"{title}{', ' if title else ''}{time:.3f} s")
+            figure.canvas.draw()
+            yield np.asarray(figure.canvas.buffer_rgba())[..., :3].copy()
+
+
+def _draw(axes, drive: Drive, place: int, vmin: float, vmax: float):
+    """The map as an image whose pixels are centred on their cells."""
+    half = [0.5 * (values[1] - values[0]) if len(values) > 1 else 0.5 for values in (drive.range, drive.velocity)]
+    extent = (drive.range[0] - half[0], drive.range[-1] + half[0], drive.velocity[0] - half[1], drive.velocity[-1] + half[1])
+    return axes.imshow(drive.level[place].astype(np.float32), origin="lower", aspect="auto", extent=extent, cmap=MAP_COLOURS,
+                       vmin=vmin, vmax=vmax, interpolation="nearest")
+
+
+def _extent(drive: Drive, floor: float) -> tuple:
+    """((nearest, farthest) in m, (lowest, highest) in m/s) about the cells that stand out of the noise in some frame."""
+    stands_out, found = _stands_out(drive, floor), []
+    for values, margin, is_there in ((drive.range, RANGE_MARGIN, stands_out.any(axis=0)),
+                                     (drive.velocity, VELOCITY_MARGIN, stands_out.any(axis=1))):
+        shown = values[is_there] if is_there.any() else values
+        found.append((shown.min() - margin, shown.max() + margin))
+    return tuple(found)
+
+
+def _stands_out(drive: Drive, floor: float) -> np.ndarray:
+    """Cells [V, R] that stand out of the noise and of the floor of the colour scale in some frame."""
+    noise = np.median(drive.level[0].astype(np.float32))
+    return (drive.level > max(floor + 3.0, noise + NOISE_PEAK_DB)).any(axis=0)
+
+
+def _crop(panels, drive: Drive, floor: float) -> None:
+    (left, right), (bottom, top) = _extent(drive, floor)
+    for axes in panels:
+        ends = axes.get_images()[0].get_extent()
+        axes.set(xlim=(max(left, ends[0]), min(right, ends[1])), ylim=(max(bottom, ends[2]), min(top, ends[3])))

@@ -1,0 +1,71 @@
+"""Sequences at a glance, as films, and iterated with progress."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from support.frames_in_time import DISTANCE, INTERVAL, SPEED, make_sequence, signal_of
+
+
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory) -> ep.StoredSequence:
+    return make_sequence().save(tmp_path_factory.mktemp("pictures") / "drive.h5", keep="maps")
+
+
+def shown_in(figure) -> list[np.ndarray]:
+    """The maps of a picture, in dBm, and below them what is shown over time."""
+    axes = [part.axes for part in figure.subfigs]
+    return [ax.get_images()[0].get_array() for ax in axes[0] if ax.get_images()] + [
+        ax.collections[0].get_array() for ax in axes[1] if ax.get_xlabel() == "Time in s"]
+
+
+@pytest.mark.parametrize("num_frames, places", [(4, [0, 1, 2, 3]), (1, [0]), (2, [0, 3])])
+def test_a_picture_has_maps_and_range_and_velocity_over_time(stored, num_frames, places):
+    made, read = (row.plot(num_frames=num_frames, title="a plate") for row in (make_sequence(), stored))
+    *maps, ranges, velocities = shown_in(read)
+    for place, shown in zip(places, maps, strict=True):
+        assert np.allclose(shown, 10.0 * np.log10(stored[place].power / 1e-3), rtol=0.0, atol=0.1)  # half precision
+    rows = np.asarray(ranges).reshape(-1, 4).argmax(axis=0) * make_sequence().radar.waveform.range_resolution
+    assert np.allclose(rows, DISTANCE + SPEED * stored.times, atol=0.45)  # a cell and the coupling to velocity
+    axis = stored[0].velocity
+    assert np.allclose(axis[np.asarray(velocities).reshape(-1, 4).argmax(axis=0)], SPEED, atol=axis[1] - axis[0])
+    assert all(np.allclose(one, other, rtol=0.0, atol=0.1) for one, other in zip(shown_in(made), shown_in(read), strict=True))
+    assert [ax.get_title() for ax in read.subfigs[0].axes][:len(places)] == [f"{stored.times[place]:.3f} s" for place in places]
+
+
+def test_a_film_has_a_picture_of_each_frame_in_real_time(stored, tmp_path):
+    image = pytest.importorskip("PIL.Image")
+    told = []
+    stored.film(tmp_path / "drive.gif", progress=lambda stage, fraction: told.append((stage, fraction)))
+    assert told == [("frames", 0.25), ("frames", 0.5), ("frames", 0.75), ("frames", 1.0)]
+    with image.open(tmp_path / "drive.gif") as film:
+        assert film.n_frames == 4 and film.info["duration"] == round(1e3 * INTERVAL)
+        pictures = [np.asarray(film.convert("L"), float) for place in range(4) if film.seek(place) is None]
+    assert all(np.abs(one - other).max() > 50.0 for one, other in zip(pictures, pictures[1:]))
+    stored[::-1].film(tmp_path / "back.gif", frames_per_second=5)
+    with image.open(tmp_path / "back.gif") as film:
+        assert film.info["duration"] == 200
+
+
+def test_frames_come_with_progress_and_with_the_same_bits():
+    told = []
+    frames = [signal_of(frame) for frame in make_sequence(frames=2).frames(progress=lambda *words: told.append(words))]
+    assert told == [("frames", 0.5), ("frames", 1.0)] and frames == [signal_of(frame) for frame in make_sequence(frames=2)]
+
+
+def test_what_cannot_be_drawn_is_told_by_its_argument(stored, tmp_path):
+    with pytest.raises(ValueError, match="^path: must end in .gif or .mp4"):
+        stored.film(tmp_path / "drive.avi")
+    with pytest.raises(ValueError, match="^frames_per_second: must be"):
+        stored.film(tmp_path / "drive.gif", frames_per_second=0)
+    with pytest.raises(ValueError, match="^num_frames: must be"):
+        stored.plot(num_frames=0)
+    with pytest.raises(TypeError, match="^vmin: must be"):
+        stored.plot(vmin="low")
+    with pytest.raises(ValueError, match="^frames: must be one at least"):
+        make_sequence()[:0].plot()
+    labels = make_sequence(frames=1).save(tmp_path / "labels", keep="labels")
+    with pytest.raises(ValueError, match="labels: must keep maps to be drawn"):
+        labels.plot()
+    assert not (tmp_path / "drive.gif").exists()

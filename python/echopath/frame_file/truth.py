@@ -12,9 +12,11 @@ NUMBERS = {
     "time": ((), "s"), "position": ((3,), "m"), "velocity": ((3,), "m/s"), "heading": ((), "rad"), "size": ((3,), "m"),
     "rotation": ((3, 3), ""), "yaw": ((), "rad"), "angular_velocity": ((3,), "rad/s"), "origin": ((3,), "m"),
     "position_in_radar": ((3,), "m"), "velocity_in_radar": ((3,), "m/s"), "yaw_in_radar": ((), "rad"), "range": ((), "m"),
+    "rotation_in_radar": ((3, 3), ""), "direction_in_radar": ((3,), ""),
     "azimuth": ((), "rad"), "elevation": ((), "rad"), "radial_velocity": ((), "m/s"), "visible_share": ((), ""),
     "received": ((), "W"), "rcs": ((), "m^2"), "rcs_low": ((), "m^2"), "rcs_high": ((), "m^2")}
-MAY_BE_NAN = ("heading", "rcs", "rcs_low", "rcs_high")
+MAY_BE_NAN = ("heading", "direction_in_radar", "rcs", "rcs_low", "rcs_high")
+MAY_BE_MISSING = ("rotation_in_radar", "direction_in_radar")  # in files of before there were these: NaN
 
 
 def write_truth(group, truth: Truth) -> None:
@@ -39,6 +41,8 @@ def _read_truth(group) -> Truth:
 
 
 def _read_numbers(group, field: str, shape: tuple):
+    if field in MAY_BE_MISSING and field not in group:
+        return np.full(shape, np.nan)
     values = read_array(group, field, np.float64, shape)
     if field not in MAY_BE_NAN and not np.isfinite(values).all():
         raise _core.FileError(f"{group.name}/{field}: must hold finite numbers")

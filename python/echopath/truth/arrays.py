@@ -11,7 +11,8 @@ _VARIABLES = {
     "position": (("axis",), "m"), "velocity": (("axis",), "m/s"), "heading": ((), "rad"), "size": (("side",), "m"),
     "rotation": (("axis", "side"), "1"), "yaw": ((), "rad"), "angular_velocity": (("axis",), "rad/s"),
     "origin": (("axis",), "m"), "position_in_radar": (("axis",), "m"), "velocity_in_radar": (("axis",), "m/s"),
-    "yaw_in_radar": ((), "rad"), "range": ((), "m"), "azimuth": ((), "rad"), "elevation": ((), "rad"),
+    "yaw_in_radar": ((), "rad"), "rotation_in_radar": (("axis", "side"), "1"), "direction_in_radar": (("axis",), "1"),
+    "range": ((), "m"), "azimuth": ((), "rad"), "elevation": ((), "rad"),
     "radial_velocity": ((), "m/s"), "visible_share": ((), "1"), "received": ((), "W"), "rcs": ((), "m^2"),
     "rcs_low": ((), "m^2"), "rcs_high": ((), "m^2")}
 

@@ -10,6 +10,7 @@ import numpy as np
 from ..arguments.checks import LARGEST_COUNT, count, refused
 from ..base.equality import has_same_fields
 from ..base.made_by import made_by
+from ..base.rotations import quaternions
 from ..presentation.tables import make_table, write_csv
 
 if TYPE_CHECKING:
@@ -29,7 +30,9 @@ _COLUMNS = {
     "range": (("range",), "m"), "azimuth": (("azimuth",), "rad"), "elevation": (("elevation",), "rad"),
     "radial_velocity": (("radial_velocity",), "m/s"), "visible_share": (("visible_share",), ""),
     "received": (("received",), "W"), "rcs": (("rcs",), "m^2"), "rcs_low": (("rcs_low",), "m^2"),
-    "rcs_high": (("rcs_high",), "m^2"), "rotation": (tuple(f"rotation_{row}{column}" for row in _XYZ for column in _XYZ), "")}
+    "rcs_high": (("rcs_high",), "m^2"), "rotation": (tuple(f"rotation_{row}{column}" for row in _XYZ for column in _XYZ), ""),
+    "rotation_in_radar": (tuple(f"radar_rotation_{row}{column}" for row in _XYZ for column in _XYZ), ""),
+    "direction_in_radar": (("radar_direction_x", "radar_direction_y", "radar_direction_z"), "")}
 _UNITS = {column: unit for columns, unit in _COLUMNS.values() for column in columns if unit}
 
 
@@ -50,6 +53,8 @@ class Truth:
     yaw: [N] rad, where the box's own +x points; angular_velocity: [N, 3] rad/s, of these axes, in world axes
     position_in_radar: [N, 3] m; velocity_in_radar: [N, 3] m/s, its rate as it is seen from a radar that moves and turns;
         yaw_in_radar: [N] rad, of the box's +x in the radar's axes
+    rotation_in_radar: [N, 3, 3], radar_from_box; direction_in_radar: [N, 3] unit vectors, where the velocity over ground
+        points in the radar's axes, NaN below 0.1 mm/s. Both are NaN in files from before there were these
     range, azimuth, elevation: [N] m, rad, rad, of the box's centre from the point between transmitters and receivers that
         detections count from (`Detections.centre`); radial_velocity: [N] m/s, rate of that range, receding positive
     visible_share: [N], of the solid angle in which the radar would see the object alone, what nothing hides, 0 to 1
@@ -74,6 +79,8 @@ class Truth:
     position_in_radar: np.ndarray
     velocity_in_radar: np.ndarray
     yaw_in_radar: np.ndarray
+    rotation_in_radar: np.ndarray
+    direction_in_radar: np.ndarray
     range: np.ndarray
     azimuth: np.ndarray
     elevation: np.ndarray
@@ -87,7 +94,18 @@ class Truth:
     @property
     def corners(self) -> np.ndarray:
         """Corners of the boxes, [N, 8, 3] m in world axes: the last axis of the box runs fastest."""
-        return self.position[:, None] + np.einsum("nij,nkj->nki", self.rotation, _SIGNS * self.size[:, None])
+        return self._corners(self.position, self.rotation)
+
+    @property
+    def corners_in_radar(self) -> np.ndarray:
+        """The same corners in the axes of the radar, [N, 8, 3] m."""
+        return self._corners(self.position_in_radar, self.rotation_in_radar)
+
+    @property
+    def quaternions_in_radar(self) -> np.ndarray:
+        """`rotation_in_radar` as unit quaternions (w, x, y, z), [N, 4]; w is 0 or more."""
+        found = quaternions(self.rotation_in_radar) if len(self) else np.zeros((0, 4))
+        return np.where(found[:, :1] < 0.0, -found, found)
 
     @property
     def rcs_dbsm(self) -> np.ndarray:
@@ -113,8 +131,8 @@ class Truth:
 
         Columns: frame, time, name; x, y, z, vx, vy, vz, heading, length, width, height, yaw and the like in world axes,
         radar_x and the like in those of the radar, range, azimuth, elevation, radial_velocity, visible_share, received (W),
-        rcs (m^2) with its interval, rotation row by row; units in `attrs["units"]`. Needs pandas, raises ModuleNotFoundError
-        without it.
+        rcs (m^2) with its interval, rotation and radar_rotation row by row; units in `attrs["units"]`. Needs pandas, raises
+        ModuleNotFoundError without it.
         """
         return make_table(self._columns(), _UNITS)
 
@@ -158,6 +176,9 @@ class Truth:
         columns = {field: np.array(records[field]) for field in _fields()}
         columns["name"] = np.array([name.decode("utf-8") for name in columns["name"].tolist()], dtype=str)
         return Truth(**columns)
+
+    def _corners(self, centres, rotations) -> np.ndarray:
+        return centres[:, None] + np.einsum("nij,nkj->nki", rotations, _SIGNS * self.size[:, None])
 
     def _where(self, chosen) -> Truth:
         return Truth(**{field: getattr(self, field)[chosen] for field in _fields()})

@@ -94,8 +94,9 @@ def _in_radar(boxes, radar, time: float) -> dict:
     velocity = (boxes.velocity - rate[:3, 3]) @ world[:3, :3] + way @ rate[:3, :3]
     sight = position - centre_of(radar)
     distance = np.linalg.norm(sight, axis=1)
-    return {"position_in_radar": position, "velocity_in_radar": velocity,
-            "yaw_in_radar": _yaw(np.einsum("ji,njk->nik", world[:3, :3], boxes.rotation)), "range": distance,
+    rotation = np.einsum("ji,njk->nik", world[:3, :3], boxes.rotation)
+    return {"position_in_radar": position, "velocity_in_radar": velocity, "yaw_in_radar": _yaw(rotation),
+            "rotation_in_radar": rotation, "direction_in_radar": _direction(boxes.velocity) @ world[:3, :3], "range": distance,
             "azimuth": np.arctan2(sight[:, 1], sight[:, 0]),
             "elevation": np.arctan2(sight[:, 2], np.hypot(sight[:, 0], sight[:, 1])),
             "radial_velocity": np.sum(sight * velocity, axis=1) / np.maximum(distance, np.finfo(float).tiny)}
@@ -116,6 +117,11 @@ def _cross_sections(paths, radar, found, centres, time: float) -> dict:
 def _heading(velocity):
     is_moving = np.hypot(velocity[:, 0], velocity[:, 1]) >= _SLOWEST
     return np.where(is_moving, np.arctan2(velocity[:, 1], velocity[:, 0]), np.nan)
+
+
+def _direction(velocity):
+    speed = np.linalg.norm(velocity, axis=1, keepdims=True)
+    return np.where(speed >= _SLOWEST, velocity / np.maximum(speed, _SLOWEST), np.nan)
 
 
 def _yaw(rotation):

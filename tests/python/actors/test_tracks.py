@@ -19,9 +19,10 @@ def truth_of(positions, names):
     rows, empty = frames * count, np.zeros
     flat = np.concatenate([positions.reshape(rows, 2), empty((rows, 1))], axis=1)
     columns = {field: empty(rows) for field in ep.Truth.__dataclass_fields__}
-    vectors = ("velocity", "angular_velocity", "origin", "velocity_in_radar")
+    vectors = ("velocity", "angular_velocity", "origin", "velocity_in_radar", "direction_in_radar")
     return ep.Truth(**columns | {name: empty((rows, 3)) for name in vectors} | {
         "position": flat, "position_in_radar": flat, "size": np.ones((rows, 3)), "rotation": np.tile(np.eye(3), (rows, 1, 1)),
+        "rotation_in_radar": np.tile(np.eye(3), (rows, 1, 1)),
         "frame": np.repeat(np.arange(frames, dtype=np.int32), count), "time": np.repeat(TIMES[:frames], count),
         "name": np.array(names * frames)})
 

@@ -52,7 +52,7 @@ def test_a_run_tells_of_each_frame_and_goes_on(scene_path, tmp_path, capsys):
     assert lines[7] == "frame 1 of 4 at 0 s: is there" and lines[8] == "frame 2 of 4 at # s: is there"
     assert lines[10] == "frame 4 of 4 at # s: # s"
     assert lines[11].startswith("wrote StoredSequence(") and "4 done" in lines[11]
-    assert lines[12:] == [f"wrote {out / name}" for name in ("overview.png", "film.gif")] and (out / "film.gif").stat().st_size > 0
+    assert lines[12:] == [f"wrote {out / name}" for name in ("overview.png", "film.gif")]
     scene_file = ep.load_scene(scene_path)
     alone = ep.simulate(scene_file.scene, scene_file.radar, trace=scene_file.trace.replace(start_time=3 * 0.1), guard=False)
     assert (ep.load_sequence(out)[3].noisy_cube == alone.noisy_cube).all()

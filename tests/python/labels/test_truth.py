@@ -199,6 +199,35 @@ def test_axes_of_a_radar_that_drives_and_turns():
     assert found.yaw_in_radar[0] == pytest.approx(-0.2 - spin * now)
 
 
+def turned(axis, angle):
+    """Rotation by `angle` about a unit vector (Rodrigues)."""
+    x, y, z = axis
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+
+
+def test_boxes_in_the_axes_of_a_radar_that_pitches_and_rolls():
+    """Vertices of a tilted box that drives, taken into the radar's axes one by one, against its corners there."""
+    place, spin, ahead = np.array([1.0, 2.0, 1.5]), np.array([1.2, -0.7, 0.4]), np.array([9.0, 0.0, 0.2])
+    radar = build_radar(num_chirps=64, position=place, yaw=0.2, pitch=-0.15,
+                        motion=ep.LinearMotion(velocity=ahead, angular_velocity=spin))
+    tilt, velocity = turned((0, 0, 1), 0.6) @ turned((0.6, 0.8, 0.0), 0.3), np.array([-5.0, 1.0, 0.5])
+    transform = np.eye(4)
+    transform[:3, :3], transform[:3, 3] = tilt, (20, 3, 0.5)
+    paths = trace(box_scene(transform=transform, motion=ep.LinearMotion(velocity=velocity)), radar, start_time=0.3)
+    found, now = ep.truth(paths), paths.frame.trace_time
+    rate = np.linalg.norm(spin)
+    axes = turned(spin / rate, rate * now) @ turned((0, 0, 1), 0.2) @ turned((0, 1, 0), 0.15)  # up is a turn about -y
+    seen = (paths.scene.world_vertices(0, now) - place - ahead * now) @ axes
+    apart = np.linalg.norm(found.corners_in_radar[0][:, None] - seen, axis=2)
+    assert apart.min(axis=0).max() < TOUCH and apart.min(axis=1).max() < TOUCH
+    assert found.rotation_in_radar[0] == pytest.approx(axes.T @ tilt, abs=1e-12)
+    assert found.direction_in_radar[0] == pytest.approx(axes.T @ velocity / np.linalg.norm(velocity), abs=1e-6)
+    w, x, y, z = found.quaternions_in_radar[0]
+    assert w >= 0 and turned(np.array([x, y, z]) / np.sin(np.arccos(w)), 2 * np.arccos(w)) == pytest.approx(axes.T @ tilt)
+    assert np.isnan(ep.truth(trace(box_scene(position=(12, 3, 0)), radar)).direction_in_radar).all()
+
+
 # --- as tables and rows ---
 
 @pytest.fixture(scope="module")

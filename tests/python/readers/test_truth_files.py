@@ -94,6 +94,17 @@ def test_a_file_that_was_changed_is_refused_by_name(path, change, words):
         ep.load_frame(path)
 
 
+def test_files_from_before_there_were_boxes_in_radar_axes_lack_them(frame, path):
+    import h5py
+
+    with h5py.File(path, "r+") as file:
+        for name in ("rotation_in_radar", "direction_in_radar"):
+            del file[f"truth/{name}"]
+    found = ep.load_frame(path).truth
+    assert np.isnan(found.rotation_in_radar).all() and np.isnan(found.corners_in_radar).all()
+    assert np.array_equal(found.position_in_radar, frame.truth.position_in_radar)
+
+
 def test_a_value_that_lost_a_bit_is_noticed(path):
     with h5py.File(path, "r+") as file:
         file["truth/position"][0, 0] += 1e-9

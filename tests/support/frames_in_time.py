@@ -26,6 +26,14 @@ def make_sequence(frames: int = 4, **keywords) -> ep.Sequence:
     return ep.Sequence(make_scene(), make_radar(), **{"frames": frames, "interval": INTERVAL} | SETTINGS | keywords)
 
 
+def make_walk(frames: int) -> ep.Sequence:
+    """A walking person, whose surfaces are rough, with labels and truth: frames that follow each other without a gap."""
+    scene, radar = ep.Scene(), make_radar(transmit_power=10.0)
+    scene.add(ep.actors.pedestrian(speed=1.4, duration=1.0), name="walker", position=(5.0, 0.5, -1.0), yaw=np.pi)
+    return ep.Sequence(scene, radar, frames=frames, interval=radar.waveform.num_chirps * radar.waveform.chirp_interval,
+                       start_time=0.2, num_rays=2000, guard=False, labels=True, detections=True, truth=True)
+
+
 def signal_of(frame: ep.Frame) -> bytes:
     """All bits of the noisy signal, the map, the labels and the hits of a frame."""
     labels = frame.labels["parts"]

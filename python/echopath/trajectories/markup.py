@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from xml.parsers import expat
@@ -10,14 +11,19 @@ from .. import _core
 from .samples import MAX_BYTES, MOST_SAMPLES, Samples, instant, number, refuse
 
 MAX_DEPTH = 64          # of nested elements
+_GEO_OPTION = re.compile(r'fcd-output\.geo\s+value="(true|1|yes|on|x|t)"', re.IGNORECASE)  # in SUMO's comment on its options
+_IN_DEGREES = "places are in degrees (--fcd-output.geo), must be in m: write them without that option"
+LEAST_WAY, SMALLEST_SHARE = 10.0, 0.01  # m by speed, from which on places that go less than that share of it are no metres
 
 
 def read_fcd(path: Path, length_of: Callable[[str], float]) -> dict[str, Samples]:
     """{name: Samples} of a file of SUMO's --fcd-output; length_of: m, of a vehicle of a type. Raises FileError.
 
     x and y are the middle of the front bumper, the angle is in degrees from north (+y) clockwise. Persons are where they are.
+    Longitudes and latitudes are refused: by the options that the file names, or where all go much less far than their speeds say.
     """
     tracks: dict[str, Samples] = {}
+    ways = _Ways()
     state = {"time": math.nan, "root": "", "count": 0}
 
     def begin(tag: str, attributes: Mapping[str, str], line: int) -> None:
@@ -32,9 +38,42 @@ def read_fcd(path: Path, length_of: Callable[[str], float]) -> dict[str, Samples
             if state["count"] > MOST_SAMPLES or math.isnan(state["time"]):
                 refuse(path, line, f"<{tag}>: must stand in a <timestep>, at most {MOST_SAMPLES} in all")
             _add_vehicle(path, line, tag, attributes, state["time"], tracks, length_of)
+            ways.add(attributes, state["time"])
 
-    _parse(path, begin)
+    def comment(words: str, line: int) -> None:
+        if _GEO_OPTION.search(words):
+            refuse(path, line, _IN_DEGREES)
+
+    _parse(path, begin, comment=comment)
+    if ways.are_in_degrees:
+        raise _core.FileError(f"{path}: {_IN_DEGREES} (they go {ways.by_place:.3g}, by their speeds {ways.by_speed:.3g} m)")
     return tracks
+
+
+class _Ways:
+    """How far all vehicles and persons of a file go, by their places and by their speeds."""
+
+    def __init__(self):
+        self.by_place, self.by_speed, self._may_be_degrees = 0.0, 0.0, True
+        self._last: dict[str, tuple[float, float, float]] = {}
+
+    def add(self, attributes: Mapping[str, str], time: float) -> None:
+        """Takes a row that was read without an error; one without a usable speed says nothing."""
+        x, y, name = float(attributes["x"]), float(attributes["y"]), attributes["id"]
+        self._may_be_degrees &= abs(x) <= 180.0 and abs(y) <= 90.0
+        before, self._last[name] = self._last.get(name), (time, x, y)
+        try:
+            speed = abs(float(attributes.get("speed", "nan")))
+        except ValueError:
+            return
+        if before is not None and math.isfinite(speed):
+            self.by_place += math.hypot(x - before[1], y - before[2])
+            self.by_speed += speed * abs(time - before[0])
+
+    @property
+    def are_in_degrees(self) -> bool:
+        """Whether the places can be no metres: a degree is 111 km."""
+        return self._may_be_degrees and self.by_speed >= LEAST_WAY and self.by_place < SMALLEST_SHARE * self.by_speed
 
 
 def _attribute(path: Path, line: int, tag: str, attributes: Mapping[str, str], name: str) -> str:
@@ -104,8 +143,9 @@ class _Gpx:
             samples.places.append((latitude, longitude, height))
 
 
-def _parse(path: Path, begin, end=None, text=None) -> None:
-    """Calls begin(tag, attributes, line), end(tag, line) and text(words) for the content of an XML file without entities."""
+def _parse(path: Path, begin, end=None, text=None, comment=None) -> None:
+    """Calls begin(tag, attributes, line), end(tag, line), text(words) and comment(words, line) for the content of an XML file
+    without entities."""
     parser = expat.ParserCreate()
     depth = [0]
 
@@ -125,6 +165,8 @@ def _parse(path: Path, begin, end=None, text=None) -> None:
 
     parser.StartElementHandler, parser.EndElementHandler = on_begin, on_end
     parser.StartDoctypeDeclHandler = refuse_types
+    if comment:
+        parser.CommentHandler = lambda words: comment(words, parser.CurrentLineNumber)
     if text:
         parser.CharacterDataHandler = text
     try:

@@ -51,7 +51,7 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
     .csv, .txt, .tsv: a line of names of columns, then a row for each position: time (s, or ISO 8601), x and y (m), or lat and lon
         (degrees), and, where it has them, z or ele (m), id or name, type, yaw (rad, from x to y) or yaw_deg, speed (m/s). Names
         may be written in other usual ways ("Timestamp [s]", "track_id"); other columns are left out. Commas, semicolons or tabs
-    .xml: floating car data of SUMO (--fcd-output); vehicles and persons. Speeds are those of the positions
+    .xml: floating car data of SUMO (--fcd-output), in m; vehicles and persons. Speeds are those of the positions
     .gpx: tracks of a GPS receiver
 
     origin: (latitude, longitude) in degrees, or with a height in m, about which positions of .gpx and of tables with lat and lon

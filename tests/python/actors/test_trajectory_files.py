@@ -1,5 +1,6 @@
 """Trajectories of files: tables, SUMO's floating car data, GPX, scene files; what is wrong is refused by file and line."""
 import math
+import re
 
 import numpy as np
 import pytest
@@ -142,6 +143,31 @@ WRONG = {
 def test_what_is_wrong_is_refused_by_file_and_line(tmp_path, name, text, words):
     with pytest.raises(ep.FileError, match=f"(?s){name}.*{words}"):
         ep.read_trajectories(write(tmp_path, name, text))
+
+
+DEGREES = 1.0 / 111320.0  # of a metre on a great circle
+
+
+def in_degrees(metres):
+    """Data as SUMO writes them with --fcd-output.geo, at the equator and the meridian of Greenwich."""
+    return re.sub(r'([xy])="([\d.]+)"', lambda found: f'{found[1]}="{8.5 + float(found[2]) * DEGREES:.7f}"', metres)
+
+
+def test_places_of_sumo_in_degrees_are_refused(tmp_path):
+    with pytest.raises(ep.FileError, match=r"fcd.xml: places are in degrees \(--fcd-output.geo\), must be in m"):
+        ep.read_trajectories(write(tmp_path, "fcd.xml", in_degrees(FCD)))
+    options = '<!-- generated\n<output><fcd-output value="a.xml"/><fcd-output.geo value="true"/></output>\n-->'
+    with pytest.raises(ep.FileError, match="line 2: places are in degrees"):
+        ep.read_trajectories(write(tmp_path, "fcd.xml", FCD.replace("<fcd-export", f"{options}<fcd-export", 1)))
+
+
+@pytest.mark.filterwarnings("ignore:.*single position")
+def test_places_in_metres_are_taken_whatever_their_speeds_say(tmp_path):
+    for text in (FCD.replace("speed=", "other="), FCD.replace('speed="10.00"', 'speed="0.00"'),
+                 FCD.replace("<fcd-export", '<!-- <fcd-output.geo value="false"/> --><fcd-export', 1)):
+        assert len(ep.read_trajectories(write(tmp_path, "fcd.xml", text))) == 3
+    standing = FCD.replace('x="20.00"', 'x="10.00"').replace('x="30.00"', 'x="10.00"').replace('speed="10.00"', 'speed="0.00"')
+    assert len(ep.read_trajectories(write(tmp_path, "fcd.xml", standing))) == 3
 
 
 def box_of(name, trajectory):

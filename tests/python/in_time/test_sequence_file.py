@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.frame.maps import maps_of
 from echopath.frame_file import changing as changes
 from echopath.frame_file.changing import changing, work_folder
 from echopath.frame_file.h5_items import library
-from support.frames_in_time import make_sequence, signal_of
+from support.frames_in_time import make_sequence, make_walk, signal_of
 
 TESTS = Path(__file__).parents[2]
 WAIT = 60.0  # s, for a process on a busy machine
@@ -59,7 +60,7 @@ def test_small_frames_are_those_of_a_folder(tmp_path, keep):
 
 KILLED = """
 import os, signal, threading
-from support.frames_in_time import make_sequence
+from support.frames_in_time import make_sequence, make_walk
 
 def kill_soon(stage, fraction):
     done.append(fraction)
@@ -74,15 +75,33 @@ done = []
 
 def test_a_run_that_is_killed_keeps_its_frames_and_goes_on_with_the_same_bits(tmp_path):
     path = tmp_path / "drive.h5"
-    script = KILLED + f"make_sequence(frames={MANY}).save({str(path)!r}, progress=kill_soon)\n"
-    process = subprocess.Popen([sys.executable, "-c", script], cwd=TESTS)
-    assert process.wait(WAIT) == -signal.SIGKILL
-    there = ep.load_sequence(path).is_done
-    assert 2 <= there.sum() < MANY and there[:there.sum()].all()
+    there = done_when_killed(f"make_sequence(frames={MANY}).save({str(path)!r}, progress=kill_soon)", path)
     resumed = list(make_sequence(frames=MANY).save_frames(path))
     assert [one.seconds is None for one in resumed] == there.tolist()
     assert [signal_of(frame) for frame in ep.load_sequence(path)] == [signal_of(frame) for frame in make_sequence(frames=MANY)]
     assert not work_folder(path).exists()
+
+
+def done_when_killed(call: str, path: Path) -> np.ndarray:
+    """Which frames a process that was killed in a call has written."""
+    process = subprocess.Popen([sys.executable, "-c", f"{KILLED}{call}\n"], cwd=TESTS)
+    assert process.wait(WAIT) == -signal.SIGKILL
+    there = ep.load_sequence(path).is_done
+    assert 2 <= there.sum() < MANY and there[:there.sum()].all()
+    return there
+
+
+@pytest.mark.parametrize("name", ["walk.h5", "walk"])
+def test_speckle_maps_and_truth_of_a_person_go_on_after_a_kill(tmp_path, name):
+    path, walk = tmp_path / name, make_walk(MANY)
+    there = done_when_killed(f"make_walk({MANY}).save({str(path)!r}, keep='maps', progress=kill_soon)", path)
+    stored = walk.save(path, keep="maps")
+    assert stored.is_done.all() and there.sum() >= 2
+    for place in (MANY - 1, 0, int(there.sum())):  # the first behind the kill, and in any order
+        frame, kept = walk[place], stored[place]
+        assert np.any(frame.paths.diffuse) and kept.power.max() > 0.0
+        assert kept == maps_of(frame, with_power=True) and kept.kept_truth == frame.truth
+    assert len(stored.truth) == MANY and np.diff(stored.truth.position[:, 0]).max() < 0.0
 
 
 def numbers_in(path: Path) -> dict:

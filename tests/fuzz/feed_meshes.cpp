@@ -8,24 +8,35 @@
 namespace echopath::fuzz {
 namespace {
 
-void check(const std::string& name, const Mesh& mesh) {
-  demand(!name.empty() && name.find('\0') == std::string::npos, "a mesh has a name without NUL");
-  demand(!mesh.triangles().empty(), "a mesh has triangles");
-  for (const Vec3& vertex : mesh.vertices()) demand(vertex.allFinite(), "vertices are finite");
-  for (const Triangle& triangle : mesh.triangles()) {
-    for (const uint32_t vertex : triangle) demand(vertex < mesh.vertices().size(), "corners are vertices");
+void check(const Surfaces::Surface& one) {
+  demand(!one.name.empty(), "a surface has a name");
+  for (const std::string& name : {one.object, one.name, one.material}) {
+    demand(name.find('\0') == std::string::npos, "names have no NUL");
   }
-  demand(mesh.original_triangle().size() == mesh.triangles().size(), "each triangle has a face of the file");
+  demand(!one.triangles.empty(), "a surface has triangles");
+  for (const Vec3& vertex : one.vertices) demand(vertex.allFinite(), "vertices are finite");
+  for (const Triangle& triangle : one.triangles) {
+    for (const uint32_t vertex : triangle) demand(vertex < one.vertices.size(), "corners are vertices");
+  }
+  demand(one.face.size() == one.triangles.size(), "each triangle has a face of the file");
+  demand(one.normals.empty() || one.normals.size() == 3 * one.triangles.size(), "all corners have normals, or none");
+  for (const Vec3& normal : one.normals) demand(normal.allFinite() && normal.norm() < 1.001, "normals are units, or zero");
+}
+
+void check(const NamedMesh& named) {
+  const Mesh& mesh = *named.mesh;
+  demand(!named.name.empty(), "a mesh has a name");
+  demand(!mesh.triangles().empty(), "a mesh has triangles");
+  demand(mesh.original_triangle().size() == mesh.triangles().size(), "each triangle of a mesh has a face of the file");
   demand(std::isfinite(mesh.area()) && mesh.area() > 0.0, "a mesh has an area");
 }
 
 void feed(std::string_view bytes, const std::string& name) {
   std::istringstream stream{std::string(bytes)};
   try {
-    for (const Surfaces::Surface& one : read_surfaces(stream, name).surfaces) {
-      check(one.name, *one.mesh);
-      demand(one.material.find('\0') == std::string::npos, "the name of a material has no NUL");
-    }
+    for (const Surfaces::Surface& one : read_surfaces(stream, name).surfaces) check(one);
+    std::istringstream again{std::string(bytes)};
+    for (const NamedMesh& named : read_meshes(again, name)) check(named);
   } catch (const FileError& error) {
     demand(std::string_view(error.what()).starts_with(name), "an error names its file");
   }

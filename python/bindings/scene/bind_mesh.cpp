@@ -131,17 +131,36 @@ py::list meshes_of_file(const std::filesystem::path& path, double unit) {
   return result;
 }
 
+py::list tuples_of(const std::vector<Surfaces::Surface>& surfaces) {
+  py::list tuples;
+  for (const Surfaces::Surface& one : surfaces) {
+    const py::object normals = one.normals.empty() ? py::object(py::none()) : to_numpy(one.normals);
+    tuples.append(py::make_tuple(one.object, one.name, one.material, to_numpy(one.vertices), to_numpy(one.triangles),
+                                 to_numpy(one.face), normals));
+  }
+  return tuples;
+}
+
 py::tuple surfaces_of_file(const std::filesystem::path& path, double unit) {
   Surfaces found;
   {
     const WithoutGil released;
     found = load_surfaces(path.string(), unit);
   }
-  py::list surfaces;
-  for (const Surfaces::Surface& one : found.surfaces) {
-    surfaces.append(py::make_tuple(one.name, one.material, shared(one.mesh)));
+  return py::make_tuple(tuples_of(found.surfaces), found.material_files);
+}
+
+py::tuple surfaces_of_frames(const std::vector<std::filesystem::path>& paths, double unit) {
+  SurfaceFrames found;
+  {
+    const WithoutGil released;
+    std::vector<std::string> names;
+    for (const std::filesystem::path& path : paths) names.push_back(path.string());
+    found = load_frames(names, unit);
   }
-  return py::make_tuple(surfaces, found.material_files);
+  py::list vertices;
+  for (const std::vector<std::vector<Vec3>>& frames : found.vertices) vertices.append(to_numpy(frames));
+  return py::make_tuple(tuples_of(found.surfaces), vertices);
 }
 
 std::shared_ptr<Mesh> mesh_of_file(const std::filesystem::path& path, double unit) {
@@ -161,7 +180,14 @@ void bind_readers(py::module_& m) {
   m.def("load_mesh", &mesh_of_file, py::arg("path"), py::arg("unit") = 1.0, "What ep.load_mesh calls.");
   m.def("load_meshes", &meshes_of_file, py::arg("path"), py::arg("unit") = 1.0, "What ep.load_meshes calls.");
   m.def("load_surfaces", &surfaces_of_file, py::arg("path"), py::arg("unit") = 1.0,
-        "([(name, name of the material, Mesh)], [what lines `mtllib` name]): groups of a mesh file by material.");
+        R"(Groups of a mesh file by material, and what its lines `mtllib` name.
+
+Each is (object, name, name of the material, vertices [V, 3] in m, triangles [F, 3], face of the file [F], unit normals of the
+corners [3 F, 3] or None where the file says nothing of them). Triangles without area are still there.)");
+  m.def("load_frames", &surfaces_of_frames, py::arg("paths"), py::arg("unit") = 1.0,
+        R"(Surfaces of the first of some mesh files as of load_surfaces, and vertices [T, V, 3] in m of each over all files.
+
+Raises FileError naming a file whose faces, groups or materials are others.)");
 }
 
 }  // namespace

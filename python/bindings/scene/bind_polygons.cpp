@@ -1,6 +1,7 @@
 // Polygons of other libraries' meshes, cut into triangles as those of files are.
 #include <pybind11/pybind11.h>
 
+#include <numeric>
 #include <vector>
 
 #include "echopath/base/errors.h"
@@ -20,11 +21,14 @@ py::tuple triangles_of_polygons(const py::object& vertices, const py::object& co
   for (const uint32_t count : as_vector<uint32_t>(counts, "counts")) {
     require(count >= 3, "counts", "must be at least 3 corners", count);
     require(count <= all.size() - begin, "counts", "must not go beyond the corners", count);
-    soup.add_polygon({all.begin() + static_cast<ptrdiff_t>(begin), all.begin() + static_cast<ptrdiff_t>(begin + count)}, 0);
+    std::vector<uint32_t> places(count);
+    std::iota(places.begin(), places.end(), static_cast<uint32_t>(begin));
+    const auto first = all.begin() + static_cast<ptrdiff_t>(begin);
+    soup.add_polygon({first, first + static_cast<ptrdiff_t>(count)}, 0, places);
     begin += count;
   }
   require(begin == all.size(), "counts", "must add up to the number of corners", begin);
-  return py::make_tuple(to_numpy(soup.triangles), to_numpy(soup.face));
+  return py::make_tuple(to_numpy(soup.triangles), to_numpy(soup.face), to_numpy(soup.normal));
 }
 
 }  // namespace
@@ -34,7 +38,7 @@ void bind_polygons(py::module_& m) {
         R"(Polygons cut into triangles as load_mesh cuts those of files.
 
 vertices: [V, 3] in m; corners: [N] indices of vertices, polygon by polygon; counts: [F] corners of each, three or more
-Returns the triangles [T, 3] and the polygon of each [T]. Raises ValueError.)");
+Returns the triangles [T, 3], the polygon of each [T] and the places [T, 3] of their corners in `corners`. Raises ValueError.)");
 }
 
 }  // namespace echopath::bindings

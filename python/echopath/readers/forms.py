@@ -41,9 +41,9 @@ def sphere(radius: float) -> Surface:
     return revolved(_arc(radius, 0.0, 0.0, np.pi))
 
 
-def cylinder(radius: float, height: float, caps: bool = True) -> Surface:
-    """About the origin, along z."""
-    side = [(radius, 0.5 * height), (radius, -0.5 * height)]
+def cylinder(radius: float, height: float, caps: bool = True, radius_above: float | None = None) -> Surface:
+    """About the origin, along z; radius_above: of its upper end, None: as below."""
+    side = [(radius if radius_above is None else radius_above, 0.5 * height), (radius, -0.5 * height)]
     return revolved([(0.0, 0.5 * height), *side, (0.0, -0.5 * height)] if caps else side)
 
 
@@ -52,9 +52,9 @@ def cone(radius: float, height: float) -> Surface:
     return revolved([(0.0, 0.5 * height), (radius, -0.5 * height), (0.0, -0.5 * height)])
 
 
-def capsule(radius: float, height: float) -> Surface:
-    """About the origin, along z; height: of its straight part."""
-    upper = _arc(radius, 0.5 * height, 0.0, 0.5 * np.pi)
+def capsule(radius: float, height: float, radius_above: float | None = None) -> Surface:
+    """About the origin, along z; height: of its straight part; radius_above: of the upper half sphere, None: as below."""
+    upper = _arc(radius if radius_above is None else radius_above, 0.5 * height, 0.0, 0.5 * np.pi)
     return revolved(upper + _arc(radius, -0.5 * height, 0.5 * np.pi, np.pi))
 
 

@@ -12,7 +12,9 @@ import numpy as np
 
 from .. import _core
 from .axes import Axes
+from .mesh_files import Groups, MovedPart, parts_of_frames
 from .model import Model
+from .normals import as_smooth
 from .options import ReadOptions
 from .sampled import Clock, chosen_animation, repeated
 from .tree import Tree
@@ -28,19 +30,25 @@ def read(path: Path, options: ReadOptions) -> Model:
 
     path: of a folder of .obj files, which are frames in the order of the numbers in their names, and may have a file
     frame_rate.txt with a number in 1/s; or of a .npz file with vertices [T, V, 3], triangles [F, 3], and times [T] in s or
-    frame_rate in 1/s. The sequence ends with its last frame, unless it is repeated, and then goes on without end.
+    frame_rate in 1/s, and normals [V, 3] where it stands for a curved surface. Faces and normals are those of the first frame. The sequence ends with its last frame, unless it is repeated, and then goes on without end.
     """
     axes, tree = Axes(options), Tree(options)
     if path.is_dir():
-        times, surfaces = _of_folder(path, axes, tree)
+        times, parts = _of_folder(path, axes, tree)
     else:
-        times, surfaces = _of_file(path, axes, tree)
+        times, parts = _of_file(path, axes, tree)
     names = (NAME,) if len(times) > 1 else ()
     animation = chosen_animation(options, names)
     clock = Clock(options, float(times[0]), float(times[-1]))
-    for name, material, triangles, vertices in surfaces:
-        deformation = _sequence(path, times, vertices, clock, tree) if animation else None
-        tree.add(name, mesh=_mesh(path, vertices[0], triangles), deformation=deformation, foreign_material=material, smooth=True)
+    if options.smooth is None and not any(part.smooth for part in parts):
+        tree.note("no normals say that its meshes stand for curved surfaces: their facets are flat, unless smooth=True")
+    if any(part.mesh.num_removed_triangles for part in parts):
+        tree.note("triangles without area in the first frame are left out of all frames")
+    groups = Groups(tree)
+    for part in parts:
+        deformation = _sequence(path, times, part.vertices, clock, tree) if animation else None
+        tree.add(part.name or (path.name if path.is_dir() else path.stem), groups.of_object(part.object), mesh=part.mesh,
+                 deformation=deformation, foreign_material=part.material, smooth=part.smooth)
     return tree.model(format="OBJ frames" if path.is_dir() else "NPZ frames", unit=axes.unit, up=axes.up, animations=names,
                       animation=animation, duration=float(times[-1] - times[0]) if animation else 0.0)
 
@@ -65,27 +73,12 @@ def _sequence(path: Path, times, vertices, clock: Clock, tree: Tree) -> _core.Ve
 # --- folders ---
 
 def _of_folder(path: Path, axes: Axes, tree: Tree):
-    """(times [T], [(name, material, triangles, vertices [T, V, 3] in m)]) of a folder."""
+    """(times [T], [MovedPart]) of a folder."""
     files = sorted((file for file in path.iterdir() if file.suffix.lower() == ".obj" and file.is_file()), key=_by_number)
     if not files:
         raise _core.FileError(f"{path}: is a folder without .obj files")
-    first = _surfaces(files[0], axes)
-    frames = [[axes.turned(mesh.vertices)] for _, _, mesh in first]
-    for file in files[1:]:
-        surfaces = _surfaces(file, axes)
-        if [one[:2] for one in surfaces] != [one[:2] for one in first] or not all(
-                np.array_equal(one[2].triangles, other[2].triangles) for one, other in zip(surfaces, first)):
-            raise _core.FileError(f"{file}: must have the groups, materials and triangles of the first frame, {files[0].name}")
-        for frame, (_, _, mesh) in zip(frames, surfaces):
-            frame.append(axes.turned(mesh.vertices))
-    times = np.arange(len(files)) / _frame_rate(path, len(files), tree)
-    return times, [(name or path.name, material, mesh.triangles, np.stack(frame))
-                   for (name, material, mesh), frame in zip(first, frames)]
-
-
-def _surfaces(file: Path, axes: Axes) -> list:
-    """(name of the group, "" for one that is called after the file, material, Mesh) of one frame."""
-    return [("" if name == file.stem else name, *more) for name, *more in _core.load_surfaces(file, axes.unit)[0]]
+    parts = parts_of_frames(files, axes)
+    return np.arange(len(files)) / _frame_rate(path, len(files), tree), parts
 
 
 def _by_number(file: Path) -> list:
@@ -125,7 +118,21 @@ def _of_file(path: Path, axes: Axes, tree: Tree):
         raise _core.FileError(f"{path}: triangles must be [F, 3], got {list(triangles.shape)}")
     if not np.isfinite(vertices).all():
         raise _core.FileError(f"{path}: vertices must be finite")
-    return _times(path, arrays, len(vertices), tree), [(path.stem, "", triangles, axes.points(vertices))]
+    smooth = False
+    if "normals" in arrays:
+        normals = _array(path, arrays, ("normals",), 2, "f")
+        if normals.shape != vertices.shape[1:]:
+            raise _core.FileError(f"{path}: normals must be {list(vertices.shape[1:])}, one for each vertex, "
+                                  f"got {list(normals.shape)}")
+        smooth = _in_range(triangles, len(normals)) and as_smooth(vertices[0], triangles, normals[triangles])
+    vertices = axes.points(vertices)
+    part = MovedPart("", "", "", vertices, _mesh(path, vertices[0], triangles), smooth)
+    return _times(path, arrays, len(vertices), tree), [part]
+
+
+def _in_range(triangles, num_vertices: int) -> bool:
+    """Whether all corners are vertices; Mesh says which is not."""
+    return bool(triangles.size and triangles.min() >= 0 and triangles.max() < num_vertices)
 
 
 def _times(path: Path, arrays: dict, count: int, tree: Tree) -> np.ndarray:

@@ -21,10 +21,11 @@ READERS: dict[str, str] = {
 
 
 @checked(path=file_or_folder, unit=optional(UNIT), up=optional(choice("x", "y", "z")), materials=checked_materials,
-         animation=optional(text), loop=flag, offset=real(unit="s"))
+         animation=optional(text), loop=flag, offset=real(unit="s"),
+         smooth=optional(flag))
 def load_model(path: str | os.PathLike[str], *, unit: float | None = None, up: str | None = None,
                materials: Mapping[str, Meaning] | None = None, animation: str | None = None, loop: bool = False,
-               offset: float = 0.0) -> Model:
+               offset: float = 0.0, smooth: bool | None = None) -> Model:
     """The objects of a foreign file as a tree of nodes, for Scene.add.
 
     path: its suffix tells the format: glTF 2.0 (.glb, .gltf), OBJ, PLY, STL, OFF, USD, Mitsuba XML, NPZ, BVH; or a folder of
@@ -38,11 +39,13 @@ def load_model(path: str | os.PathLike[str], *, unit: float | None = None, up: s
     loop: True: the animation begins anew at its end, without end; False: its last pose is held, but frames and motion captures
         end with it
     offset: s, the time of the animation at time 0 of the scene
+    smooth: whether its meshes stand for curved surfaces (Scene.add); None: those whose normals in the file turn over most of
+        their area, smoothing groups of an OBJ file included, and what the format itself makes of curves, such as spheres
     Returns a Model, whose `notes` say what was left out, guessed or mended. Raises ep.FileError naming the file and the
     place in it; ValueError or TypeError naming the argument; ModuleNotFoundError saying what to install.
     """
     file = Path(path)
-    options = ReadOptions(unit, up, materials or {}, animation, loop, offset)
+    options = ReadOptions(unit, up, materials or {}, animation, loop, offset, smooth)
     try:
         return importlib.import_module(f".{reader_of(file)}", __package__).read(file, options)
     except RecursionError:

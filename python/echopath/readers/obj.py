@@ -1,10 +1,11 @@
 """Mesh files (OBJ, PLY, STL, OFF) as models: a node for each group, taken apart by material."""
 from __future__ import annotations
 
+from collections import Counter
 from pathlib import Path
 
-from .. import _core
 from .axes import Axes
+from .mesh_files import Groups, parts_of_file
 from .model import Model
 from .options import ReadOptions
 from .sampled import chosen_animation
@@ -17,30 +18,19 @@ def read(path: Path, options: ReadOptions) -> Model:
     """A Model of a mesh file. Its axes are those of a scene and its unit is 1 m, unless the options say otherwise."""
     chosen_animation(options, ())
     axes = Axes(options)
-    surfaces, libraries = _core.load_surfaces(path, axes.unit)
+    parts, libraries = parts_of_file(path, axes)
     tree = Tree(options)
-    materials_of_group: dict[str, int] = {}
-    for name, _, _ in surfaces:
-        materials_of_group[name] = materials_of_group.get(name, 0) + 1
-    groups: dict[str, int] = {}
-    for name, material, mesh in surfaces:
-        parent = -1
-        if materials_of_group[name] > 1:
-            if name not in groups:
-                groups[name] = tree.add(name)
-            parent = groups[name]
-        own_name = name if parent < 0 else material or "no_material"
-        tree.add(own_name, parent, mesh=turned(mesh, axes), foreign_material=material)
-    for sentence in _notes_of_libraries(path, libraries, {material for _, material, _ in surfaces} - {""}):
+    nodes = Groups(tree)
+    num_materials = Counter((part.object, part.name) for part in parts)
+    for part in parts:
+        group = part.object, part.name
+        parent, name = nodes.of_object(part.object), part.name
+        if num_materials[group] > 1:
+            parent, name = nodes.of_group(*group), part.material or "no_material"
+        tree.add(name, parent, mesh=part.mesh, foreign_material=part.material, smooth=part.smooth)
+    for sentence in _notes_of_libraries(path, libraries, {part.material for part in parts} - {""}):
         tree.note(sentence)
     return tree.model(format=NAMES[path.suffix.lower()], unit=axes.unit, up=axes.up)
-
-
-def turned(mesh: _core.Mesh, axes: Axes) -> _core.Mesh:
-    """A mesh in m with the vertical axis of a file, turned to z up."""
-    if axes.up == "z":
-        return mesh
-    return _core.Mesh(axes.turned(mesh.vertices), mesh.triangles, original_triangle=mesh.original_triangle)
 
 
 def _notes_of_libraries(path: Path, libraries: list[str], used: set[str]) -> list[str]:

@@ -17,6 +17,7 @@ class ReadOptions:
     materials: name in the file -> Material or a name in ep.materials; what is not there goes by foreign_materials
     animation: its name; None: the first of the file; "": at rest
     loop: whether it begins anew at its end; offset: s, the time of the animation at time 0 of the scene
+    smooth: whether all meshes stand for curved surfaces; None: as the file says
     """
 
     unit: float | None = None
@@ -25,3 +26,4 @@ class ReadOptions:
     animation: str | None = None
     loop: bool = False
     offset: float = 0.0
+    smooth: bool | None = None

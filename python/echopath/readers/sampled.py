@@ -30,10 +30,12 @@ class Clock:
 
     begin, end: of the animation in s, which is at `options.offset` at time 0 of the scene
     period: s after which it begins anew, None: its ends are held; offset: s, the time of the curves at time 0 of the scene
+    steps: whether each sample holds until the next one; it is linear between them otherwise
     """
 
-    def __init__(self, options: ReadOptions, begin: float, end: float):
+    def __init__(self, options: ReadOptions, begin: float, end: float, steps: bool = False):
         self._begin = begin
+        self.steps = steps
         self.period = period_of(options, end - begin)
         self.offset = options.offset - begin
 
@@ -41,6 +43,11 @@ class Clock:
     def playback(self) -> dict:
         """The arguments of what is played by curves."""
         return {"period": self.period, "offset": self.offset}
+
+    @property
+    def interpolation(self) -> str:
+        """Of Curves of sampled transforms and weights."""
+        return "step" if self.steps else "linear"
 
     def times(self, seconds) -> np.ndarray:
         """Times [T] of curves in s of times of the file."""
@@ -55,8 +62,8 @@ def period_of(options: ReadOptions, duration: float) -> float | None:
 def moved_rigidly(times, matrices, clock: Clock):
     """(placement [4, 4], CurveMotion or None, whether it was rigid) of transforms [T, 4, 4] at `times` [T] s.
 
-    The placement holds the scale and the turn at first, the motion everything after it, linear between the samples. A scale
-    that changes stays as it is at first.
+    The placement holds the scale and the turn at first, the motion everything after it, as the clock says between the samples.
+    A scale that changes stays as it is at first.
     """
     matrices = np.asarray(matrices, float)
     if len(matrices) < 2 or np.array_equal(matrices, np.broadcast_to(matrices[0], matrices.shape)):
@@ -66,16 +73,17 @@ def moved_rigidly(times, matrices, clock: Clock):
     placement = matrices[0].copy()
     placement[:3, 3] = 0.0
     keys = clock.times(times)
-    turning = _core.Curve(keys, quaternions(rotations)) if np.abs(turns - np.eye(3)).max() > ROUNDING else None
-    motion = _core.CurveMotion(_core.Curve(keys, matrices[:, :3, 3]), turning, **clock.playback)
+    turning = None
+    if np.abs(turns - np.eye(3)).max() > ROUNDING:
+        turning = _core.Curve(keys, quaternions(rotations), clock.interpolation)
+    motion = _core.CurveMotion(_core.Curve(keys, matrices[:, :3, 3], clock.interpolation), turning, **clock.playback)
     return placement, motion, bool(np.abs(turns - rotations).max() < RIGID)
 
 
 def moved_with_scale(times, matrices, clock: Clock) -> tuple[_core.CurveMotion, bool]:
     """(CurveMotion, whether it is all of it) of transforms [T, 4, 4] at `times` [T] s that turn and scale, for a joint.
 
-    Each is a scale along its own axes, then a turn, then a shift, each of them linear between the samples; what shears stays
-    out.
+    Each is a scale along its own axes, then a turn, then a shift, as the clock says between the samples; what shears stays out.
     """
     matrices = np.asarray(matrices, float)
     scales = np.linalg.norm(matrices[:, :3, :3], axis=1)
@@ -83,8 +91,8 @@ def moved_with_scale(times, matrices, clock: Clock) -> tuple[_core.CurveMotion, 
     turns = matrices[:, :3, :3] / scales[:, None, :]
     rotations = _nearest_rotations(turns)
     keys = clock.times(times)
-    motion = _core.CurveMotion(_core.Curve(keys, matrices[:, :3, 3]), _core.Curve(keys, quaternions(rotations)),
-                               _core.Curve(keys, scales), **clock.playback)
+    curves = [_core.Curve(keys, values, clock.interpolation) for values in (matrices[:, :3, 3], quaternions(rotations), scales)]
+    motion = _core.CurveMotion(*curves, **clock.playback)
     return motion, bool(np.abs(turns - rotations).max() < RIGID)
 
 

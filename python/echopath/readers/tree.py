@@ -30,6 +30,8 @@ class Tree:
             fields["material"] = self._material(fields.get("foreign_material", ""))
         if fields.get("placement") is not None and np.array_equal(fields["placement"], np.eye(4)):
             fields["placement"] = None
+        if self.options.smooth is not None:
+            fields["smooth"] = self.options.smooth and fields.get("mesh") is not None
         own_name = unique(fit_name(name), self._taken.setdefault(parent, {}))
         self.nodes.append(ModelNode(own_name, parent, **fields))
         return len(self.nodes) - 1

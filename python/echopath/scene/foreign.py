@@ -31,7 +31,7 @@ def mesh_from(source: object, *, unit: float = 1.0) -> _core.Mesh:
         raise ValueError("source: must have faces, got none")
     if counts.min() < 3:
         raise ValueError(f"source: faces must have 3 corners or more, got one of {counts.min()}")
-    triangles, face = _core.triangles_of_polygons(vertices, corners, counts)
+    triangles, face, _ = _core.triangles_of_polygons(vertices, corners, counts)
     return _core.Mesh(vertices, triangles, original_triangle=face)
 
 

@@ -22,6 +22,7 @@ WRITERS = {".obj": obj, ".ply": ply, ".stl": stl, "_text.stl": stl_text, ".off":
 def hits_of(model, radar) -> tuple:
     scene = ep.Scene()
     scene.add(model, name="ball", position=(4, 0.3, 0.2))
+    assert not any(node.smooth for node in model.nodes)
     paths = ep.trace(scene, radar, num_rays=400)
     return paths.hits.tobytes(), paths.offsets.tobytes(), scene.num_triangles
 
@@ -45,8 +46,6 @@ def test_one_mesh_gives_the_same_hits_through_every_format(tmp_path, radar):
     for suffix, write in WRITERS.items():
         (tmp_path / f"ball{suffix}").write_bytes(write(VERTICES, faces))
         models[suffix] = ep.load_model(tmp_path / f"ball{suffix}", materials={"*": "metal"})
-    models = {name: ep.Model(tuple(ep.ModelNode(node.name, mesh=node.mesh, material=node.material) for node in model.nodes))
-              for name, model in models.items()}  # all without smoothing, which some formats ask for
     first = hits_of(wanted, radar)
     assert len(first[0]) > 0
     for name, model in models.items():
@@ -222,6 +221,45 @@ def test_frames_of_a_folder_and_of_an_archive_move_alike(tmp_path):
         assert ep.load_model(path).duration == pytest.approx(0.2)
 
 
+def frames_of_quads(folder, *frames) -> None:
+    """One quad of four vertices [4, 3], beside a triangle that never moves."""
+    folder.mkdir()
+    for number, vertices in enumerate(frames):
+        points = [*vertices, (0, 0, 3), (1, 0, 3), (0, 1, 3)]
+        text = "".join(f"v {x} {y} {z}\n" for x, y, z in points) + "o sheet\nf 1 2 3 4\nf 5 6 7\n"
+        (folder / f"walk{number}.obj").write_text(text)
+    (folder / "frame_rate.txt").write_text("10\n")
+
+
+@pytest.mark.parametrize("bent", [[(0, 0, 0), (1, 0, 0), (0.1, 0.1, 0), (0, 1, 0)],   # concave: other ears than in the first
+                                  [(0, 0, 0), (0, 0, 0), (1, 1, 0), (0, 1, 0)]])     # a triangle of it has no area
+def test_quads_of_frames_may_become_concave_or_collapse(tmp_path, bent):
+    square = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+    frames_of_quads(tmp_path / "walk", square, bent, square)
+    model = ep.load_model(tmp_path / "walk")
+    scene = ep.Scene()
+    scene.add(model, name="m")
+    assert len(scene.meshes) == 1 and scene.num_triangles == 3
+    for time, wanted in ((0.0, square), (0.1, bent), (0.2, square)):
+        assert np.allclose(scene.world_vertices(0, time)[:4], wanted, atol=SINGLE)
+
+
+def test_what_has_no_area_in_the_first_frame_is_left_out_of_all_with_a_note(tmp_path):
+    square = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+    frames_of_quads(tmp_path / "walk", [(0, 0, 0), (1, 0, 0), (1, 0, 0), (0, 1, 0)], square)
+    model = ep.load_model(tmp_path / "walk")
+    assert model.num_triangles == 2 and any("without area in the first frame" in note for note in model.notes)
+
+
+def test_groups_of_one_name_are_kept_apart_by_their_objects(tmp_path):
+    (tmp_path / "cars.obj").write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\no car1\ng wheel\nusemtl rubber\nf 1 2 3\n"
+                                       "usemtl steel\nf 1 3 4\no car2\ng wheel\nf 1 2 4\ng\nf 2 3 4\n")
+    scene = ep.Scene()
+    scene.add(ep.load_model(tmp_path / "cars.obj"), name="m")
+    assert [mesh.name for mesh in scene.meshes] == ["m/car1/wheel/rubber", "m/car1/wheel/steel", "m/car2/wheel", "m/car2/rest"]
+    assert [name for name, _ in ep.load_meshes(tmp_path / "cars.obj")] == ["car1/wheel", "car2/wheel", "car2/rest"]
+
+
 def test_frames_that_do_not_fit_together_are_refused_by_name(tmp_path):
     folder = tmp_path / "frames"
     folder.mkdir()
@@ -229,7 +267,7 @@ def test_frames_that_do_not_fit_together_are_refused_by_name(tmp_path):
         ep.load_model(folder)
     (folder / "a1.obj").write_bytes(obj(VERTICES[:3], np.array([[0, 1, 2]])))
     (folder / "a2.obj").write_bytes(obj(VERTICES[:4], np.array([[0, 1, 2], [0, 2, 3]])))
-    with pytest.raises(ep.FileError, match="a2.obj: must have the groups, materials and triangles of the first frame, a1.obj"):
+    with pytest.raises(ep.FileError, match="a2.obj: must have the vertices, faces, groups and materials of the first frame, a1.obj"):
         ep.load_model(folder)
 
 

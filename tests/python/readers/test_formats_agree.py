@@ -1,10 +1,9 @@
 """The same surfaces through every format that is read give the same hits: names of meshes, points and powers."""
 from __future__ import annotations
 
-import dataclasses
-
 import numpy as np
 import pytest
+from pxr import Sdf, Usd, UsdUtils
 
 import echopath as ep
 from support.files.gltf_files import GltfFile
@@ -60,7 +59,15 @@ def write_one(folder) -> list:
     (folder / "car.gltf").write_text(gltf(VERTICES, FACES, "car").gltf())
     shape = '<shape type="ply" id="mesh-car"><string name="filename" value="car.ply"/></shape>'
     (folder / "car.xml").write_text(SCENE_XML.format(shape))
-    return [folder / name for name in (*writers, "car.usda", "car.glb", "car.gltf", "car.xml")]
+    return [*(folder / name for name in (*writers, "car.usda", "car.glb", "car.gltf", "car.xml")), *packed(folder / "car.usda")]
+
+
+def packed(file) -> list:
+    """A stage in the binary format of USD, and in a package, as its library writes them."""
+    binary, package = file.with_suffix(".usdc"), file.with_suffix(".usdz")
+    assert Usd.Stage.Open(str(file)).Export(str(binary))
+    assert UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(binary)), str(package))
+    return [binary, package]
 
 
 def placed(points) -> np.ndarray:
@@ -94,14 +101,13 @@ def write_two(folder) -> list:
               f'<string name="filename" value="box.ply"/><transform name="to_world"><rotate z="1" angle="{TURN_DEG}"/>'
               f'<translate value="{place}"/></transform></shape>')
     (folder / "two.xml").write_text(SCENE_XML.format(shapes))
-    return [folder / f"two.{suffix}" for suffix in ("obj", "stl", "glb", "gltf", "usda", "xml")]
+    return [*(folder / f"two.{suffix}" for suffix in ("obj", "stl", "glb", "gltf", "usda", "xml")), *packed(folder / "two.usda")]
 
 
 def echoes(model) -> tuple:
     """(names of the meshes that paths hit [H], points [H, 3] m, powers [P]) of one trace."""
     scene = ep.Scene()
-    flat = dataclasses.replace(model, nodes=tuple(dataclasses.replace(node, smooth=False) for node in model.nodes))
-    scene.add(flat, name="m", position=(9.0, 1.0, 0.0), yaw=0.4)
+    scene.add(model, name="m", position=(9.0, 1.0, 0.0), yaw=0.4)
     waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=64, sampling_rate=5e6, num_chirps=4,
                                 chirp_interval=1e-4)
     radar = ep.Radar(waveform, transmitters=[ep.Antenna((0, 0, 1))], receivers=[ep.Antenna((0, 0, 1.1))])

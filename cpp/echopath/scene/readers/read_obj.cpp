@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <istream>
 #include <limits>
+#include <map>
 #include <optional>
 #include <streambuf>
 #include <string_view>
@@ -37,6 +38,7 @@ class ObjLines : public std::streambuf {
   int64_t line() const { return line_; }
   const Vec3& vertex() const { return vertex_; }  // of the latest such line, to the nearest double
   const std::vector<std::string>& material_files() const { return material_files_; }
+  uint32_t smoothing() const { return smoothing_; }  // group of the latest line `s`, 0 for none
 
  protected:
   int_type underflow() override {
@@ -81,6 +83,7 @@ class ObjLines : public std::streambuf {
     const std::string_view statement = std::string_view(text_).substr(begin);
     const std::string_view keyword = statement.substr(0, statement.find_first_of(" \t"));
     if (keyword == "g" || keyword == "o" || keyword == "usemtl" || keyword == "mtllib") check_name(statement);
+    if (keyword == "s") smoothing_ = smoothing_of(statement.substr(1));
     if (keyword == "mtllib") material_files_.emplace_back(trimmed(statement.substr(keyword.size())));
     if (statement == "g") {
       text_ += ' ';  // which may move the text away from its views
@@ -92,6 +95,14 @@ class ObjLines : public std::streambuf {
     const std::string_view values = std::string_view(text_).substr(std::min(begin + 1, text_.size()));
     if (is_vertex) check_vertex(values);
     else check_face(values);
+  }
+
+  // A number, or `on`; everything else, such as `off`, is none.
+  static uint32_t smoothing_of(std::string_view values) {
+    const std::string_view word = take_word(values);
+    if (word == "on") return 1;
+    const std::optional<double> number = number_of(word);
+    return number && *number >= 1.0 && *number < 4e9 ? static_cast<uint32_t>(*number) : 0;
   }
 
   void check_name(std::string_view statement) const {
@@ -128,10 +139,11 @@ class ObjLines : public std::streambuf {
   Vec3 vertex_ = Vec3::Zero();
   std::vector<std::string> material_files_;  // as `mtllib` lines give them, which may be several names
   int64_t line_ = 0;
+  uint32_t smoothing_ = 0;
 };
 
-// Fills a soup by the parser's callbacks. A face belongs to its group or, without one, to its object; equal names are one
-// group.
+// Fills a soup by the parser's callbacks. A face belongs to its group within its object, or to the object where there is no
+// group; groups of equal names are one within an object.
 class ObjBuilder {
  public:
   ObjBuilder(const std::string& path, const ObjLines& lines) : path_(path), lines_(lines) {}
@@ -145,12 +157,22 @@ class ObjBuilder {
     builder.soup.vertices.push_back(point);
   }
 
+  static void normal(void* self, double x, double y, double z) {
+    static_cast<ObjBuilder*>(self)->soup.normals.emplace_back(x, y, z);
+  }
+
   static void face(void* self, tinyobj::index_t* corners, int count) {
     auto& builder = *static_cast<ObjBuilder*>(self);
     builder.corners_.clear();
-    for (int i = 0; i < count; ++i) builder.corners_.push_back(builder.vertex_index(corners[i].vertex_index));
-    builder.soup.add_polygon(builder.corners_, builder.group_index());
+    builder.normals_.clear();
+    for (int i = 0; i < count; ++i) {
+      builder.corners_.push_back(builder.vertex_index(corners[i].vertex_index));
+      builder.normals_.push_back(builder.normal_index(corners[i].normal_index));
+    }
+    if (builder.normals_.front() == kNoNormal) builder.normals_.clear();
+    builder.soup.add_polygon(builder.corners_, builder.group_index(), builder.normals_);
     builder.soup.material.resize(builder.soup.triangles.size(), builder.material_index());
+    builder.soup.smoothing.resize(builder.soup.triangles.size(), builder.lines_.smoothing());
   }
 
   static void material(void* self, const char* name, int) { static_cast<ObjBuilder*>(self)->material_ = trimmed(name); }
@@ -183,9 +205,21 @@ class ObjBuilder {
     return static_cast<uint32_t>(index);
   }
 
+  // Counts as vertices do; what does not exist is no normal, as surfaces are whole without.
+  uint32_t normal_index(int64_t given) const {
+    const auto count = static_cast<int64_t>(soup.normals.size());
+    const int64_t index = given > 0 ? given - 1 : count + given;
+    return given == 0 || index < 0 || index >= count ? kNoNormal : static_cast<uint32_t>(index);
+  }
+
   uint32_t group_index() {
-    const auto [entry, added] = index_of_.try_emplace(group_.empty() ? object_ : group_, soup.group_names.size());
-    if (added) soup.group_names.push_back(entry->first);
+    const bool is_within = !group_.empty() && group_ != object_;
+    const auto [entry, added] =
+        index_of_.try_emplace({is_within ? object_ : "", is_within ? group_ : object_}, soup.group_names.size());
+    if (added) {
+      soup.object_names.push_back(entry->first.first);
+      soup.group_names.push_back(entry->first.second);
+    }
     return static_cast<uint32_t>(entry->second);
   }
 
@@ -198,9 +232,9 @@ class ObjBuilder {
   const std::string& path_;
   const ObjLines& lines_;
   std::string group_, object_, material_;
-  std::vector<uint32_t> corners_;
-  std::unordered_map<std::string, size_t> index_of_;           // of the groups' names
-  std::unordered_map<std::string, size_t> index_of_material_;  // of the materials' names
+  std::vector<uint32_t> corners_, normals_;
+  std::map<std::pair<std::string, std::string>, size_t> index_of_;  // of the names of object and group
+  std::unordered_map<std::string, size_t> index_of_material_;       // of the materials' names
 };
 
 }  // namespace
@@ -212,6 +246,7 @@ Soup read_obj(std::istream& file, const std::string& name) {
   ObjBuilder builder(name, lines);
   tinyobj::callback_t callbacks;
   callbacks.vertex_cb = ObjBuilder::vertex;
+  callbacks.normal_cb = ObjBuilder::normal;
   callbacks.index_cb = ObjBuilder::face;
   callbacks.group_cb = ObjBuilder::group;
   callbacks.object_cb = ObjBuilder::object;

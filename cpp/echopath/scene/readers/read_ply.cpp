@@ -104,6 +104,8 @@ void read_vertices(PlyValues& values, const PlyElement& element, Soup& soup) {
   for (const int axis : axes) {
     if (element.properties[static_cast<size_t>(axis)].is_list) values.refuse("x, y and z must not be lists");
   }
+  const int normal_axes[3] = {element.find({"nx"}), element.find({"ny"}), element.find({"nz"})};
+  const bool has_normals = *std::min_element(normal_axes, normal_axes + 3) >= 0;
   soup.vertices.reserve(std::min(static_cast<size_t>(element.count), values.bytes_left()));
   std::vector<double> items, row(element.properties.size());
   for (int64_t i = 0; i < element.count; ++i) {
@@ -111,15 +113,19 @@ void read_vertices(PlyValues& values, const PlyElement& element, Soup& soup) {
       read_property(values, element.properties[p], items);
       row[p] = items.empty() ? 0.0 : items[0];
     }
-    const Vec3 point(row[static_cast<size_t>(axes[0])], row[static_cast<size_t>(axes[1])],
-                     row[static_cast<size_t>(axes[2])]);
+    const auto vector_of = [&](const int (&columns)[3]) {
+      return Vec3(row[static_cast<size_t>(columns[0])], row[static_cast<size_t>(columns[1])],
+                  row[static_cast<size_t>(columns[2])]);
+    };
+    const Vec3 point = vector_of(axes);
     if (!point.allFinite()) values.refuse("vertex " + std::to_string(i) + ": a coordinate is out of range or not a number");
     soup.vertices.push_back(point);
+    if (has_normals) soup.normals.push_back(vector_of(normal_axes));
   }
 }
 
 std::vector<uint32_t> polygon_corners(const PlyValues& values, const std::vector<double>& items, const Soup& soup) {
-  const std::string face = "face " + std::to_string(soup.num_faces);
+  const std::string face = "face " + std::to_string(soup.num_faces());
   if (items.size() < 3) values.refuse(face + " has fewer than 3 corners");
   std::vector<uint32_t> corners;
   for (const double item : items) {
@@ -144,7 +150,8 @@ void read_faces(PlyValues& values, const PlyElement& element, Soup& soup) {
     for (size_t p = 0; p < element.properties.size(); ++p) {
       read_property(values, element.properties[p], p == static_cast<size_t>(list) ? corners : items);
     }
-    soup.add_polygon(polygon_corners(values, corners, soup), 0);
+    const std::vector<uint32_t> polygon = polygon_corners(values, corners, soup);
+    soup.add_polygon(polygon, 0, soup.normals.empty() ? std::vector<uint32_t>{} : polygon);  // each vertex has its normal
   }
 }
 

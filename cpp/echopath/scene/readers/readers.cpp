@@ -6,11 +6,13 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <set>
 #include <string_view>
 #include <utility>
 
 #include "echopath/base/errors.h"
 #include "echopath/scene/mesh/farthest_vertex.h"
+#include "echopath/scene/readers/corner_normals.h"
 #include "echopath/scene/readers/soup.h"
 
 namespace echopath {
@@ -56,36 +58,25 @@ std::ifstream opened(const std::string& path, double unit) {
   return file;
 }
 
-// Holds the triangles of one group with the vertices they use, in the order of the file.
-struct Part {
-  std::vector<Vec3> vertices;
-  std::vector<Triangle> triangles;
-  std::vector<uint32_t> face;
-};
-
-// `number` [V] is scratch for the vertices' numbers in the part.
-Part part_of(const Soup& soup, const std::vector<uint32_t>& members, std::vector<uint32_t>& number) {
+// Returns the vertices that triangles use, in the order of the file.
+std::vector<uint32_t> used_vertices(const Soup& soup, const std::vector<uint32_t>& members) {
   std::vector<uint32_t> used;
   for (const uint32_t t : members) used.insert(used.end(), soup.triangles[t].begin(), soup.triangles[t].end());
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());
-  Part part;
-  for (const uint32_t vertex : used) {
-    number[vertex] = static_cast<uint32_t>(part.vertices.size());
-    part.vertices.push_back(soup.vertices[vertex]);
-  }
-  for (const uint32_t t : members) {
-    const Triangle& corners = soup.triangles[t];
-    part.triangles.push_back({number[corners[0]], number[corners[1]], number[corners[2]]});
-    part.face.push_back(soup.face[t]);
-  }
-  return part;
+  return used;
+}
+
+std::vector<Vec3> chosen(const std::vector<Vec3>& points, const std::vector<uint32_t>& indices) {
+  std::vector<Vec3> found;
+  for (const uint32_t index : indices) found.push_back(points[index]);
+  return found;
 }
 
 // Returns null where no triangle has an area.
-MeshPtr mesh_of(Part part) {
+MeshPtr mesh_of(std::vector<Vec3> vertices, std::vector<Triangle> triangles, std::vector<uint32_t> face) {
   try {
-    return std::make_shared<const Mesh>(std::move(part.vertices), std::move(part.triangles), std::move(part.face));
+    return std::make_shared<const Mesh>(std::move(vertices), std::move(triangles), std::move(face));
   } catch (const std::invalid_argument&) {
     return nullptr;
   }
@@ -112,18 +103,55 @@ std::vector<SurfaceFaces> faces_by_surface(const Soup& soup) {
   return found;
 }
 
+// Fills in the triangles `members` of a surface with the vertices that they use. `number` [V] is scratch for the vertices'
+// numbers in the surface.
+void fill(Surfaces::Surface& surface, const Soup& soup, const std::vector<uint32_t>& members,
+          std::vector<uint32_t>& number) {
+  const std::vector<uint32_t> used = used_vertices(soup, members);
+  for (uint32_t i = 0; i < used.size(); ++i) number[used[i]] = i;
+  surface.vertices = chosen(soup.vertices, used);
+  for (const uint32_t t : members) {
+    const Triangle& corners = soup.triangles[t];
+    surface.triangles.push_back({number[corners[0]], number[corners[1]], number[corners[2]]});
+    surface.face.push_back(soup.face[t]);
+  }
+}
+
+std::string stem_of(const std::string& path) { return std::filesystem::path(path).stem().string(); }
+
 std::vector<Surfaces::Surface> surfaces_of(const Soup& soup, const std::string& name) {
+  const CornerNormals normals(soup);
+  const std::set<std::string> objects(soup.object_names.begin(), soup.object_names.end());  // that have groups
   std::vector<uint32_t> number(soup.vertices.size());
   std::vector<Surfaces::Surface> surfaces;
-  const std::string stem = std::filesystem::path(name).stem().string();
   for (const SurfaceFaces& faces : faces_by_surface(soup)) {
-    const std::string& group = soup.group_names[faces.group].empty() ? stem : soup.group_names[faces.group];
-    const std::string material = soup.material.empty() ? "" : soup.material_names[faces.material];
-    MeshPtr mesh = mesh_of(part_of(soup, faces.triangles, number));
-    if (mesh) surfaces.push_back({group, material, std::move(mesh)});
+    Surfaces::Surface& surface = surfaces.emplace_back();
+    if (!soup.object_names.empty()) surface.object = soup.object_names[faces.group];
+    surface.name = soup.group_names[faces.group].empty() ? stem_of(name) : soup.group_names[faces.group];
+    if (surface.object.empty() && objects.contains(surface.name)) {
+      surface.object = std::exchange(surface.name, "rest");
+    }
+    if (!soup.material.empty()) surface.material = soup.material_names[faces.material];
+    fill(surface, soup, faces.triangles, number);
+    if (!normals.are_given(faces.triangles)) continue;
+    for (const uint32_t t : faces.triangles) {
+      for (const Vec3& normal : normals.of(t)) surface.normals.push_back(normal);
+    }
   }
-  if (surfaces.empty()) throw FileError(name + ": has no face with an area");
   return surfaces;
+}
+
+// Names of groups, "" for one that is called after its file.
+std::vector<std::string> own_names(std::vector<std::string> names, const std::string& path) {
+  std::replace(names.begin(), names.end(), stem_of(path), std::string());
+  return names;
+}
+
+bool have_equal_faces(const Soup& a, const std::string& path_of_a, const Soup& b, const std::string& path_of_b) {
+  return a.vertices.size() == b.vertices.size() && a.corners == b.corners && a.num_corners == b.num_corners &&
+         a.group == b.group && a.material == b.material && a.material_names == b.material_names &&
+         own_names(a.object_names, path_of_a) == own_names(b.object_names, path_of_b) &&
+         own_names(a.group_names, path_of_a) == own_names(b.group_names, path_of_b);
 }
 
 }  // namespace
@@ -131,9 +159,14 @@ std::vector<Surfaces::Surface> surfaces_of(const Soup& soup, const std::string& 
 std::vector<NamedMesh> read_meshes(std::istream& stream, const std::string& name, double unit) {
   check_unit(unit);
   Soup soup = read(stream, name, unit);
-  soup.material.clear();  // groups are not taken apart
+  for (auto* given : {&soup.material, &soup.smoothing}) given->clear();  // groups are not taken apart, and need no normals
+  soup.normal.clear();
   std::vector<NamedMesh> meshes;
-  for (Surfaces::Surface& one : surfaces_of(soup, name)) meshes.push_back({std::move(one.name), std::move(one.mesh)});
+  for (Surfaces::Surface& one : surfaces_of(soup, name)) {
+    MeshPtr mesh = mesh_of(std::move(one.vertices), std::move(one.triangles), std::move(one.face));
+    if (mesh) meshes.push_back({one.object + (one.object.empty() ? "" : "/") + one.name, std::move(mesh)});
+  }
+  if (meshes.empty()) throw FileError(name + ": has no face with an area");
   return meshes;
 }
 
@@ -148,6 +181,28 @@ Surfaces load_surfaces(const std::string& path, double unit) {
   return read_surfaces(file, path, unit);
 }
 
+SurfaceFrames load_frames(const std::vector<std::string>& paths, double unit) {
+  require(!paths.empty(), "paths", "must be at least one file", paths.size());
+  const auto soup_of = [&](const std::string& path) {
+    std::ifstream file = opened(path, unit);
+    return read(file, path, unit);
+  };
+  const Soup first = soup_of(paths[0]);
+  SurfaceFrames frames{surfaces_of(first, paths[0]), {}};
+  std::vector<std::vector<uint32_t>> used;
+  for (const SurfaceFaces& faces : faces_by_surface(first)) used.push_back(used_vertices(first, faces.triangles));
+  frames.vertices.resize(used.size());
+  for (const std::string& path : paths) {
+    const Soup soup = soup_of(path);
+    if (!have_equal_faces(soup, path, first, paths[0])) {
+      throw FileError(path + ": must have the vertices, faces, groups and materials of the first frame, " +
+                      std::filesystem::path(paths[0]).filename().string());
+    }
+    for (size_t i = 0; i < used.size(); ++i) frames.vertices[i].push_back(chosen(soup.vertices, used[i]));
+  }
+  return frames;
+}
+
 std::vector<NamedMesh> load_meshes(const std::string& path, double unit) {
   std::ifstream file = opened(path, unit);
   return read_meshes(file, path, unit);
@@ -156,7 +211,7 @@ std::vector<NamedMesh> load_meshes(const std::string& path, double unit) {
 MeshPtr load_mesh(const std::string& path, double unit) {
   std::ifstream file = opened(path, unit);
   Soup soup = read(file, path, unit);
-  MeshPtr mesh = mesh_of({std::move(soup.vertices), std::move(soup.triangles), std::move(soup.face)});
+  MeshPtr mesh = mesh_of(std::move(soup.vertices), std::move(soup.triangles), std::move(soup.face));
   if (!mesh) throw FileError(path + ": has no face with an area");
   return mesh;
 }

@@ -31,8 +31,8 @@ bool is_convex(const std::vector<Vec3>& vertices, const std::vector<uint32_t>& c
   return true;
 }
 
-void append_fan(const std::vector<uint32_t>& corners, std::vector<Triangle>& triangles) {
-  for (size_t i = 1; i + 1 < corners.size(); ++i) triangles.push_back({corners[0], corners[i], corners[i + 1]});
+void append_fan(const std::vector<uint32_t>& places, std::vector<Triangle>& triangles) {
+  for (size_t i = 1; i + 1 < places.size(); ++i) triangles.push_back({places[0], places[i], places[i + 1]});
 }
 
 // Cuts ears off a polygon. Whether a corner has an ear changes only where a neighbour was cut off, so that each corner is
@@ -50,7 +50,7 @@ class EarCutter {
     }
   }
 
-  // Appends the ears to `triangles`; returns the corners that are left, three or those of a polygon without ears.
+  // Appends the ears to `triangles`; returns the places that are left, three or those of a polygon without ears.
   std::vector<uint32_t> cut(std::vector<Triangle>& triangles) {
     for (size_t num_before = 0; num_before != num_left_ && num_left_ > 3 && looks_left_ > 0;) {
       num_before = num_left_;
@@ -59,7 +59,7 @@ class EarCutter {
     }
     std::vector<uint32_t> rest;
     for (uint32_t place = 0; place < corners_.size(); ++place) {
-      if (is_left_[place]) rest.push_back(corners_[place]);
+      if (is_left_[place]) rest.push_back(place);
     }
     return rest;
   }
@@ -82,7 +82,7 @@ class EarCutter {
       waiting_.pop();
       waits_[place] = 0;
       if (!is_left_[place] || !has_ear(place)) continue;
-      triangles.push_back(ear_at(place).vertices);
+      triangles.push_back({before_[place], place, after_[place]});
       cut_off(place);
     }
   }
@@ -126,18 +126,27 @@ std::vector<Triangle> triangulate(const std::vector<Vec3>& vertices, const std::
   std::vector<Triangle> triangles;
   triangles.reserve(corners.size() - 2);
   const Vec3 normal = polygon_normal(vertices, corners);
-  const bool is_fan = corners.size() == 3 || is_convex(vertices, corners, normal);
-  append_fan(is_fan ? corners : EarCutter(vertices, corners, normal).cut(triangles), triangles);
+  if (corners.size() == 3 || is_convex(vertices, corners, normal)) {
+    for (uint32_t place = 1; place + 1 < corners.size(); ++place) triangles.push_back({0, place, place + 1});
+  } else {
+    append_fan(EarCutter(vertices, corners, normal).cut(triangles), triangles);
+  }
   return triangles;
 }
 
-void Soup::add_polygon(const std::vector<uint32_t>& corners, uint32_t group_index) {
-  for (const Triangle& triangle : triangulate(vertices, corners)) {
-    triangles.push_back(triangle);
-    face.push_back(num_faces);
+void Soup::add_polygon(const std::vector<uint32_t>& polygon, uint32_t group_index,
+                       const std::vector<uint32_t>& its_normals) {
+  for (const Triangle& places : triangulate(vertices, polygon)) {
+    if (!its_normals.empty()) {
+      normal.resize(triangles.size(), kNoNormals);
+      normal.push_back({its_normals[places[0]], its_normals[places[1]], its_normals[places[2]]});
+    }
+    triangles.push_back({polygon[places[0]], polygon[places[1]], polygon[places[2]]});
+    face.push_back(num_faces());
     group.push_back(group_index);
   }
-  ++num_faces;
+  corners.insert(corners.end(), polygon.begin(), polygon.end());
+  num_corners.push_back(static_cast<uint32_t>(polygon.size()));
 }
 
 }  // namespace echopath

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..axes import Axes
+from ..normals import as_smooth, welded
 from .accessors import FLOAT, UNSIGNED, Accessors
 from .document import Document
 from .item import Item
 from .packed import DRACO, draco_mesh
-from .welding import as_smooth, welded
 
 TRIANGLES, STRIP, FAN = 4, 5, 6
 POINTS_OR_LINES = (0, 1, 2, 3)
@@ -80,7 +80,7 @@ class Primitives:
         joints, weights = self._influences(item["attributes"], len(vertices))
         targets = self._targets(item, len(vertices))
         normals = self._normals(item["attributes"]["NORMAL"], len(vertices))
-        smooth = normals is not None and as_smooth(vertices, triangles, normals)
+        smooth = normals is not None and as_smooth(vertices, triangles, normals[triangles])
         moved_by = [*targets.values()] + ([joints, weights] if joints is not None else [])
         kept, triangles = welded(vertices, triangles, moved_by, normals if smooth else None)
         return Primitive(vertices[kept], triangles, {k: target[kept] for k, target in targets.items()},

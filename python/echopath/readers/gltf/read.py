@@ -14,6 +14,7 @@ from .accessors import Accessors
 from .animations import animation_names, read_animation
 from .document import Document
 from .extensions import check_extensions
+from .instances import INSTANCING, instances_of
 from .motions import Motions
 from .nodes import Nodes
 from .primitives import Primitives
@@ -38,7 +39,7 @@ def read(path: Path, options: ReadOptions) -> Model:
     nodes = Nodes(document, axes)
     motions = Motions(nodes, animation)
     surfaces = Surfaces(document, accessors, nodes, motions, Primitives(document, accessors, axes), animation)
-    _Content(document, nodes, motions, surfaces, tree).add_all()
+    _Content(document, accessors, nodes, motions, surfaces, tree).add_all()
     if not tree.nodes:
         document.json.fail("shows no triangles" + "".join(f"; {note}" for note in tree.notes[:3]))
     return tree.model(format="glTF 2.0", unit=axes.unit, up=axes.up, animations=names, animation=animation.name,
@@ -56,8 +57,9 @@ def _check_version(document: Document) -> None:
 class _Content:
     """Puts into a tree the nodes of the file that have surfaces, and those above them."""
 
-    def __init__(self, document: Document, nodes: Nodes, motions: Motions, surfaces: Surfaces, tree: Tree):
-        self._document, self._nodes, self._motions = document, nodes, motions
+    def __init__(self, document: Document, accessors: Accessors, nodes: Nodes, motions: Motions, surfaces: Surfaces,
+                 tree: Tree):
+        self._document, self._accessors, self._nodes, self._motions = document, accessors, nodes, motions
         self._surfaces, self._tree = surfaces, tree
         self._level: list[int] = []                      # of each node of the tree
         self._place: dict[int, int] = {ROOT: ROOT}       # node of the file -> node of the tree
@@ -68,9 +70,10 @@ class _Content:
         needed |= {above for _, carrier in moved for above in self._nodes.chain(carrier)}
         for node in self._nodes.order:
             if node in needed:
-                placement, motion = self._motions.of(node)
-                self._place[node] = self._add_with(node, self._nodes.parent[node], placement, motion, plain.get(node, []))
+                self._place[node] = self._add_plain(node, plain.get(node, []))
         for (node, carrier), found in moved.items():
+            if INSTANCING in self._nodes.item(node)["extensions"]:
+                self._document.note(f"of the copies of nodes[{node}], which joints move, only one is read")
             world = self._still_world(carrier)
             self._add_with(node, carrier, np.linalg.inv(world) if carrier != ROOT else np.eye(4), None, found)
 
@@ -119,9 +122,25 @@ class _Content:
             world = world @ self._motions.of(above)[0]
         return world
 
+    def _add_plain(self, node: int, found: list[Surface]) -> int:
+        """A node, with its surfaces, or with a node for each copy of these below it. Returns its index."""
+        (placement, motion), above = self._motions.of(node), self._nodes.parent[node]
+        copies = instances_of(self._nodes.item(node), self._accessors, self._nodes.axes) if found else None
+        if copies is None:
+            return self._add_with(node, above, placement, motion, found)
+        index = self._add(self._nodes.name[node], self._place[above], placement, motion)
+        for number, copy in enumerate(copies):
+            if np.linalg.det(copy[:3, :3]) == 0.0:
+                self._tree.count("a copy that is scaled to nothing is left out")
+                continue
+            self._add_found(f"{self._nodes.name[node]}_{number}", index, copy, None, found)
+        return index
+
     def _add_with(self, node: int, parent: int, placement, motion, found: list[Surface]) -> int:
+        return self._add_found(self._nodes.name[node], self._place[parent], placement, motion, found)
+
+    def _add_found(self, name: str, parent: int, placement, motion, found: list[Surface]) -> int:
         """A node, with its mesh if it has one alone, with a node below it for each otherwise."""
-        name, parent = self._nodes.name[node], self._place[parent]
         if len(found) == 1:
             return self._add_surface(name, parent, placement, motion, found[0])
         index = self._add(name, parent, placement, motion)

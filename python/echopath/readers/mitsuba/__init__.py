@@ -86,12 +86,12 @@ class _Content:
             return
         bsdf = bsdf_of(shape, self._known)
         name = shape.get("id").removeprefix("mesh-") or _stem(shape)
-        smooth = shape.get("type") in CURVED
         if len(surfaces) > 1:
             parent, placement = self.tree.add(name, parent, placement=placement), None
-        for own, material, mesh in surfaces:
-            self.tree.add(name if len(surfaces) == 1 else own, parent, placement=placement, mesh=mesh, smooth=smooth,
-                          foreign_material=foreign_name(bsdf) or material, material=radio_material(bsdf))
+        for part in surfaces:
+            self.tree.add(name if len(surfaces) == 1 else part.full_name, parent, placement=placement, mesh=part.mesh,
+                          smooth=part.smooth, foreign_material=foreign_name(bsdf) or part.material,
+                          material=radio_material(bsdf))
 
     def _add_instance(self, shape: Element, parent: int) -> None:
         reference = next((child for child in shape.children if child.tag == "ref"), None)

@@ -6,7 +6,7 @@ import numpy as np
 from ... import _core
 from .. import forms
 from ..axes import Axes
-from ..obj import turned
+from ..mesh_files import NO_AREA, MeshPart, parts_of_file
 from .elements import Element, file_of
 
 FILES = ("ply", "obj")
@@ -21,8 +21,8 @@ class Shapes:
         self._axes = axes
         self._made: dict[tuple, list] = {}
 
-    def surfaces(self, shape: Element) -> list[tuple[str, str, _core.Mesh]]:
-        """(name, name of its material in the mesh file, Mesh) of each part; none of a file without any area.
+    def surfaces(self, shape: Element) -> list[MeshPart]:
+        """Each part of a shape, its material named after that in the mesh file; none of a file without any area.
 
         Raises FileError naming the scene file, and the mesh file where that is wrong.
         """
@@ -30,7 +30,7 @@ class Shapes:
         if kind in FILES:
             path = file_of(shape, shape.value("filename", "string") or "")
             return self._once((kind, path), lambda: self._of_file(shape, path))
-        return self._once((kind, *_parameters(shape)), lambda: [("", "", self._form(shape))])
+        return self._once((kind, *_parameters(shape)), lambda: [MeshPart("", "", "", self._form(shape), kind in CURVED)])
 
     def _once(self, key: tuple, make):
         if key not in self._made:
@@ -41,12 +41,11 @@ class Shapes:
         if path.suffix.lower() not in (".ply", ".obj"):
             shape.refuse(f"the file '{path.name}' must be .ply or .obj")
         try:
-            surfaces, _ = _core.load_surfaces(path, self._axes.unit)
+            return parts_of_file(path, self._axes)[0]
         except _core.FileError as error:
-            if str(error).endswith(("has no faces", "has no face with an area")):
+            if str(error).endswith(("has no faces", NO_AREA)):
                 return []
             shape.refuse(str(error))
-        return [(name, material, turned(mesh, self._axes)) for name, material, mesh in surfaces]
 
     def _form(self, shape: Element) -> _core.Mesh:
         vertices, triangles = _FORMS[shape.get("type")](shape)

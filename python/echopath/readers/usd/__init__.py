@@ -30,7 +30,7 @@ def read(path: Path, options: ReadOptions) -> Model:
         codes = content.time_codes()
         animation = chosen_animation(options, (TIMELINE,) if len(codes) > 1 else ())
         begin, end = timeline.seconds([min([timeline.start, *codes[:1]]), max([timeline.end, *codes[-1:]])])
-        content.add_all(Clock(options, float(begin), float(end)) if animation else None)
+        content.add_all(Clock(options, float(begin), float(end), timeline.steps) if animation else None)
     for sentence in said[:MOST_SAID]:
         tree.note(f"USD says: {sentence}")
     return tree.model(format="USD", unit=axes.unit, up=axes.up, animations=(TIMELINE,) if len(codes) > 1 else (),

@@ -7,15 +7,16 @@ from ... import _core
 from ..axes import Axes
 from ..sampled import Clock
 from .stage import Timeline
+from .surfaces import Surface
 
 MAX_VALUES = 500_000_000  # coordinates of all shapes of one mesh
 
 
-def blend_shapes_of(query, skinning, points, axes: Axes, timeline: Timeline, clock: Clock | None, pxr):
+def blend_shapes_of(query, skinning, surface: Surface, axes: Axes, timeline: Timeline, clock: Clock | None, pxr):
     """MorphTargets of a mesh whose skeleton's animation moves blend shapes, None for any other mesh and at rest.
 
-    points: [V, 3] in units of the file. Shapes in between, which stand for certain weights, are targets of their own: a weight
-    shares itself out among the two next to it. Raises ValueError for arrays that do not fit together.
+    Shapes in between, which stand for certain weights, are targets of their own: a weight shares itself out among the two next
+    to it. Raises ValueError for arrays that do not fit together.
     """
     animation = query.GetAnimQuery() if clock is not None and skinning.HasBlendShapes() else None
     mapper = skinning.GetBlendShapeMapper()
@@ -30,11 +31,11 @@ def blend_shapes_of(query, skinning, points, axes: Axes, timeline: Timeline, clo
     kept = np.flatnonzero(shares.any(axis=0))
     if not len(kept):
         return None
-    if len(kept) * points.size > MAX_VALUES:
+    if len(kept) * surface.points.size > MAX_VALUES:
         raise ValueError(f"its blend shapes have more than {MAX_VALUES} values")
-    targets = axes.points(_targets(shapes, kept, len(points)))
-    curve = _core.Curve(clock.times(timeline.seconds(codes)), shares[:, kept])
-    return _core.MorphTargets(axes.points(points), targets, curve, **clock.playback)
+    targets = axes.points(_targets(shapes, kept, len(surface.points))[:, surface.kept])
+    curve = _core.Curve(clock.times(timeline.seconds(codes)), shares[:, kept], clock.interpolation)
+    return _core.MorphTargets(axes.points(surface.points[surface.kept]), targets, curve, **clock.playback)
 
 
 class _Weights:

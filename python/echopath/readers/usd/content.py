@@ -10,8 +10,8 @@ from ..axes import Axes
 from ..sampled import Clock, deformed, moved_rigidly
 from ..tree import Tree
 from .skeletons import Skeletons
-from .stage import Timeline, is_left_out
-from .surfaces import SOLIDS, BadMesh, Surface, integers, surface_of
+from .stage import Timeline, changes_visibility, is_left_out
+from .surfaces import SOLIDS, BadMesh, Surface, integers, is_subdivided, surface_of
 from .transforms import sampled_transforms
 
 MAX_NODES = 2_000_000
@@ -57,6 +57,8 @@ class Content:
         return list(prim.GetFilteredChildren(self._pxr.Usd.TraverseInstanceProxies()))
 
     def _add(self, prim, parent: int, depth: int) -> None:
+        if changes_visibility(prim, self._pxr.UsdGeom):
+            self._tree.count("the visibility of a prim changes over time: it stays as it is at first")
         reason = is_left_out(prim, self._time, self._pxr.UsdGeom)
         if reason:
             self._tree.count(reason)
@@ -126,6 +128,8 @@ class Content:
         if own.GetPath() not in self._surfaces:
             try:
                 self._surfaces[own.GetPath()] = surface_of(prim, self._time, self._axes, self._pxr)
+                if prim.IsA(self._pxr.UsdGeom.Mesh) and is_subdivided(self._pxr.UsdGeom.Mesh(prim)):
+                    self._tree.count("a subdivision surface is taken as its control cage, smoothed")
             except BadMesh as error:
                 self._tree.note(f"the mesh {prim.GetPath()} is left out: it {error}")
                 self._surfaces[own.GetPath()] = None
@@ -144,12 +148,15 @@ class Content:
         if any(frame.shape != surface.points.shape or not np.isfinite(frame).all() for frame in frames):
             self._tree.count("a mesh whose number of points changes over time stays as it is at first")
             return None
-        return deformed(self._timeline.seconds(codes), self._axes.points(np.stack(frames)), self._clock)
+        vertices = self._axes.points(np.stack(frames)[:, surface.kept])
+        if self._clock.steps:
+            self._tree.count("the points of a mesh move on straight lines, where the stage has them jump")
+        return deformed(self._timeline.seconds(codes), vertices, self._clock)
 
     def _shapes(self, prim, surface: Surface):
         """The MorphTargets of a mesh; None, noted, for blend shapes that do not fit it."""
         try:
-            return self._skeletons.shapes_of(prim, surface.points, self._axes, self._timeline, self._clock)
+            return self._skeletons.shapes_of(prim, surface, self._axes, self._timeline, self._clock)
         except ValueError as error:
             self._tree.note(f"the mesh {prim.GetPath()} keeps its shape: {error}")
             return None
@@ -158,12 +165,12 @@ class Content:
         """A mesh below its skeleton, whose frame its points are in once they are bound."""
         skeleton = self._skeletons.skeleton_of(prim)
         try:
-            skin = self._skeletons.skin_of(prim, surface.points, self._axes, self._timeline, self._clock, self._tree)
+            skin = self._skeletons.skin_of(prim, surface, self._axes, self._timeline, self._clock, self._tree)
         except ValueError as error:
             self._tree.note(f"the mesh {prim.GetPath()} does not move with its skeleton: {error}")
             self._add_parts(surface, self._index_of.get(prim.GetPath(), parent), None, surface.smooth, prim.GetName())
             return
-        self._add_parts(surface, self._index_of.get(skeleton.GetPath(), parent), skin, True, prim.GetName())
+        self._add_parts(surface, self._index_of.get(skeleton.GetPath(), parent), skin, surface.smooth, prim.GetName())
 
     def _add_instances(self, prim, parent: int, depth: int) -> None:
         """The instances of a point instancer, each a node with its prototype below it."""

@@ -10,6 +10,7 @@ from ..sampled import Clock, moved_rigidly, moved_with_scale
 from ..tree import Tree
 from .blend_shapes import blend_shapes_of
 from .stage import Timeline, matrix
+from .surfaces import Surface
 
 
 class Skeletons:
@@ -42,27 +43,28 @@ class Skeletons:
         return [code for query in queries for code in (*query.GetJointTransformTimeSamples(),
                                                        *query.GetBlendShapeWeightTimeSamples())]
 
-    def shapes_of(self, prim, points, axes: Axes, timeline: Timeline, clock: Clock | None):
-        """The MorphTargets of a mesh, None for one whose blend shapes nothing moves; points, raises: as of skin_of."""
+    def shapes_of(self, prim, surface: Surface, axes: Axes, timeline: Timeline, clock: Clock | None):
+        """The MorphTargets of a mesh, None for one whose blend shapes nothing moves; raises as skin_of."""
         if prim.GetPath() not in self._bound:
             return None
-        return blend_shapes_of(*self._bound[prim.GetPath()], points, axes, timeline, clock, self._pxr)
+        return blend_shapes_of(*self._bound[prim.GetPath()], surface, axes, timeline, clock, self._pxr)
 
-    def skin_of(self, prim, points, axes: Axes, timeline: Timeline, clock: Clock | None, tree: Tree) -> _core.Skin:
-        """The Skin of a mesh in the frame of its skeleton; points [V, 3] in units of the file.
+    def skin_of(self, prim, surface: Surface, axes: Axes, timeline: Timeline, clock: Clock | None, tree: Tree) -> _core.Skin:
+        """The Skin of a mesh in the frame of its skeleton.
 
         Raises ValueError where what the file says of it does not fit together.
         """
         query, skinning = self._bound[prim.GetPath()]
-        indices, weights = _influences(skinning, len(points), list(query.GetJointOrder()))
+        indices, weights = _influences(skinning, len(surface.points), list(query.GetJointOrder()))
         bind = np.array(query.GetJointWorldBindTransforms(), float).transpose(0, 2, 1)
         if not np.isfinite(bind).all() or (np.abs(np.linalg.det(bind)) < 1e-60).any():
             raise ValueError("its skeleton has bind transforms that flatten space")
         inverse_bind = axes.matrices(np.linalg.inv(bind) @ matrix(skinning.GetGeomBindTransform()))
         joints = self._moved_joints(query, axes, timeline, clock, tree)
         bound = [joint.replace(inverse_bind=one) for joint, one in zip(joints, inverse_bind)]
-        return _core.Skin(axes.points(points), bound, weights, joint_indices=indices,
-                          shape=self.shapes_of(prim, points, axes, timeline, clock))
+        kept = surface.kept
+        return _core.Skin(axes.points(surface.points[kept]), bound, weights[kept], joint_indices=indices[kept],
+                          shape=self.shapes_of(prim, surface, axes, timeline, clock))
 
     def _moved_joints(self, query, axes, timeline, clock, tree) -> list:
         """The joints of a skeleton with their motions, made once."""

@@ -63,7 +63,7 @@ def _first_line(text: str) -> str:
 
 
 class Timeline:
-    """Times of a stage: codes of its samples, and seconds from its first frame."""
+    """Times of a stage: codes of its samples, and seconds from its first frame. steps: whether samples hold until the next."""
 
     def __init__(self, stage):
         rate = stage.GetTimeCodesPerSecond()
@@ -71,6 +71,7 @@ class Timeline:
         bounds = (stage.GetStartTimeCode(), stage.GetEndTimeCode()) if stage.HasAuthoredTimeCodeRange() else (0.0, 0.0)
         usable = all(abs(bound) < LONGEST * self._rate for bound in bounds)
         self.start, self.end = bounds if usable else (0.0, 0.0)
+        self.steps = stage.GetInterpolationType() == pxr_module("Usd").InterpolationTypeHeld
 
     def usable(self, codes) -> list[float]:
         """Time codes in their order, without those that are no times or no later than the one before."""
@@ -87,6 +88,12 @@ class Timeline:
 def matrix(value) -> np.ndarray:
     """A Gf.Matrix4d, which takes rows, as [4, 4] that takes columns."""
     return np.array(value, float).T
+
+
+def changes_visibility(prim, usd_geom) -> bool:
+    """Whether a prim is to be seen at some times only."""
+    imageable = usd_geom.Imageable(prim)
+    return bool(imageable) and imageable.GetVisibilityAttr().GetNumTimeSamples() > 1
 
 
 def is_left_out(prim, time, usd_geom) -> str | None:

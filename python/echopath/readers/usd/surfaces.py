@@ -2,23 +2,29 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
 from ... import _core
 from .. import forms
 from ..axes import Axes
+from ..normals import welded_corners
 
-SOLIDS = ("Cube", "Sphere", "Cylinder", "Cone", "Capsule", "Plane")
-CURVED = ("Sphere", "Cylinder", "Cone", "Capsule")
+SOLIDS = ("Cube", "Sphere", "Cylinder", "Cylinder_1", "Cone", "Capsule", "Capsule_1", "Plane")
+CURVED = ("Sphere", "Cylinder", "Cylinder_1", "Cone", "Capsule", "Capsule_1")
 NON_VISUAL = "omni:simready:nonvisual:base"  # what Isaac Sim says of a material for its radars and lidars
 
 
 @dataclass
 class Surface:
-    """points [V, 3] in units of the file; parts: (name, name of the material, Mesh in m); smooth as of ModelNode."""
+    """points [V, 3] in units of the file; parts: (name, name of the material, Mesh in m); smooth as of ModelNode.
+
+    kept: [W] points of which the meshes have their vertices, some of them twice, where normals say that there is an edge
+    """
 
     points: np.ndarray
+    kept: np.ndarray
     parts: list = field(default_factory=list)
     smooth: bool = False
 
@@ -31,17 +37,41 @@ def surface_of(prim, time, axes: Axes, pxr) -> Surface:
     """The Surface of a mesh or solid. Raises BadMesh."""
     if prim.GetTypeName() in SOLIDS:
         points, triangles = _solid(prim, time)
-        surface = Surface(points, smooth=prim.GetTypeName() in CURVED)
+        surface = Surface(points, np.arange(len(points)), smooth=prim.GetTypeName() in CURVED)
         return _with_parts(surface, axes, np.asarray(triangles), np.arange(len(triangles)), [("", prim, None)], pxr)
     mesh = pxr.UsdGeom.Mesh(prim)
     points, corners, counts = (_array(attribute.Get(time), shape) for attribute, shape in (
         (mesh.GetPointsAttr(), (-1, 3)), (mesh.GetFaceVertexIndicesAttr(), (-1,)), (mesh.GetFaceVertexCountsAttr(), (-1,))))
     holes = integers(mesh.GetHoleIndicesAttr(), time)
-    corners, counts, face = _polygons(points, corners.astype(np.int64), counts.astype(np.int64), holes)
-    triangles, polygon = _core.triangles_of_polygons(points, corners, counts)
+    polygons = _polygons(points, corners.astype(np.int64), counts.astype(np.int64), holes)
+    triangles, polygon, places = _core.triangles_of_polygons(points, polygons.points, polygons.counts)
+    surface = Surface(points, np.arange(len(points)), smooth=is_subdivided(mesh))
+    normals = None if surface.smooth else _normals(mesh, time, polygons, len(points), pxr)
+    if normals is not None:
+        surface.kept, triangles, surface.smooth = welded_corners(points, triangles, normals[places], surface.kept)
+    return _with_parts(surface, axes, triangles, polygons.face[polygon], _subsets(prim, time, pxr), pxr)
+
+
+def is_subdivided(mesh) -> bool:
+    """Whether a mesh is the cage of a subdivision surface; one that does not say is taken as it stands."""
     scheme = mesh.GetSubdivisionSchemeAttr()
-    surface = Surface(points, smooth=scheme.HasAuthoredValue() and scheme.Get() != "none")
-    return _with_parts(surface, axes, triangles, face[polygon], _subsets(prim, time, pxr), pxr)
+    return scheme.HasAuthoredValue() and scheme.Get() != "none"
+
+
+def _normals(mesh, time, corners: Polygons, num_points: int, pxr) -> np.ndarray | None:
+    """[N, 3] of the corners; None for a mesh without normals, or with some that do not fit it."""
+    primvar = pxr.UsdGeom.PrimvarsAPI(mesh).GetPrimvar("normals")
+    if primvar and primvar.HasAuthoredValue():
+        values, interpolation = primvar.ComputeFlattened(time), primvar.GetInterpolation()
+    else:
+        values, interpolation = mesh.GetNormalsAttr().Get(time), mesh.GetNormalsInterpolation()
+    try:
+        normals = np.array(values if values is not None else [], float).reshape(-1, 3)
+    except (TypeError, ValueError):
+        return None
+    entries = {"vertex": corners.points, "varying": corners.points, "faceVarying": corners.place}.get(interpolation)
+    size = {"vertex": num_points, "varying": num_points, "faceVarying": corners.num_in_file}.get(interpolation)
+    return normals[entries] if size and len(normals) == size and np.isfinite(normals).all() else None
 
 
 def _array(value, shape) -> np.ndarray:
@@ -62,8 +92,18 @@ def integers(attribute, time) -> np.ndarray:
         raise BadMesh(f"has {attribute.GetName()} of another type than the schema of USD") from None
 
 
-def _polygons(points, corners, counts, holes):
-    """(corners [N], counts [F], face of the file [F]) of the faces with three corners or more, without holes."""
+class Polygons(NamedTuple):
+    """points [N] of the corners, counts [F] of these, face of the file [F], place [N] of corners in the file, which has more"""
+
+    points: np.ndarray
+    counts: np.ndarray
+    face: np.ndarray
+    place: np.ndarray
+    num_in_file: int
+
+
+def _polygons(points, corners, counts, holes) -> Polygons:
+    """The faces with three corners or more, without holes."""
     if (counts < 0).any() or counts.sum() != len(corners):
         raise BadMesh(f"has {len(corners)} corners, where its faces ask for {counts.sum()}")
     if len(corners) and (corners.min() < 0 or corners.max() >= len(points)):
@@ -72,7 +112,8 @@ def _polygons(points, corners, counts, holes):
     kept[holes[(holes >= 0) & (holes < len(counts))]] = False
     if not kept.any():
         raise BadMesh("has no faces")
-    return corners[np.repeat(kept, counts)], counts[kept], np.flatnonzero(kept)
+    place = np.flatnonzero(np.repeat(kept, counts))
+    return Polygons(corners[place], counts[kept], np.flatnonzero(kept), place, len(corners))
 
 
 def _subsets(prim, time, pxr) -> list:
@@ -87,7 +128,7 @@ def _subsets(prim, time, pxr) -> list:
 
 def _with_parts(surface: Surface, axes: Axes, triangles, face, subsets, pxr) -> Surface:
     """The surface with a mesh for each subset that has an area; each mesh is made of all points, as deformations ask."""
-    vertices, left = axes.points(surface.points), np.ones(len(triangles), bool)
+    vertices, left = axes.points(surface.points[surface.kept]), np.ones(len(triangles), bool)
     for name, prim, faces in subsets:
         chosen = left if faces is None else left & np.isin(face, faces)
         left = left & ~chosen
@@ -131,6 +172,9 @@ def _solid(prim, time):
         return forms.sphere(number("radius"))
     if kind == "Plane":
         points, triangles = forms.rectangle(number("width"), number("length"))
+    elif kind.endswith("_1"):  # whose ends have radii of their own
+        form = getattr(forms, kind.removesuffix("_1").lower())
+        points, triangles = form(number("radiusBottom"), number("height"), radius_above=number("radiusTop"))
     else:
         points, triangles = getattr(forms, kind.lower())(number("radius"), number("height"))
     turn = _TURNS.get(str(prim.GetAttribute("axis").Get(time)), _TURNS["Z"])

@@ -44,6 +44,57 @@ TEST(Obj, MakesAMeshOfEachGroupWithItsOwnVerticesOnly) {
   EXPECT_EQ(meshes[2].mesh->triangles().size(), 2u);
 }
 
+TEST(Obj, KeepsGroupsOfOneNameApartWhereTheyBelongToObjects) {
+  const std::vector<NamedMesh> meshes =
+      read(kSquare + "o car1\ng wheel\nf 1 2 3\no car2\ng wheel\nf 1 3 4\ng car2\nf 1 2 4\n" + "o car1\ng wheel\nf 2 3 4\n");
+  std::vector<std::string> names;
+  for (const NamedMesh& one : meshes) names.push_back(one.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"car1/wheel", "car2/wheel", "car2/rest"}));
+  EXPECT_EQ(meshes[0].mesh->original_triangle(), (std::vector<uint32_t>{0, 3}));
+}
+
+std::vector<Vec3> normals_of(const std::string& content) {
+  std::istringstream stream(content);
+  return read_surfaces(stream, "mesh.obj").surfaces[0].normals;
+}
+
+TEST(Obj, CornersHaveTheNormalsOfTheFile) {
+  const std::string given = kSquare + "vn 0 0 2\nvn 0 1 1\n";
+  const double half = std::sqrt(0.5);
+  const std::vector<Vec3> normals = normals_of(given + "f 1//1 2//2 3//-2\nf 1//1 2//9 3//1\nf 1 3 4\n");
+  ASSERT_EQ(normals.size(), 9u);
+  EXPECT_NEAR((normals[1] - Vec3(0, half, half)).norm(), 0.0, kRounding);
+  for (const size_t corner : {0, 2, 3, 4, 5, 6, 7, 8}) {
+    EXPECT_NEAR((normals[corner] - Vec3(0, 0, 1)).norm(), 0.0, kRounding);
+  }
+  EXPECT_TRUE(normals_of(given + "f 1 2 3\ns off\nf 1 3 4\n").empty());
+}
+
+// Two squares that meet at a right angle along x = 1.
+TEST(Obj, SmoothingGroupsHaveTheMeanNormalOfTheirFaces) {
+  const std::string bent = kSquare + "v 1 0 1\nv 1 1 1\n", faces = "f 1 2 3 4\nf 2 5 6 3\n";
+  const std::vector<Vec3> together = normals_of(bent + "s 1\n" + faces);
+  const std::vector<Vec3> apart = normals_of(bent + "s 1\nf 1 2 3 4\ns 2\nf 2 5 6 3\n");
+  ASSERT_EQ(together.size(), 12u);
+  EXPECT_NEAR((together[0] - Vec3(0, 0, 1)).norm(), 0.0, kRounding);
+  EXPECT_NEAR((together[2] - Vec3(-1, 0, 2).normalized()).norm(), 0.0, kRounding);  // corner 3: two triangles and one
+  for (size_t i = 0; i < 6; ++i) EXPECT_NEAR((apart[i] - Vec3(0, 0, 1)).norm(), 0.0, kRounding);
+  for (size_t i = 6; i < 12; ++i) EXPECT_NEAR((apart[i] - Vec3(-1, 0, 0)).norm(), 0.0, kRounding);
+}
+
+TEST(Frames, TakeTheirFacesFromTheFirstFileAndItsPlacesFromEach) {
+  const std::string face = "f 1 2 3 4\n";  // convex in the first, with a dent at its third corner in the second
+  const TemporaryFile first("frame1.obj", kSquare + face);
+  const TemporaryFile second("frame2.obj", "v 0 0 0\nv 1 0 0\nv 0.1 0.1 0\nv 0 1 0\n" + face);
+  const SurfaceFrames frames = load_frames({first.path(), second.path()}, 2.0);
+  ASSERT_EQ(frames.surfaces.size(), 1u);
+  EXPECT_EQ(frames.surfaces[0].triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
+  EXPECT_EQ(frames.vertices[0][1][2], Vec3(0.2, 0.2, 0));
+  const TemporaryFile other("frame3.obj", kSquare + "f 1 2 3\nf 1 3 4\n");
+  expect_error<FileError>([&] { load_frames({first.path(), other.path()}); }, {"frame3.obj", "of the first frame, "});
+  expect_error<std::invalid_argument>([] { load_frames({}); }, {"paths", "at least one"});
+}
+
 TEST(Obj, CountsNegativeIndicesBackFromTheFace) {
   const auto meshes = read("v 9 9 9\n" + kSquare + "f -4 -3 -2\nv 5 5 5\nf -5/1/1 -3//2 -2/7\n");
   EXPECT_EQ(meshes[0].mesh->vertices(), (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
@@ -174,7 +225,8 @@ TEST(Obj, SurfacesAreGroupsByMaterialAndMeshesAreGroups) {
   for (const Surfaces::Surface& one : found.surfaces) names.push_back({one.name, one.material});
   EXPECT_EQ(names, (std::vector<std::array<std::string, 2>>{
                        {"echopath_house", ""}, {"wall", "brick"}, {"wall", "glass pane"}, {"door", "glass pane"}}));
-  EXPECT_EQ(found.surfaces[1].mesh->original_triangle(), (std::vector<uint32_t>{1, 4}));
+  EXPECT_EQ(found.surfaces[1].face, (std::vector<uint32_t>{1, 4}));
+  EXPECT_TRUE(found.surfaces[1].normals.empty());
   EXPECT_EQ(found.material_files, (std::vector<std::string>{"house.mtl more.mtl"}));
   ASSERT_EQ(load_meshes(file.path()).size(), 3u);
   EXPECT_EQ(load_meshes(file.path())[1].mesh->triangles().size(), 3u);

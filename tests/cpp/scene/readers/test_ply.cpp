@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <sstream>
 
 #include "mesh_files.h"
 
@@ -94,6 +95,19 @@ TEST(Ply, SkipsWhatItDoesNotNeedInEachFormat) {
     EXPECT_EQ(mesh->original_triangle(), (std::vector<uint32_t>{0, 0}));
     EXPECT_EQ(mesh->area(), 1.0);
   }
+}
+
+TEST(Ply, NormalsOfItsVerticesAreThoseOfTheCorners) {
+  std::string text = two_triangles(Format::kAscii);
+  text.replace(text.find("property double x"), 0, "property float nz\nproperty float nx\nproperty float ny\n");
+  std::istringstream plain(two_triangles(Format::kAscii));
+  EXPECT_TRUE(read_surfaces(plain, "a.ply").surfaces[0].normals.empty());
+  const std::string body = "0 2 0 0 0 0\n0 0 3 1 0 0\n1 0 0 1 1 0\n0 0 0 0 1 0\n3 0 1 2\n3 0 2 3\n";
+  std::istringstream stream(text.substr(0, text.find("end_header")) + "end_header\n" + body);
+  const Surfaces::Surface surface = read_surfaces(stream, "a.ply").surfaces[0];
+  // nz stands first; the last vertex has no direction, and takes that of the facet
+  const std::vector<Vec3> wanted = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {0, 0, 1}, {0, 0, 1}};
+  EXPECT_EQ(surface.normals, wanted);
 }
 
 TEST(Ply, IsNamedByItsStemAndScaledByTheUnit) {

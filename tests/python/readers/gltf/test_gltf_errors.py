@@ -22,7 +22,7 @@ FAULTS = [
     ("asset.version", "1.0", r"asset\.version: must be 2\.0, is '1\.0'"),
     ("asset", 3, r"asset: must be an object, is 3"),
     ("extensionsRequired", ["KHR_meshopt_compression"], "requires the extension KHR_meshopt_compression, which is not"),
-    ("extensionsRequired", ["EXT_mesh_gpu_instancing"], "requires the extension EXT_mesh_gpu_instancing, which is not"),
+    ("extensionsRequired", ["EXT_new_meshes"], "requires the extension EXT_new_meshes, which is not"),
     ("meshes.0.primitives.0.attributes.POSITION", 7, r"meshes\[0\]\.primitives\[0\]\.attributes\.POSITION: must be a whole n"),
     ("meshes.0.primitives.0.attributes.POSITION", "x", "POSITION: must be a whole number from 0 to 1, is 'x'"),
     ("meshes.0.primitives.0.attributes.POSITION", 1, r"accessors\[1\]\.type: must be VEC3 for meshes\[0\]"),

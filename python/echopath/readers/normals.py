@@ -1,9 +1,12 @@
-"""Vertices that files keep twice, for textures and for edges, made one again."""
+"""What normals of files say: which meshes stand for curved surfaces, and where these have edges. One rule for all formats.
+
+Vertices that files keep twice, for textures and for edges, are made one again.
+"""
 from __future__ import annotations
 
 import numpy as np
 
-from ...base.triangles import areas_of
+from ..base.triangles import areas_of
 
 FLAT_COSINE = np.cos(np.radians(1.0))     # normals of a facet that differ by less stand for a plane
 EDGE_COSINE = np.cos(np.radians(20.0))    # normals at a place that differ by more stand for an edge
@@ -12,10 +15,11 @@ MOST_NORMALS = 16                         # at one place; beyond, each vertex is
 
 
 def as_smooth(vertices: np.ndarray, triangles: np.ndarray, normals: np.ndarray) -> bool:
-    """Whether most of the area has normals that turn from corner to corner: then the facets stand for a curved surface."""
-    lengths = np.linalg.norm(normals, axis=1)
-    units = normals / np.where(lengths > 0.0, lengths, 1.0)[:, None]
-    a, b, c = (units[triangles[:, corner]] for corner in range(3))
+    """Whether most of the area has normals that turn from corner to corner: then the facets stand for a curved surface.
+
+    normals: [F, 3, 3] of the corners of triangles, of any length
+    """
+    a, b, c = (_units(normals[:, corner]) for corner in range(3))
     cosines = [np.einsum("ij,ij->i", first, second) for first, second in ((a, b), (b, c), (c, a))]
     turns = np.minimum(np.minimum(*cosines[:2]), cosines[2]) < FLAT_COSINE
     if not turns.any():
@@ -24,6 +28,22 @@ def as_smooth(vertices: np.ndarray, triangles: np.ndarray, normals: np.ndarray) 
         areas = areas_of(vertices[triangles])
     areas = np.where(np.isfinite(areas), areas, 0.0)
     return bool(areas[turns].sum() > CURVED_SHARE * areas.sum())
+
+
+def welded_corners(vertices: np.ndarray, triangles: np.ndarray, normals: np.ndarray, places: np.ndarray | None = None) -> tuple:
+    """(vertices that are kept [W], triangles [F, 3] of these, whether it is smooth) of a mesh with normals [F, 3, 3] of corners.
+
+    places: [V] numbers of vertices, equal for those that are one; None: those of equal coordinates are
+    """
+    smooth = as_smooth(vertices, triangles, normals)
+    places = _equal_rows(vertices)[1] if places is None else places
+    corners = triangles.reshape(-1)
+    groups = _split_by_normals(places[corners], normals.reshape(-1, 3)) if smooth else places[corners]
+    first, number = np.unique(groups, return_index=True, return_inverse=True)[1:]
+    order = np.lexsort([first, corners[first]])    # vertices stay in the order of the file
+    rank = np.empty_like(order)
+    rank[order] = np.arange(len(order))
+    return corners[first[order]], rank[number.reshape(triangles.shape)], smooth
 
 
 def welded(vertices: np.ndarray, triangles: np.ndarray, moved_by: list, normals: np.ndarray | None) -> tuple:
@@ -51,8 +71,7 @@ def _equal_rows(rows: np.ndarray) -> tuple:
 
 def _split_by_normals(place: np.ndarray, normals: np.ndarray) -> np.ndarray:
     """Groups of a place, each of normals that differ little from the first of the group."""
-    lengths = np.linalg.norm(normals, axis=1)
-    units = normals / np.where(lengths > 0.0, lengths, 1.0)[:, None]
+    units = _units(normals)
     group = np.full(len(place), -1)
     left = np.arange(len(place))
     for _ in range(MOST_NORMALS):
@@ -66,3 +85,8 @@ def _split_by_normals(place: np.ndarray, normals: np.ndarray) -> np.ndarray:
         left = left[~alike]
     group[left] = left
     return group
+
+
+def _units(normals: np.ndarray) -> np.ndarray:
+    lengths = np.linalg.norm(normals, axis=1)
+    return normals / np.where(lengths > 0.0, lengths, 1.0)[:, None]

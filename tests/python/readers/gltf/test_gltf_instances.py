@@ -1,0 +1,86 @@
+"""Copies of a mesh by EXT_mesh_gpu_instancing against its definition: node times translation, rotation and scale."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from support.gltf_files import BOX, GltfFile, box_file, loaded
+
+TO_SCENE = [2, 0, 1]  # axes of a file, y up, that become x, y and z
+SINGLE = 1e-5         # of places of about 10 m in single precision
+EXTENSION = "EXT_mesh_gpu_instancing"
+HALF = np.sqrt(0.5)
+SHIFTS = np.array([[1, 2, 3], [0, 5, 0], [-4, 0, 1.0]])
+TURNS = np.array([[0, 0, 0, 1], [0, 0, HALF, HALF], [HALF, 0, 0, HALF]])  # (x, y, z, w): none, about z, about x
+SCALES = np.array([[1, 1, 1], [2, 1, 0.5], [1, -1, 3.0]])
+MATRICES = np.array([np.eye(3), [[0, -1, 0], [1, 0, 0], [0, 0, 1]], [[1, 0, 0], [0, 0, -1], [0, 1, 0]]])  # of TURNS
+
+
+def forest(**attributes) -> GltfFile:
+    """A box at (0, 10, 0), turned by half a turn about y, with copies; attributes: values, or (values, dtype, normalized)."""
+    file = box_file(translation=[0, 10, 0], rotation=[0, 1, 0, 0])
+    made = {}
+    for name, value in attributes.items():
+        values, dtype, normalized = value if isinstance(value, tuple) else (value, "f4", False)
+        made[name] = file.accessor(values, dtype, normalized=normalized)
+    file.json["nodes"][0]["extensions"] = {EXTENSION: {"attributes": made}}
+    file.json |= {"extensionsUsed": [EXTENSION], "extensionsRequired": [EXTENSION]}
+    return file
+
+
+def wanted(copy: int, scaled: bool = True) -> np.ndarray:
+    points = BOX * SCALES[copy] if scaled else BOX
+    points = points @ MATRICES[copy].T + SHIFTS[copy]
+    return (points * [-1, 1, -1] + [0, 10, 0])[:, TO_SCENE]
+
+
+def vertices(model) -> dict:
+    scene = ep.Scene()
+    scene.add(model, name="m")
+    return {mesh.name: scene.world_vertices(mesh.id, 0.0) for mesh in scene.meshes}
+
+
+def test_copies_stand_where_the_extension_says_below_their_node(tmp_path):
+    model = loaded(tmp_path, forest(TRANSLATION=SHIFTS, ROTATION=TURNS, SCALE=SCALES))
+    found = vertices(model)
+    assert list(found) == ["m/box/box_0", "m/box/box_1", "m/box/box_2"]
+    for copy, points in enumerate(found.values()):
+        assert np.abs(points - wanted(copy)).max() < SINGLE
+    meshes = [node.mesh for node in model.nodes if node.mesh is not None]
+    assert meshes[0] is meshes[1] is meshes[2] and not any("cop" in note for note in model.notes)
+
+
+def test_rotations_may_be_normalised_bytes_and_what_is_missing_stays_at_rest(tmp_path):
+    bytes_of = np.round(127 * TURNS[[0, 1]]).astype(np.int8)
+    found = vertices(loaded(tmp_path, forest(TRANSLATION=SHIFTS[:2], ROTATION=(bytes_of, "i1", True))))
+    for copy, points in enumerate(found.values()):
+        assert np.abs(points - wanted(copy, scaled=False)).max() < SINGLE
+    assert list(vertices(loaded(tmp_path, forest()))) == ["m/box"]
+
+
+def test_children_of_a_node_are_not_copied_with_it(tmp_path):
+    file = forest(TRANSLATION=SHIFTS)
+    file.json["nodes"][0]["children"] = [1]
+    file.json["nodes"].append({"name": "bird", "mesh": 0})
+    assert sorted(vertices(loaded(tmp_path, file))) == ["m/box/bird", "m/box/box_0", "m/box/box_1", "m/box/box_2"]
+
+
+def test_copies_that_cannot_be_are_told(tmp_path):
+    nothing = SCALES * [[1], [0], [1]]
+    model = loaded(tmp_path, forest(TRANSLATION=SHIFTS, SCALE=nothing))
+    assert list(vertices(model)) == ["m/box/box_0", "m/box/box_2"]
+    assert any("a copy that is scaled to nothing is left out" in note for note in model.notes)
+    with pytest.raises(ep.FileError, match="attributes: must have as many entries in each accessor, has 3 in TRANSLATION, 2 in"):
+        loaded(tmp_path, forest(TRANSLATION=SHIFTS, SCALE=SCALES[:2]))
+    with pytest.raises(ep.FileError, match="ROTATION: must hold unit quaternions"):
+        loaded(tmp_path, forest(ROTATION=4 * TURNS))
+
+
+def test_what_pointers_animate_is_refused_where_it_is_required_and_noted_where_it_is_used(tmp_path):
+    file = box_file()
+    file.json["extensionsUsed"] = ["KHR_animation_pointer"]
+    assert "what animations move by KHR_animation_pointer stays at rest" in loaded(tmp_path, file).notes
+    file.json["extensionsRequired"] = ["KHR_animation_pointer"]
+    with pytest.raises(ep.FileError, match="requires the extension KHR_animation_pointer, which is not read"):
+        loaded(tmp_path, file)

@@ -1,0 +1,108 @@
+"""USD: solids with two radii, held samples, what changes its visibility, subdivision surfaces."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from pxr import Usd, UsdGeom
+
+import echopath as ep
+
+SINGLE = 1e-6  # m, of what USD keeps in float
+HEAD = """#usda 1.0
+(
+    metersPerUnit = 1
+    upAxis = "Z"
+    timeCodesPerSecond = 10
+    startTimeCode = 0
+    endTimeCode = 10
+)
+"""
+TRIANGLE = """    int[] faceVertexCounts = [3]
+    int[] faceVertexIndices = [0, 1, 2]
+    point3f[] points = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
+"""
+
+
+def loaded(tmp_path, text: str, **options) -> tuple:
+    (tmp_path / "stage.usda").write_text(HEAD + text)
+    model = ep.load_model(tmp_path / "stage.usda", **options)
+    scene = ep.Scene()
+    scene.add(model, name="m")
+    return model, scene
+
+
+def solid(kind: str, axis: str = "Z", **sizes) -> str:
+    lines = "".join(f"    double {name} = {value}\n" for name, value in sizes.items())
+    return f'def {kind} "solid"\n{{\n    uniform token axis = "{axis}"\n{lines}}}\n'
+
+
+def test_a_cylinder_of_two_radii_is_a_frustum_with_lids(tmp_path):
+    below, above, height = 0.5, 0.3, 1.2
+    model, scene = loaded(tmp_path, solid("Cylinder_1", radiusBottom=below, radiusTop=above, height=height))
+    points = scene.world_vertices(0, 0.0)
+    side = np.pi * (below + above) * np.hypot(height, below - above)
+    assert model.nodes[0].mesh.area == pytest.approx(side + np.pi * (below**2 + above**2), rel=0.01)
+    for z, radius in ((-0.6, below), (0.6, above)):
+        ends = points[np.abs(points[:, 2] - z) < SINGLE]
+        assert np.hypot(ends[:, 0], ends[:, 1]).max() == pytest.approx(radius)
+    _, lying = loaded(tmp_path, solid("Cylinder_1", "X", radiusBottom=below, radiusTop=above, height=height))
+    points = lying.world_vertices(0, 0.0)
+    assert np.hypot(points[:, 1], points[:, 2])[points[:, 0] > 0.5].max() == pytest.approx(above)
+
+
+def test_a_capsule_of_two_radii_ends_with_two_half_spheres(tmp_path):
+    model, scene = loaded(tmp_path, solid("Capsule_1", radiusBottom=0.5, radiusTop=0.3, height=1.0))
+    points = scene.world_vertices(0, 0.0)
+    assert model.nodes[0].mesh.is_closed and model.nodes[0].smooth
+    assert points[:, 2].min() == pytest.approx(-1.0) and points[:, 2].max() == pytest.approx(0.8)
+    upper = points[points[:, 2] > 0.5 + SINGLE]
+    assert np.allclose(np.linalg.norm(upper - [0, 0, 0.5], axis=1), 0.3)
+    _, plain = loaded(tmp_path, solid("Capsule", radius=0.5, height=1.0))
+    _, equal = loaded(tmp_path, solid("Capsule_1", radiusBottom=0.5, radiusTop=0.5, height=1.0))
+    assert np.allclose(plain.world_vertices(0, 0.0), equal.world_vertices(0, 0.0))
+
+
+MOVING = '''def Xform "cart"
+{
+    double3 xformOp:translate.timeSamples = { 0: (0, 0, 0), 4: (8, 0, 0), 10: (2, 0, 0), }
+    float xformOp:rotateZ.timeSamples = { 0: 0, 4: 90, 10: 0, }
+    uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:rotateZ"]
+    def Mesh "box"
+    {
+%s    }
+}
+''' % TRIANGLE
+
+
+@pytest.mark.parametrize("held", [False, True])
+def test_transforms_are_held_or_linear_between_their_samples_as_the_stage_says(tmp_path, monkeypatch, held):
+    """Against the library of USD, between all samples and at them."""
+    open_stage = Usd.Stage.Open
+
+    def opened(path):
+        stage = open_stage(path)
+        stage.SetInterpolationType(Usd.InterpolationTypeHeld if held else Usd.InterpolationTypeLinear)
+        return stage
+
+    monkeypatch.setattr(Usd.Stage, "Open", opened)
+    _, scene = loaded(tmp_path, MOVING)
+    stage = opened(str(tmp_path / "stage.usda"))
+    for code in (0.0, 1.0, 3.9, 4.0, 7.0, 10.0):
+        matrix = np.array(UsdGeom.Xformable(stage.GetPrimAtPath("/cart")).GetLocalTransformation(code)).T
+        wanted = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0]]) @ matrix[:3, :3].T + matrix[:3, 3]
+        assert np.allclose(scene.world_vertices(0, code / 10 + 1e-9), wanted, atol=2e-3)
+
+
+def test_what_changes_its_visibility_stays_as_at_first_and_that_is_told(tmp_path):
+    mesh = 'def Mesh "box"\n{\n    token visibility.timeSamples = { 0: "inherited", 5: "invisible" }\n' + TRIANGLE + "}\n"
+    model, scene = loaded(tmp_path, mesh)
+    assert len(scene.meshes) == 1 and any("visibility of a prim changes over time" in note for note in model.notes)
+    model, scene = loaded(tmp_path, mesh.replace('0: "inherited", 5: "invisible"', '0: "invisible", 5: "inherited"'))
+    assert not scene.meshes and any("visibility of a prim changes over time" in note for note in model.notes)
+
+
+@pytest.mark.parametrize("scheme, cage", [("catmullClark", True), ("loop", True), ("none", False)])
+def test_of_a_subdivision_surface_the_cage_is_taken_and_that_is_told(tmp_path, scheme, cage):
+    model, _ = loaded(tmp_path, f'def Mesh "box"\n{{\n    uniform token subdivisionScheme = "{scheme}"\n{TRIANGLE}}}\n')
+    assert model.nodes[0].smooth is cage
+    assert any("control cage" in note for note in model.notes) is cage

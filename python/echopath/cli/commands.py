@@ -73,7 +73,7 @@ def run(options) -> None:
 def info(options) -> None:
     from .info import describe_file
 
-    print("\n".join(describe_file(options.file, options.select)))
+    print("\n".join(describe_file(options.file, options.select, unit=options.unit, up=options.up)))
 
 
 def scene(options) -> None:

@@ -27,11 +27,12 @@ from .model_info import describe_model
 MESH_SUFFIXES = (".obj", ".ply", ".stl", ".off")
 
 
-def describe_file(path, selections=()) -> list[str]:
+def describe_file(path, selections=(), *, unit=None, up=None) -> list[str]:
     """Lines that say what is in a scene file or a template (TOML), a frame file (HDF5), a mesh file or a foreign scene
     (load_model), and in a folder of frames in time or of a dataset.
 
     selections: of paths, also to be told of; of frame files
+    unit, up: of foreign files, as of load_model; None: as the file says
     Raises ValueError for another kind of file and for bad selections, ep.FileError when it cannot be read.
     """
     path = Path(path)
@@ -39,6 +40,9 @@ def describe_file(path, selections=()) -> list[str]:
     selections = [ep.Selection(selection) for selection in selections]
     if selections and suffix not in FRAME_SUFFIXES:
         raise ValueError(f"{path}: must be a frame file (.h5) for --select, which asks for its paths")
+    for option, value in (("--unit", unit), ("--up", up)):
+        if value is not None and not is_foreign(path):
+            raise ValueError(f"{path}: must be a file that load_model reads for {option}")
     if suffix == ".toml" and "dataset" in parse(path):
         return _describe_template(dataset.Template(path))
     if suffix == ".toml":
@@ -50,9 +54,10 @@ def describe_file(path, selections=()) -> list[str]:
     if suffix in FRAME_SUFFIXES:
         return _describe_frame(path, selections)
     if suffix in MESH_SUFFIXES:
-        return [*_describe_meshes(ep.load_meshes(str(path))), *describe_model(path, ep.load_model(path))]
+        meshes = ep.load_meshes(str(path), 1.0 if unit is None else unit)
+        return [*_describe_meshes(meshes), *describe_model(path, ep.load_model(path, unit=unit, up=up))]
     if is_foreign(path):
-        return describe_model(path, ep.load_model(path))
+        return describe_model(path, ep.load_model(path, unit=unit, up=up))
     raise ValueError(f"{path}: must be a .toml or .h5 file, or one of {', '.join(READERS)}")
 
 

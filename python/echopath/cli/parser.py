@@ -72,13 +72,13 @@ def command_parser() -> argparse.ArgumentParser:
     info.add_argument("--select", action="append", default=[], metavar="SELECTION",
                       help="also say which paths of a frame it takes, as in \"T .* 'wall*' .* R & power > 1e-17\"; may be "
                            "repeated")
+    _add_unit_and_up(info)
     info.set_defaults(command=work.info)
 
     scene = commands.add_parser("scene", help="write a scene file for a foreign scene, ready to run and to be edited")
     scene.add_argument("file", metavar="FILE", help="what load_model reads (.usd, .xml, .obj ...)")
     scene.add_argument("--out", required=True, metavar="SCENE.toml", help="scene file to be written")
-    scene.add_argument("--unit", type=float, metavar="M", help="m per unit of the file (default: as the file says)")
-    scene.add_argument("--up", choices=["x", "y", "z"], help="its vertical axis (default: as the file says)")
+    _add_unit_and_up(scene)
     scene.set_defaults(command=work.scene)
 
     _add_labels(commands)
@@ -178,6 +178,11 @@ def _add_sequence_options(parser) -> None:
     parser.add_argument("--keep", choices=["all", "maps", "labels"], default=None,
                         help="what the file of each frame keeps: all, maps with labels and detections, or labels and "
                              "detections alone (default: that of the scene file, or all)")
+
+
+def _add_unit_and_up(parser) -> None:
+    parser.add_argument("--unit", type=float, metavar="M", help="m per unit of a foreign file (default: as it says)")
+    parser.add_argument("--up", choices=["x", "y", "z"], help="vertical axis of a foreign file (default: as it says)")
 
 
 def _add_part_option(parser) -> None:

@@ -30,7 +30,8 @@ def read(path: Path, options: ReadOptions) -> Model:
 
     path: of a folder of .obj files, which are frames in the order of the numbers in their names, and may have a file
     frame_rate.txt with a number in 1/s; or of a .npz file with vertices [T, V, 3], triangles [F, 3], and times [T] in s or
-    frame_rate in 1/s, and normals [V, 3] where it stands for a curved surface. Faces and normals are those of the first frame. The sequence ends with its last frame, unless it is repeated, and then goes on without end.
+    frame_rate in 1/s, and normals [V, 3] where it stands for a curved surface. Faces and normals are those of the first frame.
+    The sequence ends with its last frame, unless it is repeated, and then goes on without end.
     """
     axes, tree = Axes(options), Tree(options)
     if path.is_dir():

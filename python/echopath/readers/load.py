@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from .. import _core
-from ..arguments.checks import checked, choice, flag, optional, path as file_or_folder, real, refused, text
+from ..arguments.checks import (
+    Rule, checked, choice, flag, optional, path as file_or_folder, positive, real, refused, text)
 from ..scene.meshes import UNIT
 from .material_names import Meaning, checked_materials
 from .model import Model
@@ -20,12 +21,17 @@ READERS: dict[str, str] = {
 }
 
 
-@checked(path=file_or_folder, unit=optional(UNIT), up=optional(choice("x", "y", "z")), materials=checked_materials,
-         animation=optional(text), loop=flag, offset=real(unit="s"),
-         smooth=optional(flag))
+# rules of what load_model and load_scene may be told of a file
+READ_RULES: dict[str, Rule] = {
+    "unit": optional(UNIT), "up": optional(choice("x", "y", "z")), "materials": checked_materials, "animation": optional(text),
+    "loop": flag, "offset": real(unit="s"), "smooth": optional(flag), "frequency": optional(positive("Hz")),
+}
+
+
+@checked(path=file_or_folder, **READ_RULES)
 def load_model(path: str | os.PathLike[str], *, unit: float | None = None, up: str | None = None,
                materials: Mapping[str, Meaning] | None = None, animation: str | None = None, loop: bool = False,
-               offset: float = 0.0, smooth: bool | None = None) -> Model:
+               offset: float = 0.0, smooth: bool | None = None, frequency: float | None = None) -> Model:
     """The objects of a foreign file as a tree of nodes, for Scene.add.
 
     path: its suffix tells the format: glTF 2.0 (.glb, .gltf), OBJ, PLY, STL, OFF, USD, Mitsuba XML, NPZ, BVH; or a folder of
@@ -41,11 +47,13 @@ def load_model(path: str | os.PathLike[str], *, unit: float | None = None, up: s
     offset: s, the time of the animation at time 0 of the scene
     smooth: whether its meshes stand for curved surfaces (Scene.add); None: those whose normals in the file turn over most of
         their area, smoothing groups of an OBJ file included, and what the format itself makes of curves, such as spheres
+    frequency: Hz, at which permittivities of materials by name are those of Recommendation ITU-R P.2040; None: materials are
+        those of `ep.materials`, at 77 GHz. The notes name those that stay at 77 GHz
     Returns a Model, whose `notes` say what was left out, guessed or mended. Raises ep.FileError naming the file and the
     place in it; ValueError or TypeError naming the argument; ModuleNotFoundError saying what to install.
     """
     file = Path(path)
-    options = ReadOptions(unit, up, materials or {}, animation, loop, offset, smooth)
+    options = ReadOptions(unit, up, materials or {}, animation, loop, offset, smooth, frequency)
     try:
         return importlib.import_module(f".{reader_of(file)}", __package__).read(file, options)
     except RecursionError:

@@ -18,6 +18,7 @@ class ReadOptions:
     animation: its name; None: the first of the file; "": at rest
     loop: whether it begins anew at its end; offset: s, the time of the animation at time 0 of the scene
     smooth: whether all meshes stand for curved surfaces; None: as the file says
+    frequency: Hz, at which materials have their values; None: that of ep.materials
     """
 
     unit: float | None = None
@@ -27,3 +28,4 @@ class ReadOptions:
     loop: bool = False
     offset: float = 0.0
     smooth: bool | None = None
+    frequency: float | None = None

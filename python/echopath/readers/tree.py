@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from .itu import at_frequency, note_of_library_values
 from .material_names import material_of, note_of_unknown
 from .model import Model, ModelNode
 from .names import fit_name, unique
@@ -21,6 +22,7 @@ class Tree:
         self._taken: dict[int, dict[str, int]] = {}  # node -> names of its children
         self._meaning: dict[str, tuple] = {}
         self._unknown: list[str] = []
+        self._at_library_frequency: list[str] = []
         self._notes: dict[str, None] = {}
         self._counted: Counter[str] = Counter()
 
@@ -52,14 +54,18 @@ class Tree:
     def model(self, **fields) -> Model:
         """The Model; its notes are those of this tree."""
         counted = [f"{what} ({count} times)" if count > 1 else what for what, count in self._counted.items()]
-        notes = (*self._notes, *counted, *note_of_unknown(self._unknown))
+        notes = (*self._notes, *counted, *note_of_unknown(self._unknown),
+                 *note_of_library_values(self._at_library_frequency))
         if not any(node.mesh is not None for node in self.nodes):
             notes += ("the file holds no surface",)
         return Model(tuple(_with_meshes(self.nodes)), notes=notes, **fields)
 
     def _material(self, name: str):
         if name not in self._meaning:
-            self._meaning[name] = material_of(name, self.options.materials)
+            meant, note = material_of(name, self.options.materials)
+            material, unmoved = at_frequency(meant, self.options.frequency)
+            self._at_library_frequency += [unmoved] if unmoved else []
+            self._meaning[name] = material, note
         material, note = self._meaning[name]
         if note is not None:
             self._unknown.append(name)

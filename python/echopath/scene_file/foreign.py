@@ -5,11 +5,12 @@ from pathlib import Path
 
 from ..readers import load_model
 from ..readers.names import fit_name
+from ..readers.options import ReadOptions
 from ..scene.scene import Scene
 
 
-def foreign_scene(path: Path) -> Scene:
+def foreign_scene(path: Path, options: ReadOptions) -> Scene:
     """A Scene with the content of a foreign file below one object, named after the file."""
     scene = Scene()
-    scene.add(load_model(path), name=fit_name(path.stem, "model"))
+    scene.add(load_model(path, **vars(options)), name=fit_name(path.stem, "model"))
     return scene

@@ -1,14 +1,17 @@
 """Scene files: TOML -> a scene, a radar and the settings of a simulation."""
 from __future__ import annotations
 
+import dataclasses
 import math
 import tomllib
 from pathlib import Path
 
 from .. import _core
+from ..arguments.checks import refused
 from ..arguments.objects import named_globs
 from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
 from ..readers.load import is_foreign
+from ..readers.options import ReadOptions
 from ..scene.interferers import Interferer
 from ..scene.large_planes import mark_mirrors
 from ..sensor_files import load_radar
@@ -25,10 +28,14 @@ from .schema import SceneTable
 from .trajectories import Trajectories
 
 
-def read_scene(path: Path) -> SceneFile:
-    """What `load_scene` returns."""
+def read_scene(path: Path, options: ReadOptions) -> SceneFile:
+    """What `load_scene` returns; options: of a foreign scene."""
     if is_foreign(path):
-        return _foreign(path)
+        return _foreign(path, options)
+    for field in dataclasses.fields(options):
+        value = getattr(options, field.name)
+        if value != getattr(ReadOptions(), field.name):
+            raise refused(ValueError, field.name, "left out for a scene file, whose objects say it", value)
     return scene_file_of(parse(path), path)
 
 
@@ -58,8 +65,8 @@ def scene_file_of(table: dict, path: Path) -> SceneFile:
         raise ValueError("\n".join(_with_file(path, line) for line in str(error).splitlines())) from None
 
 
-def _foreign(path: Path) -> SceneFile:
-    return SceneFile(path=path, title=path.stem, scene=foreign_scene(path), radar=None, trace=TraceSettings(),
+def _foreign(path: Path, options: ReadOptions) -> SceneFile:
+    return SceneFile(path=path, title=path.stem, scene=foreign_scene(path, options), radar=None, trace=TraceSettings(),
                      signal=SignalSettings(), angle=AngleTable(), parts={})
 
 

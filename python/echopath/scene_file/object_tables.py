@@ -53,7 +53,8 @@ MaterialValue = Annotated[
     Discriminator(lambda value: "<name>" if isinstance(value, str) else "<table>")]
 
 
-MODEL_KEYS = ("unit", "up", "animation", "loop", "offset")  # arguments of load_model that are keys of an object
+# arguments of load_model that are keys of an object
+MODEL_KEYS = ("unit", "up", "animation", "loop", "offset", "smooth", "frequency")
 
 
 def _way(argument: str, value):
@@ -70,6 +71,7 @@ class ObjectTable(Table):
     animation: str | None = Field(None, description="of the model, by its name; none: the first, \"\": at rest")
     loop: bool | None = Field(None, description="whether the animation begins anew at its end; none: it does not")
     offset: Number | None = Field(None, description="s, time of the animation at time 0 of the scene; none: 0")
+    frequency: Positive | None = Field(None, description="Hz, of the materials of a model by name; none: 77 GHz")
     way: Annotated[Any, by_check(_way)] | None = Field(
         None, description="m of the trajectory in which a looped animation is played once, \"auto\": as its feet or itself say")
     actor: str | None = Field(None, description="a ready-made object: a function of echopath.actors")
@@ -83,7 +85,7 @@ class ObjectTable(Table):
     trajectory: TrajectoryValue | None = Field(None, description="a table or a file, instead of motion")
     id: str | None = Field(None, description="of the object of the file; none: its only one")
     parent: str | None = Field(None, description="full name of the node that carries it; none: the scene")
-    smooth: bool = Field(False, description="the mesh stands for a curved surface")
+    smooth: bool | None = Field(None, description="the mesh stands for a curved surface; none: it does not, a model as it says")
     visible: bool = Field(True, description="false: it takes no part in anything until it is shown")
 
     @model_validator(mode="after")
@@ -94,7 +96,7 @@ class ObjectTable(Table):
             raise broken_rule("way", "needs a model with a trajectory", self.way)
         if self.unit is not None and self.mesh is None and self.model is None:
             raise broken_rule("unit", "needs a mesh or a model", self.unit)
-        for key in ("up", "materials", "animation", "loop", "offset"):
+        for key in ("up", "materials", "animation", "loop", "offset", "frequency"):
             if self.model is None and getattr(self, key) not in (None, {}):
                 raise broken_rule(key, "needs a model", getattr(self, key))
         if self.parameters and self.actor is None:

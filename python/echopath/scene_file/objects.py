@@ -59,7 +59,7 @@ def build_scene(settings: SceneTable, folder: Path, trajectories: Trajectories):
             motion = trajectory
         with blamed(key):
             scene.add(shape, name=table.name, material=material, motion=motion, speed=table.speed, parent=table.parent,
-                      smooth=table.smooth, visible=table.visible, **placement)
+                      smooth=bool(table.smooth), visible=table.visible, **placement)
     return scene
 
 

@@ -267,7 +267,7 @@ def test_frames_that_do_not_fit_together_are_refused_by_name(tmp_path):
         ep.load_model(folder)
     (folder / "a1.obj").write_bytes(obj(VERTICES[:3], np.array([[0, 1, 2]])))
     (folder / "a2.obj").write_bytes(obj(VERTICES[:4], np.array([[0, 1, 2], [0, 2, 3]])))
-    with pytest.raises(ep.FileError, match="a2.obj: must have the vertices, faces, groups and materials of the first frame, a1.obj"):
+    with pytest.raises(ep.FileError, match="a2.obj: must have the vertices, faces, groups .* of the first frame, a1.obj"):
         ep.load_model(folder)
 
 

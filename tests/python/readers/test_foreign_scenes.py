@@ -72,6 +72,26 @@ def test_materials_of_the_recommendation_have_its_values_at_77_ghz():
         assert -permittivity.imag == pytest.approx(17.98 * c * 77**d / 77, abs=6e-4), name
 
 
+def test_materials_have_the_values_of_the_recommendation_at_the_frequency_asked_for(tmp_path):
+    (tmp_path / "a.obj").write_text(SQUARE + "usemtl itu_concrete\nf 1 2 3\nusemtl itu_medium_dry_ground\nf 1 3 4\n"
+                                    "usemtl skin\nf 1 2 4\nusemtl metal\nf 2 3 4\nusemtl own\nf 2 4 3\n")
+    own = ep.Material(permittivity=2.0)
+    model = ep.load_model(tmp_path / "a.obj", frequency=5e9, materials={"own": own})
+    found = {node.foreign_material: node.material for node in model.nodes if node.mesh}
+    # eps' = a f^b, sigma = c f^d, eps'' = sigma / (2 pi f eps0); f in GHz
+    table = {"itu_concrete": (5.24, 0, 0.0462, 0.7822), "itu_medium_dry_ground": (15, -0.1, 0.035, 1.63)}
+    for name, (a, b, c, d) in table.items():
+        loss = c * 5**d / (2 * np.pi * 5e9 * 8.8541878128e-12)
+        assert found[name].permittivity == pytest.approx(a * 5**b - 1j * loss, rel=1e-6)
+    assert (found["skin"], found["metal"], found["own"]) == ("skin", "metal", own)
+    assert "values at 77 GHz are taken for skin" in model.notes
+    at_77 = ep.load_model(tmp_path / "a.obj", frequency=77e9)
+    assert not any("77 GHz" in note for note in at_77.notes)
+    assert [node.material for node in ep.load_model(tmp_path / "a.obj").nodes if node.mesh][:2] == ["concrete", "soil"]
+    with pytest.raises(ValueError, match="frequency: must be"):
+        ep.load_model(tmp_path / "a.obj", frequency=-1.0)
+
+
 # --- Mitsuba ---
 
 def mitsuba(tmp_path, body: str, name: str = "scene.xml", **options):
@@ -135,6 +155,23 @@ def test_materials_by_id_by_type_and_by_value(tmp_path):
     nodes = mitsuba(tmp_path, body + shapes + '<shape type="cube"><bsdf type="roughconductor"/></shape>').nodes
     assert [node.material for node in nodes[:2]] == ["brick", "glass"] and nodes[3].material == "metal"
     assert nodes[2].material == ep.Material(permittivity=4.0, conductivity=0.5, scattering=0.2)
+
+
+def test_a_radio_material_with_a_thickness_is_a_pane_that_waves_pass(tmp_path):
+    """Airy's sum for a slab at normal incidence: R = r (1 - p^2) / (1 - r^2 p^2), T = (1 - r^2) p / (1 - r^2 p^2)."""
+    pane = ('<bsdf type="radio-material" id="pane"><float name="relative_permittivity" value="6.3"/><float name="conductivity" '
+            'value="0.2"/><float name="thickness" value="0.004"/><float name="scattering_coefficient" value="0.1"/></bsdf>')
+    material = mitsuba(tmp_path, pane + rectangle("", '<ref id="pane"/>')).nodes[0].material
+    assert material == ep.Material(layers=[ep.Layer(0.004, 6.3, 0.2)], scattering=0.1)
+    frequency, c, vacuum = 77e9, 299792458.0, 8.8541878128e-12
+    index = np.sqrt(6.3 - 0.2j / (2 * np.pi * frequency * vacuum))
+    r, p = (1 - index) / (1 + index), np.exp(-2j * np.pi * frequency / c * index * 0.004)
+    found = ep.sheet_coefficients(material, frequency=frequency, incidence=0.0)
+    assert abs(found.te_reflection[0]) == pytest.approx(abs(r * (1 - p**2) / (1 - r**2 * p**2)), rel=1e-6)
+    assert abs(found.te_transmission[0]) == pytest.approx(abs((1 - r**2) * p / (1 - r**2 * p**2)), rel=1e-6)
+    for wrong in ("0", "-1"):
+        with pytest.raises(ep.FileError, match="line 2: <bsdf>: thickness: of a layer must be > 0 m"):
+            mitsuba(tmp_path, pane.replace('"0.004"', f'"{wrong}"') + rectangle("", '<ref id="pane"/>'))
 
 
 def test_parameters_and_included_files_are_filled_in(tmp_path):
@@ -203,6 +240,33 @@ def test_load_scene_takes_a_foreign_file_by_its_suffix(town):
     assert "town/house0-1" in found.scene
 
 
+def test_load_scene_passes_on_what_it_is_told_of_a_foreign_file(tmp_path):
+    (tmp_path / "wall.obj").write_text(SQUARE + "usemtl pane\nf 1 2 3 4\n")
+    scene = ep.load_scene(tmp_path / "wall.obj", unit=2.0, up="y", materials={"pane": "glass"}, smooth=True).scene
+    assert scene.meshes[0].material == ep.materials["glass"]
+    assert np.allclose(scene.world_vertices(0, 0.0).max(axis=0), [0, 2, 2])
+    with pytest.raises(ValueError, match="animation: must be none"):
+        ep.load_scene(tmp_path / "wall.obj", animation="walk")
+    (tmp_path / "scene.toml").write_text(WAVEFORM)
+    for name, value in (("unit", 0.5), ("loop", True), ("materials", {"a": "metal"})):
+        with pytest.raises(ValueError, match=f"{name}: must be left out for a scene file, whose objects say it"):
+            ep.load_scene(tmp_path / "scene.toml", **{name: value})
+    with pytest.raises(TypeError, match="'units'.*unit"):
+        ep.load_scene(tmp_path / "wall.obj", units=2.0)
+
+
+def test_info_tries_the_unit_and_the_axis_that_it_advises(tmp_path, capsys):
+    (tmp_path / "man.obj").write_text(SQUARE.replace("1", "180") + "f 1 2 3 4\n")
+    assert main(["info", str(tmp_path / "man.obj")]) == 0
+    assert "with unit=0.01 (cm)" in capsys.readouterr().out
+    assert main(["info", str(tmp_path / "man.obj"), "--unit", "0.01", "--up", "y"]) == 0
+    said = capsys.readouterr().out
+    assert "0 x 1.8 x 1.8 m" in said and "unit?" not in said and "y is up" in said
+    (tmp_path / "scene.toml").write_text(WAVEFORM)
+    assert main(["info", str(tmp_path / "scene.toml"), "--unit", "2"]) == 2
+    assert "must be a file that load_model reads for --unit" in capsys.readouterr().err
+
+
 def test_a_scene_file_names_a_model_with_its_settings(tmp_path):
     (tmp_path / "wall.obj").write_text(SQUARE + "usemtl pane\nf 1 2 3 4\n")
     (tmp_path / "scene.toml").write_text(WAVEFORM + """
@@ -215,11 +279,14 @@ name = "wall"
 model = "wall.obj"
 unit = 2.0
 up = "y"
+smooth = true
+frequency = 10e9
 materials = {"pane*" = {base = "glass", mirror = true}}
 position = [5.0, 0.0, 0.0]
 """)
     scene = ep.load_scene(tmp_path / "scene.toml").scene
     assert scene.meshes[0].material == ep.materials["glass"].replace(mirror=True)
+    assert [node.smooth for node in scene.nodes] == [False, True]
     assert np.allclose(scene.world_vertices(0, 0.0).max(axis=0), [5, 2, 2])
     good = (tmp_path / "scene.toml").read_text()
     for wrong in ('model = "gone.obj"', 'mesh = "wall.obj"', 'model = "wall.obj"\nanimation = "walk"'):

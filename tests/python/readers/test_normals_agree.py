@@ -151,7 +151,8 @@ def test_frames_are_smooth_as_the_normals_of_the_first_one_say(tmp_path):
 
 
 def test_flat_normals_leave_facets_and_the_keyword_goes_before_the_file(tmp_path):
-    flat = [f"vn {x:.6f} {y:.6f} {z:.6f}" for x, y, z in np.cross(*(VERTICES[FACES[:, k]] - VERTICES[FACES[:, 0]] for k in (1, 2)))]
+    sides = [VERTICES[FACES[:, k]] - VERTICES[FACES[:, 0]] for k in (1, 2)]
+    flat = [f"vn {x:.6f} {y:.6f} {z:.6f}" for x, y, z in np.cross(*sides)]
     faces = [f"f {a + 1}//{i + 1} {b + 1}//{i + 1} {c + 1}//{i + 1}" for i, (a, b, c) in enumerate(FACES.tolist())]
     (tmp_path / "flat.obj").write_bytes(obj(faces, flat))
     (tmp_path / "round.obj").write_bytes(obj_normals())

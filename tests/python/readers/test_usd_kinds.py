@@ -69,9 +69,9 @@ MOVING = '''def Xform "cart"
     uniform token[] xformOpOrder = ["xformOp:translate", "xformOp:rotateZ"]
     def Mesh "box"
     {
-%s    }
+TRIANGLE    }
 }
-''' % TRIANGLE
+'''.replace("TRIANGLE", TRIANGLE)
 
 
 @pytest.mark.parametrize("held", [False, True])

@@ -38,14 +38,20 @@ def foreign_name(bsdf: Element | None) -> str:
 
 
 def radio_material(bsdf: Element | None) -> _core.Material | None:
-    """The Material of a BSDF of the type radio-material, which gives values instead of a name; None for all others."""
+    """The Material of a BSDF of the type radio-material, which gives values instead of a name; None for all others.
+
+    One that says its thickness (m) is a sheet, through which waves pass; without, it is as thick as they go.
+    """
     if bsdf is None or bsdf.get("type") != "radio-material":
         return None
     conductivity = bsdf.number("conductivity", 0.0)
     if conductivity >= PERFECT:
         return _core.Material.metal()
+    permittivity, scattering = bsdf.number("relative_permittivity", 1.0), bsdf.number("scattering_coefficient", 0.0)
     try:
-        return _core.Material(permittivity=bsdf.number("relative_permittivity", 1.0), conductivity=conductivity,
-                              scattering=bsdf.number("scattering_coefficient", 0.0))
+        if bsdf.named("thickness", "float", "integer") is None:
+            return _core.Material(permittivity=permittivity, conductivity=conductivity, scattering=scattering)
+        pane = _core.Layer(bsdf.number("thickness", 0.0), permittivity, conductivity)
+        return _core.Material(layers=[pane], scattering=scattering)
     except (TypeError, ValueError) as error:
         bsdf.refuse(str(error))

@@ -17,9 +17,9 @@ struct NamedMesh {
 // Reads OBJ (each group `g` of an object `o`, or the object where there is no group, becomes a mesh; groups of equal names
 // are merged within an object; polygons are cut into triangles), PLY (ASCII, binary little and big endian; any number
 // type), STL (text, each `solid` of which becomes a mesh, or binary; corners of equal coordinates are one vertex) or OFF
-// (text), as the file's extension says. `unit` is in metres per file unit. original_triangle() of the meshes counts the faces
-// of the file from 0. A group without any area is left out. Raises FileError naming the file and, in text formats, the line;
-// raises invalid_argument for unit <= 0.
+// (text), as the file's extension says. `unit` is in metres per file unit. original_triangle() of the meshes counts the
+// faces of the file from 0. A group without any area is left out. Raises FileError naming the file and, in text formats, the
+// line; raises invalid_argument for unit <= 0.
 std::vector<NamedMesh> load_meshes(const std::string& path, double unit = 1.0);
 
 // Reads the same from a stream that is open already. `name` stands for the path: its extension tells the format, and

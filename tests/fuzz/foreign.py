@@ -1,7 +1,8 @@
-"""Files of foreign scenes: Mitsuba, USD, frames, motion capture, MTL files beside OBJ."""
+"""Files of foreign scenes: Mitsuba, USD, frames, folders of frames, motion capture, MTL files beside OBJ."""
 from __future__ import annotations
 
 import tempfile
+from functools import partial
 from pathlib import Path
 from random import Random
 
@@ -9,9 +10,10 @@ import numpy as np
 
 import echopath as ep
 from fuzz.folder import memory_folder
-from fuzz.foreign_seeds import seeds_by_suffix
+from fuzz.foreign_seeds import frame_text, seeds_by_suffix
 from fuzz.mutate import damaged, mistaken
 
+BINARY = (".npz", ".usdc", ".usdz")
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 
 
@@ -33,19 +35,63 @@ def feed_foreign(suffix: str):
     for seed in seeds:
         path.write_bytes(seed)
         read_and_pose(path)
-    texts = [seed.decode("latin-1") for seed in seeds]
 
     def case(number: int) -> None:
         random = Random(f"{suffix} {number}")
-        seed = random.randrange(len(seeds))
-        if suffix != ".npz" and random.random() < 0.8:
-            path.write_bytes(mistaken(texts[seed], texts, random).encode("utf-8", "surrogatepass"))
-        else:
-            path.write_bytes(damaged(seeds[seed], random))
+        path.write_bytes(_changed(seeds, random, is_text=suffix not in BINARY))
         read_and_pose(path, random.random() < 0.5)
 
-    case.folder = folder
+    case.folder, case.seeds, case.file, case.read = folder, seeds, path, partial(read_and_pose, path)
     return case
+
+
+def feed_frames_folder():
+    """Cases in which one of three frames of a folder has mistakes, or the file that says their rate."""
+    folder = memory_folder()
+    walk = Path(folder.name) / "walk"
+    walk.mkdir()
+    files = [*(walk / f"f{number}.obj" for number in (1, 2, 3)), walk / "frame_rate.txt"]
+    seeds = [frame_text(0.1 * number) for number in range(3)]
+    contents = [*seeds, b"25\n"]
+
+    def case(number: int) -> None:
+        random = Random(f"frames_folder {number}")
+        for file, content in zip(files, contents):
+            file.write_bytes(content)
+        random.choice(files).write_bytes(_changed(seeds, random))
+        read_and_pose(walk, random.random() < 0.5)
+
+    for file, content in zip(files, contents):
+        file.write_bytes(content)
+    case.folder, case.seeds, case.file, case.read = folder, seeds, files[1], partial(read_and_pose, walk)
+    return case
+
+
+def feed_mtl():
+    """Cases in which an MTL file, or the line that names it, has mistakes."""
+    folder = memory_folder()
+    mesh, library = Path(folder.name) / "scene.obj", Path(folder.name) / "scene.mtl"
+    text = ("mtllib scene.mtl\n" + SQUARE + "usemtl brick wall\nf 1 2 3\nusemtl glass\nf 1 3 4\n").encode()
+    seeds = [b"newmtl brick wall\nKd 1 0 0\nmap_Kd brick.png\n\nnewmtl glass\nd 0.5\n", b"# none\nnewmtl\n"]
+
+    def case(number: int) -> None:
+        random = Random(f"mtl {number}")
+        mesh.write_bytes(_changed([text], random) if random.random() < 0.3 else text)
+        library.write_bytes(_changed(seeds, random))
+        read_and_pose(mesh)
+
+    mesh.write_bytes(text)
+    case.folder, case.seeds, case.file, case.read = folder, seeds, library, partial(read_and_pose, mesh)
+    return case
+
+
+def _changed(seeds: list[bytes], random: Random, is_text: bool = True) -> bytes:
+    """One of the seeds with mistakes, or damaged."""
+    seed = random.choice(seeds)
+    if is_text and random.random() < 0.8:
+        texts = [one.decode("latin-1") for one in seeds]
+        return mistaken(seed.decode("latin-1"), texts, random).encode("utf-8", "surrogatepass")
+    return damaged(seed, random)
 
 
 def read_and_pose(path: Path, loop: bool = False) -> None:

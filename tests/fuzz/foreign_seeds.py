@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import io
+import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +17,7 @@ MITSUBA = ["""<scene version="3.0.0">
 <bsdf type="radio-material" id="own">
 <float name="relative_permittivity" value="5"/>
 <float name="conductivity" value="0.1"/>
+<float name="thickness" value="0.004"/>
 </bsdf>
 <sensor type="perspective"> <transform name="to_world"> <lookat origin="0 0 5" target="1 0 0" up="0 0 1"/> </transform> </sensor>
 <include filename="more.xml"/>
@@ -79,6 +81,13 @@ def Xform "World"
     def Cube "box"
     {
         double size = 2
+    }
+    def Capsule_1 "lamp"
+    {
+        double radiusTop = 0.1
+        double radiusBottom = 0.2
+        double height = 1
+        uniform token axis = "X"
     }
     def Cylinder "post"
     {
@@ -236,12 +245,47 @@ def archive(**arrays) -> bytes:
     return content.getvalue()
 
 
+def frame_text(bend: float) -> bytes:
+    """A frame of a folder: two groups of an object, with normals and a smoothing group, of quads and a triangle."""
+    return f"""v 0 0 {bend}
+v 1 0 0
+v {1 - 9 * bend} {1 - 9 * bend} 0
+v 0 1 {bend}
+vn 0 0 1
+vn 0 {bend} 1
+o body
+g sheet
+usemtl steel
+f 1//1 2//2 3//1 4//2
+s 1
+g flap
+f 1 2 3
+""".encode()
+
+
+def packed_stages() -> dict[str, list[bytes]]:
+    """The stages of USD in its binary format, and in packages, as its library writes them."""
+    from pxr import Sdf, Usd, UsdUtils
+
+    found: dict[str, list[bytes]] = {".usdc": [], ".usdz": []}
+    with tempfile.TemporaryDirectory() as folder:
+        for number, text in enumerate(USD):
+            files = [Path(folder) / f"{number}{suffix}" for suffix in (".usda", ".usdc", ".usdz")]
+            files[0].write_text(text)
+            Usd.Stage.Open(str(files[0])).Export(str(files[1]))
+            UsdUtils.CreateNewUsdzPackage(Sdf.AssetPath(str(files[1])), str(files[2]))
+            for file in files[1:]:
+                found[file.suffix].append(file.read_bytes())
+    return found
+
+
 def seeds_by_suffix() -> dict[str, list[bytes]]:
     """Contents of each kind of file, by suffix."""
     moving = np.array([[[0, 0, 0], [1, 0, 0], [1, 1, i], [0, 1, 0]] for i in range(3)], float)
     faces = [[0, 1, 2], [0, 2, 3]]
-    return {".xml": [text.encode() for text in MITSUBA], ".usda": [text.encode() for text in USD],
+    return {**packed_stages(), ".xml": [text.encode() for text in MITSUBA], ".usda": [text.encode() for text in USD],
             ".npz": [archive(vertices=moving, triangles=faces, times=[0.0, 0.1, 0.2]),
-                     archive(vertices=moving[:1], faces=faces), archive(vertices=moving, triangles=faces, frame_rate=25)],
+                     archive(vertices=moving[:1], faces=faces), archive(vertices=moving, triangles=faces, frame_rate=25),
+                     archive(vertices=moving, triangles=faces, normals=moving[2])],
             ".bvh": [bvh_text(walk_frames(3)).encode(), bvh_text(walk_frames(1)).encode()],
             **{f".{kind}": [file.read_bytes() for file in sorted((CORPUS / kind).iterdir())] for kind in ("obj", "stl", "off")}}

@@ -5,6 +5,7 @@ import copy
 import json
 import pickle
 import warnings
+from functools import partial
 from pathlib import Path
 from random import Random
 
@@ -44,7 +45,11 @@ def seeds() -> list[GltfFile]:
     morph.animation((0, "weights", [0, 1], rows, "CUBICSPLINE"), (1, "rotation", [0, 1, 2], np.eye(4)[[3, 2, 1]], "LINEAR"))
     fan = GltfFile(nodes=[{"mesh": 0}], scene=0, scenes=[{"nodes": [0]}])
     fan.mesh([[0, 0, 0], [0, 0, 1], [1, 0, 1], [2, 0, 0]], mode=6)
-    return [box_file(), rig, morph, fan, draco_tube(), meshopt_tube()]
+    copies = box_file()
+    places = copies.accessor([[0, 0, 0], [0, 3, 0]])
+    attributes = {"TRANSLATION": places, "SCALE": places, "ROTATION": copies.accessor([[0, 0, 0, 127]] * 2, "i1", normalized=True)}
+    copies.json["nodes"][0]["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": attributes}}
+    return [box_file(), rig, morph, fan, copies, draco_tube(), meshopt_tube()]
 
 
 def _check(path: Path, random: Random) -> None:
@@ -109,6 +114,25 @@ def feed_gltf_bytes():
             warnings.simplefilter("ignore")
             _check(path, random)
 
+    case.folder, case.seeds, case.file, case.read = folder, contents, path, partial(_check, path, Random(0))
+    return case
+
+
+def feed_gltf_bin():
+    """Cases in which the file of bytes beside a .gltf file is damaged."""
+    folder = memory_folder()
+    path = Path(folder.name) / "model.gltf"
+    contents = [(seed.gltf("model.bin"), seed.bytes) for seed in seeds()]
+
+    def case(number: int) -> None:
+        random = Random(f"gltf_bin {number}")
+        text, content = random.choice(contents)
+        path.write_text(text)
+        (path.parent / "model.bin").write_bytes(damaged(content, random))
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            _check(path, random)
+
     case.folder = folder
     return case
 
@@ -126,5 +150,6 @@ def feed_gltf_json():
             warnings.simplefilter("ignore")
             _check(path, random)
 
-    case.folder = folder
+    texts = [seed.gltf().encode() for seed in seeds()]
+    case.folder, case.seeds, case.file, case.read = folder, texts, path, partial(_check, path, Random(0))
     return case

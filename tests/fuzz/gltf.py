@@ -47,7 +47,8 @@ def seeds() -> list[GltfFile]:
     fan.mesh([[0, 0, 0], [0, 0, 1], [1, 0, 1], [2, 0, 0]], mode=6)
     copies = box_file()
     places = copies.accessor([[0, 0, 0], [0, 3, 0]])
-    attributes = {"TRANSLATION": places, "SCALE": places, "ROTATION": copies.accessor([[0, 0, 0, 127]] * 2, "i1", normalized=True)}
+    turns = copies.accessor([[0, 0, 0, 127]] * 2, "i1", normalized=True)
+    attributes = {"TRANSLATION": places, "SCALE": places, "ROTATION": turns}
     copies.json["nodes"][0]["extensions"] = {"EXT_mesh_gpu_instancing": {"attributes": attributes}}
     return [box_file(), rig, morph, fan, copies, draco_tube(), meshopt_tube()]
 

@@ -1,8 +1,8 @@
-"""`python -m fuzz.guided TARGET [OPTIONS OF LIBFUZZER]` in tests/: files that reach new lines of the readers are kept and changed on.
+"""`python -m fuzz.guided TARGET [OPTIONS OF LIBFUZZER]` in tests/: files that reach new lines of the readers are kept and mutated.
 
 Needs `pip install atheris` (Google's coverage-guided fuzzer for Python), and runs by hand alone. The corpus begins with the seeds
-of the target and stays in the folder build/guided/TARGET; `-max_total_time=300` and the like go to libFuzzer. A finding ends the run,
-with its traceback, and is kept as a file beside the corpus, which the same command takes as an argument to run it again.
+of the target and stays in the folder build/guided/TARGET; `-max_total_time=300` and the like go to libFuzzer. A finding ends the
+run, with its traceback, and is kept as a file beside the corpus, which the same command takes as an argument to run it again.
 """
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ with atheris.instrument_imports(include=["echopath.readers"]):
     import echopath.readers.gltf
     import echopath.readers.mitsuba
     import echopath.readers.obj
-    import echopath.readers.usd  # noqa: F401 (all readers, which load_model imports late)
+    import echopath.readers.usd
 
 import echopath as ep
 from fuzz.targets import TARGETS

@@ -1,4 +1,4 @@
-"""`python -m fuzz.guided TARGET [OPTIONS OF LIBFUZZER]` in tests/: files that reach new lines of the readers are kept and mutated.
+"""`python -m fuzz.guided TARGET [OPTIONS OF LIBFUZZER]` in tests/: files that reach new lines of readers are kept and mutated.
 
 Needs `pip install atheris` (Google's coverage-guided fuzzer for Python), and runs by hand alone. The corpus begins with the seeds
 of the target and stays in the folder build/guided/TARGET; `-max_total_time=300` and the like go to libFuzzer. A finding ends the

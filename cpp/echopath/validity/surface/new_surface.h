@@ -12,10 +12,10 @@ namespace echopath {
 // Returns the settings of a record's trace, for traces of the same kind at other times.
 TraceSettings settings_like(const TraceFrame& frame);
 
-// Holds what one look at the scene finds, as it is at one time.
+// Holds what a trace of the scene as it is at one time finds.
 struct SurfaceSearch {
-  Paths paths;                  // [P] 1: a trace at the time of the record could not have found it
-  std::vector<uint8_t> is_new;  // [P] 1: a trace at the time of the record could not have had it
+  Paths paths;                  // all paths of this trace, [P]
+  std::vector<uint8_t> is_new;  // [P] 1: a trace at the time of the record could not have found the path
 };
 
 struct SurfaceSearchSettings {

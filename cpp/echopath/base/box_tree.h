@@ -1,5 +1,5 @@
 #pragma once
-// A binary tree of bounding boxes that finds the few among many things that may lie in some region.
+// Finds those of many objects, such as triangles, that may lie in a region of space, by a binary tree of bounding boxes.
 #include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
@@ -12,9 +12,10 @@ namespace echopath {
 
 using Box = Eigen::AlignedBox3d;
 
-// Halves its things at the median of the centres of their boxes, so that neither large things nor distant ones unbalance it.
-// It takes n log n steps and keeps about 40 bytes a thing, and 12 more while it is built. It sorts the things in an order of
-// its own and names each by its place in it.
+// Holds a binary tree of boxes. Each branch divides its objects in two halves at the median of the centres of their boxes,
+// so that neither large objects nor distant ones unbalance the tree. To build the tree of n objects takes n log n steps; it
+// keeps about 40 bytes an object, and 12 more while it is built. The tree has an order of its own; an object's index in this
+// order is its place.
 class BoxTree {
  public:
   struct Branch {
@@ -23,8 +24,8 @@ class BoxTree {
     uint32_t second_half = 0;     // index of the second half, 0 for a leaf; the first half follows this branch
   };
 
-  // box_of(i) gives the box of thing i of `size`, at most 2^31, in m, finite. A leaf has at most `leaf_size` of them. Raises
-  // Cancelled when the job is cancelled.
+  // Builds the tree of `size` objects, at most 2^31, of which box_of(i) gives the box of object i, in m and finite. A leaf
+  // has at most `leaf_size` objects. Raises Cancelled when the job is cancelled.
   BoxTree(uint32_t size, const std::function<Box(uint32_t)>& box_of, uint32_t leaf_size, const Job* job = nullptr);
 
   uint32_t size() const { return static_cast<uint32_t>(order_.size()); }
@@ -37,7 +38,7 @@ class BoxTree {
   void walk(const Enters& enters, const Visit& visit) const;
 
  private:
-  using Middle = std::array<float, 3>;  // from that of thing 0, as floats in m lose half a metre at 5e6 m
+  using Middle = std::array<float, 3>;  // from that of object 0, as floats in m lose half a metre at 5e6 m
   void halve(uint32_t begin, uint32_t end, const std::vector<Middle>& middles, uint32_t leaf_size, const Job* job);
 
   std::vector<uint32_t> order_;

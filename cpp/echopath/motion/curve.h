@@ -1,5 +1,5 @@
 #pragma once
-// Curves through keys as animation files have them, and the clock by which they are played.
+// Evaluates curves through keys, as animation files have them, at the times at which they are played.
 #include <array>
 #include <cstdint>
 #include <span>
@@ -9,11 +9,12 @@
 
 namespace echopath {
 
-// How a curve goes from one key to the next (glTF 2.0, appendix C): it holds the earlier value and jumps at the later key,
-// it goes straight, or it follows a cubic Hermite spline with the tangents of the keys.
+// Says how a curve goes from one key to the next (glTF 2.0, appendix C): it holds the earlier value and jumps at the later
+// key (kStep), it is linear (kLinear), or it is a cubic Hermite spline with the tangents of the keys (kHermite).
 enum class CurveInterpolation { kStep, kLinear, kHermite };
 
-// Holds C numbers at each of T key times, T >= 1. Beyond its first and last key it holds their values. Immutable.
+// Holds C numbers at each of T key times, T >= 1. Before its first key and behind its last key a curve keeps their values.
+// It is immutable.
 struct Curve {
   std::vector<double> times;   // [T] s, strictly ascending
   std::vector<double> values;  // [T, C]
@@ -43,8 +44,8 @@ struct Playback {
   void append_times(const std::vector<double>& key_times, const TimeSpan& during, std::vector<double>& out) const;
 };
 
-// Where a time lies among the keys of a curve: between keys k and k + 1 (the same one beyond the ends), at the fraction s of
-// the time between them.
+// Says where a time lies among the keys of a curve: between the keys k and next, at the fraction s of the time between them.
+// `next` is k + 1, or k beyond the ends of the curve.
 struct CurvePlace {
   size_t k = 0, next = 0;
   double s = 0.0;

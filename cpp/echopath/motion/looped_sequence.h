@@ -1,5 +1,5 @@
 #pragma once
-// A vertex sequence that begins anew after a period.
+// Defines a vertex sequence that repeats itself with a period.
 #include "echopath/motion/curve.h"
 #include "echopath/motion/deformation.h"
 

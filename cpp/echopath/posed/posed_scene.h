@@ -1,5 +1,6 @@
 #pragma once
-// The one answer to "where is everything at time t": the meshes of a scene and the antennas of a radar.
+// Gives the positions of all meshes of a scene and of the antennas of a radar at one time. All code that needs these
+// positions takes them from here.
 #include <array>
 #include <vector>
 
@@ -10,18 +11,19 @@
 
 namespace echopath {
 
-// Nodes move by the rule of `moved` (motion/motion.h). A rigid mesh costs one transform, a deforming one the vertices that
-// are posed. The scene must outlive it.
+// Holds a scene and the antennas of a radar at one time. Nodes move by the rule of `moved` (motion/motion.h). To pose a
+// rigid mesh costs one transform; to pose a deforming mesh takes time for each vertex that is posed. The scene must outlive
+// it.
 class PosedScene {
  public:
   // Poses all vertices and no antennas; the origin is that of the world. Raises invalid_argument when a motion is not
   // defined at `time` (s), or takes something out of the range of coordinates (base/range_of_coordinates.h).
   PosedScene(const Scene& scene, double time);
-  // Poses the antennas of `radar`, which must outlive it, and of deforming meshes only their `patches` [mesh_id]. What is
-  // relative counts from `origin` (m, world). Raises as the other one.
+  // Poses also the antennas of `radar`, which must outlive it, and of each deforming mesh only its patch, patches[mesh_id].
+  // Relative coordinates count from `origin` (m, world). Raises as the constructor above.
   PosedScene(const Scene& scene, const Radar& radar, const std::vector<SurfacePatch>& patches, const Vec3& origin,
              double time);
-  // As the one before, but poses no meshes: add() does.
+  // Poses the antennas as the constructor above, but no meshes: add() poses these.
   PosedScene(const Scene& scene, const Radar& radar, const Vec3& origin, double time);
   // Poses the meshes of `places` behind those that it has, which begin the list; only these may be asked for. `nodes` are
   // those that place the new ones.
@@ -43,16 +45,18 @@ class PosedScene {
   // follow the winding of the triangles through reflections too.
   const Mat3& normal_matrix(uint32_t mesh_id) const { return normal_matrix_[at(mesh_id)]; }
 
-  // Vertices in the mesh's frame, m. Where the mesh deforms and patches were given, these are the vertices of its patch.
+  // Returns the vertices of a mesh in its own frame, m. For a deforming mesh of a scene posed with patches, these are the
+  // vertices of its patch alone.
   const std::vector<Vec3>& local_vertices(uint32_t mesh_id) const;
-  // Unit normals at the vertices of the patch of a smooth deforming mesh, in its frame; right at the corners of the patch's
-  // own triangles. Empty for other meshes.
+  // Returns unit normals at the vertices of the patch of a smooth deforming mesh, in the frame of the mesh; none for other
+  // meshes. They are exact at the corners of the triangles that the patch was made for (SurfacePatch), but not at the other
+  // vertices, of which the patch lacks neighbouring triangles.
   const std::vector<Vec3>& deformed_normals(uint32_t mesh_id) const { return deformed_normals_[at(mesh_id)]; }
 
   // Returns all vertices of a mesh in the world, m. Raises invalid_argument where only a patch of it is posed.
   std::vector<Vec3> world_vertices(uint32_t mesh_id) const;
-  // Unit normals [V] in world axes of the curved surface that the mesh, or the whole that it is a part of, stands
-  // for (scene/smooth/smooth.h).
+  // Returns unit normals [V] in world axes of the curved surface that the mesh stands for, by itself or as a part of a
+  // larger surface (scene/smooth/smooth.h).
   std::vector<Vec3> world_normals(uint32_t mesh_id) const;
   // Returns the corners of a triangle in the world, m. Raises as world_vertices.
   std::array<Vec3, 3> world_triangle(uint32_t mesh_id, uint32_t triangle_id) const;

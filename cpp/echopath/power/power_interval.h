@@ -52,40 +52,53 @@ struct PowerInterval {
   double chance = 0.0;        // W, standard error of the power; for one batch estimated from the record
 };
 
-// Returns the power that launch cells may hold between rays, W. It sums |a|^2 as for random phases, so that a few cells
-// beside a point count several times. Of n cells without a point of reflection, kEdgeCells sqrt(n) at most lie at an edge,
-// and where they are fewer than kFewCells they mostly lie about the foot of a wave that the others know, not along an edge.
-// Each batch has cells of its own, and the cells of every batch hold the same.
+// Returns the power that launch cells may hold between rays, in W: P + E of the formulas below, with the cells along an edge
+// in random phases.
 double power_between_rays(const CoherentKind& kind, int num_batches);
 
-// Bias: the footprint filter of cells sqrt(2) wider tells how fast the coherent field F of a kind changes with the cells.
-// With d the change relative to |F|, the field may be off by kOfHalving d |F| where d is small, and by kOfHalvingMore d
-// times as much more where cells are too wide. Cells a little finer tell where the filter takes edges for a surface without
-// end: the field may be off by kOfFiner times the change there, of which kAliases |F| is the lattice showing through. Both
-// changes measure one error: of the two estimates the square of the smaller one counts by half.
-// Between rays: the filter fades the wave of a point of reflection as cells outgrow its Fresnel zone, about as fast as what
-// cells hold of such points, P (power_between_rays), outgrows |F|^2. The field may then be as large as
-// P / (kPointsTimesField |F|), but larger than it is by no more than kMostOfPoints sqrt(P). Of waves of edges it may lack
-// kOfEdges times as much as cells hold, in full where d reaches kGone; behind other bounces also where kHalvingPerFiner
-// times the change to finer cells does, by which that change is smaller where errors fall with the square of a cell's side,
-// and where the field is weaker than the edges: it may then change little by chance. Smooth surfaces end where they are
-// steeper than on average, so that their edges hold less, in any phase: what people lack of them is kOfSmoothEdges / 2 times
-// as much, root mean square. Their field may be off by kOfSmoothEdges times as much to either side. A surface is that smooth
-// where its facets stray by kBentFacets from it, and ends as a plane does where they do not at all.
-// Where cells twice as large leave less than kFaded of the field, cells along an edge may be in phase, as are those of a
-// straight edge across the line of sight.
-// The changes of all kinds add up as fields, but to no less than their root sum of squares, and all else as powers: kinds
-// whose echoes cancel are known as well as they are one by one. No field of a kind is known better than to kOfSurface,
-// however fine the cells: that is what the lattice and interpolated normals leave. Where facets stray from the smooth
-// surface that they stand for, rays closer than facets see another field than rays farther apart: it is known to kOfFacets
-// for each radian by which they do, up to kMostOfFacets.
-// Without a footprint filter nothing tells how coarse the rays are for the phases of a surface: its waves may cancel, or add
-// up as coherent_at_most has them.
-// Chance: with batches it is Student's t of these, and no less than half a hit in each of them, which errs by itself. For
-// one batch, directions drawn at random give the variance sum p^2. A lattice errs only along the outline of what it meets,
-// so that its variance is kOutline^2 sum p^2 / sqrt(n) over n equal hits. The same holds for fields, but less where the
-// filter takes much away, as fields of curved surfaces fade toward their outline. The factors are fitted to the coverage of
-// `echopath bench crowd`.
+// Returns the 95 % interval of the power. It combines a bias, by which the coherent field may be off because launch cells
+// are coarse, and the chance of where the rays lie. All factors with a name are fitted to the coverage of `echopath bench
+// crowd`.
+//
+// Symbols of one kind of coherent paths, in B batches: F is its field as launched, F_half that of cells of half the density,
+// F_finer that of finer cells (kCellViews). n is the number of equal cells that have the sum and the sum of squares of the
+// powers of kEdges. s is how smooth its surface is: facet_phase / kBentFacets, at most 1, and 0 behind other bounces.
+// The field of a kind may be off by these terms:
+//  (1) D = F_half - F, d = |D| / |F|. Wider cells tell how fast the field changes with the cells. It may be larger by
+//      min(kOfHalving + kOfHalvingMore d, kMostOfHalving) D, and smaller by kOfHalving D.
+//  (2) G = kOfFiner max(0, |F_finer - F| - kAliases |F|). Finer cells tell where the filter takes edges for a surface
+//      without end. kAliases |F| is the lattice of rays that shows through.
+//  (3) P = B times the power of kPoints: waves of points of reflection that cells hold between rays. As cells outgrow the
+//      Fresnel zone of a point, the filter fades its wave about as fast as P outgrows |F|^2. The field may be larger by
+//      P / (kPointsTimesField |F|) - |F|, at least 0 and at most kMostOfPoints sqrt(P). Behind other bounces the factor is
+//      kPointsTimesFieldOfSeveral. Where F is 0, the field may be larger by kMostOfPoints sqrt(P).
+//  (4) E = B w min(1, n / kFewCells) times the power of kEdges: waves of edges that cells hold between rays. w is the share
+//      of these cells that lie at an edge, w_0 = min(1, kEdgeCells / sqrt(n / B)), of which the phases are random. Fewer
+//      than kFewCells cells mostly lie about a point of reflection that other cells know. Where |F_half| is below kFaded
+//      |F|, the cells along an edge may be in phase, as those of a straight edge across the line of sight: w then goes from
+//      w_0 to 1, linearly, as |F_half| falls to 0.
+//  (5) The field may be larger by sqrt(q e) with e = k^2 E, where k goes from kOfEdges for planes (s = 0) to kOfSmoothEdges
+//      for smooth surfaces (s = 1): these end where they are steep, so that their edges hold less, in any phase. So it may
+//      also be smaller by sqrt(s q e).
+//  (6) q = min(c / kGone, 1)^4 with c = d is the share of e that counts: a field that hardly changes with the cells has its
+//      edges. Behind other bounces c is the larger of d and kHalvingPerFiner |F_finer - F| / |F|, as the latter is smaller
+//      by that factor where errors fall with the square of a cell's side. There a field that is weaker than its edges may
+//      change little by chance: q is at least e / (kKnownAbove |F|^2) - 1, up to 1. Where F is 0, q and w are 1 and s q is
+//      0.
+//  (7) No field of launch cells is known better than to kOfSurface |F|, which the lattice and interpolated normals leave,
+//      and to min(kOfFacets facet_phase, kMostOfFacets) |F|: where facets stray from the smooth surface that they stand for,
+//      rays closer than facets see another field than rays farther apart.
+// Sums over kinds: the changes (1) add up as fields, but to no less than their root sum of squares, and all other terms as
+// powers, so that kinds whose echoes cancel are known as well as they are one by one. (1) and (2) measure one error: of
+// their two squares the smaller one counts by half. What more rays hardly mend is the second term of (7) and the lower bound
+// of q in (6). Without a footprint filter nothing tells how coarse the rays are for the phases of a surface: its waves may
+// cancel, or add up to coherent_at_most.
+//
+// The chance of several batches is their standard error times Student's t, and no less than the error of half a hit in each
+// batch. That of one batch is estimated from the record. Directions drawn at random give the variance sum p^2. A lattice
+// errs only along the outline of what it meets, so that n equal hits have the variance kOutline^2 sum p^2 / sqrt(n). The
+// same holds for fields with kOutlineOfFields, but less where the filter takes much away, as fields of curved surfaces fade
+// toward their outline. Bias and chance add up as the root of their sum of squares, to either side.
 PowerInterval power_interval(const PowerEvidence& evidence);
 
 // Returns the two-sided 95 % quantile of Student's t.

@@ -8,15 +8,17 @@
 
 namespace echopath {
 
-// Tasks of chirps own whole groups of this many, whose echoes are read once.
+// Counts the chirps to which echoes are added at a time, so that echoes are read once for all of them. Each parallel task
+// has whole groups of so many chirps.
 inline constexpr int kChirpGroup = TileAtChirps::kMaxChirps;
 
+// Holds the memory of the rows of one channel and group.
 struct Synthesizer::RowMemory {
   std::unique_ptr<double[]> values;
   size_t room = 0;
 
   size_t num_bytes() const { return room * sizeof(double); }
-  // With room for `count` values, which are not set.
+  // Returns memory with room for `count` values, which are not set.
   static std::unique_ptr<RowMemory> take(size_t count) {
     std::unique_ptr<RowMemory> rows = KeptMemory::of_process().take<RowMemory>(count * sizeof(double));
     if (rows->room >= count) return rows;

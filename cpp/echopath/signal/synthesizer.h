@@ -57,10 +57,11 @@ class Synthesizer {
   void add(int channel, std::span<const Echoes> blocks, Job* job = nullptr);
   void add(int channel, const Echoes& block, Job* job = nullptr) { add(channel, std::span(&block, 1), job); }
 
-  // Whether a channel and group has echoes so far, whether some of them rest, and whether none of them moves: then all
-  // chirps are the same.
+  // Returns whether echoes were added to a channel and group.
   bool has_echoes(int channel, int group) const;
+  // Returns whether echoes that do not move were added to them.
   bool has_still(int channel, int group) const;
+  // Returns whether no moving echoes were added to them, so that all chirps are the same.
   bool is_still(int channel, int group) const;
   // Writes the samples of one channel and some groups together, so far, to `out`, [chirp, sample] in sqrt(W), without a
   // parallel loop.
@@ -68,14 +69,15 @@ class Synthesizer {
   // Adds the samples of what rests in one channel and some groups together, which are those of every chirp, to `out`,
   // [sample] in sqrt(W).
   void add_still_samples(int channel, std::span<const int> groups, std::complex<double>* out) const;
-  // The method that spreads all echoes on grids, null where another one is at work; it lives as long as this.
+  // Returns the method that spreads all echoes on grids, or null where another method is used. It lives as long as this.
   const SpreadMethod* spread() const { return spread_; }
-  // What a group and channel with moving echoes has in the row of one chirp, so far.
+  // Returns the cells of the grid that the moving echoes of a channel and group have filled in one chirp so far.
   RowCells moving_cells(int channel, int group, int chirp) const;
   // Adds the signals of the first groups of another, of the same waveform, channels, method and tolerance, to the first
   // group.
   void absorb(const Synthesizer& other, int num_groups);
-  // Whether only the cells near the echoes of a group take memory: echoes are spread on grids, and there are several groups.
+  // Returns whether only the cells near the echoes of a group take memory, because echoes are spread on grids and there are
+  // several groups.
   bool has_bands() const { return spread_ && num_groups_ > 1; }
   size_t num_band_bytes() const;
   // Leaves the memory that only `add` needs to KeptMemory, which the next `add` takes again.

@@ -1,5 +1,5 @@
 #pragma once
-// How long a signal takes, before it is computed.
+// Estimates how long the computation of a signal will take.
 #include "echopath/sim/stream/cube_pass.h"
 
 namespace echopath {

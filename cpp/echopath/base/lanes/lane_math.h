@@ -1,7 +1,8 @@
 #pragma once
-// Vectors of the instruction set that a file is compiled for, and all that needs its intrinsics. For files that are
-// compiled once per set: echopath_kernels in CMake sets ECHOPATH_LANES, doubles of a vector. What is compiled for one
-// instruction set must not be linked into another's, so all names are in the set's own namespace, ECHOPATH_KERNELS.
+// Defines vectors of doubles as wide as the registers of one instruction set, and the functions that need its intrinsics.
+// Only files that are compiled once for each instruction set include this header: echopath_kernels in CMake sets
+// ECHOPATH_LANES, the number of doubles in a vector. Code compiled for one instruction set must not be linked into that of
+// another, so all names stand in a namespace of the instruction set, ECHOPATH_KERNELS.
 #include <cstddef>
 #include <cstdint>
 #if defined(__FMA__)
@@ -202,8 +203,8 @@ struct LaneMath {
   }
 };
 
-// A root and one over it, of values that are not negative, to an error in the last digits; of what is below kMinSquare as if
-// it were that. Roots and divisions of eight lanes take the place of twenty multiplications.
+// Holds the square roots of values that are not negative, and their inverses, to an error in the last digits. Values below
+// kMinSquare count as kMinSquare. Square roots and divisions of eight lanes take as long as twenty multiplications.
 struct Roots {
   Vec root, inverse;
 };

@@ -1,12 +1,12 @@
 #pragma once
-// Functions of doubles under the names by which formulas ask for them that are written for vectors of doubles too: such a
-// formula takes a class like this one, which has no code of its own: what is compiled for one instruction set must not be
-// linked into another's.
+// Gives formulas their mathematical functions. A formula that serves single numbers and vectors of numbers takes them from a
+// class `Math`: ScalarMath for numbers, LaneMath for vectors (lane_math.h). All functions of ScalarMath are inlined, so that
+// no code compiled for one instruction set is linked into that of another.
 #include "echopath/base/lanes/simd.h"
 
 namespace echopath {
 
-// A complex number, or a vector of them: Real is a number or a vector of numbers.
+// Holds a complex number where Real is a number, and a vector of complex numbers where Real is a vector of numbers.
 template <class Real>
 struct ComplexOf {
   Real re, im;

@@ -38,7 +38,8 @@ class DiffuseLobe {
   double density_over_lambert(const ScatterGeometry& at) const;
 
  private:
-  // Is one term: its exponent, and the integral of it over the half space as even + cos(in) * sum of odd[w] sin(in)^(2 w).
+  // Holds the exponent of one term of a lobe, and its integral F over the half space, which is
+  // even + cos(in) * sum over w of odd[w] sin(in)^(2 w).
   struct Term {
     int exponent = 0;
     double even = 0.0;

@@ -14,9 +14,10 @@ class PathBlock {
   PathColumns rows;                               // the paths that are not of fans
   uint8_t current_batch = kNoBatch;               // of the paths added from now on
   uint32_t current_half = 0;                      // for the same paths: 0 or kSecondHalf
-  std::vector<std::array<float, 7>> curved_cell;  // of the paths so far that end behind a curved bounce, and zeros before
-  std::vector<JonesMatrix> jones;                 // as curved_cell, of the paths that are polarised
-  std::vector<JonesMatrix> fan_jones;             // of all paths of all fans, where polarised
+  // This column has a row for each path up to the last one that ends behind a curved bounce; rows of other paths are zeros.
+  std::vector<std::array<float, 7>> curved_cell;
+  std::vector<JonesMatrix> jones;  // has a row for each path up to the last polarised one, likewise
+  std::vector<JonesMatrix> fan_jones;  // of all paths of all fans, where polarised
   TraceStatistics statistics;
   std::vector<PathFan> fans;
   std::vector<FanLeg> fan_legs;  // of each fan in turn

@@ -1,6 +1,7 @@
 #pragma once
-// Holds all paths over one diffuse hit, one for each way in and each way out, as the legs of these ways until the record is
-// put together.
+// Stores all paths over one diffuse hit in short. Each leg by which the wave comes to the hit forms a path with each leg by
+// which it leaves. A fan keeps the two lists of legs; the paths, one for each pair, are written when the record is put
+// together.
 #include <complex>
 #include <cstdint>
 #include <vector>
@@ -9,12 +10,14 @@
 
 namespace echopath {
 
+// Describes a leg between an antenna and the hit of a fan, directly or over mirrors.
 struct FanLeg {
   std::complex<float> factor;  // of the path's weight
   uint32_t first_hit = 0;      // of its mirrors, in order of travel
   uint32_t num_hits = 0;
 };
 
+// Describes the hit of a fan and counts its legs.
 struct PathFan {
   size_t num_before = 0;  // paths of the block in front of it, without those of fans
   Hit hit;

@@ -1,4 +1,4 @@
-// Antennas, their images over mirrors, and the legs from them.
+// Poses antennas and their images over mirrors, and measures the legs from them.
 #include "echopath/replay/evaluate/shared_leg_tables.h"
 
 #include <algorithm>

@@ -87,7 +87,8 @@ class SharedLegPlanner {
   void begin(const Paths& paths, const PathPreparer& preparer, SpecularPoints specular, bool with_single_bounces);
   // Returns the plan for the paths of these indices; it is valid until the next call.
   const SharedLegPlan& operator()(std::span<const int64_t> indices);
-  // Leaves the paths of these places ([P], 1 or 0) out of the plan; the others close ranks. What they shared stays.
+  // Removes the paths whose places are marked ([P], 1 or 0) from the plan and renumbers the places of the others without
+  // gaps. Points and legs that removed paths used stay in the plan.
   void leave_out(const std::vector<uint8_t>& places);
 
  private:

@@ -18,9 +18,9 @@ struct ChannelNodes {
   size_t stride;      // between nodes
   size_t first_path;  // places count from there
   double scale;
-  const uint32_t* echo_of = nullptr;  // [path] echo that it is added to, which begins at 0; null: each has its own
-  // Null, or where the turn of the launch cell's filter (TurnApart) is written, in rad: the amplitude then lacks it. For
-  // coherent chains alone.
+  const uint32_t* echo_of = nullptr;  // [path] echo that the path is added to, which begins at 0; null: each has its own
+  // The filter of a launch cell turns the phase of a coherent path (TurnApart). Where `turn` is not null, this angle (rad)
+  // is written there, and the amplitude does not include it. Only coherent chains have it.
   double* turn = nullptr;
 
   size_t echo(size_t place) const { return echo_of ? echo_of[first_path + place] : first_path + place; }
@@ -43,20 +43,23 @@ struct ChannelSpan {
   std::span<const ChannelNodes> nodes;
 };
 
-// It keeps its memory from block to block and serves one thread at a time.
+// Evaluates the chains and mirror paths of a plan. It keeps its memory from block to block and serves one thread at a time.
 class SharedLegEvaluation {
  public:
-  // To be called before the first use of a plan: what is found for it serves until the next one.
+  // Begins a new plan: forgets the posed points, legs and launch cells of the plan before. It must be called before the
+  // first use of each plan.
   void begin_plan() {
     posed_at_ = nullptr;
     cells_.clear();
   }
-  // Sets dark[place] to 1 for coherent chains whose amplitude, whatever the antennas, stays below `limit` (sqrt(W)) at the
-  // nodes and between them (stays_below, node_tails.h): the filter of their launch cell is bounded for all antennas at once
-  // (filter_bound.h), at the largest gains. It does not find those of which only their amplitudes tell.
+  // Sets dark[place] to 1 for coherent chains whose amplitude stays below `limit` (sqrt(W)) for all antennas, at the nodes
+  // and between them (stays_below, node_tails.h). It compares an upper bound of the amplitude, made of a bound of the launch
+  // cell's filter over all antennas (filter_bound.h) and of their largest gains. Chains whose bound exceeds the limit are
+  // not marked, even where their amplitude stays below it.
   void find_dark(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, const FrameNodes& times,
                  const RadioConstants& radio, double limit, std::vector<uint8_t>& dark);
-  // Is told that the plan is about to leave out the paths of these places ([P], 1 or 0).
+  // Removes what it holds of the paths whose places are marked ([P], 1 or 0). It must be called before the plan leaves out
+  // these paths.
   void leave_out(const SharedLegPlan& plan, const std::vector<uint8_t>& places);
   // Writes the chains and mirror paths of the plan. Where the nodes are those of the last call, which must still be as they
   // were, only what hangs on `radio` is evaluated again.
@@ -66,9 +69,9 @@ class SharedLegEvaluation {
   // other side to the first antenna there between the first and the last node, so that the amplitude of the path passes
   // through zero.
   void mark_turned(const SharedLegPlan& plan, uint8_t* turned) const;
-  // Reads the same: sets unfiltered[place] to about the amplitude (sqrt(W)) that a coherent path between the first antennas
-  // would have at the first node without the filter of its launch cell, at most that of a mirror. Others keep what they
-  // have.
+  // Reads the plan and the nodes of the last call: sets unfiltered[place] to about the amplitude (sqrt(W)) that a coherent
+  // path between the first antennas would have at the first node without the filter of its launch cell, at most that of a
+  // mirror. The values of other paths are left as they are.
   void mark_unfiltered(const SharedLegPlan& plan, const RadioConstants& radio, double* unfiltered) const;
   size_t num_bytes() const { return tables_.num_bytes() + values_.num_bytes(); }  // of its memory, nearly all
 

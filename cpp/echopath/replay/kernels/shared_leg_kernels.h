@@ -106,13 +106,14 @@ struct SharedLegKernels {
   void (*polarize)(const PathToPolarize& path, size_t stride);
 };
 
-// For rows of several nodes, side by side, and of one, of which vectors would be nearly empty.
+// Holds two forms of the same kernels: `of_many` takes several nodes of a row side by side in a vector, and `of_one` takes
+// one node after the other. The second serves rows of a single node, for which vectors would be nearly empty.
 template <class Kernels>
 struct ForRows {
   Kernels of_many, of_one;
 };
 
-// For rows of that many nodes.
+// Returns the kernels for rows of `stride` nodes, for the best instruction set of this machine.
 const SharedLegKernels& shared_leg_kernels(size_t stride);
 // Returns the kernels that take one node after the other.
 const SharedLegKernels& shared_leg_kernels_of_one();

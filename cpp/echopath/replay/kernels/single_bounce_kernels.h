@@ -83,7 +83,7 @@ struct SingleBounceKernels {
   void (*evaluate)(const SingleBouncesToEvaluate& paths);
 };
 
-// For rows of that many nodes.
+// Returns the kernels for rows of `stride` nodes, for the best instruction set of this machine.
 const SingleBounceKernels& single_bounce_kernels(size_t stride);
 
 }  // namespace echopath

@@ -5,7 +5,7 @@
 namespace echopath::ECHOPATH_KERNELS {
 namespace {
 
-// A launch cell on a flat triangle.
+// Describes a launch cell on a flat triangle for the formulas of cell_formula.h, which ask for its curvature, too.
 struct FlatCell {
   static constexpr bool is_curved = false;
   static constexpr double turn[3] = {0.0, 0.0, 0.0}, bend[3] = {0.0, 0.0, 0.0};

@@ -11,6 +11,7 @@
 
 namespace echopath {
 
+// Holds the nodes of a time grid and the scene posed at them.
 struct PosedGrid {
   FrameNodes nodes;
   PosedNodes posed;
@@ -23,13 +24,13 @@ struct TrialGrid {
   std::shared_ptr<const PosedScenes> scenes;
 };
 
-// A grid of which only those meshes are posed that paths needed.
+// Poses the meshes of a grid when paths first need them.
 class PartlyPosedGrid {
  public:
-  // `grid` has scenes without meshes, which are `scenes`. All arguments must outlive it.
+  // `scenes` are the posed scenes of `grid` and have no meshes yet. The scene and the patches must outlive it.
   PartlyPosedGrid(PosedGrid grid, std::shared_ptr<PosedScenes> scenes, const Scene& scene,
                   const std::vector<SurfacePatch>& patches);
-  // Poses those of the meshes that are missing. Raises what PosedScene does.
+  // Poses those of these meshes that are not posed yet, and returns the grid. Raises what PosedScene does.
   const PosedGrid& with(std::span<const uint32_t> meshes);
   int64_t num_bytes() const { return num_bytes_; }  // of what its meshes take, nearly all
 

@@ -1,5 +1,5 @@
 #pragma once
-// Keeps echoes in the order of their groups and delays, in the layout of the inner loops.
+// Sorts echoes by group and delay into tiles, the layout that the inner loops of synthesis read.
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -11,9 +11,11 @@ namespace echopath {
 
 struct DriftClasses;
 
-// Neighbours in delay share cells of the grid, where their kernels are summed at once (cell moments), and the rows of a
-// group stay in the cache. Delays are compared in the middle of the frame, among echoes that drift alike over it, where
-// there are enough of them. An echo that moves otherwise than its neighbours mixes the order, which costs only time.
+// Holds echoes sorted by group, drift and delay. Echoes that are neighbours in delay spread onto the same cells of the grid,
+// so that their kernels are summed at once (cell moments), and the rows of one group stay in the cache. The delay that
+// counts is the one in the middle of the frame. Where there are enough echoes, they are first divided into classes that
+// drift alike over the frame, so that neighbours stay neighbours. An echo that still moves unlike its neighbours costs time,
+// but does not change the result.
 class EchoTiles {
  public:
   struct Tile {
@@ -22,9 +24,9 @@ class EchoTiles {
     uint32_t group;
   };
 
-  // Takes the echoes of `blocks`, which share one sampling. Delays in [0, longest_delay], a span of `num_cells` cells, are
-  // told apart, others are not. Memory is used again, and so is the order where the echoes are those of the last call as
-  // another channel sees them.
+  // Takes the echoes of `blocks`, which share one sampling. Echoes are ordered by delays in [0, longest_delay], which span
+  // `num_cells` cells; delays beyond these limits count as the limit. Memory of the last call is used again. Where the
+  // echoes are those of the last call as another channel sees them, their order is used again, too.
   void assign(std::span<const Echoes> blocks, int num_groups, double longest_delay, int num_cells);
 
   // Sorts the echoes of the next call, whatever came before: results must not depend on other work of the process.

@@ -1,6 +1,6 @@
 #pragma once
-// Takes the signal of echoes at neighbouring ranges straight from the grid of its NUFFT to the columns of a range-Doppler
-// map that it can show anything in: without its samples, and without the other columns.
+// Computes the range-Doppler map of a signal whose echoes lie at neighbouring ranges, a band, directly from the grid of the
+// NUFFT. It computes neither the samples of the signal nor the range columns in which the signal is too weak to matter.
 //
 // Grid cell i holds g_i, and sample n is c_n sum_i g_i e^{j 2 pi i (n - n0) / G} (signal/methods/nufft.cpp). The windowed
 // Fourier transform at range bin r of B is linear in them,
@@ -36,9 +36,10 @@ class BandMap {
   // Raises as MapTransform. `spread` must outlive it; null: no signal is a band.
   BandMap(const Radar& radar, const MapWindows& window, int zero_pad, const SpreadMethod* spread);
 
-  // Writes the power of some groups together, and returns true, where their rows set so few cells that this is quicker than
-  // their samples. Cells of columns that can show no more than `least` W are 0, and so are those that are not `asked` for
-  // ([R] 1 or 0; empty: all are); where it returns false, `asked` has all these columns. No parallel loop; several threads
+  // Writes the power of the summed field of some groups and returns true, where their echoes fill so few cells of the grid
+  // that this is quicker than a transform of the samples. Columns whose power cannot exceed `least` (W) are left at 0, as
+  // are columns that are not marked in `asked` ([R] 1 or 0; empty marks all). Where it returns false, it has written nothing
+  // to `out`, and `asked` leaves out the columns that it found to be too weak. It has no parallel loop, and several threads
   // may use it.
   bool power(const SummedGroups& of, int num_channels, double least, std::vector<uint8_t>& asked, SetPower& out) const;
 

@@ -1,5 +1,6 @@
 #pragma once
-// Bounds what groups of paths can show in the cells of a map, from their echoes alone: no signal is needed.
+// Bounds the power of groups of paths in the cells of a range-Doppler map from the delays and amplitudes of their echoes,
+// without their signals.
 //
 // Windows divide by their sum, so that an echo of amplitude A and beat frequency x (in cells) gives at most A |W(r - x)|
 // in a cell at range r, whatever its velocity; fields add at best in phase. So at every velocity
@@ -17,18 +18,22 @@
 
 namespace echopath {
 
+// Collects the largest amplitude of each path and the range of its beat frequencies, and bounds powers by them.
 class CellBounds {
  public:
-  // Echoes taken with the delay of every sample (`per_sample`) are no tones: theirs are the same at every range.
+  // Echoes with the delay of every sample (`per_sample`) are not single tones: they are bounded by their amplitude alone, at
+  // every range.
   CellBounds(int64_t num_paths, const Radar& radar, bool per_sample);
 
-  // Takes the blocks of a channel; `first` tells the path of each echo, or the first of those joined in it. Chirps are
-  // looked at in kChirps places; between these amplitudes may be kSpare larger and beats a quarter of a cell off.
+  // Takes the blocks of a channel; `first` tells the path of each echo, or the first of those joined in it. It looks at
+  // about kChirps chirps of the frame. Bounds allow for amplitudes between these chirps that are larger by the factor
+  // kSpare, and for beat frequencies that are off by a quarter of a cell.
   void see(std::span<const Echoes> blocks, std::span<const int64_t> first);
   static constexpr int kChirps = 8;
   static constexpr double kSpare = 1.05;
 
-  // Returns bounds of the power, [num_groups, R] in W; group [P], those of num_groups and above are left out.
+  // Returns bounds of the power of each group, [num_groups, R] in W. `group` [P] names the group of each path; paths of
+  // group `num_groups` and above are left out.
   std::vector<double> bounds(std::span<const uint32_t> group, uint32_t num_groups, const Window& window, int zero_pad) const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// Computes the signals of many groups of paths, some groups at a time: memory does not grow with their number.
+// Computes the signals of many groups of paths, a few groups at a time, so that memory does not grow with their number.
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -15,17 +15,17 @@
 
 namespace echopath {
 
-// Each path is replayed when its group is asked for. The method of synthesis is that of the whole set, and the signals of
-// all groups add up to the whole to rounding, with the same bits for any number of threads.
+// Replays and synthesises groups of paths on request. The method of synthesis is chosen for the whole set of paths, and the
+// signals of all groups add up to the whole signal to rounding, with the same bits for any number of threads.
 class PartPass {
  public:
-  // group [P], below num_groups. Paths and radar must outlive it; settings must not ask for keyframes. Raises as
-  // CubePass.
+  // `group` [P] names the group of each path, below `num_groups`. Paths and radar must outlive it; settings must not ask for
+  // keyframes. Raises as CubePass.
   PartPass(const Paths& paths, const Radar& radar, std::vector<uint32_t> group, uint32_t num_groups, CubeSettings settings);
   ~PartPass();
 
-  // Signals that are made from now on are added to the whole, or not; at first they are. Each group is to be added once.
-  // The probe of the settings sees paths whose signals are added.
+  // Sets whether the signals of later calls are added to the signal of the whole; by default they are. Each group must be
+  // added exactly once. The probe of the settings receives the paths whose signals are added.
   void set_adds_up(bool adds_up) { adds_up_ = adds_up; }
   Cube whole(Job* job) const;
   // Fills the probe of the settings. To be called once, after all groups were added.

@@ -10,15 +10,15 @@
 
 namespace echopath {
 
-// Sees every path's own echo before it is joined with others.
+// Receives the echo of every path by itself, before echoes of several paths are joined.
 class PathWatcher {
  public:
   virtual ~PathWatcher() = default;
   virtual bool watches(int channel) const = 0;
-  // Sees one of the blocks in flight; `block` is below ReplayStream::kBlocksInFlight. It is called for many blocks at a
-  // time.
+  // Receives one of the blocks in flight; `block` is below ReplayStream::kBlocksInFlight. Many threads call it at a time,
+  // each with a block of its own.
   virtual void see(int channel, size_t block, const Echoes& echoes, std::span<const int64_t> paths) = 0;
-  // Is called when all blocks in flight have been seen.
+  // Ends a group of blocks: the stream calls it once see() has had all blocks in flight.
   virtual void end_blocks() = 0;
 };
 
@@ -95,7 +95,7 @@ class ReplayStream {
   Job* job_;
   std::optional<JoinRule> join_rule_;
   PathWatcher* watcher_ = nullptr;
-  // Are kept between runs over some paths.
+  // These hold time grids and posed meshes from one run over a part of the paths to the next.
   std::optional<PathGrids> kept_grids_;
   bool keeps_poses_ = false;
   std::vector<std::unique_ptr<PartlyPosedGrid>> kept_chirps_, kept_samples_;  // by transmitter, null where none are kept

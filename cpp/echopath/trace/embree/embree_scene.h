@@ -66,7 +66,8 @@ class EmbreeScene {
   // The same where only what lies within `reach` (m) counts: a short ray passes most of the scene by. It may meet what lies
   // a little farther.
   Verdict intersect_near(const Vec3& from, const Vec3& direction, double reach, RayHit& out, Sees sees) const;
-  // Returns from where on a ray meets what lies behind a hit at `distance`, both in m.
+  // Returns the distance along a ray, m, at which to continue it behind a hit at `distance` (m), so that it does not meet
+  // the same surface again.
   double behind(double distance) const { return distance * (1.0 + 0x1.0p-20) + 2.0 * lift_; }
   bool has_sheets() const { return has_sheets_; }
   bool is_sheet(uint32_t mesh_id) const { return meshes_.is_sheet(mesh_id); }
@@ -132,7 +133,7 @@ class EmbreeScene {
   // Returns vertices relative to the origin.
   const std::vector<Vec3>& vertices(uint32_t mesh_id) const { return meshes_.vertices(mesh_id); }
   Eigen::AlignedBox3d box(uint32_t mesh_id) const { return meshes_.box(mesh_id); }
-  // As EmbreeMeshes::width.
+  // Returns the width in m that `measure` gives for the mesh, or gave since its vertices were last computed.
   double width(uint32_t mesh_id, const std::function<double()>& measure) const { return meshes_.width(mesh_id, measure); }
 
  private:

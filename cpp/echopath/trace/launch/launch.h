@@ -16,15 +16,16 @@
 
 namespace echopath {
 
-// Has one stratum that fits each object as seen from `transmitter` (fit_stratum.h), one that fits each of its images over
-// mirrors, and last the antenna's field of view. Objects are the children of the scene's root, without their mirrors.
-// Objects that surround the transmitter belong to the field of view, as do images without a stratum and the diffuse
-// echoes of mirrors. Each stratum counts the echoes that it owns (ray_owners.h). By default objects that move get at
-// least half of the rays that are aimed; otherwise objects and images over one mirror share alike, and images over two
-// get a quarter of that. The field of view gets 15 % where it owns anything. A stratum that would get fewer than
-// kFewestRays is left out: the field of view then owns its echoes, as it does where the objects are so many that none
-// would get as many. A guide may set foci into the strata (launch_focus.h), which stand between the images and the field
-// of view.
+// Distributes the rays of a launch over strata of directions. `strata` holds first one stratum for each object, fitted to
+// its outline as seen from the transmitter (fit_stratum.h), then one for each image of an object over mirrors, then the foci
+// that a guide may set into these strata (launch_focus.h), and last the antenna's field of view. Objects are the children of
+// the scene's root, without their mirrors.
+//
+// Each stratum counts the echoes that it owns (ray_owners.h). The field of view owns the echoes of objects that surround the
+// transmitter, of objects and images without a stratum of their own, and the diffuse echoes of mirrors. It gets 15 % of the
+// rays where it owns anything; the others are aimed. By default, moving objects get at least half of the aimed rays. Apart
+// from that, objects and images over one mirror get equal shares, and images over two mirrors a quarter of such a share. A
+// stratum that would get fewer than kFewestRays rays is left out.
 struct LaunchPlan {
   static constexpr int64_t kFewestRays = 4;
 

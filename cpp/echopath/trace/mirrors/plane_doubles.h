@@ -1,5 +1,5 @@
 #pragma once
-// Knows which paths that rays found stand for the same field as paths over planes that the image method found.
+// Finds and removes paths of rays that carry the same field as paths over planes that the image method found.
 #include <cstdint>
 #include <map>
 #include <vector>
@@ -9,22 +9,26 @@
 
 namespace echopath {
 
-// Holds a sequence of planes, and with it all in which the bounces of a stretch come in another order.
+// Describes a sequence of planes off which a path bounces, with other orders of the same planes that carry the same field.
+// The sequence is divided into stretches of bounces that lie about one corner; the bounces of a stretch may come in any
+// order.
 struct OrdersAboutCorners {
   std::vector<int> planes;
   std::vector<int64_t> ends;  // of the stretches, ascending
 
-  bool contain(const std::vector<int>& sequence) const;  // of the same planes
+  // Returns whether a sequence of the same planes is one of these.
+  bool contain(const std::vector<int>& sequence) const;
   bool operator==(const OrdersAboutCorners&) const = default;
 };
 
+// Holds the sequences of planes whose paths the image method has found.
 class PlaneDoubles {
  public:
   std::vector<std::vector<int>> plane_of_triangle;  // by mesh ID; empty: none. -1: on no plane
-  // Leaves out the sequences.
+  // Adds sequences of planes whose paths the image method has found: leave_out() removes the paths of rays over these.
   void add(OrdersAboutCorners orders);
   bool any() const { return !left_out_.empty(); }
-  // Leaves out the paths that the images stand for. Raises Cancelled.
+  // Removes the paths of rays for which the image method has paths of its own. Raises Cancelled.
   void leave_out(Paths& paths, Job* job) const;
   bool operator==(const PlaneDoubles&) const = default;
 

@@ -1,11 +1,12 @@
 #pragma once
-// Holds the first hits of neighbouring rays, lane by lane.
+// Holds the first hits of neighbouring rays. Each array has one value per ray, the values of a packet side by side.
 #include "echopath/trace/sbr/ray.h"
 #include "echopath/trace/sbr/ray_context.h"
 
 namespace echopath {
 
-// Between the random numbers of a ray and those of the ray that is split off it at a sheet.
+// Separates the random numbers of a ray from those of the rays that are split off it at sheets: behind n sheets, ray i takes
+// the random numbers of index i + n kBranch.
 inline constexpr int64_t kBranch = int64_t{1} << 44;
 
 struct FirstHits {
@@ -15,8 +16,10 @@ struct FirstHits {
   int count = 0;
   LaunchPlan::Places places;
   LaneVectors directions;
-  // Rays per sr as if each counted in full: the density of the owner over the rays that one ray stands for; it is infinite
-  // where foci own all of the direction.
+  // These are the densities, in rays per sr, that the weights of rays are made of: the density of the stratum that owns the
+  // echoes of a ray, divided by the number of that stratum's rays that this ray stands for (LaunchFoci::rays_of_owner), or
+  // for rays that are aimed at points LaunchPlan::default_density. The density is infinite where foci own all echoes of a
+  // direction.
   LaneValues densities;
   PacketSamples samples;
   EmbreeScene::PacketHits hits;

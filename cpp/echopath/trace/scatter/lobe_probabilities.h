@@ -30,13 +30,14 @@ inline LobeProbabilities lobe_probabilities(const SurfaceModel& model, const Sur
   return {specular_probability, 1.0 - specular_probability};
 }
 
-// Returns whether a coherent ray goes on both ways where a surface mirrors and scatters: the wave that it mirrors always,
-// the power that it scatters by its share. If chance chose between them, the gaps that it leaves among neighbouring rays
-// would keep the phases across a point of reflection from cancelling: a person's limbs that mirror each other then err by
-// 8 % of his coherent power, however many the rays. Rays with a specular_probability of their own, and those that pass over
-// flagged mirrors, choose one way. So do those that would be mirrored next to never, and all behind the first hits, which
-// bounds what one ray of the launch becomes: four rays, however many bounces it may take. depth: hits so far, this one among
-// them.
+// Returns whether a coherent ray is split at a surface that both mirrors and scatters: a mirrored ray then always goes on,
+// and a scattered one with the probability of the diffuse lobe. The alternative is to choose one of the two at random. This
+// leaves gaps among neighbouring mirrored rays, so that phases around a point of reflection do not cancel: between a
+// person's limbs the coherent power is then wrong by 8 %, however many rays there are.
+//
+// A ray is not split, but chooses one way at random, where `specular_probability` is set, at flagged mirrors, where the
+// mirrored share of the power is below kLeastMirrored, and behind hit kDeepest, so that one ray of the launch becomes at
+// most four. `depth` counts the hits so far, this one among them.
 inline bool goes_both_ways(const SurfaceModel& model, const LobeProbabilities& lobes, double specular_probability,
                            int depth) {
   constexpr int kDeepest = 3;

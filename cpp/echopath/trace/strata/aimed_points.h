@@ -15,9 +15,10 @@ struct AimSettings {
   Vec3 transmitter = Vec3::Zero();  // relative to the origin of the geometry
 };
 
-// Returns the points of all rough meshes that face the transmitter in the field of view, hidden ones too, as dense as the
-// rays of a plan by the default rule (LaunchPlan::default_density). So many are there of an object while its share of the
-// rays stays the same, from whatever distance. Meshes come in their order, so that neighbours are near each other.
+// Returns the points of all rough surfaces that face the transmitter and lie in the field of view, hidden ones too. They are
+// as dense in direction as the rays of the plan by the default rule (LaunchPlan::default_density): the number of points on
+// an object follows its share of the rays, whatever its distance. Points come by mesh, so that neighbours in the list are
+// near each other.
 std::vector<SurfacePoint> find_aimed_points(const Scene& scene, const EmbreeScene& geometry, const LaunchPlan& plan,
                                             const AimSettings& settings, Job* job = nullptr);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Sums up bits so that things can be compared by 64 of them.
+// Computes check sums of 64 bits, by which values are compared.
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -7,8 +7,8 @@
 
 namespace echopath {
 
-// The sum hangs on all values added and on their order. Two different sequences have the same sum by chance once in 2^64.
-// Source: each word goes through the finaliser of Steele, Lea, Flood 2014 (SplitMix).
+// Holds a check sum, which depends on all values added and on their order. Two different sequences have the same sum by
+// chance once in 2^64. Source: each word goes through the finaliser of Steele, Lea, Flood 2014 (SplitMix).
 class BitSum {
  public:
   template <class Value>

@@ -1,5 +1,5 @@
 #pragma once
-// Names the small linear algebra that every module uses.
+// Names the vectors, matrices and transforms that every module uses.
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,5 +1,5 @@
 #pragma once
-// Sets the one rule on how far away and how late things may be.
+// Limits how far from the origin things may be, and how late: the same limits hold in all modules.
 #include <cmath>
 #include <string>
 #include <string_view>

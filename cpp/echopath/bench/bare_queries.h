@@ -17,7 +17,8 @@ struct BareQueries {
   int64_t num_in_packets = 0;  // of these queries
   int64_t num_shadow = 0;      // of these queries
   double build_seconds = 0.0;  // once for all rays: geometry, mirrors, launch plan
-  // Measured in turn: rays and record; the same queries packed as the tracer packs them; the same queries one by one.
+  // These are measured in turn: a trace with its record; its queries alone, packed as the tracer packs them; and the same
+  // queries one by one.
   Seconds trace, bare, single;
 };
 

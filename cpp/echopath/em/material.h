@@ -21,14 +21,15 @@ struct Material {
   std::optional<std::complex<double>> permittivity;  // relative, eps' - j eps'', imaginary part <= 0
   double conductivity = 0.0;                         // S/m, adds -j sigma/(w eps0)
   std::optional<double> reflectivity;  // power reflectivity in [0, 1] at every angle (reflects like a conductor)
-  // Of a sheet in air, through which waves pass (em/layers/layer_stack.h), from the side of the surface's normals on. The
-  // surface is the face that the wave meets first.
+  // These are the layers of a sheet in air, through which waves pass (em/layers/layer_stack.h), from the side of the
+  // surface's normals on. The surface is the face that the wave meets first.
   std::vector<Layer> layers;
   double roughness_height = 0.0;     // rms height in m (Ament)
   std::optional<double> scattering;  // S in [0, 1], S^2 is the diffuse share of power (Degli-Esposti 2007)
   double cross_polarization = 0.0;   // in [0, 0.5], share of diffuse power in the cross polarisation
-  // Lobe of what is scattered (em/surface/diffuse_lobe.h): the exponent of a directive lobe, 0 for Lambert's; the share of
-  // it that goes back to where the wave comes from, and the exponent of that part, 0 for that of the other.
+  // These describe the lobe of the scattered power (em/surface/diffuse_lobe.h): the exponent of a directive lobe, 0 for
+  // Lambert's; the share of the lobe that goes back to where the wave comes from; and the exponent of that part, 0 for the
+  // exponent of the other.
   int lobe_exponent = 0;
   double backscatter_share = 0.0;
   int backscatter_exponent = 0;

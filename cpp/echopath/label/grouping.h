@@ -12,7 +12,7 @@ namespace echopath {
 // same in all records.
 using Grouping = std::function<Partition(const Paths&, Job*)>;
 
-// Groups by make_partition.
+// Groups paths by the first selection that takes them (make_partition).
 Grouping by_selections(std::vector<NamedSelection> parts);
 
 // Groups the paths for error bars: the coherent and the diffuse paths of each batch of rays, "batch 0 coherent", "batch 0

@@ -31,21 +31,23 @@ struct CoherentKind {
 struct PowerEvidence {
   double coherent = 0.0, diffuse = 0.0;  // W, the estimates
   std::vector<CoherentKind> kinds;
-  // Sums over the coherent paths that hardly change at half the density, such as those of flat surfaces up to their edges:
-  // of |a|^2, W, and of its squares, W^2.
+  // These are sums over the coherent paths that hardly change at half the density, such as those of flat surfaces up to
+  // their edges: the sum of |a|^2, W, and that of |a|^4, W^2.
   double steady_power = 0.0, steady_squares = 0.0;
   double lattice_squares = 0.0;  // W^2, sum of squares of the powers of diffuse hits that the launch lattice found
   double drawn_squares = 0.0;    // W^2, of those that were found by directions drawn at random
   int num_batches = 1;
   double standard_error = 0.0;  // W, of coherent + diffuse by the batches; not used for one
-  // W, where no footprint filter tells how coarse the rays are: what the coherent paths would send back all in phase.
+  // This is the power, W, that the coherent paths would send back all in phase. It is set where no footprint filter tells
+  // how coarse the rays are.
   std::optional<double> coherent_at_most;
 };
 
+// Holds the 95 % interval of a power, and what it is made of.
 struct PowerInterval {
   double low = 0.0, high = 0.0;  // W
-  // W: the same without what more rays hardly mend, which are facets and edges of several bounces behind a weak field. It
-  // tells where rays are needed.
+  // These, W, are the same without what more rays hardly mend, which are facets and edges of several bounces behind a weak
+  // field. They tell where rays are needed.
   double low_of_rays = 0.0, high_of_rays = 0.0;
   double bias = 0.0;          // W, by which the coherent power may change with finer launch cells
   double bias_of_rays = 0.0;  // W, the same without what more rays hardly mend

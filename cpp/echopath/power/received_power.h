@@ -19,11 +19,12 @@ inline constexpr double kResolvedDb = 0.3;  // how far the interval of a resolve
 struct ReceivedPower : PowerInterval {
   double power = 0.0;           // W, coherent + diffuse
   double standard_error = 0.0;  // W, of `power`, by the batches; NaN for less than two
-  // W: |field|^2 of the coherent paths; with batches free of the bias by noise, which can take it below zero.
+  // This is |field|^2 of the coherent paths, W. With batches it is free of the bias by noise, which can take it below zero.
   double coherent = 0.0;
   double coherent_error = 0.0;  // W
-  // W: sum over the diffuse hits of |field of all paths over this hit|^2. They share its random phase, so that both
-  // orders of a path over a mirror, and of a chain of several diffuse hits, add as fields; different hits add as powers.
+  // This is the sum over the diffuse hits of |field of all paths over this hit|^2, W. These paths share the random phase of
+  // the hit, so that both orders of a path over a mirror, and of a chain of several diffuse hits, add as fields; different
+  // hits add as powers.
   double diffuse = 0.0;
   double diffuse_error = 0.0;  // W
   int num_batches = 1;

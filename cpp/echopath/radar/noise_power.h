@@ -1,5 +1,5 @@
 #pragma once
-// Knows the power of the receiver's thermal noise.
+// Computes the power of the receiver's thermal noise.
 #include "echopath/radar/radar.h"
 
 namespace echopath {

@@ -80,10 +80,11 @@ struct Antenna {
 // coordinates (base/range_of_coordinates.h).
 Vec3 mean_position(const std::vector<Antenna>& antennas, const Transform& world_from_radar);
 
-// How transmitters share the chirps. kTdm: one transmitter per slot. The others send in all slots at once, by a code over
-// the slots; echoes and cubes are those of each transmitter by itself, [tx, rx, chirp, sample], as a receiver that undoes
-// the code has them: kBpm: the signs of a Hadamard matrix over num_slots slots, which make one chirp. kDdm: transmitter m
-// turns by m / (transmitters + empty_slots) of a cycle from chirp to chirp. kCdm: it turns by code_phases[m].
+// Says how transmitters share the chirps. With kTdm, one transmitter sends in each slot. With the others, all transmitters
+// send in all slots, each with a code over the slots; echoes and cubes, [tx, rx, chirp, sample], are then those of each
+// transmitter by itself, as a receiver has them that undoes the code. kBpm uses the signs of a Hadamard matrix over
+// num_slots slots, which make one chirp. With kDdm the phase of transmitter m advances by m / (transmitters + empty_slots)
+// of a cycle from chirp to chirp, with kCdm by code_phases[m].
 enum class Multiplexing { kTdm, kBpm, kDdm, kCdm };
 
 struct Radar {

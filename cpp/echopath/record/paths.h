@@ -63,7 +63,8 @@ constexpr uint32_t edge_flags(int hit, int num_pieces, int num_edges = 1) {
   return kEdgePath | static_cast<uint32_t>(num_edges - 1) << 3 | static_cast<uint32_t>(hit) << 8 |
          static_cast<uint32_t>(num_pieces) << 16;
 }
-// Return the first hit on an edge, -1 where there is none, the number of such hits, and that of pieces.
+// These return, from the flags of a path, its first hit on an edge (-1 where there is none), the number of such hits, and
+// the number of pieces of the edge.
 constexpr int edge_hit(uint32_t flags) { return flags & kEdgePath ? static_cast<int>(flags >> 8 & 63u) : -1; }
 constexpr int num_edge_hits(uint32_t flags) { return flags & kEdgePath ? static_cast<int>(flags >> 3 & 3u) + 1 : 0; }
 constexpr int num_edge_pieces(uint32_t flags) { return static_cast<int>(flags >> 16); }
@@ -96,8 +97,8 @@ struct RecordSettings {
   PolarizationModel polarization = PolarizationModel::kScalar;
   Footprint footprint = Footprint::kSecondOrder;  // filter of the ray's footprint on coherent echoes, applied in replay
   Sampler sampler = Sampler::kLattice;            // of the launch directions
-  // 1 to 64: independent lattices that share the rays; errors follow from their differences. Each is as fine as its share of
-  // the rays.
+  // This is the number of independent lattices that share the rays, 1 to 64; errors follow from their differences. Each is
+  // as fine as its share of the rays.
   int batches = 1;
   Scatterers scatterers = Scatterers::kRays;
   bool edges = false;        // also find the echoes of sharp edges (edges/edge_paths.h)
@@ -140,7 +141,7 @@ struct Paths {
   // hits, which then are not in the weight. Those of coherent paths are divided by cos_i at the last surface.
   std::vector<JonesMatrix> jones;
 
-  // The sheets through which paths go, in order of travel, path by path: those of path p are [pass_offsets[p],
+  // These are the sheets through which paths go, in order of travel, path by path: those of path p are [pass_offsets[p],
   // pass_offsets[p + 1]). Both are empty where no path goes through any.
   std::vector<Pass> passes;
   std::vector<int64_t> pass_offsets;  // [P + 1] or empty

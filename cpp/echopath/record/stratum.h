@@ -31,11 +31,11 @@ struct Stratum {
   bool operator==(const Stratum&) const = default;
 };
 
-// Convert the half angle of a cone in rad to 1 - cos and back, without cancellation for narrow cones.
+// These convert the half angle of a cone in rad to 1 - cos and back, without cancellation for narrow cones.
 double versine_of(double half_angle);
 double half_angle_of(double versine);
 
-// Shares of the rays relative to each other, by the name of a stratum; strata that are not named get the mean.
+// Holds shares of the rays relative to each other, by the name of a stratum; strata that are not named get the mean.
 using RayShares = std::map<std::string, double>;
 // Returns the shares of a plan that was carried out; the rays of foci count for the strata that they are in.
 RayShares shares_of(const std::vector<Stratum>& strata);

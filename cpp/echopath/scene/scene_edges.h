@@ -1,5 +1,5 @@
 #pragma once
-// Knows the sharp edges of all meshes of a scene, with the seams between meshes that keep their places to each other.
+// Finds the sharp edges of all meshes of a scene, with the seams between meshes that keep their places to each other.
 #include <span>
 #include <vector>
 

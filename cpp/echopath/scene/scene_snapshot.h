@@ -1,5 +1,5 @@
 #pragma once
-// Hands a scene on from one stage to the next without a copy for each.
+// Holds a scene that no longer changes, which one stage passes to the next without a copy.
 #include <memory>
 #include <utility>
 

@@ -12,7 +12,8 @@
 
 namespace echopath {
 
-// Both vectors may have any length and point from the target to the antenna.
+// Holds the directions of a bistatic cross section. Both vectors may have any length and point from the target to the
+// antenna.
 struct RcsDirections {
   Vec3 incidence = Vec3::UnitX();    // toward the transmitter
   Vec3 observation = Vec3::UnitX();  // toward the receiver; equal to `incidence` if monostatic
@@ -46,8 +47,8 @@ struct RcsCavity {
 struct RcsSettings {
   double frequency = 77e9;  // Hz
   std::vector<RcsChannel> channels = {RcsChannel{}};
-  // Each pair of directions and transmit polarisation is traced so. The scalar model has no cross-polarised reception; from
-  // two batches on cross sections have standard errors.
+  // These settings hold for the trace of each pair of directions and each transmit polarisation. The scalar model has no
+  // cross-polarised reception; from two batches on cross sections have standard errors.
   TraceSettings tracing = {RecordSettings{}, 1 << 17};
   // Doubles the rays until the first channel of each transmit polarisation is known that well (sim/rays/trace_to_error.h).
   std::optional<ErrorTarget> target;

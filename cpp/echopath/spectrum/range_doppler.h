@@ -50,11 +50,11 @@ class MapTransform {
   MapTransform(MapTransform&&) noexcept;
   int64_t num_velocities() const;
   int64_t num_ranges() const;
-  // samples [chirp, sample] to values [V, R] in sqrt(W). `profiles` is memory for it. Ranges of which `asked` [R] is 0 may
-  // be left as they are; empty: all are asked for.
+  // Transforms samples [chirp, sample] to values [V, R] in sqrt(W). `profiles` is memory for the range profiles. Ranges
+  // whose `asked` [R] is 0 may be left as they are; an empty `asked` asks for all.
   void transform(const std::complex<double>* samples, std::vector<std::complex<double>>& profiles,
                  std::complex<double>* values, std::span<const uint8_t> asked = {}) const;
-  // Where all chirps are alike: adds the power of one of them, [sample], at each range to `power`, [R] in W.
+  // Adds the power at each range of a chirp that is like all others, [sample], to `power`, [R] in W.
   void add_still(const std::complex<double>* samples, std::vector<double>& power) const;
   // Adds to `cells` [V, R] in W what such powers are at each velocity.
   void spread_still(const std::vector<double>& power, double* cells) const;

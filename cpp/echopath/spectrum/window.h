@@ -19,7 +19,7 @@ struct Window {
   bool operator==(const Window&) const = default;
 };
 
-// The windows along the two axes of a map. One window stands for both.
+// Holds the windows along the two axes of a map. One window stands for both.
 struct MapWindows {
   Window range, velocity;
 

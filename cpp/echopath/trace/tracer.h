@@ -25,7 +25,7 @@ class Tracer {
   void shoot(int64_t begin, int64_t end, PathBlock& block) const { shooter_.shoot(begin, end, block); }
   EmbreeScene& geometry() { return geometry_; }
   const EmbreeScene& geometry() const { return geometry_; }
-  // Return what all rays share. The record has no paths yet.
+  // These return what all rays share. The record has no paths yet.
   const Paths& without_paths() const { return empty_; }
   const LaunchPlan& plan() const { return plan_; }
   const SbrSettings& sbr() const { return sbr_; }

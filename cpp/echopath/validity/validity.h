@@ -72,8 +72,8 @@ struct Validity {
   bool has_array = false;     // some antenna stands elsewhere than those of the trace
   SpecularPoints specular = SpecularPoints::kMaterial;
   ValidityShares shares;
-  // rad: weighted by power; the largest over the paths that carry any; the largest by motion alone (for the trace's own
-  // antennas); and the largest that a Newton step leaves.
+  // These are errors of phase in rad: the rms weighted by power; the largest over the paths that carry any power; the
+  // largest by motion alone (for the trace's own antennas); and the largest that a Newton step leaves.
   double rms_phase_error = 0.0, largest_phase_error = 0.0, motion_phase_error = 0.0, stepped_phase_error = 0.0;
   double largest_cosine_change = 0.0;
   std::vector<ObjectValidity> objects;  // by strength

@@ -143,7 +143,7 @@ ECHOPATH_INLINE Vec sums_of_two(Vec a, Vec b) {
 
 constexpr double kMaxNegativeExponent = -708.0;  // e^x below is taken as 0
 
-// Functions of vectors under the names of ScalarMath.
+// Gives the functions of ScalarMath for vectors.
 struct LaneMath {
   using Real = Vec;
   static constexpr size_t kCount = kLanes;

@@ -40,7 +40,8 @@ struct LabelRegion {
   int64_t num_cells = 0;                  // 0: the other fields have no meaning
   int64_t peak_row = 0, peak_column = 0;  // strongest cell, the first of equal ones
   double peak_power = 0.0;                // W, of the label there
-  // The smallest box, both ends included; first_row > last_row where it runs over the end of wrapping rows.
+  // These bound the smallest box that holds the region, both ends included; first_row > last_row where the box runs over the
+  // end of wrapping rows.
   int64_t first_row = 0, last_row = 0, first_column = 0, last_column = 0;
 };
 

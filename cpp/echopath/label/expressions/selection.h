@@ -31,7 +31,8 @@ class PathTraits {
   std::optional<std::vector<uint64_t>> mesh_bits_;
 };
 
-// An immutable value, cheap to copy. It knows names only, so it serves any scene that has the meshes it names.
+// Holds a selection as an immutable value that is cheap to copy. It refers to meshes by name alone, so it serves any scene
+// that has meshes of these names.
 class Selection {
  public:
   // Takes text as label/expressions/selection_text.h has it. Implicit, so that text may stand wherever a selection is asked

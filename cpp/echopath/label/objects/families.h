@@ -42,8 +42,8 @@ struct Family {
 inline constexpr char kBetweenFields = '\x1e';  // grouping.h: kBetweenNames is another
 
 struct Families {
-  // The families that occur, sorted by object in the order of the list, order, type and surfaces; the background is always
-  // the last.
+  // These are the families that occur, sorted by object (in the order of the list of objects), then by order, type and
+  // surfaces. The background is always the last.
   std::vector<Family> families;
   std::vector<uint32_t> family_of_path;  // [P] index into families
 

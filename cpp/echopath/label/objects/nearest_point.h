@@ -7,7 +7,8 @@
 
 namespace echopath {
 
-// Goes by the longest edges of meshes as they are posed: most triangles need not be looked at.
+// Finds the nearest point of objects. The longest edges of posed meshes tell which triangles need not be looked at, and
+// these are most of them.
 class NearestPoints {
  public:
   // The scene, the pose and the geometry must outlive it; the geometry is the scene at the pose.

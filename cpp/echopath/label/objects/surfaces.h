@@ -1,5 +1,6 @@
 #pragma once
-// Names what echoes are told apart by: the objects of a scene, and the surfaces around them that mirror or hide them.
+// Names the objects of a scene and the surfaces around them that mirror or hide them. Labels tell echoes apart by these
+// names.
 #include <cstdint>
 #include <string>
 #include <vector>

@@ -8,29 +8,30 @@
 
 namespace echopath {
 
+// Collects the paths of one block of rays.
 class PathBlock {
  public:
   std::vector<Hit> hits;
-  PathColumns rows;                               // the paths that are not of fans
-  uint8_t current_batch = kNoBatch;               // of the paths added from now on
-  uint32_t current_half = 0;                      // for the same paths: 0 or kSecondHalf
+  PathColumns rows;                  // the paths that are not of fans
+  uint8_t current_batch = kNoBatch;  // of the paths added from now on
+  uint32_t current_half = 0;         // for the same paths: 0 or kSecondHalf
   // This column has a row for each path up to the last one that ends behind a curved bounce; rows of other paths are zeros.
   std::vector<std::array<float, 7>> curved_cell;
-  std::vector<JonesMatrix> jones;  // has a row for each path up to the last polarised one, likewise
+  std::vector<JonesMatrix> jones;      // has a row for each path up to the last polarised one, likewise
   std::vector<JonesMatrix> fan_jones;  // of all paths of all fans, where polarised
   TraceStatistics statistics;
   std::vector<PathFan> fans;
   std::vector<FanLeg> fan_legs;  // of each fan in turn
   std::vector<Hit> fan_hits;     // of their mirrors
-  // The first hits of a ray that goes by so near to the receiver that images are looked for on their planes
+  // Names the first hits of a ray that passes the receiver so closely that images are looked for on the planes of these hits
   // (mirrors/plane_images.h). The chains of one ray share their hits.
   struct HitChain {
     uint32_t first = 0, count = 0;  // in chain_hits
   };
   std::vector<Hit> chain_hits;
   std::vector<HitChain> chains;
-  // The hits of a ray over planes that light the last of them (edges/lit_planes.h), and the distance in m to the rays beside
-  // it on that surface.
+  // Names the hits of a ray over planes that reflect it to the last of them (edges/lit_planes.h), and holds the distance in
+  // m to the rays beside it on that surface.
   struct LitChain : HitChain {
     float spacing = 0.0f;
   };
@@ -85,7 +86,7 @@ class PathBlock {
     used_depth_ = 0;
     if (first_chain_of_ray_ < chains.size() || first_lit_chain_of_ray_ < lit_chains.size()) end_chains(ray_hits);
   }
-  // Return the size of the record that this block becomes.
+  // These return the size of the record that this block becomes.
   size_t num_paths() const { return rows.size() + num_fan_paths_; }
   size_t num_hits() const { return hits.size() + num_fan_hits_; }
   // Writes all paths in the order in which they were added. `paths` must have the optional columns that this block has.

@@ -6,7 +6,7 @@
 
 namespace echopath {
 
-// It keeps its memory from block to block and serves one thread at a time.
+// Evaluates the paths of a block. It keeps its memory from block to block and serves one thread at a time.
 class PathEvaluator {
  public:
   using Wanted = SingleBounceEvaluation::Wanted;

@@ -14,8 +14,8 @@ namespace echopath {
 struct SharedLegPlan {
   static constexpr uint32_t kNone = ~uint32_t{0};
 
-  // An image of the antennas over mirrors, for transmitters and receivers alike: it is the image `parent` reflected in
-  // `mirror`. Image 0 is the antenna itself.
+  // Describes an image of the antennas over mirrors, for transmitters and receivers alike: it is the image `parent`
+  // reflected in `mirror`. Image 0 is the antenna itself.
   struct Image {
     uint32_t parent, mirror;
   };

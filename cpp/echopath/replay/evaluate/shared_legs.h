@@ -29,7 +29,7 @@ struct ChannelNodes {
     length[at] = scale * length_there;
     amplitude[at] = echo_of ? amplitude[at] + amplitude_there : amplitude_there;
   }
-  // Change an echo that is that of one path alone. `longer` is in m.
+  // These change an echo that belongs to one path alone; `longer` is in m.
   template <class Factor>
   void scale_amplitude(size_t node, size_t place, Factor factor) const {
     amplitude[node * stride + echo(place)] *= factor;

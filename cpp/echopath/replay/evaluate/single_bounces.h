@@ -8,7 +8,7 @@
 
 namespace echopath {
 
-// It keeps its memory from block to block and serves one thread at a time.
+// Evaluates the single bounces of a plan. It keeps its memory from block to block and serves one thread at a time.
 class SingleBounceEvaluation {
  public:
   static constexpr size_t kSlots = SingleBounceSlots::kSlots, kOfNode = SingleBouncesToEvaluate::kNumRows * kSlots;

@@ -1,5 +1,5 @@
 #pragma once
-// Knows what the sheets do on the legs of one path, at one node of a time grid after the other.
+// Computes what sheets do to waves on the legs of one path, at one node of a time grid after the other.
 //
 // A leg crosses the plane of the triangle in which it was recorded wherever that is at the time, or the curved surface that
 // this stands for. Fields are those of the polarisation by which the record tells modes apart. In a polarised record the

@@ -9,7 +9,7 @@
 namespace echopath::ECHOPATH_KERNELS {
 namespace {
 
-// One node.
+// Gives the functions of LaneMath for one node.
 struct OneMath : ScalarMath {
   static constexpr size_t kCount = 1;
   static ECHOPATH_INLINE double load(const double* from) { return *from; }

@@ -14,7 +14,7 @@
 
 namespace echopath {
 
-// The unit vertex normals by mesh ID; null where the mesh is not smooth, or deforms and has no patch.
+// Holds unit vertex normals by mesh ID; null where the mesh is not smooth, or deforms and has no patch.
 using NormalsOfMeshes = std::vector<std::shared_ptr<const std::vector<Vec3>>>;
 
 struct LocalPaths {

@@ -15,10 +15,11 @@ struct LocalHit {
   Vec3 corner, edge_u, edge_v;  // of its triangle at rest; of a deforming mesh, as at the trace
   Vec3 point, normal;           // on the facet, at the same time; unit
   double trace_area = 0.0;      // m^2, |edge_u x edge_v| in the world at the trace; 0: its area never changes
-  // Unit vertex normals at rest where the triangle is taken as smooth, else null. On deforming meshes only this difference
-  // counts: their normals are those of the posed scene.
+  // These are the unit vertex normals at rest where the triangle is taken as smooth, else null. On deforming meshes only
+  // this difference counts: their normals are those of the posed scene.
   const std::array<Vec3, 3>* normals = nullptr;
-  // Where the hit stands for a piece of an edge: the edge, and its pieces. It is posed with the normal outward_of the edge.
+  // These are the edge and the number of its pieces where the hit stands for a piece of an edge. It is then posed with the
+  // normal outward_of the edge.
   const SharpEdge* edge = nullptr;
   int num_pieces = 0;
 };
@@ -51,7 +52,8 @@ struct LocalPath {
   bool is_diffuse(int hit) const { return diffuse >> hit & 1; }
   bool is_edge(int hit) const { return edge >= 0 && hit >= edge && hit < edge + num_edges; }
   bool is_sliding(int hit) const { return sliding >> hit & 1; }
-  // First and last hit that are not images; they are -1 where the path has mirrors only. The last one is a material point.
+  // These are the first and the last hit that are not images; they are -1 where the path has mirrors only. The last one is a
+  // material point.
   int first_material = -1, last_material = -1;
 };
 

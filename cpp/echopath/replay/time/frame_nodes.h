@@ -13,8 +13,8 @@ struct FrameNodes {
   int order = 1;                       // nodes per piece or, where is_exact, per chirp
   bool is_exact = false;               // every chirp has nodes; else there is one node for all where the order is 1
 
-  // Rows [2, order] that give the last two Chebyshev coefficients of a piece from its nodes: they measure what the
-  // polynomial leaves out. It is empty for order 1 and for exact nodes.
+  // These rows [2, order] give the last two Chebyshev coefficients of a piece from its nodes, which measure what the
+  // polynomial leaves out. They are empty for order 1 and for exact nodes.
   std::vector<double> tail;
   int num_pieces() const { return order > 1 && !is_exact ? static_cast<int>(times.size()) / order : 0; }
 };

@@ -14,7 +14,7 @@ struct UnfollowedPath {
   // Orders at which polynomials would follow it; 0 where this one does.
   double order_for_length = 0.0, order_for_amplitude = 0.0;
   bool is_turned = false;  // the surface at an end of it shows its other side within the frame
-  // All such paths together are below the rounding of the strongest: it needs no other polynomial.
+  // The path needs no other polynomial: all such paths together are below the rounding of the strongest path.
   bool is_negligible = false;
 };
 

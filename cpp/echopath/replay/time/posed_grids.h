@@ -43,9 +43,9 @@ class PartlyPosedGrid {
   int64_t num_bytes_ = 0;
 };
 
-// Poses grids when they are asked for. Those of the time of the trace and of polynomials are kept, and of a polynomial all
-// meshes are posed at once, or more of them with each pose_polynomial(); grids of chirps, which are large, belong to the
-// caller. Its const functions are thread-safe, except is_whole().
+// Poses the scene at the nodes of grids on request. The grid at the time of the trace and the grids of polynomials are kept.
+// Of a polynomial all meshes are posed at once, or further ones with each pose_polynomial(). Grids of chirps, which are
+// large, belong to the caller. Its const functions are thread-safe, except is_whole().
 class PosedGrids {
  public:
   // All arguments must outlive it.

@@ -7,7 +7,7 @@
 
 namespace echopath {
 
-// Nothing moves: one node serves the whole frame.
+// Describes a grid for what does not move: one node serves the whole frame.
 struct StillGrid {
   double time;  // s
 };

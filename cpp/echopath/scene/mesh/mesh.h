@@ -38,7 +38,7 @@ class Mesh {
 
   const std::vector<Vec3>& vertices() const { return vertices_; }        // [V] m, duplicated ones last
   const std::vector<Triangle>& triangles() const { return triangles_; }  // [F]
-  // The face [F] of the input or file, and the vertex [V] of the input, from which each one was made.
+  // These return the face [F] of the input or file, and the vertex [V] of the input, from which each one was made.
   const std::vector<uint32_t>& original_triangle() const { return original_triangle_; }
   const std::vector<uint32_t>& original_vertex() const { return original_vertex_; }
   int64_t num_removed_triangles() const { return num_removed_triangles_; }

@@ -30,7 +30,8 @@ inline bool faces_both(const Vec3& point, const Vec3& normal, const Vec3& first,
 
 struct ReflectionPoint {
   Vec3 position;
-  // Second derivatives of the path length, m^-1, along its two principal axes, which are unit vectors in the tangent plane.
+  // These are the principal axes of the path length at the point, unit vectors in the tangent plane, and its second
+  // derivatives along them, 1/m.
   std::array<Vec3, 2> axes;
   std::array<double, 2> bends;
 };

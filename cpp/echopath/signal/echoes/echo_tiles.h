@@ -52,7 +52,7 @@ class EchoTiles {
   int local_bits_ = 0, index_bits_ = 0, delay_bits_ = 0, drift_bits_ = 0, group_bits_ = 0;
   int group_shift() const { return index_bits_ + delay_bits_ + drift_bits_; }
   std::vector<uint64_t> order_, spare_order_;  // keys of all echoes, and room to sort them
-  // What was sorted: echoes and groups of each block, and delays of a few echoes (s).
+  // These tell which echoes were sorted last: echoes and groups of each block, and delays of a few echoes (s).
   std::vector<int64_t> sizes_;
   std::vector<std::vector<uint32_t>> groups_;
   std::vector<double> samples_;

@@ -1,5 +1,5 @@
 #pragma once
-// Amplitudes of echoes may stand as logarithms (TimeSampling::has_logarithms), for single echoes and for vectors of them.
+// Converts amplitudes of echoes to logarithms and back (TimeSampling::has_logarithms), one by one or in vectors.
 #include "echopath/base/lanes/scalar_math.h"
 
 namespace echopath {

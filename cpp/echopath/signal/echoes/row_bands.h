@@ -33,7 +33,7 @@ class RowBands {
     int64_t first = 0, count = 0;
     double* values = nullptr;  // [chirp, re/im, count]
   };
-  // Memory that is handed out from its beginning on.
+  // Holds memory of which the first `used` values are in use.
   struct Chunk {
     std::unique_ptr<double[]> values;
     size_t size = 0, used = 0;

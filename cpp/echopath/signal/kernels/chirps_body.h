@@ -130,7 +130,7 @@ constexpr SpreadChirps kSpreadChirps[] = {spread_chirps<3>,  spread_chirps<4>,  
                                           spread_chirps<11>, spread_chirps<12>, spread_chirps<13>, spread_chirps<14>,
                                           spread_chirps<15>, spread_chirps<16>};
 
-// The weights of kLanes chirps, [order, chirp].
+// Holds the weights of kLanes chirps, [order, chirp].
 struct ChirpWeights {
   static constexpr int kMaxOrder = 64;
   alignas(64) double value[kMaxOrder * kLanes];

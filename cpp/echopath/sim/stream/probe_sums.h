@@ -1,5 +1,5 @@
 #pragma once
-// Sums that a probe of a pass keeps of its echoes.
+// Holds the sums that a probe of a pass keeps of its echoes.
 #include <array>
 #include <cstdint>
 #include <utility>

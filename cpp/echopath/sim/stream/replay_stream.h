@@ -22,7 +22,7 @@ class PathWatcher {
   virtual void end_blocks() = 0;
 };
 
-// Hands the echoes of all paths over in an order and in blocks that depend on the paths alone, many blocks at a time.
+// Replays paths and sends their echoes to a sink, many blocks at a time. Blocks and their order depend on the paths alone.
 class ReplayStream {
  public:
   static constexpr int64_t kBlocksInFlight = 32;  // fixed: results must not depend on the number of threads
@@ -41,10 +41,11 @@ class ReplayStream {
         replayer_(paths, radar, settings), job_(job), kept_chirps_(radar.transmitters.size()),
         kept_samples_(radar.transmitters.size()) {}
 
-  // From now on paths over the same hits make one echo where they agree in all of `labels` ([P] each, which must outlive
-  // the stream), but for those whose logarithms are interpolated (Replayer::turning).
+  // Joins paths over the same hits to one echo where they agree in all of `labels` ([P] each, which must outlive the
+  // stream), except paths whose logarithms are interpolated (Replayer::turning). It holds for the blocks that are sent
+  // afterwards.
   void join(std::vector<const std::vector<uint32_t>*> labels) { join_rule_.emplace(replayer_.join_rule(std::move(labels))); }
-  // The watcher must outlive the stream.
+  // Sets the watcher of paths, which must outlive the stream.
   void watch(PathWatcher* watcher) { watcher_ = watcher; }
 
   static constexpr int64_t kKeptSamples = 256 << 20;  // bytes
@@ -59,7 +60,7 @@ class ReplayStream {
   // a time, while the next blocks are replayed. Raises Cancelled.
   void run(const Sink& sink);
   void run(std::span<const int64_t> paths, const Sink& sink);
-  // Sets the job that is told from now on.
+  // Sets the job that later calls of run() report to and that can cancel them.
   void set_job(Job* job) { job_ = job; }
 
  private:

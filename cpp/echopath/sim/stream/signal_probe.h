@@ -29,13 +29,14 @@ struct ProbedChirp {
   std::array<int, kSamples> sample{};
   std::array<std::complex<double>, kSamples> value{};  // sqrt(W): direct sums over the echoes as replayed
   double amplitude_sum = 0.0;                          // sqrt(W), sum of |amplitude| of all echoes in this chirp
-  // The number of moving echoes that were evaluated at the chirp too: the strongest and random ones of each block of paths.
+  // This counts the moving echoes that were evaluated at the chirp, too: the strongest and random ones of each block of
+  // paths.
   int64_t num_echoes = 0;
   double phase_error = 0.0;          // rad at the start frequency, rms weighted by the power of the echoes
   double largest_phase_error = 0.0;  // rad
   double amplitude_error = 0.0;      // rms of the differences over rms of the amplitudes
-  // Shares of halves 0 and 1 (half_of_ray) of the rays of each batch in turn, then of the image method's paths: 2 batches +
-  // 1.
+  // These are the shares of halves 0 and 1 (half_of_ray) of the rays of each batch in turn, and last of the image method's
+  // paths: 2 batches + 1.
   std::vector<RayShare> shares;
   double power_sum = 0.0;  // W, of |amplitude|^2 of all paths
   double strongest = 0.0;  // W, of the strongest path that rays found

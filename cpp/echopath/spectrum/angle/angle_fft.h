@@ -19,8 +19,8 @@ struct AngleFftOptions {
 };
 
 struct AngleSpectrum {
-  // Direction cosines along the grid's column axis and row axis: sin(azimuth) cos(elevation) and sin(elevation) for antennas
-  // in the y-z plane. They ascend from -wavelength / (2 spacing); {0} for one column (row).
+  // These are direction cosines along the grid's column axis and row axis: sin(azimuth) cos(elevation) and sin(elevation)
+  // for antennas in the y-z plane. They ascend from -wavelength / (2 spacing); for one column (row) there is only 0.
   std::vector<double> sin_azimuth;           // [A]
   std::vector<double> sin_elevation;         // [E]
   std::vector<double> velocity;              // [V] m/s, receding positive

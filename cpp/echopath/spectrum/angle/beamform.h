@@ -20,12 +20,13 @@ struct BeamformOptions {
   Window window{WindowKind::kRect};  // kBartlett: over the rows and columns of a grid (steering.h)
   Overlaps overlaps = Overlaps::kAverage;
   bool compensate = true;  // take out the phase between TDM slots
-  // kCapon: added to the diagonal of the covariance, relative to the mean power of the elements, 1e-9 to 1e3
+  // For kCapon, this times the mean power of the elements is added to the diagonal of the covariance; 1e-9 to 1e3.
   double diagonal_loading = 1e-2;
-  // kCapon: cells on each side whose snapshots are averaged in the covariance, 0 to 64; the velocity axis wraps around
+  // For kCapon, the covariance averages the snapshots of so many cells on each side, 0 to 64; the velocity axis wraps
+  // around.
   int velocity_neighbours = 1, range_neighbours = 2;
-  // kCapon: also average the covariance with that of the mirrored array, which tells apart two echoes of one phase
-  // history; needs an array that is symmetric about its centre
+  // For kCapon, the covariance is averaged with that of the mirrored array, too, which tells apart two echoes of one phase
+  // history. This needs an array that is symmetric about its centre.
   bool forward_backward = false;
 
   void validate() const;  // raises invalid_argument naming the field, the rule and the value

@@ -34,7 +34,7 @@ bool tells_elevations(const VirtualArray& array);  // and a vertical one
 // Returns e^{-j k (x - centre).u} [elements, directions], for the far field, exact positions and the centre frequency's
 // wavelength.
 Eigen::MatrixXcd steering_vectors(const VirtualArray& array, const std::vector<Vec3>& directions);
-// The same for the directions of a grid. Raises invalid_argument where elements times directions pass 2^27.
+// Returns steering vectors for the directions of a grid. Raises invalid_argument where elements times directions pass 2^27.
 Eigen::MatrixXcd steering_vectors(const VirtualArray& array, const AngleGrid& angles);
 
 // Returns weights [elements] of a window over the rows and the columns of the array's grid, whose sum is 1. Here windows are

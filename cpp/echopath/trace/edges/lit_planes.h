@@ -1,5 +1,6 @@
 #pragma once
-// Knows which planes rays found to light other planes, for the echoes of edges behind mirrors that nobody flagged.
+// Records which planes rays found to reflect waves to other planes, for the echoes of edges behind mirrors that nobody
+// flagged.
 #include <map>
 #include <span>
 #include <vector>
@@ -17,8 +18,8 @@ struct LitPlane {
   Eigen::AlignedBox3d box;  // m: where rays met it, and the space to the rays beside them
 };
 
-// The planes of facets on which rays were mirrored, or arrived; sheets, which queries of rays pass, are none of them. Facets
-// that lie in one plane to a sixteenth of the wavelength are one plane, whatever meshes they belong to.
+// Holds the planes of facets that mirrored rays or at which rays arrived, without sheets, which the queries of rays pass.
+// Facets that lie in one plane to a sixteenth of the wavelength are one plane, whatever meshes they belong to.
 class LitPlanes {
  public:
   // All must outlive it.

@@ -33,15 +33,15 @@ struct Segment {
   Vec3 from, to;
 };
 
-// Coordinates are relative to `origin` (world), so that single precision resolves the space around it. A ray that starts far
-// outside the scene is first moved up to it in double precision. Queries are thread-safe, and go through sheets unless they
-// are told otherwise.
+// Answers queries of rays in a posed scene. Coordinates are relative to `origin` (world), so that single precision resolves
+// the space around it. A ray that starts far outside the scene is first moved up to it in double precision. Queries are
+// thread-safe, and pass sheets unless `sees` says otherwise.
 class EmbreeScene {
  public:
   // Raises DeviceError when Embree fails, Cancelled when the job is cancelled during the build, and invalid_argument where
   // coordinates relative to the origin are out of their range (base/range_of_coordinates.h).
   EmbreeScene(const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job = nullptr);
-  // Holds nothing yet.
+  // Makes a scene without meshes, until update() adds them.
   EmbreeScene();
   ~EmbreeScene();
   EmbreeScene(const EmbreeScene&) = delete;
@@ -52,7 +52,7 @@ class EmbreeScene {
   // that shares a tree that tree (0.2 us a triangle). Elsewhere everything is built, unless nothing differs. Raises as the
   // constructor does and holds nothing after that.
   void update(const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job = nullptr);
-  // The same about origin_near of `near` (m, world), which may move.
+  // Updates the scene likewise, with the origin that origin_near gives for `near` (m, world), which may move.
   void update(const Scene& scene, const PosedScene& pose, const Vec3& near, bool near_moves, Job* job);
 
   enum class Verdict { kMiss, kHit, kFalseHit };
@@ -63,8 +63,8 @@ class EmbreeScene {
   // sees and no nearer than `begin` (m).
   Verdict intersect_from_surface(const Vec3& from, const Vec3& direction, RayHit& out, Sees sees = Sees::kOpaque,
                                  double begin = 0.0) const;
-  // The same where only what lies within `reach` (m) counts: a short ray passes most of the scene by. It may meet what lies
-  // a little farther.
+  // Finds the closest hit from a point on a surface within `reach` (m). Short rays are quicker, because they miss most of
+  // the scene. A hit may lie a little farther than `reach`.
   Verdict intersect_near(const Vec3& from, const Vec3& direction, double reach, RayHit& out, Sees sees) const;
   // Returns the distance along a ray, m, at which to continue it behind a hit at `distance` (m), so that it does not meet
   // the same surface again.

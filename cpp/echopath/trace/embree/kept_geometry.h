@@ -15,7 +15,7 @@ class GeometryLoan {
   // Takes the geometry of the scene at the pose: the kept one after an update, or a new one where `kept` is null or has lent
   // its own to another trace. Raises as EmbreeScene does; nothing is kept then.
   GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job);
-  // The same about EmbreeScene::origin_near of `near` (m, world), which may move.
+  // Poses the geometry likewise, with the origin that EmbreeScene::origin_near gives for `near` (m, world), which may move.
   GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedScene& pose, const Vec3& near, bool near_moves, Job* job);
   ~GeometryLoan();
   GeometryLoan(const GeometryLoan&) = delete;

@@ -9,7 +9,7 @@ struct SurfaceEnd {
   bool is_wall = false;   // something rises from it there (the inside of a corner): it ends, but has no edge
 };
 
-// Knows the edges of a triangle.
+// Measures distances to the edges of a triangle.
 class TriangleRim {
  public:
   TriangleRim(const EmbreeScene& geometry, const Hit& hit);
@@ -22,9 +22,10 @@ class TriangleRim {
   std::array<Vec3, 3> corners_, outward_;
 };
 
-// A surface goes on over triangles that lie on each other's rims within `gap` (m) and turn away by at most 30 degrees from
-// the point's normal; it may overlook a hole between the point and the place that is looked at. `along` is a unit tangent.
-// Its rays are added to num_queries; they see sheets where the point lies on one. All must outlive it.
+// Finds how far the surface around a point extends. A surface extends over triangles that lie on each other's rims within
+// `gap` (m) and turn away by at most 30 degrees from the point's normal; holes between the point and the place in question
+// may be overlooked. `along` is a unit tangent. Its rays are added to num_queries; they meet sheets where the point lies on
+// one. All arguments must outlive it.
 class SurfaceAround {
  public:
   SurfaceAround(const EmbreeScene& geometry, const RayHit& point, double gap, int64_t& num_queries)

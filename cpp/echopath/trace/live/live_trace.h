@@ -21,9 +21,9 @@ class LiveTrace {
   // Tells how the record differs from the one before.
   struct Change {
     bool is_whole = false;  // little or nothing is as before: `removed` is empty and `added` is all
-    // Paths that are gone, in the scene before, and paths that are new, in the scene now. The signal of the record is that
-    // of the record before without the former and with the latter. Unless is_whole, their scenes have only the meshes that
-    // they meet, with mesh IDs of their own.
+    // These are the paths that are gone, in the scene before, and the paths that are new, in the scene now. The signal of
+    // the record is that of the record before without the former and with the latter. Unless is_whole, their scenes have
+    // only the meshes that they meet, with mesh IDs of their own.
     Paths removed, added;
     int64_t num_rays_shot = 0;
   };
@@ -41,7 +41,7 @@ class LiveTrace {
   Next prepare(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr);
   // Returns how the record differs from the one before. `next` must have been prepared since that came.
   Change accept(Next&& next);
-  // Does both. Where it raises, the record is the one before.
+  // Prepares and accepts a change. Where it raises, the record is the one before.
   Change update(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr) {
     return accept(prepare(scene, radar, settings, job));
   }

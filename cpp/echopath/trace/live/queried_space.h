@@ -1,6 +1,6 @@
 #pragma once
-// Remembers through which space the queries of rays went, so that a change elsewhere is known to leave their answers as they
-// are.
+// Records the space through which the queries of rays went. A change of the scene outside of this space does not change the
+// answers to these queries.
 #include <span>
 #include <vector>
 

@@ -10,7 +10,7 @@
 
 namespace echopath {
 
-// A bounce of a leg is seen by a wave that travels from the surface point to the antenna.
+// Describes a bounce of a leg as a wave meets it that travels from the surface point to the antenna.
 struct LegBounce {
   int mirror;  // index into the mirrors
   Hit hit;

@@ -61,7 +61,7 @@ class PlaneImages {
   std::vector<Facet> facets_;  // of all rays with chains, which the chains of a ray share
   std::vector<RayChain> chains_;
   std::vector<Mirror> planes_;  // of the chain at hand
-  // Points of the sequences tried, by their meshes and by where the first of them lies along a line.
+  // These are the points of the sequences tried, by their meshes and by where the first of them lies along a line.
   std::map<std::vector<uint32_t>, std::multimap<double, std::vector<Vec3>>> tried_;
   size_t num_tried_points_ = 0;
   std::vector<Mirror> joined_;            // planes of the paths found

@@ -31,10 +31,11 @@ struct DiffuseChain {
   int first = 0;            // index of its first hit: number of hits of the transmit leg
   std::optional<Leg> back;  // way from its first hit to the receiver as the ray came from the transmitter, if it is visible
   double density = 0.0;     // rays per m^2 that meet its first hit over the transmit leg and go on diffusely
-  // The probability that a ray that comes the opposite way goes on between both ends, over that of this ray; 0 where none
-  // comes.
+  // This is the probability that a ray of the opposite order goes on from one end of the chain to the other, divided by that
+  // of this ray; 0 where there is no such ray.
   double opposite_ratio = 1.0;
-  // The survival probability in the opposite order at the hit that was left last; it joins `opposite_ratio` one hit later.
+  // This is the survival probability in the opposite order at the hit that was left last. `opposite_ratio` takes it in one
+  // hit later.
   double opposite_survival = 1.0;
   std::complex<double> coefficient = 1.0;  // of the hits left so far, for the opposite order
   FieldPair fields;                        // where polarised: fields of launches at the receiver that run the ray's way
@@ -54,8 +55,8 @@ struct Ray {
   bool is_owned = false;                 // its stratum owns its first hit on a surface that is aimed at (ray_owners.h)
   double launch_density = 0.0;           // rays per sr of its stratum; in a focus, of the stratum that this is in
   double stands_for = 1.0;               // number of such rays that this one stands for (LaunchFoci)
-  // Both count from the last anchor (the transmitter or the last diffuse hit): the unfolded length in m, and the rays per sr
-  // with continuation probabilities.
+  // These count from the last anchor (the transmitter or the last diffuse hit): the unfolded length in m, and the density of
+  // rays per sr times the probabilities with which they went on.
   double leg_length = 0.0, leg_density = 0.0;
   std::complex<double> coefficient = 1.0;  // product of Gamma s and of what diffuse hits scatter, without q
   FieldPair fields;                        // the same for field vectors, where polarised

@@ -15,8 +15,9 @@ struct SbrSettings {
   bool is_polarized = false;          // follow field vectors (PolarizationModel::kJones)
   bool finds_edges = false;           // note which planes light which (edges/lit_planes.h)
   Vec3 polarization = Vec3::UnitZ();  // transmit polarisation, unit, world axes
-  // Probability of going on specularly where a surface does both. 0 stands for both ways at the first hits of a coherent ray
-  // (goes_both_ways) and for the surface's specular share elsewhere; any other value leaves the expected echo as it is.
+  // This is the probability that a ray is mirrored where a surface both mirrors and scatters. 0 splits rays at the first
+  // hits of a coherent ray (goes_both_ways) and stands for the surface's specular share elsewhere. The expected echo is the
+  // same for any value.
   double specular_probability = 0.0;
   bool operator==(const SbrSettings&) const = default;
 };

@@ -24,7 +24,7 @@ class ScalarWeight {
   double held_toward(const SurfaceHit& surface, const Vec3& direction) const {
     return diffuse_coefficient(response_toward(surface, polarization_, direction));
   }
-  // These do nothing, because the coefficient of a ray, which every part keeps, says all.
+  // These do nothing, because a scalar weight is the coefficient of the ray alone.
   void launch(Ray&) const {}
   void reflect(Ray&, const SurfaceHit&) const {}
   void begin_chain(Ray&) const {}
@@ -53,13 +53,13 @@ class JonesWeight {
   double held_toward(const SurfaceHit&, const Vec3&) const { return 1.0; }
   // Gives a ray the fields of both launches.
   void launch(Ray& ray) const { ray.fields = launched_fields(ray.direction); }
-  // Change the fields of a ray and of its chain before its direction changes.
+  // These change the fields of a ray and of its chain; they must be called before its direction changes.
   void reflect(Ray& ray, const SurfaceHit& surface) const;
   void begin_chain(Ray& ray) const;
   void scatter(Ray& ray, const SurfaceHit& surface, const Vec3& out) const;
   // Finds what the receiver sees over each receive leg; it must be called before the matrices are set.
   void find_receive_axes(Connection& at) const;
-  // Give the last path its matrix: over a receive leg or, reversed, over a transmit leg.
+  // These set the matrix of the last path: over a receive leg or, reversed, over a transmit leg.
   void set_coherent_matrix(Connection& at, const Leg& leg) const;
   void set_diffuse_matrix(Connection& at, const Leg& leg) const;
   void set_reversed_matrix(Connection& at, const Leg& leg) const;

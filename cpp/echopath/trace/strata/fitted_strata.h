@@ -9,7 +9,7 @@
 
 namespace echopath {
 
-// Not thread-safe. What one plan has asked for is known to the next one alone.
+// Keeps the strata that one plan of rays asked for until the next plan has asked. It is not thread-safe.
 class FittedStrata {
  public:
   using Fitted = std::optional<Stratum>;

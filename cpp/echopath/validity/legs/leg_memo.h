@@ -8,7 +8,7 @@
 
 namespace echopath {
 
-// Serves one instant, and one thread at a time.
+// Keeps the results of tests of legs at one time. It serves one thread at a time.
 class LegMemo {
  public:
   // Returns what `find` returns for these `count` hits under this `kind`, and calls it once for the same ones. The hits must

@@ -27,8 +27,8 @@ class LegTester {
   LegTester(const EmbreeScene& geometry, const LocalPath& path, const PosedHit* hits)
       : geometry_(geometry), path_(path), hits_(hits) {}
 
-  // Test the legs from an antenna to the first hit that is no image, between such hits, and from the last of them to an
-  // antenna.
+  // These test the legs from an antenna to the first hit that is no image, between such hits, and from the last of them to
+  // an antenna.
   void test_start(const Vec3& antenna);
   void test_inner();
   void test_end(const Vec3& antenna);

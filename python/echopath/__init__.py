@@ -41,7 +41,7 @@ from .paths.families import Families, families
 from .paths.powers import received_power, received_powers
 from .paths.resolution import Interval, Unresolved, unresolved
 from .paths.selections import first, hits, last, num_bounces, passes, power
-from .paths.visibility import ObjectVisibility, Sight, visibility
+from .paths.visibility import ObjectVisibility, VisibilityFromEnd, visibility
 from .presentation.viewing import plot_rays, view
 from .readers import Model, ModelNode, foreign_materials, load_model
 from .receiver import Adc, PhaseNoise, Receiver, Reception, receive, receive_parts
@@ -86,7 +86,7 @@ __all__ = [
     "MorphTargets", "Motion", "ObjectLabel", "ObjectValidity", "ObjectVisibility", "Part", "Parts", "PathCells",
     "Paths", "PhaseNoise", "Radar", "RangeAzimuth", "RangeDoppler", "RangeTime", "ReceivedPower", "Receiver",
     "Reception", "Renewal", "SavedFrame", "Scene", "SceneFile", "SceneNode", "Selection", "SensorConfig", "Sequence",
-    "SheetCoefficients", "Sight", "SignalProbe", "SignalSettings", "Skin", "Spectrogram", "SpectrogramLabels",
+    "SheetCoefficients", "VisibilityFromEnd", "SignalProbe", "SignalSettings", "Skin", "Spectrogram", "SpectrogramLabels",
     "StoredSequence", "Stratum", "TessellationWarning", "TraceFrame", "TraceSettings", "TraceStatistics", "Tracks",
     "Traffic", "Trajectory", "Truth", "Unresolved", "Validity", "ValidityShares", "VertexSequence", "VirtualArray",
     "Watch", "Weather", "actors", "add_noise", "add_traffic", "angle_fft", "angle_time", "annotate", "annotate_frame",

@@ -3435,7 +3435,7 @@ def virtual_array(radar: Radar) -> VirtualArray:
     """
 def visibility(scene: Scene, radar: Radar, objects: collections.abc.Sequence[tuple[str, collections.abc.Sequence[str]]] | None, time: float | None, num_directions: int, progress: typing.Any) -> list[typing.Any]:
     """
-    [(name, of the transmitter, of the receiver), ...], each a tuple of the fields of echopath.Sight.
+    [(name, of the transmitter, of the receiver), ...], each a tuple of the fields of echopath.VisibilityFromEnd.
     """
 def visibility_in_trace(paths: Paths, radar: Radar, objects: collections.abc.Sequence[tuple[str, collections.abc.Sequence[str]]] | None, time: float | None, num_directions: int, progress: typing.Any) -> list[typing.Any]:
     """

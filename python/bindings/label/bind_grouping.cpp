@@ -151,7 +151,7 @@ std::vector<std::string> may_appear_in_frame(const Paths& paths, const Radar& ra
   return names;
 }
 
-py::tuple sight_tuple(const Sight& sight) {
+py::tuple visibility_tuple(const VisibilityFromEnd& sight) {
   py::dict occluders;
   for (const auto& [name, share] : sight.occluders) occluders[py::str(name)] = share;
   return py::make_tuple(sight.visible_share, occluders, sight.in_view, sight.distance, sight.solid_angle);
@@ -160,7 +160,7 @@ py::tuple sight_tuple(const Sight& sight) {
 py::list sight_list(const std::vector<ObjectVisibility>& seen) {
   py::list out;
   for (const ObjectVisibility& object : seen) {
-    out.append(py::make_tuple(object.name, sight_tuple(object.transmitter), sight_tuple(object.receiver)));
+    out.append(py::make_tuple(object.name, visibility_tuple(object.transmitter), visibility_tuple(object.receiver)));
   }
   return out;
 }
@@ -199,7 +199,7 @@ void bind_visibility(py::module_& m) {
       },
       py::arg("scene"), py::arg("radar"), py::arg("objects"), py::arg("time"), py::arg("num_directions"),
       py::arg("progress"),
-      "[(name, of the transmitter, of the receiver), ...], each a tuple of the fields of echopath.Sight.");
+      "[(name, of the transmitter, of the receiver), ...], each a tuple of the fields of echopath.VisibilityFromEnd.");
 }
 
 void bind_family(py::module_& m) {

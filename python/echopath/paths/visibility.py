@@ -18,7 +18,7 @@ FRAME_PLACES = (0.0, 1.0, 0.618, 0.236, 0.854)  # shares of a frame: its ends an
 
 @made_by("ep.visibility")
 @dataclasses.dataclass(frozen=True)
-class Sight:
+class VisibilityFromEnd:
     """An object as one end of the radar sees it, from the mean position of its antennas.
 
     visible_share: of the solid angle that the object would fill alone, 0 to 1; an object does not hide itself
@@ -39,7 +39,7 @@ class Sight:
     def __repr__(self) -> str:
         hidden = "".join(f", {share:.1%} behind {name}" for name, share in self.occluders.items())
         view = "" if self.in_view else ", out of view"
-        return f"<Sight {self.visible_share:.1%} visible{hidden}, {self.distance:.4g} m{view}>"
+        return f"<VisibilityFromEnd {self.visible_share:.1%} visible{hidden}, {self.distance:.4g} m{view}>"
 
 
 @made_by("ep.visibility")
@@ -48,16 +48,16 @@ class ObjectVisibility:
     """How much of an object the radar can see; made by `visibility`.
 
     name: of the object
-    transmitter, receiver: Sight of each end, with distances in m
+    transmitter, receiver: VisibilityFromEnd of each end, with distances in m
     """
 
     name: str
-    transmitter: Sight
-    receiver: Sight
+    transmitter: VisibilityFromEnd
+    receiver: VisibilityFromEnd
 
     @property
-    def worse(self) -> Sight:
-        """The Sight of the end that sees less of it: an echo needs both."""
+    def worse(self) -> VisibilityFromEnd:
+        """The VisibilityFromEnd of the end that sees less of it: an echo needs both."""
         return self.receiver if self.receiver.visible_share < self.transmitter.visible_share else self.transmitter
 
     @property
@@ -146,4 +146,4 @@ def _keep_geometry(paths) -> None:
 
 
 def _as_objects(found) -> list:
-    return [ObjectVisibility(name, Sight(*transmitter), Sight(*receiver)) for name, transmitter, receiver in found]
+    return [ObjectVisibility(name, VisibilityFromEnd(*transmitter), VisibilityFromEnd(*receiver)) for name, transmitter, receiver in found]

@@ -29,7 +29,7 @@ inline std::vector<ObjectVisibility> seen_in(const Scene& scene, const std::vect
   return visibility(scene, radar, map_surfaces(scene, objects));
 }
 
-inline double occluded_by(const Sight& sight, const std::string& name) {
+inline double occluded_by(const VisibilityFromEnd& sight, const std::string& name) {
   for (const auto& [occluder, share] : sight.occluders) {
     if (occluder == name) return share;
   }

@@ -14,7 +14,7 @@ TEST(Visibility, HiddenObjectsKeepTheirSolidAngle) {
   Scene scene;
   add_facing(scene, "plate", 10, -1, 1, -1, 1);
   add_facing(scene, "screen", 5, -1, 1, -1, 1);
-  const Sight sight = seen_in(scene, {"plate"}).front().transmitter;
+  const VisibilityFromEnd sight = seen_in(scene, {"plate"}).front().transmitter;
   const double whole = rectangle_angle(-1, 1, -1, 1, 10);
   EXPECT_EQ(sight.visible_share, 0.0);
   EXPECT_EQ(occluded_by(sight, "screen"), 1.0);
@@ -29,7 +29,7 @@ TEST(Visibility, GapsInWhatHidesAnObjectAreFound) {
   add_mesh(scene, "screen",
            {{5, -2, -2}, {5, 0.1, -2}, {5, 0.1, 2}, {5, -2, 2}, {5, 4.0 / 15, -2}, {5, 2, -2}, {5, 2, 2}, {5, 4.0 / 15, 2}},
            {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}, share(Material::metal()));
-  const Sight sight = seen_in(scene, {"plate"}).front().transmitter;
+  const VisibilityFromEnd sight = seen_in(scene, {"plate"}).front().transmitter;
   const double visible = rectangle_angle(0.2, 8.0 / 15, -1, 1, 10) / rectangle_angle(-1, 1, -1, 1, 10);
   EXPECT_NEAR(sight.visible_share, visible, kShareError);
   EXPECT_NEAR(occluded_by(sight, "screen"), 1.0 - visible, kShareError);

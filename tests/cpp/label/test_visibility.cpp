@@ -41,7 +41,7 @@ TEST(Visibility, ScreenHidesWhatItCoversOfAPlate) {
   Scene scene;
   add_facing(scene, "plate", 10, -1, 1, -1, 1);
   add_facing(scene, "screen", 5, -2, 0.2, -2, 2);  // up to y = 0.4 of the plate
-  const Sight sight = seen_in(scene, {"plate"}).front().transmitter;
+  const VisibilityFromEnd sight = seen_in(scene, {"plate"}).front().transmitter;
   const double whole = rectangle_angle(-1, 1, -1, 1, 10);
   const double visible = rectangle_angle(0.4, 1, -1, 1, 10) / whole;
   EXPECT_NEAR(sight.solid_angle, whole, kAngleError * whole);
@@ -68,7 +68,7 @@ TEST(Visibility, SphereHidesOnlyItself) {
   Scene scene;
   const Surface ball = ellipsoid({8, 1, 0.5}, {1, 1, 1}, 4);
   add_mesh(scene, "ball", ball.vertices, ball.triangles, share(Material::metal()));
-  const Sight sight = seen_in(scene, {"ball"}).front().transmitter;
+  const VisibilityFromEnd sight = seen_in(scene, {"ball"}).front().transmitter;
   const double distance = std::hypot(8.0, 1.0, 0.5);
   const double angle = 2 * std::numbers::pi * (1 - std::sqrt(1 - 1 / (distance * distance)));
   EXPECT_EQ(sight.visible_share, 1.0);
@@ -90,7 +90,7 @@ TEST(Visibility, NearestOccluderHasTheDirection) {
   add_facing(scene, "plate", 10, -1, 1, -1, 1);
   add_facing(scene, "left", 5, 0, 2, -2, 2);
   add_facing(scene, "all", 7, -2, 2, -2, 2);
-  const Sight sight = seen_in(scene, {"plate", "left"}).front().transmitter;
+  const VisibilityFromEnd sight = seen_in(scene, {"plate", "left"}).front().transmitter;
   EXPECT_EQ(sight.visible_share, 0.0);
   EXPECT_NEAR(occluded_by(sight, "left"), 0.5, kShareError);
   EXPECT_NEAR(occluded_by(sight, "all"), 0.5, kShareError);
@@ -159,7 +159,7 @@ TEST(Visibility, LatticeIsRefinedForThinObjects) {
   Scene scene;
   add_facing(scene, "pole", 20, -0.05, 0.05, -3, 3);
   add_facing(scene, "screen", 10, -1, 1, -2, -0.4);  // up to z = -0.8 of the pole
-  const Sight sight = seen_in(scene, {"pole"}).front().transmitter;
+  const VisibilityFromEnd sight = seen_in(scene, {"pole"}).front().transmitter;
   const double whole = rectangle_angle(-0.05, 0.05, -3, 3, 20);
   const double visible = rectangle_angle(-0.05, 0.05, -0.8, 3, 20) / whole;
   EXPECT_NEAR(sight.visible_share, visible, kThinShareError);
@@ -169,7 +169,7 @@ TEST(Visibility, LatticeIsRefinedForThinObjects) {
 TEST(Visibility, EdgeOnNothingIsSeen) {
   Scene scene;
   add_rectangle(scene, "plate", {5, -1, 0}, {1, 0, 0}, {0, 2, 0}, share(Material::metal()));
-  const Sight sight = seen_in(scene, {"plate"}).front().transmitter;
+  const VisibilityFromEnd sight = seen_in(scene, {"plate"}).front().transmitter;
   EXPECT_EQ(sight.solid_angle, 0.0);
   EXPECT_EQ(sight.visible_share, 0.0);
   EXPECT_TRUE(sight.occluders.empty());
@@ -201,7 +201,7 @@ TEST(Visibility, NumberOfThreadsDoesNotMatter) {
   Scene scene;
   add_disc(scene, "far", 10, 1);
   add_facing(scene, "screen", 5, -2, 0.13, -2, 2);
-  std::vector<Sight> sights;
+  std::vector<VisibilityFromEnd> sights;
   for (const int threads : {1, 4}) {
     set_num_threads(threads);
     sights.push_back(seen_in(scene, {"far"}).front().transmitter);
@@ -227,7 +227,7 @@ TEST(Visibility, AnyNumberOfObjectsHideEachOther) {
   add_facing(scene, "plate", 10, -1, 1, -1, 1);
   for (int k = 1; k < 32; ++k) add_facing(scene, "behind " + std::to_string(k), 11 + 0.1 * k, -1, 1, -1, 1);
   add_facing(scene, "screen", 5, -2, 0, -2, 2);
-  const Sight sight = seen_in(scene, {"plate"}).front().transmitter;
+  const VisibilityFromEnd sight = seen_in(scene, {"plate"}).front().transmitter;
   EXPECT_NEAR(sight.visible_share, 0.5, kShareError);
   EXPECT_NEAR(occluded_by(sight, "screen"), 0.5, kShareError);
 }
@@ -238,10 +238,10 @@ TEST(Visibility, KeptGeometryGivesTheSame) {
   add_facing(scene, "screen", 5, -2, 0.13, -2, 2);
   const Radar radar = plain_radar(Vec3::Zero(), Vec3::Zero());
   const SurfaceMap surfaces = map_surfaces(scene, {{"far", {"far"}}});
-  const Sight fresh = visibility(scene, radar, surfaces).front().transmitter;
+  const VisibilityFromEnd fresh = visibility(scene, radar, surfaces).front().transmitter;
   KeptGeometry kept;
   for (int turn = 0; turn < 2; ++turn) {
-    const Sight again = visibility(scene, radar, surfaces, {}, nullptr, &kept).front().transmitter;
+    const VisibilityFromEnd again = visibility(scene, radar, surfaces, {}, nullptr, &kept).front().transmitter;
     EXPECT_EQ(again.visible_share, fresh.visible_share);
     EXPECT_EQ(again.solid_angle, fresh.solid_angle);
     EXPECT_EQ(again.distance, fresh.distance);

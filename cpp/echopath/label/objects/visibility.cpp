@@ -11,7 +11,7 @@
 #include "echopath/base/threads/parallel.h"
 #include "echopath/label/objects/nearest_point.h"
 #include "echopath/label/objects/object_view.h"
-#include "echopath/label/objects/sight_grid.h"
+#include "echopath/label/objects/visibility_grid.h"
 #include "echopath/trace/embree/kept_geometry.h"
 
 namespace echopath {
@@ -47,10 +47,10 @@ class ObjectScanner {
   }
 
   // Returns what each end sees, but for the distances.
-  std::vector<Sight> sights(int num_directions) {
-    const SightGrid grid = looked_at(views_.front().stratum(false), num_directions);
-    std::vector<Sight> sights;
-    for (size_t end = 0; end < ends_.size(); ++end) sights.push_back(sight_of(end, grid));
+  std::vector<VisibilityFromEnd> sights(int num_directions) {
+    const VisibilityGrid grid = looked_at(views_.front().stratum(false), num_directions);
+    std::vector<VisibilityFromEnd> sights;
+    for (size_t end = 0; end < ends_.size(); ++end) sights.push_back(visibility_from(end, grid));
     return sights;
   }
 
@@ -61,20 +61,20 @@ class ObjectScanner {
   using Met = std::array<uint32_t, 2>;
 
   // Looks at as many cells as it takes to have so many directions on the object.
-  SightGrid looked_at(Stratum stratum, int num_directions) {
-    const SightGrid::FindMet find_met = [this](const LaneVectors& directions, int count, uint32_t* met) {
+  VisibilityGrid looked_at(Stratum stratum, int num_directions) {
+    const VisibilityGrid::FindMet find_met = [this](const LaneVectors& directions, int count, uint32_t* met) {
       see(directions, count, met);
     };
-    SightGrid grid(stratum, int64_t{kGridCells} * num_directions);
+    VisibilityGrid grid(stratum, int64_t{kGridCells} * num_directions);
     double fill = grid.start(find_met);
     if (fill < kLooseFill && !is_hidden(grid)) {
       stratum = views_.front().stratum(true);
-      grid = SightGrid(stratum, int64_t{kGridCells} * num_directions);
+      grid = VisibilityGrid(stratum, int64_t{kGridCells} * num_directions);
       fill = grid.start(find_met);
     }
     if (fill < kLeastFill && !is_hidden(grid)) {
       const double cells = fill > 0.0 ? std::min(kMostCells, 1.0 / fill) : kMostCells;
-      grid = SightGrid(stratum, static_cast<int64_t>(cells * num_directions));
+      grid = VisibilityGrid(stratum, static_cast<int64_t>(cells * num_directions));
       fill = grid.start(find_met);
     }
     if (fill == 0.0) grid.finish_everywhere(find_met);
@@ -83,7 +83,7 @@ class ObjectScanner {
   }
 
   // Returns whether one surface hides the object wherever it was looked for first, in enough directions.
-  bool is_hidden(const SightGrid& grid) const {
+  bool is_hidden(const VisibilityGrid& grid) const {
     const std::optional<uint32_t> only = grid.only_met(kEnoughHidden);
     if (!only) return false;
     const std::span<const uint32_t> by_end = std::span(met_[*only]).first(ends_.size());
@@ -97,8 +97,9 @@ class ObjectScanner {
     if (ends_.size() > 1) views_.front().look_from(ends_[1].position, directions, seen, count, others.data());
     for (int lane = 0; lane < count; ++lane) {
       const auto k = static_cast<size_t>(lane);
-      met[lane] = seen.surface[k] == ObjectView::kNothing ? SightGrid::kNothing : number_of({seen.surface[k], others[k]});
-      if (met[lane] != SightGrid::kNothing) look_for_gain(directions[lane]);
+      met[lane] =
+          seen.surface[k] == ObjectView::kNothing ? VisibilityGrid::kNothing : number_of({seen.surface[k], others[k]});
+      if (met[lane] != VisibilityGrid::kNothing) look_for_gain(directions[lane]);
     }
   }
 
@@ -114,7 +115,7 @@ class ObjectScanner {
     for (size_t end = 0; end < ends_.size(); ++end) in_view_[end] = in_view_[end] || ends_[end].has_gain_toward(direction);
   }
 
-  Sight sight_of(size_t end, const SightGrid& grid) const {
+  VisibilityFromEnd visibility_from(size_t end, const VisibilityGrid& grid) const {
     const std::vector<int64_t> numbers = grid.counts(met_.size());
     std::map<uint32_t, int64_t> counts;  // by surface
     int64_t num_found = 0;
@@ -122,7 +123,7 @@ class ObjectScanner {
       if (numbers[number] > 0) counts[met_[number][end]] += numbers[number];
       num_found += numbers[number];
     }
-    Sight sight;
+    VisibilityFromEnd sight;
     sight.in_view = num_found > 0 ? in_view_[end] : has_gain_toward_a_vertex(ends_[end]);
     const auto found = static_cast<double>(num_found);
     sight.solid_angle = found * grid.cell_angle();
@@ -155,12 +156,13 @@ class ObjectScanner {
 };
 
 // Returns what both ends see of an object at these distances in m.
-std::array<Sight, 2> sights_of(const EmbreeScene& geometry, const SurfaceMap& surfaces, uint32_t object,
-                               const std::array<End, 2>& ends, const std::array<double, 2>& distances, int num_directions) {
+std::array<VisibilityFromEnd, 2> visibilities_of(const EmbreeScene& geometry, const SurfaceMap& surfaces, uint32_t object,
+                                                 const std::array<End, 2>& ends, const std::array<double, 2>& distances,
+                                                 int num_directions) {
   const double apart = (ends[1].position - ends[0].position).norm(), distance = std::min(distances[0], distances[1]);
   const bool are_near = apart <= kNearEnds * distance;
   ObjectScanner scanner(geometry, surfaces, object, std::span(ends).first(are_near ? 2 : 1));
-  std::vector<Sight> sights = scanner.sights(num_directions);
+  std::vector<VisibilityFromEnd> sights = scanner.sights(num_directions);
   const double seen = sights.front().solid_angle;
   if (are_near && apart * std::pow(scanner.extent(), 2) <= kSameOutline * seen * std::pow(distance, 3)) {
     if (apart > 0.0) sights[1].solid_angle *= std::pow(distances[0] / distances[1], 2);
@@ -197,7 +199,7 @@ std::vector<ObjectVisibility> visibility(const Scene& scene, const Radar& radar,
   parallel_for(surfaces.num_objects, [&](int64_t i) {
     const auto object = static_cast<uint32_t>(i);
     const auto distances = nearest.distances({ends[0].position, ends[1].position}, surfaces.meshes_of(object));
-    const auto sights = sights_of(*geometry, surfaces, object, ends, distances, settings.num_directions);
+    const auto sights = visibilities_of(*geometry, surfaces, object, ends, distances, settings.num_directions);
     seen[object] = {surfaces.names[object], sights[0], sights[1]};
   }, job);
   return seen;

@@ -1,4 +1,4 @@
-#include "echopath/label/objects/sight_grid.h"
+#include "echopath/label/objects/visibility_grid.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 namespace echopath {
 namespace {
 
-constexpr int kCells = SightGrid::kSide * SightGrid::kSide;  // of a block; as many as a packet has lanes
+constexpr int kCells = VisibilityGrid::kSide * VisibilityGrid::kSide;  // of a block; as many as a packet has lanes
 static_assert(kCells == kPacketSize);
 // Two numbers whose multiples are even in both axes together (Roberts 2018, of the plastic number).
 constexpr double kAlong = 0.7548776662466927, kAcross = 0.5698402909980532;
@@ -17,7 +17,7 @@ double fraction(double value) { return value - std::floor(value); }
 
 }  // namespace
 
-SightGrid::SightGrid(const Stratum& stratum, int64_t num_cells) : directions_({stratum}) {
+VisibilityGrid::VisibilityGrid(const Stratum& stratum, int64_t num_cells) : directions_({stratum}) {
   const LaunchDomain domain = domain_of(stratum);
   is_disc_ = domain.is_disc();
   half_ = is_disc_ ? Eigen::Vector2d(1.0, 1.0) : domain.half;
@@ -34,7 +34,7 @@ SightGrid::SightGrid(const Stratum& stratum, int64_t num_cells) : directions_({s
 }
 
 // Sets the place in the domain of the direction of a square, `size` cells on a side; rows and columns are those of squares.
-void SightGrid::direct(int64_t row, int64_t column, int size, int lane, LaneValues& x, LaneValues& y) const {
+void VisibilityGrid::direct(int64_t row, int64_t column, int size, int lane, LaneValues& x, LaneValues& y) const {
   const auto r = static_cast<double>(row), c = static_cast<double>(column);
   const double along = size * (c + fraction(kAlong * r + 0.5)), across = size * (r + fraction(kAcross * c + 0.5));
   x[lane] = half_[0] * (2.0 * along / (kSide * num_columns_) - 1.0);
@@ -42,7 +42,8 @@ void SightGrid::direct(int64_t row, int64_t column, int size, int lane, LaneValu
 }
 
 // Places outside of a disc meet nothing.
-void SightGrid::look_at(const LaneValues& x, const LaneValues& y, int count, const FindMet& find_met, uint32_t* met) const {
+void VisibilityGrid::look_at(const LaneValues& x, const LaneValues& y, int count, const FindMet& find_met,
+                             uint32_t* met) const {
   LaneVectors directions;
   directions_.launch(0, x, y, {0, kPacketSize}, directions);
   find_met(directions, count, met);
@@ -52,7 +53,7 @@ void SightGrid::look_at(const LaneValues& x, const LaneValues& y, int count, con
 }
 
 // Looks at squares of them: nearly parallel rays are faster.
-double SightGrid::start(const FindMet& find_met) {
+double VisibilityGrid::start(const FindMet& find_met) {
   const int64_t rows = num_first_rows(), columns = num_first_columns();
   for (int64_t row = 0; row < rows; row += kSide) {
     for (int64_t column = 0; column < columns; column += kSide) {
@@ -75,7 +76,7 @@ double SightGrid::start(const FindMet& find_met) {
   return static_cast<double>(num_found) / static_cast<double>(first_met_.size());
 }
 
-std::optional<uint32_t> SightGrid::only_met(int64_t least) const {
+std::optional<uint32_t> VisibilityGrid::only_met(int64_t least) const {
   uint32_t only = kNothing;
   int64_t count = 0;
   for (const uint32_t met : first_met_) {
@@ -86,7 +87,7 @@ std::optional<uint32_t> SightGrid::only_met(int64_t least) const {
   return count > 0 && count >= least ? std::optional<uint32_t>(only) : std::nullopt;
 }
 
-void SightGrid::finish(const FindMet& find_met) {
+void VisibilityGrid::finish(const FindMet& find_met) {
   if (step_ == 1) return;  // the first directions were all
   queue_changes();
   while (!queue_.empty()) {
@@ -97,11 +98,11 @@ void SightGrid::finish(const FindMet& find_met) {
   }
 }
 
-void SightGrid::finish_everywhere(const FindMet& find_met) {
+void VisibilityGrid::finish_everywhere(const FindMet& find_met) {
   for (int64_t block = 0; block < num_blocks(); ++block) see(block, find_met);
 }
 
-void SightGrid::see(int64_t block, const FindMet& find_met) {
+void VisibilityGrid::see(int64_t block, const FindMet& find_met) {
   const auto at = static_cast<size_t>(block);
   if (state_[at] == State::kSeen) return;
   LaneValues x, y;
@@ -111,7 +112,7 @@ void SightGrid::see(int64_t block, const FindMet& find_met) {
   state_[at] = State::kSeen;
 }
 
-void SightGrid::queue(int64_t block) {
+void VisibilityGrid::queue(int64_t block) {
   State& state = state_[static_cast<size_t>(block)];
   if (state != State::kUnseen) return;
   state = State::kQueued;
@@ -120,7 +121,7 @@ void SightGrid::queue(int64_t block) {
 
 // Queues the block of one of two neighbours among the first directions that met different things: where the change is in the
 // block of the other one, the cells at their border lead there. Around the domain nothing is met.
-void SightGrid::queue_changes() {
+void VisibilityGrid::queue_changes() {
   const int64_t rows = num_first_rows(), columns = num_first_columns(), of_block = kSide / step_;
   for (int64_t row = 0; row < rows; ++row) {
     for (int64_t column = 0; column < columns; ++column) {
@@ -135,7 +136,7 @@ void SightGrid::queue_changes() {
 
 // Queues the neighbours of a block that was seen where cells at their border met something else than their first directions
 // did.
-void SightGrid::queue_neighbours(int64_t block) {
+void VisibilityGrid::queue_neighbours(int64_t block) {
   const uint32_t* const cells = met_.data() + block * kCells;
   const int64_t row = block / num_columns_, column = block % num_columns_, columns = num_first_columns();
   const int64_t of_block = kSide / step_, first_row = row * of_block, first_column = column * of_block;
@@ -154,7 +155,7 @@ void SightGrid::queue_neighbours(int64_t block) {
   compare(row + 1 < num_rows_, block + num_columns_, kCells - kSide, 1, corner + of_block * columns, 1);
 }
 
-std::vector<int64_t> SightGrid::counts(size_t num_kinds) const {
+std::vector<int64_t> VisibilityGrid::counts(size_t num_kinds) const {
   std::vector<int64_t> counts(num_kinds);
   const auto add = [&](uint32_t met, int64_t count) {
     if (met != kNothing) counts[met] += count;

@@ -18,7 +18,7 @@
 
 namespace echopath {
 
-class SightGrid {
+class VisibilityGrid {
  public:
   // Writes what the first `count` directions of a packet meet.
   using FindMet = std::function<void(const LaneVectors& directions, int count, uint32_t* met)>;
@@ -27,7 +27,7 @@ class SightGrid {
   static constexpr uint32_t kNothing = std::numeric_limits<uint32_t>::max();
 
   // `num_cells` is approximate.
-  SightGrid(const Stratum& stratum, int64_t num_cells);
+  VisibilityGrid(const Stratum& stratum, int64_t num_cells);
   // Looks at the first directions. Returns the share of them that met something.
   double start(const FindMet& find_met);
   // Returns what all of the first directions met that met anything, if it is the same, and they are `least` or more.

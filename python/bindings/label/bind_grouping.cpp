@@ -151,10 +151,10 @@ std::vector<std::string> may_appear_in_frame(const Paths& paths, const Radar& ra
   return names;
 }
 
-py::tuple visibility_tuple(const VisibilityFromEnd& sight) {
+py::tuple visibility_tuple(const VisibilityFromEnd& seen) {
   py::dict occluders;
-  for (const auto& [name, share] : sight.occluders) occluders[py::str(name)] = share;
-  return py::make_tuple(sight.visible_share, occluders, sight.in_view, sight.distance, sight.solid_angle);
+  for (const auto& [name, share] : seen.occluders) occluders[py::str(name)] = share;
+  return py::make_tuple(seen.visible_share, occluders, seen.in_view, seen.distance, seen.solid_angle);
 }
 
 py::list sight_list(const std::vector<ObjectVisibility>& seen) {

@@ -48,7 +48,7 @@ class ObjectVisibility:
     """How much of an object the radar can see; made by `visibility`.
 
     name: of the object
-    transmitter, receiver: VisibilityFromEnd of each end, with distances in m
+    transmitter, receiver: visibility from each end, with distances in m
     """
 
     name: str
@@ -57,7 +57,7 @@ class ObjectVisibility:
 
     @property
     def worse(self) -> VisibilityFromEnd:
-        """The VisibilityFromEnd of the end that sees less of it: an echo needs both."""
+        """From the end that sees less of the object: an echo needs both."""
         return self.receiver if self.receiver.visible_share < self.transmitter.visible_share else self.transmitter
 
     @property

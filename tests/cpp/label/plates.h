@@ -29,8 +29,8 @@ inline std::vector<ObjectVisibility> seen_in(const Scene& scene, const std::vect
   return visibility(scene, radar, map_surfaces(scene, objects));
 }
 
-inline double occluded_by(const VisibilityFromEnd& sight, const std::string& name) {
-  for (const auto& [occluder, share] : sight.occluders) {
+inline double occluded_by(const VisibilityFromEnd& seen, const std::string& name) {
+  for (const auto& [occluder, share] : seen.occluders) {
     if (occluder == name) return share;
   }
   return 0.0;

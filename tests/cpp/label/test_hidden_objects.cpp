@@ -14,12 +14,12 @@ TEST(Visibility, HiddenObjectsKeepTheirSolidAngle) {
   Scene scene;
   add_facing(scene, "plate", 10, -1, 1, -1, 1);
   add_facing(scene, "screen", 5, -1, 1, -1, 1);
-  const VisibilityFromEnd sight = seen_in(scene, {"plate"}).front().transmitter;
+  const VisibilityFromEnd seen = seen_in(scene, {"plate"}).front().transmitter;
   const double whole = rectangle_angle(-1, 1, -1, 1, 10);
-  EXPECT_EQ(sight.visible_share, 0.0);
-  EXPECT_EQ(occluded_by(sight, "screen"), 1.0);
-  EXPECT_NEAR(sight.solid_angle, whole, kHiddenAngleError * whole);
-  EXPECT_TRUE(sight.in_view);
+  EXPECT_EQ(seen.visible_share, 0.0);
+  EXPECT_EQ(occluded_by(seen, "screen"), 1.0);
+  EXPECT_NEAR(seen.solid_angle, whole, kHiddenAngleError * whole);
+  EXPECT_TRUE(seen.in_view);
 }
 
 // The plate is seen through a gap between two screens of one name, as wide as a sixth of it.
@@ -29,10 +29,10 @@ TEST(Visibility, GapsInWhatHidesAnObjectAreFound) {
   add_mesh(scene, "screen",
            {{5, -2, -2}, {5, 0.1, -2}, {5, 0.1, 2}, {5, -2, 2}, {5, 4.0 / 15, -2}, {5, 2, -2}, {5, 2, 2}, {5, 4.0 / 15, 2}},
            {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}}, share(Material::metal()));
-  const VisibilityFromEnd sight = seen_in(scene, {"plate"}).front().transmitter;
+  const VisibilityFromEnd seen = seen_in(scene, {"plate"}).front().transmitter;
   const double visible = rectangle_angle(0.2, 8.0 / 15, -1, 1, 10) / rectangle_angle(-1, 1, -1, 1, 10);
-  EXPECT_NEAR(sight.visible_share, visible, kShareError);
-  EXPECT_NEAR(occluded_by(sight, "screen"), 1.0 - visible, kShareError);
+  EXPECT_NEAR(seen.visible_share, visible, kShareError);
+  EXPECT_NEAR(occluded_by(seen, "screen"), 1.0 - visible, kShareError);
 }
 
 // A plate of 2 m behind one screen with a slit from top to bottom, whose shadow on the plate is 3 to 4 % of its width,

@@ -41,14 +41,14 @@ TEST(Visibility, ScreenHidesWhatItCoversOfAPlate) {
   Scene scene;
   add_facing(scene, "plate", 10, -1, 1, -1, 1);
   add_facing(scene, "screen", 5, -2, 0.2, -2, 2);  // up to y = 0.4 of the plate
-  const VisibilityFromEnd sight = seen_in(scene, {"plate"}).front().transmitter;
+  const VisibilityFromEnd seen = seen_in(scene, {"plate"}).front().transmitter;
   const double whole = rectangle_angle(-1, 1, -1, 1, 10);
   const double visible = rectangle_angle(0.4, 1, -1, 1, 10) / whole;
-  EXPECT_NEAR(sight.solid_angle, whole, kAngleError * whole);
-  EXPECT_NEAR(sight.visible_share, visible, kShareError);
-  ASSERT_EQ(sight.occluders.size(), 1u);
-  EXPECT_NEAR(occluded_by(sight, "screen"), 1.0 - visible, kShareError);
-  EXPECT_NEAR(sight.distance, 10.0, kRounding);
+  EXPECT_NEAR(seen.solid_angle, whole, kAngleError * whole);
+  EXPECT_NEAR(seen.visible_share, visible, kShareError);
+  ASSERT_EQ(seen.occluders.size(), 1u);
+  EXPECT_NEAR(occluded_by(seen, "screen"), 1.0 - visible, kShareError);
+  EXPECT_NEAR(seen.distance, 10.0, kRounding);
 }
 
 TEST(Visibility, DiscHidesTheMiddleOfADisc) {
@@ -68,12 +68,12 @@ TEST(Visibility, SphereHidesOnlyItself) {
   Scene scene;
   const Surface ball = ellipsoid({8, 1, 0.5}, {1, 1, 1}, 4);
   add_mesh(scene, "ball", ball.vertices, ball.triangles, share(Material::metal()));
-  const VisibilityFromEnd sight = seen_in(scene, {"ball"}).front().transmitter;
+  const VisibilityFromEnd seen = seen_in(scene, {"ball"}).front().transmitter;
   const double distance = std::hypot(8.0, 1.0, 0.5);
   const double angle = 2 * std::numbers::pi * (1 - std::sqrt(1 - 1 / (distance * distance)));
-  EXPECT_EQ(sight.visible_share, 1.0);
-  EXPECT_NEAR(sight.solid_angle, angle, 2 * kAngleError * angle);  // facets of 1/20 rad lie up to 1e-3 inside
-  EXPECT_NEAR(sight.distance, distance - 1, 2e-3);
+  EXPECT_EQ(seen.visible_share, 1.0);
+  EXPECT_NEAR(seen.solid_angle, angle, 2 * kAngleError * angle);  // facets of 1/20 rad lie up to 1e-3 inside
+  EXPECT_NEAR(seen.distance, distance - 1, 2e-3);
 }
 
 TEST(Visibility, PartsOfAnObjectDoNotHideEachOther) {
@@ -90,14 +90,14 @@ TEST(Visibility, NearestOccluderHasTheDirection) {
   add_facing(scene, "plate", 10, -1, 1, -1, 1);
   add_facing(scene, "left", 5, 0, 2, -2, 2);
   add_facing(scene, "all", 7, -2, 2, -2, 2);
-  const VisibilityFromEnd sight = seen_in(scene, {"plate", "left"}).front().transmitter;
-  EXPECT_EQ(sight.visible_share, 0.0);
-  EXPECT_NEAR(occluded_by(sight, "left"), 0.5, kShareError);
-  EXPECT_NEAR(occluded_by(sight, "all"), 0.5, kShareError);
+  const VisibilityFromEnd seen = seen_in(scene, {"plate", "left"}).front().transmitter;
+  EXPECT_EQ(seen.visible_share, 0.0);
+  EXPECT_NEAR(occluded_by(seen, "left"), 0.5, kShareError);
+  EXPECT_NEAR(occluded_by(seen, "all"), 0.5, kShareError);
   double sum = 0.0;
-  for (const auto& [name, share] : sight.occluders) sum += share;
+  for (const auto& [name, share] : seen.occluders) sum += share;
   EXPECT_NEAR(sum, 1.0, kSum);
-  EXPECT_GE(sight.occluders[0].second, sight.occluders[1].second);
+  EXPECT_GE(seen.occluders[0].second, seen.occluders[1].second);
 }
 
 TEST(Visibility, EachEndSeesForItself) {
@@ -159,21 +159,21 @@ TEST(Visibility, LatticeIsRefinedForThinObjects) {
   Scene scene;
   add_facing(scene, "pole", 20, -0.05, 0.05, -3, 3);
   add_facing(scene, "screen", 10, -1, 1, -2, -0.4);  // up to z = -0.8 of the pole
-  const VisibilityFromEnd sight = seen_in(scene, {"pole"}).front().transmitter;
+  const VisibilityFromEnd seen = seen_in(scene, {"pole"}).front().transmitter;
   const double whole = rectangle_angle(-0.05, 0.05, -3, 3, 20);
   const double visible = rectangle_angle(-0.05, 0.05, -0.8, 3, 20) / whole;
-  EXPECT_NEAR(sight.visible_share, visible, kThinShareError);
-  EXPECT_NEAR(sight.solid_angle, whole, 0.01 * whole);
+  EXPECT_NEAR(seen.visible_share, visible, kThinShareError);
+  EXPECT_NEAR(seen.solid_angle, whole, 0.01 * whole);
 }
 
 TEST(Visibility, EdgeOnNothingIsSeen) {
   Scene scene;
   add_rectangle(scene, "plate", {5, -1, 0}, {1, 0, 0}, {0, 2, 0}, share(Material::metal()));
-  const VisibilityFromEnd sight = seen_in(scene, {"plate"}).front().transmitter;
-  EXPECT_EQ(sight.solid_angle, 0.0);
-  EXPECT_EQ(sight.visible_share, 0.0);
-  EXPECT_TRUE(sight.occluders.empty());
-  EXPECT_NEAR(sight.distance, 5.0, kRounding);
+  const VisibilityFromEnd seen = seen_in(scene, {"plate"}).front().transmitter;
+  EXPECT_EQ(seen.solid_angle, 0.0);
+  EXPECT_EQ(seen.visible_share, 0.0);
+  EXPECT_TRUE(seen.occluders.empty());
+  EXPECT_NEAR(seen.distance, 5.0, kRounding);
 }
 
 TEST(Visibility, EdgeOnObjectsAreInViewWhereAntennasLook) {
@@ -201,15 +201,15 @@ TEST(Visibility, NumberOfThreadsDoesNotMatter) {
   Scene scene;
   add_disc(scene, "far", 10, 1);
   add_facing(scene, "screen", 5, -2, 0.13, -2, 2);
-  std::vector<VisibilityFromEnd> sights;
+  std::vector<VisibilityFromEnd> visibilities;
   for (const int threads : {1, 4}) {
     set_num_threads(threads);
-    sights.push_back(seen_in(scene, {"far"}).front().transmitter);
+    visibilities.push_back(seen_in(scene, {"far"}).front().transmitter);
   }
   set_num_threads(0);
-  EXPECT_EQ(sights[0].visible_share, sights[1].visible_share);
-  EXPECT_EQ(sights[0].occluders, sights[1].occluders);
-  EXPECT_EQ(sights[0].distance, sights[1].distance);
+  EXPECT_EQ(visibilities[0].visible_share, visibilities[1].visible_share);
+  EXPECT_EQ(visibilities[0].occluders, visibilities[1].occluders);
+  EXPECT_EQ(visibilities[0].distance, visibilities[1].distance);
 }
 
 TEST(Visibility, LabelsInThePlaneOfAPlateDoNotHideIt) {
@@ -227,9 +227,9 @@ TEST(Visibility, AnyNumberOfObjectsHideEachOther) {
   add_facing(scene, "plate", 10, -1, 1, -1, 1);
   for (int k = 1; k < 32; ++k) add_facing(scene, "behind " + std::to_string(k), 11 + 0.1 * k, -1, 1, -1, 1);
   add_facing(scene, "screen", 5, -2, 0, -2, 2);
-  const VisibilityFromEnd sight = seen_in(scene, {"plate"}).front().transmitter;
-  EXPECT_NEAR(sight.visible_share, 0.5, kShareError);
-  EXPECT_NEAR(occluded_by(sight, "screen"), 0.5, kShareError);
+  const VisibilityFromEnd seen = seen_in(scene, {"plate"}).front().transmitter;
+  EXPECT_NEAR(seen.visible_share, 0.5, kShareError);
+  EXPECT_NEAR(occluded_by(seen, "screen"), 0.5, kShareError);
 }
 
 TEST(Visibility, KeptGeometryGivesTheSame) {

@@ -47,11 +47,11 @@ class ObjectScanner {
   }
 
   // Returns what each end sees, but for the distances.
-  std::vector<VisibilityFromEnd> sights(int num_directions) {
+  std::vector<VisibilityFromEnd> visibilities(int num_directions) {
     const VisibilityGrid grid = looked_at(views_.front().stratum(false), num_directions);
-    std::vector<VisibilityFromEnd> sights;
-    for (size_t end = 0; end < ends_.size(); ++end) sights.push_back(visibility_from(end, grid));
-    return sights;
+    std::vector<VisibilityFromEnd> visibilities;
+    for (size_t end = 0; end < ends_.size(); ++end) visibilities.push_back(visibility_from(end, grid));
+    return visibilities;
   }
 
   double extent() const { return views_.front().extent(); }  // m, of the object
@@ -123,18 +123,18 @@ class ObjectScanner {
       if (numbers[number] > 0) counts[met_[number][end]] += numbers[number];
       num_found += numbers[number];
     }
-    VisibilityFromEnd sight;
-    sight.in_view = num_found > 0 ? in_view_[end] : has_gain_toward_a_vertex(ends_[end]);
+    VisibilityFromEnd seen;
+    seen.in_view = num_found > 0 ? in_view_[end] : has_gain_toward_a_vertex(ends_[end]);
     const auto found = static_cast<double>(num_found);
-    sight.solid_angle = found * grid.cell_angle();
+    seen.solid_angle = found * grid.cell_angle();
     for (const auto& [surface, count] : counts) {
       const double share = static_cast<double>(count) / found;
-      if (surface == object_) sight.visible_share = share;
-      else sight.occluders.emplace_back(surfaces_.names[surface], share);
+      if (surface == object_) seen.visible_share = share;
+      else seen.occluders.emplace_back(surfaces_.names[surface], share);
     }
-    std::stable_sort(sight.occluders.begin(), sight.occluders.end(),
+    std::stable_sort(seen.occluders.begin(), seen.occluders.end(),
                      [](const auto& a, const auto& b) { return a.second > b.second; });
-    return sight;
+    return seen;
   }
 
   bool has_gain_toward_a_vertex(const End& end) const {
@@ -162,16 +162,17 @@ std::array<VisibilityFromEnd, 2> visibilities_of(const EmbreeScene& geometry, co
   const double apart = (ends[1].position - ends[0].position).norm(), distance = std::min(distances[0], distances[1]);
   const bool are_near = apart <= kNearEnds * distance;
   ObjectScanner scanner(geometry, surfaces, object, std::span(ends).first(are_near ? 2 : 1));
-  std::vector<VisibilityFromEnd> sights = scanner.sights(num_directions);
-  const double seen = sights.front().solid_angle;
+  std::vector<VisibilityFromEnd> visibilities = scanner.visibilities(num_directions);
+  const double seen = visibilities.front().solid_angle;
   if (are_near && apart * std::pow(scanner.extent(), 2) <= kSameOutline * seen * std::pow(distance, 3)) {
-    if (apart > 0.0) sights[1].solid_angle *= std::pow(distances[0] / distances[1], 2);
+    if (apart > 0.0) visibilities[1].solid_angle *= std::pow(distances[0] / distances[1], 2);
   } else {
-    sights.resize(1);
-    sights.push_back(ObjectScanner(geometry, surfaces, object, std::span(ends).last(1)).sights(num_directions).front());
+    visibilities.resize(1);
+    visibilities.push_back(
+        ObjectScanner(geometry, surfaces, object, std::span(ends).last(1)).visibilities(num_directions).front());
   }
-  for (size_t end = 0; end < 2; ++end) sights[end].distance = distances[end];
-  return {sights[0], sights[1]};
+  for (size_t end = 0; end < 2; ++end) visibilities[end].distance = distances[end];
+  return {visibilities[0], visibilities[1]};
 }
 
 End end_of(const std::vector<Antenna>& antennas, const Transform& world_from_radar, const Vec3& origin) {
@@ -199,8 +200,8 @@ std::vector<ObjectVisibility> visibility(const Scene& scene, const Radar& radar,
   parallel_for(surfaces.num_objects, [&](int64_t i) {
     const auto object = static_cast<uint32_t>(i);
     const auto distances = nearest.distances({ends[0].position, ends[1].position}, surfaces.meshes_of(object));
-    const auto sights = visibilities_of(*geometry, surfaces, object, ends, distances, settings.num_directions);
-    seen[object] = {surfaces.names[object], sights[0], sights[1]};
+    const auto visibilities = visibilities_of(*geometry, surfaces, object, ends, distances, settings.num_directions);
+    seen[object] = {surfaces.names[object], visibilities[0], visibilities[1]};
   }, job);
   return seen;
 }

@@ -2095,7 +2095,7 @@ class TraceStatistics:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
         ...
-    def __init__(self, *, num_rays: int = 0, num_queries: int = 0, num_hits: int = 0, num_paths: int = 0, num_near_antenna: int = 0, num_grazing: int = 0, num_small_mirrors: int = 0, num_false_hits: int = 0, num_unaimed: int = 0, num_unfollowed_beams: int = 0, num_unsplit_rays: int = 0, num_stopped_passes: int = 0) -> None:
+    def __init__(self, *, num_rays: int = 0, num_queries: int = 0, num_hits: int = 0, num_paths: int = 0, num_near_antenna: int = 0, num_grazing: int = 0, num_small_mirrors: int = 0, num_false_hits: int = 0, num_unaimed: int = 0, num_unfollowed_frusta: int = 0, num_unsplit_rays: int = 0, num_stopped_passes: int = 0) -> None:
         ...
     def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
@@ -2150,7 +2150,7 @@ class TraceStatistics:
         objects and images without a stratum, because there are too many of them
         """
     @property
-    def num_unfollowed_beams(self) -> int:
+    def num_unfollowed_frusta(self) -> int:
         """
         sequences of mirrors whose further mirrors were not looked for, for want of memory
         """

@@ -85,7 +85,7 @@ struct TraceStatistics {
   int64_t num_small_mirrors = 0;  // rays without a field ended behind an unflagged mirror of less than half its Fresnel zone
   int64_t num_false_hits = 0;     // Embree hits that double precision did not confirm
   int64_t num_unaimed = 0;        // objects and images that no rays aim at, because there are too many of them
-  int64_t num_unfollowed_beams = 0;  // sequences of mirrors whose further mirrors were not looked for (kMaxFrusta)
+  int64_t num_unfollowed_frusta = 0;  // sequences of mirrors whose further mirrors were not looked for (kMaxFrusta)
   int64_t num_unsplit_rays = 0;      // rays that only went on at a sheet, because they had split at too many before
   int64_t num_stopped_passes = 0;    // legs of paths that are taken to end at a sheet, behind kMostPasses others
 };

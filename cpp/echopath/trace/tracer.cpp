@@ -69,7 +69,7 @@ Tracer::Tracer(const SceneSnapshot& scene, const Radar& radar, const TraceSettin
   empty_.frame.strata = plan_.strata;
   empty_.frame.statistics.num_rays = num_rays();
   empty_.frame.statistics.num_unaimed = plan_.num_unaimed;
-  empty_.frame.statistics.num_unfollowed_beams = frusta_.num_unfollowed();
+  empty_.frame.statistics.num_unfollowed_frusta = frusta_.num_unfollowed();
 }
 
 LaunchPlan Tracer::plan_rays(const TraceSettings& settings, FittedStrata* fitted) {

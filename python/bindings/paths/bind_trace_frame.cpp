@@ -43,7 +43,7 @@ TraceStatistics statistics_of(Arg<"num_rays", Tally> rays, Arg<"num_queries", Ta
                               Arg<"num_paths", Tally> recorded, Arg<"num_near_antenna", Tally> near,
                               Arg<"num_grazing", Tally> grazing, Arg<"num_small_mirrors", Tally> small,
                               Arg<"num_false_hits", Tally> false_hits, Arg<"num_unaimed", Tally> unaimed,
-                              Arg<"num_unfollowed_beams", Tally> unfollowed, Arg<"num_unsplit_rays", Tally> unsplit,
+                              Arg<"num_unfollowed_frusta", Tally> unfollowed, Arg<"num_unsplit_rays", Tally> unsplit,
                               Arg<"num_stopped_passes", Tally> stopped) {
   return {*rays,  *queries,    *hits,    *recorded,   *near,    *grazing,
           *small, *false_hits, *unaimed, *unfollowed, *unsplit, *stopped};
@@ -107,7 +107,7 @@ void bind_trace_frame(py::module_& m) {
   define_init(bound_statistics, &statistics_of, py::kw_only(), py::arg("num_rays") = 0, py::arg("num_queries") = 0,
               py::arg("num_hits") = 0, py::arg("num_paths") = 0, py::arg("num_near_antenna") = 0, py::arg("num_grazing") = 0,
               py::arg("num_small_mirrors") = 0, py::arg("num_false_hits") = 0, py::arg("num_unaimed") = 0,
-              py::arg("num_unfollowed_beams") = 0, py::arg("num_unsplit_rays") = 0, py::arg("num_stopped_passes") = 0);
+              py::arg("num_unfollowed_frusta") = 0, py::arg("num_unsplit_rays") = 0, py::arg("num_stopped_passes") = 0);
   bound_statistics.def_readonly("num_rays", &TraceStatistics::num_rays, "launched")
       .def_readonly("num_queries", &TraceStatistics::num_queries, "closest-hit and shadow queries")
       .def_readonly("num_hits", &TraceStatistics::num_hits, "surface points found")
@@ -119,7 +119,7 @@ void bind_trace_frame(py::module_& m) {
       .def_readonly("num_false_hits", &TraceStatistics::num_false_hits, "not confirmed in double precision")
       .def_readonly("num_unaimed", &TraceStatistics::num_unaimed,
                     "objects and images without a stratum, because there are too many of them")
-      .def_readonly("num_unfollowed_beams", &TraceStatistics::num_unfollowed_beams,
+      .def_readonly("num_unfollowed_frusta", &TraceStatistics::num_unfollowed_frusta,
                     "sequences of mirrors whose further mirrors were not looked for, for want of memory")
       .def_readonly("num_unsplit_rays", &TraceStatistics::num_unsplit_rays,
                     "rays that only went on at a sheet, because they had split at too many before")
@@ -132,7 +132,7 @@ void bind_trace_frame(py::module_& m) {
              field("num_grazing", &TraceStatistics::num_grazing),
              field("num_small_mirrors", &TraceStatistics::num_small_mirrors),
              field("num_false_hits", &TraceStatistics::num_false_hits), field("num_unaimed", &TraceStatistics::num_unaimed),
-             field("num_unfollowed_beams", &TraceStatistics::num_unfollowed_beams),
+             field("num_unfollowed_frusta", &TraceStatistics::num_unfollowed_frusta),
              field("num_unsplit_rays", &TraceStatistics::num_unsplit_rays),
              field("num_stopped_passes", &TraceStatistics::num_stopped_passes));
 

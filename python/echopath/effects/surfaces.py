@@ -10,7 +10,7 @@ from .._core import speed_of_light
 from ..scene.sheets import sheet_coefficients
 from ..signals.measures import in_dbm
 from ..tracing.edges import edges_matter, strongest_edge
-from ..tracing.lost_rays import unfollowed_beams, unfollowed_sheets
+from ..tracing.lost_rays import unfollowed_frusta, unfollowed_sheets
 from ..tracing.tessellation import coarse_meshes
 from .planes import imaged_planes
 from .rules import Case, rule
@@ -196,7 +196,7 @@ def _roughness(case: Case):
 @rule("mirrors by images", "Material.mirror")
 def _mirrors(case: Case):
     modelled, reason = case.meshes_or(case.mirrors, "no mesh is marked mirror")
-    missing = unfollowed_beams(case.statistics) if case.statistics else ""
+    missing = unfollowed_frusta(case.statistics) if case.statistics else ""
     return modelled, f"{reason}; {missing}" if missing else reason
 
 

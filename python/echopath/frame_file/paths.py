@@ -20,8 +20,9 @@ _NOISE_LIKE = ("u", "v", "weight")  # compression does not pay
 FRAME_VALUES = ("start_time", "trace_time", "seed", "max_bounces", "polarization", "footprint", "sampler", "scatterers", "edges",
                 "num_batches", "target_error_db", "error_db")
 STATISTICS = ("num_rays", "num_queries", "num_hits", "num_paths", "num_near_antenna", "num_grazing", "num_small_mirrors",
-              "num_false_hits", "num_unaimed", "num_unfollowed_beams")
+              "num_false_hits", "num_unaimed", "num_unfollowed_frusta")
 LATER_STATISTICS = ("num_unsplit_rays", "num_stopped_passes")  # which older files do not have
+OLDER_NAMES = {"num_unfollowed_frusta": "num_unfollowed_beams"}
 
 
 def write_paths(group, paths, min_power: float = 0.0, power=None):
@@ -129,6 +130,15 @@ def _write_frame(group, frame) -> None:
     write_array(group, "stratum_strip", np.array(strips, np.float64).reshape(-1, 3))
 
 
+def _read_statistics(group):
+    values = {name: read_attribute(group, name, int) for name in STATISTICS + LATER_STATISTICS
+              if name in group.attrs or name in STATISTICS and name not in OLDER_NAMES}
+    for name, older in OLDER_NAMES.items():
+        if name not in values:
+            values[name] = read_attribute(group, older if older in group.attrs else name, int)
+    return _core.TraceStatistics(**values)
+
+
 @blames_group
 def _read_frame(group):
     names = read_texts(group, "stratum_name")
@@ -146,8 +156,7 @@ def _read_frame(group):
                             half_azimuth=float(strip[i, 0]), low=float(strip[i, 1]), high=float(strip[i, 2]),
                             object=int(aimed_at[i]), num_mirrors=int(mirrors[i]), focus_of=int(focus_of[i]))
               for i in range(len(names))]
-    there = STATISTICS + tuple(name for name in LATER_STATISTICS if name in group.attrs)
-    statistics = _core.TraceStatistics(**{name: read_attribute(group, name, int) for name in there})
+    statistics = _read_statistics(group)
     return _core.TraceFrame(
         start_time=read_attribute(group, "start_time", float), trace_time=read_attribute(group, "trace_time", float),
         transmitter=read_array(group, "transmitter", np.float64, (3,)),

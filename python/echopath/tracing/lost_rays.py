@@ -15,9 +15,9 @@ def warn_of_lost_rays(statistics) -> None:
                   "least 1 mm off every surface see all")
 
 
-def warn_of_unfollowed_beams(statistics) -> None:
+def warn_of_unfollowed_frusta(statistics) -> None:
     """Warns (RuntimeWarning) where not every sequence of mirrors was tried."""
-    text = unfollowed_beams(statistics)
+    text = unfollowed_frusta(statistics)
     if text:
         warn_user(f"{text}: echoes over more mirrors are left out. Fewer flagged mirrors or a smaller max_bounces see all")
 
@@ -38,9 +38,9 @@ def unaimed(statistics, strata=()) -> str:
     return f"{count:,} objects and images have no rays of their own" if count else ""
 
 
-def unfollowed_beams(statistics) -> str:
+def unfollowed_frusta(statistics) -> str:
     """How many sequences of mirrors a trace did not follow further; "" for none."""
-    count = statistics.num_unfollowed_beams
+    count = statistics.num_unfollowed_frusta
     return f"{count:,} sequences of mirrors were not followed further" if count else ""
 
 

@@ -16,7 +16,7 @@ from ..cavities.cross_sections import rcs_with_cavities
 from ..scene.bodies import warn_of_bodies
 from ..weather.weather import attenuation_of
 from .edges import looks_for_edges
-from .lost_rays import warn_of_lost_rays, warn_of_unaimed, warn_of_unfollowed_beams
+from .lost_rays import warn_of_lost_rays, warn_of_unaimed, warn_of_unfollowed_frusta
 from .polarization import FIELD_VECTORS, SCALAR, antennas_of, chosen_model
 from .tessellation import warn_of_coarse_meshes
 
@@ -95,7 +95,7 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
                         scatterers="rays" if scatterers == "auto" else scatterers,
                         edges=looks_for_edges(edges, scene, radar, start_time),
                         attenuation=attenuation_of(scene, radar, effects), progress=progress, kept=geometry)
-    for warn in (warn_of_lost_rays, warn_of_unfollowed_beams):
+    for warn in (warn_of_lost_rays, warn_of_unfollowed_frusta):
         warn(paths.frame.statistics)
     warn_of_unaimed(paths.frame.statistics, paths.frame.strata)
     return paths

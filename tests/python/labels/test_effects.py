@@ -9,7 +9,7 @@ import pytest
 import echopath as ep
 from echopath.cli import report
 from echopath.effects import rules
-from echopath.tracing.lost_rays import warn_of_unaimed, warn_of_unfollowed_beams
+from echopath.tracing.lost_rays import warn_of_unaimed, warn_of_unfollowed_frusta
 
 SPECULAR, ROUGH = "metal", ep.Material(reflectivity=0.27, scattering=1.0)
 PHASED = ep.GainTable(azimuth=[-1, 0, 1], elevation=[-1, 1], gain=np.ones((2, 3)), phase=np.zeros((2, 3)))
@@ -221,15 +221,15 @@ def test_sequences_of_mirrors_that_were_not_followed_are_said_and_warned_of():
     scene = make_scene(ep.Material.metal(mirror=True))
     paths = ep.trace(scene, make_radar(), num_rays=10)
     assert "followed" not in {effect.name: effect for effect in paths.effects}["mirrors by images"].reason
-    statistics = ep.TraceStatistics(num_unfollowed_beams=12_345)
+    statistics = ep.TraceStatistics(num_unfollowed_frusta=12_345)
     case = rules.Case(scene, make_radar(), None, statistics)
     effect = next(rule(case) for rule in rules.RULES if rule.name == "mirrors by images")
     assert effect.modelled and "12,345 sequences of mirrors were not followed further" in effect.reason
     with pytest.warns(RuntimeWarning, match="12,345 sequences"):
-        warn_of_unfollowed_beams(statistics)
+        warn_of_unfollowed_frusta(statistics)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        warn_of_unfollowed_beams(ep.TraceStatistics())
+        warn_of_unfollowed_frusta(ep.TraceStatistics())
 
 
 def test_objects_that_no_rays_aim_at_are_said():

@@ -46,6 +46,20 @@ def test_paths_read_back_give_the_same_bits(frame, tmp_path):
     assert_same_bits(frame.paths.lengths(times), paths.lengths(times))
 
 
+def test_counts_of_a_trace_are_read_under_the_names_that_older_files_have(frame, tmp_path):
+    path = tmp_path / "paths.h5"
+    frame.paths.save(path)
+    with h5py.File(path, "r+") as file:
+        attributes = file["record/frame"].attrs
+        del attributes["num_unfollowed_frusta"]
+        attributes["num_unfollowed_beams"] = 17
+    assert ep.Paths.load(path).frame.statistics.num_unfollowed_frusta == 17
+    with h5py.File(path, "r+") as file:
+        del file["record/frame"].attrs["num_unfollowed_beams"]
+    with pytest.raises(ep.FileError, match="'num_unfollowed_frusta'"):
+        ep.Paths.load(path)
+
+
 def test_paths_read_back_synthesise_the_same_bits(frame, saved):
     paths = ep.Paths.load(saved)
     assert_same_bits(ep.synthesize(frame.paths), ep.synthesize(paths))

@@ -177,7 +177,7 @@ def measure_mirrors(*, quick: bool) -> list[dict]:
         seconds, paths = processor_time(lambda: ep.trace(scene, radar, num_rays=1, max_bounces=bounces))
         counts = np.bincount(np.asarray(paths.num_bounces), minlength=bounces + 1)[1:]
         rows.append({"houses": houses, "mirrors": len(scene.meshes), "max_bounces": bounces, "paths": counts.tolist(),
-                     "unfollowed": paths.frame.statistics.num_unfollowed_beams, "processor_s": seconds})
+                     "unfollowed": paths.frame.statistics.num_unfollowed_frusta, "processor_s": seconds})
     return rows
 
 

@@ -92,7 +92,7 @@ void expect_same(const Paths& paths, const testing::SlowPaths& slow, size_t leas
     EXPECT_TRUE(slow.found.contains(sequence) || slow.unsure.contains(sequence)) << ::testing::PrintToString(sequence);
   }
   EXPECT_GE(slow.found.size(), least);
-  EXPECT_EQ(paths.frame.statistics.num_unfollowed_beams, 0);
+  EXPECT_EQ(paths.frame.statistics.num_unfollowed_frusta, 0);
 }
 
 TEST(MirrorPaths, ACityOf400MirrorsHasThePathsOfAllSequencesOfThree) {

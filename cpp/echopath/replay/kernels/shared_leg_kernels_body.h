@@ -240,11 +240,11 @@ void polarize(const PathToPolarize& path, size_t stride) {
 }
 
 template <class Math>
-constexpr SharedLegKernels kChainKernels = {
+constexpr SharedLegKernels kSharedLegKernelsOf = {
     pose<Math>,    measure<Math>,           combine<Math>,
     connect<Math>, reflect<Math, WithTurn>, reflect<Math, TurnApart<typename Math::Real>>,
     bound<Math>,   find_components<Math>,   polarize<Math>};
-constexpr ForRows<SharedLegKernels> kChains = {kChainKernels<LaneMath>, kChainKernels<OneMath>};
+constexpr ForRows<SharedLegKernels> kSharedLegKernels = {kSharedLegKernelsOf<LaneMath>, kSharedLegKernelsOf<OneMath>};
 
 }  // namespace
 }  // namespace echopath::ECHOPATH_KERNELS
@@ -253,7 +253,7 @@ namespace echopath {
 
 template <>
 const ForRows<SharedLegKernels>& kernels_for<ForRows<SharedLegKernels>, ECHOPATH_KERNELS::kInstructionSet>() {
-  return ECHOPATH_KERNELS::kChains;
+  return ECHOPATH_KERNELS::kSharedLegKernels;
 }
 
 }  // namespace echopath

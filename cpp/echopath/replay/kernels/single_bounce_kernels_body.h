@@ -230,7 +230,8 @@ void evaluate(const SingleBouncesToEvaluate& paths) {
   else evaluate_all<false>(paths);
 }
 
-constexpr ForRows<SingleBounceKernels> kDirect = {{see<LaneMath>, prepare, evaluate}, {see<OneMath>, prepare, evaluate}};
+constexpr ForRows<SingleBounceKernels> kSingleBounceKernels = {{see<LaneMath>, prepare, evaluate},
+                                                               {see<OneMath>, prepare, evaluate}};
 
 }  // namespace
 }  // namespace echopath::ECHOPATH_KERNELS
@@ -239,7 +240,7 @@ namespace echopath {
 
 template <>
 const ForRows<SingleBounceKernels>& kernels_for<ForRows<SingleBounceKernels>, ECHOPATH_KERNELS::kInstructionSet>() {
-  return ECHOPATH_KERNELS::kDirect;
+  return ECHOPATH_KERNELS::kSingleBounceKernels;
 }
 
 }  // namespace echopath

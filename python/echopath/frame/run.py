@@ -123,9 +123,9 @@ class FrameRun:
             return self._decomposed(paths, work, settings | {"probe": probe})
         if not self.partitions:
             signals = FamilyPass(work, adds_up=True, probe=probe)
-            return {}, signals.whole(), signals.settle
+            return {}, signals.whole(), signals.assign_cells
         cubes, whole, _ = self._decomposed(paths, None, settings | {"probe": probe})
-        return cubes, whole, FamilyPass(work, adds_up=False).settle
+        return cubes, whole, FamilyPass(work, adds_up=False).assign_cells
 
     def _decomposed(self, paths, work: Labelling | None, settings: dict):
         """`_cubes` with the cubes of all parts, and of all families where there are any, from one pass."""

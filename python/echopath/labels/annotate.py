@@ -96,10 +96,10 @@ def owners_and_powers(work: Labelling, partitions: dict):
     signals = FamilyPass(work, adds_up=is_whole)
     if is_whole:
         cubes = {partition: {"other": signals.whole()} for partition in partitions}
-        return signals.settle, add_powers([CubeSet(radar, 1.0, cubes)], plane)
+        return signals.assign_cells, add_powers([CubeSet(radar, 1.0, cubes)], plane)
     num_parts = sum(len(group) + 1 for group in partitions.values())
     cubes = decomposed(paths, radar, partitions, num_parts, plane, settings) if partitions else []
-    return signals.settle, add_powers(cubes, plane)
+    return signals.assign_cells, add_powers(cubes, plane)
 
 
 def owners_of_cubes(request: Request, cubes: dict):

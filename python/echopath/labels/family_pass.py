@@ -67,7 +67,7 @@ class FamilyPass:
         """Sum of all signals, [tx, rx, chirp, sample] in sqrt(W)."""
         return self._pass.whole()
 
-    def settle(self, whole, intervals: dict) -> CellOwners:
+    def assign_cells(self, whole, intervals: dict) -> CellOwners:
         """Makes the families that may own a cell after all, and gives the cells to their families.
 
         whole: power [V, R] in W, of the sum of all fields; intervals: {Family: Interval} of mean powers in W

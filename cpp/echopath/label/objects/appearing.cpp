@@ -122,9 +122,9 @@ class Watch {
     for (int lane = 0; lane < kPacketSize; ++lane) directions.set(lane, unpacked(line / length));
     EmbreeScene::Stretches stretch{};
     stretch.end[0] = length * (1.0 - kBeforeSelf);
-    EmbreeScene::Looks met;
+    EmbreeScene::MeshHits met;
     while (true) {
-      geometry_.look(begin, directions, stretch, geometry_.mask_of(mesh), met);
+      geometry_.intersect_meshes(begin, directions, stretch, geometry_.mask_of(mesh), met);
       if (met.mesh_id[0] == mesh || met.mesh_id[0] == EmbreeScene::kNothing) return met.mesh_id[0] == mesh;
       stretch.begin[0] = met.distance[0] * ObjectView::kAfter;
     }

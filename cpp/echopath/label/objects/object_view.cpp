@@ -118,8 +118,8 @@ void ObjectView::look(const LaneVectors& directions, int count, Seen& seen) cons
   for (int lane = 0; lane < kPacketSize; ++lane) {
     if (whole.end[lane] > whole.begin[lane]) whole.begin[lane] = 0.0;
   }
-  EmbreeScene::Looks first;
-  geometry_.look(apex_, directions, whole, kHiding, first);
+  EmbreeScene::MeshHits first;
+  geometry_.intersect_meshes(apex_, directions, whole, kHiding, first);
   const bool has_sheets = (mask_ & static_cast<uint32_t>(Sees::kSheets)) != 0;
   for (int lane = 0; lane < kPacketSize; ++lane) {
     const auto k = static_cast<size_t>(lane);
@@ -161,8 +161,8 @@ void ObjectView::look_from(const Vec3& from, const LaneVectors& directions, cons
     surface[lane] = object_;
   }
   if (!is_any(way)) return;
-  EmbreeScene::Looks first;
-  geometry_.look(from, turned, way, kHiding, first);
+  EmbreeScene::MeshHits first;
+  geometry_.intersect_meshes(from, turned, way, kHiding, first);
   for (int lane = 0; lane < count; ++lane) {
     const uint32_t mesh = first.mesh_id[static_cast<size_t>(lane)];
     if (mesh != kNothing) surface[lane] = surfaces_.of_mesh[mesh];  // another part of the object is as good as the point
@@ -171,9 +171,9 @@ void ObjectView::look_from(const Vec3& from, const LaneVectors& directions, cons
 
 // Finds the object in stretches that begin at what is nearer. Others may share its bit: behind these the search goes on.
 void ObjectView::find_object(const LaneVectors& directions, EmbreeScene::Stretches stretches, Seen& seen) const {
-  EmbreeScene::Looks next;
+  EmbreeScene::MeshHits next;
   while (is_any(stretches)) {
-    geometry_.look(apex_, directions, stretches, mask_, next);
+    geometry_.intersect_meshes(apex_, directions, stretches, mask_, next);
     for (int lane = 0; lane < kPacketSize; ++lane) {
       const auto k = static_cast<size_t>(lane);
       if (next.mesh_id[k] == kNothing) {

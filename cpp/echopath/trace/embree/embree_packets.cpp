@@ -150,8 +150,8 @@ void EmbreeScene::intersect(const Vec3& from, const LaneVectors& directions, int
   }
 }
 
-void EmbreeScene::look(const Vec3& from, const LaneVectors& directions, const Stretches& stretches, uint32_t mask,
-                       Looks& out) const {
+void EmbreeScene::intersect_meshes(const Vec3& from, const LaneVectors& directions, const Stretches& stretches,
+                                   uint32_t mask, MeshHits& out) const {
   alignas(64) RTCRayHit16 queries;
   ValidLanes valid;
   RayLanes rays;

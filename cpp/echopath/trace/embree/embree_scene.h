@@ -93,12 +93,13 @@ class EmbreeScene {
   struct Stretches {
     LaneValues begin, end;  // m, along the rays; a ray whose stretch is empty is not asked about
   };
-  struct Looks {
+  struct MeshHits {
     std::array<uint32_t, kPacketSize> mesh_id;  // kNothing where there is none
     LaneValues distance;                        // m
   };
   static constexpr uint32_t kNothing = std::numeric_limits<uint32_t>::max();
-  void look(const Vec3& from, const LaneVectors& directions, const Stretches& stretches, uint32_t mask, Looks& out) const;
+  void intersect_meshes(const Vec3& from, const LaneVectors& directions, const Stretches& stretches, uint32_t mask,
+                        MeshHits& out) const;
   uint32_t mask_of(uint32_t mesh_id) const { return meshes_.mask_of(mesh_id); }  // its bit: EmbreeMeshes::mask_of
   // Returns whether something lies on the open segment between the two points. Points on surfaces must be lifted first.
   bool occluded(const Vec3& from, const Vec3& to) const;

@@ -145,13 +145,13 @@ TEST(Trees, WhatIsMetOfASharedTreeGoesByItsOwnName) {
     EXPECT_EQ(hit.hit.mesh_id, mesh);
     EXPECT_LT(hit.hit.triangle_id, 2u);  // the face at -x
     EXPECT_NEAR((hit.position - face).norm(), 0.0, 1e-6);
-    EmbreeScene::Looks looks;
+    EmbreeScene::MeshHits hits;
     LaneVectors along;
     for (int lane = 0; lane < kPacketSize; ++lane) along.set(lane, unpacked(Vec3(Vec3::UnitX())));
     EmbreeScene::Stretches stretches{};
     stretches.end[0] = 100.0;
-    geometry.look(Vec3(0, face.y(), face.z()), along, stretches, ~0u, looks);
-    EXPECT_EQ(looks.mesh_id[0], mesh);
+    geometry.intersect_meshes(Vec3(0, face.y(), face.z()), along, stretches, ~0u, hits);
+    EXPECT_EQ(hits.mesh_id[0], mesh);
   }
 }
 

@@ -9,7 +9,7 @@
 #include "echopath/record/blocks/record_writer.h"
 #include "echopath/trace/mirrors/mirror_paths.h"
 #include "echopath/trace/sheets/passes.h"
-#include "echopath/trace/strata/aimed_points.h"
+#include "echopath/trace/strata/surface_scatterers.h"
 
 namespace echopath {
 namespace {
@@ -103,8 +103,8 @@ SbrSettings Tracer::settings_of_rays(const TraceSettings& settings) const {
 void Tracer::aim_at_points(const TraceSettings& settings, Job* job) {
   if (settings.scatterers != Scatterers::kSurface) return;
   plan_.first_point = num_lattice_blocks() * kRaysPerBlock;
-  plan_.aimed_points =
-      find_aimed_points(*empty_.scene, geometry_, plan_, {settings.seed, sbr_.frequency, sbr_.transmitter}, job);
+  plan_.surface_scatterers =
+      find_surface_scatterers(*empty_.scene, geometry_, plan_, {settings.seed, sbr_.frequency, sbr_.transmitter}, job);
 }
 
 void Tracer::pose_edges() {
@@ -116,11 +116,11 @@ void Tracer::pose_edges() {
 int64_t Tracer::num_lattice_blocks() const { return (num_rays() + kRaysPerBlock - 1) / kRaysPerBlock; }
 
 int64_t Tracer::num_blocks() const {
-  return num_lattice_blocks() + (std::ssize(plan_.aimed_points) + kRaysPerBlock - 1) / kRaysPerBlock;
+  return num_lattice_blocks() + (std::ssize(plan_.surface_scatterers) + kRaysPerBlock - 1) / kRaysPerBlock;
 }
 
 void Tracer::shoot_block(int64_t index, PathBlock& block) const {
-  const int64_t end = index < num_lattice_blocks() ? num_rays() : plan_.first_point + std::ssize(plan_.aimed_points);
+  const int64_t end = index < num_lattice_blocks() ? num_rays() : plan_.first_point + std::ssize(plan_.surface_scatterers);
   shoot(index * kRaysPerBlock, std::min(end, (index + 1) * kRaysPerBlock), block);
 }
 

@@ -20,7 +20,7 @@ void PairConnector<Weight>::connect(Connection& at) const {
 // show are left to the other rays.
 template <class Weight>
 bool PairConnector<Weight>::is_left_to_points(const Connection& at) const {
-  return context_.plan.has_aimed_points() && at.ray.sequence != kNoMirrors && leg_over(at.legs.transmit, kNoMirrors);
+  return context_.plan.has_surface_scatterers() && at.ray.sequence != kNoMirrors && leg_over(at.legs.transmit, kNoMirrors);
 }
 
 // Returns the balance weight: one over the number of hits per m^2 that all visible transmit legs together make here,
@@ -30,8 +30,8 @@ double PairConnector<Weight>::material_area(const Connection& at) const {
   const Ray& ray = at.ray;
   const SurfaceHit& surface = at.surface;
   double hits_per_area = ray.launch_density * ray.chain_share * surface.cos_incidence / (ray.leg_length * ray.leg_length);
-  const bool is_aimed_at_point = context_.plan.has_aimed_points() && ray.sequence == kNoMirrors;
-  if (is_aimed_at_point) return ray.stands_for / hits_per_area;
+  const bool is_aimed_at_scatterer = context_.plan.has_surface_scatterers() && ray.sequence == kNoMirrors;
+  if (is_aimed_at_scatterer) return ray.stands_for / hits_per_area;
   for (const Leg& leg : at.legs.transmit) {
     hits_per_area += density_over(context_.plan, surface.point.hit.mesh_id, leg) * surface.point.normal.dot(leg.to_antenna) /
                      (leg.length * leg.length);

@@ -48,10 +48,10 @@ struct LaunchPlan {
   // make all diffuse echoes of first hits straight from the transmitter, and the rays above make all other echoes. The ray
   // of the first of these points has this index, behind those of the strata and a multiple of kPacketSize.
   int64_t first_point = 0;
-  std::vector<SurfacePoint> aimed_points;
+  std::vector<SurfacePoint> surface_scatterers;
 
-  bool has_aimed_points() const { return !aimed_points.empty(); }
-  bool is_aimed_at_point(int64_t ray) const { return has_aimed_points() && ray >= first_point; }
+  bool has_surface_scatterers() const { return !surface_scatterers.empty(); }
+  bool is_aimed_at_scatterer(int64_t ray) const { return has_surface_scatterers() && ray >= first_point; }
 
   int stratum_of(int64_t ray) const;
   int batch_of(int stratum, int64_t ray) const;

@@ -31,8 +31,8 @@ bool has_foci(const std::vector<Stratum>& strata) {
 SharedByRays::SharedByRays(const Tracer& tracer, const TraceSettings& asked)
     : settings(asked), sbr(tracer.sbr()), origin(tracer.geometry().origin()), lift(tracer.geometry().lift()),
       reach(tracer.geometry().reach()), strata(tracer.plan().strata), first_ray(tracer.plan().first_ray),
-      owners(tracer.plan().owners), first_point(tracer.plan().first_point), aimed_points(tracer.plan().aimed_points),
-      sequences(sequences_of(tracer.frusta())) {}
+      owners(tracer.plan().owners), first_point(tracer.plan().first_point),
+      surface_scatterers(tracer.plan().surface_scatterers), sequences(sequences_of(tracer.frusta())) {}
 
 // The field of view, the last stratum, is where all rays end that no other stratum owns.
 bool SharedByRays::is_same(const SharedByRays& other) const {
@@ -43,11 +43,12 @@ bool SharedByRays::is_same(const SharedByRays& other) const {
 }
 
 bool SharedByRays::launches_alike(const SharedByRays& other, int64_t begin, int64_t end) const {
-  if (begin >= first_point && !aimed_points.empty()) {
+  if (begin >= first_point && !surface_scatterers.empty()) {
     const auto first = static_cast<size_t>(begin - first_point), last = static_cast<size_t>(end - first_point);
-    if (last > other.aimed_points.size()) return false;
-    return std::equal(aimed_points.begin() + static_cast<int64_t>(first), aimed_points.begin() + static_cast<int64_t>(last),
-                      other.aimed_points.begin() + static_cast<int64_t>(first));
+    if (last > other.surface_scatterers.size()) return false;
+    return std::equal(surface_scatterers.begin() + static_cast<int64_t>(first),
+                      surface_scatterers.begin() + static_cast<int64_t>(last),
+                      other.surface_scatterers.begin() + static_cast<int64_t>(first));
   }
   const auto after = std::upper_bound(first_ray.begin(), first_ray.end(), begin);
   for (auto k = static_cast<size_t>(after - first_ray.begin()) - 1; k < strata.size() && first_ray[k] < end; ++k) {

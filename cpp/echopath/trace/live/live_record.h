@@ -39,7 +39,7 @@ struct SharedByRays {
   std::vector<int64_t> first_ray;
   RayOwners owners;
   int64_t first_point;
-  std::vector<SurfacePoint> aimed_points;
+  std::vector<SurfacePoint> surface_scatterers;
   std::vector<std::vector<int>> sequences;  // of mirrors, over which the antennas' frusta go
 };
 

@@ -86,7 +86,7 @@ std::vector<std::pair<int64_t, int64_t>> block_bounds(const LaunchPlan& plan) {
     for (; begin < end; begin += kRaysPerLiveBlock) bounds.emplace_back(begin, std::min(end, begin + kRaysPerLiveBlock));
   };
   add(0, plan.first_ray.back());
-  add(plan.first_point, plan.first_point + std::ssize(plan.aimed_points));
+  add(plan.first_point, plan.first_point + std::ssize(plan.surface_scatterers));
   return bounds;
 }
 

@@ -50,7 +50,7 @@ void PacketFront::trace(int64_t begin, int count, FirstHits& first, TraceStatist
   first.count = count;
   first.num_sheets = 0;
   first.points = nullptr;
-  if (context_.plan.is_aimed_at_point(begin)) launch_at_points(first);
+  if (context_.plan.is_aimed_at_scatterer(begin)) launch_at_points(first);
   else launch(first);
   draw_samples(first);
   find_hits(first, nullptr, statistics);
@@ -123,7 +123,7 @@ void PacketFront::launch(FirstHits& first) const {
 
 void PacketFront::launch_at_points(FirstHits& first) const {
   const LaunchPlan& plan = context_.plan;
-  first.points = plan.aimed_points.data() + (first.begin - plan.first_point);
+  first.points = plan.surface_scatterers.data() + (first.begin - plan.first_point);
   for (int lane = 0; lane < kPacketSize; ++lane) {
     const SurfacePoint& point = first.points[std::min(lane, first.count - 1)];
     const auto k = static_cast<size_t>(lane);
@@ -172,7 +172,7 @@ bool PacketFront::meets_point(const FirstHits& first, int lane) const {
 // Leaves the ray its part of the echo and of the ways on: a ray of a lattice is mirrored, one aimed at a point scattered.
 void PacketFront::share_out(FirstHits& first, int lane) const {
   const auto k = static_cast<size_t>(lane);
-  if (!context_.plan.has_aimed_points() || !first.is_owned[k]) return;
+  if (!context_.plan.has_surface_scatterers() || !first.is_owned[k]) return;
   (first.points ? first.coherent : first.diffuse)[lane] = 0.0;
   if (first.goes_both_ways[k]) first.samples.lobe_sample[lane] = 0.0;
   const bool is_specular = first.samples.lobe_sample[lane] < first.specular_probability[lane];

@@ -9,7 +9,7 @@
 
 namespace echopath {
 
-struct AimSettings {
+struct SurfaceScattererSettings {
   uint64_t seed = 0;
   double frequency = 77e9;          // Hz
   Vec3 transmitter = Vec3::Zero();  // relative to the origin of the geometry
@@ -19,7 +19,7 @@ struct AimSettings {
 // as dense in direction as the rays of the plan by the default rule (LaunchPlan::default_density): the number of points on
 // an object follows its share of the rays, whatever its distance. Points come by mesh, so that neighbours in the list are
 // near each other.
-std::vector<SurfacePoint> find_aimed_points(const Scene& scene, const EmbreeScene& geometry, const LaunchPlan& plan,
-                                            const AimSettings& settings, Job* job = nullptr);
+std::vector<SurfacePoint> find_surface_scatterers(const Scene& scene, const EmbreeScene& geometry, const LaunchPlan& plan,
+                                                  const SurfaceScattererSettings& settings, Job* job = nullptr);
 
 }  // namespace echopath

@@ -1,4 +1,4 @@
-#include "echopath/trace/strata/aimed_points.h"
+#include "echopath/trace/strata/surface_scatterers.h"
 
 #include <algorithm>
 
@@ -35,7 +35,8 @@ double visible_side(const Mesh& mesh, const EmbreeScene& geometry, uint32_t mesh
   return signed_volume(geometry, mesh_id) < 0.0 ? -1.0 : 1.0;
 }
 
-std::vector<TriangleRange> ranges_of(const Scene& scene, const EmbreeScene& geometry, const AimSettings& settings) {
+std::vector<TriangleRange> ranges_of(const Scene& scene, const EmbreeScene& geometry,
+                                     const SurfaceScattererSettings& settings) {
   std::vector<TriangleRange> ranges;
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
     const Node& node = scene.node_of(id);
@@ -51,7 +52,7 @@ std::vector<TriangleRange> ranges_of(const Scene& scene, const EmbreeScene& geom
 
 class PointFinder {
  public:
-  PointFinder(const EmbreeScene& geometry, const LaunchPlan& plan, const AimSettings& settings)
+  PointFinder(const EmbreeScene& geometry, const LaunchPlan& plan, const SurfaceScattererSettings& settings)
       : geometry_(geometry), plan_(plan), settings_(settings) {}
 
   std::vector<SurfacePoint> find(const TriangleRange& range) const {
@@ -81,13 +82,13 @@ class PointFinder {
 
   const EmbreeScene& geometry_;
   const LaunchPlan& plan_;
-  const AimSettings& settings_;
+  const SurfaceScattererSettings& settings_;
 };
 
 }  // namespace
 
-std::vector<SurfacePoint> find_aimed_points(const Scene& scene, const EmbreeScene& geometry, const LaunchPlan& plan,
-                                            const AimSettings& settings, Job* job) {
+std::vector<SurfacePoint> find_surface_scatterers(const Scene& scene, const EmbreeScene& geometry, const LaunchPlan& plan,
+                                                  const SurfaceScattererSettings& settings, Job* job) {
   const std::vector<TriangleRange> ranges = ranges_of(scene, geometry, settings);
   const PointFinder finder(geometry, plan, settings);
   std::vector<std::vector<SurfacePoint>> of_range(ranges.size());

@@ -11,7 +11,7 @@
 #include "echopath/radar/noise_power.h"
 #include "echopath/validity/frame/path_sample.h"
 #include "echopath/validity/power_sums.h"
-#include "echopath/validity/surface/surface_looks.h"
+#include "echopath/validity/surface/seen_powers.h"
 #include "echopath/validity/validity_objects.h"
 
 namespace echopath {
@@ -39,7 +39,7 @@ class ValidityCheck {
     findings_.resize(sample_.paths.size());
     for (size_t first = 0; first < report_.times.size(); first += kTimesAtOnce) check_times_from(first);
     sum_findings();
-    seen_ = look_for_new_surface(paths_, radar_, check_, at_times_, job_);
+    seen_ = find_seen_powers(paths_, radar_, check_, at_times_, job_);
     make_objects();
     return std::move(report_);
   }
@@ -198,7 +198,7 @@ class ValidityCheck {
     object.has_paths = object.power > 0;
     const bool is_whole = paths_.num_paths() == paths_.frame.statistics.num_paths;
     object.is_asked = is_whole || object.has_paths;
-    const SeenObject& looks = seen_[node];
+    const SeenPower& looks = seen_[node];
     object.new_surface = looks.seen > 0 ? looks.fresh / looks.seen : 0.0;
     const double all_seen =
         std::accumulate(seen_.begin(), seen_.end(), 0.0, [](double sum, const auto& one) { return sum + one.second.seen; });
@@ -227,7 +227,7 @@ class ValidityCheck {
   std::vector<Finding> findings_;                                  // of the sample
   std::vector<KindSums> of_object_{paths_.scene->nodes().size()};  // by node index
   ObjectsAtTimes at_times_;                                        // at the base times, for the first antennas
-  std::map<size_t, SeenObject> seen_;                              // by node index
+  std::map<size_t, SeenPower> seen_;                               // by node index
   Validity report_;
 };
 

@@ -1,4 +1,4 @@
-#include "echopath/validity/surface/surface_looks.h"
+#include "echopath/validity/surface/seen_powers.h"
 
 #include <algorithm>
 #include <complex>
@@ -56,9 +56,9 @@ std::map<size_t, SeenNow> seen_by(const SurfaceSearch& found, Radar radar, const
 
 }  // namespace
 
-std::map<size_t, SeenObject> look_for_new_surface(const Paths& paths, const Radar& radar, const FrameCheck& check,
-                                                  ObjectsAtTimes& at_times, Job* job) {
-  std::map<size_t, SeenObject> objects;
+std::map<size_t, SeenPower> find_seen_powers(const Paths& paths, const Radar& radar, const FrameCheck& check,
+                                             ObjectsAtTimes& at_times, Job* job) {
+  std::map<size_t, SeenPower> objects;
   if (!check.anything_moves() && !check.has_array()) return objects;
   const std::vector<double>& times = check.times().times;
   const auto num_base = static_cast<size_t>(check.times().num_base);
@@ -75,7 +75,7 @@ std::map<size_t, SeenObject> look_for_new_surface(const Paths& paths, const Rada
       const SurfaceSearch found = trace_new_surface(paths, radar, look, job, &then, &now);
       const bool is_own = look.antenna == 0;  // what antennas at the rim see counts for shares alone
       for (const auto& [object, seen] : seen_by(found, is_own ? check.first_radar() : found.paths.radar, band, job)) {
-        SeenObject& sums = objects[object];
+        SeenPower& sums = objects[object];
         const double power = seen.seen.power();
         sums.seen += power;
         sums.fresh += seen.fresh.power();

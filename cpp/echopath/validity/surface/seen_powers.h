@@ -1,6 +1,6 @@
 #pragma once
-// Looks for new surface (new_surface.h) at each time of a check, from the antennas of the trace and from those at the rim of
-// the array, and sums up what is seen by object.
+// Computes the power that antennas receive from each object at the times of a check, and how much of it comes from surface
+// that the record lacks (new_surface.h): seen from the antennas of the trace and from those at the rim of the array.
 #include <map>
 
 #include "echopath/validity/surface/new_surface.h"
@@ -8,15 +8,15 @@
 
 namespace echopath {
 
-// Holds the power of what is seen of an object, over the times and antennas of all looks.
+// Holds the power of an object, summed over all times and antennas.
 struct SeenPower {
-  double seen = 0.0, fresh = 0.0;  // W: everything, and what is new
-  double largest = 0.0;            // W, of what one look sees from the antennas of the trace
+  double seen = 0.0, fresh = 0.0;  // W: of all of it, and of its new surface
+  double largest = 0.0;            // W, of the object at one time, from the antennas of the trace
 };
 
-// Returns what is seen by object (node index); nothing where nothing moves and there is no array. Adds what the antennas of
-// the trace see of new surface at the base times to `at_times`. Paths and radar are those of the check. The result has the
-// same bits for any number of threads. Raises Cancelled.
+// Returns the powers of objects by node index; there are none where nothing moves and there is no array. Adds the power of
+// new surface that the antennas of the trace receive at the base times to `at_times`. Paths and radar are those of the
+// check. The result has the same bits for any number of threads. Raises Cancelled.
 std::map<size_t, SeenPower> find_seen_powers(const Paths& paths, const Radar& radar, const FrameCheck& check,
                                              ObjectsAtTimes& at_times, Job* job);
 

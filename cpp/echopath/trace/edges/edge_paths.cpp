@@ -37,7 +37,7 @@ std::vector<double> extents_of_bodies(const EdgeQuery& query) {
   return extent;
 }
 
-EdgeWayTo way_of(const Leg& leg) { return {leg.to_antenna, leg.at_antenna, leg.length}; }
+EdgeLeg edge_leg_of(const Leg& leg) { return {leg.to_antenna, leg.at_antenna, leg.length}; }
 
 template <class Coefficients>
 class EdgeTracer {
@@ -129,7 +129,7 @@ class EdgeTracer {
     for (const Leg& in : scratch.in) {
       for (const Leg& out : scratch.out) {
         const auto coupled = [&] { return fringe_matrix(wedge, -in.to_antenna, out.to_antenna).norm(); };
-        if (is_strong(wedge, way_of(in), way_of(out), coefficients_.held(in.gain * out.gain), coupled))
+        if (is_strong(wedge, edge_leg_of(in), edge_leg_of(out), coefficients_.held(in.gain * out.gain), coupled))
           add_path(in, hit, out, wedge, num_pieces, block);
       }
       const auto add_way = [&](const EdgeWay& way, size_t last) {
@@ -155,9 +155,9 @@ class EdgeTracer {
               scratch.search);
     for (const Leg& out : scratch.behind) {
       const auto coupled = [&] { return entered * chain->leave(out.to_antenna, out.length).norm(); };
-      const EdgeWayTo arrival{-chain->arrival(), in.at_antenna, in.length};
+      const EdgeLeg arrival{-chain->arrival(), in.at_antenna, in.length};
       if (matters(*chain, entered, out.to_antenna, out.length) &&
-          is_strong(wedge, arrival, way_of(out), coefficients_.held(in.gain * out.gain), coupled))
+          is_strong(wedge, arrival, edge_leg_of(out), coefficients_.held(in.gain * out.gain), coupled))
         add_path(in, way.hits, out, wedge, num_pieces, block);
     }
     return goes_on;
@@ -165,7 +165,7 @@ class EdgeTracer {
 
   // Returns whether an echo is to be kept; `coupled` returns the norm of what the edge makes of the field.
   template <class Coupled>
-  bool is_strong(const Wedge& wedge, const EdgeWayTo& in, const EdgeWayTo& out, std::complex<double> over_mirrors,
+  bool is_strong(const Wedge& wedge, const EdgeLeg& in, const EdgeLeg& out, std::complex<double> over_mirrors,
                  const Coupled& coupled) const {
     return query_.least_power == 0.0 ||
            query_.estimate.power(wedge, in, out, std::abs(over_mirrors) * coupled()) >= query_.least_power;

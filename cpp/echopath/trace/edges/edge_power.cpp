@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kOfNoise = 1e-4;  // of the noise in a cell: that of the weakest echoes of edges which are kept
 
-EdgeWayTo way_to(const Vec3& antenna, const Vec3& point) {
+EdgeLeg edge_leg_to(const Vec3& antenna, const Vec3& point) {
   const Vec3 line = point - antenna, direction = line.normalized();
   return {-direction, direction, line.norm()};
 }
@@ -36,8 +36,8 @@ double best_gain(const std::vector<PosedAntenna>& antennas, const Vec3& directio
 
 // Returns the largest field that a matrix brings from one of the transmitters to one of the receivers, for all of which the
 // ways are about the same.
-double best_coupling(const Mat3& matrix, const std::vector<PosedAntenna>& transmitters, const EdgeWayTo& in,
-                     const std::vector<PosedAntenna>& receivers, const EdgeWayTo& out) {
+double best_coupling(const Mat3& matrix, const std::vector<PosedAntenna>& transmitters, const EdgeLeg& in,
+                     const std::vector<PosedAntenna>& receivers, const EdgeLeg& out) {
   double best = 0.0;
   for (const PosedAntenna& transmitter : transmitters) {
     const Vec3 sent = matrix * field_along(transmitter, in.at_antenna);
@@ -58,14 +58,13 @@ double EdgeEstimate::power(const PosedEdge& edge, const Material& material) cons
   const Vec3 sender = centre_of_antennas(transmitters_), receiver = centre_of_antennas(receivers_);
   const Vec3 line = edge.line(), middle = 0.5 * (sender + receiver);
   const Vec3 point = edge.from + std::clamp(line.dot(middle - edge.from) / line.squaredNorm(), 0.0, 1.0) * line;
-  const EdgeWayTo in = way_to(sender, point), out = way_to(receiver, point);
+  const EdgeLeg in = edge_leg_to(sender, point), out = edge_leg_to(receiver, point);
   const Mat3 fringe = fringe_matrix(edge.wedge, in.at_antenna, out.to_antenna);
   const double coupled = best_coupling(fringe, transmitters_, in, receivers_, out);
   return power(edge.wedge, in, out, coupled * kept_share(material, frequency_, edge.wedge, in.to_antenna), line.norm());
 }
 
-double EdgeEstimate::power(const Wedge& wedge, const EdgeWayTo& in, const EdgeWayTo& out, double coupled,
-                           double longest) const {
+double EdgeEstimate::power(const Wedge& wedge, const EdgeLeg& in, const EdgeLeg& out, double coupled, double longest) const {
   if (!reaches_antenna(in.length) || !reaches_antenna(out.length)) return 0.0;
   const double slope = wavenumber_ * std::abs((in.to_antenna + out.to_antenna).dot(axis_of(wedge)));
   const double zone = 2.0 * std::sqrt(kPi / (wavenumber_ * (1.0 / in.length + 1.0 / out.length)));

@@ -11,8 +11,8 @@
 
 namespace echopath {
 
-// Describes a way between an antenna and a point of an edge, unfolded.
-struct EdgeWayTo {
+// Describes the unfolded leg between an antenna and a point of an edge.
+struct EdgeLeg {
   Vec3 to_antenna, at_antenna;  // unit: from the point toward the antenna or its image, and of departure from the antenna
   double length;                // m
 };
@@ -27,7 +27,7 @@ class EdgeEstimate {
   // Returns the power in W at the best pair of antennas of an edge whose matrix (edge_diffraction.h) has the norm `coupled`,
   // over as much of it as keeps the phase, and at most `longest` (m). Edges that follow each other along a curve send no
   // more than one such edge that is not cut off.
-  double power(const Wedge& wedge, const EdgeWayTo& in, const EdgeWayTo& out, double coupled,
+  double power(const Wedge& wedge, const EdgeLeg& in, const EdgeLeg& out, double coupled,
                double longest = std::numeric_limits<double>::infinity()) const;
 
  private:

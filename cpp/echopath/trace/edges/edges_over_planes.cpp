@@ -105,7 +105,7 @@ class LitEdgeTracer {
   // A way between the edge and an antenna: directly or over flagged mirrors, or over planes.
   struct Way {
     std::vector<Hit> hits;  // from the edge toward the antenna
-    EdgeWayTo way;
+    EdgeLeg way;
     std::complex<double> gain = 1.0;
     double share = 1.0;
     OrderShares orders;

@@ -54,8 +54,8 @@ TEST(EdgePower, SeveralEdgesInARowSendNoMoreThanOneThatIsNotCutOff) {
   const Scene scene = strip_at(10.0);
   for (const PosedEdge& edge : posed_edges(scene, PosedScene(scene, 0.0), Vec3::Zero())) {
     const Vec3 middle = 0.5 * (edge.from + edge.to), direction = middle.normalized();
-    const EdgeLeg way{-direction, direction, middle.norm()};
-    EXPECT_LE(estimate.power(edge.wedge, way, way, 1.0, 0.01), estimate.power(edge.wedge, way, way, 1.0));
+    const EdgeLeg leg{-direction, direction, middle.norm()};
+    EXPECT_LE(estimate.power(edge.wedge, leg, leg, 1.0, 0.01), estimate.power(edge.wedge, leg, leg, 1.0));
   }
 }
 

@@ -94,7 +94,7 @@ struct WallOverFloor : Lit {
   PlaneLegFinder finder{scene, geometry, planes, settings};
 
   // Returns the way from a point on the wall over the floor to an antenna.
-  std::optional<PlaneLeg> way(const Vec3& point, const Vec3& antenna) const {
+  std::optional<PlaneLeg> leg(const Vec3& point, const Vec3& antenna) const {
     const int floor = planes.plane_of({kFloor, 0, 0.1f, 0.1f}), wall = planes.plane_of({kWall, 0, 0.1f, 0.1f});
     int64_t num_queries = 0;
     return finder.find(point, -Vec3::UnitX(), antenna, {{floor}, wall, {}}, num_queries);
@@ -105,7 +105,7 @@ struct WallOverFloor : Lit {
 TEST(PlaneLegs, AWayOverAPlaneIsThatToTheImageOfTheAntenna) {
   const WallOverFloor lit;
   const Vec3 point(4.0 - 1e-3, 0.3, 2.0), antenna(-3.0, 0.1, 1.0), image(-3.0, 0.1, -1.0);
-  const auto leg = lit.way(point, antenna);
+  const auto leg = lit.leg(point, antenna);
   ASSERT_TRUE(leg.has_value());
   EXPECT_NEAR(leg->length, (image - point).norm(), kRounding);
   EXPECT_NEAR((leg->to_antenna - (image - point).normalized()).norm(), 0.0, kRounding);
@@ -120,7 +120,7 @@ TEST(PlaneLegs, TheRimOfAPlaneMirrorsHalfAndWhatLiesBeyondNothing) {
   const WallOverFloor lit;
   const auto share_of = [&](double y) {  // of a way that meets the floor there: its rim is at y = 4
     const Vec3 point(4.0 - 1e-3, y, 1.0), antenna(-3.0, y, 1.0);
-    const auto leg = lit.way(point, antenna);
+    const auto leg = lit.leg(point, antenna);
     return leg ? leg->share : 0.0;
   };
   EXPECT_DOUBLE_EQ(share_of(0.0), 1.0);

@@ -76,14 +76,14 @@ bool EdgeChains::find_next(size_t edge, int face, const Vec3& position, const Ve
 
 void EdgeChains::follow(size_t edge, const Hit& point, const Vec3& position, const Vec3& in, int most,
                         const Visit& visit) const {
-  EdgeWay way{{{edges_[edge].wedge, position}}, {point}};
-  extend(way, edge, in, most, visit);
+  EdgeSequence sequence{{{edges_[edge].wedge, position}}, {point}};
+  extend(sequence, edge, in, most, visit);
 }
 
-void EdgeChains::extend(EdgeWay& way, size_t edge, const Vec3& in, int most, const Visit& visit) const {
-  if (std::ssize(way.edges) >= most) return;
+void EdgeChains::extend(EdgeSequence& sequence, size_t edge, const Vec3& in, int most, const Visit& visit) const {
+  if (std::ssize(sequence.edges) >= most) return;
   const Wedge& wedge = edges_[edge].wedge;
-  const Vec3 axis = axis_of(wedge), position = way.edges.back().point;
+  const Vec3 axis = axis_of(wedge), position = sequence.edges.back().point;
   const double cosine = in.dot(axis), sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0));
   if (sine < kLeastSlope) return;
   for (int face = 0; face < 2; ++face) {
@@ -93,11 +93,11 @@ void EdgeChains::extend(EdgeWay& way, size_t edge, const Vec3& in, int most, con
     const PosedEdge& next = edges_[met.edge];
     const double along = next.edge.begin + (next.edge.end - next.edge.begin) * met.along;
     const PointOnSide at = point_on_side(next.edge.side, along);
-    way.edges.push_back({next.wedge, next.from + met.along * (next.to - next.from)});
-    way.hits.emplace_back(next.mesh_id, next.edge.triangle, at.u, at.v);
-    if (visit(way, met.edge)) extend(way, met.edge, direction, most, visit);
-    way.edges.pop_back();
-    way.hits.pop_back();
+    sequence.edges.push_back({next.wedge, next.from + met.along * (next.to - next.from)});
+    sequence.hits.emplace_back(next.mesh_id, next.edge.triangle, at.u, at.v);
+    if (visit(sequence, met.edge)) extend(sequence, met.edge, direction, most, visit);
+    sequence.edges.pop_back();
+    sequence.hits.pop_back();
   }
 }
 

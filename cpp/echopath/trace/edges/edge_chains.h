@@ -16,7 +16,7 @@ namespace echopath {
 inline constexpr double kLongestFace = 40.0;  // wavelengths
 
 // Holds a way over edges that is under way.
-struct EdgeWay {
+struct EdgeSequence {
   std::vector<ChainEdge> edges;
   std::vector<Hit> hits;  // the points on the edges
 };
@@ -26,7 +26,7 @@ class EdgeChains {
   // The edges must outlive it.
   EdgeChains(std::span<const PosedEdge> edges, double wavelength);
   // Takes a way and the index of its last edge, and returns whether it is to be followed farther.
-  using Visit = std::function<bool(const EdgeWay&, size_t last_edge)>;
+  using Visit = std::function<bool(const EdgeSequence&, size_t last_edge)>;
   // Calls visit for each way of two edges or more, up to `most`, that a wave takes which arrives along the unit vector `in`
   // at a point of an edge (its index). `point` is the hit there.
   void follow(size_t edge, const Hit& point, const Vec3& position, const Vec3& in, int most, const Visit& visit) const;
@@ -47,7 +47,7 @@ class EdgeChains {
   std::vector<OnPlane> sorted_faces(const Vec3& middle, double extent) const;
   void find_planes();
   bool find_next(size_t edge, int face, const Vec3& position, const Vec3& direction, Met& met) const;
-  void extend(EdgeWay& way, size_t edge, const Vec3& in, int most, const Visit& visit) const;
+  void extend(EdgeSequence& sequence, size_t edge, const Vec3& in, int most, const Visit& visit) const;
 
   std::span<const PosedEdge> edges_;
   double longest_;                            // m

@@ -132,21 +132,22 @@ class EdgeTracer {
         if (is_strong(wedge, edge_leg_of(in), edge_leg_of(out), coefficients_.held(in.gain * out.gain), coupled))
           add_path(in, hit, out, wedge, num_pieces, block);
       }
-      const auto add_way = [&](const EdgeWay& way, size_t last) {
-        return add_chain(in, way, last, num_pieces, scratch, block);
+      const auto add_sequence = [&](const EdgeSequence& sequence, size_t last) {
+        return add_chain(in, sequence, last, num_pieces, scratch, block);
       };
       const int most = std::min(kMostEdges, query_.settings.max_bounces - in.num_bounces);
-      chains_.follow(edge, scratch.hits[piece], point, -in.to_antenna, most, add_way);
+      chains_.follow(edge, scratch.hits[piece], point, -in.to_antenna, most, add_sequence);
     }
   }
 
   // Adds the paths that end with the last edge of a way; returns whether the wave there is strong enough to go on.
-  bool add_chain(const Leg& in, const EdgeWay& way, size_t last, int num_pieces, Scratch& scratch, PathBlock& block) const {
-    const std::optional<EdgeChain> chain = EdgeChain::over(way.edges, wavenumber_);
+  bool add_chain(const Leg& in, const EdgeSequence& sequence, size_t last, int num_pieces, Scratch& scratch,
+                 PathBlock& block) const {
+    const std::optional<EdgeChain> chain = EdgeChain::over(sequence.edges, wavenumber_);
     if (!chain) return false;
     const double entered = strength(*chain, in);
     const Wedge& wedge = query_.edges[last].wedge;
-    const Vec3 point = way.edges.back().point, line = query_.settings.receiver - point;
+    const Vec3 point = sequence.edges.back().point, line = query_.settings.receiver - point;
     const bool is_lit = may_leave(wedge, line, line.norm());
     const bool is_seen = is_lit && matters(*chain, entered, line.normalized(), line.norm());
     const bool goes_on = entered > kLeastChain;
@@ -158,7 +159,7 @@ class EdgeTracer {
       const EdgeLeg arrival{-chain->arrival(), in.at_antenna, in.length};
       if (matters(*chain, entered, out.to_antenna, out.length) &&
           is_strong(wedge, arrival, edge_leg_of(out), coefficients_.held(in.gain * out.gain), coupled))
-        add_path(in, way.hits, out, wedge, num_pieces, block);
+        add_path(in, sequence.hits, out, wedge, num_pieces, block);
     }
     return goes_on;
   }

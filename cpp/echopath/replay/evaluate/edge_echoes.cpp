@@ -21,8 +21,8 @@ Vec3 part_across(const Vec3& polarization, const Vec3& direction) {
   return part.squaredNorm() > 1e-18 ? Vec3(part.normalized()) : Vec3(Vec3::Zero());
 }
 
-// Describes a way from an antenna to an edge.
-struct WayToEdge {
+// Describes the wave that comes from an antenna to an edge.
+struct WaveAtEdge {
   double length, root_gain, phase;  // m; of the antenna, rad
   Vec3 direction;                   // unit, of travel where it arrives
   FieldVector field;                // of a unit wave, where it arrives; zero in the scalar model
@@ -42,14 +42,14 @@ struct MirrorsToEdge {
 // the weight has what mirrors made of them; Jones ones are those of each antenna, as they have come over the mirrors.
 struct ScalarFields {
   static constexpr bool kComeOverMirrors = false;
-  static FieldVector seen(const WayToEdge&, const Vec3& polarization, const Vec3& direction) {
+  static FieldVector seen(const WaveAtEdge&, const Vec3& polarization, const Vec3& direction) {
     return part_across(polarization, direction).cast<std::complex<double>>();
   }
 };
 
 struct JonesFields {
   static constexpr bool kComeOverMirrors = true;
-  static const FieldVector& seen(const WayToEdge& way, const Vec3&, const Vec3&) { return way.field; }
+  static const FieldVector& seen(const WaveAtEdge& wave, const Vec3&, const Vec3&) { return wave.field; }
 };
 
 template <class Fields>
@@ -75,20 +75,20 @@ class EdgeEchoes {
     if (chain_) piece_ = chain_->last_piece(piece_);
     is_reversed_ = path.is_reversed;
     is_past_edge_ = path.is_past_edge;
-    find_ways(path, scene.antennas(is_reversed_), true, in_);
-    find_ways(path, scene.antennas(!is_reversed_), false, out_);
+    find_waves(path, scene.antennas(is_reversed_), true, in_);
+    find_waves(path, scene.antennas(!is_reversed_), false, out_);
   }
 
   double length(size_t transmitter, size_t receiver) const {
-    const WayToEdge& in = way_in(transmitter, receiver);
+    const WaveAtEdge& in = wave_in(transmitter, receiver);
     const double over_faces = chain_ ? chain_->length() + chain_->detour(in.direction, in.length) : 0.0;
-    return in.length + over_faces + way_out(transmitter, receiver).length;
+    return in.length + over_faces + wave_out(transmitter, receiver).length;
   }
 
   // `polarization` is that of the transmitter.
   std::complex<double> amplitude(size_t transmitter, size_t receiver, const Vec3& polarization,
                                  std::complex<double> weight) const {
-    const WayToEdge &in = way_in(transmitter, receiver), &out = way_out(transmitter, receiver);
+    const WaveAtEdge &in = wave_in(transmitter, receiver), &out = wave_out(transmitter, receiver);
     if (!reaches_antenna(in.length) || !reaches_antenna(out.length) || is_broken()) return 0.0;
     const Vec3 departure = -out.direction;
     const std::complex<double> coupled = Fields::seen(out, polarization, departure).transpose() *
@@ -104,14 +104,16 @@ class EdgeEchoes {
 
  private:
   // A reversed path begins at the receiver.
-  const WayToEdge& way_in(size_t transmitter, size_t receiver) const { return in_[is_reversed_ ? receiver : transmitter]; }
-  const WayToEdge& way_out(size_t transmitter, size_t receiver) const { return out_[is_reversed_ ? transmitter : receiver]; }
+  const WaveAtEdge& wave_in(size_t transmitter, size_t receiver) const { return in_[is_reversed_ ? receiver : transmitter]; }
+  const WaveAtEdge& wave_out(size_t transmitter, size_t receiver) const {
+    return out_[is_reversed_ ? transmitter : receiver];
+  }
 
   // Returns whether the points of several edges no longer lie on flat faces that connect them.
   bool is_broken() const { return edges_.size() > 1 && !chain_; }
 
   // Returns what leaves the last edge toward an antenna that is `distance` (m) away.
-  FieldVector diffracted(const FieldVector& field, const WayToEdge& in, const Vec3& departure, double distance) const {
+  FieldVector diffracted(const FieldVector& field, const WaveAtEdge& in, const Vec3& departure, double distance) const {
     if (chain_) return chain_->leave(departure, distance) * chain_->enter(in.direction, field, in.length);
     const ChainEdge& edge = edges_.front();
     if (!is_past_edge_) return fringe_matrix(edge.wedge, in.direction, departure) * field;
@@ -123,7 +125,7 @@ class EdgeEchoes {
   }
 
   // A chain's waves run along one ray of Keller's cone to each point of the last edge.
-  std::complex<double> filter(const WayToEdge& in, const Vec3& departure, double distance) const {
+  std::complex<double> filter(const WaveAtEdge& in, const Vec3& departure, double distance) const {
     const Vec3 arrival = chain_ ? chain_->arrival() : in.direction;
     const double travelled = chain_ ? in.length + chain_->length() : in.length;
     const auto curvature = [&](const Vec3& direction, double radius) {
@@ -133,9 +135,9 @@ class EdgeEchoes {
     return edge_filter(radio_.wavenumber * (arrival - departure).dot(piece_), bend);
   }
 
-  // Sets the ways between the edges and the antennas at the start of the path as it was traced, or at its end.
-  void find_ways(const LocalPath& path, const std::vector<PosedAntenna>& antennas, bool of_start,
-                 std::vector<WayToEdge>& ways) {
+  // Finds the waves between the edges and the antennas at the start of the path as it was traced, or at its end.
+  void find_waves(const LocalPath& path, const std::vector<PosedAntenna>& antennas, bool of_start,
+                  std::vector<WaveAtEdge>& waves) {
     mirrors_.hits.clear();
     mirrors_.materials.clear();
     const int count = of_start ? path.edge : path.count - path.edge - path.num_edges;
@@ -146,12 +148,12 @@ class EdgeEchoes {
     }
     mirrors_.is_forward = of_start != path.is_reversed;
     mirrors_.last_leg = path.count;
-    ways.clear();
+    waves.clear();
     const Vec3& point = of_start ? edges_.front().point : edges_.back().point;
-    for (const PosedAntenna& antenna : antennas) ways.push_back(way_from(antenna, point));
+    for (const PosedAntenna& antenna : antennas) waves.push_back(wave_from(antenna, point));
   }
 
-  WayToEdge way_from(const PosedAntenna& antenna, const Vec3& point) const {
+  WaveAtEdge wave_from(const PosedAntenna& antenna, const Vec3& point) const {
     const int count = static_cast<int>(mirrors_.hits.size());
     const UnfoldedLeg leg = unfolded_leg(mirrors_.hits.data(), antenna.position, 0, count, point);
     const AntennaGain gain = antenna.toward(leg.departure);
@@ -186,16 +188,16 @@ class EdgeEchoes {
   std::vector<PosedHit> hits_;
   MirrorsToEdge mirrors_;
   PathPassages* sheets_ = nullptr;
-  std::vector<WayToEdge> in_, out_;
+  std::vector<WaveAtEdge> in_, out_;
   std::vector<ChainEdge> edges_;    // of the path
   std::optional<EdgeChain> chain_;  // over them, where there are several
   Vec3 piece_;                      // m, of the last one
 };
 
 // Holds the sheets on the ways of edge paths whose fields are followed through them, null for the others.
-class SheetsOnWays {
+class SheetsOnPaths {
  public:
-  SheetsOnWays(const RecordSheets& sheets, std::span<const int64_t> paths) : of_path_(paths.size()) {
+  SheetsOnPaths(const RecordSheets& sheets, std::span<const int64_t> paths) : of_path_(paths.size()) {
     const Paths& record = sheets.preparer.paths();
     if (record.jones.empty() || record.passes.empty()) return;
     for (size_t i = 0; i < paths.size(); ++i) {
@@ -216,14 +218,14 @@ void evaluate(const SharedLegPlan& plan, const RecordSheets& sheets, const Posed
   for (const SharedLegPlan::EdgePath& path : plan.edge_paths) indices.push_back(path.path);
   const PathPreparer& preparer = sheets.preparer;
   const LocalPaths local = preparer(indices);
-  const SheetsOnWays on_ways(sheets, indices);
+  const SheetsOnPaths on_paths(sheets, indices);
   EdgeEchoes<Fields> echoes(preparer, radio);
   for (size_t node = 0; node < nodes.size(); ++node) {
     const PosedScene& scene = nodes.at(node);
     const size_t num_receivers = scene.receivers.size();
     for (size_t i = 0; i < indices.size(); ++i) {
       const std::complex<double> weight(preparer.paths().weight[static_cast<size_t>(indices[i])]);
-      echoes.pose(local.paths[i], scene, on_ways.of(i));
+      echoes.pose(local.paths[i], scene, on_paths.of(i));
       for (size_t channel = 0; channel < channels.nodes.size(); ++channel) {
         const size_t of_all = channels.first + channel, transmitter = of_all / num_receivers,
                      receiver = of_all % num_receivers;

@@ -194,7 +194,7 @@ class EdgeEchoes {
   Vec3 piece_;                      // m, of the last one
 };
 
-// Holds the sheets on the ways of edge paths whose fields are followed through them, null for the others.
+// Holds the sheets on those edge paths whose fields are followed through them, null for the others.
 class SheetsOnPaths {
  public:
   SheetsOnPaths(const RecordSheets& sheets, std::span<const int64_t> paths) : of_path_(paths.size()) {

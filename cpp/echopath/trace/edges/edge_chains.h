@@ -1,5 +1,5 @@
 #pragma once
-// Finds the ways from edge to edge over flat faces (em/edges/edge_chain.h).
+// Finds the sequences of edges that waves take over flat faces from one edge to the next (em/edges/edge_chain.h).
 #include <array>
 #include <functional>
 #include <span>
@@ -15,7 +15,7 @@ namespace echopath {
 // echo, and most faces of a street are longer.
 inline constexpr double kLongestFace = 40.0;  // wavelengths
 
-// Holds a way over edges that is under way.
+// Holds the edges that a wave has met so far, each with the point that it met.
 struct EdgeSequence {
   std::vector<ChainEdge> edges;
   std::vector<Hit> hits;  // the points on the edges
@@ -25,10 +25,10 @@ class EdgeChains {
  public:
   // The edges must outlive it.
   EdgeChains(std::span<const PosedEdge> edges, double wavelength);
-  // Takes a way and the index of its last edge, and returns whether it is to be followed farther.
+  // Takes a sequence and the index of its last edge, and returns whether it is to be followed farther.
   using Visit = std::function<bool(const EdgeSequence&, size_t last_edge)>;
-  // Calls visit for each way of two edges or more, up to `most`, that a wave takes which arrives along the unit vector `in`
-  // at a point of an edge (its index). `point` is the hit there.
+  // Calls `visit` for each sequence of two to `most` edges that a wave meets which arrives along the unit vector `in` at a
+  // point of an edge (its index). `point` is the hit there.
   void follow(size_t edge, const Hit& point, const Vec3& position, const Vec3& in, int most, const Visit& visit) const;
 
  private:

@@ -140,7 +140,7 @@ class EdgeTracer {
     }
   }
 
-  // Adds the paths that end with the last edge of a way; returns whether the wave there is strong enough to go on.
+  // Adds the paths that end with the last edge of a sequence; returns whether the wave there is strong enough to go on.
   bool add_chain(const Leg& in, const EdgeSequence& sequence, size_t last, int num_pieces, Scratch& scratch,
                  PathBlock& block) const {
     const std::optional<EdgeChain> chain = EdgeChain::over(sequence.edges, wavenumber_);

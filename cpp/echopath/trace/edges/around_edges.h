@@ -14,25 +14,26 @@
 
 namespace echopath {
 
+// Describes the scene and the antenna from which waves go around edges.
 struct AroundQuery {
   const Scene& scene;  // outlives the query
   double time;         // s
   double frequency;    // Hz
   Vec3 antenna;        // m, world
   Vec3 polarization;   // unit vector, world
-  bool edges = true;   // whether ways around edges are looked for, or only whether the points are seen
+  bool edges = true;   // whether legs around edges are looked for, or only whether the points are seen
 };
 
-// Holds the strongest way around one edge.
+// Holds the strongest leg around one edge.
 struct WayAroundEdge {
   static constexpr uint32_t kNoMesh = std::numeric_limits<uint32_t>::max();
   uint32_t mesh_id = kNoMesh;  // whose edge; kNoMesh: nothing is in the way, or no edge leads there
   Vec3 point = Vec3::Zero();   // m, world: on the edge
-  double length = 0.0;         // m, of the way
+  double length = 0.0;         // m, of the leg
   double share = 0.0;          // of the field that would arrive were nothing in its way; 1 where nothing is
 };
 
-// Returns a way for each point (m, world). Raises invalid_argument when a motion is not defined at the time, Cancelled when
+// Returns a leg for each point (m, world). Raises invalid_argument when a motion is not defined at the time, Cancelled when
 // the job is cancelled.
 std::vector<WayAroundEdge> ways_around_edges(const AroundQuery& query, const std::vector<Vec3>& points, Job* job = nullptr);
 

@@ -22,12 +22,12 @@ struct EdgeQuery {
   const AntennaFrusta& frusta;
 };
 
-// Returns one path for each piece of an edge and each pair of ways to and from it that are free at the middle of the piece,
-// in the order of meshes, edges and pieces, and those of the waves that go on from there over flat faces from edge to edge,
-// up to kMostEdges, as far as they are no weaker than .03 of what the edge of a half plane sends; those below the least
-// power are left out. Pieces are so short that
-// wave fronts bend by at most .8 rad across half of one (edge_filter), and where a part of an edge is hidden at most a
-// sixteenth of the body long, so that shadows end near where they should. Raises Cancelled when the job is cancelled.
+// Returns one path for each piece of an edge and each pair of legs to and from it that are free at the middle of the piece,
+// in the order of meshes, edges and pieces. Paths of waves that go on from there over flat faces from edge to edge, up to
+// kMostEdges edges, follow as far as the waves are no weaker than .03 of what the edge of a half plane sends. Paths below
+// the least power are left out. Pieces are so short that the phase across half of one departs from a linear phase by at most
+// .8 rad (edge_filter), and where a part of an edge is hidden they are at most a sixteenth of the body long, so that shadows
+// end near where they should. Raises Cancelled when the job is cancelled.
 std::vector<PathBlock> find_edge_paths(const EdgeQuery& query, Job* job = nullptr);
 
 }  // namespace echopath

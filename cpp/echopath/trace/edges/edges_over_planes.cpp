@@ -80,7 +80,7 @@ std::vector<LitEdge> lit_edges(const EdgeQuery& query, const LitPlanes& lit) {
   return found;
 }
 
-// Follows the ways to and from the pieces of one edge. It serves one thread.
+// Follows the legs to and from the pieces of one edge. It serves one thread.
 template <class Coefficients>
 class LitEdgeTracer {
  public:
@@ -102,14 +102,15 @@ class LitEdgeTracer {
   }
 
  private:
-  // A way between the edge and an antenna: directly or over flagged mirrors, or over planes.
-  struct Way {
+  // Describes a leg between the edge and an antenna with the field that it carries: it is direct, or goes over flagged mirrors
+  // or over planes.
+  struct WeightedLeg {
     std::vector<Hit> hits;  // from the edge toward the antenna
-    EdgeLeg way;
+    EdgeLeg leg;
     std::complex<double> gain = 1.0;
     double share = 1.0;
     OrderShares orders;
-    std::complex<double> past_edge = 0.0;  // share of what the edge sends that way to a mirror (kPastEdge)
+    std::complex<double> past_edge = 0.0;  // share of what the edge sends over the leg to a mirror (kPastEdge)
   };
 
   int num_pieces() const {
@@ -123,17 +124,17 @@ class LitEdgeTracer {
   void add_piece(double at) {
     if (!is_within(edge_.transmit, at) && !is_within(edge_.receive, at)) return;
     const Vec3 &transmitter = query_.settings.transmitter, &receiver = query_.settings.receiver;
-    const std::vector<Way> in_direct = direct(transmitter), out_direct = direct(receiver);
-    const std::vector<Way> in = over_planes(edge_.transmit, {transmitter, receiver, at, false}),
-                           out = over_planes(edge_.receive, {receiver, transmitter, at, !in_direct.empty()});
+    const std::vector<WeightedLeg> in_direct = direct(transmitter), out_direct = direct(receiver);
+    const std::vector<WeightedLeg> in = over_planes(edge_.transmit, {transmitter, receiver, at, false}),
+                                   out = over_planes(edge_.receive, {receiver, transmitter, at, !in_direct.empty()});
     if (in.empty() && out.empty()) return;
     ++block_.statistics.num_hits;
-    for (const Way& one : in) {
-      for (const Way& other : out) add_path(one, other, 1.0, 0);
-      for (const Way& other : out_direct) add_path(one, other, one.orders.own, 0);
+    for (const WeightedLeg& one : in) {
+      for (const WeightedLeg& other : out) add_path(one, other, 1.0, 0);
+      for (const WeightedLeg& other : out_direct) add_path(one, other, one.orders.own, 0);
     }
-    for (const Way& one : in_direct) {
-      for (const Way& other : out) {
+    for (const WeightedLeg& one : in_direct) {
+      for (const WeightedLeg& other : out) {
         add_path(one, other, other.orders.opposite, kReversedPath);
         add_path(one, other, other.past_edge, kPastEdge);
       }
@@ -147,48 +148,48 @@ class LitEdgeTracer {
     });
   }
 
-  // Says which ways are looked for: from the place `at` in [0, 1] of the edge to an antenna.
-  struct WayQuery {
+  // Asks for the legs from the place `at` in [0, 1] of the edge to an antenna.
+  struct PlaneLegQuery {
     Vec3 antenna, other;
     double at;
-    bool is_end;  // waves go on that way from the edge, to which they came directly
+    bool is_end;  // waves leave the edge over these legs, to which they came directly
   };
 
-  std::vector<Way> over_planes(const std::vector<const LitPlane*>& lit, const WayQuery& query) {
+  std::vector<WeightedLeg> over_planes(const std::vector<const LitPlane*>& lit, const PlaneLegQuery& query) {
     const auto& [antenna, other, at, is_end] = query;
-    std::vector<Way> ways;
+    std::vector<WeightedLeg> legs;
     for (const LitPlane* over : lit) {
       const auto [begin, end] = stretch_within(edge_.from, edge_.to, over->box);
       if (at < begin || at > end || std::ssize(over->mirrors) >= query_.settings.max_bounces) continue;
       const std::optional<PlaneLeg> leg = planes_.find(point_, outward_, antenna, *over, block_.statistics.num_queries);
       if (!leg || !may_leave(edge_.wedge, leg->to_antenna, leg->length)) continue;
-      Way& way = ways.emplace_back();
-      for (const RayHit& bounce : leg->bounces) way.hits.push_back(bounce.hit);
-      way.way = {leg->to_antenna, leg->at_antenna, leg->length};
-      way.gain = leg->gain;
-      way.share = leg->share;
-      way.orders = kept_orders(*leg, *over, other);
-      if (is_end && way.orders.opposite < 1.0) {
-        way.past_edge =
-            (1.0 - way.orders.opposite) * planes_.field_beside_rims(point_, antenna, *leg, block_.statistics.num_queries);
+      WeightedLeg& weighted = legs.emplace_back();
+      for (const RayHit& bounce : leg->bounces) weighted.hits.push_back(bounce.hit);
+      weighted.leg = {leg->to_antenna, leg->at_antenna, leg->length};
+      weighted.gain = leg->gain;
+      weighted.share = leg->share;
+      weighted.orders = kept_orders(*leg, *over, other);
+      if (is_end && weighted.orders.opposite < 1.0) {
+        weighted.past_edge = (1.0 - weighted.orders.opposite) *
+                             planes_.field_beside_rims(point_, antenna, *leg, block_.statistics.num_queries);
       }
     }
-    return ways;
+    return legs;
   }
 
-  std::vector<Way> direct(const Vec3& antenna) {
+  std::vector<WeightedLeg> direct(const Vec3& antenna) {
     LegQuery query{point_, outward_, 0};
     query.faces_all = true;
     finder_.find(query, {antenna, {}, {}}, legs_, search_);
     block_.statistics.num_queries += std::exchange(search_.num_queries, 0);
-    std::vector<Way> ways;
+    std::vector<WeightedLeg> legs;
     for (const Leg& leg : legs_) {
       if (!may_leave(edge_.wedge, leg.to_antenna, leg.length)) continue;
-      Way& way = ways.emplace_back();
-      way.way = {leg.to_antenna, leg.at_antenna, leg.length};
-      way.gain = leg.gain;
+      WeightedLeg& weighted = legs.emplace_back();
+      weighted.leg = {leg.to_antenna, leg.at_antenna, leg.length};
+      weighted.gain = leg.gain;
     }
-    return ways;
+    return legs;
   }
 
   // Returns the shares of the orders, which the pieces of one edge have in common.
@@ -238,20 +239,20 @@ class LitEdgeTracer {
   }
 
   // Returns whether an echo is to be kept. What an edge sends to a mirror is largest where no transition weakens it.
-  bool is_strong(const Way& in, const Way& out, std::complex<double> weight, bool is_past_edge) const {
+  bool is_strong(const WeightedLeg& in, const WeightedLeg& out, std::complex<double> weight, bool is_past_edge) const {
     if (query_.least_power == 0.0) return true;
     constexpr double kFarFromTransition = 1e6;  // rad
-    const Vec3 arrival = -in.way.to_antenna, &departure = out.way.to_antenna;
+    const Vec3 arrival = -in.leg.to_antenna, &departure = out.leg.to_antenna;
     const double coupled = is_past_edge ? diffraction_matrix(edge_.wedge, arrival, departure, kFarFromTransition).norm()
                                         : fringe_matrix(edge_.wedge, arrival, departure).norm();
-    return query_.estimate.power(edge_.wedge, in.way, out.way, std::abs(weight) * coupled) >= query_.least_power;
+    return query_.estimate.power(edge_.wedge, in.leg, out.leg, std::abs(weight) * coupled) >= query_.least_power;
   }
 
-  void add_path(const Way& in, const Way& out, std::complex<double> share, uint32_t flag) {
+  void add_path(const WeightedLeg& in, const WeightedLeg& out, std::complex<double> share, uint32_t flag) {
     if (share == 0.0 || std::ssize(in.hits) + 1 + std::ssize(out.hits) > query_.settings.max_bounces) return;
-    const Way& first = (flag & kReversedPath) != 0 ? out : in;  // from which the wave comes
+    const WeightedLeg& first = (flag & kReversedPath) != 0 ? out : in;  // from which the wave comes
     const Material& material = *query_.scene.node_of(edge_.mesh_id).material;
-    const double kept = kept_share(material, query_.settings.frequency, edge_.wedge, first.way.to_antenna);
+    const double kept = kept_share(material, query_.settings.frequency, edge_.wedge, first.leg.to_antenna);
     const std::complex<double> weight = share * in.share * out.share * kept * Coefficients::held(in.gain * out.gain);
     if (!is_strong(in, out, weight, flag == kPastEdge)) return;
     std::vector<Hit> hits(in.hits.rbegin(), in.hits.rend());

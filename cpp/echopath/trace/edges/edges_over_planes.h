@@ -8,7 +8,7 @@
 namespace echopath {
 
 // Returns one path for each piece of an edge whose face waves from an antenna light over planes, as far as rays found that
-// they do (lit_planes.h), and for each pair of ways to and from it of which at least one goes over such planes.
+// they do (lit_planes.h), and for each pair of legs to and from it of which at least one goes over such planes.
 //
 // Physical optics gives the echo of a face that is lit over planes, but not the fringe wave of the face's edges. Three kinds
 // of paths add what is missing:

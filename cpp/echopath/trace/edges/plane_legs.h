@@ -1,5 +1,5 @@
 #pragma once
-// Finds the ways between a point on an edge and an antenna over planes that nobody flagged, by the image method.
+// Finds the legs between a point on an edge and an antenna over planes that nobody flagged, by the image method.
 #include <complex>
 #include <optional>
 #include <vector>
@@ -9,6 +9,7 @@
 
 namespace echopath {
 
+// Describes a leg between a point on an edge and an antenna over planes, and the field that it carries.
 struct PlaneLeg {
   std::vector<RayHit> bounces;      // from the point toward the antenna, each with its normal on the lit side
   double length = 0.0;              // m, unfolded
@@ -20,13 +21,13 @@ struct PlaneLeg {
   int num_bounces() const { return static_cast<int>(bounces.size()); }
 };
 
-// Its functions are thread-safe. All must outlive it.
+// Finds legs over planes. Its functions are thread-safe. All arguments must outlive it.
 class PlaneLegFinder {
  public:
   PlaneLegFinder(const Scene& scene, const EmbreeScene& geometry, const LitPlanes& lit, const SbrSettings& settings)
       : scene_(scene), geometry_(geometry), lit_(lit), settings_(settings) {}
-  // Returns the way over the mirrors of `over` to the antenna where it is free; the point is lifted along `outward` first. A
-  // way through the rim of a plane, or past the edge of what hides it, has half of the field, so that it does not hang on
+  // Returns the leg over the mirrors of `over` to the antenna where it is free; the point is lifted along `outward` first. A
+  // leg through the rim of a plane, or past the edge of what hides it, has half of the field, so that it does not depend on
   // rounding.
   std::optional<PlaneLeg> find(const Vec3& point, const Vec3& outward, const Vec3& antenna, const LitPlane& over,
                                int64_t& num_queries) const;

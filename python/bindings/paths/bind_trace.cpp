@@ -85,12 +85,12 @@ py::array_t<bool> are_clear(Scene scene, double time, const Vec3& from, const st
 }
 
 py::dict around_edges(const AroundQuery& query, const std::vector<Vec3>& points, const py::object& progress) {
-  const auto ways = run_job("ways around edges", progress, [&](Job& job) { return ways_around_edges(query, points, &job); });
+  const auto ways = run_job("ways around edges", progress, [&](Job& job) { return legs_around_edges(query, points, &job); });
   const auto count = static_cast<py::ssize_t>(ways.size());
   py::array_t<uint32_t> mesh_id(count);
   py::array_t<double> at({count, py::ssize_t{3}}), length(count), share(count);
   for (py::ssize_t i = 0; i < count; ++i) {
-    const WayAroundEdge& way = ways[static_cast<size_t>(i)];
+    const LegAroundEdge& way = ways[static_cast<size_t>(i)];
     mesh_id.mutable_at(i) = way.mesh_id;
     for (py::ssize_t k = 0; k < 3; ++k) at.mutable_at(i, k) = way.point[k];
     length.mutable_at(i) = way.length;
@@ -125,7 +125,7 @@ void bind_trace(py::module_& m) {
       py::arg("scene"), py::arg("time"), py::arg("origin"), py::arg("points"),
       "Whether nothing of the scene lies between `origin` [3] and each of `points` [N, 3], m at `time` in s; [N].");
   m.def(
-      "ways_around_edges",
+      "legs_around_edges",
       [](Scene scene, Arg<"time", Real> time, Arg<"frequency", Real> frequency, Arg<"antenna", Vector3> antenna,
          Arg<"polarization", Vector3> polarization, Arg<"points", Points> points, Arg<"edges", Flag> edges,
          const py::object& progress) {

@@ -129,10 +129,10 @@ def _is_free(ways) -> np.ndarray:
 
 
 def ways_to(scene, radar, antenna, points, time, *, edges=True, progress=None) -> dict:
-    """The ways from an antenna at a time in s to points [N, 3] in m (_core.ways_around_edges)."""
+    """The ways from an antenna at a time in s to points [N, 3] in m (_core.legs_around_edges)."""
     world_from_radar = radar.world_from_radar(time)
     rotation, place = world_from_radar[:3, :3], world_from_radar[:3, 3]
-    return _core.ways_around_edges(scene, time=time, frequency=radar.waveform.start_frequency,
+    return _core.legs_around_edges(scene, time=time, frequency=radar.waveform.start_frequency,
                                    antenna=rotation @ antenna.position + place,
                                    polarization=rotation @ polarization_of(antenna), points=points, edges=edges,
                                    progress=progress)

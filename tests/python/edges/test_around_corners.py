@@ -28,7 +28,7 @@ def sommerfeld(source, at, is_electric):
 
 
 def ways_to(scene, points, antenna, polarization=(0.0, 0.0, 1.0)):
-    return _core.ways_around_edges(scene, time=0.0, frequency=FREQUENCY, antenna=antenna, polarization=polarization,
+    return _core.legs_around_edges(scene, time=0.0, frequency=FREQUENCY, antenna=antenna, polarization=polarization,
                                    points=points)
 
 
@@ -69,7 +69,7 @@ def test_the_shadow_of_a_right_angle_is_that_of_the_exact_series(polarization, s
     around = np.radians(degrees)
     points = distance * np.stack([-np.sin(around), -np.cos(around), 0.0 * around], axis=-1)
     antenna = far * np.array([-np.sin(source), -np.cos(source), 0.0])
-    found = _core.ways_around_edges(scene, time=0.0, frequency=frequency, antenna=antenna, polarization=polarization,
+    found = _core.legs_around_edges(scene, time=0.0, frequency=frequency, antenna=antenna, polarization=polarization,
                                     points=points)
     assert np.all(found["mesh_id"] == 0)
     orders = np.arange(1300)

@@ -47,9 +47,9 @@ class AroundEdges {
     if (query.edges) edges_ = opaque_edges(query.scene, pose_, query.antenna);
   }
 
-  WayAroundEdge best_to(const Vec3& world) const {
+  LegAroundEdge best_to(const Vec3& world) const {
     const Vec3 point = world - query_.antenna;
-    WayAroundEdge best;
+    LegAroundEdge best;
     if (is_clear(Vec3::Zero(), point)) {
       best.share = 1.0;
       best.length = point.norm();
@@ -65,7 +65,7 @@ class AroundEdges {
     return !geometry_.occluded(from + shift_, to + shift_ - 8.0 * geometry_.lift() * (to - from).normalized());
   }
 
-  void take_better(const EdgeSeen& edge, const Vec3& point, WayAroundEdge& best) const {
+  void take_better(const EdgeSeen& edge, const Vec3& point, LegAroundEdge& best) const {
     const Vec3 from_end = point - edge.from;
     const double behind = from_end.dot(edge.axis);
     // Keller's point lies between the feet of both ends, so that most edges are left without a root.
@@ -106,9 +106,9 @@ class AroundEdges {
 
 }  // namespace
 
-std::vector<WayAroundEdge> ways_around_edges(const AroundQuery& query, const std::vector<Vec3>& points, Job* job) {
+std::vector<LegAroundEdge> legs_around_edges(const AroundQuery& query, const std::vector<Vec3>& points, Job* job) {
   const AroundEdges around(query);
-  std::vector<WayAroundEdge> ways(points.size());
+  std::vector<LegAroundEdge> ways(points.size());
   if (job) job->start(std::ssize(points));
   parallel_for(std::ssize(points),
                [&](int64_t i) { ways[static_cast<size_t>(i)] = around.best_to(points[static_cast<size_t>(i)]); }, job);

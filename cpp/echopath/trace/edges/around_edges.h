@@ -25,7 +25,7 @@ struct AroundQuery {
 };
 
 // Holds the strongest leg around one edge.
-struct WayAroundEdge {
+struct LegAroundEdge {
   static constexpr uint32_t kNoMesh = std::numeric_limits<uint32_t>::max();
   uint32_t mesh_id = kNoMesh;  // whose edge; kNoMesh: nothing is in the way, or no edge leads there
   Vec3 point = Vec3::Zero();   // m, world: on the edge
@@ -35,6 +35,6 @@ struct WayAroundEdge {
 
 // Returns a leg for each point (m, world). Raises invalid_argument when a motion is not defined at the time, Cancelled when
 // the job is cancelled.
-std::vector<WayAroundEdge> ways_around_edges(const AroundQuery& query, const std::vector<Vec3>& points, Job* job = nullptr);
+std::vector<LegAroundEdge> legs_around_edges(const AroundQuery& query, const std::vector<Vec3>& points, Job* job = nullptr);
 
 }  // namespace echopath

@@ -3447,10 +3447,10 @@ def warn_of_turns(yaw: float) -> None:
     """
 def legs_around_edges(scene: Scene, time: float, frequency: float, antenna: ArrayLike, polarization: ArrayLike, points: ArrayLike, edges: bool = True, progress: typing.Any = None) -> dict[typing.Any, typing.Any]:
     """
-    The strongest way around one edge from an antenna to each of some points.
+    The strongest leg around one edge from an antenna to each of some points.
 
     time: s; frequency: Hz; antenna: [3], m, world; polarization: [3], unit vector, world; points: [N, 3], m, world
-    edges: whether ways around edges are looked for, or only whether the points are seen
+    edges: whether legs around edges are looked for, or only whether the points are seen
     Returns a dict of mesh_id [N] (of the edge; 4294967295: none, or nothing in the way), point [N, 3] on it in m, length [N] in
     m, share [N] of the field that would arrive were nothing in its way.
     """

@@ -74,10 +74,10 @@ py::array_t<bool> are_clear(Scene scene, double time, const Vec3& from, const st
     const WithoutGil released;
     const PosedScene pose(scene, time);
     const EmbreeScene geometry(scene, pose, EmbreeScene::origin_near(scene, pose, from));
-    std::vector<Segment> ways;
-    ways.reserve(points.size());
-    for (const Vec3& point : points) ways.push_back({from - geometry.origin(), point - geometry.origin()});
-    geometry.occluded(ways.data(), ways.size(), blocked.data());
+    std::vector<Segment> segments;
+    segments.reserve(points.size());
+    for (const Vec3& point : points) segments.push_back({from - geometry.origin(), point - geometry.origin()});
+    geometry.occluded(segments.data(), segments.size(), blocked.data());
   }
   py::array_t<bool> clear(static_cast<py::ssize_t>(points.size()));
   for (size_t i = 0; i < points.size(); ++i) clear.mutable_data()[i] = !blocked[i];
@@ -85,16 +85,16 @@ py::array_t<bool> are_clear(Scene scene, double time, const Vec3& from, const st
 }
 
 py::dict around_edges(const AroundQuery& query, const std::vector<Vec3>& points, const py::object& progress) {
-  const auto ways = run_job("ways around edges", progress, [&](Job& job) { return legs_around_edges(query, points, &job); });
-  const auto count = static_cast<py::ssize_t>(ways.size());
+  const auto legs = run_job("legs around edges", progress, [&](Job& job) { return legs_around_edges(query, points, &job); });
+  const auto count = static_cast<py::ssize_t>(legs.size());
   py::array_t<uint32_t> mesh_id(count);
   py::array_t<double> at({count, py::ssize_t{3}}), length(count), share(count);
   for (py::ssize_t i = 0; i < count; ++i) {
-    const LegAroundEdge& way = ways[static_cast<size_t>(i)];
-    mesh_id.mutable_at(i) = way.mesh_id;
-    for (py::ssize_t k = 0; k < 3; ++k) at.mutable_at(i, k) = way.point[k];
-    length.mutable_at(i) = way.length;
-    share.mutable_at(i) = way.share;
+    const LegAroundEdge& leg = legs[static_cast<size_t>(i)];
+    mesh_id.mutable_at(i) = leg.mesh_id;
+    for (py::ssize_t k = 0; k < 3; ++k) at.mutable_at(i, k) = leg.point[k];
+    length.mutable_at(i) = leg.length;
+    share.mutable_at(i) = leg.share;
   }
   py::dict found;
   found["mesh_id"] = mesh_id;
@@ -133,10 +133,10 @@ void bind_trace(py::module_& m) {
       },
       py::arg("scene"), py::arg("time"), py::arg("frequency"), py::arg("antenna"), py::arg("polarization"),
       py::arg("points"), py::arg("edges") = true, py::arg("progress") = py::none(),
-      R"(The strongest way around one edge from an antenna to each of some points.
+      R"(The strongest leg around one edge from an antenna to each of some points.
 
 time: s; frequency: Hz; antenna: [3], m, world; polarization: [3], unit vector, world; points: [N, 3], m, world
-edges: whether ways around edges are looked for, or only whether the points are seen
+edges: whether legs around edges are looked for, or only whether the points are seen
 Returns a dict of mesh_id [N] (of the edge; 4294967295: none, or nothing in the way), point [N, 3] on it in m, length [N] in
 m, share [N] of the field that would arrive were nothing in its way.)");
   m.def("strongest_edge", &strongest_edge, py::arg("scene"), py::arg("radar"), py::arg("time"),

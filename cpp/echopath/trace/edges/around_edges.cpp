@@ -108,11 +108,11 @@ class AroundEdges {
 
 std::vector<LegAroundEdge> legs_around_edges(const AroundQuery& query, const std::vector<Vec3>& points, Job* job) {
   const AroundEdges around(query);
-  std::vector<LegAroundEdge> ways(points.size());
+  std::vector<LegAroundEdge> legs(points.size());
   if (job) job->start(std::ssize(points));
   parallel_for(std::ssize(points),
-               [&](int64_t i) { ways[static_cast<size_t>(i)] = around.best_to(points[static_cast<size_t>(i)]); }, job);
-  return ways;
+               [&](int64_t i) { legs[static_cast<size_t>(i)] = around.best_to(points[static_cast<size_t>(i)]); }, job);
+  return legs;
 }
 
 }  // namespace echopath

@@ -48,7 +48,7 @@ Case draw_case(Draw& draw, Flatness flatness, bool is_curved) {
   for (int i = 0; i < 3; ++i) {
     const int a = i == 2 ? 1 : 0, b = i == 0 ? 0 : 1;
     shape.product[i] = of.tangent[a].dot(of.tangent[b]);
-    shape.bend[i] = bend * (of.tangent[a].x() * of.tangent[b].x() + 0.3 * of.tangent[a].y() * of.tangent[b].y());
+    shape.second_form[i] = bend * (of.tangent[a].x() * of.tangent[b].x() + 0.3 * of.tangent[a].y() * of.tangent[b].y());
     shape.turn[i] = is_curved ? draw.between(-1, 1) * size * size : 0.0;
   }
   // Near the direction of the mirrored wave, or anywhere.

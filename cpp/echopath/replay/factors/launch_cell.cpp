@@ -25,9 +25,9 @@ Flatness flatness_of(const PosedHit& hit) {
 
 // Finds the direction of curvature of a cylinder, in cells.
 void find_across(const CellShape& cell, double* across) {
-  Eigen::Matrix2d bend;
-  bend << cell.bend[0], cell.bend[1], cell.bend[1], cell.bend[2];
-  const PrincipalAxes principal = principal_axes(bend);
+  Eigen::Matrix2d form;
+  form << cell.second_form[0], cell.second_form[1], cell.second_form[1], cell.second_form[2];
+  const PrincipalAxes principal = principal_axes(form);
   const int bent = std::abs(principal.values[0]) < std::abs(principal.values[1]) ? 1 : 0;
   for (int a = 0; a < 2; ++a) across[a] = principal.axes(a, bent);
 }
@@ -60,7 +60,7 @@ CellShape cell_shape(const LaunchCell& cell, const PosedHit& hit, const CellTang
     const size_t a = i == 2 ? 1 : 0, b = i == 0 ? 0 : 1;
     shape.product[i] = t[a].dot(t[b]);
     shape.turn[i] = cell.turn[i];
-    if (hit.is_smooth) shape.bend[i] = t[a].dot(hit.curvature * t[b]);
+    if (hit.is_smooth) shape.second_form[i] = t[a].dot(hit.curvature * t[b]);
   }
   shape.is_coarse = is_coarse_cell<ScalarMath>(shape.product, cell.facet_area);
   if (shape.flatness == Flatness::kFlatOneWay) find_across(shape, shape.across);

@@ -37,11 +37,11 @@ struct CellShape {
   bool is_known = false;   // else the filter is off
   bool is_curved = false;  // behind a curved specular bounce: `turn` is that of the trace
   Flatness flatness = Flatness::kFlat;
-  double product[3] = {0, 0, 0};  // T_a.T_b, m^2
-  double turn[3] = {0, 0, 0};     // T_a.U_b, m
-  double bend[3] = {0, 0, 0};     // II(T_a, T_b) about the normal of the triangle, m
-  double across[2] = {1, 0};      // of kFlatOneWay: unit, in cells, toward the curvature
-  bool is_coarse = false;         // is_coarse_cell
+  double product[3] = {0, 0, 0};      // T_a.T_b, m^2
+  double turn[3] = {0, 0, 0};         // T_a.U_b, m
+  double second_form[3] = {0, 0, 0};  // II(T_a, T_b) about the normal of the triangle, m
+  double across[2] = {1, 0};          // of kFlatOneWay: unit, in cells, toward the curvature
+  bool is_coarse = false;             // is_coarse_cell
 };
 
 // Describes the cell as waves meet and leave it.
@@ -60,13 +60,13 @@ ECHOPATH_INLINE FootprintPhaseOf<Real> cell_phase(const Shape& cell, const CellW
   const double per_side = filter.wavenumber * filter.view.side, per_area = per_side * filter.view.side;
   FootprintPhaseOf<Real> phase;
   Real* const h[3] = {&phase.h11, &phase.h12, &phase.h22};
-  const Real bends = at.side * (at.cos_in + at.cos_out);
+  const Real path_per_height = at.side * (at.cos_in + at.cos_out);
   for (int i = 0; i < 3; ++i) {
     const int a = i == 2 ? 1 : 0, b = i == 0 ? 0 : 1;
     const Real on_arrival = (cell.product[i] - at.along_arrival[a] * at.along_arrival[b]) * at.inverse_in;
     const Real on_departure = (cell.product[i] - at.along_departure[a] * at.along_departure[b]) * at.inverse_out;
-    *h[i] =
-        per_area * ((cell.is_curved ? on_arrival * 0.0 + cell.turn[i] : on_arrival) + on_departure + bends * cell.bend[i]);
+    *h[i] = per_area * ((cell.is_curved ? on_arrival * 0.0 + cell.turn[i] : on_arrival) + on_departure +
+                        path_per_height * cell.second_form[i]);
   }
   phase.g1 = per_side * (at.along_arrival[0] - at.along_departure[0]);
   phase.g2 = per_side * (at.along_arrival[1] - at.along_departure[1]);

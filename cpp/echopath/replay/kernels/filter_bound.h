@@ -7,10 +7,10 @@
 //   n' >= (n - |dg|) / (1 + |dA|).
 // With directions of travel that turn by no more than a on arrival and b on departure, in rad, and t^2 = |T_1|^2 + |T_2|^2,
 //   |dg| <= k t (a + b),  |dA| <= s^2 k (3 t^2 (a / in + b / out) + |II| (a + b)),
-// where T_1, T_2 are the sides of the cell (CellShape), II its second fundamental form over them (CellShape::bend), and
-// in and out the shortest legs to and from the point: h has squares of the sides' projections across each leg over its
-// length; the projections turn by a, which is two of the three parts, and one over the length changes by a / in, which
-// is the third.
+// where T_1, T_2 are the sides of the cell (CellShape), II its second fundamental form over them (CellShape::second_form),
+// and in and out the shortest legs to and from the point: h has squares of the sides' projections across each leg over its
+// length; the projections turn by a, which is two of the three parts, and one over the length changes by a / in, which is
+// the third.
 #include "echopath/replay/kernels/cell_formula.h"
 
 namespace echopath {
@@ -50,15 +50,17 @@ ECHOPATH_INLINE Real largest_cell_filter(const CellShape& cell, const CellWaves<
   if (filter.order == Footprint::kNone || !cell.is_known) return zero;
   const double variance = filter.spread * filter.spread;
   const double square = cell.product[0] + cell.product[2], side = __builtin_sqrt(square);
-  const double bend =
-      __builtin_sqrt(cell.bend[0] * cell.bend[0] + 2.0 * cell.bend[1] * cell.bend[1] + cell.bend[2] * cell.bend[2]);
+  const double form_size =
+      __builtin_sqrt(cell.second_form[0] * cell.second_form[0] + 2.0 * cell.second_form[1] * cell.second_form[1] +
+                     cell.second_form[2] * cell.second_form[2]);
   const double per_side = filter.wavenumber * filter.view.side;
   const Real turn = turned.arrival + turned.departure;
   // The change of h; one over the shortest leg is at most (1 + a) over the leg.
   const Real change = 3.0 * square *
                       (turned.arrival * (1.0 + turned.arrival) * at.inverse_in +
                        turned.departure * (1.0 + turned.departure) * at.inverse_out);
-  const Real slack_g = (per_side * side) * turn, slack_a = (variance * per_side * filter.view.side) * (change + bend * turn);
+  const Real slack_g = (per_side * side) * turn,
+             slack_a = (variance * per_side * filter.view.side) * (change + form_size * turn);
   const FootprintPhaseOf<Real> phase = cell_phase(cell, at, filter);
   if (filter.order == Footprint::kFirstOrder) {
     const Real g = Math::root(phase.g1 * phase.g1 + phase.g2 * phase.g2), least = Math::larger(g - slack_g, zero);

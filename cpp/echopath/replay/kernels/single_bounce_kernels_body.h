@@ -8,7 +8,7 @@ namespace {
 // Describes a launch cell on a flat triangle for the formulas of cell_formula.h, which ask for its curvature, too.
 struct FlatCell {
   static constexpr bool is_curved = false;
-  static constexpr double turn[3] = {0.0, 0.0, 0.0}, bend[3] = {0.0, 0.0, 0.0};
+  static constexpr double turn[3] = {0.0, 0.0, 0.0}, second_form[3] = {0.0, 0.0, 0.0};
   Vec product[3];
 };
 

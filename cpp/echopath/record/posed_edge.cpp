@@ -44,11 +44,12 @@ std::vector<PosedEdge> posed_edges(const Scene& scene, const PosedScene& pose, c
   return found;
 }
 
-double longest_piece(const PosedEdge& edge, const Vec3& transmitter, const Vec3& receiver, double wavenumber, double bend) {
+double longest_piece(const PosedEdge& edge, const Vec3& transmitter, const Vec3& receiver, double wavenumber,
+                     double quadratic_phase) {
   const auto inverse = [&](const Vec3& antenna) {
     return 1.0 / std::max(distance_to_segment(antenna, edge.from, edge.to), kNearAntenna);
   };
-  return std::sqrt(8.0 * bend / (wavenumber * (inverse(transmitter) + inverse(receiver))));
+  return std::sqrt(8.0 * quadratic_phase / (wavenumber * (inverse(transmitter) + inverse(receiver))));
 }
 
 EdgePoint point_on_edge(const PosedEdge& edge, double along, const std::array<Vec3, 3>& corners) {

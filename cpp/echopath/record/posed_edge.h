@@ -31,9 +31,10 @@ PosedEdge posed_edge(const SharpEdge& edge, const Scene& scene, const PosedScene
 // Returns all edges of a scene at the time of the pose, in the order of meshes and edges, relative to `origin` (m, world).
 std::vector<PosedEdge> posed_edges(const Scene& scene, const PosedScene& pose, const Vec3& origin);
 
-// Returns how long a piece of an edge may be (m) for the wave fronts to and from two antennas, so that they bend by at most
-// `bend` (rad) across half of it.
-double longest_piece(const PosedEdge& edge, const Vec3& transmitter, const Vec3& receiver, double wavenumber, double bend);
+// Returns how long a piece of an edge may be (m) for the wave fronts to and from two antennas, so that their phases depart
+// from linear ones by at most `quadratic_phase` (rad) across half of it.
+double longest_piece(const PosedEdge& edge, const Vec3& transmitter, const Vec3& receiver, double wavenumber,
+                     double quadratic_phase);
 
 // Holds a point on an edge, as a record has it.
 struct EdgePoint {

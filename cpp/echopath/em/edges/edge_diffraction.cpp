@@ -125,8 +125,8 @@ double angle_about(const Wedge& wedge, const Vec3& direction) {
   return std::min(angle_from(wedge.faces[0], direction), wedge.exterior_angle);
 }
 
-std::complex<double> edge_filter(double phase, double bend) {
-  const double x = std::abs(0.5 * phase), x2 = x * x;
+std::complex<double> edge_filter(double linear_phase, double quadratic_phase) {
+  const double x = std::abs(0.5 * linear_phase), x2 = x * x;
   // The means of s^0, s^2 and s^4 times cos(xs) over s in [0, 1].
   double mean0, mean2, mean4;
   if (x < 0.2) {
@@ -139,7 +139,7 @@ std::complex<double> edge_filter(double phase, double bend) {
     mean2 = sine + 2.0 * (cosine - sine) / x2;
     mean4 = sine + 4.0 * (cosine - 3.0 * mean2) / x2;
   }
-  return {mean0 - 0.5 * bend * bend * mean4, -bend * mean2};
+  return {mean0 - 0.5 * quadratic_phase * quadratic_phase * mean4, -quadratic_phase * mean2};
 }
 
 }  // namespace echopath

@@ -131,8 +131,9 @@ class EdgeEchoes {
     const auto curvature = [&](const Vec3& direction, double radius) {
       return direction.cross(piece_).squaredNorm() / radius;
     };
-    const double bend = 0.125 * radio_.wavenumber * (curvature(arrival, travelled) + curvature(departure, distance));
-    return edge_filter(radio_.wavenumber * (arrival - departure).dot(piece_), bend);
+    const double quadratic_phase =
+        0.125 * radio_.wavenumber * (curvature(arrival, travelled) + curvature(departure, distance));
+    return edge_filter(radio_.wavenumber * (arrival - departure).dot(piece_), quadratic_phase);
   }
 
   // Finds the waves between the edges and the antennas at the start of the path as it was traced, or at its end.

@@ -115,9 +115,9 @@ class LitEdgeTracer {
 
   int num_pieces() const {
     const double wavenumber = kTwoPi * query_.settings.frequency / kSpeedOfLight, length = edge_.line().norm();
-    const double bent =
+    const double by_phase =
         longest_piece(edge_, query_.settings.transmitter, query_.settings.receiver, wavenumber, kBentOverPlanes);
-    const double piece = std::min(bent, std::max(kOfLitEdge * length, kOfWave * kTwoPi / wavenumber));
+    const double piece = std::min(by_phase, std::max(kOfLitEdge * length, kOfWave * kTwoPi / wavenumber));
     return static_cast<int>(std::clamp(std::ceil(length / piece), 1.0, double{kMostPieces}));
   }
 

@@ -33,7 +33,7 @@ struct ReflectionPoint {
   // These are the principal axes of the path length at the point, unit vectors in the tangent plane, and its second
   // derivatives along them, 1/m.
   std::array<Vec3, 2> axes;
-  std::array<double, 2> bends;
+  std::array<double, 2> second_derivatives;
 };
 
 // Finds the point where the path length from `first` over the triangle to `second` is stationary; both ends must lie on one

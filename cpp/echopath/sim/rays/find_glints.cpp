@@ -123,7 +123,7 @@ class GlintSearch {
     const double distance = line.norm();
     double sizes[2];
     for (size_t i = 0; i < 2; ++i) {
-      const Vec3 zone = std::sqrt(kTwoPi / (wavenumber * std::abs(point.bends[i]) + 1e-12)) * point.axes[i];
+      const Vec3 zone = std::sqrt(kTwoPi / (wavenumber * std::abs(point.second_derivatives[i]) + 1e-12)) * point.axes[i];
       sizes[i] = zone.cross(line).norm() / (distance * distance);
     }
     const Stratum& of = paths_.frame.strata[stratum];

@@ -123,7 +123,7 @@ std::vector<double> tails_of_logarithms(const FrameNodes& nodes, const Echoes& e
 
 namespace {
 
-constexpr double kBendMargin = 2.0;  // by how much the parabola may bend more than the nodes tell
+constexpr double kSecondDerivativeMargin = 2.0;  // by how much the parabola may bend more than the nodes tell
 
 // Returns the natural logarithm of a positive normal number to 2e-6: that of 2^k (1 + y) / (1 - y), |y| < 0.18, by three
 // terms of its series.
@@ -145,16 +145,16 @@ double log_of_size(std::complex<double> amplitude) {
 
 // Returns a bound of a function over a piece from its values [order] at `times`.
 double bound_of_parabolas(const double* times, const double* values, size_t order) {
-  double bend = 0.0, widest = 0.0;
+  double second_derivative = 0.0, widest = 0.0;
   for (size_t k = 1; k < order; ++k) {
     const double step = times[k] - times[k - 1];
     widest = std::max(widest, std::abs(step));
     if (k + 1 == order) continue;
     const double next = times[k + 1] - times[k],
                  rise = (values[k + 1] - values[k]) / next - (values[k] - values[k - 1]) / step;
-    bend = std::max(bend, std::abs(2.0 * rise / (step + next)));
+    second_derivative = std::max(second_derivative, std::abs(2.0 * rise / (step + next)));
   }
-  return *std::max_element(values, values + order) + kBendMargin * bend * widest * widest / 8.0;
+  return *std::max_element(values, values + order) + kSecondDerivativeMargin * second_derivative * widest * widest / 8.0;
 }
 
 // Returns whether a function stays below `limit` between its nodes too, of which `value_at(node)` is the value at a node.

@@ -30,8 +30,8 @@ constexpr double kTinyTurn = 1e-9;      // rad per cell^2
 
 // Holds the phase across a launch cell along the axes of its second derivative.
 struct CellPhase {
-  Eigen::Vector2d slope, bend;  // rad per cell, rad per cell^2
-  Eigen::Matrix2d axes;         // columns
+  Eigen::Vector2d slope, second_derivative;  // rad per cell, rad per cell^2
+  Eigen::Matrix2d axes;                      // columns
 };
 
 CellPhase along_axes(const FootprintPhaseOf<double>& phase) {
@@ -61,10 +61,10 @@ class ChainGlintSearch {
     Eigen::Vector2d step;
     double zones[2];
     for (int axis = 0; axis < 2; ++axis) {
-      const double bend = std::abs(phase.bend[axis]) + kTinyTurn;
-      if (std::abs(phase.slope[axis]) > kReach * bend) return std::nullopt;
-      step[axis] = -phase.slope[axis] / std::copysign(bend, phase.bend[axis]);
-      zones[axis] = cell * std::sqrt(kTwoPi / bend);
+      const double second_derivative = std::abs(phase.second_derivative[axis]) + kTinyTurn;
+      if (std::abs(phase.slope[axis]) > kReach * second_derivative) return std::nullopt;
+      step[axis] = -phase.slope[axis] / std::copysign(second_derivative, phase.second_derivative[axis]);
+      zones[axis] = cell * std::sqrt(kTwoPi / second_derivative);
     }
     const Eigen::Vector2d away = cell * (phase.axes * step);
     const Vec3 launch = (hits.front().is_smooth ? hits.front().facet : hits.front().point).normalized();

@@ -24,17 +24,17 @@ SpecularSlide::Point* SpecularSlide::point_at(int hit) {
 void SpecularSlide::add_leg(const LocalPath& path, const PosedHit* hits, int from, int to, const UnfoldedLeg& leg) {
   Point* before = from >= 0 && path.is_sliding(from) ? point_at(from) : nullptr;
   Point* behind = path.is_sliding(to) ? point_at(to) : nullptr;
-  const double bend = 1.0 / leg.length;
+  const double inverse_length = 1.0 / leg.length;
   length_ += leg.length;
   for (int i = 0; i < 2; ++i) {
     if (before) before->gradient[i] -= before->axis[i].dot(leg.departure);
     if (behind) behind->gradient[i] += behind->axis[i].dot(leg.arrival);
     for (int j = 0; j < 2; ++j) {
-      if (before) before->hessian(i, j) += bend * across(before->axis[i], before->axis[j], leg.departure);
-      if (behind) behind->hessian(i, j) += bend * across(behind->axis[i], behind->axis[j], leg.arrival);
+      if (before) before->hessian(i, j) += inverse_length * across(before->axis[i], before->axis[j], leg.departure);
+      if (behind) behind->hessian(i, j) += inverse_length * across(behind->axis[i], behind->axis[j], leg.arrival);
       if (!before || !behind) continue;
       const Vec3 arriving = reflected_behind(before->axis[i], hits, from + 1, to);
-      before->coupling(i, j) = -bend * across(arriving, behind->axis[j], leg.arrival);
+      before->coupling(i, j) = -inverse_length * across(arriving, behind->axis[j], leg.arrival);
     }
   }
   if (before) before->reach = std::min(before->reach, leg.length);

@@ -123,7 +123,7 @@ std::vector<double> tails_of_logarithms(const FrameNodes& nodes, const Echoes& e
 
 namespace {
 
-constexpr double kSecondDerivativeMargin = 2.0;  // by how much the parabola may bend more than the nodes tell
+constexpr double kSecondDerivativeMargin = 2.0;  // by how much the second derivative may exceed what the nodes tell
 
 // Returns the natural logarithm of a positive normal number to 2e-6: that of 2^k (1 + y) / (1 - y), |y| < 0.18, by three
 // terms of its series.

@@ -12,7 +12,7 @@ constexpr double kNormal = 1.959964;  // two-sided 95 % quantile
 constexpr double kOfHalving = 1.2, kOfHalvingMore = 3.0, kMostOfHalving = 5.0;
 constexpr double kAliases = 0.007, kOfFiner = 4.0, kHalvingPerFiner = 2.8;
 constexpr double kGone = 0.5, kOfEdges = 1.25, kOfSmoothEdges = 0.5, kFaded = 0.2, kKnownAbove = 0.8;
-constexpr double kBentFacets = 0.1;                                          // rad
+constexpr double kSmoothFacetPhase = 0.1;                                    // rad
 constexpr double kPointsTimesField = 4.0, kPointsTimesFieldOfSeveral = 6.0;  // of one bounce and of several
 constexpr double kMostOfPoints = 2.5;
 constexpr double kOfSurface = 0.0025, kOfFacets = 0.01, kMostOfFacets = 0.015;
@@ -88,7 +88,7 @@ double share_of_edges(const CoherentKind& kind, double change, double edges, Las
 // Returns how far the edges of a kind are the outlines of smooth surfaces that the wave has met first, from 0 to 1: panels
 // that hardly bend end as planes do.
 double smoothness_of_edges(const CoherentKind& kind) {
-  return kind.has_bounced ? 0.0 : std::min(kind.facet_phase / kBentFacets, 1.0);
+  return kind.has_bounced ? 0.0 : std::min(kind.facet_phase / kSmoothFacetPhase, 1.0);
 }
 
 FieldBias field_bias(const PowerEvidence& evidence, Lasting lasting) {

@@ -64,7 +64,7 @@ double power_between_rays(const CoherentKind& kind, int num_batches);
 //
 // Symbols of one kind of coherent paths, in B batches: F is its field as launched, F_half that of cells of half the density,
 // F_finer that of finer cells (kCellViews). n is the number of equal cells that have the sum and the sum of squares of the
-// powers of kEdges. s is how smooth its surface is: facet_phase / kBentFacets, at most 1, and 0 behind other bounces.
+// powers of kEdges. s is how smooth its surface is: facet_phase / kSmoothFacetPhase, at most 1, and 0 behind other bounces.
 // The field of a kind may be off by these terms:
 //  (1) D = F_half - F, d = |D| / |F|. Wider cells tell how fast the field changes with the cells. It may be larger by
 //      min(kOfHalving + kOfHalvingMore d, kMostOfHalving) D, and smaller by kOfHalving D.

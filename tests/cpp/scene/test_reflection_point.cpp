@@ -24,11 +24,11 @@ TEST(ReflectionPoint, OfAPlaneLiesOnTheLineToTheImage) {
   ASSERT_TRUE(found);
   const Vec3 expected = first + 2.0 / 3.0 * (image - first);
   EXPECT_LT((found->position - expected).norm(), kRounding);
-  // Across the plane of incidence the way bends by 1/r1 + 1/r2, along it by cos^2 of the incidence times that.
+  // Across the plane of incidence the second derivative of the path length is 1/r1 + 1/r2, along it cos^2 of the incidence times that.
   const double here = (first - expected).norm(), there = (second - expected).norm(), cosine = 2.0 / here;
   const double bend = 1.0 / here + 1.0 / there;
-  EXPECT_NEAR(found->bends[0], cosine * cosine * bend, kRounding);
-  EXPECT_NEAR(found->bends[1], bend, kRounding);
+  EXPECT_NEAR(found->second_derivatives[0], cosine * cosine * bend, kRounding);
+  EXPECT_NEAR(found->second_derivatives[1], bend, kRounding);
   EXPECT_NEAR(std::abs(found->axes[1].dot((second - first).cross(Vec3::UnitZ()).normalized())), 1.0, kRounding);
 }
 
@@ -62,7 +62,7 @@ TEST(ReflectionPoint, OfASphereIsTheNearestPoint) {
   const auto found = find_reflection(triangle, antenna, antenna);
   ASSERT_TRUE(found);
   EXPECT_LT((found->position - nearest).norm(), kSphere);
-  for (const double bend : found->bends) EXPECT_NEAR(bend / (2.0 * (1.0 / distance + 1.0)), 1.0, kCurvature);
+  for (const double bend : found->second_derivatives) EXPECT_NEAR(bend / (2.0 * (1.0 / distance + 1.0)), 1.0, kCurvature);
   EXPECT_FALSE(find_reflection(triangle, 5.0 * at(0.5, 0.04), 5.0 * at(0.5, 0.04)));
 }
 

@@ -194,8 +194,8 @@ void bound(const AmplitudeToBound& work, size_t stride) {
   for (size_t node = 0; node < stride; node += Math::kCount) {
     const At<Math> at{node, stride};
     CoherentWaves<Real> of = waves_of<Math>(coherent, at);
-    // Both antennas are taken to see the point from one side, whatever the signs of the cosines here: then both cosines count
-    // the second fundamental form with the same sign.
+    // Both antennas are taken to see the point from one side, whatever the signs of the cosines here: then both cosines
+    // count the second fundamental form with the same sign.
     of.waves.cos_in = of.cos_in;
     of.waves.cos_out = of.cos_out;
     of.waves.side = of.cos_in * 0.0 + 1.0;

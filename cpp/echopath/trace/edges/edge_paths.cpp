@@ -13,7 +13,7 @@ namespace echopath {
 namespace {
 
 constexpr size_t kEdgesPerBlock = 64;
-constexpr double kBentFront = 0.8;    // rad, of the wave fronts over half a piece: as much as edge_filter follows
+constexpr double kFrontPhase = 0.8;   // rad, quadratic phase over half a piece: as much as edge_filter follows
 constexpr double kOfBody = 1.0 / 16;  // of the extent of a body, a piece at most where a part of the edge is hidden
 constexpr double kLeastChain = 0.03;  // of what the edge of a half plane sends
 
@@ -63,7 +63,7 @@ class EdgeTracer {
   void add(size_t edge, Scratch& scratch, PathBlock& block) const {
     const PosedEdge& one = query_.edges[edge];
     const double longest =
-        longest_piece(one, query_.settings.transmitter, query_.settings.receiver, wavenumber_, kBentFront);
+        longest_piece(one, query_.settings.transmitter, query_.settings.receiver, wavenumber_, kFrontPhase);
     set_pieces(one, std::min(longest, kOfBody * extent_[one.mesh_id]), scratch);
     look(one.wedge, query_.settings.transmitter, scratch, scratch.to_transmitter);
     look(one.wedge, query_.settings.receiver, scratch, scratch.to_receiver);

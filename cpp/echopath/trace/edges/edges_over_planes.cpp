@@ -15,10 +15,10 @@ namespace echopath {
 namespace {
 
 // Rims of mirrors and the ends of what is lit count for whole pieces, so that these are shorter than edge_filter asks for.
-constexpr double kBentOverPlanes = 0.1;    // rad, of the wave fronts over half a piece
-constexpr double kOfLitEdge = 1.0 / 16;    // of the edge, a piece at most
-constexpr double kCornerGap = 1.0 / 16.0;  // wavelengths: surfaces that lie so near to each other abut
-constexpr double kOfWave = 0.5;            // wavelengths, the shortest piece for that
+constexpr double kFrontPhaseOverPlanes = 0.1;  // rad, quadratic phase over half a piece
+constexpr double kOfLitEdge = 1.0 / 16;        // of the edge, a piece at most
+constexpr double kCornerGap = 1.0 / 16.0;      // wavelengths: surfaces that lie so near to each other abut
+constexpr double kOfWave = 0.5;                // wavelengths, the shortest piece for that
 
 // An edge, and what the antennas light over planes of its faces.
 struct LitEdge : PosedEdge {
@@ -116,7 +116,7 @@ class LitEdgeTracer {
   int num_pieces() const {
     const double wavenumber = kTwoPi * query_.settings.frequency / kSpeedOfLight, length = edge_.line().norm();
     const double by_phase =
-        longest_piece(edge_, query_.settings.transmitter, query_.settings.receiver, wavenumber, kBentOverPlanes);
+        longest_piece(edge_, query_.settings.transmitter, query_.settings.receiver, wavenumber, kFrontPhaseOverPlanes);
     const double piece = std::min(by_phase, std::max(kOfLitEdge * length, kOfWave * kTwoPi / wavenumber));
     return static_cast<int>(std::clamp(std::ceil(length / piece), 1.0, double{kMostPieces}));
   }

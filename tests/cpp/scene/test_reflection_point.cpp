@@ -24,7 +24,8 @@ TEST(ReflectionPoint, OfAPlaneLiesOnTheLineToTheImage) {
   ASSERT_TRUE(found);
   const Vec3 expected = first + 2.0 / 3.0 * (image - first);
   EXPECT_LT((found->position - expected).norm(), kRounding);
-  // Across the plane of incidence the second derivative of the path length is 1/r1 + 1/r2, along it cos^2 of the incidence times that.
+  // Across the plane of incidence the second derivative of the path length is 1/r1 + 1/r2, along it cos^2 of the incidence
+  // times that.
   const double here = (first - expected).norm(), there = (second - expected).norm(), cosine = 2.0 / here;
   const double bend = 1.0 / here + 1.0 / there;
   EXPECT_NEAR(found->second_derivatives[0], cosine * cosine * bend, kRounding);

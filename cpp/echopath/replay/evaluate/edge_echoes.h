@@ -1,7 +1,9 @@
 #pragma once
 // Evaluates the echoes of pieces of sharp edges (em/edges/edge_diffraction.h) at the nodes of a time grid.
 //
-//   a = sqrt(Pt Gt Gr)/(4 pi) * weight * (e_r . M e_t) dl F / (2 k r_t r_r),   F = edge_filter(k (u - s).dl, bend)
+//   a = sqrt(Pt Gt Gr)/(4 pi) * weight * (e_r . M e_t) dl F / (2 k r_t r_r),   F = edge_filter(k (u - s).dl, b)
+//
+// b is the quadratic phase of the wave fronts over the piece.
 //
 // Where the path goes on from edge to edge (em/edges/edge_chain.h), M is what the chain makes of the field, u the direction
 // in which it arrives at the last edge, dl the piece of that edge, and the lengths include the way over the faces. Otherwise

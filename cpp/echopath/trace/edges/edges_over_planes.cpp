@@ -102,8 +102,8 @@ class LitEdgeTracer {
   }
 
  private:
-  // Describes a leg between the edge and an antenna with the field that it carries: it is direct, or goes over flagged mirrors
-  // or over planes.
+  // Describes a leg between the edge and an antenna with the field that it carries: it is direct, or goes over flagged
+  // mirrors or over planes.
   struct WeightedLeg {
     std::vector<Hit> hits;  // from the edge toward the antenna
     EdgeLeg leg;

@@ -52,8 +52,8 @@ inline constexpr uint32_t kSecondHalf = 2;
 // Marks a path with a point on a sharp edge (scene/edges/sharp_edges.h), one of its hits. Its flags also hold which hit that
 // is and into how many pieces of one length the edge is parted: the path stands for the piece around its point. All its
 // other hits are images. Its weight holds the coefficients of the scalar model and what the faces keep in phase. A path may
-// go on from edge to edge over flat faces (em/edges/edge_chain.h): then its next hits, up to kMostEdges in all, lie on edges
-// too, and the pieces are those of the first edge.
+// go on from edge to edge over flat faces (em/edges/multiple_diffraction.h): then its next hits, up to kMostEdges in all,
+// lie on edges too, and the pieces are those of the first edge.
 inline constexpr uint32_t kEdgePath = 4;
 // Marks, beside that, a path whose edge sends the field of the uniform theory of diffraction to a mirror
 // (em/edges/edge_shadow.h).
@@ -86,8 +86,8 @@ struct TraceStatistics {
   int64_t num_false_hits = 0;     // Embree hits that double precision did not confirm
   int64_t num_unaimed = 0;        // objects and images that no rays aim at, because there are too many of them
   int64_t num_unfollowed_frusta = 0;  // sequences of mirrors whose further mirrors were not looked for (kMaxFrusta)
-  int64_t num_unsplit_rays = 0;      // rays that only went on at a sheet, because they had split at too many before
-  int64_t num_stopped_passes = 0;    // legs of paths that are taken to end at a sheet, behind kMostPasses others
+  int64_t num_unsplit_rays = 0;       // rays that only went on at a sheet, because they had split at too many before
+  int64_t num_stopped_passes = 0;     // legs of paths that are taken to end at a sheet, behind kMostPasses others
 };
 
 // Holds the settings of a trace on which the record depends, besides the number of rays.

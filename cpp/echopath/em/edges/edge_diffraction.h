@@ -6,9 +6,10 @@
 // does not end. Physical optics and the fringe of all edges then count no current twice, and their sum is Keller's
 // diffracted field on the cone, in every direction about the edge. It stays finite at the boundaries of shadow and
 // reflection. It is not finite along the grazing ray itself (Ufimtsev's singularity), which no backscatter reaches but that
-// from the plane of a face. The field of one edge is not cut off where another edge ends the face; em/edges/edge_chain.h has
-// what then goes on from edge to edge. Sources: Michaeli 1986, "Elimination of infinities in equivalent edge currents, part
-// I: fringe current components"; Mitzner 1974 integrates across the edge instead; both agree on the cone (Knott 1985).
+// from the plane of a face. The field of one edge is not cut off where another edge ends the face;
+// em/edges/multiple_diffraction.h has what then goes on from edge to edge. Sources: Michaeli 1986, "Elimination of
+// infinities in equivalent edge currents, part I: fringe current components"; Mitzner 1974 integrates across the edge
+// instead; both agree on the cone (Knott 1985).
 #include <complex>
 
 #include "echopath/base/geometry.h"

@@ -5,9 +5,9 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/plane.h"
-#include "echopath/em/edges/edge_chain.h"
 #include "echopath/em/edges/edge_diffraction.h"
 #include "echopath/em/edges/edge_shadow.h"
+#include "echopath/em/edges/multiple_diffraction.h"
 #include "echopath/em/surface/surface_response.h"
 #include "echopath/record/posed_edge.h"
 #include "echopath/replay/kernels/path_formula.h"
@@ -70,7 +70,7 @@ class EdgeEchoes {
     const Vec3 corners[] = {hit.corner, hit.corner + hit.edge_u, hit.corner + hit.edge_v};
     const Vec3 side = scene.linear(hit.mesh_id) * (corners[(hit.edge->side + 1) % 3] - corners[hit.edge->side]);
     piece_ = (hit.edge->end - hit.edge->begin) / hit.num_pieces * side;
-    if (path.num_edges > 1) chain_ = EdgeChain::over(edges_, radio_.wavenumber);
+    if (path.num_edges > 1) chain_ = MultipleDiffraction::over(edges_, radio_.wavenumber);
     else chain_.reset();
     if (chain_) piece_ = chain_->last_piece(piece_);
     is_reversed_ = path.is_reversed;
@@ -115,7 +115,7 @@ class EdgeEchoes {
   // Returns what leaves the last edge toward an antenna that is `distance` (m) away.
   FieldVector diffracted(const FieldVector& field, const WaveAtEdge& in, const Vec3& departure, double distance) const {
     if (chain_) return chain_->leave(departure, distance) * chain_->enter(in.direction, field, in.length);
-    const ChainEdge& edge = edges_.front();
+    const DiffractingEdge& edge = edges_.front();
     if (!is_past_edge_) return fringe_matrix(edge.wedge, in.direction, departure) * field;
     // `mirrors_` are those at the end of the path, of which the last one is next to the edge.
     const PosedHit& next = mirrors_.hits.back();
@@ -190,9 +190,9 @@ class EdgeEchoes {
   MirrorsToEdge mirrors_;
   PathPassages* sheets_ = nullptr;
   std::vector<WaveAtEdge> in_, out_;
-  std::vector<ChainEdge> edges_;    // of the path
-  std::optional<EdgeChain> chain_;  // over them, where there are several
-  Vec3 piece_;                      // m, of the last one
+  std::vector<DiffractingEdge> edges_;        // of the path
+  std::optional<MultipleDiffraction> chain_;  // over them, where there are several
+  Vec3 piece_;                                // m, of the last one
 };
 
 // Holds the sheets on those edge paths whose fields are followed through them, null for the others.

@@ -5,8 +5,8 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/threads/parallel.h"
-#include "echopath/trace/edges/edge_chains.h"
 #include "echopath/trace/edges/edge_coefficients.h"
+#include "echopath/trace/edges/edge_sequences.h"
 #include "echopath/trace/mirrors/legs.h"
 
 namespace echopath {
@@ -143,7 +143,7 @@ class EdgeTracer {
   // Adds the paths that end with the last edge of a sequence; returns whether the wave there is strong enough to go on.
   bool add_chain(const Leg& in, const EdgeSequence& sequence, size_t last, int num_pieces, Scratch& scratch,
                  PathBlock& block) const {
-    const std::optional<EdgeChain> chain = EdgeChain::over(sequence.edges, wavenumber_);
+    const std::optional<MultipleDiffraction> chain = MultipleDiffraction::over(sequence.edges, wavenumber_);
     if (!chain) return false;
     const double entered = strength(*chain, in);
     const Wedge& wedge = query_.edges[last].wedge;
@@ -173,14 +173,14 @@ class EdgeTracer {
   }
 
   // Returns the strength on the last face.
-  double strength(const EdgeChain& chain, const Leg& leg) const {
+  double strength(const MultipleDiffraction& chain, const Leg& leg) const {
     const Vec3 in = -leg.to_antenna;
     return coefficients_.strongest(
         in, [&](const Vec3& field) { return std::abs(chain.enter(in, field.cast<std::complex<double>>(), leg.length)); });
   }
 
   // Returns whether a chain sends at least kLeastChain of the edge of a half plane, likewise.
-  bool matters(const EdgeChain& chain, double entered, const Vec3& out, double distance) const {
+  bool matters(const MultipleDiffraction& chain, double entered, const Vec3& out, double distance) const {
     constexpr double kOfHalfPlane = 2.0;
     // What leaves an edge is largest about the direction of the wave.
     const double most = 4.0 * std::sqrt(2.0 / std::max(1.0 - chain.arrival().dot(out), 1e-12));
@@ -211,7 +211,7 @@ class EdgeTracer {
   Coefficients coefficients_;
   std::vector<double> extent_;  // m, by mesh ID
   double wavenumber_;           // rad/m
-  EdgeChains chains_;
+  EdgeSequences chains_;
   LegFinder finder_;
   AntennaView transmitter_, receiver_;
 };

@@ -1,11 +1,11 @@
 #pragma once
-// Finds the sequences of edges that waves take over flat faces from one edge to the next (em/edges/edge_chain.h).
+// Finds the sequences of edges that waves take over flat faces from one edge to the next (em/edges/multiple_diffraction.h).
 #include <array>
 #include <functional>
 #include <span>
 #include <vector>
 
-#include "echopath/em/edges/edge_chain.h"
+#include "echopath/em/edges/multiple_diffraction.h"
 #include "echopath/record/paths.h"
 #include "echopath/record/posed_edge.h"
 
@@ -17,14 +17,14 @@ inline constexpr double kLongestFace = 40.0;  // wavelengths
 
 // Holds the edges that a wave has met so far, each with the point that it met.
 struct EdgeSequence {
-  std::vector<ChainEdge> edges;
+  std::vector<DiffractingEdge> edges;
   std::vector<Hit> hits;  // the points on the edges
 };
 
-class EdgeChains {
+class EdgeSequences {
  public:
   // The edges must outlive it.
-  EdgeChains(std::span<const PosedEdge> edges, double wavelength);
+  EdgeSequences(std::span<const PosedEdge> edges, double wavelength);
   // Takes a sequence and the index of its last edge, and returns whether it is to be followed farther.
   using Visit = std::function<bool(const EdgeSequence&, size_t last_edge)>;
   // Calls `visit` for each sequence of two to `most` edges that a wave meets which arrives along the unit vector `in` at a

@@ -1,4 +1,4 @@
-#include "echopath/em/edges/edge_chain.h"
+#include "echopath/em/edges/multiple_diffraction.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,8 +30,8 @@ double angle_of_face(const Wedge& wedge, int face) { return face == 0 ? 0.0 : we
 
 }  // namespace
 
-std::optional<EdgeChain> EdgeChain::over(std::span<const ChainEdge> edges, double wavenumber) {
-  EdgeChain chain(edges, wavenumber);
+std::optional<MultipleDiffraction> MultipleDiffraction::over(std::span<const DiffractingEdge> edges, double wavenumber) {
+  MultipleDiffraction chain(edges, wavenumber);
   for (size_t k = 0; k + 1 < edges.size(); ++k) {
     if (!chain.add_link(edges[k], edges[k + 1])) return std::nullopt;
     if (k > 0) chain.between_ *= chain.turn(k) * chain.spread(chain.links_[k]);
@@ -39,7 +39,7 @@ std::optional<EdgeChain> EdgeChain::over(std::span<const ChainEdge> edges, doubl
   return chain;
 }
 
-bool EdgeChain::add_link(const ChainEdge& first, const ChainEdge& second) {
+bool MultipleDiffraction::add_link(const DiffractingEdge& first, const DiffractingEdge& second) {
   const Vec3 line = second.point - first.point;
   const double length = line.norm();
   const Vec3 along = line / length;
@@ -58,12 +58,12 @@ bool EdgeChain::add_link(const ChainEdge& first, const ChainEdge& second) {
 }
 
 // Of a cylindrical wave from the edge, e^{-j pi/4}/sqrt(2 pi k r).
-std::complex<double> EdgeChain::spread(const Link& link) const {
+std::complex<double> MultipleDiffraction::spread(const Link& link) const {
   return std::polar(1.0 / std::sqrt(kTwoPi * wavenumber_ * link.length), -0.25 * kPi);
 }
 
 // Returns what the edge before a link makes of the wave that arrives on the link before it.
-std::complex<double> EdgeChain::turn(size_t link) const {
+std::complex<double> MultipleDiffraction::turn(size_t link) const {
   const Link &before = links_[link - 1], &behind = links_[link];
   const Wedge& wedge = edges_[link].wedge;
   const double coefficient =
@@ -75,7 +75,7 @@ std::complex<double> EdgeChain::turn(size_t link) const {
          strength_row(wedge, before.along, behind.along, behind.normal, coefficient).dot(before.normal);
 }
 
-Vec3 EdgeChain::last_piece(const Vec3& first_piece) const {
+Vec3 MultipleDiffraction::last_piece(const Vec3& first_piece) const {
   Vec3 piece = first_piece;
   for (size_t k = 0; k < links_.size(); ++k) {
     const Vec3 across = links_[k].normal.cross(links_[k].along), edge = axis_of(edges_[k + 1].wedge);
@@ -84,13 +84,13 @@ Vec3 EdgeChain::last_piece(const Vec3& first_piece) const {
   return piece;
 }
 
-double EdgeChain::detour(const Vec3& in, double distance) const {
+double MultipleDiffraction::detour(const Vec3& in, double distance) const {
   const Vec3 edge = axis_of(edges_[0].wedge);
   const double slope = (in - links_[0].along).dot(edge), sine2 = in.cross(edge).squaredNorm();
   return sine2 > 1e-6 ? -0.5 * slope * slope / (sine2 * (1.0 / distance + 1.0 / length_)) : 0.0;
 }
 
-std::complex<double> EdgeChain::enter(const Vec3& in, const FieldVector& field, double distance) const {
+std::complex<double> MultipleDiffraction::enter(const Vec3& in, const FieldVector& field, double distance) const {
   const Link& link = links_.front();
   const Wedge& wedge = edges_.front().wedge;
   const Vec3 travel = beside(in, link.along, -link.normal);
@@ -103,7 +103,7 @@ std::complex<double> EdgeChain::enter(const Vec3& in, const FieldVector& field, 
   return of_sphere * shadow * spread(link) * between_ * (row.transpose() * field).value();
 }
 
-FieldVector EdgeChain::leave(const Vec3& out, double distance) const {
+FieldVector MultipleDiffraction::leave(const Vec3& out, double distance) const {
   const Link& link = links_.back();
   const Vec3 departure = beside(out, link.along, link.normal);
   const double apart = link.length * distance / (link.length + distance);

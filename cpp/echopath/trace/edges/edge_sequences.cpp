@@ -1,4 +1,4 @@
-#include "echopath/trace/edges/edge_chains.h"
+#include "echopath/trace/edges/edge_sequences.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,13 +12,13 @@ constexpr double kLeastSlope = 1e-2;  // sine of the angle at which a wave meets
 
 }  // namespace
 
-EdgeChains::EdgeChains(std::span<const PosedEdge> edges, double wavelength)
+EdgeSequences::EdgeSequences(std::span<const PosedEdge> edges, double wavelength)
     : edges_(edges), longest_(kLongestFace * wavelength), plane_(edges.size()) {
   find_planes();
 }
 
 // Sorts the faces at all edges by a key, so that those on one plane are neighbours.
-std::vector<EdgeChains::OnPlane> EdgeChains::sorted_faces(const Vec3& middle, double extent) const {
+std::vector<EdgeSequences::OnPlane> EdgeSequences::sorted_faces(const Vec3& middle, double extent) const {
   std::vector<OnPlane> faces;
   for (size_t i = 0; i < edges_.size(); ++i) {
     for (int face = 0; face < 2; ++face) {
@@ -35,7 +35,7 @@ std::vector<EdgeChains::OnPlane> EdgeChains::sorted_faces(const Vec3& middle, do
   return faces;
 }
 
-void EdgeChains::find_planes() {
+void EdgeSequences::find_planes() {
   Eigen::AlignedBox3d box;
   for (const PosedEdge& edge : edges_) box.extend(edge.from).extend(edge.to);
   const double extent = edges_.empty() ? 0.0 : box.diagonal().norm();
@@ -57,7 +57,7 @@ void EdgeChains::find_planes() {
 }
 
 // Finds the nearest edge that ends the face toward the direction.
-bool EdgeChains::find_next(size_t edge, int face, const Vec3& position, const Vec3& direction, Met& met) const {
+bool EdgeSequences::find_next(size_t edge, int face, const Vec3& position, const Vec3& direction, Met& met) const {
   double nearest = longest_;
   bool is_found = false;
   for (const OnPlane& one : planes_[plane_[edge][static_cast<size_t>(face)]]) {
@@ -70,17 +70,17 @@ bool EdgeChains::find_next(size_t edge, int face, const Vec3& position, const Ve
     met = {one.edge, along};
     is_found = true;
   }
-  // Both sides of a sheet carry one wave (EdgeChain).
+  // Both sides of a sheet carry one wave (MultipleDiffraction).
   return is_found && !(face == 1 && is_rim(edges_[edge].wedge) && is_rim(edges_[met.edge].wedge));
 }
 
-void EdgeChains::follow(size_t edge, const Hit& point, const Vec3& position, const Vec3& in, int most,
-                        const Visit& visit) const {
+void EdgeSequences::follow(size_t edge, const Hit& point, const Vec3& position, const Vec3& in, int most,
+                           const Visit& visit) const {
   EdgeSequence sequence{{{edges_[edge].wedge, position}}, {point}};
   extend(sequence, edge, in, most, visit);
 }
 
-void EdgeChains::extend(EdgeSequence& sequence, size_t edge, const Vec3& in, int most, const Visit& visit) const {
+void EdgeSequences::extend(EdgeSequence& sequence, size_t edge, const Vec3& in, int most, const Visit& visit) const {
   if (std::ssize(sequence.edges) >= most) return;
   const Wedge& wedge = edges_[edge].wedge;
   const Vec3 axis = axis_of(wedge), position = sequence.edges.back().point;

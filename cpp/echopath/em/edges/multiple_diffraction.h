@@ -20,16 +20,16 @@
 namespace echopath {
 
 // Holds a point on an edge and the wedge there.
-struct ChainEdge {
+struct DiffractingEdge {
   Wedge wedge;
   Vec3 point;  // m
 };
 
-class EdgeChain {
+class MultipleDiffraction {
  public:
   // Returns the chain over two edges or more, in the order of travel; nothing where two that follow each other do not end
   // one flat face that reaches from point to point.
-  static std::optional<EdgeChain> over(std::span<const ChainEdge> edges, double wavenumber);
+  static std::optional<MultipleDiffraction> over(std::span<const DiffractingEdge> edges, double wavenumber);
 
   // Returns the way from the first point to the last, m.
   double length() const { return length_; }
@@ -56,13 +56,13 @@ class EdgeChain {
     double share;        // of a wave from afar: 1/2, or 1 of both sides of a sheet
   };
 
-  EdgeChain(std::span<const ChainEdge> edges, double wavenumber)
+  MultipleDiffraction(std::span<const DiffractingEdge> edges, double wavenumber)
       : edges_(edges.begin(), edges.end()), wavenumber_(wavenumber) {}
-  bool add_link(const ChainEdge& first, const ChainEdge& second);
+  bool add_link(const DiffractingEdge& first, const DiffractingEdge& second);
   std::complex<double> spread(const Link& link) const;
   std::complex<double> turn(size_t link) const;
 
-  std::vector<ChainEdge> edges_;
+  std::vector<DiffractingEdge> edges_;
   std::vector<Link> links_;
   double wavenumber_, length_ = 0.0;    // rad/m, m
   std::complex<double> between_ = 1.0;  // from the strength on the first face to that on the last

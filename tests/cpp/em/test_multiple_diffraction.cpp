@@ -5,9 +5,9 @@
 #include <complex>
 
 #include "echopath/base/constants.h"
-#include "echopath/em/edges/edge_chain.h"
+#include "echopath/em/edges/multiple_diffraction.h"
 
-namespace echopath::test_edge_chain {
+namespace echopath::test_multiple_diffraction {
 namespace {
 
 using Complex = std::complex<double>;
@@ -15,9 +15,10 @@ constexpr Complex kJ{0.0, 1.0};
 constexpr double kWavenumber = 200.0;  // rad/m
 
 // A strip in the plane y = 0 between x = 0 and x = width, whose edges lie along z.
-std::array<ChainEdge, 2> strip(double width) {
+std::array<DiffractingEdge, 2> strip(double width) {
   const Vec3 x = Vec3::UnitX(), y = Vec3::UnitY();
-  return {ChainEdge{{{{x, y}, {x, -y}}, kTwoPi}, Vec3::Zero()}, ChainEdge{{{{-x, y}, {-x, -y}}, kTwoPi}, width * x}};
+  return {DiffractingEdge{{{{x, y}, {x, -y}}, kTwoPi}, Vec3::Zero()},
+          DiffractingEdge{{{{-x, y}, {-x, -y}}, kTwoPi}, width * x}};
 }
 
 // The direction across z at an angle from the x-axis.
@@ -25,8 +26,8 @@ Vec3 across(double angle) { return {std::cos(angle), std::sin(angle), 0.0}; }
 
 // Returns the magnetic field that a chain sends toward an angle from a wave of a unit magnetic field that comes from another
 // angle, in units of c^2, c = e^{-j pi/4} / (2 sqrt(2 pi k)), over e^{-jka}/sqrt(a).
-Complex sent(std::span<const ChainEdge> edges, double source, double at, double width) {
-  const EdgeChain chain = *EdgeChain::over(edges, kWavenumber);
+Complex sent(std::span<const DiffractingEdge> edges, double source, double at, double width) {
+  const MultipleDiffraction chain = *MultipleDiffraction::over(edges, kWavenumber);
   const Vec3 in = -across(source), out = across(at), edge = Vec3::UnitZ(), electric = edge.cross(-in);
   const Complex entered = chain.enter(in, electric.cast<Complex>(), 1e9);
   const FieldVector left = chain.leave(out, 1e9) * entered;
@@ -35,7 +36,7 @@ Complex sent(std::span<const ChainEdge> edges, double source, double at, double 
 }
 
 // By its integral along the line from sqrt(x) on, turned into one of e^{-s}.
-TEST(EdgeChain, TransitionIsTheIntegralOfKouyoumjianAndPathak) {
+TEST(MultipleDiffraction, TransitionIsTheIntegralOfKouyoumjianAndPathak) {
   for (const double x : {0.0, 1e-3, 0.1, 1.0, 1.99, 2.01, 3.0, 10.0, 100.0}) {
     Complex sum = 0.0;  // int_0^inf e^{-s} / (2 sqrt(x - js)) ds, after t^2 = x - js
     const int count = 400000;
@@ -49,7 +50,7 @@ TEST(EdgeChain, TransitionIsTheIntegralOfKouyoumjianAndPathak) {
 }
 
 // Ross 1966: 4 / (cos(source/2) cos(at'/2)), at' from the second edge, where no transition is near.
-TEST(EdgeChain, AStripHasKellersDoubleDiffraction) {
+TEST(MultipleDiffraction, AStripHasKellersDoubleDiffraction) {
   constexpr double kWidth = 20.0;
   const auto edges = strip(kWidth);
   for (const double source : {0.6, 1.2, 1.9}) {
@@ -61,10 +62,10 @@ TEST(EdgeChain, AStripHasKellersDoubleDiffraction) {
 }
 
 // The way back of a wave from another direction is the same.
-TEST(EdgeChain, IsReciprocal) {
+TEST(MultipleDiffraction, IsReciprocal) {
   const auto edges = strip(0.3);
-  const std::array<ChainEdge, 2> back = {edges[1], edges[0]};
-  const std::array<ChainEdge, 3> there_and_back = {edges[0], edges[1], edges[0]};
+  const std::array<DiffractingEdge, 2> back = {edges[1], edges[0]};
+  const std::array<DiffractingEdge, 3> there_and_back = {edges[0], edges[1], edges[0]};
   for (const double source : {0.4, 1.5, 2.9}) {
     for (const double at : {0.3, 1.2, 2.2, 3.0}) {
       EXPECT_LT(std::abs(sent(edges, source, at, 0.3) - sent(back, at, source, 0.3)), 1e-6) << source << " " << at;
@@ -76,17 +77,17 @@ TEST(EdgeChain, IsReciprocal) {
 
 // Along a sheet with its electric field across it a wave passes as if nothing were there. Physical optics doubles it on the
 // lit side, in the limit; what the near edge sends over the face is the wave itself, and takes that away.
-TEST(EdgeChain, SeenAlongItselfAnEdgeSendsAsMuchAsTheWave) {
+TEST(MultipleDiffraction, SeenAlongItselfAnEdgeSendsAsMuchAsTheWave) {
   const auto edges = strip(0.5);
-  const EdgeChain chain = *EdgeChain::over(edges, kWavenumber);
+  const MultipleDiffraction chain = *MultipleDiffraction::over(edges, kWavenumber);
   const Vec3 in = -across(kPi - 1e-6), electric = Vec3::UnitZ().cross(-in);
   EXPECT_NEAR(std::abs(chain.enter(in, electric.cast<Complex>(), 1e9)), 1.0, 0.01);
 }
 
 // Against the shortest way over the edge by search.
-TEST(EdgeChain, DetourIsThatOfTheShortestWay) {
+TEST(MultipleDiffraction, DetourIsThatOfTheShortestWay) {
   const auto edges = strip(0.5);
-  const EdgeChain chain = *EdgeChain::over(edges, kWavenumber);
+  const MultipleDiffraction chain = *MultipleDiffraction::over(edges, kWavenumber);
   const Vec3 antenna(-3.0, 2.0, 0.05);
   double shortest = 1e9;
   for (double z = -0.1; z < 0.1; z += 1e-5) {
@@ -97,14 +98,14 @@ TEST(EdgeChain, DetourIsThatOfTheShortestWay) {
   EXPECT_NEAR(chain.detour(-antenna.normalized(), antenna.norm()), shortest - direct, 0.01 * (direct - shortest));
 }
 
-TEST(EdgeChain, NeedsAFaceBetweenTheEdges) {
+TEST(MultipleDiffraction, NeedsAFaceBetweenTheEdges) {
   auto edges = strip(0.5);
   edges[1].point += 0.1 * Vec3::UnitY();
-  EXPECT_FALSE(EdgeChain::over(edges, kWavenumber).has_value());
+  EXPECT_FALSE(MultipleDiffraction::over(edges, kWavenumber).has_value());
   edges = strip(0.5);
   std::swap(edges[0].point, edges[1].point);
-  EXPECT_FALSE(EdgeChain::over(edges, kWavenumber).has_value());
+  EXPECT_FALSE(MultipleDiffraction::over(edges, kWavenumber).has_value());
 }
 
 }  // namespace
-}  // namespace echopath::test_edge_chain
+}  // namespace echopath::test_multiple_diffraction

@@ -24,13 +24,13 @@ std::array<DiffractingEdge, 2> strip(double width) {
 // The direction across z at an angle from the x-axis.
 Vec3 across(double angle) { return {std::cos(angle), std::sin(angle), 0.0}; }
 
-// Returns the magnetic field that a chain sends toward an angle from a wave of a unit magnetic field that comes from another
-// angle, in units of c^2, c = e^{-j pi/4} / (2 sqrt(2 pi k)), over e^{-jka}/sqrt(a).
+// Returns the magnetic field that multiple diffraction sends toward an angle from a wave of a unit magnetic field that comes
+// from another angle, in units of c^2, c = e^{-j pi/4} / (2 sqrt(2 pi k)), over e^{-jka}/sqrt(a).
 Complex sent(std::span<const DiffractingEdge> edges, double source, double at, double width) {
-  const MultipleDiffraction chain = *MultipleDiffraction::over(edges, kWavenumber);
+  const MultipleDiffraction multiple = *MultipleDiffraction::over(edges, kWavenumber);
   const Vec3 in = -across(source), out = across(at), edge = Vec3::UnitZ(), electric = edge.cross(-in);
-  const Complex entered = chain.enter(in, electric.cast<Complex>(), 1e9);
-  const FieldVector left = chain.leave(out, 1e9) * entered;
+  const Complex entered = multiple.enter(in, electric.cast<Complex>(), 1e9);
+  const FieldVector left = multiple.leave(out, 1e9) * entered;
   const Complex magnetic = out.cast<Complex>().cross(left).dot(edge.cast<Complex>()) * edge.dot(in.cross(electric));
   return std::conj(magnetic) / 0.25 * std::sqrt(kTwoPi * kWavenumber * width) * std::polar(1.0, 0.25 * kPi) / 2.0;
 }
@@ -79,23 +79,23 @@ TEST(MultipleDiffraction, IsReciprocal) {
 // lit side, in the limit; what the near edge sends over the face is the wave itself, and takes that away.
 TEST(MultipleDiffraction, SeenAlongItselfAnEdgeSendsAsMuchAsTheWave) {
   const auto edges = strip(0.5);
-  const MultipleDiffraction chain = *MultipleDiffraction::over(edges, kWavenumber);
+  const MultipleDiffraction multiple = *MultipleDiffraction::over(edges, kWavenumber);
   const Vec3 in = -across(kPi - 1e-6), electric = Vec3::UnitZ().cross(-in);
-  EXPECT_NEAR(std::abs(chain.enter(in, electric.cast<Complex>(), 1e9)), 1.0, 0.01);
+  EXPECT_NEAR(std::abs(multiple.enter(in, electric.cast<Complex>(), 1e9)), 1.0, 0.01);
 }
 
 // Against the shortest way over the edge by search.
 TEST(MultipleDiffraction, DetourIsThatOfTheShortestWay) {
   const auto edges = strip(0.5);
-  const MultipleDiffraction chain = *MultipleDiffraction::over(edges, kWavenumber);
+  const MultipleDiffraction multiple = *MultipleDiffraction::over(edges, kWavenumber);
   const Vec3 antenna(-3.0, 2.0, 0.05);
   double shortest = 1e9;
   for (double z = -0.1; z < 0.1; z += 1e-5) {
     const Vec3 point(0.0, 0.0, z);
     shortest = std::min(shortest, (antenna - point).norm() + (edges[1].point - point).norm());
   }
-  const double direct = antenna.norm() + chain.length();
-  EXPECT_NEAR(chain.detour(-antenna.normalized(), antenna.norm()), shortest - direct, 0.01 * (direct - shortest));
+  const double direct = antenna.norm() + multiple.length();
+  EXPECT_NEAR(multiple.detour(-antenna.normalized(), antenna.norm()), shortest - direct, 0.01 * (direct - shortest));
 }
 
 TEST(MultipleDiffraction, NeedsAFaceBetweenTheEdges) {

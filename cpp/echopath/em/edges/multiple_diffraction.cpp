@@ -31,12 +31,12 @@ double angle_of_face(const Wedge& wedge, int face) { return face == 0 ? 0.0 : we
 }  // namespace
 
 std::optional<MultipleDiffraction> MultipleDiffraction::over(std::span<const DiffractingEdge> edges, double wavenumber) {
-  MultipleDiffraction chain(edges, wavenumber);
+  MultipleDiffraction multiple(edges, wavenumber);
   for (size_t k = 0; k + 1 < edges.size(); ++k) {
-    if (!chain.add_link(edges[k], edges[k + 1])) return std::nullopt;
-    if (k > 0) chain.between_ *= chain.turn(k) * chain.spread(chain.links_[k]);
+    if (!multiple.add_link(edges[k], edges[k + 1])) return std::nullopt;
+    if (k > 0) multiple.between_ *= multiple.turn(k) * multiple.spread(multiple.links_[k]);
   }
-  return chain;
+  return multiple;
 }
 
 bool MultipleDiffraction::add_link(const DiffractingEdge& first, const DiffractingEdge& second) {

@@ -4,7 +4,7 @@
 // The field beside a conductor whose magnetic part lies along the edges runs along a face as a wave that is bound to no
 // other condition than the face; the other polarisation vanishes there, to this order. From each edge the wave leaves along
 // the ray that grazes the next face on Keller's cone, and there it is half of what a wave from afar would be, because it
-// counts as incident and reflected. At both ends of the chain, where the antenna may look along the face, transition
+// counts as incident and reflected. At both ends of the sequence, where the antenna may look along the face, transition
 // functions keep the field finite. Sources: Keller 1962, "Geometrical theory of diffraction"; Kouyoumjian and Pathak 1974
 // (transition function, grazing incidence); Michaeli 1987, "Equivalent currents for second-order diffraction by the edges of
 // perfectly conducting polygonal surfaces" (strips from edge to edge); Ross 1966 (plates).
@@ -27,8 +27,8 @@ struct DiffractingEdge {
 
 class MultipleDiffraction {
  public:
-  // Returns the chain over two edges or more, in the order of travel; nothing where two that follow each other do not end
-  // one flat face that reaches from point to point.
+  // Returns the diffraction over two edges or more, in the order of travel; nothing where two that follow each other do not
+  // end one flat face that reaches from point to point.
   static std::optional<MultipleDiffraction> over(std::span<const DiffractingEdge> edges, double wavenumber);
 
   // Returns the way from the first point to the last, m.

@@ -70,9 +70,9 @@ class EdgeEchoes {
     const Vec3 corners[] = {hit.corner, hit.corner + hit.edge_u, hit.corner + hit.edge_v};
     const Vec3 side = scene.linear(hit.mesh_id) * (corners[(hit.edge->side + 1) % 3] - corners[hit.edge->side]);
     piece_ = (hit.edge->end - hit.edge->begin) / hit.num_pieces * side;
-    if (path.num_edges > 1) chain_ = MultipleDiffraction::over(edges_, radio_.wavenumber);
-    else chain_.reset();
-    if (chain_) piece_ = chain_->last_piece(piece_);
+    if (path.num_edges > 1) multiple_ = MultipleDiffraction::over(edges_, radio_.wavenumber);
+    else multiple_.reset();
+    if (multiple_) piece_ = multiple_->last_piece(piece_);
     is_reversed_ = path.is_reversed;
     is_past_edge_ = path.is_past_edge;
     find_waves(path, scene.antennas(is_reversed_), true, in_);
@@ -81,7 +81,7 @@ class EdgeEchoes {
 
   double length(size_t transmitter, size_t receiver) const {
     const WaveAtEdge& in = wave_in(transmitter, receiver);
-    const double over_faces = chain_ ? chain_->length() + chain_->detour(in.direction, in.length) : 0.0;
+    const double over_faces = multiple_ ? multiple_->length() + multiple_->detour(in.direction, in.length) : 0.0;
     return in.length + over_faces + wave_out(transmitter, receiver).length;
   }
 
@@ -110,11 +110,11 @@ class EdgeEchoes {
   }
 
   // Returns whether the points of several edges no longer lie on flat faces that connect them.
-  bool is_broken() const { return edges_.size() > 1 && !chain_; }
+  bool is_broken() const { return edges_.size() > 1 && !multiple_; }
 
   // Returns what leaves the last edge toward an antenna that is `distance` (m) away.
   FieldVector diffracted(const FieldVector& field, const WaveAtEdge& in, const Vec3& departure, double distance) const {
-    if (chain_) return chain_->leave(departure, distance) * chain_->enter(in.direction, field, in.length);
+    if (multiple_) return multiple_->leave(departure, distance) * multiple_->enter(in.direction, field, in.length);
     const DiffractingEdge& edge = edges_.front();
     if (!is_past_edge_) return fringe_matrix(edge.wedge, in.direction, departure) * field;
     // `mirrors_` are those at the end of the path, of which the last one is next to the edge.
@@ -124,10 +124,10 @@ class EdgeEchoes {
     return diffraction_matrix(edge.wedge, in.direction, departure, std::max(phase, 0.0)) * field;
   }
 
-  // A chain's waves run along one ray of Keller's cone to each point of the last edge.
+  // Waves of multiple diffraction run along one ray of Keller's cone to each point of the last edge.
   std::complex<double> filter(const WaveAtEdge& in, const Vec3& departure, double distance) const {
-    const Vec3 arrival = chain_ ? chain_->arrival() : in.direction;
-    const double travelled = chain_ ? in.length + chain_->length() : in.length;
+    const Vec3 arrival = multiple_ ? multiple_->arrival() : in.direction;
+    const double travelled = multiple_ ? in.length + multiple_->length() : in.length;
     const auto curvature = [&](const Vec3& direction, double radius) {
       return direction.cross(piece_).squaredNorm() / radius;
     };
@@ -190,9 +190,9 @@ class EdgeEchoes {
   MirrorsToEdge mirrors_;
   PathPassages* sheets_ = nullptr;
   std::vector<WaveAtEdge> in_, out_;
-  std::vector<DiffractingEdge> edges_;        // of the path
-  std::optional<MultipleDiffraction> chain_;  // over them, where there are several
-  Vec3 piece_;                                // m, of the last one
+  std::vector<DiffractingEdge> edges_;           // of the path
+  std::optional<MultipleDiffraction> multiple_;  // over them, where there are several
+  Vec3 piece_;                                   // m, of the last one
 };
 
 // Holds the sheets on those edge paths whose fields are followed through them, null for the others.

@@ -5,14 +5,14 @@
 //
 // b is the quadratic phase of the wave fronts over the piece.
 //
-// Where the path goes on from edge to edge (em/edges/multiple_diffraction.h), M is what the chain makes of the field, u the
-// direction in which it arrives at the last edge, dl the piece of that edge, and the lengths include the way over the faces.
-// Otherwise dl is the piece at that time, r_t and r_r are the unfolded lengths of the legs to both antennas, u and s are the
-// directions in which the wave arrives at the edge and leaves it, and M is the fringe_matrix of its faces. e_t and e_r are
-// the polarisations of both antennas across these directions, as they have come over the mirrors between: in a polarised
-// trace by the coefficients that the materials have at that time. In the scalar model the coefficients are those of the
-// trace, in the weight, and the receiver has the polarisation of the transmitter. Sheets on the way pass, in a polarised
-// trace, both modes of each antenna's own field; in the scalar model they are no part of this (sheet_passages.h).
+// Where the path goes on from edge to edge (em/edges/multiple_diffraction.h), M is what multiple diffraction makes of the
+// field, u the direction in which it arrives at the last edge, dl the piece of that edge, and the lengths include the way
+// over the faces. Otherwise dl is the piece at that time, r_t and r_r are the unfolded lengths of the legs to both antennas,
+// u and s are the directions in which the wave arrives at the edge and leaves it, and M is the fringe_matrix of its faces.
+// e_t and e_r are the polarisations of both antennas across these directions, as they have come over the mirrors between: in
+// a polarised trace by the coefficients that the materials have at that time. In the scalar model the coefficients are those
+// of the trace, in the weight, and the receiver has the polarisation of the transmitter. Sheets on the way pass, in a
+// polarised trace, both modes of each antenna's own field; in the scalar model they are no part of this (sheet_passages.h).
 #include "echopath/replay/evaluate/shared_legs.h"
 #include "echopath/replay/factors/path_passages.h"
 

@@ -13,9 +13,9 @@ namespace echopath {
 namespace {
 
 constexpr size_t kEdgesPerBlock = 64;
-constexpr double kFrontPhase = 0.8;   // rad, quadratic phase over half a piece: as much as edge_filter follows
-constexpr double kOfBody = 1.0 / 16;  // of the extent of a body, a piece at most where a part of the edge is hidden
-constexpr double kLeastChain = 0.03;  // of what the edge of a half plane sends
+constexpr double kFrontPhase = 0.8;      // rad, quadratic phase over half a piece: as much as edge_filter follows
+constexpr double kOfBody = 1.0 / 16;     // of the extent of a body, a piece at most where a part of the edge is hidden
+constexpr double kLeastMultiple = 0.03;  // of what the edge of a half plane sends
 
 AntennaView view_for_edges(const Vec3& antenna, const MirrorFrusta& found, const EdgeQuery& query) {
   if (!query.frusta.serve_legs) return {antenna, {}, {}};
@@ -44,7 +44,7 @@ class EdgeTracer {
  public:
   explicit EdgeTracer(const EdgeQuery& query)
       : query_(query), coefficients_(query.settings.polarization), extent_(extents_of_bodies(query)),
-        wavenumber_(kTwoPi * query.settings.frequency / kSpeedOfLight), chains_(query.edges, kTwoPi / wavenumber_),
+        wavenumber_(kTwoPi * query.settings.frequency / kSpeedOfLight), sequences_(query.edges, kTwoPi / wavenumber_),
         finder_(query.geometry, query.mirrors, query.settings.frequency, query.settings.polarization),
         transmitter_(view_for_edges(query.settings.transmitter, query.frusta.transmitter, query)),
         receiver_(view_for_edges(query.settings.receiver, query.frusta.receiver, query)) {}
@@ -133,31 +133,31 @@ class EdgeTracer {
           add_path(in, hit, out, wedge, num_pieces, block);
       }
       const auto add_sequence = [&](const EdgeSequence& sequence, size_t last) {
-        return add_chain(in, sequence, last, num_pieces, scratch, block);
+        return add_multiple(in, sequence, last, num_pieces, scratch, block);
       };
       const int most = std::min(kMostEdges, query_.settings.max_bounces - in.num_bounces);
-      chains_.follow(edge, scratch.hits[piece], point, -in.to_antenna, most, add_sequence);
+      sequences_.follow(edge, scratch.hits[piece], point, -in.to_antenna, most, add_sequence);
     }
   }
 
   // Adds the paths that end with the last edge of a sequence; returns whether the wave there is strong enough to go on.
-  bool add_chain(const Leg& in, const EdgeSequence& sequence, size_t last, int num_pieces, Scratch& scratch,
-                 PathBlock& block) const {
-    const std::optional<MultipleDiffraction> chain = MultipleDiffraction::over(sequence.edges, wavenumber_);
-    if (!chain) return false;
-    const double entered = strength(*chain, in);
+  bool add_multiple(const Leg& in, const EdgeSequence& sequence, size_t last, int num_pieces, Scratch& scratch,
+                    PathBlock& block) const {
+    const std::optional<MultipleDiffraction> multiple = MultipleDiffraction::over(sequence.edges, wavenumber_);
+    if (!multiple) return false;
+    const double entered = strength(*multiple, in);
     const Wedge& wedge = query_.edges[last].wedge;
     const Vec3 point = sequence.edges.back().point, line = query_.settings.receiver - point;
     const bool is_lit = may_leave(wedge, line, line.norm());
-    const bool is_seen = is_lit && matters(*chain, entered, line.normalized(), line.norm());
-    const bool goes_on = entered > kLeastChain;
+    const bool is_seen = is_lit && matters(*multiple, entered, line.normalized(), line.norm());
+    const bool goes_on = entered > kLeastMultiple;
     if (!is_seen && (receiver_.frusta.empty() || !goes_on)) return goes_on;
     find_legs(point, wedge, receiver_, is_seen ? ShadowState::kUnknown : ShadowState::kBlocked, scratch.behind,
               scratch.search);
     for (const Leg& out : scratch.behind) {
-      const auto coupled = [&] { return entered * chain->leave(out.to_antenna, out.length).norm(); };
-      const EdgeLeg arrival{-chain->arrival(), in.at_antenna, in.length};
-      if (matters(*chain, entered, out.to_antenna, out.length) &&
+      const auto coupled = [&] { return entered * multiple->leave(out.to_antenna, out.length).norm(); };
+      const EdgeLeg arrival{-multiple->arrival(), in.at_antenna, in.length};
+      if (matters(*multiple, entered, out.to_antenna, out.length) &&
           is_strong(wedge, arrival, edge_leg_of(out), coefficients_.held(in.gain * out.gain), coupled))
         add_path(in, sequence.hits, out, wedge, num_pieces, block);
     }
@@ -173,20 +173,20 @@ class EdgeTracer {
   }
 
   // Returns the strength on the last face.
-  double strength(const MultipleDiffraction& chain, const Leg& leg) const {
+  double strength(const MultipleDiffraction& multiple, const Leg& leg) const {
     const Vec3 in = -leg.to_antenna;
     return coefficients_.strongest(
-        in, [&](const Vec3& field) { return std::abs(chain.enter(in, field.cast<std::complex<double>>(), leg.length)); });
+        in, [&](const Vec3& field) { return std::abs(multiple.enter(in, field.cast<std::complex<double>>(), leg.length)); });
   }
 
-  // Returns whether a chain sends at least kLeastChain of the edge of a half plane, likewise.
-  bool matters(const MultipleDiffraction& chain, double entered, const Vec3& out, double distance) const {
+  // Returns whether multiple diffraction sends at least kLeastMultiple of the edge of a half plane, likewise.
+  bool matters(const MultipleDiffraction& multiple, double entered, const Vec3& out, double distance) const {
     constexpr double kOfHalfPlane = 2.0;
     // What leaves an edge is largest about the direction of the wave.
-    const double most = 4.0 * std::sqrt(2.0 / std::max(1.0 - chain.arrival().dot(out), 1e-12));
-    if (entered * most < kOfHalfPlane * kLeastChain) return false;
-    const FieldVector left = chain.leave(out, distance);
-    return entered * coefficients_.received(out, left) > kOfHalfPlane * kLeastChain;
+    const double most = 4.0 * std::sqrt(2.0 / std::max(1.0 - multiple.arrival().dot(out), 1e-12));
+    if (entered * most < kOfHalfPlane * kLeastMultiple) return false;
+    const FieldVector left = multiple.leave(out, distance);
+    return entered * coefficients_.received(out, left) > kOfHalfPlane * kLeastMultiple;
   }
 
   // `wedge` is that of the last edge; the share of the field that stays in phase is taken from it.
@@ -211,7 +211,7 @@ class EdgeTracer {
   Coefficients coefficients_;
   std::vector<double> extent_;  // m, by mesh ID
   double wavenumber_;           // rad/m
-  EdgeSequences chains_;
+  EdgeSequences sequences_;
   LegFinder finder_;
   AntennaView transmitter_, receiver_;
 };

@@ -13,9 +13,9 @@ namespace echopath {
 namespace {
 
 constexpr size_t kEdgesPerBlock = 64;
-constexpr double kFrontPhase = 0.8;      // rad, quadratic phase over half a piece: as much as edge_filter follows
-constexpr double kOfBody = 1.0 / 16;     // of the extent of a body, a piece at most where a part of the edge is hidden
-constexpr double kLeastMultiple = 0.03;  // of what the edge of a half plane sends
+constexpr double kFrontPhase = 0.8;        // rad, quadratic phase over half a piece: as much as edge_filter follows
+constexpr double kOfBody = 1.0 / 16;       // of the extent of a body, a piece at most where a part of the edge is hidden
+constexpr double kLeastDiffracted = 0.03;  // of what the edge of a half plane sends
 
 AntennaView view_for_edges(const Vec3& antenna, const MirrorFrusta& found, const EdgeQuery& query) {
   if (!query.frusta.serve_legs) return {antenna, {}, {}};
@@ -150,7 +150,7 @@ class EdgeTracer {
     const Vec3 point = sequence.edges.back().point, line = query_.settings.receiver - point;
     const bool is_lit = may_leave(wedge, line, line.norm());
     const bool is_seen = is_lit && matters(*multiple, entered, line.normalized(), line.norm());
-    const bool goes_on = entered > kLeastMultiple;
+    const bool goes_on = entered > kLeastDiffracted;
     if (!is_seen && (receiver_.frusta.empty() || !goes_on)) return goes_on;
     find_legs(point, wedge, receiver_, is_seen ? ShadowState::kUnknown : ShadowState::kBlocked, scratch.behind,
               scratch.search);
@@ -179,14 +179,14 @@ class EdgeTracer {
         in, [&](const Vec3& field) { return std::abs(multiple.enter(in, field.cast<std::complex<double>>(), leg.length)); });
   }
 
-  // Returns whether multiple diffraction sends at least kLeastMultiple of the edge of a half plane, likewise.
+  // Returns whether multiple diffraction sends at least kLeastDiffracted of the edge of a half plane, likewise.
   bool matters(const MultipleDiffraction& multiple, double entered, const Vec3& out, double distance) const {
     constexpr double kOfHalfPlane = 2.0;
     // What leaves an edge is largest about the direction of the wave.
     const double most = 4.0 * std::sqrt(2.0 / std::max(1.0 - multiple.arrival().dot(out), 1e-12));
-    if (entered * most < kOfHalfPlane * kLeastMultiple) return false;
+    if (entered * most < kOfHalfPlane * kLeastDiffracted) return false;
     const FieldVector left = multiple.leave(out, distance);
-    return entered * coefficients_.received(out, left) > kOfHalfPlane * kLeastMultiple;
+    return entered * coefficients_.received(out, left) > kOfHalfPlane * kLeastDiffracted;
   }
 
   // `wedge` is that of the last edge; the share of the field that stays in phase is taken from it.

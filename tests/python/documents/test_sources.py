@@ -66,6 +66,59 @@ def test_comments_are_as_narrow_as_the_code():
     assert not wide
 
 
+# Comments in front of declarations of headers, and what makes a first sentence a fragment: it begins as none can that has a
+# subject, or has neither an auxiliary verb nor a word that may be a verb of the third person.
+COMMENT = re.compile(r"^((?: {0,4}// ?.*\n)+)(?= {0,4}(?:struct|class|enum|union|template|using|inline|constexpr|static|explicit"
+                     r"|virtual|friend|#include|ECHOPATH_INLINE|[\w:<>,&* ]+\())", re.M)
+NO_SUBJECT = re.compile(r"(?:Whether|How|To be|Is|Are|Not|Same|Between|The same (?:as|for|about|where|of|at|with|in))\b")
+PRONOUN = re.compile(r"(?:These|Those|They|All|Both|Some)\b")
+AUXILIARY = {"are", "were", "have", "had", "may", "must", "can", "could", "did", "will", "would", "should", "might"}
+NO_VERB = {"this", "its", "as", "across", "always", "less", "plus", "minus", "thus"}
+
+
+def fragments(text: str) -> list[str]:
+    """First sentences of comments in front of declarations that have no subject or no verb."""
+    found = []
+    for comment in COMMENT.findall(text):
+        lines = [line.strip().removeprefix("//").strip() for line in comment.splitlines()]
+        sentence = re.split(r"(?<=[.;:])\s", " ".join(lines[:lines.index("")] if "" in lines else lines))[0]
+        if not re.match(r"[A-Z]", sentence) or sentence.startswith("NOLINT") or PRONOUN.match(sentence):
+            continue
+        words = [word for word in re.findall(r"[A-Za-z]+", sentence) if word.lower() not in NO_VERB]
+        if NO_SUBJECT.match(sentence) or not any(word.endswith("s") or word in AUXILIARY for word in words):
+            found.append(sentence)
+    return found
+
+
+def test_fragments_are_found():
+    text = """#pragma once
+// How long a signal takes.
+#include <vector>
+// Returns the power, W: what it is made of.
+double power(int group);
+// A cell on a flat triangle.
+struct FlatCell {
+  // Is told of blocks.
+  void end_blocks();
+  // These return nothing new.
+  int size() const;
+  // m: sum of all
+  double length = 0.0;
+  // An antenna may stand anywhere.
+  void stand(int antenna);
+};
+"""
+    assert fragments(text) == ["How long a signal takes.", "A cell on a flat triangle.", "Is told of blocks."]
+
+
+@pytest.mark.skipif(not SOURCES, reason="the sources are not there")
+def test_comments_in_front_of_declarations_are_sentences():
+    found = {f"{path.relative_to(ROOT)}: {sentence}" for path in SOURCES
+             if path.suffix == ".h" and ROOT / "cpp" in path.parents
+             for sentence in fragments(path.read_text(encoding="utf-8"))}
+    assert not found
+
+
 def test_each_test_file_has_a_namespace_of_its_own():
     """Files of a module are compiled as one: what they name for themselves must not meet."""
     tests = [path for path in SOURCES if ROOT / "tests" / "cpp" in path.parents and path.match("test_*.cpp")]

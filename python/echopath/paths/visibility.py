@@ -146,4 +146,5 @@ def _keep_geometry(paths) -> None:
 
 
 def _as_objects(found) -> list:
-    return [ObjectVisibility(name, VisibilityFromEnd(*transmitter), VisibilityFromEnd(*receiver)) for name, transmitter, receiver in found]
+    return [ObjectVisibility(name, VisibilityFromEnd(*transmitter), VisibilityFromEnd(*receiver))
+            for name, transmitter, receiver in found]

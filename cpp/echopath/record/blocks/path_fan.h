@@ -1,7 +1,7 @@
 #pragma once
-// Stores all paths over one diffuse hit in short. Each leg by which the wave comes to the hit forms a path with each leg by
-// which it leaves. A fan keeps the two lists of legs; the paths, one for each pair, are written when the record is put
-// together.
+// Stores all paths over one diffuse hit in a compact form. Each leg by which the wave comes to the hit forms a path with
+// each leg by which it leaves. A fan keeps the two lists of legs; the paths, one for each pair, are written when the record
+// is put together.
 #include <complex>
 #include <cstdint>
 #include <vector>

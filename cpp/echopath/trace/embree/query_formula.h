@@ -1,6 +1,6 @@
 #pragma once
-// Computes what queries ask of Embree and what they make of its answers, in the same way for one ray and, in loops over lanes,
-// for all of a packet.
+// Computes what queries ask of Embree and what they make of its answers, in the same way for one ray and, in loops over
+// lanes, for all of a packet.
 #include "echopath/base/lanes/scalar_math.h"
 #include "echopath/base/vector_of.h"
 

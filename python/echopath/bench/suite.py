@@ -5,7 +5,7 @@ import json
 import re
 from collections.abc import Mapping
 from pathlib import Path
-from types import ModuleType
+from types import MappingProxyType, ModuleType
 
 from ..base.files import write_texts
 from .machine import machine
@@ -15,19 +15,20 @@ from .steps import told
 SECONDS = re.compile(r", (s|ms|us|ns)\b")  # names of figures in seconds end so, or go on with what the seconds are for
 
 
-def run_parts(name: str, parts: Mapping[str, ModuleType], folder, *, quick: bool, progress) -> dict:
+def run_parts(name: str, parts: Mapping[str, ModuleType], folder, *, quick: bool, progress,
+              options: Mapping[str, Mapping] = MappingProxyType({})) -> dict:
     """Measures every part, writes `name`.json into `folder` and returns what it holds.
 
     Limits of rows that are "timed" are those of the reference machine: such rows get "paces", of this machine before and
     after their part, and are judged again. Quick runs are not.
 
     parts: modules with rows(quick=) and describe(rows); quick: small, for a look
-    progress: callable (stage, fraction) or None
+    progress: callable (stage, fraction) or None; options: further keywords of rows, by the names of their parts
     """
     found = {}
     before = None if quick else pace()
     for part in told(list(parts), name, progress):
-        rows = parts[part].rows(quick=quick)
+        rows = parts[part].rows(quick=quick, **options.get(part, {}))
         after = None if quick else pace()
         found[part] = rows if before is None or after is None else at_reference(rows, sorted((before, after)))
         before = after

@@ -132,7 +132,8 @@ def bench(options) -> None:
              "receiver": (run_receiver, receiver.describe), "dataset": (run_dataset, dataset.describe),
              "targets": (run_published, published.describe), "replay": (run_replay, replay.describe)}
     more = {"physics": {"rays_max": options.rays_max}, "certificate": {"scenes": options.scenes},
-            "measured": {"suite": options.suite}, "crowd": {"seeds": options.seeds}}
+            "measured": {"suite": options.suite}, "crowd": {"seeds": options.seeds},
+            "worlds": {"cities": options.cities, "sionna": options.sionna, "models": options.models}}
     require_writable(options.out, "--out")
     run, describe = works[options.what]
     with progress_bars() as progress:

@@ -95,7 +95,8 @@ def command_parser() -> argparse.ArgumentParser:
                             "pedestrian, a road and spheres beside published levels; actors: cross sections of vehicles, "
                             "people and the rest over aspect; measured: plates, boxes, ducts and an almond of metal beside "
                             "measurement and method of moments, with and without sharp edges; worlds: crowds, and cities of many "
-                            "walls and meshes, their mirror paths against a search over all walls; live: scenes that change and "
+                            "walls and meshes, their mirror paths against a search over all walls, public ones beside "
+                            "Sionna RT, and files of others; live: scenes that change and "
                             "go on in time, a drive through a city street; receiver: faults of receivers beside closed forms, "
                             "codes of transmitters beside turns, and what they cost; dataset: frames of datasets by second and "
                             "core, what each stage takes, growth and memory of workers")
@@ -108,6 +109,12 @@ def command_parser() -> argparse.ArgumentParser:
                        help="crowd: scenes of each echo whose coverage is measured (default: 20 to 60, some ten minutes in all)")
     bench.add_argument("--suite", default=None, metavar="DIR",
                        help="measured: a checkout of the Austin RCS Benchmark Suite, for its PRIME aircraft, too")
+    bench.add_argument("--cities", default=None, metavar="DIR",
+                       help="worlds: a folder of scenes as sionna-rt ships them (default: its own, where it is installed)")
+    bench.add_argument("--sionna", default=None, metavar="PYTHON",
+                       help="worlds: a Python that has sionna-rt, whose paths and seconds stand beside ours (default: this one)")
+    bench.add_argument("--models", default=None, metavar="DIR",
+                       help="worlds: a folder of models and cities, each of which is read in one call")
     bench.set_defaults(command=work.bench)
     return parser
 

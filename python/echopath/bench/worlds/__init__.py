@@ -2,17 +2,20 @@
 from __future__ import annotations
 
 from ..suite import describe_parts, run_parts
-from . import city, crowd, motion, moved
+from . import city, crowd, models, motion, moved, public_cities
 
-PARTS = {"crowd": crowd, "city": city, "motion": motion, "moved": moved}
+PARTS = {"crowd": crowd, "city": city, "public cities": public_cities, "models": models, "motion": motion, "moved": moved}
 
 
-def run_worlds(folder, *, quick: bool = False, progress=None) -> dict:
+def run_worlds(folder, *, quick: bool = False, progress=None, cities=None, sionna: str | None = None, models=None) -> dict:
     """Measures every part, writes worlds.json into `folder` and returns what it holds.
 
     quick: small scenes, for a look; progress: callable (stage, fraction) or None
+    cities: folder of scenes as Sionna RT ships them, None: those of the peer; sionna: a Python that has sionna-rt, None: this one
+    models: folder of foreign files, None: none are read
     """
-    return run_parts("worlds", PARTS, folder, quick=quick, progress=progress)
+    options = {"public cities": {"scenes": cities, "python": sionna}, "models": {"folder": models}}
+    return run_parts("worlds", PARTS, folder, quick=quick, progress=progress, options=options)
 
 
 def describe(results: dict) -> list[str]:

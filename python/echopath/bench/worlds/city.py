@@ -12,6 +12,7 @@ import numpy as np
 
 import echopath as ep
 
+from ..pace import told_at_reference, verdict
 from ..speed.tracer import bare_share
 from ..timing import processor_time
 
@@ -24,6 +25,7 @@ MESH_RAYS = 100_000
 BOUNCES = 3                              # of traces; the slow search goes to two
 DELAY_LIMIT = 1e-12                      # s
 LEVEL_LIMIT_DB = 0.01
+MESHES_LIMIT = 0.3                       # s, of the first trace
 NO_STRATUM = 65535                       # of paths by images
 AT_RIM = 1e-6                            # m: paths that pass a rim this near may be there or not
 
@@ -173,7 +175,7 @@ def measure_meshes(*, quick: bool) -> dict:
         scene = _plates(number)
         seconds[number], _ = processor_time(lambda: ep.trace(scene, radar(), num_rays=MESH_RAYS, max_bounces=2))
     return {"name": "meshes", "meshes": count, "rays": MESH_RAYS, "seconds": seconds[count],
-            "seconds_of_a_tenth": seconds[count // 10]}
+            "seconds_of_a_tenth": seconds[count // 10], "timed": True}
 
 
 def _plates(count: int) -> ep.Scene:
@@ -196,11 +198,20 @@ def describe(rows: list[dict]) -> list[str]:
     for row in rows:
         if row["name"] == "meshes":
             lines.append(f"{row['meshes']} meshes, {row['rays']} rays: {row['seconds']:.2f} s of the processor, a tenth of the "
-                         f"meshes {row['seconds_of_a_tenth']:.2f} s")
+                         f"meshes {row['seconds_of_a_tenth']:.2f} s (limit {MESHES_LIMIT:g})  {_verdict(row)}")
             continue
         bare = "" if np.isnan(row["bare_share"]) else f", its queries alone {100.0 * row['bare_share']:.0f} % of the trace"
         lines.append(f"{row['name']}, {row['walls']}, {row['rays']} rays, {BOUNCES} bounces: {row['seconds']:.2f} s of the "
                      f"processor{bare}; {row['paths'] - row['missing']} of {row['paths']} paths over one or two walls, "
                      f"{row['beside']} beside them, delays to {row['delay_error_s']:.1e} s (limit {DELAY_LIMIT:g}), levels to "
-                     f"{row['level_error_db']:.4f} dB (limit {LEVEL_LIMIT_DB:g})")
+                     f"{row['level_error_db']:.4f} dB (limit {LEVEL_LIMIT_DB:g})  {_verdict(row)}")
     return lines
+
+
+def _verdict(row: dict) -> str:
+    if row["name"] == "meshes":
+        paces = row.get("paces")
+        return verdict(row["seconds"], MESHES_LIMIT, paces) + told_at_reference(row["seconds"], paces)
+    holds = (row["missing"] == 0 and row["beside"] == 0 and row["delay_error_s"] <= DELAY_LIMIT
+             and row["level_error_db"] <= LEVEL_LIMIT_DB)
+    return "holds" if holds else "MISSED"

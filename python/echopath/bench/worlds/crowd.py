@@ -1,4 +1,10 @@
-"""A crowd of 20 cars and 20 people: labels beside synthesis, their memory, and visibility."""
+"""A crowd of 20 cars and 20 people: labels beside synthesis, their memory, and visibility.
+
+The signals of the labels' families add up to the whole, so that `annotate` makes the cube on its way, and a labelled frame
+pays for that once. What labels cost beside the synthesis that a frame has anyhow is therefore the time of `annotate` without
+that of one synthesis: the limit is of this, over synthesis ("labels at most as long as synthesis"). The time of `annotate` as
+a whole, which is more by one, stands beside it.
+"""
 from __future__ import annotations
 
 import multiprocessing
@@ -17,7 +23,7 @@ from . import crowd_scene
 EACH, QUICK_EACH = 20, 3
 RAYS, QUICK_RAYS = 100_000, 5_000
 GIB = 2.0 ** 30
-LIMITS = {"peak memory, GiB": 1.0, "labels over synthesis": 1.0, "visibility, ms an object": 0.3,
+LIMITS = {"peak memory, GiB": 1.0, "labels beyond synthesis, over it": 1.0, "visibility, ms an object": 0.3,
           "sum over whole - 1": 1e-12}
 
 
@@ -52,7 +58,9 @@ def _labels(each: int, rays: int) -> dict:
     return {"paths": paths.num_paths, "families": len(families(paths)), "families left out": labels.left_out.families,
             "left out together, dBm": _dbm(labels.left_out.power), "at most in a cell, dBm": _dbm(labels.left_out.bound),
             "noise of a cell, dBm": _dbm(labels.noise_power), "peak memory, GiB": peak / GIB, "synthesis, s": synthesis,
-            "labels over synthesis": annotation / synthesis - 1.0, "visibility, ms an object": 1e3 * looking / len(seen),
+            "annotate over synthesis": annotation / synthesis,
+            "labels beyond synthesis, over it": annotation / synthesis - 1.0,
+            "visibility, ms an object": 1e3 * looking / len(seen),
             "sum over whole - 1": float(np.linalg.norm(frame.cube - cube) / np.linalg.norm(cube))}
 
 

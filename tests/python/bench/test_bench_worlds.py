@@ -43,7 +43,8 @@ def floor(tmp_path, monkeypatch):
 
 def says(folder, delay, power):
     """An interpreter of a peer that finds one path."""
-    found = {"materials": {"metal": [1.0, CONDUCTIVITY]}, "paths": [[[float(delay), float(power), 1]]], "seconds": [1.0, 2.0, 3.0]}
+    path = [float(delay), float(power), 1]
+    found = {"materials": {"metal": [1.0, CONDUCTIVITY]}, "paths": [[path]], "seconds": [1.0, 2.0, 3.0]}
     answer = {"version": "0", "cities": {"floor": found}}
     python = folder / "python"
     python.write_text(PEER.format(python=sys.executable, folder=str(folder), answer=answer))

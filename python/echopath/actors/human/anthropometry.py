@@ -2,6 +2,10 @@
 
 Fractions of the body height after R. Drillis and R. Contini, "Body segment parameters" (New York University, 1966), as
 reprinted in D. A. Winter, "Biomechanics and Motor Control of Human Movement" (4th ed. 2009, figure 4.1).
+
+Heads of children after R. G. Snyder and others, "Anthropometry of infants, children, and youths to age 18 for product safety
+design" (UM-HSRI-77-17, 1977): medians of boys and girls of 2 to 13 years over the heights of their ages in the British reference
+of 1990 (T. J. Cole, J. V. Freeman and M. A. Preece), on which these lines lie to 2 mm.
 """
 from dataclasses import dataclass
 
@@ -17,6 +21,11 @@ FOOT_BREADTH = 0.055
 SHOULDER_BREADTH = 0.259  # over the deltoids
 HIP_BREADTH = 0.191       # over the skin
 CHEST_BREADTH = 0.174
+HEAD_JOINT = CHIN_HEIGHT + 0.015   # joint of neck and head
+HEAD_SIZE = (0.1132, 0.0875, 1.0 - CHIN_HEIGHT)   # length, breadth and height of the head, as body.py has it
+
+# m, length, breadth and height of a child's head, and how they grow with the body height
+CHILD_HEAD, CHILD_HEAD_GROWTH = (0.1593, 0.1141, 0.1319), (0.0189, 0.0213, 0.0451)
 
 
 @dataclass(frozen=True)
@@ -26,8 +35,13 @@ class Proportions:
     height: float
 
     def of(self, fraction):
-        """A length given as a fraction of the body height."""
+        """A length below the head, given as a fraction of the body height of an adult of the same build."""
         return fraction * self.height
+
+    @property
+    def head(self):
+        """(length, breadth, height) of the head over those of an adult of the same build below it."""
+        return 1.0, 1.0, 1.0
 
     @property
     def thigh(self):
@@ -80,9 +94,26 @@ class Proportions:
     @property
     def neck(self):
         """From the neck's lower joint to the joint of neck and head, a little above the chin."""
-        return self.of(CHIN_HEIGHT - SHOULDER_HEIGHT + 0.010)
+        return self.of(HEAD_JOINT - SHOULDER_HEIGHT - 0.005)
 
     @property
     def step_width(self):
         """Lateral distance of the ankles in walking."""
         return self.of(0.06)
+
+
+@dataclass(frozen=True)
+class ChildProportions(Proportions):
+    """Of a child of `height` m, 0.8 to 1.5: the head is as large as measured, the rest is a smaller adult of what is left."""
+
+    def of(self, fraction):
+        top = (1.0 - HEAD_JOINT) / HEAD_SIZE[2] * self._head_size[2]   # of the head, above its joint
+        return fraction * (self.height - top) / HEAD_JOINT
+
+    @property
+    def head(self):
+        return tuple(size / self.of(share) for size, share in zip(self._head_size, HEAD_SIZE))
+
+    @property
+    def _head_size(self):
+        return [size + growth * self.height for size, growth in zip(CHILD_HEAD, CHILD_HEAD_GROWTH)]

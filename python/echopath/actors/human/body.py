@@ -70,8 +70,9 @@ def surface(kind, body, edge):
 def _limb(kind, body, edge):
     stations, begin_cap, end_cap = TABLES[kind]
     table = np.array(stations, dtype=float)
-    table[:, :5] *= body.height
-    section = table_section(table, body.of(begin_cap), body.of(end_cap))
+    length, breadth, height = body.head if kind == "head" else (1.0, 1.0, 1.0)
+    table[:, :5] *= body.of(np.array([height, length, breadth, length, breadth]))
+    section = table_section(table, height * body.of(begin_cap), height * body.of(end_cap))
     return swept(section, table[0, 0], table[-1, 0], min(edge, ROUNDEST * table[:, 3:5].min()))
 
 
@@ -84,13 +85,13 @@ def _foot(body, edge):
     def section(x):
         share = (x - sole.heel_end) / length
         bottom = sole.profile(x)
-        top = np.maximum(body.height * monotone_cubic(table[:, 0], table[:, 1], share), bottom)
-        breadth = body.height * monotone_cubic(table[:, 0], table[:, 2], share)
+        top = np.maximum(body.of(1.0) * monotone_cubic(table[:, 0], table[:, 1], share), bottom)
+        breadth = body.of(1.0) * monotone_cubic(table[:, 0], table[:, 2], share)
         begin, end = (body.of(cap) for cap in FOOT_CAPS)
         lack = (np.maximum(1 - (x - sole.heel_end) / begin, 0) ** 2 + np.maximum(1 - (sole.toe_end - x) / end, 0) ** 2)
         breadth = breadth * np.sqrt(np.maximum(1.0 - lack, 0.0))
         return np.stack([0 * x, (top + bottom) / 2 - sole.ankle_height, breadth, (top - bottom) / 2,
                          np.full_like(x, FOOT_POWER)], axis=-1)
 
-    finest = ROUNDEST * body.height * table[:, 2].min()
+    finest = ROUNDEST * body.of(1.0) * table[:, 2].min()
     return swept(section, sole.heel_end, sole.toe_end, min(edge, finest), axes=(1, 2, 0))

@@ -61,23 +61,22 @@ def pedestrian(*, height: float = 1.78, speed: float = 1.4, start_time: float = 
     """
     refuse_beside_trajectory(trajectory, speed=(speed, 1.4), start_time=(start_time, -0.5), duration=(duration, 2.5),
                              phase=(phase, 0.0))
+    return walking(Proportions(height), speed=speed, start_time=start_time, duration=duration, phase=phase, edge=edge,
+                   keyframe_rate=keyframe_rate, clothing=clothing, skin=skin, trajectory=trajectory)
+
+
+def walking(body, *, speed, start_time, duration, phase, edge, keyframe_rate, clothing, skin, trajectory):
+    """The Actor of a body that walks. Arguments as of pedestrian()."""
+    most = relative_speed_limit(body)
     if trajectory is not None:
-        body, most = Proportions(height), relative_speed_limit(Proportions(height))
         return walk_along(body, lambda speed: Gait(body, speed), (MIN_SPEED, most), trajectory, edge=edge,
                           keyframe_rate=keyframe_rate, clothing=clothing, skin=skin)
-    arrays = pedestrian_arrays(height=height, speed=speed, start_time=start_time, duration=duration, phase=phase,
-                               edge=edge, keyframe_rate=keyframe_rate, clothing=clothing, skin=skin)
-    return Actor([part.build() for part in arrays])
-
-
-def pedestrian_arrays(*, height, speed, start_time, duration, phase, edge, keyframe_rate, clothing, skin):
-    """The parts of a pedestrian as plain arrays: a list of PartArrays. Arguments as of pedestrian()."""
-    body = Proportions(height)
-    real(MIN_SPEED, round(relative_speed_limit(body), 3), f"m/s for a height of {height:g} m")("speed", speed)
+    real(MIN_SPEED, round(most, 3), f"m/s for a height of {body.height:g} m")("speed", speed)
     edge = edge_length(edge, 3.0 * body.height)
     real(0.0, 0.05 * body.height, "m")("edge", edge)
-    return walker_arrays(body, Gait(body, speed), start_time=start_time, duration=duration, phase=phase, edge=edge,
-                         keyframe_rate=keyframe_rate, clothing=clothing, skin=skin)
+    arrays = walker_arrays(body, Gait(body, speed), start_time=start_time, duration=duration, phase=phase, edge=edge,
+                           keyframe_rate=keyframe_rate, clothing=clothing, skin=skin)
+    return Actor([part.build() for part in arrays])
 
 
 def walker_arrays(body, gait, *, start_time, duration, phase, edge, keyframe_rate, clothing, skin):

@@ -9,8 +9,8 @@ from ..actor import Actor
 from ..following import refuse_beside_trajectory, trajectory_rule
 from ..laid_line import usual_speed
 from ..surfaces import edge_length
-from .anthropometry import Proportions
-from .pedestrian import HEIGHTS, MIN_KEYFRAME_RATE, body_arrays, material_rule, pedestrian, walk_along, walker_arrays
+from .anthropometry import ChildProportions, Proportions
+from .pedestrian import HEIGHTS, MIN_KEYFRAME_RATE, body_arrays, material_rule, walk_along, walker_arrays, walking
 from .posture import standing
 from .running import RunningGait, running_speeds
 
@@ -35,7 +35,12 @@ def runner(*, height: float = 1.78, speed: float = 3.0, start_time: float = -0.5
     """
     refuse_beside_trajectory(trajectory, speed=(speed, 3.0), start_time=(start_time, -0.5), duration=(duration, 2.5),
                              phase=(phase, 0.0))
-    body = Proportions(height)
+    return running(Proportions(height), speed=speed, start_time=start_time, duration=duration, phase=phase, edge=edge,
+                   keyframe_rate=keyframe_rate, clothing=clothing, skin=skin, trajectory=trajectory)
+
+
+def running(body, *, speed, start_time, duration, phase, edge, keyframe_rate, clothing, skin, trajectory):
+    """The Actor of a body that runs. Arguments as of runner()."""
     if trajectory is not None:
         return walk_along(body, lambda speed: RunningGait(body, speed), running_speeds(body), trajectory, edge=edge,
                           keyframe_rate=keyframe_rate, clothing=clothing, skin=skin)
@@ -54,9 +59,12 @@ def standing_person(*, height: float = 1.78, edge: float = 0.018, clothing: str 
     height: of the body in m, 0.5 to 2.5. edge: length in m of the triangles' sides. clothing, skin: materials.
     Returns an Actor. Raises ValueError for values out of range, TypeError for unknown keywords.
     """
-    body = Proportions(height)
-    frames = standing(body)
-    arrays = body_arrays(body, frames, None, edge=edge_length(edge, 3.0 * height), clothing=clothing, skin=skin)
+    return standing_body(Proportions(height), edge=edge, clothing=clothing, skin=skin)
+
+
+def standing_body(body, *, edge, clothing, skin):
+    """The Actor of a body that stands. Arguments as of standing_person()."""
+    arrays = body_arrays(body, standing(body), None, edge=edge_length(edge, 3.0 * body.height), clothing=clothing, skin=skin)
     return Actor([part.build() for part in arrays])
 
 
@@ -66,21 +74,22 @@ def child(*, height: float = 1.15, speed: float | None = None, start_time: float
           phase: float = 0.0, edge: float = 0.014, trajectory: Trajectory | None = None) -> Actor:
     """A child who walks, runs or stands: `pedestrian`, `runner` or `standing_person` of a child's height.
 
-    The proportions are those of an adult, so that the head, which is larger in children, is up to a third too small.
+    The head is as large as those of children of that height (Snyder and others 1977); below it the proportions are those of an
+    adult (anthropometry.py).
     height: in m, 0.8 to 1.5 (about 1 to 12 years). speed: m/s along +x: 0 stands, below twice the hip height a second it
     walks, above it runs; unless given it walks at 1.4 m/s times the root of its height over an adult's. start_time, duration,
     phase, edge: as of `pedestrian`. trajectory: as of `pedestrian`, by the speed that is usual on it.
     Returns an Actor. Raises ValueError for values out of range, TypeError for unknown keywords.
     """
-    body = Proportions(height)
+    body = ChildProportions(height)
     refuse_beside_trajectory(trajectory, speed=(speed, None))
-    walks_below = max(2.0 * body.hip_height, running_speeds(body)[0])
-    if trajectory is not None:
-        make = pedestrian if usual_speed(trajectory._track) < walks_below else runner
-        return make(height=height, start_time=start_time, duration=duration, phase=phase, edge=edge, trajectory=trajectory)
-    if speed is None:
-        speed = 1.4 * (height / 1.78) ** 0.5
+    looks = {"edge": edge, "clothing": "clothing", "skin": "skin"}
     if speed == 0.0:
-        return standing_person(height=height, edge=edge)
-    make = pedestrian if speed < walks_below else runner
-    return make(height=height, speed=speed, start_time=start_time, duration=duration, phase=phase, edge=edge)
+        return standing_body(body, **looks)
+    if trajectory is not None:
+        speed = usual_speed(trajectory._track)
+    elif speed is None:
+        speed = 1.4 * (height / 1.78) ** 0.5
+    walks = speed < max(2.0 * body.hip_height, running_speeds(body)[0])
+    return (walking if walks else running)(body, speed=speed, start_time=start_time, duration=duration, phase=phase,
+                                           keyframe_rate=120.0 if walks else 240.0, trajectory=trajectory, **looks)

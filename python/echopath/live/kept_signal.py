@@ -18,8 +18,9 @@ MOST_DIFFERENCES = 256
 
 @dataclasses.dataclass(frozen=True)
 class Update:
-    """What an update did. num_rays_shot, num_paths_changed: counts; trace, signal: s that they took"""
+    """What an update did. num_rays: of the record; num_rays_shot, num_paths_changed: counts; trace, signal: s that they took"""
 
+    num_rays: int
     num_rays_shot: int
     num_paths_changed: int
     trace: float
@@ -62,7 +63,7 @@ class KeptSignal:
             self._whole = self._record.paths(progress)
         middle = time.perf_counter()
         num_changed = self._bring_up(radar, progress)
-        return Update(change["num_rays_shot"], num_changed, middle - begin, time.perf_counter() - middle)
+        return Update(change.get("num_rays", self.num_rays), change["num_rays_shot"], num_changed, middle - begin, time.perf_counter() - middle)
 
     def _note(self, change: dict) -> None:
         """Notes what the cube lacks of the record."""

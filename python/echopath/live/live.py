@@ -16,6 +16,7 @@ from ..scene.scene import Scene
 from ..tracing.edges import looks_for_edges
 from ..tracing.tessellation import warn_of_coarse_meshes
 from .changes import Changes
+from .edited_scene import EditedScene
 from .kept_signal import KeptSignal
 from .view import LiveView
 from .watch import Watch
@@ -64,14 +65,19 @@ class Live:
         self._signal = {"tolerance": tolerance, "method": "nufft" if method == "auto" else method, "replay": replay,
                         "evaluate": evaluate, "phase_tolerance": phase_tolerance}
         self._window, self._zero_pad = window, zero_pad
-        self._scene, self._radar, self._changes = Scene(scene), radar, Changes()
+        self._changes = Changes()
+        self._scene, self._radar = EditedScene(scene, self._changes), radar
         self._busy = threading.Lock()  # held while a signal is brought up to date
         self._full = KeptSignal(num_rays, self._trace, self._signal)
         self._quick: KeptSignal | None = None
 
     @property
     def scene(self) -> Scene:
-        """The scene, to be read and changed. Threads beside each other change it in `change` or `changing`."""
+        """The scene, to be read and changed: each edit of it is a change by itself, which a Watch shows.
+
+        Edits that belong together, or hang on what they read (`position += ...` beside other threads), are made in `change`
+        or `changing`.
+        """
         return self._scene
 
     @property
@@ -91,7 +97,7 @@ class Live:
 
     @property
     def number(self) -> int:
-        """How many changes were made by `change`, `changing` and `set_map`."""
+        """How many changes were made: edits of `scene`, settings of `radar`, `set_map`, `change` and `changing`."""
         return self._changes.number
 
     @contextmanager
@@ -102,7 +108,7 @@ class Live:
 
     @checked(self=anything, function=anything)
     def change(self, function: Callable[[Scene], object]) -> None:
-        """Calls a function with the scene as one change; a Watch begins to show it at once.
+        """Calls a function with the scene as one change, however much it edits; a Watch begins to show it at once.
 
         function: callable (Scene). Raises TypeError unless it can be called, and what it raises.
         """
@@ -127,7 +133,8 @@ class Live:
         progress: callable (stage, fraction), True for bars, or None; what it raises ends the update and is raised here
         Raises ValueError as `trace` does. Nothing is lost then: the next update shows what the scene is by then.
         """
-        return self._view_of(self._full, is_preview=False, progress=progress)
+        with self._busy:
+            return self._view_of(self._full, is_preview=False, progress=progress)
 
     @checked(self=anything, num_rays=count(1, MOST_RAYS))
     def preview(self, *, num_rays: int | float, progress: Progress = None) -> LiveView:
@@ -136,9 +143,10 @@ class Live:
         num_rays: 1 to 1e10; as long as it stays the same, a preview after a change shoots only what that touches
         progress: as in `update`
         """
-        if self._quick is None or self._quick.num_rays != num_rays:
-            self._quick = KeptSignal(int(num_rays), self._trace, self._signal)
-        return self._view_of(self._quick, is_preview=True, progress=progress)
+        with self._busy:
+            if self._quick is None or self._quick.num_rays != num_rays:
+                self._quick = KeptSignal(int(num_rays), self._trace, self._signal)
+            return self._view_of(self._quick, is_preview=True, progress=progress)
 
     @checked(self=anything, preview=flag)
     def paths(self, *, preview: bool = False, progress: Progress = None) -> _core.Paths:
@@ -147,10 +155,10 @@ class Live:
         preview: of the last `preview` instead, which has fewer rays; progress: as in `update`
         Raises ValueError before the first update or preview.
         """
-        kept = self._quick if preview else self._full
-        if kept is None:
-            raise ValueError("preview: no preview was made yet")
         with self._busy:
+            kept = self._quick if preview else self._full
+            if kept is None:
+                raise ValueError("preview: no preview was made yet")
             return kept.paths(progress)
 
     @checked(self=anything, show=anything, budget=positive("s"), failed=anything)
@@ -169,17 +177,16 @@ class Live:
         return Watch(self, self._changes, show, budget, failed)
 
     def _view_of(self, kept: KeptSignal, *, is_preview: bool, progress) -> LiveView:
-        with self._busy:
-            with self._changes.still():
-                scene, radar, number = _core.Scene(self._scene), self._radar, self.number
-                window, zero_pad = self._window, self._zero_pad
-            warn_of_coarse_meshes(scene, radar.waveform.start_frequency)
-            done = kept.update(scene, radar, progress)
-            begin = time.perf_counter()
-            spectrum = _core.range_doppler(kept.cube, radar, window, zero_pad)
-            stages = {"trace": done.trace, "signal": done.signal, "map": time.perf_counter() - begin}
-            return LiveView(number, kept.cube, spectrum, kept.num_rays, done.num_rays_shot, done.num_paths_changed,
-                            is_preview, stages)
+        with self._changes.still():
+            scene, radar, number = Scene(self._scene), self._radar, self.number
+            window, zero_pad = self._window, self._zero_pad
+        warn_of_coarse_meshes(scene, radar.waveform.start_frequency)
+        done = kept.update(scene, radar, progress)
+        begin = time.perf_counter()
+        spectrum = _core.range_doppler(kept.cube, radar, window, zero_pad)
+        stages = {"trace": done.trace, "signal": done.signal, "map": time.perf_counter() - begin}
+        return LiveView(number, kept.cube, spectrum, done.num_rays, done.num_rays_shot, done.num_paths_changed, is_preview,
+                        stages)
 
     def __reduce__(self) -> NoReturn:
         raise TypeError("Live: holds locks of its threads and cannot be pickled or copied; pickle or copy its scene and radar, "

@@ -18,7 +18,8 @@ class LiveView:
     number: of the changes that it shows: 0 for the scene as it was given, one more for each change since
     cube: complex128 [tx, rx, chirp, sample], the noise-free IF signal in sqrt(W), read-only
     map: RangeDoppler of it, with values [tx, rx, velocity, range]
-    num_rays: of its record; num_rays_shot: how many of these were shot for this view, the others kept
+    num_rays: of its record, about as many as were asked for; num_rays_shot: how many of these were shot for this view, the
+        others kept
     num_paths_changed: paths whose signal was taken away or added
     is_preview: whether it has fewer rays than asked for, and a better one follows
     stages: {"trace", "signal", "map"}: what each took, in s

@@ -98,6 +98,18 @@ def test_edges_of_faces_that_come_apart_are_those_of_a_fresh_scene():
         assert difference(live.update(), fresh_view(live, edges=True)) < ROUNDING
 
 
+def test_weather_that_comes_weakens_echoes_by_the_length_of_their_way():
+    """A plate at 40 m: 80 m of fog, as dense as may be."""
+    _, radar, _ = crowded_street()
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.5, 0.5), name="plate", material=ep.Material.metal(), position=(40.0, 0.0, 0.5), yaw=np.pi)
+    live = ep.Live(scene, radar, num_rays=500)
+    clear = np.abs(live.update().map.values).max()
+    live.scene.weather = ep.Weather(fog_g_per_m3=10.0)
+    loss = sum(live.scene.weather.attenuation_db_per_km(radar).values()) * 0.08
+    assert 20.0 * np.log10(clear / np.abs(live.update().map.values).max()) == pytest.approx(loss, rel=0.03)
+
+
 def test_a_scene_in_motion_is_followed(live):
     live.scene["car_smooth_15"].motion = ep.LinearMotion(velocity=(12.0, 0.0, 0.0))
     view = live.update()

@@ -1,10 +1,12 @@
 """Live scenes that are watched: views and previews come while changes go on."""
+import copy
 import threading
 import time
 
 import pytest
 
 import echopath as ep
+from echopath.live.kept_signal import KeptSignal
 from support.live import difference, fresh_view, make_live
 
 ROUNDING = 1e-12   # of the largest sample: signals are added and taken away
@@ -28,6 +30,72 @@ def test_a_watch_shows_the_latest_change_last(live):
     assert [view.number for view in shown] == sorted(view.number for view in shown)
     assert shown[-1].number == 20 and not shown[-1].is_preview
     assert difference(shown[-1], fresh_view(live)) < ROUNDING
+
+
+def test_a_watch_shows_what_is_edited_directly(live):
+    shown = Shown()
+    with live.watch(shown) as watch:
+        assert watch.wait(LONG)
+        live.scene["sign_30"].position += (0.1, 0.0, 0.0)
+        assert live.number == 1 and watch.wait(LONG)
+        live.scene.remove("pole_20")
+        live.scene.add(ep.actors.pole(), name="pole", material="concrete", position=(12.0, 2.0, 0.0))
+        assert live.number == 3 and watch.wait(LONG)
+        live.scene.weather = ep.Weather(fog_g_per_m3=1.0)
+        assert watch.wait(LONG)
+    assert shown[-1].number == live.number == 4
+    assert difference(shown[-1], fresh_view(live)) < ROUNDING
+
+
+def test_edits_within_a_change_are_one_and_those_before_an_error_count():
+    live = make_live()
+
+    def breaks(scene):
+        scene["sign_30"].visible = False
+        raise KeyError("broken")
+
+    with live.changing() as scene:
+        for step in (0.1, 0.2):
+            scene["sign_30"].position += (step, 0.0, 0.0)
+    assert live.number == 1
+    with pytest.raises(KeyError, match="broken"):
+        live.change(breaks)
+    assert live.number == 2 and not live.scene["sign_30"].visible
+    with pytest.raises(KeyError, match="nobody"):
+        live.change(lambda scene: scene.remove("nobody"))
+    assert live.number == 2
+
+
+@pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy, lambda scene: scene.copy(), ep.Scene])
+def test_copies_of_its_scene_are_plain_and_count_nothing(copied):
+    live = make_live()
+    other = copied(live.scene)
+    other["sign_30"].visible = False
+    assert type(other) is ep.Scene and live.number == 0 and live.scene["sign_30"].visible
+
+
+def test_previews_of_threads_beside_each_other_have_the_rays_that_each_asked_for(monkeypatch):
+    """While the record of one is made, the other asks for one of its own."""
+    live, views, both = make_live(), {}, threading.Barrier(2)
+
+    class Slow(KeptSignal):
+        def __init__(self, *arguments):
+            super().__init__(*arguments)
+            try:
+                both.wait(0.3)
+            except threading.BrokenBarrierError:
+                pass
+
+    monkeypatch.setattr("echopath.live.live.KeptSignal", Slow)
+    threads = [threading.Thread(target=lambda rays=rays: views.update({rays: live.preview(num_rays=rays)}))
+               for rays in (300, 900)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    monkeypatch.undo()
+    for rays, view in views.items():
+        assert difference(view, fresh_view(live, num_rays=rays)) == 0.0
 
 
 def test_a_watch_shows_a_preview_first_where_a_view_takes_longer_than_its_budget():

@@ -1,0 +1,42 @@
+"""The scene of a live scene, of which each edit is a change."""
+from __future__ import annotations
+
+from .. import _core
+from ..scene.scene import Scene
+from .changes import Changes
+
+
+class EditedScene(Scene):
+    """A Scene whose edits are made one at a time and are counted; copies of it, and what is pickled, are plain Scenes."""
+
+    def __init__(self, scene: _core.Scene, changes: Changes):
+        self._changes = None  # what it is made of is no edit
+        super().__init__(scene)
+        self._changes = changes
+
+    def _add_nodes(self, nodes) -> None:
+        with self._changes.one():
+            super()._add_nodes(nodes)
+
+    def _change(self, index: int, node: _core.Node) -> None:
+        with self._changes.one():
+            super()._change(index, node)
+
+    def _remove(self, index: int) -> None:
+        with self._changes.one():
+            super()._remove(index)
+
+    def __setattr__(self, name: str, value) -> None:
+        if self.__dict__.get("_changes") is None or name.startswith("_"):
+            return super().__setattr__(name, value)
+        with self._changes.one():  # weather, interferers
+            super().__setattr__(name, value)
+
+    def __copy__(self) -> Scene:
+        return Scene(self)
+
+    def __deepcopy__(self, memo) -> Scene:
+        return Scene(self)
+
+    def __reduce_ex__(self, protocol):
+        return Scene(self).__reduce_ex__(protocol)

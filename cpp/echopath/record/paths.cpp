@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "echopath/base/errors.h"
+#include "echopath/posed/posed_antenna.h"
 #include "echopath/scene/scene_edges.h"
 
 namespace echopath {
@@ -134,6 +135,11 @@ void validate_foci(const std::vector<Stratum>& strata) {
 }
 
 }  // namespace
+
+Vec3 Paths::mode_polarization() const {
+  const Antenna& first = radar.transmitters.front();
+  return in_world(first, first.polarization, radar.world_from_radar(frame.trace_time));
+}
 
 void Paths::validate() const {
   const size_t size = offsets.size();

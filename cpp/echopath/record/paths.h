@@ -162,6 +162,10 @@ struct Paths {
     return curved_cell.empty() || curved_cell[path] == std::array<float, 7>{} ? nullptr : &curved_cell[path];
   }
 
+  // Returns the polarisation in the world by which the scalar model and the legs between hits tell modes apart: that of the
+  // first transmitter at the time of the trace.
+  Vec3 mode_polarization() const;
+
   std::span<const Pass> passes_of(size_t path) const {
     if (pass_offsets.empty()) return {};
     const auto first = static_cast<size_t>(pass_offsets[path]), end = static_cast<size_t>(pass_offsets[path + 1]);

@@ -22,11 +22,10 @@ constexpr int64_t kBlocksAhead = 64;  // they tell how large a record of several
 
 // Sets the whole sphere, or the half space in front where all transmitters look the same way and have no gain behind.
 void set_field_of_view(const Radar& radar, const Transform& world_from_radar, LaunchSettings& launch) {
-  const auto boresight = [](const Antenna& antenna) -> Vec3 { return antenna.orientation * Vec3::UnitX(); };
-  const Vec3 first = boresight(radar.transmitters.front());
-  launch.boresight = (world_from_radar.linear() * first).normalized();
+  const auto boresight = [&](const Antenna& antenna) { return in_world(antenna, Vec3::UnitX(), world_from_radar); };
+  launch.boresight = boresight(radar.transmitters.front());
   for (const Antenna& antenna : radar.transmitters) {
-    if (!antenna.pattern.is_dark_behind() || boresight(antenna).dot(first) < 1.0 - 1e-9) return;
+    if (!antenna.pattern.is_dark_behind() || boresight(antenna).dot(launch.boresight) < 1.0 - 1e-9) return;
   }
   launch.field_versine = 1.0;
 }
@@ -95,8 +94,7 @@ SbrSettings Tracer::settings_of_rays(const TraceSettings& settings) const {
   sbr.frequency = empty_.radar.waveform.start_frequency;
   sbr.transmitter = empty_.frame.transmitter - origin_;
   sbr.receiver = empty_.frame.receiver - origin_;
-  const Antenna& first = empty_.radar.transmitters.front();
-  sbr.polarization = (world_from_radar_.linear() * (first.orientation * first.polarization)).normalized();
+  sbr.polarization = empty_.mode_polarization();
   return sbr;
 }
 

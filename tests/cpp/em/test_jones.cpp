@@ -5,7 +5,7 @@
 #include <random>
 
 #include "echopath/base/constants.h"
-#include "echopath/em/polarization/jones.h"
+#include "echopath/em/polarization/mirrored_fields.h"
 #include "echopath/em/polarization/transverse_formula.h"
 #include "echopath/em/surface/fresnel.h"
 #include "echopath/em/surface/surface_response.h"
@@ -73,6 +73,25 @@ TEST(Jones, SpecularRadiationIsTheReflectedFieldTimesTheCosine) {
               10 * kRounding);
     EXPECT_LT(std::abs(dot(mirrored, reflected)), kRounding);
     EXPECT_LT(std::abs(modes.te - fresnel_te(*glass.permittivity, cos_incidence)), kRounding);
+  }
+}
+
+// The fields before and behind a conductor add up to one at right angles to it; scattering leaves less behind it.
+TEST(Jones, AMirrorMayBeMetFromEitherSide) {
+  std::mt19937 random(8);
+  Material metal;
+  metal.conductor = true;
+  metal.scattering = 0.6;
+  const SurfaceModel model(metal, 77e9);
+  for (int i = 0; i < 50; ++i) {
+    const Case at = random_case(random);
+    for (const Vec3& normal : {at.normal, Vec3(-at.normal)}) {
+      FieldVector behind = at.field;
+      Vec3 direction = at.direction;
+      carry_over_mirror({&behind, 1}, direction, normal, model);
+      EXPECT_LT((at.field + behind / 0.8).cross(at.normal.cast<std::complex<double>>()).norm(), 10 * kRounding);
+      EXPECT_LT((direction - at.direction + 2.0 * at.direction.dot(at.normal) * at.normal).norm(), kRounding);
+    }
   }
 }
 

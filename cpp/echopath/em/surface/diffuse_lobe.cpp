@@ -24,9 +24,6 @@ double term_at(const Vec3& out, const Vec3& axis, int exponent) {
   return power_of(std::max(0.0, 0.5 * (1.0 + out.dot(axis))), exponent);
 }
 
-// Returns the normal on the side that the wave meets.
-Vec3 lit_normal(const Vec3& in, const Vec3& normal) { return in.dot(normal) > 0 ? Vec3(-normal) : normal; }
-
 // Returns the density of a term that is drawn over all directions and folded to the front.
 double folded_density(const Vec3& out, const Vec3& normal, const Vec3& axis, int exponent) {
   const double both = term_at(out, axis, exponent) + term_at(mirrored(out, normal), axis, exponent);

@@ -33,8 +33,8 @@ void store_image(const NodeRows& planes, size_t mirror, size_t from, size_t to, 
     store(plane.mirrored(load(images.rows, from, LegToMeasure::kBoresight, node)), images.rows, to, LegToMeasure::kBoresight,
           node);
     if (images.antenna_from_image.empty()) continue;
-    const Mat3 reflection = Mat3::Identity() - 2.0 * normal * normal.transpose();
-    images.antenna_from_image[to * num_nodes + node] = images.antenna_from_image[from * num_nodes + node] * reflection;
+    images.antenna_from_image[to * num_nodes + node] =
+        images.antenna_from_image[from * num_nodes + node] * reflection(normal);
   }
   pad(images.rows, to, LegToMeasure::kNumImageRows);
 }

@@ -4,11 +4,10 @@
 #include <optional>
 
 #include "echopath/base/constants.h"
-#include "echopath/base/plane.h"
 #include "echopath/em/edges/edge_diffraction.h"
 #include "echopath/em/edges/edge_shadow.h"
 #include "echopath/em/edges/multiple_diffraction.h"
-#include "echopath/em/surface/surface_response.h"
+#include "echopath/em/polarization/mirrored_fields.h"
 #include "echopath/record/posed_edge.h"
 #include "echopath/replay/kernels/path_formula.h"
 
@@ -170,13 +169,8 @@ class EdgeEchoes {
     };
     for (size_t k = 0; k < mirrors_.hits.size(); ++k) {
       pass(k);
-      const Vec3& facet = mirrors_.hits[k].normal;
-      const Vec3 normal = facet.dot(direction) < 0 ? facet : Vec3(-facet);
       const SurfaceModel model(*mirrors_.materials[k], frequency_);
-      const double cos_in = -normal.dot(direction);
-      const double coherent = model.respond(cos_in, PolarizationMode::kTe).coherent;
-      field = coherent * reflected_field(field, direction, normal, model.modes(cos_in));
-      direction = mirrored(direction, normal);
+      carry_over_mirror({&field, 1}, direction, mirrors_.hits[k].normal, model);
     }
     pass(mirrors_.hits.size());
     return field;

@@ -20,17 +20,12 @@ Vec3 toward_foot(const Vec3& direction, const Vec3& normal) {
   return size > 1e-9 ? Vec3(across / size) : Vec3(Vec3::Zero());
 }
 
-Vec3 met_on_plane(const Vec3& from, const Vec3& to, const Plane& plane) {
-  const double before = plane.height(from), behind = plane.height(to);
-  return before == behind ? from : Vec3(from + before / (before - behind) * (to - from));
-}
-
 }  // namespace
 
 RecordSheets::RecordSheets(const PathPreparer& of, double wavelength_of) : preparer(of), wavelength(wavelength_of) {
   const Paths& paths = preparer.paths();
   if (paths.passes.empty()) return;
-  polarization = sheet_polarization(paths);
+  polarization = paths.mode_polarization();
   of_mesh.resize(paths.scene->meshes().size());
   for (const Pass& pass : paths.passes) {
     std::optional<Sheet>& sheet = of_mesh[pass.hit.mesh_id];
@@ -167,15 +162,15 @@ std::pair<Vec3, Vec3> PathPassages::ends_of_leg(int leg, const Ends& ends) const
   const Vec3 from = before < 0 ? ends.transmitter : posed_[at(before)].point;
   const Vec3 to = behind == count_ ? ends.receiver : posed_[at(behind)].point;
   // Toward each mirror from the point before, the wave travels to the image of the end over this mirror and all behind.
+  const auto met = [&](const Vec3& start, int k) -> Vec3 {
+    if (k == behind) return to;
+    const PosedHit& mirror = posed_[at(k)];
+    const Vec3 image = image_over(std::views::reverse(chain_of(posed_.data(), k, behind)), to);
+    return mirror.height(start) == mirror.height(image) ? start : mirror.met_on_line(start, image);
+  };
   Vec3 start = from;
-  for (int k = before + 1; k <= behind; ++k) {
-    Vec3 image = to;
-    for (int mirror = behind; mirror-- > k;) image = plane_of(mirror).image(image);
-    const Vec3 end = k == behind ? to : met_on_plane(start, image, plane_of(k));
-    if (k == leg) return {start, end};
-    start = end;
-  }
-  return {from, to};
+  for (int k = before + 1; k < leg; ++k) start = met(start, k);
+  return {start, met(start, leg)};
 }
 
 }  // namespace echopath

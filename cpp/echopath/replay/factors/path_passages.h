@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "echopath/base/plane.h"
 #include "echopath/em/layers/sheet_table.h"
 #include "echopath/em/polarization/jones.h"
 #include "echopath/replay/posed/local_paths.h"
@@ -79,7 +78,6 @@ class PathPassages {
   Crossing crossing(size_t pass, const Vec3& from, const Vec3& direction) const;
   Vec3 normal_at(size_t pass, const Vec3& from, const Vec3& direction) const;
   std::pair<Vec3, Vec3> ends_of_leg(int leg, const Ends& ends) const;
-  Plane plane_of(int hit) const { return {posed_[at(hit)].point, posed_[at(hit)].normal}; }
 
   const RecordSheets& shared_;
   const Paths& paths_;

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "echopath/base/plane.h"
 #include "echopath/replay/evaluate/inner_part.h"
 #include "echopath/scene/smooth/smooth.h"
 
@@ -26,7 +25,7 @@ TraceCells::TraceCells(const SharedLegPlan& plan, const PathPreparer& preparer, 
   for (size_t image = 1; image < plan.images.size(); ++image) {
     PosedHit mirror;
     pose_hit(preparer.hit(plan.mirrors[plan.images[image].mirror], normals), preparer.at_trace(), false, mirror);
-    origin_.push_back(Plane{mirror.point, mirror.normal}.image(origin_[plan.images[image].parent]));
+    origin_.push_back(mirror.image(origin_[plan.images[image].parent]));
   }
 }
 

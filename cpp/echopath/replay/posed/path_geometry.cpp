@@ -1,23 +1,10 @@
 #include "echopath/replay/posed/path_geometry.h"
 
-#include "echopath/base/plane.h"
 #include "echopath/record/posed_edge.h"
 #include "echopath/scene/smooth/smooth.h"
 
 namespace echopath {
 namespace {
-
-// Returns the image of a point over the mirrors [first, last) in order of travel.
-Vec3 forward_image(Vec3 point, const PosedHit* hits, int first, int last) {
-  for (int k = first; k < last; ++k) point = Plane{hits[k].point, hits[k].normal}.image(point);
-  return point;
-}
-
-// Returns the direction before the mirrors [first, last) of a wave that travels along `direction` behind them.
-Vec3 direction_before(Vec3 direction, const PosedHit* hits, int first, int last) {
-  for (int k = last; k-- > first;) direction = mirrored(direction, hits[k].normal);
-  return direction;
-}
 
 // Moves a posed hit from its facet to the curved surface.
 void curve(const LocalHit& hit, const PosedScene& scene, PosedHit& posed) {
@@ -80,15 +67,11 @@ void pose_hits(const LocalPath& path, const PosedScene& scene, PosedHit* out) {
 }
 
 UnfoldedLeg unfolded_leg(const PosedHit* hits, const Vec3& from, int first, int last, const Vec3& to) {
-  const Vec3 line = to - forward_image(from, hits, first, last);
+  const std::span<const PosedHit> mirrors = chain_of(hits, first, last);
+  const Vec3 line = to - image_over(mirrors, from);
   const double length = line.norm();
   const Vec3 arrival = line / length;
-  return {length, direction_before(arrival, hits, first, last), arrival};
-}
-
-Vec3 reflected_behind(Vec3 vector, const PosedHit* hits, int first, int last) {
-  for (int k = first; k < last; ++k) vector = mirrored(vector, hits[k].normal);
-  return vector;
+  return {length, mirrored_over(std::views::reverse(mirrors), arrival), arrival};
 }
 
 UnfoldedLeg inner_leg(const PosedHit* hits, int from, int to) {

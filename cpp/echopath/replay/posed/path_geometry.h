@@ -1,6 +1,8 @@
 #pragma once
 // Poses the hits of paths: points, normals and the legs between them, with images for flagged mirrors.
+#include <span>
 
+#include "echopath/base/plane.h"
 #include "echopath/posed/posed_scene.h"
 #include "echopath/record/paths.h"
 
@@ -24,8 +26,9 @@ struct LocalHit {
   int num_pieces = 0;
 };
 
-struct PosedHit {
-  Vec3 point, normal;   // relative to the origin, on the curved surface where it is smooth; unit, of the triangle's winding
+// Describes a hit in the world. Its point is relative to the origin, on the curved surface where it is smooth; its normal is
+// that of the triangle's winding.
+struct PosedHit : Plane {
   Vec3 edge_u, edge_v;  // only where they are asked for or the triangle bends
   Vec3 facet;           // the point on the flat triangle; only where is_smooth
   Mat3 curvature;       // 1/m, about `normal` (scene/smooth/smooth.h); only where is_smooth
@@ -69,8 +72,8 @@ struct UnfoldedLeg {
   Vec3 departure, arrival;  // unit directions of travel at both ends
 };
 UnfoldedLeg unfolded_leg(const PosedHit* hits, const Vec3& from, int first, int last, const Vec3& to);
-// Returns the vector after its reflection at these mirrors.
-Vec3 reflected_behind(Vec3 vector, const PosedHit* hits, int first, int last);
+// Returns these mirrors as a chain (base/plane.h).
+inline std::span<const PosedHit> chain_of(const PosedHit* hits, int first, int last) { return {hits + first, hits + last}; }
 
 // Returns the leg between the hits `from` < `to` of a path, which are not images, over the mirrors between them.
 UnfoldedLeg inner_leg(const PosedHit* hits, int from, int to);

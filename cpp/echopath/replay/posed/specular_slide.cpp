@@ -33,7 +33,7 @@ void SpecularSlide::add_leg(const LocalPath& path, const PosedHit* hits, int fro
       if (before) before->hessian(i, j) += inverse_length * across(before->axis[i], before->axis[j], leg.departure);
       if (behind) behind->hessian(i, j) += inverse_length * across(behind->axis[i], behind->axis[j], leg.arrival);
       if (!before || !behind) continue;
-      const Vec3 arriving = reflected_behind(before->axis[i], hits, from + 1, to);
+      const Vec3 arriving = mirrored_over(chain_of(hits, from + 1, to), before->axis[i]);
       before->coupling(i, j) = -inverse_length * across(arriving, behind->axis[j], leg.arrival);
     }
   }

@@ -120,8 +120,9 @@ class RouteSorter {
   GlintRoute route_of(const RouteKind& kind, std::vector<SeenPath> seen) const {
     GlintRoute route{kind.mesh, kind.stratum, std::move(seen), {}, paths_.frame.transmitter, paths_.frame.receiver};
     for (const MirrorFace& mirror : kind.before) route.before.push_back(plane_of(mirror));
-    for (const Plane& plane : route.before) route.first = plane.image(route.first);
-    for (size_t k = kind.behind.size(); k-- > 0;) route.second = plane_of(kind.behind[k]).image(route.second);
+    const auto behind = std::views::transform(kind.behind, [&](const MirrorFace& mirror) { return plane_of(mirror); });
+    route.first = image_over(route.before, route.first);
+    route.second = image_over(std::views::reverse(behind), route.second);
     return route;
   }
 

@@ -21,17 +21,16 @@ const Vec3 kShiftOfPoint = Vec3(0.5320508076, -0.4515026222, 0.7163118961).norma
 
 std::optional<PlaneLeg> PlaneLegFinder::find(const Vec3& point, const Vec3& outward, const Vec3& antenna,
                                              const LitPlane& over, int64_t& num_queries) const {
-  std::vector<Vec3> images = {antenna};
-  for (const int mirror : over.mirrors) images.push_back(plane(mirror).image(images.back()));
-  const Plane& face = plane(over.plane);
-  const Vec3 lit = face.height(images.back()) > 0 ? face.normal : Vec3(-face.normal);
+  std::vector<Vec3> images(over.mirrors.size());
+  find_images(chain_of(lit_.planes(), over.mirrors), antenna, images.data());
+  const Vec3 lit = plane(over.plane).normal_toward(images.back());
   const Vec3 along = (kShiftOfPoint - lit.dot(kShiftOfPoint) * lit).normalized();
   const Vec3 lift = (outward + lit).normalized();
   PlaneLeg found;
   int num_found = 0;
   for (const double side : {1.0, -1.0}) {
     PlaneLeg leg;
-    if (follow(point + side * kPointAside * along, lift, images, over, leg, num_queries) && num_found++ == 0)
+    if (follow(point + side * kPointAside * along, lift, antenna, images, over, leg, num_queries) && num_found++ == 0)
       found = std::move(leg);
   }
   if (num_found == 0) return std::nullopt;
@@ -44,27 +43,26 @@ std::optional<PlaneLeg> PlaneLegFinder::find(const Vec3& point, const Vec3& outw
   return found;
 }
 
-// `images` are those of the antenna over the first mirrors, beginning with none.
-bool PlaneLegFinder::follow(const Vec3& point, const Vec3& lift, const std::vector<Vec3>& images, const LitPlane& over,
-                            PlaneLeg& leg, int64_t& num_queries) const {
+// `images` are those of the antenna over the first mirrors.
+bool PlaneLegFinder::follow(const Vec3& point, const Vec3& lift, const Vec3& antenna, const std::vector<Vec3>& images,
+                            const LitPlane& over, PlaneLeg& leg, int64_t& num_queries) const {
   Vec3 position = point, from = geometry_.lifted(point, lift);
   for (size_t k = over.mirrors.size(); k-- > 0;) {
     RayHit& met = leg.bounces.emplace_back();
-    if (!bounce(from, position, images[k + 1], over.mirrors[k], met, num_queries)) return false;
+    if (!bounce(from, position, images[k], over.mirrors[k], met, num_queries)) return false;
     position = met.position;
     from = geometry_.lifted(position, met.normal);
   }
   ++num_queries;
-  return !geometry_.occluded(from, images.front());
+  return !geometry_.occluded(from, antenna);
 }
 
 // Looks from a point toward an image behind the plane, and finds the point where the wave meets the plane.
 bool PlaneLegFinder::bounce(const Vec3& from, const Vec3& position, const Vec3& image, int index, RayHit& met,
                             int64_t& num_queries) const {
   const Plane& mirror = this->plane(index);
-  const double before = mirror.height(position), behind = mirror.height(image);
-  if (before * behind >= 0 || std::abs(before) < kLeastOffPlane) return false;
-  const Vec3 line = position + before / (before - behind) * (image - position) - from;
+  if (!mirror.lies_between(position, image) || std::abs(mirror.height(position)) < kLeastOffPlane) return false;
+  const Vec3 line = mirror.met_on_line(position, image) - from;
   const double length = line.norm();
   ++num_queries;
   if (geometry_.intersect_from_surface(from, line / length, met) != EmbreeScene::Verdict::kHit) return false;
@@ -87,10 +85,8 @@ void PlaneLegFinder::weigh(const Vec3& point, const Vec3& antenna, PlaneLeg& leg
     const double behind = (met.position - position).norm();
     travelled += behind;
     const SurfaceModel model(*scene_.node_of(met.hit.mesh_id).material, settings_.frequency);
-    const PolarizationMode mode = mode_along(model, settings_.polarization, direction, met.normal);
-    const SurfaceResponse response = model.respond(-direction.dot(met.normal), mode);
-    leg.gain *= response.gamma * response.coherent *
-                mirror_sign(model.material(), mode, settings_.polarization, direction, met.normal);
+    const SurfaceResponse response = respond_as_mirror(model, settings_.polarization, direction, met.normal);
+    leg.gain *= response.gamma * response.coherent;
     const Vec3 next = k + 1 < leg.bounces.size() ? leg.bounces[k + 1].position : antenna;
     leg.first_cover = cover_of(met, (met.position - next).normalized(), leg.length - travelled, behind, num_queries);
     leg.share *= std::min(1.0, leg.first_cover / kMirrorsAll);

@@ -50,8 +50,7 @@ FrustumFinder::FrustumFinder(const std::vector<Mirror>& mirrors, const EmbreeSce
 bool FrustumFinder::reflect(const MirrorFrustum* frustum, const Vec3& source, int index, double slack,
                             MirrorFrustum& out) const {
   const Mirror& mirror = mirrors_[static_cast<size_t>(index)];
-  const double side = mirror.height(source);
-  if (std::abs(side) < kNoImageWithin) return false;
+  if (std::abs(mirror.height(source)) < kNoImageWithin) return false;
   thread_local std::vector<Vec3> window, spare;
   window = mirror.outline;
   if (frustum) {
@@ -76,7 +75,7 @@ bool FrustumFinder::reflect(const MirrorFrustum* frustum, const Vec3& source, in
   const MirrorSequence before = frustum ? frustum->sequence : kNoMirrors;
   out.sequence = is_long ? kLongSequence : extended(before, index, mirrors_.size());
   out.images.push_back(mirror.image(source));
-  out.lit_normal = side > 0 ? mirror.normal : Vec3(-mirror.normal);
+  out.lit_normal = mirror.normal_toward(source);
   out.offset = out.lit_normal.dot(mirror.point);
   out.rims = rims_of(out.window, out.image());
   return true;

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "echopath/em/polarization/mirrored_fields.h"
+
 namespace echopath {
 namespace {
 
@@ -15,58 +17,43 @@ const Vec3 kAsideDirection = Vec3(0.6180339887, 0.7320508076, -0.2915026221).nor
 
 std::optional<ImagePath> ImageMethod::path_over(const std::vector<int>& sequence) {
   sequence_ = sequence;
-  int num_found = 0;
-  for (const double side : {1.0, -1.0}) num_found += follow(settings_.receiver + side * kAside * kAsideDirection) ? 1 : 0;
-  if (num_found == 0) return std::nullopt;
-  ImagePath path{hits_, points_, 0.5 * num_found, {}};
+  ImagePath path;
+  for (const double side : {1.0, -1.0}) {
+    if (follow(settings_.receiver + side * kAside * kAsideDirection, path)) path.weight += 0.5;
+  }
+  path.points = points_;
+  if (path.weight == 0.0) return std::nullopt;
   if (settings_.is_polarized) path.jones = jones_matrix();
-  else path.weight = field() * (0.5 * num_found);
+  else path.weight = field() * path.weight.real();
   if (std::abs(path.weight) == 0) return std::nullopt;
   return path;
 }
 
-// Follows the sequence to a receiver; sets hits_ and returns true where the path gets through.
-bool ImageMethod::follow(const Vec3& receiver) {
+// Follows the sequence to a receiver; sets hits and points of the path and returns true where it gets through.
+bool ImageMethod::follow(const Vec3& receiver, ImagePath& path) {
   if (!find_points(sequence_, receiver, points_)) return false;
   std::vector<Hit> hits;
   for (size_t k = 0; k < points_.size(); ++k) {
     const Vec3 from = k == 0 ? settings_.transmitter : lifted_toward(k - 1, points_[k]);
-    const std::optional<Hit> hit = locator_.locate(mirror(k), from, points_[k]);
+    const std::optional<Hit> hit = locator_.locate(chain_of(mirrors_, sequence_)[k], from, points_[k]);
     if (!hit) return false;
     hits.push_back(*hit);
   }
   if (!sees_all(receiver)) return false;
-  hits_ = std::move(hits);
+  path.hits = std::move(hits);
+  path.points = points_;
   return true;
 }
 
-// Goes from the receiver backwards through the images of the transmitter.
 bool ImageMethod::find_points(const std::vector<int>& sequence, const Vec3& receiver, std::vector<Vec3>& points) const {
-  const size_t n = sequence.size();
-  const auto plane = [&](size_t k) -> const Mirror& { return mirrors_[static_cast<size_t>(sequence[k])]; };
-  std::vector<Vec3> images(n + 1);
-  images[0] = settings_.transmitter;
-  for (size_t k = 0; k < n; ++k) images[k + 1] = plane(k).image(images[k]);
-  points.assign(n, Vec3::Zero());
-  Vec3 target = receiver;
-  for (size_t k = n; k-- > 0;) {
-    const double behind = plane(k).height(images[k + 1]), before = plane(k).height(target);
-    if (behind * before >= 0) return false;
-    points[k] = target + before / (before - behind) * (images[k + 1] - target);
-    target = points[k];
-  }
-  return true;
+  points.resize(sequence.size());
+  const auto missed = find_reflections(chain_of(mirrors_, sequence), settings_.transmitter, receiver, points.data());
+  if (missed) std::fill_n(points.begin(), *missed + 1, Vec3::Zero());
+  return !missed;
 }
 
-// Lifts the point off all the planes that meet in it, toward the side of the target.
 Vec3 ImageMethod::lifted_toward(size_t k, const Vec3& target) const {
-  Vec3 point = points_[k];
-  for (size_t other = 0; other < points_.size(); ++other) {
-    if ((points_[other] - points_[k]).norm() > kAtEdge) continue;
-    const Mirror& plane = mirror(other);
-    point = geometry_.lifted(point, plane.height(target) >= 0 ? plane.normal : Vec3(-plane.normal));
-  }
-  return point;
+  return lifted_off_mirrors(chain_of(mirrors_, sequence_), points_.data(), k, target, kAtEdge, geometry_.lift());
 }
 
 bool ImageMethod::sees_all(const Vec3& receiver) {
@@ -83,41 +70,32 @@ bool ImageMethod::sees_all(const Vec3& receiver) {
 
 // Returns the departure of the path to the true receiver.
 Vec3 ImageMethod::departure() const {
-  Vec3 image = settings_.receiver;
-  for (size_t k = points_.size(); k-- > 0;) image = mirror(k).image(image);
+  const Vec3 image = image_over(std::views::reverse(chain_of(mirrors_, sequence_)), settings_.receiver);
   return (image - settings_.transmitter).normalized();
 }
 
-SheetSide ImageMethod::side_met(size_t k, const Vec3& direction) const {
-  return direction.dot(mirror(k).normal) < 0 ? SheetSide::kFront : SheetSide::kBack;
+// Returns the model of a mirror, from the side that a wave along `direction` meets.
+SurfaceModel ImageMethod::model_of(const Mirror& mirror, const Vec3& direction) const {
+  const SheetSide side = direction.dot(mirror.normal) < 0 ? SheetSide::kFront : SheetSide::kBack;
+  return {*mirror.material, settings_.frequency, side};
 }
 
 JonesMatrix ImageMethod::jones_matrix() const {
   Vec3 direction = departure();
   FieldPair fields = launched_fields(direction);
-  for (size_t k = 0; k < points_.size(); ++k) {
-    const Vec3 normal = direction.dot(mirror(k).normal) < 0 ? mirror(k).normal : Vec3(-mirror(k).normal);
-    const double cos_incidence = -direction.dot(normal);
-    const SurfaceModel model(*mirror(k).material, settings_.frequency, side_met(k, direction));
-    const ModeCoefficients modes = model.modes(cos_incidence);
-    const double coherent = model.respond(cos_incidence, PolarizationMode::kTe).coherent;
-    for (FieldVector& field : fields) field = coherent * reflected_field(field, direction, normal, modes);
-    direction = mirror(k).mirrored(direction);
-  }
+  for (const Mirror& mirror : chain_of(mirrors_, sequence_))
+    carry_over_mirror(fields, direction, mirror.normal, model_of(mirror, direction));
   return arriving_components(fields, direction);
 }
 
 std::complex<double> ImageMethod::field() const {
   std::complex<double> product = 1.0;
   Vec3 direction = departure();
-  for (size_t k = 0; k < points_.size(); ++k) {
-    const Vec3& normal = mirror(k).normal;
-    const PolarizationMode mode = polarization_mode(settings_.polarization, direction, normal);
-    const SurfaceModel model(*mirror(k).material, settings_.frequency, side_met(k, direction));
-    const SurfaceResponse response = model.respond(std::abs(direction.dot(normal)), mode);
-    product *= response.gamma * response.coherent *
-               mirror_sign(*mirror(k).material, mode, settings_.polarization, direction, normal);
-    direction = mirror(k).mirrored(direction);
+  for (const Mirror& mirror : chain_of(mirrors_, sequence_)) {
+    const SurfaceModel model = model_of(mirror, direction);
+    const SurfaceResponse response = respond_as_mirror(model, settings_.polarization, direction, mirror.normal);
+    product *= response.gamma * response.coherent;
+    direction = mirror.mirrored(direction);
   }
   return product;
 }

@@ -51,12 +51,11 @@ class ImageMethod {
   int64_t num_queries() const { return num_queries_; }
 
  private:
-  const Mirror& mirror(size_t k) const { return mirrors_[static_cast<size_t>(sequence_[k])]; }
-  bool follow(const Vec3& receiver);
+  bool follow(const Vec3& receiver, ImagePath& path);
   Vec3 lifted_toward(size_t k, const Vec3& target) const;
   bool sees_all(const Vec3& receiver);
   Vec3 departure() const;
-  SheetSide side_met(size_t k, const Vec3& direction) const;
+  SurfaceModel model_of(const Mirror& mirror, const Vec3& direction) const;
   JonesMatrix jones_matrix() const;
   std::complex<double> field() const;
 
@@ -67,7 +66,6 @@ class ImageMethod {
   int64_t num_queries_ = 0;
   std::vector<int> sequence_;
   std::vector<Vec3> points_;
-  std::vector<Hit> hits_;
 };
 
 // Adds an image path to a block.

@@ -84,9 +84,8 @@ bool LegFinder::set_bounces(const Vec3& point, const Vec3& normal, const Vec3& a
 // Adds the bounce of a wave from a point toward an image behind the mirror; `met` is set to the point where they meet.
 bool LegFinder::bounce(int index, const Vec3& from, const Vec3& image, Leg& leg, Vec3& met) const {
   const Mirror& mirror = mirrors_[static_cast<size_t>(index)];
-  const double before = mirror.height(from), behind = mirror.height(image);
-  if (before * behind >= 0) return false;
-  const std::optional<Hit> hit = mirror.mesh.locate(from + before / (before - behind) * (image - from));
+  if (!mirror.lies_between(from, image)) return false;
+  const std::optional<Hit> hit = mirror.mesh.locate(mirror.met_on_line(from, image));
   if (!hit) return false;
   // The point is moved to the facet itself, which may lie a little beside the plane.
   met = hit_point(geometry_.corners(hit->mesh_id, hit->triangle_id), *hit);
@@ -94,7 +93,7 @@ bool LegFinder::bounce(int index, const Vec3& from, const Vec3& image, Leg& leg,
   bounce.mirror = index;
   bounce.hit = *hit;
   bounce.direction = (image - from).normalized();
-  bounce.normal = before > 0 ? mirror.normal : Vec3(-mirror.normal);
+  bounce.normal = mirror.normal_toward(from);
   return true;
 }
 
@@ -123,10 +122,8 @@ void LegFinder::set_gain(Leg& leg) const {
   for (int k = 0; k < leg.num_bounces; ++k) {
     LegBounce& bounce = leg.bounces[static_cast<size_t>(k)];
     const SurfaceModel& model = models_[static_cast<size_t>(bounce.mirror)];
-    const PolarizationMode mode = mode_along(model, polarization_, bounce.direction, bounce.normal);
-    const SurfaceResponse response = model.respond(-bounce.direction.dot(bounce.normal), mode);
-    leg.gain *= response.gamma * response.coherent *
-                mirror_sign(model.material(), mode, polarization_, bounce.direction, bounce.normal);
+    const SurfaceResponse response = respond_as_mirror(model, polarization_, bounce.direction, bounce.normal);
+    leg.gain *= response.gamma * response.coherent;
     bounce.specular_share = response.coherent * response.coherent;
     leg.specular_share *= bounce.specular_share;
   }

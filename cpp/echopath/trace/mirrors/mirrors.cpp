@@ -149,7 +149,9 @@ MirrorIndex::MirrorIndex(const std::vector<Mirror>& mirrors, const EmbreeScene& 
 
 PolarizationMode polarization_mode(const Vec3& polarization, const Vec3& direction, const Vec3& normal) {
   const double along = polarization.dot(direction);
-  const double along_behind = along - 2.0 * direction.dot(normal) * polarization.dot(normal);  // after the bounce
+  // The part along the direction behind the bounce is written out, without `mirrored`: antennas on a slant lie at the 45
+  // degrees where rounding decides.
+  const double along_behind = along - 2.0 * direction.dot(normal) * polarization.dot(normal);
   const Vec3 te_axis = direction.cross(normal);
   const double te_squared = te_axis.squaredNorm();
   const double across_squared = polarization.squaredNorm() - 0.5 * (along * along + along_behind * along_behind);
@@ -164,6 +166,14 @@ double mirror_sign(const Material& material, PolarizationMode mode, const Vec3& 
   if (mode == PolarizationMode::kTe || !material.permittivity) return 1.0;
   const Vec3 te_axis = direction.cross(normal), behind = mirrored(direction, normal);
   return polarization.dot(te_axis.cross(direction)) * polarization.dot(te_axis.cross(behind)) < 0 ? -1.0 : 1.0;
+}
+
+SurfaceResponse respond_as_mirror(const SurfaceModel& model, const Vec3& polarization, const Vec3& direction,
+                                  const Vec3& normal) {
+  const PolarizationMode mode = mode_along(model, polarization, direction, normal);
+  SurfaceResponse response = model.respond(std::abs(direction.dot(normal)), mode);
+  response.gamma *= mirror_sign(model.material(), mode, polarization, direction, normal);
+  return response;
 }
 
 }  // namespace echopath

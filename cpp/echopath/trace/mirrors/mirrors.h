@@ -77,4 +77,8 @@ inline SurfaceResponse respond_along(const SurfaceModel& model, const Vec3& pola
   return model.respond(-direction.dot(normal), mode_along(model, polarization, direction, normal));
 }
 
+// Returns the response of a flagged mirror, whose gamma has mirror_sign; `normal` may be on either side.
+SurfaceResponse respond_as_mirror(const SurfaceModel& model, const Vec3& polarization, const Vec3& direction,
+                                  const Vec3& normal);
+
 }  // namespace echopath

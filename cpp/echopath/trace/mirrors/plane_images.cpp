@@ -158,7 +158,7 @@ bool PlaneImages::holds_zones(const ImagePath& path, int64_t& num_queries) const
     RayHit point;
     point.hit = path.hits[k];
     point.position = path.points[k];
-    point.normal = line.dot(planes_[k].normal) < 0 ? planes_[k].normal : Vec3(-planes_[k].normal);
+    point.normal = lit_normal(line, planes_[k].normal);
     const MirrorView view{point, line.normalized(), before, whole - before};
     if (cover_of_zone(geometry_, view, nullptr, wavelength_, num_queries).share < kZoneShare) return false;
   }

@@ -1,21 +1,14 @@
 // Finds the matrices of polarised paths (Paths::jones) along a ray.
 #include <cmath>
 
+#include "echopath/em/polarization/mirrored_fields.h"
 #include "echopath/trace/sbr/weight.h"
 
 namespace echopath {
 namespace {
 
-// Reflects fields at a mirror or specular bounce of the given specular share of power.
-void reflect_all(FieldPair& fields, const Vec3& direction, const Vec3& normal, const SurfaceModel& model,
-                 double specular_share) {
-  const ModeCoefficients modes = model.modes(-direction.dot(normal));
-  for (FieldVector& field : fields) field = std::sqrt(specular_share) * reflected_field(field, direction, normal, modes);
-}
-
 void reflect_at(const SurfaceHit& surface, const Vec3& direction, FieldPair& fields) {
-  const double coherent = surface.response.coherent;
-  reflect_all(fields, direction, surface.point.normal, *surface.model, coherent * coherent);
+  reflect_fields(fields, direction, surface.point.normal, *surface.model, surface.response.coherent);
 }
 
 // Returns the fields that a diffuse hit scatters when fields travel along `in`. Its random axis is bound to the hit, as its
@@ -73,7 +66,8 @@ FieldPair JonesWeight::fields_over(const Leg& leg, FieldPair fields) const {
   for (int k = leg.num_bounces; k-- > 0;) {
     const LegBounce& bounce = leg.bounces[static_cast<size_t>(k)];
     const Mirror& mirror = context_.mirrors[static_cast<size_t>(bounce.mirror)];
-    reflect_all(fields, direction, bounce.normal, context_.surfaces.model(mirror.mesh_id), bounce.specular_share);
+    const SurfaceModel& model = context_.surfaces.model(mirror.mesh_id);
+    reflect_fields(fields, direction, bounce.normal, model, std::sqrt(bounce.specular_share));
     direction = mirror.mirrored(direction);
   }
   return fields;

@@ -31,7 +31,7 @@ ECHOPATH_INLINE void leave_lanes(FirstHits* first, VectorOf<double> receiver) {
   ECHOPATH_SIDE_BY_SIDE
   for (int lane = 0; lane < kPacketSize; ++lane) {
     const VectorOf<double> normal = first->hits.normal.at(lane);
-    const VectorOf<double> specular = mirrored(normal, first->directions.at(lane), first->cos_incidence[lane]);
+    const VectorOf<double> specular = mirrored(first->directions.at(lane), normal, first->cos_incidence[lane]);
     const VectorOf<double> to_receiver = receiver - first->hits.position.at(lane);
     first->receiver_reach[lane] = reach_of(to_receiver, specular, first->hits.distance[lane], first->densities[lane]);
     const VectorOf<double> diffuse = over_surface(normal, first->samples.lobe.at(lane));

@@ -29,8 +29,9 @@ ECHOPATH_INLINE VectorOf<double> over_surface(const VectorOf<double>& normal, co
   return local.x * first + local.y * second + local.z * normal;
 }
 
-// Returns the unit direction after reflection of a ray that arrives along `direction`.
-ECHOPATH_INLINE VectorOf<double> mirrored(const VectorOf<double>& normal, const VectorOf<double>& direction,
+// Returns the unit direction after reflection of a ray that arrives along `direction`. Unlike that of base/plane.h it knows
+// the cosine of incidence, and it makes the direction a unit vector again, so that rounding does not grow with the bounces.
+ECHOPATH_INLINE VectorOf<double> mirrored(const VectorOf<double>& direction, const VectorOf<double>& normal,
                                           double cos_incidence) {
   const VectorOf<double> out = direction + (2.0 * cos_incidence) * normal;
   return (1.0 / ScalarMath::root(dot(out, out))) * out;

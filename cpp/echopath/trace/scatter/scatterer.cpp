@@ -14,7 +14,7 @@ namespace {
 constexpr double kLargestArea = 1e60;
 
 Vec3 mirrored_direction(const Ray& ray, const SurfaceHit& surface) {
-  return packed(mirrored(unpacked(surface.point.normal), unpacked(ray.direction), surface.cos_incidence));
+  return packed(mirrored(unpacked(ray.direction), unpacked(surface.point.normal), surface.cos_incidence));
 }
 
 }  // namespace

@@ -59,7 +59,7 @@ class PassFinder {
  public:
   PassFinder(Paths& paths, const SheetScene& sheets)
       : paths_(paths), sheets_(sheets), pose_(*paths.scene, paths.frame.trace_time), origin_(paths.frame.transmitter),
-        polarization_(sheet_polarization(paths)) {
+        polarization_(paths.mode_polarization()) {
     for (uint32_t id = 0; id < paths.scene->meshes().size(); ++id) {
       const Material& material = *paths.scene->node_of(id).material;
       if (material.is_sheet()) models_.emplace(id, SheetModel(material, paths.radar.waveform.start_frequency));

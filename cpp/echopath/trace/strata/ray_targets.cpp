@@ -53,12 +53,6 @@ class Target {
   mutable size_t num_together_ = 0;
 };
 
-// Returns the image of the point as the antenna sees it over a sequence of mirrors (in travel order from the antenna).
-Vec3 image_of(Vec3 point, const std::vector<Mirror>& mirrors, const std::vector<int>& sequence) {
-  for (size_t k = sequence.size(); k-- > 0;) point = mirrors[static_cast<size_t>(sequence[k])].image(point);
-  return point;
-}
-
 bool is_same(const Stratum& a, const Stratum& b) {
   const double size = a.solid_angle();
   return (a.axis - b.axis).squaredNorm() < kSameStratum * size && std::abs(size - b.solid_angle()) < kSameStratum * size &&
@@ -84,8 +78,9 @@ class RayTargetFinder {
       const int num_mirrors = static_cast<int>(frustum.mirrors.size());
       const auto images_of_vertices = [&]() -> const std::vector<Vec3>& {
         vertices.resize(target.vertices().size());
+        const auto from_target = std::views::reverse(chain_of(mirrors_, frustum.mirrors));
         std::transform(target.vertices().begin(), target.vertices().end(), vertices.begin(),
-                       [&](const Vec3& vertex) { return image_of(vertex, mirrors_, frustum.mirrors); });
+                       [&](const Vec3& vertex) { return image_over(from_target, vertex); });
         return vertices;
       };
       std::optional<RayTarget> made =

@@ -50,45 +50,12 @@ bool LegTester::is_known_blocked(int first, int last) const {
 
 // Lifts a point off the surface on the side of `toward`; an antenna stays.
 Vec3 LegTester::lifted(const Vec3& point, const Vec3& normal, const Vec3& toward) const {
-  return geometry_.lifted(point, normal.dot(toward - point) >= 0 ? normal : Vec3(-normal));
+  return geometry_.lifted(point, Plane{point, normal}.normal_toward(toward));
 }
 
 // Lifts an end, at `point`, likewise; an edge is lifted off both of its faces.
 Vec3 LegTester::lifted_end(const End& end, const Vec3& point, const Vec3& toward) const {
   return end.is_edge ? geometry_.lifted(point, end.normal) : lifted(point, end.normal, toward);
-}
-
-// Lifts a point of reflection off all the mirrors [first, last) that meet in it.
-Vec3 LegTester::lifted_image(int image, int first, int last, const Vec3& toward) const {
-  Vec3 point = image_points_[image];
-  for (int k = first; k < last; ++k) {
-    if ((image_points_[k] - image_points_[image]).norm() <= kSamePlace) point = lifted(point, hits_[k].normal, toward);
-  }
-  return point;
-}
-
-// Finds the points of reflection on the mirrors [first, last), from the end backwards; returns false where one lies on no
-// straight line.
-bool LegTester::place_images(const Vec3& from, int first, int last, const Vec3& to) {
-  const auto height = [&](int k, const Vec3& point) { return hits_[k].normal.dot(point - hits_[k].point); };
-  Vec3 image = from;
-  for (int k = first; k < last; ++k) {
-    image -= 2.0 * height(k, image) * hits_[k].normal;
-    image_points_[k] = image;
-  }
-  Vec3 target = to;
-  for (int k = last; k-- > first;) {
-    const double before = height(k, target), behind = height(k, image_points_[k]);
-    if (std::abs(before) > kSamePlace) {
-      if (before * behind >= 0) {
-        shadows_.off_mirror |= uint64_t{1} << k;
-        return false;
-      }
-      target += before / (before - behind) * (image_points_[k] - target);
-    }
-    image_points_[k] = target;
-  }
-  return true;
 }
 
 // `image` is the mirror on which `to` should lie, -1 for none. For a leg to a mirror, what it meets first is asked for.
@@ -101,7 +68,7 @@ bool LegTester::is_blocked(const Vec3& from, const Vec3& to, int image) {
   if (verdict == EmbreeScene::Verdict::kFalseHit) return false;
   const bool is_there = verdict == EmbreeScene::Verdict::kHit;
   const double slack = kOnMirrorAbsolute + kOnMirrorRelative * length;
-  const bool is_on_plane = is_there && std::abs(hits_[image].normal.dot(met.position - hits_[image].point)) < slack;
+  const bool is_on_plane = is_there && std::abs(hits_[image].height(met.position)) < slack;
   if (is_on_plane && met.hit.mesh_id == path_.hits[image].mesh_id) return false;
   if (is_there && std::abs(met.distance - length) < slack) return false;
   if (is_there && met.distance < length) return true;
@@ -124,12 +91,21 @@ bool LegTester::is_blocked_before_sheet(const Vec3& from, const Vec3& to, int im
 
 // Tests the legs from `from` over the mirrors [first, last) to `to`; they arrive at the hits first to last.
 void LegTester::test(const End& from, int first, int last, const End& to) {
-  if (is_known_blocked(first, last) || !place_images(from.point, first, last, to.point)) return;
+  if (is_known_blocked(first, last)) return;
+  const std::span<const PosedHit> mirrors = chain_of(hits_, first, last);
+  Vec3* points = image_points_ + first;
+  if (const auto missed = find_reflections(mirrors, from.point, to.point, points, kSamePlace)) {
+    shadows_.off_mirror |= uint64_t{1} << (static_cast<size_t>(first) + *missed);
+    return;
+  }
+  const auto lifted_at = [&](int mirror, const Vec3& toward) {
+    return lifted_off_mirrors(mirrors, points, static_cast<size_t>(mirror - first), toward, kSamePlace, geometry_.lift());
+  };
   for (int leg = first; leg <= last; ++leg) {
     const Vec3& start = leg > first ? image_points_[leg - 1] : from.seen_from(leg < last ? image_points_[leg] : to.point);
     const Vec3& end = leg < last ? image_points_[leg] : to.seen_from(start);
     if (leg > first && leg < last && (end - start).norm() <= kSamePlace) continue;
-    const Vec3 off_start = leg > first ? lifted_image(leg - 1, first, last, end) : lifted_end(from, start, end);
+    const Vec3 off_start = leg > first ? lifted_at(leg - 1, end) : lifted_end(from, start, end);
     const Vec3 off_end = leg < last ? end : lifted_end(to, end, start);
     if (is_blocked(off_start, off_end, leg < last ? leg : -1)) return block(leg);
   }

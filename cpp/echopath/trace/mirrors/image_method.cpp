@@ -21,7 +21,6 @@ std::optional<ImagePath> ImageMethod::path_over(const std::vector<int>& sequence
   for (const double side : {1.0, -1.0}) {
     if (follow(settings_.receiver + side * kAside * kAsideDirection, path)) path.weight += 0.5;
   }
-  path.points = points_;
   if (path.weight == 0.0) return std::nullopt;
   if (settings_.is_polarized) path.jones = jones_matrix();
   else path.weight = field() * path.weight.real();
@@ -47,9 +46,7 @@ bool ImageMethod::follow(const Vec3& receiver, ImagePath& path) {
 
 bool ImageMethod::find_points(const std::vector<int>& sequence, const Vec3& receiver, std::vector<Vec3>& points) const {
   points.resize(sequence.size());
-  const auto missed = find_reflections(chain_of(mirrors_, sequence), settings_.transmitter, receiver, points.data());
-  if (missed) std::fill_n(points.begin(), *missed + 1, Vec3::Zero());
-  return !missed;
+  return !find_reflections(chain_of(mirrors_, sequence), settings_.transmitter, receiver, points.data());
 }
 
 Vec3 ImageMethod::lifted_toward(size_t k, const Vec3& target) const {

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
-#include "echopath/record/sheet_polarization.h"
 
 namespace echopath {
 namespace {

@@ -37,9 +37,12 @@ class VisibilityFromEnd:
     solid_angle: float
 
     def __repr__(self) -> str:
+        return f"<VisibilityFromEnd {self._text()}>"
+
+    def _text(self) -> str:
         hidden = "".join(f", {share:.1%} behind {name}" for name, share in self.occluders.items())
         view = "" if self.in_view else ", out of view"
-        return f"<VisibilityFromEnd {self.visible_share:.1%} visible{hidden}, {self.distance:.4g} m{view}>"
+        return f"{self.visible_share:.1%} visible{hidden}, {self.distance:.4g} m{view}"
 
 
 @made_by("ep.visibility")
@@ -81,7 +84,7 @@ class ObjectVisibility:
         return 0.5 * (self.transmitter.distance + self.receiver.distance)
 
     def __repr__(self) -> str:
-        return f"<ObjectVisibility {self.name}: {repr(self.worse)[7:]}"
+        return f"<ObjectVisibility {self.name}: {self.worse._text()}>"
 
 
 @checked(objects=objects_rule, time=optional(real(unit="s")), num_directions=count(1, 2**24))

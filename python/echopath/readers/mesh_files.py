@@ -33,10 +33,10 @@ class MeshPart:
         return f"{self.object}/{self.name}" if self.object else self.name
 
 
-def parts_of_file(path: Path, axes: Axes) -> tuple[list[MeshPart], list[str]]:
-    """(parts with an area, what lines `mtllib` name) of a mesh file. Raises ep.FileError."""
+def parts_of_file(path: Path, axes: Axes, faceted: bool = False) -> tuple[list[MeshPart], list[str]]:
+    """(parts with an area, what lines `mtllib` name) of a mesh file; faceted: whatever its normals say. Raises ep.FileError."""
     surfaces, libraries = _core.load_surfaces(path, axes.unit)
-    made = (_part(*surface, axes) for surface in surfaces)
+    made = (_part(*surface, None if faceted else normals, axes) for *surface, normals in surfaces)
     parts = [part for part in made if part is not None]
     if not parts:
         raise _core.FileError(f"{path}: {NO_AREA}")

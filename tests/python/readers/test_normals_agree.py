@@ -129,6 +129,15 @@ def test_normals_of_every_format_make_the_same_smooth_surface_with_the_same_edge
         assert_same(path.name, echoes(model), expected)
 
 
+def test_a_mitsuba_shape_may_ask_for_facets(tmp_path):
+    (tmp_path / "tin.ply").write_bytes(ply())
+    text = ('<scene version="3.0.0"><shape type="ply" id="tin"><string name="filename" value="tin.ply"/>'
+            '<boolean name="face_normals" value="FACETS"/></shape></scene>')
+    for word, smooth in (("true", False), ("false", True)):
+        (tmp_path / "tin.xml").write_text(text.replace("FACETS", word))
+        assert [node.smooth for node in ep.load_model(tmp_path / "tin.xml").nodes] == [smooth]
+
+
 def test_frames_are_smooth_as_the_normals_of_the_first_one_say(tmp_path):
     expected = wanted()
     for name, content in (("normals", obj_normals()), ("groups", obj_groups())):

@@ -29,7 +29,8 @@ class Shapes:
         kind = shape.get("type")
         if kind in FILES:
             path = file_of(shape, shape.value("filename", "string") or "")
-            return self._once((kind, path), lambda: self._of_file(shape, path))
+            faceted = (shape.value("face_normals", "boolean") or "").strip().lower() == "true"
+            return self._once((kind, path, faceted), lambda: self._of_file(shape, path, faceted))
         return self._once((kind, *_parameters(shape)), lambda: [MeshPart("", "", "", self._form(shape), kind in CURVED)])
 
     def _once(self, key: tuple, make):
@@ -37,11 +38,11 @@ class Shapes:
             self._made[key] = make()
         return self._made[key]
 
-    def _of_file(self, shape: Element, path) -> list:
+    def _of_file(self, shape: Element, path, faceted: bool) -> list:
         if path.suffix.lower() not in (".ply", ".obj"):
             shape.refuse(f"the file '{path.name}' must be .ply or .obj")
         try:
-            return parts_of_file(path, self._axes)[0]
+            return parts_of_file(path, self._axes, faceted)[0]
         except _core.FileError as error:
             if str(error).endswith(("has no faces", NO_AREA)):
                 return []

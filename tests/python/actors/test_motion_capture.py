@@ -167,6 +167,14 @@ def test_faults_are_told_by_name(walk, change, message):
         ep.actors.captured_pedestrian(walk)
 
 
+def test_a_capture_that_is_carried_as_fast_as_light_is_refused(tmp_path):
+    frames = walk_frames(8)
+    frames[5:, 2] += 1e12  # cm, in a thirtieth of a second
+    (tmp_path / "a.bvh").write_text(bvh_text(frames))
+    with pytest.raises(ep.FileError, match=r"a.bvh: its pelvis moves by 3e\+11 m/s"):
+        ep.load_model(tmp_path / "a.bvh")
+
+
 # --- along a trajectory ---
 
 def along(path, **settings) -> tuple:

@@ -29,6 +29,7 @@ JUMP = 0.15             # m between the first two frames, and JUMPS times as far
 JUMPS = 4.0
 ON_FLOOR = 0.10         # share of the frames in which the lower foot may be below the floor
 MOST_STRETCH = 10.0     # of a segment over that of a body of the same legs, up or down
+MOST_SPEED = 0.1 * _core.speed_of_light  # m/s
 TRAVEL = 0.5            # m from which on the way of the body is its direction
 KEYFRAME_RATE = 120.0   # 1/s, along a trajectory
 
@@ -134,8 +135,16 @@ class CapturedBody:
         of_kind = {kind: surface(kind, self.body, edge) for kind in dict.fromkeys(kinds.values())}
         surfaces = {name: of_kind[kind] for name, kind in kinds.items()}
         self._place(frames, surfaces, offset)
+        self._check_speeds(frames)
         return frames, {name: (vertices * [1.0, 1.0, stretch.get(name, 1.0)], triangles)
                         for name, (vertices, triangles) in surfaces.items()}
+
+    def _check_speeds(self, frames: dict[str, Frames]) -> None:
+        """Raises FileError for a part that is carried as fast as light, which splines through its frames may exceed."""
+        for name, frame in frames.items():
+            steps = np.linalg.norm(np.diff(frame.origin, axis=0), axis=-1) / np.diff(self.times)
+            if steps.max(initial=0.0) > MOST_SPEED:
+                raise _core.FileError(f"{self._path}: its {name} moves by {steps.max():.3g} m/s")
 
     def _length(self, *names: str) -> float:
         """Mean length of a chain of joints, over both sides and time."""

@@ -15,8 +15,7 @@ struct PosedAntenna {
 
   // Returns the gain toward a unit direction that leads away from the antenna, in world axes.
   AntennaGain toward(const Vec3& direction) const {
-    if (pattern->kind != AntennaPattern::Kind::kTable) return {pattern->gain(boresight.dot(direction)), 0.0};
-    return pattern->toward(antenna_from_world * direction);
+    return pattern->toward(boresight.dot(direction), [&] { return Vec3(antenna_from_world * direction); });
   }
 };
 

@@ -110,6 +110,11 @@ void GainTable::set_field() {
   }
 }
 
+AntennaGain GainTable::toward(const Vec3& direction) const {
+  const std::complex<double> found = field(direction);
+  return {std::norm(found), phase_.empty() ? 0.0 : std::arg(found)};
+}
+
 double GainTable::peak_gain() const { return *std::max_element(gain_.begin(), gain_.end()); }
 
 double GainTable::most_beyond_samples() const {

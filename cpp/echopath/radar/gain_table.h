@@ -7,6 +7,12 @@
 
 namespace echopath {
 
+// Holds the gain and phase of an antenna toward a direction.
+struct AntennaGain {
+  double power = 1.0;  // linear
+  double phase = 0.0;  // rad, of the field; enters path amplitudes as e^{j phase}, in transmission and reception
+};
+
 // Holds gain over direction in the antenna's frame: boresight is +x, azimuth turns about z (left, +y, positive), and
 // elevation is taken from the xy-plane.
 //
@@ -35,6 +41,7 @@ class GainTable {
 
   // Returns sqrt(gain) e^{j phase} toward a unit direction in the antenna's frame.
   std::complex<double> field(const Vec3& direction) const;
+  AntennaGain toward(const Vec3& direction) const;
   double peak_gain() const;  // of the samples
   // Returns a bound of |field| anywhere. It is the farther above the samples the less even these are: with q the largest
   // ratio of neighbouring steps, the weights along an axis add up to at most 4 + q by size.

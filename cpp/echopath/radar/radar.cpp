@@ -167,11 +167,7 @@ double AntennaPattern::gain(double cos_boresight) const {
   return cos_boresight > 0.0 ? peak_gain * power_of(cos_boresight, exponent) : 0.0;
 }
 
-AntennaGain AntennaPattern::toward(const Vec3& direction) const {
-  if (kind != Kind::kTable) return {gain(direction.x()), 0.0};
-  const std::complex<double> field = table->field(direction);
-  return {std::norm(field), table->phase().empty() ? 0.0 : std::arg(field)};
-}
+double AntennaPattern::largest_field() const { return table ? table->largest_field() : std::sqrt(peak_gain); }
 
 double AntennaPattern::efficiency() const {
   if (kind == Kind::kTable) return table->efficiency();

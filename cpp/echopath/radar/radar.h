@@ -39,12 +39,6 @@ struct ChirpSequence {
   double max_velocity(int num_slots) const;                                         // m/s, unambiguous within +-
 };
 
-// Holds the gain and phase of an antenna toward a direction.
-struct AntennaGain {
-  double power = 1.0;  // linear
-  double phase = 0.0;  // rad, of the field; enters path amplitudes as e^{j phase}, in transmission and reception
-};
-
 // Describes power gain over direction. Boresight is +x of the antenna's frame.
 struct AntennaPattern {
   enum class Kind { kIsotropic, kCosinePower, kTable };
@@ -59,9 +53,17 @@ struct AntennaPattern {
   static AntennaPattern of_table(GainTable table);
   // Returns the linear power gain of a pattern that is symmetric about the boresight; raises invalid_argument for a table.
   double gain(double cos_boresight) const;
-  AntennaGain toward(const Vec3& direction) const;  // a unit vector in the antenna's frame
-  double efficiency() const;                        // integral of the gain over the sphere / 4 pi
-  bool is_dark_behind() const;                      // no gain where x < 0
+  AntennaGain toward(const Vec3& direction) const {  // a unit vector in the antenna's frame
+    return toward(direction.x(), [&] { return direction; });
+  }
+  // Returns the same; a table alone asks for `direction()`.
+  template <class Direction>
+  AntennaGain toward(double cos_boresight, const Direction& direction) const {
+    return table ? table->toward(direction()) : AntennaGain{gain(cos_boresight), 0.0};
+  }
+  double largest_field() const;  // sqrt(gain) that no direction exceeds
+  double efficiency() const;     // integral of the gain over the sphere / 4 pi
+  bool is_dark_behind() const;   // no gain where x < 0
 };
 
 // Returns the rotation that turns +x by `yaw` about z (to the left), then up by `pitch` in the vertical plane through it:

@@ -48,6 +48,12 @@ bool is_outside(const Wedge& wedge, const Vec3& direction);
 // wedge, and within 1e-3 rad of the edge's own direction, along which the coefficient is not defined.
 Mat3 fringe_matrix(const Wedge& wedge, const Vec3& in, const Vec3& out);
 
+// Returns the amplitude of the echo of a piece of an edge that is `piece` (m) long, at the distances `in` and `out` (m) from
+// both antennas. `field` is sqrt(Pt Gt Gr)/(4 pi) times what M couples from one antenna to the other.
+inline double edge_amplitude(double field, double piece, double wavenumber, double in, double out) {
+  return field * piece / (2.0 * wavenumber * in * out);
+}
+
 // Returns the vector V of what the wedge makes of a wave that travels along one of its faces (0 or 1) toward the edge, in
 // the direction `along`, with a field of unit strength across the face. Its field -j/(2 k) V per metre of the edge is the
 // whole diffracted field: the wave ends at the edge, and physical optics knows nothing of it. V is not finite where `out` is

@@ -53,18 +53,14 @@ int exponent_of(const AntennaPattern& pattern) {
 void AntennaImages::finish(size_t entry, const double* point, double* out, double* phase) const {
   const size_t num_nodes = rows.num_nodes(), stride = rows.stride();
   const AntennaPattern& of = *pattern[entry % num_antennas];
-  const bool is_table = of.kind == AntennaPattern::Kind::kTable;
   const double* length = out + LegToMeasure::kLength * stride;
   double *factor = out + LegToMeasure::kFactor * stride, *gain = out + LegToMeasure::kGain * stride;
   for (size_t node = 0; node < num_nodes; ++node) {
-    AntennaGain found{0.0, 0.0};
-    if (is_table) {
+    const AntennaGain found = of.toward(gain[node], [&] {
       const Vec3 at(point[node], point[stride + node], point[2 * stride + node]);
       const Vec3 direction = (at - load(rows, entry, LegToMeasure::kImagePosition, node)).normalized();
-      found = of.toward(antenna_from_image[entry * num_nodes + node] * direction);
-    } else {
-      found.power = of.gain(gain[node]);
-    }
+      return Vec3(antenna_from_image[entry * num_nodes + node] * direction);
+    });
     gain[node] = std::sqrt(found.power);
     factor[node] = diffuse_leg<ScalarMath>(gain[node], factor[node], length[node]);
     if (phase) phase[node] = found.phase;

@@ -8,11 +8,6 @@
 namespace echopath {
 namespace {
 
-// Returns the root of a gain that no direction exceeds.
-double largest_root_gain(const AntennaPattern& pattern) {
-  return pattern.kind == AntennaPattern::Kind::kTable ? pattern.table->largest_field() : std::sqrt(pattern.peak_gain);
-}
-
 // Returns the largest distance (m) of any antenna from the first, at any node.
 double distance_from_first(const NodeRows& antennas, size_t count) {
   double square = 0.0;
@@ -35,7 +30,7 @@ struct SharedLegEvaluation::Around {
 
   Around(const AntennaImages& images, const NodeRows& antennas)
       : distance(distance_from_first(antennas, images.num_antennas)), root_gain(0.0) {
-    for (const AntennaPattern* pattern : images.pattern) root_gain = std::max(root_gain, largest_root_gain(*pattern));
+    for (const AntennaPattern* pattern : images.pattern) root_gain = std::max(root_gain, pattern->largest_field());
   }
 };
 
@@ -69,7 +64,7 @@ bool SharedLegEvaluation::is_dark(const SharedLegPlan& plan, const SharedLegPlan
   const Around &start = around[chain.is_reversed], &end = around[!chain.is_reversed];
   kernels_->bound({path, start.distance, end.distance, bounds_.row(0, 0)}, bounds_.stride());
   const double size = kPolarized * scale * size_of_weight(chain) * start.root_gain * end.root_gain;
-  const double most = std::log(limit / (path.cell.is_curved ? size / path.root_area : size));
+  const double most = std::log(limit / size);
   double* logarithm = bounds_.row(0, AmplitudeToBound::kFilter);
   const double* spreading = bounds_.row(0, AmplitudeToBound::kSpreading);
   for (size_t node = 0; node < bounds_.num_nodes(); ++node) {

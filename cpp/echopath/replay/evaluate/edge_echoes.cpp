@@ -92,8 +92,8 @@ class EdgeEchoes {
     const Vec3 departure = -out.direction;
     const std::complex<double> coupled = Fields::seen(out, polarization, departure).transpose() *
                                          diffracted(Fields::seen(in, polarization, in.direction), in, departure, out.length);
-    const double size = radio_.coherent_scale() * in.root_gain * out.root_gain * piece_.norm() /
-                        (2.0 * radio_.wavenumber * in.length * out.length);
+    const double size = edge_amplitude(radio_.coherent_scale() * in.root_gain * out.root_gain, piece_.norm(),
+                                       radio_.wavenumber, in.length, out.length);
     const std::complex<double> factor =
         size * coupled * filter(in, departure, out.length) * std::polar(1.0, in.phase + out.phase);
     const ComplexOf<double> found = amplitude_of<ScalarMath>(ComplexOf<double>{weight.real(), weight.imag()},

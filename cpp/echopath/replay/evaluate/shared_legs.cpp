@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "echopath/replay/kernels/path_formula.h"
+
 namespace echopath {
 namespace {
 
@@ -235,8 +237,7 @@ double SharedLegEvaluation::size_of_weight(const SharedLegPlan::ChainPath& chain
   return size * largest;
 }
 
-// Takes the cosine of the arrival for that of the departure, and no curvature of the surfaces before. A cell that is wider
-// than a Fresnel zone returns no more than a mirror in its place.
+// Takes the cosine of the departure for that of the arrival, and no curvature of the surfaces before.
 double SharedLegEvaluation::unfiltered(const SharedLegPlan::ChainPath& chain, const RadioConstants& radio) const {
   const size_t stride = values_.stride();
   const double *const start = start_of(chain, 0).rows(), *const end = end_of(chain, 0).rows();
@@ -245,9 +246,9 @@ double SharedLegEvaluation::unfiltered(const SharedLegPlan::ChainPath& chain, co
   const double out = value(end, LegToMeasure::kLength), in = value(start, LegToMeasure::kLength) + (inner ? *inner : 0.0);
   const double gain = value(end, LegToMeasure::kGain), factor = value(end, LegToMeasure::kFactor);
   if (!(gain > 0.0)) return 0.0;
-  const double root_cosine = factor * out / gain, gains = value(start, LegToMeasure::kGain) * gain;
-  const double of_cell = radio.coherent_scale() * size_of_weight(chain) * root_cosine * root_cosine / (in * out);
-  return gains * std::min(of_cell, radio.mirror_scale() / (in + out));
+  const double gains = value(start, LegToMeasure::kGain) * gain, cosine = cosine_of_leg(factor, gain, out);
+  const double of_cell = radio.coherent_scale() * size_of_weight(chain) * coherent_size(gains, cosine, 1.0 / in, 1.0 / out);
+  return std::min(of_cell, radio.mirror_scale() * mirror_size(gains, in + out));
 }
 
 void SharedLegEvaluation::mark_unfiltered(const SharedLegPlan& plan, const RadioConstants& radio, double* unfiltered) const {

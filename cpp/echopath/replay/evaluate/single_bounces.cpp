@@ -66,7 +66,8 @@ void SingleBounceEvaluation::operator()(const SharedLegPlan& plan, const PathPre
            legs_.data(),
            out_.data(),
            turned_,
-           unfiltered_[0]};
+           radio.mirror_scale(),
+           unfiltered_};
   const SingleBounceKernels& kernels = single_bounce_kernels(work_.stride);
   for (size_t first = 0, count = 0; first < sorted_.size(); first += count) {
     const uint32_t mesh_id = sorted_[first]->hit->mesh_id;
@@ -89,7 +90,7 @@ void SingleBounceEvaluation::operator()(const SharedLegPlan& plan, const PathPre
       values += num_nodes * kOfNode;
     }
     if (wanted.turned) mark_turned(points, wanted.turned);
-    if (wanted.unfiltered) mark_unfiltered(points, radio.mirror_scale(), wanted.unfiltered);
+    if (wanted.unfiltered) mark_unfiltered(points, wanted.unfiltered);
   }
 }
 
@@ -218,22 +219,10 @@ void SingleBounceEvaluation::mark_turned(Points points, uint8_t* turned) const {
   }
 }
 
-double SingleBounceEvaluation::size_of_weight(size_t slot) const {
+void SingleBounceEvaluation::mark_unfiltered(Points points, double* unfiltered) const {
   constexpr auto kKind = SingleBounceSlots::kCoherent;
-  const auto size = [&](const SingleBounceSlots::Row* parts) { return std::hypot(parts[0][slot], parts[1][slot]); };
-  if (!work_.axes) return size(slots_.weight[kKind]);
-  double largest = 0.0;
-  for (const auto& entry : slots_.matrix[kKind]) largest = std::max(largest, size(entry));
-  return largest;
-}
-
-void SingleBounceEvaluation::mark_unfiltered(Points points, double mirror_scale, double* unfiltered) const {
   for (size_t slot = 0; slot < points.size(); ++slot) {
-    constexpr auto kKind = SingleBounceSlots::kCoherent;
-    if (!points[slot]->has_path(kKind)) continue;
-    const double of_cell = unfiltered_[SingleBouncesToEvaluate::kOfCell][slot] * size_of_weight(slot);
-    const double of_mirror = unfiltered_[SingleBouncesToEvaluate::kOfMirror][slot] * mirror_scale;
-    unfiltered[points[slot]->place[kKind]] = std::min(of_cell, of_mirror);
+    if (points[slot]->has_path(kKind)) unfiltered[points[slot]->place[kKind]] = unfiltered_[slot];
   }
 }
 

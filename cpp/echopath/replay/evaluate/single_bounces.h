@@ -35,8 +35,7 @@ class SingleBounceEvaluation {
   void put(Points points, const ChannelNodes& to, const double* values) const;
   void put_joined(Points points, const ChannelNodes& to, const double* values) const;
   void mark_turned(Points points, uint8_t* turned) const;
-  double size_of_weight(size_t slot) const;
-  void mark_unfiltered(Points points, double mirror_scale, double* unfiltered) const;
+  void mark_unfiltered(Points points, double* unfiltered) const;
 
   std::vector<const SharedLegPlan::SingleBounce*> sorted_;  // by mesh, each in the order of the plan
   std::vector<size_t> first_of_mesh_;
@@ -47,7 +46,7 @@ class SingleBounceEvaluation {
   SingleBounceSlots slots_;
   SingleBouncesToEvaluate work_;
   std::vector<double> legs_, out_;
-  SingleBounceSlots::Row turned_, unfiltered_[SingleBouncesToEvaluate::kNumUnfilteredRows];
+  SingleBounceSlots::Row turned_, unfiltered_;
 };
 
 // Returns whether the gains of all antennas are whole powers of cosines.

@@ -59,11 +59,12 @@ TraceCells::Arrival TraceCells::arrival_of(const SharedLegPlan::ChainPath& chain
 // Returns the tangents of the cell of the path's own stratum, on the plane of the surface.
 CellTangents TraceCells::flat_tangents(const SharedLegPlan::ChainPath& chain, const PosedHit& hit, double density) const {
   const Arrival arrival = arrival_of(chain);
-  const double cos_in = hit.normal.dot(arrival.direction), side = arrival.length / std::sqrt(density);  // of the tube, m
+  const double cos_in = hit.normal.dot(arrival.direction);
+  const auto tube = tube_on_plane<ScalarMath>(arrival.length, density, cos_in);
   Vec3 along = arrival.direction - cos_in * hit.normal;
   const double sine = along.norm();
-  along = sine > 1e-9 ? Vec3(along / sine) : hit.normal.unitOrthogonal();
-  return {along * (side / std::max(std::abs(cos_in), 1e-3)), hit.normal.cross(along) * side};
+  along = has_plane_of_incidence(sine) ? Vec3(along / sine) : hit.normal.unitOrthogonal();
+  return {tube.along * along, tube.across * hit.normal.cross(along)};
 }
 
 PlacedCell TraceCells::on_rigid(const SharedLegPlan::ChainPath& chain) const {

@@ -44,6 +44,25 @@ struct CellShape {
   bool is_coarse = false;             // is_coarse_cell
 };
 
+// Describes the ray tube of a launch on a flat surface.
+template <class Real>
+struct TubeOnPlane {
+  Real along, across;  // m, sides of its cell: in the plane of incidence and across
+};
+
+// `length` is the unfolded one to the point, in m, and `density` is in rays per sr.
+template <class Math, class Real>
+ECHOPATH_INLINE TubeOnPlane<Real> tube_on_plane(Real length, Real density, Real cos_in) {
+  const Real side = length / Math::root(density);
+  return {side / Math::larger(Math::magnitude(cos_in), Real{} + 1e-3), side};
+}
+
+// Returns whether the sine of the angle of incidence tells the plane of incidence: else the cell may lie in any way.
+template <class Real>
+ECHOPATH_INLINE auto has_plane_of_incidence(Real sine) {
+  return sine > 1e-9;
+}
+
 // Describes the cell as waves meet and leave it.
 template <class Real>
 struct CellWaves {

@@ -1,6 +1,8 @@
 #pragma once
-// Makes the amplitude of a path from factors of its legs and of the part between them. The formula stands only here, for
-// doubles and for vectors of doubles (Math as in base/lanes/scalar_math.h).
+// Makes the amplitude of a path from factors of its legs and of the part between them, and bounds of its size. The formula
+// stands only here, for doubles and for vectors of doubles (Math as in base/lanes/scalar_math.h). RadioConstants has the
+// constants that all paths of a kind share; amplitudes of edges, which the trace estimates too, are made by edge_amplitude
+// (em/edges/edge_diffraction.h).
 //
 // Coherent path (regime C), physical optics at its last material point:
 //   a = sqrt(Pt Gt Gr)/(4 pi) * weight * cos_i * F / (sqrt(D) r),   weight = j W_C Gamma s dS
@@ -15,6 +17,8 @@
 //   inner = sqrt(prod dS/dS_trace) * prod sqrt(|cos_out cos_in|/pi)/r over the legs between diffuse hits.
 //   Factors carry the signs of their cosines: a surface that is seen from opposite sides makes no echo.
 // Flagged mirrors alone: a = weight * lambda sqrt(Pt Gt Gr)/(4 pi L).
+// A coherent path without its filter F has at most the amplitude of a mirror in the place of its point, because a cell that
+// is wider than a Fresnel zone returns no more.
 // In a polarised trace the matrix of the path (Paths::jones), between the polarisations of both antennas, holds all
 // coefficients. Antennas whose tables have a phase turn a by e^{j (phase of transmitter + phase of receiver)}. An antenna
 // nearer than kNearAntenna to a material point neither sends there nor receives. The phase of the length is not part of the
@@ -39,8 +43,9 @@ ECHOPATH_INLINE ComplexOf<Real> amplitude_of(ComplexOf<Weight> weight, ComplexOf
 
 // --- antennas ---
 
-// Returns the root of a gain that is root_peak^2 cos^exponent in front of the antenna and 0 behind; an exponent of 0 is a
-// gain all around. `cosine` is that of the angle from the boresight.
+// Returns the root of AntennaPattern::gain for a whole exponent, of which 0 is a gain all around; root_peak^2 is its peak
+// and `cosine` that of the angle from the boresight. It is a formula of its own because the half power needs no root, with
+// which to measure a leg at eight nodes takes 38 % longer (16.4 against 11.9 ns, exponent 4, AVX-512).
 template <class Math, class Real>
 ECHOPATH_INLINE Real root_gain_of(double root_peak, int exponent, Real cosine) {
   Real power = Real{} + root_peak;
@@ -86,12 +91,39 @@ ECHOPATH_INLINE auto is_lit(Real cos_in, Real cos_out, Real first_length, Real l
   return (cos_in * cos_out > 0.0) & reaches_antenna(first_length) & reaches_antenna(last_length);
 }
 
-// `root_gains` is sqrt(Gt Gr), `inverse_tube` is 1/sqrt(D) in 1/m, and `is_lit` is the result of the function above.
+// Returns 1/sqrt(D), in 1/m; `root_area` is that of the cell on a curved chain, in m sr^-1/2.
+template <class Math, class Real>
+ECHOPATH_INLINE Real inverse_tube_of(bool is_curved, double root_area, const CellWaves<Real>& waves) {
+  return is_curved ? 1.0 / (root_area * Math::root(waves.cos_in)) : waves.inverse_in;
+}
+
+// Returns the size of the factor without the filter. `root_gains` is sqrt(Gt Gr), `inverse_tube` is 1/sqrt(D) in 1/m.
+template <class Real>
+ECHOPATH_INLINE Real coherent_size(Real root_gains, Real cos_in, Real inverse_tube, Real inverse_out) {
+  return root_gains * cos_in * inverse_tube * inverse_out;
+}
+
+// Returns the least that one over that size can be for gains of 1, whatever the cosine; the unfolded lengths to and from the
+// point are at least `in` and `out` (m).
+template <class Real>
+ECHOPATH_INLINE Real least_spreading(bool is_curved, double root_area, Real in, Real out) {
+  return is_curved ? root_area * out : in * out;
+}
+
+// `is_lit` is the result of the function above.
 template <class Real, class Truth>
 ECHOPATH_INLINE ComplexOf<Real> coherent_factor(const CellWaves<Real>& waves, Real root_gains, Real inverse_tube,
                                                 const ComplexOf<Real>& filter, Truth is_lit) {
-  const Real size = root_gains * waves.cos_in * inverse_tube * waves.inverse_out;
+  const Real size = coherent_size(root_gains, waves.cos_in, inverse_tube, waves.inverse_out);
   return {is_lit ? size * filter.re : Real{}, is_lit ? size * filter.im : Real{}};
+}
+
+// --- flagged mirrors alone ---
+
+// Returns the factor of a path that is `length` (m) long, of which `root_gains` is sqrt(Gt Gr).
+template <class Real>
+ECHOPATH_INLINE Real mirror_size(Real root_gains, Real length) {
+  return root_gains / length;
 }
 
 // --- diffuse paths ---
@@ -105,6 +137,13 @@ ECHOPATH_INLINE Real diffuse_leg(Real root_gain, Real root_cosine, Real cosine, 
 template <class Math, class Real>
 ECHOPATH_INLINE Real diffuse_leg(Real root_gain, Real cosine, Real length) {
   return diffuse_leg<Math>(root_gain, Math::root(Math::magnitude(cosine)), cosine, length, 1.0 / length);
+}
+
+// Returns the size of the cosine of such a leg from its factor.
+template <class Real>
+ECHOPATH_INLINE Real cosine_of_leg(Real factor, Real root_gain, Real length) {
+  const Real root_cosine = factor * length / root_gain;
+  return root_cosine * root_cosine;
 }
 
 // Returns the factor of a leg to a specular point, from which it is `to_first` (m) to the first diffuse hit.

@@ -67,9 +67,8 @@ struct CoherentPath {
 // Asks how large the amplitude of a coherent path can be between any antennas that stand so far (m, at most) from those at
 // the two ends of `path`.
 struct AmplitudeToBound {
-  // The rows hold the largest logarithm of the filter, and the least square of the distance over which a wave spreads: the
-  // product of both legs in m^2 or, where the cell is curved, the leg from the point to the antenna in m. A spreading that
-  // is not positive tells that there is no bound.
+  // The rows hold the largest logarithm of the filter and least_spreading (path_formula.h). A spreading that is not positive
+  // tells that there is no bound.
   enum Row { kFilter, kSpreading, kNumRows };
   const CoherentPath& path;
   double around_start, around_end;

@@ -120,8 +120,8 @@ void connect(const PathToCombine& path, size_t stride) {
   for (size_t node = 0; node < stride; node += Math::kCount) {
     const At<Math> at{node, stride};
     const auto length = at.value(path.start, LegToMeasure::kLength);
-    const auto size = at.value(path.start, LegToMeasure::kGain) * at.value(path.end, LegToMeasure::kGain) / length;
-    set_path(path, at, length, amplitude_of<Math>(path.weight, size));
+    const auto gains = at.value(path.start, LegToMeasure::kGain) * at.value(path.end, LegToMeasure::kGain);
+    set_path(path, at, length, amplitude_of<Math>(path.weight, mirror_size(gains, length)));
   }
 }
 
@@ -177,8 +177,7 @@ void reflect(const CoherentPath& coherent, size_t begin, size_t end, size_t stri
     Turn turn;
     const ComplexOf<Real> filter = cell_filter_of<Math>(coherent.cell, of.waves, coherent.filter, turn);
     set_turn<Math>(path, at, turn);
-    const Real inverse_tube =
-        coherent.cell.is_curved ? 1.0 / (coherent.root_area * Math::root(of.waves.cos_in)) : of.waves.inverse_in;
+    const Real inverse_tube = inverse_tube_of<Math>(coherent.cell.is_curved, coherent.root_area, of.waves);
     const Real gains = at.value(path.start, LegToMeasure::kGain) * at.value(path.end, LegToMeasure::kGain);
     const ComplexOf<Real> factor =
         coherent_factor(of.waves, gains, inverse_tube, filter, is_lit(of.cos_in, of.cos_out, of.first, of.out));
@@ -202,9 +201,7 @@ void bound(const AmplitudeToBound& work, size_t stride) {
     const Real in = of.in - work.around_start, out = of.out - work.around_end;
     // An antenna may stand anywhere about a point that is nearer than the array is wide: nothing bounds how waves turn.
     at.set(work.out, AmplitudeToBound::kSpreading,
-           !(Math::smaller(in, out) > 0.0) ? in * 0.0
-           : coherent.cell.is_curved       ? out
-                                           : in * out);
+           Math::smaller(in, out) > 0.0 ? least_spreading(coherent.cell.is_curved, coherent.root_area, in, out) : in * 0.0);
     at.set(work.out, AmplitudeToBound::kFilter,
            largest_cell_filter<Math>(coherent.cell, of.waves, {work.around_start / in, work.around_end / out},
                                      coherent.filter));

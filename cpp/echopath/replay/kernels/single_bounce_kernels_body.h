@@ -103,7 +103,8 @@ ECHOPATH_INLINE ComplexOf<Vec> coherent_of(const SingleBouncesToEvaluate& paths,
   }
   const ComplexOf<Vec> filter = flat_filter_of(*paths.slots, slot, waves, paths.filter, paths.facet_area);
   const Mask lit = is_lit(cos_in, cos_out, in(D::kLegLength), out(D::kLegLength));
-  return coherent_factor<Vec>(waves, in(D::kGain) * out(D::kGain), waves.inverse_in, filter, lit);
+  const Vec inverse_tube = inverse_tube_of<LaneMath>(FlatCell::is_curved, 0.0, waves);
+  return coherent_factor<Vec>(waves, in(D::kGain) * out(D::kGain), inverse_tube, filter, lit);
 }
 
 // Holds the weights of both kinds, multiplied by the polarisations of both ends.
@@ -174,13 +175,26 @@ ECHOPATH_INLINE void see_sides(const SingleBouncesToEvaluate& paths, size_t node
   store(paths.turned + slot, turned ? all(1.0) : Vec{});
 }
 
+// Returns the size of the weight of the coherent paths, between the polarisations that it serves best.
+ECHOPATH_INLINE Vec size_of_weight(const SingleBouncesToEvaluate& paths, size_t slot) {
+  constexpr auto kKind = SingleBounceSlots::kCoherent;
+  const SingleBounceSlots& slots = *paths.slots;
+  Vec largest{};
+  for (int i = 0; i < (paths.axes ? 4 : 1); ++i) {
+    const auto& parts = paths.axes ? slots.matrix[kKind][i] : slots.weight[kKind];
+    const Vec re = load(parts[0] + slot), im = load(parts[1] + slot);
+    largest = LaneMath::larger(largest, re * re + im * im);
+  }
+  return LaneMath::root(largest);
+}
+
 ECHOPATH_INLINE void store_unfiltered(const SingleBouncesToEvaluate& paths, size_t slot) {
   using D = SingleBouncesToEvaluate;
   const LegLanes in{leg_of(paths, 0, 0, 0, slot)}, out{leg_of(paths, 0, 1, 0, slot)};
-  const Vec gains = in(D::kGain) * out(D::kGain), spreading = in(D::kInverse) * out(D::kInverse);
-  const auto row = [&](int of) { return paths.unfiltered + static_cast<size_t>(of) * SingleBounceSlots::kSlots + slot; };
-  store(row(D::kOfCell), gains * LaneMath::magnitude(in(D::kCosine)) * spreading);
-  store(row(D::kOfMirror), gains / (in(D::kLegLength) + out(D::kLegLength)));
+  const Vec gains = in(D::kGain) * out(D::kGain), cos_in = LaneMath::magnitude(in(D::kCosine));
+  const Vec of_cell = size_of_weight(paths, slot) * coherent_size(gains, cos_in, in(D::kInverse), out(D::kInverse));
+  const Vec of_mirror = paths.mirror_scale * mirror_size(gains, in(D::kLegLength) + out(D::kLegLength));
+  store(paths.unfiltered + slot, LaneMath::smaller(of_cell, of_mirror));
 }
 
 template <bool kIsPolarized>

@@ -51,12 +51,12 @@ void prepare(const SingleBounceTrace& trace, SingleBounceSlots& slots) {
     const VectorOf<Vec> at = times(trace.linear, point) + moved;
     const Vec length = LaneMath::root(dot(at, at));
     const VectorOf<Vec> arrival = (1.0 / length) * at;
-    const Vec cos_in = dot(normal, arrival), side = length / LaneMath::root(load(slots.density + slot));  // of the tube, m
+    const Vec cos_in = dot(normal, arrival);
+    const TubeOnPlane<Vec> tube = tube_on_plane<LaneMath>(length, load(slots.density + slot), cos_in);
     const VectorOf<Vec> slope = arrival - cos_in * normal;
     const Vec sine = LaneMath::root(dot(slope, slope));
-    const VectorOf<Vec> along = choose(sine > 1e-9, (1.0 / sine) * slope, orthogonal(normal));
-    const VectorOf<Vec> first = (side / LaneMath::larger(LaneMath::magnitude(cos_in), all(1e-3))) * along;
-    const VectorOf<Vec> second = side * cross(normal, along), none{};
+    const VectorOf<Vec> along = choose(has_plane_of_incidence(sine), (1.0 / sine) * slope, orthogonal(normal));
+    const VectorOf<Vec> first = tube.along * along, second = tube.across * cross(normal, along), none{};
     const Mask has_cell = is_finite(first) & is_finite(second);
     const VectorOf<Vec> tangent[2] = {choose(has_cell, first, none), choose(has_cell, second, none)};
     set_vector(slots.point, slot, at);

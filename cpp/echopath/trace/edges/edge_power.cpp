@@ -69,7 +69,7 @@ double EdgeEstimate::power(const Wedge& wedge, const EdgeLeg& in, const EdgeLeg&
   const double slope = wavenumber_ * std::abs((in.to_antenna + out.to_antenna).dot(axis_of(wedge)));
   const double zone = 2.0 * std::sqrt(kPi / (wavenumber_ * (1.0 / in.length + 1.0 / out.length)));
   const double effective = std::min({longest, zone, 2.0 / std::max(slope, 1e-9)});
-  const double field = coupled * effective / (4.0 * kPi * 2.0 * wavenumber_ * in.length * out.length);
+  const double field = edge_amplitude(coupled / (4.0 * kPi), effective, wavenumber_, in.length, out.length);
   return transmit_power_ * best_gain(transmitters_, in.at_antenna) * best_gain(receivers_, out.at_antenna) * field * field;
 }
 

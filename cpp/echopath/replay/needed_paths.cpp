@@ -46,8 +46,9 @@ std::vector<uint32_t> Replayer::meshes_of(std::span<const int64_t> paths) const 
   return meshes;
 }
 
-void Replayer::pose_polynomial(int polynomial, std::span<const int64_t> paths) {
-  if (!posed_.is_whole(polynomial)) posed_.pose_polynomial(polynomial, meshes_of(paths));
+void Replayer::pose_polynomial(GridIndex polynomial, std::span<const int64_t> paths) {
+  if (posed_.is_whole(polynomial)) posed_.pose_polynomial(polynomial);
+  else posed_.pose_polynomial(polynomial, meshes_of(paths));
 }
 
 void Replayer::find_strongest() {
@@ -95,7 +96,7 @@ std::vector<uint8_t> Replayer::negligible_ones(const FrameNodes& nodes, std::spa
   return is_negligible;
 }
 
-std::vector<Echoes> Replayer::interpolated(std::span<const int64_t> indices, int index,
+std::vector<Echoes> Replayer::interpolated(std::span<const int64_t> indices, GridIndex index,
                                            std::vector<UnfollowedPath>& unfollowed) const {
   const PosedGrid& polynomial = posed_.polynomial(index);
   std::vector<uint8_t> dark, turned(indices.size());

@@ -52,7 +52,7 @@ Replayer::Replayer(const Paths& paths, const Radar& radar, const ReplaySettings&
       preparer_(paths, hit_patches(paths)), sheets_(preparer_, radio_.wavelength), grids_(paths, radar, settings),
       posed_(grids_, paths, radar, preparer_) {}
 
-PathGrids Replayer::path_grids() const {
+PathGrids Replayer::path_grids() {
   return PathGrids(paths_, radar_, grids_, posed_, radio_.wavenumber, settings_.phase_tolerance);
 }
 
@@ -161,9 +161,7 @@ std::vector<Echoes> Replayer::placed(std::span<const int64_t> indices, std::span
   return echoes;
 }
 
-std::vector<Echoes> Replayer::still(std::span<const int64_t> indices) const {
-  return at_nodes(indices, posed_.at_trace(), {});
-}
+std::vector<Echoes> Replayer::still(std::span<const int64_t> indices) const { return at_nodes(indices, posed_.still(), {}); }
 
 std::vector<Echoes> Replayer::exact(std::span<const int64_t> indices, const PosedGrid& samples) const {
   require(samples.nodes.sampling.size() == 1, "samples", "must be posed at a SampleGrid, transmitters",
@@ -171,7 +169,7 @@ std::vector<Echoes> Replayer::exact(std::span<const int64_t> indices, const Pose
   return at_nodes(indices, samples, {});
 }
 
-std::vector<Echoes> Replayer::by_chirp(std::span<const int64_t> indices, int index, const PosedGrid& chirps,
+std::vector<Echoes> Replayer::by_chirp(std::span<const int64_t> indices, GridIndex index, const PosedGrid& chirps,
                                        std::span<const uint8_t> joined) const {
   require(chirps.transmitter >= 0, "chirps", "must be posed at a ChirpGrid, transmitter", chirps.transmitter);
   const PosedGrid& polynomial = posed_.polynomial(index);

@@ -37,31 +37,33 @@ class Replayer {
   int num_channels() const;
   const TimeGrids& grids() const { return grids_; }
   // Returns the rule by which each path gets its time grid. The replayer must outlive it.
-  PathGrids path_grids() const;
+  PathGrids path_grids();
 
+  // Poses all meshes at the time of the trace, for still().
+  void pose_still() { posed_.pose_still(); }
   // Returns the echoes of `paths` (indices), by channel [tx * num_rx + rx]; their groups are left empty. Neither the paths
   // nor the radar may move: they are evaluated once, at the time of the trace.
   std::vector<Echoes> still(std::span<const int64_t> paths) const;
   // Finds the amplitude of the strongest of some paths at the time of the trace, between the first antennas. From then on
   // interpolated() leaves out paths that it may.
   void find_strongest();
-  // Poses at the nodes of a polynomial the meshes that some paths touch, unless all are posed there. From then on
-  // interpolated() and by_chirp() take only paths for which this was called, which they do not check; without it they pose
-  // all meshes.
-  void pose_polynomial(int polynomial, std::span<const int64_t> paths);
+  // Poses at the nodes of a polynomial the meshes that some paths touch, unless all are posed there: interpolated(),
+  // turning() and by_chirp() take only paths for which this was called, which they do not check.
+  void pose_polynomial(GridIndex polynomial, std::span<const int64_t> paths);
   // Interpolates the echoes of `paths` by a polynomial (grids()). Paths are left out and added to `unfollowed`, in their
   // order, where the last two coefficients of their length or of their amplitude exceed the tolerance; or where they are
   // negligible: their amplitudes stay so small in all channels, throughout the frame (is_dark), that the sum of all such
   // paths is below the rounding of the strongest path of the record.
-  std::vector<Echoes> interpolated(std::span<const int64_t> paths, int polynomial,
+  std::vector<Echoes> interpolated(std::span<const int64_t> paths, GridIndex polynomial,
                                    std::vector<UnfollowedPath>& unfollowed) const;
   // Returns whether a path can have an echo by turning(): where its amplitude is that of a launch cell.
   bool can_turn(int64_t path) const;
   // Interpolates the logarithms of amplitudes by a polynomial that follows the lengths: it follows the steep or turning
   // phases of waves from curved surfaces, of which no polynomial of few nodes follows the amplitudes
-  // (TimeSampling::has_logarithms). All paths must be able to. Those whose logarithms it does not follow are left out and
+  // (TimeSampling::Rows::kLogarithms). All paths must be able to. Those whose logarithms it does not follow are left out and
   // added to `unfollowed`, in their order, with no more said than their index.
-  std::vector<Echoes> turning(std::span<const int64_t> paths, int polynomial, std::vector<UnfollowedPath>& unfollowed) const;
+  std::vector<Echoes> turning(std::span<const int64_t> paths, GridIndex polynomial,
+                              std::vector<UnfollowedPath>& unfollowed) const;
   // Poses meshes that some paths touch, as PartlyPosedGrid::with takes them, at all nodes of a grid of chirps or samples,
   // which both functions below take; the replayer must outlive it.
   PartlyPosedGrid pose_partly(const TimeGrid& grid) const { return posed_.pose_partly(grid); }
@@ -73,7 +75,7 @@ class Replayer {
   // derivatives of the lengths from a polynomial, which must follow them. The result has num_rows_by_chirp() rows. It serves
   // paths whose amplitude no polynomial follows, because it has a root where a surface turns away. Paths that are `joined`
   // go into the echo of the path before them (JoinRule); where `joined` is empty, each path keeps its own echo.
-  std::vector<Echoes> by_chirp(std::span<const int64_t> paths, int polynomial, const PosedGrid& chirps,
+  std::vector<Echoes> by_chirp(std::span<const int64_t> paths, GridIndex polynomial, const PosedGrid& chirps,
                                std::span<const uint8_t> joined = {}) const;
   int64_t num_rows_by_chirp() const;
 

@@ -37,9 +37,9 @@ bool Replayer::can_turn(int64_t path) const {
   return radio_.footprint != Footprint::kEdges && paths_.is_coherent_with_cell(p);
 }
 
-std::vector<Echoes> Replayer::turning(std::span<const int64_t> indices, int index,
+std::vector<Echoes> Replayer::turning(std::span<const int64_t> indices, GridIndex polynomial,
                                       std::vector<UnfollowedPath>& unfollowed) const {
-  const PosedGrid& grid = posed_.polynomial(index);
+  const PosedGrid& grid = posed_.polynomial(polynomial);
   const size_t num_nodes = grid.posed.size();
   std::vector<Echoes> echoes = take_echoes(indices.size(), static_cast<size_t>(num_channels()), num_nodes);
   std::vector<std::vector<double>> turns(echoes.size(), std::vector<double>(indices.size() * num_nodes));
@@ -48,7 +48,7 @@ std::vector<Echoes> Replayer::turning(std::span<const int64_t> indices, int inde
   for (size_t channel = 0; channel < echoes.size(); ++channel) {
     Echoes& here = echoes[channel];
     here.sampling = grid.nodes.sampling[channel / num_receivers()];
-    here.sampling.has_logarithms = true;
+    here.sampling.rows = TimeSampling::Rows::kLogarithms;
     for (size_t p = 0; p < indices.size(); ++p) {
       is_followed[p] &= take_logarithms(num_nodes, indices.size(), &turns[channel][p], &here.amplitude[p]);
     }

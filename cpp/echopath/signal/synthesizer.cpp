@@ -22,7 +22,7 @@ Method choose_method(Method asked, int64_t expected_echoes) {
 
 bool same_sampling(const TimeSampling& a, const TimeSampling& b) {
   return a.num_rows == b.num_rows && a.order == b.order && a.first_row == b.first_row && a.value == b.value &&
-         a.slope == b.slope && a.has_logarithms == b.has_logarithms;
+         a.slope == b.slope && a.rows == b.rows;
 }
 
 // Returns how many blocks from the first on share its sampling.

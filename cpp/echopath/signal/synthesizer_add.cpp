@@ -186,7 +186,7 @@ void Synthesizer::add_tile(const EchoTiles::Tile& tile, const TimeSampling& samp
                         &sampling.first_row[static_cast<size_t>(chirps.begin)],
                         &sampling.value[weights],
                         &sampling.slope[weights],
-                        sampling.has_logarithms};
+                        sampling.rows == TimeSampling::Rows::kLogarithms};
   signal_kernels().add_tile(*model_, spread_->spreading(), at, room);
 }
 

@@ -38,7 +38,7 @@ Paths record(const Radar& radar) {
 }
 
 // Paths whose lengths follow a polynomial and whose amplitudes do not.
-std::vector<int64_t> fading(const Paths& paths, const Replayer& replayer, int polynomial) {
+std::vector<int64_t> fading(const Paths& paths, Replayer& replayer, GridIndex polynomial) {
   std::vector<int64_t> found;
   std::vector<UnfollowedPath> unfollowed;
   replayer.interpolated(all_of(paths), polynomial, unfollowed);
@@ -52,8 +52,9 @@ std::vector<int64_t> fading(const Paths& paths, const Replayer& replayer, int po
 TEST(Fading, AmplitudesAreThoseOfTheChirps) {
   const Radar radar = two_by_two();
   const Paths paths = record(radar);
-  const Replayer replayer(paths, radar);
-  const int polynomial = replayer.path_grids().first(0);
+  Replayer replayer(paths, radar);
+  const GridIndex polynomial = replayer.path_grids().first(0);
+  replayer.pose_polynomial(polynomial, all_of(paths));
   const std::vector<int64_t> indices = fading(paths, replayer, polynomial);
   ASSERT_GT(indices.size(), 20u);
   std::vector<double> lengths, before, after;
@@ -96,10 +97,11 @@ double facing(const Paths& paths, const PathPreparer& preparer, const Radar& rad
 TEST(Fading, WhatTurnsItsOtherSideIsLeftToTheChirpsAtOnceAndNothingElseIs) {
   const Radar radar = two_by_two();
   const Paths paths = record(radar);
-  const Replayer replayer(paths, radar);
+  Replayer replayer(paths, radar);
   const PathPreparer preparer(paths, hit_patches(paths));
   const PathGrids path_grids = replayer.path_grids();
-  const int polynomial = path_grids.first(0);
+  const GridIndex polynomial = path_grids.first(0);
+  replayer.pose_polynomial(polynomial, all_of(paths));
   std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
   std::iota(indices.begin(), indices.end(), 0);
   std::vector<UnfollowedPath> failed;
@@ -115,7 +117,7 @@ TEST(Fading, WhatTurnsItsOtherSideIsLeftToTheChirpsAtOnceAndNothingElseIs) {
       ++num_turned;
       ASSERT_NE(one, failed.end());
       EXPECT_TRUE(path_grids.next(*one, polynomial).by_chirp);
-      EXPECT_EQ(path_grids.next(*one, polynomial).polynomial, polynomial);
+      EXPECT_TRUE(path_grids.next(*one, polynomial).grid == polynomial);
     } else if (std::min(first, last) > kGrazing) {  // turned by less than half a turn: seen all along
       ++num_facing;
       EXPECT_EQ(one, failed.end());
@@ -130,9 +132,10 @@ TEST(Fading, WhatTurnsItsOtherSideIsLeftToTheChirpsAtOnceAndNothingElseIs) {
 TEST(Fading, PathsThatAreFollowedKeepTheirPlaces) {
   const Radar radar = two_by_two();
   const Paths paths = record(radar);
-  const Replayer replayer(paths, radar);
+  Replayer replayer(paths, radar);
   const PathGrids path_grids = replayer.path_grids();
-  const int polynomial = path_grids.first(0);
+  const GridIndex polynomial = path_grids.first(0);
+  replayer.pose_polynomial(polynomial, all_of(paths));
   std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
   std::iota(indices.begin(), indices.end(), 0);
   std::vector<UnfollowedPath> failed, none;

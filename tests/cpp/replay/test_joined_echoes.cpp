@@ -151,12 +151,14 @@ TEST(JoinedEchoes, OfTheChirpsAreThoseOfTheirPaths) {
   const Paths paths = record();
   const std::vector<int64_t> indices = all_of(paths);
   const std::vector<uint8_t> found = joined(paths, indices);
-  const Replayer replayer(paths, paths.radar);
+  Replayer replayer(paths, paths.radar);
+  const GridIndex polynomial = GridIndex::polynomial(0);
+  replayer.pose_polynomial(polynomial, indices);
   EXPECT_GT(num_joined(found), 0);
   PartlyPosedGrid partly = replayer.pose_partly(ChirpGrid{0});
   const PosedGrid& chirps = partly.with(replayer.meshes_of(indices));
-  const std::vector<Echoes> at_once = replayer.by_chirp(indices, 1, chirps, found);
-  const std::vector<Echoes> after = replayer.joined(replayer.by_chirp(indices, 1, chirps), found);
+  const std::vector<Echoes> at_once = replayer.by_chirp(indices, polynomial, chirps, found);
+  const std::vector<Echoes> after = replayer.joined(replayer.by_chirp(indices, polynomial, chirps), found);
   ASSERT_EQ(at_once.front().num_echoes, paths.num_paths() - num_joined(found));
   ASSERT_EQ(at_once.front().num_echoes, after.front().num_echoes);
   EXPECT_EQ(at_once.front().sampling.num_rows, after.front().sampling.num_rows);

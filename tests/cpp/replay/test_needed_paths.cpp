@@ -55,7 +55,8 @@ std::vector<double> largest(const Paths& paths, const Radar& radar, const Replay
 // Replays to a radar the paths that another one has traced.
 void expect_little_left_out(const Paths& paths, const Radar& radar, int64_t least) {
   Replayer replayer(paths, radar);
-  const int polynomial = replayer.path_grids().first(0);
+  const GridIndex polynomial = replayer.path_grids().first(0);
+  replayer.pose_polynomial(polynomial, all_of(paths));
   std::vector<UnfollowedPath> before, left;
   replayer.interpolated(all_of(paths), polynomial, before);
   for (const UnfollowedPath& path : before) EXPECT_FALSE(path.is_negligible);
@@ -122,14 +123,22 @@ TEST(NeededPaths, MeshesThatArePosedLaterStandWhereAllWouldStand) {
   }
 }
 
+TEST(NeededPaths, PolynomialsMustBePosed) {
+  const Radar radar = two_by_two();
+  const Paths paths = record(radar);
+  const Replayer replayer(paths, radar);
+  std::vector<UnfollowedPath> left;
+  EXPECT_THROW(replayer.interpolated(all_of(paths), GridIndex::polynomial(0), left), std::invalid_argument);
+}
+
 TEST(NeededPaths, PolynomialsPosedForSomePathsGiveThemTheSameEchoes) {
   const Radar radar = two_by_two();
   const Paths paths = record(radar);
-  const Replayer whole(paths, radar);
-  Replayer partly(paths, radar);
+  Replayer whole(paths, radar), partly(paths, radar);
   std::vector<std::vector<int64_t>> of_mesh(2);
   for (const int64_t path : all_of(paths)) of_mesh[paths.hits_of(path)->mesh_id].push_back(path);
-  const int polynomial = whole.grids().num_polynomials();  // where no motion was tried
+  const GridIndex polynomial = GridIndex::polynomial(whole.grids().num_polynomials() - 1);  // where no motion was tried
+  whole.pose_polynomial(polynomial, all_of(paths));
   for (const std::vector<int64_t>& some : {of_mesh[1], of_mesh[0]}) {
     ASSERT_FALSE(some.empty());
     partly.pose_polynomial(polynomial, some);

@@ -44,13 +44,14 @@ Radar radar_of_a_long_frame() {
 
 // Tries a polynomial on all paths, and then logarithms on those whose amplitudes it did not follow.
 struct Tried {
-  int polynomial;
+  GridIndex polynomial;
   std::vector<int64_t> turning;  // paths whose logarithms were followed
   std::vector<Echoes> echoes;    // of these
 };
 
-Tried try_logarithms(const Paths& paths, const Replayer& replayer) {
+Tried try_logarithms(const Paths& paths, Replayer& replayer) {
   Tried tried{replayer.path_grids().first(0), {}, {}};
+  replayer.pose_polynomial(tried.polynomial, all_of(paths));
   std::vector<UnfollowedPath> unfollowed, failed;
   replayer.interpolated(all_of(paths), tried.polynomial, unfollowed);
   for (const UnfollowedPath& one : unfollowed) {
@@ -65,7 +66,7 @@ Tried try_logarithms(const Paths& paths, const Replayer& replayer) {
 TEST(TurningPaths, InterpolatedLogarithmsHaveTheAmplitudesOfTheChirps) {
   const Radar radar = radar_of_a_long_frame();
   const Paths paths = record(radar);
-  const Replayer replayer(paths, radar);
+  Replayer replayer(paths, radar);
   const Tried tried = try_logarithms(paths, replayer);
   const size_t num_paths = tried.turning.size();
   ASSERT_GT(num_paths, 30u);
@@ -97,7 +98,7 @@ TEST(TurningPaths, InterpolatedLogarithmsHaveTheAmplitudesOfTheChirps) {
 TEST(TurningPaths, PhasesTurnByMoreThanHalfACycleBetweenTheNodes) {
   const Radar radar = radar_of_a_long_frame();
   const Paths paths = record(radar);
-  const Replayer replayer(paths, radar);
+  Replayer replayer(paths, radar);
   const Tried tried = try_logarithms(paths, replayer);
   const Echoes& echoes = tried.echoes.front();
   const auto count = static_cast<size_t>(echoes.num_echoes);
@@ -116,7 +117,7 @@ TEST(TurningPaths, PhasesTurnByMoreThanHalfACycleBetweenTheNodes) {
 TEST(TurningPaths, OnlyCoherentPathsOfRaysTurn) {
   const Radar radar = radar_of_a_long_frame();
   const Paths paths = record(radar);
-  const Replayer replayer(paths, radar);
+  Replayer replayer(paths, radar);
   int num_coherent = 0, num_diffuse = 0;
   for (const int64_t path : all_of(paths)) {
     const auto p = static_cast<size_t>(path);
@@ -132,7 +133,7 @@ TEST(TurningPaths, OnlyCoherentPathsOfRaysTurn) {
 TEST(TurningPaths, EchoesAreTheSameInAnyBlock) {
   const Radar radar = radar_of_a_long_frame();
   const Paths paths = record(radar);
-  const Replayer replayer(paths, radar);
+  Replayer replayer(paths, radar);
   const Tried tried = try_logarithms(paths, replayer);
   ASSERT_FALSE(tried.turning.empty());
   for (size_t p = 0; p < tried.turning.size(); p += 17) {

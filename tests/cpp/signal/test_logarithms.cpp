@@ -45,7 +45,7 @@ Echoes echoes_of(const ChirpSequence& w, const std::vector<TurningPoint>& points
   Echoes echoes;
   echoes.num_echoes = kCount;
   echoes.sampling.num_rows = echoes.sampling.order = 2;
-  echoes.sampling.has_logarithms = true;
+  echoes.sampling.rows = TimeSampling::Rows::kLogarithms;
   echoes.sampling.first_row.assign(static_cast<size_t>(w.num_chirps), 0);
   const double span = w.num_chirps * w.chirp_interval;
   for (int chirp = 0; chirp < w.num_chirps; ++chirp) {

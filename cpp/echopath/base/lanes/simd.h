@@ -83,6 +83,16 @@ void run_simd(Args... args) {
       [&](auto set) __attribute__((always_inline)) { FunctionTarget<decltype(set)::value>::template run<kLoop>(args...); });
 }
 
+// Returns how many doubles the loops that are written for several widths take at a time.
+inline int num_simd_lanes() { return instruction_set() == InstructionSet::kAvx512 ? 8 : 4; }
+
+// Runs the one of two such loops, for eight and for four lanes, that is written for num_simd_lanes().
+template <auto kOfEight, auto kOfFour, class... Args>
+void run_simd_lanes(Args... args) {
+  if (num_simd_lanes() == 8) run_simd<kOfEight>(args...);
+  else run_simd<kOfFour>(args...);
+}
+
 // Returns the table of functions compiled for one instruction set: each file that is compiled for it specialises this for
 // its table.
 template <class Table, InstructionSet kSet>

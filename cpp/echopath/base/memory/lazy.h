@@ -17,8 +17,6 @@ class Lazy {
     std::call_once(once_, [&] { value_.emplace(make()); });
     return *value_;
   }
-  // Returns whether there is a value. To be asked only while no other thread makes it.
-  bool is_made() const { return value_.has_value(); }
 
  private:
   mutable std::once_flag once_;

@@ -177,7 +177,7 @@ TimeSampling derivative_sampling(int num_chirps, ChirpDerivatives derivatives) {
   TimeSampling sampling;
   sampling.order = rows_of_chirp(derivatives);
   sampling.num_rows = num_chirps * sampling.order;
-  sampling.holds_derivatives = true;
+  sampling.rows = TimeSampling::Rows::kDerivatives;
   std::vector<double>* const weights[] = {&sampling.value, &sampling.slope, &sampling.second_derivative,
                                           &sampling.third_derivative};
   for (int d = 0; d < sampling.order; ++d) weights[d]->assign(static_cast<size_t>(sampling.num_rows), 0.0);

@@ -14,7 +14,7 @@ struct NodeTails {
 
 // Returns the tails of echoes at the nodes of chebyshev_nodes.
 NodeTails node_tails(const FrameNodes& nodes, const Echoes& echoes);
-// Returns the tails of amplitudes that stand as logarithms (TimeSampling::has_logarithms), [P], relative to the amplitude.
+// Returns the tails of amplitudes that stand as logarithms (TimeSampling::Rows), [P], relative to the amplitude.
 std::vector<double> tails_of_logarithms(const FrameNodes& nodes, const Echoes& echoes);
 
 // Returns whether the amplitude of an echo stays below `limit` (sqrt(W)) at its nodes and between them. It takes the

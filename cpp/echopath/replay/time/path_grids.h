@@ -20,36 +20,34 @@ struct UnfollowedPath {
 
 // Says how to go on with such a path.
 struct NextGrid {
-  int polynomial;
+  GridIndex grid;
   bool by_chirp;  // lengths follow that polynomial, amplitudes are evaluated in every chirp
 };
 
-// Grids are numbered as in TimeGrids: 0 for paths that do not move, then the polynomials, and num_polynomials() + 1 for
-// paths that none of them follows. The constructor finds everything; after that many threads may read.
+// The constructor finds everything; after that many threads may read.
 class PathGrids {
  public:
-  // The record, the radar and the grids must outlive it. `wavenumber` is in rad/m, `phase_tolerance` in rad. Raises what
-  // motions raise.
-  PathGrids(const Paths& paths, const Radar& radar, const TimeGrids& grids, const PosedGrids& posed, double wavenumber,
+  // The record, the radar and `grids` must outlive it; motions are tried on `posed`. `wavenumber` is in rad/m,
+  // `phase_tolerance` in rad. Raises what motions raise.
+  PathGrids(const Paths& paths, const Radar& radar, const TimeGrids& grids, PosedGrids& posed, double wavenumber,
             double phase_tolerance);
 
-  int num_grids() const { return grids_.num_polynomials() + 2; }
-  int first(int64_t path) const;
+  GridIndex first(int64_t path) const;
   // Writes the first grids of paths [begin, begin + first.size()).
-  void first(int64_t begin, std::span<uint8_t> first) const;
-  NextGrid next(const UnfollowedPath& path, int polynomial) const;
+  void first(int64_t begin, std::span<GridIndex> first) const;
+  NextGrid next(const UnfollowedPath& path, GridIndex polynomial) const;
 
  private:
-  bool is_quick_enough(int polynomial, double turn_rate) const;
-  bool follows(int polynomial, uint32_t mesh_id) const;
+  GridIndex first_of_mesh(uint32_t mesh_id, double turn_rate, PosedGrids& posed) const;
+  bool is_quick_enough(GridIndex polynomial, double turn_rate) const;
+  bool follows(const TrialGrid& trial, uint32_t mesh_id) const;
 
   const Paths& paths_;
   const TimeGrids& grids_;
-  const PosedGrids& posed_;
   double wavenumber_, phase_tolerance_;
   int num_chirps_;
   bool radar_moves_;
-  std::vector<int> of_mesh_;  // by mesh ID: the first that follows its motion
+  std::vector<GridIndex> of_mesh_;  // by mesh ID: the first that follows its motion
 };
 
 }  // namespace echopath

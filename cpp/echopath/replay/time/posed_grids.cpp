@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "echopath/base/errors.h"
+
 namespace echopath {
 namespace {
 
@@ -70,41 +72,38 @@ PosedNodes PosedGrids::pose(std::span<const double> times, std::span<const Radar
   return PosedNodes(std::move(scenes));
 }
 
-const PosedGrid& PosedGrids::at_trace() const {
-  return at_trace_.get([&] {
-    FrameNodes nodes = nodes_of(grids_.still(), radar_, grids_.start_time(), grids_.derivatives());
-    PosedNodes posed(scenes_at(nodes.times));
-    return PosedGrid{std::move(nodes), std::move(posed)};
-  });
+void PosedGrids::pose_still() {
+  if (still_) return;
+  FrameNodes nodes = nodes_of(grids_.still(), radar_, grids_.start_time(), grids_.derivatives());
+  PosedNodes posed(scenes_at(nodes.times));
+  still_.emplace(PosedGrid{std::move(nodes), std::move(posed)});
 }
 
-const TrialGrid& PosedGrids::trial(int polynomial) const {
-  return kept(polynomial).trial.get([&] {
-    const PolynomialGrid& grid = grids_.polynomial(polynomial);
-    FrameNodes nodes = unsampled_chebyshev_nodes(radar_, grids_.start_time(), grid.cuts, grid.order);
-    std::shared_ptr<const PosedScenes> scenes = scenes_at(nodes.times);
-    return TrialGrid{std::move(nodes), std::move(scenes)};
-  });
+const TrialGrid& PosedGrids::trial(GridIndex polynomial) {
+  std::optional<TrialGrid>& trial = kept(polynomial).trial;
+  if (trial) return *trial;
+  const PolynomialGrid& grid = grids_.polynomial(polynomial);
+  FrameNodes nodes = unsampled_chebyshev_nodes(radar_, grids_.start_time(), grid.cuts, grid.order);
+  std::shared_ptr<const PosedScenes> scenes = scenes_at(nodes.times);
+  return trial.emplace(TrialGrid{std::move(nodes), std::move(scenes)});
 }
 
-bool PosedGrids::is_whole(int polynomial) const {
-  const Polynomial& own = kept(polynomial);
-  return !own.partly && (own.trial.is_made() || own.posed.is_made());
+void PosedGrids::pose_polynomial(GridIndex polynomial) {
+  Polynomial& own = kept(polynomial);
+  if (own.whole) return;
+  FrameNodes nodes = nodes_of(grids_.polynomial(polynomial), radar_, grids_.start_time(), grids_.derivatives());
+  own.posed = &own.whole.emplace(PosedGrid{std::move(nodes), PosedNodes(trial(polynomial).scenes)});
 }
 
-void PosedGrids::pose_polynomial(int index, std::span<const uint32_t> meshes) {
-  if (is_whole(index)) return;
-  Polynomial& own = polynomials_[static_cast<size_t>(index) - 1];
-  if (!own.partly) own.partly = std::make_unique<PartlyPosedGrid>(pose_partly(grids_.polynomial(index)));
-  own.of_meshes = &own.partly->with(meshes);
+void PosedGrids::pose_polynomial(GridIndex polynomial, std::span<const uint32_t> meshes) {
+  Polynomial& own = kept(polynomial);
+  if (!own.partly) own.partly.emplace(pose_partly(grids_.polynomial(polynomial)));
+  own.posed = &own.partly->with(meshes);
 }
 
-const PosedGrid& PosedGrids::polynomial(int index) const {
-  if (kept(index).of_meshes) return *kept(index).of_meshes;
-  return kept(index).posed.get([&] {
-    return PosedGrid{nodes_of(grids_.polynomial(index), radar_, grids_.start_time(), grids_.derivatives()),
-                     PosedNodes(trial(index).scenes)};
-  });
+const PosedGrid& PosedGrids::polynomial(GridIndex polynomial) const {
+  require(kept(polynomial).posed != nullptr, "polynomial", "must have been posed, number", polynomial.number());
+  return *kept(polynomial).posed;
 }
 
 }  // namespace echopath

@@ -1,10 +1,10 @@
 #pragma once
 // Poses the scene at the nodes of time grids.
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
-#include "echopath/base/memory/lazy.h"
 #include "echopath/replay/posed/local_paths.h"
 #include "echopath/replay/posed/posed_nodes.h"
 #include "echopath/replay/time/time_grids.h"
@@ -43,24 +43,27 @@ class PartlyPosedGrid {
   int64_t num_bytes_ = 0;
 };
 
-// Poses the scene at the nodes of grids on request. The grid at the time of the trace and the grids of polynomials are kept.
-// Of a polynomial all meshes are posed at once, or further ones with each pose_polynomial(). Grids of chirps, which are
-// large, belong to the caller. Its const functions are thread-safe, except is_whole().
+// Keeps the grid of the time of the trace and those of polynomials, which are posed before they are used; grids of chirps,
+// which are large, belong to the caller. Its const functions are thread-safe. All others raise what PosedScene does.
 class PosedGrids {
  public:
   // All arguments must outlive it.
   PosedGrids(const TimeGrids& grids, const Paths& paths, const Radar& radar, const PathPreparer& preparer);
 
-  const PosedGrid& at_trace() const;
-  const PosedGrid& polynomial(int index) const;
+  void pose_still();
+  // Poses all meshes at the nodes of a polynomial.
+  void pose_polynomial(GridIndex polynomial);
+  // Makes polynomial() the grid of these meshes and those of earlier calls alone: most polynomials serve a few paths.
+  void pose_polynomial(GridIndex polynomial, std::span<const uint32_t> meshes);
+  // Poses all meshes to try their motions.
+  const TrialGrid& trial(GridIndex polynomial);
+
+  // Return grids that have been posed.
+  const PosedGrid& still() const { return still_.value(); }
+  const PosedGrid& polynomial(GridIndex polynomial) const;
   // Returns whether all meshes are posed at the nodes of a polynomial, because motions were tried there or it was asked for.
-  // To be called while no other thread uses the grid.
-  bool is_whole(int polynomial) const;
-  // Makes polynomial() the grid of these meshes and those of earlier calls alone, unless it is whole: most polynomials
-  // serve a few paths. To be called while no other thread uses the grid. Raises what PosedScene does.
-  void pose_polynomial(int index, std::span<const uint32_t> meshes);
-  const TrialGrid& trial(int polynomial) const;
-  // Raises what PosedScene does.
+  bool is_whole(GridIndex polynomial) const { return kept(polynomial).trial.has_value(); }
+
   PartlyPosedGrid pose_partly(const TimeGrid& grid) const;
   PosedNodes pose(std::span<const double> times) const;  // s
   // Poses at each of the times (s) the antennas of the radar of that time, which must outlive the result.
@@ -68,19 +71,20 @@ class PosedGrids {
 
  private:
   struct Polynomial {
-    Lazy<TrialGrid> trial;
-    Lazy<PosedGrid> posed;
-    std::unique_ptr<PartlyPosedGrid> partly;
-    const PosedGrid* of_meshes = nullptr;  // of `partly`
+    std::optional<TrialGrid> trial;
+    std::optional<PosedGrid> whole;
+    std::optional<PartlyPosedGrid> partly;
+    const PosedGrid* posed = nullptr;  // one of the two
   };
   std::shared_ptr<const PosedScenes> scenes_at(std::span<const double> times) const;
-  const Polynomial& kept(int polynomial) const { return polynomials_[static_cast<size_t>(polynomial) - 1]; }
+  const Polynomial& kept(GridIndex polynomial) const { return polynomials_[polynomial.number()]; }
+  Polynomial& kept(GridIndex polynomial) { return polynomials_[polynomial.number()]; }
 
   const TimeGrids& grids_;
   const Paths& paths_;
   const Radar& radar_;
   const PathPreparer& preparer_;
-  Lazy<PosedGrid> at_trace_;
+  std::optional<PosedGrid> still_;
   std::vector<Polynomial> polynomials_;
 };
 

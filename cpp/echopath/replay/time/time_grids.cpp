@@ -9,6 +9,7 @@ namespace echopath {
 namespace {
 
 constexpr std::array<int, 13> kOrders = {4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 20, 24, TimeGrids::kHighestOrder};
+static_assert(2 * kOrders.size() == GridIndex::kMostPolynomials);  // of both kinds of pieces
 
 // Returns the longest distance between neighbours of start, cuts (s, ascending) and end.
 double longest_piece(double start, double end, const std::vector<double>& cuts) {
@@ -50,12 +51,12 @@ void TimeGrids::find_polynomials(const Scene& scene, const Radar& radar) {
                    [](const PolynomialGrid& a, const PolynomialGrid& b) { return a.num_nodes < b.num_nodes; });
 }
 
-int TimeGrids::next_polynomial(int index, double needed_order) const {
+GridIndex TimeGrids::next_polynomial(GridIndex index, double needed_order) const {
   const PolynomialGrid::Pieces pieces = polynomial(index).pieces;
-  for (int next = index + 1; next <= num_polynomials(); ++next) {
-    if (polynomial(next).order >= needed_order || polynomial(next).pieces != pieces) return next;
+  for (size_t next = index.number() + 1; next < num_polynomials(); ++next) {
+    if (polynomials_[next].order >= needed_order || polynomials_[next].pieces != pieces) return GridIndex::polynomial(next);
   }
-  return num_polynomials() + 1;
+  return GridIndex::none();
 }
 
 }  // namespace echopath

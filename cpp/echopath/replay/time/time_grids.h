@@ -4,30 +4,29 @@
 
 #include "echopath/record/paths.h"
 #include "echopath/replay/replay_settings.h"
+#include "echopath/replay/time/grid_index.h"
 #include "echopath/replay/time/time_grid.h"
 
 namespace echopath {
 
-// Polynomials are counted from 1 in ascending order of their nodes; 0 stands for paths that do not move. None has more nodes
-// than evaluation in every chirp, and there is none at all where that was asked for. The grids do not change once they are
-// made.
+// Polynomials stand in ascending order of their nodes. None has more nodes than evaluation in every chirp, and there is none
+// at all where that was asked for. The grids do not change once they are made.
 class TimeGrids {
  public:
   static constexpr int kHighestOrder = 32;
   TimeGrids(const Paths& paths, const Radar& radar, const ReplaySettings& settings);
 
   StillGrid still() const { return {trace_time_}; }
-  int num_polynomials() const { return static_cast<int>(polynomials_.size()); }
-  const PolynomialGrid& polynomial(int index) const { return polynomials_[static_cast<size_t>(index) - 1]; }
+  size_t num_polynomials() const { return polynomials_.size(); }
+  const PolynomialGrid& polynomial(GridIndex index) const { return polynomials_[index.number()]; }
   ChirpGrid chirps(int transmitter) const { return {transmitter}; }
   SampleGrid samples(int transmitter) const { return {transmitter, sample_order_}; }
   int64_t num_sample_nodes() const { return int64_t{num_chirps_} * sample_order_; }  // for one transmitter
 
   double start_time() const { return start_time_; }  // s, of the frame
   ChirpDerivatives derivatives() const { return derivatives_; }
-  // Returns the first polynomial after `index` that has at least this order, or whose pieces are of the other kind;
-  // num_polynomials() + 1 where there is none.
-  int next_polynomial(int index, double needed_order) const;
+  // Returns the first polynomial after `index` that has at least this order, or whose pieces are of the other kind.
+  GridIndex next_polynomial(GridIndex index, double needed_order) const;
 
  private:
   void find_polynomials(const Scene& scene, const Radar& radar);

@@ -63,11 +63,9 @@ void undo_logarithms(int count, double* amplitude) {
   }
 }
 
-// Takes as many chirps at once as there are registers for.
 template <int kChirps>
 void interpolate_at(const Nodes& nodes, int count, EchoStates* states) {
-  if (instruction_set() == InstructionSet::kAvx512) run_simd<interpolate<8, kChirps>>(nodes, count, states);
-  else run_simd<interpolate<4, kChirps>>(nodes, count, states);
+  run_simd_lanes<interpolate<8, kChirps>, interpolate<4, kChirps>>(nodes, count, states);
 }
 
 // Returns how many chirps from `chirp` on share its nodes, up to `most`.
@@ -89,7 +87,7 @@ ECHOPATH_INLINE void add_derivatives(const double* delay, double second, double 
 
 void evaluate_states(const Echoes& echoes, int chirp, int num_chirps, int64_t begin, int count, EchoStates* states) {
   const TimeSampling& sampling = echoes.sampling;
-  const int end = chirp + num_chirps, at_once = instruction_set() == InstructionSet::kAvx512 ? 4 : 2;
+  const int end = chirp + num_chirps, at_once = num_simd_lanes() / 2;  // chirps, as there are registers for
   while (chirp < end) {
     const size_t row = static_cast<size_t>(chirp) * sampling.order;
     const int64_t first = int64_t{sampling.first_row[chirp]} * echoes.num_echoes + begin;
@@ -97,12 +95,13 @@ void evaluate_states(const Echoes& echoes, int chirp, int num_chirps, int64_t be
                       echoes.num_echoes,           sampling.value.data() + row,
                       sampling.slope.data() + row, sampling.order};
     const int shared = chirps_that_share_nodes(sampling, chirp, std::min(at_once, end - chirp));
-    if (sampling.holds_derivatives) copy_nodes(nodes, count, *states);
+    if (sampling.rows == TimeSampling::Rows::kDerivatives) copy_nodes(nodes, count, *states);
     else if (shared == 4) interpolate_at<4>(nodes, count, states);
     else if (shared > 1) interpolate_at<2>(nodes, count, states);
     else interpolate_at<1>(nodes, count, states);
     const int done = shared == 3 ? 2 : shared;
-    for (int i = 0; sampling.has_logarithms && i < done; ++i) undo_logarithms(count, states[i].amplitude);
+    for (int i = 0; sampling.rows == TimeSampling::Rows::kLogarithms && i < done; ++i)
+      undo_logarithms(count, states[i].amplitude);
     chirp += done;
     states += done;
   }

@@ -261,7 +261,7 @@ void gather_tile(int count, int num_nodes, double nothing, SourceOf source_of, d
 
 void EchoTiles::gather(std::span<const Echoes> blocks) {
   const uint64_t local_mask = (uint64_t{1} << local_bits_) - 1, index_mask = (uint64_t{1} << index_bits_) - 1;
-  const double nothing = blocks.front().sampling.has_logarithms ? kLogarithmOfNothing : 0.0;
+  const double nothing = blocks.front().sampling.rows == TimeSampling::Rows::kLogarithms ? kLogarithmOfNothing : 0.0;
   parallel_for(static_cast<int64_t>(tiles_.size()), [&](int64_t i) {
     const Tile& tile = tiles_[static_cast<size_t>(i)];
     const auto source_of = [&](int p) {

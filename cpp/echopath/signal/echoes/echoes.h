@@ -18,12 +18,17 @@ struct TimeSampling {
   std::vector<double> slope;   // [T, order], 1/s
   // [T, order] each, 1/s^2 and 1/s^3; empty where chirps are taken as linear in time.
   std::vector<double> second_derivative, third_derivative;
-  // Where this is set, the rows of a chirp do not hold values at several nodes but the chirp's own value, slope, second and
-  // third derivative, as many as the order.
-  bool holds_derivatives = false;
-  // Where this is set, amplitudes stand as (natural logarithm of the size, phase in rad) and are interpolated as such: so
-  // few rows hold a phase that turns through many cycles. Phases go on beyond one turn from row to row.
-  bool has_logarithms = false;
+  // Says what a row holds, to be multiplied by the weights above.
+  enum class Rows {
+    kValues,  // at a node
+    // Likewise, but amplitudes stand as (natural logarithm of the size, phase in rad) and are interpolated as such: so few
+    // rows hold a phase that turns through many cycles. Phases go on beyond one turn from row to row.
+    kLogarithms,
+    // The rows of a chirp are its own value, slope, second and third derivative, as many as the order; each has the weight 1
+    // for what it is, and amplitudes have a value alone.
+    kDerivatives,
+  };
+  Rows rows = Rows::kValues;
   // Returns whether all chirps see the one row: then the echoes do not move, and are synthesised once for all chirps.
   bool is_static() const { return num_rows == 1; }
 };
@@ -37,7 +42,7 @@ struct Echoes {
   TimeSampling sampling;
   int64_t num_echoes = 0;
   std::vector<double> delay;                    // [num_rows, num_echoes] s, at the window centre, round trip
-  std::vector<std::complex<double>> amplitude;  // [num_rows, num_echoes] sqrt(W), unless has_logarithms
+  std::vector<std::complex<double>> amplitude;  // [num_rows, num_echoes] sqrt(W), unless rows hold logarithms
   std::vector<uint32_t> group;                  // [num_echoes], or empty: all in group 0
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Converts amplitudes of echoes to logarithms and back (TimeSampling::has_logarithms), one by one or in vectors.
+// Converts amplitudes of echoes to logarithms and back (TimeSampling::Rows::kLogarithms), one by one or in vectors.
 #include "echopath/base/lanes/scalar_math.h"
 
 namespace echopath {

@@ -53,7 +53,7 @@ struct TileAtChirps {
   const int* first_row;  // [num_chirps], as in TimeSampling
   const double* value;   // [num_chirps, order]
   const double* slope;   // [num_chirps, order]
-  bool has_logarithms;   // as in TimeSampling
+  bool has_logarithms;   // TimeSampling::Rows::kLogarithms
 };
 
 struct SignalKernels {

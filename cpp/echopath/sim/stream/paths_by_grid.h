@@ -1,5 +1,6 @@
 #pragma once
 // Sorts paths by the time grid at whose nodes they are replayed.
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -8,8 +9,10 @@
 
 namespace echopath {
 
-// Returns, for each grid, the indices of the paths that begin with it (PathGrids), in their order. Raises Cancelled when the
-// job is cancelled.
-std::vector<std::vector<int64_t>> paths_by_grid(const PathGrids& grids, int64_t num_paths, Job* job);
+using PathsByGrid = std::array<std::vector<int64_t>, GridIndex::kCount>;  // indices, by GridIndex::place
+
+// Returns, for each grid, the paths that begin with it (PathGrids), in their order. Raises Cancelled when the job is
+// cancelled.
+PathsByGrid paths_by_grid(const PathGrids& grids, int64_t num_paths, Job* job);
 
 }  // namespace echopath

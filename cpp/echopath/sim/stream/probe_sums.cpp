@@ -90,19 +90,17 @@ void TonesOfRows::sort(const Carriers& carriers) {
 
 void TonesOfRows::add(const Carriers& carriers, double first_sample, double step) {
   sort(carriers);
-  const bool is_wide = instruction_set() == InstructionSet::kAvx512;
   for (size_t row = 0; row < count_.size(); ++row) {
     const auto at = static_cast<size_t>(first_[row]);
     const int num_tones = first_[row + 1] - first_[row];
     double* const to = sums_.data() + row * kSums;
     if (num_tones == 0) continue;
-    if (is_wide) run_simd<add_tones<8>>(&frequency_[at], &re_[at], &im_[at], num_tones, first_sample, step, to);
-    else run_simd<add_tones<4>>(&frequency_[at], &re_[at], &im_[at], num_tones, first_sample, step, to);
+    run_simd_lanes<add_tones<8>, add_tones<4>>(&frequency_[at], &re_[at], &im_[at], num_tones, first_sample, step, to);
   }
 }
 
 void TonesOfRows::give(std::vector<SampleRow>& rows) const {
-  const size_t lanes = instruction_set() == InstructionSet::kAvx512 ? 8 : 4;
+  const auto lanes = static_cast<size_t>(num_simd_lanes());
   for (size_t row = 0; row < rows.size(); ++row) {
     const double* from = sums_.data() + row * kSums;
     for (size_t s = 0; s < SampleRow::kSamples; ++s, from += lanes) {

@@ -5,7 +5,6 @@
 
 #include "echopath/base/threads/parallel.h"
 #include "echopath/signal/echoes/echoes.h"
-#include "echopath/sim/stream/paths_by_grid.h"
 
 namespace echopath {
 namespace {
@@ -103,12 +102,12 @@ void ReplayStream::run(const Sink& sink) {
 void ReplayStream::run(std::span<const int64_t> paths, const Sink& sink) {
   if (!kept_grids_) kept_grids_.emplace(replayer_.path_grids());
   keeps_poses_ = true;
-  std::vector<std::vector<int64_t>> by_grid(static_cast<size_t>(kept_grids_->num_grids()));
-  for (const int64_t path : paths) by_grid[static_cast<size_t>(kept_grids_->first(path))].push_back(path);
+  PathsByGrid by_grid;
+  for (const int64_t path : paths) by_grid[kept_grids_->first(path).place()].push_back(path);
   run(*kept_grids_, std::move(by_grid), sink);
 }
 
-void ReplayStream::run(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, const Sink& sink) {
+void ReplayStream::run(const PathGrids& grids, PathsByGrid by_grid, const Sink& sink) {
   WindowPipeline out(*this, sink);
   add_still(by_grid.front(), out);
   by_grid.front() = {};
@@ -116,27 +115,29 @@ void ReplayStream::run(const PathGrids& grids, std::vector<std::vector<int64_t>>
   out.finish();
 }
 
-void ReplayStream::add_still(const std::vector<int64_t>& paths, WindowPipeline& out) const {
+void ReplayStream::add_still(const std::vector<int64_t>& paths, WindowPipeline& out) {
+  if (!paths.empty()) replayer_.pose_still();
   run_blocks(paths, {0, num_channels(), 1}, [&](auto part, auto, auto&) { return replayer_.still(part); }, out);
 }
 
 // Replays each path at the polynomial that its meshes need; where that was not enough, at the next, or with its amplitude in
 // every chirp.
-void ReplayStream::add_moving(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, WindowPipeline& out) {
-  std::vector<std::vector<int64_t>> by_chirp(by_grid.size());
+void ReplayStream::add_moving(const PathGrids& grids, PathsByGrid by_grid, WindowPipeline& out) {
+  PathsByGrid by_chirp;
   const auto is_empty = [](const std::vector<int64_t>& some) { return some.empty(); };
   if (!std::all_of(by_grid.begin() + 1, by_grid.end(), is_empty)) replayer_.find_strongest();
-  for (int polynomial = 1; polynomial <= replayer_.grids().num_polynomials(); ++polynomial) {
+  for (size_t number = 0; number < replayer_.grids().num_polynomials(); ++number) {
+    const GridIndex polynomial = GridIndex::polynomial(number);
     const Extent extent{0, num_channels(), replayer_.grids().polynomial(polynomial).num_nodes};
-    const std::vector<int64_t>& paths = by_grid[static_cast<size_t>(polynomial)];
+    std::vector<int64_t>& paths = by_grid[polynomial.place()];
     if (!paths.empty()) replayer_.pose_polynomial(polynomial, paths);
     const Replay replay = [&](auto part, auto, auto& left) { return replayer_.interpolated(part, polynomial, left); };
     for (const UnfollowedPath& path : without_turning(run_blocks(paths, extent, replay, out), polynomial, out)) {
       if (path.is_negligible) continue;
       const NextGrid next = grids.next(path, polynomial);
-      (next.by_chirp ? by_chirp : by_grid)[static_cast<size_t>(next.polynomial)].push_back(path.path);
+      (next.by_chirp ? by_chirp : by_grid)[next.grid.place()].push_back(path.path);
     }
-    by_grid[static_cast<size_t>(polynomial)] = {};
+    paths = {};
   }
   for (int transmitter = 0; transmitter < num_transmitters_; ++transmitter) {
     add_chirps(by_chirp, transmitter, out);
@@ -146,7 +147,7 @@ void ReplayStream::add_moving(const PathGrids& grids, std::vector<std::vector<in
 
 // Sends on those paths whose amplitudes the polynomial did not follow, but whose logarithms it does. Returns the others, in
 // their order.
-std::vector<UnfollowedPath> ReplayStream::without_turning(std::vector<UnfollowedPath> left, int polynomial,
+std::vector<UnfollowedPath> ReplayStream::without_turning(std::vector<UnfollowedPath> left, GridIndex polynomial,
                                                           WindowPipeline& out) const {
   std::vector<int64_t> may_turn;
   for (const UnfollowedPath& path : left) {
@@ -173,7 +174,7 @@ std::vector<UnfollowedPath> ReplayStream::without_turning(std::vector<Unfollowed
 }
 
 // Holds only the scene as posed at the chirps of one transmitter.
-void ReplayStream::add_chirps(const std::vector<std::vector<int64_t>>& by_grid, int transmitter, WindowPipeline& out) {
+void ReplayStream::add_chirps(const PathsByGrid& by_grid, int transmitter, WindowPipeline& out) {
   std::vector<int64_t> paths;
   for (const std::vector<int64_t>& of_grid : by_grid) paths.insert(paths.end(), of_grid.begin(), of_grid.end());
   if (paths.empty()) return;
@@ -181,8 +182,9 @@ void ReplayStream::add_chirps(const std::vector<std::vector<int64_t>>& by_grid, 
   const Extent extent{transmitter * num_receivers, num_receivers, replayer_.num_rows_by_chirp(), true};
   std::unique_ptr<PartlyPosedGrid>& kept = kept_chirps_[static_cast<size_t>(transmitter)];
   const PosedGrid& chirps = posed(replayer_.grids().chirps(transmitter), paths, kept);
-  for (int polynomial = 1; polynomial <= replayer_.grids().num_polynomials(); ++polynomial) {
-    run_blocks(by_grid[static_cast<size_t>(polynomial)], extent,
+  for (size_t number = 0; number < replayer_.grids().num_polynomials(); ++number) {
+    const GridIndex polynomial = GridIndex::polynomial(number);
+    run_blocks(by_grid[polynomial.place()], extent,
                [&](auto part, auto joined, auto&) { return replayer_.by_chirp(part, polynomial, chirps, joined); }, out);
   }
   if (!keeps_poses_) kept.reset();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "echopath/replay/replay.h"
+#include "echopath/sim/stream/paths_by_grid.h"
 
 namespace echopath {
 
@@ -69,12 +70,13 @@ class ReplayStream {
   struct Block;
   struct Window;
   class WindowPipeline;
-  void run(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, const Sink& sink);
-  void add_still(const std::vector<int64_t>& paths, WindowPipeline& out) const;
-  void add_moving(const PathGrids& grids, std::vector<std::vector<int64_t>> by_grid, WindowPipeline& out);
-  std::vector<UnfollowedPath> without_turning(std::vector<UnfollowedPath> left, int polynomial, WindowPipeline& out) const;
+  void run(const PathGrids& grids, PathsByGrid by_grid, const Sink& sink);
+  void add_still(const std::vector<int64_t>& paths, WindowPipeline& out);
+  void add_moving(const PathGrids& grids, PathsByGrid by_grid, WindowPipeline& out);
+  std::vector<UnfollowedPath> without_turning(std::vector<UnfollowedPath> left, GridIndex polynomial,
+                                              WindowPipeline& out) const;
   const PosedGrid& posed(const TimeGrid& grid, std::span<const int64_t> paths, std::unique_ptr<PartlyPosedGrid>& kept) const;
-  void add_chirps(const std::vector<std::vector<int64_t>>& by_grid, int transmitter, WindowPipeline& out);
+  void add_chirps(const PathsByGrid& by_grid, int transmitter, WindowPipeline& out);
   void add_samples(const std::vector<int64_t>& paths, int transmitter, WindowPipeline& out);
   // Describes the channels that `replay` makes echoes of, the number of rows, whether it joins paths itself on request, and
   // whether echoes hold logarithms, which cannot be joined.

@@ -40,7 +40,7 @@ int draw(uint64_t seed, int64_t index, int dimension, int count) {
 
 // Returns whether the amplitude of an echo is 0 at all nodes, of which there is no logarithm.
 bool has_no_amplitude(const Echoes& echoes, int64_t echo) {
-  if (echoes.sampling.has_logarithms) return false;
+  if (echoes.sampling.rows == TimeSampling::Rows::kLogarithms) return false;
   for (size_t i = static_cast<size_t>(echo); i < echoes.amplitude.size(); i += static_cast<size_t>(echoes.num_echoes)) {
     if (echoes.amplitude[i] != 0.0) return false;
   }

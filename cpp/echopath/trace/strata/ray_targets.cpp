@@ -32,7 +32,7 @@ class Target {
   }
 
   // Returns the vertices of all its meshes, which are put together when they are first asked for.
-  const std::vector<Vec3>& vertices() const {
+  const std::vector<Vec3>& vertices() {
     for (; num_together_ < mesh_ids_.size(); ++num_together_) {
       const std::vector<Vec3>& own = geometry_.vertices(mesh_ids_[num_together_]);
       vertices_.insert(vertices_.end(), own.begin(), own.end());
@@ -49,8 +49,8 @@ class Target {
  private:
   const EmbreeScene& geometry_;
   const std::vector<uint32_t>& mesh_ids_;
-  mutable std::vector<Vec3> vertices_;  // of the first meshes
-  mutable size_t num_together_ = 0;
+  std::vector<Vec3> vertices_;  // of the first meshes
+  size_t num_together_ = 0;
 };
 
 bool is_same(const Stratum& a, const Stratum& b) {
@@ -64,13 +64,13 @@ class RayTargetFinder {
   RayTargetFinder(const Scene& scene, const std::vector<Mirror>& mirrors, const RayTargetSettings& settings)
       : scene_(scene), mirrors_(mirrors), settings_(settings) {}
 
-  std::optional<RayTarget> at_object(const Target& target) const {
+  std::optional<RayTarget> at_object(Target& target) const {
     return target_at(target, input_of(target, {}), target.name, 0,
                      [&]() -> const std::vector<Vec3>& { return target.vertices(); });
   }
 
   // RayTargets at each image that a frustum may show.
-  std::vector<RayTarget> at_images(const Target& target) const {
+  std::vector<RayTarget> at_images(Target& target) const {
     std::vector<RayTarget> images;
     std::vector<Vec3> vertices;
     for (const MirrorFrustum& frustum : settings_.frusta) {
@@ -177,7 +177,7 @@ RayTargets find_ray_targets(const Scene& scene, const EmbreeScene& geometry, con
   for (int index = 0; index < out.num_objects; ++index) {
     const SceneObject& object = scene_objects[static_cast<size_t>(index)];
     for (const uint32_t id : object.mesh_ids) out.object_of_mesh[id] = index;
-    const Target target(scene, geometry, object, index);
+    Target target(scene, geometry, object, index);
     std::optional<RayTarget> direct = finder.at_object(target);
     if (!direct) {
       out.any_unaimed = true;

@@ -71,16 +71,17 @@ TEST(MotionKnots, AreTheTimesOfKeyframes) {
 TEST(MotionKnots, PolynomialsBetweenThemFollowLongFrames) {
   const Radar radar = long_frame();
   const Paths paths = record(radar);
-  const Replayer replayer(paths, radar);
+  Replayer replayer(paths, radar);
   std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
   const PathGrids path_grids = replayer.path_grids();
-  int polynomial = 1;
+  GridIndex polynomial = GridIndex::polynomial(0);
   for (size_t i = 0; i < indices.size(); ++i) {
     indices[i] = static_cast<int64_t>(i);
     polynomial = std::max(polynomial, path_grids.first(indices[i]));
   }
-  ASSERT_LE(polynomial, replayer.grids().num_polynomials());
+  ASSERT_TRUE(polynomial.is_polynomial());
   EXPECT_LT(replayer.grids().polynomial(polynomial).num_nodes, replayer.grids().num_sample_nodes() / 2);
+  replayer.pose_polynomial(polynomial, indices);
   std::vector<UnfollowedPath> failed;
   const Echoes echoes = replayer.interpolated(indices, polynomial, failed).front();
   EXPECT_LT(failed.size(), indices.size() / 20);  // grazing ones, whose amplitudes have a kink
@@ -119,18 +120,19 @@ TEST(MotionKnots, GridsOfBothKindsOfPiecesAreInOrder) {
   const Paths paths = record(radar);
   const TimeGrids grids(paths, radar, {});
   int num_analytic = 0;
-  for (int k = 1; k <= grids.num_polynomials(); ++k) {
-    const PolynomialGrid& grid = grids.polynomial(k);
+  for (size_t k = 0; k < grids.num_polynomials(); ++k) {
+    const PolynomialGrid& grid = grids.polynomial(GridIndex::polynomial(k));
     EXPECT_LE(grid.num_nodes, grids.num_sample_nodes());
     EXPECT_EQ(grid.num_nodes, grid.order * static_cast<int64_t>(grid.cuts.size() + 1));
-    if (k > 1) {
-      EXPECT_GE(grid.num_nodes, grids.polynomial(k - 1).num_nodes);
+    if (k > 0) {
+      EXPECT_GE(grid.num_nodes, grids.polynomial(GridIndex::polynomial(k - 1)).num_nodes);
     }
     num_analytic += grid.pieces == PolynomialGrid::Pieces::kAnalytic;
   }
   ASSERT_GT(num_analytic, 0);
-  const int next = grids.next_polynomial(1, 1000.0);  // no order is so high: the first between knots
-  ASSERT_LE(next, grids.num_polynomials());
+  const GridIndex next =
+      grids.next_polynomial(GridIndex::polynomial(0), 1000.0);  // no order is so high: the first between knots
+  ASSERT_TRUE(next.is_polynomial());
   EXPECT_EQ(grids.polynomial(next).pieces, PolynomialGrid::Pieces::kAnalytic);
 }
 
@@ -139,10 +141,10 @@ TEST(PathGrids, AreThoseOfTheirMeshesAfterAnErrorToo) {
   Scene scene = swaying_limb();  // needs a higher polynomial than what goes straight on
   add_body(scene, "ball", ellipsoid(Vec3::Zero(), {.1, .1, .1}, 2), {12, -2, 0}, std::make_shared<ForgetfulMotion>());
   const Paths paths = record(radar, scene);
-  const Replayer asked_twice(paths, radar), asked_once(paths, radar);
+  Replayer asked_twice(paths, radar), asked_once(paths, radar);
   EXPECT_THROW(asked_twice.path_grids(), std::runtime_error);
   const PathGrids second = asked_twice.path_grids(), first = asked_once.path_grids();
-  for (int64_t path = 0; path < paths.num_paths(); ++path) EXPECT_EQ(second.first(path), first.first(path)) << path;
+  for (int64_t path = 0; path < paths.num_paths(); ++path) EXPECT_TRUE(second.first(path) == first.first(path)) << path;
 }
 
 }  // namespace

@@ -70,6 +70,15 @@ TEST(TimeGrids, StillScenesHaveOneNodeForAllTransmitters) {
   EXPECT_EQ(nodes.sampling.size(), 2u);
 }
 
+TEST(GridIndex, PathsTryStillGridsThenPolynomialsThenNone) {
+  const GridIndex first = GridIndex::polynomial(0), last = GridIndex::polynomial(GridIndex::kMostPolynomials - 1);
+  EXPECT_TRUE(GridIndex::still() < first && first < last && last < GridIndex::none());
+  EXPECT_TRUE(first.is_polynomial() && last.is_polynomial());
+  EXPECT_FALSE(GridIndex::still().is_polynomial() || GridIndex::none().is_polynomial());
+  EXPECT_EQ(last.number(), GridIndex::kMostPolynomials - 1);
+  EXPECT_EQ(GridIndex::none().place(), GridIndex::kCount - 1);
+}
+
 // Four chirps have twelve nodes of samples: polynomials of a frame without cuts are those of order 4, 5 to 10 and 12.
 TEST(TimeGrids, NoPolynomialCostsMoreThanEveryChirpAndExactReplayHasNone) {
   Radar radar = two_transmitters();
@@ -77,13 +86,14 @@ TEST(TimeGrids, NoPolynomialCostsMoreThanEveryChirpAndExactReplayHasNone) {
   const Paths paths = empty_record(radar);
   const TimeGrids grids(paths, radar, {});
   std::vector<int> orders;
-  for (int k = 1; k <= grids.num_polynomials(); ++k) orders.push_back(grids.polynomial(k).order);
+  for (size_t k = 0; k < grids.num_polynomials(); ++k) orders.push_back(grids.polynomial(GridIndex::polynomial(k)).order);
   EXPECT_EQ(orders, (std::vector<int>{4, 5, 6, 7, 8, 9, 10, 12}));
-  EXPECT_EQ(grids.polynomial(grids.next_polynomial(1, 7.5)).order, 8);
-  EXPECT_EQ(grids.next_polynomial(1, 1000.0), grids.num_polynomials() + 1);
+  const GridIndex first = GridIndex::polynomial(0);
+  EXPECT_EQ(grids.polynomial(grids.next_polynomial(first, 7.5)).order, 8);
+  EXPECT_TRUE(grids.next_polynomial(first, 1000.0) == GridIndex::none());
   ReplaySettings settings;
   settings.exact = true;
-  EXPECT_EQ(TimeGrids(paths, radar, settings).num_polynomials(), 0);
+  EXPECT_EQ(TimeGrids(paths, radar, settings).num_polynomials(), 0u);
 }
 
 }  // namespace

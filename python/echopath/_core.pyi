@@ -2624,7 +2624,7 @@ class LiveTrace:
     """
     The record of a scene that is changed again and again, no part of the public interface.
     """
-    def __init__(self) -> None:
+    def __init__(self, whole_scenes: bool = False) -> None:
         ...
     def paths(self, progress: typing.Any = None) -> Paths:
         """

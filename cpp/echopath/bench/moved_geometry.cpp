@@ -81,7 +81,8 @@ MovedGeometry measure_moved_geometry(const Scene& scene, const std::vector<doubl
   BareScene bare(scene);
   for (size_t i = 0; i < times.size(); ++i) {
     const PosedScene pose(scene, times[i]);
-    const double seconds = processor_seconds([&] { own.update(scene, pose, Vec3::Zero(), false, nullptr); });
+    const double seconds =
+        processor_seconds([&] { own.update(scene, pose, Vec3::Zero(), EmbreeScene::Upkeep::kTimes, nullptr); });
     std::vector<uint32_t> changed = moving;
     if (i == 0) changed.insert(changed.end(), resting.begin(), resting.end());
     for (const uint32_t mesh_id : changed) bare.write(mesh_id, pose);

@@ -17,6 +17,9 @@ struct TraceSettings : RecordSettings {
   int64_t num_rays_to_come = 0;  // of a trace of the same scene that this one prepares; the memory must do for it too
   double start_time = 0.0;       // s, first sample of the frame
   LaunchGuide guide = {};        // by default the rule of launch.h
+  // The scene is edited from trace to trace: rays are planned object by object (LaunchSettings::by_object) and the geometry
+  // is rounded (EmbreeScene::Upkeep::kEdits), so that an edit leaves most rays as they are. Others are shot than without.
+  bool for_edits = false;
 
   void validate() const;  // raises invalid_argument naming the field, the rule and the value
 };

@@ -52,18 +52,24 @@ Paths empty_record(const SceneSnapshot& scene, const Radar& radar, const TraceSe
   return paths;
 }
 
+EmbreeScene::Upkeep upkeep_of(const Radar& radar, const TraceSettings& settings) {
+  if (settings.for_edits) return EmbreeScene::Upkeep::kEdits;
+  return EmbreeScene::upkeep_near(radar.motion != nullptr);
+}
+
 }  // namespace
 
 Tracer::Tracer(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job, KeptGeometry* kept,
                FittedStrata* fitted)
     : empty_(empty_record(scene, radar, settings)), num_rays_to_come_(settings.num_rays_to_come),
       pose_(*empty_.scene, empty_.frame.trace_time), world_from_radar_(radar.world_from_radar(empty_.frame.trace_time)),
-      loan_(kept, *empty_.scene, pose_, empty_.frame.transmitter, radar.motion != nullptr, job), geometry_(*loan_),
+      loan_(kept, *empty_.scene, pose_, empty_.frame.transmitter, upkeep_of(radar, settings), job), geometry_(*loan_),
       origin_(geometry_.origin()), edge_estimate_(empty_.radar, world_from_radar_, origin_),
       mirrors_(find_mirrors(*empty_.scene, geometry_)), sbr_(settings_of_rays(settings)),
       frusta_(find_antenna_frusta(*empty_.scene, geometry_, mirrors_, sbr_, job)), plan_(plan_rays(settings, fitted)),
       shooter_(*empty_.scene, geometry_, mirrors_, plan_, sbr_, frusta_) {
   aim_at_points(settings, job);
+  if (settings.for_edits) pieces_ = plan_.pieces(kRaysPerBlock);
   pose_edges();
   empty_.frame.strata = plan_.strata;
   empty_.frame.statistics.num_rays = num_rays();
@@ -79,6 +85,7 @@ LaunchPlan Tracer::plan_rays(const TraceSettings& settings, FittedStrata* fitted
   launch.batches = settings.batches;
   launch.guide = settings.guide;
   launch.fitted = fitted;
+  launch.by_object = settings.for_edits;
   launch.frusta = with_at_most(frusta_.transmitter, most_leg_mirrors(sbr_));
   launch.transmitter = empty_.frame.transmitter - origin_;
   set_field_of_view(empty_.radar, world_from_radar_, launch);
@@ -114,10 +121,15 @@ void Tracer::pose_edges() {
 int64_t Tracer::num_lattice_blocks() const { return (num_rays() + kRaysPerBlock - 1) / kRaysPerBlock; }
 
 int64_t Tracer::num_blocks() const {
+  if (!pieces_.empty()) return std::ssize(pieces_);
   return num_lattice_blocks() + (std::ssize(plan_.surface_scatterers) + kRaysPerBlock - 1) / kRaysPerBlock;
 }
 
 void Tracer::shoot_block(int64_t index, PathBlock& block) const {
+  if (!pieces_.empty()) {
+    const auto& [begin, end] = pieces_[static_cast<size_t>(index)];
+    return shoot(begin, end, block);
+  }
   const int64_t end = index < num_lattice_blocks() ? num_rays() : plan_.first_point + std::ssize(plan_.surface_scatterers);
   shoot(index * kRaysPerBlock, std::min(end, (index + 1) * kRaysPerBlock), block);
 }

@@ -21,7 +21,8 @@ class Tracer {
   int64_t num_rays() const { return plan_.first_ray.back(); }
   int64_t num_blocks() const;
   void shoot_block(int64_t index, PathBlock& block) const;
-  // Shoots the rays [begin, end) of the plan, of which `begin` is a multiple of kPacketSize, and appends their paths.
+  // Shoots the rays [begin, end) of the plan, of which `begin` is a multiple of kPacketSize from its start, or where strata
+  // have random numbers of their own, from that of its stratum, and appends their paths.
   void shoot(int64_t begin, int64_t end, PathBlock& block) const { shooter_.shoot(begin, end, block); }
   EmbreeScene& geometry() { return geometry_; }
   const EmbreeScene& geometry() const { return geometry_; }
@@ -67,6 +68,7 @@ class Tracer {
   SbrSettings sbr_;
   AntennaFrusta frusta_;
   LaunchPlan plan_;
+  std::vector<std::pair<int64_t, int64_t>> pieces_;  // of the rays by block, where strata have random numbers of their own
   RayShooter shooter_;
 };
 

@@ -37,6 +37,7 @@ py::dict update_live(LiveTrace& live, Scene scene, const Radar& radar, int64_t n
   LiveTrace::Change change = live.accept(std::move(next));
   py::dict out;
   out["is_whole"] = change.is_whole;
+  out["num_rays"] = change.num_rays;
   out["num_rays_shot"] = change.num_rays_shot;
   out["removed"] = kept(std::move(change.removed));
   out["added"] = kept(std::move(change.added));
@@ -48,7 +49,10 @@ py::dict update_live(LiveTrace& live, Scene scene, const Radar& radar, int64_t n
 void bind_live(py::module_& m) {
   py::class_<LiveTrace>(m, "LiveTrace",
                         "The record of a scene that is changed again and again, no part of the public interface.")
-      .def(py::init<>())
+      .def(py::init([](bool whole_scenes) {
+             return std::make_unique<LiveTrace>(whole_scenes ? LiveTrace::Scenes::kWhole : LiveTrace::Scenes::kOfWhatIsMet);
+           }),
+           py::arg("whole_scenes") = false)
       .def("update", &update_live, py::arg("scene"), py::arg("radar"), py::kw_only(), py::arg("num_rays"),
            py::arg("max_bounces"), py::arg("seed"), py::arg("start_time"), py::arg("polarization"), py::arg("footprint"),
            py::arg("sampler"), py::arg("scatterers"), py::arg("edges"), py::arg("attenuation"),

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from .. import _core
+from ..signals.parts import ONLY_PARTITION, Parts, check_partitions
 from ..tracing.polarization import antennas_of, chosen_model
-from ..transmit.signals import synthesize_slots
+from ..transmit.signals import decompose_slots, synthesize_slots
 from ..weather.weather import attenuation_of
 
 # Signals are added and taken away so often before all is summed anew; each time rounds to some 1e-16 of the largest sample.
@@ -28,18 +29,20 @@ class Update:
 
 
 class KeptSignal:
-    """The record and the cube of the scene of the last update. An update that was ended is made up for by the next one.
+    """The record and the cubes of the scene of the last update. An update that was ended is made up for by the next one.
 
     trace, signal: {keyword: value} of `_core.LiveTrace.update` without the number of rays, and of `synthesize_slots`
+    selections: {name: selection} of the parts that have cubes of their own, None: none
     """
 
-    def __init__(self, num_rays: int, trace: dict[str, Any], signal: dict[str, Any]):
+    def __init__(self, num_rays: int, trace: dict[str, Any], signal: dict[str, Any], selections: dict | None = None):
         self.num_rays = num_rays
-        self._trace_keywords, self._signal_keywords = trace, signal
-        self._record = _core.LiveTrace()
-        self._radar: _core.Radar | None = None  # that of the cube
+        self._trace_keywords, self._signal_keywords, self._selections = trace, signal, selections
+        self._record = _core.LiveTrace(whole_scenes=selections is not None)
+        self._radar: _core.Radar | None = None  # that of the cubes
+        self._cubes: dict[str, np.ndarray] = {}  # by part, whose sum `_cube` is; that alone where there are no parts
         self._cube: np.ndarray | None = None
-        self._whole: _core.Paths | None = None  # of which the cube is to be made anew
+        self._whole: _core.Paths | None = None  # of which the cubes are to be made anew
         self._pending: list[tuple[float, _core.Paths]] = []  # what is still to be added to the cube, and its sign
         self._num_differences = 0
         # The whole record where an update has made it, so that `paths` need not: held until `paths` gives it or the next update
@@ -52,9 +55,16 @@ class KeptSignal:
         assert self._cube is not None, "an update comes first"
         return self._cube
 
+    @property
+    def parts(self) -> Parts | None:
+        """The cubes of the parts, None where none are asked for."""
+        return None if self._selections is None else Parts(self._cubes, self._selections, self._radar)
+
     def update(self, scene: _core.Scene, radar: _core.Radar, progress=None) -> Update:
         """Brings record and cube to this scene and radar. progress: callable (stage, fraction), True for bars, or None"""
         begin, self._made = time.perf_counter(), None
+        if self._selections is not None:
+            check_partitions({ONLY_PARTITION: self._selections}, scene)
         keywords = self._trace_keywords | {"polarization": self._model(scene, radar),
                                            "attenuation": attenuation_of(scene, radar)}
         change = self._record.update(scene, radar, num_rays=self.num_rays, progress=progress, **keywords)
@@ -63,7 +73,7 @@ class KeptSignal:
             self._whole = self._record.paths(progress)
         middle = time.perf_counter()
         num_changed = self._bring_up(radar, progress)
-        return Update(change.get("num_rays", self.num_rays), change["num_rays_shot"], num_changed, middle - begin, time.perf_counter() - middle)
+        return Update(change["num_rays"], change["num_rays_shot"], num_changed, middle - begin, time.perf_counter() - middle)
 
     def _note(self, change: dict) -> None:
         """Notes what the cube lacks of the record."""
@@ -80,21 +90,31 @@ class KeptSignal:
         num_paths = 0
         if self._whole is not None:
             num_paths = self._whole.num_paths
-            self._set_cube(synthesize_slots(self._whole, radar, progress=progress, **self._signal_keywords))
+            self._set_cubes(self._signals_of(self._whole, radar, progress))
             self._made = self._whole
             self._radar, self._whole, self._pending, self._num_differences = radar, None, [], 0
         while self._pending:
             sign, paths = self._pending[-1]
             num_paths += paths.num_paths
-            part = synthesize_slots(paths, radar, progress=progress, **self._signal_keywords)
-            self._set_cube(self.cube + part if sign > 0.0 else self.cube - part)
+            change = self._signals_of(paths, radar, progress)
+            self._set_cubes({name: cube + change[name] if sign > 0.0 else cube - change[name]
+                             for name, cube in self._cubes.items()})
             self._pending.pop()
             self._num_differences += 1
         return num_paths
 
-    def _set_cube(self, cube: np.ndarray) -> None:
-        cube.flags.writeable = False
-        self._cube = cube
+    def _signals_of(self, paths: _core.Paths, radar: _core.Radar, progress) -> dict[str, np.ndarray]:
+        """{part: cube}"""
+        if self._selections is None:
+            return {"": synthesize_slots(paths, radar, progress=progress, **self._signal_keywords)}
+        grouping = _core.Grouping.selections(list(self._selections.items()))
+        return decompose_slots(paths, radar, [grouping], progress=progress, **self._signal_keywords)[0]
+
+    def _set_cubes(self, cubes: dict[str, np.ndarray]) -> None:
+        self._cubes = cubes
+        self._cube = next(iter(cubes.values())) if len(cubes) == 1 else np.sum(list(cubes.values()), axis=0)
+        for cube in (self._cube, *cubes.values()):
+            cube.flags.writeable = False
 
     def paths(self, progress=None) -> _core.Paths:
         """The whole record, Paths."""

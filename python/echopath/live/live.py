@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import NoReturn
 
@@ -13,6 +13,7 @@ from ..arguments.settings import (
     MOST_RAYS, Edges, Evaluate, Footprint, Method, Polarization, Replay, Sampler, Scatterers, SignalSettings, TraceSettings,
 )
 from ..scene.scene import Scene
+from ..signals.parts import as_partition
 from ..tracing.edges import looks_for_edges
 from ..tracing.tessellation import warn_of_coarse_meshes
 from .changes import Changes
@@ -28,16 +29,19 @@ _RULES = TraceSettings.RULES | SignalSettings.RULES
 class Live:
     """A scene whose map follows its changes: `live.scene["car"].position += (0.1, 0, 0)`, then `view = live.update()`.
 
-    It keeps the record, the signal and the map. After a change of an object (place, motion, material, shape) only those rays
-    are shot again that the change may touch: rays remember through which space their queries went. Only the paths that
-    differ are taken from the signal and added to it. A change of the waveform, the window or the antennas' patterns shoots
-    no ray that sees the scene as before. Where a change concerns all rays (the radar's place, a flagged mirror, an object
-    that comes, goes, hides or appears, because objects share the rays), all are shot again. Either way the view is that of a
-    new Live of the changed scene, to 1e-12 of the largest sample. What no path makes is not in it: noise, rain, other radars
-    and faults of the receiver, which `simulate` has.
+    It keeps the record, the signal and the map. After a change of an object (place, motion, material, shape; one that comes,
+    goes, hides or appears) only those rays are shot again that the change may touch: rays remember through which space their
+    queries went. Only the paths that differ are taken from the signal and added to it. Where an object comes or goes, some
+    others get another share of the rays. A change of power, array (about the same middle), bandwidth, chirps or window shoots
+    no ray that sees the scene as before. Where a change concerns all rays (the radar's place, its start frequency, the half of
+    space into which its patterns look, the first transmitter's polarisation, a flagged mirror, a scene that grows beyond the next
+    power of two of metres), all are shot again. Either way the view is that of a new Live of the changed scene, to 1e-12 of the
+    largest sample. What no path makes is not in it: noise, echoes of rain, other radars and faults of the receiver, which
+    `simulate` has.
     scene: is copied; radar: that looks at it, which may be set to another one at any time
-    num_rays: 1 to 1e10, shared evenly among objects, their images and the field of view, half of them at least to what moves:
-        the shares do not go by errors as those of `trace` do, because these change with every change of the scene
+    num_rays: 1 to 1e10, shared evenly among objects, their images and the field of view; the shares do not go by errors or by
+        what moves as those of `trace` do, because these change with every change of the scene, and are rounded, so that
+        the record has about as many rays (LiveView.num_rays)
     max_bounces, seed, start_time (s), polarization, footprint, sampler, edges: as in `trace`; "auto" edges as the
         scene is at first
     scatterers: "rays" (also for "auto"), or "surface" as in `trace`, so that the speckle of what is moved goes on; most rays
@@ -45,10 +49,12 @@ class Live:
     tolerance, replay, evaluate, phase_tolerance (rad): as in `synthesize`; method: likewise, where "auto" is "nufft" whatever
         the number of paths
     window, zero_pad: as in `range_doppler`
+    parts: {name: selection} as in `decompose`: views have a cube of each part and of "other", which add up to that of the
+        scene and follow changes in the same way; every selection must name something in the scene, hidden or not, at each update
     Raises TypeError or ValueError naming the argument.
     """
 
-    @checked(**_RULES | {"self": anything, "num_rays": count(1, MOST_RAYS)})
+    @checked(**_RULES | {"self": anything, "num_rays": count(1, MOST_RAYS), "parts": as_partition})
     def __init__(self, scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float = DEFAULT_RAYS,
                  max_bounces: int = TraceSettings.max_bounces, seed: int = TraceSettings.seed,
                  start_time: float = TraceSettings.start_time, polarization: Polarization = TraceSettings.polarization,
@@ -57,7 +63,8 @@ class Live:
                  tolerance: float = SignalSettings.tolerance,
                  method: Method = SignalSettings.method, replay: Replay = SignalSettings.replay,
                  evaluate: Evaluate = SignalSettings.evaluate, phase_tolerance: float = SignalSettings.phase_tolerance,
-                 window: MapWindow = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad):
+                 window: MapWindow = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad,
+                 parts: Mapping[str, _core.Selection | str] | None = None):
         self._trace = {"max_bounces": max_bounces, "seed": seed, "start_time": start_time, "polarization": polarization,
                        "footprint": footprint, "sampler": sampler,
                        "scatterers": "rays" if scatterers == "auto" else scatterers,
@@ -68,7 +75,8 @@ class Live:
         self._changes = Changes()
         self._scene, self._radar = EditedScene(scene, self._changes), radar
         self._busy = threading.Lock()  # held while a signal is brought up to date
-        self._full = KeptSignal(num_rays, self._trace, self._signal)
+        self._selections = parts
+        self._full = self._kept(num_rays)
         self._quick: KeptSignal | None = None
 
     @property
@@ -92,7 +100,7 @@ class Live:
 
     @property
     def num_rays(self) -> int:
-        """Rays of the record."""
+        """Rays that are asked for."""
         return self._full.num_rays
 
     @property
@@ -145,7 +153,7 @@ class Live:
         """
         with self._busy:
             if self._quick is None or self._quick.num_rays != num_rays:
-                self._quick = KeptSignal(int(num_rays), self._trace, self._signal)
+                self._quick = self._kept(int(num_rays))
             return self._view_of(self._quick, is_preview=True, progress=progress)
 
     @checked(self=anything, preview=flag)
@@ -176,6 +184,9 @@ class Live:
             raise refused(TypeError, "failed", "callable with an exception or None", failed)
         return Watch(self, self._changes, show, budget, failed)
 
+    def _kept(self, num_rays: int) -> KeptSignal:
+        return KeptSignal(num_rays, self._trace, self._signal, self._selections)
+
     def _view_of(self, kept: KeptSignal, *, is_preview: bool, progress) -> LiveView:
         with self._changes.still():
             scene, radar, number = Scene(self._scene), self._radar, self.number
@@ -186,7 +197,7 @@ class Live:
         spectrum = _core.range_doppler(kept.cube, radar, window, zero_pad)
         stages = {"trace": done.trace, "signal": done.signal, "map": time.perf_counter() - begin}
         return LiveView(number, kept.cube, spectrum, done.num_rays, done.num_rays_shot, done.num_paths_changed, is_preview,
-                        stages)
+                        stages, kept.parts)
 
     def __reduce__(self) -> NoReturn:
         raise TypeError("Live: holds locks of its threads and cannot be pickled or copied; pickle or copy its scene and radar, "

@@ -8,6 +8,7 @@ import numpy as np
 
 from .. import _core
 from ..base.made_by import made_by
+from ..signals.parts import Parts
 
 
 @made_by("ep.Live")
@@ -23,6 +24,7 @@ class LiveView:
     num_paths_changed: paths whose signal was taken away or added
     is_preview: whether it has fewer rays than asked for, and a better one follows
     stages: {"trace", "signal", "map"}: what each took, in s
+    parts: Parts, the cubes of the parts that `Live` was given and of "other", which add up to `cube`; None without parts
     """
 
     number: int
@@ -33,6 +35,7 @@ class LiveView:
     num_paths_changed: int
     is_preview: bool
     stages: Mapping[str, float]
+    parts: Parts | None = None
 
     @property
     def seconds(self) -> float:

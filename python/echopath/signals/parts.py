@@ -108,6 +108,16 @@ def as_partitions(parts) -> dict:
     return partitions
 
 
+def as_partition(argument: str, parts) -> dict | None:
+    """{name: selection} of one partition, whose selections are free of faults, or None."""
+    if parts is None:
+        return None
+    if not isinstance(parts, Mapping):
+        raise refused(TypeError, argument, "a dict of selections or None", parts)
+    _selections_rule(argument, parts)
+    return dict(parts)
+
+
 def _is_table_of_views(parts) -> bool:
     """Whether all values are views; none is: one view. Raises ValueError for a mixture."""
     if not isinstance(parts, _VIEWS):

@@ -105,7 +105,7 @@ def test_a_watch_shows_a_preview_first_where_a_view_takes_longer_than_its_budget
         live.change(lambda scene: scene.remove("sign_30"))
         watch.wait(LONG)
     assert [view.is_preview for view in shown] == [False, True, False]
-    assert shown[1].num_rays < shown[2].num_rays == 20_000
+    assert shown[1].num_rays < 0.5 * shown[2].num_rays and abs(shown[2].num_rays - 20_000) < 4_000
 
 
 def test_a_watch_shows_previews_while_changes_come_quicker_than_views(live, monkeypatch):

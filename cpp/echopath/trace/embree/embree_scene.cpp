@@ -65,16 +65,16 @@ void EmbreeScene::forget() {
 }
 
 void EmbreeScene::update(const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job) {
-  bring_to(scene, pose, [&](const Eigen::AlignedBox3d&) { return origin; }, job);
+  bring_to(scene, pose, [&](const Eigen::AlignedBox3d&) { return origin; }, Upkeep::kTimes, job);
 }
 
-void EmbreeScene::update(const Scene& scene, const PosedScene& pose, const Vec3& near, bool near_moves, Job* job) {
+void EmbreeScene::update(const Scene& scene, const PosedScene& pose, const Vec3& near, Upkeep upkeep, Job* job) {
   bring_to(scene, pose, [&](const Eigen::AlignedBox3d& box) {
-    return origin_in(box, near, near_moves || scene.is_anything_moving());
-  }, job);
+    return origin_in(box, near, upkeep != Upkeep::kTimes || scene.is_anything_moving());
+  }, upkeep, job);
 }
 
-void EmbreeScene::bring_to(const Scene& scene, const PosedScene& pose, const EmbreeMeshes::OriginRule& origin,
+void EmbreeScene::bring_to(const Scene& scene, const PosedScene& pose, const EmbreeMeshes::OriginRule& origin, Upkeep upkeep,
                            Job* job) try {
   const std::vector<uint32_t> changed = meshes_.update(scene, pose, origin);
   surfaces_.resize(meshes_.size());
@@ -86,10 +86,11 @@ void EmbreeScene::bring_to(const Scene& scene, const PosedScene& pose, const Emb
   has_sheets_ = false;
   for (uint32_t mesh_id = 0; mesh_id < meshes_.size(); ++mesh_id) has_sheets_ = has_sheets_ || meshes_.is_sheet(mesh_id);
   const EmbreeMeshes::Extent extent = meshes_.extent();
-  const double largest = std::max(1.0, extent.largest_coordinate);
+  double largest = std::max(1.0, extent.largest_coordinate);
+  if (upkeep == Upkeep::kEdits) largest = std::exp2(std::ceil(std::log2(largest)));
   lift_ = 4.0 * 0x1.0p-24 * largest;
   reach_ = 4.0 * largest;
-  trees_->update(meshes_, extent, changed, *device_, job);
+  trees_->update(meshes_, {extent, upkeep == Upkeep::kEdits}, changed, *device_, job);
 } catch (...) {
   forget();
   throw;

@@ -47,13 +47,19 @@ class EmbreeScene {
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
   // Makes the scene as if anew, with the same answers, but does only what differs from before. Where meshes overlap
-  // little, and something moves or there are hundreds of small ones, each has a tree of its own, or shares one with small
+  // little, and something moves, edits come (Upkeep) or there are hundreds of small ones, each has a tree of its own, or
+  // shares one with small
   // neighbours: then a mesh that has moved costs a fit of its tree (6 ns a triangle) and the tree over all trees, and one
   // that shares a tree that tree (0.2 us a triangle). Elsewhere everything is built, unless nothing differs. Raises as the
   // constructor does and holds nothing after that.
   void update(const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job = nullptr);
-  // Updates the scene likewise, with the origin that origin_near gives for `near` (m, world), which may move.
-  void update(const Scene& scene, const PosedScene& pose, const Vec3& near, bool near_moves, Job* job);
+  // Says what may differ at the next update: the time alone; or `near` moves, too; or the scene is edited. Edits may touch
+  // any object: the origin is then rounded even where nothing moves, as are lift and reach (up to powers of two), so that
+  // they seldom hang on any one of them, and meshes that overlap little have trees of their own.
+  enum class Upkeep { kTimes, kMovingRadar, kEdits };
+  static Upkeep upkeep_near(bool near_moves) { return near_moves ? Upkeep::kMovingRadar : Upkeep::kTimes; }
+  // Updates the scene likewise, with the origin that origin_near gives for `near` (m, world).
+  void update(const Scene& scene, const PosedScene& pose, const Vec3& near, Upkeep upkeep, Job* job);
 
   enum class Verdict { kMiss, kHit, kFalseHit };
   // Finds the closest hit from `from` along the unit vector `direction`. kFalseHit means that Embree reported a point that
@@ -145,7 +151,7 @@ class EmbreeScene {
     const Vec3* vertices;
     const Vec3* normals;  // null where facets are meant
   };
-  void bring_to(const Scene& scene, const PosedScene& pose, const EmbreeMeshes::OriginRule& origin, Job* job);
+  void bring_to(const Scene& scene, const PosedScene& pose, const EmbreeMeshes::OriginRule& origin, Upkeep upkeep, Job* job);
   void forget();
   Hit named(uint32_t geometry_id, uint32_t triangle_id, float u, float v) const;
   Vec3 moved_up(const Vec3& from, const Vec3& direction) const {

@@ -30,12 +30,13 @@ std::vector<SmallMesh> small_meshes(const EmbreeMeshes& meshes, const std::vecto
 
 }  // namespace
 
-void EmbreeScene::Trees::update(const EmbreeMeshes& meshes, const EmbreeMeshes::Extent& extent,
-                                const std::vector<uint32_t>& changed, Device& device, Job* job) {
+void EmbreeScene::Trees::update(const EmbreeMeshes& meshes, const Scope& scope, const std::vector<uint32_t>& changed,
+                                Device& device, Job* job) {
   const bool is_other = !device.scene || owners_.size() != meshes.size();
   if (is_other) *this = {};
   const std::vector<uint32_t> owners_before = sort_out(meshes, changed);
-  const bool tree_per_mesh = extent.mean_cover <= kMaxCover && (extent.is_anything_moving || !clusters_.empty());
+  const bool may_change = scope.is_edited || scope.extent.is_anything_moving;
+  const bool tree_per_mesh = scope.extent.mean_cover <= kMaxCover && (may_change || !clusters_.empty());
   std::vector<uint32_t> to_renew;
   if (is_other || tree_per_mesh != device.has_tree_per_mesh) {
     device.start_scene(meshes.size(), tree_per_mesh);

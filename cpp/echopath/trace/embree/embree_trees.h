@@ -16,10 +16,14 @@ struct TrianglePlace {
 
 class EmbreeScene::Trees {
  public:
+  struct Scope {
+    EmbreeMeshes::Extent extent;  // of the meshes
+    bool is_edited = false;       // any mesh may change (Upkeep::kEdits)
+  };
   // Brings the trees to the meshes, of which `changed` differ from those of the last call. Raises DeviceError and Cancelled;
   // after that it may only be destroyed.
-  void update(const EmbreeMeshes& meshes, const EmbreeMeshes::Extent& extent, const std::vector<uint32_t>& changed,
-              Device& device, Job* job);
+  void update(const EmbreeMeshes& meshes, const Scope& scope, const std::vector<uint32_t>& changed, Device& device,
+              Job* job);
   // Returns the places of the triangles of a cluster by the ID of Embree's geometry, null where that is a mesh; empty where
   // there are no clusters.
   const std::vector<const TrianglePlace*>& places() const { return places_; }

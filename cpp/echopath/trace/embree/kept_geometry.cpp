@@ -10,11 +10,11 @@ GeometryLoan::GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedSc
   geometry_->update(scene, pose, origin, job);
 }
 
-GeometryLoan::GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedScene& pose, const Vec3& near, bool near_moves,
-                           Job* job)
+GeometryLoan::GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedScene& pose, const Vec3& near,
+                           EmbreeScene::Upkeep upkeep, Job* job)
     : kept_(kept), geometry_(kept ? kept->take() : nullptr) {
   if (!geometry_) geometry_ = std::make_unique<EmbreeScene>();
-  geometry_->update(scene, pose, near, near_moves, job);
+  geometry_->update(scene, pose, near, upkeep, job);
 }
 
 GeometryLoan::~GeometryLoan() {

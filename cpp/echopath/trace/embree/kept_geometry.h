@@ -15,8 +15,9 @@ class GeometryLoan {
   // Takes the geometry of the scene at the pose: the kept one after an update, or a new one where `kept` is null or has lent
   // its own to another trace. Raises as EmbreeScene does; nothing is kept then.
   GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job);
-  // Poses the geometry likewise, with the origin that EmbreeScene::origin_near gives for `near` (m, world), which may move.
-  GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedScene& pose, const Vec3& near, bool near_moves, Job* job);
+  // Poses the geometry likewise, with the origin that EmbreeScene::origin_near gives for `near` (m, world).
+  GeometryLoan(KeptGeometry* kept, const Scene& scene, const PosedScene& pose, const Vec3& near, EmbreeScene::Upkeep upkeep,
+               Job* job);
   ~GeometryLoan();
   GeometryLoan(const GeometryLoan&) = delete;
   GeometryLoan& operator=(const GeometryLoan&) = delete;

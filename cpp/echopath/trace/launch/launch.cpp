@@ -8,6 +8,7 @@
 #include "echopath/base/random.h"
 #include "echopath/record/paths.h"
 #include "echopath/trace/launch/launch_directions.h"
+#include "echopath/trace/launch/rays_by_object.h"
 #include "echopath/trace/strata/ray_targets.h"
 
 namespace echopath {
@@ -16,7 +17,7 @@ namespace {
 constexpr double kFieldShare = 0.15;
 constexpr double kMovingShare = 0.5;  // of the rays that are aimed, at least
 
-// Returns the shifts: each batch has one of its own in each stratum.
+// Returns the shifts: each batch has one of its own in each stratum, which is known by a number.
 std::vector<Eigen::Vector2d> shifts_of(uint64_t seed, int64_t stratum, int batches) {
   std::vector<Eigen::Vector2d> shifts;
   for (int batch = 0; batch < batches; ++batch) {
@@ -27,10 +28,11 @@ std::vector<Eigen::Vector2d> shifts_of(uint64_t seed, int64_t stratum, int batch
   return shifts;
 }
 
-void add_stratum(LaunchPlan& plan, Stratum stratum, int64_t num_rays, Sampler sampler) {
-  const auto k = static_cast<int64_t>(plan.strata.size());
+void add_stratum(LaunchPlan& plan, Stratum stratum, int64_t num_rays, const LaunchSettings& settings) {
+  const int64_t number = settings.by_object ? first_number_of(stratum.name) : std::ssize(plan.strata);
+  if (settings.by_object) plan.first_number.push_back(number);
   const LaunchDomain domain = domain_of(stratum);
-  plan.points.push_back(launch_points(sampler, domain, num_rays, shifts_of(plan.seed, k, plan.batches)));
+  plan.points.push_back(launch_points(settings.sampler, domain, num_rays, shifts_of(plan.seed, number, plan.batches)));
   stratum.num_rays = plan.points.back()->size();
   if (stratum.num_rays > 0) stratum.ray_density = domain.area() / plan.points.back()->cell_area() / stratum.solid_angle();
   plan.first_ray.push_back(plan.first_ray.back() + stratum.num_rays);
@@ -120,14 +122,21 @@ std::vector<int64_t> whole_rays(const std::vector<double>& shares, int64_t num_r
 
 // Returns the rays per sr of each stratum by the default rule; foci, which stand between the targets and the field of view,
 // have none.
-std::vector<double> default_densities(const RayTargets& found, bool has_mirrors, const LaunchPlan& plan, int64_t num_rays) {
-  const std::vector<double> shares = default_shares(found.targets, found.any_unaimed || has_mirrors);
+std::vector<double> default_densities(const RayTargets& found, bool field_owns_any, const LaunchPlan& plan,
+                                      int64_t num_rays) {
+  const std::vector<double> shares = default_shares(found.targets, field_owns_any);
   std::vector<double> densities(plan.strata.size(), 0.0);
   const auto set = [&](size_t stratum, double share) {
     densities[stratum] = share * static_cast<double>(num_rays) / plan.strata[stratum].solid_angle();
   };
   for (size_t k = 0; k < found.targets.size(); ++k) set(k, shares[k]);
   set(plan.strata.size() - 1, shares.back());
+  return densities;
+}
+
+std::vector<double> mean_densities(const std::vector<Stratum>& strata) {
+  std::vector<double> densities;
+  for (const Stratum& one : strata) densities.push_back(static_cast<double>(one.num_rays) / one.solid_angle());
   return densities;
 }
 
@@ -154,9 +163,12 @@ LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const st
   const bool is_guided = !settings.guide.shares.empty();
   std::vector<Focus> foci;
   if (is_guided) foci = foci_of(settings.guide.foci, found.targets, field);
-  const std::vector<double> shares = is_guided ? named_shares(found.targets, foci, field, settings.guide.shares)
-                                               : default_shares(found.targets, found.any_unaimed || !mirrors.empty());
-  std::vector<int64_t> rays = whole_rays(shares, settings.num_rays);
+  const bool field_owns_any = found.any_unaimed || !mirrors.empty(), is_by_object = settings.by_object && !is_guided;
+  std::vector<int64_t> rays = is_by_object
+                                  ? rays_by_object(scene, found.targets, field_owns_any, kFieldShare, settings.num_rays)
+                                  : whole_rays(is_guided ? named_shares(found.targets, foci, field, settings.guide.shares)
+                                                         : default_shares(found.targets, field_owns_any),
+                                               settings.num_rays);
   for (size_t i = 0; i < foci.size(); ++i) {  // a stratum without rays owns nothing
     if (foci[i].of < found.targets.size() && rays[foci[i].of] == 0)
       rays.back() += std::exchange(rays[found.targets.size() + i], 0);
@@ -169,7 +181,7 @@ LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const st
   const int field_of_view = static_cast<int>(found.targets.size() + foci.size());
   plan.owners = RayOwners(std::move(found.object_of_mesh), found.num_objects, field_of_view);
   for (size_t k = 0; k < found.targets.size(); ++k) {
-    add_stratum(plan, found.targets[k].stratum, rays[k], settings.sampler);
+    add_stratum(plan, found.targets[k].stratum, rays[k], settings);
     if (plan.strata[k].num_rays == 0) continue;
     for (const MirrorSequence sequence : found.targets[k].sequences)
       plan.owners.assign(found.targets[k].object, sequence, static_cast<int>(k));
@@ -180,16 +192,33 @@ LaunchPlan plan_launch(const Scene& scene, const EmbreeScene& geometry, const st
     const Stratum& owner = is_in_field ? field : found.targets[foci[i].of].stratum;
     const int index_of_owner = is_in_field ? field_of_view : static_cast<int>(foci[i].of);
     const Stratum cone = focus_stratum(*foci[i].asked, owner, index_of_owner, ++numbers[foci[i].of]);
-    add_stratum(plan, cone, rays[found.targets.size() + i], settings.sampler);
+    add_stratum(plan, cone, rays[found.targets.size() + i], settings);
   }
-  add_stratum(plan, field, rays.back(), settings.sampler);
+  add_stratum(plan, field, rays.back(), settings);
   plan.foci = LaunchFoci(plan.strata);
-  plan.default_density = default_densities(found, !mirrors.empty(), plan, settings.num_rays);
+  plan.default_density =
+      is_by_object ? mean_densities(plan.strata) : default_densities(found, field_owns_any, plan, settings.num_rays);
   return plan;
 }
 
 int LaunchPlan::stratum_of(int64_t ray) const {
   return static_cast<int>(std::upper_bound(first_ray.begin(), first_ray.end(), ray) - first_ray.begin()) - 1;
+}
+
+int64_t LaunchPlan::number_of(int64_t ray) const {
+  if (first_number.empty()) return ray;
+  const auto k = static_cast<size_t>(stratum_of(ray));
+  return first_number[k] + ray - first_ray[k];
+}
+
+std::vector<std::pair<int64_t, int64_t>> LaunchPlan::pieces(int64_t size) const {
+  std::vector<std::pair<int64_t, int64_t>> bounds;
+  const auto add = [&](int64_t begin, int64_t end) {
+    for (; begin < end; begin += size) bounds.emplace_back(begin, std::min(end, begin + size));
+  };
+  for (size_t k = 0; k < strata.size(); ++k) add(first_ray[k], first_ray[k + 1]);
+  add(first_point, first_point + std::ssize(surface_scatterers));
+  return bounds;
 }
 
 int LaunchPlan::batch_of(int stratum, int64_t ray) const {

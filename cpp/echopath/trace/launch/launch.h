@@ -3,6 +3,7 @@
 #include <array>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "echopath/record/stratum.h"
@@ -25,7 +26,7 @@ namespace echopath {
 // transmitter, of objects and images without a stratum of their own, and the diffuse echoes of mirrors. It gets 15 % of the
 // rays where it owns anything; the others are aimed. By default, moving objects get at least half of the aimed rays. Apart
 // from that, objects and images over one mirror get equal shares, and images over two mirrors a quarter of such a share. A
-// stratum that would get fewer than kFewestRays rays is left out.
+// stratum that would get fewer than kFewestRays rays is left out. LaunchSettings::by_object has another rule.
 struct LaunchPlan {
   static constexpr int64_t kFewestRays = 4;
 
@@ -38,6 +39,9 @@ struct LaunchPlan {
   std::vector<Stratum> strata;
   std::vector<std::unique_ptr<const LaunchPoints>> points;  // of each stratum
   std::vector<int64_t> first_ray;                           // [strata + 1] running sum of num_rays
+  // [strata] where the random numbers of their rays begin; empty: each ray has the numbers of its index. A packet then has
+  // rays of one stratum.
+  std::vector<int64_t> first_number;
   RayOwners owners;
   LaunchFoci foci;
   uint64_t seed = 0;
@@ -54,6 +58,10 @@ struct LaunchPlan {
   bool is_aimed_at_scatterer(int64_t ray) const { return has_surface_scatterers() && ray >= first_point; }
 
   int stratum_of(int64_t ray) const;
+  // Returns the index of a ray of a stratum in the random numbers.
+  int64_t number_of(int64_t ray) const;
+  // Returns the bounds of pieces of at most `size` rays of one stratum each, and then of the scatterers that are aimed at.
+  std::vector<std::pair<int64_t, int64_t>> pieces(int64_t size) const;
   int batch_of(int stratum, int64_t ray) const;
   // Returns the rays per sr inside the stratum, of all batches together; the next function those of one batch.
   double density(int stratum) const { return strata[static_cast<size_t>(stratum)].ray_density; }
@@ -73,8 +81,11 @@ struct LaunchSettings {
   std::span<const MirrorFrustum> frusta;  // of the transmitter; images over these get strata
   Vec3 transmitter = Vec3::Zero();
   Vec3 boresight = Vec3::UnitX();
-  double field_versine = 2.0;      // 1 - cosine of the field of view's half angle
-  LaunchGuide guide;               // by default the rule above, without foci
+  double field_versine = 2.0;  // 1 - cosine of the field of view's half angle
+  LaunchGuide guide;           // by default the rule above, without foci
+  // The rule is that of rays_by_object, and rays have random numbers by the name of their stratum: those of an object hang
+  // little on what else is in the scene.
+  bool by_object = false;
   FittedStrata* fitted = nullptr;  // RayTargetSettings::fitted
 };
 

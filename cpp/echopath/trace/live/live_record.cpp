@@ -28,38 +28,33 @@ bool has_foci(const std::vector<Stratum>& strata) {
 
 }  // namespace
 
-SharedByRays::SharedByRays(const Tracer& tracer, const TraceSettings& asked)
-    : settings(asked), sbr(tracer.sbr()), origin(tracer.geometry().origin()), lift(tracer.geometry().lift()),
-      reach(tracer.geometry().reach()), strata(tracer.plan().strata), first_ray(tracer.plan().first_ray),
-      owners(tracer.plan().owners), first_point(tracer.plan().first_point),
-      surface_scatterers(tracer.plan().surface_scatterers), sequences(sequences_of(tracer.frusta())) {}
-
-// The field of view, the last stratum, is where all rays end that no other stratum owns.
-bool SharedByRays::is_same(const SharedByRays& other) const {
-  return asks_the_same(settings, other.settings) && sbr == other.sbr && origin == other.origin && lift == other.lift &&
-         reach == other.reach && first_ray == other.first_ray && owners == other.owners &&
-         first_point == other.first_point && sequences == other.sequences && strata.back() == other.strata.back() &&
-         !has_foci(strata) && !has_foci(other.strata);
+bool is_launched_alike(const Stratum& a, const Stratum& b) {
+  Stratum as_there = a;
+  as_there.object = b.object;
+  return as_there == b;
 }
 
-bool SharedByRays::launches_alike(const SharedByRays& other, int64_t begin, int64_t end) const {
-  if (begin >= first_point && !surface_scatterers.empty()) {
-    const auto first = static_cast<size_t>(begin - first_point), last = static_cast<size_t>(end - first_point);
-    if (last > other.surface_scatterers.size()) return false;
-    return std::equal(surface_scatterers.begin() + static_cast<int64_t>(first),
-                      surface_scatterers.begin() + static_cast<int64_t>(last),
-                      other.surface_scatterers.begin() + static_cast<int64_t>(first));
-  }
-  const auto after = std::upper_bound(first_ray.begin(), first_ray.end(), begin);
-  for (auto k = static_cast<size_t>(after - first_ray.begin()) - 1; k < strata.size() && first_ray[k] < end; ++k) {
-    if (!(strata[k] == other.strata[k])) return false;
-  }
-  return true;
+SharedByRays::SharedByRays(const Tracer& tracer, const TraceSettings& asked)
+    : settings(asked), sbr(tracer.sbr()), origin(tracer.geometry().origin()), lift(tracer.geometry().lift()),
+      reach(tracer.geometry().reach()), strata(tracer.plan().strata), owners(tracer.plan().owners),
+      first_point(tracer.plan().first_point), surface_scatterers(tracer.plan().surface_scatterers),
+      sequences(sequences_of(tracer.frusta())) {}
+
+// The field of view, the last stratum, owns all that no other stratum does.
+bool SharedByRays::is_same(const SharedByRays& other) const {
+  return asks_the_same(settings, other.settings) && sbr == other.sbr && origin == other.origin && lift == other.lift &&
+         reach == other.reach && surface_scatterers.empty() == other.surface_scatterers.empty() && sequences == other.sequences &&
+         is_launched_alike(strata.back(), other.strata.back()) && !has_foci(strata) && !has_foci(other.strata);
 }
 
 LiveRecord::LiveRecord(const Tracer& tracer, const TraceSettings& settings)
     : empty(tracer.without_paths()), shared(tracer, settings),
-      boxes(boxes_of(tracer.geometry(), static_cast<uint32_t>(empty.scene->meshes().size()))) {}
+      boxes(boxes_of(tracer.geometry(), static_cast<uint32_t>(empty.scene->meshes().size()))), first_block{0} {
+  for (const Stratum& stratum : shared.strata) {
+    const auto num_rays = static_cast<size_t>(stratum.num_rays), together = static_cast<size_t>(kRaysPerLiveBlock);
+    first_block.push_back(first_block.back() + (num_rays + together - 1) / together);
+  }
+}
 
 Paths LiveRecord::paths_of(const std::vector<LiveBlockPtr>& some, Job* job) const {
   std::vector<const PathBlock*> parts;

@@ -16,11 +16,14 @@ static_assert(kRaysPerLiveBlock % kPacketSize == 0, "a packet has rays of one ki
 
 // Holds the paths of some rays in a row.
 struct LiveBlock {
-  int64_t begin = 0, end = 0;  // indices of its rays
+  int64_t num_rays = 0;
   PathBlock paths;
-  QueriedSpace space;
+  std::shared_ptr<const QueriedSpace> space;
 };
 using LiveBlockPtr = std::shared_ptr<const LiveBlock>;
+
+// Returns whether both strata launch the same rays, whichever nodes of their scenes they aim at.
+bool is_launched_alike(const Stratum& a, const Stratum& b);
 
 // Holds what all rays of a trace share, beside the scene.
 struct SharedByRays {
@@ -28,15 +31,12 @@ struct SharedByRays {
 
   // Returns whether rays of both traces can have the same paths.
   bool is_same(const SharedByRays& other) const;
-  // Returns whether the rays [begin, end) are launched alike in both.
-  bool launches_alike(const SharedByRays& other, int64_t begin, int64_t end) const;
 
   TraceSettings settings;
   SbrSettings sbr;
   Vec3 origin;
   double lift, reach;  // m
   std::vector<Stratum> strata;
-  std::vector<int64_t> first_ray;
   RayOwners owners;
   int64_t first_point;
   std::vector<SurfacePoint> surface_scatterers;
@@ -51,6 +51,7 @@ class LiveRecord {
   SharedByRays shared;
   std::vector<Eigen::AlignedBox3d> boxes;  // of the meshes
   std::vector<LiveBlockPtr> blocks;
+  std::vector<size_t> first_block;  // [strata + 1] index of the first one of each, and of the points that are aimed at
   std::vector<PathBlock> without_rays;
   PathBlock over_planes;
   std::vector<PathBlock> edges_over_planes;

@@ -4,8 +4,10 @@
 //
 // A ray's paths hang on its plan, on the answers of its queries and on the surfaces that it meets. All queries of some rays
 // in a row are remembered as stretches of space (queried_space.h). A changed mesh was in one box before and is in another
-// one now; rays of which no stretch meets either box have the same paths as before. Where a change reaches what all rays
-// share (antennas, mirrors, the number of objects, the settings), all are shot again.
+// one now; rays of which no stretch meets either box have the same paths as before. Rays are planned object by object
+// (TraceSettings::for_edits), so that an object that comes, goes or begins to move leaves most others their rays; meshes and
+// strata of two records are the same by their names. Where a change reaches what all rays share (antennas, flagged mirrors,
+// the settings, a scene that grows beyond a power of two of metres), all are shot again.
 #include <memory>
 
 #include "echopath/trace/embree/kept_geometry.h"
@@ -23,9 +25,10 @@ class LiveTrace {
     bool is_whole = false;  // little or nothing is as before: `removed` is empty and `added` is all
     // These are the paths that are gone, in the scene before, and the paths that are new, in the scene now. The signal of
     // the record is that of the record before without the former and with the latter. Unless is_whole, their scenes have
-    // only the meshes that they meet, with mesh IDs of their own.
+    // only the meshes that they meet, with mesh IDs of their own, or all (Scenes).
     Paths removed, added;
-    int64_t num_rays_shot = 0;
+    int64_t num_rays = 0;       // of the record, about as many as are asked for (rays_by_object)
+    int64_t num_rays_shot = 0;  // of them, the others being kept
   };
 
   // Holds a record that may take the place of the present one.
@@ -34,7 +37,10 @@ class LiveTrace {
     std::shared_ptr<const LiveRecord> record;
   };
 
-  LiveTrace();
+  // Says which meshes the scenes of changes have. Those of what is met cost less to pose; selections may name any of all.
+  enum class Scenes { kOfWhatIsMet, kWhole };
+
+  explicit LiveTrace(Scenes scenes = Scenes::kOfWhatIsMet);
   ~LiveTrace();
   // Makes the record of the scene, radar and settings given, which `accept` puts in the place of the present one. Raises as
   // `trace`.
@@ -45,11 +51,13 @@ class LiveTrace {
   Change update(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr) {
     return accept(prepare(scene, radar, settings, job));
   }
-  // Returns the record as `trace` gives it for the last update, but for the numbers of queries in its statistics. Raises
+  // Returns the record as `trace` gives it for the last update with settings for edits, but for the numbers of queries in its
+  // statistics. Raises
   // invalid_argument before the first update; raises Cancelled.
   Paths paths(Job* job = nullptr) const;
 
  private:
+  Scenes scenes_;
   KeptGeometry kept_;
   FittedStrata fitted_;
   std::shared_ptr<const LiveRecord> record_;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include "echopath/base/bit_sum.h"
@@ -18,18 +19,34 @@ namespace {
 constexpr int64_t kSumsTogether = 1 << 12;
 constexpr uint64_t kUnlike = 0;  // of paths that are like no other
 
-// Tells which strata of two records are the same, by index.
-std::vector<bool> same_strata(const TraceFrame& before, const TraceFrame& after) {
-  std::vector<bool> same(std::max(before.strata.size(), after.strata.size()));
-  for (size_t k = 0; k < std::min(before.strata.size(), after.strata.size()); ++k)
-    same[k] = before.strata[k] == after.strata[k];
-  return same;
+// Says how paths of one record are named in sums that hold for both: by the numbers of the record after.
+struct CommonNames {
+  const ChangedMeshes& changed;
+  std::vector<uint32_t> mesh;  // by ID
+  std::vector<int> stratum;    // by index; -1: it is like no other
+};
+
+CommonNames names_before(const CommonParts& common, size_t num_strata) {
+  CommonNames names{common.meshes.of_before, common.meshes.id_after, std::vector<int>(num_strata, -1)};
+  for (size_t k = 0; k < common.stratum_before.size(); ++k) {
+    const int before = common.stratum_before[k];
+    if (before >= 0) names.stratum[static_cast<size_t>(before)] = static_cast<int>(k);
+  }
+  return names;
+}
+
+CommonNames names_after(const CommonParts& common) {
+  CommonNames names{common.meshes.of_after, std::vector<uint32_t>(common.meshes.of_after.size()), {}};
+  std::iota(names.mesh.begin(), names.mesh.end(), 0u);
+  for (size_t k = 0; k < common.stratum_before.size(); ++k) {
+    names.stratum.push_back(common.stratum_before[k] < 0 ? -1 : static_cast<int>(k));
+  }
+  return names;
 }
 
 class PathSums {
  public:
-  PathSums(const Paths& paths, const ChangedMeshes& changed, const std::vector<bool>& same_strata)
-      : paths_(paths), changed_(changed), same_strata_(same_strata) {}
+  PathSums(const Paths& paths, CommonNames names) : paths_(paths), names_(std::move(names)) {}
 
   std::vector<uint64_t> all(Job* job) const {
     std::vector<uint64_t> sums(static_cast<size_t>(paths_.num_paths()));
@@ -44,38 +61,40 @@ class PathSums {
  private:
   uint64_t sum_of(size_t path) const {
     if (has_changed_edges_ && edge_hit(paths_.flags[path]) >= 0) return kUnlike;  // the wedge may be one with a changed mesh
-    const uint16_t stratum = paths_.stratum[path];
-    if (stratum != kNoStratum && !same_strata_[stratum]) return kUnlike;
+    const uint16_t own = paths_.stratum[path];
+    const int stratum = own == kNoStratum ? kNoStratum : names_.stratum[own];
+    if (stratum < 0) return kUnlike;
     BitSum bits;
     const Hit* hits = paths_.hits_of(static_cast<int64_t>(path));
     for (int k = 0; k < paths_.num_bounces[path]; ++k) {
-      if (changed_[hits[k].mesh_id]) return kUnlike;
-      bits.add(hits[k]);
+      if (names_.changed[hits[k].mesh_id]) return kUnlike;
+      bits.add(named(hits[k]));
     }
     bits.add(paths_.diffuse[path]);
     bits.add(paths_.weight[path]);
-    bits.add(uint64_t{paths_.flags[path]} << 32 | uint64_t{stratum} << 16 | uint64_t{paths_.num_bounces[path]} << 8 |
-             paths_.batch[path]);
+    bits.add(uint64_t{paths_.flags[path]} << 32 | static_cast<uint64_t>(stratum) << 16 |
+             uint64_t{paths_.num_bounces[path]} << 8 | paths_.batch[path]);
     if (!paths_.curved_cell.empty()) bits.add(paths_.curved_cell[path]);
     if (!paths_.jones.empty()) bits.add(paths_.jones[path]);
     for (const Pass& pass : paths_.passes_of(path)) {
-      if (changed_[pass.hit.mesh_id]) return kUnlike;
-      bits.add(pass.hit);
+      if (names_.changed[pass.hit.mesh_id]) return kUnlike;
+      bits.add(named(pass.hit));
       bits.add(uint64_t{pass.leg});
     }
     return std::max(bits.value(), kUnlike + 1);
   }
 
+  Hit named(const Hit& hit) const { return {names_.mesh[hit.mesh_id], hit.triangle_id, hit.u, hit.v}; }
+
   bool finds_changed_edges() const {
     for (uint32_t id = 0; paths_.frame.edges && id < paths_.scene->meshes().size(); ++id) {
-      if (changed_[id] && has_echoing_edges(*paths_.scene, id)) return true;
+      if (names_.changed[id] && has_echoing_edges(*paths_.scene, id)) return true;
     }
     return false;
   }
 
   const Paths& paths_;
-  const ChangedMeshes& changed_;
-  const std::vector<bool>& same_strata_;
+  const CommonNames names_;
   const bool has_changed_edges_ = finds_changed_edges();
 };
 
@@ -112,10 +131,9 @@ class PathsBySum {
 
 }  // namespace
 
-void leave_out_common(Paths& before, Paths& after, const ChangedMeshes& changed, Job* job) {
-  const std::vector<bool> same = same_strata(before.frame, after.frame);
-  const std::vector<uint64_t> old_sums = PathSums(before, changed, same).all(job),
-                              new_sums = PathSums(after, changed, same).all(job);
+void leave_out_common(Paths& before, Paths& after, const CommonParts& common, Job* job) {
+  const std::vector<uint64_t> old_sums = PathSums(before, names_before(common, before.frame.strata.size())).all(job),
+                              new_sums = PathSums(after, names_after(common)).all(job);
   PathsBySum old_paths(old_sums);
   std::vector<uint8_t> keep_old(old_sums.size(), 1), keep_new(new_sums.size(), 1);
   for (size_t i = 0; i < new_sums.size(); ++i) {

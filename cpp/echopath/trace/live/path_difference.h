@@ -4,10 +4,16 @@
 
 namespace echopath {
 
+// Says what the paths of two records can have in common.
+struct CommonParts {
+  SceneChanges meshes;
+  std::vector<int> stratum_before;  // by stratum after; -1: it has changed
+};
+
 // Leaves out of `before` and `after` the paths that have the same echoes in both scenes: those whose hits and columns are
-// the same, which meet no changed mesh, and whose stratum has not changed. Paths are compared by 64 bits that hang on all of
-// these. Raises Cancelled.
-void leave_out_common(Paths& before, Paths& after, const ChangedMeshes& changed, Job* job = nullptr);
+// the same but for the numbers of meshes and strata, which meet no changed mesh, and whose stratum has not changed. Paths are
+// compared by 64 bits that hang on all of these. Raises Cancelled.
+void leave_out_common(Paths& before, Paths& after, const CommonParts& common, Job* job = nullptr);
 
 // Returns the same paths with the hits that they use, in a scene with the meshes that they meet. Their echoes are the same,
 // but mesh IDs are not: posing a few meshes costs less than posing a city.

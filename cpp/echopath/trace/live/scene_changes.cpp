@@ -11,33 +11,67 @@ bool is_same_surface(const Node& a, const Node& b) {
   return a.mesh == b.mesh && a.deformation == b.deformation && a.material == b.material && a.smooth == b.smooth;
 }
 
-}  // namespace
-
-bool has_same_tree(const Scene& before, const Scene& after) {
-  if (before.nodes().size() != after.nodes().size() || before.meshes().size() != after.meshes().size()) return false;
-  for (size_t i = 0; i < before.nodes().size(); ++i) {
-    const Node &a = before.nodes()[i], &b = after.nodes()[i];
-    const bool is_same = a.parent == b.parent && !a.mesh == !b.mesh && a.name == b.name &&
-                         before.takes_part(static_cast<int>(i)) == after.takes_part(static_cast<int>(i));
-    if (!is_same) return false;
-  }
-  return true;
+// Returns the index of the node of that name, or -1. Most nodes stand where they stood.
+int index_in(const Scene& scene, const std::string& name, size_t likely) {
+  if (likely < scene.nodes().size() && scene.nodes()[likely].name == name) return static_cast<int>(likely);
+  return scene.find(name).value_or(-1);
 }
 
-ChangedMeshes changed_meshes(const Scene& before, const Scene& after, bool time_moved) {
-  std::vector<bool> has_moved(after.nodes().size());  // by node: it or a node above; parents come before their children
+std::vector<int> indices_before(const Scene& before, const Scene& after) {
+  std::vector<int> indices;
+  for (size_t i = 0; i < after.nodes().size(); ++i) indices.push_back(index_in(before, after.nodes()[i].name, i));
+  return indices;
+}
+
+// Tells by node of `after` whether it or a node above has other places than before; parents come before their children.
+std::vector<bool> moved_nodes(const Scene& before, const Scene& after, const std::vector<int>& index_before) {
+  std::vector<bool> has_moved(after.nodes().size());
   for (size_t i = 0; i < has_moved.size(); ++i) {
     const Node& node = after.nodes()[i];
-    const bool above = node.parent >= 0 && has_moved[static_cast<size_t>(node.parent)];
-    has_moved[i] = above || !is_same_place(before.nodes()[i], node);
+    const int known = index_before[i];
+    has_moved[i] = (node.parent >= 0 && has_moved[static_cast<size_t>(node.parent)]) || known < 0 ||
+                   !is_same_place(before.nodes()[static_cast<size_t>(known)], node);
   }
-  ChangedMeshes changed(after.meshes().size());
-  for (uint32_t id = 0; id < changed.size(); ++id) {
+  return has_moved;
+}
+
+std::vector<uint32_t> mesh_of_node(const Scene& scene) {
+  std::vector<uint32_t> ids(scene.nodes().size(), kNoMesh);
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) ids[static_cast<size_t>(scene.meshes()[id].node)] = id;
+  return ids;
+}
+
+}  // namespace
+
+void SceneChanges::mark(uint32_t id) {
+  of_after[id] = true;
+  if (id_before[id] != kNoMesh) of_before[id_before[id]] = true;
+}
+
+SceneChanges changes_between(const Scene& before, const Scene& after, bool time_moved) {
+  const std::vector<int> index_before = indices_before(before, after);
+  const std::vector<bool> has_moved = moved_nodes(before, after, index_before);
+  const std::vector<uint32_t> ids = mesh_of_node(before);
+  SceneChanges changes;
+  changes.id_after.assign(before.meshes().size(), kNoMesh);
+  changes.of_before.assign(before.meshes().size(), true);  // unless one of after is the same
+  uint32_t next = 0;
+  for (uint32_t id = 0; id < after.meshes().size(); ++id) {
     const auto node = static_cast<size_t>(after.meshes()[id].node);
-    changed[id] = has_moved[node] || !is_same_surface(before.nodes()[node], after.nodes()[node]) ||
-                  (time_moved && after.is_moving(id));
+    const int known = index_before[node];
+    const uint32_t is = known < 0 ? kNoMesh : ids[static_cast<size_t>(known)];
+    changes.id_before.push_back(is);
+    changes.of_after.push_back(true);
+    if (is == kNoMesh) continue;
+    changes.id_after[is] = id;
+    changes.has_same_ids = changes.has_same_ids && is == id;
+    changes.has_same_order = changes.has_same_order && is >= next;
+    next = is + 1;
+    changes.of_after[id] =
+        has_moved[node] || !is_same_surface(before.node_of(is), after.node_of(id)) || (time_moved && after.is_moving(id));
+    changes.of_before[is] = changes.of_after[id];
   }
-  return changed;
+  return changes;
 }
 
 std::vector<Eigen::AlignedBox3d> boxes_of(const EmbreeScene& geometry, uint32_t num_meshes) {

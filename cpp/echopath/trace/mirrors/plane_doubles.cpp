@@ -32,6 +32,21 @@ void PlaneDoubles::add(OrdersAboutCorners orders) {
   left_out_[std::move(planes)].push_back(std::move(orders));
 }
 
+bool PlaneDoubles::is_same(const PlaneDoubles& other, std::span<const uint32_t> id_there) const {
+  if (left_out_ != other.left_out_) return false;
+  if (!any()) return true;
+  const auto has_planes = [](const std::vector<int>& planes) { return !planes.empty(); };
+  const auto num_with_planes = [&](const PlaneDoubles& of) {
+    return std::count_if(of.plane_of_triangle.begin(), of.plane_of_triangle.end(), has_planes);
+  };
+  for (size_t id = 0; id < plane_of_triangle.size(); ++id) {
+    if (!has_planes(plane_of_triangle[id])) continue;
+    const uint32_t there = id_there[id];
+    if (there >= other.plane_of_triangle.size() || other.plane_of_triangle[there] != plane_of_triangle[id]) return false;
+  }
+  return num_with_planes(*this) == num_with_planes(other);
+}
+
 bool PlaneDoubles::is_double(const Paths& paths, size_t path, Sequence& of_path) const {
   if (!paths.is_coherent_with_cell(path)) return false;
   const Hit* hits = paths.hits_of(static_cast<int64_t>(path));

@@ -2,6 +2,7 @@
 // Finds and removes paths of rays that carry the same field as paths over planes that the image method found.
 #include <cstdint>
 #include <map>
+#include <span>
 #include <vector>
 
 #include "echopath/base/threads/job.h"
@@ -30,7 +31,9 @@ class PlaneDoubles {
   bool any() const { return !left_out_.empty(); }
   // Removes the paths of rays for which the image method has paths of its own. Raises Cancelled.
   void leave_out(Paths& paths, Job* job) const;
-  bool operator==(const PlaneDoubles&) const = default;
+  // Returns whether both leave out the same, where the meshes of this one have the IDs `id_there` in the other one, or none
+  // (numbers beyond its meshes).
+  bool is_same(const PlaneDoubles& other, std::span<const uint32_t> id_there) const;
 
  private:
   struct Sequence;  // the planes of a path, kept from path to path for its memory

@@ -10,7 +10,7 @@ namespace echopath {
 inline constexpr int64_t kBranch = int64_t{1} << 44;
 
 struct FirstHits {
-  int64_t begin = 0;                     // index of the first ray
+  int64_t begin = 0, number = 0;         // index of the first ray in the plan, and in the random numbers
   int num_sheets = 0;                    // through which the rays have gone
   const SurfacePoint* points = nullptr;  // [count] at which the rays are aimed; null for rays of a lattice
   int count = 0;
@@ -41,10 +41,10 @@ struct FirstHits {
   LaneFlags goes_both_ways;   // mirrored always, scattered by chance
   LaneFlags goes_on;          // whether the ray goes on at all
 
-  // Returns the index of the lane's ray, and that in the random numbers of its hits: behind each sheet these are others,
+  // Returns the index of the lane's ray in the random numbers, and that of its hits: behind each sheet these are others,
   // unless they belong to the point at which the ray is aimed.
-  int64_t ray(int lane) const { return points ? points[lane].key : begin + lane; }
-  int64_t index(int lane) const { return points ? points[lane].key : begin + lane + num_sheets * kBranch; }
+  int64_t ray(int lane) const { return points ? points[lane].key : number + lane; }
+  int64_t index(int lane) const { return points ? points[lane].key : number + lane + num_sheets * kBranch; }
   void set_response(int lane, const SurfaceResponse& response, const LobeProbabilities& lobes) {
     gamma_re[lane] = response.gamma.real();
     gamma_im[lane] = response.gamma.imag();

@@ -50,8 +50,12 @@ void PacketFront::trace(int64_t begin, int count, FirstHits& first, TraceStatist
   first.count = count;
   first.num_sheets = 0;
   first.points = nullptr;
-  if (context_.plan.is_aimed_at_scatterer(begin)) launch_at_points(first);
-  else launch(first);
+  if (context_.plan.is_aimed_at_scatterer(begin)) {
+    launch_at_points(first);
+  } else {
+    first.number = context_.plan.number_of(begin);
+    launch(first);
+  }
   draw_samples(first);
   find_hits(first, nullptr, statistics);
 }

@@ -21,4 +21,13 @@ int RayOwners::owner_over_mirrors(size_t object, MirrorSequence sequence) const 
   return found != owners.end() && found->first == sequence ? found->second : field_of_view_;
 }
 
+std::vector<std::pair<MirrorSequence, int>> RayOwners::strata_of(uint32_t mesh_id) const {
+  const int object = object_of_mesh_.empty() ? -1 : object_of_mesh_[mesh_id];
+  if (object < 0) return {};
+  std::vector<std::pair<MirrorSequence, int>> strata{{kNoMirrors, direct_[static_cast<size_t>(object)]}};
+  const auto& over_mirrors = over_mirrors_[static_cast<size_t>(object)];
+  strata.insert(strata.end(), over_mirrors.begin(), over_mirrors.end());
+  return strata;
+}
+
 }  // namespace echopath

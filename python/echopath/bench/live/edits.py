@@ -18,10 +18,11 @@ import echopath as ep
 
 from ...scene.materials import data_folder
 from ...sequence.unused_memory import resident_memory
-from ..crowd.scenes import flat_city, radar, rounded_car, street
+from ..crowd.scenes import BACKDROPS, flat_city, radar, rounded_car, street
 from ..suite import describe_judged, judged_row
 from ..timing import wall_time
 from .drive import MIB
+from .random_edits import RandomEdits
 
 RAYS, QUICK_RAYS, FEW_RAYS = 100_000, 2_000, 20_000
 UPDATES, QUICK_UPDATES = 15, 2
@@ -70,27 +71,6 @@ def city() -> tuple[ep.Scene, ep.Radar, str]:
 SCENES = dict(zip(LIMITS, (demo_street, crowded_street, city)))
 
 
-def edit_at_random(live: ep.Live, draw: np.random.Generator, names: list[str], window: list) -> None:
-    """Changes one thing: a place, a turn, a motion, a material, what is visible, the array, the waveform, or the window."""
-    node = live.scene[names[draw.integers(len(names))]]
-    kind = draw.integers(12)
-    if kind < 5:
-        node.position += draw.normal(0.0, 0.2, 3) * (1, 1, 0)
-    elif kind < 7:
-        node.yaw += draw.normal(0.0, 0.3)
-    elif kind == 7:
-        node.motion = None if draw.integers(2) else ep.LinearMotion(velocity=(draw.normal(0.0, 5.0), 0.0, 0.0))
-    elif kind == 8:
-        node.visible = not node.visible
-    elif kind == 9:
-        _set_material(node, ep.Material.metal() if draw.integers(2) else ep.materials["concrete"])
-    elif kind == 10:
-        live.radar = live.radar.replace(transmit_power=float(draw.uniform(0.005, 0.02)))
-    else:
-        window[0] = "hann" if window[0] == "hamming" else "hamming"
-        live.set_map(window=window[0])
-
-
 def moved_rows(name: str, scene: ep.Scene, of_scene: ep.Radar, moved: str, num_rays: int, limit: float, updates: int
                ) -> list[dict]:
     """Rows of one object that is moved by STEP so many times. name: of the rows; limit: s, of an update"""
@@ -109,7 +89,7 @@ def moved_rows(name: str, scene: ep.Scene, of_scene: ep.Radar, moved: str, num_r
     return [judged_row(f"{what}: moved, s", seconds, limit),
             judged_row(f"{what}: moved over fresh", seconds / fresh_seconds, None),
             *(judged_row(f"{what}: of it {stage}, s", value, None) for stage, value in stages.items()),
-            judged_row(f"{what}: share of rays shot", views[-1][1].num_rays_shot / num_rays, None),
+            judged_row(f"{what}: share of rays shot", views[-1][1].num_rays_shot / views[-1][1].num_rays, None),
             judged_row(f"{what}: error", error, MOST_ERROR)]
 
 
@@ -140,14 +120,6 @@ def _taken(shown: queue.Queue) -> ep.LiveView:
     return found
 
 
-def _set_material(node, material) -> None:
-    if node.children:
-        for child in node.children:
-            _set_material(child, material)
-    elif node.mesh is not None:
-        node.material = material
-
-
 def _with_128_chirps(of: ep.Radar) -> ep.Radar:
     return of.replace(waveform=of.waveform.replace(num_chirps=128))
 
@@ -156,7 +128,7 @@ def _rows(quick: bool) -> list[dict]:
     found = []
     for name, made in SCENES.items():
         found += moved_rows(name, *made(), QUICK_RAYS if quick else RAYS, LIMITS[name], QUICK_UPDATES if quick else UPDATES)
-    for name, made in list(SCENES.items())[1:]:
+    for name, made in SCENES.items():
         found += moved_rows(name, *made(), QUICK_RAYS if quick else FEW_RAYS, MOST_SECONDS_OF_FEW,
                             QUICK_UPDATES if quick else UPDATES)
     found += first_map_rows(WATCHED, *SCENES[WATCHED](), QUICK_RAYS if quick else RAYS, QUICK_UPDATES if quick else UPDATES)
@@ -166,26 +138,32 @@ def _rows(quick: bool) -> list[dict]:
     return found
 
 
-def _error_of_edits(count: int) -> float:
-    """Largest difference of a sample over the largest sample, from a fresh Live after all edits and at ten places before."""
+def random_edits(num_rays: int = QUICK_RAYS) -> RandomEdits:
+    """Of the street of twenty objects."""
     scene, of_scene, _ = crowded_street()
-    draw, live, window = np.random.default_rng(3), ep.Live(scene, of_scene, num_rays=QUICK_RAYS), ["hann"]
-    names = [name for name in scene if "/" not in name and name not in ("ground", "wall_left", "wall_right")]
-    worst = 0.0
+    names = [name for name in scene if "/" not in name and name not in BACKDROPS]
+    return RandomEdits(ep.Live(scene, of_scene, num_rays=num_rays), names, list(BACKDROPS))
+
+
+def _error_of_edits(count: int) -> float:
+    """Largest difference of a sample over the largest sample, from a fresh Live after all edits and at twenty places before."""
+    edits, worst = random_edits(), 0.0
     for number in range(count):
-        edit_at_random(live, draw, names, window)
-        view = live.update()
-        if number % max(1, count // 10) == 0 or number == count - 1:
-            fresh = ep.Live(live.scene, live.radar, num_rays=QUICK_RAYS).update()
+        edits.make()
+        view = edits.live.update()
+        if number % max(1, count // 20) == 0 or number == count - 1:
+            fresh = edits.fresh_view()
             worst = max(worst, float(np.abs(view.cube - fresh.cube).max() / np.abs(fresh.cube).max()))
     return worst
 
 
 def _growth(count: int) -> float:
-    scene, of_scene, moved = crowded_street()
-    live, memory = ep.Live(scene, of_scene, num_rays=QUICK_RAYS), []
+    """Most memory over that after SOAK_FROM of the updates, each after an edit, every other one with previews before it."""
+    edits, memory = random_edits(), []
     for number in range(count):
-        live.scene[moved].position += STEP if number % 2 else (-0.1, 0.0, 0.0)
-        live.update()
+        edits.make()
+        if number % 2:
+            edits.live.preview(num_rays=QUICK_RAYS // (4 + number % 4))
+        edits.live.update()
         memory.append(resident_memory() / MIB)
     return max(memory[int(SOAK_FROM * count):]) / memory[int(SOAK_FROM * count)]

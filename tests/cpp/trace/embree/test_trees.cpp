@@ -127,11 +127,35 @@ TEST(Trees, AnswerAsFreshOnesWhereTheOriginMoves) {
   for (const double x : {0.0, 1.0, 1.0, -40.0}) {
     const PosedScene pose(scene, 0.5 + 0.1 * x * x / 1600.0);
     EmbreeScene fresh;
-    kept.update(scene, pose, Vec3(x, 0, 0), true, nullptr);
-    fresh.update(scene, pose, Vec3(x, 0, 0), true, nullptr);
+    kept.update(scene, pose, Vec3(x, 0, 0), EmbreeScene::Upkeep::kMovingRadar, nullptr);
+    fresh.update(scene, pose, Vec3(x, 0, 0), EmbreeScene::Upkeep::kMovingRadar, nullptr);
     EXPECT_EQ(kept.origin(), fresh.origin());
     EXPECT_EQ(kept.origin(), EmbreeScene::origin_near(scene, pose, Vec3(x, 0, 0), true));
   }
+}
+
+// A box moves on beyond all others, to 63 m and then beyond the next power of two.
+TEST(Trees, EditsSeldomChangeOriginLiftAndReach) {
+  EmbreeScene kept;
+  std::set<double> lifts, reaches, origins;
+  for (const double x : {40.0, 47.0, 55.5, 62.0, 70.0}) {
+    Scene scene;
+    scene.add(node_of("near", box(0.5), {3.0, 1.0, 0.0}));
+    scene.add(node_of("far", box(0.5), {x, 0.0, 0.0}));
+    const PosedScene pose(scene, 0.0);
+    EmbreeScene fresh;
+    kept.update(scene, pose, Vec3(0.1, 0, 0), EmbreeScene::Upkeep::kEdits, nullptr);
+    fresh.update(scene, pose, Vec3(0.1, 0, 0), EmbreeScene::Upkeep::kEdits, nullptr);
+    expect_same(answers_of(fresh), answers_of(kept));
+    EXPECT_GE(kept.lift(), EmbreeScene(scene, pose, kept.origin()).lift());
+    EXPECT_LE(kept.lift(), 2.0 * EmbreeScene(scene, pose, kept.origin()).lift());
+    lifts.insert(kept.lift());
+    reaches.insert(kept.reach());
+    origins.insert(kept.origin().x());
+  }
+  EXPECT_EQ(lifts.size(), 2u);
+  EXPECT_EQ(reaches.size(), 2u);
+  EXPECT_LE(origins.size(), 2u);
 }
 
 // The box in row r and column c is met where it stands, whatever tree it is in.

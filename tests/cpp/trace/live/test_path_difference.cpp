@@ -39,6 +39,9 @@ Paths record(const std::vector<Bounce>& bounces) {
   return paths;
 }
 
+// Both scenes have the two meshes, of which some have changed.
+CommonParts common(const ChangedMeshes& changed) { return {{{0, 1}, {0, 1}, changed, changed}, {}}; }
+
 std::vector<float> places(const Paths& paths) {
   std::vector<float> us;
   for (int64_t path = 0; path < paths.num_paths(); ++path) us.push_back(paths.hits_of(path)->u);
@@ -48,21 +51,34 @@ std::vector<float> places(const Paths& paths) {
 TEST(PathDifference, PathsOfBothRecordsAreLeftOutAsOftenAsBothHaveThem) {
   Paths before = record({{kStill, 0.1f}, {kStill, 0.2f}, {kStill, 0.1f}, {kStill, 0.3f}, {kStill, 0.1f}});
   Paths after = record({{kStill, 0.3f}, {kStill, 0.1f}, {kStill, 0.4f}, {kStill, 0.3f}, {kStill, 0.1f}});
-  leave_out_common(before, after, {false, false});
+  leave_out_common(before, after, common({false, false}));
   EXPECT_EQ(places(before), (std::vector{0.2f, 0.1f}));
   EXPECT_EQ(places(after), (std::vector{0.4f, 0.3f}));
 }
 
 TEST(PathDifference, PathsOverAChangedMeshAreLikeNoOther) {
   Paths before = record({{kMoved, 0.1f}, {kStill, 0.2f}}), after = record({{kStill, 0.2f}, {kMoved, 0.1f}});
-  leave_out_common(before, after, {false, true});
+  leave_out_common(before, after, common({false, true}));
   EXPECT_EQ(places(before), std::vector{0.1f});
   EXPECT_EQ(places(after), std::vector{0.1f});
 }
 
+// The still plate has the other's number after a third mesh has come before it; strata have moved up by one.
+TEST(PathDifference, PathsAreTheSameWhateverTheNumbersOfTheirMeshesAndStrata) {
+  Paths before = record({{kStill, 0.1f}, {kStill, 0.2f}, {kStill, 0.3f}});
+  Paths after = record({{kMoved, 0.1f}, {kMoved, 0.2f}, {kMoved, 0.3f}});
+  before.stratum = {0, 1, 0};
+  after.stratum = {1, 2, 2};
+  before.frame.strata.resize(2);
+  after.frame.strata.resize(3);
+  leave_out_common(before, after, {{{1, kNoMesh}, {kNoMesh, 0}, {false, true}, {true, false}}, {-1, 0, -1}});
+  EXPECT_EQ(places(before), (std::vector{0.2f, 0.3f}));
+  EXPECT_EQ(places(after), (std::vector{0.2f, 0.3f}));
+}
+
 TEST(PathDifference, RecordsWithoutPathsHaveNothingInCommon) {
   Paths before = record({}), after = record({{kStill, 0.2f}});
-  leave_out_common(before, after, {false, false});
+  leave_out_common(before, after, common({false, false}));
   EXPECT_EQ(before.num_paths(), 0);
   EXPECT_EQ(after.num_paths(), 1);
 }

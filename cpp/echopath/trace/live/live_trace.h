@@ -51,9 +51,8 @@ class LiveTrace {
   Change update(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings, Job* job = nullptr) {
     return accept(prepare(scene, radar, settings, job));
   }
-  // Returns the record as `trace` gives it for the last update with settings for edits, but for the numbers of queries in its
-  // statistics. Raises
-  // invalid_argument before the first update; raises Cancelled.
+  // Returns the record as `trace` gives it for the last update with settings for edits, but for the numbers of queries in
+  // its statistics. Raises invalid_argument before the first update; raises Cancelled.
   Paths paths(Job* job = nullptr) const;
 
  private:

@@ -88,9 +88,9 @@ void RecordMatch::match_strata() {
   }
 }
 
-// Where other strata own the echoes of a mesh, it counts as changed. Where they are the same but have other rays, the weights
-// of echoes at the mesh may be others, because they hang on the density of these rays: then what has hits there does not
-// stay.
+// Where other strata own the echoes of a mesh, it counts as changed. Where they are the same but have other rays, the
+// weights of echoes at the mesh may be others, because they hang on the density of these rays: then what has hits there
+// does not stay.
 void RecordMatch::match_owners() {
   const RayOwners &was = before_->shared.owners, &is = after_.shared.owners;
   const auto is_same = [&](const auto& a, const auto& b) {

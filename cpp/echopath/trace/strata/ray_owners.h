@@ -29,8 +29,8 @@ class RayOwners {
                                   : owner_over_mirrors(static_cast<size_t>(object), sequence);
   }
   int field_of_view() const { return field_of_view_; }
-  // Returns the stratum of first hits on a mesh, straight from the transmitter and over each sequence of mirrors that has one
-  // of its own; it is empty where nothing aims at the mesh.
+  // Returns the stratum of first hits on a mesh, straight from the transmitter and over each sequence of mirrors that has
+  // one of its own; it is empty where nothing aims at the mesh.
   std::vector<std::pair<MirrorSequence, int>> strata_of(uint32_t mesh_id) const;
   bool operator==(const RayOwners&) const = default;
 

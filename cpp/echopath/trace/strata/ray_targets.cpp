@@ -107,8 +107,8 @@ class RayTargetFinder {
       const Mirror& mirror = mirrors_[static_cast<size_t>(index)];
       bits.add_bytes(mirror.point.data(), sizeof(Vec3));
       bits.add_bytes(mirror.normal.data(), sizeof(Vec3));
-      bits.add(mirror.mesh_id);
-      bits.add(mirror.face);
+      const std::string own_name = name_of(mirror, scene_);  // an ID hangs on what else is in the scene
+      bits.add_bytes(own_name.data(), own_name.size());
     }
     return bits.value();
   }

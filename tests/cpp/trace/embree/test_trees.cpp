@@ -134,13 +134,12 @@ TEST(Trees, AnswerAsFreshOnesWhereTheOriginMoves) {
   }
 }
 
-// A box moves on beyond all others, to 63 m and then beyond the next power of two.
+// A box moves on beyond all others, and then beyond 128 m.
 TEST(Trees, EditsSeldomChangeOriginLiftAndReach) {
   EmbreeScene kept;
   std::set<double> lifts, reaches, origins;
-  for (const double x : {40.0, 47.0, 55.5, 62.0, 70.0}) {
-    Scene scene;
-    scene.add(node_of("near", box(0.5), {3.0, 1.0, 0.0}));
+  for (const double x : {90.0, 101.0, 113.0, 120.0, 150.0}) {
+    Scene scene = mixed_scene();
     scene.add(node_of("far", box(0.5), {x, 0.0, 0.0}));
     const PosedScene pose(scene, 0.0);
     EmbreeScene fresh;

@@ -43,8 +43,9 @@ SharedByRays::SharedByRays(const Tracer& tracer, const TraceSettings& asked)
 // The field of view, the last stratum, owns all that no other stratum does.
 bool SharedByRays::is_same(const SharedByRays& other) const {
   return asks_the_same(settings, other.settings) && sbr == other.sbr && origin == other.origin && lift == other.lift &&
-         reach == other.reach && surface_scatterers.empty() == other.surface_scatterers.empty() && sequences == other.sequences &&
-         is_launched_alike(strata.back(), other.strata.back()) && !has_foci(strata) && !has_foci(other.strata);
+         reach == other.reach && surface_scatterers.empty() == other.surface_scatterers.empty() &&
+         sequences == other.sequences && is_launched_alike(strata.back(), other.strata.back()) && !has_foci(strata) &&
+         !has_foci(other.strata);
 }
 
 LiveRecord::LiveRecord(const Tracer& tracer, const TraceSettings& settings)

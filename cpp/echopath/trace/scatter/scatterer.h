@@ -1,6 +1,7 @@
 #pragma once
 // Sends rays on from their hits.
 #include "echopath/trace/connect/diffuse_chain.h"
+#include "echopath/trace/connect/mirror_orders.h"
 #include "echopath/trace/sbr/weight.h"
 
 namespace echopath {

@@ -67,8 +67,9 @@ void find_images(const Planes& planes, Vec3 point, Vec3* images) {
 }
 
 // Sets the points in which a wave between two points meets the mirrors of a chain, the last one first. Returns the place in
-// the chain of a mirror that does not lie between its neighbours, so that there is no such wave; none where all do. A point as
-// near as `touching` (m) to the mirror before it, as at the edge where two mirrors meet, is mirrored where it is.
+// the chain of a mirror that does not lie between its neighbours, so that there is no such wave; none where all do. A point
+// as near as `touching` (m) to the mirror before it, as at the edge where two mirrors meet, is mirrored where it is; with a
+// negative one none is.
 template <class Planes>
 std::optional<size_t> find_reflections(const Planes& planes, const Vec3& from, const Vec3& to, Vec3* points,
                                        double touching = -1.0) {
@@ -85,8 +86,8 @@ std::optional<size_t> find_reflections(const Planes& planes, const Vec3& from, c
   return std::nullopt;
 }
 
-// Returns a point in which a wave meets mirrors of a chain, lifted by `lift` (m) off all those that it meets within `near` (m)
-// of there, to the side of `target`. `points` are those of all mirrors.
+// Returns a point in which a wave meets mirrors of a chain, lifted by `lift` (m) off all those that it meets within `near`
+// (m) of there, to the side of `target`. `points` are those of all mirrors.
 template <class Planes>
 Vec3 lifted_off_mirrors(const Planes& planes, const Vec3* points, size_t at, const Vec3& target, double near, double lift) {
   Vec3 point = points[at];

@@ -1,5 +1,5 @@
-// Ways over mirrors against the law of reflection: the wave runs in straight lines, and at each mirror the angles of incidence
-// and reflection are equal.
+// Ways over mirrors against the law of reflection: the wave runs in straight lines, and at each mirror the angles of
+// incidence and reflection are equal.
 #include "echopath/base/plane.h"
 
 #include <gtest/gtest.h>

@@ -58,7 +58,7 @@ class PosedGrids {
   // Poses all meshes to try their motions.
   const TrialGrid& trial(GridIndex polynomial);
 
-  // Return grids that have been posed.
+  // These return grids that have been posed.
   const PosedGrid& still() const { return still_.value(); }
   const PosedGrid& polynomial(GridIndex polynomial) const;
   // Returns whether all meshes are posed at the nodes of a polynomial, because motions were tried there or it was asked for.

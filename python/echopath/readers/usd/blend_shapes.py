@@ -59,7 +59,10 @@ class _Weights:
         if found is None:
             raise ValueError("its blend shapes have weights that cannot be shared out")
         values, _, shapes = found
-        np.add.at(shares, np.array(shapes, int), np.array(values, float))
+        places = np.array(shapes, int)
+        if places.size and not 0 <= places.min() <= places.max() < len(shares):
+            raise ValueError(f"its blend shapes name the shape {places.max()}, where there are {len(shares)}")
+        np.add.at(shares, places, np.array(values, float))
         return shares
 
     def with_turns(self, codes: list[float]) -> list[float]:

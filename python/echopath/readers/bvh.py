@@ -29,14 +29,17 @@ def read(path: Path, options: ReadOptions) -> Model:
         if group and group not in groups:
             groups[group] = tree.add(group)
         tree.add(name, groups.get(group, -1), mesh=_core.Mesh(arrays.vertices, arrays.triangles), smooth=True,
-                 foreign_material=arrays.material, **_moved(arrays, animation))
+                 foreign_material=arrays.material, **_moved(path, arrays, animation))
     return tree.model(format="BVH", unit=body.unit, up=body.up, animations=(NAME,), animation=animation,
                       duration=float(body.times[-1] - body.times[0]) if animation else 0.0)
 
 
-def _moved(arrays, animation) -> dict:
-    """The motion of a part; at rest its place in the first frame."""
-    motion = _core.KeyframeMotion(times=arrays.times, translations=arrays.translations, rotations=arrays.rotations)
+def _moved(path: Path, arrays, animation) -> dict:
+    """The motion of a part; at rest its place in the first frame. Raises FileError for joints that give it no axes."""
+    try:
+        motion = _core.KeyframeMotion(times=arrays.times, translations=arrays.translations, rotations=arrays.rotations)
+    except ValueError as error:
+        raise _core.FileError(f"{path}: its {arrays.name} cannot move as captured: {error}") from None
     if animation:
         return {"motion": motion}
     return {"placement": motion.at(float(arrays.times[0]))}

@@ -39,4 +39,10 @@ class EditedScene(Scene):
         return Scene(self)
 
     def __reduce_ex__(self, protocol):
-        return Scene(self).__reduce_ex__(protocol)
+        return _scene_of, (Scene(self).__getstate__(),)
+
+
+def _scene_of(state) -> Scene:
+    scene = Scene.__new__(Scene)
+    scene.__setstate__(state)
+    return scene

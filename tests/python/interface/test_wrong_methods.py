@@ -32,7 +32,7 @@ def calls(tmp_path_factory):
         "Trajectory": (ep.Trajectory, {"points": [[0, 0], [10, 0]], "speed": 5.0}), "Scene": (ep.Scene, {}),
         "Lane": (ep.Lane, {"points": [[0, 0], [10, 0]]}), "Live": (ep.Live, {"scene": SCENE, "radar": RADAR, "num_rays": 300}),
         "Parts": (ep.Parts, {"cubes": parts, "selections": parts.selections}),
-        "StoredSequence": (ep.StoredSequence, {"folder": folder / "kept"}),
+        "StoredSequence": (ep.StoredSequence, {"path": folder / "kept"}),
         "select": (frame.paths.select, {"selection": "T . R"}), "partition": (frame.paths.partition, {"parts": {"a": "T . R"}}),
         "plot_labels": (labels.plot, {}), "plot_detections": (labelled.detections.plot, {}),
         "detections_to_csv": (labelled.detections.to_csv, {"path": folder / "detections.csv"}),
@@ -44,7 +44,7 @@ def calls(tmp_path_factory):
         "paths_of": (families.paths_of, {"family": families.families[0]}),
         "range_azimuth_of": (frame.range_azimuth_of, {"spectrum": frame.spectrum}),
         "coplanar_overlaps": (SCENE.coplanar_overlaps, {}), "world_vertices": (SCENE.world_vertices, {"mesh_id": 0}),
-        "plot": (frame.plot, {}), "save": (in_time.save, {"folder": tmp_path_factory.mktemp("frames"), "keep": "maps"}),
+        "plot": (frame.plot, {}), "save": (in_time.save, {"path": tmp_path_factory.mktemp("frames"), "keep": "maps"}),
         "add": (_add, {"mesh_or_actor": ep.actors.plate(1, 1), "name": "x", "material": "metal"})}
 
 

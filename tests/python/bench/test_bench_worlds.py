@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from echopath.bench.worlds import city, crowd, models, peer, public_cities
-from support.gltf_files import rig_file
+from support.files.gltf_files import rig_file
 
 LIGHT = 299792458.0
 FLOOR = """<scene version="2.1.0"><bsdf type="itu-radio-material" id="metal"><string name="type" value="metal"/></bsdf>

@@ -8,8 +8,8 @@ import pytest
 
 import echopath as ep
 from fuzz.foreign_seeds import archive
-from support.gltf_files import GltfFile
-from support.mesh_texts import usd_mesh
+from support.files.gltf_files import GltfFile
+from support.files.mesh_texts import usd_mesh
 
 POINT, POWER = 1e-6, 1e-5  # m, and of the greatest power of a path: normals of files are single numbers, of 6 digits in texts
 DEFORMING = 1e-5           # m, of hits on meshes that have a motion of their vertices, if one that stands still

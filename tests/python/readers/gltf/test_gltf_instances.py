@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support.gltf_files import BOX, GltfFile, box_file, loaded
+from support.files.gltf_files import BOX, GltfFile, box_file, loaded
 
 TO_SCENE = [2, 0, 1]  # axes of a file, y up, that become x, y and z
 SINGLE = 1e-5         # of places of about 10 m in single precision

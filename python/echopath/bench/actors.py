@@ -2,7 +2,7 @@
 
 Power is averaged over azimuth at level incidence. The mean of large smooth bodies is made by a few flashes, so that their
 median says more of a usual aspect; both are given. What is flat or straight has a closed form where it is square to the radar:
-the sign at its peak, the pole from below, where its tapering side faces the radar.
+the sign at its peak, the pole from a little above, where its tapering side faces the radar.
 """
 from __future__ import annotations
 
@@ -81,8 +81,9 @@ SUBJECTS = (
     Subject("parked row", lambda: actors.parked_row(), "median", None, None, NONE_FOUND),
     Subject("guard rail of 20 m", lambda: actors.guard_rail(), "median", None, None, NONE_FOUND),
     Subject("traffic sign", lambda: actors.traffic_sign(size=SIGN_SIZE), "peak", *DISC, "4 pi A^2 / wavelength^2 of its disc"),
-    Subject("pole from below", lambda: actors.pole(height=POLE_HEIGHT, radius=POLE_RADII[0], end_radius=POLE_RADII[1]), "mean",
-            *CONE, "2 pi a L^2 / wavelength of a cylinder of its mean radius a", elevation=-POLE_TILT),
+    Subject("pole, square to its side",
+            lambda: actors.pole(height=POLE_HEIGHT, radius=POLE_RADII[0], end_radius=POLE_RADII[1]), "mean", *CONE,
+            "2 pi a L^2 / wavelength of a cylinder of its mean radius a", elevation=POLE_TILT),
 )
 
 
@@ -123,9 +124,9 @@ def run_actors(folder, *, quick: bool = False, progress=None) -> list[Aspect]:
     quick: few azimuths and rays; progress: callable (stage, fraction) or None
     """
     found = [aspect_of(subject, quick=quick) for subject in told(SUBJECTS, "actors", progress)]
-    rows = [{"actor": one.subject.name, "mean_dbsm": f"{one.mean:.1f}", "median_dbsm": f"{one.median:.1f}", "peak_dbsm": f"{one.peak:.1f}",
-             "published": one.subject.statistic, "low": one.subject.low, "high": one.subject.high, "within": one.is_within,
-             "source": one.subject.source} for one in found]
+    rows = [{"actor": one.subject.name, "mean_dbsm": f"{one.mean:.1f}", "median_dbsm": f"{one.median:.1f}",
+             "peak_dbsm": f"{one.peak:.1f}", "published": one.subject.statistic, "low": one.subject.low,
+             "high": one.subject.high, "within": one.is_within, "source": one.subject.source} for one in found]
     write_texts(folder, {"actors.csv": csv_text(rows)})
     draw(found, Path(folder) / "actors.png")
     return found
@@ -151,9 +152,9 @@ def draw(found: list[Aspect], path) -> None:
             _draw_panel(axes, one)
         for axes in panels[len(found):]:
             axes.set_visible(False)
-        figure.suptitle("Cross section in dBsm by direction at 77 GHz (0\N{DEGREE SIGN}: from ahead). "
-                        "Green: published band or\n"
-                        "closed form; dashed: the statistic that it is of; levels below the scale stand at the centre", fontsize=11)
+        figure.suptitle("Cross section in dBsm by direction at 77 GHz (0\N{DEGREE SIGN}: from ahead). Green: published band or\n"
+                        "closed form; dashed: the statistic that it is of; levels below the scale stand at the centre",
+                        fontsize=11)
         save_png(figure, path, seed=FIXED_SEEDS)
 
 

@@ -3,7 +3,7 @@ What actors there are
 =====================
 
 Vehicles, people, animals and what stands beside a road come as actors: named parts with materials and motions of their own.
-Each is drawn from its right side, to one scale, coloured by its parts.
+Each is drawn from its right side, the row of parked cars from ahead, to one scale, coloured by its parts.
 """
 import matplotlib.pyplot as plt
 import numpy as np
@@ -15,16 +15,18 @@ a = ep.actors
 rows = [[("car, small", a.car(kind="small")), ("car, compact", a.car()), ("car, saloon", a.car(kind="saloon")),
          ("car, estate", a.car(kind="estate"))],
         [("car, suv", a.car(kind="suv")), ("van", a.van()), ("motorcycle", a.motorcycle()), ("cyclist", a.cyclist())],
-        [("truck", a.truck()), ("tree", a.tree(height=4.5, crown_radius=1.4))],
+        [("truck", a.truck()), ("tree", a.tree(height=4.5, crown_radius=1.4)),
+         ("pole", a.pole(height=4.5))],
         [("pedestrian", a.pedestrian()), ("runner", a.runner()), ("standing_person", a.standing_person()),
          ("child", a.child()), ("dog", a.dog()), ("bicycle", a.bicycle()), ("traffic_sign", a.traffic_sign()),
-         ("guard_rail", a.guard_rail(length=4.0)), ("drone", a.drone())]]
+         ("guard_rail", a.guard_rail(length=4.0)), ("drone", a.drone())],
+        [("parked_row, from ahead", a.parked_row())]]
 
 
 def draw(axes, name, actor, left, ground):
     """Paints the triangles from far to near; returns the next actor's place."""
     scene = ep.Scene()
-    scene.add(actor, name="actor")
+    scene.add(actor, name="actor", yaw=-np.pi / 2 if "from ahead" in name else 0.0)
     colors = plt.get_cmap("tab20")(np.arange(len(scene.meshes)) % 20)[:, :3]
     faces, shades = [], []
     for mesh, color in zip(scene.meshes, colors):
@@ -45,15 +47,15 @@ def draw(axes, name, actor, left, ground):
 
 # %%
 # Names of parts are paths: ``"car/wheel/*"`` takes what turns, ``"cyclist/rider/leg_*"`` both legs.
-figure, axes = plt.subplots(figsize=(11, 7.5), layout="constrained")
+figure, axes = plt.subplots(figsize=(11, 9.0), layout="constrained")
 ground = 0.0
-for row, drop in zip(rows, (3.2, 5.3, 4.0, 0.0)):
+for row, drop in zip(rows, (3.2, 5.3, 4.0, 3.2, 0.0)):
     place = 0.0
     for name, actor in row:
         place = draw(axes, name, actor, place, ground)
     ground -= drop
-axes.set(xlim=(-0.9, 23.5), ylim=(-13.1, 1.8), xlabel="Length in m", yticks=[],
-         ylabel="Four rows, each on its own ground; as high as long",
+axes.set(xlim=(-0.9, 23.5), ylim=(-16.3, 1.8), xlabel="Length in m", yticks=[],
+         ylabel="Five rows, each on its own ground; as high as long",
          title="Actors, from the side")
 axes.set_aspect("equal")
 plt.show()

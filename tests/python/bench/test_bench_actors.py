@@ -36,3 +36,21 @@ def test_rows_and_picture_are_written(tmp_path, monkeypatch):
     assert row["actor"] == "drone" and float(row["mean_dbsm"]) == pytest.approx(found[0].mean, abs=0.06)
     assert (tmp_path / "actors.png").stat().st_size > 10_000
     assert len(actors.describe(found)) == 2
+
+
+def test_what_has_no_published_band_is_not_judged(tmp_path):
+    """The picture is drawn without one."""
+    ball = actors.Subject("ball", lambda: None, "mean", None, None, actors.NONE_FOUND)
+    found = [actors.Aspect(ball, np.linspace(0.0, 6.0, 8), np.full(8, 0.1))]
+    assert found[0].is_within is None and "no band" in actors.describe(found)[1]
+    assert found[0].peak == pytest.approx(-10.0)
+    actors.draw(found, tmp_path / "actors.png")
+    assert (tmp_path / "actors.png").stat().st_size > 10_000
+
+
+def test_a_sign_that_faces_the_radar_has_its_closed_form():
+    found = actors.aspect_of(subject("traffic sign"), quick=True)
+    area = np.pi * 0.3**2
+    expected = 4.0 * np.pi * area**2 / (299792458.0 / 77e9) ** 2
+    assert found.peak == pytest.approx(10.0 * np.log10(expected), abs=actors.CLOSED_FORM_DB)
+    assert found.is_within

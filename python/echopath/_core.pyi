@@ -19,7 +19,7 @@ import numpy.typing
 import os
 import typing
 bench: types.ModuleType
-__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Curve', 'CurveMotion', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'Layer', 'LinearMotion', 'LiveTrace', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'MorphTargets', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'PartPass', 'Paths', 'Power', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'are_clear', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'coherent_meshes', 'coherent_share', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'load_mesh', 'load_meshes', 'load_surfaces', 'look_at_bodies', 'looks_for_signals', 'may_appear_in_frame', 'mean_power', 'meant_name', 'mesh_names', 'mesh_traits', 'meshes_of_large_planes', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'remember_geometry', 'renew', 'set_num_threads', 'share_errors', 'speed_of_light', 'strongest_edge', 'strongest_part', 'synthesize', 'synthesize_echoes', 'tessellation', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'warn_of_turns', 'legs_around_edges', 'window']
+__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Curve', 'CurveMotion', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'Layer', 'LinearMotion', 'LiveTrace', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'MorphTargets', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'PartPass', 'Paths', 'Power', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'are_clear', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'coherent_meshes', 'coherent_share', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'legs_around_edges', 'load_frames', 'load_mesh', 'load_meshes', 'load_surfaces', 'look_at_bodies', 'looks_for_signals', 'may_appear_in_frame', 'mean_power', 'meant_name', 'mesh_names', 'mesh_traits', 'meshes_of_large_planes', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'remember_geometry', 'renew', 'set_num_threads', 'share_errors', 'speed_of_light', 'strongest_edge', 'strongest_part', 'synthesize', 'synthesize_echoes', 'tessellation', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'warn_of_turns', 'window']
 class Motion:
     """
     Time -> rigid transform, in the axes of the node's parent about the node's own origin.
@@ -3271,6 +3271,21 @@ def last(glob: str) -> Selection:
     """
     What ep.last calls.
     """
+def legs_around_edges(scene: Scene, time: float, frequency: float, antenna: ArrayLike, polarization: ArrayLike, points: ArrayLike, edges: bool = True, progress: typing.Any = None) -> dict[typing.Any, typing.Any]:
+    """
+    The strongest leg around one edge from an antenna to each of some points.
+
+    time: s; frequency: Hz; antenna: [3], m, world; polarization: [3], unit vector, world; points: [N, 3], m, world
+    edges: whether legs around edges are looked for, or only whether the points are seen
+    Returns a dict of mesh_id [N] (of the edge; 4294967295: none, or nothing in the way), point [N, 3] on it in m, length [N] in
+    m, share [N] of the field that would arrive were nothing in its way.
+    """
+def load_frames(paths: collections.abc.Sequence[os.PathLike[str] | str | bytes], unit: float = 1.0) -> tuple[typing.Any, ...]:
+    """
+    Surfaces of the first of some mesh files as of load_surfaces, and vertices [T, V, 3] in m of each over all files.
+
+    Raises FileError naming a file whose faces, groups or materials are others.
+    """
 def load_mesh(path: os.PathLike[str] | str | bytes, unit: float = 1.0) -> Mesh:
     """
     What ep.load_mesh calls.
@@ -3281,7 +3296,10 @@ def load_meshes(path: os.PathLike[str] | str | bytes, unit: float = 1.0) -> list
     """
 def load_surfaces(path: os.PathLike[str] | str | bytes, unit: float = 1.0) -> tuple[typing.Any, ...]:
     """
-    ([(name, name of the material, Mesh)], [what lines `mtllib` name]): groups of a mesh file by material.
+    Groups of a mesh file by material, and what its lines `mtllib` name.
+
+    Each is (object, name, name of the material, vertices [V, 3] in m, triangles [F, 3], face of the file [F], unit normals of the
+    corners [3 F, 3] or None where the file says nothing of them). Triangles without area are still there.
     """
 def look_at_bodies(scene: Scene, radar: typing.Any, time: float) -> tuple[typing.Any, ...]:
     """
@@ -3423,7 +3441,7 @@ def triangles_of_polygons(vertices: typing.Any, corners: typing.Any, counts: typ
     Polygons cut into triangles as load_mesh cuts those of files.
 
     vertices: [V, 3] in m; corners: [N] indices of vertices, polygon by polygon; counts: [F] corners of each, three or more
-    Returns the triangles [T, 3] and the polygon of each [T]. Raises ValueError.
+    Returns the triangles [T, 3], the polygon of each [T] and the places [T, 3] of their corners in `corners`. Raises ValueError.
     """
 def validity(paths: Paths, radar: Radar | None = None, *, replay: str = 'material', times: typing.Any = None, arrays: bool = False, progress: typing.Any = None) -> Validity:
     """
@@ -3444,15 +3462,6 @@ def visibility_in_trace(paths: Paths, radar: Radar, objects: collections.abc.Seq
 def warn_of_turns(yaw: float) -> None:
     """
     Warns of a yaw (rad) beyond a turn, which looks like degrees.
-    """
-def legs_around_edges(scene: Scene, time: float, frequency: float, antenna: ArrayLike, polarization: ArrayLike, points: ArrayLike, edges: bool = True, progress: typing.Any = None) -> dict[typing.Any, typing.Any]:
-    """
-    The strongest leg around one edge from an antenna to each of some points.
-
-    time: s; frequency: Hz; antenna: [3], m, world; polarization: [3], unit vector, world; points: [N, 3], m, world
-    edges: whether legs around edges are looked for, or only whether the points are seen
-    Returns a dict of mesh_id [N] (of the edge; 4294967295: none, or nothing in the way), point [N, 3] on it in m, length [N] in
-    m, share [N] of the field that would arrive were nothing in its way.
     """
 def window(name: str, n: int, sidelobe_db: float = 80.0) -> numpy.typing.NDArray[numpy.float64]:
     """

@@ -1,6 +1,8 @@
 """The scene of a live scene, of which each edit is a change."""
 from __future__ import annotations
 
+from contextlib import AbstractContextManager, nullcontext
+
 from .. import _core
 from ..scene.scene import Scene
 from .changes import Changes
@@ -14,22 +16,13 @@ class EditedScene(Scene):
         super().__init__(scene)
         self._changes = changes
 
-    def _add_nodes(self, nodes) -> None:
-        with self._changes.one():
-            super()._add_nodes(nodes)
-
-    def _change(self, index: int, node: _core.Node) -> None:
-        with self._changes.one():
-            super()._change(index, node)
-
-    def _remove(self, index: int) -> None:
-        with self._changes.one():
-            super()._remove(index)
+    def _edit(self) -> AbstractContextManager:
+        return nullcontext() if self._changes is None else self._changes.one()
 
     def __setattr__(self, name: str, value) -> None:
-        if self.__dict__.get("_changes") is None or name.startswith("_"):
+        if name.startswith("_"):
             return super().__setattr__(name, value)
-        with self._changes.one():  # weather, interferers
+        with self._edit():  # weather, interferers
             super().__setattr__(name, value)
 
     def __copy__(self) -> Scene:

@@ -1,6 +1,7 @@
 """Scenes that are changed while their map is watched."""
 from __future__ import annotations
 
+import dataclasses
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
@@ -24,6 +25,17 @@ from .watch import Watch
 
 DEFAULT_RAYS = 100_000
 _RULES = TraceSettings.RULES | SignalSettings.RULES
+
+
+@dataclasses.dataclass(frozen=True)
+class _Seen:
+    """The scene, which is a copy, the radar and the map that a view is made of, by the number of the last change."""
+
+    scene: Scene
+    radar: _core.Radar
+    window: MapWindow
+    zero_pad: int
+    number: int
 
 
 class Live:
@@ -141,8 +153,9 @@ class Live:
         progress: callable (stage, fraction), True for bars, or None; what it raises ends the update and is raised here
         Raises ValueError as `trace` does. Nothing is lost then: the next update shows what the scene is by then.
         """
+        seen = self._snapshot()
         with self._busy:
-            return self._view_of(self._full, is_preview=False, progress=progress)
+            return self._view_of(self._full, seen, is_preview=False, progress=progress)
 
     @checked(self=anything, num_rays=count(1, MOST_RAYS))
     def preview(self, *, num_rays: int | float, progress: Progress = None) -> LiveView:
@@ -151,10 +164,11 @@ class Live:
         num_rays: 1 to 1e10; as long as it stays the same, a preview after a change shoots only what that touches
         progress: as in `update`
         """
+        seen = self._snapshot()
         with self._busy:
             if self._quick is None or self._quick.num_rays != num_rays:
                 self._quick = self._kept(int(num_rays))
-            return self._view_of(self._quick, is_preview=True, progress=progress)
+            return self._view_of(self._quick, seen, is_preview=True, progress=progress)
 
     @checked(self=anything, preview=flag)
     def paths(self, *, preview: bool = False, progress: Progress = None) -> _core.Paths:
@@ -187,16 +201,18 @@ class Live:
     def _kept(self, num_rays: int) -> KeptSignal:
         return KeptSignal(num_rays, self._trace, self._signal, self._selections)
 
-    def _view_of(self, kept: KeptSignal, *, is_preview: bool, progress) -> LiveView:
+    def _snapshot(self) -> _Seen:
+        """What is to be seen now. It is taken before `_busy`, which a change that is being made may wait for."""
         with self._changes.still():
-            scene, radar, number = Scene(self._scene), self._radar, self.number
-            window, zero_pad = self._window, self._zero_pad
-        warn_of_coarse_meshes(scene, radar.waveform.start_frequency)
-        done = kept.update(scene, radar, progress)
+            return _Seen(Scene(self._scene), self._radar, self._window, self._zero_pad, self.number)
+
+    def _view_of(self, kept: KeptSignal, seen: _Seen, *, is_preview: bool, progress) -> LiveView:
+        warn_of_coarse_meshes(seen.scene, seen.radar.waveform.start_frequency)
+        done = kept.update(seen.scene, seen.radar, progress)
         begin = time.perf_counter()
-        spectrum = _core.range_doppler(kept.cube, radar, window, zero_pad)
+        spectrum = _core.range_doppler(kept.cube, seen.radar, seen.window, seen.zero_pad)
         stages = {"trace": done.trace, "signal": done.signal, "map": time.perf_counter() - begin}
-        return LiveView(number, kept.cube, spectrum, done.num_rays, done.num_rays_shot, done.num_paths_changed, is_preview,
+        return LiveView(seen.number, kept.cube, spectrum, done.num_rays, done.num_rays_shot, done.num_paths_changed, is_preview,
                         stages, kept.parts)
 
     def __reduce__(self) -> NoReturn:

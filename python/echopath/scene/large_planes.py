@@ -28,9 +28,10 @@ def mark_mirrors(scene: Scene, radar: _core.Radar, *, time: float = 0.0) -> tupl
     naming the argument.
     """
     wavelength = _core.speed_of_light / radar.waveform.start_frequency
-    found = _core.meshes_of_large_planes(scene, radar, wavelength, time, LEAST_COHERENT, LEAST_AREA)
-    names = tuple(_core.mesh_names(scene, found))
-    for name in names:
-        node = scene[name]
-        node._change(material=node._node.material.replace(mirror=True))  # of its own mesh alone, not of those below it
+    with scene._edit():
+        found = _core.meshes_of_large_planes(scene, radar, wavelength, time, LEAST_COHERENT, LEAST_AREA)
+        names = tuple(_core.mesh_names(scene, found))
+        for name in names:
+            node = scene[name]
+            node._change(material=node._node.material.replace(mirror=True))  # of its own mesh alone, not of those below it
     return names

@@ -82,7 +82,8 @@ class SceneNode:
 
     @position.setter
     def position(self, value) -> None:
-        self._change(placement=placements.moved_to(self._node.placement, vector("position", value)))
+        with self._scene._edit():
+            self._change(placement=placements.moved_to(self._node.placement, vector("position", value)))
 
     @property
     def yaw(self) -> float:
@@ -94,7 +95,8 @@ class SceneNode:
     def yaw(self, value) -> None:
         yaw = ANGLE("yaw", value)
         _core.warn_of_turns(yaw)
-        self._change(placement=placements.turned_to(self._node.placement, yaw))
+        with self._scene._edit():
+            self._change(placement=placements.turned_to(self._node.placement, yaw))
 
     @property
     def transform(self) -> FixedArray:
@@ -115,12 +117,13 @@ class SceneNode:
 
     @motion.setter
     def motion(self, value) -> None:
-        mesh = self._node.mesh
-        if isinstance(value, _core.Skin) and mesh is not None and mesh.whole is None:
-            rule = f"none that divides its mesh, as a Skin does; remove '{self._name}' and add it anew"
-            raise refused(ValueError, "motion", rule, value)
-        motion, deformation = split_motion(value, mesh, self._name)
-        self._change(motion=motion, deformation=deformation)
+        with self._scene._edit():
+            mesh = self._node.mesh
+            if isinstance(value, _core.Skin) and mesh is not None and mesh.whole is None:
+                rule = f"none that divides its mesh, as a Skin does; remove '{self._name}' and add it anew"
+                raise refused(ValueError, "motion", rule, value)
+            motion, deformation = split_motion(value, mesh, self._name)
+            self._change(motion=motion, deformation=deformation)
 
     @property
     def material(self) -> _core.Material | None:
@@ -132,11 +135,12 @@ class SceneNode:
     @material.setter
     def material(self, value) -> None:
         material, material_name = known_material(value)
-        found = self._with_meshes()
-        if not found:
-            raise refused(ValueError, "material", f"of an object with meshes, which '{self._name}' is not", value)
-        for index, node in found:
-            self._scene._change(index, node.replace(material=material, material_name=material_name))
+        with self._scene._edit():
+            found = self._with_meshes()
+            if not found:
+                raise refused(ValueError, "material", f"of an object with meshes, which '{self._name}' is not", value)
+            for index, node in found:
+                self._scene._change(index, node.replace(material=material, material_name=material_name))
 
     @property
     def visible(self) -> bool:
@@ -157,8 +161,9 @@ class SceneNode:
         return self._scene._node(self._index)
 
     def _change(self, **fields) -> None:
-        index = self._index
-        self._scene._change(index, self._scene._node(index).replace(**fields))
+        with self._scene._edit():
+            index = self._index
+            self._scene._change(index, self._scene._node(index).replace(**fields))
 
     def _with_meshes(self) -> list:
         """(index, Node) of what has a mesh, at and below it, visible or not."""

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import AbstractContextManager, nullcontext
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -122,9 +123,10 @@ class Scene(_core.Scene):
             if motion is not None:
                 raise refused(ValueError, "speed", "given without motion", speed)
             motion = motion_ahead(place, speed)
-        batch = _Batch(self, self._parent_index(parent), smooth, visible)
-        batch.add_object(mesh_or_actor, name, material, motion, place)
-        self._add_nodes(batch.nodes)
+        with self._edit():
+            batch = _Batch(self, self._parent_index(parent), smooth, visible)
+            batch.add_object(mesh_or_actor, name, material, motion, place)
+            self._add_nodes(batch.nodes)
         return f"{parent}/{name}" if parent else name
 
     def to_pyvista(self, time: float = 0.0):
@@ -149,7 +151,8 @@ class Scene(_core.Scene):
         name: full name. Mesh IDs behind it move up; to take something out for a while, hide it instead
         (`scene[name].visible = False`). Raises KeyError naming the nearest names.
         """
-        self._remove(self._index_of(name))
+        with self._edit():
+            self._remove(self._index_of(name))
 
     def copy(self) -> Scene:
         """A copy, in which changes do not touch this one; meshes, motions and materials, which cannot change, are shared."""
@@ -158,6 +161,10 @@ class Scene(_core.Scene):
     def __getitem__(self, name: str) -> SceneNode:
         self._index_of(name)
         return SceneNode(self, name)
+
+    def _edit(self) -> AbstractContextManager:
+        """What an edit is made within, from what it reads of the scene on: that of a live scene keeps other threads away."""
+        return nullcontext()
 
     def _parent_index(self, parent: str | None) -> int:
         try:

@@ -20,6 +20,9 @@ thread_local int64_t allocations_left = -1;
 
 // The allocations of the whole program, which can be made to fail. They are not inlined: the compiler would see memory of
 // new that free gives back.
+__attribute__((noinline)) void* operator new(size_t num_bytes, const std::nothrow_t& /*tag*/) noexcept {
+  return std::malloc(num_bytes > 0 ? num_bytes : 1);
+}
 __attribute__((noinline)) void* operator new(size_t num_bytes) {
   if (allocations_left == 0) throw std::bad_alloc();
   if (allocations_left > 0) --allocations_left;

@@ -101,7 +101,7 @@ struct RecordSettings {
   // as fine as its share of the rays.
   int batches = 1;
   Scatterers scatterers = Scatterers::kRays;
-  bool edges = false;        // also find the echoes of sharp edges (edges/edge_paths.h)
+  bool edges = false;        // also find the echoes of sharp edges (trace/edges/edge_paths.h)
   double attenuation = 0.0;  // Np/m, of fields in the air at the radar's frequency; replay applies it to each whole length
 };
 

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "call/leaving.h"
 #include "echopath/posed/enclosures.h"
 #include "echopath/posed/object_sizes.h"
 #include "echopath/posed/posed_antenna.h"
@@ -57,7 +58,9 @@ std::vector<uint32_t> large_planes(const Scene& scene, const Radar& radar, doubl
     for (const PosedAntenna& antenna : posed_antennas(antennas, radar.world_from_radar(time), Vec3::Zero()))
       rule.antennas.push_back(antenna.position);
   }
-  return meshes_of_large_planes(scene, rule);
+  const Scene seen = scene;  // others may change it meanwhile
+  const WithoutGil released;
+  return meshes_of_large_planes(seen, rule);
 }
 
 std::vector<std::string> names_of_meshes(const Scene& scene, const std::vector<uint32_t>& mesh_ids) {

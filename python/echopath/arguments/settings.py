@@ -1,7 +1,8 @@
 """Settings of a simulation: the one home of what they are called, what they are unless given, and what they may be.
 
 Settings objects go to what a simulation consists of: `trace`, `synthesize`, `decompose`, `annotate` and `annotate_frame` take
-one as `settings=`, `annotate` that of its replay as `signal=`, and `simulate` all three as `trace=`, `signal=` and `labels=`.
+one as `settings=`, `annotate` that of its replay as `signal=`, `spectrogram` that of its labels as `labels=`, and `simulate` all
+three as `trace=`, `signal=` and `labels=`.
 Keywords of the call go before it. Other functions that share a keyword (`range_doppler`, `validity`, `effects`, `rcs`,
 `check_signal`, `view`) take it alone, of a settings object `settings.window` for example.
 """

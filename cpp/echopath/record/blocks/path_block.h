@@ -24,13 +24,13 @@ class PathBlock {
   std::vector<FanLeg> fan_legs;  // of each fan in turn
   std::vector<Hit> fan_hits;     // of their mirrors
   // Names the first hits of a ray that passes the receiver so closely that images are looked for on the planes of these hits
-  // (mirrors/plane_images.h). The chains of one ray share their hits.
+  // (trace/mirrors/plane_images.h). The chains of one ray share their hits.
   struct HitChain {
     uint32_t first = 0, count = 0;  // in chain_hits
   };
   std::vector<Hit> chain_hits;
   std::vector<HitChain> chains;
-  // Names the hits of a ray over planes that reflect it to the last of them (edges/lit_planes.h), and holds the distance in
+  // Names the hits of a ray over planes that reflect it to the last of them (trace/edges/lit_planes.h), and holds the distance in
   // m to the rays beside it on that surface.
   struct LitChain : HitChain {
     float spacing = 0.0f;

@@ -119,6 +119,19 @@ void fill(Surfaces::Surface& surface, const Soup& soup, const std::vector<uint32
 
 std::string stem_of(const std::string& path) { return std::filesystem::path(path).stem().string(); }
 
+// Returns a name for what belongs to no group of an object, "rest" unless one of its groups is called so.
+std::string name_of_rest(const Soup& soup, const std::string& object) {
+  const auto is_taken = [&](const std::string& name) {
+    for (size_t group = 0; group < soup.group_names.size(); ++group) {
+      if (soup.object_names[group] == object && soup.group_names[group] == name) return true;
+    }
+    return false;
+  };
+  std::string name = "rest";
+  for (int number = 2; is_taken(name); ++number) name = "rest_" + std::to_string(number);
+  return name;
+}
+
 std::vector<Surfaces::Surface> surfaces_of(const Soup& soup, const std::string& name) {
   const CornerNormals normals(soup);
   const std::set<std::string> objects(soup.object_names.begin(), soup.object_names.end());  // that have groups
@@ -129,7 +142,7 @@ std::vector<Surfaces::Surface> surfaces_of(const Soup& soup, const std::string& 
     if (!soup.object_names.empty()) surface.object = soup.object_names[faces.group];
     surface.name = soup.group_names[faces.group].empty() ? stem_of(name) : soup.group_names[faces.group];
     if (surface.object.empty() && objects.contains(surface.name)) {
-      surface.object = std::exchange(surface.name, "rest");
+      surface.object = std::exchange(surface.name, name_of_rest(soup, surface.name));
     }
     if (!soup.material.empty()) surface.material = soup.material_names[faces.material];
     fill(surface, soup, faces.triangles, number);

@@ -35,15 +35,20 @@ std::vector<int64_t> rays_by_object(const Scene& scene, const std::vector<RayTar
   double weights = 0.0;
   for (const RayTarget& target : targets) weights += weight_of_target(target.stratum.num_mirrors);
   std::vector<int64_t> rays;
-  bool field_is_asked = field_owns_any;
+  double dropped = 0.0;
   for (const RayTarget& target : targets) {
     const std::string& name = scene.nodes()[static_cast<size_t>(target.stratum.object)].name;
     const double of_object = rounded(aimed / weights, name);
-    const int64_t own = std::llround(of_object * weight_of_target(target.stratum.num_mirrors));
-    rays.push_back(own < LaunchPlan::kFewestRays ? 0 : own);
-    field_is_asked = field_is_asked || rays.back() == 0;
+    const double of_target = of_object * weight_of_target(target.stratum.num_mirrors);
+    const int64_t own = std::llround(of_target);
+    const bool is_dropped = own < LaunchPlan::kFewestRays;
+    rays.push_back(is_dropped ? 0 : own);
+    if (is_dropped) dropped += of_target;
   }
-  rays.push_back(field_is_asked ? std::max<int64_t>(1, std::llround(field_share * all)) : 0);
+  const double own_of_field = field_owns_any ? field_share * all : 0.0;
+  const double of_dropped = dropped > 0.0 ? rounded(dropped, "field of view") : 0.0;
+  const bool is_asked = field_owns_any || dropped > 0.0;
+  rays.push_back(is_asked ? std::max<int64_t>(1, std::llround(own_of_field + of_dropped)) : 0);
   return rays;
 }
 

@@ -61,6 +61,7 @@ RecordMatch::RecordMatch(const LiveRecord* before, const LiveRecord& after) : be
   match_strata();
   match_owners();
   boxes_ = changed_boxes(*before, after, common_.meshes);
+  add_boxes_of_other_density();
 }
 
 bool RecordMatch::is_any_mirror_changed() const {
@@ -105,6 +106,17 @@ void RecordMatch::match_owners() {
     if (!std::equal(before.begin(), before.end(), after.begin(), after.end(), is_same)) common_.meshes.mark(id);
     has_other_density_[known] = !std::all_of(after.begin(), after.end(), is_alike);
     any_other_density_ = any_other_density_ || has_other_density_[known];
+  }
+}
+
+// Shares of both orders of two bounces, of which one is over a smooth mesh, hang on the density of rays (MirrorOrders) and may
+// be none: then a block tells by no path that its rays met the mesh.
+void RecordMatch::add_boxes_of_other_density() {
+  const Scene& scene = *before_->empty.scene;
+  bool any_smooth = false;
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) any_smooth = any_smooth || scene.node_of(id).smooth;
+  for (uint32_t id = 0; any_smooth && id < has_other_density_.size(); ++id) {
+    if (has_other_density_[id]) boxes_.push_back(before_->boxes[id].cast<float>());
   }
 }
 

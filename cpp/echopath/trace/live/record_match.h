@@ -24,6 +24,7 @@ class RecordMatch {
  private:
   void match_strata();
   void match_owners();
+  void add_boxes_of_other_density();
   bool has_hits_of_other_density(const PathBlock& paths) const;
   bool is_any_mirror_changed() const;
   int64_t known_block(size_t index) const;
@@ -37,7 +38,7 @@ class RecordMatch {
   std::vector<int> of_same_name_;        // by stratum after, the one before; -1: none
   std::vector<bool> has_other_density_;  // by mesh ID before: strata that own its echoes have other rays
   bool any_other_density_ = false;
-  std::vector<FloatBox> boxes_;  // where the changed meshes were and are
+  std::vector<FloatBox> boxes_;  // of what blocks must not have met: where the changed meshes were and are, and others
 };
 
 }  // namespace echopath

@@ -53,6 +53,12 @@ TEST(Obj, KeepsGroupsOfOneNameApartWhereTheyBelongToObjects) {
   EXPECT_EQ(meshes[0].mesh->original_triangle(), (std::vector<uint32_t>{0, 3}));
 }
 
+TEST(Obj, WhatBelongsToNoGroupHasANameOfItsOwn) {
+  std::vector<std::string> names;
+  for (const NamedMesh& one : read(kSquare + "o car\nf 1 2 3\ng rest\nf 1 2 4\n")) names.push_back(one.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"car/rest_2", "car/rest"}));
+}
+
 std::vector<Vec3> normals_of(const std::string& content) {
   std::istringstream stream(content);
   return read_surfaces(stream, "mesh.obj").surfaces[0].normals;

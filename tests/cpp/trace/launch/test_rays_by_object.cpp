@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include "echopath/trace/launch/rays_by_object.h"
 #include "echopath/trace/scatter/scatter_points.h"
@@ -61,6 +62,15 @@ TEST(RaysByObject, GiveTheFieldOfViewItsShareWhereItOwnsAnything) {
   EXPECT_EQ(plan_of(5).rays(false).back(), 0);
   EXPECT_EQ(plan_of(0).rays(false), std::vector<int64_t>{kNumRays});
   EXPECT_EQ(plan_of(2).rays(false, 1), (std::vector<int64_t>{0, 0, 1}));  // too few for either
+}
+
+TEST(RaysByObject, LeaveToTheFieldOfViewWhatIsTooLittleForATarget) {
+  for (const auto& [num_objects, num_rays] : {std::pair(700, int64_t{4096}), {2400, 4096}, {300, 1000}}) {
+    const std::vector<int64_t> rays = plan_of(num_objects).rays(true, num_rays);
+    const double ratio = static_cast<double>(sum_of(rays)) / static_cast<double>(num_rays);
+    EXPECT_NEAR(ratio, 1.0, 0.2) << num_objects;
+    for (size_t k = 0; k + 1 < rays.size(); ++k) EXPECT_TRUE(rays[k] == 0 || rays[k] >= 4);
+  }
 }
 
 TEST(RaysByObject, ImagesOverTwoMirrorsGetAQuarterOfTheirObject) {

@@ -30,8 +30,8 @@ class PathBlock {
   };
   std::vector<Hit> chain_hits;
   std::vector<HitChain> chains;
-  // Names the hits of a ray over planes that reflect it to the last of them (trace/edges/lit_planes.h), and holds the distance in
-  // m to the rays beside it on that surface.
+  // Names the hits of a ray over planes that reflect it to the last of them (trace/edges/lit_planes.h), and holds the
+  // distance in m to the rays beside it on that surface.
   struct LitChain : HitChain {
     float spacing = 0.0f;
   };

@@ -13,8 +13,8 @@ namespace echopath {
 // it owns anything. The other rays go to the targets by weight_of_target, whether they move or not. What comes to an object
 // is rounded to a power of sqrt(2) times a number that hangs on the object's name alone, so that an object has the rays of
 // before unless the sum of all weights passes a step of its own: where the sum grows by a twentieth, one object in seven has
-// others. A target that would get too few rays to have any leaves them to the field of view, where they are rounded likewise.
-// The sum differs from num_rays by 19 % at most.
+// others. A target that would get too few rays to have any leaves them to the field of view, where they are rounded
+// likewise. The sum differs from num_rays by 19 % at most.
 std::vector<int64_t> rays_by_object(const Scene& scene, const std::vector<RayTarget>& targets, bool field_owns_any,
                                     double field_share, int64_t num_rays);
 

@@ -109,8 +109,8 @@ void RecordMatch::match_owners() {
   }
 }
 
-// Shares of both orders of two bounces, of which one is over a smooth mesh, hang on the density of rays (MirrorOrders) and may
-// be none: then a block tells by no path that its rays met the mesh.
+// Shares of both orders of two bounces, of which one is over a smooth mesh, hang on the density of rays (MirrorOrders) and
+// may be none: then a block tells by no path that its rays met the mesh.
 void RecordMatch::add_boxes_of_other_density() {
   const Scene& scene = *before_->empty.scene;
   bool any_smooth = false;

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from .. import _core
 from ..base.interrupts import interrupts_are_kept
+from .changing import has_journal, mend
 from .h5 import FAULTS, first_line, read_group
 from .h5_items import library
 
@@ -45,11 +46,19 @@ def reading(path):
 
 
 def _opened(path):
-    """The file, as soon as nobody changes it."""
+    """The file, as soon as nobody changes it, with all of a change that a process was killed in.
+
+    A journal is written by who has locked the file: one that is not there when the file is open does not come.
+    """
     h5py, last_try = library(), time.monotonic() + PATIENCE
     while True:
+        mend(path)
         try:
-            return h5py.File(path, "r")
+            file = h5py.File(path, "r")
+            if not has_journal(path):
+                return file
+            file.close()
+            raise BlockingIOError("another program is changing it")
         except BlockingIOError:
             if time.monotonic() > last_try:
                 raise

@@ -1,14 +1,15 @@
 """Frames of a sequence in one HDF5 file, which grows by a frame at a time (layout: data/README.md)."""
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from ..arguments.checks import refused
-from ..base.files import require_writable, written_whole
+from ..base.files import flush, require_writable, written_whole
 from ..frame.frame import Frame
-from ..frame_file.changing import changing, mend, mend_own, work_folder
+from ..frame_file.changing import changing, mend_own, work_folder
 from ..frame_file.container import SEQUENCE, SUFFIXES, our_file
 from ..frame_file.h5 import copy_items, read_group, writing
 from ..frame_file.opening import reading
@@ -45,7 +46,6 @@ class FileStore:
 
     def contents(self) -> Contents:
         """Of which sequence it is. Raises ep.FileError."""
-        mend(self.path)
         return read_contents(self.path)
 
     @contextmanager
@@ -58,11 +58,11 @@ class FileStore:
         if is_shared:
             raise refused(ValueError, "shard", "None for one file, which one process writes (a folder takes shards)",
                           str(self.path))
-        require_writable(self.path.parent, "path")
         work = work_folder(self.path)
-        work.mkdir(parents=True, exist_ok=True)
+        require_writable(work.parent, "path")
         with writing_to(work, False, lambda is_alone: None, of=self.path):
             try:
+                flush(work.parent)  # a power cut must not take the folder with the journal away
                 self._prepare(contents, work)
                 yield
             finally:
@@ -74,7 +74,7 @@ class FileStore:
         """Writes the frame at a place, whole or not at all. Raises ep.FileError."""
         whole = work_folder(self.path) / _FRAME
         write_frame(frame, whole, keep)
-        with reading(whole) as source, changing(self.path, whole.stat().st_size) as target:
+        with changing(self.path, whole.stat().st_size) as target, reading(whole) as source:
             frames = target[FRAMES]
             if _name(place) in frames:  # damaged, or of another time
                 del frames[_name(place)]
@@ -89,7 +89,8 @@ class FileStore:
             write_contents(file, contents)
             file.create_group(FRAMES)
         if not self.path.exists():
-            mine.rename(self.path)
+            mine.rename(os.path.realpath(self.path))  # a link stays one
+            flush(work.parent)
             return
         if differs := what_differs(mine, self.path):
             raise refused(ValueError, "path", f"new, or of this sequence ({differs})", str(self.path))

@@ -13,6 +13,7 @@ from echopath.frame.maps import maps_of
 from echopath.frame_file import changing as changes
 from echopath.frame_file.changing import changing, work_folder
 from echopath.frame_file.h5_items import library
+from support.cut_off import NEW, OLD, Killed, cut_off, numbers_in, write_old
 from support.frames_in_time import make_sequence, make_walk, signal_of
 
 TESTS = Path(__file__).parents[2]
@@ -60,6 +61,7 @@ def test_small_frames_are_those_of_a_folder(tmp_path, keep):
 
 KILLED = """
 import os, signal, threading
+from support.cut_off import NEW, OLD, Killed, cut_off, numbers_in, write_old
 from support.frames_in_time import make_sequence, make_walk
 
 def kill_soon(stage, fraction):
@@ -104,33 +106,15 @@ def test_speckle_maps_and_truth_of_a_person_go_on_after_a_kill(tmp_path, name):
     assert len(stored.truth) == MANY and np.diff(stored.truth.position[:, 0]).max() < 0.0
 
 
-def numbers_in(path: Path) -> dict:
-    with library().File(path) as file:
-        return {name: file[name][()].sum() for name in file}
-
-
-class Killed(BaseException):
-    """In place of a signal, at a place that is known."""
-
-
 @pytest.mark.parametrize("step, is_there", [("_write_journal", False), ("_carry_out", True)])
-def test_a_change_that_is_cut_off_is_not_there_or_is_mended(tmp_path, monkeypatch, step, is_there):
+def test_a_change_that_is_cut_off_is_not_there_or_is_mended(tmp_path, step, is_there):
     path = tmp_path / "numbers.h5"
-    with library().File(path, "w", libver=changes.LAYOUT) as file:
-        file["old"] = np.arange(10000.0)
+    write_old(path)
     before = path.read_bytes()
-    work_folder(path).mkdir()
-
-    def killed(*arguments):
-        raise Killed
-
-    monkeypatch.setattr(changes, step, killed)
-    with pytest.raises(Killed), changing(path) as file:
-        file["new"] = np.arange(100000)
-    monkeypatch.undo()
-    assert path.read_bytes()[:len(before)] == before and numbers_in(path) == {"old": 49995000.0}
+    cut_off(path, step)
+    assert path.read_bytes()[:len(before)] == before and numbers_in(path) == OLD
     changes.mend(path)
-    assert numbers_in(path) == {"old": 49995000.0} | ({"new": 4999950000} if is_there else {})
+    assert numbers_in(path) == (NEW if is_there else OLD)
     with changing(path) as file:
         del file["old"]
         file["last"] = np.arange(10)

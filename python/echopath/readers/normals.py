@@ -8,20 +8,23 @@ import numpy as np
 
 from ..base.triangles import areas_of
 
-FLAT_COSINE = np.cos(np.radians(1.0))     # normals of a facet that differ by less stand for a plane
+FLAT_COSINE = np.cos(np.radians(0.1))     # normals of a facet that differ by less stand for a plane
+COARSE_FLAT_COSINE = np.cos(np.radians(1.0))  # the same of normals of few bits, which differ by rounding
 EDGE_COSINE = np.cos(np.radians(20.0))    # normals at a place that differ by more stand for an edge
 CURVED_SHARE = 0.5                        # of the area, from which on a mesh stands for a curved surface
 MOST_NORMALS = 16                         # at one place; beyond, each vertex is by itself
 
 
-def as_smooth(vertices: np.ndarray, triangles: np.ndarray, normals: np.ndarray) -> bool:
+def as_smooth(vertices: np.ndarray, triangles: np.ndarray, normals: np.ndarray, coarse: bool = False) -> bool:
     """Whether most of the area has normals that turn from corner to corner: then the facets stand for a curved surface.
 
-    normals: [F, 3, 3] of the corners of triangles, of any length
+    Turns of less than .1 degree are none: a cylinder of more than 3600 segments has facets. Of coarse normals it is 1 degree.
+
+    normals: [F, 3, 3] of the corners of triangles, of any length; coarse: whether they have few bits, as bytes and Draco have
     """
     a, b, c = (_units(normals[:, corner]) for corner in range(3))
     cosines = [np.einsum("ij,ij->i", first, second) for first, second in ((a, b), (b, c), (c, a))]
-    turns = np.minimum(np.minimum(*cosines[:2]), cosines[2]) < FLAT_COSINE
+    turns = np.minimum(np.minimum(*cosines[:2]), cosines[2]) < (COARSE_FLAT_COSINE if coarse else FLAT_COSINE)
     if not turns.any():
         return False
     with np.errstate(all="ignore"):

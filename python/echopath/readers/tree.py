@@ -12,6 +12,8 @@ from .model import Model, ModelNode
 from .names import fit_name, unique
 from .options import ReadOptions
 
+MAX_NODES = 2_000_000  # of one model, with all copies and instances
+
 
 class Tree:
     """Nodes of a model in the order in which they are added, parents first."""

@@ -120,7 +120,8 @@ class StoredSequence(Row[Frame | FrameMaps]):
         truth_position [time, truth_object, truth_axis] and so on: the fields of Truth, where the files keep it
         Times are the starts of the frames in s. Nothing is held: `maps.power[3]` reads one file, `maps.power.mean("time")` all,
         `maps.load()` keeps them, 11 bytes for each cell of each frame, and `maps.chunk(time=1)` hands them to dask.
-        `xarray.open_dataset(path)` gives the same. Needs xarray, raises ModuleNotFoundError without it, ep.FileError for a
+        `xarray.open_dataset(path, engine="echopath")` gives the same; without `engine` netCDF4, where it is installed, takes
+        each HDF5 file for itself, and only a folder is safe. Needs xarray, raises ModuleNotFoundError without it, ep.FileError for a
         damaged file, here or where it is read, ValueError where no frame is there.
         """
         return dataset_of(self)

@@ -1,4 +1,7 @@
-"""xarray.open_dataset on what this program writes: entry point "xarray.backends" of the package (pyproject.toml)."""
+"""xarray.open_dataset on what this program writes: entry point "xarray.backends" of the package (pyproject.toml).
+
+Where no engine is named, netCDF4 comes first where it is installed, and takes each HDF5 file for itself; not folders.
+"""
 from __future__ import annotations
 
 import os

@@ -170,3 +170,24 @@ def test_flat_normals_leave_facets_and_the_keyword_goes_before_the_file(tmp_path
     assert load("round.obj") and not load("round.obj", smooth=False)
     with pytest.raises(TypeError, match="smooth: must be"):
         load("flat.obj", smooth="yes")
+
+
+def cylinder_file(segments: int, dtype: str) -> GltfFile:
+    """A cylinder about y with its exact normals, rounded to a type."""
+    angle = 2.0 * np.pi * np.arange(segments) / segments
+    normals = np.tile(np.column_stack([np.sin(angle), 0.0 * angle, np.cos(angle)]), (2, 1))
+    low, after = np.arange(segments), (np.arange(segments) + 1) % segments
+    faces = np.column_stack([low, after, after + segments, low, after + segments, low + segments]).reshape(-1, 3)
+    file = GltfFile(nodes=[{"name": "pole", "mesh": 0}], scenes=[{"nodes": [0]}])
+    rounded = np.round(127 * normals).astype(np.int8) if dtype == "i1" else normals
+    file.mesh(normals + np.repeat([[0, 0, 0], [0, 1, 0]], segments, axis=0), faces,
+              NORMAL=file.accessor(rounded, dtype, normalized=dtype == "i1"))
+    return file
+
+
+@pytest.mark.parametrize("segments, dtype, smooth", [(365, "f4", True), (3500, "f4", True), (3700, "f4", False), (60, "i1", True),
+                                                     (720, "i1", False)])
+def test_fine_cylinders_are_smooth_as_far_as_their_normals_tell(tmp_path, segments, dtype, smooth):
+    """Turns of a segment are 360 degrees over their number."""
+    (tmp_path / "pole.glb").write_bytes(cylinder_file(segments, dtype).glb())
+    assert [node.smooth for node in ep.load_model(tmp_path / "pole.glb").nodes] == [smooth]

@@ -49,6 +49,10 @@ class Accessors:
         self._document.spend(8 * values.size, reference)
         return values.astype(np.int64)
 
+    def spend(self, num_bytes: int, item: Item) -> None:
+        """Counts what is made of entries as memory of the document, `Document.spend`."""
+        self._document.spend(num_bytes, item)
+
     def count(self, reference: Item) -> int:
         """Entries of the accessor that `reference` names."""
         return self._items[reference.index(len(self._items))]["count"].whole(1, 2**31)
@@ -57,6 +61,10 @@ class Accessors:
         """Whether it has any bytes; one that has none is all zeros."""
         item = self._items[reference.index(len(self._items))]
         return "bufferView" in item or "sparse" in item
+
+    def has_bytes(self, reference: Item) -> bool:
+        """Whether its numbers have 8 bits."""
+        return self._items[reference.index(len(self._items))]["componentType"].value in (5120, 5121)
 
     def _item_of(self, reference: Item, kind: str, components) -> tuple[int, Item]:
         index = reference.index(len(self._items))

@@ -80,7 +80,8 @@ class Primitives:
         joints, weights = self._influences(item["attributes"], len(vertices))
         targets = self._targets(item, len(vertices))
         normals = self._normals(item["attributes"]["NORMAL"], len(vertices))
-        smooth = normals is not None and as_smooth(vertices, triangles, normals[triangles])
+        coarse = normals is not None and (DRACO in item["extensions"] or self._accessors.has_bytes(item["attributes"]["NORMAL"]))
+        smooth = normals is not None and as_smooth(vertices, triangles, normals[triangles], coarse)
         moved_by = [*targets.values()] + ([joints, weights] if joints is not None else [])
         kept, triangles = welded(vertices, triangles, moved_by, normals if smooth else None)
         return Primitive(vertices[kept], triangles, {k: target[kept] for k, target in targets.items()},

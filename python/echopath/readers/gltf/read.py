@@ -9,7 +9,7 @@ from ..axes import Axes
 from ..model import Model
 from ..names import fit_name
 from ..options import ReadOptions
-from ..tree import Tree
+from ..tree import MAX_NODES, Tree
 from .accessors import Accessors
 from .animations import animation_names, read_animation
 from .document import Document
@@ -158,6 +158,8 @@ class _Content:
         return index
 
     def _add(self, name: str, parent: int, placement, motion, mesh=None, surface: Surface | None = None) -> int:
+        if len(self._tree.nodes) >= MAX_NODES:
+            self._document.json["nodes"].fail(f"must make {MAX_NODES} nodes of a scene at most, with all copies")
         self._level.append(1 if parent < 0 else self._level[parent] + 1)
         self._document.spend(NODE_BYTES + NAME_BYTES * self._level[-1], self._document.json["nodes"])
         fields = {}

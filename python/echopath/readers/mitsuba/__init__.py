@@ -9,13 +9,11 @@ from ..axes import Axes
 from ..model import Model
 from ..options import ReadOptions
 from ..sampled import chosen_animation
-from ..tree import Tree
+from ..tree import MAX_NODES, Tree
 from .elements import Element, read_elements
 from .materials import bsdf_of, foreign_name, radio_material
 from .shapes import CURVED, KNOWN, Shapes
 from .transforms import to_world
-
-MAX_NODES = 2_000_000
 
 
 def read(path: Path, options: ReadOptions) -> Model:

@@ -8,13 +8,12 @@ import numpy as np
 from ... import _core
 from ..axes import Axes
 from ..sampled import Clock, deformed, moved_rigidly
-from ..tree import Tree
+from ..tree import MAX_NODES, Tree
 from .skeletons import Skeletons
 from .stage import Timeline, changes_visibility, is_left_out
 from .surfaces import SOLIDS, BadMesh, Surface, integers, is_subdivided, surface_of
 from .transforms import sampled_transforms
 
-MAX_NODES = 2_000_000
 MAX_DEPTH = 200         # of instances within instances
 MAX_VALUES = 500_000_000  # coordinates of one mesh over all its samples
 

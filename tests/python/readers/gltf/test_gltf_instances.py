@@ -1,12 +1,15 @@
 """Copies of a mesh by EXT_mesh_gpu_instancing against its definition: node times translation, rotation and scale."""
 from __future__ import annotations
 
+import importlib
+
 import numpy as np
 import pytest
 
 import echopath as ep
 from support.files.gltf_files import BOX, GltfFile, box_file, loaded
 
+READ = importlib.import_module("echopath.readers.gltf.read")  # the package has a function of that name
 TO_SCENE = [2, 0, 1]  # axes of a file, y up, that become x, y and z
 SINGLE = 1e-5         # of places of about 10 m in single precision
 EXTENSION = "EXT_mesh_gpu_instancing"
@@ -75,6 +78,25 @@ def test_copies_that_cannot_be_are_told(tmp_path):
         loaded(tmp_path, forest(TRANSLATION=SHIFTS, SCALE=SCALES[:2]))
     with pytest.raises(ep.FileError, match="ROTATION: must hold unit quaternions"):
         loaded(tmp_path, forest(ROTATION=4 * TURNS))
+
+
+@pytest.mark.parametrize("count, place", [(2_000_000_000, "count"), (3_000_000, "attributes")])
+def test_many_copies_of_a_small_file_are_refused_before_they_are_made(tmp_path, count, place):
+    """Accessors without bytes are all zeros: 2e9 entries do not fit themselves, 3e6 do, but their transforms do not."""
+    file = forest(TRANSLATION=SHIFTS)
+    accessor = file.json["accessors"][-1]
+    del accessor["bufferView"]
+    accessor["count"] = count
+    with pytest.raises(ep.FileError, match=f"{place}: needs more than .* MiB of memory, too much for a file"):
+        loaded(tmp_path, file)
+
+
+def test_nodes_are_limited_with_all_copies(tmp_path, monkeypatch):
+    monkeypatch.setattr(READ, "MAX_NODES", 4)
+    assert len(vertices(loaded(tmp_path, forest(TRANSLATION=SHIFTS)))) == 3
+    monkeypatch.setattr(READ, "MAX_NODES", 3)
+    with pytest.raises(ep.FileError, match="nodes: must make 3 nodes of a scene at most, with all copies"):
+        loaded(tmp_path, forest(TRANSLATION=SHIFTS))
 
 
 def test_what_pointers_animate_is_refused_where_it_is_required_and_noted_where_it_is_used(tmp_path):

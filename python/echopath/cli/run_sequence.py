@@ -5,10 +5,12 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from .. import plots
+from ..base.callers import warn_user
 from ..base.progress import progress_bars
 from ..scene_file import SceneFile
 from ..sensor_files import save_raw
 from ..sequence import Sequence, load_sequence
+from ..sequence.pictures import drive_of, write_film_of
 from .numbers import duration_words
 from .run import TRUTH_NAME, keywords_of, raw_line
 
@@ -57,12 +59,20 @@ def run_sequence(scene_file: SceneFile, options, extra_parts: dict) -> Iterator[
 
 
 def _write_pictures(stored, title: str) -> Iterator[str]:
-    """The frames at a glance and as a film; yields a line for each file."""
+    """The frames at a glance and as a film, of maps that are read once; yields a line for each file.
+
+    The frames are there whatever becomes of their pictures: what keeps these from being made is a warning.
+    """
     picture, film = _beside(stored, "overview.png"), _beside(stored, "film.gif")
-    plots.save_png(stored.plot(title=title), picture, seed=stored.settings["seed"], noise_seed=stored.settings["noise_seed"])
-    yield f"wrote {picture}"
-    stored.film(film)
-    yield f"wrote {film}"
+    try:
+        drive = drive_of(stored)
+        plots.save_png(plots.plot_drive(drive, title=title), picture, seed=stored.settings["seed"],
+                       noise_seed=stored.settings["noise_seed"])
+        yield f"wrote {picture}"
+        write_film_of(drive, film, stored.interval)
+        yield f"wrote {film}"
+    except Exception as error:  # of drawing, of memory or of the disk
+        warn_user(f"the frames are written, but not all of their pictures: {str(error) or type(error).__name__}")
 
 
 def _beside(stored, name: str) -> Path:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ..signals.measures import STATIC_SPEED
 from .maps import (
-    MAP_SIZE, NOISE_PEAK_DB, RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, chosen_limits, limits_of_level,
+    MAP_SIZE, NOISE_PEAK_DB, RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, chosen_limits, limits_above,
 )
 from .style import MAP_COLOURS, new_figure, set_title
 from .time_maps import TIME_LABEL, image_over_time
@@ -39,7 +39,7 @@ def plot_drive(drive: Drive, *, num_frames=4, vmin=None, vmax=None, title=""):
     Returns a matplotlib figure: range in m across and radial velocity in m/s up (receding positive), below them time in s across.
     Raises TypeError or ValueError naming vmin or vmax.
     """
-    vmin, vmax = chosen_limits(limits_of_level(drive.level.astype(np.float32)), vmin, vmax)
+    vmin, vmax = chosen_limits(_limits(drive), vmin, vmax)
     places = np.unique(np.linspace(0, len(drive.times) - 1, min(num_frames, len(drive.times))).round().astype(int))
     with new_figure(max(SHEET_WIDTH * len(places) + 1.2, LEAST_WIDTH), 2.0 * ROW_HEIGHT) as figure:
         upper, lower = figure.subfigures(2, 1)
@@ -78,7 +78,7 @@ def _columns(drive: Drive, floor: float) -> tuple[_Column, _Column]:
     is_moving = np.abs(drive.velocity) > STATIC_SPEED
     moves = is_moving.any() and (_stands_out(drive, floor)[is_moving]).any()
     taken = is_moving if moves else np.ones_like(is_moving)
-    by_range = drive.level[:, taken].max(axis=1).astype(np.float32)
+    by_range = np.stack([level[taken].max(axis=0) for level in drive.level]).astype(np.float32)
     by_velocity = drive.level.max(axis=2).astype(np.float32)
     return (_Column(drive.range, RANGE_LABEL, by_range, ranges, f"strongest of {'what moves' if moves else 'all velocities'}"),
             _Column(drive.velocity, VELOCITY_LABEL, by_velocity, velocities, "strongest of all ranges"))
@@ -86,7 +86,7 @@ def _columns(drive: Drive, floor: float) -> tuple[_Column, _Column]:
 
 def film_pictures(drive: Drive, *, vmin=None, vmax=None, title="") -> Iterator[np.ndarray]:
     """The maps one after the other as pictures u8 [height, width, 3], with the time; arguments as of `plot_drive`."""
-    vmin, vmax = chosen_limits(limits_of_level(drive.level.astype(np.float32)), vmin, vmax)
+    vmin, vmax = chosen_limits(_limits(drive), vmin, vmax)
     with new_figure(*MAP_SIZE) as figure:
         figure.set_dpi(FILM_DPI)
         axes = figure.subplots()
@@ -99,6 +99,19 @@ def film_pictures(drive: Drive, *, vmin=None, vmax=None, title="") -> Iterator[n
             axes.set_title(f"{title}{', ' if title else ''}{time:.3f} s")
             figure.canvas.draw()
             yield np.asarray(figure.canvas.buffer_rgba())[..., :3].copy()
+
+
+def _limits(drive: Drive) -> tuple[float, float]:
+    """`limits_of_level` of all maps, taken one after the other: half precision has so few values that each is counted."""
+    counts = np.zeros(2**16, np.int64)
+    for level in drive.level:
+        counts += np.bincount(level.view(np.uint16).ravel(), minlength=len(counts))
+    found = np.flatnonzero(counts)
+    levels = found.astype(np.uint16).view(np.float16).astype(float)
+    order = np.argsort(levels)
+    levels, up_to = levels[order], np.cumsum(counts[found][order])
+    middle = levels[np.searchsorted(up_to, [(up_to[-1] - 1) // 2, up_to[-1] // 2], side="right")]
+    return limits_above(middle.mean(), levels[-1])
 
 
 def _draw(axes, drive: Drive, place: int, vmin: float, vmax: float):
@@ -122,7 +135,7 @@ def _extent(drive: Drive, floor: float) -> tuple:
 def _stands_out(drive: Drive, floor: float) -> np.ndarray:
     """Cells [V, R] that stand out of the noise and of the floor of the colour scale in some frame."""
     noise = np.median(drive.level[0].astype(np.float32))
-    return (drive.level > max(floor + 3.0, noise + NOISE_PEAK_DB)).any(axis=0)
+    return drive.level.max(axis=0) > max(floor + 3.0, noise + NOISE_PEAK_DB)
 
 
 def _crop(panels, drive: Drive, floor: float) -> None:

@@ -38,8 +38,13 @@ def colour_limits(spectrum) -> tuple[float, float]:
 
 def limits_of_level(level) -> tuple[float, float]:
     """The same of levels in dBm, an array of any shape."""
-    highest = 5.0 * math.ceil(level.max() / 5.0)
-    above_noise = 5.0 * math.floor((np.median(level) + MARGIN_OVER_MEDIAN_DB) / 5.0)
+    return limits_above(np.median(level), level.max())
+
+
+def limits_above(median: float, peak: float) -> tuple[float, float]:
+    """The same of levels in dBm with that median and that peak."""
+    highest = 5.0 * math.ceil(peak / 5.0)
+    above_noise = 5.0 * math.floor((median + MARGIN_OVER_MEDIAN_DB) / 5.0)
     return min(max(highest - DYNAMIC_RANGE_DB, above_noise), highest - 10.0), highest
 
 

@@ -16,9 +16,6 @@ from .record import start_time_of
 
 if TYPE_CHECKING:
     from ..base.foreign_types import Figure
-    from ..plots import Drive
-
-FASTEST = 25.0  # pictures of a film in a second
 
 Item = TypeVar("Item")
 Self = TypeVar("Self", bound="Row[Any]")
@@ -95,12 +92,13 @@ class Row(Generic[Item]):
         vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak
         progress: callable (stage, fraction of the frames), True for bars, or None
         Returns a Matplotlib figure: range in m, velocity in m/s (receding positive), time in s, and in each cell over time the
-        strongest of the other axis. Memory: 2 bytes for each cell of each frame. Raises TypeError or ValueError naming the
-        argument, ValueError without frames or maps.
+        strongest of the other axis. Memory: 2 bytes for each cell of each frame, beside what one frame takes. Raises TypeError
+        or ValueError naming the argument, ValueError without frames or maps.
         """
         from ..plots import plot_drive
+        from .pictures import drive_of
 
-        return plot_drive(self._drive(progress), num_frames=num_frames, vmin=vmin, vmax=vmax, title=title)
+        return plot_drive(drive_of(self, progress), num_frames=num_frames, vmin=vmin, vmax=vmax, title=title)
 
     @checked(self=anything, path=path_rule, frames_per_second=optional(real(0.1, 100.0, "1/s")), vmin=anything,
              vmax=anything, title=text)
@@ -111,29 +109,19 @@ class Row(Generic[Item]):
         path: of the film, .gif or .mp4 (which needs imageio-ffmpeg); frames_per_second: 0.1 to 100, None: in real time, 25 at
             most
         vmin, vmax (dBm), progress: as of `plot`; title: before the time
-        Memory: 2 bytes for each cell of each frame. Raises what `plot` raises, ValueError for another kind of file,
-        ModuleNotFoundError without imageio-ffmpeg, ep.FileError.
+        Memory: as of `plot`, and the pictures of a GIF, .5 MB each. Raises what `plot` raises, ValueError for another kind of
+        file, ModuleNotFoundError without imageio-ffmpeg, ep.FileError.
         """
-        from ..base.film import require_kind, write_film
-        from ..plots import film_pictures
+        from ..base.film import require_kind
+        from .pictures import drive_of, write_film_of
 
         require_kind(path)
-        drive = self._drive(progress)
-        pace = min(1.0 / abs(self.interval), FASTEST) if frames_per_second is None else frames_per_second
-        write_film(path, film_pictures(drive, vmin=vmin, vmax=vmax, title=title), pace)
+        write_film_of(drive_of(self, progress), path, self.interval, frames_per_second=frames_per_second, vmin=vmin, vmax=vmax,
+                      title=title)
 
-    def _maps(self) -> Iterator[tuple]:
-        """(start in s, level [V, R] in dBm, velocity [V], range [R]) of the frames that are there."""
+    def _maps(self) -> tuple[int, Iterator[tuple]]:
+        """How many frames are there, and (start in s, level [V, R] in dBm, velocity [V], range [R]) of each."""
         raise NotImplementedError
-
-    def _drive(self, progress: Progress) -> Drive:
-        from ..plots import Drive
-
-        maps = list(with_progress(self._maps(), len(self), progress))
-        if not maps:
-            raise ValueError("frames: must be one at least, got none")
-        times, levels, velocity, range = zip(*maps)
-        return Drive(np.array(times), np.stack(levels), velocity[0], range[0])
 
     def _items(self, places: Iterable[int]) -> Iterator[Item]:
         """What stands at some places, one after the other; warnings name the line that takes it."""

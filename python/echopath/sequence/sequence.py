@@ -125,12 +125,15 @@ class Sequence(Row[Frame]):
         finally:
             give_back_memory()  # of frames that the user has let go since, and of one made ahead that nobody takes
 
-    def _maps(self) -> Iterator[tuple]:
+    def _maps(self) -> tuple[int, Iterator[tuple]]:
+        return len(self), self._levels()
+
+    def _levels(self) -> Iterator[tuple]:
         from ..plots import power_dbm
 
         for frame in self:
             spectrum = frame.spectrum
-            yield (frame.paths.frame.start_time, power_dbm(spectrum).astype(np.float16), np.asarray(spectrum.velocity),
+            yield (frame.paths.frame.start_time, power_dbm(spectrum), np.asarray(spectrum.velocity),
                    np.asarray(spectrum.range))
 
     def _finished(self, recorded: Recorded, progress) -> Frame:

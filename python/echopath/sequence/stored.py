@@ -93,14 +93,14 @@ class StoredSequence(Row[Frame | FrameMaps]):
                                   "called again")
         return read_frame(path, self.keep)
 
-    def _maps(self) -> Iterator[tuple]:
+    def _maps(self) -> tuple[int, Iterator[tuple]]:
         there = np.flatnonzero(self.is_done)
         paths, times = [self.paths_of_files[place] for place in there], self.times[there]
         found = power_of(paths[0]) if paths else None
         if paths and found is None:
             raise ValueError(f"{self.path}: must keep maps to be drawn, keeps labels alone")
-        for path, time in zip(paths, times):
-            yield float(time), found.read_file(path).T.astype(np.float16), found.axes["velocity"], found.axes["range"]
+        return len(paths), ((float(time), found.read_file(path).T, found.axes["velocity"], found.axes["range"])
+                            for path, time in zip(paths, times))
 
     @property
     def truth(self) -> Truth:
@@ -121,8 +121,8 @@ class StoredSequence(Row[Frame | FrameMaps]):
         Times are the starts of the frames in s. Nothing is held: `maps.power[3]` reads one file, `maps.power.mean("time")` all,
         `maps.load()` keeps them, 11 bytes for each cell of each frame, and `maps.chunk(time=1)` hands them to dask.
         `xarray.open_dataset(path, engine="echopath")` gives the same; without `engine` netCDF4, where it is installed, takes
-        each HDF5 file for itself, and only a folder is safe. Needs xarray, raises ModuleNotFoundError without it, ep.FileError for a
-        damaged file, here or where it is read, ValueError where no frame is there.
+        each HDF5 file for itself, and only a folder is safe. Needs xarray, raises ModuleNotFoundError without it, ep.FileError
+        for a damaged file, here or where it is read, ValueError where no frame is there.
         """
         return dataset_of(self)
 

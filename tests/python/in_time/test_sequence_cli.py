@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 import echopath as ep
-from echopath.cli import main
+from echopath.cli import main, run_sequence
+from echopath.sequence.pictures import drive_of
 from support.background import heed_ctrl_c
 from support.files.scene_text import ANTENNAS, WAVEFORM
 
@@ -56,6 +57,23 @@ def test_a_run_tells_of_each_frame_and_goes_on(scene_path, tmp_path, capsys):
     scene_file = ep.load_scene(scene_path)
     alone = ep.simulate(scene_file.scene, scene_file.radar, trace=scene_file.trace.replace(start_time=3 * 0.1), guard=False)
     assert (ep.load_sequence(out)[3].noisy_cube == alone.noisy_cube).all()
+
+
+def test_frames_are_read_once_for_their_pictures_whose_failure_is_a_warning(scene_path, tmp_path, capsys, monkeypatch):
+    def full(*given, **more):
+        raise MemoryError
+
+    asked, out = [], tmp_path / "out"
+    monkeypatch.setattr(run_sequence, "drive_of", lambda stored: asked.append(stored) or drive_of(stored))
+    assert run(scene_path, out, "--frames", 2, "--interval", 0.1, "--keep", "maps") == 0
+    assert len(asked) == 1 and (out / "overview.png").exists() and (out / "film.gif").exists()
+    (out / "film.gif").unlink()
+    monkeypatch.setattr(run_sequence, "write_film_of", full)
+    capsys.readouterr()
+    with pytest.warns(RuntimeWarning, match="the frames are written, but not all of their pictures: MemoryError"):
+        assert run(scene_path, out, "--frames", 2, "--interval", 0.1, "--keep", "maps") == 0
+    assert capsys.readouterr().out.splitlines()[-1] == f"wrote {out / 'overview.png'}"
+    assert ep.load_sequence(out).is_done.all()
 
 
 def test_a_scene_file_may_ask_for_frames_in_time(scene_path, tmp_path, capsys):

@@ -1,10 +1,15 @@
 """Sequences at a glance, as films, and iterated with progress."""
 from __future__ import annotations
 
+import tracemalloc
+
 import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.plots import drive
+from echopath.plots.maps import limits_of_level
+from echopath.sequence.pictures import drive_of
 from support.frames_in_time import DISTANCE, INTERVAL, SPEED, make_sequence, signal_of
 
 
@@ -46,6 +51,31 @@ def test_a_film_has_a_picture_of_each_frame_in_real_time(stored, tmp_path):
     stored[::-1].film(tmp_path / "back.gif", frames_per_second=5)
     with image.open(tmp_path / "back.gif") as film:
         assert film.info["duration"] == 200
+
+
+def test_pictures_of_many_frames_hold_two_bytes_a_cell_and_one_frame():
+    """Levels of noise, whose median and peak over all frames are those of all cells at once."""
+    random, shape = np.random.default_rng(3), (80, 128, 256)
+    levels = random.normal(-90.0, 8.0, shape).astype(np.float16)
+    cells = levels.size
+    axes = (np.linspace(-5.0, 5.0, shape[1]), np.linspace(0.0, 50.0, shape[2]))
+
+    class Frames:
+        def _maps(self):
+            return len(levels), ((0.1 * place, level.astype(np.float32), *axes) for place, level in enumerate(levels))
+
+    tracemalloc.start()
+    try:
+        made = drive_of(Frames())
+        limits = drive._limits(made)
+        columns = drive._columns(made, limits[0])
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert (made.level == levels).all() and made.level.dtype == np.float16
+    assert limits == limits_of_level(levels.astype(np.float32))
+    assert (columns[1].level == levels.max(axis=2)).all()
+    assert peak < 3.0 * cells  # bytes; a frame in double precision has .1 of a byte
 
 
 def test_frames_come_with_progress_and_with_the_same_bits():

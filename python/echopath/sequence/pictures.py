@@ -1,0 +1,41 @@
+"""Pictures of frames in time: their maps, simulated or read once, and films of these."""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ..arguments.checks import Progress
+from .row import Row, with_progress
+
+if TYPE_CHECKING:
+    from ..plots import Drive
+
+FASTEST = 25.0  # pictures of a film in a second
+
+
+def drive_of(row: Row, progress: Progress = None) -> Drive:
+    """Maps of the frames that are there, taken one after the other; of those before 2 bytes for each cell are kept.
+
+    progress: as of `Row.plot`. Raises ValueError without frames or maps.
+    """
+    from ..plots import Drive
+
+    count, maps = row._maps()
+    times, levels, axes = np.empty(count), None, ()
+    for place, (time, level, velocity, range) in enumerate(with_progress(maps, count, progress)):
+        if levels is None:
+            levels, axes = np.empty((count, *level.shape), np.float16), (velocity, range)
+        times[place], levels[place] = time, level
+    if levels is None:
+        raise ValueError("frames: must be one at least, got none")
+    return Drive(times, levels, *axes)
+
+
+def write_film_of(drive: Drive, path, interval: float, *, frames_per_second=None, vmin=None, vmax=None, title="") -> None:
+    """Writes a film of the maps as `Row.film` has it; interval: of the frames in s."""
+    from ..base.film import write_film
+    from ..plots import film_pictures
+
+    pace = min(1.0 / abs(interval), FASTEST) if frames_per_second is None else frames_per_second
+    write_film(path, film_pictures(drive, vmin=vmin, vmax=vmax, title=title), pace)

@@ -22,14 +22,14 @@ def drive_of(row: Row, progress: Progress = None) -> Drive:
     from ..plots import Drive
 
     count, maps = row._maps()
-    times, levels, axes = np.empty(count), None, ()
+    drive = None
     for place, (time, level, velocity, range) in enumerate(with_progress(maps, count, progress)):
-        if levels is None:
-            levels, axes = np.empty((count, *level.shape), np.float16), (velocity, range)
-        times[place], levels[place] = time, level
-    if levels is None:
+        if drive is None:
+            drive = Drive(np.empty(count), np.empty((count, *level.shape), np.float16), velocity, range)
+        drive.times[place], drive.level[place] = time, level
+    if drive is None:
         raise ValueError("frames: must be one at least, got none")
-    return Drive(times, levels, *axes)
+    return drive
 
 
 def write_film_of(drive: Drive, path, interval: float, *, frames_per_second=None, vmin=None, vmax=None, title="") -> None:

@@ -5,7 +5,7 @@ import sys
 import numpy as np
 import pytest
 
-from echopath.bench.worlds import city, crowd, models, peer, public_cities
+from echopath.bench.worlds import city, crowd, models, peer, public_cities, run_worlds
 from support.files.gltf_files import rig_file
 
 LIGHT = 299792458.0
@@ -88,6 +88,47 @@ def test_what_is_not_installed_is_not_measured():
     assert "no folder of models is given" in models.describe(models.rows(quick=True))[1]
 
 
+def test_what_holds_nothing_does_not_pass(tmp_path, floor):
+    (tmp_path / "notes.txt").write_text("no model")
+    (row,) = models.rows(quick=True, folder=tmp_path / "scenes" / "none")
+    assert "holds no file of a kind that is read" in row["not_measured"]
+    answer = {"materials": {"metal": [1.0, CONDUCTIVITY]}, "paths": [[]], "seconds": [1.0]}
+    (row,) = public_cities._city_beside_peer(floor, public_cities.CITIES[0], 2000, answer)
+    assert row == {"what": "floor, beside Sionna RT", "not_measured": "it finds no path"}
+    (tmp_path / "flat.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    rows = models.rows(quick=True, folder=tmp_path)
+    assert row_of(rows, "files refused")["holds"]
+    assert all("not_measured" in row_of(rows, what) for what in list(models.LIMITS)[1:])
+
+
+@pytest.mark.parametrize("option, value", [("cities", "/no/such/folder"), ("models", "/no/such/folder"),
+                                           ("sionna", "/no/such/python"), ("sionna", __file__)])
+def test_options_are_checked_before_anything_is_measured(tmp_path, option, value):
+    with pytest.raises(ValueError, match=f"^--{option}: must be a .*, got {value}"):
+        run_worlds(tmp_path / "out", quick=True, **{option: value})
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_named_python_without_the_peer_is_told_by_its_name(tmp_path):
+    (row,) = public_cities.rows(quick=True, python=sys.executable)
+    assert row["not_measured"].startswith(f"{sys.executable} has no sionna-rt, and no folder")
+    greets = tmp_path / "python"
+    (tmp_path / "scenes").mkdir()
+    greets.write_text(f"#!/bin/sh\necho a greeting\necho {tmp_path}\n")
+    greets.chmod(0o755)
+    assert peer.scenes_of(str(greets)) == tmp_path / "scenes"
+
+
+def test_modules_beside_the_script_are_not_those_of_the_peer(tmp_path, monkeypatch):
+    """Nor those of the working folder."""
+    (tmp_path / "models.py").write_text("raise SystemExit(3)")
+    script = tmp_path / "script.py"
+    script.write_text("import sys\ntry:\n    import models\nexcept ImportError:\n    open(sys.argv[2], 'w').write('[1]')\n")
+    monkeypatch.setattr(peer, "SCRIPT", script)
+    monkeypatch.chdir(tmp_path)
+    assert peer.asked(None, {}) == [1]
+
+
 def test_a_peer_that_fails_is_quoted(tmp_path):
     with pytest.raises(RuntimeError, match="No module named"):
         peer.asked(sys.executable, {"cities": []})
@@ -107,9 +148,11 @@ def test_models_of_a_folder_load_or_say_why_not(tmp_path):
     (tmp_path / "city" / "meshes").mkdir(parents=True)
     (tmp_path / "city" / "city.xml").write_text(FLOOR)
     (tmp_path / "city" / "meshes" / "part.obj").write_text("v 0 0 0\n")
+    (tmp_path / "city" / "cars").mkdir()
+    (tmp_path / "city" / "cars" / "car.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     rows = models.rows(quick=True, folder=tmp_path)
     by_file = {row["file"]: row for row in rows if "file" in row}
-    assert set(by_file) == {"rig.gltf", "broken.glb", "city/city.xml"}
+    assert set(by_file) == {"rig.gltf", "broken.glb", "city/city.xml", "city/cars/car.obj"}
     assert "broken.glb" in by_file["broken.glb"]["refused"]
     assert row_of(rows, "files refused")["measured"] == 1 and not row_of(rows, "files refused")["holds"]
     rig = by_file["rig.gltf"]

@@ -32,15 +32,17 @@ LIMITS = {"files refused": 0, "sum of parts over whole - 1": 1e-12, "speeds of e
 def rows(*, quick: bool = False, folder=None) -> list[dict]:
     """A row for each file below a folder, and judged ones of what all of them reach.
 
-    quick: few rays, for a look; folder: None: nothing is read; below that of a Mitsuba scene lie its meshes, which it reads
+    quick: few rays, for a look; folder: None: nothing is read; `meshes` beside a Mitsuba scene are those that it reads
     """
     if folder is None:
         return [{"what": "models", "not_measured": "no folder of models is given"}]
     files = [file for file in sorted(Path(folder).rglob("*")) if file.is_file() and is_foreign(file)]
     scenes = {file.parent for file in files if file.suffix.lower() == ".xml"}
-    files = [file for file in files if scenes.isdisjoint(file.parent.parents)]
+    files = [file for file in files if not any(above.name == "meshes" and above.parent in scenes for above in file.parents)]
+    if not files:
+        return [{"what": "models", "not_measured": f"{folder} holds no file of a kind that is read"}]
     found = [_file_row(file, str(file.relative_to(folder)), QUICK_RAYS if quick else RAYS) for file in files]
-    return found + [judged_row(what, _worst(found, what), limit) for what, limit in LIMITS.items()]
+    return found + [_judged(found, what, limit) for what, limit in LIMITS.items()]
 
 
 def describe(rows: list[dict]) -> list[str]:
@@ -59,10 +61,12 @@ def _told(row: dict) -> str:
                    if "speeds of echoes differ by, m/s" in row else "")
 
 
-def _worst(found: list[dict], what: str) -> float:
+def _judged(found: list[dict], what: str, limit: float) -> dict:
+    """The row of the worst of all files."""
     if what == "files refused":
-        return sum("refused" in row for row in found)
-    return max((row[what] for row in found if what in row), default=0.0)
+        return judged_row(what, sum("refused" in row for row in found), limit)
+    values = [row[what] for row in found if what in row]
+    return judged_row(what, max(values), limit) if values else {"what": what, "not_measured": "no body that deforms has an echo"}
 
 
 def _file_row(file: Path, name: str, rays: int) -> dict:
@@ -85,9 +89,11 @@ def _moving_row(model: ep.Model, file: Path, rays: int) -> dict:
     limbs = _meets(paths, range(0, len(scene.meshes), 2))
     apart = ep.synthesize(paths.select(limbs), radar) + ep.synthesize(paths.select(~limbs), radar)
     speeds = [_speeds(scene, radar, paths, index) for index in _strongest_diffuse(paths)]
-    return {"sum of parts over whole - 1": float(np.linalg.norm(apart - whole) / np.linalg.norm(whole)),
-            "parts with an echo": len(speeds), "parts that move": sum(abs(posed) > MOVING for _, posed in speeds),
-            "speeds of echoes differ by, m/s": max((abs(echo - posed) for echo, posed in speeds), default=0.0)}
+    row = {"parts with an echo": len(speeds), "parts that move": sum(abs(posed) > MOVING for _, posed in speeds)}
+    if speeds:
+        row |= {"sum of parts over whole - 1": float(np.linalg.norm(apart - whole) / np.linalg.norm(whole)),
+                "speeds of echoes differ by, m/s": max(abs(echo - posed) for echo, posed in speeds)}
+    return row
 
 
 def _seen(file: Path, model: ep.Model):

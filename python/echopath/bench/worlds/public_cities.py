@@ -66,11 +66,11 @@ def rows(*, quick: bool = False, scenes=None, python: str | None = None) -> list
     shipped = peer.scenes_of(python)
     folder = Path(scenes) if scenes is not None else shipped
     if folder is None:
-        return [{"what": "public cities", "not_measured": f"{peer.NOT_INSTALLED}, and no folder of its scenes is given"}]
+        return [{"what": "public cities", "not_measured": f"{peer.missing(python)}, and no folder of its scenes is given"}]
     rays = QUICK_RAYS if quick else RAYS
     found = _alone(folder, rays)
     if shipped is None:
-        return [*found, {"what": "beside Sionna RT", "not_measured": peer.NOT_INSTALLED}]
+        return [*found, {"what": "beside Sionna RT", "not_measured": peer.missing(python)}]
     return found + _beside_peer(folder, python, rays)
 
 
@@ -167,6 +167,8 @@ def _city_beside_peer(folder: Path, city: City, rays: int, answer: dict) -> list
     scene = scene_of(folder / city.file, materials)
     settings = {"num_rays": rays, "max_bounces": BOUNCES}
     found = _compared(scene, city, answer["paths"], settings)
+    if not found["paths of Sionna RT"]:
+        return [{"what": f"{city.name}, beside Sionna RT", "not_measured": "it finds no path"}]
     marked = scene_of(folder / city.file, {name: material.replace(mirror=True) for name, material in materials.items()})
     found["paths missing with all planes marked"] = _compared(marked, city, answer["paths"], settings | {
         "num_rays": SEARCH_RAYS})["paths of Sionna RT missing"]

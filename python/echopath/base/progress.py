@@ -3,7 +3,11 @@ from __future__ import annotations
 
 import shutil
 import sys
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from typing import TypeVar
+
+Item = TypeVar("Item")
 
 MAX_WIDTH = 100  # columns
 DELAY = 0.2      # s: what takes less shows no bar, of which a frame has hundreds
@@ -15,6 +19,16 @@ def automatic_bars() -> Bars:
     from tqdm.auto import tqdm
 
     return Bars(lambda stage: tqdm(total=100.0, desc=stage, leave=False, delay=DELAY, bar_format=_FORMAT))
+
+
+def with_progress(items: Iterable[Item], num_items: int, progress: Callable[[str, float], object] | bool | None
+                  ) -> Iterator[Item]:
+    """The items, after each of which a progress callable is told the share of those that were there; True: bars."""
+    bars = automatic_bars() if progress is True else progress
+    for done, item in enumerate(items, 1):
+        if callable(bars):
+            bars("frames", done / num_items)
+        yield item
 
 
 @contextmanager

@@ -1,12 +1,13 @@
 """Pictures of frames in time: their maps, simulated or read once, and films of these."""
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from ..arguments.checks import Progress
-from .row import Row, with_progress
+from ..base.progress import with_progress
 
 if TYPE_CHECKING:
     from ..plots import Drive
@@ -14,14 +15,20 @@ if TYPE_CHECKING:
 FASTEST = 25.0  # pictures of a film in a second
 
 
-def drive_of(row: Row, progress: Progress = None) -> Drive:
+class Frames(Protocol):
+    """What has maps, as a `Row`."""
+
+    def _maps(self) -> tuple[int, Iterator[tuple]]: ...
+
+
+def drive_of(frames: Frames, progress: Progress = None) -> Drive:
     """Maps of the frames that are there, taken one after the other; of those before 2 bytes for each cell are kept.
 
     progress: as of `Row.plot`. Raises ValueError without frames or maps.
     """
     from ..plots import Drive
 
-    count, maps = row._maps()
+    count, maps = frames._maps()
     drive = None
     for place, (time, level, velocity, range) in enumerate(with_progress(maps, count, progress)):
         if drive is None:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..arguments.checks import Progress, anything, checked, count, optional, real, refused, text
 from ..arguments.checks import path as path_rule
-from ..base.progress import automatic_bars
+from ..base.progress import with_progress
 from .record import start_time_of
 
 if TYPE_CHECKING:
@@ -131,15 +131,6 @@ class Row(Generic[Item]):
     def _span(self) -> str:
         times = self.times
         return f"from {times[0]:.6g} to {times[-1]:.6g} s" if len(times) else "none"
-
-
-def with_progress(items: Iterable[Item], num_items: int, progress: Progress) -> Iterator[Item]:
-    """The items, after each of which a progress callable is told the share of those that were there."""
-    bars = automatic_bars() if progress is True else progress
-    for done, item in enumerate(items, 1):
-        if callable(bars):
-            bars("frames", done / num_items)
-        yield item
 
 
 def _place_in(place, count: int) -> int:

@@ -10,7 +10,8 @@
 namespace echopath {
 
 // A stratum is a cone about an axis, or a strip along a great circle (half_azimuth > 0). A strip holds long things, because
-// straight lines seen from a point lie along great circles. Both are mapped with equal areas (launch_directions.h).
+// straight lines seen from a point lie along great circles. Both are mapped with equal areas
+// (trace/launch/launch_directions.h).
 struct Stratum {
   Vec3 axis = Vec3::UnitX();     // unit, world axes; of a strip, the middle of the great circle
   double versine = 2.0;          // cone: 1 - cos(half angle), exact for narrow cones; 2: whole sphere
@@ -22,7 +23,7 @@ struct Stratum {
   std::string name;          // what it aims at
   int object = -1;           // node of the scene that it aims at (a child of the root); -1: none
   int num_mirrors = 0;       // over which it aims there
-  int focus_of = -1;         // index of the stratum in which it is a focus (launch_focus.h); -1: none
+  int focus_of = -1;         // index of the stratum in which it is a focus (trace/launch/launch_focus.h); -1: none
 
   bool is_strip() const { return half_azimuth > 0.0; }
   bool is_focus() const { return focus_of >= 0; }

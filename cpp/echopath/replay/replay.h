@@ -36,7 +36,8 @@ class Replayer {
 
   int num_channels() const;
   const TimeGrids& grids() const { return grids_; }
-  // Returns the rule by which each path gets its time grid. The replayer must outlive it.
+  // Returns the rule by which each path gets its time grid. The replayer must outlive it. This poses grids for trial: as
+  // with the other functions that are not const, no thread may use the replayer meanwhile.
   PathGrids path_grids();
 
   // Poses all meshes at the time of the trace, for still().

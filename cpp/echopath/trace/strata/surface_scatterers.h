@@ -16,7 +16,7 @@ struct SurfaceScattererSettings {
 };
 
 // Returns the points of all rough surfaces that face the transmitter and lie in the field of view, hidden ones too. They are
-// as dense in direction as the rays of the plan by the default rule (LaunchPlan::default_density): the number of points on
+// as dense in direction as the rays of the plan by the rule of shares (LaunchPlan::default_density): the number of points on
 // an object follows its share of the rays, whatever its distance. Points come by mesh, so that neighbours in the list are
 // near each other.
 std::vector<SurfacePoint> find_surface_scatterers(const Scene& scene, const EmbreeScene& geometry, const LaunchPlan& plan,

@@ -48,9 +48,9 @@ class EmbreeScene {
   EmbreeScene& operator=(const EmbreeScene&) = delete;
   // Makes the scene as if anew, with the same answers, but does only what differs from before. Where meshes overlap little,
   // and something moves, edits come (Upkeep) or there are hundreds of small ones, each has a tree of its own, or shares one
-  // with small neighbours: then a mesh that has moved costs a fit of its tree (6 ns a triangle) and the tree over all trees,
-  // and one that shares a tree that tree (0.2 us a triangle). Elsewhere everything is built, unless nothing differs. Raises as the
-  // constructor does and holds nothing after that.
+  // with small neighbours: then a mesh that has moved costs a fit of its tree (6 ns a triangle) and the tree over all
+  // trees, and one that shares a tree that tree (0.2 us a triangle). Elsewhere everything is built, unless nothing differs.
+  // Raises as the constructor does and holds nothing after that.
   void update(const Scene& scene, const PosedScene& pose, const Vec3& origin, Job* job = nullptr);
   // Says what may differ at the next update: the time alone; or `near` moves, too; or the scene is edited. Edits may touch
   // any object: the origin is then rounded even where nothing moves, as are lift and reach (up to powers of two), so that

@@ -10,9 +10,7 @@
 namespace echopath {
 namespace {
 
-constexpr double kFlatAbsolute = 1e-4;  // m, by which corners may stray from a plane, as of flagged mirrors (trace/mirrors)
-constexpr double kFlatRelative = 1e-6;  // of the mesh's extent
-constexpr double kZones = 2.0;          // widths of the Fresnel zone from which on a plane is large
+constexpr double kZones = 2.0;  // widths of the Fresnel zone from which on a plane is large
 constexpr uint32_t kNoPatch = 0xFFFFFFFFu;
 
 // Measures the planes of one mesh.
@@ -25,7 +23,7 @@ class PlaneMeasure {
     const Eigen::AlignedBox3d box = box_of_all();
     const double extent = box.diagonal().norm();
     if (!(extent >= least_width_at(nearest_distance(box)))) return false;  // most meshes are told by their boxes
-    const auto patches = planar_patches(vertices_, triangles_, kFlatAbsolute + kFlatRelative * extent);
+    const auto patches = planar_patches(vertices_, triangles_, flat_tolerance(extent));
     const auto neighbours = edge_neighbours(vertices_, triangles_);
     std::vector<uint32_t> patch_of(triangles_.size(), kNoPatch);
     for (uint32_t patch = 0; patch < patches.size(); ++patch) {

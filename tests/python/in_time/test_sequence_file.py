@@ -14,7 +14,7 @@ from echopath.frame_file import changing as changes
 from echopath.frame_file.changing import changing, work_folder
 from echopath.frame_file.h5_items import library
 from support.cut_off import NEW, OLD, Killed, cut_off, numbers_in, write_old
-from support.frames_in_time import make_sequence, make_walk, signal_of
+from support.frames_in_time import KILL_SOON, make_sequence, make_walk, signal_of
 
 TESTS = Path(__file__).parents[2]
 WAIT = 60.0  # s, for a process on a busy machine
@@ -60,19 +60,9 @@ def test_small_frames_are_those_of_a_folder(tmp_path, keep):
 
 
 KILLED = """
-import os, signal, threading
 from support.cut_off import NEW, OLD, Killed, cut_off, numbers_in, write_old
 from support.frames_in_time import make_sequence, make_walk
-
-def kill_soon(stage, fraction):
-    done.append(fraction)
-    if len(done) == 2:
-        threading.Timer(0.01, os.kill, (os.getpid(), signal.SIGKILL)).start()  # while the third is made or written
-    if len(done) == 4:
-        os.kill(os.getpid(), signal.SIGKILL)
-
-done = []
-"""
+""" + KILL_SOON
 
 
 def test_a_run_that_is_killed_keeps_its_frames_and_goes_on_with_the_same_bits(tmp_path):

@@ -8,7 +8,7 @@ import pytest
 
 import echopath as ep
 from echopath.sequence import folder_lock
-from support.frames_in_time import INTERVAL, make_radar, make_scene, make_sequence
+from support.frames_in_time import INTERVAL, KILL_SOON, make_radar, make_scene, make_sequence
 
 KEEPS = ["all", "maps", "labels"]
 TESTS = Path(__file__).parents[2]
@@ -39,18 +39,8 @@ def test_a_second_run_changes_nothing(unbroken, keep):
 
 
 KILLED = """
-import os, signal, threading
 from support.frames_in_time import make_sequence
-
-def kill_soon(stage, fraction):
-    done.append(fraction)
-    if len(done) == 2:
-        threading.Timer(0.01, os.kill, (os.getpid(), signal.SIGKILL)).start()  # while the third is made or written
-    if len(done) == 4:
-        os.kill(os.getpid(), signal.SIGKILL)
-
-done = []
-"""
+""" + KILL_SOON
 
 
 @pytest.mark.parametrize("keep", ["all", "labels"])

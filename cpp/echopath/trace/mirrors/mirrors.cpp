@@ -11,9 +11,7 @@
 namespace echopath {
 namespace {
 
-constexpr double kFlatAbsolute = 1e-4;  // m
-constexpr double kFlatRelative = 1e-6;  // of the mesh's extent
-constexpr double kFilled = 1e-6;        // of the area
+constexpr double kFilled = 1e-6;  // of the area
 constexpr double kTeLimit = 0.70710678118654752;
 constexpr double kNormalIncidence = 1e-12;  // sine of incidence
 constexpr double kAlongTravel = 0.1;        // sine between field and direction of travel
@@ -68,7 +66,7 @@ class FaceFinder {
     Mirror whole = fit_plane(scene_, geometry_, mesh_id_, all_);
     double extent = 0.0;
     for (const Vec3& vertex : geometry_.vertices(mesh_id_)) extent = std::max(extent, (vertex - whole.point).norm());
-    const double tolerance = kFlatAbsolute + kFlatRelative * extent, deviation = deviation_from(whole);
+    const double tolerance = flat_tolerance(extent), deviation = deviation_from(whole);
     if (deviation <= tolerance) return append(std::move(whole), all_, mirrors);
     require(!node_.smooth, "material.mirror",
             "the smooth mesh '" + node_.name + "' must be flat, since curved surfaces have no images; deviation in m",

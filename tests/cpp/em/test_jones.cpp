@@ -117,7 +117,22 @@ TEST(Jones, ComponentsAreThoseAcrossTheDirection) {
   EXPECT_LT((transverse_components(Vec3::UnitZ(), Vec3::UnitX()) - Eigen::Vector2d(0, 1)).norm(), kRounding);
   EXPECT_LT((transverse_components(Vec3::UnitY(), Vec3::UnitX()) - Eigen::Vector2d(1, 0)).norm(), kRounding);
   EXPECT_LT((transverse_components(Vec3(0.3, 0, 1), Vec3::UnitX()) - Eigen::Vector2d(0, 1)).norm(), kRounding);
-  EXPECT_EQ(transverse_components(Vec3::UnitX(), Vec3::UnitX()), Eigen::Vector2d::Zero());
+}
+
+// The field of an antenna that has no null along its polarisation is one vector of the world there, which it receives as
+// well as sends: two such antennas in one place see a mirror across the line as they see any other.
+TEST(Jones, FieldAlongThePolarisationIsTheSameForBothSenses) {
+  for (const Vec3& direction : {Vec3(Vec3::UnitX()), Vec3(Vec3::UnitZ()), Vec3(0.6, 0.0, -0.8)}) {
+    Vec3 fields[2];
+    for (const int sense : {0, 1}) {
+      const Vec3 along = sense == 0 ? direction : Vec3(-direction);
+      const TransverseBasis basis = transverse_basis(along);
+      const Eigen::Vector2d found = transverse_components(direction, along);
+      fields[sense] = found[0] * basis.horizontal + found[1] * basis.vertical;
+      EXPECT_NEAR(fields[sense].norm(), 1.0, kRounding);
+    }
+    EXPECT_LT((fields[0] - fields[1]).norm(), kRounding);
+  }
 }
 
 // The horizontal axis turns round with the direction of travel and the vertical one does not, along z too: what an antenna

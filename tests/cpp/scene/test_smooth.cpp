@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "echopath/base/constants.h"
 #include "echopath/scene/smooth/smooth.h"
 
 namespace echopath::test_smooth {
@@ -29,6 +30,51 @@ TEST(VertexNormals, AreExactOnASphereOfAnyTessellation) {
   }
   for (uint32_t i = 0; i < 6; ++i) triangles.push_back({0, 1 + i, 1 + (i + 1) % 6});
   EXPECT_LT((vertex_normals(vertices, triangles)[0] - Vec3::UnitZ()).norm(), kRounding);
+}
+
+// Returns a closed cylinder of radius 1 about z, with vertices at its two rims alone and fans for caps.
+std::pair<std::vector<Vec3>, std::vector<Triangle>> capped_cylinder(uint32_t segments, double height) {
+  std::vector<Vec3> vertices;
+  std::vector<Triangle> triangles;
+  for (const double z : {0.0, height}) {
+    for (uint32_t k = 0; k < segments; ++k) {
+      const double angle = 2.0 * kPi * k / segments;
+      vertices.emplace_back(std::cos(angle), std::sin(angle), z);
+    }
+  }
+  for (uint32_t k = 0; k < segments; ++k) {
+    const uint32_t next = (k + 1) % segments;
+    triangles.push_back({k, next, segments + next});
+    triangles.push_back({k, segments + next, segments + k});
+    if (k > 0 && k + 1 < segments) {
+      triangles.push_back({0, k + 1, k});
+      triangles.push_back({segments, segments + k, segments + k + 1});
+    }
+  }
+  return {vertices, triangles};
+}
+
+// Facets of a cap are flat by themselves and leave the rim to the side.
+TEST(VertexNormals, OfARimAreThoseOfTheCurvedSide) {
+  for (const double height : {0.05, 40.0}) {
+    const auto [vertices, triangles] = capped_cylinder(12, height);
+    const std::vector<Vec3> normals = vertex_normals(vertices, triangles);
+    // Facets of 15 degrees either way have weights that differ with their diagonals.
+    for (size_t v = 0; v < vertices.size(); ++v) {
+      EXPECT_NEAR(normals[v].z(), 0.0, kRounding);
+      EXPECT_GT(normals[v].dot(Vec3(vertices[v].x(), vertices[v].y(), 0.0)), std::cos(0.07)) << height;
+    }
+  }
+}
+
+TEST(VertexNormals, OfABoxFitNoneOfItsFacets) {
+  const auto [vertices, triangles] = capped_cylinder(4, 1.0);
+  const std::vector<Vec3> normals = vertex_normals(vertices, triangles);
+  for (const Triangle& triangle : triangles) {
+    const Vec3 facet = (vertices[triangle[1]] - vertices[triangle[0]]).cross(vertices[triangle[2]] - vertices[triangle[0]]);
+    const std::array<Vec3, 3> corners = {normals[triangle[0]], normals[triangle[1]], normals[triangle[2]]};
+    EXPECT_FALSE(is_smooth_facet(facet.normalized(), corners));
+  }
 }
 
 TEST(SmoothPoint, PositionOnASphereErrsWithTheFourthPower) {

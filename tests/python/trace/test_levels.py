@@ -204,3 +204,14 @@ def test_the_deepest_diffuse_paths_have_finite_weights():
     scene = scene_of(shell=(sphere((0, 0, 0), 30.0, 2), lambert(1.0)))
     paths = ep.trace(scene, make_radar((0, 0, 0), (.7, .4, -.3)), num_rays=50, max_bounces=64)
     assert paths.num_bounces.max() > 10 and np.all(np.isfinite(paths.weight)) and np.all(np.isfinite(paths.amplitude))
+
+
+@pytest.mark.parametrize("mirror", [True, False])
+def test_ground_straight_below_antennas_in_one_place(mirror):
+    """An antenna without a pattern sends along its polarisation, too; the image of a metal ground is at twice the height."""
+    height = 0.6
+    below = rectangle((-3, -3, -height), (6, 0, 0), (0, 6, 0)), ep.Material.metal(mirror=mirror)
+    radar = make_radar((0, 0, 0), polarization=V)
+    paths = ep.trace(scene_of(ground=below), radar, num_rays=20000, polarization="jones")
+    image = radar.transmit_power * (WAVELENGTH / (4 * math.pi * 2 * height)) ** 2
+    assert decibel(abs(fields(paths).sum()) ** 2 / image) == pytest.approx(0.0, abs=WALL_TOLERANCE_DB if mirror else 0.5)

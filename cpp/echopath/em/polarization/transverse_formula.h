@@ -11,8 +11,10 @@ struct TransverseOf {
   Real horizontal, vertical;
 };
 
-// Returns the components along the axes of transverse_basis, scaled to length 1; zero where the polarisation lies along the
-// direction. `line` points along the direction and may have any length.
+// Returns the components along the axes of transverse_basis, scaled to length 1. `line` points along the direction and may
+// have any length. Gain patterns hold the nulls of antennas, so that an isotropic one has none along its polarisation
+// either: there its field points up, or along x of the world where the direction is that of z, the same for waves of both
+// senses.
 template <class Math, class Real>
 ECHOPATH_INLINE TransverseOf<Real> transverse_of(const VectorOf<Real>& polarization, const VectorOf<Real>& line) {
   constexpr double kLeast = 1e-18;  // squares of sines below count as 0
@@ -26,7 +28,8 @@ ECHOPATH_INLINE TransverseOf<Real> transverse_of(const VectorOf<Real>& polarizat
   const Real length_squared = horizontal * horizontal + vertical * vertical, scale = is_along_z ? one : level * square;
   const auto is_across = length_squared > kLeast * scale;
   const Real inverse = 1.0 / Math::root(is_across ? length_squared : one);
-  return {is_across ? inverse * horizontal : none, is_across ? inverse * vertical : none};
+  const Real horizontal_alone = is_along_z ? (line.z < 0.0 ? -one : one) : none, vertical_alone = is_along_z ? none : one;
+  return {is_across ? inverse * horizontal : horizontal_alone, is_across ? inverse * vertical : vertical_alone};
 }
 
 }  // namespace echopath

@@ -2,24 +2,17 @@
 
 #include <algorithm>
 
+#include "echopath/scene/smooth/crease_normals.h"
+
 namespace echopath {
-namespace {
-
-constexpr double kCreaseCosine = 0.86602540378443865;  // 30 degrees
-
-}  // namespace
 
 std::vector<Vec3> vertex_normals(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
   std::vector<Vec3> normals(vertices.size(), Vec3::Zero());
   for (const Triangle& triangle : triangles) {
-    for (size_t i = 0; i < 3; ++i) {
-      const Vec3& corner = vertices[triangle[i]];
-      const Vec3 next = vertices[triangle[(i + 1) % 3]] - corner, last = vertices[triangle[(i + 2) % 3]] - corner;
-      // sin(angle) / (|next| |last|) along the facet normal is the cross product over both squared lengths.
-      normals[triangle[i]] += next.cross(last) / (next.squaredNorm() * last.squaredNorm());
-    }
+    for (size_t i = 0; i < 3; ++i) normals[triangle[i]] += weighted_normal(vertices, triangle, i);
   }
   for (Vec3& normal : normals) normal.stableNormalize();
+  replace_normals_at_creases(vertices, triangles, normals);
   return normals;
 }
 

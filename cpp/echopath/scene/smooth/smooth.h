@@ -9,7 +9,8 @@
 namespace echopath {
 
 // Returns unit vertex normals [V] by the weights of Max 1999 ("Weights for computing vertex normals from facet normals"),
-// which are exact for vertices on a sphere at any tessellation. They are zero where no triangle meets.
+// which are exact for vertices on a sphere at any tessellation. At the rim of a curved surface, where it meets others in a
+// crease, they are those of the curved surface alone (crease_normals.h). They are zero where no triangle meets.
 std::vector<Vec3> vertex_normals(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles);
 
 // Returns the unit vertex normals [V] of a mesh at rest; a part takes those of the whole surface.

@@ -13,7 +13,7 @@ std::vector<Vec3> whole_deformed_normals(const Node& node, double time) {
   const SurfacePatch patch = make_patch(*node.mesh, std::vector<uint8_t>(node.mesh->triangles().size(), 1), true);
   std::vector<Vec3> vertices, normals;
   node.deformation->at(time, patch.original_vertex, vertices);
-  const std::vector<Vec3> of_patch = vertex_normals(vertices, patch.triangles);
+  const std::vector<Vec3> of_patch = vertex_normals(vertices, patch.triangles, patch.creases);
   for (const uint32_t place : patch.place) normals.push_back(of_patch[place]);
   return normals;
 }
@@ -67,7 +67,7 @@ void PosedScene::deform(uint32_t mesh_id, const SurfacePatch& patch) {
   if (!node.deformation) return;
   std::vector<Vec3>& vertices = deformed_[at(mesh_id)];
   node.deformation->at(time_, patch.original_vertex, vertices);
-  if (node.smooth) deformed_normals_[at(mesh_id)] = vertex_normals(vertices, patch.triangles);
+  if (node.smooth) deformed_normals_[at(mesh_id)] = vertex_normals(vertices, patch.triangles, patch.creases);
 }
 
 void PosedScene::place_meshes() {

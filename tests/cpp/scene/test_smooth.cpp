@@ -58,7 +58,7 @@ std::pair<std::vector<Vec3>, std::vector<Triangle>> capped_cylinder(uint32_t seg
 TEST(VertexNormals, OfARimAreThoseOfTheCurvedSide) {
   for (const double height : {0.05, 40.0}) {
     const auto [vertices, triangles] = capped_cylinder(12, height);
-    const std::vector<Vec3> normals = vertex_normals(vertices, triangles);
+    const std::vector<Vec3> normals = vertex_normals(vertices, triangles, find_creases(vertices, triangles));
     // Facets of 15 degrees either way have weights that differ with their diagonals.
     for (size_t v = 0; v < vertices.size(); ++v) {
       EXPECT_NEAR(normals[v].z(), 0.0, kRounding);
@@ -69,7 +69,7 @@ TEST(VertexNormals, OfARimAreThoseOfTheCurvedSide) {
 
 TEST(VertexNormals, OfABoxFitNoneOfItsFacets) {
   const auto [vertices, triangles] = capped_cylinder(4, 1.0);
-  const std::vector<Vec3> normals = vertex_normals(vertices, triangles);
+  const std::vector<Vec3> normals = vertex_normals(vertices, triangles, find_creases(vertices, triangles));
   for (const Triangle& triangle : triangles) {
     const Vec3 facet = (vertices[triangle[1]] - vertices[triangle[0]]).cross(vertices[triangle[2]] - vertices[triangle[0]]);
     const std::array<Vec3, 3> corners = {normals[triangle[0]], normals[triangle[1]], normals[triangle[2]]};

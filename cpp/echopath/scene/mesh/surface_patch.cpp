@@ -34,15 +34,18 @@ SurfacePatch make_patch(const Mesh& mesh, const std::vector<uint8_t>& takes, boo
   for (const Triangle& triangle : patch.triangles) {
     for (const uint32_t vertex : triangle) is_needed[vertex] = 1;
   }
+  std::vector<Vec3> at_rest;  // [n] vertices
   std::vector<uint32_t> place_in_surface(is_needed.size(), SurfacePatch::kAbsent);
   for (size_t v = 0; v < is_needed.size(); ++v) {
     if (!is_needed[v]) continue;
     place_in_surface[v] = static_cast<uint32_t>(patch.original_vertex.size());
     patch.original_vertex.push_back(surface.original_vertex()[v]);
+    at_rest.push_back(surface.vertices()[v]);
   }
   for (Triangle& triangle : patch.triangles) {
     for (uint32_t& vertex : triangle) vertex = place_in_surface[vertex];
   }
+  patch.creases = find_creases(at_rest, patch.triangles);
   for (uint32_t v = 0; v < mesh.vertices().size(); ++v) {
     const uint32_t of_surface = mesh.surface_vertex(v);
     patch.place.push_back(is_corner[of_surface] ? place_in_surface[of_surface] : SurfacePatch::kAbsent);

@@ -2,6 +2,7 @@
 // Selects the vertices of a surface that must be posed where only some of its triangles are needed.
 #include <vector>
 
+#include "echopath/scene/mesh/creases.h"
 #include "echopath/scene/mesh/mesh.h"
 
 namespace echopath {
@@ -16,6 +17,7 @@ struct SurfacePatch {
   // normals. Normals from them (scene/smooth/smooth.h) are right at the corners, to the same bits as those of the whole
   // surface.
   std::vector<Triangle> triangles;
+  Creases creases;  // of these triangles, at rest
 
   Triangle corners(const Triangle& triangle) const { return {place[triangle[0]], place[triangle[1]], place[triangle[2]]}; }
 };

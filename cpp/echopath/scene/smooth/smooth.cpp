@@ -2,22 +2,30 @@
 
 #include <algorithm>
 
-#include "echopath/scene/smooth/crease_normals.h"
-
 namespace echopath {
 
-std::vector<Vec3> vertex_normals(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+std::vector<Vec3> vertex_normals(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
+                                 const Creases& creases) {
   std::vector<Vec3> normals(vertices.size(), Vec3::Zero());
   for (const Triangle& triangle : triangles) {
     for (size_t i = 0; i < 3; ++i) normals[triangle[i]] += weighted_normal(vertices, triangle, i);
   }
+  for (size_t i = 0; i < creases.vertices.size(); ++i) {
+    Vec3& normal = normals[creases.vertices[i]];
+    normal.setZero();
+    for (size_t k = creases.first[i]; k < creases.first[i + 1]; ++k) {
+      const auto [triangle, corner] = creases.corners[k];
+      normal += weighted_normal(vertices, triangles[triangle], corner);
+    }
+  }
   for (Vec3& normal : normals) normal.stableNormalize();
-  replace_normals_at_creases(vertices, triangles, normals);
   return normals;
 }
 
 std::vector<Vec3> vertex_normals(const Mesh& mesh) {
-  std::vector<Vec3> normals = vertex_normals(mesh.surface().vertices(), mesh.surface().triangles());
+  const std::vector<Vec3>& vertices = mesh.surface().vertices();
+  const std::vector<Triangle>& triangles = mesh.surface().triangles();
+  std::vector<Vec3> normals = vertex_normals(vertices, triangles, find_creases(vertices, triangles));
   if (!mesh.whole()) return normals;
   std::vector<Vec3> of_part;
   for (const uint32_t vertex : mesh.whole_vertex()) of_part.push_back(normals[vertex]);

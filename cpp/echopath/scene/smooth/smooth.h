@@ -4,16 +4,18 @@
 #include <array>
 #include <vector>
 
+#include "echopath/scene/mesh/creases.h"
 #include "echopath/scene/mesh/mesh.h"
 
 namespace echopath {
 
 // Returns unit vertex normals [V] by the weights of Max 1999 ("Weights for computing vertex normals from facet normals"),
-// which are exact for vertices on a sphere at any tessellation. At the rim of a curved surface, where it meets others in a
-// crease, they are those of the curved surface alone (crease_normals.h). They are zero where no triangle meets.
-std::vector<Vec3> vertex_normals(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles);
+// which are exact for vertices on a sphere at any tessellation. At creases they are those of the surface that keeps the
+// vertex. They are zero where no triangle meets.
+std::vector<Vec3> vertex_normals(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
+                                 const Creases& creases = {});
 
-// Returns the unit vertex normals [V] of a mesh at rest; a part takes those of the whole surface.
+// Returns the unit vertex normals [V] of a mesh at rest, with its creases; a part takes those of the whole surface.
 std::vector<Vec3> vertex_normals(const Mesh& mesh);
 
 // Returns the matrix that takes normals of a mesh's frame to the world, up to their length; they follow the winding of the

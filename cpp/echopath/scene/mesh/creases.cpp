@@ -1,6 +1,7 @@
-#include "echopath/scene/smooth/crease_normals.h"
+#include "echopath/scene/mesh/creases.h"
 
 #include <algorithm>
+#include <map>
 #include <unordered_map>
 
 namespace echopath {
@@ -11,8 +12,7 @@ constexpr double kFlatCosine = 1.0 - 1e-6;  // of facets that are in one plane
 
 // Holds a facet at a vertex.
 struct FacetAtVertex {
-  const Triangle* triangle;
-  size_t corner;   // of the triangle, the vertex
+  Creases::Corner at;
   Vec3 area;       // m^2, twice the area along the normal
   size_t surface;  // the facet at the vertex by which its surface is known
 };
@@ -26,10 +26,14 @@ bool is_within(const Vec3& a, const Vec3& b, double cosine) { return a.dot(b) >=
 
 // Returns the facets at those vertices where a facet is too far from the normal to be smooth. Wherever surfaces meet in a
 // crease there is one: two facets that are more than 60 degrees apart cannot both be near one normal.
-std::unordered_map<uint32_t, FacetsAtVertex> facets_at_creases(const std::vector<Vec3>& vertices,
-                                                               const std::vector<Triangle>& triangles,
-                                                               const std::vector<Vec3>& normals) {
-  std::unordered_map<uint32_t, FacetsAtVertex> found;
+std::map<uint32_t, FacetsAtVertex> facets_at_creases(const std::vector<Vec3>& vertices,
+                                                     const std::vector<Triangle>& triangles) {
+  std::vector<Vec3> normals(vertices.size(), Vec3::Zero());
+  for (const Triangle& triangle : triangles) {
+    for (size_t i = 0; i < 3; ++i) normals[triangle[i]] += weighted_normal(vertices, triangle, i);
+  }
+  for (Vec3& normal : normals) normal.stableNormalize();
+  std::map<uint32_t, FacetsAtVertex> found;
   for (const Triangle& triangle : triangles) {
     const Vec3 area = area_of(vertices, triangle);
     const double least = kCreaseCosine * area.norm();
@@ -37,11 +41,10 @@ std::unordered_map<uint32_t, FacetsAtVertex> facets_at_creases(const std::vector
       if (area.dot(normals[vertex]) < least) found.try_emplace(vertex);
     }
   }
-  for (size_t t = 0; !found.empty() && t < triangles.size(); ++t) {
-    for (size_t corner = 0; corner < 3; ++corner) {
+  for (uint32_t t = 0; !found.empty() && t < triangles.size(); ++t) {
+    for (uint32_t corner = 0; corner < 3; ++corner) {
       const auto at = found.find(triangles[t][corner]);
-      if (at == found.end()) continue;
-      at->second.push_back({&triangles[t], corner, area_of(vertices, triangles[t]), at->second.size()});
+      if (at != found.end()) at->second.push_back({{t, corner}, area_of(vertices, triangles[t]), at->second.size()});
     }
   }
   return found;
@@ -53,11 +56,12 @@ size_t surface_of(FacetsAtVertex& facets, size_t facet) {
 }
 
 // Facets with an edge in common at the vertex, and no crease between them, are one surface. An edge has two facets at most.
-void find_surfaces(FacetsAtVertex& facets) {
+void find_surfaces(const std::vector<Triangle>& triangles, FacetsAtVertex& facets) {
   std::unordered_map<uint32_t, size_t> facet_at_edge;  // by the other vertex of the edge
   for (size_t i = 0; i < facets.size(); ++i) {
     for (const size_t step : {1u, 2u}) {
-      const auto [known, is_new] = facet_at_edge.try_emplace((*facets[i].triangle)[(facets[i].corner + step) % 3], i);
+      const auto [triangle, corner] = facets[i].at;
+      const auto [known, is_new] = facet_at_edge.try_emplace(triangles[triangle][(corner + step) % 3], i);
       if (is_new || !is_within(facets[i].area, facets[known->second].area, kSurfaceCosine)) continue;
       facets[surface_of(facets, i)].surface = surface_of(facets, known->second);
     }
@@ -87,20 +91,21 @@ std::vector<SurfaceAtVertex> surfaces_at(const FacetsAtVertex& facets) {
 
 }  // namespace
 
-void replace_normals_at_creases(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
-                                std::vector<Vec3>& normals) {
-  for (auto& [vertex, facets] : facets_at_creases(vertices, triangles, normals)) {
-    find_surfaces(facets);
+Creases find_creases(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+  Creases creases;
+  for (auto& [vertex, facets] : facets_at_creases(vertices, triangles)) {
+    find_surfaces(triangles, facets);
     const std::vector<SurfaceAtVertex> surfaces = surfaces_at(facets);
     const auto curved_area = [](const SurfaceAtVertex& surface) { return surface.is_flat ? 0.0 : surface.area; };
     const SurfaceAtVertex& kept = *std::ranges::max_element(surfaces, {}, curved_area);
     if (surfaces.size() == 1 || kept.is_flat) continue;
-    normals[vertex].setZero();
+    creases.vertices.push_back(vertex);
     for (const FacetAtVertex& facet : facets) {
-      if (facet.surface == kept.first) normals[vertex] += weighted_normal(vertices, *facet.triangle, facet.corner);
+      if (facet.surface == kept.first) creases.corners.push_back(facet.at);
     }
-    normals[vertex].stableNormalize();
+    creases.first.push_back(creases.corners.size());
   }
+  return creases;
 }
 
 }  // namespace echopath

@@ -36,7 +36,8 @@ def run(target: str, numbers, seconds: float = float("inf"), make=None) -> tuple
     """
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # of the workers: a second thread would wait at full speed
     begin, done, findings = time.monotonic(), 0, []
-    context = multiprocessing.get_context("spawn")
+    context = multiprocessing.get_context("forkserver")  # which has imported what all workers need, and has no threads
+    context.set_forkserver_preload(["fuzz.targets"])
     while numbers and time.monotonic() - begin < seconds:
         at, since = context.Value("q", -1, lock=False), context.Value("d", time.monotonic(), lock=False)
         results = context.SimpleQueue()

@@ -16,7 +16,7 @@ namespace echopath::test_random_draws {
 namespace {
 
 // Sanitizers look at the same lines at each draw.
-const uint64_t kDraws = test::kIsSanitized ? 500'000 : 10'000'000;
+const uint64_t kDraws = test::kIsSanitized ? 500'000 : 3'000'000;
 constexpr double kRounding = 1e-12;  // of |Gamma|^2 against 1
 
 using FootprintPhase = FootprintPhaseOf<double>;

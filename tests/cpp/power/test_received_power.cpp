@@ -13,8 +13,8 @@ namespace {
 
 using namespace testing;
 
-constexpr int kSeeds = 1000;
-// relative: the spread of 1000 values is known to 2 %, heavy tails to a few times that
+constexpr int kSeeds = 400;
+// relative: the spread of 400 values is known to 4 %, heavy tails to a few times that
 constexpr double kErrorOfErrors = 0.15;
 constexpr double kFourSigma = 4.0;
 constexpr double kPlateDb = 0.1;   // the promise for a plate
@@ -24,7 +24,7 @@ constexpr double kRounding = 1e-12;
 constexpr double kErrorsShow = 1e-4;  // relative: a filter that is at work
 // relative: two thousand echoes of a sphere, of which a few stand, summed in another order
 constexpr double kCancelled = 1e-11;
-constexpr char kStatistics[] = "statistics of 1000 traces, of code that the tests below run, too";
+constexpr char kStatistics[] = "statistics of 400 traces, of code that the tests below run, too";
 
 Paths shot(const Scene& scene, const Radar& radar, int64_t num_rays, uint64_t seed, int batches,
            Footprint footprint = Footprint::kSecondOrder, int max_bounces = 4) {

@@ -13,7 +13,7 @@ POLE_DB = 0.5       # of poles, resolved or not: cones about spheres left 2 dB a
 ORDERS_DB = 0.05    # of both orders over a rough mirror: one lattice each, tilted against the other
 CLAIMED_DB = 0.95   # of his direct power: parts whose waves are faded away may have edges in phase; it scatters by .04 dB
 PEOPLE_DB = 0.80    # claimed for people, in the median; their outlines counted as edges of flat bodies .96
-MANY_RAYS = 2**18   # of one person: they err by a third of what 16 384 do
+MANY_RAYS = 2**17   # of one person: they err by half of what 16 384 do
 SCATTER = 0.01      # relative, of the diffuse part of a person's direct power
 
 

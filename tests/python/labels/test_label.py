@@ -21,7 +21,7 @@ def matches(selection, paths):
 
 
 def test_selections_agree_with_the_slow_matchers_on_random_expressions(make_paths):
-    num_paths, num_expressions, by_backtracking = 20_000, 500, 20
+    num_paths, num_expressions, by_backtracking = 10_000, 250, 20
     routes = random_routes(num_paths, 6, seed=1)
     paths, words, draw, num_taken = make_paths(routes), Words(routes), random.Random(2), 0
     for index in range(num_expressions):

@@ -15,7 +15,7 @@ from support.shapes import FREQUENCY, METAL, decibel, scene_of, sphere
 LAMBERT_TOLERANCE = 0.002   # relative: mean powers add, so that only the quadrature over the plate is left
 POLARIZED_TOLERANCE = 0.05  # relative: the depolarising axes of 3000 hits are drawn by chance
 RESOLVED_DB = 0.3           # what an isolated pedestrian is to be known to
-NUM_RAYS = 2 ** 17          # that suffice for it
+NUM_RAYS = 2 ** 16          # that suffice for it
 BISTATIC_DB = 0.15          # to Mie: physical optics loses 0.09 dB at 120 degrees by itself
 EXPECTED_STEPS = 3          # stages of the command's progress
 

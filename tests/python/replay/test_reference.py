@@ -23,7 +23,7 @@ CORNER_PHASE = 1e-3        # rad: what cells of 1 mm leave; 2e-4 found
 NORMAL_ERROR = 2e-3        # of a unit vector: interpolated normals of facets of 0.1 rad; 9e-4 found
 
 
-@pytest.mark.parametrize("seed", range(20, 26))
+@pytest.mark.parametrize("seed", range(20, 24))
 def test_smooth_plates_have_the_field_and_the_samples_of_the_reference(seed):
     found = coherent_deviation(seed)
     assert found.field < FIELD_SHARE and found.cube < SIGNAL_SHARE
@@ -61,7 +61,7 @@ def test_rough_plates_between_two_mirrors_have_the_mean_power_of_the_reference(s
     assert two_mirror_diffuse_deviation(seed).power < STANDARD_ERRORS
 
 
-@pytest.mark.parametrize("seed", range(20, 26))
+@pytest.mark.parametrize("seed", range(20, 24))
 def test_rough_plates_have_the_mean_power_of_the_reference(seed):
     assert diffuse_deviation(seed).power < STANDARD_ERRORS
 

@@ -50,8 +50,11 @@ class Oscillator:
         What the filter before the converter cuts off is missing."""
         frequency = np.fft.fftfreq(4 * self._count, 0.5 / self._waveform.sampling_rate)
         past = np.fft.ifft(np.fft.fft(np.exp(-1j * self._phase)) * np.exp(-2j * np.pi * frequency * delay))
-        tone = leaked_tone(self._slots, delay, self._time)
-        return self._passed(np.exp(1j * self._phase) * past * tone)[:, None]
+        # The tone does not repeat as the oscillator does: a filter would make a line at the edge of the band of its step.
+        beat = self._slots.slope[..., None] * delay
+        turn = self._passed(np.exp(1j * self._phase) * past, beat)
+        time = np.arange(self._count) / self._waveform.sampling_rate
+        return (leaked_tone(self._slots, delay, time) * turn)[:, None]
 
     def _of_pieces(self, cube, work) -> np.ndarray:
         """A cube whose chirps are worked on some at a time: work(spectrum [rx, C, 4 N], phase [C or 1, 4 N] in rad, slope
@@ -78,13 +81,14 @@ class Oscillator:
         common = np.fft.ifft(np.fft.fft(np.exp(-1j * phase)) * forward)
         return np.fft.ifft(np.fft.fft(np.fft.ifft(spectrum * forward) * common) / forward) * np.exp(1j * phase)
 
-    def _passed(self, signal):
-        """The second half of [..., 4 N] at the sampling rate, complex, without what lies outside the band."""
+    def _passed(self, signal, beat=0.0):
+        """The second half of [..., 4 N] at the sampling rate, complex, without what lies outside the band once it is turned by a
+        beat frequency in Hz, a number or [..., 1]."""
         count = self._count
-        band = np.zeros(4 * count)
+        line = np.fft.fftfreq(4 * count, 0.25 / count) + beat / self._line_distance
         lowest = -2 * int(count * NEGATIVE_SHARE)
-        band[np.arange(lowest, lowest + (count if self._waveform.real else 2 * count))] = 1.0
-        return np.fft.ifft(np.fft.fft(signal) * band)[..., 2 * count::2]
+        in_band = (line >= lowest) & (line < lowest + (count if self._waveform.real else 2 * count))
+        return np.fft.ifft(np.fft.fft(signal) * in_band)[..., 2 * count::2]
 
     def _phases(self, generator) -> np.ndarray:
         time, count = self._time, self._count

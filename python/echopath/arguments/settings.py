@@ -155,7 +155,7 @@ class LabelSettings(Settings):
     plane: "range_doppler" or "range_azimuth", whose cells; objects: what to report on, as in `families`, kept as pairs of a
         name and its globs
     noise: whether cells must stand out of the noise, noise_margin_db: dB from -300 to 300, by so much
-    dynamic_range_db: dB, cells may be so far below the peak, None: no limit; errors: standard errors too
+    dynamic_range_db: dB, cells may be so far below the peak of the echoes, None: no limit; errors: standard errors too
     Raises TypeError or ValueError naming the keyword. Values are frozen; two with equal values are equal.
     """
 

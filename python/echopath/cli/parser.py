@@ -130,7 +130,7 @@ def _add_labels(commands) -> None:
     labels.add_argument("--plane", choices=["range_doppler", "range_azimuth"], default="range_doppler",
                         help="whose cells are labelled (default: %(default)s)")
     labels.add_argument("--dynamic-range", type=float, default=60.0, metavar="DB",
-                        help="how far below the peak cells are labelled (default: %(default)s)")
+                        help="how far below the peak of the echoes cells are labelled (default: %(default)s)")
     labels.add_argument("--noise-margin", type=float, default=10.0, metavar="DB",
                         help="by how much they stand out of the noise (default: %(default)s)")
     labels.add_argument("--errors", action="store_true", help="standard errors too, of frames traced with batches")

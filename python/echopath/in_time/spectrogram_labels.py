@@ -12,7 +12,7 @@ from ..arguments.checks import an, checked, optional, refused
 from ..arguments.settings import LabelSettings
 from ..base.equality import has_same_fields, is_same
 from ..base.made_by import made_by
-from ..labels.part_cells import PartCells
+from ..labels.part_cells import PartCells, masks_of
 from ..presentation.xarray_maps import spectrogram_labels_dataset
 from .maps import Spectrogram
 
@@ -32,7 +32,7 @@ class SpectrogramLabels(PartCells):
     share: [K, T, V], powers of the parts over their sum: they add up to 1, or are 0 where there is no power
     dominant: i16 [T, V], the part of the largest share (the first of equal ones), -1 outside the mask
     noise_power: W, mean of the noise in a cell; noise_margin_db: dB above it that count as above the noise
-    dynamic_range_db: dB below the strongest cell of the whole that the mask goes down to
+    dynamic_range_db: dB below the strongest cell that the mask goes down to: of frames that of the paths, else of the whole
     above_noise: bool [T, V], whether the whole is above the noise; mask: bool [T, V], above it and within the dynamic range
     """
 
@@ -97,15 +97,18 @@ def spectrogram_labels(parts: Mapping[str, Spectrogram], whole: Spectrogram | No
     return labels_of(parts, whole, noise_margin_db, dynamic_range_db)
 
 
-def labels_of(parts: dict[str, Spectrogram], whole: Spectrogram | None, noise_margin_db: float,
-              dynamic_range_db: float | None) -> SpectrogramLabels:
-    """What `spectrogram_labels` returns, of arguments that are right; noise_margin_db: minus infinity: no cell is in the noise"""
+def labels_of(parts: dict[str, Spectrogram], whole: Spectrogram | None, noise_margin_db: float, dynamic_range_db: float | None,
+              strongest: float | None = None) -> SpectrogramLabels:
+    """What `spectrogram_labels` returns, of arguments that are right.
+
+    noise_margin_db: minus infinity: no cell is in the noise; strongest: W, as in `masks_of`
+    """
     first = next(iter(parts.values()))
     power = np.stack([one.power for one in parts.values()])
     total = power.sum(axis=0) if whole is None else whole.power
     range_db = np.inf if dynamic_range_db is None else dynamic_range_db
     floor = first.noise_power * 10.0 ** (0.1 * noise_margin_db)
-    above_noise, mask = _core.cell_masks(total, floor, 10.0 ** (-0.1 * range_db))
+    above_noise, mask = masks_of(total, floor, 10.0 ** (-0.1 * range_db), strongest)
     return SpectrogramLabels(
         times=first.times, velocity=first.velocity, train=first.train, trains=first.trains, part_names=list(parts), power=power,
         whole=total, share=_core.power_shares(power), dominant=_core.strongest_part(power, mask), noise_power=first.noise_power,

@@ -33,7 +33,7 @@ class Views:
             if getattr(settings, name) != only:
                 raise refused(ValueError, f"labels.{name}", f"{only!r} for spectrograms", getattr(settings, name))
         self._settings, self._make_stft, self._channel = settings, make_stft, channel
-        self._whole, self._views = make_stft(), {}
+        self._whole, self._echoes, self._views = make_stft(), make_stft(), {}
         self._frame, self._gone = None, []
 
     def seen(self, frames: Iterable) -> Iterator:
@@ -50,6 +50,7 @@ class Views:
         beside = {name: self._of_channel(cube) for name, cube in cubes_beside(frame).items()}
         whole = self._of_channel(frame.cube)
         self._whole.add(burst._replace(cube=whole + sum(beside.values())))
+        self._echoes.add(burst._replace(cube=whole))
         nothing = np.zeros_like(whole)
         for view, cubes in self._cubes(frame).items():
             stfts = self._views.setdefault(view, {})
@@ -66,11 +67,12 @@ class Views:
         """{view: its labels}."""
         margin = self._settings.noise_margin_db if self._settings.noise else -np.inf
         whole = self._whole.result(None)
+        strongest = float(np.max(self._echoes.result(None).power, initial=0.0))
         found = {}
         for view, stfts in self._views.items():
             last = [name for name in (GHOSTS, REST, *BESIDE) if name in stfts]  # those of later frames stand before them
             parts = {name: stfts[name].result(None) for name in (*(name for name in stfts if name not in last), *last)}
-            found[view] = labels_of(parts, whole, margin, self._settings.dynamic_range_db)
+            found[view] = labels_of(parts, whole, margin, self._settings.dynamic_range_db, strongest)
         return found
 
     def _cubes(self, frame: Frame) -> dict[str, dict]:

@@ -19,7 +19,7 @@ from ..transmit.signals import has_steps
 from .family_pass import FamilyPass, owners_of_views
 from .labels import Labels
 from .objects import family_cells, label_ghosts, label_objects, occluded_objects
-from .powers import CubeSet, add_powers, decomposed
+from .powers import CubeSet, add_powers, decomposed, join
 from .request import Labelling, Request, labelling_of, make_request
 from .standard_errors import share_errors
 
@@ -54,7 +54,7 @@ def annotate(paths: _core.Paths, parts: Mapping | None = None, radar: _core.Rada
     noise: False: no cell is in the noise; noise_margin_db: dB, cells count as above the noise where the power of the whole
         is this much above the mean of the noise in a cell (k T0 F fs and the noise bandwidths of the window; of a
         range-azimuth map, measured on noise alone). Noise alone passes 10 dB in one cell of 22 000, of one channel
-    dynamic_range_db: dB below the strongest cell that the mask goes down to, None: no limit
+    dynamic_range_db: dB below the strongest cell of the echoes that the mask goes down to, None: no limit
     errors: True: standard errors too, which needs trace(batches=2 or more; 8 are good) and one more pass over the paths
     tolerance (relative rms), method, replay, evaluate, phase_tolerance (rad), retrace, keyframes: as in `synthesize`; those
         of the parts where these are given
@@ -91,7 +91,7 @@ def owners_and_powers(work: Labelling, partitions: dict):
         views = {_FAMILIES: families, **partitions}
         num_parts = len(families) + sum(len(group) + 1 for group in partitions.values())
         powers = add_powers(decomposed(paths, radar, views, num_parts, plane, settings), plane)
-        return owners_of_powers(request, powers.pop(_FAMILIES)), powers
+        return owners_of_powers(powers.pop(_FAMILIES)), powers
     is_whole = len(partitions) == 1 and not any(partitions.values())
     signals = FamilyPass(work, adds_up=is_whole)
     if is_whole:
@@ -104,18 +104,18 @@ def owners_and_powers(work: Labelling, partitions: dict):
 
 def owners_of_cubes(request: Request, cubes: dict):
     """What finds the owners of cells from {Family: cube} of all families."""
-    return owners_of_powers(request, add_powers([CubeSet(request.radar, 1.0, {_FAMILIES: cubes})], request.plane)[_FAMILIES])
+    return owners_of_powers(add_powers([CubeSet(request.radar, 1.0, {_FAMILIES: cubes})], request.plane)[_FAMILIES])
 
 
-def owners_of_powers(request: Request, powers):
+def owners_of_powers(powers):
     """What finds the owners of cells from ViewPowers of all families."""
-    return lambda whole, intervals: owners_of_views(powers, request.masks(whole)[1])
+    return lambda mask, intervals: owners_of_views(powers, mask)
 
 
 def label_partitions(work: Labelling, owners, powers: dict, beside=()) -> dict:
     """{partition: Labels} from {partition: ViewPowers}; objects and ghosts are the same in all.
 
-    owners: callable (power of the whole [V, R] in W, {Family: Interval}) that gives CellOwners of the families
+    owners: callable (mask bool [V, R], {Family: Interval}) that gives CellOwners of the families
     beside: names of the parts, last in each view, that no path makes
     """
     first = next(iter(powers.values()))
@@ -124,10 +124,11 @@ def label_partitions(work: Labelling, owners, powers: dict, beside=()) -> dict:
                 for partition, of_parts in powers.items()
                 if [*work.selections.get(partition, {}), "other", *beside] == list(of_parts.cells)}
     intervals = dict(zip(work.families.families, map(interval_of, work.mean.of_families)))
-    owned = owners(first.whole, intervals)
+    mask = work.request.masks(first)[1]
+    owned = owners(mask, intervals)
     for name in beside:
         owned.leave(first.cells[name])
-    scene_labels = _label_scene(work, owned, intervals, first.whole)
+    scene_labels = _label_scene(work, owned, intervals, mask)
     labels = {partition: _label_parts(work, of_parts, received.get(partition), scene_labels)
               for partition, of_parts in powers.items()}
     if not work.request.errors:
@@ -136,13 +137,13 @@ def label_partitions(work: Labelling, owners, powers: dict, beside=()) -> dict:
             for partition, found in labels.items()}
 
 
-def _label_scene(work: Labelling, owners, intervals: dict, whole) -> dict:
+def _label_scene(work: Labelling, owners, intervals: dict, mask) -> dict:
     """The fields of Labels that tell of objects and ghosts.
 
-    owners: CellOwners; intervals: {Family: Interval}; whole: power [V, R] in W
+    owners: CellOwners; intervals: {Family: Interval}; mask: bool [V, R]
     """
     request, paths, families, progress = work.request, work.paths, work.families, work.settings.get("progress")
-    found = family_cells(owners, request.masks(whole)[1], request.noise_floor, request.plane, intervals)
+    found = family_cells(owners, mask, request.noise_floor, request.plane, intervals)
     seen = visibility_in_trace(paths, request.radar, request.objects, progress=progress)
     visibility = {of_object.name: of_object for of_object in seen}
     hidden = occluded_objects(families.objects, found, visibility, request.plane)
@@ -162,7 +163,7 @@ def _label_parts(work: Labelling, powers, received, scene_labels: dict) -> Label
     request = work.request
     names, plane = list(powers.cells), request.plane
     power = np.stack([powers.cells[name] for name in names])
-    above_noise, mask = request.masks(powers.whole)
+    above_noise, mask = request.masks(powers)
     return Labels(plane=plane.name, velocity=plane.velocity, azimuth=plane.azimuth, range=plane.range,
                   part_names=[str(name) for name in names], power=power, whole=powers.whole,
                   share=_core.power_shares(power), dominant=_core.strongest_part(power, mask),
@@ -176,8 +177,10 @@ def label_frame(work: Labelling, owners, cubes: dict, beside: dict) -> dict:
 
     owners: as in `label_partitions`; beside: {name: cube} of what no path makes, which every partition gets as parts
     """
-    views = {partition: {**parts, **beside} for partition, parts in cubes.items()}
-    powers = add_powers([CubeSet(work.request.radar, 1.0, views)], work.request.plane)
+    radar, plane = work.request.radar, work.request.plane
+    powers = add_powers([CubeSet(radar, 1.0, cubes)], plane)
+    if beside:
+        join(powers.values(), beside, sum(next(iter(cubes.values())).values()), radar, plane)
     return label_partitions(work, owners, powers, tuple(beside))
 
 

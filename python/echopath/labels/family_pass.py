@@ -67,13 +67,13 @@ class FamilyPass:
         """Sum of all signals, [tx, rx, chirp, sample] in sqrt(W)."""
         return self._pass.whole()
 
-    def assign_cells(self, whole, intervals: dict) -> CellOwners:
+    def assign_cells(self, mask, intervals: dict) -> CellOwners:
         """Makes the families that may own a cell after all, and gives the cells to their families.
 
-        whole: power [V, R] in W, of the sum of all fields; intervals: {Family: Interval} of mean powers in W
+        mask: bool [V, R], the cells that have an owner; intervals: {Family: Interval} of mean powers in W
         """
         self._pass.set_adds_up(False)
-        owners, mask = self._owners, self._request.masks(whole)[1]
+        owners = self._owners
         self._make_open(mask)
         if self._least > 0.0 and np.any(mask & (owners.best <= self._least)):
             self._least = 0.0  # what maps leave out may own these cells

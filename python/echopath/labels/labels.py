@@ -152,7 +152,7 @@ class Labels(PartCells):
     share: [K, V, R], powers of the parts over their sum: they add up to 1, or are 0 where there is no power
     dominant: i16 [V, R], the part of the largest share (the first of equal ones), -1 outside the mask
     noise_power: W, mean of the noise in a cell; noise_margin_db: dB above it that count as above the noise
-    dynamic_range_db: dB below the strongest cell of the whole that the mask goes down to
+    dynamic_range_db: dB below the strongest cell of the paths that the mask goes down to, whatever leaks or interferes
     above_noise: bool [V, R], whether the whole is above the noise; mask: bool [V, R], above the noise and within the
         dynamic range
     objects: list of ObjectLabel, in the order of the scene; object_map: i16 [V, R], index into it, -1: none

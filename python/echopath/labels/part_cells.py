@@ -5,6 +5,8 @@ import dataclasses
 
 import numpy as np
 
+from .. import _core
+
 
 @dataclasses.dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class PartCells:
@@ -20,3 +22,14 @@ class PartCells:
     dynamic_range_db: float
     above_noise: np.ndarray
     mask: np.ndarray
+
+
+def masks_of(whole: np.ndarray, noise_floor: float, dynamic_range: float, strongest: float | None = None) -> tuple:
+    """(above_noise, mask), bool [V, R] of powers of the whole [V, R] in W.
+
+    noise_floor: W; dynamic_range: ratio of powers, down to which the mask goes below the strongest cell of the echoes
+    strongest: W in that cell, None: the whole is echoes alone. What no path makes, such as leakage far above all echoes, hides none
+    """
+    peak = np.max(whole, initial=0.0)
+    share = 1.0 if strongest is None or peak == 0.0 else strongest / peak
+    return _core.cell_masks(whole, noise_floor, min(1.0, dynamic_range * share))

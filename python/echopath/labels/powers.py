@@ -48,11 +48,12 @@ class ViewPowers:
     cells: {part: [V, R] W}; whole: [V, R] W, of the sum of the parts as fields
     rivals: {rival_of(part): [V, R] W, of the sum of their fields}, in the order of their first parts
     received: {part: W}, mean over channels, chirps and samples
+    strongest: W in the strongest cell of what paths make, None: that of the whole
     """
 
     def __init__(self, plane):
         self._plane = plane
-        self.cells, self.rivals, self.received, self.whole = {}, {}, {}, 0.0
+        self.cells, self.rivals, self.received, self.whole, self.strongest = {}, {}, {}, 0.0, None
 
     def add(self, cubes: dict, cube_set: CubeSet) -> None:
         """cubes: {part: [tx, rx, chirp, sample]} of the set's receivers."""
@@ -89,6 +90,7 @@ def join(views, beside: dict, whole, radar, plane) -> None:
     received = {part: mean_square(cube) for part, cube in beside.items()}
     power = plane.power(whole + sum(beside.values()), radar)
     for view in views:
+        view.strongest = float(np.max(view.whole, initial=0.0))
         view.cells |= cells
         view.received |= received
         view.whole = power

@@ -14,6 +14,7 @@ from ..paths.families import families as find_families
 from ..paths.resolution import mean_powers
 from ..paths.subset import part_of_path
 from ..signals.parts import ONLY_PARTITION
+from .part_cells import masks_of
 from .planes import make_plane
 from .standard_errors import require_batches
 
@@ -40,9 +41,9 @@ class Request:
         """Power in W that cells above the noise exceed."""
         return self.plane.noise_power * 10.0 ** (self.noise_margin_db / 10.0) if self.noise else 0.0
 
-    def masks(self, whole):
-        """(above_noise, mask), bool [V, R] of powers of the whole [V, R] in W."""
-        return _core.cell_masks(whole, self.noise_floor, self.dynamic_range)
+    def masks(self, powers):
+        """(above_noise, mask), bool [V, R] of ViewPowers."""
+        return masks_of(powers.whole, self.noise_floor, self.dynamic_range, powers.strongest)
 
 
 def as_label_settings(labels: bool | LabelSettings | Mapping | None) -> LabelSettings | None:

@@ -79,9 +79,10 @@ def _draw_map(figure, labels, areas: list, title: str) -> None:
 def _draw_cells(axes, labels, areas: list) -> None:
     rows = _rows(labels)
     (bottom, top), (near, far) = _shown(labels)
-    level = in_dbm(labels.whole[bottom:top, near:far], SMALLEST_POWER)
+    shown = labels.whole[bottom:top, near:far]
+    level = in_dbm(shown, SMALLEST_POWER)
     image = axes.pcolormesh(labels.range[near:far], rows[bottom:top], level, cmap="gray", shading="nearest", rasterized=True,
-                            **_grey_limits(labels))
+                            **_grey_limits(labels, shown))
     for name, colour, is_inside in areas:
         if is_inside.any():
             _draw_area(axes, labels.range, rows, is_inside, colour)
@@ -138,11 +139,12 @@ def _class_areas(labels) -> list:
     return [(*CLASSES["real"], labels.object_map >= 0), *((*CLASSES[kind], of_cell == kind) for kind in (1, 2))]
 
 
-def _grey_limits(labels) -> dict:
-    """From the noise, or what the mask goes down to, up to the peak."""
-    highest = float(in_dbm(labels.whole.max(), SMALLEST_POWER))
-    noise = float(in_dbm(labels.noise_power, SMALLEST_POWER))
-    lowest = max(noise, highest - min(labels.dynamic_range_db, 90.0))
+def _grey_limits(labels, shown) -> dict:
+    """From the noise, or what the mask goes down to, up to the peak of what is shown, which may be far below that of leakage."""
+    highest = float(in_dbm(shown.max(), SMALLEST_POWER))
+    noise, weakest = (float(in_dbm(power, SMALLEST_POWER))
+                      for power in (labels.noise_power, labels.whole[labels.mask].min(initial=np.inf)))
+    lowest = max(noise, min(highest - min(labels.dynamic_range_db, 90.0), max(weakest, highest - 90.0)))
     return {"vmin": min(lowest, highest - 10.0), "vmax": highest}
 
 

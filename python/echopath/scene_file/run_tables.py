@@ -132,7 +132,7 @@ class LabelsTable(Table):
     noise: bool = Field(LabelSettings.noise, description="cells must stand out of the noise")
     noise_margin_db: Number = Field(LabelSettings.noise_margin_db, description="dB, by so much")
     dynamic_range_db: Annotated[float, Field(ge=0, allow_inf_nan=False)] = Field(
-        LabelSettings.dynamic_range_db, description="dB, cells may be so far below the peak")
+        LabelSettings.dynamic_range_db, description="dB, cells may be so far below the peak of the echoes")
     errors: bool = Field(LabelSettings.errors, description="standard errors too; needs batches")
 
 

@@ -1,7 +1,7 @@
 """A frame in one picture: its map, and what was detected in it."""
 from __future__ import annotations
 
-from .maps import MAP_SIZE, draw_range_doppler
+from .maps import MAP_SIZE, draw_range_doppler, hold_points
 from .points import draw_points
 from .style import axes_or_new
 
@@ -17,7 +17,7 @@ def title_of(frame) -> str:
 
 
 def draw_frame(frame, *, ax=None, vmin=None, vmax=None, title=None):
-    """The range-Doppler map of a frame with its noise, and its detections, where it has some, as points.
+    """The range-Doppler map of a frame with its noise, and all of its detections, where it has some, as points.
 
     ax: axes to draw in, None: new ones; vmin, vmax: ends of the colour scale in dBm; title: None: what it shows
     Returns the axes, as `draw_range_doppler`. Raises ValueError for a record of paths alone.
@@ -29,4 +29,5 @@ def draw_frame(frame, *, ax=None, vmin=None, vmax=None, title=None):
         draw_range_doppler(frame.spectrum, ax=ax, vmin=vmin, vmax=vmax, title=title_of(frame) if title is None else title)
         if frame.detections is not None and len(frame.detections):
             draw_points(ax, frame.detections, has_room=has_room, edgecolors="white")
+            hold_points(ax, frame.detections.range, frame.detections.velocity)
     return ax

@@ -206,6 +206,16 @@ def _crop(panels, extent) -> None:
         axes.set_ylim(max(bottom, extent[2]), min(top, extent[3]))
 
 
+def hold_points(axes, distance, velocity) -> None:
+    """Widens the axes of a map by what points at [N] m and [N] m/s need, weak ones among them, to the ends of the map at most."""
+    left, right, bottom, top = axes.get_images()[0].get_extent()
+    for limits, limit, values, margin, ends in ((axes.get_xlim, axes.set_xlim, distance, RANGE_MARGIN, (left, right)),
+                                                (axes.get_ylim, axes.set_ylim, velocity, VELOCITY_MARGIN, (bottom, top))):
+        lowest, highest = limits()
+        limit(min(lowest, max(ends[0], values.min() - margin), values.min()),
+              max(highest, min(ends[1], values.max() + margin), values.max()))
+
+
 def _small_print(figure, note: str) -> None:
     if note:
         figure.supxlabel(note, x=0.995, fontsize=6.5, color="0.4", horizontalalignment="right")  # the layout leaves it room

@@ -142,3 +142,15 @@ def test_frames_and_detections_without_what_is_asked_for_say_so(frame, tmp_path)
     if len(blind) and not np.isfinite(blind.azimuth).any():
         with pytest.raises(ValueError, match="view: 'above' needs azimuths"):
             blind.plot("above")
+
+
+def test_axes_of_a_frame_hold_every_detection_that_its_legend_counts(frame, ax):
+    """At a false alarm in 1000 cells, noise is detected all over the map, far from the plate."""
+    found = ep.detect_frame(frame, false_alarm_rate=1e-3)
+    frame = dataclasses.replace(frame, detections=found)
+    frame.plot(ax=ax)
+    (near, far), (bottom, top) = ax.get_xlim(), ax.get_ylim()
+    assert np.ptp(found.range) > 5.0
+    assert np.all((found.range >= near) & (found.range <= far) & (found.velocity >= bottom) & (found.velocity <= top))
+    left, right, lowest, highest = ax.get_images()[0].get_extent()
+    assert left <= near and far <= right and lowest <= bottom and top <= highest

@@ -6,6 +6,7 @@ import numpy as np
 from .. import _core
 from ..arguments.effects import INTERFERENCE, Choices, is_on
 from ..arguments.settings import TraceSettings
+from ..base.callers import warn_user
 from ..scene.interferers import interferers_of
 from ..tracing.traces import trace
 from ..transmit import signal_shape
@@ -38,18 +39,31 @@ def interference_cube(scene, radar: _core.Radar, settings: TraceSettings, replay
     """What the other radars of a scene send into the receivers in a frame, complex, in the shape of `synthesize` in sqrt(W).
 
     settings: of the trace of the frame, also of those from the other radars; replay: as in `synthesize`
-    progress: as in `trace`
+    progress: as in `trace`. Warns of a radar that is never heard.
     """
     cube = np.zeros(signal_shape(radar), complex)
-    for one in interferers_of(scene):
-        timing = {"start_time": settings.start_time, "offset": one.offset}
-        if one.over != "paths":
-            share = _direct_share(scene, radar, one.radar, settings)
-            cube += share * interference(radar, one.radar, **timing) if share > 0.0 else 0.0
-        if one.over != "direct":
-            paths = _one_way_paths(scene, radar, one.radar, settings, progress)
-            cube += interference(radar, one.radar, paths, **timing, replay=replay) if paths.num_paths else 0.0
+    for index, one in enumerate(interferers_of(scene)):
+        ways = _ways_of(scene, radar, one, settings, replay, progress)
+        if not any(way.any() for way in ways):
+            _warn_of_silence(index, has_ways=bool(ways))
+        cube += sum(ways)
     return cube
+
+
+def _ways_of(scene, radar, one, settings: TraceSettings, replay: str, progress) -> list:
+    """Signals of an Interferer in sqrt(W) over the direct way and over the paths of the scene, without those that it has not."""
+    timing, ways = {"start_time": settings.start_time, "offset": one.offset}, []
+    if one.over != "paths" and (share := _direct_share(scene, radar, one.radar, settings)) > 0.0:
+        ways.append(share * interference(radar, one.radar, **timing))
+    if one.over != "direct" and (paths := _one_way_paths(scene, radar, one.radar, settings, progress)).num_paths:
+        ways.append(interference(radar, one.radar, paths, **timing, replay=replay))
+    return ways
+
+
+def _warn_of_silence(index: int, has_ways: bool) -> None:
+    why = ("its chirps never come near those of the radar while it samples, which another offset or slope changes" if has_ways
+           else "no way leads from it to the radar")
+    warn_user(f"interferers[{index}]: is never heard in the frame: {why}")
 
 
 def _middle(radar, start_time: float) -> float:

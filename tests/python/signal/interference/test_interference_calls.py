@@ -77,3 +77,18 @@ def test_another_radar_in_the_place_of_the_radar_is_refused():
     passing = RADAR.replace(position=(-0.5, 0, 0), motion=ep.LinearMotion(velocity=(0.5 / at_chirp_8, 0, 0)))
     with pytest.raises(ValueError, match="^other: must be at least a wavelength"):
         ep.interference(RADAR, passing)
+
+
+@pytest.mark.parametrize("others, told", [
+    # Chirps of 0.9 of the slope, which begin after this radar's, are below them ever after; the other one crosses them.
+    ([direct(waveform=RADAR.waveform.replace(bandwidth=1.1e9)),
+      ep.Interferer(radar=RADAR.replace(position=(30, 2, 0), waveform=RADAR.waveform.replace(bandwidth=0.9e9)), offset=2e-6)],
+     r"^interferers\[1\]: is never heard in the frame: its chirps never come near"),
+    ([ep.Interferer(radar=RADAR.replace(position=(16, 6, 0)), over="direct")],  # behind the ball
+     r"^interferers\[0\]: is never heard in the frame: no way leads from it"),
+])
+def test_a_radar_that_is_never_heard_is_named(others, told):
+    with pytest.warns(RuntimeWarning, match=told) as warned:
+        frame_of(*others)
+    assert len([one for one in warned if "never heard" in str(one.message)]) == 1
+    assert warned[0].filename == __file__

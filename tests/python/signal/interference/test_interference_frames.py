@@ -49,6 +49,7 @@ def test_effects_switch_it_off_and_need_it_to_force_it_on():
         frame_of(street(), effects={"interference": True})
 
 
+@pytest.mark.filterwarnings("ignore:interferers.0.. is never heard")
 def test_what_stands_in_the_direct_way_hides_it():
     both = [frame_of(street(ep.Interferer(radar=TONE, over="direct"), wall=wall)).interference_cube
             for wall in (IN_THE_WAY, None)]

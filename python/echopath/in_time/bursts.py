@@ -12,6 +12,7 @@ from ..arguments.checks import ArrayLike, array, refused, row_of_channel, shown
 from ..arguments.iterables import iterable
 from ..arguments.part_names import BESIDE
 from ..frame.frame import Frame
+from ..frame.maps import FrameMaps
 from ..signals.beside import cubes_beside
 from ..signals.parts import decompose, selection_rule
 from ..signals.same_radar import WAVEFORM_KINDS
@@ -65,7 +66,7 @@ def chirp_period(radar) -> float:
 
 def frames_rule(argument: str, value):
     """What can be iterated for frames or cubes; a single one becomes a list of it."""
-    if isinstance(value, Frame):
+    if isinstance(value, Frame | FrameMaps):
         return [value]
     if isinstance(value, np.ndarray) and value.ndim == 4:
         return [_CUBE(argument, value)]
@@ -95,14 +96,18 @@ def text_of_part(part: Part) -> str | None:
 
 
 def bursts(frames, radar, *, part: Part = None, channel: Channel = None, start_times=None) -> Iterator[Burst]:
-    """The frames or cubes one after the other, as `spectrogram` takes them; raises ValueError where time runs back.
+    """The frames or cubes one after the other, as `spectrogram` takes them.
 
+    Raises TypeError for maps alone, ValueError where time runs back.
     start_times: [F] s of cubes, None: without gaps from 0 on
     """
     before = None
     for number, one in enumerate(frames):
         if isinstance(one, Frame):
             burst = _of_frame(one, radar, part, start_times)
+        elif isinstance(one, FrameMaps):
+            raise TypeError(f"frames: must have signals, got {one!r} of files that hold none; those that are saved with "
+                            'keep="all" do')
         else:
             start = _start_of(number, before, start_times)
             burst = Burst(start, _CUBE("frames", one), _radar_of_cubes(radar, part),

@@ -9,6 +9,7 @@ from ..arguments.checks import refused
 from ..arguments.part_names import BESIDE
 from ..arguments.settings import FRAME_KEYWORDS, LabelSettings
 from ..frame.frame import Frame
+from ..frame.maps import FrameMaps
 from ..labels.ghost_names import ghost_name
 from ..labels.planes import with_receivers
 from ..labels.powers import parts_by_rival
@@ -39,7 +40,7 @@ class Views:
     def seen(self, frames: Iterable) -> Iterator:
         """The frames, one after the other, each of which is remembered for `add`. Raises TypeError for cubes."""
         for frame in frames:
-            if not isinstance(frame, Frame):
+            if not isinstance(frame, Frame | FrameMaps):  # `bursts` refuses the latter
                 raise refused(TypeError, "labels", "None for cubes, of whose echoes nobody knows what made them", self._settings)
             self._frame = frame
             yield frame

@@ -28,7 +28,7 @@ def masks_of(whole: np.ndarray, noise_floor: float, dynamic_range: float, strong
     """(above_noise, mask), bool [V, R] of powers of the whole [V, R] in W.
 
     noise_floor: W; dynamic_range: ratio of powers, down to which the mask goes below the strongest cell of the echoes
-    strongest: W in that cell, None: the whole is echoes alone. What no path makes, such as leakage far above all echoes, hides none
+    strongest: W in that cell, None: the whole is echoes alone. Leakage, which no path makes, may be far above all echoes
     """
     peak = np.max(whole, initial=0.0)
     share = 1.0 if strongest is None or peak == 0.0 else strongest / peak

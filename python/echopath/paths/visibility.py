@@ -6,6 +6,7 @@ import weakref
 
 from .. import _core
 from ..arguments.checks import Progress, checked, count, optional, real
+from ..arguments.motions import require_motion
 from ..arguments.objects import Objects, named_globs, objects_rule
 from ..base.made_by import made_by
 
@@ -103,6 +104,7 @@ def visibility(scene: _core.Scene, radar: _core.Radar, objects: Objects = None, 
     Returns a list of ObjectVisibility, in the order of the objects; the same for any number of threads. Raises ValueError
     for bad names, globs that take no mesh and motions that do not cover the time.
     """
+    require_motion("radar", radar, (0.5 * radar.frame_duration if time is None else time,))
     return _as_objects(_core.visibility(scene, radar, named_globs(objects), time, num_directions, progress))
 
 

@@ -19,7 +19,7 @@ from .settings import Receiver
 from .slots import SlotTimes
 
 
-@dataclasses.dataclass(eq=False)
+@dataclasses.dataclass(eq=False, repr=False)
 class Reception:
     """What a receiver gives.
 
@@ -32,6 +32,11 @@ class Reception:
     cube: np.ndarray
     codes: np.ndarray | None = None
     gain_db: float | None = None
+
+    def __repr__(self) -> str:
+        codes = "none" if self.codes is None else f"{self.codes.dtype} {list(self.codes.shape)}"
+        gain = "" if self.gain_db is None else f", gain {self.gain_db:.6g} dB"
+        return f"Reception(cube {list(self.cube.shape)}, codes: {codes}{gain})"
 
 
 _CUBE = array("[T, R, C, S]", kind="complex")

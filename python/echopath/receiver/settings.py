@@ -13,6 +13,8 @@ from ..arguments.settings import Settings, settings_class
 Row = tuple[float, ...]
 Table = tuple[Row, ...]
 
+HIGHEST_LEVEL = 20.0  # dBc/Hz, of a phase that turns about at random: masks of radars are far below it
+
 
 def _row(unit: str = "") -> Rule:
     """Finite numbers [N] as a tuple."""
@@ -52,8 +54,9 @@ def _value(kind: type) -> Rule:
 class PhaseNoise(Settings):
     """Phase noise of the oscillator that transmitters and mixers share, by a mask.
 
-    offsets: [M] Hz from the carrier, ascending, above 0; levels: [M] dBc/Hz there, on one side of the carrier. Between them
-        the level runs straight over the logarithm of the offset, beyond the ends it stays.
+    offsets: [M] Hz from the carrier, ascending, above 0; levels: [M] dBc/Hz there, on one side of the carrier, at most 20:
+        a mask that would rise further begins at an offset where it does not. Between them the level runs straight over the
+        logarithm of the offset, beyond the ends it stays.
     Raises TypeError or ValueError naming the keyword. Values are frozen; two with equal values are equal.
     """
 
@@ -68,6 +71,8 @@ class PhaseNoise(Settings):
             raise refused(ValueError, "offsets", "ascending Hz above 0, one at least", self.offsets)
         if len(self.levels) != len(self.offsets):
             raise refused(ValueError, "offsets", f"as many as levels, {len(self.levels)}", self.offsets)
+        if max(self.levels) > HIGHEST_LEVEL:
+            raise refused(ValueError, "levels", f"at most {HIGHEST_LEVEL:g} dBc/Hz", self.levels)
 
     def density(self, offset) -> np.ndarray:
         """Power relative to the carrier's in 1 Hz.

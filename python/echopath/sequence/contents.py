@@ -68,11 +68,12 @@ def _plain(value) -> Any:
 
 def what_differs(mine: Path, theirs: Path) -> str:
     """What two files of contents do not share, in words; "" where a run of the first may go on in the place of the second."""
-    try:
-        with our_file(mine, SEQUENCE) as ours, our_file(theirs, SEQUENCE) as there:
-            return _other_setting(ours, there) or _other_item(ours, there)
-    except _core.FileError as error:
-        return str(error)
+    with our_file(mine, SEQUENCE) as ours:
+        try:  # within: what is wrong with theirs is nothing of mine
+            with our_file(theirs, SEQUENCE) as there:
+                return _other_setting(ours, there) or _other_item(ours, there)
+        except _core.FileError as error:
+            return f"{error}; move what is there away, or give another path"
 
 
 def _other_setting(ours, theirs) -> str:

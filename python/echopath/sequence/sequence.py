@@ -15,6 +15,7 @@ from .. import _core
 from ..arguments.checks import LARGEST_COUNT, MapWindow, Progress, anything, checked, count, flag, one_of, real, refused
 from ..arguments.checks import path as path_rule
 from ..arguments.effects import Choices
+from ..arguments.motions import require_motion
 from ..arguments.settings import (
     Edges, Evaluate, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings,
     TraceSettings,
@@ -222,8 +223,7 @@ def _checked_end(scene, radar, start_time: float, frames: int, interval: float) 
         raise refused(ValueError, "interval", f"a number of s that gives {frames} frames finite times", interval)
     try:
         scene.require_times(start_time, end)
-        for time in (start_time, end):
-            radar.world_from_radar(time)
+        require_motion("radar", radar, (start_time, end))
     except ValueError as error:
         raise ValueError(f"frames: must all lie within the motions, got {frames} frames every {interval:g} s: {error}") from None
     return end

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..arguments.checks import an, checked, optional, real
+from ..arguments.motions import require_motion
 from ..arguments.settings import Replay, SignalSettings
 from ..transmit import code_of, radar_of_noise
 from .interference_crossing import FINE, Chirps, add_crossing
@@ -42,6 +43,8 @@ def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | No
     slots = radar_of_noise(radar)
     waveform, num_rx = slots.waveform, len(radar.receivers)
     begins = start_time + np.array([waveform.slot_start(slot) for slot in range(waveform.num_chirps * slots.num_slots)])
+    for argument, one in (("radar", radar), ("other", other)):
+        require_motion(argument, one, (start_time, start_time + radar.frame_duration))
     ways = Ways(radar, other, paths, begins, replay)
     cube = np.zeros((len(begins), num_rx, waveform.num_samples), complex)
     for place, begin in enumerate(begins):

@@ -5,6 +5,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.effects import INTERFERENCE, Choices, is_on
+from ..arguments.motions import require_motion
 from ..arguments.settings import TraceSettings
 from ..base.callers import warn_user
 from ..scene.interferers import interferers_of
@@ -26,11 +27,7 @@ def require_interferers(scene, radar: _core.Radar, effects: Choices, times) -> N
         return
     for index, one in enumerate(interferers_of(scene)):
         argument = f"interferers[{index}].radar"
-        try:
-            for time in times:
-                one.radar.world_from_radar(time)
-        except ValueError as error:
-            raise ValueError(f"{argument}: must have a motion that covers all frames: {error}") from None
+        require_motion(argument, one.radar, times)
         if one.over != "paths":
             require_apart(radar, one.radar, times, argument)
 

@@ -5,6 +5,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import an, checked, real, refused
+from ..arguments.motions import require_motion
 from ..base.rotations import matrices, product, quaternions
 from .interference_paths import few_paths
 
@@ -19,6 +20,8 @@ def interference_radar(radar: _core.Radar, other: _core.Radar, *, time: float = 
     Returns a Radar with the transmitters of the other and the receivers of the first, their places [3] in m in the world, and
     the waveform and the power of the other. Raises TypeError or ValueError naming the argument.
     """
+    for argument, one in (("radar", radar), ("other", other)):
+        require_motion(argument, one, (time,))
     return other.replace(transmitters=_placed(other.transmitters, other, time),
                          receivers=_placed(radar.receivers, radar, time), position=(0, 0, 0), yaw=0.0, pitch=0.0,
                          motion=None, receiver=None)

@@ -31,13 +31,22 @@ def range_doppler(cube: ArrayLike, radar: _core.Radar, window: MapWindow = Signa
         these, that of range and that of velocity, such as ("hann", ("chebyshev", 60))
     zero_pad: 1 to 64, transforms of so many times the samples and chirps
     Returns RangeDoppler with values [tx, rx, velocity, range]. The phase between transmit slots is left in.
-    Raises TypeError or ValueError naming the argument.
+    Raises TypeError or ValueError naming the argument, also where a sample is no finite number.
     """
     apart = (len(radar.transmitters), len(radar.receivers), radar.waveform.num_chirps, radar.waveform.num_samples)
     if is_coded(radar) and np.shape(cube) == signal_shape(radar) != apart:
         raise refused(ValueError, "cube", f"apart by transmitters, of the shape {apart}, as ep.demultiplex(cube, radar) gives it",
                       cube)
-    return _core.range_doppler(cube, radar, window, zero_pad)
+    found = _core.range_doppler(cube, radar, window, zero_pad)
+    _require_finite(cube, found.values)
+    return found
+
+
+def _require_finite(cube: ArrayLike, values: np.ndarray) -> None:
+    """Raises ValueError for a cube with what is no number: a transform spreads it to all cells of its channel, the first too."""
+    if not np.all(np.isfinite(values[:, :, 0, 0])):
+        place = tuple(np.argwhere(~np.isfinite(cube))[0].tolist())
+        raise ValueError(f"cube: must be finite, got {np.asarray(cube)[place]} at [tx, rx, chirp, sample] = {list(place)}")
 
 
 @checked(**CFAR_RULES)

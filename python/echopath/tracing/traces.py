@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from .. import _core
 from ..arguments.checks import ArrayLike, Progress, array, checked, flag, one_of, optional, positive, real, shown
 from ..arguments.effects import Choices
+from ..arguments.motions import require_frame
 from ..arguments.settings import Edges, Footprint, Polarization, Sampler, Scatterers, TraceSettings
 from ..cavities.cavity import Cavity
 from ..cavities.cross_sections import rcs_with_cavities
@@ -83,6 +84,7 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
     touches, not every sequence of mirrors was tried, objects have no rays of their own, the scene is empty, the radar stands
     in a closed body that hides the rest, or the lengths of an object look like those of another unit.
     """
+    require_frame("radar", radar, start_time)
     wavelength = _core.speed_of_light / radar.waveform.start_frequency
     is_first, geometry = _remembered(scene)
     if is_first:

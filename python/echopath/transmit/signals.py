@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from .. import _core
+from ..arguments.motions import require_frame
 from .code import code_of, code_signal, is_coded, num_frame_slots, slots_radar
 
 
@@ -20,6 +21,7 @@ def synthesize_slots(paths: _core.Paths, radar: _core.Radar, **settings) -> np.n
     settings: keywords of `_core.synthesize`. Slots that differ cost one synthesis for each kind of chirp. Memory: 16 bytes a
     sample, and as much again while chirps of several kinds are put together.
     """
+    require_frame("radar", radar, paths.frame.start_time)
     if not has_steps(radar):
         return _core.synthesize(paths, radar, **settings)
     return _by_kind_of_chirp(radar, lambda one: [{0: _core.synthesize(paths, one, **_without_probe(settings))}])[0][0]
@@ -27,6 +29,7 @@ def synthesize_slots(paths: _core.Paths, radar: _core.Radar, **settings) -> np.n
 
 def decompose_slots(paths: _core.Paths, radar: _core.Radar, groupings: list[_core.Grouping], **settings) -> list[dict]:
     """Likewise the signals of parts of the paths, {part: cube} of each grouping; settings: keywords of `_core.decompose`."""
+    require_frame("radar", radar, paths.frame.start_time)
     if not has_steps(radar):
         return _core.decompose(paths, radar, groupings, **settings)
     return _by_kind_of_chirp(radar, lambda one: _core.decompose(paths, one, groupings, **_without_probe(settings)))

@@ -205,3 +205,17 @@ def test_a_shard_does_not_enter_where_one_run_wants_to_be_alone(tmp_path, monkey
 def test_wrong_shards_are_refused_by_name(tmp_path, shard, error):
     with pytest.raises(error, match="^shard: must be"):
         make_sequence().save(tmp_path, shard=shard)
+
+
+@pytest.mark.parametrize("name, damaged", [("frames", "frames/sequence.h5"), ("drive.h5", "drive.h5")])
+@pytest.mark.parametrize("share", [0.0, 0.6])
+def test_a_damaged_head_is_named_with_what_to_do(tmp_path, name, damaged, share):
+    """The file itself, and not the hidden one that is compared with it."""
+    make_sequence(frames=1).save(tmp_path / name)
+    whole = (tmp_path / damaged).read_bytes()
+    (tmp_path / damaged).write_bytes(whole[:int(share * len(whole))])
+    with pytest.raises(ValueError, match="^path: must be new, or of this sequence") as told:
+        make_sequence(frames=1).save(tmp_path / name)
+    words = str(told.value)
+    assert f"({tmp_path / damaged}: damaged or not an HDF5 file" in words and "move what is there away" in words
+    assert "/." not in words.replace(str(tmp_path), "")

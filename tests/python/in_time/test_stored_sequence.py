@@ -111,3 +111,11 @@ def test_small_files_with_negative_seeds_are_refused(tmp_path, name):
         file["maps"].attrs.create(name, -1)
     with pytest.raises(ep.FileError, match=f"attribute '{name}' must not be negative, is -1"):
         load_maps(path)
+
+
+@pytest.mark.parametrize("keep", ["maps", "labels"])
+@pytest.mark.parametrize("over_time", [ep.spectrogram, ep.range_time, lambda frames: ep.spectrogram(frames, labels=True),
+                                       lambda frames: ep.range_time(frames[0])])
+def test_files_without_signals_say_which_ones_have_them(folders, keep, over_time):
+    with pytest.raises(TypeError, match=r"^frames: must have signals, got FrameMaps.* saved with keep=.all. do$"):
+        over_time(ep.load_sequence(folders[keep]))

@@ -174,3 +174,22 @@ def test_angles_and_points_count_in_the_axes_of_the_placed_radar():
     seen = ep.range_azimuth(spectrum, radar, elevation=elevation)
     strongest = np.unravel_index(seen.power.argmax(), seen.power.shape)[seen.power.shape.index(len(seen.azimuth))]
     assert seen.azimuth[strongest] == pytest.approx(azimuth, abs=0.03)  # rad: the nearest azimuth of the grid
+
+
+@pytest.mark.parametrize("call", [
+    lambda scene, radar, still: ep.simulate(scene, radar, num_rays=100), lambda scene, radar, still: ep.trace(scene, radar),
+    lambda scene, radar, still: ep.synthesize(ep.trace(scene, still, num_rays=100), radar),
+    lambda scene, radar, still: ep.decompose(ep.trace(scene, still, num_rays=100), radar, {"walker": "T 'walker' R"}),
+    lambda scene, radar, still: ep.visibility(scene, radar), lambda scene, radar, still: ep.interference(radar, still),
+], ids=["simulate", "trace", "synthesize", "decompose", "visibility", "interference"])
+def test_a_radar_whose_motion_does_not_cover_the_time_is_named(call):
+    still = build_radar(position=(0, 0, 1))
+    late = still.replace(motion=ep.KeyframeMotion([1.0, 2.0], [[0, 0, 0], [1, 0, 0]]))
+    with pytest.raises(ValueError, match=r"^radar: must have a motion that covers all frames: time: .*\[1, 2\] s, got"):
+        call(street(), late, still)
+
+
+def test_another_radar_whose_motion_does_not_cover_the_time_is_named():
+    late = build_radar(position=(9, 0, 1), motion=ep.KeyframeMotion([1.0, 2.0], [[0, 0, 0], [1, 0, 0]]))
+    with pytest.raises(ValueError, match="^other: must have a motion that covers all frames"):
+        ep.interference(build_radar(), late)

@@ -241,3 +241,15 @@ def test_the_branch_q_alone_is_wrong():
     out = received(np.full((1, 1, 8, COUNT), 3.0 + 4.0j), iq_gain_db=6.0, iq_phase=0.1, dc_offset=(0.5, -0.25)).cube
     g = 10 ** 0.3
     assert out[0, 0, 0, 0] == pytest.approx(3.5 + 1j * (g * (4.0 * np.cos(0.1) + 3.0 * np.sin(0.1)) - 0.25))
+
+
+def test_masks_of_phase_noise_above_the_carrier_are_refused():
+    assert ep.PhaseNoise(offsets=[10.0], levels=[20.0]).levels == (20.0,)
+    with pytest.raises(ValueError, match="^levels: must be at most 20 dBc/Hz, got"):
+        ep.PhaseNoise(offsets=[1e4, 1e6], levels=[80.0, -90.0])
+
+
+def test_what_a_receiver_gives_is_told_in_a_line():
+    assert repr(received(tone(40))) == "Reception(cube [1, 1, 8, 512], codes: none)"
+    told = repr(received(tone(40), adc=ep.Adc(gain_db=36.0)))
+    assert told == "Reception(cube [1, 1, 8, 512], codes: int16 [1, 1, 8, 512, 2], gain 36 dB)"

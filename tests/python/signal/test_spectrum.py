@@ -120,3 +120,8 @@ def test_bad_input_is_an_error():
         ep.range_doppler(cube, radar, window=80)
     with pytest.raises(ValueError, match="^cube: "):
         ep.range_doppler(cube[..., :100], radar)
+    for wrong, place in ((np.nan, (0, 0, 3, 17)), (np.inf, (0, 0, 0, 0)), (-1j * np.inf, (0, 0, 3, 511))):
+        broken = cube.astype(complex)
+        broken[place] = wrong
+        with pytest.raises(ValueError, match=rf"^cube: must be finite, got .* = \[0, 0, {place[2]}, {place[3]}\]"):
+            ep.range_doppler(broken, radar)

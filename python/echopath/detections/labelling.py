@@ -5,6 +5,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import array
+from ..labels.cell_owners import CellOwners
 from ..paths.resolution import mean_powers
 from .detections import NOISE
 
@@ -49,17 +50,26 @@ def label_powers(spectrum, labels, cells) -> tuple:
 
 
 def families_of_cells(paths, families, echoes, cells) -> tuple:
-    """The family of the largest power in each of cells [N, 2], None without echoes, and power [N] of all as fields, W.
+    """The family that has each of cells [N, 2] by the rule of labels, None without echoes, and power [N] of all as fields, W.
 
     Powers are means over the channels of the echoes' fields.
     """
-    found, whole = [], np.zeros(len(cells))
+    owners = CellOwners((len(cells),), families.families)
+    own, joint = np.zeros((len(families), len(cells))), np.zeros((len(owners.rivals), len(cells)))
+    rival_of_family = owners.rival_of_family
+    whole = np.zeros(len(cells))
     for i, cell in enumerate(cells):
         index, field = echoes.fields(cell)
-        power = np.mean(np.abs(_sums(field, families.family_of_path[index], len(families))) ** 2, axis=0)
-        found.append(families.families[int(power.argmax())] if power.any() else None)
+        sums = _sums(field, families.family_of_path[index], len(families))
+        own[:, i] = np.mean(np.abs(sums) ** 2, axis=0)
+        joint[:, i] = np.mean(np.abs(_sums(sums, rival_of_family, len(owners.rivals))) ** 2, axis=0)
         whole[i] = np.mean(np.abs(field.sum(axis=1)) ** 2)
-    return found, whole
+    for rival, power in enumerate(joint):
+        owners.add(rival, power, 0.0)
+    for rival in owners.give(joint.any(axis=0)):
+        members = owners.rivals[rival]
+        owners.divide(rival, own[members], np.zeros(len(members)))
+    return [families.families[number] if number >= 0 else None for number in owners.family], whole
 
 
 def _sums(field, group, num_groups: int):

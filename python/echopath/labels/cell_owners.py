@@ -8,11 +8,14 @@ from .left_out import LeftOut
 from .powers import rival_of
 
 ALIKE = 10.0 ** -0.01  # ratio of powers: 0.1 dB do not tell one way from the same one back
+SHARED = 0.1           # of a ghost's power: an object with so much in the cell has it. A plane, there, back or both, adds up to 3 fields
 
 
 class CellOwners:
     """The strongest rival in each cell so far, and at the end the family of it that has the cell.
 
+    Ghosts of an object in its own resolution cells, such as those over the ground below it, are told from it by no receiver: a
+    cell that a ghost wins is the object's where its direct echoes are at most 10 dB weaker.
     families: list [F] of Family; rivals: list of lists of indices of families that compete as one, ascending
     best: [V, R] W, the largest power of a rival; family: i32 [V, R], index of the family that has the cell, -1: none
     own: [V, R] W, of that family by itself; received: [F] W, mean over channels, chirps and samples
@@ -32,13 +35,27 @@ class CellOwners:
         self.best, self.own = np.zeros(shape), np.zeros(shape)
         self._rival, self.family = np.full(shape, NONE, np.int32), np.full(shape, NONE, np.int32)
         self.received, self.peak = np.zeros(len(self.families)), np.zeros(len(self.families))
+        self._ghosts = self._ghosts_of_objects()
+        self._direct = {}  # {rival of direct echoes: (places [N] of cells, powers [N] in W)}
 
-    def add(self, rival: int, power, received: float) -> None:
-        """rival: index; power: [V, R] W, of the sum of the fields of its families; received: W, of that of one family."""
+    def add(self, rival: int, power, received: float, least: float = 0.0) -> None:
+        """rival: index; power: [V, R] W, of the sum of the fields of its families; received: W, of that of one family; least: W,
+        up to which a power may be 0 instead."""
+        if rival in self._ghosts:
+            places = np.flatnonzero(power > least)
+            self._direct[rival] = places, power.ravel()[places]
         wins = (power > self.best) | ((power == self.best) & (power > 0.0) & (rival < self._rival))
         self.best[wins], self._rival[wins] = power[wins], rival
         if len(self.rivals[rival]) == 1:
             self.received[self.rivals[rival]], self.peak[self.rivals[rival]] = received, power.max(initial=0.0)
+
+    @property
+    def rival_of_family(self):
+        """Index of the rival that each family belongs to, i64 [F]."""
+        found = np.zeros(len(self.families), np.int64)
+        for rival, members in enumerate(self.rivals):
+            found[members] = rival
+        return found
 
     def wins(self, rival: int, least: float):
         """bool [R], the ranges where a rival is the strongest so far, with more than `least` W."""
@@ -48,9 +65,32 @@ class CellOwners:
         """Gives the cells of rivals of one family to it. mask: bool [V, R], what counts. Returns the rivals of several that
         have cells."""
         self._mask = mask
+        taken = self._take_from_ghosts()
         first = np.array([members[0] for members in self.rivals] + [NONE], np.int32)
         self.family, self.own = np.where(mask, first[self._rival], NONE), np.where(mask, self.best, 0.0)
+        for places, power in taken:
+            self.own.flat[places] = power
         return [rival for rival in np.unique(self._rival[mask]).tolist() if rival != NONE and len(self.rivals[rival]) > 1]
+
+    def _ghosts_of_objects(self) -> dict:
+        """{rival of the direct echoes of an object: [rivals of its ghosts]} of objects that have some."""
+        firsts = [self.families[members[0]] for members in self.rivals]
+        direct = {family.object: rival for rival, family in enumerate(firsts) if family.object and not family.is_ghost}
+        found = {}
+        for rival, family in enumerate(firsts):
+            if family.is_ghost and family.object in direct:
+                found.setdefault(direct[family.object], []).append(rival)
+        return found
+
+    def _take_from_ghosts(self) -> list:
+        """Gives objects the cells that they share with ghosts of theirs. Returns [(places [N], own powers [N] in W), ...]."""
+        taken = []
+        for rival, (places, power) in self._direct.items():
+            is_shared = self._mask.ravel()[places] & (power >= SHARED * self.best.ravel()[places])
+            is_shared &= np.isin(self._rival.ravel()[places], self._ghosts[rival])
+            taken.append((places[is_shared], power[is_shared]))
+            self._rival.flat[taken[-1][0]] = rival
+        return taken
 
     def leave(self, power) -> None:
         """Takes the cells from their families where what no path makes has more power, [V, R] W; last of all."""

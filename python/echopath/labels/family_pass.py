@@ -3,8 +3,8 @@
 The families that can are found in rounds. The first takes those that may reach the noise by the amplitudes of their paths; all
 others are added to the whole as one, and what each of them can show at a range is bounded from its echoes
 (cpp/echopath/sim/stream/cell_bounds.h). Once the whole and its mask are known, a family that was left out can own a cell of the
-mask only where its bound is above the strongest rival so far: such families follow, until there are none. So the owners are
-those that all families would give.
+mask only where its bound is above the strongest rival so far, or of direct echoes above what a ghost leaves them: such families
+follow, until there are none. So the owners are those that all families would give.
 """
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.settings import SignalSettings
-from .cell_owners import CellOwners
+from .cell_owners import SHARED, CellOwners
 from .left_out import LeftOut
 from .powers import ViewPowers, mean_square, parts_by_rival
 
@@ -75,7 +75,7 @@ class FamilyPass:
         self._pass.set_adds_up(False)
         owners = self._owners
         self._make_open(mask)
-        if self._least > 0.0 and np.any(mask & (owners.best <= self._least)):
+        if self._least > 0.0 and np.any(mask & (SHARED * owners.best <= self._least)):
             self._least = 0.0  # what maps leave out may own these cells
             self._make(np.flatnonzero(self._is_made).tolist())
             self._make_open(mask)
@@ -105,9 +105,7 @@ class FamilyPass:
         trace and for the first antennas, and the power of the strongest path in W."""
         amplitude, waveform = np.sqrt(mean.of_paths), self._radar.waveform
         cell = mean.lengths * (waveform.slope * waveform.num_samples / (waveform.sampling_rate * _core.speed_of_light))
-        rival_of = np.zeros(len(families), np.int64)
-        for rival, members in enumerate(self._owners.rivals):
-            rival_of[members] = rival
+        rival_of = self._owners.rival_of_family
         powers = np.zeros(len(self._owners.rivals))
         for shift in (0.0, 0.5):
             pair = np.floor(np.clip(0.5 * cell + shift, 0.0, 2.0 ** 30)).astype(np.int64)
@@ -120,6 +118,7 @@ class FamilyPass:
         least = np.where(mask, np.maximum(self._owners.best, self._least), np.inf).min(axis=0)
         bounds = self._bound_of_rival
         largest = bounds.max(axis=1, initial=0.0)
+        least = np.where(self._is_direct[:, None], SHARED, 1.0) * least
         may_own = np.any(bounds >= np.maximum(least, np.finfo(float).tiny), axis=1)
         tells = (largest > self._request.noise_floor) & self._is_direct
         return [(float(largest[rival]), rival) for rival in np.flatnonzero(~self._is_made & (may_own | tells)).tolist()]
@@ -139,7 +138,7 @@ class FamilyPass:
             for first, powers in self._powers([members[rival] for rival in some], self._least):
                 made = some[first:first + len(powers)]
                 for rival, (power, received) in zip(made, powers):
-                    self._owners.add(rival, power, received)
+                    self._owners.add(rival, power, received, self._least)
                     self._is_made[rival] = True
                 if shares and self._request.plane.takes_receiver_sets:
                     self._see_winners(made)

@@ -16,7 +16,7 @@ class Boxes(NamedTuple):
     """The boxes of N objects, in world axes.
 
     centre: [N, 3] m; size: [N, 3] m along the box's own axes; rotation: [N, 3, 3], world_from_box
-    velocity: [N, 3] m/s; angular_velocity: [N, 3] rad/s; origin: [N, 3] m, the objects' own origins
+    velocity: [N, 3] m/s; angular_velocity: [N, 3] rad/s; origin: [N, 3] m, the objects' own origins, which go with their bodies
     """
 
     centre: np.ndarray
@@ -61,12 +61,13 @@ class _Body:
         low, high = own.min(axis=0), own.max(axis=0)
         centre = 0.5 * (low + high)
         rate = rate_of(self._frame, time, step)
-        velocity = rate[:3, 3] + rate[:3, :3] @ centre
+        velocity, gone = rate[:3, 3] + rate[:3, :3] @ centre, np.zeros(3)
         if not self._is_rigid():
             velocity = velocity + rotation @ rate_of(self._own_centroid, time, step)
+            gone = rotation @ (self._own_centroid(time) - self._own_centroid(0.0))
         turning = rate[:3, :3] @ rotation.T
         spin = 0.5 * np.array([turning[2, 1] - turning[1, 2], turning[0, 2] - turning[2, 0], turning[1, 0] - turning[0, 1]])
-        return origin + rotation @ centre, high - low, rotation, velocity, spin, origin
+        return origin + rotation @ centre, high - low, rotation, velocity, spin, origin + gone
 
     def _frame(self, time: float):
         """World from the object's node [4, 4] without its scale; the world itself for objects that share no node."""

@@ -143,8 +143,8 @@ class OneCell:
 
 @pytest.mark.parametrize("there, back, wins", [(1.0, 1.0, 1), (1.0, -1.0, 0), (0.7, 0.7, 0), (1.0, 1.02, 2)])
 def test_a_way_there_and_back_wins_cells_by_its_common_field(there, back, wins):
-    """Against a direct echo of amplitude 1.5. Equal powers are of type 1, whatever rounding says."""
-    families = [ep.Family("a", 0, 1, ()), *(ep.Family("a", kind, 2, ("wall",)) for kind in (1, 2)), ep.Family("", 0, 0, ())]
+    """Against another object's echo of amplitude 1.5. Equal powers are of type 1, whatever rounding says."""
+    families = [ep.Family("b", 0, 1, ()), *(ep.Family("a", kind, 2, ("wall",)) for kind in (1, 2)), ep.Family("", 0, 0, ())]
     fields = 1.5, there, back * (1 + 1e-9), 0.0
     cubes = {family: np.full((1, 1, 1, 1), field) for family, field in zip(families, fields)}
     found = powers.ViewPowers(OneCell())
@@ -152,6 +152,17 @@ def test_a_way_there_and_back_wins_cells_by_its_common_field(there, back, wins):
         found.add(cubes, powers.CubeSet(None, 0.5, {}))
     assert owners_of_views(found, np.ones((1, 1), bool)).family.item() == wins
     assert found.rivals["a", 2, frozenset({"wall"})] == pytest.approx((there + back) ** 2, abs=10 * ROUNDING)
+
+
+@pytest.mark.parametrize("own, stranger, wins", [(1.5, 0.0, 0), (0.64, 0.0, 0), (0.62, 0.0, 1), (1.5, 2.1, 3), (1.5, 1.9, 0)])
+def test_an_object_has_the_cells_that_it_shares_with_its_ghosts(own, stranger, wins):
+    """A pair of ghosts whose fields add up to 2, so 10 dB above an echo of amplitude 0.632, and what another object sends."""
+    families = [ep.Family("a", 0, 1, ()), *(ep.Family("a", kind, 2, ("road",)) for kind in (1, 2)), ep.Family("b", 0, 1, ())]
+    cubes = {family: np.full((1, 1, 1, 1), field) for family, field in zip(families, (own, 1.0, 1.0, stranger))}
+    found = powers.ViewPowers(OneCell())
+    found.add(cubes, powers.CubeSet(None, 1.0, {}))
+    owners = owners_of_views(found, np.ones((1, 1), bool))
+    assert owners.family.item() == wins and owners.own.item() == pytest.approx([own, 1.0, 1.0, stranger][wins] ** 2)
 
 
 def test_pairs_of_ghosts_have_their_cells_together(labels):

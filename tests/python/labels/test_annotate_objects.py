@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from support.labelled import ROUGH, add_plate, add_wall, make_radar, way
+from support.labelled import MIRROR, ROUGH, add_plate, add_wall, make_radar, way
 
 DEPTH = 0.4  # m: the body is that deep
 
@@ -39,6 +39,23 @@ def test_only_cells_that_multipath_lights_are_ghosts_of_a_hidden_person():
     assert two_way.via == ("wall",) and two_way.order == 3
     distance, _ = way((9 - 0.15, -0.75, 1), (0, 0, 0), over_wall=True)  # of the front, from the image of the radar
     assert two_way.peak.range == pytest.approx(distance, abs=DEPTH)
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_an_object_in_sight_just_above_a_mirroring_road_is_seen_there(seed):
+    """Its ways over the road are 2 h H / d = 3 cm longer at most, a tenth of a cell: one place, which is the object's."""
+    scene, radar = ep.Scene(), make_radar()
+    road = ep.Mesh([[-5, -20, 0], [60, -20, 0], [60, 20, 0], [-5, 20, 0]], [[0, 1, 2], [0, 2, 3]])
+    scene.add(road, name="road", material=MIRROR)
+    add_plate(scene, "lead", (20, 0, 0.3), velocity=(4, 0, 0))
+    frame = ep.simulate(scene, radar, num_rays=20_000, seed=seed, labels={"objects": ["lead"]},
+                        detections={"objects": ["lead"]}, guard=False)
+    found, detections = frame.labels["parts"], frame.detections
+    (lead,) = found.objects
+    assert lead.status == "seen" and lead.peak.range == pytest.approx(20, abs=radar.waveform.range_resolution)
+    strongest = int(np.argmax(detections.snr_db))
+    assert found.object_map[tuple(detections.cells[strongest])] == 0
+    assert (detections.object[strongest], detections.ghost_type[strongest], detections.order[strongest]) == ("lead", 0, 1)
 
 
 def test_why_an_object_is_not_in_the_map():

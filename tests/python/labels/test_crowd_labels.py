@@ -7,7 +7,7 @@ from echopath.actors import shapes
 from echopath.arguments.settings import LabelSettings
 from echopath.labels import family_pass
 from echopath.labels.request import make_request
-from echopath.labels.cell_owners import ALIKE
+from echopath.labels.cell_owners import ALIKE, SHARED
 from echopath.labels.powers import parts_by_rival
 
 SUM = 1e-12  # relative, of parts that add up
@@ -62,7 +62,11 @@ def owner_of_cells(cubes, power, whole, labels):
     joint = np.stack([power(sum(cubes[family] for family in members)) for members in rivals])
     cells, peaks = {}, {}
     for cell in zip(*np.nonzero(mask)):
-        members = [families.index(family) for family in rivals[int(np.argmax(joint[(slice(None), *cell)]))]]
+        strongest = int(np.argmax(joint[(slice(None), *cell)]))
+        members = [families.index(family) for family in rivals[strongest]]
+        direct = ep.Family(families[members[0]].object, 0, 1, ())
+        if direct in families and own[(families.index(direct), *cell)] >= SHARED * joint[(strongest, *cell)]:
+            members = [families.index(direct)]
         here = own[(members, *cell)]
         family = families[members[int(np.argmax(here >= ALIKE * here.max()))]]
         cells[family] = cells.get(family, 0) + 1

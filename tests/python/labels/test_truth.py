@@ -118,6 +118,19 @@ def test_velocity_of_a_body_that_deforms():
     assert found.size[0] == pytest.approx(np.full(3, 1 + 0.5 * found.time[0]))
 
 
+@pytest.mark.parametrize("yaw", [0.0, 2.5])
+def test_the_origin_goes_with_a_body_that_drives_by_itself(yaw):
+    """As that of one that follows a trajectory, and as the box does: v t along where it points."""
+    for time in (0.0, 0.45):
+        scene, ahead = ep.Scene(), np.array([np.cos(yaw), np.sin(yaw), 0])
+        scene.add(ep.actors.car(speed=10), name="car", position=(25, 0, 0), yaw=yaw)
+        scene.add(ep.actors.bicycle(speed=5), name="bicycle", position=(15, 8, 0), yaw=yaw)
+        found = ep.truth(trace(scene, start_time=time, num_rays=200))
+        for name, speed, start in (("car", 10, [25, 0, 0]), ("bicycle", 5, [15, 8, 0])):
+            one = found.of_object(name)
+            assert one.origin[0] == pytest.approx(start + speed * one.time[0] * ahead, abs=1e-3)  # m: spokes of wheels
+
+
 def test_a_walking_person_goes_at_their_speed_in_the_mean():
     scene = ep.Scene()
     scene.add(ep.actors.pedestrian(speed=1.4, duration=3.0), name="walker", position=(8, 0, 0), yaw=np.pi)

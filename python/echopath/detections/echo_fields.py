@@ -6,8 +6,11 @@ from functools import cached_property
 import numpy as np
 
 from .. import _core
+from ..arguments.settings import LabelSettings
 from ..paths.cells import OUTSIDE, path_cells
+from ..paths.subset import subset
 from ..spectra.windows import of_range, of_velocity, samples_of
+from ..transmit.signals import synthesize_slots
 
 FLOOR_DB = 60.0        # below its peak, a window's response is followed so far
 STEPS_PER_BIN = 16     # of the table of responses, linear between them: 0.5 % of the peak
@@ -100,6 +103,19 @@ class EchoFields:
         """Power [N] in W of the map in cells [N, 2], mean over the channels: what the sums of the fields compare with."""
         (tx, rx), (velocity, distance) = self.channels.T[:, :, None], cells.T
         return np.mean(np.abs(self._spectrum.values[tx, rx, velocity, distance]) ** 2, axis=0)
+
+    @property
+    def noise_floor(self) -> float:
+        """Power in W from which on labels take a cell of the map for more than noise."""
+        noise = _core.cell_noise_power(self._paths.radar, self._spectrum.window)
+        return noise * 10.0 ** (0.1 * LabelSettings.noise_margin_db)
+
+    def peak_of(self, keep) -> float:
+        """Power in W of the strongest cell of the map of the paths where `keep` [P] is true, mean over all channels."""
+        radar, spectrum = self._paths.radar, self._spectrum
+        cube = synthesize_slots(subset(self._paths, keep), radar)
+        values = _core.range_doppler(cube, radar, spectrum.window, spectrum.zero_pad)
+        return float(_core.mean_power(values).max(initial=0.0))
 
     def fields(self, cell) -> tuple:
         """(indices i64 [N], fields complex [C, N] in sqrt(W)) of the paths that may give to a cell (velocity, range)."""

@@ -54,7 +54,7 @@ def families_of_cells(paths, families, echoes, cells) -> tuple:
 
     Powers are means over the channels of the echoes' fields.
     """
-    owners = CellOwners((len(cells),), families.families)
+    owners = CellOwners((len(cells),), families.families, echoes.noise_floor)
     own, joint = np.zeros((len(families), len(cells))), np.zeros((len(owners.rivals), len(cells)))
     rival_of_family = owners.rival_of_family
     whole = np.zeros(len(cells))
@@ -66,6 +66,9 @@ def families_of_cells(paths, families, echoes, cells) -> tuple:
         whole[i] = np.mean(np.abs(field.sum(axis=1)) ** 2)
     for rival, power in enumerate(joint):
         owners.add(rival, power, 0.0)
+    for rival in owners.losers():
+        (number,) = owners.rivals[rival]
+        owners.peak[number] = echoes.peak_of(families.family_of_path == number)
     for rival in owners.give(joint.any(axis=0)):
         members = owners.rivals[rival]
         owners.divide(rival, own[members], np.zeros(len(members)))

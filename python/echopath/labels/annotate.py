@@ -91,7 +91,7 @@ def owners_and_powers(work: Labelling, partitions: dict):
         views = {_FAMILIES: families, **partitions}
         num_parts = len(families) + sum(len(group) + 1 for group in partitions.values())
         powers = add_powers(decomposed(paths, radar, views, num_parts, plane, settings), plane)
-        return owners_of_powers(powers.pop(_FAMILIES)), powers
+        return owners_of_powers(request, powers.pop(_FAMILIES)), powers
     is_whole = len(partitions) == 1 and not any(partitions.values())
     signals = FamilyPass(work, adds_up=is_whole)
     if is_whole:
@@ -104,12 +104,12 @@ def owners_and_powers(work: Labelling, partitions: dict):
 
 def owners_of_cubes(request: Request, cubes: dict):
     """What finds the owners of cells from {Family: cube} of all families."""
-    return owners_of_powers(add_powers([CubeSet(request.radar, 1.0, {_FAMILIES: cubes})], request.plane)[_FAMILIES])
+    return owners_of_powers(request, add_powers([CubeSet(request.radar, 1.0, {_FAMILIES: cubes})], request.plane)[_FAMILIES])
 
 
-def owners_of_powers(powers):
+def owners_of_powers(request: Request, powers):
     """What finds the owners of cells from ViewPowers of all families."""
-    return lambda mask, intervals: owners_of_views(powers, mask)
+    return lambda mask, intervals: owners_of_views(powers, mask, request.noise_floor)
 
 
 def label_partitions(work: Labelling, owners, powers: dict, beside=()) -> dict:

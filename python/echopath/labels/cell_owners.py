@@ -8,26 +8,28 @@ from .left_out import LeftOut
 from .powers import rival_of
 
 ALIKE = 10.0 ** -0.01  # ratio of powers: 0.1 dB do not tell one way from the same one back
-SHARED = 0.1           # of a ghost's power: an object with so much in the cell has it. A plane, there, back or both, adds up to 3 fields
+SHARED = 0.1           # of a ghost's power, or of the object's strongest cell: where its direct echoes have so much, it is there
 
 
 class CellOwners:
     """The strongest rival in each cell so far, and at the end the family of it that has the cell.
 
     Ghosts of an object in its own resolution cells, such as those over the ground below it, are told from it by no receiver: a
-    cell that a ghost wins is the object's where its direct echoes are at most 10 dB weaker.
+    cell that a ghost wins is the object's where its direct echoes are at most 10 dB weaker than the ghost, or than in their own
+    strongest cell as far as that is above the floor: they fade apart from ghosts, and are in that place all the same.
     families: list [F] of Family; rivals: list of lists of indices of families that compete as one, ascending
     best: [V, R] W, the largest power of a rival; family: i32 [V, R], index of the family that has the cell, -1: none
     own: [V, R] W, of that family by itself; received: [F] W, mean over channels, chirps and samples
     peak: [F] W, power in the strongest cell, of families that compete alone
+    floor: W, which tells echoes from noise
     left_out: LeftOut, None where all families had their signals made
     The result does not depend on the order in which rivals come.
     """
 
     left_out: LeftOut | None = None
 
-    def __init__(self, shape: tuple, families):
-        self.families = list(families)
+    def __init__(self, shape: tuple, families, floor: float):
+        self.families, self.floor = list(families), floor
         rivals = {}
         for number, family in enumerate(self.families):
             rivals.setdefault(rival_of(family), []).append(number)
@@ -56,6 +58,10 @@ class CellOwners:
         for rival, members in enumerate(self.rivals):
             found[members] = rival
         return found
+
+    def losers(self) -> list:
+        """The rivals of direct echoes that ghosts of the object win cells from."""
+        return [rival for rival in self._direct if self._is_lost(rival).any()]
 
     def wins(self, rival: int, least: float):
         """bool [R], the ranges where a rival is the strongest so far, with more than `least` W."""
@@ -86,11 +92,16 @@ class CellOwners:
         """Gives objects the cells that they share with ghosts of theirs. Returns [(places [N], own powers [N] in W), ...]."""
         taken = []
         for rival, (places, power) in self._direct.items():
-            is_shared = self._mask.ravel()[places] & (power >= SHARED * self.best.ravel()[places])
-            is_shared &= np.isin(self._rival.ravel()[places], self._ghosts[rival])
+            peak = self.peak[self.rivals[rival]]
+            least = SHARED * np.minimum(self.best.ravel()[places], peak if peak > self.floor else np.inf)
+            is_shared = self._mask.ravel()[places] & (power >= least) & self._is_lost(rival)
             taken.append((places[is_shared], power[is_shared]))
             self._rival.flat[taken[-1][0]] = rival
         return taken
+
+    def _is_lost(self, rival: int):
+        """bool [N], of the cells that are kept of direct echoes, those that a ghost of the object wins."""
+        return np.isin(self._rival.ravel()[self._direct[rival][0]], self._ghosts[rival])
 
     def leave(self, power) -> None:
         """Takes the cells from their families where what no path makes has more power, [V, R] W; last of all."""

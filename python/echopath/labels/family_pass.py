@@ -53,7 +53,7 @@ class FamilyPass:
         self._pass.set_adds_up(adds_up)
         self._radar, self._request, self._progress = radar, request, settings.get("progress")
         plane = request.plane
-        self._owners = CellOwners((len(plane.rows), len(plane.range)), families.families)
+        self._owners = CellOwners((len(plane.rows), len(plane.range)), families.families, request.noise_floor)
         self._is_made = np.zeros(len(self._owners.rivals), bool)
         self._bound_of_rival = np.zeros((len(self._owners.rivals), len(plane.range)))  # W, the most it can show at a range
         self._is_direct = np.array([_is_direct(families.families[members[0]]) for members in self._owners.rivals], bool)
@@ -199,10 +199,10 @@ def _is_direct(family) -> bool:
     return bool(family.object) and not family.is_ghost
 
 
-def owners_of_views(powers: ViewPowers, mask) -> CellOwners:
-    """The owners of cells where the powers of all families are known. mask: bool [V, R], what counts"""
+def owners_of_views(powers: ViewPowers, mask, floor: float = 0.0) -> CellOwners:
+    """The owners of cells where the powers of all families are known. mask: bool [V, R], what counts; floor: of CellOwners, W"""
     families = list(powers.cells)
-    owners = CellOwners(np.shape(powers.whole), families)
+    owners = CellOwners(np.shape(powers.whole), families, floor)
     owners.received = np.array([powers.received[family] for family in families])
     for number, (rival, members) in enumerate(parts_by_rival(families).items()):
         owners.add(number, powers.rivals[rival], powers.received[members[0]])

@@ -154,14 +154,16 @@ def test_a_way_there_and_back_wins_cells_by_its_common_field(there, back, wins):
     assert found.rivals["a", 2, frozenset({"wall"})] == pytest.approx((there + back) ** 2, abs=10 * ROUNDING)
 
 
-@pytest.mark.parametrize("own, stranger, wins", [(1.5, 0.0, 0), (0.64, 0.0, 0), (0.62, 0.0, 1), (1.5, 2.1, 3), (1.5, 1.9, 0)])
-def test_an_object_has_the_cells_that_it_shares_with_its_ghosts(own, stranger, wins):
-    """A pair of ghosts whose fields add up to 2, so 10 dB above an echo of amplitude 0.632, and what another object sends."""
+@pytest.mark.parametrize("own, stranger, floor, wins", [
+    (1.5, 0.0, 9.0, 0), (0.64, 0.0, 9.0, 0), (0.62, 0.0, 9.0, 1), (0.62, 0.0, 0.3, 0), (1.5, 2.1, 0.0, 3), (1.5, 1.9, 0.0, 0)])
+def test_an_object_has_the_cells_that_it_shares_with_its_ghosts(own, stranger, floor, wins):
+    """A pair of ghosts whose fields add up to 2, so 10 dB above an echo of amplitude 0.632, and what another object sends;
+    an echo that has faded, but is above the noise, is there, too."""
     families = [ep.Family("a", 0, 1, ()), *(ep.Family("a", kind, 2, ("road",)) for kind in (1, 2)), ep.Family("b", 0, 1, ())]
     cubes = {family: np.full((1, 1, 1, 1), field) for family, field in zip(families, (own, 1.0, 1.0, stranger))}
     found = powers.ViewPowers(OneCell())
     found.add(cubes, powers.CubeSet(None, 1.0, {}))
-    owners = owners_of_views(found, np.ones((1, 1), bool))
+    owners = owners_of_views(found, np.ones((1, 1), bool), floor)
     assert owners.family.item() == wins and owners.own.item() == pytest.approx([own, 1.0, 1.0, stranger][wins] ** 2)
 
 

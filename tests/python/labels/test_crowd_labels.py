@@ -65,8 +65,11 @@ def owner_of_cells(cubes, power, whole, labels):
         strongest = int(np.argmax(joint[(slice(None), *cell)]))
         members = [families.index(family) for family in rivals[strongest]]
         direct = ep.Family(families[members[0]].object, 0, 1, ())
-        if direct in families and own[(families.index(direct), *cell)] >= SHARED * joint[(strongest, *cell)]:
-            members = [families.index(direct)]
+        if direct in families:
+            own_power = own[families.index(direct)]
+            peak = own_power.max() if own_power.max() > 10.0 * labels.noise_power else np.inf
+            if own_power[cell] >= SHARED * min(joint[(strongest, *cell)], peak):
+                members = [families.index(direct)]
         here = own[(members, *cell)]
         family = families[members[int(np.argmax(here >= ALIKE * here.max()))]]
         cells[family] = cells.get(family, 0) + 1

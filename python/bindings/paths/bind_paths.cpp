@@ -138,6 +138,12 @@ times: [T] s; radars: [T] Radar with as many antennas as that of the paths, wher
 replay: as in `synthesize`
 Returns (delays in s, amplitudes in sqrt(W)), [tx, rx, T, P] each. Raises TypeError or ValueError naming the argument, also for
 times outside a motion.)");
+  define(type, "_echoes_at_receivers", &echoes_at_receivers, py::arg("time"), py::arg("tx"), py::arg("receivers"),
+         R"(Lengths and amplitudes of the paths for several receivers, which take little more time than one.
+
+time: s; tx: index of the transmitter; receivers: indices [R]
+Returns (lengths in m, amplitudes in sqrt(W)), [R, P] each, as `lengths` and `amplitudes` give them. Raises TypeError or
+ValueError naming the argument, also for times outside a motion, and IndexError for antennas that are not there.)");
   define(type, "points", &points_of, py::arg("time"),
          "Hits [H, 3] in m in the world at `time` in s. Raises TypeError or ValueError naming the argument.");
 }

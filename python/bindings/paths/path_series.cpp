@@ -139,6 +139,26 @@ py::tuple placed_echoes_of(const Paths& paths, Arg<"times", VectorOf<double>> ti
   return py::make_tuple(numpy_take(std::move(delays), shape), numpy_take(std::move(amplitudes), shape));
 }
 
+py::tuple echoes_at_receivers(const Paths& paths, Arg<"time", Real> time, Arg<"tx", Index> tx,
+                              Arg<"receivers", List<Index>> receivers) {
+  Radar radar = paths.radar;
+  radar.transmitters = {paths.radar.transmitters[antenna_index(*tx, "tx", paths.radar.transmitters.size())]};
+  radar.receivers.clear();
+  for (const int64_t rx : *receivers) {
+    radar.receivers.push_back(paths.radar.receivers[antenna_index(rx, "receivers", paths.radar.receivers.size())]);
+  }
+  require(!radar.receivers.empty(), "receivers", "must be at least one", radar.receivers.size());
+  std::vector<double> lengths;
+  std::vector<std::complex<double>> amplitudes;
+  run_job("replay", py::none(), [&](Job& job) {
+    std::vector<int64_t> indices(static_cast<size_t>(paths.num_paths()));
+    std::iota(indices.begin(), indices.end(), 0);
+    Replayer(paths, radar).evaluate(indices, *time, lengths, amplitudes, &job);
+  });
+  const Shape shape{static_cast<py::ssize_t>(radar.receivers.size()), static_cast<py::ssize_t>(paths.num_paths())};
+  return py::make_tuple(numpy_take(std::move(lengths), shape), numpy_take(std::move(amplitudes), shape));
+}
+
 py::array points_of(const Paths& paths, Arg<"time", Real> time) {
   std::vector<double> coordinates = run_job("points", py::none(), [&](Job& job) { return hit_points(paths, *time, &job); });
   return numpy_take(std::move(coordinates), {static_cast<py::ssize_t>(paths.num_hits()), 3});

@@ -39,6 +39,9 @@ py::array lengths_of(const Paths& paths, Arg<"times", VectorOf<double>> times,
 // `times` [T] in s.
 py::tuple placed_echoes_of(const Paths& paths, Arg<"times", VectorOf<double>> times,
                            Arg<"radars", List<Instance<Radar>>> radars, Arg<"replay", OneOf<kSpecularPoints>> replay);
+// (lengths [R, P] in m, amplitudes [R, P] in sqrt(W)) at `time` in s of one transmitter and some receivers, by index.
+py::tuple echoes_at_receivers(const Paths& paths, Arg<"time", Real> time, Arg<"tx", Index> tx,
+                              Arg<"receivers", List<Index>> receivers);
 // [H, 3] m in the world at `time` in s.
 py::array points_of(const Paths& paths, Arg<"time", Real> time);
 

@@ -96,6 +96,7 @@ class Detections:
             raise IndexError(f"i: must be in [0, {len(self)}), got {i}")
         if self.is_noise[i]:
             return np.zeros(0, np.int64), np.zeros(0)
+        self.echoes.evaluate(self.cells)
         return self.echoes.paths(self.cells[i])
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:

@@ -22,6 +22,8 @@ BYTES_PER_FIELD = 12   # place and field of a path in a channel
 HELD = 0.9999          # of the power of single paths, by the paths that are named
 MAX_CHANNELS = 8       # whose fields are made: an echo fades in one antenna, hardly ever in eight
 MAX_MEMORY = 2 ** 28   # bytes, of the fields of all paths
+LEFT_OUT = 1e-6        # of the power of single paths in a cell: those that together hold less
+SAME_BIN = 0.25        # bins of range, up to which all channels have a path in the same place
 
 
 class Response:
@@ -82,16 +84,18 @@ class EchoFields:
     """The field that each path gives to each cell of a map of its radar, by its state in the middle of the frame.
 
     Model: delays and amplitudes of C channels, spread evenly over all: at most 8, and as many as 256 MiB hold, one at least;
-    the rate of the delay and the change of that for the first antennas.
+    the rate of the delay and the change of that for the first antennas. Cells are asked for together (`evaluate`): where one
+    channel tells how strong paths are in all, the others are evaluated only for those that hold a cell but for a millionth.
     paths: of `trace`, P of them; spectrum: RangeDoppler of the radar that traced them, values in sqrt(W)
     """
 
     def __init__(self, paths, spectrum):
         self._paths, self._spectrum = paths, spectrum
+        self._echoes_of_cell = {}  # {(velocity, range): echoes, as _strong_in gives them}
 
     @cached_property
     def channels(self) -> np.ndarray:
-        """(transmitter, receiver) indices of the channels, [C, 2]."""
+        """(transmitter, receiver) indices of the channels, [C, 2]; the first is that of the first antennas."""
         num_receivers = len(self._paths.radar.receivers)
         num_channels = len(self._paths.radar.transmitters) * num_receivers
         room = MAX_MEMORY // (BYTES_PER_FIELD * max(self._paths.num_paths, 1))
@@ -117,16 +121,18 @@ class EchoFields:
         values = _core.range_doppler(cube, radar, spectrum.window, spectrum.zero_pad)
         return float(_core.mean_power(values).max(initial=0.0))
 
+    def evaluate(self, cells) -> None:
+        """Evaluates the paths of cells [N, 2] together, which takes little more than one does."""
+        asked = [_key(cell) for cell in cells if _key(cell) not in self._echoes_of_cell]
+        if asked:
+            self._echoes_of_cell |= dict.fromkeys(asked, self._strong_in(asked))
+
     def fields(self, cell) -> tuple:
         """(indices i64 [N], fields complex [C, N] in sqrt(W)) of the paths that may give to a cell (velocity, range)."""
-        velocity, distance = (int(index) for index in cell)
-        echoes, pad = self._echoes, self._spectrum.zero_pad
-        near = self._candidates(velocity, distance)
-        along = self._velocity_response((velocity - echoes["velocity"][near]) / pad, echoes["sweep"][near])
-        onward = np.outer(self._velocity_response.centres, echoes["travel"][near])
-        place = (distance - echoes["range"][near]) / pad - onward
-        gains = [np.sum(along * self._range_response(place - shift), axis=0) for shift in echoes["shift"][:, near]]
-        return echoes["index"][near], np.array(gains) * echoes["field"][:, near]
+        self.evaluate([cell])
+        echoes = self._echoes_of_cell[_key(cell)]
+        near = self._candidates(echoes["number"], *_key(cell))
+        return echoes["index"][near], self._gains(echoes, near, cell, echoes["shift"]) * echoes["field"][:, near]
 
     def paths(self, cell) -> tuple:
         """(indices i64 [N], shares [N]) of the strongest paths of a cell (velocity, range), largest first."""
@@ -139,9 +145,18 @@ class EchoFields:
         count = int(np.searchsorted(held, HELD * held[-1])) + 1
         return index[order[:count]], power[order[:count]] / held[-1]
 
+    def _gains(self, echoes: dict, near, cell, shifts) -> np.ndarray:
+        """What a cell has of the fields of some echoes, complex [C, N]; shifts: bins [C, P] of the channels."""
+        (velocity, distance), pad = _key(cell), self._spectrum.zero_pad
+        along = self._velocity_response((velocity - echoes["velocity"][near]) / pad, echoes["sweep"][near])
+        onward = np.outer(self._velocity_response.centres, echoes["travel"][near])
+        place = (distance - echoes["range"][near]) / pad - onward
+        return np.array([np.sum(along * self._range_response(place - shift), axis=0) for shift in shifts[:, near]])
+
     @cached_property
     def _echoes(self) -> dict:
-        """Of the paths within the map, in the order of their nearest cells: place in cells, field, index."""
+        """Of the paths within the map, in the order of their nearest cells: place in cells, length, index, and field in the
+        first channel."""
         paths, spectrum = self._paths, self._spectrum
         waveform, pad = paths.radar.waveform, spectrum.zero_pad
         cells = path_cells(paths, spectrum)
@@ -151,26 +166,65 @@ class EchoFields:
         index = inside[order]
         doppler = (cells.range[index] - 0.5 * cells.length[index]) * waveform.slope / waveform.centre_frequency
         bin_width = 2.0 * waveform.max_velocity(paths.radar.num_slots) / waveform.num_chirps
-        range_step = _core.speed_of_light * waveform.sampling_rate / (2.0 * waveform.slope * waveform.num_samples * pad)
-        shift, field = self._of_channels(cells.length, index, range_step * pad)
+        range_step = self._range_bin / pad
         return {"number": number[order], "index": index, "range": cells.range[index] / range_step,
                 "velocity": doppler / bin_width * pad + len(spectrum.velocity) // 2,
                 "sweep": _speed_change(paths, cells.length)[index] / bin_width,
                 "travel": cells.velocity[index] * _duration(paths) / (range_step * pad),
-                "shift": shift, "field": field}
+                "length": cells.length[index], "first": _lengths_and_fields(paths, 0, [0])[1][0, index]}
 
-    def _of_channels(self, length, index, bin_width: float) -> tuple:
-        """Bins of range by which each channel has the paths farther away than the first antennas, and fields, [C, N].
+    def _strong_in(self, cells) -> dict:
+        """Echoes that hold some cells, with "shift" and "field" of the channels, [C, P]."""
+        echoes = self._echoes
+        keep = np.zeros(len(echoes["index"]), bool)
+        for cell in cells:
+            near = self._candidates(echoes["number"], *cell)
+            keep[near[self._holds(echoes, near, cell)] if self._channels_are_alike else near] = True
+        chosen = {name: values[keep] for name, values in echoes.items()}
+        return chosen | dict(zip(("shift", "field"), self._of_channels(chosen)))
 
-        length: of the first antennas [P] in m; bin_width: m
-        """
-        shift = np.empty((len(self.channels), len(index)), np.float32)
+    def _holds(self, echoes: dict, near, cell) -> np.ndarray:
+        """bool [N], the echoes that hold nearly all of the power of a cell in the first channel."""
+        gains = self._gains(echoes, near, cell, np.zeros((1, len(echoes["index"]))))[0]
+        power = np.abs(gains * echoes["first"][near]) ** 2
+        ascending = np.sort(power)
+        held = np.cumsum(ascending)
+        return power >= ascending[np.searchsorted(held, LEFT_OUT * held[-1])] if len(held) else np.zeros(0, bool)
+
+    def _of_channels(self, echoes: dict) -> tuple:
+        """Bins of range by which each channel has some echoes farther away than the first antennas, and fields, [C, N]."""
+        ascending = np.sort(echoes["index"])
+        paths, column = subset(self._paths, ascending), np.searchsorted(ascending, echoes["index"])
+        shift = np.empty((len(self.channels), len(column)), np.float32)
         field = np.empty(shift.shape, np.complex64)
-        for channel, (tx, rx) in enumerate(self.channels):
-            of_channel, start = _lengths_and_fields(self._paths, int(tx), int(rx))
-            shift[channel] = 0.5 * (of_channel - length)[index] / bin_width
-            field[channel] = start[index]
+        for tx in np.unique(self.channels[:, 0]):
+            rows = np.flatnonzero(self.channels[:, 0] == tx)
+            length, start = _lengths_and_fields(paths, int(tx), self.channels[rows, 1].tolist())
+            shift[rows] = 0.5 * (length[:, column] - echoes["length"]) / self._range_bin
+            field[rows] = start[:, column]
         return shift, field
+
+    @property
+    def _range_bin(self) -> float:
+        """Width of a bin of range, m."""
+        waveform = self._paths.radar.waveform
+        return _core.speed_of_light * waveform.sampling_rate / (2.0 * waveform.slope * waveform.num_samples)
+
+    @cached_property
+    def _largest_shift(self) -> float:
+        """Bins of range by which the length of a path may differ between channels, at most."""
+        tx, rx = (np.array([antenna.position for antenna in antennas])
+                  for antennas in (self._paths.radar.transmitters, self._paths.radar.receivers))
+        apart = [np.linalg.norm(places - places[0], axis=1).max() for places in (tx, rx)]
+        return 0.5 * sum(apart) / self._range_bin
+
+    @cached_property
+    def _channels_are_alike(self) -> bool:
+        """Whether a path that gives little in the first channel gives little in the others: antennas look the same way."""
+        radar = self._paths.radar
+        looks = [[(one.pattern, one.orientation.tolist(), np.asarray(one.polarization).tolist()) for one in antennas]
+                 for antennas in (radar.transmitters, radar.receivers)]
+        return self._largest_shift < SAME_BIN and all(look == some[0] for some in looks for look in some)
 
     @cached_property
     def _velocity_response(self) -> Response:
@@ -185,16 +239,21 @@ class EchoFields:
     def _largest(self, name: str) -> float:
         return float(np.abs(self._echoes[name]).max(initial=0.0))
 
-    def _candidates(self, velocity: int, distance: int):
-        """Places in the echoes of those whose nearest cell is within reach of a cell."""
+    def _candidates(self, number, velocity: int, distance: int):
+        """Places in echoes, in the order of the `number` of their nearest cells, of those within reach of a cell."""
         num_velocities, num_ranges = len(self._spectrum.velocity), len(self._spectrum.range)
-        pad, number = self._spectrum.zero_pad, self._echoes["number"]
+        pad = self._spectrum.zero_pad
         slow = min(int(self._velocity_response.reach * pad), num_velocities // 2)
-        far = int((self._range_response.reach + 0.5 * self._largest("travel") + self._largest("shift")) * pad)
+        far = int((self._range_response.reach + 0.5 * self._largest("travel") + self._largest_shift) * pad)
         rows = np.unique(np.arange(velocity - slow, velocity + slow + 1) % num_velocities) * num_ranges
         first = np.searchsorted(number, rows + max(distance - far, 0))
         last = np.searchsorted(number, rows + min(distance + far, num_ranges - 1), side="right")
         return np.concatenate([np.arange(*pair) for pair in zip(first, last)])
+
+
+def _key(cell) -> tuple:
+    """(velocity, range) of a cell as numbers of Python."""
+    return int(cell[0]), int(cell[1])
 
 
 def _reach(samples) -> int:
@@ -225,10 +284,10 @@ def _speed_change(paths, length):
     return 2.0 * (before + after - 2.0 * length) / (last - first) * num_chirps / (num_chirps - 1)
 
 
-def _lengths_and_fields(paths, tx: int, rx: int) -> tuple:
-    """Length [P] in m and signal, complex [P] in sqrt(W), of each path in the middle of the frame and of the chirp."""
+def _lengths_and_fields(paths, tx: int, receivers: list) -> tuple:
+    """Length [R, P] in m and signal, complex [R, P] in sqrt(W), of each path in the middle of the frame and of the chirp."""
     waveform, middle = paths.radar.waveform, _chirp_times(paths, tx)[1]
-    length = paths.lengths([middle], tx, rx)[0]
+    length, amplitude = paths._echoes_at_receivers(middle, tx, receivers)
     delay = length / _core.speed_of_light
     cycles = (waveform.start_frequency + waveform.slope * waveform.window_centre) * delay - 0.5 * waveform.slope * delay ** 2
-    return length, np.conj(paths.amplitudes([middle], tx, rx)[0]) * np.exp(2j * np.pi * np.mod(cycles, 1.0))
+    return length, np.conj(amplitude) * np.exp(2j * np.pi * np.mod(cycles, 1.0))

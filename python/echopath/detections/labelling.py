@@ -58,6 +58,7 @@ def families_of_cells(paths, families, echoes, cells) -> tuple:
     own, joint = np.zeros((len(families), len(cells))), np.zeros((len(owners.rivals), len(cells)))
     rival_of_family = owners.rival_of_family
     whole = np.zeros(len(cells))
+    echoes.evaluate(cells)
     for i, cell in enumerate(cells):
         index, field = echoes.fields(cell)
         sums = _sums(field, families.family_of_path[index], len(families))

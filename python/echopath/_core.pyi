@@ -19,7 +19,7 @@ import numpy.typing
 import os
 import typing
 bench: types.ModuleType
-__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Curve', 'CurveMotion', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'Layer', 'LinearMotion', 'LiveTrace', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'MorphTargets', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'PartPass', 'Paths', 'Power', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'are_clear', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'coherent_meshes', 'coherent_share', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'legs_around_edges', 'load_frames', 'load_mesh', 'load_meshes', 'load_surfaces', 'look_at_bodies', 'looks_for_signals', 'may_appear_in_frame', 'mean_power', 'meant_name', 'mesh_names', 'mesh_traits', 'meshes_of_large_planes', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'remember_geometry', 'renew', 'set_num_threads', 'share_errors', 'speed_of_light', 'strongest_edge', 'strongest_part', 'synthesize', 'synthesize_echoes', 'tessellation', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'warn_of_turns', 'window']
+__all__: list[str] = ['AMPLITUDE_TOLERANCE', 'AngleEstimates', 'AngleSpectrum', 'Antenna', 'AntennaPattern', 'BeamPower', 'CfarResult', 'ChirpSequence', 'CoplanarOverlap', 'CosinePower', 'Curve', 'CurveMotion', 'DEFAULT_MAX_RAYS', 'Deformation', 'DeviceError', 'Family', 'FileError', 'GainTable', 'Grouping', 'Isotropic', 'Joint', 'KeptGeometry', 'KeyframeMotion', 'Layer', 'LinearMotion', 'LiveTrace', 'MESH_SUFFIXES', 'MOST_RAYS', 'Material', 'Mesh', 'MeshTable', 'MorphTargets', 'Motion', 'Node', 'NumBounces', 'ObjectValidity', 'PHASE_TOLERANCE', 'PartPass', 'Paths', 'Power', 'RECORD_SETTINGS', 'Radar', 'RangeAzimuth', 'RangeDoppler', 'ReceivedPower', 'Renewal', 'Scene', 'SceneMesh', 'Selection', 'SignalProbe', 'Skin', 'Stratum', 'TraceFrame', 'TraceStatistics', 'Validity', 'ValidityShares', 'VertexSequence', 'VirtualArray', 'add_noise', 'angle_fft', 'are_clear', 'beamform', 'bench', 'boltzmann', 'cell_masks', 'cell_noise_power', 'cfar', 'check_cfar', 'check_objects', 'check_part_names', 'coherent_meshes', 'coherent_share', 'compensate_tdm', 'decompose', 'estimate_angles', 'find_families', 'find_peaks', 'first', 'glob_takes', 'hits', 'instruction_set', 'label_regions', 'last', 'legs_around_edges', 'load_frames', 'load_mesh', 'load_meshes', 'load_surfaces', 'look_at_bodies', 'looks_for_signals', 'may_appear_in_frame', 'mean_power', 'meant_name', 'mesh_names', 'mesh_traits', 'meshes_of_large_planes', 'mie_rcs', 'nearest_names', 'noise_power', 'noise_power_in_cell', 'num_bounces', 'num_threads', 'partition_groups', 'power', 'power_shares', 'range_azimuth', 'range_doppler', 'rcs', 'received_power', 'received_powers', 'received_powers_of_sortings', 'reference_temperature', 'remember_geometry', 'renew', 'set_num_threads', 'share_errors', 'speed_of_light', 'strongest_edge', 'strongest_part', 'synthesize', 'synthesize_echoes', 'tessellation', 'trace', 'triangles_of_polygons', 'vacuum_permittivity', 'validity', 'virtual_array', 'visibility', 'visibility_in_trace', 'warn_of_turns', 'window']
 class Motion:
     """
     Time -> rigid transform, in the axes of the node's parent about the node's own origin.
@@ -2168,7 +2168,7 @@ class TraceFrame:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
         ...
-    def __init__(self, *, start_time: float, trace_time: float, transmitter: ArrayLike, receiver: ArrayLike, strata: typing.Sequence[Stratum], seed: int, max_bounces: int, polarization: str, footprint: str, statistics: TraceStatistics, num_batches: int = 1, target_error_db: float = 0.0, error_db: float = 0.0, sampler: str = 'lattice', scatterers: str = 'rays', edges: bool = False, attenuation: float = 0.0) -> None:
+    def __init__(self, *, start_time: float, trace_time: float, transmitter: ArrayLike, receiver: ArrayLike, strata: typing.Sequence[Stratum], statistics: TraceStatistics, target_error_db: float = 0.0, error_db: float = 0.0, seed: int = 1, max_bounces: int = 4, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', num_batches: int = 1, scatterers: str = 'rays', edges: bool = False, attenuation: float = 0.0) -> None:
         ...
     def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
@@ -2630,7 +2630,7 @@ class LiveTrace:
         """
         The whole record, Paths.
         """
-    def update(self, scene: Scene, radar: Radar, *, num_rays: int, max_bounces: int, seed: int, start_time: float, polarization: str, footprint: str, sampler: str, scatterers: str, edges: bool, attenuation: float, progress: typing.Any = None) -> dict[typing.Any, typing.Any]:
+    def update(self, scene: Scene, radar: Radar, *, num_rays: int, start_time: float, progress: typing.Any = None, seed: int = 1, max_bounces: int = 4, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', num_batches: int = 1, scatterers: str = 'rays', edges: bool = False, attenuation: float = 0.0) -> dict[typing.Any, typing.Any]:
         """
         What ep.Live calls. Returns is_whole, num_rays_shot, and the Paths removed and added.
         """
@@ -3432,7 +3432,7 @@ def tessellation(mesh: Mesh) -> typing.Annotated[list[float], "FixedSize(4)"] | 
     """
     What echopath.tracing.tessellation.tessellation calls.
     """
-def trace(scene: Scene, radar: Radar, *, num_rays: int | None = None, max_bounces: int = 4, seed: int = 1, start_time: float = 0.0, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', batches: int | None = None, target_error_db: float | None = None, max_rays: int = 16777216, scatterers: str = 'rays', edges: bool = False, attenuation: float = 0.0, progress: typing.Any = None, kept: KeptGeometry | None = None) -> Paths:
+def trace(scene: Scene, radar: Radar, *, num_rays: int | None = None, start_time: float = 0.0, target_error_db: float | None = None, max_rays: int = 16777216, progress: typing.Any = None, kept: KeptGeometry | None = None, seed: int = 1, max_bounces: int = 4, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', num_batches: int = 1, scatterers: str = 'rays', edges: bool = False, attenuation: float = 0.0) -> Paths:
     """
     What ep.trace calls. kept: KeptGeometry of the scene, or None.
     """
@@ -3469,8 +3469,10 @@ def window(name: str, n: int, sidelobe_db: float = 80.0) -> numpy.typing.NDArray
     """
 AMPLITUDE_TOLERANCE: float = 0.0001
 DEFAULT_MAX_RAYS: int = 16777216
+MESH_SUFFIXES: tuple[typing.Any, ...] = ('.obj', '.ply', '.stl', '.off')
 MOST_RAYS: int = 10000000000
 PHASE_TOLERANCE: float = 1e-05
+RECORD_SETTINGS: dict[typing.Any, typing.Any] = {'seed': 1, 'max_bounces': 4, 'polarization': 'scalar', 'footprint': 'second_order', 'sampler': 'lattice', 'num_batches': 1, 'scatterers': 'rays', 'edges': False, 'attenuation': 0.0}
 __version__: str = '0.1.0'
 boltzmann: float = 1.380649e-23
 num_bounces: NumBounces

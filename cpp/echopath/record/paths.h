@@ -90,7 +90,8 @@ struct TraceStatistics {
   int64_t num_stopped_passes = 0;     // legs of paths that are taken to end at a sheet, behind kMostPasses others
 };
 
-// Holds the settings of a trace on which the record depends, besides the number of rays.
+// Holds the settings of a trace on which the record depends, besides the number of rays. CONTRIBUTING.md has the way of a
+// setting from Python to here.
 struct RecordSettings {
   uint64_t seed = 1;
   int max_bounces = 4;  // 1 to 64; hits on mirrors count
@@ -103,6 +104,8 @@ struct RecordSettings {
   Scatterers scatterers = Scatterers::kRays;
   bool edges = false;        // also find the echoes of sharp edges (trace/edges/edge_paths.h)
   double attenuation = 0.0;  // Np/m, of fields in the air at the radar's frequency; replay applies it to each whole length
+
+  bool operator==(const RecordSettings&) const = default;
 };
 
 // Holds the values to which a path's amplitude and length refer.
@@ -114,6 +117,8 @@ struct TraceFrame : RecordSettings {
   TraceStatistics statistics;
   double target_error_db = 0.0;  // dB, the error of the received power that was asked for; 0: none
   double error_db = 0.0;         // dB, the one that was reached (sim/rays/trace_to_error.h); 0: not looked at
+
+  bool operator==(const TraceFrame&) const = delete;  // that of the settings alone would stand for it
 
   // Returns the rays per sr of one batch of a stratum, from which its launch cells are made. Filters for the cells of all
   // batches together would leave each batch its aliases, which do not cancel, because the lattices are independent of each

@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "echopath/base/constants.h"
+#include "echopath/replay/echo_memory.h"
 #include "echopath/replay/replay.h"
-#include "echopath/replay/spare_echoes.h"
 #include "echopath/replay/time/node_tails.h"
 
 namespace echopath {

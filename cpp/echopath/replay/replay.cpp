@@ -7,8 +7,8 @@
 #include "echopath/base/errors.h"
 #include "echopath/base/memory/kept_memory.h"
 #include "echopath/base/threads/parallel.h"
+#include "echopath/replay/echo_memory.h"
 #include "echopath/replay/factors/attenuation.h"
-#include "echopath/replay/spare_echoes.h"
 #include "echopath/replay/time/chirp_derivatives.h"
 
 namespace echopath {

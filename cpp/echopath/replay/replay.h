@@ -51,18 +51,18 @@ class Replayer {
   // Poses at the nodes of a polynomial the meshes that some paths touch, unless all are posed there: interpolated(),
   // turning() and by_chirp() take only paths for which this was called, which they do not check.
   void pose_polynomial(GridIndex polynomial, std::span<const int64_t> paths);
-  // Interpolates the echoes of `paths` by a polynomial (grids()). Paths are left out and added to `unfollowed`, in their
-  // order, where the last two coefficients of their length or of their amplitude exceed the tolerance; or where they are
-  // negligible: their amplitudes stay so small in all channels, throughout the frame (is_dark), that the sum of all such
-  // paths is below the rounding of the strongest path of the record.
+  // Interpolates the echoes of `paths` by a polynomial (grids()). Two kinds of paths are left out and added to `unfollowed`,
+  // in their order: those that the polynomial does not follow, because the last two Chebyshev coefficients of their length
+  // or of their amplitude exceed the tolerance; and negligible ones, whose amplitudes stay so small in all channels,
+  // throughout the frame (is_dark), that all of them together are below the rounding of the strongest path of the record.
   std::vector<Echoes> interpolated(std::span<const int64_t> paths, GridIndex polynomial,
                                    std::vector<UnfollowedPath>& unfollowed) const;
-  // Returns whether a path can have an echo by turning(): where its amplitude is that of a launch cell.
+  // Returns whether turning() may be asked for a path: it must have a launch cell, whose filter is what turns.
   bool can_turn(int64_t path) const;
   // Interpolates the logarithms of amplitudes by a polynomial that follows the lengths: it follows the steep or turning
   // phases of waves from curved surfaces, of which no polynomial of few nodes follows the amplitudes
-  // (TimeSampling::Rows::kLogarithms). All paths must be able to. Those whose logarithms it does not follow are left out and
-  // added to `unfollowed`, in their order, with no more said than their index.
+  // (TimeSampling::Rows::kLogarithms). can_turn() must take all paths. Those whose logarithms it does not follow are left
+  // out and added to `unfollowed`, in their order, with no more said than their index.
   std::vector<Echoes> turning(std::span<const int64_t> paths, GridIndex polynomial,
                               std::vector<UnfollowedPath>& unfollowed) const;
   // Poses meshes that some paths touch, as PartlyPosedGrid::with takes them, at all nodes of a grid of chirps or samples,

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <vector>
 
+#include "echopath/replay/echo_memory.h"
 #include "echopath/replay/replay.h"
-#include "echopath/replay/spare_echoes.h"
 #include "echopath/replay/time/node_tails.h"
 
 namespace echopath {

@@ -22,6 +22,8 @@ struct TraceSettings : RecordSettings {
   bool for_edits = false;
 
   void validate() const;  // raises invalid_argument naming the field, the rule and the value
+
+  bool operator==(const TraceSettings&) const = delete;  // that of the record's alone would stand for it
 };
 
 // Shoots the rays from the mean transmitter position at mid-frame and connects hits to the mean receiver position.

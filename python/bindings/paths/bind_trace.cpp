@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -18,9 +17,9 @@
 #include "echopath/trace/embree/kept_geometry.h"
 #include "echopath/trace/trace.h"
 #include "paths/error_target.h"
+#include "paths/record_keywords.h"
 #include "scene/scene_geometry.h"
 #include "values/array.h"
-#include "values/choice.h"
 
 namespace echopath::bindings {
 namespace {
@@ -37,24 +36,14 @@ Effort effort_of(std::optional<int64_t> num_rays, int batches, std::optional<dou
   return toward(target, std::nullopt, batches);
 }
 
-PathsPtr trace_paths(Scene scene, const Radar& radar, std::optional<int64_t> num_rays, int max_bounces, uint64_t seed,
-                     double start_time, const std::string& polarization, const std::string& footprint,
-                     const std::string& sampler, std::optional<int> batches, std::optional<double> target_error_db,
-                     int64_t max_rays, const std::string& scatterers, bool edges, double attenuation,
-                     const py::object& progress, const std::shared_ptr<KeptGeometry>& kept) {
-  const Effort effort = effort_of(num_rays, batches.value_or(1), target_error_db, max_rays);
-  TraceSettings settings;
+PathsPtr trace_paths(Scene scene, const Radar& radar, const RecordSettings& of_record, std::optional<int64_t> num_rays,
+                     double start_time, std::optional<double> target_error_db, int64_t max_rays, const py::object& progress,
+                     const std::shared_ptr<KeptGeometry>& kept) {
+  const Effort effort = effort_of(num_rays, of_record.batches, target_error_db, max_rays);
+  TraceSettings settings{of_record};
   settings.num_rays = effort.num_rays;
-  settings.max_bounces = max_bounces;
-  settings.seed = seed;
   settings.start_time = start_time;
-  settings.polarization = kPolarization.value_of(polarization);
-  settings.footprint = kFootprint.value_of(footprint);
   settings.batches = effort.batches;
-  settings.sampler = kSampler.value_of(sampler);
-  settings.scatterers = kScatterers.value_of(scatterers);
-  settings.edges = edges;
-  settings.attenuation = attenuation;
   const SceneSnapshot snapshot(std::move(scene));
   auto paths = std::make_shared<Paths>(run_job("trace", progress, [&](Job& job) {
     return effort.target ? trace_to_error(snapshot, radar, settings, *effort.target, &job, kept.get())
@@ -66,6 +55,25 @@ PathsPtr trace_paths(Scene scene, const Radar& radar, std::optional<int64_t> num
     warn_of_missed_target("trace: max_rays", frame.error_db, frame.target_error_db);
   }
   return paths;
+}
+
+template <class... Keywords>
+void bind_trace_paths(py::module_& m, ListOfKeywords<Keywords...> of_record) {
+  m.def(
+      "trace",
+      [](Scene scene, const Radar& radar, std::optional<int64_t> num_rays, double start_time,
+         std::optional<double> target_error_db, int64_t max_rays, const py::object& progress,
+         const std::shared_ptr<KeptGeometry>& kept, const typename Keywords::Argument&... settings) {
+        return trace_paths(std::move(scene), radar, decltype(of_record)::settings_of(settings...), num_rays, start_time,
+                           target_error_db, max_rays, progress, kept);
+      },
+      py::arg("scene"), py::arg("radar"), py::kw_only(), py::arg("num_rays") = py::none(), py::arg("start_time") = 0.0,
+      py::arg("target_error_db") = py::none(), py::arg("max_rays") = kMaxRays, py::arg("progress") = py::none(),
+      py::arg("kept") = py::none(), Keywords::argument()...,
+      "What ep.trace calls. kept: KeptGeometry of the scene, or None.");
+  py::dict defaults;
+  ((defaults[Keywords::name()] = Keywords::value(RecordSettings{})), ...);
+  m.attr("RECORD_SETTINGS") = defaults;  // by keyword, as TraceFrame has them too
 }
 
 py::array_t<bool> are_clear(Scene scene, double time, const Vec3& from, const std::vector<Vec3>& points) {
@@ -111,12 +119,7 @@ void bind_trace(py::module_& m) {
       m, "KeptGeometry", "Geometry that goes from one trace of a scene to the next, no part of the public interface.")
       .def(py::init<>());
 
-  m.def("trace", &trace_paths, py::arg("scene"), py::arg("radar"), py::kw_only(), py::arg("num_rays") = py::none(),
-        py::arg("max_bounces") = 4, py::arg("seed") = 1, py::arg("start_time") = 0.0, py::arg("polarization") = "scalar",
-        py::arg("footprint") = "second_order", py::arg("sampler") = "lattice", py::arg("batches") = py::none(),
-        py::arg("target_error_db") = py::none(), py::arg("max_rays") = kMaxRays, py::arg("scatterers") = "rays",
-        py::arg("edges") = false, py::arg("attenuation") = 0.0, py::arg("progress") = py::none(),
-        py::arg("kept") = py::none(), "What ep.trace calls. kept: KeptGeometry of the scene, or None.");
+  bind_trace_paths(m, RecordKeywords{});
   m.def(
       "are_clear",
       [](Scene scene, Arg<"time", Real> time, Arg<"origin", Vector3> origin, Arg<"points", Points> points) {

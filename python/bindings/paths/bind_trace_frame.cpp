@@ -7,9 +7,8 @@
 
 #include "call/argument.h"
 #include "call/define.h"
-#include "echopath/record/paths.h"
+#include "paths/record_keywords.h"
 #include "values/array.h"
-#include "values/choice.h"
 #include "values/travel.h"
 
 namespace echopath::bindings {
@@ -49,18 +48,35 @@ TraceStatistics statistics_of(Arg<"num_rays", Tally> rays, Arg<"num_queries", Ta
           *small, *false_hits, *unaimed, *unfollowed, *unsplit, *stopped};
 }
 
-TraceFrame frame_of(Arg<"start_time", Real> start_time, Arg<"trace_time", Real> trace_time,
-                    Arg<"transmitter", Vector3> transmitter, Arg<"receiver", Vector3> receiver,
-                    Arg<"strata", List<Instance<Stratum>>> strata, Arg<"seed", Seed> seed,
-                    Arg<"max_bounces", Count> max_bounces, Arg<"polarization", OneOf<kPolarization>> polarization,
-                    Arg<"footprint", OneOf<kFootprint>> footprint, Arg<"statistics", Instance<TraceStatistics>> statistics,
-                    Arg<"num_batches", Count> num_batches, Arg<"target_error_db", Number> target_error_db,
-                    Arg<"error_db", Number> error_db, Arg<"sampler", OneOf<kSampler>> sampler,
-                    Arg<"scatterers", OneOf<kScatterers>> scatterers, Arg<"edges", Flag> edges,
-                    Arg<"attenuation", Real> attenuation) {
-  const RecordSettings settings{*seed,        *max_bounces, *polarization, *footprint,  *sampler,
-                                *num_batches, *scatterers,  *edges,        *attenuation};
-  return {settings, *start_time, *trace_time, *transmitter, *receiver, *strata, *statistics, *target_error_db, *error_db};
+// Binds what the record's settings have to do with a frame: its constructor, a property each, and how it travels.
+template <class... Keywords>
+void bind_settings(py::class_<TraceFrame>& bound, ListOfKeywords<Keywords...> of_record) {
+  const auto frame_of =
+      [](Arg<"start_time", Real> start_time, Arg<"trace_time", Real> trace_time, Arg<"transmitter", Vector3> transmitter,
+         Arg<"receiver", Vector3> receiver, Arg<"strata", List<Instance<Stratum>>> strata,
+         Arg<"statistics", Instance<TraceStatistics>> statistics, Arg<"target_error_db", Number> target_error_db,
+         Arg<"error_db", Number> error_db, typename Keywords::Argument... settings) -> TraceFrame {
+    return {decltype(of_record)::settings_of(settings...),
+            *start_time,
+            *trace_time,
+            *transmitter,
+            *receiver,
+            *strata,
+            *statistics,
+            *target_error_db,
+            *error_db};
+  };
+  define_init(bound, +frame_of, py::kw_only(), py::arg("start_time"), py::arg("trace_time"), py::arg("transmitter"),
+              py::arg("receiver"), py::arg("strata"), py::arg("statistics"), py::arg("target_error_db") = 0.0,
+              py::arg("error_db") = 0.0, Keywords::argument()...);
+  (bound.def_property_readonly(
+       Keywords::name(), [](const TraceFrame& self) { return Keywords::value(self); }, Keywords::doc()),
+   ...);
+  def_travel(bound, field("start_time", &TraceFrame::start_time), field("trace_time", &TraceFrame::trace_time),
+             field("transmitter", &TraceFrame::transmitter), field("receiver", &TraceFrame::receiver),
+             field("strata", &TraceFrame::strata), field("statistics", &TraceFrame::statistics),
+             field("target_error_db", &TraceFrame::target_error_db), field("error_db", &TraceFrame::error_db),
+             Keywords::travelling()...);
 }
 
 }  // namespace
@@ -139,11 +155,7 @@ void bind_trace_frame(py::module_& m) {
   py::class_<TraceFrame> bound_frame(
       m, "TraceFrame",
       "What amplitudes and lengths of paths are relative to. Raises TypeError or ValueError naming the argument.");
-  define_init(bound_frame, &frame_of, py::kw_only(), py::arg("start_time"), py::arg("trace_time"), py::arg("transmitter"),
-              py::arg("receiver"), py::arg("strata"), py::arg("seed"), py::arg("max_bounces"), py::arg("polarization"),
-              py::arg("footprint"), py::arg("statistics"), py::arg("num_batches") = 1, py::arg("target_error_db") = 0.0,
-              py::arg("error_db") = 0.0, py::arg("sampler") = "lattice", py::arg("scatterers") = "rays",
-              py::arg("edges") = false, py::arg("attenuation") = 0.0);
+  bind_settings(bound_frame, RecordKeywords{});
   bound_frame.def_readonly("start_time", &TraceFrame::start_time, "s, first sample of the frame")
       .def_readonly("trace_time", &TraceFrame::trace_time, "s, the time that the rays saw")
       .def_property_readonly(
@@ -153,37 +165,11 @@ void bind_trace_frame(py::module_& m) {
           "receiver", [](const TraceFrame& self) { return to_numpy(self.receiver); },
           "[3] m, where hits were connected to, world")
       .def_readonly("strata", &TraceFrame::strata, "list of Stratum")
-      .def_readonly("seed", &TraceFrame::seed, "of directions and random phases")
-      .def_readonly("max_bounces", &TraceFrame::max_bounces, "hits of a path at most")
-      .def_property_readonly(
-          "polarization", [](const TraceFrame& self) { return kPolarization.name_of(self.polarization); },
-          "\"scalar\" or \"jones\"")
-      .def_property_readonly(
-          "footprint", [](const TraceFrame& self) { return kFootprint.name_of(self.footprint); },
-          "\"second_order\", \"edges\", \"first_order\" or \"none\"")
-      .def_readonly("num_batches", &TraceFrame::batches, "independent parts of the rays")
       .def_readonly("target_error_db", &TraceFrame::target_error_db,
                     "dB, error of the received power that was asked for; 0: none")
       .def_readonly("error_db", &TraceFrame::error_db,
                     "dB, the one that was reached, above the target where max_rays did not do; 0: not looked at")
-      .def_property_readonly(
-          "sampler", [](const TraceFrame& self) { return kSampler.name_of(self.sampler); },
-          "\"lattice\", \"fibonacci\", \"r2\" or \"random\"")
-      .def_property_readonly(
-          "scatterers", [](const TraceFrame& self) { return kScatterers.name_of(self.scatterers); },
-          "\"rays\" or \"surface\": what the scatterers of rough surfaces are")
-      .def_readonly("edges", &TraceFrame::edges, "whether echoes of sharp edges were looked for")
-      .def_readonly("attenuation", &TraceFrame::attenuation, "Np/m of fields in the air, along every path")
       .def_readonly("statistics", &TraceFrame::statistics, "TraceStatistics");
-  def_travel(bound_frame, field("start_time", &TraceFrame::start_time), field("trace_time", &TraceFrame::trace_time),
-             field("transmitter", &TraceFrame::transmitter), field("receiver", &TraceFrame::receiver),
-             field("strata", &TraceFrame::strata), field("seed", &TraceFrame::seed),
-             field("max_bounces", &TraceFrame::max_bounces), field("statistics", &TraceFrame::statistics),
-             field("num_batches", &TraceFrame::batches), field("target_error_db", &TraceFrame::target_error_db),
-             field("error_db", &TraceFrame::error_db), field("polarization", &TraceFrame::polarization, kPolarization),
-             field("footprint", &TraceFrame::footprint, kFootprint), field("sampler", &TraceFrame::sampler, kSampler),
-             field("scatterers", &TraceFrame::scatterers, kScatterers), field("edges", &TraceFrame::edges),
-             field("attenuation", &TraceFrame::attenuation));
 }
 
 }  // namespace echopath::bindings

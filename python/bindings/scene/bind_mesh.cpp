@@ -177,6 +177,7 @@ std::optional<std::array<double, 4>> tessellation_of_mesh(const std::shared_ptr<
 }
 
 void bind_readers(py::module_& m) {
+  m.attr("MESH_SUFFIXES") = py::tuple(py::cast(mesh_extensions()));  // of the files that these read
   m.def("load_mesh", &mesh_of_file, py::arg("path"), py::arg("unit") = 1.0, "What ep.load_mesh calls.");
   m.def("load_meshes", &meshes_of_file, py::arg("path"), py::arg("unit") = 1.0, "What ep.load_meshes calls.");
   m.def("load_surfaces", &surfaces_of_file, py::arg("path"), py::arg("unit") = 1.0,

@@ -63,6 +63,11 @@ def settings_class(kind: type[Kind]) -> type[Kind]:
     return made
 
 
+def settings_among(kind: type[Kind], arguments: Mapping[str, object]) -> Kind:
+    """The settings of a class among the arguments of a function, {keyword: value}: its `locals()`, which must have all."""
+    return kind(**{name: arguments[name] for name in kind.RULES})
+
+
 @settings_class
 class TraceSettings(Settings):
     """How rays are shot: the keywords of `trace`, which tells what they mean.

@@ -24,8 +24,6 @@ from ..weather.weather import weather_of, weather_text
 from . import report
 from .model_info import describe_model
 
-MESH_SUFFIXES = (".obj", ".ply", ".stl", ".off")
-
 
 def describe_file(path, selections=(), *, unit=None, up=None) -> list[str]:
     """Lines that say what is in a scene file or a template (TOML), a frame file (HDF5), a mesh file or a foreign scene
@@ -53,7 +51,7 @@ def describe_file(path, selections=(), *, unit=None, up=None) -> list[str]:
         return _describe_sequence(ep.load_sequence(path))
     if suffix in FRAME_SUFFIXES:
         return _describe_frame(path, selections)
-    if suffix in MESH_SUFFIXES:
+    if suffix in ep._core.MESH_SUFFIXES:
         meshes = ep.load_meshes(str(path), 1.0 if unit is None else unit)
         return [*_describe_meshes(meshes), *describe_model(path, ep.load_model(path, unit=unit, up=up))]
     if is_foreign(path):

@@ -8,7 +8,7 @@ from ..arguments.checks import MapWindow, Progress, anything, checked, flag
 from ..arguments.effects import Choices
 from ..arguments.settings import (
     Edges, Evaluate, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings,
-    TraceSettings,
+    TraceSettings, settings_among,
 )
 from ..guard import warn_of
 from ..signals.parts import Selections
@@ -61,13 +61,7 @@ def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | 
     Returns a Frame. Raises TypeError or ValueError naming the argument, KeyboardInterrupt on Ctrl-C. Warns (GuardWarning)
     where a check disagrees by more than is promised.
     """
-    tracing = TraceSettings(num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
-                            polarization=polarization, footprint=footprint, sampler=sampler, batches=batches,
-                            target_error_db=target_error_db, max_rays=max_rays, scatterers=scatterers, edges=edges,
-                            effects=effects)
-    signals = SignalSettings(tolerance=tolerance, method=method, replay=replay, evaluate=evaluate,
-                             phase_tolerance=phase_tolerance, retrace=retrace, keyframes=keyframes, noise_seed=noise_seed,
-                             window=window, zero_pad=zero_pad)
+    tracing, signals = settings_among(TraceSettings, locals()), settings_among(SignalSettings, locals())
     run = FrameRun(scene, radar, tracing, signals, parts, angles, labels, detections, truth, guard)
     frame = run.frame_of(lambda: trace_scene(scene, radar, settings=tracing, progress=progress), progress)
     warn_of(frame.checks)

@@ -17,8 +17,9 @@ OPTIONAL_FIELDS = {"curved_cell": (np.float32, (7,)), "jones": (np.complex64, (2
 PASS_FIELDS = HIT_FIELDS | {"leg": np.uint32}
 PASS = np.dtype(list(PASS_FIELDS.items()))
 _NOISE_LIKE = ("u", "v", "weight")  # compression does not pay
-FRAME_VALUES = ("start_time", "trace_time", "seed", "max_bounces", "polarization", "footprint", "sampler", "scatterers", "edges",
-                "num_batches", "target_error_db", "error_db")
+RECORD_SETTINGS: dict[str, object] = _core.RECORD_SETTINGS  # of the trace, with the values of files that lack one
+FIRST_SETTINGS = ("seed", "max_bounces", "polarization", "footprint", "sampler", "num_batches")  # which no file lacks
+FRAME_VALUES = ("start_time", "trace_time", "target_error_db", "error_db")
 STATISTICS = ("num_rays", "num_queries", "num_hits", "num_paths", "num_near_antenna", "num_grazing", "num_small_mirrors",
               "num_false_hits", "num_unaimed", "num_unfollowed_frusta")
 LATER_STATISTICS = ("num_unsplit_rays", "num_stopped_passes")  # which older files do not have
@@ -107,10 +108,8 @@ def _check_indices(group, hits, columns: dict, scene) -> None:
 
 
 def _write_frame(group, frame) -> None:
-    for name in FRAME_VALUES:
+    for name in (*FRAME_VALUES, *RECORD_SETTINGS):
         (write_seed if name == "seed" else write_attribute)(group, name, getattr(frame, name))
-    if frame.attenuation > 0:
-        write_attribute(group, "attenuation", frame.attenuation)
     write_array(group, "transmitter", frame.transmitter, unit="m")
     write_array(group, "receiver", frame.receiver, unit="m")
     for name in STATISTICS + LATER_STATISTICS:
@@ -128,6 +127,12 @@ def _write_frame(group, frame) -> None:
     write_array(group, "stratum_focus_of", np.array([stratum.focus_of for stratum in strata], np.int64))
     strips = [[stratum.half_azimuth, stratum.low, stratum.high] for stratum in strata]
     write_array(group, "stratum_strip", np.array(strips, np.float64).reshape(-1, 3))
+
+
+def _read_settings(group) -> dict[str, object]:
+    """{keyword of TraceFrame: value}"""
+    return {name: read_seed(group, name) if name == "seed" else read_attribute(group, name, type(default))
+            for name, default in RECORD_SETTINGS.items() if name in group.attrs or name in FIRST_SETTINGS}
 
 
 def _read_statistics(group):
@@ -157,17 +162,7 @@ def _read_frame(group):
                             object=int(aimed_at[i]), num_mirrors=int(mirrors[i]), focus_of=int(focus_of[i]))
               for i in range(len(names))]
     statistics = _read_statistics(group)
-    return _core.TraceFrame(
-        start_time=read_attribute(group, "start_time", float), trace_time=read_attribute(group, "trace_time", float),
-        transmitter=read_array(group, "transmitter", np.float64, (3,)),
-        receiver=read_array(group, "receiver", np.float64, (3,)), strata=strata,
-        seed=read_seed(group, "seed"), max_bounces=read_attribute(group, "max_bounces", int),
-        polarization=read_attribute(group, "polarization", str), footprint=read_attribute(group, "footprint", str),
-        sampler=read_attribute(group, "sampler", str),
-        scatterers=read_attribute(group, "scatterers", str) if "scatterers" in group.attrs else "rays",
-        edges=read_attribute(group, "edges", bool) if "edges" in group.attrs else False,
-        attenuation=read_attribute(group, "attenuation", float) if "attenuation" in group.attrs else 0.0,
-        statistics=statistics,
-        num_batches=read_attribute(group, "num_batches", int),
-        target_error_db=read_attribute(group, "target_error_db", float),
-        error_db=read_attribute(group, "error_db", float))
+    values = {name: read_attribute(group, name, float) for name in FRAME_VALUES}
+    return _core.TraceFrame(transmitter=read_array(group, "transmitter", np.float64, (3,)),
+                            receiver=read_array(group, "receiver", np.float64, (3,)), strata=strata, statistics=statistics,
+                            **values, **_read_settings(group))

@@ -16,8 +16,8 @@ from .options import ReadOptions
 
 # suffix -> module of this package with `read(path, options) -> Model`; imported when the first such file is read
 READERS: dict[str, str] = {
-    ".glb": "gltf", ".gltf": "gltf", ".obj": "obj", ".ply": "obj", ".stl": "obj", ".off": "obj", ".xml": "mitsuba",
-    ".usd": "usd", ".usda": "usd", ".usdc": "usd", ".usdz": "usd", ".npz": "frames", ".bvh": "bvh",
+    ".glb": "gltf", ".gltf": "gltf", **dict.fromkeys(_core.MESH_SUFFIXES, "obj"), ".xml": "mitsuba", ".usd": "usd",
+    ".usda": "usd", ".usdc": "usd", ".usdz": "usd", ".npz": "frames", ".bvh": "bvh",
 }
 
 

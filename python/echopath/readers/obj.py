@@ -11,8 +11,6 @@ from .options import ReadOptions
 from .sampled import chosen_animation
 from .tree import Tree
 
-NAMES = {".obj": "OBJ", ".ply": "PLY", ".stl": "STL", ".off": "OFF"}
-
 
 def read(path: Path, options: ReadOptions) -> Model:
     """A Model of a mesh file. Its axes are those of a scene and its unit is 1 m, unless the options say otherwise."""
@@ -30,7 +28,7 @@ def read(path: Path, options: ReadOptions) -> Model:
         tree.add(name, parent, mesh=part.mesh, foreign_material=part.material, smooth=part.smooth)
     for sentence in _notes_of_libraries(path, libraries, {part.material for part in parts} - {""}):
         tree.note(sentence)
-    return tree.model(format=NAMES[path.suffix.lower()], unit=axes.unit, up=axes.up)
+    return tree.model(format=path.suffix[1:].upper(), unit=axes.unit, up=axes.up)
 
 
 def _notes_of_libraries(path: Path, libraries: list[str], used: set[str]) -> list[str]:

@@ -18,7 +18,7 @@ from ..arguments.effects import Choices
 from ..arguments.motions import require_motion
 from ..arguments.settings import (
     Edges, Evaluate, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings,
-    TraceSettings,
+    TraceSettings, settings_among,
 )
 from ..base.progress import automatic_bars
 from ..frame.frame import Frame
@@ -83,13 +83,7 @@ class Sequence(Row[Frame]):
                  angles: Mapping[str, object] | None = None, labels: bool | LabelSettings | Mapping[str, object] | None = None,
                  detections: bool | Mapping[str, object] | None = None, truth: bool | Mapping[str, object] | None = None,
                  guard: bool = True, trace: TraceSettings | None = None, signal: SignalSettings | None = None):
-        tracing = TraceSettings(num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
-                                polarization=polarization, footprint=footprint, sampler=sampler, batches=batches,
-                                target_error_db=target_error_db, max_rays=max_rays, scatterers=scatterers, edges=edges,
-                                effects=effects)
-        signals = SignalSettings(tolerance=tolerance, method=method, replay=replay, evaluate=evaluate,
-                                 phase_tolerance=phase_tolerance, retrace=retrace, keyframes=keyframes, noise_seed=noise_seed,
-                                 window=window, zero_pad=zero_pad)
+        tracing, signals = settings_among(TraceSettings, locals()), settings_among(SignalSettings, locals())
         end = _checked_end(scene, radar, start_time, frames, interval)
         require_interferers(scene, radar, effects, (start_time, end))
         self._run = FrameRun(Scene(scene), radar, tracing, signals, parts, angles, labels, detections, truth, guard)

@@ -92,7 +92,7 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
     warn_of_coarse_meshes(scene, radar.waveform.start_frequency)
     model = chosen_model(polarization, scene, wavelength, antennas_of(radar), argument="polarization")
     paths = _core.trace(scene, radar, num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
-                        polarization=model, footprint=footprint, sampler=sampler, batches=batches,
+                        polarization=model, footprint=footprint, sampler=sampler, num_batches=batches or 1,
                         target_error_db=target_error_db, max_rays=max_rays,
                         scatterers="rays" if scatterers == "auto" else scatterers,
                         edges=looks_for_edges(edges, scene, radar, start_time),

@@ -102,9 +102,8 @@ def test_columns_are_read_only_views():
 
 def with_batches(frame, count):
     """The frame with another count of batches."""
-    names = ("start_time", "trace_time", "transmitter", "receiver", "strata", "seed", "max_bounces", "polarization", "footprint",
-             "statistics", "target_error_db", "error_db", "sampler", "scatterers", "edges", "attenuation")
-    return ep.TraceFrame(**{name: getattr(frame, name) for name in names}, num_batches=count)
+    names = ("start_time", "trace_time", "transmitter", "receiver", "strata", "statistics", *ep._core.RECORD_SETTINGS)
+    return ep.TraceFrame(**{name: getattr(frame, name) for name in names} | {"num_batches": count})
 
 
 def test_arrays_give_the_paths_back():

@@ -9,6 +9,7 @@
 #include "echopath/em/edges/multiple_diffraction.h"
 #include "echopath/em/polarization/mirrored_fields.h"
 #include "echopath/record/posed_edge.h"
+#include "echopath/replay/factors/path_weight.h"
 #include "echopath/replay/kernels/path_formula.h"
 
 namespace echopath {
@@ -210,7 +211,7 @@ template <class Fields>
 void evaluate(const SharedLegPlan& plan, const RecordSheets& sheets, const PosedNodes& nodes, const RadioConstants& radio,
               const ChannelSpan& channels, bool with_amplitudes) {
   std::vector<int64_t> indices;
-  for (const SharedLegPlan::EdgePath& path : plan.edge_paths) indices.push_back(path.path);
+  for (const SharedLegPlan::PlannedPath& path : plan.edge_paths) indices.push_back(path.path);
   const PathPreparer& preparer = sheets.preparer;
   const LocalPaths local = preparer(indices);
   const SheetsOnPaths on_paths(sheets, indices);
@@ -219,7 +220,7 @@ void evaluate(const SharedLegPlan& plan, const RecordSheets& sheets, const Posed
     const PosedScene& scene = nodes.at(node);
     const size_t num_receivers = scene.receivers.size();
     for (size_t i = 0; i < indices.size(); ++i) {
-      const std::complex<double> weight(preparer.paths().weight[static_cast<size_t>(indices[i])]);
+      const std::complex<double> weight = weight_of(preparer.paths(), static_cast<size_t>(indices[i]));
       echoes.pose(local.paths[i], scene, on_paths.of(i));
       for (size_t channel = 0; channel < channels.nodes.size(); ++channel) {
         const size_t of_all = channels.first + channel, transmitter = of_all / num_receivers,

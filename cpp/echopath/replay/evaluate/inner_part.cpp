@@ -33,7 +33,7 @@ InnerPart inner_part(const LocalPath& path, const PosedHit* hits) {
     if (path.is_diffuse(previous)) {
       cos_out = hits[previous].normal.dot(leg.departure);
       if (previous == inner.first_diffuse) inner.cos_out_first = cos_out;
-      else if (cos_out * inner.cos_in_last <= 0) inner.lit = false;
+      else if (cos_out * inner.cos_in_last <= 0) inner.is_lit = false;
     }
     if (path.is_diffuse(k)) {
       const double cos_in = -hits[k].normal.dot(leg.arrival);
@@ -59,7 +59,7 @@ DiffuseInner diffuse_inner(const LocalPath& path, const PosedHit* hits, const In
   out.is_single = inner.first_diffuse == path.last_material;
   out.to_first = inner.to_first_diffuse;
   out.root_cos_first = std::copysign(std::sqrt(std::abs(inner.cos_in_first)), inner.cos_in_first);
-  out.factor = inner.lit ? std::sqrt(inner.power_factor * diffuse_area_ratio(path, hits)) : 0.0;
+  out.factor = inner.is_lit ? std::sqrt(inner.power_factor * diffuse_area_ratio(path, hits)) : 0.0;
   out.first_sign = std::copysign(1.0, inner.cos_out_first);
   out.last_sign = std::copysign(1.0, inner.cos_in_last);
   return out;

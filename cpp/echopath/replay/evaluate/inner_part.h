@@ -13,7 +13,7 @@ struct InnerPart {
   double cos_in_first = 0.0;   // signed, at the first diffuse hit, if it is not the first material point
   double cos_out_first = 0.0;  // signed, if it is not the last
   double cos_in_last = 0.0;    // signed, at the last diffuse hit, if it is not the first one
-  bool lit = true;             // every diffuse hit between is seen from one side
+  bool is_lit = true;          // each diffuse hit between two others sends on from the side where the wave arrives
 };
 
 // Reads only the events and material points of the path, and only points and normals of the hits.

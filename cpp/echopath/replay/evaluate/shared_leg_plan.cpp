@@ -3,6 +3,8 @@
 #include <bit>
 #include <cstring>
 
+#include "echopath/replay/factors/path_weight.h"
+
 namespace echopath {
 namespace {
 
@@ -149,7 +151,7 @@ void SharedLegPlanner::add_chain(size_t place, int64_t path) {
   const TracedHits hits{paths_->hits_of(path), paths_->num_bounces[p], paths_->diffuse[p], paths_->is_reversed(p),
                         paths_->stratum[p]};
   const Ends ends = ends_of(hits);
-  const std::complex<double> weight(paths_->weight[p]);
+  const std::complex<double> weight = weight_of(*paths_, p);
   if (ends.first < 0) {
     uint32_t image = 0;
     for (int k = 0; k < hits.count; ++k) image = image_in(image, hits.recorded[k]);

@@ -31,10 +31,10 @@ struct SharedLegPlan {
   };
   // Describes a path over material points that is none of the single bounces.
   struct ChainPath {
-    size_t place;  // of the path in its block
-    int64_t path;
-    uint32_t start, end;  // legs, in the order in which the path was traced
-    uint32_t inner;       // kNone: there is one material point, whose triangle keeps its area
+    size_t place;         // of the path among those of its block
+    int64_t path;         // index in the record
+    uint32_t start, end;  // indices into `legs`, in the order in which the path was traced
+    uint32_t inner;       // index into `inner`; kNone: nothing lies between, where one point on a rigid mesh is all
     uint32_t slide;       // index into `sliding`; kNone: its points of reflection stay where they were recorded
     bool is_reversed;     // it starts at a receiver
     bool is_coherent;     // it has a launch cell, at the point of its last leg
@@ -48,11 +48,11 @@ struct SharedLegPlan {
     std::complex<double> weight;
   };
 
-  struct EdgePath {
+  // Names a path that others evaluate.
+  struct PlannedPath {
     size_t place;
     int64_t path;
   };
-  using LobedPath = EdgePath;
 
   // Lists the paths that one point sends straight back: at most one coherent and one diffuse path.
   struct SingleBounce {
@@ -73,8 +73,8 @@ struct SharedLegPlan {
   std::vector<ChainPath> chains;  // by place
   std::vector<int64_t> sliding;   // paths whose points of reflection move (SpecularPoints::kFermat)
   std::vector<MirrorPath> mirror_paths;
-  std::vector<EdgePath> edge_paths;    // edge_echoes.h
-  std::vector<LobedPath> lobed_paths;  // lobe_factors.h; they stand among the others, too
+  std::vector<PlannedPath> edge_paths;   // edge_echoes.h
+  std::vector<PlannedPath> lobed_paths;  // lobe_factors.h; they stand among the others, too
 
   void clear();
 };

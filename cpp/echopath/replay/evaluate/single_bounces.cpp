@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "echopath/base/lanes/simd.h"
+#include "echopath/replay/factors/path_weight.h"
 
 namespace echopath {
 namespace {
@@ -194,7 +195,7 @@ void SingleBounceEvaluation::set_weights(const SharedLegPlan::SingleBounce& poin
   for (size_t kind = 0; kind < SingleBounceSlots::kNumKinds; ++kind) {
     const bool is_there = point.has_path(kind);
     const auto path = static_cast<size_t>(is_there ? point.path[kind] : 0);
-    const std::complex<double> weight = is_there ? scale[kind] * std::complex<double>(paths.weight[path]) : 0.0;
+    const std::complex<double> weight = is_there ? scale[kind] * weight_of(paths, path) : 0.0;
     const auto set = [&](SingleBounceSlots::Row* rows, std::complex<double> value) {
       rows[0][slot] = value.real();
       rows[1][slot] = value.imag();

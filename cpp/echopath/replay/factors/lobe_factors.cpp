@@ -81,7 +81,7 @@ void apply_lobes(const SharedLegPlan& plan, const PathPreparer& preparer, const 
                  const ChannelSpan& channels) {
   if (plan.lobed_paths.empty()) return;
   std::vector<int64_t> indices;
-  for (const SharedLegPlan::LobedPath& path : plan.lobed_paths) indices.push_back(path.path);
+  for (const SharedLegPlan::PlannedPath& path : plan.lobed_paths) indices.push_back(path.path);
   const LocalPaths local = preparer(indices);
   PathLobes lobes(preparer);
   for (size_t node = 0; node < nodes.size(); ++node) {

@@ -92,8 +92,9 @@ ECHOPATH_INLINE FootprintPhaseOf<Real> cell_phase(const Shape& cell, const CellW
   return phase;
 }
 
-// Takes the turn of a filter (TurningFootprint) as part of the filter.
+// Leaves a filter whole, with its turn: the phase that goes through many cycles behind curved bounces (TurningFootprint).
 struct WithTurn {
+  // Returns the filter.
   template <class Math, class Real>
   ECHOPATH_INLINE ComplexOf<Real> second_order(const FootprintPhaseOf<Real>& phase, double spread) {
     return second_order_footprint_of<Math>(phase, spread);
@@ -102,11 +103,12 @@ struct WithTurn {
   ECHOPATH_INLINE void keep_where(const Mask& /*is_quadratic*/) {}
 };
 
-// Leaves the turn out of the filter and keeps it: 0 where the filter has none.
+// Takes the turn out of a filter and keeps it: 0 where the filter has none.
 template <class Real>
 struct TurnApart {
   Real turn{};  // rad
 
+  // Returns the filter without its turn.
   template <class Math, class>
   ECHOPATH_INLINE ComplexOf<Real> second_order(const FootprintPhaseOf<Real>& phase, double spread) {
     const TurningFootprint<Real> found = turning_footprint_of<Math>(phase, spread);
@@ -119,7 +121,8 @@ struct TurnApart {
   }
 };
 
-// Turn is WithTurn or TurnApart, here and below. Footprint::kEdges sums up several turns, so that none stands apart.
+// Returns the filter of the second order. Turn is WithTurn or TurnApart, here and below. Footprint::kEdges sums up
+// several turns, so that none stands apart.
 template <class Math, class Real, class Turn>
 ECHOPATH_INLINE ComplexOf<Real> quadratic_footprint(const FootprintPhaseOf<Real>& phase, const CellFilter& filter,
                                                     Turn& turn) {

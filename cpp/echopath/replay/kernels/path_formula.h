@@ -4,12 +4,15 @@
 // constants that all paths of a kind share; amplitudes of edges, which the trace estimates too, are made by edge_amplitude
 // (em/edges/edge_diffraction.h).
 //
-// Coherent path (regime C), physical optics at its last material point:
-//   a = sqrt(Pt Gt Gr)/(4 pi) * weight * cos_i * F / (sqrt(D) r),   weight = j W_C Gamma s dS
-//   dS is that of the time: the stored one times the area of the triangle over its area at the trace,
+// Coherent path: all its bounces are mirror-like, and the last material point radiates by physical optics:
+//   a = sqrt(Pt Gt Gr)/(4 pi) * weight * cos_i * F / (sqrt(D) r),   weight = j W Gamma s dS
+//   W = product of the coefficients of the bounces before, over the probabilities with which the ray went on there,
+//   Gamma = reflection coefficient at the point, s^2 = share of the reflected power that is not scattered,
+//   dS = area for which the ray stands (m^2): that of the trace times the area of the triangle over its area then,
 //   sqrt(D) = unfolded length TX -> point on flat chains, else sqrt(|T_1 x T_2| cos_i density) of the launch cell,
 //   r = unfolded length point -> RX, obliquity cos_i, F the footprint filter (cell_formula.h).
-// Diffuse path (regime D), diffuse hits 1..n, legs unfolded over what lies between:
+// Diffuse path: one bounce or more scatters, and its power has one random phase phi. S^2 = 1 - s^2; diffuse hits 1..n, legs
+// unfolded over what lies between:
 //   |a|^2 = Pt Gt/(4 pi) * |weight|^2 * cos_in1/r1^2 * prod [f cos_out cos_in/r^2] * f cos_out_n/r_n^2 * lambda^2 Gr/(4 pi)
 //   weight = sqrt(prod dS) prod |Gamma| S * (mirror coefficients) * e^{j phi},   f = 1/pi (Lambert), hence
 //   |a| = |weight| sqrt(Pt/pi) lambda/(4 pi) * start * inner * end
@@ -19,10 +22,10 @@
 // Flagged mirrors alone: a = weight * lambda sqrt(Pt Gt Gr)/(4 pi L).
 // A coherent path without its filter F has at most the amplitude of a mirror in the place of its point, because a cell that
 // is wider than a Fresnel zone returns no more.
-// In a polarised trace the matrix of the path (Paths::jones), between the polarisations of both antennas, holds all
-// coefficients. Antennas whose tables have a phase turn a by e^{j (phase of transmitter + phase of receiver)}. An antenna
-// nearer than kNearAntenna to a material point neither sends there nor receives. The phase of the length is not part of the
-// amplitude.
+// In a polarised trace the weight has no coefficients: the matrix J of the path (Paths::jones) has them, and e_r.J e_t with
+// the polarisations of transmitter and receiver multiplies the amplitude. Antennas whose tables have a phase turn a
+// by e^{j (phase of transmitter + phase of receiver)}. An antenna nearer than kNearAntenna to a material point neither sends
+// there nor receives. The phase of the length is not part of the amplitude.
 #include "echopath/em/footprint_formula.h"
 #include "echopath/em/polarization/transverse_formula.h"
 #include "echopath/record/near_antenna.h"
@@ -30,7 +33,7 @@
 
 namespace echopath {
 
-// Makes every amplitude from the weight of the path and the factor of its legs.
+// Makes every amplitude from the weight of the path (factors/path_weight.h) and the factor of its legs.
 template <class Math, class Weight, class Real>
 ECHOPATH_INLINE ComplexOf<Real> amplitude_of(ComplexOf<Weight> weight, Real size) {
   return {weight.re * size, weight.im * size};
@@ -65,6 +68,7 @@ struct PairOfPolarizations {
   ECHOPATH_INLINE PairOfPolarizations(const TransverseOf<Real>& start, const TransverseOf<Real>& end)
       : product{-end.horizontal * start.horizontal, -end.horizontal * start.vertical, end.vertical * start.horizontal,
                 end.vertical * start.vertical} {}
+  // Returns what the end takes of the wave of the start, e_r.J e_t, where `matrix` has the entries of J, row by row.
   template <class Entry>
   ECHOPATH_INLINE Real through(const Entry* matrix) const {
     return (product[0] * matrix[0] + product[1] * matrix[1]) + (product[2] * matrix[2] + product[3] * matrix[3]);
@@ -103,14 +107,14 @@ ECHOPATH_INLINE Real coherent_size(Real root_gains, Real cos_in, Real inverse_tu
   return root_gains * cos_in * inverse_tube * inverse_out;
 }
 
-// Returns the least that one over that size can be for gains of 1, whatever the cosine; the unfolded lengths to and from the
-// point are at least `in` and `out` (m).
+// Returns the least that one over coherent_size can be for gains of 1, whatever the cosine; the unfolded lengths to
+// and from the point are at least `in` and `out` (m).
 template <class Real>
 ECHOPATH_INLINE Real least_spreading(bool is_curved, double root_area, Real in, Real out) {
   return is_curved ? root_area * out : in * out;
 }
 
-// `is_lit` is the result of the function above.
+// Returns the factor of the weight. `is_lit` is what the function is_lit returns.
 template <class Real, class Truth>
 ECHOPATH_INLINE ComplexOf<Real> coherent_factor(const CellWaves<Real>& waves, Real root_gains, Real inverse_tube,
                                                 const ComplexOf<Real>& filter, Truth is_lit) {

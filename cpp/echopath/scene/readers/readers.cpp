@@ -221,6 +221,12 @@ std::vector<NamedMesh> load_meshes(const std::string& path, double unit) {
   return read_meshes(file, path, unit);
 }
 
+std::vector<std::string> mesh_extensions() {
+  std::vector<std::string> extensions;
+  for (const Reader& reader : kReaders) extensions.emplace_back(reader.extension);
+  return extensions;
+}
+
 MeshPtr load_mesh(const std::string& path, double unit) {
   std::ifstream file = opened(path, unit);
   Soup soup = read(file, path, unit);

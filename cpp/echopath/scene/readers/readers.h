@@ -59,4 +59,7 @@ SurfaceFrames load_frames(const std::vector<std::string>& paths, double unit = 1
 // Reads all groups of a file as one mesh.
 MeshPtr load_mesh(const std::string& path, double unit = 1.0);
 
+// Returns the extensions of the files that these functions read, in small letters, such as ".obj".
+std::vector<std::string> mesh_extensions();
+
 }  // namespace echopath

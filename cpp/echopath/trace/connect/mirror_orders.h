@@ -1,5 +1,6 @@
 #pragma once
-// Treats unflagged surfaces as mirrors, and decides which of a path's two orders counts.
+// Treats unflagged surfaces as mirrors, and decides which of a path's two orders counts: an order says which of its two ends
+// is met first, `T a ... b R` or `T b ... a R`.
 //
 // A specular bounce off an unflagged surface is geometrical optics, which holds where the surface covers the Fresnel zone
 // (mirror_zone.h). The surface around the point counts, whatever meshes it consists of; the edges of a surface narrower than
@@ -7,8 +8,9 @@
 //
 // Over unflagged surfaces the paths T a ... b R and T b ... a R between nearby antennas are each other's reversal, and rays
 // find both: one order takes a for a mirror and integrates over b, the other takes b for a mirror and integrates over a.
-// Each family of paths can therefore come from its own rays or as the reversal of the opposite order. The share of either
-// depends only on the two ends, which both kinds of rays know, so that the shares add up to one and nothing counts twice.
+// The echo over a ... b can therefore come from rays that meet a first, or be taken from those that meet b first, turned
+// round. Each of these counts with a share. The shares depend only on the two ends, a and b, which both kinds of rays know,
+// so that they add up to one and nothing counts twice.
 // The better order counts: the one whose mirrors cover more of their zones, and whose rays lie denser.
 #include "echopath/trace/mirrors/mirror_zone.h"
 #include "echopath/trace/sbr/ray.h"
@@ -38,6 +40,7 @@ class MirrorOrders {
   OrderShares shares(const Ray& ray, const SurfaceHit& surface, const Leg& leg, int64_t& num_queries) const;
 
  private:
+  // Finds what the last mirror covers of its Fresnel zone, and notes it in the ray.
   void weigh(Ray& ray, const SurfaceHit& surface, int64_t& num_queries) const;
   ZoneCover cover_of(const MirrorView& view, const ZoneTarget* target, int64_t& num_queries) const;
   PathEnd end_at(const MirrorView& view, const ZoneCover& cover) const;

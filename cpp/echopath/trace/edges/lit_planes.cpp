@@ -81,11 +81,11 @@ int LitPlanes::plane_of(const Hit& hit) const {
   return plane_through(corners, (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalized());
 }
 
-void LitPlanes::finish(double apart) {
+void LitPlanes::finish(double antenna_distance) {
   find_planes();
   Found there, back;
   const auto widened = [&](const Eigen::AlignedBox3d& box) -> Eigen::AlignedBox3d {
-    const Vec3 around = Vec3::Constant(kApart * apart);
+    const Vec3 around = Vec3::Constant(kApart * antenna_distance);
     return {box.min() - around, box.max() + around};
   };
   for (const auto& [facets, boxes] : chains_) {
@@ -94,7 +94,7 @@ void LitPlanes::finish(double apart) {
     there[{{planes.begin(), planes.end() - 1}, planes.back()}].extend(boxes.back());
     for (size_t k = 0; k + 1 < planes.size(); ++k) {
       const std::vector<int> mirrors(planes.rbegin(), planes.rend() - static_cast<int64_t>(k) - 1);
-      if (apart > 0) back[{mirrors, planes[k]}].extend(widened(boxes[k]));
+      if (antenna_distance > 0) back[{mirrors, planes[k]}].extend(widened(boxes[k]));
     }
   }
   for (const auto& [ways, box] : there) back[ways].extend(widened(box));

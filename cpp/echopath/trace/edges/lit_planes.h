@@ -1,6 +1,6 @@
 #pragma once
-// Records which planes rays found to reflect waves to other planes, for the echoes of edges behind mirrors that nobody
-// flagged.
+// Records which planes an antenna lights over which other planes, as rays found it. Edges on a lit plane have echoes over
+// the same mirrors (edges_over_planes.h), though nobody flagged these.
 #include <map>
 #include <span>
 #include <vector>
@@ -18,19 +18,21 @@ struct LitPlane {
   Eigen::AlignedBox3d box;  // m: where rays met it, and the space to the rays beside them
 };
 
-// Holds the planes of facets that mirrored rays or at which rays arrived, without sheets, which the queries of rays pass.
-// Facets that lie in one plane to a sixteenth of the wavelength are one plane, whatever meshes they belong to.
+// Holds the planes of the facets that mirrored a ray or at which a mirrored ray arrived. Facets of sheets are left out,
+// because rays go through them. Facets that lie in one plane to a sixteenth of the wavelength are one plane,
+// whatever meshes they belong to.
 class LitPlanes {
  public:
   // All must outlive it.
   LitPlanes(const Scene& scene, const EmbreeScene& geometry, double wavelength);
   // Takes what the rays of a block found.
   void add_chains(const PathBlock& block);
-  // Ends the search: sorts what was found, so that it does not hang on the order of the rays. `apart` is the distance in m
-  // between both antennas.
-  void finish(double apart);
-  // Return what each antenna lights. The rays come from the transmitter; what the receiver lights is the same where it is at
-  // the same place, and else also what rays met in the opposite order. `finish` must have been called.
+  // Ends the search: sorts what was found, so that it does not depend on the order of the rays. `antenna_distance` is that
+  // between transmitter and receiver in m.
+  void finish(double antenna_distance);
+  // Return the planes that waves from each antenna would light. Rays come from the transmitter alone: what the receiver
+  // lights is the same where both stand at one place; else the chains of planes that rays met count backwards, too. `finish`
+  // must have been called.
   const std::vector<LitPlane>& from_transmitter() const { return from_transmitter_; }
   const std::vector<LitPlane>& from_receiver() const { return from_receiver_; }
   const std::vector<Plane>& planes() const { return planes_; }

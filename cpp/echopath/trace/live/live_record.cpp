@@ -18,8 +18,7 @@ std::vector<std::vector<int>> sequences_of(const AntennaFrusta& frusta) {
 }
 
 bool asks_the_same(const TraceSettings& a, const TraceSettings& b) {
-  return a.num_rays == b.num_rays && a.footprint == b.footprint && a.batches == b.batches && a.sampler == b.sampler &&
-         a.scatterers == b.scatterers && a.attenuation == b.attenuation;
+  return a.num_rays == b.num_rays && static_cast<const RecordSettings&>(a) == static_cast<const RecordSettings&>(b);
 }
 
 bool has_foci(const std::vector<Stratum>& strata) {

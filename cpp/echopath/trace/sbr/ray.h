@@ -1,5 +1,6 @@
 #pragma once
-// Holds the state of a ray and of the hit where it is.
+// Holds the state of a ray and of the hit where it is. At each hit a ray goes on with a probability q, that of
+// ScatterSample::probability; what it carries on is divided by q, so that its mean is what the surface sends.
 #include <array>
 #include <complex>
 #include <optional>
@@ -82,7 +83,7 @@ struct Ray {
 // Describes the hit where a ray is.
 struct SurfaceHit {
   RayHit point;
-  const SurfaceModel* model = nullptr;
+  const SurfaceModel* model = nullptr;  // of the side where the ray arrives
   const Material* material = nullptr;
   double cos_incidence = 0.0;
   PolarizationMode mode = PolarizationMode::kTe;
@@ -100,14 +101,15 @@ struct ScatterSample {
   Vec3 from, direction;
   bool is_specular = false;
   bool is_split = false;              // it is scattered, and another ray is mirrored beside it
-  double lobe_probability = 1.0;      // of leaving that way, where the ray goes on
-  double survival_probability = 1.0;  // of going on
+  double lobe_probability = 1.0;      // of leaving mirrored, or scattered, as it does, given that it goes on
+  double survival_probability = 1.0;  // of going on at all
   bool ends = false;
 
+  // Returns q.
   double probability() const { return lobe_probability * survival_probability; }
 };
 
-// Returns the coefficient of the field that a diffuse hit scatters.
+// Returns the coefficient of the field that a diffuse hit scatters: S |Gamma|, with the Gamma of facets that face the radar.
 inline double diffuse_coefficient(const SurfaceResponse& response) { return response.facet * response.diffuse; }
 
 // Returns the density with which rays that arrive along `in` leave diffusely along `out`, over that of Lambert's lobe.

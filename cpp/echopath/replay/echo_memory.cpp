@@ -1,4 +1,4 @@
-#include "echopath/replay/spare_echoes.h"
+#include "echopath/replay/echo_memory.h"
 
 #include <memory>
 #include <utility>

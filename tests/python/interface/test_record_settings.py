@@ -1,0 +1,59 @@
+"""Each setting of a record reaches it, whoever is asked for the record: none is taken and then ignored."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from support.frames_in_time import make_radar
+
+RAIN = ep.Weather(rain_mm_per_hour=50.0)
+RAIN_DB_PER_KM = sum(RAIN.attenuation_db_per_km(make_radar()).values())
+
+# For each setting of the core (RecordSettings): how a caller asks for it, and what the record must then say.
+ASKED = {"seed": ({"seed": 7}, 7), "max_bounces": ({"max_bounces": 2}, 2), "polarization": ({"polarization": "jones"}, "jones"),
+         "footprint": ({"footprint": "none"}, "none"), "sampler": ({"sampler": "random"}, "random"),
+         "num_batches": ({"batches": 2}, 2), "scatterers": ({"scatterers": "surface"}, "surface"),
+         "edges": ({"edges": True}, True), "attenuation": ({}, pytest.approx(RAIN_DB_PER_KM / 1000.0 * np.log(10.0) / 20.0))}
+NOT_OF_LIVE = {"num_batches"}  # whose rays are shared evenly, and which tells no errors
+KEYWORDS = {"num_rays": 200}
+
+
+def scene():
+    made = ep.Scene(weather=RAIN)
+    made.add(ep.Mesh([[5, -1, -1], [5, 1, -1], [5, 0, 1]], [[0, 1, 2]]), name="plate", material="concrete")
+    return made
+
+
+def of_live(radar, asked):
+    live = ep.Live(scene(), radar, **asked)
+    live.update()
+    return live.paths()
+
+
+def of_file(radar, asked, folder):
+    ep.trace(scene(), radar, **asked).save(folder / "paths.h5")
+    return ep.Paths.load(folder / "paths.h5")
+
+
+def of_sequence(radar, asked):
+    return ep.Sequence(scene(), radar, frames=1, interval=1.0, **asked)[0].paths
+
+
+MAKERS = {"trace": lambda radar, asked, folder: ep.trace(scene(), radar, **asked), "file": of_file,
+          "simulate": lambda radar, asked, folder: ep.simulate(scene(), radar, **asked).paths,
+          "Sequence": lambda radar, asked, folder: of_sequence(radar, asked),
+          "Live": lambda radar, asked, folder: of_live(radar, asked)}
+
+
+@pytest.mark.parametrize("maker", MAKERS)
+@pytest.mark.parametrize("setting", ep._core.RECORD_SETTINGS)
+def test_a_setting_reaches_the_record(setting, maker, tmp_path):
+    if maker == "Live" and setting in NOT_OF_LIVE:
+        with pytest.raises(TypeError):
+            ep.Live(scene(), make_radar(), **KEYWORDS, **ASKED[setting][0])
+        return
+    keywords, told = ASKED[setting]
+    found = getattr(MAKERS[maker](make_radar(), KEYWORDS | keywords, tmp_path).frame, setting)
+    assert found != ep._core.RECORD_SETTINGS[setting]
+    assert found == told

@@ -137,11 +137,12 @@ TEST(WeightRules, HalfDiffuseDihedralHasHalfTheFieldOfASmoothOneForEachSeed) {
   }
 }
 
-// Half of the power scattered at each face leaves the field 1/sqrt(2) per face: -6.02 dB, however the ray chose.
+// Half of the power scattered at each face leaves the field 1/sqrt(2) per face: -6.02 dB, however the ray chose. The test
+// above has the rays that choose nothing.
 TEST(WeightRules, HalfDiffuseDihedralLosesSixDecibelsForAnyBranching) {
   if (test::kIsSanitized) GTEST_SKIP() << "statistics over many runs of code that the other rules run";
   const double smooth = std::norm(double_bounce(0.0, 0.0, 1));
-  for (const double probability : {0.0, 0.2, 0.3, 0.8}) {
+  for (const double probability : {0.2, 0.3, 0.8}) {
     double power = 0.0;
     for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
       power += std::norm(double_bounce(std::sqrt(0.5), probability, seed)) / kSeeds;

@@ -48,6 +48,8 @@ class SurfaceModel {
   // is_constant() tells whether the response is the same for all waves; constant() is that response.
   bool is_constant() const { return !is_dielectric_ && wavenumber_height_ == 0; }
   const SurfaceResponse& constant() const { return constant_; }
+  // Returns whether a part of the power may leave diffusely.
+  bool may_scatter() const { return constant_.diffuse > 0 || wavenumber_height_ > 0; }
   // Returns the same as the free function `respond`.
   SurfaceResponse respond(double cos_incidence, PolarizationMode mode) const {
     return is_constant() ? constant_ : respond_at(cos_incidence, mode);

@@ -1,5 +1,6 @@
 #include "echopath/trace/connect/packet_echoes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -51,23 +52,51 @@ ECHOPATH_INLINE void weigh_lanes_without_coefficients(const FirstHits* first, Ec
   }
 }
 
-// Finds the matrices of the same echoes (JonesWeight).
+ECHOPATH_INLINE HitGeometryOfModes geometry_at(const FirstHits* first, int lane, const VectorOf<double>& line,
+                                               double inverse) {
+  return hit_geometry(first->directions.at(lane), first->hits.normal.at(lane), inverse * line);
+}
+
+// Finds the matrices of the coherent echoes (JonesWeight).
 ECHOPATH_INLINE void polarize_lanes(const FirstHits* first, const LaneModes* modes, VectorOf<double> receiver,
-                                    LanesOf<float> (*field)[2], LanesOf<float> (*power)[2]) {
+                                    LanesOf<float> (*field)[2]) {
   ECHOPATH_SIDE_BY_SIDE
   for (int lane = 0; lane < kPacketSize; ++lane) {
-    const VectorOf<double> line = receiver - first->hits.position.at(lane), direction = first->directions.at(lane);
+    const VectorOf<double> line = receiver - first->hits.position.at(lane);
     const double inverse = 1.0 / ScalarMath::root(dot(line, line));
-    const HitGeometryOfModes hit = hit_geometry(direction, first->hits.normal.at(lane), inverse * line);
+    const HitGeometryOfModes hit = geometry_at(first, lane, line, inverse);
     const ComplexOf<double> te{modes->te_re[lane], modes->te_im[lane]}, tm{modes->tm_re[lane], modes->tm_im[lane]};
     const double scale =
         first->coherent[lane] * polarized_scale(first->cos_incidence[lane], inverse * first->cos_receiver[lane]);
-    const BasisAcross launched = basis_across(direction);
-    set_entries(launched, hit.modes, radiated_modes(hit, te, tm), scale, field, lane);
-    const AxisInModes axis = scattering_axis(hit, modes->axis_cosine[lane], modes->axis_sine[lane]);
-    set_entries(launched, hit.modes, scattered_modes(hit, first->facet[lane], mixing_of(modes->cross_share[lane]), axis),
-                first->diffuse[lane], power, lane);
+    set_entries(basis_across(first->directions.at(lane)), hit.modes, radiated_modes(hit, te, tm), scale, field, lane);
   }
+}
+
+// Finds the matrices of the diffuse echoes.
+ECHOPATH_INLINE void depolarize_lanes(const FirstHits* first, const LaneModes* modes, VectorOf<double> receiver,
+                                      LanesOf<float> (*power)[2]) {
+  ECHOPATH_SIDE_BY_SIDE
+  for (int lane = 0; lane < kPacketSize; ++lane) {
+    const VectorOf<double> line = receiver - first->hits.position.at(lane);
+    const HitGeometryOfModes hit = geometry_at(first, lane, line, 1.0 / ScalarMath::root(dot(line, line)));
+    const AxisInModes axis = scattering_axis(hit, modes->axis_cosine[lane], modes->axis_sine[lane]);
+    const HitMatrix matrix = scattered_modes(hit, first->facet[lane], mixing_of(modes->cross_share[lane]), axis);
+    set_entries(basis_across(first->directions.at(lane)), hit.modes, matrix, first->diffuse[lane], power, lane);
+  }
+}
+
+// Returns whether the hit of a lane sends an echo that the receiver sees.
+bool is_open(const FirstHits& first, int lane) { return first.receiver[static_cast<size_t>(lane)] == ShadowState::kOpen; }
+
+bool any_open(const FirstHits& first) {
+  return std::find(first.receiver.begin(), first.receiver.end(), ShadowState::kOpen) != first.receiver.end();
+}
+
+bool any_scatters(const FirstHits& first) {
+  for (int lane = 0; lane < first.count; ++lane) {
+    if (is_open(first, lane) && first.diffuse[lane] > 0) return true;
+  }
+  return false;
 }
 
 JonesMatrix entries_of(const LaneMatrices& from, int lane) {
@@ -77,14 +106,20 @@ JonesMatrix entries_of(const LaneMatrices& from, int lane) {
 
 }  // namespace
 
-void ScalarEchoes::find(const FirstHits& first, const Vec3&) { run_simd<&weigh_lanes>(&first, &weights_); }
+void ScalarEchoes::find(const FirstHits& first, const Vec3&) {
+  if (any_open(first)) run_simd<&weigh_lanes>(&first, &weights_);
+}
 
 void JonesEchoes::find(const FirstHits& first, const Vec3& receiver) {
+  if (!any_open(first)) return;
   for (int lane = 0; lane < first.count; ++lane) {
-    if (first.arrives[static_cast<size_t>(lane)]) find_modes(first, lane);
+    if (is_open(first, lane)) find_modes(first, lane);
   }
   run_simd<&weigh_lanes_without_coefficients>(&first, &weights_);
-  run_simd<&polarize_lanes>(&first, &std::as_const(modes_), unpacked(receiver), field_matrices_, power_matrices_);
+  run_simd<&polarize_lanes>(&first, &std::as_const(modes_), unpacked(receiver), field_matrices_);
+  if (any_scatters(first)) {
+    run_simd<&depolarize_lanes>(&first, &std::as_const(modes_), unpacked(receiver), power_matrices_);
+  }
 }
 
 // Finds how the surface of a lane's hit reflects and scatters field vectors.

@@ -30,11 +30,16 @@ AntennaFrusta find_antenna_frusta(const Scene& scene, const EmbreeScene& geometr
   if (mirrors.empty()) return found;
   const int of_legs = found.serve_legs ? most_leg_mirrors(settings) : 0, half = settings.max_bounces / 2;
   const FrustumFinder finder(mirrors, &geometry);
-  const auto find = [&](const Vec3& antenna, int max_mirrors) {
-    return finder.find(antenna, {.max_mirrors = std::max(max_mirrors, of_legs), .slack = kAtEdge}, job);
-  };
-  found.transmitter = find(settings.transmitter, settings.max_bounces - half);
-  found.receiver = find(settings.receiver, half);
+  FrustumSearch search{.max_mirrors = std::max(half, of_legs), .slack = kAtEdge};
+  found.transmitter = finder.find(settings.transmitter, search, job);
+  found.receiver = finder.find(settings.receiver, search, job);
+  const bool is_one_over = settings.max_bounces > 2 * half && search.max_mirrors == half;
+  if (!is_one_over) return found;
+  search.max_mirrors = half + 1;
+  search.keeps_hidden = true;
+  found.receiver_is_longer = found.receiver.frusta.size() < found.transmitter.frusta.size();
+  if (found.receiver_is_longer) finder.lengthen(settings.receiver, search, found.receiver, job);
+  else finder.lengthen(settings.transmitter, search, found.transmitter, job);
   return found;
 }
 

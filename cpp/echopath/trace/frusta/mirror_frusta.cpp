@@ -36,8 +36,8 @@ bool MirrorFrustum::reaches(const Vec3& point, double radius) const {
 std::vector<HalfSpace> MirrorFrustum::region(double radius) const {
   std::vector<HalfSpace> region;
   region.reserve(rims.size() + 1);
-  region.push_back({lit_normal, offset - radius});
   for (const Vec3& rim : rims) region.push_back({rim, rim.dot(image()) - radius});
+  region.push_back({lit_normal, offset - radius});  // the last one, because it leaves out least
   return region;
 }
 
@@ -45,35 +45,38 @@ FrustumFinder::FrustumFinder(const std::vector<Mirror>& mirrors, const EmbreeSce
     : mirrors_(mirrors), boxes_(boxes_of(mirrors)),
       shadows_(geometry ? std::make_unique<const FrustumShadows>(*geometry, mirrors) : nullptr) {}
 
-// Reflects the frustum (null: the antenna itself), whose source appears at `source`, in one mirror; returns false where it
-// shows nothing.
-bool FrustumFinder::reflect(const MirrorFrustum* frustum, const Vec3& source, int index, double slack,
+// Cuts out of a mirror what the frustum (null: the antenna itself), whose source appears at `source`, lights of it; returns
+// false where that is nothing.
+bool FrustumFinder::cut_window(const MirrorFrustum* frustum, const Vec3& source, const Mirror& mirror, double slack,
+                               std::vector<Vec3>& window) const {
+  thread_local std::vector<Vec3> spare;
+  window = mirror.outline;
+  if (!frustum) return !window.empty();
+  clip(window, frustum->lit_normal, frustum->offset - slack, spare);
+  for (const Vec3& rim : frustum->rims) {
+    if (window.empty()) return false;
+    clip(window, rim, rim.dot(source) - slack, spare);
+  }
+  return !window.empty();
+}
+
+// Reflects the frustum in one mirror; returns false where it shows nothing.
+bool FrustumFinder::reflect(const MirrorFrustum* frustum, const Vec3& source, int index, const FrustumSearch& search,
                             MirrorFrustum& out) const {
   const Mirror& mirror = mirrors_[static_cast<size_t>(index)];
   if (std::abs(mirror.height(source)) < kNoImageWithin) return false;
-  thread_local std::vector<Vec3> window, spare;
-  window = mirror.outline;
-  if (frustum) {
-    clip(window, frustum->lit_normal, frustum->offset - slack, spare);
-    for (const Vec3& rim : frustum->rims) {
-      if (window.empty()) return false;
-      clip(window, rim, rim.dot(source) - slack, spare);
-    }
-  }
-  if (shadows_ && !window.empty()) {
+  thread_local std::vector<Vec3> window;
+  if (!cut_window(frustum, source, mirror, search.slack, window)) return false;
+  if (shadows_ && !search.keeps_hidden) {
     const FrustumSource from{source, frustum ? &frustum->lit_normal : nullptr, frustum ? frustum->offset : 0.0};
     shadows_->shrink(from, mirror, window);
+    if (window.empty()) return false;
   }
-  if (window.empty()) return false;
-  if (frustum) {
-    out.mirrors = frustum->mirrors;
-    out.images = frustum->images;
-  }
+  out = frustum ? *frustum : MirrorFrustum();
   out.window = window;
   out.mirrors.push_back(index);
   const bool is_long = out.mirrors.size() > kMaxLegMirrors;
-  const MirrorSequence before = frustum ? frustum->sequence : kNoMirrors;
-  out.sequence = is_long ? kLongSequence : extended(before, index, mirrors_.size());
+  out.sequence = is_long ? kLongSequence : extended(out.sequence, index, mirrors_.size());
   out.images.push_back(mirror.image(source));
   out.lit_normal = mirror.normal_toward(source);
   out.offset = out.lit_normal.dot(mirror.point);
@@ -82,14 +85,14 @@ bool FrustumFinder::reflect(const MirrorFrustum* frustum, const Vec3& source, in
 }
 
 // Appends the reflections of the frustum in all mirrors.
-void FrustumFinder::extend(const MirrorFrustum* frustum, const Vec3& source, double slack,
+void FrustumFinder::extend(const MirrorFrustum* frustum, const Vec3& source, const FrustumSearch& search,
                            std::vector<MirrorFrustum>& out) const {
   std::vector<int> lit;
-  boxes_.find(frustum ? frustum->region(slack) : std::vector<HalfSpace>(), lit);
+  boxes_.find(frustum ? frustum->region(search.slack) : std::vector<HalfSpace>(), lit);
+  MirrorFrustum next;
   for (const int index : lit) {
     if (frustum && frustum->mirrors.back() == index) continue;
-    MirrorFrustum next;
-    if (reflect(frustum, source, index, slack, next)) out.push_back(std::move(next));
+    if (reflect(frustum, source, index, search, next)) out.push_back(std::move(next));
   }
 }
 
@@ -101,10 +104,12 @@ void FrustumFinder::follow(size_t begin, size_t end, const FrustumSearch& search
       return;
     }
     std::vector<std::vector<MirrorFrustum>> next(std::min(kTogether, end - first));
+    FrustumSearch wanted = search;
+    wanted.keeps_hidden = search.keeps_hidden && out.frusta.size() < search.max_frusta / 2;
     Job own(job);
     parallel_for(std::ssize(next), [&](int64_t i) {
       const MirrorFrustum& frustum = out.frusta[first + static_cast<size_t>(i)];
-      extend(&frustum, frustum.image(), search.slack, next[static_cast<size_t>(i)]);
+      extend(&frustum, frustum.image(), wanted, next[static_cast<size_t>(i)]);
     }, &own);
     for (std::vector<MirrorFrustum>& of_one : next) {
       std::move(of_one.begin(), of_one.end(), std::back_inserter(out.frusta));
@@ -114,14 +119,19 @@ void FrustumFinder::follow(size_t begin, size_t end, const FrustumSearch& search
 
 MirrorFrusta FrustumFinder::find(const Vec3& antenna, const FrustumSearch& search, const Job* job) const {
   MirrorFrusta out;
-  if (search.max_mirrors > 0) extend(nullptr, antenna, search.slack, out.frusta);
-  size_t begin = 0;
-  for (int count = 1; count < search.max_mirrors && begin < out.frusta.size(); ++count) {
-    const size_t end = out.frusta.size();
-    follow(begin, end, search, job, out);
-    begin = end;
-  }
+  FrustumSearch level = search;
+  for (level.max_mirrors = 1; level.max_mirrors <= search.max_mirrors; ++level.max_mirrors)
+    lengthen(antenna, level, out, job);
   return out;
+}
+
+void FrustumFinder::lengthen(const Vec3& antenna, const FrustumSearch& search, MirrorFrusta& out, const Job* job) const {
+  if (search.max_mirrors == 1) return extend(nullptr, antenna, search, out.frusta);
+  const auto has_fewer = [&](const MirrorFrustum& one) {
+    return static_cast<int>(one.mirrors.size()) < search.max_mirrors - 1;
+  };
+  const auto begin = std::partition_point(out.frusta.begin(), out.frusta.end(), has_fewer);
+  follow(static_cast<size_t>(begin - out.frusta.begin()), out.frusta.size(), search, job, out);
 }
 
 }  // namespace echopath

@@ -46,6 +46,8 @@ struct FrustumSearch {
   int max_mirrors = kMaxLegMirrors;
   double slack = 0.0;  // m, by which windows are larger than what is lit
   size_t max_frusta = kMaxFrusta;
+  // Windows that other surfaces hide are kept while there is room: what is not followed further is found sooner so.
+  bool keeps_hidden = false;
 };
 
 struct MirrorFrusta {
@@ -60,10 +62,16 @@ class FrustumFinder {
   // Returns the frusta of an antenna over sequences of at most `search.max_mirrors` mirrors; sequences that light nothing
   // are left out. Raises Cancelled when the job is cancelled.
   MirrorFrusta find(const Vec3& antenna, const FrustumSearch& search, const Job* job = nullptr) const;
+  // Appends those over `search.max_mirrors` mirrors to `out`, which holds all over fewer mirrors. Raises Cancelled.
+  void lengthen(const Vec3& antenna, const FrustumSearch& search, MirrorFrusta& out, const Job* job = nullptr) const;
 
  private:
-  void extend(const MirrorFrustum* frustum, const Vec3& source, double slack, std::vector<MirrorFrustum>& out) const;
-  bool reflect(const MirrorFrustum* frustum, const Vec3& source, int index, double slack, MirrorFrustum& out) const;
+  void extend(const MirrorFrustum* frustum, const Vec3& source, const FrustumSearch& search,
+              std::vector<MirrorFrustum>& out) const;
+  bool reflect(const MirrorFrustum* frustum, const Vec3& source, int index, const FrustumSearch& search,
+               MirrorFrustum& out) const;
+  bool cut_window(const MirrorFrustum* frustum, const Vec3& source, const Mirror& mirror, double slack,
+                  std::vector<Vec3>& window) const;
   void follow(size_t begin, size_t end, const FrustumSearch& search, const Job* job, MirrorFrusta& out) const;
 
   const std::vector<Mirror>& mirrors_;

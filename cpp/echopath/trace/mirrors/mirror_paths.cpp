@@ -109,8 +109,10 @@ class MirrorPathSearch {
   }
 
   void add_longer(size_t count, std::vector<PathBlock>& blocks) const {
-    const HalfwayMeeting meeting(with_mirrors(frusta_.transmitter.frusta, count - count / 2),
-                                 with_mirrors(frusta_.receiver.frusta, count / 2));
+    const bool is_of_receiver = frusta_.receiver_is_longer && static_cast<int>(count) == settings_.max_bounces;
+    const size_t of_transmitter = is_of_receiver ? count / 2 : count - count / 2;
+    const HalfwayMeeting meeting(with_mirrors(frusta_.transmitter.frusta, of_transmitter),
+                                 with_mirrors(frusta_.receiver.frusta, count - of_transmitter));
     const size_t first = blocks.size();
     blocks.resize(first + (meeting.size() + kFrustaPerBlock - 1) / kFrustaPerBlock);
     Job own(job_);

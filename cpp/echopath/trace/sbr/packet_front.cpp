@@ -102,6 +102,7 @@ bool PacketFront::trace_behind_sheets(FirstHits& first, TraceStatistics& statist
 
 void PacketFront::draw_samples(FirstHits& first) const {
   const uint64_t seed = context_.settings.seed;
+  if (!context_.draws_samples(1)) return first.samples.clear();
   if (!first.points) return first.samples.draw(seed, first.index(0), first.count, first.places.batches.data());
   std::array<int64_t, kPacketSize> keys;
   for (int lane = 0; lane < kPacketSize; ++lane)

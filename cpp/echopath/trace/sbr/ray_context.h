@@ -29,6 +29,8 @@ struct RayContext {
   bool goes_both_ways(const SurfaceModel& model, const LobeProbabilities& lobes, int depth) const {
     return echopath::goes_both_ways(model, lobes, settings.specular_probability, depth);
   }
+  // Returns whether anything is drawn at random at hit number `depth` of a ray: the roulette, or what diffuse hits need.
+  bool draws_samples(int depth) const { return surfaces.may_scatter() || depth >= kRouletteBounce; }
   LobeProbabilities probabilities(const SurfaceModel& model, const SurfaceResponse& response) const {
     return lobe_probabilities(model, response, settings.specular_probability);
   }

@@ -153,7 +153,8 @@ bool RayWalk<Weight>::arrive(const RayHit& met, Scratch& scratch, PathBlock& blo
   surface.point = met;
   surface.receiver = ShadowState::kUnknown;
   if (!arrivals_.arrive(ray, surface, block.statistics)) return false;
-  surface.samples = hit_samples(context_.settings.seed, ray.index, ray.depth);
+  surface.samples = HitSamples();
+  if (context_.draws_samples(ray.depth)) surface.samples = hit_samples(context_.settings.seed, ray.index, ray.depth);
   return true;
 }
 

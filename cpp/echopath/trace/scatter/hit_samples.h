@@ -29,6 +29,8 @@ struct PacketSamples {
   LaneValues phase_re, phase_im, axis_sample, lobe_sample, survival_sample;
   LaneVectors lobe;
 
+  // Sets all samples to 0: rays leave specularly then, where any do.
+  void clear() { *this = {}; }
   // Draws the samples of the rays [first, first + count); `batches` is [count].
   void draw(uint64_t seed, int64_t first, int count, const int* batches);
   // Draws the samples of rays [count] that are aimed at points, by the keys of these (surface_points.h).

@@ -60,6 +60,7 @@ SurfaceTable::SurfaceTable(const Scene& scene, const EmbreeScene& geometry, cons
     smooth_width_.push_back(is_unflagged_smooth(node) ? geometry.width(id, measure) : 0.0);
     has_lobes_ = has_lobes_ || !models_.back().lobe().is_lambert();
     has_smooth_ = has_smooth_ || is_unflagged_smooth(node);
+    may_scatter_ = may_scatter_ || models_.back().may_scatter();
   }
 }
 

@@ -24,6 +24,8 @@ class SurfaceTable {
   double smooth_width(uint32_t mesh_id) const { return smooth_width_[mesh_id]; }
   // Returns whether any unflagged mesh is smooth: ray differentials are followed only then.
   bool has_smooth() const { return has_smooth_; }
+  // Returns whether any mesh scatters diffusely: rays take random directions and phases only then.
+  bool may_scatter() const { return may_scatter_; }
   // Returns whether any mesh has another lobe than Lambert's.
   bool has_lobes() const { return has_lobes_; }
 
@@ -35,7 +37,7 @@ class SurfaceTable {
   std::map<uint32_t, SurfaceModel> backs_;  // of sheets of several layers, by mesh ID
   MirrorIndex mirror_of_;
   std::vector<double> smooth_width_;
-  bool has_smooth_ = false, has_lobes_ = false;
+  bool has_smooth_ = false, has_lobes_ = false, may_scatter_ = false;
 };
 
 }  // namespace echopath

@@ -112,20 +112,37 @@ TEST(MirrorPaths, SequencesOfAnyLengthMeetHalfway) {
   }
 }
 
+// Over an odd number of mirrors the search goes farther from the antenna with fewer frusta.
+TEST(MirrorPaths, AreTheSameBothWays) {
+  const auto mirrors = testing::city_block(40);
+  const Vec3 one(9.3, 8.7, 3.1), other(11.2, -29.6, 2.3);
+  for (const int max_bounces : {1, 3}) {
+    std::vector<std::vector<int>> there = sequences_of(traced(mirrors, one, other, max_bounces)),
+                                  back = sequences_of(traced(mirrors, other, one, max_bounces));
+    EXPECT_EQ(there.back().size(), static_cast<size_t>(max_bounces));
+    for (std::vector<int>& sequence : back) std::reverse(sequence.begin(), sequence.end());
+    std::sort(there.begin(), there.end());
+    std::sort(back.begin(), back.end());
+    EXPECT_EQ(there, back);
+  }
+}
+
 TEST(MirrorPaths, AreInOrderWhateverTheNumberOfThreads) {
   const auto mirrors = testing::city_block(20);
   const int threads = num_threads();
-  std::vector<std::vector<std::vector<int>>> found;
-  for (const int count : {1, 4}) {
-    set_num_threads(count);
-    found.push_back(sequences_of(traced(mirrors, {9.3, 8.7, 3.1}, {11.2, -29.6, 2.3}, 4)));
+  for (const int max_bounces : {3, 4}) {
+    std::vector<std::vector<std::vector<int>>> found;
+    for (const int count : {1, 4}) {
+      set_num_threads(count);
+      found.push_back(sequences_of(traced(mirrors, {9.3, 8.7, 3.1}, {11.2, -29.6, 2.3}, max_bounces)));
+    }
+    set_num_threads(threads);
+    EXPECT_EQ(found[0], found[1]);
+    EXPECT_TRUE(std::is_sorted(found[0].begin(), found[0].end(), [](const auto& a, const auto& b) {
+      return a.size() != b.size() ? a.size() < b.size() : a < b;
+    }));
+    EXPECT_GT(found[0].size(), max_bounces == 3 ? 1u : 3u);
   }
-  set_num_threads(threads);
-  EXPECT_EQ(found[0], found[1]);
-  EXPECT_TRUE(std::is_sorted(found[0].begin(), found[0].end(), [](const auto& a, const auto& b) {
-    return a.size() != b.size() ? a.size() < b.size() : a < b;
-  }));
-  EXPECT_GT(found[0].size(), 3u);
 }
 
 std::vector<Mirror> mirrors_of(const std::vector<MirrorRectangle>& rectangles) {
@@ -150,6 +167,30 @@ TEST(MirrorFrusta, BeyondTheBoundAreCounted) {
   // Those over one mirror are always there; none of them was followed.
   EXPECT_EQ(few.num_unfollowed, std::ssize(few.frusta));
   for (size_t i = 0; i < few.frusta.size(); ++i) EXPECT_EQ(few.frusta[i].mirrors, all.frusta[i].mirrors);
+}
+
+std::vector<std::vector<int>> sequences_of(const MirrorFrusta& found) {
+  std::vector<std::vector<int>> sequences;
+  for (const MirrorFrustum& frustum : found.frusta) sequences.push_back(frustum.mirrors);
+  return sequences;
+}
+
+TEST(MirrorFrusta, HiddenWindowsAreKeptOnRequestWhileThereIsRoom) {
+  const Scene scene = scene_of(testing::city_block(20));
+  const EmbreeScene geometry(scene, PosedScene(scene, 0.0), Vec3::Zero());
+  const std::vector<Mirror> mirrors = find_mirrors(scene, geometry);
+  const FrustumFinder finder(mirrors, &geometry);
+  const Vec3 antenna(9.3, 8.7, 3.1);
+  MirrorFrusta seen = finder.find(antenna, {.max_mirrors = 1}), all = seen, crowded = seen;
+  finder.lengthen(antenna, {.max_mirrors = 2}, seen);
+  finder.lengthen(antenna, {.max_mirrors = 2, .keeps_hidden = true}, all);
+  finder.lengthen(antenna, {.max_mirrors = 2, .max_frusta = crowded.frusta.size() + 1, .keeps_hidden = true}, crowded);
+  EXPECT_EQ(sequences_of(seen), sequences_of(finder.find(antenna, {.max_mirrors = 2})));
+  EXPECT_EQ(sequences_of(crowded), sequences_of(seen));
+  EXPECT_GT(all.frusta.size(), seen.frusta.size());
+  const std::vector<std::vector<int>> of_all = sequences_of(all);
+  for (const std::vector<int>& sequence : sequences_of(seen))
+    EXPECT_NE(std::find(of_all.begin(), of_all.end(), sequence), of_all.end());
 }
 
 TEST(FrustumLocator, HoldsAllFrustaThatReachAPointInTheirOrder) {

@@ -8,6 +8,7 @@ from .. import DeviceError
 from .._startup import EXIT_INTERRUPTED, STOPPED, loading_is_over
 from ..base.interrupts import interrupts_are_kept
 from .parser import command_parser
+from .warned import warnings_in_lines
 
 EXIT_BAD_INPUT = 2
 
@@ -17,7 +18,7 @@ def main(arguments=None) -> int:
     try:
         options = command_parser().parse_args(arguments)
         loading_is_over()
-        with interrupts_are_kept():
+        with interrupts_are_kept(), warnings_in_lines():
             options.command(options)
         sys.stdout.flush()
     except KeyboardInterrupt:

@@ -21,6 +21,7 @@ from ..arguments.settings import (
     TraceSettings, settings_among,
 )
 from ..base.progress import automatic_bars
+from ..base.work_at_hand import at_work_on
 from ..frame.frame import Frame
 from ..frame.run import FrameRun, Recorded
 from ..guard import warn_of
@@ -101,7 +102,7 @@ class Sequence(Row[Frame]):
 
     def _item(self, place: int, progress=None) -> Frame:
         """As Row has it; progress: as in `simulate`."""
-        frame = self._finished(self._recorded(place, progress), progress)
+        frame = self._finished(*self._recorded(place, progress), progress)
         give_back_memory()  # of the work on it: nobody tells whether another frame follows
         return frame
 
@@ -112,8 +113,8 @@ class Sequence(Row[Frame]):
         memory = MemoryOfFrames()
         works = (functools.partial(self._recorded, place, geometry=geometry) for place, geometry in zip(places, geometries))
         try:
-            for recorded in one_ahead(works, progress):
-                frame = self._finished(recorded, progress)
+            for place, recorded in one_ahead(works, progress):
+                frame = self._finished(place, recorded, progress)
                 memory.end_frame()
                 yield frame
                 del recorded, frame  # of which none is kept while the next is made
@@ -131,19 +132,21 @@ class Sequence(Row[Frame]):
             yield (frame.paths.frame.start_time, power_dbm(spectrum), np.asarray(spectrum.velocity),
                    np.asarray(spectrum.range))
 
-    def _finished(self, recorded: Recorded, progress) -> Frame:
-        """The frame of a record."""
-        frame = self._run.frame_of_record(recorded, progress)
-        warn_of(frame.checks)
+    def _finished(self, place: int, recorded: Recorded, progress) -> Frame:
+        """The frame at a place, of its record."""
+        with at_work_on(_name_of(place)):
+            frame = self._run.frame_of_record(recorded, progress)
+            warn_of(frame.checks)
         return frame
 
-    def _recorded(self, place: int, progress=None, geometry=None) -> Recorded:
-        """The record of the frame at a place; geometry: KeptGeometry where that of the scene is kept, None: as before."""
+    def _recorded(self, place: int, progress=None, geometry=None) -> tuple[int, Recorded]:
+        """A place and the record of the frame there; geometry: KeptGeometry where that of the scene is kept, None: as before."""
         run, number = self._run, self._numbers[place]
         if geometry is not None:
             keep_geometry(run.scene, geometry)
-        return run.recorded(lambda: record_of(run.scene, run.radar, run.trace, interval=self._interval, number=number,
-                                              progress=progress))
+        with at_work_on(_name_of(place)):
+            return place, run.recorded(lambda: record_of(run.scene, run.radar, run.trace, interval=self._interval,
+                                                         number=number, progress=progress))
 
     @checked(self=anything, path=path_rule, keep=one_of(Keep), shard=shard_rule)
     def save(self, path: str | os.PathLike[str], *, keep: Keep = "all", shard: Shard | None = None,
@@ -205,6 +208,10 @@ class Sequence(Row[Frame]):
         from ..presentation.notebook import sequence_html
 
         return sequence_html(self, "Sequence", {})
+
+
+def _name_of(place: int) -> str:
+    return f"frame {place + 1}"
 
 
 def _checked_end(scene, radar, start_time: float, frames: int, interval: float) -> float:

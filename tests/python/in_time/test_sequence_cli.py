@@ -70,9 +70,10 @@ def test_frames_are_read_once_for_their_pictures_whose_failure_is_a_warning(scen
     (out / "film.gif").unlink()
     monkeypatch.setattr(run_sequence, "write_film_of", full)
     capsys.readouterr()
-    with pytest.warns(RuntimeWarning, match="the frames are written, but not all of their pictures: MemoryError"):
-        assert run(scene_path, out, "--frames", 2, "--interval", 0.1, "--keep", "maps") == 0
-    assert capsys.readouterr().out.splitlines()[-1] == f"wrote {out / 'overview.png'}"
+    assert run(scene_path, out, "--frames", 2, "--interval", 0.1, "--keep", "maps") == 0
+    told = capsys.readouterr()
+    assert told.err == "warning: the frames are written, but not all of their pictures: MemoryError\n"
+    assert told.out.splitlines()[-1] == f"wrote {out / 'overview.png'}"
     assert ep.load_sequence(out).is_done.all()
 
 
@@ -195,3 +196,10 @@ def test_wrong_shards_are_refused_on_the_command_line(scene_path, tmp_path, caps
 def test_a_shard_belongs_to_frames_in_time(scene_path, tmp_path, capsys):
     assert run(scene_path, tmp_path / "out", "--shard", "1/2") == 2
     assert "--shard: belongs to frames in time, give --frames too, got 1/2" in capsys.readouterr().err
+
+
+def test_warnings_are_lines_that_name_the_frame(scene_path, tmp_path, capsys):
+    """A plate that goes beyond the last range: after 100 s it is heard no longer."""
+    assert run(scene_path, tmp_path / "out", "--frames", 2, "--interval", 100) == 0
+    told = capsys.readouterr().err
+    assert re.fullmatch(r"warning: first in frame 2: no signal of [0-9,]+ paths: they lie beyond the last range .*\n", told)

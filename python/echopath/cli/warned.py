@@ -1,0 +1,28 @@
+"""Warnings of a command as lines for people, without the places in the code that those who script want."""
+from __future__ import annotations
+
+import sys
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from ..base.work_at_hand import work_at_hand
+
+
+@contextmanager
+def warnings_in_lines() -> Iterator[None]:
+    """Within the block warnings are lines on standard error, once for each text: with the frame in which it came first."""
+    with warnings.catch_warnings():
+        warnings.showwarning = _show
+        yield
+
+
+def _show(message, category, filename, lineno, file=None, line=None) -> None:
+    where = f"first in {work_at_hand()}: " if work_at_hand() else ""
+    text = f"warning: {where}{message}"
+    if sys.stderr.isatty():
+        from tqdm import tqdm
+
+        tqdm.write(text, file=sys.stderr)  # above a progress bar
+    else:
+        print(text, file=sys.stderr, flush=True)

@@ -15,6 +15,7 @@ from .time_maps import TIME_LABEL, image_over_time
 
 SHEET_WIDTH, ROW_HEIGHT = 2.9, 3.0  # inches, of a map of the sheet, and of each row
 LEAST_WIDTH = 8.0                   # inches, of the sheet
+MOST_TIMES = 5                      # steps between ticks of a time axis, whose numbers are as long as -0.050
 FILM_DPI = 110
 
 
@@ -56,6 +57,7 @@ def plot_drive(drive: Drive, *, num_frames=4, vmin=None, vmax=None, title=""):
             low, high = column.extent
             axes.set(xlabel=TIME_LABEL, ylabel=column.label, ylim=(max(low, column.values[0]), min(high, column.values[-1])))
             axes.set_title(column.title)
+            axes.locator_params(axis="x", nbins=MOST_TIMES)
         for part, shown in ((upper, panels), (lower, below)):
             part.colorbar(image, ax=shown, label="Received power in dBm", extend="both", pad=0.02, aspect=25)
         set_title(figure, title, 11)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.plots import drive
+from echopath.plots import drive, save_png
 from echopath.plots.maps import limits_of_level
 from echopath.sequence.pictures import drive_of
 from support.frames_in_time import DISTANCE, INTERVAL, SPEED, make_sequence, signal_of
@@ -37,6 +37,19 @@ def test_a_picture_has_maps_and_range_and_velocity_over_time(stored, num_frames,
     assert np.allclose(axis[np.asarray(velocities).reshape(-1, 4).argmax(axis=0)], SPEED, atol=axis[1] - axis[0])
     assert all(np.allclose(one, other, rtol=0.0, atol=0.1) for one, other in zip(shown_in(made), shown_in(read), strict=True))
     assert [ax.get_title() for ax in read.subfigs[0].axes][:len(places)] == [f"{stored.times[place]:.3f} s" for place in places]
+
+
+@pytest.mark.parametrize("interval, num_frames", [(0.002, 2), (0.1, 2), (0.1, 7), (1000.0, 2)])
+def test_numbers_of_the_time_axes_stand_apart(interval, num_frames, tmp_path):
+    times = np.arange(num_frames) * interval
+    figure = drive.plot_drive(drive.Drive(times, np.zeros((num_frames, 8, 9), np.float16), np.arange(8.0), np.arange(9.0)))
+    save_png(figure, tmp_path / "overview.png")  # which makes the numbers larger than a window does
+    for axes in figure.subfigs[1].axes:
+        if axes.get_xlabel() == "Time in s":
+            left, right = axes.get_xlim()
+            boxes = [tick.label1.get_window_extent() for tick in axes.xaxis.get_major_ticks() if left <= tick.get_loc() <= right]
+            assert len(boxes) >= 3
+            assert not any(one.overlaps(other) for one, other in zip(boxes, boxes[1:]))
 
 
 def test_a_film_has_a_picture_of_each_frame_in_real_time(stored, tmp_path):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 
 from ..arguments.checks import choice
+from ..arguments.part_names import BESIDE
 from ..base.equality import has_same_fields
 from ..base.made_by import made_by
 from ..paths.resolution import Interval
@@ -215,14 +216,17 @@ class Labels(PartCells):
     def plot(self, what: Literal["parts", "objects"] = "parts", *, ax: Axes | None = None, title: str | None = None) -> Axes:
         """Draws the power of the whole in grey under the cells that have a label, with the names of the objects.
 
-        what: "parts", cells by the part that dominates, or "objects", cells of the objects and of their ghosts by type
+        what: "parts", cells by the part that dominates, all of them "other" where no parts were asked for, or "objects", cells
+            of the objects and of their ghosts by type, which every Labels has
         ax: Matplotlib axes to draw in, None: new ones; title: None: what is shown
         Returns the axes: range in m across, radial velocity in m/s (receding positive) or azimuth in degrees up. Raises
         ValueError for another `what`.
         """
         from ..plots import draw_labels
 
-        titles = {"parts": "Which part made each cell", "objects": "Objects and their ghosts"}
+        has_parts = not {"other", *BESIDE} >= set(self.part_names)
+        of_parts = "Which part made each cell" if has_parts else 'Cells that have a label; plot("objects") tells whose'
+        titles = {"parts": of_parts, "objects": "Objects and their ghosts"}
         title = titles[choice(*titles)("what", what)] if title is None else title
         return draw_labels(self, what=what, ax=ax, title=title)
 

@@ -122,7 +122,10 @@ class Live:
 
     @contextmanager
     def changing(self) -> Iterator[Scene]:
-        """`with live.changing() as scene:` changes the scene as one change, whatever other threads do meanwhile."""
+        """`with live.changing() as scene:` changes the scene as one change, whatever other threads do meanwhile.
+
+        What is raised within the block leaves the edits that were made before it, which are a change.
+        """
         with self._changes.one():
             yield self._scene
 
@@ -130,7 +133,8 @@ class Live:
     def change(self, function: Callable[[Scene], object]) -> None:
         """Calls a function with the scene as one change, however much it edits; a Watch begins to show it at once.
 
-        function: callable (Scene). Raises TypeError unless it can be called, and what it raises.
+        function: callable (Scene). Raises TypeError unless it can be called, and what it raises: the edits that it had made by
+        then stay, as one change.
         """
         if not callable(function):
             raise refused(TypeError, "function", "callable with a Scene", function)

@@ -154,3 +154,8 @@ def test_axes_of_a_frame_hold_every_detection_that_its_legend_counts(frame, ax):
     assert np.all((found.range >= near) & (found.range <= far) & (found.velocity >= bottom) & (found.velocity <= top))
     left, right, lowest, highest = ax.get_images()[0].get_extent()
     assert left <= near and far <= right and lowest <= bottom and top <= highest
+
+
+def test_labels_without_parts_say_how_objects_are_seen(frame, ax):
+    assert frame.labels["parts"].plot(ax=ax).get_title() == "Which part made each cell"
+    assert 'plot("objects")' in ep.annotate(frame.paths).plot(ax=ax).get_title()

@@ -67,7 +67,7 @@ def families_of_cells(paths, families, echoes, cells) -> tuple:
         whole[i] = np.mean(np.abs(field.sum(axis=1)) ** 2)
     for rival, power in enumerate(joint):
         owners.add(rival, power, 0.0)
-    for rival in owners.losers():
+    for rival in owners.faded():
         (number,) = owners.rivals[rival]
         owners.peak[number] = echoes.peak_of(families.family_of_path == number)
     for rival in owners.give(joint.any(axis=0)):

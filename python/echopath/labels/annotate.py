@@ -41,8 +41,9 @@ def annotate(paths: _core.Paths, parts: Mapping | None = None, radar: _core.Rada
     """Labels the cells of a map: which part of the paths made each, and what the map shows of each object of the scene.
 
     Model: powers without noise; |field|^2 of each part, mean over the channels, of the one realisation of the random phases
-    that the map of `synthesize` has. A cell of the mask belongs to whatever has the largest power in it. Where parts
-    interfere, their powers do not add up to that of the whole.
+    that the map of `synthesize` has. A cell of the mask belongs to whatever has the largest power in it; what a ghost shares
+    with its object belongs to the object (ObjectLabel.cells). Where parts interfere, their powers do not add up to that of
+    the whole.
     paths: of `trace`, all of them
     parts: Parts of `decompose` of the same radar, or selections as `decompose` takes them, {name: selection}: then no cube
         outlives its use. None: all paths are "other"

@@ -59,9 +59,15 @@ class CellOwners:
             found[members] = rival
         return found
 
-    def losers(self) -> list:
-        """The rivals of direct echoes that ghosts of the object win cells from."""
-        return [rival for rival in self._direct if self._is_lost(rival).any()]
+    def faded(self) -> list:
+        """The rivals of direct echoes that may be too weak beside a ghost of the object, but not beside their own strongest
+        cell: those that need `peak` of the whole map before `give`."""
+        def is_faded(rival: int) -> bool:
+            places, power = self._direct[rival]
+            return bool(np.any(self._is_lost(rival) & (power < SHARED * self.best.ravel()[places])
+                               & (power > SHARED * self.floor)))
+
+        return [rival for rival in self._direct if is_faded(rival)]
 
     def wins(self, rival: int, least: float):
         """bool [R], the ranges where a rival is the strongest so far, with more than `least` W."""

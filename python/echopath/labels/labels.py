@@ -83,7 +83,9 @@ class ObjectLabel:
         "occluded": others hide it (visible_share is at most 5 %) and none of its cells is above the noise; see `occluders`
         "hidden in noise": it has echoes, none of them above the noise
         "not seen": it has no echo, for example because it mirrors all away from the radar
-    cells: how many cells of the mask it has: where no ghost, no other object and not the surroundings are stronger
+    cells: how many cells of the mask it has: where no ghost, no other object and not the surroundings are stronger; a ghost of
+        its own has no cell where the direct echoes are at most 10 dB weaker, than the ghost or than their own strongest cell
+        (above the noise): there no receiver tells one from the other
     power: W, received by its direct echoes, mean over channels, chirps and samples; within its cells or not
     peak: its strongest cell with its own power there, Peak or AzimuthPeak; None without cells
     box: Box or AzimuthBox about its cells, None without cells
@@ -159,7 +161,7 @@ class Labels(PartCells):
     objects: list of ObjectLabel, in the order of the scene; object_map: i16 [V, R], index into it, -1: none
     ghosts: list of GhostLabel; ghost_map: i16 [V, R], index into it, -1: none. A cell of the mask belongs to the object, the
         ghost (all types of its order over the same mirrors as one field) or the surroundings that have the largest power
-        there
+        there, but for what an object shares with its ghosts (ObjectLabel.cells)
     mean_power: [K, V, R] W, over the random phases of rough surfaces; mean_share: [K, V, R], the shares of these powers
     power_error, share_error: [K, V, R] standard errors of mean_power in W and of mean_share, from the batches of rays
     certain: bool [V, R], whether the dominant part is that of the mean power too and leads the next by two standard errors;

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.detections.echo_fields import Response
+from echopath.detections.echo_fields import EchoFields, Response
 from support.scenes.small_spheres import TARGETS, at, nearest, radar_with
 from support.shapes import lambert
 
@@ -66,6 +66,35 @@ def test_the_paths_behind_limbs_and_folded_speeds_are_found(movers, window, zero
     for i in np.argsort(-found.snr_db)[:4]:
         expect_paths_hold(found, paths, radar, spectrum, i)
     assert {"walker", "plate"} <= set(found.object)
+
+
+def test_paths_that_are_left_out_change_next_to_nothing(movers, monkeypatch):
+    """Against the fields of all paths within reach of a cell, of which far fewer have its power but for a millionth."""
+    radar, paths, cube = movers
+    spectrum = ep.range_doppler(ep.add_noise(cube, radar, seed=2), radar)
+    some = EchoFields(paths, spectrum)
+    assert some._channels_are_alike
+    monkeypatch.setattr(EchoFields, "_channels_are_alike", False)
+    everything, counts = EchoFields(paths, spectrum), []
+    for cell in ep.detect(spectrum, radar, paths=paths).cells[:6]:
+        (index, field), (all_of_them, exact) = (one.fields(cell) for one in (some, everything))
+        counts.append(len(index) / len(all_of_them))
+        power = np.sum(np.abs(exact) ** 2, axis=1)
+        np.testing.assert_allclose(field, exact[:, np.isin(all_of_them, index)], rtol=1e-6)  # single precision
+        assert np.all(np.sum(np.abs(field) ** 2, axis=1) > (1.0 - 1e-4) * power)
+    assert min(counts) < 0.5
+
+
+def test_several_receivers_at_once_have_the_echoes_that_each_has_by_itself(movers):
+    _, paths, _ = movers
+    length, amplitude = paths._echoes_at_receivers(1e-3, 1, [1, 0])
+    for row, rx in enumerate((1, 0)):
+        np.testing.assert_array_equal(length[row], paths.lengths([1e-3], 1, rx)[0])
+        np.testing.assert_allclose(amplitude[row], paths.amplitudes([1e-3], 1, rx)[0], rtol=1e-12)
+    with pytest.raises(IndexError, match="receivers: must lie in 0 to 1, got 2"):
+        paths._echoes_at_receivers(1e-3, 0, [2])
+    with pytest.raises(ValueError, match="receivers: must be at least one"):
+        paths._echoes_at_receivers(1e-3, 0, [])
 
 
 def test_the_fields_of_all_paths_add_up_to_the_map(movers):

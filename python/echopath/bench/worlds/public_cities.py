@@ -3,7 +3,9 @@
 Nothing is marked as a mirror: which planes are larger than their Fresnel zone is found by rays. Sionna RT is asked for its
 specular paths at the same frequency, with the same rays and bounces and walls of the same permittivity and conductivity,
 half spaces in both programs. It looks for those paths alone; a trace of ours records the echo of every facet that a ray
-meets, too, so that beside its seconds stand those of cheaper traces of ours, which say what that costs. Paths that bounce so
+meets, too, so that beside its seconds stand those of cheaper traces of ours, which say what that costs, and those of a trace
+for the same work: where every plane is marked as a mirror, it looks for specular paths alone, by images and field vectors, and
+needs next to no rays. Paths that bounce so
 near an edge that their Fresnel zone does not fit the wall are none by images of ours; where every plane is marked they are.
 """
 from __future__ import annotations
@@ -31,6 +33,7 @@ SEARCH_RAYS = 1000       # of the search for mirrors, which needs none
 CALLS = 3                # of a trace beside the peer's, after the first
 MIB = 2.0 ** 20
 PICO = 1e12
+SPECULAR_ALONE = "all planes marked, specular paths alone"
 CHEAPER = {"field vectors left out": {"polarization": "scalar"},
            "facets without a footprint": {"polarization": "scalar", "footprint": "none"}}
 
@@ -170,9 +173,11 @@ def _city_beside_peer(folder: Path, city: City, rays: int, answer: dict) -> list
     if not found["paths of Sionna RT"]:
         return [{"what": f"{city.name}, beside Sionna RT", "not_measured": "it finds no path"}]
     marked = scene_of(folder / city.file, {name: material.replace(mirror=True) for name, material in materials.items()})
-    found["paths missing with all planes marked"] = _compared(marked, city, answer["paths"], settings | {
-        "num_rays": SEARCH_RAYS})["paths of Sionna RT missing"]
+    of_search = settings | {"num_rays": SEARCH_RAYS}
+    found["paths missing with all planes marked"] = _compared(marked, city, answer["paths"],
+                                                              of_search)["paths of Sionna RT missing"]
     found |= _over_peer(functools.partial(traced, scene, city.transmitter, city.receivers[0], **settings),
+                        functools.partial(traced, marked, city.transmitter, city.receivers[0], polarization="jones", **of_search),
                         statistics.median(answer["seconds"]))
     return [judged_row(f"{city.name}, {what}", value, PEER_LIMITS.get(what)) for what, value in found.items()]
 
@@ -184,9 +189,11 @@ def _compared(scene: ep.Scene, city: City, peers: list, settings: dict) -> dict:
     return {what: (sum if what.startswith("paths") else max)(one[what] for one in compared) for what in compared[0]}
 
 
-def _over_peer(trace, peers: float) -> dict:
-    """Medians of the processor's time of traces over the peer's, in s: as they come, and of cheaper kinds."""
-    kinds = {"time over Sionna RT's": {}} | {f"time over its, {name}": keywords for name, keywords in CHEAPER.items()}
+def _over_peer(trace, search, peers: float) -> dict:
+    """Medians of the processor's time of traces over the peer's, in s: as they come, of cheaper kinds, and of the search for
+    specular paths alone."""
+    kinds = {"time over Sionna RT's": trace}
+    kinds |= {f"time over its, {name}": functools.partial(trace, **keywords) for name, keywords in CHEAPER.items()}
+    kinds[f"time over its, {SPECULAR_ALONE}"] = search
     return {"time of Sionna RT, its median, s": peers} | {
-        name: statistics.median(processor_time(functools.partial(trace, **keywords))[0] for _ in range(CALLS)) / peers
-        for name, keywords in kinds.items()}
+        name: statistics.median(processor_time(work)[0] for _ in range(CALLS)) / peers for name, work in kinds.items()}

@@ -1,8 +1,8 @@
 #pragma once
 // Describes the launch cell of a coherent ray: the patch of surface for which the ray stands, about as wide as rays are
 // apart. It moves with its triangle. The footprint filter (cell_formula.h) is the mean of the phase factor over it; its
-// second order is the quadratic phase over the cell, from ray differentials (Igehy 1999) and the curvature of the wave front,
-// the receive sphere and the surface.
+// second order is the quadratic phase over the cell, from ray differentials (Igehy 1999) and the curvature of the wave
+// front, the receive sphere and the surface.
 #include <array>
 
 #include "echopath/replay/kernels/cell_formula.h"

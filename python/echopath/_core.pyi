@@ -2287,6 +2287,14 @@ class Paths:
         ...
     def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
+    def _echoes_at_receivers(self, time: float, tx: int, receivers: typing.Sequence[int]) -> tuple[typing.Any, ...]:
+        """
+        Lengths and amplitudes of the paths for several receivers, which take little more time than one.
+
+        time: s; tx: index of the transmitter; receivers: indices [R]
+        Returns (lengths in m, amplitudes in sqrt(W)), [R, P] each, as `lengths` and `amplitudes` give them. Raises TypeError or
+        ValueError naming the argument, also for times outside a motion, and IndexError for antennas that are not there.
+        """
     def _placed_echoes(self, times: ArrayLike, radars: typing.Sequence[Radar], replay: str = 'material') -> tuple[typing.Any, ...]:
         """
         Echoes of the paths for antennas of which each moves by itself.

@@ -69,6 +69,7 @@ class StlText {
   void read() {
     while (lines_.next()) read_line(lines_.text());
     if (in_loop_) lines_.refuse("the file ends within a facet");
+    if (in_solid_) lines_.refuse("the file ends too early, before the endsolid of a solid");
   }
 
   Soup soup;
@@ -80,12 +81,14 @@ class StlText {
     else if (is_word(keyword, "outer")) begin_loop();
     else if (is_word(keyword, "endloop")) end_loop();
     else if (is_word(keyword, "solid")) begin_solid(rest);
-    else if (!is_word(keyword, "facet") && !is_word(keyword, "endfacet") && !is_word(keyword, "endsolid")) {
+    else if (is_word(keyword, "endsolid")) in_solid_ = false;
+    else if (!is_word(keyword, "facet") && !is_word(keyword, "endfacet")) {
       lines_.refuse("not a line of an STL text: '" + std::string(lines_.text().substr(0, 60)) + "'");
     }
   }
 
   void begin_solid(std::string_view title) {
+    in_solid_ = true;
     title = trimmed(title);
     const std::string solid = is_name(title) ? std::string(title) : "";
     for (group_ = 0; group_ < soup.group_names.size(); ++group_) {
@@ -117,7 +120,7 @@ class StlText {
   MergedPoints points_;
   std::vector<uint32_t> corners_;
   size_t group_ = 0;
-  bool in_loop_ = false;
+  bool in_loop_ = false, in_solid_ = false;
 };
 
 }  // namespace

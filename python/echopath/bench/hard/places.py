@@ -128,11 +128,11 @@ def wall_aside() -> float:
 
 
 @cases("antenna along its polarisation", "a mirror straight above an upright field, where neither horizontal nor "
-       "vertical has a meaning: finite, and nothing from field vectors", bound=0.0, unit="sqrt(W) or NaN",
-       broken="no axis chosen where none is given: NaN")
+       "vertical has a meaning and no pattern has a null: the level of its image in both polarisation models", bound=1e-6,
+       unit="dB", broken="nothing received along the polarisation: infinite; no axis chosen where none is given: NaN")
 def along_polarization() -> float:
-    scalar, vectors = mirror_straight_at(make_radar(), "above")
-    return float(abs(vectors)) if np.isfinite(scalar) else np.nan
+    image = np.sqrt(POWER) * exact.WAVELENGTH / (4 * np.pi * 10.0)
+    return float(np.max([abs(decibels(abs(one / image) ** 2)) for one in mirror_straight_at(make_radar(), "above")]))
 
 
 @cases("antenna in the plane of a plate", "seen edge-on, in any attitude, or by 1 mm in 5 m beside that, it returns nothing",

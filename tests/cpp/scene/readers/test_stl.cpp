@@ -82,7 +82,7 @@ TEST(Stl, EachSolidOfATextIsAMeshAndCaseDoesNotCount) {
 TEST(Stl, ZerosOfBothSignsAreOneVertex) {
   const std::string content =
       "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\n"
-      "endfacet\nfacet normal 0 0 1\nouter loop\nvertex -0 0 -0\nvertex 1 1 0\nvertex 0 1 0\nendloop\n";
+      "endfacet\nfacet normal 0 0 1\nouter loop\nvertex -0 0 -0\nvertex 1 1 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid\n";
   EXPECT_EQ(read(content)[0].mesh->vertices().size(), 4u);
 }
 
@@ -98,6 +98,8 @@ TEST(Stl, WhatIsMissingOrWrongIsToldByItsPlace) {
   expect_refused("solid a\nvertex 0 0 0\n", {"line 2", "within an outer loop"});
   expect_refused("solid a\nfacets\n", {"line 2", "facets"});
   expect_refused("solid a\nendsolid a\n", {"has no faces"});
+  const std::string facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\nendfacet\n";
+  expect_refused("solid a\n" + facet + facet, {"line 15", "before the endsolid"});  // cut between two facets
   std::vector<Facet> broken = kSquare;
   broken[1][2].y() = std::nan("");
   expect_refused(binary(broken, 2), {"triangle 1", "not a number"});

@@ -28,10 +28,7 @@ bool is_within(const Vec3& a, const Vec3& b, double cosine) { return a.dot(b) >=
 // crease there is one: two facets that are more than 60 degrees apart cannot both be near one normal.
 std::map<uint32_t, FacetsAtVertex> facets_at_creases(const std::vector<Vec3>& vertices,
                                                      const std::vector<Triangle>& triangles) {
-  std::vector<Vec3> normals(vertices.size(), Vec3::Zero());
-  for (const Triangle& triangle : triangles) {
-    for (size_t i = 0; i < 3; ++i) normals[triangle[i]] += weighted_normal(vertices, triangle, i);
-  }
+  std::vector<Vec3> normals = sums_of_weighted_normals(vertices, triangles);
   for (Vec3& normal : normals) normal.stableNormalize();
   std::map<uint32_t, FacetsAtVertex> found;
   for (const Triangle& triangle : triangles) {
@@ -90,6 +87,14 @@ std::vector<SurfaceAtVertex> surfaces_at(const FacetsAtVertex& facets) {
 }
 
 }  // namespace
+
+std::vector<Vec3> sums_of_weighted_normals(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
+  std::vector<Vec3> sums(vertices.size(), Vec3::Zero());
+  for (const Triangle& triangle : triangles) {
+    for (size_t i = 0; i < 3; ++i) sums[triangle[i]] += weighted_normal(vertices, triangle, i);
+  }
+  return sums;
+}
 
 Creases find_creases(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles) {
   Creases creases;

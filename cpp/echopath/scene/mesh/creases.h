@@ -34,4 +34,7 @@ inline Vec3 weighted_normal(const std::vector<Vec3>& vertices, const Triangle& t
   return next.cross(last) / (next.squaredNorm() * last.squaredNorm());
 }
 
+// Returns the sum [V] of the facet normals at each vertex by these weights.
+std::vector<Vec3> sums_of_weighted_normals(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles);
+
 }  // namespace echopath

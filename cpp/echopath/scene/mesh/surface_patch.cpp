@@ -45,7 +45,7 @@ SurfacePatch make_patch(const Mesh& mesh, const std::vector<uint8_t>& takes, boo
   for (Triangle& triangle : patch.triangles) {
     for (uint32_t& vertex : triangle) vertex = place_in_surface[vertex];
   }
-  patch.creases = find_creases(at_rest, patch.triangles);
+  if (with_normals) patch.creases = find_creases(at_rest, patch.triangles);
   for (uint32_t v = 0; v < mesh.vertices().size(); ++v) {
     const uint32_t of_surface = mesh.surface_vertex(v);
     patch.place.push_back(is_corner[of_surface] ? place_in_surface[of_surface] : SurfacePatch::kAbsent);

@@ -6,10 +6,7 @@ namespace echopath {
 
 std::vector<Vec3> vertex_normals(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
                                  const Creases& creases) {
-  std::vector<Vec3> normals(vertices.size(), Vec3::Zero());
-  for (const Triangle& triangle : triangles) {
-    for (size_t i = 0; i < 3; ++i) normals[triangle[i]] += weighted_normal(vertices, triangle, i);
-  }
+  std::vector<Vec3> normals = sums_of_weighted_normals(vertices, triangles);
   for (size_t i = 0; i < creases.vertices.size(); ++i) {
     Vec3& normal = normals[creases.vertices[i]];
     normal.setZero();

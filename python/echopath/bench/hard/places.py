@@ -90,13 +90,15 @@ def behind_a_screen() -> float:
     return float(np.sum(np.asarray(paths.mesh_id)[paths.offsets] == 0))
 
 
-def mirror_straight_at(radar, placement: str) -> np.ndarray:
-    """[2] amplitudes over a flagged metal plane 5 m away, met exactly along its normal: scalar, with vectors."""
+def mirror_straight_at(placement: str) -> list[float]:
+    """By how many dB the level over a flagged metal plane 5 m away, met exactly along its normal, is off its image's: scalar,
+    with vectors."""
     plane = {"ahead": ("wall", shapes.plate(4.0, 4.0), {"position": (5.0, 0.0, 0.0)}),
              "above": ("ceiling", shapes.ground(4.0, z=5.0), {})}[placement]
     scene = scene_of((plane[0], plane[1], ep.Material.metal(mirror=True), plane[2]))
-    made = [traced(scene, radar, 100, max_bounces=1, polarization=model) for model in ("scalar", "jones")]
-    return np.array([np.sum(paths.amplitude) for paths in made])
+    image = np.sqrt(POWER) * exact.WAVELENGTH / (4 * np.pi * 10.0)
+    made = [traced(scene, make_radar(), 100, max_bounces=1, polarization=model) for model in ("scalar", "jones")]
+    return [abs(decibels(abs(np.sum(paths.amplitude) / image) ** 2)) for paths in made]
 
 
 @cases("antenna on the normal of a hit",
@@ -104,8 +106,7 @@ def mirror_straight_at(radar, placement: str) -> np.ndarray:
        "both polarisation models", bound=0.05, unit="dB",
        broken="no plane chosen where none is given: NaN")
 def on_the_normal() -> float:
-    image = np.sqrt(POWER) * exact.WAVELENGTH / (4 * np.pi * 10.0)
-    levels = [abs(decibels(abs(one / image) ** 2)) for one in mirror_straight_at(make_radar(), "ahead")]
+    levels = mirror_straight_at("ahead")
     for model in ("scalar", "jones"):
         paths = traced(scene_of(plate_at(200.0)), make_radar(), 2 ** 14, max_bounces=1, polarization=model)
         levels.append(abs(decibels(rcs_of(paths, 200.0) / broadside_rcs(0.1, 200.0))))
@@ -131,8 +132,7 @@ def wall_aside() -> float:
        "vertical has a meaning and no pattern has a null: the level of its image in both polarisation models", bound=1e-6,
        unit="dB", broken="nothing received along the polarisation: infinite; no axis chosen where none is given: NaN")
 def along_polarization() -> float:
-    image = np.sqrt(POWER) * exact.WAVELENGTH / (4 * np.pi * 10.0)
-    return float(np.max([abs(decibels(abs(one / image) ** 2)) for one in mirror_straight_at(make_radar(), "above")]))
+    return float(np.max(mirror_straight_at("above")))
 
 
 @cases("antenna in the plane of a plate", "seen edge-on, in any attitude, or by 1 mm in 5 m beside that, it returns nothing",

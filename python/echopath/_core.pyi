@@ -2095,10 +2095,15 @@ class TraceStatistics:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
         ...
-    def __init__(self, *, num_rays: int = 0, num_queries: int = 0, num_hits: int = 0, num_paths: int = 0, num_near_antenna: int = 0, num_grazing: int = 0, num_small_mirrors: int = 0, num_false_hits: int = 0, num_unaimed: int = 0, num_unfollowed_frusta: int = 0, num_unsplit_rays: int = 0, num_stopped_passes: int = 0) -> None:
+    def __init__(self, *, num_rays: int = 0, num_queries: int = 0, num_hits: int = 0, num_paths: int = 0, num_near_antenna: int = 0, num_grazing: int = 0, num_small_mirrors: int = 0, num_false_hits: int = 0, num_unaimed: int = 0, num_unfollowed_frusta: int = 0, num_unsplit_rays: int = 0, num_stopped_passes: int = 0, num_faint_paths: int = 0) -> None:
         ...
     def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
+    @property
+    def num_faint_paths(self) -> int:
+        """
+        left out by lot, because others count for them
+        """
     @property
     def num_false_hits(self) -> int:
         """
@@ -2168,7 +2173,7 @@ class TraceFrame:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
         ...
-    def __init__(self, *, start_time: float, trace_time: float, transmitter: ArrayLike, receiver: ArrayLike, strata: typing.Sequence[Stratum], statistics: TraceStatistics, target_error_db: float = 0.0, error_db: float = 0.0, seed: int = 1, max_bounces: int = 4, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', num_batches: int = 1, scatterers: str = 'rays', edges: bool = False, attenuation: float = 0.0) -> None:
+    def __init__(self, *, start_time: float, trace_time: float, transmitter: ArrayLike, receiver: ArrayLike, strata: typing.Sequence[Stratum], statistics: TraceStatistics, target_error_db: float = 0.0, error_db: float = 0.0, seed: int = 1, max_bounces: int = 4, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', num_batches: int = 1, scatterers: str = 'rays', edges: bool = False, attenuation: float = 0.0, faint_power: float = 0.0) -> None:
         ...
     def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
@@ -2186,6 +2191,11 @@ class TraceFrame:
     def error_db(self) -> float:
         """
         dB, the one that was reached, above the target where max_rays did not do; 0: not looked at
+        """
+    @property
+    def faint_power(self) -> float:
+        """
+        W, below which some of the diffuse paths were kept for all of them; 0: all were
         """
     @property
     def footprint(self) -> str:
@@ -2638,7 +2648,7 @@ class LiveTrace:
         """
         The whole record, Paths.
         """
-    def update(self, scene: Scene, radar: Radar, *, num_rays: int, start_time: float, progress: typing.Any = None, seed: int = 1, max_bounces: int = 4, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', num_batches: int = 1, scatterers: str = 'rays', edges: bool = False, attenuation: float = 0.0) -> dict[typing.Any, typing.Any]:
+    def update(self, scene: Scene, radar: Radar, *, num_rays: int, start_time: float, progress: typing.Any = None, seed: int = 1, max_bounces: int = 4, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', num_batches: int = 1, scatterers: str = 'rays', edges: bool = False, attenuation: float = 0.0, faint_power: float = 0.0) -> dict[typing.Any, typing.Any]:
         """
         What ep.Live calls. Returns is_whole, num_rays_shot, and the Paths removed and added.
         """
@@ -3440,7 +3450,7 @@ def tessellation(mesh: Mesh) -> typing.Annotated[list[float], "FixedSize(4)"] | 
     """
     What echopath.tracing.tessellation.tessellation calls.
     """
-def trace(scene: Scene, radar: Radar, *, num_rays: int | None = None, start_time: float = 0.0, target_error_db: float | None = None, max_rays: int = 16777216, progress: typing.Any = None, kept: KeptGeometry | None = None, seed: int = 1, max_bounces: int = 4, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', num_batches: int = 1, scatterers: str = 'rays', edges: bool = False, attenuation: float = 0.0) -> Paths:
+def trace(scene: Scene, radar: Radar, *, num_rays: int | None = None, start_time: float = 0.0, target_error_db: float | None = None, max_rays: int = 16777216, progress: typing.Any = None, kept: KeptGeometry | None = None, seed: int = 1, max_bounces: int = 4, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', num_batches: int = 1, scatterers: str = 'rays', edges: bool = False, attenuation: float = 0.0, faint_power: float = 0.0) -> Paths:
     """
     What ep.trace calls. kept: KeptGeometry of the scene, or None.
     """
@@ -3480,7 +3490,7 @@ DEFAULT_MAX_RAYS: int = 16777216
 MESH_SUFFIXES: tuple[typing.Any, ...] = ('.obj', '.ply', '.stl', '.off')
 MOST_RAYS: int = 10000000000
 PHASE_TOLERANCE: float = 1e-05
-RECORD_SETTINGS: dict[typing.Any, typing.Any] = {'seed': 1, 'max_bounces': 4, 'polarization': 'scalar', 'footprint': 'second_order', 'sampler': 'lattice', 'num_batches': 1, 'scatterers': 'rays', 'edges': False, 'attenuation': 0.0}
+RECORD_SETTINGS: dict[typing.Any, typing.Any] = {'seed': 1, 'max_bounces': 4, 'polarization': 'scalar', 'footprint': 'second_order', 'sampler': 'lattice', 'num_batches': 1, 'scatterers': 'rays', 'edges': False, 'attenuation': 0.0, 'faint_power': 0.0}
 __version__: str = '0.1.0'
 boltzmann: float = 1.380649e-23
 num_bounces: NumBounces

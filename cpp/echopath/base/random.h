@@ -20,6 +20,7 @@ enum class Stream : uint32_t {
   kScatterPoint = 8,
   kProbe = 9,
   kSurfacePoint = 10,
+  kFaintPath = 11,
   kTraining = 16
 };
 

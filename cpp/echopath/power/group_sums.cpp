@@ -51,6 +51,7 @@ struct OpenHit {
   int64_t path = kNoPath;
   size_t batch = 0;
   std::complex<double> field = 0.0;
+  bool stands_for_others = false;  // one of its paths does
 };
 
 constexpr uint64_t kMirrorsAlone = ~uint64_t{0};  // the kind of paths over flagged mirrors alone
@@ -111,9 +112,10 @@ class Sums {
     const size_t batch = batch_of(path);
     if (open.path == kNoPath || batch != open.batch || !shares_phase(paths_, path, open.path)) {
       close(group);
-      open = {path, batch, 0.0};
+      open = {path, batch};
     }
     open.field += arriving;
+    open.stands_for_others |= (paths_.flags[static_cast<size_t>(path)] & kStandsForOthers) != 0;
   }
 
   // `arriving` holds one field for each of kCellViews, `stride` apart.
@@ -161,8 +163,8 @@ class Sums {
     GroupSums& sums = groups_[group];
     const double power = std::norm(open.field);
     sums.power[open.batch] += power;
-    // Behind a diffuse hit a ray goes where chance sends it.
-    const bool is_drawn = std::popcount(paths_.diffuse[static_cast<size_t>(open.path)]) > 1;
+    // Behind a diffuse hit a ray goes where chance sends it, and chance keeps a path that stands for others.
+    const bool is_drawn = open.stands_for_others || std::popcount(paths_.diffuse[static_cast<size_t>(open.path)]) > 1;
     (is_drawn ? sums.drawn_squares : sums.lattice_squares) += power * power;
     sums.strongest_hit = std::max(sums.strongest_hit, power);
     ++sums.num_diffuse_hits;

@@ -35,7 +35,7 @@ struct PowerEvidence {
   // their edges: the sum of |a|^2, W, and that of |a|^4, W^2.
   double steady_power = 0.0, steady_squares = 0.0;
   double lattice_squares = 0.0;  // W^2, sum of squares of the powers of diffuse hits that the launch lattice found
-  double drawn_squares = 0.0;    // W^2, of those that were found by directions drawn at random
+  double drawn_squares = 0.0;    // W^2, of those that chance found or kept
   int num_batches = 1;
   double standard_error = 0.0;  // W, of coherent + diffuse by the batches; not used for one
   // This is the power, W, that the coherent paths would send back all in phase. It is set where no footprint filter tells

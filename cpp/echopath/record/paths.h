@@ -58,6 +58,8 @@ inline constexpr uint32_t kEdgePath = 4;
 // Marks, beside that, a path whose edge sends the field of the uniform theory of diffraction to a mirror
 // (em/edges/edge_shadow.h).
 inline constexpr uint32_t kPastEdge = 32;
+// Marks a diffuse path that counts for others, too, which were left out by lot (power/faint_paths.h).
+inline constexpr uint32_t kStandsForOthers = 64;
 inline constexpr int kMostPieces = 65535, kMostEdges = 4;
 constexpr uint32_t edge_flags(int hit, int num_pieces, int num_edges = 1) {
   return kEdgePath | static_cast<uint32_t>(num_edges - 1) << 3 | static_cast<uint32_t>(hit) << 8 |
@@ -88,6 +90,7 @@ struct TraceStatistics {
   int64_t num_unfollowed_frusta = 0;  // sequences of mirrors whose further mirrors were not looked for (kMaxFrusta)
   int64_t num_unsplit_rays = 0;       // rays that only went on at a sheet, because they had split at too many before
   int64_t num_stopped_passes = 0;     // legs of paths that are taken to end at a sheet, behind kMostPasses others
+  int64_t num_faint_paths = 0;        // left out by lot: others count for them (RecordSettings::faint_power)
 };
 
 // Holds the settings of a trace on which the record depends, besides the number of rays. CONTRIBUTING.md has the way of a
@@ -104,6 +107,9 @@ struct RecordSettings {
   Scatterers scatterers = Scatterers::kRays;
   bool edges = false;        // also find the echoes of sharp edges (trace/edges/edge_paths.h)
   double attenuation = 0.0;  // Np/m, of fields in the air at the radar's frequency; replay applies it to each whole length
+  // W, of diffuse paths, below which some are kept for all of them. Rays find all of them: it acts behind the trace
+  // (power/faint_paths.h). 0 keeps all.
+  double faint_power = 0.0;
 
   bool operator==(const RecordSettings&) const = default;
 };
@@ -137,7 +143,7 @@ struct Paths {
   std::vector<std::complex<float>> weight;  // what neither motion nor antennas change (see replay/kernels/path_formula.h)
   std::vector<uint16_t> stratum;            // index into frame.strata; kNoStratum: none (image method)
   std::vector<uint8_t> batch;               // index of the batch of rays; 255: all of them (image method)
-  std::vector<uint32_t> flags;              // bits: kReversedPath, kSecondHalf, kEdgePath with edge_flags
+  std::vector<uint32_t> flags;              // bits: kReversedPath, kSecondHalf, kStandsForOthers, kEdgePath with edge_flags
   // [P, 7] or empty: the launch cell behind curved specular bounces, at the physical-optics hit. T1 and T2 are in units of
   // the triangle's edges (du1, dv1, du2, dv2), then T_a.U_b in m (11, 12, 22). A flat chain has zeros.
   std::vector<std::array<float, 7>> curved_cell;

@@ -13,6 +13,7 @@ void TraceSettings::validate() const {
   require_time(start_time, "start_time");
   require(batches >= 1 && batches <= 64, "batches", "must lie in [1, 64]", batches);
   require(std::isfinite(attenuation) && attenuation >= 0, "attenuation", "must be >= 0 Np/m", attenuation);
+  require(std::isfinite(faint_power) && faint_power >= 0, "faint_power", "must be >= 0 W", faint_power);
   guide.validate();
 }
 

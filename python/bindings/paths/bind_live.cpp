@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "call/run_job.h"
+#include "echopath/power/faint_paths.h"
 #include "echopath/trace/live/live_trace.h"
 #include "paths/record_keywords.h"
 
@@ -54,7 +55,8 @@ void bind_live(py::module_& m) {
                               "The record of a scene that is changed again and again, no part of the public interface.");
   bound
       .def(py::init([](bool whole_scenes) {
-             return std::make_unique<LiveTrace>(whole_scenes ? LiveTrace::Scenes::kWhole : LiveTrace::Scenes::kOfWhatIsMet);
+             return std::make_unique<LiveTrace>(whole_scenes ? LiveTrace::Scenes::kWhole : LiveTrace::Scenes::kOfWhatIsMet,
+                                                thinned);
            }),
            py::arg("whole_scenes") = false)
       .def(

@@ -43,9 +43,9 @@ TraceStatistics statistics_of(Arg<"num_rays", Tally> rays, Arg<"num_queries", Ta
                               Arg<"num_grazing", Tally> grazing, Arg<"num_small_mirrors", Tally> small,
                               Arg<"num_false_hits", Tally> false_hits, Arg<"num_unaimed", Tally> unaimed,
                               Arg<"num_unfollowed_frusta", Tally> unfollowed, Arg<"num_unsplit_rays", Tally> unsplit,
-                              Arg<"num_stopped_passes", Tally> stopped) {
-  return {*rays,  *queries,    *hits,    *recorded,   *near,    *grazing,
-          *small, *false_hits, *unaimed, *unfollowed, *unsplit, *stopped};
+                              Arg<"num_stopped_passes", Tally> stopped, Arg<"num_faint_paths", Tally> faint) {
+  return {*rays,       *queries, *hits,       *recorded, *near,    *grazing, *small,
+          *false_hits, *unaimed, *unfollowed, *unsplit,  *stopped, *faint};
 }
 
 // Binds what the record's settings have to do with a frame: its constructor, a property each, and how it travels.
@@ -123,7 +123,8 @@ void bind_trace_frame(py::module_& m) {
   define_init(bound_statistics, &statistics_of, py::kw_only(), py::arg("num_rays") = 0, py::arg("num_queries") = 0,
               py::arg("num_hits") = 0, py::arg("num_paths") = 0, py::arg("num_near_antenna") = 0, py::arg("num_grazing") = 0,
               py::arg("num_small_mirrors") = 0, py::arg("num_false_hits") = 0, py::arg("num_unaimed") = 0,
-              py::arg("num_unfollowed_frusta") = 0, py::arg("num_unsplit_rays") = 0, py::arg("num_stopped_passes") = 0);
+              py::arg("num_unfollowed_frusta") = 0, py::arg("num_unsplit_rays") = 0, py::arg("num_stopped_passes") = 0,
+              py::arg("num_faint_paths") = 0);
   bound_statistics.def_readonly("num_rays", &TraceStatistics::num_rays, "launched")
       .def_readonly("num_queries", &TraceStatistics::num_queries, "closest-hit and shadow queries")
       .def_readonly("num_hits", &TraceStatistics::num_hits, "surface points found")
@@ -140,7 +141,8 @@ void bind_trace_frame(py::module_& m) {
       .def_readonly("num_unsplit_rays", &TraceStatistics::num_unsplit_rays,
                     "rays that only went on at a sheet, because they had split at too many before")
       .def_readonly("num_stopped_passes", &TraceStatistics::num_stopped_passes,
-                    "legs that are taken to end at a sheet, behind 64 others");
+                    "legs that are taken to end at a sheet, behind 64 others")
+      .def_readonly("num_faint_paths", &TraceStatistics::num_faint_paths, "left out by lot, because others count for them");
 
   def_travel(bound_statistics, field("num_rays", &TraceStatistics::num_rays),
              field("num_queries", &TraceStatistics::num_queries), field("num_hits", &TraceStatistics::num_hits),
@@ -150,7 +152,8 @@ void bind_trace_frame(py::module_& m) {
              field("num_false_hits", &TraceStatistics::num_false_hits), field("num_unaimed", &TraceStatistics::num_unaimed),
              field("num_unfollowed_frusta", &TraceStatistics::num_unfollowed_frusta),
              field("num_unsplit_rays", &TraceStatistics::num_unsplit_rays),
-             field("num_stopped_passes", &TraceStatistics::num_stopped_passes));
+             field("num_stopped_passes", &TraceStatistics::num_stopped_passes),
+             field("num_faint_paths", &TraceStatistics::num_faint_paths));
 
   py::class_<TraceFrame> bound_frame(
       m, "TraceFrame",

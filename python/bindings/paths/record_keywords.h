@@ -74,7 +74,9 @@ using RecordKeywords = ListOfKeywords<
     RecordKeyword<"scatterers", &RecordSettings::scatterers, OneOf<kScatterers>,
                   "\"rays\" or \"surface\": what the scatterers of rough surfaces are">,
     RecordKeyword<"edges", &RecordSettings::edges, Flag, "whether echoes of sharp edges were looked for">,
-    RecordKeyword<"attenuation", &RecordSettings::attenuation, Real, "Np/m of fields in the air, along every path">>;
+    RecordKeyword<"attenuation", &RecordSettings::attenuation, Real, "Np/m of fields in the air, along every path">,
+    RecordKeyword<"faint_power", &RecordSettings::faint_power, Real,
+                  "W, below which some of the diffuse paths were kept for all of them; 0: all were">>;
 
 namespace detail {
 

@@ -13,7 +13,7 @@ from collections.abc import Mapping
 from typing import ClassVar, Literal, TypedDict, TypeVar, dataclass_transform
 
 from .. import _core
-from .checks import LARGEST_COUNT, MapWindow, Rule, count, flag, flag_or_auto, one_of, optional, positive, real
+from .checks import LARGEST_COUNT, MapWindow, Rule, count, flag, flag_or_auto, number_or_auto, one_of, optional, positive, real
 from .checks import map_window as window_rule
 from .checks import seed as seed_rule
 from .effects import Choices, effects_rule
@@ -25,6 +25,7 @@ Footprint = Literal["none", "first_order", "second_order", "edges"]
 Sampler = Literal["lattice", "fibonacci", "r2", "random"]
 Scatterers = Literal["auto", "rays", "surface"]
 Edges = bool | Literal["auto"]
+FaintPower = float | Literal["auto"]  # W
 Method = Literal["auto", "direct", "recurrence", "nufft"]
 Replay = Literal["material", "fermat"]
 Evaluate = Literal["interpolated", "chirps", "samples"]
@@ -77,6 +78,7 @@ class TraceSettings(Settings):
     polarization, footprint, sampler: words; batches: 1 to 64 independent parts of the rays, None: 1
     target_error_db: dB, error of each echo until which rays are added, at most max_rays
     scatterers: of rough surfaces, a word; edges: whether echoes of sharp edges are looked for, or "auto"
+    faint_power: W, of diffuse paths, below which some stand for all, 0: none, or "auto"
     effects: {name of an effect of the weather: True, False or "auto"}, as pairs
     Raises TypeError or ValueError naming the keyword. Values are frozen; two with equal values are equal.
     """
@@ -93,6 +95,7 @@ class TraceSettings(Settings):
     max_rays: int | float = _core.DEFAULT_MAX_RAYS
     scatterers: Scatterers = "auto"
     edges: Edges = False
+    faint_power: FaintPower = 0.0
     effects: Choices = ()
 
     RULES: ClassVar[Mapping[str, Rule]] = {
@@ -100,7 +103,8 @@ class TraceSettings(Settings):
         "start_time": real(unit="s"), "polarization": one_of(Polarization), "footprint": one_of(Footprint),
         "sampler": one_of(Sampler), "batches": optional(count(1, MOST_BATCHES)),
         "target_error_db": optional(positive("dB")), "max_rays": count(1, MOST_RAYS),
-        "scatterers": one_of(Scatterers), "edges": flag_or_auto, "effects": effects_rule}
+        "scatterers": one_of(Scatterers), "edges": flag_or_auto, "faint_power": number_or_auto(real(0.0, unit="W")),
+        "effects": effects_rule}
 
 
 @settings_class

@@ -34,6 +34,18 @@ def flag_or_auto(argument: str, value) -> bool | Literal["auto"]:
     return bool(value)
 
 
+def number_or_auto(rule: Rule) -> Rule:
+    """A number that a rule takes, or "auto"."""
+    def check(argument: str, value) -> float | Literal["auto"]:
+        if isinstance(value, str) and value == "auto":
+            return "auto"
+        if isinstance(value, str):
+            raise refused(ValueError, argument, "a number or 'auto'", value)
+        return rule(argument, value)
+
+    return check
+
+
 def choice(*names: str) -> Rule:
     """One of some words."""
     quoted = [f"'{name}'" for name in names]

@@ -5,7 +5,7 @@ from .. import _core
 from ..arguments.checks import checked
 from ..arguments.effects import Choices
 from ..arguments.settings import (
-    Edges, Evaluate, Footprint, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings, TraceSettings,
+    Edges, Evaluate, FaintPower, Footprint, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings, TraceSettings,
 )
 from . import surfaces, motion, weather, interference, radar, sampling  # each adds its rules, in this order
 from .rules import RULES, Case, Effect, Settings
@@ -39,19 +39,21 @@ def effects(scene: _core.Scene, radar: _core.Radar, *, max_bounces: int = TraceS
             sampler: Sampler = TraceSettings.sampler, batches: int | None = TraceSettings.batches,
             target_error_db: float | None = TraceSettings.target_error_db,
             scatterers: Scatterers = TraceSettings.scatterers, edges: Edges = TraceSettings.edges,
+            faint_power: FaintPower = TraceSettings.faint_power,
             replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,
             retrace: Retrace = SignalSettings.retrace, noise_seed: int | None = None,
             effects: Choices = TraceSettings.effects) -> Effects:
     """Which effects a run of `scene` with `radar` models, and why.
 
-    max_bounces, footprint, polarization, sampler, batches, target_error_db (dB), scatterers, edges, effects: as in `trace`;
-    replay, evaluate, retrace: as in `synthesize`; noise_seed: as in `simulate`. Returns a list [E] of Effect, modelled
-    ones first. Effects that nothing can ask for stand last, under reasons that begin with "out of scope" or "not modelled".
-    Raises TypeError or ValueError naming the argument.
+    max_bounces, footprint, polarization, sampler, batches, target_error_db (dB), scatterers, edges, faint_power (W), effects:
+    as in `trace`; replay, evaluate, retrace: as in `synthesize`; noise_seed: as in `simulate`. Returns a list [E] of Effect,
+    modelled ones first. Effects that nothing can ask for stand last, under reasons that begin with "out of scope" or "not
+    modelled". Raises TypeError or ValueError naming the argument.
     """
     batches = batches or 1
     return _of_case(Case(scene, radar, Settings(max_bounces, footprint, polarization, sampler, batches, target_error_db,
-                                                scatterers, edges, replay, evaluate, retrace, noise_seed, effects)))
+                                                scatterers, edges, faint_power, replay, evaluate, retrace, noise_seed,
+                                                effects)))
 
 
 def of_paths(paths, *, replay: str = "material", evaluate: str = "interpolated", retrace: str = "never",
@@ -62,8 +64,8 @@ def of_paths(paths, *, replay: str = "material", evaluate: str = "interpolated",
     they had."""
     frame = paths.frame
     settings = Settings(frame.max_bounces, frame.footprint, frame.polarization, frame.sampler, frame.num_batches,
-                        frame.target_error_db or None, frame.scatterers, frame.edges, replay, evaluate, retrace, noise_seed,
-                        effects)
+                        frame.target_error_db or None, frame.scatterers, frame.edges, frame.faint_power, replay, evaluate,
+                        retrace, noise_seed, effects)
     return _of_case(Case(paths.scene, paths.radar, settings, paths=paths, surroundings=surroundings, rain_cube=rain_cube,
                          interference_cube=interference_cube))
 

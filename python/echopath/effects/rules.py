@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from .. import _core
 from ..arguments.effects import Choices
 from ..arguments.names import MOST_NAMES, first_names
-from ..arguments.settings import Edges
+from ..arguments.settings import Edges, FaintPower
 from ..base.made_by import made_by
 from ..scene.interferers import interferers_of
 from ..tracing.polarization import COHERENT_SHARE, antennas_of, chosen_model, coherent_share
@@ -40,6 +40,7 @@ class Settings:
     target_error_db: float | None
     scatterers: str
     edges: Edges
+    faint_power: FaintPower
     replay: str
     evaluate: str
     retrace: str

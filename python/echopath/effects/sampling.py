@@ -1,7 +1,9 @@
 """How the rays are spread, and what they tell of their own error."""
 from __future__ import annotations
 
+from ..tracing.faint_paths import faint_power_of
 from ..tracing.lost_rays import unaimed
+from ..signals.measures import in_dbm
 from .rules import Case, rule
 
 
@@ -31,3 +33,15 @@ def _errors(case: Case):
 def _target(case: Case):
     target = case.settings.target_error_db
     return target is not None, "no target_error_db" if target is None else f"target_error_db = {target:g}"
+
+
+@rule("few faint paths for many", "trace.faint_power")
+def _faint_paths(case: Case):
+    if len(case.diffuse) == 0:
+        return False, "no material scatters diffusely"
+    power = faint_power_of(case.settings.faint_power, case.settings.scatterers, case.radar)
+    if power == 0.0:
+        why = "scatterers persist" if case.settings.scatterers == "surface" else "faint_power = 0"
+        return False, f"{why}: every diffuse path is kept"
+    left_out = f", {case.statistics.num_faint_paths} left out" if case.statistics else ""
+    return True, f"one in 4, 16 or 64 of the diffuse paths below {in_dbm(power / 4.0):.1f} dBm, with the power of all{left_out}"

@@ -7,8 +7,8 @@ from .. import _core
 from ..arguments.checks import MapWindow, Progress, anything, checked, flag
 from ..arguments.effects import Choices
 from ..arguments.settings import (
-    Edges, Evaluate, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings,
-    TraceSettings, settings_among,
+    Edges, Evaluate, FaintPower, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, Scatterers,
+    SignalSettings, TraceSettings, settings_among,
 )
 from ..guard import warn_of
 from ..signals.parts import Selections
@@ -25,7 +25,8 @@ def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | 
              footprint: Footprint = TraceSettings.footprint, sampler: Sampler = TraceSettings.sampler,
              batches: int | None = TraceSettings.batches, target_error_db: float | None = TraceSettings.target_error_db,
              max_rays: int | float = TraceSettings.max_rays, scatterers: Scatterers = TraceSettings.scatterers,
-             edges: Edges = TraceSettings.edges, effects: Choices = TraceSettings.effects,
+             edges: Edges = TraceSettings.edges, faint_power: FaintPower = TraceSettings.faint_power,
+             effects: Choices = TraceSettings.effects,
              parts: Selections | None = None,
              tolerance: float = SignalSettings.tolerance, method: Method = SignalSettings.method,
              replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,
@@ -40,7 +41,8 @@ def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | 
 
     scene: what is traced; radar: that looks at it
     num_rays, max_bounces, seed, start_time (s), polarization, footprint, sampler, batches, target_error_db (dB),
-        max_rays, scatterers, edges, effects: as in `trace`; the map also has the echoes of the rain in `Scene.weather`
+        max_rays, scatterers, edges, faint_power (W), effects: as in `trace`; the map also has the echoes of the rain in
+        `Scene.weather`
     parts: {name: selection} for one partition (called "parts"), {partition: {name: selection}} for several, or None
     tolerance, method, replay, evaluate, phase_tolerance (rad), retrace, keyframes: as in `synthesize`; window, zero_pad: as
         in `range_doppler`

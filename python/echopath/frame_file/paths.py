@@ -22,7 +22,7 @@ FIRST_SETTINGS = ("seed", "max_bounces", "polarization", "footprint", "sampler",
 FRAME_VALUES = ("start_time", "trace_time", "target_error_db", "error_db")
 STATISTICS = ("num_rays", "num_queries", "num_hits", "num_paths", "num_near_antenna", "num_grazing", "num_small_mirrors",
               "num_false_hits", "num_unaimed", "num_unfollowed_frusta")
-LATER_STATISTICS = ("num_unsplit_rays", "num_stopped_passes")  # which older files do not have
+LATER_STATISTICS = ("num_unsplit_rays", "num_stopped_passes", "num_faint_paths")  # which older files do not have
 OLDER_NAMES = {"num_unfollowed_frusta": "num_unfollowed_beams"}
 
 

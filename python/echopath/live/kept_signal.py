@@ -9,6 +9,7 @@ import numpy as np
 
 from .. import _core
 from ..signals.parts import ONLY_PARTITION, Parts, check_partitions
+from ..tracing.faint_paths import faint_power_of
 from ..tracing.polarization import antennas_of, chosen_model
 from ..transmit.signals import decompose_slots, synthesize_slots
 from ..weather.weather import attenuation_of
@@ -66,7 +67,9 @@ class KeptSignal:
         if self._selections is not None:
             check_partitions({ONLY_PARTITION: self._selections}, scene)
         keywords = self._trace_keywords | {"polarization": self._model(scene, radar),
-                                           "attenuation": attenuation_of(scene, radar)}
+                                           "attenuation": attenuation_of(scene, radar),
+                                           "faint_power": faint_power_of(self._trace_keywords["faint_power"],
+                                                                         self._trace_keywords["scatterers"], radar)}
         change = self._record.update(scene, radar, num_rays=self.num_rays, progress=progress, **keywords)
         self._note(change)
         if self._whole is None and (radar != self._radar or self._num_differences >= MOST_DIFFERENCES):

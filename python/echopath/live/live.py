@@ -11,7 +11,8 @@ from typing import NoReturn
 from .. import _core
 from ..arguments.checks import MapWindow, Progress, an, anything, checked, count, flag, positive, refused
 from ..arguments.settings import (
-    MOST_RAYS, Edges, Evaluate, Footprint, Method, Polarization, Replay, Sampler, Scatterers, SignalSettings, TraceSettings,
+    MOST_RAYS, Edges, Evaluate, FaintPower, Footprint, Method, Polarization, Replay, Sampler, Scatterers, SignalSettings,
+    TraceSettings,
 )
 from ..scene.scene import Scene
 from ..signals.parts import as_partition
@@ -54,8 +55,8 @@ class Live:
     num_rays: 1 to 1e10, shared evenly among objects, their images and the field of view; the shares do not go by errors or by
         what moves as those of `trace` do, because these change with every change of the scene, and are rounded, so that
         the record has about as many rays (LiveView.num_rays)
-    max_bounces, seed, start_time (s), polarization, footprint, sampler, edges: as in `trace`; "auto" edges as the
-        scene is at first
+    max_bounces, seed, start_time (s), polarization, footprint, sampler, edges, faint_power (W): as in `trace`; "auto" edges
+        as the scene is at first
     scatterers: "rays" (also for "auto"), or "surface" as in `trace`, so that the speckle of what is moved goes on; most rays
         are then shot again
     tolerance, replay, evaluate, phase_tolerance (rad): as in `synthesize`; method: likewise, where "auto" is "nufft" whatever
@@ -72,7 +73,7 @@ class Live:
                  start_time: float = TraceSettings.start_time, polarization: Polarization = TraceSettings.polarization,
                  footprint: Footprint = TraceSettings.footprint, sampler: Sampler = TraceSettings.sampler,
                  scatterers: Scatterers = TraceSettings.scatterers, edges: Edges = TraceSettings.edges,
-                 tolerance: float = SignalSettings.tolerance,
+                 faint_power: FaintPower = TraceSettings.faint_power, tolerance: float = SignalSettings.tolerance,
                  method: Method = SignalSettings.method, replay: Replay = SignalSettings.replay,
                  evaluate: Evaluate = SignalSettings.evaluate, phase_tolerance: float = SignalSettings.phase_tolerance,
                  window: MapWindow = SignalSettings.window, zero_pad: int = SignalSettings.zero_pad,
@@ -80,7 +81,7 @@ class Live:
         self._trace = {"max_bounces": max_bounces, "seed": seed, "start_time": start_time, "polarization": polarization,
                        "footprint": footprint, "sampler": sampler,
                        "scatterers": "rays" if scatterers == "auto" else scatterers,
-                       "edges": looks_for_edges(edges, scene, radar, start_time)}
+                       "edges": looks_for_edges(edges, scene, radar, start_time), "faint_power": faint_power}
         self._signal = {"tolerance": tolerance, "method": "nufft" if method == "auto" else method, "replay": replay,
                         "evaluate": evaluate, "phase_tolerance": phase_tolerance}
         self._window, self._zero_pad = window, zero_pad

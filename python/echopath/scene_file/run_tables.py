@@ -9,8 +9,8 @@ from ..arguments.checks import map_window, window
 from ..arguments.effects import effects_rule
 from ..arguments.gates import gate
 from ..arguments.settings import (
-    MOST_BATCHES, MOST_BOUNCES, MOST_RAYS, Edges, Evaluate, Footprint, LabelSettings, Plane, Polarization, Replay, Retrace,
-    Sampler, Scatterers, SignalSettings, TraceSettings,
+    MOST_BATCHES, MOST_BOUNCES, MOST_RAYS, Edges, Evaluate, FaintPower, Footprint, LabelSettings, Plane, Polarization, Replay,
+    Retrace, Sampler, Scatterers, SignalSettings, TraceSettings,
 )
 from ..spectra.range_doppler import FALSE_ALARM_RATE, RANK, CfarMethod
 from ..weather import Weather
@@ -40,6 +40,8 @@ class TraceTable(Table):
                                               "or these for frames in a row alone")
     edges: Edges = Field(
         TraceSettings.edges, description="also find the echoes of sharp edges, or where they stand out of the noise")
+    faint_power: Annotated[FaintPower, by_check(TraceSettings.RULES["faint_power"])] = Field(
+        TraceSettings.faint_power, description="W, below which some diffuse paths stand for all; 0: all are kept")
     effects: Annotated[Any, by_check(effects_rule)] = Field(
         TraceSettings.effects, description="name of an effect of the weather = true, false or \"auto\"")
 

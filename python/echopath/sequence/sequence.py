@@ -17,8 +17,8 @@ from ..arguments.checks import path as path_rule
 from ..arguments.effects import Choices
 from ..arguments.motions import require_motion
 from ..arguments.settings import (
-    Edges, Evaluate, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, Scatterers, SignalSettings,
-    TraceSettings, settings_among,
+    Edges, Evaluate, FaintPower, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, Scatterers,
+    SignalSettings, TraceSettings, settings_among,
 )
 from ..base.progress import automatic_bars
 from ..base.work_at_hand import at_work_on
@@ -55,8 +55,8 @@ class Sequence(Row[Frame]):
     frames: number of frames K, at least 1; interval: s, from start to start, at least the duration of a frame
     start_time: s, of frame 0
     num_rays, max_bounces, seed, polarization, footprint, sampler, batches, target_error_db (dB), max_rays, scatterers,
-        edges, effects: as in `trace`; the seed serves all frames, and "auto" scatterers are those of the surfaces, so that
-        speckle goes on from frame to frame
+        edges, faint_power (W), effects: as in `trace`; the seed serves all frames, and "auto" scatterers are those of the
+        surfaces, so that speckle goes on from frame to frame
     parts, tolerance, method, replay, evaluate, phase_tolerance (rad), retrace, keyframes, noise_seed, window, zero_pad, angles,
         labels, detections, truth, guard, trace, signal: as in `simulate`
     times: starts of the frames, [K] in s
@@ -74,7 +74,8 @@ class Sequence(Row[Frame]):
                  sampler: Sampler = TraceSettings.sampler, batches: int | None = TraceSettings.batches,
                  target_error_db: float | None = TraceSettings.target_error_db,
                  max_rays: int | float = TraceSettings.max_rays, scatterers: Scatterers = TraceSettings.scatterers,
-                 edges: Edges = TraceSettings.edges, effects: Choices = TraceSettings.effects,
+                 edges: Edges = TraceSettings.edges, faint_power: FaintPower = TraceSettings.faint_power,
+                 effects: Choices = TraceSettings.effects,
                  parts: Selections | None = None,
                  tolerance: float = SignalSettings.tolerance, method: Method = SignalSettings.method,
                  replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,

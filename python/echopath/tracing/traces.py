@@ -11,12 +11,13 @@ from .. import _core
 from ..arguments.checks import ArrayLike, Progress, array, checked, flag, one_of, optional, positive, real, shown
 from ..arguments.effects import Choices
 from ..arguments.motions import require_frame
-from ..arguments.settings import Edges, Footprint, Polarization, Sampler, Scatterers, TraceSettings
+from ..arguments.settings import Edges, FaintPower, Footprint, Polarization, Sampler, Scatterers, TraceSettings
 from ..cavities.cavity import Cavity
 from ..cavities.cross_sections import rcs_with_cavities
 from ..scene.bodies import warn_of_bodies
 from ..weather.weather import attenuation_of
 from .edges import looks_for_edges
+from .faint_paths import faint_power_of
 from .lost_rays import warn_of_lost_rays, warn_of_unaimed, warn_of_unfollowed_frusta
 from .polarization import FIELD_VECTORS, SCALAR, antennas_of, chosen_model
 from .tessellation import warn_of_coarse_meshes
@@ -34,7 +35,8 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
           footprint: Footprint = TraceSettings.footprint, sampler: Sampler = TraceSettings.sampler,
           batches: int | None = TraceSettings.batches, target_error_db: float | None = TraceSettings.target_error_db,
           max_rays: int | float = TraceSettings.max_rays, scatterers: Scatterers = TraceSettings.scatterers,
-          edges: Edges = TraceSettings.edges, effects: Choices = TraceSettings.effects,
+          edges: Edges = TraceSettings.edges, faint_power: FaintPower = TraceSettings.faint_power,
+          effects: Choices = TraceSettings.effects,
           settings: TraceSettings | None = None, progress: Progress = None) -> _core.Paths:
     """Shoots rays from the radar through the scene at mid-frame and records what they hit.
 
@@ -72,6 +74,12 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
         Where the strongest edge stands out of the noise of a cell of the map, those 40 dB below that noise are left out.
         Dielectrics, and meshes that deform or change their scale, have none. "auto": where the strongest edge, were nothing
         in its way, stands out of the noise of a cell of the map; `paths.effects` says how strong it is
+    faint_power: W; of diffuse paths that carry at most a quarter of it, one in 4, 16 or 64 is kept at random, with the power of
+        all (`paths.frame.statistics.num_faint_paths` were left out): the expected power of every cell stays what it is, and
+        cells that are stronger than a few faint paths fluctuate as with all of them. 0: all paths are kept; "auto": a fortieth
+        of the noise of a cell of the map, once all channels of the array are added in phase, and 0 where scatterers are of the
+        surfaces, whose speckle would not go on. "auto" saves most of the time of signals and labels where rough bodies stand
+        among mirrors, and is not for levels below the noise
     effects: {name: True, False or "auto"} of effects that `Scene.weather` asks for: "attenuation by weather", "echoes of rain"
         (of `simulate`); those that are left out are "auto", on where the weather has them
     settings: TraceSettings that give the keywords which the call leaves out, or None
@@ -96,6 +104,7 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
                         target_error_db=target_error_db, max_rays=max_rays,
                         scatterers="rays" if scatterers == "auto" else scatterers,
                         edges=looks_for_edges(edges, scene, radar, start_time),
+                        faint_power=faint_power_of(faint_power, scatterers, radar),
                         attenuation=attenuation_of(scene, radar, effects), progress=progress, kept=geometry)
     for warn in (warn_of_lost_rays, warn_of_unfollowed_frusta):
         warn(paths.frame.statistics)

@@ -14,7 +14,8 @@ RAIN_DB_PER_KM = sum(RAIN.attenuation_db_per_km(make_radar()).values())
 ASKED = {"seed": ({"seed": 7}, 7), "max_bounces": ({"max_bounces": 2}, 2), "polarization": ({"polarization": "jones"}, "jones"),
          "footprint": ({"footprint": "none"}, "none"), "sampler": ({"sampler": "random"}, "random"),
          "num_batches": ({"batches": 2}, 2), "scatterers": ({"scatterers": "surface"}, "surface"),
-         "edges": ({"edges": True}, True), "attenuation": ({}, pytest.approx(RAIN_DB_PER_KM / 1000.0 * np.log(10.0) / 20.0))}
+         "edges": ({"edges": True}, True), "faint_power": ({"faint_power": 1e-9}, 1e-9),
+         "attenuation": ({}, pytest.approx(RAIN_DB_PER_KM / 1000.0 * np.log(10.0) / 20.0))}
 NOT_OF_LIVE = {"num_batches"}  # whose rays are shared evenly, and which tells no errors
 KEYWORDS = {"num_rays": 200}
 

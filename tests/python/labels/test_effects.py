@@ -114,6 +114,7 @@ CASES = {
     "interference": (dict(scene=ep.Scene(make_scene(), interferers=[ep.Interferer(radar=make_radar())])), "another radar", {}),
     "transmission through sheets": (dict(scene=make_scene(ep.materials["glass_pane"])), "-6.3 dB", {}),
     "edge diffraction": (dict(edges=True), "looked for", {}),
+    "few faint paths for many": (dict(scene=make_scene(ROUGH), faint_power="auto"), "one in 4", dict(scene=make_scene(ROUGH))),
     "even spread of the rays": (dict(sampler="r2"), "r2", dict(sampler="random")),
     "rays aimed at objects": ({}, "a cone", dict(scene=make_scene(MIRROR))),
     "standard errors": (dict(batches=8), "batches = 8", {}),
@@ -235,7 +236,7 @@ def test_sequences_of_mirrors_that_were_not_followed_are_said_and_warned_of():
 def test_objects_that_no_rays_aim_at_are_said():
     statistics = ep.TraceStatistics(num_unaimed=12)
     effect = next(rule(rules.Case(make_scene(), make_radar(), rules.Settings(4, "second_order", "scalar", "lattice", 1, None,
-                  "rays", False, "material", "interpolated", "never", None), statistics)) for rule in rules.RULES
+                  "rays", False, 0.0, "material", "interpolated", "never", None), statistics)) for rule in rules.RULES
                   if rule.name == "rays aimed at objects")
     assert effect.modelled and "12 objects and images have no rays of their own" in effect.reason
     with pytest.warns(RuntimeWarning, match="12 objects and images"):

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "echopath/power/faint_paths.h"
 #include "echopath/power/received_power.h"
 #include "echopath/signal/noise.h"
 #include "echopath/sim/rays/plan_foci.h"
@@ -210,7 +211,8 @@ Paths trace_by_need(const SceneSnapshot& scene, const Radar& radar, const TraceS
   settings.validate();
   launch.num_rays = settings.num_rays / kPilotDivisor;
   launch.num_rays_to_come = settings.num_rays;
-  if (!settings.guide.shares.empty() || launch.num_rays < kFewestPilotRays) return trace(scene, radar, settings, job, kept);
+  if (!settings.guide.shares.empty() || launch.num_rays < kFewestPilotRays)
+    return thinned(trace(scene, radar, settings, job, kept), job);
   KeptGeometry own;
   if (!kept) kept = &own;
   FittedStrata fitted;
@@ -220,7 +222,7 @@ Paths trace_by_need(const SceneSnapshot& scene, const Radar& radar, const TraceS
   launch.num_rays_to_come = 0;
   const WantedError wanted{.db = kPlannedDb, .floor = EchoFloor::kNoise, .law = RayLaw::kByPower};
   launch.guide = guide_rays(pilot, ray_needs(pilot, wanted, &unseen), settings.num_rays, &unseen);
-  return trace(scene, radar, launch, job, kept, &fitted);
+  return thinned(trace(scene, radar, launch, job, kept, &fitted), job);
 }
 
 }  // namespace echopath

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "echopath/power/faint_paths.h"
 #include "echopath/sim/rays/ray_allocation.h"
 #include "echopath/trace/strata/fitted_strata.h"
 
@@ -28,7 +29,8 @@ Paths trace_to_error(const SceneSnapshot& scene, const Radar& radar, const Trace
     paths.frame.target_error_db = target.error_db;
     paths.frame.error_db = needs.worst_db;
     const bool is_met = needs.worst_db <= target.error_db;
-    if (is_met || launch.num_rays == target.max_rays || paths.frame.statistics.num_hits == 0) return paths;
+    if (is_met || launch.num_rays == target.max_rays || paths.frame.statistics.num_hits == 0)
+      return thinned(std::move(paths), job);
     const double wanted = std::min(needs.num_rays(), static_cast<double>(target.max_rays));
     launch.num_rays = std::clamp(std::llround(wanted), std::min<long long>(2 * launch.num_rays, target.max_rays),
                                  static_cast<long long>(target.max_rays));

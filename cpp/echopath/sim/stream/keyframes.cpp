@@ -4,6 +4,7 @@
 #include <string>
 
 #include "echopath/base/errors.h"
+#include "echopath/power/faint_paths.h"
 #include "echopath/trace/trace.h"
 #include "echopath/validity/renewal.h"
 #include "echopath/validity/surface/new_surface.h"
@@ -77,7 +78,7 @@ void StretchRecords::find_new_surface(const Radar& radar, const std::vector<Stre
     settings.num_rays = paths_.frame.statistics.num_rays;
     settings.seed = seed_of_search(paths_.frame.seed, static_cast<int>(look));
     const SurfaceSearch seen = trace_new_surface(paths_, radar, settings, job_, &then, &kept_);
-    Paths found = seen.paths.select(seen.is_new, job_);
+    Paths found = thinned(seen.paths.select(seen.is_new, job_), job_);
     for (auto time = times.rbegin(); time != times.rend(); ++time) take_out(radar, *time, found, job_, &before);
     times.push_back(settings.time);
     if (found.num_paths() > 0) found_.push_back(found.with_own_hits(job_));
@@ -89,7 +90,7 @@ std::vector<Paths> StretchRecords::of(const Stretch& stretch) {
     TraceSettings settings = settings_like(paths_.frame);
     settings.start_time = stretch.start_time;
     settings.guide = guide_like(paths_.frame.strata);
-    return {trace(paths_.scene, stretch.radar, settings, job_, &kept_)};
+    return {thinned(trace(paths_.scene, stretch.radar, settings, job_, &kept_), job_)};
   }
   std::vector<Paths> records;
   const auto add = [&](const Paths& paths) {

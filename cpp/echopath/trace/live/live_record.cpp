@@ -17,8 +17,11 @@ std::vector<std::vector<int>> sequences_of(const AntennaFrusta& frusta) {
   return sequences;
 }
 
+// The faint power is that of a later step (power/faint_paths.h): no ray knows it.
 bool asks_the_same(const TraceSettings& a, const TraceSettings& b) {
-  return a.num_rays == b.num_rays && static_cast<const RecordSettings&>(a) == static_cast<const RecordSettings&>(b);
+  RecordSettings of_a = a;
+  of_a.faint_power = b.faint_power;
+  return a.num_rays == b.num_rays && of_a == static_cast<const RecordSettings&>(b);
 }
 
 bool has_foci(const std::vector<Stratum>& strata) {

@@ -61,7 +61,8 @@ std::vector<LiveBlockPtr> without(const std::vector<LiveBlockPtr>& blocks, const
 
 }  // namespace
 
-LiveTrace::LiveTrace(Scenes scenes) : scenes_(scenes) {}
+LiveTrace::LiveTrace(Scenes scenes, std::function<Paths(Paths, Job*)> finish)
+    : scenes_(scenes), finish_(std::move(finish)) {}
 LiveTrace::~LiveTrace() = default;
 
 LiveTrace::Next LiveTrace::prepare(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& asked, Job* job) {
@@ -87,11 +88,11 @@ LiveTrace::Next LiveTrace::prepare(const SceneSnapshot& scene, const Radar& rada
   change.is_whole = !match.shares_rays() || !record_->doubles.is_same(next->doubles, match.common().meshes.id_after) ||
                     static_cast<double>(change.num_rays_shot) > kMostRaysOfDifference * static_cast<double>(change.num_rays);
   if (change.is_whole) {
-    change.added = next->paths_of(next->blocks, job);
+    change.added = finished(next->paths_of(next->blocks, job), job);
     change.removed = next->empty;
   } else {
-    change.removed = record_->paths_of(without(record_->blocks, filled.is_kept_before), job);
-    change.added = next->paths_of(without(next->blocks, filled.is_kept), job);
+    change.removed = finished(record_->paths_of(without(record_->blocks, filled.is_kept_before), job), job);
+    change.added = finished(next->paths_of(without(next->blocks, filled.is_kept), job), job);
     leave_out_common(change.removed, change.added, match.common(), job);
     for (Paths* paths : {&change.removed, &change.added}) {
       *paths = scenes_ == Scenes::kWhole ? paths->with_own_hits(job) : with_own_meshes(*paths, job);
@@ -107,7 +108,7 @@ LiveTrace::Change LiveTrace::accept(Next&& next) {
 
 Paths LiveTrace::paths(Job* job) const {
   require(record_ != nullptr, "live", "must have been updated before it has paths", 0);
-  return record_->paths_of(record_->blocks, job);
+  return finished(record_->paths_of(record_->blocks, job), job);
 }
 
 }  // namespace echopath

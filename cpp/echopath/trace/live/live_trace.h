@@ -8,7 +8,9 @@
 // (TraceSettings::for_edits), so that an object that comes, goes or begins to move leaves most others their rays; meshes and
 // strata of two records are the same by their names. Where a change reaches what all rays share (antennas, flagged mirrors,
 // the settings, a scene that grows beyond a power of two of metres), all are shot again.
+#include <functional>
 #include <memory>
+#include <utility>
 
 #include "echopath/trace/embree/kept_geometry.h"
 #include "echopath/trace/strata/fitted_strata.h"
@@ -40,7 +42,9 @@ class LiveTrace {
   // Says which meshes the scenes of changes have. Those of what is met cost less to pose; selections may name any of all.
   enum class Scenes { kOfWhatIsMet, kWhole };
 
-  explicit LiveTrace(Scenes scenes = Scenes::kOfWhatIsMet);
+  // `finish` makes of all paths of some rays those of the record (power/faint_paths.h, say), alike whatever other rays' paths
+  // are beside them; null: they are the record's as they are.
+  explicit LiveTrace(Scenes scenes = Scenes::kOfWhatIsMet, std::function<Paths(Paths, Job*)> finish = nullptr);
   ~LiveTrace();
   // Makes the record of the scene, radar and settings given, which `accept` puts in the place of the present one. Raises as
   // `trace`.
@@ -56,7 +60,10 @@ class LiveTrace {
   Paths paths(Job* job = nullptr) const;
 
  private:
+  Paths finished(Paths paths, Job* job) const { return finish_ ? finish_(std::move(paths), job) : paths; }
+
   Scenes scenes_;
+  std::function<Paths(Paths, Job*)> finish_;
   KeptGeometry kept_;
   FittedStrata fitted_;
   std::shared_ptr<const LiveRecord> record_;

@@ -16,7 +16,7 @@ def live_of(session, num_rays: int = DEFAULT_RAYS):
     """ep.Live of the scene, the radar and the start of the frame of a session; maps have its window and zero_pad."""
     frame = session.paths.frame
     return ep.Live(session.scene, session.radar, num_rays=num_rays, max_bounces=frame.max_bounces, start_time=frame.start_time,
-                   seed=frame.seed, **session.signals.spectrum_settings)
+                   seed=frame.seed, faint_power=frame.faint_power, **session.signals.spectrum_settings)
 
 
 def session_of_view(live, view, state, spectrum_settings: dict):

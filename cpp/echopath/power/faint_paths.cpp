@@ -1,0 +1,222 @@
+#include "echopath/power/faint_paths.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "echopath/base/bit_sum.h"
+#include "echopath/base/random.h"
+#include "echopath/base/threads/parallel.h"
+#include "echopath/replay/replay.h"
+
+namespace echopath {
+namespace {
+
+constexpr int64_t kPathsEvaluatedTogether = 1 << 19;
+constexpr size_t kPathsDrawnTogether = 1 << 14;
+// A path is kept at least once in 4^kMostLevels times: its amplitude, which may grow from what it is at the time of the trace,
+// is multiplied by 8 at most.
+constexpr int kMostLevels = 3;
+// Points of surfaces persist from frame to frame but for the last bits of their coordinates: so many places are told apart along
+// each side of a triangle.
+constexpr float kPlaces = 1 << 14;
+
+bool look_alike(const Antenna& a, const Antenna& b) {
+  return a.pattern.kind == b.pattern.kind && a.pattern.peak_gain == b.pattern.peak_gain &&
+         a.pattern.exponent == b.pattern.exponent && a.pattern.table == b.pattern.table &&
+         a.orientation.coeffs() == b.orientation.coeffs() && a.polarization == b.polarization;
+}
+
+// Returns the indices of antennas of which none looks like another, and like one of which each of the others looks. Antennas
+// of one kind stand so close together that the power of a path is the same for all of them.
+std::vector<size_t> kinds_of(const std::vector<Antenna>& antennas) {
+  std::vector<size_t> kinds;
+  for (size_t i = 0; i < antennas.size(); ++i) {
+    const bool is_known =
+        std::any_of(kinds.begin(), kinds.end(), [&](size_t kind) { return look_alike(antennas[kind], antennas[i]); });
+    if (!is_known) kinds.push_back(i);
+  }
+  return kinds;
+}
+
+std::vector<int64_t> diffuse_paths(const Paths& paths) {
+  std::vector<int64_t> found;
+  for (int64_t path = 0; path < paths.num_paths(); ++path) {
+    if (paths.diffuse[static_cast<size_t>(path)] != 0) found.push_back(path);
+  }
+  return found;
+}
+
+// Raises `power` [places] to that of these paths in one channel, W, where it is larger.
+void raise_to_channel(const Paths& paths, std::span<const int64_t> places, const Radar& channel, std::vector<double>& power,
+                      Job* job) {
+  const Replayer replayer(paths, channel);
+  std::vector<double> lengths;
+  std::vector<std::complex<double>> amplitudes;
+  for (size_t begin = 0; begin < places.size(); begin += kPathsEvaluatedTogether) {
+    const auto block = places.subspan(begin, std::min<size_t>(kPathsEvaluatedTogether, places.size() - begin));
+    replayer.evaluate(block, paths.frame.trace_time, lengths, amplitudes, job);
+    for (size_t i = 0; i < block.size(); ++i) power[begin + i] = std::max(power[begin + i], std::norm(amplitudes[i]));
+  }
+}
+
+// Returns the largest power in W of each of these paths over the kinds of antennas.
+std::vector<double> largest_power(const Paths& paths, std::span<const int64_t> places, Job* job) {
+  std::vector<double> power(places.size(), 0.0);
+  for (const size_t tx : kinds_of(paths.radar.transmitters)) {
+    for (const size_t rx : kinds_of(paths.radar.receivers)) {
+      raise_to_channel(paths, places, one_channel(paths.radar, tx, rx), power, job);
+    }
+  }
+  return power;
+}
+
+// Returns n, where one such path in 4^n is kept.
+int level_of(double power, double faint_power) {
+  int level = 0;
+  for (double kept = 4.0 * power; kept <= faint_power && level < kMostLevels; kept *= 4.0) ++level;
+  return level;
+}
+
+// Returns the diffuse hits of a path at both of its ends.
+struct DiffuseEnds {
+  const Hit *first, *last;
+};
+DiffuseEnds diffuse_ends(const Paths& paths, int64_t path) {
+  const Hit* hits = paths.hits_of(path);
+  const uint64_t diffuse = paths.diffuse[static_cast<size_t>(path)];
+  return {hits + std::countr_zero(diffuse), hits + std::bit_width(diffuse) - 1};
+}
+
+bool is_same(const Hit* a, const Hit* b) { return a == b || std::memcmp(a, b, sizeof(Hit)) == 0; }
+
+bool share_ends(const DiffuseEnds& a, const DiffuseEnds& b) {
+  return (is_same(a.first, b.first) && is_same(a.last, b.last)) || (is_same(a.first, b.last) && is_same(a.last, b.first));
+}
+
+// Draws which of the diffuse paths are kept. The paths of a run, which follow each other in the record, lie between the same
+// diffuse hits: a path and its reversal are in one.
+class Lot {
+ public:
+  // `power` [places] is that of these paths, W.
+  Lot(Paths& paths, std::span<const int64_t> places, std::span<const double> power)
+      : paths_(paths), places_(places), power_(power), keep_(paths.offsets.size(), 1) {
+    for (const std::string& name : paths.scene->mesh_names()) {
+      BitSum sum;
+      sum.add_bytes(name.data(), name.size());
+      mesh_keys_.push_back(sum.value());
+    }
+  }
+  // Multiplies the weights of paths that count for others, and returns which paths are kept, [P].
+  std::vector<uint8_t> draw() {
+    const size_t num_blocks = (places_.size() + kPathsDrawnTogether - 1) / kPathsDrawnTogether;
+    parallel_for(static_cast<int64_t>(num_blocks), [&](int64_t block) {
+      const size_t begin = static_cast<size_t>(block) * kPathsDrawnTogether;
+      draw_runs_from(begin, std::min(places_.size(), begin + kPathsDrawnTogether));
+    });
+    return std::move(keep_);
+  }
+
+ private:
+  struct Entry {
+    uint64_t key;
+    double power;
+    size_t path;
+  };
+
+  // Draws the runs that begin in [begin, end).
+  void draw_runs_from(size_t begin, size_t end) {
+    std::vector<Entry> entries;
+    while (begin < end && !begins_run(begin)) ++begin;
+    while (begin < end) {
+      size_t next = begin + 1;
+      while (next < places_.size() && !begins_run(next)) ++next;
+      draw_run(begin, next, entries);
+      begin = next;
+    }
+  }
+
+  bool begins_run(size_t i) const {
+    return i == 0 || !share_ends(diffuse_ends(paths_, places_[i - 1]), diffuse_ends(paths_, places_[i]));
+  }
+
+  void draw_run(size_t begin, size_t end, std::vector<Entry>& entries) {
+    const double least =
+        *std::min_element(power_.begin() + static_cast<ptrdiff_t>(begin), power_.begin() + static_cast<ptrdiff_t>(end));
+    if (level_of(least, paths_.frame.faint_power) == 0) return;
+    entries.clear();
+    for (size_t i = begin; i < end; ++i) {
+      const auto path = static_cast<size_t>(places_[i]);
+      entries.push_back({key_of(path), power_[i], path});
+    }
+    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) { return a.key < b.key; });
+    for (size_t i = 0, next = 0; i < entries.size(); i = next) {
+      while (next < entries.size() && entries[next].key == entries[i].key) ++next;
+      draw_together(std::span(entries).subspan(i, next - i));
+    }
+  }
+
+  // Keeps or leaves out paths of one key, by the strongest of them.
+  void draw_together(std::span<const Entry> entries) {
+    double strongest = 0.0;
+    for (const Entry& entry : entries) strongest = std::max(strongest, entry.power);
+    const int level = level_of(strongest, paths_.frame.faint_power);
+    if (level == 0) return;
+    const double number = uniform2(paths_.frame.seed, Stream::kFaintPath, entries[0].key, 0)[0];
+    for (const Entry& entry : entries) {
+      keep_[entry.path] = number < 1.0 / static_cast<double>(1 << 2 * level);
+      paths_.weight[entry.path] *= static_cast<float>(1 << level);
+      paths_.flags[entry.path] |= kStandsForOthers;
+    }
+  }
+
+  // Returns the number of a path, which is that of the path along the same hits backward, too.
+  uint64_t key_of(size_t path) const {
+    const Hit* hits = paths_.hits_of(static_cast<int64_t>(path));
+    const int count = paths_.num_bounces[path];
+    const uint64_t diffuse = paths_.diffuse[path];
+    BitSum forward, backward;
+    for (int k = 0; k < count; ++k) {
+      const int from_end = count - 1 - k;
+      add(hits[k], diffuse >> k & 1, forward);
+      add(hits[from_end], diffuse >> from_end & 1, backward);
+    }
+    return forward.value() + backward.value();
+  }
+  // Meshes go by their names, since objects that come and go change their IDs. Mirrors are told apart by their mesh alone,
+  // because the legs of the transmitter and of the receiver meet them at different points.
+  void add(const Hit& hit, bool is_diffuse, BitSum& sum) const {
+    sum.add(mesh_keys_[hit.mesh_id]);
+    if (!is_diffuse) return;
+    sum.add(std::array{static_cast<int32_t>(hit.u * kPlaces), static_cast<int32_t>(hit.v * kPlaces)});
+    sum.add(hit.triangle_id);
+  }
+
+  Paths& paths_;
+  std::span<const int64_t> places_;
+  std::span<const double> power_;
+  std::vector<uint8_t> keep_;
+  std::vector<uint64_t> mesh_keys_;  // [mesh ID]
+};
+
+}  // namespace
+
+Paths thinned(Paths paths, Job* job) {
+  if (paths.frame.faint_power == 0.0) return paths;
+  const std::vector<int64_t> places = diffuse_paths(paths);
+  if (places.empty()) return paths;
+  const std::vector<double> power = largest_power(paths, places, job);
+  const std::vector<uint8_t> keep = Lot(paths, places, power).draw();
+  const auto num_left_out = std::count(keep.begin(), keep.end(), uint8_t{0});
+  if (num_left_out == 0) return paths;
+  Paths kept = paths.select(keep, job).with_own_hits(job);
+  kept.frame.statistics.num_faint_paths += num_left_out;
+  kept.frame.statistics.num_paths -= num_left_out;
+  return kept;
+}
+
+}  // namespace echopath

@@ -18,11 +18,11 @@ namespace {
 
 constexpr int64_t kPathsEvaluatedTogether = 1 << 19;
 constexpr size_t kPathsDrawnTogether = 1 << 14;
-// A path is kept at least once in 4^kMostLevels times: its amplitude, which may grow from what it is at the time of the trace,
-// is multiplied by 8 at most.
+// A path is kept at least once in 4^kMostLevels times: its amplitude, which may grow from what it is at the time of the
+// trace, is multiplied by 8 at most.
 constexpr int kMostLevels = 3;
-// Points of surfaces persist from frame to frame but for the last bits of their coordinates: so many places are told apart along
-// each side of a triangle.
+// Points of surfaces persist from frame to frame but for the last bits of their coordinates: so many places are told apart
+// along each side of a triangle.
 constexpr float kPlaces = 1 << 14;
 
 bool look_alike(const Antenna& a, const Antenna& b) {

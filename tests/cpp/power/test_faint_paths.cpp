@@ -1,4 +1,5 @@
-// Some faint paths for many: the power that is kept, against that of all paths; paths and their reversals, which arrive in phase.
+// Some faint paths for many: the power that is kept, against that of all paths; paths and their reversals, which arrive in
+// phase.
 #include <gtest/gtest.h>
 
 #include <bit>
@@ -123,8 +124,8 @@ TEST(FaintPaths, HaveTheirPowerTimesAPowerOfFourUpToTheFaintPower) {
   some.validate();
 }
 
-// Between antennas in one place a pair of legs and the pair exchanged are one path and its reversal. Were one kept without the
-// other, what adds up in phase would be lost.
+// Between antennas in one place a pair of legs and the pair exchanged are one path and its reversal. Were one kept without
+// the other, what adds up in phase would be lost.
 TEST(FaintPaths, AreKeptTogetherWithTheirReversals) {
   Paths asked = traced();
   asked.frame.faint_power = largest_power(asked);

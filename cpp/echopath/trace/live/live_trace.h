@@ -42,8 +42,8 @@ class LiveTrace {
   // Says which meshes the scenes of changes have. Those of what is met cost less to pose; selections may name any of all.
   enum class Scenes { kOfWhatIsMet, kWhole };
 
-  // `finish` makes of all paths of some rays those of the record (power/faint_paths.h, say), alike whatever other rays' paths
-  // are beside them; null: they are the record's as they are.
+  // `finish` makes of all paths of some rays those of the record (power/faint_paths.h, say), alike whatever other rays'
+  // paths are beside them; null: they are the record's as they are.
   explicit LiveTrace(Scenes scenes = Scenes::kOfWhatIsMet, std::function<Paths(Paths, Job*)> finish = nullptr);
   ~LiveTrace();
   // Makes the record of the scene, radar and settings given, which `accept` puts in the place of the present one. Raises as

@@ -15,7 +15,7 @@ from ..machine import machine
 from ..replay import cases as replay_cases
 from ..steps import csv_text
 from ..timing import processor_time
-from . import frames, guard, retrace, synthesis, tracer
+from . import faint, frames, guard, retrace, synthesis, tracer
 
 REPLAY_RAYS, QUICK_REPLAY_RAYS = 50_000, 1_000
 REPLAY_REPEATS = 7
@@ -48,6 +48,8 @@ def run_speed(folder, *, quick: bool = False, progress=None) -> dict:
     tell()
     results["guard"] = guard.measure_guard(quick=quick)
     tell()
+    results["faint"] = faint.measure_faint(quick=quick)
+    tell()
     results["must_reach"] = verdicts(results)
     results["seconds"] = time.perf_counter() - began
     folder = Path(folder)
@@ -61,7 +63,7 @@ def run_speed(folder, *, quick: bool = False, progress=None) -> dict:
 def _counter(progress, quick: bool):
     counts = (synthesis.TOLERANCES, frames.QUICK_PATHS if quick else frames.PATHS, frames.CHIRPS,
               frames.ARRAYS, frames.PARTS)
-    steps, done = 5 + sum(map(len, counts)), 0
+    steps, done = 6 + sum(map(len, counts)), 0
 
     def tell():
         nonlocal done
@@ -115,6 +117,10 @@ def verdicts(results: dict) -> list[dict]:
         rows.append(_row(f"replay at {REPLAY_AIM:.0e} rad over the trace, {case['title']}", REPLAY_TARGET,
                          replay_s / case["trace_s"], most=True))
     rows.append(_row("guard, share of trace and signal", guard.TARGET, results["guard"]["share"], most=True))
+    auto = next(row for row in results["faint"] if row["share"] == faint.SHARE_OF_NOISE)
+    rows.append(_row("faint paths by lot, trace and signal over all paths", faint.SAVED, faint.saved(results["faint"]),
+                     most=True))
+    rows.append(_row("faint paths by lot, mean maps over what chance makes", faint.SIGMAS, auto["sigmas"], most=True))
     for street in results["street"]:
         what, seconds = f"street frame, {street['rays']:,} rays", frames.STREET_SECONDS.get(street["rays"])
         if seconds:
@@ -148,7 +154,7 @@ def describe(results: dict) -> list[str]:
              *_replay_lines(results["replay"]),
              *_tracer_lines(results["tracer"]), *retrace.describe_retrace(results["retrace"]),
              *(line for street in results["street"] for line in _street_lines(street)),
-             *guard.describe_guard(results["guard"]), "",
+             *guard.describe_guard(results["guard"]), *faint.describe_faint(results["faint"]), "",
              "must reach" + " " * 52 + "limit     measured"]
     lines += [f"  {row['what']:<54}{row['limit']:>12.4g}{row['measured']:>13.4g}  {'holds' if row['holds'] else 'MISSED'}"
               for row in results["must_reach"]]

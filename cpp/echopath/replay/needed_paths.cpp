@@ -5,6 +5,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/replay/echo_memory.h"
+#include "echopath/replay/meshes_of_path.h"
 #include "echopath/replay/replay.h"
 #include "echopath/replay/time/node_tails.h"
 
@@ -33,12 +34,7 @@ double order_for(double tolerance, double tail, double first, int order) {
 
 std::vector<uint32_t> Replayer::meshes_of(std::span<const int64_t> paths) const {
   std::vector<uint8_t> is_touched(paths_.scene->meshes().size());
-  for (const int64_t path : paths) {
-    const Hit* const hits = paths_.hits_of(path);
-    for (int k = 0; k < paths_.num_bounces[static_cast<size_t>(path)]; ++k) is_touched[hits[k].mesh_id] = 1;
-    if (paths_.passes.empty()) continue;
-    for (const Pass& pass : paths_.passes_of(static_cast<size_t>(path))) is_touched[pass.hit.mesh_id] = 1;
-  }
+  for (const int64_t path : paths) visit_meshes(paths_, path, [&](uint32_t mesh) { is_touched[mesh] = 1; });
   std::vector<uint32_t> meshes;
   for (uint32_t mesh = 0; mesh < is_touched.size(); ++mesh) {
     if (is_touched[mesh]) meshes.push_back(mesh);
@@ -47,8 +43,7 @@ std::vector<uint32_t> Replayer::meshes_of(std::span<const int64_t> paths) const 
 }
 
 void Replayer::pose_polynomial(GridIndex polynomial, std::span<const int64_t> paths) {
-  if (posed_.is_whole(polynomial)) posed_.pose_polynomial(polynomial);
-  else posed_.pose_polynomial(polynomial, meshes_of(paths));
+  posed_.pose_polynomial(polynomial, posed_.is_whole(polynomial) ? std::vector<uint32_t>() : meshes_of(paths));
 }
 
 void Replayer::find_strongest() {

@@ -188,8 +188,4 @@ TimeSampling derivative_sampling(int num_chirps, ChirpDerivatives derivatives) {
   return sampling;
 }
 
-int64_t num_pieces(const Radar& radar, double start_time, const std::vector<double>& breakpoints) {
-  return static_cast<int64_t>(pieces_of(start_time, start_time + radar.frame_duration(), breakpoints).size());
-}
-
 }  // namespace echopath

@@ -42,7 +42,5 @@ FrameNodes centre_nodes(const Radar& radar, double start_time, int transmitter);
 // Returns the sampling of rows that hold, for each node of centre_nodes, a value and then its derivatives: 1 for kFirst, 3
 // for kThird. The rows of a chirp begin at chirp * (1 + derivatives).
 TimeSampling derivative_sampling(int num_chirps, ChirpDerivatives derivatives);
-// Returns into how many pieces the breakpoints cut the frame that starts at start_time.
-int64_t num_pieces(const Radar& radar, double start_time, const std::vector<double>& breakpoints);
 
 }  // namespace echopath

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "echopath/replay/meshes_of_path.h"
 #include "echopath/replay/time/node_tails.h"
 #include "echopath/replay/time/turn_rates.h"
 
@@ -11,10 +12,31 @@ namespace {
 constexpr int kNodesBeyondTurns = 2;  // nodes beyond w T / 2 from which on coefficients fall (is_quick_enough)
 // Evaluating amplitudes in this many chirps costs as much as one more node, counting polynomials that are tried in vain.
 constexpr int64_t kWorthOfANode = 5;
+constexpr size_t kTriedVertices = 16;  // of a mesh, at least, where it has as many
+
+// Returns vertices all over a mesh in its frame, m. They do not hang on which triangles paths touch, as patches do.
+std::vector<Vec3> some_vertices(const Node& node, double time) {
+  const std::vector<Vec3>& at_rest = node.mesh->vertices();
+  const size_t step = std::max<size_t>(1, at_rest.size() / kTriedVertices);
+  std::vector<Vec3> vertices;
+  std::vector<uint32_t> original;
+  for (size_t vertex = 0; vertex < at_rest.size(); vertex += step) {
+    vertices.push_back(at_rest[vertex]);
+    original.push_back(node.mesh->original_vertex()[vertex]);
+  }
+  if (node.deformation) node.deformation->at(time, original, vertices);
+  return vertices;
+}
 
 }  // namespace
 
-PathGrids::PathGrids(const Paths& paths, const Radar& radar, const TimeGrids& grids, PosedGrids& posed, double wavenumber,
+// Holds the first and the last grid, in their order, of those that the meshes of a path need.
+struct PathGrids::Range {
+  GridIndex least, most;
+  bool has_one_set_of_cuts() const { return least.cuts() == most.cuts(); }
+};
+
+PathGrids::PathGrids(const Paths& paths, const Radar& radar, TimeGrids& grids, PosedGrids& posed, double wavenumber,
                      double phase_tolerance)
     : paths_(paths), grids_(grids), wavenumber_(wavenumber), phase_tolerance_(phase_tolerance),
       num_chirps_(radar.waveform.num_chirps), radar_moves_(radar.motion != nullptr) {
@@ -24,11 +46,25 @@ PathGrids::PathGrids(const Paths& paths, const Radar& radar, const TimeGrids& gr
     const bool moves = paths.scene->is_moving(id) || radar.motion;
     of_mesh_.push_back(moves ? first_of_mesh(id, turn_rate(*paths.scene, id, frame) + of_radar, posed) : GridIndex::still());
   }
+  join_cuts(grids);
+}
+
+void PathGrids::join_cuts(TimeGrids& grids) const {
+  const auto has_cuts_of_its_own = [](GridIndex grid) { return grid.cuts() != MotionCuts::kOfRadar; };
+  const auto first = std::find_if(of_mesh_.begin(), of_mesh_.end(), has_cuts_of_its_own);
+  const auto differs = [&](GridIndex grid) { return has_cuts_of_its_own(grid) && grid.cuts() != first->cuts(); };
+  if (std::none_of(first, of_mesh_.end(), differs)) return;  // the cuts of all paths are those of a mesh
+  for (int64_t path = 0; path < paths_.num_paths(); ++path) {
+    if (range_of(path).has_one_set_of_cuts()) continue;
+    uint32_t cuts = MotionCuts::kOfRadar;
+    visit_meshes(paths_, path, [&](uint32_t mesh) { cuts = grids.join(cuts, of_mesh_[mesh].cuts()); });
+  }
 }
 
 GridIndex PathGrids::first_of_mesh(uint32_t mesh_id, double turn_rate, PosedGrids& posed) const {
-  for (size_t number = 0; number < grids_.num_polynomials(); ++number) {
-    const GridIndex polynomial = GridIndex::polynomial(number);
+  const uint32_t cuts = grids_.cuts().of_mesh(mesh_id);
+  for (size_t number = 0; number < grids_.num_polynomials(cuts); ++number) {
+    const GridIndex polynomial = GridIndex::polynomial(number, cuts);
     if (is_quick_enough(polynomial, turn_rate) && follows(posed.trial(polynomial), mesh_id)) return polynomial;
   }
   return GridIndex::none();
@@ -44,48 +80,61 @@ bool PathGrids::is_quick_enough(GridIndex polynomial, double turn_rate) const {
 
 // The length of a path is made of distances, so those of vertices all over a mesh from the first transmitter tell how many
 // nodes its motion needs.
-bool PathGrids::follows(const TrialGrid& trial, uint32_t mesh_id) const {
-  const auto& [nodes, scenes] = trial;
-  const size_t num_vertices = scenes->front().local_vertices(mesh_id).size();
-  const size_t step = std::max<size_t>(1, num_vertices / 16);
-  std::vector<double> distance;
-  for (size_t vertex = 0; vertex < num_vertices; vertex += step) {
-    distance.clear();
-    for (const PosedScene& scene : *scenes) {
-      const Vec3 point = scene.linear(mesh_id) * scene.local_vertices(mesh_id)[vertex] + scene.translation(mesh_id);
-      distance.push_back(2.0 * (point - scene.transmitters.front().position).norm());
+bool PathGrids::follows(const PosedGrid& trial, uint32_t mesh_id) const {
+  const PosedScenes& scenes = *trial.posed.scenes;
+  std::vector<std::vector<double>> distance;  // [vertex, node] m, to the transmitter and back
+  for (const PosedScene& scene : scenes) {
+    const std::vector<Vec3> vertices = some_vertices(paths_.scene->node_of(mesh_id), scene.time());
+    distance.resize(vertices.size());
+    for (size_t i = 0; i < vertices.size(); ++i) {
+      const Vec3 point = scene.linear(mesh_id) * vertices[i] + scene.translation(mesh_id);
+      distance[i].push_back(2.0 * (point - scene.transmitters.front().position).norm());
     }
-    if (wavenumber_ * tail_of(nodes, distance) > phase_tolerance_) return false;
   }
-  return true;
+  return std::all_of(distance.begin(), distance.end(), [&](const std::vector<double>& of_vertex) {
+    return wavenumber_ * tail_of(trial.nodes, of_vertex) <= phase_tolerance_;
+  });
 }
 
 GridIndex PathGrids::first(int64_t path) const {
-  GridIndex grid;
-  first(path, {&grid, 1});
-  return grid;
+  const GridIndex least = radar_moves_ ? GridIndex::polynomial(0) : GridIndex::still();
+  const Range range = range_of(path);
+  return std::max(least, range.has_one_set_of_cuts() ? range.most : first_in_joined_cuts(path));
 }
 
 void PathGrids::first(int64_t begin, std::span<GridIndex> first) const {
+  for (size_t i = 0; i < first.size(); ++i) first[i] = this->first(begin + static_cast<int64_t>(i));
+}
+
+PathGrids::Range PathGrids::range_of(int64_t path) const {
   const GridIndex* const of_mesh = of_mesh_.data();
-  const GridIndex least = radar_moves_ ? GridIndex::polynomial(0) : GridIndex::still();
-  for (size_t i = 0; i < first.size(); ++i) {
-    const int64_t path = begin + static_cast<int64_t>(i);
-    const Hit* hits = paths_.hits_of(path);
-    const int num_hits = paths_.num_bounces[static_cast<size_t>(path)];
-    GridIndex needed = least;
-    // Most paths have one to four hits, and a branch on the number would be mispredicted: so the last hit is read again in
-    // place of those that are missing.
-    for (int k = 0; k < num_hits; k += 4) {
-      for (int step = 0; step < 4; ++step)
-        needed = std::max(needed, of_mesh[hits[std::min(k + step, num_hits - 1)].mesh_id]);
-    }
-    if (!paths_.passes.empty()) {
-      for (const Pass& pass : paths_.passes_of(static_cast<size_t>(path)))
-        needed = std::max(needed, of_mesh[pass.hit.mesh_id]);
-    }
-    first[i] = needed;
+  const Hit* const hits = paths_.hits_of(path);
+  const int num_hits = paths_.num_bounces[static_cast<size_t>(path)];
+  Range range{of_mesh[hits[0].mesh_id], of_mesh[hits[0].mesh_id]};
+  const auto add = [&](GridIndex grid) { range = {std::min(range.least, grid), std::max(range.most, grid)}; };
+  // Most paths have one to four hits, and a branch on the number would be mispredicted: so the last hit is read again in
+  // place of those that are missing.
+  for (int k = 0; k < num_hits; k += 4) {
+    for (int step = 0; step < 4; ++step) add(of_mesh[hits[std::min(k + step, num_hits - 1)].mesh_id]);
   }
+  if (!paths_.passes.empty()) {
+    for (const Pass& pass : paths_.passes_of(static_cast<size_t>(path))) add(of_mesh[pass.hit.mesh_id]);
+  }
+  return range;
+}
+
+// Finds the grid of a path over meshes with several sets of cuts.
+GridIndex PathGrids::first_in_joined_cuts(int64_t path) const {
+  uint32_t cuts = MotionCuts::kOfRadar;
+  visit_meshes(paths_, path, [&](uint32_t mesh) { cuts = grids_.cuts().joined(cuts, of_mesh_[mesh].cuts()); });
+  GridIndex needed;
+  bool is_followed = true;
+  visit_meshes(paths_, path, [&](uint32_t mesh) {
+    const GridIndex grid = grids_.in_cuts(of_mesh_[mesh], cuts);
+    is_followed = is_followed && grid != GridIndex::none();
+    needed = std::max(needed, grid);
+  });
+  return is_followed ? needed : GridIndex::none();
 }
 
 // Amplitudes that a polynomial follows late or never are evaluated in every chirp: those of surfaces that turn their other

@@ -27,11 +27,12 @@ struct NextGrid {
 // The constructor finds everything; after that many threads may read.
 class PathGrids {
  public:
-  // The record, the radar and `grids` must outlive it; motions are tried on `posed`. `wavenumber` is in rad/m,
-  // `phase_tolerance` in rad. Raises what motions raise.
-  PathGrids(const Paths& paths, const Radar& radar, const TimeGrids& grids, PosedGrids& posed, double wavenumber,
+  // The record, the radar and `grids` must outlive it; motions are tried on `posed`. `grids` get the cuts of all paths.
+  // `wavenumber` is in rad/m, `phase_tolerance` in rad. Raises what motions raise.
+  PathGrids(const Paths& paths, const Radar& radar, TimeGrids& grids, PosedGrids& posed, double wavenumber,
             double phase_tolerance);
 
+  const TimeGrids& grids() const { return grids_; }
   GridIndex first(int64_t path) const;
   // Writes the first grids of paths [begin, begin + first.size()).
   void first(int64_t begin, std::span<GridIndex> first) const;
@@ -40,7 +41,11 @@ class PathGrids {
  private:
   GridIndex first_of_mesh(uint32_t mesh_id, double turn_rate, PosedGrids& posed) const;
   bool is_quick_enough(GridIndex polynomial, double turn_rate) const;
-  bool follows(const TrialGrid& trial, uint32_t mesh_id) const;
+  bool follows(const PosedGrid& trial, uint32_t mesh_id) const;
+  void join_cuts(TimeGrids& grids) const;
+  GridIndex first_in_joined_cuts(int64_t path) const;
+  struct Range;
+  Range range_of(int64_t path) const;
 
   const Paths& paths_;
   const TimeGrids& grids_;

@@ -42,23 +42,25 @@ const PosedGrid& PartlyPosedGrid::with(std::span<const uint32_t> meshes) {
 }
 
 PosedGrids::PosedGrids(const TimeGrids& grids, const Paths& paths, const Radar& radar, const PathPreparer& preparer)
-    : grids_(grids), paths_(paths), radar_(radar), preparer_(preparer),
-      polynomials_(static_cast<size_t>(grids.num_polynomials())) {}
+    : grids_(grids), paths_(paths), radar_(radar), preparer_(preparer) {}
 
 std::shared_ptr<const PosedScenes> PosedGrids::scenes_at(std::span<const double> times) const {
   return pose_at(*paths_.scene, radar_, preparer_.patches(), paths_.frame.transmitter, times);
 }
 
 PartlyPosedGrid PosedGrids::pose_partly(const TimeGrid& grid) const {
-  FrameNodes nodes = nodes_of(grid, radar_, grids_.start_time(), grids_.derivatives());
+  return pose_partly(nodes_of(grid, radar_, grids_.start_time(), grids_.derivatives()), transmitter_of(grid));
+}
+
+PartlyPosedGrid PosedGrids::pose_partly(FrameNodes nodes, int transmitter) const {
   auto scenes = std::make_shared<PosedScenes>();
   scenes->reserve(nodes.times.size());
   for (const double time : nodes.times) {
     scenes->emplace_back(*paths_.scene, radar_, paths_.frame.transmitter, time);
-    keep_one_transmitter(scenes->back(), transmitter_of(grid));
+    keep_one_transmitter(scenes->back(), transmitter);
   }
   PosedNodes posed(scenes);
-  return {{std::move(nodes), std::move(posed), transmitter_of(grid)}, std::move(scenes), *paths_.scene, preparer_.patches()};
+  return {{std::move(nodes), std::move(posed), transmitter}, std::move(scenes), *paths_.scene, preparer_.patches()};
 }
 
 PosedNodes PosedGrids::pose(std::span<const double> times) const { return PosedNodes(scenes_at(times)); }
@@ -79,31 +81,47 @@ void PosedGrids::pose_still() {
   still_.emplace(PosedGrid{std::move(nodes), std::move(posed)});
 }
 
-const TrialGrid& PosedGrids::trial(GridIndex polynomial) {
-  std::optional<TrialGrid>& trial = kept(polynomial).trial;
-  if (trial) return *trial;
+PosedGrids::Polynomial& PosedGrids::kept(GridIndex polynomial) {
+  const auto found = polynomials_.find(polynomial);
+  if (found != polynomials_.end()) return found->second;
   const PolynomialGrid& grid = grids_.polynomial(polynomial);
   FrameNodes nodes = unsampled_chebyshev_nodes(radar_, grids_.start_time(), grid.cuts, grid.order);
-  std::shared_ptr<const PosedScenes> scenes = scenes_at(nodes.times);
-  return trial.emplace(TrialGrid{std::move(nodes), std::move(scenes)});
+  return polynomials_.emplace(polynomial, Polynomial{pose_partly(std::move(nodes), -1)}).first->second;
 }
 
-void PosedGrids::pose_polynomial(GridIndex polynomial) {
+const PosedGrid& PosedGrids::trial(GridIndex polynomial) {
   Polynomial& own = kept(polynomial);
-  if (own.whole) return;
-  FrameNodes nodes = nodes_of(grids_.polynomial(polynomial), radar_, grids_.start_time(), grids_.derivatives());
-  own.posed = &own.whole.emplace(PosedGrid{std::move(nodes), PosedNodes(trial(polynomial).scenes)});
+  if (!own.is_tried) own.grid.with(meshes_of_cuts(polynomial.cuts()));
+  own.is_tried = true;
+  return own.grid.get();
+}
+
+// Paths over meshes with the radar's cuts alone touch no others.
+bool PosedGrids::is_whole(GridIndex polynomial) const {
+  const auto found = polynomials_.find(polynomial);
+  return polynomial.cuts() == MotionCuts::kOfRadar && found != polynomials_.end() && found->second.is_tried;
 }
 
 void PosedGrids::pose_polynomial(GridIndex polynomial, std::span<const uint32_t> meshes) {
-  Polynomial& own = kept(polynomial);
-  if (!own.partly) own.partly.emplace(pose_partly(grids_.polynomial(polynomial)));
-  own.posed = &own.partly->with(meshes);
+  PartlyPosedGrid& grid = kept(polynomial).grid;
+  if (grid.with(meshes).nodes.sampling.empty()) {
+    grid.set_sampling(nodes_of(grids_.polynomial(polynomial), radar_, grids_.start_time(), grids_.derivatives()).sampling);
+  }
 }
 
 const PosedGrid& PosedGrids::polynomial(GridIndex polynomial) const {
-  require(kept(polynomial).posed != nullptr, "polynomial", "must have been posed, number", polynomial.number());
-  return *kept(polynomial).posed;
+  const auto found = polynomials_.find(polynomial);
+  const bool is_posed = found != polynomials_.end() && !found->second.grid.get().nodes.sampling.empty();
+  require(is_posed, "polynomial", "must have been posed, number", polynomial.number());
+  return found->second.grid.get();
+}
+
+std::vector<uint32_t> PosedGrids::meshes_of_cuts(uint32_t cuts) const {
+  std::vector<uint32_t> meshes;
+  for (uint32_t mesh = 0; mesh < paths_.scene->meshes().size(); ++mesh) {
+    if (grids_.cuts().of_mesh(mesh) == cuts) meshes.push_back(mesh);
+  }
+  return meshes;
 }
 
 }  // namespace echopath

@@ -1,5 +1,6 @@
 #pragma once
 // Poses the scene at the nodes of time grids.
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -18,12 +19,6 @@ struct PosedGrid {
   int transmitter = -1;  // the only one that is posed; -1: all are
 };
 
-// Holds a polynomial whose order is tried on meshes: its nodes without their sampling, which is the costly part.
-struct TrialGrid {
-  FrameNodes nodes;
-  std::shared_ptr<const PosedScenes> scenes;
-};
-
 // Poses the meshes of a grid when paths first need them.
 class PartlyPosedGrid {
  public:
@@ -32,6 +27,8 @@ class PartlyPosedGrid {
                   const std::vector<SurfacePatch>& patches);
   // Poses those of these meshes that are not posed yet, and returns the grid. Raises what PosedScene does.
   const PosedGrid& with(std::span<const uint32_t> meshes);
+  const PosedGrid& get() const { return grid_; }
+  void set_sampling(std::vector<TimeSampling> sampling) { grid_.nodes.sampling = std::move(sampling); }
   int64_t num_bytes() const { return num_bytes_; }  // of what its meshes take, nearly all
 
  private:
@@ -51,18 +48,16 @@ class PosedGrids {
   PosedGrids(const TimeGrids& grids, const Paths& paths, const Radar& radar, const PathPreparer& preparer);
 
   void pose_still();
-  // Poses all meshes at the nodes of a polynomial.
-  void pose_polynomial(GridIndex polynomial);
-  // Makes polynomial() the grid of these meshes and those of earlier calls alone: most polynomials serve a few paths.
+  // Poses the meshes of a polynomial's cuts to try their motions at its nodes, which may have no sampling yet.
+  const PosedGrid& trial(GridIndex polynomial);
+  // Returns whether all meshes that paths of this polynomial can touch are posed, because motions were tried there.
+  bool is_whole(GridIndex polynomial) const;
+  // Makes polynomial() the grid of these meshes and those that it has already: most polynomials serve a few paths.
   void pose_polynomial(GridIndex polynomial, std::span<const uint32_t> meshes);
-  // Poses all meshes to try their motions.
-  const TrialGrid& trial(GridIndex polynomial);
 
   // These return grids that have been posed.
   const PosedGrid& still() const { return still_.value(); }
   const PosedGrid& polynomial(GridIndex polynomial) const;
-  // Returns whether all meshes are posed at the nodes of a polynomial, because motions were tried there or it was asked for.
-  bool is_whole(GridIndex polynomial) const { return kept(polynomial).trial.has_value(); }
 
   PartlyPosedGrid pose_partly(const TimeGrid& grid) const;
   PosedNodes pose(std::span<const double> times) const;  // s
@@ -71,21 +66,20 @@ class PosedGrids {
 
  private:
   struct Polynomial {
-    std::optional<TrialGrid> trial;
-    std::optional<PosedGrid> whole;
-    std::optional<PartlyPosedGrid> partly;
-    const PosedGrid* posed = nullptr;  // one of the two
+    PartlyPosedGrid grid;
+    bool is_tried = false;  // it has the meshes of its cuts
   };
   std::shared_ptr<const PosedScenes> scenes_at(std::span<const double> times) const;
-  const Polynomial& kept(GridIndex polynomial) const { return polynomials_[polynomial.number()]; }
-  Polynomial& kept(GridIndex polynomial) { return polynomials_[polynomial.number()]; }
+  PartlyPosedGrid pose_partly(FrameNodes nodes, int transmitter) const;
+  Polynomial& kept(GridIndex polynomial);
+  std::vector<uint32_t> meshes_of_cuts(uint32_t cuts) const;
 
   const TimeGrids& grids_;
   const Paths& paths_;
   const Radar& radar_;
   const PathPreparer& preparer_;
   std::optional<PosedGrid> still_;
-  std::vector<Polynomial> polynomials_;
+  std::map<GridIndex, Polynomial> polynomials_;
 };
 
 }  // namespace echopath

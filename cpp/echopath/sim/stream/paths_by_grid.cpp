@@ -10,13 +10,16 @@
 namespace echopath {
 namespace {
 
-constexpr int64_t kPathsOfTask = 1 << 13;  // paths whose grids one task finds
+constexpr int64_t kPathsOfTask = 1 << 13;  // paths whose grids one task finds, at least
+constexpr int64_t kPathsPerGrid = 8;       // of a task, at least, so that the counts of tasks take less memory than paths do
 
 class SortByGrid {
  public:
-  SortByGrid(const PathGrids& grids, int64_t num_paths, Job* job) : grid_(static_cast<size_t>(num_paths)) {
-    const int64_t num_tasks = (num_paths + kPathsOfTask - 1) / kPathsOfTask;
-    place_.resize(static_cast<size_t>(num_tasks));
+  SortByGrid(const PathGrids& grids, int64_t num_paths, Job* job)
+      : lists_(no_paths_by_grid(grids.grids())), paths_of_task_(std::max(kPathsOfTask, kPathsPerGrid * std::ssize(lists_))),
+        grid_(static_cast<size_t>(num_paths)) {
+    const int64_t num_tasks = (num_paths + paths_of_task_ - 1) / paths_of_task_;
+    place_.assign(static_cast<size_t>(num_tasks), std::vector<size_t>(lists_.size()));
     parallel_for(num_tasks, [&](int64_t task) {
       if (job) job->throw_if_cancelled();
       find_grids(grids, task);
@@ -29,7 +32,7 @@ class SortByGrid {
 
  private:
   std::pair<int64_t, int64_t> range_of(int64_t task) const {
-    return {task * kPathsOfTask, std::min<int64_t>((task + 1) * kPathsOfTask, static_cast<int64_t>(grid_.size()))};
+    return {task * paths_of_task_, std::min((task + 1) * paths_of_task_, std::ssize(grid_))};
   }
 
   void find_grids(const PathGrids& grids, int64_t task) {
@@ -41,7 +44,7 @@ class SortByGrid {
 
   // Turns the counts of the tasks into the places where each begins to write.
   void make_lists() {
-    for (size_t grid = 0; grid < GridIndex::kCount; ++grid) {
+    for (size_t grid = 0; grid < lists_.size(); ++grid) {
       size_t size = 0;
       for (auto& places : place_) size += std::exchange(places[grid], size);
       resize_large(lists_[grid], size);
@@ -57,9 +60,10 @@ class SortByGrid {
     }
   }
 
-  std::vector<GridIndex> grid_;                               // by path
-  std::vector<std::array<size_t, GridIndex::kCount>> place_;  // [task][grid]
   PathsByGrid lists_;
+  int64_t paths_of_task_;
+  std::vector<GridIndex> grid_;             // by path
+  std::vector<std::vector<size_t>> place_;  // [task][grid]
 };
 
 }  // namespace

@@ -1,6 +1,5 @@
 #pragma once
 // Sorts paths by the time grid at whose nodes they are replayed.
-#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -9,7 +8,10 @@
 
 namespace echopath {
 
-using PathsByGrid = std::array<std::vector<int64_t>, GridIndex::kCount>;  // indices, by GridIndex::place
+using PathsByGrid = std::vector<std::vector<int64_t>>;  // indices, by GridIndex::place
+
+// Returns one without paths.
+inline PathsByGrid no_paths_by_grid(const TimeGrids& grids) { return PathsByGrid(GridIndex::count(grids.cuts().size())); }
 
 // Returns, for each grid, the paths that begin with it (PathGrids), in their order. Raises Cancelled when the job is
 // cancelled.

@@ -102,7 +102,7 @@ void ReplayStream::run(const Sink& sink) {
 void ReplayStream::run(std::span<const int64_t> paths, const Sink& sink) {
   if (!kept_grids_) kept_grids_.emplace(replayer_.path_grids());
   keeps_poses_ = true;
-  PathsByGrid by_grid;
+  PathsByGrid by_grid = no_paths_by_grid(replayer_.grids());
   for (const int64_t path : paths) by_grid[kept_grids_->first(path).place()].push_back(path);
   run(*kept_grids_, std::move(by_grid), sink);
 }
@@ -123,14 +123,14 @@ void ReplayStream::add_still(const std::vector<int64_t>& paths, WindowPipeline& 
 // Replays each path at the polynomial that its meshes need; where that was not enough, at the next, or with its amplitude in
 // every chirp.
 void ReplayStream::add_moving(const PathGrids& grids, PathsByGrid by_grid, WindowPipeline& out) {
-  PathsByGrid by_chirp;
+  PathsByGrid by_chirp = no_paths_by_grid(replayer_.grids());
   const auto is_empty = [](const std::vector<int64_t>& some) { return some.empty(); };
   if (!std::all_of(by_grid.begin() + 1, by_grid.end(), is_empty)) replayer_.find_strongest();
-  for (size_t number = 0; number < replayer_.grids().num_polynomials(); ++number) {
-    const GridIndex polynomial = GridIndex::polynomial(number);
-    const Extent extent{0, num_channels(), replayer_.grids().polynomial(polynomial).num_nodes};
+  for (const GridIndex polynomial : replayer_.grids().polynomials()) {
     std::vector<int64_t>& paths = by_grid[polynomial.place()];
-    if (!paths.empty()) replayer_.pose_polynomial(polynomial, paths);
+    if (paths.empty()) continue;
+    const Extent extent{0, num_channels(), replayer_.grids().polynomial(polynomial).num_nodes};
+    replayer_.pose_polynomial(polynomial, paths);
     const Replay replay = [&](auto part, auto, auto& left) { return replayer_.interpolated(part, polynomial, left); };
     for (const UnfollowedPath& path : without_turning(run_blocks(paths, extent, replay, out), polynomial, out)) {
       if (path.is_negligible) continue;
@@ -141,7 +141,7 @@ void ReplayStream::add_moving(const PathGrids& grids, PathsByGrid by_grid, Windo
   }
   for (int transmitter = 0; transmitter < num_transmitters_; ++transmitter) {
     add_chirps(by_chirp, transmitter, out);
-    add_samples(by_grid.back(), transmitter, out);
+    add_samples(by_grid[GridIndex::none().place()], transmitter, out);
   }
 }
 
@@ -182,8 +182,7 @@ void ReplayStream::add_chirps(const PathsByGrid& by_grid, int transmitter, Windo
   const Extent extent{transmitter * num_receivers, num_receivers, replayer_.num_rows_by_chirp(), true};
   std::unique_ptr<PartlyPosedGrid>& kept = kept_chirps_[static_cast<size_t>(transmitter)];
   const PosedGrid& chirps = posed(replayer_.grids().chirps(transmitter), paths, kept);
-  for (size_t number = 0; number < replayer_.grids().num_polynomials(); ++number) {
-    const GridIndex polynomial = GridIndex::polynomial(number);
+  for (const GridIndex polynomial : replayer_.grids().polynomials()) {
     run_blocks(by_grid[polynomial.place()], extent,
                [&](auto part, auto joined, auto&) { return replayer_.by_chirp(part, polynomial, chirps, joined); }, out);
   }

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "cpp/support/scenes.h"
-#include "echopath/replay/time/motion_knots.h"
+#include "echopath/replay/time/motion_cuts.h"
 #include "echopath/signal/echoes/echo_states.h"
 
 namespace echopath::test_knots {
@@ -36,13 +36,14 @@ Radar long_frame() {
 }
 
 void add_body(Scene& scene, const std::string& name, Surface surface, const Vec3& place,
-              std::shared_ptr<const Motion> motion) {
+              std::shared_ptr<const Motion> motion, std::shared_ptr<const Deformation> deformation = nullptr) {
   Node node;
   node.name = name;
   node.placement = Eigen::Translation3d(place) * Transform::Identity();
   node.mesh = std::make_shared<Mesh>(std::move(surface.vertices), std::move(surface.triangles));
   node.material = lambert(0.4);
   node.motion = std::move(motion);
+  node.deformation = std::move(deformation);
   scene.add(node);
 }
 
@@ -60,12 +61,47 @@ Paths record(const Radar& radar, const Scene& scene = swaying_limb()) {
   return trace(scene, radar, settings);
 }
 
-TEST(MotionKnots, AreTheTimesOfKeyframes) {
-  const Paths paths = record(long_frame());
-  const std::vector<double> knots = motion_knots(*paths.scene, paths.radar);
-  ASSERT_EQ(knots.size(), 40u);
-  EXPECT_DOUBLE_EQ(knots[3], 3 * kKnot);
-  EXPECT_TRUE(motion_breakpoints(*paths.scene, paths.radar).empty());
+TEST(MotionCuts, AreTheTimesOfKeyframesWithinTheFrame) {
+  const Scene scene = swaying_limb();
+  const MotionCuts cuts(scene, long_frame(), {2 * kKnot, 5 * kKnot});
+  EXPECT_EQ(cuts[cuts.of_mesh(0)].knots, (std::vector<double>{3 * kKnot, 4 * kKnot}));
+  EXPECT_TRUE(cuts[cuts.of_mesh(0)].breakpoints.empty());
+}
+
+// The radar's are in all sets, and those of a mesh do not hang on other meshes.
+TEST(MotionCuts, OfMeshesAreThoseOfTheirMotionsAndOfTheRadar) {
+  const std::vector<Vec3> places(3, Vec3::Zero());
+  const auto stops_at = [&](double time) {
+    return std::make_shared<KeyframeMotion>(std::vector<double>{0, time, 1}, places, std::vector<Quaternion>(),
+                                            Interpolation::kLinear);
+  };
+  Radar radar = long_frame();
+  radar.motion = stops_at(0.5);
+  Scene scene = swaying_limb();
+  add_body(scene, "house", ellipsoid(Vec3::Zero(), {.1, .1, .1}, 1), {12, -2, 0}, nullptr);
+  add_body(scene, "car", ellipsoid(Vec3::Zero(), {.1, .1, .1}, 1), {12, 2, 0}, stops_at(0.25));
+  MotionCuts cuts(scene, radar, {0.27, 0.6});
+  EXPECT_EQ(cuts.of_mesh(1), MotionCuts::kOfRadar);
+  EXPECT_EQ(cuts.of_mesh(2), MotionCuts::kOfRadar);  // it stopped before the frame
+  EXPECT_EQ(cuts[MotionCuts::kOfRadar].knots, std::vector<double>{0.5});
+  EXPECT_EQ(cuts[MotionCuts::kOfRadar].breakpoints, std::vector<double>{0.5});
+  EXPECT_EQ(cuts[cuts.of_mesh(0)].knots, (std::vector<double>{34 * kKnot, 35 * kKnot, 36 * kKnot, 37 * kKnot, 38 * kKnot,
+                                                              39 * kKnot, 0.5}));
+  EXPECT_EQ(cuts[cuts.of_mesh(0)].breakpoints, std::vector<double>{0.5});
+}
+
+TEST(MotionCuts, JoinedOnesAreUnionsWhateverTheOrder) {
+  Scene scene = swaying_limb();
+  const std::vector<double> times = {0, 0.0123, 0.02, 1};
+  add_body(scene, "bird", ellipsoid(Vec3::Zero(), {.1, .1, .1}, 1), {12, -2, 0},
+           std::make_shared<KeyframeMotion>(times, std::vector<Vec3>(4, Vec3::Zero()), std::vector<Quaternion>()));
+  MotionCuts cuts(scene, long_frame(), {0.01, 0.03});
+  const uint32_t both = cuts.join(cuts.of_mesh(0), cuts.of_mesh(1));
+  EXPECT_EQ(cuts[both].knots, (std::vector<double>{0.0123, 2 * kKnot, 0.02, 3 * kKnot}));
+  EXPECT_EQ(cuts.join(cuts.of_mesh(1), cuts.of_mesh(0)), both);
+  EXPECT_EQ(cuts.joined(cuts.of_mesh(1), cuts.of_mesh(0)), both);
+  EXPECT_EQ(cuts.joined(both, MotionCuts::kOfRadar), both);
+  EXPECT_EQ(cuts.join(both, cuts.of_mesh(0)), both);  // they are among them
 }
 
 TEST(MotionKnots, PolynomialsBetweenThemFollowLongFrames) {
@@ -119,19 +155,20 @@ TEST(MotionKnots, GridsOfBothKindsOfPiecesAreInOrder) {
   const Radar radar = long_frame();
   const Paths paths = record(radar);
   const TimeGrids grids(paths, radar, {});
+  const uint32_t cuts = grids.cuts().of_mesh(0);
   int num_analytic = 0;
-  for (size_t k = 0; k < grids.num_polynomials(); ++k) {
-    const PolynomialGrid& grid = grids.polynomial(GridIndex::polynomial(k));
+  for (size_t k = 0; k < grids.num_polynomials(cuts); ++k) {
+    const PolynomialGrid& grid = grids.polynomial(GridIndex::polynomial(k, cuts));
     EXPECT_LE(grid.num_nodes, grids.num_sample_nodes());
     EXPECT_EQ(grid.num_nodes, grid.order * static_cast<int64_t>(grid.cuts.size() + 1));
     if (k > 0) {
-      EXPECT_GE(grid.num_nodes, grids.polynomial(GridIndex::polynomial(k - 1)).num_nodes);
+      EXPECT_GE(grid.num_nodes, grids.polynomial(GridIndex::polynomial(k - 1, cuts)).num_nodes);
     }
     num_analytic += grid.pieces == PolynomialGrid::Pieces::kAnalytic;
   }
   ASSERT_GT(num_analytic, 0);
   const GridIndex next =
-      grids.next_polynomial(GridIndex::polynomial(0), 1000.0);  // no order is so high: the first between knots
+      grids.next_polynomial(GridIndex::polynomial(0, cuts), 1000.0);  // no order is so high: the first between knots
   ASSERT_TRUE(next.is_polynomial());
   EXPECT_EQ(grids.polynomial(next).pieces, PolynomialGrid::Pieces::kAnalytic);
 }
@@ -145,6 +182,33 @@ TEST(PathGrids, AreThoseOfTheirMeshesAfterAnErrorToo) {
   EXPECT_THROW(asked_twice.path_grids(), std::runtime_error);
   const PathGrids second = asked_twice.path_grids(), first = asked_once.path_grids();
   for (int64_t path = 0; path < paths.num_paths(); ++path) EXPECT_TRUE(second.first(path) == first.first(path)) << path;
+}
+
+// A wing that beats at its tip alone: paths at its root have the same grid beside those at the tip and without these, which
+// leave the tip out of what is posed of the mesh.
+TEST(PathGrids, OfDeformingMeshesDoNotHangOnWhichTrianglesAreHit) {
+  Scene scene;
+  const Surface wing = ellipsoid(Vec3::Zero(), {.06, 1.0, .35}, 3);
+  std::vector<double> times;
+  std::vector<std::vector<Vec3>> frames;
+  for (int i = 0; i < 40; ++i) {
+    times.push_back(i * kKnot);
+    frames.push_back(wing.vertices);
+    for (Vec3& vertex : frames.back()) vertex.x() += std::max(0.0, vertex.y()) * 0.3 * std::sin(60 * times.back());
+  }
+  add_body(scene, "wing", wing, {8, 0, 0}, nullptr, std::make_shared<VertexSequence>(times, frames));
+  const Radar radar = long_frame();
+  const Paths all = record(radar, scene);
+  std::vector<uint8_t> at_root;
+  for (int64_t path = 0; path < all.num_paths(); ++path) {
+    const Triangle& triangle = scene.node_of(0).mesh->triangles()[all.hits_of(path)->triangle_id];
+    at_root.push_back(std::all_of(triangle.begin(), triangle.end(), [&](uint32_t v) { return wing.vertices[v].y() < -0.1; }));
+  }
+  const Paths root = all.select(at_root);
+  ASSERT_GT(root.num_paths(), 0);
+  ASSERT_LT(root.num_paths(), all.num_paths());
+  Replayer of_all(all, radar), of_root(root, radar);
+  EXPECT_TRUE(of_all.path_grids().first(0) == of_root.path_grids().first(0));
 }
 
 }  // namespace

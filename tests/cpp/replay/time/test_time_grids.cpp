@@ -76,7 +76,15 @@ TEST(GridIndex, PathsTryStillGridsThenPolynomialsThenNone) {
   EXPECT_TRUE(first.is_polynomial() && last.is_polynomial());
   EXPECT_FALSE(GridIndex::still().is_polynomial() || GridIndex::none().is_polynomial());
   EXPECT_EQ(last.number(), GridIndex::kMostPolynomials - 1);
-  EXPECT_EQ(GridIndex::none().place(), GridIndex::kCount - 1);
+}
+
+TEST(GridIndex, PolynomialsOfEachSetOfCutsHaveAPlaceOfTheirOwn) {
+  const GridIndex some = GridIndex::polynomial(3, 5), last = GridIndex::polynomial(GridIndex::kMostPolynomials - 1, 5);
+  EXPECT_TRUE(some.is_polynomial() && GridIndex::none() < some && some < last && last < GridIndex::polynomial(0, 6));
+  EXPECT_EQ(some.number(), 3u);
+  EXPECT_EQ(some.cuts(), 5u);
+  EXPECT_EQ(GridIndex::none().cuts(), 0u);
+  EXPECT_LT(last.place(), GridIndex::count(6));
 }
 
 // Four chirps have twelve nodes of samples: polynomials of a frame without cuts are those of order 4, 5 to 10 and 12.

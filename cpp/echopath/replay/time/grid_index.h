@@ -22,9 +22,9 @@ class GridIndex {
   static constexpr size_t count(size_t num_cuts) { return kOfCuts * num_cuts; }
 
   constexpr bool is_polynomial() const { return *this != still() && *this != none(); }
-  constexpr size_t number() const { return place_ % kOfCuts - 1; }                           // of a polynomial
+  constexpr size_t number() const { return place_ % kOfCuts - 1; }                     // of a polynomial
   constexpr uint32_t cuts() const { return place_ / static_cast<uint32_t>(kOfCuts); }  // 0 unless it is a polynomial
-  constexpr size_t place() const { return place_; }                                          // in tables of all grids
+  constexpr size_t place() const { return place_; }                                    // in tables of all grids
   friend constexpr auto operator<=>(GridIndex, GridIndex) = default;
 
  private:

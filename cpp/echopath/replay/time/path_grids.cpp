@@ -14,19 +14,30 @@ constexpr int kNodesBeyondTurns = 2;  // nodes beyond w T / 2 from which on coef
 constexpr int64_t kWorthOfANode = 5;
 constexpr size_t kTriedVertices = 16;  // of a mesh, at least, where it has as many
 
-// Returns vertices all over a mesh in its frame, m. They do not hang on which triangles paths touch, as patches do.
-std::vector<Vec3> some_vertices(const Node& node, double time) {
-  const std::vector<Vec3>& at_rest = node.mesh->vertices();
-  const size_t step = std::max<size_t>(1, at_rest.size() / kTriedVertices);
-  std::vector<Vec3> vertices;
-  std::vector<uint32_t> original;
-  for (size_t vertex = 0; vertex < at_rest.size(); vertex += step) {
-    vertices.push_back(at_rest[vertex]);
-    original.push_back(node.mesh->original_vertex()[vertex]);
+// Holds vertices all over a mesh in its frame, m, at the nodes of a grid. They do not hang on which triangles paths touch,
+// as patches do.
+class TriedVertices {
+ public:
+  TriedVertices(const Node& node, const PosedScenes& scenes) {
+    const std::vector<Vec3>& at_rest = node.mesh->vertices();
+    const size_t step = std::max<size_t>(1, at_rest.size() / kTriedVertices);
+    std::vector<uint32_t> original;
+    at_.emplace_back();
+    for (size_t vertex = 0; vertex < at_rest.size(); vertex += step) {
+      at_[0].push_back(at_rest[vertex]);
+      original.push_back(node.mesh->original_vertex()[vertex]);
+    }
+    if (!node.deformation) return;
+    at_.resize(scenes.size());
+    for (size_t k = 0; k < scenes.size(); ++k) node.deformation->at(scenes[k].time(), original, at_[k]);
   }
-  if (node.deformation) node.deformation->at(time, original, vertices);
-  return vertices;
-}
+
+  size_t size() const { return at_[0].size(); }
+  const Vec3& at(size_t node, size_t vertex) const { return at_[at_.size() > 1 ? node : 0][vertex]; }
+
+ private:
+  std::vector<std::vector<Vec3>> at_;  // by node where the mesh deforms, else one for all
+};
 
 }  // namespace
 
@@ -82,18 +93,18 @@ bool PathGrids::is_quick_enough(GridIndex polynomial, double turn_rate) const {
 // nodes its motion needs.
 bool PathGrids::follows(const PosedGrid& trial, uint32_t mesh_id) const {
   const PosedScenes& scenes = *trial.posed.scenes;
-  std::vector<std::vector<double>> distance;  // [vertex, node] m, to the transmitter and back
-  for (const PosedScene& scene : scenes) {
-    const std::vector<Vec3> vertices = some_vertices(paths_.scene->node_of(mesh_id), scene.time());
-    distance.resize(vertices.size());
-    for (size_t i = 0; i < vertices.size(); ++i) {
-      const Vec3 point = scene.linear(mesh_id) * vertices[i] + scene.translation(mesh_id);
-      distance[i].push_back(2.0 * (point - scene.transmitters.front().position).norm());
+  const TriedVertices vertices(paths_.scene->node_of(mesh_id), scenes);
+  std::vector<double> distance;
+  for (size_t vertex = 0; vertex < vertices.size(); ++vertex) {
+    distance.clear();
+    for (size_t node = 0; node < scenes.size(); ++node) {
+      const PosedScene& scene = scenes[node];
+      const Vec3 point = scene.linear(mesh_id) * vertices.at(node, vertex) + scene.translation(mesh_id);
+      distance.push_back(2.0 * (point - scene.transmitters.front().position).norm());
     }
+    if (wavenumber_ * tail_of(trial.nodes, distance) > phase_tolerance_) return false;
   }
-  return std::all_of(distance.begin(), distance.end(), [&](const std::vector<double>& of_vertex) {
-    return wavenumber_ * tail_of(trial.nodes, of_vertex) <= phase_tolerance_;
-  });
+  return true;
 }
 
 GridIndex PathGrids::first(int64_t path) const {

@@ -53,7 +53,8 @@ std::vector<PolynomialGrid> TimeGrids::polynomials_of(const Cuts& cuts) const {
   std::vector<PolynomialGrid> grids;
   const auto add = [&](int order, Pieces pieces, const std::vector<double>& at) {
     const int64_t num_nodes = order * (std::ssize(at) + 1);
-    if (num_nodes <= num_sample_nodes()) grids.push_back({order, pieces, at, num_nodes, longest_piece(start_time_, end, at)});
+    if (num_nodes <= num_sample_nodes())
+      grids.push_back({order, pieces, at, num_nodes, longest_piece(start_time_, end, at)});
   };
   for (const int order : kOrders) {
     add(order, Pieces::kSmooth, cuts.breakpoints);

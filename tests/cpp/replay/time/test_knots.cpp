@@ -85,8 +85,8 @@ TEST(MotionCuts, OfMeshesAreThoseOfTheirMotionsAndOfTheRadar) {
   EXPECT_EQ(cuts.of_mesh(2), MotionCuts::kOfRadar);  // it stopped before the frame
   EXPECT_EQ(cuts[MotionCuts::kOfRadar].knots, std::vector<double>{0.5});
   EXPECT_EQ(cuts[MotionCuts::kOfRadar].breakpoints, std::vector<double>{0.5});
-  EXPECT_EQ(cuts[cuts.of_mesh(0)].knots, (std::vector<double>{34 * kKnot, 35 * kKnot, 36 * kKnot, 37 * kKnot, 38 * kKnot,
-                                                              39 * kKnot, 0.5}));
+  EXPECT_EQ(cuts[cuts.of_mesh(0)].knots,
+            (std::vector<double>{34 * kKnot, 35 * kKnot, 36 * kKnot, 37 * kKnot, 38 * kKnot, 39 * kKnot, 0.5}));
   EXPECT_EQ(cuts[cuts.of_mesh(0)].breakpoints, std::vector<double>{0.5});
 }
 
@@ -202,7 +202,8 @@ TEST(PathGrids, OfDeformingMeshesDoNotHangOnWhichTrianglesAreHit) {
   std::vector<uint8_t> at_root;
   for (int64_t path = 0; path < all.num_paths(); ++path) {
     const Triangle& triangle = scene.node_of(0).mesh->triangles()[all.hits_of(path)->triangle_id];
-    at_root.push_back(std::all_of(triangle.begin(), triangle.end(), [&](uint32_t v) { return wing.vertices[v].y() < -0.1; }));
+    at_root.push_back(
+        std::all_of(triangle.begin(), triangle.end(), [&](uint32_t v) { return wing.vertices[v].y() < -0.1; }));
   }
   const Paths root = all.select(at_root);
   ASSERT_GT(root.num_paths(), 0);

@@ -20,13 +20,18 @@ MOST_DIFFERENCES = 256
 
 @dataclasses.dataclass(frozen=True)
 class Update:
-    """What an update did. num_rays: of the record; num_rays_shot, num_paths_changed: counts; trace, signal: s that they took"""
+    """What an update did.
+
+    num_rays: of the record; num_rays_shot, num_paths_changed: counts; trace, signal: s that they took; new_frame: TraceFrame of a
+    record that was made as a whole, None where it was brought up to date
+    """
 
     num_rays: int
     num_rays_shot: int
     num_paths_changed: int
     trace: float
     signal: float
+    new_frame: _core.TraceFrame | None
 
 
 class KeptSignal:
@@ -76,7 +81,8 @@ class KeptSignal:
             self._whole = self._record.paths(progress)
         middle = time.perf_counter()
         num_changed = self._bring_up(radar, progress)
-        return Update(change["num_rays"], change["num_rays_shot"], num_changed, middle - begin, time.perf_counter() - middle)
+        return Update(change["num_rays"], change["num_rays_shot"], num_changed, middle - begin, time.perf_counter() - middle,
+                      change["added"].frame if change["is_whole"] else None)
 
     def _note(self, change: dict) -> None:
         """Notes what the cube lacks of the record."""

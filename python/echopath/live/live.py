@@ -21,6 +21,7 @@ from ..tracing.tessellation import warn_of_coarse_meshes
 from .changes import Changes
 from .edited_scene import EditedScene
 from .kept_signal import KeptSignal
+from .remarks import warn_of_scene, warn_of_update
 from .view import LiveView
 from .watch import Watch
 
@@ -156,7 +157,9 @@ class Live:
         """The view of the scene as it is now.
 
         progress: callable (stage, fraction), True for bars, or None; what it raises ends the update and is raised here
-        Raises ValueError as `trace` does. Nothing is lost then: the next update shows what the scene is by then.
+        Raises ValueError as `trace` does. Nothing is lost then: the next update shows what the scene is by then. Warns as `trace`
+        of the scene, and of rays, mirrors and objects that are left out where all rays are shot; as `simulate` where nothing is
+        heard; and (RuntimeWarning) of rain and other radars, which views do not have.
         """
         seen = self._snapshot()
         with self._busy:
@@ -213,7 +216,11 @@ class Live:
 
     def _view_of(self, kept: KeptSignal, seen: _Seen, *, is_preview: bool, progress) -> LiveView:
         warn_of_coarse_meshes(seen.scene, seen.radar.waveform.start_frequency)
+        if not is_preview:
+            warn_of_scene(seen.scene, seen.radar, self._trace["start_time"])
         done = kept.update(seen.scene, seen.radar, progress)
+        if not is_preview:
+            warn_of_update(kept, done, seen.radar)
         begin = time.perf_counter()
         spectrum = _core.range_doppler(kept.cube, seen.radar, seen.window, seen.zero_pad)
         stages = {"trace": done.trace, "signal": done.signal, "map": time.perf_counter() - begin}

@@ -6,6 +6,16 @@ from ..base.callers import warn_user
 LOST_SHARE = 0.01  # of the rays
 
 
+def warn_of_record(frame) -> None:
+    """Warns (RuntimeWarning) of the rays, sequences of mirrors and objects that the trace of a record left out.
+
+    frame: _core.TraceFrame of the record
+    """
+    warn_of_lost_rays(frame.statistics)
+    warn_of_unfollowed_frusta(frame.statistics)
+    warn_of_unaimed(frame.statistics, frame.strata)
+
+
 def warn_of_lost_rays(statistics) -> None:
     """Warns (RuntimeWarning) where more than one ray in a hundred met a surface that the radar touches, or slivers."""
     near, lost, rays = statistics.num_near_antenna, statistics.num_false_hits, max(statistics.num_rays, 1)

@@ -18,7 +18,7 @@ from ..scene.bodies import warn_of_bodies
 from ..weather.weather import attenuation_of
 from .edges import looks_for_edges
 from .faint_paths import faint_power_of
-from .lost_rays import warn_of_lost_rays, warn_of_unaimed, warn_of_unfollowed_frusta
+from .lost_rays import warn_of_record
 from .polarization import FIELD_VECTORS, SCALAR, antennas_of, chosen_model
 from .tessellation import warn_of_coarse_meshes
 
@@ -106,9 +106,7 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
                         edges=looks_for_edges(edges, scene, radar, start_time),
                         faint_power=faint_power_of(faint_power, scatterers, radar),
                         attenuation=attenuation_of(scene, radar, effects), progress=progress, kept=geometry)
-    for warn in (warn_of_lost_rays, warn_of_unfollowed_frusta):
-        warn(paths.frame.statistics)
-    warn_of_unaimed(paths.frame.statistics, paths.frame.strata)
+    warn_of_record(paths.frame)
     return paths
 
 

@@ -1,0 +1,31 @@
+"""What is wrong with a live scene, said as a fresh run says it."""
+from __future__ import annotations
+
+from ..base.callers import warn_user
+from ..scene.bodies import warn_of_bodies
+from ..scene.scene import Scene
+from ..signals.silence import warn_of_silence
+from ..tracing.lost_rays import warn_of_record
+from ..weather.echoes import has_rain_echoes
+from .kept_signal import KeptSignal, Update
+
+
+def warn_of_scene(scene: Scene, radar, start_time: float) -> None:
+    """Warns (RuntimeWarning) as `trace` does of a scene by itself, and of what `simulate` hears in it and no path makes.
+
+    start_time: s, of the frame
+    """
+    warn_of_bodies(scene, radar, start_time)
+    if has_rain_echoes(scene, ()):
+        warn_user("scene.weather: live views have no echoes of its rain, only its attenuation; simulate has both")
+    if scene.interferers:
+        warn_user(f"scene.interferers: live views have no signals of other radars, here {len(scene.interferers)}; simulate "
+                  "has them")
+
+
+def warn_of_update(kept: KeptSignal, done: Update, radar) -> None:
+    """Warns (RuntimeWarning) as `trace` does where all rays were shot, and as `simulate` does where nothing is heard."""
+    if done.new_frame is not None:
+        warn_of_record(done.new_frame)
+    if not kept.cube.any():
+        warn_of_silence(kept.paths(), radar, kept.cube)

@@ -19,6 +19,7 @@ FIRST_PREVIEW_RAYS, FEWEST_PREVIEW_RAYS = 4096, 512
 QUIET = 0.1         # s without a change after a preview, before the full view begins: what is dragged would end it at once
 LONGEST_WAIT = 0.1  # s, until a thread that waits for changes looks whether it is to end
 _QUICK_SHARE = 0.4  # of the budget; a preview of all rays that takes less gets twice as many, which then take less than all of it
+_AIM = 0.8          # of the budget, that previews aim at whose rays go by the time of another view
 
 
 class _Superseded(Exception):
@@ -40,7 +41,8 @@ class Watch:
     def __init__(self, live: Live, changes: Changes, show: Callable[[LiveView], object], budget: float,
                  failed: Callable[[Exception], object] | None = None):
         self._live, self._changes, self._show, self._budget, self._failed = live, changes, show, budget, failed
-        self._preview_rays, self._full_seconds = min(FIRST_PREVIEW_RAYS, live.num_rays), 0.0
+        self._preview_rays, self._full_seconds = self._as_previews_have(FIRST_PREVIEW_RAYS), 0.0
+        self._has_shown_preview = False
         self._shown, self._error = -1, None  # number of the change whose full view was shown
         self._stopping, self._shown_one = False, threading.Condition()
         self._thread = threading.Thread(target=at_line_of_user(self._run), name="echopath.Watch", daemon=True)
@@ -104,6 +106,8 @@ class Watch:
             self._full_seconds = math.inf  # changes come quicker: the next one has a preview, or none would ever be shown
             raise
         self._full_seconds = view.seconds
+        if not self._has_shown_preview and view.num_rays_shot == view.num_rays:
+            self._preview_rays = min(self._preview_rays, self._rays_within_budget(view))
         self._show(view)
         with self._shown_one:
             self._shown = view.number
@@ -112,12 +116,20 @@ class Watch:
     def _show_preview(self) -> int:
         """Returns the number of the change that it shows."""
         view = self._live.preview(num_rays=self._preview_rays, progress=lambda stage, fraction: self._go_on(None))
+        self._has_shown_preview = True
         self._show(view)
         if view.seconds > self._budget:
-            self._preview_rays = min(max(self._preview_rays // 2, FEWEST_PREVIEW_RAYS), self._live.num_rays)
+            self._preview_rays = min(self._preview_rays, self._rays_within_budget(view))
         elif view.num_rays_shot == view.num_rays and view.seconds < _QUICK_SHARE * self._budget:
-            self._preview_rays = min(2 * self._preview_rays, self._live.num_rays)
+            self._preview_rays = self._as_previews_have(2 * self._preview_rays)
         return view.number
+
+    def _rays_within_budget(self, view: LiveView) -> int:
+        """As many as would keep within the budget, were the time of a view in proportion to its rays."""
+        return self._as_previews_have(int(view.num_rays * _AIM * self._budget / view.seconds))
+
+    def _as_previews_have(self, num_rays: int) -> int:
+        return min(max(num_rays, FEWEST_PREVIEW_RAYS), self._live.num_rays)
 
     def _go_on(self, number: int | None) -> None:
         if self._stopping or (number is not None and number != self._changes.number):

@@ -2,11 +2,14 @@
 import copy
 import threading
 import time
+from types import SimpleNamespace
 
 import pytest
 
 import echopath as ep
+from echopath.live.changes import Changes
 from echopath.live.kept_signal import KeptSignal
+from echopath.live.watch import FEWEST_PREVIEW_RAYS, Watch
 from support.live import difference, fresh_view, make_live
 
 ROUNDING = 1e-12   # of the largest sample: signals are added and taken away
@@ -167,3 +170,42 @@ def test_a_stopped_watch_ends_soon():
     time.sleep(0.3)
     watch.stop()
     assert not watch.wait(0.1)
+
+
+class Paced:
+    """Stands for a Live of 100 000 rays, all of which are shot for each view and take as long as they are told to."""
+
+    num_rays = 100_000
+
+    def __init__(self, seconds_of_ray: float):
+        self.changes, self._pace = Changes(), seconds_of_ray
+
+    def preview(self, *, num_rays: int, progress):
+        return self._view(num_rays, is_preview=True)
+
+    def update(self, *, progress):
+        return self._view(self.num_rays, is_preview=False)
+
+    def _view(self, num_rays: int, is_preview: bool):
+        return SimpleNamespace(number=self.changes.number, num_rays=num_rays, num_rays_shot=num_rays, is_preview=is_preview,
+                               seconds=num_rays * self._pace)
+
+
+def previews_of(live: Paced, budget: float, count: int) -> list:
+    shown = Shown()
+    with Watch(live, live.changes, shown, budget, None) as watch:
+        for _ in range(count):
+            assert watch.wait(LONG)
+            with live.changes.one():
+                pass
+        assert watch.wait(LONG)
+    return [view for view in shown if view.is_preview]
+
+
+def test_the_first_preview_keeps_within_the_budget_by_the_time_of_the_full_view():
+    for view in previews_of(Paced(25e-6), 0.05, 3):
+        assert 0.02 < view.seconds <= 0.05
+
+
+def test_previews_of_which_even_the_fewest_take_longer_have_the_fewest_rays():
+    assert {view.num_rays for view in previews_of(Paced(1e-3), 0.05, 2)} == {FEWEST_PREVIEW_RAYS}

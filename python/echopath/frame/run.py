@@ -11,7 +11,7 @@ from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
 from ..base.stages import StageClock
 from ..detections.checks import checked_keywords
 from ..detections.of_frame import detect_frame
-from ..guard import check_rays, check_signal
+from ..guard import check_planes, check_rays, check_signal, warn_of
 from ..labels.annotate import label_frame, owners_of_cubes
 from ..labels.family_pass import FamilyPass
 from ..labels.request import Labelling, as_label_settings, labelling_of, make_request
@@ -58,7 +58,7 @@ class FrameRun:
         require_names(self.partitions)
         has_rain_echoes(scene, trace.effects)  # raises
         require_interferers(scene, radar, trace.effects, (trace.start_time, trace.start_time + radar.frame_duration))
-        self._of_map = {"window": signal.window, "zero_pad": signal.zero_pad}
+        self._of_map, self._advised = {"window": signal.window, "zero_pad": signal.zero_pad}, set()
         self.label_settings = as_label_settings(labels)
         self._request = _label_request(scene, radar, self.label_settings, trace.batches or 1, self._of_map,
                                        self.angle_settings)
@@ -112,6 +112,10 @@ class FrameRun:
                 frame.kept_truth = truth_of_frame(frame, **self.truth_keywords)
         return frame
 
+    def warn_of(self, frame: Frame) -> None:
+        """Warns of the checks of a frame of this run that do not agree; gives the advice of each once."""
+        warn_of(frame.checks, self._advised)
+
     def _cubes(self, paths, work: Labelling | None, settings: dict, probe):
         """{partition: {part: cube}}, the whole, and what finds the owners of cells, as `label_frame` takes it.
 
@@ -143,7 +147,7 @@ class FrameRun:
                      angle_settings=self.angle_settings, replay=signal.replay, evaluate=signal.evaluate,
                      retrace=signal.retrace, keyframes=signal.keyframes,
                      effect_choices=self.trace.effects,
-                     checks=_checks(whole, probe, signal, paths.frame) if probe else [], stages=stages)
+                     checks=_checks(whole, probe, signal, paths) if probe else [], stages=stages)
 
     def _rain_cube(self, paths, clock):
         """The signal of the rain of the scene, None where it has none."""
@@ -174,9 +178,9 @@ def _check_radar(radar) -> None:
         require_channels(radar.receiver, radar)
 
 
-def _checks(cube, probe, signals: SignalSettings, trace_frame) -> list:
+def _checks(cube, probe, signals: SignalSettings, paths) -> list:
     found = check_signal(cube, probe, tolerance=signals.tolerance, phase_tolerance=signals.phase_tolerance)
-    return found + check_rays(probe, trace_frame)
+    return found + check_rays(probe, paths.frame) + check_planes(paths, signals.window)
 
 
 def _label_request(scene, radar, settings: LabelSettings | None, num_batches: int, of_map: dict, angles: dict):

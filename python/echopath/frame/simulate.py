@@ -10,7 +10,6 @@ from ..arguments.settings import (
     Edges, Evaluate, FaintPower, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, Scatterers,
     SignalSettings, TraceSettings, settings_among,
 )
-from ..guard import warn_of
 from ..signals.parts import Selections
 from ..tracing.traces import trace as trace_scene
 from .frame import Frame
@@ -56,8 +55,8 @@ def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | 
         labels unless told otherwise; {}: as True; None or False: none
     truth: True, or keywords of `truth` (objects): the frame and its files carry the Truth of its objects, those of its labels
         unless told otherwise; {}: as True; None or False: not made here, and `Frame.truth` makes it when it is asked for
-    guard: whether the signal is held against slower ways at a few places, and halves and batches of the rays against each
-        other: see `Frame.checks`
+    guard: whether the signal is held against slower ways at a few places, halves and batches of the rays against each other,
+        and single rays that stand for the image of a surface in an unflagged plane against the noise: see `Frame.checks`
     trace, signal: TraceSettings and SignalSettings that give the keywords which the call leaves out, or None
     progress: callable (stage, fraction), True for bars, or None
     Returns a Frame. Raises TypeError or ValueError naming the argument, KeyboardInterrupt on Ctrl-C. Warns (GuardWarning)
@@ -66,5 +65,5 @@ def simulate(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | 
     tracing, signals = settings_among(TraceSettings, locals()), settings_among(SignalSettings, locals())
     run = FrameRun(scene, radar, tracing, signals, parts, angles, labels, detections, truth, guard)
     frame = run.frame_of(lambda: trace_scene(scene, radar, settings=tracing, progress=progress), progress)
-    warn_of(frame.checks)
+    run.warn_of(frame)
     return frame

@@ -18,6 +18,7 @@ class Check:
 
     name: what was compared with what; error: how far they are apart, in `unit`; promise: the most that is promised
     unit: "rad", "dB" or what the error is relative to; count: how many places were compared
+    advice: a sentence that says what is wrong and what to do about it, "" for none; files of frames do not hold it
     """
 
     name: str
@@ -25,6 +26,7 @@ class Check:
     promise: float
     unit: str
     count: int
+    advice: str = dataclasses.field(default="", compare=False)
 
     @property
     def agrees(self) -> bool:
@@ -36,8 +38,15 @@ class Check:
         return f"{self.error:.2g} {self.unit}, promised {self.promise:.2g}{verdict} ({self.count:,} compared)"
 
 
-def warn_of(checks) -> None:
-    """Warns (GuardWarning) of each of the `checks` that does not agree."""
+def warn_of(checks, advised: set[str] | None = None) -> None:
+    """Warns (GuardWarning) of each of the `checks` that does not agree: by its advice, or by how far it is off.
+
+    advised: names of checks whose advice was given already, which is not given again; new ones are added
+    """
+    advised = set() if advised is None else advised
     for check in checks:
-        if not check.agrees:
-            warn_user(f"{check.name}: {check}", GuardWarning)
+        if check.agrees or check.name in advised:
+            continue
+        if check.advice:
+            advised.add(check.name)
+        warn_user(check.advice or f"{check.name}: {check}", GuardWarning)

@@ -27,11 +27,15 @@ def mark_mirrors(scene: Scene, radar: _core.Radar, *, time: float = 0.0) -> tupl
     Returns the names of the meshes that became mirrors, in the order of their mesh IDs. Raises TypeError or ValueError
     naming the argument.
     """
-    wavelength = _core.speed_of_light / radar.waveform.start_frequency
     with scene._edit():
-        found = _core.meshes_of_large_planes(scene, radar, wavelength, time, LEAST_COHERENT, LEAST_AREA)
-        names = tuple(_core.mesh_names(scene, found))
+        names = tuple(_core.mesh_names(scene, large_planes(scene, radar, time)))
         for name in names:
             node = scene[name]
             node._change(material=node._node.material.replace(mirror=True))  # of its own mesh alone, not of those below it
     return names
+
+
+def large_planes(scene: _core.Scene, radar: _core.Radar, time: float) -> list[int]:
+    """IDs of the meshes that `mark_mirrors` would flag at a time in s."""
+    wavelength = _core.speed_of_light / radar.waveform.start_frequency
+    return _core.meshes_of_large_planes(scene, radar, wavelength, time, LEAST_COHERENT, LEAST_AREA)

@@ -24,7 +24,6 @@ from ..base.progress import automatic_bars
 from ..base.work_at_hand import at_work_on
 from ..frame.frame import Frame
 from ..frame.run import FrameRun, Recorded
-from ..guard import warn_of
 from ..scene.scene import Scene
 from ..signals.interference_of_frame import require_interferers
 from ..signals.parts import Selections
@@ -137,7 +136,7 @@ class Sequence(Row[Frame]):
         """The frame at a place, of its record."""
         with at_work_on(_name_of(place)):
             frame = self._run.frame_of_record(recorded, progress)
-            warn_of(frame.checks)
+            self._run.warn_of(frame)
         return frame
 
     def _recorded(self, place: int, progress=None, geometry=None) -> tuple[int, Recorded]:

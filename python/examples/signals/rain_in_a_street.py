@@ -23,6 +23,7 @@ def street(weather):
     scene.add(ep.actors.ground((140, 20)), name="road", material="asphalt_road", position=(70, 0, 0))
     scene.add(ep.actors.car(), name="car", position=(45, 1, 0), yaw=np.pi, speed=9)
     scene.add(ep.actors.pedestrian(), name="pedestrian", position=(20, -1, 0), speed=1.3)
+    ep.mark_mirrors(scene, radar)  # the road: echoes over it are found by images
     return ep.simulate(scene, radar, num_rays=300_000)
 
 

@@ -10,8 +10,9 @@ from ..arguments.checks import file
 from ..base.files import written_whole
 from ..base.libraries import needed_module
 from ..paths.families import families
+from ..tracing.edge_paths import ON_EDGE
 
-_REVERSED, _EDGE = 1, 4  # bits of Paths.flags
+_REVERSED = 1  # bit of Paths.flags
 _NO_MESH = -1         # beyond the last hit of a path
 _BETWEEN = " > "      # names of meshes along a path
 PATH_UNITS = {"length": "m", "power": "W"}
@@ -106,7 +107,7 @@ def edge_hits(paths) -> np.ndarray:
     """[P] uint64, bit k: hit k of the path lies on an edge; up to four in a row do."""
     flags = np.asarray(paths.flags).astype(np.uint64)
     one, count, first = np.uint64(1), (flags >> np.uint64(3) & np.uint64(3)) + np.uint64(1), flags >> np.uint64(8) & np.uint64(63)
-    return np.where(flags & np.uint64(_EDGE), ((one << count) - one) << first, np.uint64(0))
+    return np.where(flags & np.uint64(ON_EDGE), ((one << count) - one) << first, np.uint64(0))
 
 
 def event(diffuse: int, edges: int, hit: int) -> str:

@@ -16,6 +16,7 @@ from ..cavities.cavity import Cavity
 from ..cavities.cross_sections import rcs_with_cavities
 from ..scene.bodies import warn_of_bodies
 from ..weather.weather import attenuation_of
+from .edge_paths import warn_of_edge_paths
 from .edges import looks_for_edges
 from .faint_paths import faint_power_of
 from .lost_rays import warn_of_record
@@ -90,7 +91,8 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
     that do not cover the frame. Warns (TessellationWarning, once) of curved meshes that err by more than 0.3 dB, with the
     edge length in m that would do, and (RuntimeWarning) where over 1 % of the rays are lost to a surface that the radar
     touches, not every sequence of mirrors was tried, objects have no rays of their own, the scene is empty, the radar stands
-    in a closed body that hides the rest, or the lengths of an object look like those of another unit.
+    in a closed body that hides the rest, the lengths of an object look like those of another unit, or paths around sharp
+    edges are so many that signals of them take long.
     """
     require_frame("radar", radar, start_time)
     wavelength = _core.speed_of_light / radar.waveform.start_frequency
@@ -107,6 +109,7 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
                         faint_power=faint_power_of(faint_power, scatterers, radar),
                         attenuation=attenuation_of(scene, radar, effects), progress=progress, kept=geometry)
     warn_of_record(paths.frame)
+    warn_of_edge_paths(paths)
     return paths
 
 

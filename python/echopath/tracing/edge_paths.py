@@ -1,0 +1,49 @@
+"""A word on paths around sharp edges so many that signals of them take long."""
+from __future__ import annotations
+
+import numpy as np
+
+from .. import _core
+from ..base.callers import warn_user
+
+ON_EDGE = 4                # bit of Paths.flags
+SECONDS_OF_PATH = 1e-5     # of one thread for a channel, measured in a street; other paths take a tenth of that
+LONG = 5.0                 # s of one thread, from which on signals are worth a word
+_NAMED = 3                 # mirrors of which it tells
+
+
+def warn_of_edge_paths(paths: _core.Paths) -> None:
+    """Warns (RuntimeWarning) where a signal of the paths around sharp edges takes long: of how many edges and over which
+    mirrors they are, and what to do."""
+    around = np.flatnonzero(paths.flags & ON_EDGE)
+    radar = paths.radar
+    seconds = SECONDS_OF_PATH * len(around) * len(radar.transmitters) * len(radar.receivers)
+    if seconds > LONG:
+        warn_user(f"about {_rounded(len(around)):,} paths go around {_rounded(_num_edges(paths, around)):,} sharp edges"
+                  f"{_over_mirrors(paths, around)}: each signal of them takes about {_rounded(seconds)} s of processor time. "
+                  "edges=False leaves them out")
+
+
+def _rounded(number: float) -> int:
+    """To one digit, so that frames in time do not say the same in many ways."""
+    return int(float(f"{number:.0e}"))
+
+
+def _num_edges(paths, around) -> int:
+    """Triangles whose edges these paths meet first."""
+    hit = paths.offsets[around] + (paths.flags[around] >> 8 & 63)
+    return len(np.unique(paths.mesh_id[hit].astype(np.int64) << 32 | paths.triangle_id[hit]))
+
+
+def _over_mirrors(paths, around) -> str:
+    """Over which mirrors most of the paths go; "" where most go over none."""
+    meshes = paths.scene.meshes
+    is_mirror = np.array([mesh.material.mirror for mesh in meshes])
+    first, last = paths.offsets[around], paths.offsets[around] + paths.num_bounces[around]
+    before = np.concatenate([[0], np.cumsum(is_mirror[paths.mesh_id])])
+    if 2 * np.count_nonzero(before[last] > before[first]) <= len(around):
+        return ""
+    names = [f"'{meshes[index].name}'" for index in np.flatnonzero(is_mirror)]
+    named = ", ".join(names[:_NAMED]) + (" and others" if len(names) > _NAMED else "")
+    mirrors = f"{len(names)} flagged mirrors" if len(names) > 1 else "flagged mirror"
+    return f", most over the {mirrors} ({named}), of which fewer would make fewer paths"

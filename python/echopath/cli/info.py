@@ -14,7 +14,8 @@ from ..frame_file.container import SUFFIXES as FRAME_SUFFIXES
 from ..frame_file.container import SEQUENCE, kind_of
 from ..frame_file.opening import file_and_group
 from ..presentation.tables import edge_hits, event
-from ..readers.load import READERS, is_foreign
+from ..readers.load import READ_RULES, READERS, is_foreign, read_model
+from ..readers.options import ReadOptions
 from ..receiver.settings import receiver_text
 from ..scene_file import load_scene
 from ..scene_file.load import parse
@@ -53,10 +54,15 @@ def describe_file(path, selections=(), *, unit=None, up=None) -> list[str]:
         return _describe_frame(path, selections)
     if suffix in ep._core.MESH_SUFFIXES:
         meshes = ep.load_meshes(str(path), 1.0 if unit is None else unit)
-        return [*_describe_meshes(meshes), *describe_model(path, ep.load_model(path, unit=unit, up=up))]
+        return [*_describe_meshes(meshes), *_describe_foreign(path, unit, up)]
     if is_foreign(path):
-        return describe_model(path, ep.load_model(path, unit=unit, up=up))
+        return _describe_foreign(path, unit, up)
     raise ValueError(f"{path}: must be a .toml or .h5 file, or one of {', '.join(READERS)}")
+
+
+def _describe_foreign(path, unit, up) -> list[str]:
+    """As `ep.load_model` reads it, which would also warn of a size that is among these lines."""
+    return describe_model(path, read_model(path, ReadOptions(READ_RULES["unit"]("unit", unit), up)))
 
 
 def _describe_sequence(stored) -> list[str]:

@@ -8,7 +8,7 @@ import numpy as np
 
 import echopath as ep
 
-from ..readers.sizes import box_of, unit_doubt
+from ..readers.sizes import box_of, has_skin, names_of, unit_doubt
 from . import report
 
 MAX_MATERIALS = 60  # named one by one
@@ -27,8 +27,7 @@ def describe_model(path: Path, model: ep.Model) -> list[str]:
              report.line("from, to", f"{_point(low)}, {_point(high)} m"),
              report.line("axes", f"{model.up} is up in the file; x ahead, y left, z up here"),
              report.line("unit", f"{model.unit:g} m")]
-    top = [node.name for node in model.nodes if node.parent < 0]
-    doubt = unit_doubt(float(size.max(initial=0.0)), model.unit, [path.stem, *top[:report.MAX_LISTED]])
+    doubt = unit_doubt(float(size.max()), model.unit, names_of(model, path.stem), has_skin(model))
     lines += [report.line("unit?", doubt)] if doubt else []
     return lines + (_tree(model) + _materials(meshes) if meshes else []) + _animations(model) + _notes(model)
 

@@ -9,10 +9,12 @@ from pathlib import Path
 from .. import _core
 from ..arguments.checks import (
     Rule, checked, choice, flag, optional, path as file_or_folder, positive, real, refused, text)
+from ..base.callers import warn_user
 from ..scene.meshes import UNIT
 from .material_names import Meaning, checked_materials
 from .model import Model
 from .options import ReadOptions
+from .sizes import figure_doubt
 
 # suffix -> module of this package with `read(path, options) -> Model`; imported when the first such file is read
 READERS: dict[str, str] = {
@@ -50,10 +52,19 @@ def load_model(path: str | os.PathLike[str], *, unit: float | None = None, up: s
     frequency: Hz, at which permittivities of materials by name are those of Recommendation ITU-R P.2040; None: materials are
         those of `ep.materials`, at 77 GHz. The notes name those that stay at 77 GHz
     Returns a Model, whose `notes` say what was left out, guessed or mended. Raises ep.FileError naming the file and the
-    place in it; ValueError or TypeError naming the argument; ModuleNotFoundError saying what to install.
+    place in it; ValueError or TypeError naming the argument; ModuleNotFoundError saying what to install. Warns (RuntimeWarning)
+    of a figure with a skeleton whose size is hardly right, unless its unit is given.
     """
     file = Path(path)
-    options = ReadOptions(unit, up, materials or {}, animation, loop, offset, smooth, frequency)
+    model = read_model(file, ReadOptions(unit, up, materials or {}, animation, loop, offset, smooth, frequency))
+    doubt = figure_doubt(model, file.stem) if unit is None else None
+    if doubt:
+        warn_user(f"{file}: {doubt}")
+    return model
+
+
+def read_model(file: Path, options: ReadOptions) -> Model:
+    """`load_model` without a word on its size."""
     try:
         return importlib.import_module(f".{reader_of(file)}", __package__).read(file, options)
     except RecursionError:

@@ -1,4 +1,6 @@
 """Skins and morph targets of glTF files against the formulas of the specification."""
+import warnings
+
 import numpy as np
 import pytest
 
@@ -112,3 +114,20 @@ def test_a_skin_moves_what_morph_targets_shape(tmp_path):
     wanted = bent(points + 0.5 * wider, np.pi / 4)[:, TO_SCENE]
     distance = np.linalg.norm(found[:, None] - wanted[None], axis=2)
     assert distance.min(axis=1).max() < SINGLE
+
+
+@pytest.mark.parametrize("scale, says", [(1.0, None), (4.9, None), (100.0, "of 200 m .* or unit=0.01 [(]cm[)] or"),
+                                         (0.02, "of 40 mm .*; unit tells")])
+def test_a_figure_of_a_size_that_cannot_be_is_warned_of(tmp_path, scale, says):
+    """The tube of rig_file is 2 m long; whoever gives the unit hears nothing."""
+    file = rig_file()
+    file.json["nodes"] += [{"name": "figure", "children": [0, 1], "scale": [scale] * 3}]
+    file.json["scenes"] = [{"nodes": [3]}]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        loaded(tmp_path, file, unit=1.0)
+        if says is None:
+            loaded(tmp_path, file)
+    if says is not None:
+        with pytest.warns(RuntimeWarning, match="a figure with a skeleton " + says):
+            loaded(tmp_path, file)

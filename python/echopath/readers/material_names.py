@@ -23,6 +23,7 @@ _NAMES: dict[str, str] = {
     # what would be taken for something else by a part of its name
     "*fib*glass*": "plastic", "*carbon*fib*": "plastic", "*road*line*": "asphalt", "*lane*mark*": "asphalt",
     "*road*mark*": "asphalt", "*road*sign*": "metal", "*street*light*": "metal", "*traffic*": "metal", "*guard*rail*": "metal",
+    "*head*light*": "plastic", "*tail*light*": "plastic", "*car*body*": "metal", "*body*work*": "metal", "*clear*coat*": "metal",
     "*glass*": "glass", "*window*": "glass", "*windshield*": "glass", "*windscreen*": "glass",
     "tree*": "wood", "*vegetation*": "wood", "*foliage*": "wood", "leaf*": "wood", "leaves": "wood", "bark*": "wood",
     "bush*": "wood", "hedge*": "wood", "trunk*": "wood",
@@ -44,7 +45,7 @@ _NAMES: dict[str, str] = {
     "*vehicle*": "metal", "*chassis*": "metal", "rim": "metal", "rims": "metal", "fence*": "metal", "pole*": "metal",
     "rail*": "metal", "*license*plate*": "metal", "*rubber*": "rubber", "tire*": "rubber", "tyre*": "rubber", "wheel*": "rubber",
     "*bumper*": "bumper", "*plastic*": "plastic", "*polymer*": "plastic", "vinyl*": "plastic", "nylon*": "plastic",
-    "pvc": "plastic", "acrylic*": "plastic", "*headlight*": "plastic", "*taillight*": "plastic", "*light*": "plastic",
+    "pvc": "plastic", "acrylic*": "plastic",
     # people and rooms
     "skin*": "skin", "face": "skin", "head": "skin", "hand": "skin", "hands": "skin", "body": "skin", "*cloth*": "clothing",
     "*fabric*": "clothing", "*textile*": "clothing", "shirt*": "clothing", "tshirt*": "clothing", "pants": "clothing",
@@ -52,6 +53,7 @@ _NAMES: dict[str, str] = {
     "dress": "clothing", "suit": "clothing", "cotton*": "clothing", "wool*": "clothing", "leather*": "clothing",
     "shoe*": "clothing", "hair*": "clothing", "hat": "clothing", "carpet*": "clothing", "wood*": "wood", "*timber*": "wood",
     "*wooden*": "wood", "oak": "wood", "pine": "wood", "parquet*": "wood", "floor*": "concrete", "ceiling*": "plasterboard",
+    "*light*": "plastic",  # of anything else that is light: wood, fabric
 }
 
 

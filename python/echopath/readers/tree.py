@@ -22,16 +22,19 @@ class Tree:
         self.options = options
         self.nodes: list[ModelNode] = []
         self._taken: dict[int, dict[str, int]] = {}  # node -> names of its children
-        self._meaning: dict[str, tuple] = {}
+        self._meaning: dict[tuple[str, str], tuple] = {}
         self._unknown: list[str] = []
         self._at_library_frequency: list[str] = []
         self._notes: dict[str, None] = {}
         self._counted: Counter[str] = Counter()
 
-    def add(self, name: str, parent: int = -1, **fields) -> int:
-        """A node with a free name of its own; `fields` as of ModelNode, material None: by foreign_material. Returns its index."""
+    def add(self, name: str, parent: int = -1, *, kind: str = "", **fields) -> int:
+        """A node with a free name of its own; `fields` as of ModelNode, material None: by foreign_material. Returns its index.
+
+        kind: name of ours for what the file says of the material where its foreign name is not known, "" for nothing
+        """
         if fields.get("mesh") is not None and fields.get("material") is None:
-            fields["material"] = self._material(fields.get("foreign_material", ""))
+            fields["material"] = self._material(fields.get("foreign_material", ""), kind)
         if fields.get("placement") is not None and np.array_equal(fields["placement"], np.eye(4)):
             fields["placement"] = None
         if self.options.smooth is not None:
@@ -62,13 +65,16 @@ class Tree:
             notes += ("the file holds no surface",)
         return Model(tuple(_with_meshes(self.nodes)), notes=notes, **fields)
 
-    def _material(self, name: str):
-        if name not in self._meaning:
+    def _material(self, name: str, kind: str):
+        if (name, kind) not in self._meaning:
             meant, note = material_of(name, self.options.materials)
+            if note is not None and kind:
+                self.note(f"the material '{name}' is not known: {kind} is taken, as its type in the file says")
+                meant, note = kind, None
             material, unmoved = at_frequency(meant, self.options.frequency)
             self._at_library_frequency += [unmoved] if unmoved else []
-            self._meaning[name] = material, note
-        material, note = self._meaning[name]
+            self._meaning[name, kind] = material, note
+        material, note = self._meaning[name, kind]
         if note is not None:
             self._unknown.append(name)
         return material

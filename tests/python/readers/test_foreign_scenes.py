@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import os
 import re
+import string
 
 import numpy as np
 import pytest
@@ -26,10 +27,19 @@ ROUNDING = 1e-12
     ("itu_floorboard", "floorboard"), ("itu_chipboard", "chipboard"), ("itu_plywood", "plywood"), ("itu_marble", "marble"),
     ("M_RoadLine.001", "asphalt"), ("MI_Asphalt_02", "asphalt"), ("CarPaint_Red", "metal"), ("Window_Glass", "glass"),
     ("fiberglass_panel", "plastic"), ("tire", "rubber"), ("Broadleaf_Leaves", "wood"), ("T-Shirt_cloth", "clothing"),
-    ("skin_face", "skin"), ("asphalt", "asphalt"), ("WoodenFloor", "wood"), ("Aluminium", "metal"),
+    ("skin_face", "skin"), ("car_body", "metal"), ("ClearCoat", "metal"), ("LightWood", "wood"), ("light_fabric", "clothing"),
+    ("Head_Light_L", "plastic"), ("light.003", "plastic"), ("asphalt", "asphalt"), ("WoodenFloor", "wood"),
+    ("Aluminium", "metal"),
 ])
 def test_usual_names_are_known(name, ours):
     assert material_of(name, {}) == (ours, None)
+
+
+def test_no_single_letter_and_no_two_tell_a_material():
+    letters = string.ascii_letters
+    for name in (*letters, *(a + b for a in letters for b in letters)):
+        for text in (name, f"M_{name}.001", f"mat-{name}"):
+            assert material_of(text, {})[1] is not None, text
 
 
 def test_unknown_names_are_concrete_and_counted():

@@ -72,6 +72,26 @@ def test_materials_by_id_by_type_and_by_value(tmp_path):
     assert nodes[2].material == ep.Material(permittivity=4.0, conductivity=0.5, scattering=0.2)
 
 
+@pytest.mark.parametrize("bsdf, ours", [
+    ('<bsdf type="conductor" id="w"/>', "metal"),
+    ('<bsdf type="twosided" id="w"><bsdf type="roughconductor"/></bsdf>', "metal"),
+    ('<bsdf type="dielectric" id="w"/>', "glass"),
+    ('<bsdf type="conductor" id="brick_red"/>', "brick"),
+    ('<bsdf type="diffuse" id="w"/>', "concrete"),
+])
+def test_an_id_that_nothing_knows_leaves_the_material_to_the_type(tmp_path, bsdf, ours):
+    model = mitsuba(tmp_path, bsdf + '<shape type="cube"><ref id="ID"/></shape>'.replace("ID", bsdf.split('"')[3]))
+    assert model.nodes[0].material == ours
+    said = f"the material 'w' is not known: {ours} is taken, as its type in the file says"
+    assert (said in model.notes) == (ours in ("metal", "glass"))
+    assert any("taken for concrete" in note for note in model.notes) == (ours == "concrete")
+
+
+def test_what_the_caller_says_goes_before_the_type(tmp_path):
+    body = '<bsdf type="conductor" id="w"/><shape type="cube"><ref id="w"/></shape>'
+    assert mitsuba(tmp_path, body, materials={"*": "wood"}).nodes[0].material == "wood"
+
+
 def test_a_radio_material_with_a_thickness_is_a_pane_that_waves_pass(tmp_path):
     """Airy's sum for a slab at normal incidence: R = r (1 - p^2) / (1 - r^2 p^2), T = (1 - r^2) p / (1 - r^2 p^2)."""
     pane = ('<bsdf type="radio-material" id="pane"><float name="relative_permittivity" value="6.3"/><float name="conductivity" '

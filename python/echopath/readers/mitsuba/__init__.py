@@ -11,7 +11,7 @@ from ..options import ReadOptions
 from ..sampled import chosen_animation
 from ..tree import MAX_NODES, Tree
 from .elements import Element, read_elements
-from .materials import bsdf_of, foreign_name, radio_material
+from .materials import bsdf_of, foreign_name, kind_of, radio_material
 from .shapes import CURVED, KNOWN, Shapes
 from .transforms import to_world
 
@@ -89,7 +89,7 @@ class _Content:
         for part in surfaces:
             self.tree.add(name if len(surfaces) == 1 else part.full_name, parent, placement=placement, mesh=part.mesh,
                           smooth=part.smooth, foreign_material=foreign_name(bsdf) or part.material,
-                          material=radio_material(bsdf))
+                          material=radio_material(bsdf), kind=kind_of(bsdf))
 
     def _add_instance(self, shape: Element, parent: int) -> None:
         reference = next((child for child in shape.children if child.tag == "ref"), None)

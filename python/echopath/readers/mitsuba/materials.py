@@ -5,7 +5,7 @@ from ... import _core
 from .elements import Element
 
 WRAPPERS = ("twosided", "mask", "bumpmap", "normalmap", "blendbsdf")
-# plugins that are a kind of matter, for those without a name
+# plugins that are a kind of matter, for those without a name or of a name that is not known
 PLUGINS = {"conductor": "metal", "roughconductor": "metal", "dielectric": "glass", "roughdielectric": "glass",
            "thindielectric": "glass", "plastic": "plastic", "roughplastic": "plastic"}
 PERFECT = 1e5  # S/m, from which on a material is taken for a perfect conductor
@@ -24,6 +24,13 @@ def bsdf_of(shape: Element, known: dict[str, Element]) -> Element | None:
     return None
 
 
+def kind_of(bsdf: Element | None) -> str:
+    """The material that the plugin of a BSDF stands for, whatever its id; "" for those that many materials have."""
+    if bsdf is not None and bsdf.get("type") in WRAPPERS:
+        return kind_of(next((child for child in bsdf.children if child.tag == "bsdf"), None))
+    return "" if bsdf is None else PLUGINS.get(bsdf.get("type"), "")
+
+
 def foreign_name(bsdf: Element | None) -> str:
     """The name that tells what a BSDF is made of; that of the ITU for what Sionna RT calls so."""
     if bsdf is None:
@@ -34,7 +41,7 @@ def foreign_name(bsdf: Element | None) -> str:
         return bsdf.get("id").removeprefix("mat-")
     if bsdf.get("type") in WRAPPERS:
         return foreign_name(next((child for child in bsdf.children if child.tag == "bsdf"), None))
-    return PLUGINS.get(bsdf.get("type"), "")
+    return kind_of(bsdf)
 
 
 def radio_material(bsdf: Element | None) -> _core.Material | None:

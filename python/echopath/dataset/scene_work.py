@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from .. import _core
+from ..base.callers import warn_user
 from ..base.files import write_texts
 from ..sequence.folder import NAME as CONTENTS
 from ..sequence.folder import frame_path
@@ -42,9 +43,14 @@ def claimed(folder: Path, scene: int) -> Iterator[bool]:
 
 
 def is_done(folder: Path, scene: int) -> bool:
-    """Whether all files of a scene are there as they were written; what is damaged is removed, and the scene is to do again."""
+    """Whether all files of a scene are there as they were written; what is damaged is removed, and the scene is to do again.
+
+    Warns (RuntimeWarning) of damaged files.
+    """
     record = read_record(folder, scene)
     damaged = damaged_files(folder, scene, record)
+    for path in filter(Path.exists, damaged):
+        warn_user(f"{path}: is not as it was written: it is made again")
     if any(path.name == CONTENTS for path in damaged):  # without it, nobody knows of what the frames are
         damaged = [scene_folder(folder, scene) / name for name in record.files]
     for path in damaged:

@@ -1,6 +1,7 @@
 """HDF5 files that are opened to be read, while others may be changing them."""
 from __future__ import annotations
 
+import os
 import time
 from contextlib import contextmanager
 from pathlib import Path
@@ -22,6 +23,18 @@ def file_and_group(path) -> tuple[Path, str]:
             if file.is_file():
                 return file, path.relative_to(file).as_posix()
     return path, ""
+
+
+def is_cut_off(path: Path) -> bool:
+    """Whether a file of ours has lost its end, as on a disk that was full or pulled out: by what its head says of its length.
+
+    A look at 48 bytes, for thousands of files in a second; what else may be damaged is found by who reads the file.
+    """
+    with open(path, "rb") as file:
+        head, size = file.read(48), os.fstat(file.fileno()).st_size
+    # The superblock of HDF5, whose versions 2 and 3 have the end of the file in bytes 28 to 35.
+    is_known = len(head) == 48 and head[:8] == b"\x89HDF\r\n\x1a\n" and head[8] in (2, 3)
+    return not is_known or size < int.from_bytes(head[28:36], "little")
 
 
 @contextmanager

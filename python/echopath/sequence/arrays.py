@@ -16,9 +16,8 @@ from ..truth.arrays import variables as truth_variables
 from .lazy_maps import maps_of, over_time
 
 
-def dataset_of(stored):
-    """A StoredSequence as a Dataset; see StoredSequence.to_xarray."""
-    there = np.flatnonzero(stored.is_done)
+def dataset_of(stored, there):
+    """The frames at some places of a StoredSequence as a Dataset; see StoredSequence.to_xarray."""
     if not len(there):
         raise ValueError(f"{stored.path}: must have frames, has none that is done")
     paths = [stored.paths_of_files[place] for place in there]
@@ -39,9 +38,9 @@ def dataset_of_files(paths: list[Path], times, has_truth: bool, attrs: dict):
     return xarray.Dataset(variables, coords=coords, attrs=attrs)
 
 
-def truth_of_files(stored) -> Truth:
-    """The Truth of the frames of a StoredSequence that are there; see StoredSequence.truth."""
-    places = np.flatnonzero(stored.is_done).tolist()
+def truth_of_files(stored, there) -> Truth:
+    """The Truth of the frames at some places of a StoredSequence; see StoredSequence.truth."""
+    places = there.tolist()
     if stored.settings.get("truth") is None:
         raise ValueError(f"{stored.path}: must be of a run with truth=True, keeps no truth; ep.truth finds that of frames with "
                          "their paths")

@@ -9,6 +9,7 @@ from ..arguments.checks import refused
 from ..base.files import require_writable, written_whole
 from ..frame.frame import Frame
 from ..frame_file.h5 import writing
+from ..frame_file.opening import is_cut_off
 from .contents import Contents, read_contents, what_differs, write_contents
 from .folder_lock import writing_to
 from .keep import Keep, write_frame
@@ -39,6 +40,10 @@ class FolderStore:
     def are_there(self, places: Iterable[int]) -> list[bool]:
         """Whether there is a frame at each of some places."""
         return [self.frame_path(place).exists() for place in places]
+
+    def are_whole(self, places: Iterable[int]) -> list[bool]:
+        """Whether there is a frame at each of some places whose file is as long as it was written."""
+        return [path.exists() and not is_cut_off(path) for path in map(self.frame_path, places)]
 
     def contents(self) -> Contents:
         """Of which sequence it is. Raises ep.FileError."""

@@ -44,6 +44,10 @@ class FileStore:
             names = set(read_group(file, FRAMES))
         return [_name(place) in names for place in places]
 
+    def are_whole(self, places: Iterable[int]) -> list[bool]:
+        """As `are_there`: a file that has lost its end cannot be opened at all."""
+        return self.are_there(places)
+
     def contents(self) -> Contents:
         """Of which sequence it is. Raises ep.FileError."""
         return read_contents(self.path)

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from .. import _core
 from ..arguments.checks import array, refused
+from ..base.callers import warn_user
 from ..frame.frame import Frame
 from ..frame_file.maps import start_time_in
 from .contents import Contents
@@ -110,8 +111,9 @@ class _Todo:
 
 
 def _is_done(path: Path, start_time: float) -> bool:
-    """Whether the file of a frame is whole and of its time."""
+    """Whether the file of a frame is whole and of its time. Warns (RuntimeWarning) of one that is damaged."""
     try:
         return start_time_in(path) == start_time
-    except _core.FileError:
+    except _core.FileError as error:
+        warn_user(f"{error}: it is made again")
         return False

@@ -82,8 +82,13 @@ class StoredSequence(Row[Frame | FrameMaps]):
 
     @property
     def is_done(self) -> NDArray[np.bool_]:
-        """Whether each frame is there, [K]."""
-        return np.array(self._store.are_there(self._numbers), bool)
+        """Whether each frame is there, with a file that is as long as it was written, [K]."""
+        return np.array(self._store.are_whole(self._numbers), bool)
+
+    @property
+    def _places_there(self) -> NDArray[np.int_]:
+        """Places of the frames that have a file, ascending; who reads one that is damaged is told so."""
+        return np.flatnonzero(self._store.are_there(self._numbers))
 
     def _item(self, place: int) -> Frame | FrameMaps:
         number = self._numbers[place]
@@ -94,7 +99,7 @@ class StoredSequence(Row[Frame | FrameMaps]):
         return read_frame(path, self.keep)
 
     def _maps(self) -> tuple[int, Iterator[tuple]]:
-        there = np.flatnonzero(self.is_done)
+        there = self._places_there
         paths, times = [self.paths_of_files[place] for place in there], self.times[there]
         found = power_of(paths[0]) if paths else None
         if paths and found is None:
@@ -108,7 +113,7 @@ class StoredSequence(Row[Frame | FrameMaps]):
 
         Raises ValueError where they keep none (`truth=True` of `Sequence` asks for it), ep.FileError for a damaged file.
         """
-        return truth_of_files(self)
+        return truth_of_files(self, self._places_there)
 
     def to_xarray(self) -> Dataset:
         """The maps of all frames that are there as an xarray.Dataset, with names and units on every axis.
@@ -124,7 +129,7 @@ class StoredSequence(Row[Frame | FrameMaps]):
         each HDF5 file for itself, and only a folder is safe. Needs xarray, raises ModuleNotFoundError without it, ep.FileError
         for a damaged file, here or where it is read, ValueError where no frame is there.
         """
-        return dataset_of(self)
+        return dataset_of(self, self._places_there)
 
     def __repr__(self) -> str:
         return (f"StoredSequence('{self.path}', {len(self)} frames {self._span()}, {int(self.is_done.sum())} done, "

@@ -12,7 +12,7 @@ from xarray.backends import BackendEntrypoint
 from ..frame_file.container import SEQUENCE, SUFFIXES, kind_of, our_file
 from ..frame_file.maps import start_time_in_file
 from ..frame_file.opening import file_and_group
-from .arrays import dataset_of, dataset_of_files
+from .arrays import dataset_of_files
 from .folder import NAME
 from .stored import StoredSequence
 
@@ -38,7 +38,7 @@ class Engine(BackendEntrypoint):
 
 def _dataset(path: Path):
     if path.is_dir() or kind_of(path) == SEQUENCE:
-        return dataset_of(StoredSequence(path))
+        return StoredSequence(path).to_xarray()
     with our_file(path) as file:
         time, has_truth = start_time_in_file(file), "truth" in file
     return dataset_of_files([path], [time], has_truth, {"path": str(path)})

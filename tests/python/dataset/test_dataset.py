@@ -66,7 +66,9 @@ def test_damaged_and_missing_frames_are_made_again(small_dataset, tmp_path, work
     missing.unlink()
     (scene_folder(copied, 2) / "drawn.json").unlink()
     (scene_folder(copied, 5) / "sequence.h5").write_bytes(b"")
-    made = [one.scene for one in make(path, copied, workers=workers) if not one.was_there]
+    with pytest.warns(RuntimeWarning, match="is not as it was written: it is made again") as said:
+        made = [one.scene for one in make(path, copied, workers=workers) if not one.was_there]
+    assert {damaged.name, "sequence.h5"} <= {str(one.message).split(":")[0].split("/")[-1] for one in said}
     assert sorted(made) == [1, 2, 4, 5] and bytes_of(copied) == bytes_of(folder)
 
 

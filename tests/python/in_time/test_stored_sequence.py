@@ -119,3 +119,19 @@ def test_small_files_with_negative_seeds_are_refused(tmp_path, name):
 def test_files_without_signals_say_which_ones_have_them(folders, keep, over_time):
     with pytest.raises(TypeError, match=r"^frames: must have signals, got FrameMaps.* saved with keep=.all. do$"):
         over_time(ep.load_sequence(folders[keep]))
+
+
+@pytest.mark.parametrize("share", [0.0, 0.0001, 0.5, 0.99])
+def test_a_frame_that_has_lost_its_end_is_not_done_and_named(tmp_path, share):
+    stored = make_sequence(frames=3).save(tmp_path)
+    path = stored.paths_of_files[1]
+    whole = path.read_bytes()
+    path.write_bytes(whole[:int(share * len(whole))])
+    assert stored.is_done.tolist() == [True, False, True] and "2 done" in repr(stored)
+    for read in (lambda: stored[1], stored.to_xarray, lambda: list(stored)):
+        with pytest.raises(ep.FileError, match="frame_0001.h5: damaged"):
+            read()
+    with pytest.warns(RuntimeWarning, match="frame_0001.h5: damaged .*: it is made again") as said:
+        told = list(make_sequence(frames=3).save_frames(tmp_path))
+    assert len(said) == 1 and [one.seconds is None for one in told] == [True, False, True]
+    assert path.read_bytes()[100:] == whole[100:] and stored.is_done.all()

@@ -12,12 +12,19 @@ from ..base.work_at_hand import work_at_hand
 @contextmanager
 def warnings_in_lines() -> Iterator[None]:
     """Within the block warnings are lines on standard error, once for each text: with the frame in which it came first."""
+    said: set[str] = set()  # Python forgets what it has shown whenever some code filters warnings
+
+    def show(message, category, filename, lineno, file=None, line=None) -> None:
+        if str(message) not in said:
+            said.add(str(message))
+            _print(str(message))
+
     with warnings.catch_warnings():
-        warnings.showwarning = _show
+        warnings.showwarning = show
         yield
 
 
-def _show(message, category, filename, lineno, file=None, line=None) -> None:
+def _print(message: str) -> None:
     where = f"first in {work_at_hand()}: " if work_at_hand() else ""
     text = f"warning: {where}{message}"
     if sys.stderr.isatty():

@@ -5,12 +5,14 @@ import multiprocessing
 import os
 import signal
 import time
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from .. import _core
+from ..base.callers import warn_user
 from ..base.threads import set_num_threads
 from .folder import RECORD, SceneRecord, read_record, scene_folder
 from .scene_work import claimed, make_scene, tidy
@@ -54,14 +56,15 @@ def turned(scenes: Sequence[int], index: int, count: int) -> list[int]:
 def in_processes(path: Path, folder: Path, scenes: Sequence[int], run: str, count: int) -> Iterator[Done]:
     """The same by `count` processes with an equal share of the processors each. One that dies is replaced.
 
-    path: of the template. Raises ep.FileError where one of them cannot write a file, ChildProcessError where they go on dying.
+    path: of the template. Warns as they do, of each text once. Raises ep.FileError where one of them cannot write a file,
+    ChildProcessError where they go on dying.
     """
     context = multiprocessing.get_context("spawn")
     threads = max(1, (os.cpu_count() or 1) // count)
-    unwritten = context.SimpleQueue()  # what is said of files that cannot be written
+    sayings = context.SimpleQueue()  # warnings, and the ep.FileError of a file that cannot be written
 
     def start(index: int) -> Any:
-        args = (str(path), str(folder), turned(scenes, index, count), run, threads, unwritten)
+        args = (str(path), str(folder), turned(scenes, index, count), run, threads, sayings)
         process = context.Process(target=_work, args=args, daemon=True)
         with _libraries_take(threads):
             process.start()
@@ -69,7 +72,7 @@ def in_processes(path: Path, folder: Path, scenes: Sequence[int], run: str, coun
 
     processes = [start(index) for index in range(count)]
     try:
-        yield from _watched(folder, scenes, processes, start, unwritten)
+        yield from _watched(folder, scenes, processes, start, _Listener(sayings))
     finally:
         for process in processes:
             process.terminate()
@@ -90,15 +93,32 @@ def _libraries_take(threads: int) -> Iterator[None]:
             del os.environ[name]
 
 
+class _Listener:
+    """Repeats what workers say: warnings once for each text, and errors."""
+
+    def __init__(self, sayings: Any):
+        self._sayings = sayings
+        self._heard: set[str] = set()
+
+    def repeat(self) -> None:
+        """Repeats all that has been said since."""
+        while not self._sayings.empty():
+            said = self._sayings.get()
+            if not isinstance(said, Warning):
+                raise said
+            if str(said) not in self._heard:
+                self._heard.add(str(said))
+                warn_user(str(said), type(said))
+
+
 def _watched(folder: Path, scenes: Sequence[int], processes: list[Any], start: Callable[[int], Any],
-             unwritten: Any) -> Iterator[Done]:
+             listener: _Listener) -> Iterator[Done]:
     """What the processes make, as it comes."""
     missing, deaths = list(scenes), 0
     most_deaths = 3 * len(processes) + len(scenes)
     while missing:
         time.sleep(PAUSE)
-        if not unwritten.empty():
-            raise _core.FileError(unwritten.get())
+        listener.repeat()
         ended = [process.exitcode is not None for process in processes]
         for scene in list(missing):
             record = read_record(folder, scene)
@@ -111,18 +131,20 @@ def _watched(folder: Path, scenes: Sequence[int], processes: list[Any], start: C
                 if deaths > most_deaths:
                     raise ChildProcessError(f"workers: {deaths} of them died, the last with exit code {process.exitcode}")
                 processes[index] = start(index)
+    listener.repeat()
 
 
-def _work(path: str, folder: str, scenes: list[int], run: str, threads: int, unwritten: Any) -> None:
+def _work(path: str, folder: str, scenes: list[int], run: str, threads: int, sayings: Any) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that started this one
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     set_num_threads(threads)
+    warnings.showwarning = lambda message, *place: sayings.put(message)
     try:
         for _ in in_this_process(Template(Path(path)), Path(folder), scenes, run):
             if os.getppid() == 1:  # the command was killed
                 return
     except _core.FileError as error:
-        unwritten.put(str(error))
+        sayings.put(error)
 
 
 def forget(folder: Path, scenes: Sequence[int]) -> None:

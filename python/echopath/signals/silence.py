@@ -4,14 +4,55 @@ from __future__ import annotations
 import numpy as np
 
 from ..base.callers import warn_user
+from ..base.rotations import matrices
 
 
 def warn_of_silence(paths, radar, cube: np.ndarray) -> None:
-    """Warns where paths were found and nothing is heard: of coherent surfaces few rays find no point of reflection.
+    """Warns where paths were found and nothing is heard, of all reasons that hold.
 
     paths: _core.Paths; radar: that hears them; cube: sqrt(W), their signal
     """
     if paths.num_paths and not cube.any():
-        warn_user(f"no signal of {paths.num_paths:,} paths: they lie beyond the last range of the waveform, "
-                  f"{radar.waveform.max_range:.4g} m, or rays too few for the coherent echo of a surface found none of it: "
-                  "ep.unresolved(paths) says which objects need more, ep.received_power(paths) how much there may be")
+        count = f"{paths.num_paths:,} paths" if paths.num_paths > 1 else "1 path"
+        warn_user(f"no signal of {count}: {'; '.join(_reasons(paths, radar))}")
+
+
+def _reasons(paths, radar) -> list[str]:
+    time = paths.frame.trace_time
+    last = radar.waveform.max_range
+    beyond = paths.lengths([time], 0, 0)[0] > 2.0 * last
+    unseen = ~_antennas_see(paths, radar, time)
+    said = [(beyond, f"beyond the last range of the waveform, {last:.4g} m"),
+            (unseen & ~beyond, "where the antennas have no gain: they look elsewhere")]
+    reasons = [f"{_how_many(lie)} {where}" for lie, where in said if lie.any()]
+    if not (beyond | unseen).all():
+        reasons.append("rays too few for the coherent echo of a surface found none of it: ep.unresolved(paths) says which "
+                       "objects need more, ep.received_power(paths) how much there may be")
+    return reasons
+
+
+def _how_many(lie: np.ndarray) -> str:
+    """The subject and the verb of a sentence on some of the paths, bool [P]."""
+    if lie.all():
+        return "they lie" if len(lie) > 1 else "it lies"
+    return f"{lie.sum():,} lie" if lie.sum() > 1 else "1 lies"
+
+
+def _antennas_see(paths, radar, time: float) -> np.ndarray:
+    """Whether any transmitter has gain toward the first hit of each path, and any receiver toward its last, bool [P]."""
+    points = paths.points(time)
+    ends = points[paths.offsets], points[paths.offsets + paths.num_bounces - 1]
+    world = radar.world_from_radar(time)
+    sent, heard = (_has_gain(antennas, (end - world[:3, 3]) @ world[:3, :3])
+                   for antennas, end in zip((radar.transmitters, radar.receivers), ends))
+    return sent & heard
+
+
+def _has_gain(antennas, points) -> np.ndarray:
+    """Whether any of the antennas has gain toward points [N, 3] in the radar's frame, bool [N]."""
+    seen = np.zeros(len(points), bool)
+    for antenna in antennas:
+        ways = points - antenna.position
+        directions = ways / np.linalg.norm(ways, axis=1)[:, None] @ matrices(antenna.orientation)
+        seen |= antenna.pattern.field(directions) != 0.0
+    return seen

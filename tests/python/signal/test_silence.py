@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.paths.subset import subset
 
-TOLD = r"^no signal of [0-9,]+ paths: they lie beyond the last range of the waveform, 38\.37 m, or rays too few"
+TOLD = r"^no signal of [0-9,]+ paths: rays too few for the coherent echo of a surface found none of it: ep.unresolved"
 
 
 @pytest.fixture(scope="module")
@@ -38,3 +39,33 @@ def test_silence_of_an_empty_scene_and_a_signal_are_not(pyramid):
         plate = ep.Scene()
         plate.add(ep.actors.plate(0.2, 0.2), name="plate", material="metal", position=(10, 0, 1), yaw=np.pi)
         assert ep.synthesize(ep.trace(plate, radar, num_rays=20_000)).any()
+
+
+def plates(*places):
+    scene = ep.Scene()
+    for name, (position, yaw) in zip("abc", places):
+        scene.add(ep.actors.plate(0.2, 0.2), name=name, material="metal", position=position, yaw=yaw)
+    return scene
+
+
+BEHIND, FAR = ((-10, 0, 1), 0.0), ((50, 0, 1), np.pi)
+NO_GAIN = "where the antennas have no gain: they look elsewhere"
+TOO_FAR = r"beyond the last range of the waveform, 38\.37 m"
+
+
+@pytest.mark.parametrize("places, some, told", [
+    ([BEHIND], None, f"[0-9,]+ paths: they lie {NO_GAIN}"),
+    ([FAR], None, f"[0-9,]+ paths: they lie {TOO_FAR}"),
+    ([FAR], [0], f"1 path: it lies {TOO_FAR}"),
+    ([BEHIND, FAR], None, f"[0-9,]+ paths: [0-9,]+ lie {TOO_FAR}; [0-9,]+ lie {NO_GAIN}"),
+    ([BEHIND, FAR], [0, -1], f"2 paths: 1 lies {TOO_FAR}; 1 lies {NO_GAIN}"),
+])
+def test_the_reason_is_that_of_the_paths(pyramid, places, some, told):
+    """Antennas of a cosine pattern have no gain behind them. some: indices of paths, None: all"""
+    pattern = ep.CosinePower(exponent=4.0)
+    blind = pyramid[1].replace(transmitters=[ep.Antenna(pattern=pattern)], receivers=[ep.Antenna((0, 0.01, 0), pattern=pattern)])
+    paths = ep.trace(plates(*places), pyramid[1], num_rays=5000)
+    if some is not None:
+        paths = subset(paths, np.arange(paths.num_paths)[some])
+    with pytest.warns(RuntimeWarning, match=f"^no signal of {told}$"):
+        assert not ep.synthesize(paths, blind).any()

@@ -101,6 +101,21 @@ def test_pairs_of_windows_are_checked(window, told):
         ep.range_doppler(np.zeros((1, 1, 128, 512)), radar_of(), window=window)
 
 
+def test_one_sample_makes_a_radar_that_tells_velocities_alone():
+    """Its cell of range, c / 2B, holds all that is nearer, and nothing beyond is heard."""
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.1, 0.1), name="plate", material="metal", position=(20, 0, 0), yaw=np.pi,
+              motion=ep.LinearMotion(velocity=(3, 0, 0)))
+    for bandwidth, hears in ((1e6, True), (10e6, False)):
+        radar = build_radar(num_samples=1, num_chirps=128, bandwidth=bandwidth, chirp_interval=150e-6)
+        result = ep.range_doppler(ep.synthesize(ep.trace(scene, radar, num_rays=1000), radar), radar)
+        assert result.range.tolist() == [0.0] and radar.waveform.max_range == pytest.approx(C / (2 * bandwidth))
+        power = np.abs(result.values[0, 0, :, 0]) ** 2
+        assert bool(power.any()) == hears
+        step = result.velocity[1] - result.velocity[0]
+        assert not hears or abs(result.velocity[power.argmax()] - 3.0) <= 0.5 * step
+
+
 def test_window_names():
     n = np.arange(8)
     np.testing.assert_allclose(_core.window("hann", 8), np.sin(np.pi * n / 8) ** 2, atol=1e-3 * ROUNDING)

@@ -1,6 +1,8 @@
 """Short Fourier transforms over trains of chirps that come frame by frame."""
 from __future__ import annotations
 
+import copy
+
 import numpy as np
 
 from .. import _core
@@ -37,6 +39,13 @@ class Stft:
             self._profiles = np.concatenate([self._profiles, profiles], axis=2)
         self._transform()
         self._end, self._before = burst.end_time, burst._replace(cube=None)
+
+    def copy(self) -> Stft:
+        """Another one that has taken the same bursts so far and goes on by itself."""
+        other = copy.copy(self)
+        other._times, other._powers, other._trains, other._train = (
+            list(held) for held in (self._times, self._powers, self._trains, self._train))
+        return other
 
     def _joins(self, burst) -> bool:
         """Whether windows may span the burst before and this one, which goes on evenly."""

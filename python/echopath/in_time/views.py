@@ -17,6 +17,7 @@ from ..paths.families import families
 from ..signals.beside import cubes_beside
 from ..signals.parts import decompose
 from .bursts import Burst
+from .sliding import Stft
 from .spectrogram_labels import SpectrogramLabels, labels_of
 
 OBJECTS, FAMILIES = "objects", "families"  # views beside the partitions of frames
@@ -34,7 +35,8 @@ class Views:
             if getattr(settings, name) != only:
                 raise refused(ValueError, f"labels.{name}", f"{only!r} for spectrograms", getattr(settings, name))
         self._settings, self._make_stft, self._channel = settings, make_stft, channel
-        self._whole, self._echoes, self._views = make_stft(), make_stft(), {}
+        self._whole, self._views = make_stft(), {}
+        self._echoes: Stft | None = None  # of paths alone, as soon as a frame has something else beside them
         self._frame, self._gone = None, []
 
     def seen(self, frames: Iterable) -> Iterator:
@@ -50,8 +52,11 @@ class Views:
         frame, self._frame = self._frame, None
         beside = {name: self._of_channel(cube) for name, cube in cubes_beside(frame).items()}
         whole = self._of_channel(frame.cube)
+        if beside and self._echoes is None:
+            self._echoes = self._whole.copy()
+        if self._echoes is not None:
+            self._echoes.add(burst._replace(cube=whole))
         self._whole.add(burst._replace(cube=whole + sum(beside.values())))
-        self._echoes.add(burst._replace(cube=whole))
         nothing = np.zeros_like(whole)
         for view, cubes in self._cubes(frame).items():
             stfts = self._views.setdefault(view, {})
@@ -66,14 +71,14 @@ class Views:
 
     def labels(self) -> dict[str, SpectrogramLabels]:
         """{view: its labels}."""
-        margin = self._settings.noise_margin_db if self._settings.noise else -np.inf
         whole = self._whole.result(None)
-        strongest = float(np.max(self._echoes.result(None).power, initial=0.0))
+        echoes = whole if self._echoes is None else self._echoes.result(None)
+        strongest = float(np.max(echoes.power, initial=0.0))
         found = {}
         for view, stfts in self._views.items():
             last = [name for name in (GHOSTS, REST, *BESIDE) if name in stfts]  # those of later frames stand before them
             parts = {name: stfts[name].result(None) for name in (*(name for name in stfts if name not in last), *last)}
-            found[view] = labels_of(parts, whole, margin, self._settings.dynamic_range_db, strongest)
+            found[view] = labels_of(parts, whole, self._settings.margin_db, self._settings.dynamic_range_db, strongest)
         return found
 
     def _cubes(self, frame: Frame) -> dict[str, dict]:

@@ -9,6 +9,7 @@ Keywords of the call go before it. Other functions that share a keyword (`range_
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Mapping
 from typing import ClassVar, Literal, TypedDict, TypeVar, dataclass_transform
 
@@ -154,6 +155,7 @@ class ReplayKeywords(TypedDict):
 
 
 REPLAY_KEYWORDS = tuple(ReplayKeywords.__annotations__)
+LEAST_MARGIN_DB = -300.0  # of labels over the noise: far below anything
 FRAME_KEYWORDS = ("replay", "evaluate", "retrace", "keyframes")  # those of them that a Frame keeps
 
 
@@ -176,5 +178,10 @@ class LabelSettings(Settings):
     errors: bool = False
 
     RULES: ClassVar[Mapping[str, Rule]] = {
-        "plane": one_of(Plane), "objects": objects_rule, "noise": flag, "noise_margin_db": real(-300.0, 300.0, "dB"),
+        "plane": one_of(Plane), "objects": objects_rule, "noise": flag, "noise_margin_db": real(LEAST_MARGIN_DB, 300.0, "dB"),
         "dynamic_range_db": optional(real(0.0, unit="dB")), "errors": flag}
+
+    @property
+    def margin_db(self) -> float:
+        """noise_margin_db, minus infinity where no cell need stand out of the noise."""
+        return self.noise_margin_db if self.noise else -math.inf

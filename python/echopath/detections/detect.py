@@ -12,8 +12,10 @@ from ..arguments.checks import Progress, an, checked, keywords, optional, refuse
 from ..arguments.keywords import parameters_of
 from ..arguments.objects import Objects, objects_rule
 from ..arguments.part_names import BESIDE, require_names
+from ..arguments.settings import LabelSettings
 from ..base.antennas import centre_of
 from ..labels.labels import Labels
+from ..labels.part_cells import floor_over
 from ..paths.families import families as find_families
 from ..signals.parts import decompose
 from ..signals.same_radar import difference
@@ -61,13 +63,14 @@ _ANGLES = keywords("estimate_angles", parameters_of(estimate_angles)[2:])  # all
 
 
 @checked(**CFAR_RULES, angles=optional(_ANGLES), paths=optional(an(_core.Paths)), parts=optional(_parts),
-         labels=optional(an(Labels, called="Labels")), beside=optional(_parts), objects=objects_rule)
+         labels=optional(an(Labels, called="Labels")), beside=optional(_parts), objects=objects_rule,
+         noise_margin_db=optional(LabelSettings.RULES["noise_margin_db"]))
 def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMethod = "ca",
            false_alarm_rate: float = FALSE_ALARM_RATE, guard_velocity: int | None = None, guard_range: int | None = None,
            training_velocity: int | None = None, training_range: int | None = None, rank: float = RANK,
            angles: Mapping[str, object] | None = None, paths: _core.Paths | None = None, parts: Mapping | None = None,
            labels: Labels | None = None, beside: Mapping | None = None, objects: Objects = None,
-           progress: Progress = None) -> Detections:
+           noise_margin_db: float | None = None, progress: Progress = None) -> Detections:
     """Echoes that stand out of the noise of a range-Doppler map, with what made them.
 
     Cells above the threshold of `cfar` that are local maxima, their place between the cells by the known response of the
@@ -87,6 +90,8 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     beside: {name: cube or RangeDoppler} of what no path makes, such as `Frame.beside_spectra`: a detection in whose cell one of
         these has the largest power has its name as part, and is of no object; named otherwise than the parts
     objects: of `families`, with paths
+    noise_margin_db: dB from -300 to 300, with paths: as of `annotate`, above which the rule of labels tells an object from what
+        hides it; None: that of labels where they are given, else 10
     progress: callable (stage, fraction), True for bars, or None
     Returns Detections: range in m, velocity in m/s and the rest. Raises ValueError naming the argument, KeyboardInterrupt on
     Ctrl-C. Warns (RuntimeWarning) where the map holds no noise of the radar.
@@ -105,7 +110,8 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     peaks = _core.find_peaks(spectrum, radar, found, progress)
     cells, power = peaks["cells"], found.power[tuple(peaks["cells"].T)]
     echoes = None if paths is None else EchoFields(paths, spectrum)
-    columns = _labels_of(spectrum, cells, power, _Makers(paths, parts, labels, beside, objects), echoes)
+    floor = _noise_floor(spectrum, radar, labels, noise_margin_db)
+    columns = _labels_of(spectrum, cells, power, _Makers(paths, parts, labels, beside, objects, floor), echoes)
     found = _joined(radar, peaks, power, directions_of(spectrum, radar, cells, angles or {}, progress), columns, echoes)
     return found if paths is None else dataclasses.replace(found, seed=paths.frame.seed)
 
@@ -118,15 +124,23 @@ class _Makers(NamedTuple):
     labels: Labels | None
     beside: dict
     objects: object
+    noise_floor: float  # W
+
+
+def _noise_floor(spectrum, radar, labels, margin_db: float | None) -> float:
+    """Power in W from which on labels take a cell of the map for more than noise. Arguments as in `detect`."""
+    if margin_db is None:
+        margin_db = LabelSettings.noise_margin_db if labels is None else labels.noise_margin_db
+    return floor_over(_core.cell_noise_power(radar, spectrum.window), margin_db)
 
 
 def _labels_of(spectrum, cells, power, makers: _Makers, echoes) -> dict:
     """part, share, object, ghost_type, order and class_code [N] of cells [N, 2]."""
-    paths, parts, labels, beside, objects = makers
+    paths, parts, labels, beside, objects, noise_floor = makers
     found = labelling.CellLabels(len(cells))
     if paths is not None:
         of_paths = find_families(paths, objects)
-        found.take_families(*labelling.families_of_cells(paths, of_paths, echoes, cells), echoes.measured(cells),
+        found.take_families(*labelling.families_of_cells(paths, of_paths, echoes, cells, noise_floor), echoes.measured(cells),
                             labelling.resolved_families(paths, of_paths))
     elif labels is not None:
         found.families = labelling.families_of_labels(labels, cells)

@@ -6,7 +6,6 @@ from functools import cached_property
 import numpy as np
 
 from .. import _core
-from ..arguments.settings import LabelSettings
 from ..paths.cells import OUTSIDE, path_cells
 from ..paths.subset import subset
 from ..spectra.windows import of_range, of_velocity, samples_of
@@ -107,12 +106,6 @@ class EchoFields:
         """Power [N] in W of the map in cells [N, 2], mean over the channels: what the sums of the fields compare with."""
         (tx, rx), (velocity, distance) = self.channels.T[:, :, None], cells.T
         return np.mean(np.abs(self._spectrum.values[tx, rx, velocity, distance]) ** 2, axis=0)
-
-    @property
-    def noise_floor(self) -> float:
-        """Power in W from which on labels take a cell of the map for more than noise."""
-        noise = _core.cell_noise_power(self._paths.radar, self._spectrum.window)
-        return noise * 10.0 ** (0.1 * LabelSettings.noise_margin_db)
 
     def peak_of(self, keep) -> float:
         """Power in W of the strongest cell of the map of the paths where `keep` [P] is true, mean over all channels."""

@@ -6,6 +6,7 @@ import dataclasses
 from .. import _core
 from ..arguments.checks import Progress, an, checked
 from ..arguments.objects import Objects
+from ..arguments.settings import LEAST_MARGIN_DB
 from ..frame.frame import Frame
 from ..spectra.range_doppler import FALSE_ALARM_RATE, RANK, CfarMethod
 from .checks import RULES
@@ -25,6 +26,7 @@ def detect_frame(frame: Frame, *, method: CfarMethod = "ca", false_alarm_rate: f
     objects: as in `families`
     max_peaks: directions of a cell at most, of radars whose antennas tell directions apart
     progress: callable (stage, fraction), True for bars, or None
+    Objects and ghosts are told apart above the noise margin of the frame's labels, 10 dB where it has none.
     Returns Detections: range in m, velocity in m/s and the rest. Raises ValueError for bad input and for frames without
     signals, KeyboardInterrupt on Ctrl-C.
     """
@@ -35,5 +37,12 @@ def detect_frame(frame: Frame, *, method: CfarMethod = "ca", false_alarm_rate: f
     found = detect(frame.spectrum, frame.radar, method=method, false_alarm_rate=false_alarm_rate,
                    guard_velocity=guard_velocity, guard_range=guard_range, training_velocity=training_velocity,
                    training_range=training_range, rank=rank, paths=frame.paths, parts=parts,
-                   beside=frame.beside_spectra or None, objects=objects, angles=settings, progress=progress)
+                   beside=frame.beside_spectra or None, objects=objects, angles=settings,
+                   noise_margin_db=_noise_margin_db(frame), progress=progress)
     return dataclasses.replace(found, noise_seed=frame.noise_seed)
+
+
+def _noise_margin_db(frame: Frame) -> float | None:
+    """dB, of the frame's labels; None: it has none."""
+    margin_db = next((labels.noise_margin_db for labels in (frame.labels or {}).values()), None)
+    return None if margin_db is None else max(margin_db, LEAST_MARGIN_DB)

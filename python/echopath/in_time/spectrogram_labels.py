@@ -12,7 +12,7 @@ from ..arguments.checks import an, checked, optional, refused
 from ..arguments.settings import LabelSettings
 from ..base.equality import has_same_fields, is_same
 from ..base.made_by import made_by
-from ..labels.part_cells import PartCells, masks_of
+from ..labels.part_cells import PartCells, floor_over, masks_of
 from ..presentation.xarray_maps import spectrogram_labels_dataset
 from .maps import Spectrogram
 
@@ -31,7 +31,8 @@ class SpectrogramLabels(PartCells):
     power: [K, T, V] W of each part; whole: [T, V] W
     share: [K, T, V], powers of the parts over their sum: they add up to 1, or are 0 where there is no power
     dominant: i16 [T, V], the part of the largest share (the first of equal ones), -1 outside the mask
-    noise_power: W, mean of the noise in a cell; noise_margin_db: dB above it that count as above the noise
+    noise_power: W, mean of the noise in a cell; noise_margin_db: dB above it that count as above the noise, minus
+        infinity where all cells do
     dynamic_range_db: dB below the strongest cell that the mask goes down to: of frames that of the paths, else of the whole
     above_noise: bool [T, V], whether the whole is above the noise; mask: bool [T, V], above it and within the dynamic range
     """
@@ -107,7 +108,7 @@ def labels_of(parts: dict[str, Spectrogram], whole: Spectrogram | None, noise_ma
     power = np.stack([one.power for one in parts.values()])
     total = power.sum(axis=0) if whole is None else whole.power
     range_db = np.inf if dynamic_range_db is None else dynamic_range_db
-    floor = first.noise_power * 10.0 ** (0.1 * noise_margin_db)
+    floor = floor_over(first.noise_power, noise_margin_db)
     above_noise, mask = masks_of(total, floor, 10.0 ** (-0.1 * range_db), strongest)
     return SpectrogramLabels(
         times=first.times, velocity=first.velocity, train=first.train, trains=first.trains, part_names=list(parts), power=power,

@@ -154,7 +154,8 @@ class Labels(PartCells):
         from the sum of their powers where they interfere
     share: [K, V, R], powers of the parts over their sum: they add up to 1, or are 0 where there is no power
     dominant: i16 [V, R], the part of the largest share (the first of equal ones), -1 outside the mask
-    noise_power: W, mean of the noise in a cell; noise_margin_db: dB above it that count as above the noise
+    noise_power: W, mean of the noise in a cell; noise_margin_db: dB above it that count as above the noise, minus
+        infinity where all cells do (noise=False)
     dynamic_range_db: dB below the strongest cell of the paths that the mask goes down to, whatever leaks or interferes
     above_noise: bool [V, R], whether the whole is above the noise; mask: bool [V, R], above the noise and within the
         dynamic range

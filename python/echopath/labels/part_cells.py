@@ -23,6 +23,16 @@ class PartCells:
     above_noise: np.ndarray
     mask: np.ndarray
 
+    @property
+    def noise_floor(self) -> float:
+        """Power in W that cells above the noise exceed."""
+        return floor_over(self.noise_power, self.noise_margin_db)
+
+
+def floor_over(noise_power: float, margin_db: float) -> float:
+    """Power in W that cells above a noise of `noise_power` W exceed; margin_db: minus infinity: no cell is in the noise"""
+    return noise_power * 10.0 ** (0.1 * margin_db)
+
 
 def masks_of(whole: np.ndarray, noise_floor: float, dynamic_range: float, strongest: float | None = None) -> tuple:
     """(above_noise, mask), bool [V, R] of powers of the whole [V, R] in W.

@@ -14,19 +14,21 @@ from ..paths.families import families as find_families
 from ..paths.resolution import mean_powers
 from ..paths.subset import part_of_path
 from ..signals.parts import ONLY_PARTITION
-from .part_cells import masks_of
+from .part_cells import floor_over, masks_of
 from .planes import make_plane
 from .standard_errors import require_batches
 
 
 @dataclasses.dataclass(frozen=True)
 class Request:
-    """How the cells of a radar's map are to be labelled, checked; made by `make_request`. Fields as in `annotate`."""
+    """How the cells of a radar's map are to be labelled, checked; made by `make_request`. Fields as in `annotate`.
+
+    noise_margin_db: dB, minus infinity: no cell is in the noise
+    """
 
     radar: object
     objects: object
     plane: object
-    noise: bool
     noise_margin_db: float
     dynamic_range_db: float
     errors: bool
@@ -39,7 +41,7 @@ class Request:
     @property
     def noise_floor(self) -> float:
         """Power in W that cells above the noise exceed."""
-        return self.plane.noise_power * 10.0 ** (self.noise_margin_db / 10.0) if self.noise else 0.0
+        return floor_over(self.plane.noise_power, self.noise_margin_db)
 
     def masks(self, powers):
         """(above_noise, mask), bool [V, R] of ViewPowers."""
@@ -70,7 +72,7 @@ def make_request(radar, num_batches: int, settings: LabelSettings, *, window=Sig
     if settings.errors:
         made.require_errors()
     dynamic_range_db = np.inf if settings.dynamic_range_db is None else settings.dynamic_range_db
-    return Request(radar, settings.objects, made, settings.noise, settings.noise_margin_db, dynamic_range_db, settings.errors)
+    return Request(radar, settings.objects, made, settings.margin_db, dynamic_range_db, settings.errors)
 
 
 @dataclasses.dataclass(frozen=True)

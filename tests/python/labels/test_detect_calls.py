@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.detections import labelling
 from support.scenes.small_spheres import radar_with
 
 
@@ -114,3 +115,27 @@ def test_a_map_whose_power_is_not_finite_is_refused():
     cube[0, 0, 5, 7] = 1e200
     with pytest.raises(ValueError, match="spectrum: must have values whose power is finite, got inf"):
         ep.detect(ep.range_doppler(cube, radar), radar)
+
+
+@pytest.mark.parametrize("labels, margin_db", [
+    (None, 10.0), (True, 10.0), ({"noise_margin_db": 25.0}, 25.0), ({"noise": False}, -300.0)])
+def test_detections_of_a_frame_have_the_noise_margin_of_its_labels(spheres, monkeypatch, labels, margin_db):
+    floors = []
+
+    def watched(*arguments):
+        floors.append(arguments[-1])
+        return of_cells(*arguments)
+
+    of_cells = labelling.families_of_cells
+    monkeypatch.setattr(labelling, "families_of_cells", watched)
+    radar, paths, _ = spheres
+    frame = ep.simulate(paths.scene, radar, num_rays=500, labels=labels, detections=True, guard=False, noise_seed=1)
+    wanted = ep.noise_power(radar, frame.spectrum.window) * 10.0 ** (0.1 * margin_db)
+    assert floors == pytest.approx([wanted], rel=1e-12)
+    ep.detect(frame.spectrum, radar, paths=paths, noise_margin_db=3.0)
+    if labels is not None:
+        of_frame = frame.labels["parts"]
+        assert of_frame.noise_floor == (0.0 if margin_db < 0.0 else pytest.approx(wanted))
+        ep.detect(frame.spectrum, radar, paths=paths, labels=of_frame)
+        assert floors[2] == of_frame.noise_floor
+    assert floors[1] == pytest.approx(10.0**0.3 * ep.noise_power(radar, frame.spectrum.window))

@@ -50,6 +50,34 @@ def test_icospheres_have_their_radius_and_their_known_error(subdivisions):
     assert tessellation.facet_error_db(found.ratio(WAVELENGTH)) == pytest.approx(error, rel=ERROR_TOLERANCE, abs=0)
 
 
+def with_road(mesh, side=40.0):
+    """One mesh of a body and a square below it, as foreign files have them."""
+    vertices = np.array([(x, y, -1.0) for x in (-side, side) for y in (-side, side)])
+    return ep.Mesh(np.concatenate([mesh.vertices, vertices]),
+                   np.concatenate([mesh.triangles, len(mesh.vertices) + np.array([(0, 2, 3), (0, 3, 1)])]))
+
+
+@pytest.mark.parametrize("subdivisions", LEVELS)
+def test_a_road_in_the_same_mesh_hides_no_coarse_body(subdivisions):
+    """The road is four orders of magnitude larger than the sphere: neither its area nor its facets count."""
+    alone = as_mesh(icosphere(2**subdivisions))
+    found, wanted = measured(with_road(alone)), measured(alone)
+    for name in ("edge", "radius", "curved_area"):
+        assert getattr(found, name) == pytest.approx(getattr(wanted, name), rel=1e-9)
+    assert len(warnings_of(with_road(alone))) == len(warnings_of(icosphere(2**subdivisions)))
+
+
+def test_the_rim_of_a_flat_disc_is_part_of_it():
+    """A thin disc is one piece, of which its rim is next to nothing: planes have no curved surfaces."""
+    angle = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
+    ring = np.stack([0.0 * angle, np.cos(angle), np.sin(angle)], axis=1)
+    vertices = np.concatenate([ring, ring + (0.01, 0, 0), [(0, 0, 0), (0.01, 0, 0)]])
+    triangles = [t for k, n in zip(range(24), [*range(1, 24), 0]) for t in (
+        (k, n, 24 + n), (k, 24 + n, 24 + k), (48, n, k), (49, 24 + k, 24 + n))]
+    assert measured(ep.Mesh(vertices, triangles)) is None
+    assert warnings_of(with_road(ep.Mesh(vertices, triangles))) == []
+
+
 def test_coarse_spheres_are_warned_of_and_fine_ones_are_not():
     for subdivisions in (2, 3):
         (text,) = warnings_of(icosphere(2**subdivisions))

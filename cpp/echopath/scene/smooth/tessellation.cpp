@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kFlatAngle = 1e-3;    // rad: neighbours that turn by less are one plane
 constexpr double kCreaseAngle = 0.7;   // rad (40 degrees): neighbours that turn by more meet in an edge that is meant
-constexpr double kCurvedShare = 0.05;  // of a mesh's area, below it the mesh counts as flat
+constexpr double kCurvedShare = 0.05;  // of a piece's area, below it the piece counts as flat
 constexpr double kOneSided = 0.6;      // |sum of turns| / sum: a facet that turns on one side only lies at a bend
 
 // Describes an edge with two facets.
@@ -52,11 +52,12 @@ class TessellationMeter {
   std::optional<Tessellation> measure() {
     if (mesh_.is_flat()) return std::nullopt;
     find_turns();
-    const std::vector<bool> is_curved = find_curved();
+    std::vector<bool> is_curved = find_curved();
+    leave_flat_pieces_out(is_curved);
     Tessellation out;
     out.area = std::accumulate(areas_.begin(), areas_.end(), 0.0);
     for (size_t f = 0; f < areas_.size(); ++f) out.curved_area += is_curved[f] ? areas_[f] : 0.0;
-    if (out.curved_area == 0.0 || out.curved_area < kCurvedShare * out.area) return std::nullopt;
+    if (out.curved_area == 0.0) return std::nullopt;
     summarise(is_curved, out);
     return out;
   }
@@ -113,6 +114,33 @@ class TessellationMeter {
     for (size_t f = 0; f < areas_.size(); ++f)
       is_curved[f] = weight[f] > 0 && plane_outward[f].norm() < kOneSided * plane_weight[f];
     return is_curved;
+  }
+
+  // Takes the mark from the facets of pieces that count as flat. A piece is what edges hold together: a body and the road below
+  // it are two, even where one mesh holds both, so that the area of the road does not make the body a trifle.
+  void leave_flat_pieces_out(std::vector<bool>& is_curved) const {
+    const std::vector<uint32_t> piece = find_pieces();
+    std::vector<double> area(areas_.size(), 0.0), curved(areas_.size(), 0.0);
+    for (size_t f = 0; f < areas_.size(); ++f) {
+      area[piece[f]] += areas_[f];
+      curved[piece[f]] += is_curved[f] ? areas_[f] : 0.0;
+    }
+    for (size_t f = 0; f < areas_.size(); ++f) {
+      if (curved[piece[f]] < kCurvedShare * area[piece[f]]) is_curved[f] = false;
+    }
+  }
+
+  // Returns the piece of each facet, named by one of its facets.
+  std::vector<uint32_t> find_pieces() const {
+    std::vector<uint32_t> parent(areas_.size());
+    std::iota(parent.begin(), parent.end(), 0u);
+    const auto root_of = [&](uint32_t facet) {
+      while (parent[facet] != facet) facet = parent[facet] = parent[parent[facet]];
+      return facet;
+    };
+    for (const Turn& turn : turns_) parent[root_of(turn.first)] = root_of(turn.second);
+    for (uint32_t f = 0; f < parent.size(); ++f) parent[f] = root_of(f);
+    return parent;
   }
 
   void summarise(const std::vector<bool>& is_curved, Tessellation& out) const {

@@ -116,8 +116,8 @@ class TessellationMeter {
     return is_curved;
   }
 
-  // Takes the mark from the facets of pieces that count as flat. A piece is what edges hold together: a body and the road below
-  // it are two, even where one mesh holds both, so that the area of the road does not make the body a trifle.
+  // Takes the mark from the facets of pieces that count as flat. A piece is what edges hold together: a body and the road
+  // below it are two, even where one mesh holds both, so that the area of the road does not make the body a trifle.
   void leave_flat_pieces_out(std::vector<bool>& is_curved) const {
     const std::vector<uint32_t> piece = find_pieces();
     std::vector<double> area(areas_.size(), 0.0), curved(areas_.size(), 0.0);

@@ -23,6 +23,7 @@ from .steps import csv_text, told
 
 FREQUENCY = 77e9                     # Hz
 AZIMUTH_STEP, QUICK_AZIMUTH_STEP = 5.0, 30.0   # deg
+FINE_AZIMUTH_STEP = 0.25             # deg, as wide as the flash of a wheel square to the radar
 NUM_RAYS, QUICK_NUM_RAYS = 2 ** 16, 2 ** 13
 FLOOR = 1e-5                         # m^2, least cross section that is shown
 COLUMNS = 4                          # of panels
@@ -41,7 +42,8 @@ CLOSED_FORM_DB = 1.0                 # of closed forms, either way
 @dataclasses.dataclass(frozen=True)
 class Subject:
     """An actor, and what is published of it: a band from low to high in dBsm of the statistic, "mean", "median" or "peak"; None
-    where nothing is. elevation: rad, of the radar seen from it."""
+    where nothing is. elevation: rad, of the radar seen from it; step: deg, from azimuth to azimuth, fine where flashes make
+    the mean."""
 
     name: str
     make: Callable
@@ -50,6 +52,7 @@ class Subject:
     high: float | None
     source: str
     elevation: float = 0.0
+    step: float = AZIMUTH_STEP
 
 
 def _closed_form(sigma: float) -> tuple[float, float]:
@@ -68,7 +71,8 @@ SUBJECTS = (
     Subject("van", lambda: actors.van(), "median", 0.0, 20.0, f"usual aspects of vans; {MEMORY}"),
     Subject("truck", lambda: actors.truck(), "median", 10.0, 30.0, f"usual aspects of trucks; {MEMORY}"),
     Subject("motorcycle with rider", lambda: actors.motorcycle(), "median", -5.0, 10.0, f"77 GHz; {MEMORY}"),
-    Subject("cyclist", lambda: actors.cyclist(), "mean", -8.0, 3.0, f"bicyclists at 77 GHz; {MEMORY}"),
+    Subject("cyclist", lambda: actors.cyclist(), "mean", -8.0, 3.0, f"bicyclists at 77 GHz; {MEMORY}",
+            step=FINE_AZIMUTH_STEP),
     Subject("pedestrian", lambda: actors.pedestrian(), "mean", -6.9, -3.5, JRC),
     Subject("runner", lambda: actors.runner(), "mean", -6.9, -3.5, f"of standing adults: {JRC}"),
     Subject("child of 1.15 m", lambda: actors.child(), "mean", -14.0, -7.0, f"{MEMORY}; none was found"),
@@ -77,7 +81,7 @@ SUBJECTS = (
     Subject("tree", lambda: actors.tree(), "mean", -4.0, 6.0,
             f"-15 to -8 dB a square metre of crown (14 m^2) at 95 GHz; {MEMORY}"),
     Subject("standing person", lambda: actors.standing_person(), "mean", -6.9, -3.5, JRC),
-    Subject("bicycle", lambda: actors.bicycle(), "mean", None, None, NONE_FOUND),
+    Subject("bicycle", lambda: actors.bicycle(), "mean", None, None, NONE_FOUND, step=FINE_AZIMUTH_STEP),
     Subject("parked row", lambda: actors.parked_row(), "median", None, None, NONE_FOUND),
     Subject("guard rail of 20 m", lambda: actors.guard_rail(), "median", None, None, NONE_FOUND),
     Subject("traffic sign", lambda: actors.traffic_sign(size=SIGN_SIZE), "peak", *DISC, "4 pi A^2 / wavelength^2 of its disc"),
@@ -136,7 +140,7 @@ def aspect_of(subject: Subject, *, quick: bool = False) -> Aspect:
     """Cross section of a subject over azimuth, vertical polarisation."""
     scene = ep.Scene()
     scene.add(subject.make(), name="actor")
-    azimuth = np.radians(np.arange(0.0, 360.0, QUICK_AZIMUTH_STEP if quick else AZIMUTH_STEP))
+    azimuth = np.radians(np.arange(0.0, 360.0, QUICK_AZIMUTH_STEP if quick else subject.step))
     level, rise = np.cos(subject.elevation), np.sin(subject.elevation)
     directions = np.stack([level * np.cos(azimuth), level * np.sin(azimuth), rise + 0.0 * azimuth], axis=-1)
     sigma = ep.rcs(scene, frequency=FREQUENCY, incidence=directions, num_rays=QUICK_NUM_RAYS if quick else NUM_RAYS)

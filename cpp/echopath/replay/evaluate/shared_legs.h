@@ -53,9 +53,9 @@ class SharedLegEvaluation {
     cells_.clear();
   }
   // Sets dark[place] to 1 for coherent chains whose amplitude stays below `limit` (sqrt(W)) for all antennas, at the nodes
-  // and between them (stays_below, node_tails.h). It compares an upper bound of the amplitude, made of a bound of the launch
-  // cell's filter over all antennas (filter_bound.h) and of their largest gains. Chains whose bound exceeds the limit are
-  // not marked, even where their amplitude stays below it.
+  // and between them (stays_below, chebyshev_tails.h). It compares an upper bound of the amplitude, made of a bound of the
+  // launch cell's filter over all antennas (filter_bound.h) and of their largest gains. Chains whose bound exceeds the limit
+  // are not marked, even where their amplitude stays below it.
   void find_dark(const SharedLegPlan& plan, const PathPreparer& preparer, const PosedNodes& nodes, const FrameNodes& times,
                  const RadioConstants& radio, double limit, std::vector<uint8_t>& dark);
   // Removes what it holds of the paths whose places are marked ([P], 1 or 0). It must be called before the plan leaves out

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "echopath/replay/meshes_of_path.h"
-#include "echopath/replay/time/node_tails.h"
+#include "echopath/replay/time/chebyshev_tails.h"
 #include "echopath/replay/time/turn_rates.h"
 
 namespace echopath {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "cpp/support/scenes.h"
-#include "echopath/replay/time/node_tails.h"
+#include "echopath/replay/time/chebyshev_tails.h"
 
 namespace echopath::test_dark_paths {
 namespace {

@@ -7,13 +7,13 @@
 namespace echopath {
 
 // Holds the largest tails of all pieces.
-struct NodeTails {
+struct ChebyshevTails {
   std::vector<double> delay;      // [P] s
   std::vector<double> amplitude;  // [P] relative to the largest amplitude of the path; 0 where that is 0
 };
 
 // Returns the tails of echoes at the nodes of chebyshev_nodes.
-NodeTails node_tails(const FrameNodes& nodes, const Echoes& echoes);
+ChebyshevTails chebyshev_tails(const FrameNodes& nodes, const Echoes& echoes);
 // Returns the tails of amplitudes that stand as logarithms (TimeSampling::Rows), [P], relative to the amplitude.
 std::vector<double> tails_of_logarithms(const FrameNodes& nodes, const Echoes& echoes);
 

@@ -9,7 +9,7 @@
 #include "echopath/replay/replay.h"
 #include "echopath/signal/echoes/echo_states.h"
 
-namespace echopath::test_turning_paths {
+namespace echopath::test_interpolated_logarithms {
 namespace {
 
 using namespace testing;
@@ -152,4 +152,4 @@ TEST(TurningPaths, EchoesAreTheSameInAnyBlock) {
 }
 
 }  // namespace
-}  // namespace echopath::test_turning_paths
+}  // namespace echopath::test_interpolated_logarithms

@@ -4,7 +4,7 @@
 
 #include "echopath/replay/echo_memory.h"
 #include "echopath/replay/replay.h"
-#include "echopath/replay/time/node_tails.h"
+#include "echopath/replay/time/chebyshev_tails.h"
 
 namespace echopath {
 namespace {

@@ -9,7 +9,7 @@
 #include "echopath/replay/posed/hit_patches.h"
 #include "echopath/replay/replay.h"
 
-namespace echopath::test_needed_paths {
+namespace echopath::test_interpolated_paths {
 namespace {
 
 using namespace testing;
@@ -154,4 +154,4 @@ TEST(NeededPaths, PolynomialsPosedForSomePathsGiveThemTheSameEchoes) {
 }
 
 }  // namespace
-}  // namespace echopath::test_needed_paths
+}  // namespace echopath::test_interpolated_paths

@@ -1,4 +1,4 @@
-// The part of the replayer that tells which paths and meshes are needed.
+// The part of the replayer that interpolates paths by polynomials, and tells which paths and meshes need that.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,7 +7,7 @@
 #include "echopath/replay/echo_memory.h"
 #include "echopath/replay/meshes_of_path.h"
 #include "echopath/replay/replay.h"
-#include "echopath/replay/time/node_tails.h"
+#include "echopath/replay/time/chebyshev_tails.h"
 
 namespace echopath {
 namespace {
@@ -60,7 +60,7 @@ void Replayer::find_strongest() {
 // Raises the orders that paths need whose length or amplitude in one channel the polynomial does not follow.
 void Replayer::raise_orders(const FrameNodes& nodes, const Echoes& echoes, std::span<const double> unfiltered,
                             std::vector<UnfollowedPath>& needed) const {
-  const NodeTails tails = node_tails(nodes, echoes);
+  const ChebyshevTails tails = chebyshev_tails(nodes, echoes);
   const auto raise = [&](double tolerance, double tail, double first, double& order) {
     if (tail > tolerance) order = std::max(order, order_for(tolerance, tail, first, nodes.order));
   };

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "echopath/replay/evaluate/shared_legs.h"
-#include "echopath/replay/time/node_tails.h"
+#include "echopath/replay/time/chebyshev_tails.h"
 
 namespace echopath {
 namespace {

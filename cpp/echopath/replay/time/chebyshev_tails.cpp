@@ -1,4 +1,4 @@
-#include "echopath/replay/time/node_tails.h"
+#include "echopath/replay/time/chebyshev_tails.h"
 
 #include <algorithm>
 #include <array>
@@ -78,18 +78,18 @@ class Coefficients {
   std::vector<double> before_last_, last_;
 };
 
-constexpr size_t kTogether = 128;  // paths whose sums stay in the first-level cache
+constexpr size_t kSummedTogether = 128;  // paths whose sums stay in the first-level cache
 
 }  // namespace
 
-NodeTails node_tails(const FrameNodes& nodes, const Echoes& echoes) {
+ChebyshevTails chebyshev_tails(const FrameNodes& nodes, const Echoes& echoes) {
   const auto num_paths = static_cast<size_t>(echoes.num_echoes);
   const auto* amplitude = reinterpret_cast<const double*>(echoes.amplitude.data());
-  NodeTails tails{std::vector<double>(num_paths), std::vector<double>(num_paths)};
-  Coefficients of_delays(nodes, kTogether), of_amplitudes(nodes, 2 * kTogether);
-  std::array<double, kTogether> largest;
-  for (size_t begin = 0; begin < num_paths; begin += kTogether) {
-    const size_t count = std::min(kTogether, num_paths - begin);
+  ChebyshevTails tails{std::vector<double>(num_paths), std::vector<double>(num_paths)};
+  Coefficients of_delays(nodes, kSummedTogether), of_amplitudes(nodes, 2 * kSummedTogether);
+  std::array<double, kSummedTogether> largest;
+  for (size_t begin = 0; begin < num_paths; begin += kSummedTogether) {
+    const size_t count = std::min(kSummedTogether, num_paths - begin);
     for (int piece = 0; piece < nodes.num_pieces(); ++piece) {
       of_delays.find(echoes.delay.data() + begin, piece, num_paths, count);
       run_simd<raise_by_delays>(of_delays.before_last(), of_delays.last(), count, tails.delay.data() + begin);
@@ -110,9 +110,9 @@ std::vector<double> tails_of_logarithms(const FrameNodes& nodes, const Echoes& e
   const auto num_paths = static_cast<size_t>(echoes.num_echoes);
   const auto* amplitude = reinterpret_cast<const double*>(echoes.amplitude.data());
   std::vector<double> tails(num_paths);
-  Coefficients coefficients(nodes, 2 * kTogether);
-  for (size_t begin = 0; begin < num_paths; begin += kTogether) {
-    const size_t count = std::min(kTogether, num_paths - begin);
+  Coefficients coefficients(nodes, 2 * kSummedTogether);
+  for (size_t begin = 0; begin < num_paths; begin += kSummedTogether) {
+    const size_t count = std::min(kSummedTogether, num_paths - begin);
     for (int piece = 0; piece < nodes.num_pieces(); ++piece) {
       coefficients.find(amplitude + 2 * begin, piece, 2 * num_paths, 2 * count);
       run_simd<raise_by_amplitudes>(coefficients.before_last(), coefficients.last(), count, tails.data() + begin);

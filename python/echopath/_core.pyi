@@ -1050,7 +1050,7 @@ class ChirpSequence:
 
     start_frequency: Hz, at the first sample
     bandwidth: Hz, swept by the samples of a chirp
-    num_samples: of a chirp
+    num_samples: of a chirp; 1: a radar that tells no ranges apart, whose one cell, c / (2 bandwidth), is as far as it hears
     sampling_rate: Hz
     num_chirps: per transmitter
     chirp_interval: s between neighbouring slots, at least num_samples / sampling_rate

@@ -130,12 +130,14 @@ TEST(FaintPaths, AreKeptTogetherWithTheirReversals) {
   Paths asked = traced();
   asked.frame.faint_power = largest_power(asked);
   const Paths some = thinned(asked);
-  std::set<Name> kept;
+  std::set<Name> all, kept;
+  for (int64_t path = 0; path < asked.num_paths(); ++path) all.insert(name_of(asked, path));
   for (int64_t path = 0; path < some.num_paths(); ++path) kept.insert(name_of(some, path));
   int num_pairs = 0;
   for (const Name& name : kept) {
-    EXPECT_TRUE(kept.contains(reversed(name)));
-    num_pairs += reversed(name) != name;
+    const Name other = reversed(name);
+    EXPECT_EQ(kept.contains(other), all.contains(other));  // at the rim of a mirror one of the two may be hidden
+    num_pairs += other != name && all.contains(other);
   }
   EXPECT_GT(num_pairs, 100);
 }

@@ -33,7 +33,8 @@ class TimeGrids {
 
   double start_time() const { return start_time_; }  // s, of the frame
   ChirpDerivatives derivatives() const { return derivatives_; }
-  // Returns the first polynomial of the same cuts after `index` that has at least this order, or whose pieces are of the other kind.
+  // Returns the first polynomial of the same cuts after `index` that has at least this order, or whose pieces are of the
+  // other kind.
   GridIndex next_polynomial(GridIndex index, double needed_order) const;
 
  private:

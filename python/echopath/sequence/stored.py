@@ -86,9 +86,9 @@ class StoredSequence(Row[Frame | FrameMaps]):
         return np.array(self._store.are_whole(self._numbers), bool)
 
     @property
-    def _places_there(self) -> NDArray[np.int_]:
-        """Places of the frames that have a file, ascending; who reads one that is damaged is told so."""
-        return np.flatnonzero(self._store.are_there(self._numbers))
+    def is_there(self) -> NDArray[np.bool_]:
+        """Whether each frame has a file, [K], whole or not; who reads one that is damaged is told so."""
+        return np.array(self._store.are_there(self._numbers), bool)
 
     def _item(self, place: int) -> Frame | FrameMaps:
         number = self._numbers[place]
@@ -99,7 +99,7 @@ class StoredSequence(Row[Frame | FrameMaps]):
         return read_frame(path, self.keep)
 
     def _maps(self) -> tuple[int, Iterator[tuple]]:
-        there = self._places_there
+        there = np.flatnonzero(self.is_there)
         paths, times = [self.paths_of_files[place] for place in there], self.times[there]
         found = power_of(paths[0]) if paths else None
         if paths and found is None:
@@ -113,7 +113,7 @@ class StoredSequence(Row[Frame | FrameMaps]):
 
         Raises ValueError where they keep none (`truth=True` of `Sequence` asks for it), ep.FileError for a damaged file.
         """
-        return truth_of_files(self, self._places_there)
+        return truth_of_files(self, np.flatnonzero(self.is_there))
 
     def to_xarray(self) -> Dataset:
         """The maps of all frames that are there as an xarray.Dataset, with names and units on every axis.
@@ -129,7 +129,7 @@ class StoredSequence(Row[Frame | FrameMaps]):
         each HDF5 file for itself, and only a folder is safe. Needs xarray, raises ModuleNotFoundError without it, ep.FileError
         for a damaged file, here or where it is read, ValueError where no frame is there.
         """
-        return dataset_of(self, self._places_there)
+        return dataset_of(self, np.flatnonzero(self.is_there))
 
     def __repr__(self) -> str:
         return (f"StoredSequence('{self.path}', {len(self)} frames {self._span()}, {int(self.is_done.sum())} done, "

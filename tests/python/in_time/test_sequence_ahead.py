@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 import echopath as ep
+from echopath.frame import run
 from echopath.guard.check import Check, warn_of
 from echopath.sequence import ahead, sequence, unused_memory
 from echopath.sequence.ahead import one_ahead
@@ -210,7 +211,7 @@ def test_python_may_end_with_a_loop_that_nobody_ended():
 
 def test_warnings_name_the_line_of_the_loop(monkeypatch):
     wrong = Check("look", error=2.0, promise=1.0, unit="dB", count=3)
-    monkeypatch.setattr(sequence, "warn_of", lambda checks: warn_of([wrong]))
+    monkeypatch.setattr(run, "warn_of", lambda checks, advised: warn_of([wrong]))
     with warnings.catch_warnings(record=True) as seen:
         warnings.simplefilter("always")
         for _ in make_sequence(frames=2):

@@ -1,6 +1,8 @@
 """Frame files: what is written is what is read, whole or not at all, and damage is noticed."""
 from __future__ import annotations
 
+import os
+
 import h5py
 import numpy as np
 import pytest
@@ -258,3 +260,12 @@ def test_a_record_alone_is_shown_and_saved_as_paths_alone(saved, tmp_path):
     with pytest.raises(ValueError, match="^frame: must be a frame with its signals .frame.paths.save"):
         ep.save_frame(frame, tmp_path / "other.h5")
     assert not (tmp_path / "other.h5").exists()
+
+
+def test_no_file_takes_the_place_of_a_pipe(frame, tmp_path):
+    pipe = tmp_path / "here.h5"
+    os.mkfifo(pipe)
+    before = pipe.stat().st_mode
+    with pytest.raises(ep.FileError, match="here.h5: cannot be written .*, not a file"):
+        frame.paths.save(pipe)
+    assert pipe.stat().st_mode == before and list(tmp_path.iterdir()) == [pipe]

@@ -130,8 +130,8 @@ def _of_stored(stored) -> TimeLine:
 
 def written_frames(stored) -> list[Moment]:
     """The frames of a StoredSequence that are there."""
-    frames = zip(stored.times, stored.paths_of_files, stored.is_done)
-    return [Moment(f"frame {place}", float(time), path, stored) for place, (time, path, is_done) in enumerate(frames) if is_done]
+    frames = enumerate(zip(stored.times, stored.paths_of_files, stored.is_there))
+    return [Moment(f"frame {place}", float(time), path, stored) for place, (time, path, is_there) in frames if is_there]
 
 
 def _of_dataset(folder: Path, given=None) -> TimeLine:

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from itertools import islice
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -34,11 +35,13 @@ def in_dask(scheduler: str, path: Path, folder: str, scenes: Sequence[int], run:
         raise _unreached(scheduler, error) from None
     where = folder if is_address(folder) else str(Path(folder).resolve())
     lost = (distributed.client.FutureCancelledError, distributed.comm.CommClosedError)
-    with client:
-        try:
-            yield from _as_they_come(distributed, client, str(path.resolve()), where, iter(scenes), run)
-        except lost as error:
-            raise _unreached(scheduler, error) from None
+    try:
+        yield from _as_they_come(distributed, client, str(path.resolve()), where, iter(scenes), run)
+    except lost as error:
+        raise _unreached(scheduler, error) from None
+    finally:
+        with suppress(RuntimeError):  # a client that has just lost its scheduler may stumble over timeouts of its own
+            client.close()
 
 
 def _unreached(scheduler: str, error: Exception) -> ConnectionError:

@@ -79,7 +79,7 @@ class TraceSettings(Settings):
     polarization, footprint, sampler: words; batches: 1 to 64 independent parts of the rays, None: 1
     target_error_db: dB, error of each echo until which rays are added, at most max_rays
     scatterers: of rough surfaces, a word; edges: whether echoes of sharp edges are looked for, or "auto"
-    faint_power: W, of diffuse paths, below which some stand for all, 0: none, or "auto"
+    faint_power: W, the most that a diffuse path may carry which stands for others as well, 0: all are kept, or "auto"
     effects: {name of an effect of the weather: True, False or "auto"}, as pairs
     Raises TypeError or ValueError naming the keyword. Values are frozen; two with equal values are equal.
     """

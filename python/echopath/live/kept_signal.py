@@ -9,7 +9,6 @@ import numpy as np
 
 from .. import _core
 from ..signals.parts import ONLY_PARTITION, Parts, check_partitions
-from ..tracing.edge_paths import warn_of_edge_paths
 from ..tracing.faint_paths import faint_power_of
 from ..tracing.polarization import antennas_of, chosen_model
 from ..transmit.signals import decompose_slots, synthesize_slots
@@ -100,7 +99,6 @@ class KeptSignal:
         num_paths = 0
         if self._whole is not None:
             num_paths = self._whole.num_paths
-            warn_of_edge_paths(self._whole)
             self._set_cubes(self._signals_of(self._whole, radar, progress))
             self._made = self._whole
             self._radar, self._whole, self._pending, self._num_differences = radar, None, [], 0

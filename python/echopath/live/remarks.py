@@ -5,6 +5,7 @@ from ..base.callers import warn_user
 from ..scene.bodies import warn_of_bodies
 from ..scene.scene import Scene
 from ..signals.silence import warn_of_silence
+from ..tracing.edge_paths import warn_of_edge_paths
 from ..tracing.lost_rays import warn_of_record
 from ..weather.echoes import has_rain_echoes
 from .kept_signal import KeptSignal, Update
@@ -27,5 +28,6 @@ def warn_of_update(kept: KeptSignal, done: Update, radar) -> None:
     """Warns (RuntimeWarning) as `trace` does where all rays were shot, and as `simulate` does where nothing is heard."""
     if done.new_frame is not None:
         warn_of_record(done.new_frame)
+        warn_of_edge_paths(kept.paths())
     if not kept.cube.any():
         warn_of_silence(kept.paths(), radar, kept.cube)

@@ -41,7 +41,7 @@ class TraceTable(Table):
     edges: Edges = Field(
         TraceSettings.edges, description="also find the echoes of sharp edges, or where they stand out of the noise")
     faint_power: Annotated[FaintPower, by_check(TraceSettings.RULES["faint_power"])] = Field(
-        TraceSettings.faint_power, description="W, below which some diffuse paths stand for all; 0: all are kept")
+        TraceSettings.faint_power, description="W, the most of a diffuse path that stands for others; 0: all are kept")
     effects: Annotated[Any, by_check(effects_rule)] = Field(
         TraceSettings.effects, description="name of an effect of the weather = true, false or \"auto\"")
 

@@ -20,7 +20,8 @@ def warn_of_silence(paths, radar, cube: np.ndarray) -> None:
 def _reasons(paths, radar) -> list[str]:
     time = paths.frame.trace_time
     last = radar.waveform.max_range
-    beyond = paths.lengths([time], 0, 0)[0] > 2.0 * last
+    ends = (_first_place(antennas, radar, paths.radar, time) for antennas in (radar.transmitters, radar.receivers))
+    beyond = paths.lengths([time], *ends)[0] > 2.0 * last
     unseen = ~_antennas_see(paths, radar, time)
     said = [(beyond, f"beyond the last range of the waveform, {last:.4g} m"),
             (unseen & ~beyond, "where the antennas have no gain: they look elsewhere")]
@@ -29,6 +30,12 @@ def _reasons(paths, radar) -> list[str]:
         reasons.append("rays too few for the coherent echo of a surface found none of it: ep.unresolved(paths) says which "
                        "objects need more, ep.received_power(paths) how much there may be")
     return reasons
+
+
+def _first_place(antennas, radar, traced, time: float) -> np.ndarray:
+    """Where the first of a radar's antennas stands in the frame of the radar that traced, [3] in m."""
+    in_world = radar.world_from_radar(time) @ [*antennas[0].position, 1.0]
+    return np.linalg.solve(traced.world_from_radar(time), in_world)[:3]
 
 
 def _how_many(lie: np.ndarray) -> str:

@@ -70,12 +70,27 @@ def test_most_paths_are_left_out_and_their_power_is_kept():
     assert is_coherent[0] == is_coherent[1]
 
 
-def test_intervals_count_what_is_left_to_chance():
-    """A Lambert plate 20 m away that faces the radar: sigma = 4 A R of the reflectivity R, in the mean over the phases."""
+def plate():
+    """A Lambert plate 20 m away that faces the radar, and its power in W: sigma = 4 A R of the reflectivity R, in the mean over
+    the phases."""
     scene = ep.Scene()
     scene.add(ep.actors.plate(0.2, 0.2), name="plate", material=LAMBERT, position=(20, 0, 1))
     wavelength = ep.speed_of_light / 77e9
-    truth = 0.01 * 4.0 * 0.04 * 0.3 * wavelength ** 2 / ((4.0 * np.pi) ** 3 * 20.0 ** 4)
+    return scene, 0.01 * 4.0 * 0.04 * 0.3 * wavelength ** 2 / ((4.0 * np.pi) ** 3 * 20.0 ** 4)
+
+
+@pytest.mark.filterwarnings("ignore:trace. max_rays:RuntimeWarning")
+def test_the_error_of_a_trace_to_a_target_counts_the_lot():
+    scene, truth = plate()
+    found = [ep.trace(scene, radar(), num_rays=2000, max_rays=2000, target_error_db=0.2, seed=seed, max_bounces=1,
+                      faint_power=truth / 100.0) for seed in range(40)]
+    scatter = np.std([10.0 * np.log10(ep.received_power(paths).power) for paths in found])
+    assert scatter > 0.2
+    assert np.mean([paths.frame.error_db for paths in found]) > 1.5 * scatter  # half of a 95 % interval
+
+
+def test_intervals_count_what_is_left_to_chance():
+    scene, truth = plate()
     found = [ep.received_power(ep.trace(scene, radar(), num_rays=2048, seed=seed, max_bounces=1, faint_power=truth / 100.0))
              for seed in range(60)]
     held = sum(one.low <= truth <= one.high for one in found)

@@ -9,6 +9,19 @@
 
 namespace echopath {
 
+namespace {
+
+// Returns the record with the error that it has once faint paths are left out by lot, which more rays hardly mend.
+Paths with_error_of_lot(Paths paths, const ErrorTarget& target, Job* job) {
+  if (paths.frame.statistics.num_faint_paths > 0) {
+    const WantedError wanted{.db = target.error_db, .floor = target.floor};
+    paths.frame.error_db = std::max(paths.frame.error_db, ray_needs(paths, wanted, job).worst_db);
+  }
+  return paths;
+}
+
+}  // namespace
+
 void ErrorTarget::validate() const {
   require(error_db > 0, "target_error_db", "must be positive", error_db);
   require(max_rays >= 1 && max_rays <= kMostRays, "max_rays", "must lie in [1, 10000000000]", max_rays);
@@ -30,7 +43,7 @@ Paths trace_to_error(const SceneSnapshot& scene, const Radar& radar, const Trace
     paths.frame.error_db = needs.worst_db;
     const bool is_met = needs.worst_db <= target.error_db;
     if (is_met || launch.num_rays == target.max_rays || paths.frame.statistics.num_hits == 0)
-      return thinned(std::move(paths), job);
+      return with_error_of_lot(thinned(std::move(paths), job), target, job);
     const double wanted = std::min(needs.num_rays(), static_cast<double>(target.max_rays));
     launch.num_rays = std::clamp(std::llround(wanted), std::min<long long>(2 * launch.num_rays, target.max_rays),
                                  static_cast<long long>(target.max_rays));

@@ -235,8 +235,8 @@ def test_sequences_of_mirrors_that_were_not_followed_are_said_and_warned_of():
 
 def test_objects_that_no_rays_aim_at_are_said():
     statistics = ep.TraceStatistics(num_unaimed=12)
-    effect = next(rule(rules.Case(make_scene(), make_radar(), rules.Settings(4, "second_order", "scalar", "lattice", 1, None,
-                  "rays", False, 0.0, "material", "interpolated", "never", None), statistics)) for rule in rules.RULES
+    settings = rules.Settings(**dict.fromkeys(rules.Settings.__dataclass_fields__) | {"max_bounces": 4})
+    effect = next(rule(rules.Case(make_scene(), make_radar(), settings, statistics)) for rule in rules.RULES
                   if rule.name == "rays aimed at objects")
     assert effect.modelled and "12 objects and images have no rays of their own" in effect.reason
     with pytest.warns(RuntimeWarning, match="12 objects and images"):

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
-#include <cstring>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,12 +9,12 @@
 #include "echopath/base/bit_sum.h"
 #include "echopath/base/random.h"
 #include "echopath/base/threads/parallel.h"
-#include "echopath/replay/replay.h"
+#include "echopath/power/path_power.h"
+#include "echopath/power/shared_phase.h"
 
 namespace echopath {
 namespace {
 
-constexpr int64_t kPathsEvaluatedTogether = 1 << 19;
 constexpr size_t kPathsDrawnTogether = 1 << 14;
 // A path is kept at least once in 4^kMostLevels times: its amplitude, which may grow from what it is at the time of the
 // trace, is multiplied by 8 at most.
@@ -51,25 +49,14 @@ std::vector<int64_t> diffuse_paths(const Paths& paths) {
   return found;
 }
 
-// Raises `power` [places] to that of these paths in one channel, W, where it is larger.
-void raise_to_channel(const Paths& paths, std::span<const int64_t> places, const Radar& channel, std::vector<double>& power,
-                      Job* job) {
-  const Replayer replayer(paths, channel);
-  std::vector<double> lengths;
-  std::vector<std::complex<double>> amplitudes;
-  for (size_t begin = 0; begin < places.size(); begin += kPathsEvaluatedTogether) {
-    const auto block = places.subspan(begin, std::min<size_t>(kPathsEvaluatedTogether, places.size() - begin));
-    replayer.evaluate(block, paths.frame.trace_time, lengths, amplitudes, job);
-    for (size_t i = 0; i < block.size(); ++i) power[begin + i] = std::max(power[begin + i], std::norm(amplitudes[i]));
-  }
-}
-
 // Returns the largest power in W of each of these paths over the kinds of antennas.
 std::vector<double> largest_power(const Paths& paths, std::span<const int64_t> places, Job* job) {
   std::vector<double> power(places.size(), 0.0);
   for (const size_t tx : kinds_of(paths.radar.transmitters)) {
     for (const size_t rx : kinds_of(paths.radar.receivers)) {
-      raise_to_channel(paths, places, one_channel(paths.radar, tx, rx), power, job);
+      const std::vector<double> there = path_power(paths, places, one_channel(paths.radar, tx, rx), job);
+      std::transform(there.begin(), there.end(), power.begin(), power.begin(),
+                     [](double one, double other) { return std::max(one, other); });
     }
   }
   return power;
@@ -82,24 +69,8 @@ int level_of(double power, double faint_power) {
   return level;
 }
 
-// Returns the diffuse hits of a path at both of its ends.
-struct DiffuseEnds {
-  const Hit *first, *last;
-};
-DiffuseEnds diffuse_ends(const Paths& paths, int64_t path) {
-  const Hit* hits = paths.hits_of(path);
-  const uint64_t diffuse = paths.diffuse[static_cast<size_t>(path)];
-  return {hits + std::countr_zero(diffuse), hits + std::bit_width(diffuse) - 1};
-}
-
-bool is_same(const Hit* a, const Hit* b) { return a == b || std::memcmp(a, b, sizeof(Hit)) == 0; }
-
-bool share_ends(const DiffuseEnds& a, const DiffuseEnds& b) {
-  return (is_same(a.first, b.first) && is_same(a.last, b.last)) || (is_same(a.first, b.last) && is_same(a.last, b.first));
-}
-
-// Draws which of the diffuse paths are kept. The paths of a run, which follow each other in the record, lie between the same
-// diffuse hits: a path and its reversal are in one.
+// Draws which of the diffuse paths are kept. The paths of a run, which follow each other in the record, share a random
+// phase: a path and its reversal are in one.
 class Lot {
  public:
   // `power` [places] is that of these paths, W.
@@ -140,9 +111,7 @@ class Lot {
     }
   }
 
-  bool begins_run(size_t i) const {
-    return i == 0 || !share_ends(diffuse_ends(paths_, places_[i - 1]), diffuse_ends(paths_, places_[i]));
-  }
+  bool begins_run(size_t i) const { return i == 0 || !shares_phase(paths_, places_[i - 1], places_[i]); }
 
   void draw_run(size_t begin, size_t end, std::vector<Entry>& entries) {
     const double least =

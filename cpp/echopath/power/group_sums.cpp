@@ -10,6 +10,7 @@
 #include "echopath/base/lanes/phasor.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/power/facet_phase.h"
+#include "echopath/power/shared_phase.h"
 #include "echopath/replay/replay.h"
 
 namespace echopath {
@@ -18,35 +19,7 @@ namespace {
 constexpr int64_t kBlock = 1 << 18;  // paths evaluated at a time: bounds the memory
 constexpr int64_t kNoPath = -1;
 
-bool same_point(const Hit& a, const Hit& b) {
-  return a.mesh_id == b.mesh_id && a.triangle_id == b.triangle_id && a.u == b.u && a.v == b.v;
-}
-
-// Returns the place of the k-th diffuse hit of a path, in travel order.
-int diffuse_hit(uint64_t diffuse, int k) {
-  for (; k > 0; --k) diffuse &= diffuse - 1;
-  return std::countr_zero(diffuse);
-}
-
-// Returns whether two paths share a random phase: they run over the same diffuse hits, in the same or the reversed order.
-bool shares_phase(const Paths& paths, int64_t first, int64_t second) {
-  const uint64_t of_first = paths.diffuse[static_cast<size_t>(first)],
-                 of_second = paths.diffuse[static_cast<size_t>(second)];
-  const int count = std::popcount(of_first);
-  if (count != std::popcount(of_second)) return false;
-  const Hit *a = paths.hits_of(first), *b = paths.hits_of(second);
-  if (count == 1) return same_point(a[std::countr_zero(of_first)], b[std::countr_zero(of_second)]);
-  bool forward = true, backward = true;
-  for (int k = 0; k < count; ++k) {
-    const Hit& hit = a[diffuse_hit(of_first, k)];
-    forward = forward && same_point(hit, b[diffuse_hit(of_second, k)]);
-    backward = backward && same_point(hit, b[diffuse_hit(of_second, count - 1 - k)]);
-  }
-  return forward || backward;
-}
-
-// Holds the diffuse hit of a group whose paths are being added up. A ray records the paths over one hit one after the other,
-// and selections keep their order.
+// Holds the diffuse hit of a group whose paths are being added up (shared_phase.h).
 struct OpenHit {
   int64_t path = kNoPath;
   size_t batch = 0;

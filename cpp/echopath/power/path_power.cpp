@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <complex>
-#include <numeric>
 
 #include "echopath/base/errors.h"
 #include "echopath/replay/replay.h"
@@ -12,23 +11,33 @@ namespace {
 
 constexpr int64_t kPathsPerBlock = 1 << 19;
 
+// Returns the powers of `count` paths in one channel, of which path i has the index index_of(i).
+template <class IndexOf>
+std::vector<double> powers_in_channel(const Paths& paths, int64_t count, const IndexOf& index_of, const Radar& channel,
+                                      Job* job) {
+  const Replayer replayer(paths, channel);
+  std::vector<double> power, lengths;
+  std::vector<std::complex<double>> amplitudes;
+  power.reserve(static_cast<size_t>(count));
+  for (int64_t begin = 0; begin < count; begin += kPathsPerBlock) {
+    std::vector<int64_t> block(static_cast<size_t>(std::min(kPathsPerBlock, count - begin)));
+    for (size_t i = 0; i < block.size(); ++i) block[i] = index_of(begin + static_cast<int64_t>(i));
+    replayer.evaluate(block, paths.frame.trace_time, lengths, amplitudes, job);
+    for (const std::complex<double>& amplitude : amplitudes) power.push_back(std::norm(amplitude));
+  }
+  return power;
+}
+
 }  // namespace
 
 std::vector<double> path_power(const Paths& paths, Job* job) {
   if (paths.num_paths() == 0) return {};
   require(paths.scene != nullptr, "paths", "must carry a scene to know powers", "none");
-  const Radar radar = one_channel(paths.radar);
-  const Replayer replayer(paths, radar);
-  std::vector<double> power, lengths;
-  std::vector<std::complex<double>> amplitudes;
-  power.reserve(static_cast<size_t>(paths.num_paths()));
-  for (int64_t begin = 0; begin < paths.num_paths(); begin += kPathsPerBlock) {
-    std::vector<int64_t> block(static_cast<size_t>(std::min(kPathsPerBlock, paths.num_paths() - begin)));
-    std::iota(block.begin(), block.end(), begin);
-    replayer.evaluate(block, paths.frame.trace_time, lengths, amplitudes, job);
-    for (const std::complex<double>& amplitude : amplitudes) power.push_back(std::norm(amplitude));
-  }
-  return power;
+  return powers_in_channel(paths, paths.num_paths(), [](int64_t i) { return i; }, one_channel(paths.radar), job);
+}
+
+std::vector<double> path_power(const Paths& paths, std::span<const int64_t> some, const Radar& channel, Job* job) {
+  return powers_in_channel(paths, std::ssize(some), [&](int64_t i) { return some[static_cast<size_t>(i)]; }, channel, job);
 }
 
 }  // namespace echopath

@@ -63,7 +63,7 @@ Tried try_logarithms(const Paths& paths, Replayer& replayer) {
   return tried;
 }
 
-TEST(TurningPaths, InterpolatedLogarithmsHaveTheAmplitudesOfTheChirps) {
+TEST(InterpolatedLogarithms, InterpolatedLogarithmsHaveTheAmplitudesOfTheChirps) {
   const Radar radar = radar_of_a_long_frame();
   const Paths paths = record(radar);
   Replayer replayer(paths, radar);
@@ -95,7 +95,7 @@ TEST(TurningPaths, InterpolatedLogarithmsHaveTheAmplitudesOfTheChirps) {
 }
 
 // Otherwise the test above would show nothing: the phases between nodes are ambiguous by themselves.
-TEST(TurningPaths, PhasesTurnByMoreThanHalfACycleBetweenTheNodes) {
+TEST(InterpolatedLogarithms, PhasesTurnByMoreThanHalfACycleBetweenTheNodes) {
   const Radar radar = radar_of_a_long_frame();
   const Paths paths = record(radar);
   Replayer replayer(paths, radar);
@@ -114,7 +114,7 @@ TEST(TurningPaths, PhasesTurnByMoreThanHalfACycleBetweenTheNodes) {
   EXPECT_GT(num_quick, 10u);
 }
 
-TEST(TurningPaths, OnlyCoherentPathsOfRaysTurn) {
+TEST(InterpolatedLogarithms, OnlyCoherentPathsOfRaysTurn) {
   const Radar radar = radar_of_a_long_frame();
   const Paths paths = record(radar);
   Replayer replayer(paths, radar);
@@ -130,7 +130,7 @@ TEST(TurningPaths, OnlyCoherentPathsOfRaysTurn) {
 }
 
 // Which paths stand beside it in a block changes nothing of an echo.
-TEST(TurningPaths, EchoesAreTheSameInAnyBlock) {
+TEST(InterpolatedLogarithms, EchoesAreTheSameInAnyBlock) {
   const Radar radar = radar_of_a_long_frame();
   const Paths paths = record(radar);
   Replayer replayer(paths, radar);

@@ -76,14 +76,14 @@ void expect_little_left_out(const Paths& paths, const Radar& radar, int64_t leas
   EXPECT_EQ(echoes.front().num_echoes + std::ssize(left), paths.num_paths());
 }
 
-TEST(NeededPaths, ThoseThatAreLeftOutAreTogetherBelowTheRoundingOfTheStrongest) {
+TEST(InterpolatedPaths, ThoseThatAreLeftOutAreTogetherBelowTheRoundingOfTheStrongest) {
   const Paths paths = record(two_by_two());
   expect_little_left_out(paths, two_by_two(), paths.num_paths() / 4);
 }
 
 // The first antennas hardly hear what the others do: these stand a metre away, look another way, are stronger and have
 // another polarisation.
-TEST(NeededPaths, WhatIsDarkToTheFirstAntennasAloneIsNotLeftOut) {
+TEST(InterpolatedPaths, WhatIsDarkToTheFirstAntennasAloneIsNotLeftOut) {
   Radar radar = two_by_two();
   const Paths paths = record(radar);
   for (std::vector<Antenna>* antennas : {&radar.transmitters, &radar.receivers}) {
@@ -104,7 +104,7 @@ PosedGrid whole_scene(const Paths& paths, const Radar& radar, const TimeGrids& g
   return {std::move(nodes), PosedNodes(std::move(scenes)), transmitter};
 }
 
-TEST(NeededPaths, MeshesThatArePosedLaterStandWhereAllWouldStand) {
+TEST(InterpolatedPaths, MeshesThatArePosedLaterStandWhereAllWouldStand) {
   const Radar radar = two_by_two();
   const Paths paths = record(radar);
   const Replayer replayer(paths, radar);
@@ -123,7 +123,7 @@ TEST(NeededPaths, MeshesThatArePosedLaterStandWhereAllWouldStand) {
   }
 }
 
-TEST(NeededPaths, PolynomialsMustBePosed) {
+TEST(InterpolatedPaths, PolynomialsMustBePosed) {
   const Radar radar = two_by_two();
   const Paths paths = record(radar);
   const Replayer replayer(paths, radar);
@@ -131,13 +131,14 @@ TEST(NeededPaths, PolynomialsMustBePosed) {
   EXPECT_THROW(replayer.interpolated(all_of(paths), GridIndex::polynomial(0), left), std::invalid_argument);
 }
 
-TEST(NeededPaths, PolynomialsPosedForSomePathsGiveThemTheSameEchoes) {
+TEST(InterpolatedPaths, PolynomialsPosedForSomePathsGiveThemTheSameEchoes) {
   const Radar radar = two_by_two();
   const Paths paths = record(radar);
   Replayer whole(paths, radar), partly(paths, radar);
   std::vector<std::vector<int64_t>> of_mesh(2);
   for (const int64_t path : all_of(paths)) of_mesh[paths.hits_of(path)->mesh_id].push_back(path);
-  const GridIndex polynomial = GridIndex::polynomial(whole.grids().num_polynomials() - 1);  // where no motion was tried
+  const GridIndex polynomial =
+      GridIndex::polynomial(whole.grids().num_polynomials(MotionCuts::kOfRadar) - 1);  // where no motion was tried
   whole.pose_polynomial(polynomial, all_of(paths));
   for (const std::vector<int64_t>& some : {of_mesh[1], of_mesh[0]}) {
     ASSERT_FALSE(some.empty());

@@ -11,7 +11,8 @@
 namespace echopath {
 
 // Polynomials of a set of cuts stand in ascending order of their nodes. None has more nodes than evaluation in every chirp,
-// and there is none at all where that was asked for. The grids do not change once they are made.
+// and there is none at all where that was asked for. Only `join` adds
+// grids; those that are there keep their index and do not change.
 class TimeGrids {
  public:
   static constexpr int kHighestOrder = 32;
@@ -21,7 +22,7 @@ class TimeGrids {
   const MotionCuts& cuts() const { return cuts_; }
   // Adds the polynomials of the union of two sets of cuts, unless it has them, and returns its index.
   uint32_t join(uint32_t a, uint32_t b);
-  size_t num_polynomials(uint32_t cuts = MotionCuts::kOfRadar) const { return polynomials_[cuts].size(); }
+  size_t num_polynomials(uint32_t cuts) const { return polynomials_[cuts].size(); }
   std::vector<GridIndex> polynomials() const;  // of all sets of cuts, in their order
   const PolynomialGrid& polynomial(GridIndex index) const { return polynomials_[index.cuts()][index.number()]; }
   // Returns the polynomial of the same order in the pieces of other cuts, to which its own belong; none where that has too

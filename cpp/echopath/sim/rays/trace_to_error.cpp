@@ -8,13 +8,11 @@
 #include "echopath/trace/strata/fitted_strata.h"
 
 namespace echopath {
-
 namespace {
 
 // Returns the record with the error that it has once faint paths are left out by lot, which more rays hardly mend.
-Paths with_error_of_lot(Paths paths, const ErrorTarget& target, Job* job) {
+Paths with_error_of_lot(Paths paths, const WantedError& wanted, Job* job) {
   if (paths.frame.statistics.num_faint_paths > 0) {
-    const WantedError wanted{.db = target.error_db, .floor = target.floor};
     paths.frame.error_db = std::max(paths.frame.error_db, ray_needs(paths, wanted, job).worst_db);
   }
   return paths;
@@ -36,16 +34,17 @@ Paths trace_to_error(const SceneSnapshot& scene, const Radar& radar, const Trace
   if (!kept) kept = &own;
   FittedStrata fitted;
   TraceSettings launch = settings;
+  const WantedError wanted{.db = target.error_db, .floor = target.floor};
   for (;;) {
     Paths paths = trace(scene, radar, launch, job, kept, &fitted);
-    const RayNeeds needs = ray_needs(paths, {.db = target.error_db, .floor = target.floor}, job);
+    const RayNeeds needs = ray_needs(paths, wanted, job);
     paths.frame.target_error_db = target.error_db;
     paths.frame.error_db = needs.worst_db;
     const bool is_met = needs.worst_db <= target.error_db;
     if (is_met || launch.num_rays == target.max_rays || paths.frame.statistics.num_hits == 0)
-      return with_error_of_lot(thinned(std::move(paths), job), target, job);
-    const double wanted = std::min(needs.num_rays(), static_cast<double>(target.max_rays));
-    launch.num_rays = std::clamp(std::llround(wanted), std::min<long long>(2 * launch.num_rays, target.max_rays),
+      return with_error_of_lot(thinned(std::move(paths), job), wanted, job);
+    const double rays = std::min(needs.num_rays(), static_cast<double>(target.max_rays));
+    launch.num_rays = std::clamp(std::llround(rays), std::min<long long>(2 * launch.num_rays, target.max_rays),
                                  static_cast<long long>(target.max_rays));
     launch.guide = guide_rays(paths, needs, launch.num_rays, job);
   }

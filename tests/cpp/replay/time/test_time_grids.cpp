@@ -94,14 +94,15 @@ TEST(TimeGrids, NoPolynomialCostsMoreThanEveryChirpAndExactReplayHasNone) {
   const Paths paths = empty_record(radar);
   const TimeGrids grids(paths, radar, {});
   std::vector<int> orders;
-  for (size_t k = 0; k < grids.num_polynomials(); ++k) orders.push_back(grids.polynomial(GridIndex::polynomial(k)).order);
+  for (size_t k = 0; k < grids.num_polynomials(MotionCuts::kOfRadar); ++k)
+    orders.push_back(grids.polynomial(GridIndex::polynomial(k)).order);
   EXPECT_EQ(orders, (std::vector<int>{4, 5, 6, 7, 8, 9, 10, 12}));
   const GridIndex first = GridIndex::polynomial(0);
   EXPECT_EQ(grids.polynomial(grids.next_polynomial(first, 7.5)).order, 8);
   EXPECT_TRUE(grids.next_polynomial(first, 1000.0) == GridIndex::none());
   ReplaySettings settings;
   settings.exact = true;
-  EXPECT_EQ(TimeGrids(paths, radar, settings).num_polynomials(), 0u);
+  EXPECT_EQ(TimeGrids(paths, radar, settings).num_polynomials(MotionCuts::kOfRadar), 0u);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include "echopath/replay/time/motion_cuts.h"
 #include "echopath/signal/echoes/echo_states.h"
 
-namespace echopath::test_knots {
+namespace echopath::test_motion_cuts {
 namespace {
 
 using namespace testing;
@@ -213,4 +213,4 @@ TEST(PathGrids, OfDeformingMeshesDoNotHangOnWhichTrianglesAreHit) {
 }
 
 }  // namespace
-}  // namespace echopath::test_knots
+}  // namespace echopath::test_motion_cuts

@@ -19,16 +19,16 @@ def written_whole(path, suffix: str | None = None):
     Whatever ends the block early, Ctrl-C too, the temporary file is removed and `path` is left as it was. Only what ends the
     process at once leaves it there.
     suffix: of the temporary file, None: that of `path`
-    Raises ep.FileError when the folder or the file cannot be written, and where `path` is a device, a pipe or a folder, whose
-    place no file may take.
+    Raises ep.FileError when the folder or the file cannot be written, and where `path` is a device or a pipe, whose place no
+    file may take.
     """
     with interrupts_are_kept():
         yield from _written(Path(path), suffix)
 
 
 def _written(path: Path, suffix: str | None):
-    if path.exists() and not path.is_file():
-        raise _core.FileError(f"{path}: cannot be written ({'a folder' if path.is_dir() else 'a device or a pipe'}, not a file)")
+    if path.exists() and not path.is_file() and not path.is_dir():  # nothing but folders refuses to be replaced
+        raise _core.FileError(f"{path}: cannot be written (a device or a pipe, not a file)")
     ending = path.suffix if suffix is None else suffix
     temporary = path.parent / f".{path.stem}-{secrets.token_hex(8)}{ending}"  # named before it is there: Ctrl-C may come between
     try:

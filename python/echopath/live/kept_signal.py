@@ -22,7 +22,7 @@ MOST_DIFFERENCES = 256
 class Update:
     """What an update did.
 
-    num_rays: of the record; num_rays_shot, num_paths_changed: counts; trace, signal: s that they took; new_frame: TraceFrame of a
+    num_rays: of the record; num_rays_shot, num_paths_changed: counts; trace, signal: s that they took; new_record: Paths of a
     record that was made as a whole, None where it was brought up to date
     """
 
@@ -31,7 +31,7 @@ class Update:
     num_paths_changed: int
     trace: float
     signal: float
-    new_frame: _core.TraceFrame | None
+    new_record: _core.Paths | None
 
 
 class KeptSignal:
@@ -82,7 +82,7 @@ class KeptSignal:
         middle = time.perf_counter()
         num_changed = self._bring_up(radar, progress)
         return Update(change["num_rays"], change["num_rays_shot"], num_changed, middle - begin, time.perf_counter() - middle,
-                      change["added"].frame if change["is_whole"] else None)
+                      change["added"] if change["is_whole"] else None)
 
     def _note(self, change: dict) -> None:
         """Notes what the cube lacks of the record."""

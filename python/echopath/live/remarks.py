@@ -26,8 +26,8 @@ def warn_of_scene(scene: Scene, radar, start_time: float) -> None:
 
 def warn_of_update(kept: KeptSignal, done: Update, radar) -> None:
     """Warns (RuntimeWarning) as `trace` does where all rays were shot, and as `simulate` does where nothing is heard."""
-    if done.new_frame is not None:
-        warn_of_record(done.new_frame)
-        warn_of_edge_paths(kept.paths())
+    if done.new_record is not None:
+        warn_of_record(done.new_record.frame)
+        warn_of_edge_paths(done.new_record)
     if not kept.cube.any():
         warn_of_silence(kept.paths(), radar, kept.cube)

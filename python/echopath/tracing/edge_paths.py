@@ -5,17 +5,19 @@ import numpy as np
 
 from .. import _core
 from ..base.callers import warn_user
+from ..paths.subset import subset
 
 ON_EDGE = 4                # bit of Paths.flags
 SECONDS_OF_PATH = 1e-5     # of one thread for a channel, measured in a street; other paths take a tenth of that
 LONG = 5.0                 # s of one thread, from which on signals are worth a word
 _NAMED = 3                 # mirrors of which it tells, those that most of the paths meet
-_LOOKED_AT = 100_000       # paths, for these mirrors
 
 
 def warn_of_edge_paths(paths: _core.Paths) -> None:
     """Warns (RuntimeWarning) where a signal of the paths around sharp edges takes long: of how many edges and over which
     mirrors they are, and what to do."""
+    if not paths.frame.edges:
+        return
     around = np.flatnonzero(paths.flags & ON_EDGE)
     radar = paths.radar
     seconds = SECONDS_OF_PATH * len(around) * len(radar.transmitters) * len(radar.receivers)
@@ -40,13 +42,10 @@ def _over_mirrors(paths, around) -> str:
     """Over which mirrors most of the paths go; "" where most go over none."""
     meshes = paths.scene.meshes
     is_mirror = np.array([mesh.material.mirror for mesh in meshes])
-    looked_at = around[:_LOOKED_AT]
-    hits = np.concatenate([np.arange(first, first + count) for first, count in
-                           zip(paths.offsets[looked_at], paths.num_bounces[looked_at].astype(np.int64))])
-    met = np.bincount(paths.mesh_id[hits], minlength=len(meshes)) * is_mirror
-    first, last = paths.offsets[around], paths.offsets[around] + paths.num_bounces[around]
-    before = np.concatenate([[0], np.cumsum(is_mirror[paths.mesh_id])])
-    if 2 * np.count_nonzero(before[last] > before[first]) <= len(around):
+    own = subset(paths, around)  # with the hits of these paths alone
+    met = np.bincount(own.mesh_id, minlength=len(meshes)) * is_mirror
+    before = np.concatenate([[0], np.cumsum(is_mirror[own.mesh_id])])
+    if 2 * np.count_nonzero(before[own.offsets + own.num_bounces] > before[own.offsets]) <= len(around):
         return ""
     names = [f"'{meshes[index].name}'" for index in np.argsort(-met, kind="stable")[:np.count_nonzero(met)]]
     named = ", ".join(names[:_NAMED]) + (" and others" if len(names) > _NAMED else "")

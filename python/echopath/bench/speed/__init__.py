@@ -117,10 +117,10 @@ def verdicts(results: dict) -> list[dict]:
         rows.append(_row(f"replay at {REPLAY_AIM:.0e} rad over the trace, {case['title']}", REPLAY_TARGET,
                          replay_s / case["trace_s"], most=True))
     rows.append(_row("guard, share of trace and signal", guard.TARGET, results["guard"]["share"], most=True))
-    auto = next(row for row in results["faint"] if row["share"] == faint.SHARE_OF_NOISE)
     rows.append(_row("faint paths by lot, trace and signal over all paths", faint.SAVED, faint.saved(results["faint"]),
                      most=True))
-    rows.append(_row("faint paths by lot, mean maps over what chance makes", faint.SIGMAS, auto["sigmas"], most=True))
+    rows.append(_row("faint paths by lot, mean maps over what chance makes", faint.SIGMAS,
+                     faint.row_of_auto(results["faint"])["sigmas"], most=True))
     for street in results["street"]:
         what, seconds = f"street frame, {street['rays']:,} rays", frames.STREET_SECONDS.get(street["rays"])
         if seconds:

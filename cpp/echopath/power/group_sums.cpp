@@ -24,7 +24,7 @@ struct OpenHit {
   int64_t path = kNoPath;
   size_t batch = 0;
   std::complex<double> field = 0.0;
-  bool stands_for_others = false;  // one of its paths does
+  std::complex<double> lot_field = 0.0;  // of those paths that stand for others
 };
 
 constexpr uint64_t kMirrorsAlone = ~uint64_t{0};  // the kind of paths over flagged mirrors alone
@@ -88,7 +88,7 @@ class Sums {
       open = {path, batch};
     }
     open.field += arriving;
-    open.stands_for_others |= (paths_.flags[static_cast<size_t>(path)] & kStandsForOthers) != 0;
+    if (paths_.flags[static_cast<size_t>(path)] & kStandsForOthers) open.lot_field += arriving;
   }
 
   // `arriving` holds one field for each of kCellViews, `stride` apart.
@@ -136,9 +136,13 @@ class Sums {
     GroupSums& sums = groups_[group];
     const double power = std::norm(open.field);
     sums.power[open.batch] += power;
-    // Behind a diffuse hit a ray goes where chance sends it, and chance keeps a path that stands for others.
-    const bool is_drawn = open.stands_for_others || std::popcount(paths_.diffuse[static_cast<size_t>(open.path)]) > 1;
-    (is_drawn ? sums.drawn_squares : sums.lattice_squares) += power * power;
+    // Behind a diffuse hit a ray goes where chance sends it. Elsewhere chance has a share in what stands for others alone,
+    // beside paths that are there for certain: of the sum of both fields it leaves the square of their own power aside.
+    const bool is_drawn = std::popcount(paths_.diffuse[static_cast<size_t>(open.path)]) > 1;
+    const double certain = is_drawn ? 0.0 : std::norm(open.field - open.lot_field);
+    const double by_lot = is_drawn ? power : std::norm(open.lot_field);
+    sums.lattice_squares += certain * certain;
+    sums.drawn_squares += by_lot * by_lot + 2.0 * certain * by_lot;
     sums.strongest_hit = std::max(sums.strongest_hit, power);
     ++sums.num_diffuse_hits;
     open.path = kNoPath;

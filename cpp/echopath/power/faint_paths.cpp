@@ -19,9 +19,9 @@ constexpr size_t kPathsDrawnTogether = 1 << 14;
 // A path is kept at least once in 4^kMostLevels times: its amplitude, which may grow from what it is at the time of the
 // trace, is multiplied by 8 at most.
 constexpr int kMostLevels = 3;
-// Points of surfaces persist from frame to frame but for the last bits of their coordinates: so many places are told apart
-// along each side of a triangle.
-constexpr float kPlaces = 1 << 14;
+// Points of surfaces persist from frame to frame but for the last bits of the hits there, which are micrometres: places are
+// told apart by this length, m.
+constexpr double kPlace = 1e-3;
 
 bool look_alike(const Antenna& a, const Antenna& b) {
   return a.pattern.kind == b.pattern.kind && a.pattern.peak_gain == b.pattern.peak_gain &&
@@ -161,8 +161,17 @@ class Lot {
   void add(const Hit& hit, bool is_diffuse, BitSum& sum) const {
     sum.add(mesh_keys_[hit.mesh_id]);
     if (!is_diffuse) return;
-    sum.add(std::array{static_cast<int32_t>(hit.u * kPlaces), static_cast<int32_t>(hit.v * kPlaces)});
+    sum.add(place_of(hit));
     sum.add(hit.triangle_id);
+  }
+
+  // Returns where on its triangle a hit lies, along two of its edges, as they are in the mesh at rest.
+  std::array<int64_t, 2> place_of(const Hit& hit) const {
+    const Mesh& mesh = *paths_.scene->node_of(hit.mesh_id).mesh;
+    const Triangle& corner = mesh.triangles()[hit.triangle_id];
+    const Vec3& origin = mesh.vertices()[corner[0]];
+    return {static_cast<int64_t>(hit.u * (mesh.vertices()[corner[1]] - origin).norm() / kPlace),
+            static_cast<int64_t>(hit.v * (mesh.vertices()[corner[2]] - origin).norm() / kPlace)};
   }
 
   Paths& paths_;

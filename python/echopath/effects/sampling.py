@@ -39,9 +39,8 @@ def _target(case: Case):
 def _faint_paths(case: Case):
     if len(case.diffuse) == 0:
         return False, "no material scatters diffusely"
-    power = faint_power_of(case.settings.faint_power, case.settings.scatterers, case.radar)
+    power = faint_power_of(case.settings.faint_power, case.radar)
     if power == 0.0:
-        why = "scatterers persist" if case.settings.scatterers == "surface" else "faint_power = 0"
-        return False, f"{why}: every diffuse path is kept"
+        return False, "faint_power = 0: every diffuse path is kept"
     left_out = f", {case.statistics.num_faint_paths} left out" if case.statistics else ""
     return True, f"one in 4, 16 or 64 of the diffuse paths below {in_dbm(power / 4.0):.1f} dBm, with the power of all{left_out}"

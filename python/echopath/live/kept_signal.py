@@ -73,8 +73,7 @@ class KeptSignal:
             check_partitions({ONLY_PARTITION: self._selections}, scene)
         keywords = self._trace_keywords | {"polarization": self._model(scene, radar),
                                            "attenuation": attenuation_of(scene, radar),
-                                           "faint_power": faint_power_of(self._trace_keywords["faint_power"],
-                                                                         self._trace_keywords["scatterers"], radar)}
+                                           "faint_power": faint_power_of(self._trace_keywords["faint_power"], radar)}
         change = self._record.update(scene, radar, num_rays=self.num_rays, progress=progress, **keywords)
         self._note(change)
         if self._whole is None and (radar != self._radar or self._num_differences >= MOST_DIFFERENCES):

@@ -78,9 +78,8 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
     faint_power: W; of diffuse paths that carry at most a quarter of it, one in 4, 16 or 64 is kept at random, with the power of
         all (`paths.frame.statistics.num_faint_paths` were left out): the expected power of every cell stays what it is, and
         cells that are stronger than a few faint paths fluctuate as with all of them. 0: all paths are kept; "auto": a fortieth
-        of the noise of a cell of the map, once all channels of the array are added in phase, and 0 where scatterers are of the
-        surfaces, whose speckle would not go on. "auto" saves most of the time of signals and labels where rough bodies stand
-        among mirrors, and is not for levels below the noise
+        of the noise of a cell of the map, once all channels of the array are added in phase. "auto" saves most of the time of
+        signals and labels where rough bodies stand among mirrors, and is not for levels below the noise
     effects: {name: True, False or "auto"} of effects that `Scene.weather` asks for: "attenuation by weather", "echoes of rain"
         (of `simulate`); those that are left out are "auto", on where the weather has them
     settings: TraceSettings that give the keywords which the call leaves out, or None
@@ -106,7 +105,7 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
                         target_error_db=target_error_db, max_rays=max_rays,
                         scatterers="rays" if scatterers == "auto" else scatterers,
                         edges=looks_for_edges(edges, scene, radar, start_time),
-                        faint_power=faint_power_of(faint_power, scatterers, radar),
+                        faint_power=faint_power_of(faint_power, radar),
                         attenuation=attenuation_of(scene, radar, effects), progress=progress, kept=geometry)
     warn_of_record(paths.frame)
     warn_of_edge_paths(paths)

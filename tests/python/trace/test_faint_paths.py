@@ -39,7 +39,6 @@ def test_it_is_given_or_goes_by_the_noise_of_the_array_and_is_off_unless_asked_f
     assert of(radar()) == 0.0 and of(radar(), faint_power=1e-18) == 1e-18
     for count in (1, 4):
         assert of(radar(count), faint_power="auto") == pytest.approx(ep.noise_power(radar(), "rect") / 40.0 / count, rel=1e-12)
-    assert of(radar(), faint_power="auto", scatterers="surface") == 0.0
 
 
 @pytest.mark.parametrize("wrong", [-1.0, "loud", float("nan"), None])

@@ -10,6 +10,7 @@ FRAME = 127 * 1e-4  # s: the first chirp of the next frame is the last one of th
 RAYS = 20_000
 FEW_RAYS = 8_000  # all launched alike, whatever they find
 NUM_SEEDS = 12
+FAINT_POWER = 5.6e-18  # W; the walker's direct paths carry a sixteenth of it (median)
 
 
 def radar(**place) -> ep.Radar:
@@ -33,11 +34,11 @@ def coherence(one: np.ndarray, other: np.ndarray) -> float:
     return abs(np.vdot(one, other)) / np.linalg.norm(one) / np.linalg.norm(other)
 
 
-def over_edges(scene, moving_radar, expression: str, scatterers: str, frames: int = 4) -> list[float]:
+def over_edges(scene, moving_radar, expression: str, scatterers: str, frames: int = 4, **keywords) -> list[float]:
     """Coherence of the last chirp of each frame and the first one of the next, which are at the same time."""
     cubes = []
     for frame in range(frames):
-        paths = ep.trace(scene, moving_radar, num_rays=RAYS, start_time=frame * FRAME, scatterers=scatterers)
+        paths = ep.trace(scene, moving_radar, num_rays=RAYS, start_time=frame * FRAME, scatterers=scatterers, **keywords)
         cubes.append(ep.synthesize(diffuse(paths, expression), moving_radar)[0, 0])
     return [coherence(before[-1], after[0]) for before, after in zip(cubes, cubes[1:])]
 
@@ -46,6 +47,17 @@ def test_the_speckle_of_a_walking_body_goes_on_over_the_edges_of_frames():
     """With rays, what his limbs mirror goes on alone, by chance up to the most of his power."""
     assert min(over_edges(walker_by_a_wall(), radar(), "T 'walker' R", "surface")) > 0.95
     assert np.mean(over_edges(walker_by_a_wall(), radar(), "T 'walker' R", "rays")) < 0.8
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_it_goes_on_where_a_lot_leaves_out_faint_paths(seed):
+    """Nearly all of his paths are faint. 16 edges of four seeds had 0.987 in the mean and 0.948 at least, 0.995 and 0.977
+    with all paths; where the lot goes by what changes from frame to frame, five edges have 0.93 in the mean."""
+    faint = {"faint_power": FAINT_POWER, "seed": seed}
+    some, every = (diffuse(ep.trace(walker_by_a_wall(), radar(), num_rays=RAYS, scatterers="surface", **keywords), "T 'walker' R")
+                   for keywords in (faint, {"seed": seed}))
+    assert some.num_paths < 0.25 * every.num_paths
+    assert np.mean(over_edges(walker_by_a_wall(), radar(), "T 'walker' R", "surface", frames=6, **faint)) > 0.97
 
 
 def test_the_speckle_of_its_ghost_goes_on_too():

@@ -25,7 +25,7 @@ def measure_faint(*, quick: bool = False) -> list[dict]:
     """
     scene = street()
     rays, seeds = (QUICK_RAYS, QUICK_SEEDS) if quick else (RAYS, SEEDS)
-    auto = faint_power_of("auto", "rays", scene.radar)
+    auto = faint_power_of("auto", scene.radar)
     rows = [_row(scene, rays, seeds, times * auto) | {"times_auto": times} for times in TIMES_AUTO]
     every = rows[0]["maps"]
     seen = every.mean(axis=0) > ep.noise_power(scene.radar)

@@ -13,6 +13,10 @@ namespace echopath {
 namespace {
 
 constexpr double kStandsOut = 2.0;  // standard errors
+// A lot that keeps nothing of a group has left out more than this, in faint powers, once in 40 times at most: it keeps a
+// path with the probability of its share of the faint power at least, whence -ln 0.025, and a path and its reversal, which
+// are kept together, arrive with four times the power of one.
+constexpr double kNoneKept = 4.0 * 3.688879;
 
 size_t antenna_at(const std::vector<Antenna>& antennas, int index, const char* name) {
   if (index >= 0 && index < static_cast<int>(antennas.size())) return static_cast<size_t>(index);
@@ -98,9 +102,9 @@ PowerEvidence evidence_of(const GroupSums& sums, const ReceivedPower& power, Foo
   return evidence;
 }
 
-ReceivedPower with_interval(const GroupSums& sums, Footprint footprint) {
+ReceivedPower with_interval(const GroupSums& sums, const TraceFrame& frame) {
   ReceivedPower out = estimate(sums);
-  const PowerEvidence evidence = evidence_of(sums, out, footprint);
+  const PowerEvidence evidence = evidence_of(sums, out, frame.footprint);
   static_cast<PowerInterval&>(out) = power_interval(evidence);
   for (const CoherentKind& kind : evidence.kinds) {
     out.field += kind.field[kAsLaunched];
@@ -111,6 +115,8 @@ ReceivedPower with_interval(const GroupSums& sums, Footprint footprint) {
   out.num_coherent_paths = sums.num_coherent_paths;
   out.num_diffuse_hits = sums.num_diffuse_hits;
   if (out.diffuse > 0) out.strongest_share = sums.strongest_hit / out.diffuse;
+  const bool has_paths = sums.num_coherent_paths + sums.num_diffuse_hits > 0;
+  if (!has_paths && frame.statistics.num_faint_paths > 0) out.high = out.high_of_rays = kNoneKept * frame.faint_power;
   return out;
 }
 
@@ -155,7 +161,7 @@ std::vector<std::vector<ReceivedPower>> received_powers(const Paths& paths, std:
   std::vector<std::vector<ReceivedPower>> powers;
   for (const std::vector<GroupSums>& groups : sum_groups(paths, radar_of(paths.radar, channel), sortings, job, of_paths)) {
     std::transform(groups.begin(), groups.end(), std::back_inserter(powers.emplace_back()),
-                   [&](const GroupSums& sums) { return with_interval(sums, paths.frame.footprint); });
+                   [&](const GroupSums& sums) { return with_interval(sums, paths.frame); });
   }
   return powers;
 }

@@ -15,7 +15,7 @@ inline constexpr double kResolvedDb = 0.3;  // how far the interval of a resolve
 
 // Holds the power at the trace time, between two antennas, at the start frequency. The mean is over the random phases of
 // diffuse hits. The 95 % interval, of bias and chance together, is [0, 0] where no path arrives, which tells nothing about
-// what no ray has met.
+// what no ray has met; where faint paths were left out, it reaches up to what the lot may have taken.
 struct ReceivedPower : PowerInterval {
   double power = 0.0;           // W, coherent + diffuse
   double standard_error = 0.0;  // W, of `power`, by the batches; NaN for less than two

@@ -97,6 +97,19 @@ def test_intervals_count_what_is_left_to_chance():
     assert np.std([one.power for one in found]) > 0.03 * truth  # chance is at work
 
 
+def test_where_the_lot_leaves_nothing_the_interval_reaches_over_what_it_took():
+    """Of 23 paths to the plate one in 16 is kept: (15/16)^23 = 0.23 of the seeds have none, though the faint power is below
+    the truth."""
+    scene, truth = plate()
+    found = [ep.received_power(ep.trace(scene, radar(), num_rays=24, seed=seed, max_bounces=1, faint_power=0.8 * truth))
+             for seed in range(60)]
+    emptied = [one for one in found if one.num_diffuse_hits == 0]
+    assert 3 < len(emptied) < 30
+    assert all(one.power == one.low == 0.0 and one.high > truth for one in emptied)
+    every = ep.trace(scene, radar(), num_rays=24, max_bounces=1)
+    assert ep.received_powers(every, np.zeros(every.num_paths, int), 2)[1].high == 0.0  # no lot: as before
+
+
 def test_a_live_scene_keeps_the_paths_that_a_new_one_keeps():
     live = ep.Live(street(), radar(), num_rays=RAYS, faint_power="auto")
     live.update()

@@ -1,6 +1,8 @@
 """Each setting of a record reaches it, whoever is asked for the record: none is taken and then ignored."""
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 
@@ -41,7 +43,23 @@ def of_sequence(radar, asked):
     return ep.Sequence(scene(), radar, frames=1, interval=1.0, **asked)[0].paths
 
 
+def of_scene_file(radar, asked, folder):
+    """The same scene, written by hand, but for the radar that each such file has: it is the one asked for."""
+    waveform = {"start_frequency": 77e9, "bandwidth": 1e9, "num_samples": 16, "sampling_rate": 1e7, "num_chirps": 4,
+                "chirp_interval": 1e-4}
+    lines = ["[radar]", "transmitters = [{position = [0, 0, 0]}]", "receivers = [{position = [0, 0, 0]}]",
+             "[radar.waveform]", *(f"{name} = {value}" for name, value in waveform.items()),
+             "[trace]", *(f"{name} = {json.dumps(value)}" for name, value in asked.items()),
+             "[weather]", f"rain_mm_per_hour = {RAIN.rain_mm_per_hour}",
+             "[[objects]]", 'name = "plate"', 'actor = "plate"', "parameters = {width = 2.0, height = 2.0}",
+             'material = "concrete"', "position = [5.0, 0.0, 0.0]"]
+    (folder / "scene.toml").write_text("\n".join(lines))
+    file = ep.load_scene(folder / "scene.toml")
+    return ep.simulate(file.scene, radar, **file.keywords()).paths
+
+
 MAKERS = {"trace": lambda radar, asked, folder: ep.trace(scene(), radar, **asked), "file": of_file,
+          "scene file": of_scene_file,
           "simulate": lambda radar, asked, folder: ep.simulate(scene(), radar, **asked).paths,
           "Sequence": lambda radar, asked, folder: of_sequence(radar, asked),
           "Live": lambda radar, asked, folder: of_live(radar, asked)}

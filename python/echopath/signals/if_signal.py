@@ -10,6 +10,7 @@ from .. import _core
 from ..arguments.checks import ArrayLike, MapWindow, Progress, an, checked, one_of, optional, real
 from ..arguments.settings import Evaluate, Method, Replay, Retrace, SignalSettings
 from ..receiver.chain import transmitted_code
+from ..tracing.faint_paths import warn_of_other_noise
 from ..transmit import code_signal, is_coded, radar_of_noise, slots_radar, synthesize_slots
 from .silence import warn_of_silence
 
@@ -47,10 +48,11 @@ def synthesize(paths: _core.Paths, radar: _core.Radar | None = None, *, toleranc
     Returns the cube [tx, rx, chirp, sample], complex128 in sqrt(W); of transmitters that send at once [1, rx, slots, sample],
     which `demultiplex` takes apart, with the errors of their chains where the Receiver has some: it needs the memory of all
     transmitters. Waveforms whose slots differ cost one synthesis for each kind of chirp, and take no probe. Warns
-    (RuntimeWarning) of what will take over 10 s, and where there are paths and no signal. Raises TypeError or ValueError
-    naming the argument, KeyboardInterrupt on Ctrl-C.
+    (RuntimeWarning) of what will take over 10 s, where there are paths and no signal, and where faint paths were left out for
+    a radar that hears less. Raises TypeError or ValueError naming the argument, KeyboardInterrupt on Ctrl-C.
     """
     radar = paths.radar if radar is None else radar
+    warn_of_other_noise(paths, radar)
     made_by = dict(tolerance=tolerance, method=method, replay=replay, evaluate=evaluate, phase_tolerance=phase_tolerance,
                    retrace=retrace, keyframes=keyframes, progress=progress)
     separate = synthesize_slots(paths, slots_radar(radar) if is_coded(radar) else radar, **made_by, probe=probe)

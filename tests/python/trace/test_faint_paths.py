@@ -110,6 +110,16 @@ def test_where_the_lot_leaves_nothing_the_interval_reaches_over_what_it_took():
     assert ep.received_powers(every, np.zeros(every.num_paths, int), 2)[1].high == 0.0  # no lot: as before
 
 
+def test_a_radar_that_hears_more_than_that_of_the_trace_is_told_so(recwarn):
+    paths = ep.trace(street(), radar(), num_rays=RAYS, faint_power="auto")
+    for quiet in (radar(), radar(power=0.02), radar(3)):
+        ep.synthesize(paths, quiet)
+    ep.synthesize(ep.trace(street(), radar(), num_rays=RAYS), radar(power=0.1))
+    assert not recwarn.list
+    with pytest.warns(RuntimeWarning, match="^radar: hears echoes 10 dB further above the noise"):
+        ep.synthesize(paths, radar(power=0.1))
+
+
 def test_a_live_scene_keeps_the_paths_that_a_new_one_keeps():
     live = ep.Live(street(), radar(), num_rays=RAYS, faint_power="auto")
     live.update()

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <ranges>
 #include <span>
 #include <vector>
 
@@ -40,23 +39,66 @@ struct Plane {
   }
 };
 
-// Returns the chain of the mirrors with these indices, a view of what it is made of.
+// Is the chain of the mirrors with some indices; it refers to what it is made of.
 template <class Mirror>
-auto chain_of(const std::vector<Mirror>& mirrors, std::span<const int> indices) {
-  return std::views::transform(indices, [&mirrors](int i) -> const Mirror& { return mirrors[static_cast<size_t>(i)]; });
+class ChainOfIndices {
+ public:
+  class Iterator {
+   public:
+    Iterator(const ChainOfIndices& chain, size_t at) : chain_(&chain), at_(at) {}
+    const Mirror& operator*() const { return (*chain_)[at_]; }
+    Iterator& operator++() { return ++at_, *this; }
+    bool operator!=(const Iterator& other) const { return at_ != other.at_; }
+
+   private:
+    const ChainOfIndices* chain_;
+    size_t at_;
+  };
+
+  ChainOfIndices(const std::vector<Mirror>& mirrors, std::span<const int> indices) : mirrors_(mirrors), indices_(indices) {}
+  size_t size() const { return indices_.size(); }
+  const Mirror& operator[](size_t k) const { return mirrors_[static_cast<size_t>(indices_[k])]; }
+  Iterator begin() const { return {*this, 0}; }
+  Iterator end() const { return {*this, size()}; }
+
+ private:
+  const std::vector<Mirror>& mirrors_;
+  std::span<const int> indices_;
+};
+
+template <class Mirror>
+ChainOfIndices<Mirror> chain_of(const std::vector<Mirror>& mirrors, std::span<const int> indices) {
+  return {mirrors, indices};
 }
 
-// Returns the image of a point over a chain of mirrors.
+// Returns the image of a point over a chain of mirrors; image_over_reversed takes the last one first.
 template <class Planes>
 Vec3 image_over(const Planes& planes, Vec3 point) {
   for (const Plane& plane : planes) point = plane.image(point);
   return point;
 }
+template <class Planes>
+Vec3 image_over_reversed(const Planes& planes, Vec3 point) {
+  for (size_t k = planes.size(); k-- > 0;) {
+    const Plane& plane = planes[k];
+    point = plane.image(point);
+  }
+  return point;
+}
 
-// Returns the direction behind a chain of mirrors of a wave that travels along `direction` before it.
+// Returns the direction behind a chain of mirrors of a wave that travels along `direction` before it;
+// mirrored_over_reversed takes the last one first.
 template <class Planes>
 Vec3 mirrored_over(const Planes& planes, Vec3 direction) {
   for (const Plane& plane : planes) direction = plane.mirrored(direction);
+  return direction;
+}
+template <class Planes>
+Vec3 mirrored_over_reversed(const Planes& planes, Vec3 direction) {
+  for (size_t k = planes.size(); k-- > 0;) {
+    const Plane& plane = planes[k];
+    direction = plane.mirrored(direction);
+  }
   return direction;
 }
 

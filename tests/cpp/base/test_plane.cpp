@@ -39,8 +39,8 @@ TEST(MirrorChain, AWaveIsMirroredWhereItsWayIsShortest) {
       direction = (Mat3::Identity() - 2.0 * normal * normal.transpose()) * direction;
     }
     EXPECT_NEAR((to - image_over(mirrors, from)).norm(), length, kRounding * length);
-    const std::vector<Plane> back(mirrors.rbegin(), mirrors.rend());
-    EXPECT_LT((mirrored_over(back, direction) - (way[1] - from).normalized()).norm(), 1e-9);
+    EXPECT_NEAR((image_over_reversed(mirrors, to) - from).norm(), length, kRounding * length);
+    EXPECT_LT((mirrored_over_reversed(mirrors, direction) - (way[1] - from).normalized()).norm(), 1e-9);
   }
   EXPECT_GT(num_ways, 20);
 }

@@ -164,7 +164,7 @@ std::pair<Vec3, Vec3> PathPassages::ends_of_leg(int leg, const Ends& ends) const
   const auto met = [&](const Vec3& start, int k) -> Vec3 {
     if (k == behind) return to;
     const PosedHit& mirror = posed_[at(k)];
-    const Vec3 image = image_over(std::views::reverse(chain_of(posed_.data(), k, behind)), to);
+    const Vec3 image = image_over_reversed(chain_of(posed_.data(), k, behind), to);
     return mirror.height(start) == mirror.height(image) ? start : mirror.met_on_line(start, image);
   };
   Vec3 start = from;

@@ -71,7 +71,7 @@ UnfoldedLeg unfolded_leg(const PosedHit* hits, const Vec3& from, int first, int 
   const Vec3 line = to - image_over(mirrors, from);
   const double length = line.norm();
   const Vec3 arrival = line / length;
-  return {length, mirrored_over(std::views::reverse(mirrors), arrival), arrival};
+  return {length, mirrored_over_reversed(mirrors, arrival), arrival};
 }
 
 UnfoldedLeg inner_leg(const PosedHit* hits, int from, int to) {

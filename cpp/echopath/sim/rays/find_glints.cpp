@@ -109,7 +109,7 @@ class GlintSearch {
     const std::optional<ReflectionPoint> point = find_reflection(triangle, route.first, route.second);
     if (!point) return std::nullopt;
     Glint glint = glint_at(*point, route.first, route.stratum);
-    glint.direction = mirrored_over(std::views::reverse(route.before), glint.direction);
+    glint.direction = mirrored_over_reversed(route.before, glint.direction);
     const SeenPath* beside = nearest(route.seen, glint, cell_of(route.stratum));
     if (!beside) return std::nullopt;
     const double field = beside->amplitude * glint.narrow * glint.wide * paths_.frame.strata[route.stratum].ray_density;

@@ -120,9 +120,10 @@ class RouteSorter {
   GlintRoute route_of(const RouteKind& kind, std::vector<SeenPath> seen) const {
     GlintRoute route{kind.mesh, kind.stratum, std::move(seen), {}, paths_.frame.transmitter, paths_.frame.receiver};
     for (const MirrorFace& mirror : kind.before) route.before.push_back(plane_of(mirror));
-    const auto behind = std::views::transform(kind.behind, [&](const MirrorFace& mirror) { return plane_of(mirror); });
+    std::vector<Plane> behind;
+    for (const MirrorFace& mirror : kind.behind) behind.push_back(plane_of(mirror));
     route.first = image_over(route.before, route.first);
-    route.second = image_over(std::views::reverse(behind), route.second);
+    route.second = image_over_reversed(behind, route.second);
     return route;
   }
 

@@ -22,7 +22,7 @@ LiveBlockPtr shot(const Tracer& tracer, int64_t begin, int64_t end) {
   paths.clear();
   const QueryWatch::OfThread watching(space);
   tracer.shoot(begin, end, paths);
-  return std::make_shared<const LiveBlock>(end - begin, paths, std::make_shared<const QueriedSpace>(space));
+  return std::make_shared<const LiveBlock>(LiveBlock{end - begin, paths, std::make_shared<const QueriedSpace>(space)});
 }
 
 // Says where the blocks of a record come from.

@@ -67,7 +67,7 @@ bool ImageMethod::sees_all(const Vec3& receiver) {
 
 // Returns the departure of the path to the true receiver.
 Vec3 ImageMethod::departure() const {
-  const Vec3 image = image_over(std::views::reverse(chain_of(mirrors_, sequence_)), settings_.receiver);
+  const Vec3 image = image_over_reversed(chain_of(mirrors_, sequence_), settings_.receiver);
   return (image - settings_.transmitter).normalized();
 }
 

@@ -78,9 +78,9 @@ class RayTargetFinder {
       const int num_mirrors = static_cast<int>(frustum.mirrors.size());
       const auto images_of_vertices = [&]() -> const std::vector<Vec3>& {
         vertices.resize(target.vertices().size());
-        const auto from_target = std::views::reverse(chain_of(mirrors_, frustum.mirrors));
+        const auto chain = chain_of(mirrors_, frustum.mirrors);
         std::transform(target.vertices().begin(), target.vertices().end(), vertices.begin(),
-                       [&](const Vec3& vertex) { return image_over(from_target, vertex); });
+                       [&](const Vec3& vertex) { return image_over_reversed(chain, vertex); });
         return vertices;
       };
       std::optional<RayTarget> made =

@@ -39,7 +39,7 @@ struct Plane {
   }
 };
 
-// Is the chain of the mirrors with some indices; it refers to what it is made of.
+// Holds the chain of the mirrors with some indices, by reference.
 template <class Mirror>
 class ChainOfIndices {
  public:

@@ -5,6 +5,7 @@ import numpy as np
 
 from .. import _core
 from ..base.callers import warn_user
+from ..base.counts import rounded
 from ..paths.subset import subset
 
 ON_EDGE = 4                # bit of Paths.flags
@@ -22,14 +23,9 @@ def warn_of_edge_paths(paths: _core.Paths) -> None:
     radar = paths.radar
     seconds = SECONDS_OF_PATH * len(around) * len(radar.transmitters) * len(radar.receivers)
     if seconds > LONG:
-        warn_user(f"about {_rounded(len(around)):,} paths go around {_rounded(_num_edges(paths, around)):,} sharp edges"
-                  f"{_over_mirrors(paths, around)}: each signal of them takes about {_rounded(seconds)} s of processor time. "
+        warn_user(f"about {rounded(len(around)):,} paths go around {rounded(_num_edges(paths, around)):,} sharp edges"
+                  f"{_over_mirrors(paths, around)}: each signal of them takes about {rounded(seconds)} s of processor time. "
                   "edges=False leaves them out")
-
-
-def _rounded(number: float) -> int:
-    """To one digit, so that frames in time do not say the same in many ways."""
-    return int(float(f"{number:.0e}"))
 
 
 def _num_edges(paths, around) -> int:

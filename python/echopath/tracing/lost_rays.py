@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 from ..base.callers import warn_user
+from ..base.counts import at_least
 
 LOST_SHARE = 0.01  # of the rays
 
@@ -20,31 +21,38 @@ def warn_of_lost_rays(statistics) -> None:
     """Warns (RuntimeWarning) where more than one ray in a hundred met a surface that the radar touches, or slivers."""
     near, lost, rays = statistics.num_near_antenna, statistics.num_false_hits, max(statistics.num_rays, 1)
     if near + lost > LOST_SHARE * rays:
-        warn_user(f"of {rays:,} rays, {near:,} met a surface within 1 mm of the radar and {lost:,} one that double precision "
-                  "does not confirm (in the plane of an antenna, or a long sliver): their echoes are left out. Antennas at "
-                  "least 1 mm off every surface see all")
+        met = [(near, "met a surface within 1 mm of the radar"),
+               (lost, "met one that double precision does not confirm (in the plane of an antenna, or a long sliver)")]
+        told = " and ".join(f"{at_least(count)} {what}" for count, what in met if count)
+        warn_user(f"of {rays:,} rays, {told}: their echoes are left out. Antennas at least 1 mm off every surface see all")
 
 
 def warn_of_unfollowed_frusta(statistics) -> None:
     """Warns (RuntimeWarning) where not every sequence of mirrors was tried."""
-    text = unfollowed_frusta(statistics)
-    if text:
-        warn_user(f"{text}: echoes over more mirrors are left out. Fewer flagged mirrors or a smaller max_bounces see all")
+    count = statistics.num_unfollowed_frusta
+    if count:
+        warn_user(f"{at_least(count)} sequences of mirrors were not followed further: echoes over more mirrors are left out. "
+                  "Fewer flagged mirrors or a smaller max_bounces see all")
 
 
 def warn_of_unaimed(statistics, strata=()) -> None:
     """Warns (RuntimeWarning) where objects have no rays of their own: there are more than a record can tell strata apart, or
     more than the rays reach for."""
-    text = unaimed(statistics, [stratum for stratum in strata if stratum.num_mirrors == 0])
-    if text:
-        warn_user(f"{text}: only rays of the field of view find them. More rays reach more objects, and objects put under "
-                  "one parent are aimed at as one")
+    count = num_unaimed(statistics, [stratum for stratum in strata if stratum.num_mirrors == 0])
+    if count:
+        warn_user(f"{at_least(count)} objects and images have no rays of their own: only rays of the field of view find them. "
+                  "More rays reach more objects, and objects put under one parent are aimed at as one")
+
+
+def num_unaimed(statistics, strata=()) -> int:
+    """How many objects and images a trace did not aim at. strata: those of its frame"""
+    idle = sum(stratum.num_rays == 0 and stratum.object >= 0 and stratum.focus_of < 0 for stratum in strata)
+    return statistics.num_unaimed + idle
 
 
 def unaimed(statistics, strata=()) -> str:
     """How many objects and images a trace did not aim at; "" for none. strata: those of its frame"""
-    idle = sum(stratum.num_rays == 0 and stratum.object >= 0 and stratum.focus_of < 0 for stratum in strata)
-    count = statistics.num_unaimed + idle
+    count = num_unaimed(statistics, strata)
     return f"{count:,} objects and images have no rays of their own" if count else ""
 
 

@@ -48,8 +48,9 @@ def annotate(paths: _core.Paths, parts: Mapping | None = None, radar: _core.Rada
     parts: Parts of `decompose` of the same radar, or selections as `decompose` takes them, {name: selection}: then no cube
         outlives its use. None: all paths are "other"
     radar: that of the signals, None: of the parts or of the trace
-    objects: as in `families`, what to report on; None leaves out mirrors and what surrounds the antenna, as walls beside it
-        do: name those to have them labelled, too
+    objects: as in `families`, what to report on; None leaves out mirrors and what surrounds the antenna: what it stands
+        within, as a tunnel or its own vehicle, and flat bodies whose bounding sphere holds it, as the road and walls beside it.
+        Name those to have them labelled, too
     plane: "range_doppler" or "range_azimuth" (beams of each part); window, zero_pad: as in `range_doppler`
     angles: keywords of `range_azimuth` for that plane, None: {"combine": "peak"}; Bartlett beams only
     noise: False: no cell is in the noise; noise_margin_db: dB, cells count as above the noise where the power of the whole

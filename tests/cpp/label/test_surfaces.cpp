@@ -82,6 +82,39 @@ TEST(SurfaceMap, ObjectsAreChildrenOfTheRootAwayFromTheAntennaAndNoMirrors) {
   EXPECT_EQ(from_afar.num_objects, 3u);
 }
 
+// A box from `low` to `high`, of six faces.
+void add_box(Scene& scene, const std::string& name, const Vec3& low, const Vec3& high) {
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 8; ++i) corners.push_back(Eigen::AlignedBox3d(low, high).corner(Eigen::AlignedBox3d::CornerType(i)));
+  add_mesh(scene, name, corners,
+           {{0, 1, 3},
+            {0, 3, 2},
+            {4, 5, 7},
+            {4, 7, 6},
+            {0, 1, 5},
+            {0, 5, 4},
+            {2, 3, 7},
+            {2, 7, 6},
+            {0, 2, 6},
+            {0, 6, 4},
+            {1, 3, 7},
+            {1, 7, 5}},
+           std::make_shared<const Material>(Material::metal()));
+}
+
+TEST(SurfaceMap, LongObjectsBesideTheAntennaStayObjects) {
+  Scene scene;
+  add_box(scene, "truck", {-9, 3, -1}, {8, 5.5, 3});          // in the next lane: its sphere of 8.8 m holds the antenna
+  add_box(scene, "rail", {-50, -5.2, -0.7}, {50, -5, 0});     // a guard rail
+  add_box(scene, "own", {-4.3, -0.9, -0.6}, {-0.1, 0.9, 1});  // 0.1 m behind the antenna
+  add_box(scene, "tunnel", {-40, -6, -1}, {60, 6, 5});
+  add_box(scene, "wall", {-20, 8, -1}, {20, 8.2, 4});
+  add_box(scene, "road", {-50, -7, -1.2}, {50, 7, -1});
+  const SurfaceMap map = map_surfaces(scene, 0.0, Vec3::Zero());
+  EXPECT_EQ(map.names, (Names{"truck", "rail", "own", "tunnel", "wall", "road"}));
+  EXPECT_EQ(map.num_objects, 2u);
+}
+
 TEST(SurfaceMap, BadObjectsAreErrors) {
   EXPECT_NE(error_of({{"", {"street"}}}).find("objects: must have non-empty names"), std::string::npos);
   EXPECT_NE(error_of({{"a", {"street"}}, {"a", {"pedestrian"}}}).find("a twice"), std::string::npos);

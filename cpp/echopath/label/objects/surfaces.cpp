@@ -1,5 +1,6 @@
 #include "echopath/label/objects/surfaces.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
 #include <set>
@@ -13,6 +14,8 @@ namespace {
 
 constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
 constexpr double kSureOutside = 1.001;
+constexpr double kFlat = 0.1;    // of its middle side: the smallest side of a wall or a road, at most
+constexpr double kBeside = 0.5;  // m; a body as near to the antenna is what the radar is mounted on
 
 // Fills in the surfaces of meshes that belong to no object.
 class SurfaceFinder {
@@ -103,8 +106,23 @@ Eigen::AlignedBox3d box_around(const Scene& scene, const PosedScene& pose, uint3
   return world;
 }
 
-// Returns whether the bounding sphere of an object holds a point (world). Its radius is no more than half a diagonal of any
-// box that holds the object, and its centre lies in that box.
+// Returns whether what has these vertices is flat, or holds a point in the box along its own axes or close to it.
+bool is_flat_or_holds(const std::vector<Vec3>& vertices, const Vec3& point) {
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& vertex : vertices) mean += vertex / static_cast<double>(vertices.size());
+  Mat3 spread = Mat3::Zero();
+  for (const Vec3& vertex : vertices) spread += (vertex - mean) * (vertex - mean).transpose();
+  const Mat3 to_own = Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvectors().transpose();
+  Eigen::AlignedBox3d own;
+  for (const Vec3& vertex : vertices) own.extend(to_own * (vertex - mean));
+  Vec3 sides = own.sizes();
+  std::sort(sides.begin(), sides.end());
+  return sides[0] <= kFlat * sides[1] || own.exteriorDistance(to_own * (point - mean)) <= kBeside;
+}
+
+// Returns whether an object surrounds a point (world): it is all around, as a room or a vehicle is, or a wide surface beside
+// it, as a wall or a road is. Its bounding sphere holds the point then. The radius of that sphere is no more than half a
+// diagonal of any box that holds the object, and its centre lies in that box.
 bool surrounds(const Scene& scene, const PosedScene& pose, const SceneObject& object, const Vec3& point) {
   Eigen::AlignedBox3d box;
   for (const uint32_t mesh : object.mesh_ids) box.extend(box_around(scene, pose, mesh));
@@ -112,7 +130,10 @@ bool surrounds(const Scene& scene, const PosedScene& pose, const SceneObject& ob
   std::vector<std::vector<Vec3>> vertices(scene.meshes().size());
   for (const uint32_t mesh : object.mesh_ids) vertices[mesh] = pose.world_vertices(mesh);
   const VerticesOf vertices_of = [&](uint32_t mesh) -> const std::vector<Vec3>& { return vertices[mesh]; };
-  return bounding_sphere(vertices_of, object.mesh_ids).holds(point);
+  if (!bounding_sphere(vertices_of, object.mesh_ids).holds(point)) return false;
+  std::vector<Vec3> all;
+  for (const uint32_t mesh : object.mesh_ids) all.insert(all.end(), vertices[mesh].begin(), vertices[mesh].end());
+  return is_flat_or_holds(all, point);
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ std::vector<double> largest_power(const Paths& paths, std::span<const int64_t> p
 // Returns n, where one such path in 4^n is kept.
 int level_of(double power, double faint_power) {
   int level = 0;
-  for (double kept = 4.0 * power; kept <= faint_power && level < kMostLevels; kept *= 4.0) ++level;
+  while (level < kMostLevels && power * static_cast<double>(4 << 2 * level) <= faint_power) ++level;
   return level;
 }
 

@@ -74,10 +74,10 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     """Echoes that stand out of the noise of a range-Doppler map, with what made them.
 
     Cells above the threshold of `cfar` that are local maxima, their place between the cells by the known response of the
-    window, directions by `estimate_angles`. A detection has the part of the largest power in its cell without noise, and its
-    object or ghost by the rule of labels (ObjectLabel.cells); it is "noise" where echoes hold less than half of its power:
-    those of the parts or labels in all channels, of paths alone by a model of their fields in at most 8 channels, compared
-    with the power in those.
+    window, directions by `estimate_angles`, without the phase that transmit slots (TDM) add at that velocity between the cells.
+    A detection has the part of the largest power in its cell without noise, and its object or ghost by the rule of labels
+    (ObjectLabel.cells); it is "noise" where echoes hold less than half of its power: those of the parts or labels in all
+    channels, of paths alone by a model of their fields in at most 8 channels, compared with the power in those.
     spectrum: RangeDoppler with values [tx, rx, velocity, range] in sqrt(W), with noise
     radar: that of the spectrum
     method, false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank: as in `cfar`, in cells
@@ -112,7 +112,8 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     echoes = None if paths is None else EchoFields(paths, spectrum)
     floor = _noise_floor(spectrum, radar, labels, noise_margin_db)
     columns = _labels_of(spectrum, cells, power, _Makers(paths, parts, labels, beside, objects, floor), echoes)
-    found = _joined(radar, peaks, power, directions_of(spectrum, radar, cells, angles or {}, progress), columns, echoes)
+    directions = directions_of(spectrum, radar, cells, peaks["velocity"], angles or {}, progress)
+    found = _joined(radar, peaks, power, directions, columns, echoes)
     return found if paths is None else dataclasses.replace(found, seed=paths.frame.seed)
 
 

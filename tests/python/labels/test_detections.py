@@ -17,6 +17,7 @@ PLACE = 0.05
 BEARING = 0.01        # rad: a 25th of a beam of eight antennas
 ROUNDING = 1e-9       # m, of places from ranges and angles
 LEVEL_DB = 0.5        # of peaks between cells, over noise; 0.1 found
+SLOT_BEARING = 5e-4   # rad; 2e-4 found: the phase left between slots made 5e-3 of a speed half a cell beside the cell's
 SPEED = 0.01          # m/s: with noise 30 dB below; 0.001 found
 SHIFT_LEFT = 0.005    # m: of the 18 mm by which a speed of 9 m/s shifts the range
 KNOWN = Interval(1.0, 0.99, 1.01)  # W
@@ -150,6 +151,37 @@ def test_folds_give_the_velocity_and_the_range_without_its_shift():
     i = int(found.power.argmax())
     assert found.velocity[i] == pytest.approx(speed, abs=SPEED)
     assert found.range[i] == pytest.approx(9.0 + speed * 0.5 * radar.frame_duration, abs=SHIFT_LEFT)
+
+
+@pytest.mark.parametrize("method", ["bartlett", "capon"])
+@pytest.mark.parametrize("folds", [0, 1])
+@pytest.mark.parametrize("beside", [0.0, 0.25, 0.49, 0.75])
+def test_targets_that_move_between_slots_are_where_they_are_whatever_their_speed_in_the_cell(beside, folds, method):
+    """Between slots a target turns by 2 pi beside / (3 * 16) more than its cell's middle, as half a wavelength would look."""
+    radar = radar_with(receivers=4, transmitters=3, num_chirps=16, chirp_interval=25e-6)
+    radar = radar.replace(transmit_power=1e3 * radar.transmit_power)  # what noise adds to directions is below the tolerance
+    speed = (3 + beside) * radar.waveform.velocity_resolution(3) + 2 * folds * radar.waveform.max_velocity(3)
+    paths = ep.trace(scene_of({"ball": (12.0, 0.35, speed)}), radar, num_rays=3000, max_bounces=1)
+    spectrum = ep.range_doppler(ep.add_noise(ep.synthesize(paths, radar), radar, seed=1), radar)
+    before = spectrum.values.copy()
+    found = ep.detect(spectrum, radar, angles={"folds": folds, "method": method})
+    x, y, _ = at(12.0, 0.35) - [0.0, 0.5 * 5.5 * 0.5 * WAVELENGTH, 0.0]  # from the middle of the virtual array
+    i = int(found.power.argmax())
+    assert found.azimuth[i] == pytest.approx(np.arctan2(y, x), abs=SLOT_BEARING)
+    assert found.velocity[i] == pytest.approx(speed, abs=SPEED) and np.array_equal(spectrum.values, before)
+
+
+def test_transmitters_that_send_at_once_have_no_slots_to_turn():
+    """Half a cell beside a cell's middle, divided by Doppler."""
+    turns = radar_with(receivers=4, transmitters=3, num_chirps=16, chirp_interval=25e-6)
+    radar = turns.replace(multiplexing="ddm")
+    speed = 2.49 * radar.waveform.velocity_resolution(radar.num_slots)
+    paths = ep.trace(scene_of({"ball": (12.0, 0.35, speed)}), radar, num_rays=3000, max_bounces=1)
+    cube = ep.demultiplex(ep.add_noise(ep.synthesize(paths, radar), radar, seed=1), radar)
+    spectrum = ep.range_doppler(cube, radar)
+    found = ep.detect(spectrum, radar)
+    of_cells = ep.estimate_angles(spectrum, radar, cells=found.cells)
+    assert len(found) and np.array_equal(found.azimuth, of_cells.azimuth)
 
 
 def test_one_antenna_gives_no_directions(spheres):

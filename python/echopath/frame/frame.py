@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from .. import _core
+from ..base.known_attributes import known_attributes
 from ..base.made_by import made_by
 from ..base.stages import Stage
 from ..effects import of_paths
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 _WHOLE = object()  # a partition of one part, beside those that have names
 
 
+@known_attributes
 @made_by("ep.simulate and ep.load_frame")
 @dataclasses.dataclass(eq=False)
 class Frame:

@@ -4,10 +4,12 @@ from __future__ import annotations
 from contextlib import AbstractContextManager, nullcontext
 
 from .. import _core
+from ..base.known_attributes import known_attributes
 from ..scene.scene import Scene
 from .changes import Changes
 
 
+@known_attributes
 class EditedScene(Scene):
     """A Scene whose edits are made one at a time and are counted; copies of it, and what is pickled, are plain Scenes."""
 

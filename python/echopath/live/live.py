@@ -14,6 +14,7 @@ from ..arguments.settings import (
     MOST_RAYS, Edges, Evaluate, FaintPower, Footprint, Method, Polarization, Replay, Sampler, Scatterers, SignalSettings,
     TraceSettings,
 )
+from ..base.known_attributes import known_attributes
 from ..scene.scene import Scene
 from ..signals.parts import as_partition
 from ..tracing.edges import looks_for_edges
@@ -40,6 +41,7 @@ class _Seen:
     number: int
 
 
+@known_attributes
 class Live:
     """A scene whose map follows its changes: `live.scene["car"].position += (0.1, 0, 0)`, then `view = live.update()`.
 

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from .. import _core
 from ..actors import Actor
 from ..arguments.checks import an, anything, checked, flag, optional, real, refused, text, vector
+from ..base.known_attributes import known_attributes
 from ..readers.model import Model
 from ..weather import Weather
 from ..weather.weather import weather_text
@@ -24,6 +25,7 @@ Content = _core.Mesh | Actor | Model | Sequence[tuple[str, _core.Mesh]] | None
 _WEATHER = optional(an(Weather))
 
 
+@known_attributes
 class Scene(_core.Scene):
     """A tree of named objects: `scene["street/car"]` is one of them, to be read, moved and changed (SceneNode).
 

@@ -1,4 +1,9 @@
 """What errors say to somebody who wrote something close to what is right."""
+import copy
+import dataclasses
+import pickle
+import weakref
+
 import numpy as np
 import pytest
 
@@ -103,6 +108,47 @@ def test_values_that_cannot_be_changed_name_replace():
         with pytest.raises(AttributeError, match=rf"^{name}: cannot be set, a {type(value).__name__} does not change; "
                                                  rf"replace\({name}=...\)"):
             setattr(value, name, 1)
+
+
+@pytest.mark.parametrize("kind, wrong, right", [
+    ("Scene", "interferer", "interferers"), ("Scene", "wheather", "weather"), ("Live", "rader", "radar"),
+    ("Frame", "detection", "detections"), ("Frame", "rang_azimuth", "range_azimuth")])
+def test_misspelt_attributes_are_refused_with_the_one_that_is_meant(scene, frame, kind, wrong, right):
+    """In silence nothing would be changed by them."""
+    value = {"Scene": ep.Scene(scene), "Live": ep.Live(scene, RADAR, num_rays=100), "Frame": frame}[kind]
+    with pytest.raises(AttributeError, match=f"^{wrong}: no attribute of {kind}, the nearest right one is '{right}'$"):
+        setattr(value, wrong, None)
+    with pytest.raises(AttributeError, match=f"^qqqq: no attribute of {kind}$"):
+        value.qqqq = None
+    assert not hasattr(value, wrong) and not hasattr(value, "qqqq")
+
+
+def test_the_scene_of_a_live_scene_refuses_misspelt_attributes_and_counts_no_change(scene):
+    live = ep.Live(scene, RADAR, num_rays=100)
+    with pytest.raises(AttributeError, match="^wheather: .*'weather'$"):
+        live.scene.wheather = ep.Weather(rain_mm_per_hour=10.0)
+    assert live.number == 0
+    live.scene.weather = ep.Weather(rain_mm_per_hour=10.0)
+    assert live.number == 1
+
+
+def test_classes_that_are_derived_from_ours_may_have_attributes_of_their_own(scene):
+    class Street(ep.Scene):
+        def __init__(self):
+            super().__init__(scene)
+            self.city = "Ulm"
+
+    street = Street()
+    street.mayor = "somebody"
+    assert (street.city, street.mayor, len(street)) == ("Ulm", "somebody", 1)
+
+
+def test_scenes_and_frames_that_refuse_attributes_travel_as_before(scene, frame):
+    rainy = ep.Scene(scene, weather=ep.Weather(rain_mm_per_hour=10.0))
+    for copied in (copy.copy(rainy), copy.deepcopy(rainy), pickle.loads(pickle.dumps(rainy)), rainy.copy()):
+        assert copied.weather == rainy.weather and list(copied) == ["plate"]
+    assert weakref.ref(rainy)() is rainy
+    assert copy.copy(frame).cube is frame.cube and dataclasses.replace(frame, noise_seed=7).noise_seed == 7
 
 
 @pytest.mark.parametrize("compare, says", [

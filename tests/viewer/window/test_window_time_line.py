@@ -2,11 +2,13 @@
 from __future__ import annotations
 
 import shutil
+import threading
 
 import pytest
 
 import echopath as ep
 from echopath_viewer.model import CellBox
+from echopath_viewer.model.frames.overview import glance_at
 from echopath_viewer.window.qt import Qt
 from support.window import PATIENCE_MS, open_on_screen, settle
 
@@ -95,6 +97,26 @@ def test_the_strip_has_all_frames_and_goes_to_one(qtbot, line_window):
     for number in (1, 0):
         window.frame_bar.axis_box.setCurrentIndex(number)
         assert strip._image is not None and not strip.grab().isNull()
+
+
+def test_a_window_is_at_rest_when_the_strip_has_all_frames(qtbot, shared_window, stored_run, monkeypatch):
+    """However long they are read: a picture shows them, not that they are read."""
+    may_end = threading.Event()
+
+    def slow_glance(moment):
+        may_end.wait(1e-3 * PATIENCE_MS)
+        return glance_at(moment)
+
+    monkeypatch.setattr("echopath_viewer.window.timeline.time_control.glance_at", slow_glance)
+    shared_window.open_file(stored_run.path)
+    open_on_screen(qtbot, shared_window)
+    with pytest.raises(TimeoutError, match="late are: .*frames of the strip"):
+        shared_window.settle(patience=0.1)
+    may_end.set()
+    shared_window.settle()
+    strip = shared_window.frame_bar.strip
+    assert [glance.time for glance in strip._glances] == list(stored_run.times) and strip.tracks.num_tracks >= 1
+    shared_window.time_line.show(None)
 
 
 def test_new_frames_come_and_damaged_ones_are_told(qtbot, shared_window, stored_run, tmp_path):

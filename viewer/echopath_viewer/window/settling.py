@@ -13,6 +13,7 @@ def what_is_late(window) -> list[str]:
     is_late = {"lists": window._listing.isActive(), "signals": window._pause.isActive(), "scene": window.view3d.is_behind(),
                "what makes the cell": window.contributions.work.is_running,
                "frame of the time line": window.time_line.is_busy,
+               "frames of the strip": window.time_line.is_glancing,
                "rest of the file": window.is_to_load or window.loading.is_running,
                "orders and cells to be kept in the file": window.keeping.is_running}
     return [name for name, is_so in is_late.items() if is_so]

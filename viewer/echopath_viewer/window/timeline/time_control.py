@@ -52,6 +52,11 @@ class TimeControl(QtCore.QObject):
         """Whether a frame is read that was asked for."""
         return self.work.is_running
 
+    @property
+    def is_glancing(self) -> bool:
+        """Whether frames are read of which the strip shows nothing yet."""
+        return self._glancing.is_running
+
     def show(self, line, place: int = 0) -> None:
         """Takes over a time line of which the frame at a place is on display already; None: there is none."""
         self.stop()
@@ -187,7 +192,7 @@ class TimeControl(QtCore.QObject):
 
     def _read_glances(self) -> None:
         missing = [moment for moment in self.line.moments if moment not in self._glances][:MOST_GLANCES]
-        if missing and not self._glancing.is_running:
+        if missing and not self.is_glancing:
             self._glancing.start(lambda progress: {moment: glance_at(moment) for moment in missing})
 
     def _take_glances(self, found: dict) -> None:

@@ -102,9 +102,11 @@ RangeAzimuth range_azimuth_map(const RangeDoppler& map, const Radar& radar, cons
 }
 
 AngleEstimates estimates(const RangeDoppler& map, const Radar& radar, const AngleGrid& angles, const BeamformOptions& beams,
-                         const py::object& progress, py::object cells, int max_peaks, double peak_range_db, int folds) {
+                         const py::object& progress, py::object cells, py::object velocity, int max_peaks,
+                         double peak_range_db, int folds) {
   const std::vector<Cell> chosen = as_cells(cells);
-  const EstimateOptions options{beams, max_peaks, peak_range_db, folds};
+  const EstimateOptions options{beams, max_peaks, peak_range_db, folds,
+                                velocity.is_none() ? std::vector<double>() : as_vector<double>(velocity, "velocity")};
   return run_job("estimate_angles", progress,
                  [&](Job& job) { return estimate_angles(map, radar, chosen, angles, options, &job); });
 }
@@ -131,7 +133,7 @@ void bind_angle(py::module_& m) {
   def_beams(m, "range_azimuth", py::float_(0.0), kPictureStep, &range_azimuth_map, py::arg("velocity") = py::none(),
             py::arg("combine") = "sum", py::arg("velocity_gate") = py::none());
   const EstimateOptions standard;
-  def_beams(m, "estimate_angles", py::none(), kSearchStep, &estimates, py::arg("cells"),
+  def_beams(m, "estimate_angles", py::none(), kSearchStep, &estimates, py::arg("cells"), py::arg("velocity") = py::none(),
             py::arg("max_peaks") = standard.max_peaks, py::arg("peak_range_db") = standard.peak_range_db,
             py::arg("folds") = standard.folds);
 }

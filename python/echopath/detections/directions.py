@@ -26,31 +26,11 @@ def directions_of(spectrum, radar, cells, velocity, settings: dict, progress) ->
                "fold": np.zeros(count), "power": np.full(count, np.nan)}
     if count == 0 or not (array.tells_azimuths or array.tells_elevations):
         return unknown
-    if settings.get("compensate", True):
-        spectrum = _turned(spectrum, radar, cells, velocity - spectrum.velocity[cells[:, 0]])
-    found = estimate_angles(spectrum, radar, cells=cells, progress=progress, **settings)
+    found = estimate_angles(spectrum, radar, cells=cells, velocity=velocity, progress=progress, **settings)
     sees = {"azimuth": array.tells_azimuths, "elevation": array.tells_elevations}
-    known = {"index": found.cell, "fold": found.velocity - spectrum.velocity[cells[found.cell, 0]], "power": found.power}
+    known = {"index": found.cell, "fold": found.velocity - velocity[found.cell], "power": found.power}
     known |= {name: getattr(found, name) if seen else np.full(len(found), np.nan) for name, seen in sees.items()}
     return _with_the_rest(known, unknown)
-
-
-def _turned(spectrum, radar, cells, faster):
-    """The map with that phase taken out of cells [N, 2] which echoes faster [N] m/s than the cells add between transmit slots.
-
-    Angles go by the velocity in the middle of a cell. What is left from slot to slot, at the edge of a cell half a turn over the
-    number of all slots of the frame, looks like a direction.
-    """
-    if radar.multiplexing != "tdm" or len(radar.transmitters) == 1:
-        return spectrum
-    start = np.arange(len(radar.transmitters)) * radar.waveform.mean_interval  # s, of the slots
-    state = spectrum.__getstate__()
-    values = state["values"].reshape(spectrum.values.shape)
-    doppler = 2.0 * faster / radar.waveform.wavelength  # Hz
-    values[:, :, cells[:, 0], cells[:, 1]] *= np.exp(-2j * np.pi * np.outer(start, doppler))[:, None]
-    turned = _core.RangeDoppler.__new__(_core.RangeDoppler)
-    turned.__setstate__(state)
-    return turned
 
 
 def _with_the_rest(known: dict, unknown: dict) -> dict:

@@ -133,14 +133,14 @@ def range_azimuth(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: Arr
                                forward_backward=forward_backward, progress=progress)
 
 
-@checked(**_BEAM_RULES, cells=_CELLS, max_peaks=count(1, 64), peak_range_db=real(0.0, 200.0, unit="dB"),
-         folds=count(0, LARGEST_COUNT))
+@checked(**_BEAM_RULES, cells=_CELLS, velocity=optional(array("[N]")), max_peaks=count(1, 64),
+         peak_range_db=real(0.0, 200.0, unit="dB"), folds=count(0, LARGEST_COUNT))
 def estimate_angles(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLike | None = None,
-                    elevation: ArrayLike | None = None, *, cells: ArrayLike, max_peaks: int = 1, peak_range_db: float = 10.0,
-                    folds: int = 0, method: BeamMethod = "bartlett", window: Window = "rect", overlaps: Overlaps = "average",
-                    compensate: bool = True, diagonal_loading: float = 0.01, velocity_neighbours: int = 1,
-                    range_neighbours: int = 2, forward_backward: bool = False,
-                    progress: Progress = None) -> _core.AngleEstimates:
+                    elevation: ArrayLike | None = None, *, cells: ArrayLike, velocity: ArrayLike | None = None,
+                    max_peaks: int = 1, peak_range_db: float = 10.0, folds: int = 0, method: BeamMethod = "bartlett",
+                    window: Window = "rect", overlaps: Overlaps = "average", compensate: bool = True,
+                    diagonal_loading: float = 0.01, velocity_neighbours: int = 1, range_neighbours: int = 2,
+                    forward_backward: bool = False, progress: Progress = None) -> _core.AngleEstimates:
     """Where the echoes of chosen cells come from: peaks of beam power, finer than the grid.
 
     spectrum: RangeDoppler with values [tx, rx, velocity, range] of that radar
@@ -148,6 +148,8 @@ def estimate_angles(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: A
     azimuth: [A] or one in rad, ascending, where to search; None: what the array tells apart, a quarter of a beam each
     elevation: [E] or one in rad; None likewise, 0 alone for an array without vertical extent
     cells: [N, 2] (velocity, range) indices
+    velocity: [N] in m/s of the echoes in these cells, by which the phase between transmit slots is taken out, None: that of the
+        middles of the cells, which is off by up to half a cell: by half a turn over the frame's number of chirps
     max_peaks: of a cell, the strongest; peak_range_db: dB below the strongest of the cell, within which others count
     folds: K tries the velocities v + 2 k v_max, |k| <= K, and takes the one with the strongest peak, which transmit slots
         tell apart; less than half the number of transmitters
@@ -157,7 +159,7 @@ def estimate_angles(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: A
     Returns AngleEstimates, arrays [M]: none for a cell without power. Raises TypeError, ValueError or IndexError naming the
     argument.
     """
-    return _core.estimate_angles(spectrum, radar, azimuth, elevation, cells=cells, max_peaks=max_peaks,
+    return _core.estimate_angles(spectrum, radar, azimuth, elevation, cells=cells, velocity=velocity, max_peaks=max_peaks,
                                  peak_range_db=peak_range_db, folds=folds, method=method, window=window, overlaps=overlaps,
                                  compensate=compensate, diagonal_loading=diagonal_loading,
                                  velocity_neighbours=velocity_neighbours, range_neighbours=range_neighbours,

@@ -66,7 +66,7 @@ inline RangeDoppler empty_map(const Radar& radar) {
 // Adds a wave of `amplitude` from a direction to one cell; moving: with the phase that the cell's velocity plus
 // fold turns of the axis adds between slots.
 inline void add_wave(RangeDoppler& map, const Radar& radar, const Vec3& u, Complex amplitude, size_t velocity, size_t range,
-                     bool moving = true, int fold = 0) {
+                     bool moving = true, double fold = 0.0) {
   const double k = kTwoPi / radar.waveform.wavelength();
   const double v = map.velocity[velocity] + fold * 2.0 * radar.waveform.max_velocity(radar.num_slots());
   for (size_t tx = 0; tx < radar.transmitters.size(); ++tx) {

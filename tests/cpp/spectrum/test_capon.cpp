@@ -96,7 +96,7 @@ TEST(Capon, NeighboursGoRoundTheVelocityAxisWithTheirPhaseBetweenSlots) {
   // learn from the strong cell to null the weak one.
   const Vec3 step(0, kHalf, 0);
   const Radar radar = testing::radar_with(testing::line(3, 2 * step), testing::line(2, step), 8, 3);
-  for (const auto& [weak, strong, fold] : {std::tuple<size_t, size_t, int>{7, 0, 1}, {0, 7, -1}}) {
+  for (const auto& [weak, strong, fold] : {std::tuple<size_t, size_t, double>{7, 0, 7.0 / 8.0}, {0, 7, -7.0 / 8.0}}) {
     RangeDoppler map = testing::empty_map(radar);
     testing::add_wave(map, radar, direction(0.3, 0.0), 0.01, weak, 1);
     testing::add_wave(map, radar, direction(0.3, 0.0), 3.0, strong, 1, true, fold);

@@ -81,6 +81,23 @@ TEST(EstimateAngles, FoldsAreTheVelocitiesWhoseSlotsAgree) {
   }
 }
 
+TEST(EstimateAngles, SlotsAreTurnedByVelocitiesBetweenTheCells) {
+  const Vec3 step(0, kHalf, 0);
+  const Radar radar = testing::radar_with(testing::line(5, 4 * step), testing::line(4, step));
+  RangeDoppler map = testing::empty_map(radar);
+  const double beside = 0.4 * (map.velocity[7] - map.velocity[6]);
+  testing::add_wave(map, radar, direction(0.3, 0.0), 1.0, 6, 0, true, beside / (2.0 * radar.waveform.max_velocity(5)));
+  for (const BeamMethod method : {BeamMethod::kBartlett, BeamMethod::kCapon}) {
+    EstimateOptions options;
+    options.beams.method = method;
+    EXPECT_GT(std::abs(estimate_angles(map, radar, {{6, 0}}, search_grid(radar), options).azimuth[0] - 0.3), 100.0 * kFine);
+    options.velocity = {map.velocity[6] + beside};
+    const AngleEstimates found = estimate_angles(map, radar, {{6, 0}}, search_grid(radar), options);
+    EXPECT_NEAR(found.azimuth[0], 0.3, kFine);
+    EXPECT_EQ(found.velocity[0], options.velocity[0]);
+  }
+}
+
 TEST(EstimateAngles, AnglesStayInTheGrid) {
   const Radar radar = testing::line_radar(4);
   RangeDoppler map = testing::empty_map(radar);

@@ -34,7 +34,7 @@ class BeamSource {
   const VirtualArray& array() const { return array_; }
 
   // Returns the beam of one cell; `fold` as in ElementReader::read.
-  CellBeam cell(int64_t velocity, int64_t range, int fold = 0) const;
+  CellBeam cell(int64_t velocity, int64_t range, double fold = 0.0) const;
   // Returns the beam of one range over its velocities [begin, end).
   CellBeam velocities(int64_t begin, int64_t end, int64_t range) const;
   // Returns for Bartlett the snapshots of ranges [first, first + count) of one velocity times the weights, [elements,
@@ -43,7 +43,7 @@ class BeamSource {
 
  private:
   Eigen::MatrixXcd covariance(const Eigen::MatrixXcd& snapshots) const;
-  Eigen::MatrixXcd neighbourhood(int64_t velocity, int64_t range, int fold) const;  // [elements, snapshots]
+  Eigen::MatrixXcd neighbourhood(int64_t velocity, int64_t range, double fold) const;  // [elements, snapshots]
 
   const BeamformOptions options_;
   const VirtualArray array_;

@@ -30,11 +30,12 @@ class PeakSearch {
   PeakSearch(const BeamSource& source, const AngleGrid& angles, const EstimateOptions& options)
       : source_(source), angles_(angles), options_(options), beams_(steering_vectors(source.array(), angles)) {}
 
-  CellPeaks find(const Cell& cell) const {
+  // `beside`: by how much the echo is faster than its cell, in spans of the velocity axis.
+  CellPeaks find(const Cell& cell, double beside) const {
     CellPeaks best;
     for (int k = 0; k <= 2 * options_.folds; ++k) {
       const int fold = k % 2 == 0 ? -k / 2 : (k + 1) / 2;  // 0, 1, -1, 2, ...: a tie goes to the slowest
-      CellPeaks found{fold, peaks(source_.cell(cell[0], cell[1], fold))};
+      CellPeaks found{fold, peaks(source_.cell(cell[0], cell[1], fold + beside))};
       if (found.peaks.empty()) continue;
       // The margin is relative, because hypotheses that the array cannot tell apart differ by rounding.
       constexpr double kMargin = 1.0 + 1e-9;
@@ -152,20 +153,28 @@ AngleEstimates estimate_angles(const RangeDoppler& map, const Radar& radar, cons
           options.folds);
   const BeamSource source(map, radar, options.beams);
   require_cells_of(map, cells);
+  require(options.velocity.empty() || options.velocity.size() == cells.size(), "velocity",
+          "must have one value for each cell", options.velocity.size());
+  const auto velocity_of = [&](size_t i) {
+    return options.velocity.empty() ? map.velocity[cells[i][0]] : options.velocity[i];
+  };
+  const double span = 2.0 * radar.waveform.max_velocity(radar.num_slots());
   const PeakSearch search(source, angles, options);
   std::vector<CellPeaks> found(cells.size());
   if (job) job->start(static_cast<int64_t>(cells.size()));
-  parallel_for(static_cast<int64_t>(cells.size()), [&](int64_t i) { found[i] = search.find(cells[i]); }, job);
+  const auto search_cell = [&](int64_t i) {
+    found[i] = search.find(cells[i], (velocity_of(i) - map.velocity[cells[i][0]]) / span);
+  };
+  parallel_for(static_cast<int64_t>(cells.size()), search_cell, job);
 
   const Vec3 middle = 0.5 * (mean_position(radar.transmitters) + mean_position(radar.receivers));
-  const double span = 2.0 * radar.waveform.max_velocity(radar.num_slots());
   AngleEstimates result;
   for (size_t i = 0; i < cells.size(); ++i) {
     for (const Peak& peak : found[i].peaks) {
       const double range = map.range[cells[i][1]];
       result.cell.push_back(static_cast<int64_t>(i));
       result.range.push_back(range);
-      result.velocity.push_back(map.velocity[cells[i][0]] + found[i].fold * span);
+      result.velocity.push_back(velocity_of(i) + found[i].fold * span);
       result.azimuth.push_back(peak.azimuth);
       result.elevation.push_back(peak.elevation);
       result.power.push_back(peak.power);

@@ -17,6 +17,9 @@ struct EstimateOptions {
   // The velocity may be v + 2 k v_max for |k| <= folds; the k with the strongest peak is taken, since TDM slots tell them
   // apart. At most half the number of transmitters less one.
   int folds = 0;
+  // These are the velocities v, m/s, of the echoes in the cells [N], which may lie between those of the map; empty: those of
+  // the cells. Compensation goes by them.
+  std::vector<double> velocity;
 
   void validate(int num_slots) const;
 };

@@ -1,5 +1,7 @@
 #include "echopath/spectrum/array/element_reader.h"
 
+#include <cmath>
+
 #include "echopath/base/constants.h"
 #include "echopath/spectrum/array/tdm.h"
 
@@ -20,15 +22,15 @@ ElementReader::ElementReader(const RangeDoppler& map, const VirtualArray& array,
   if (compensate_) phasor_ = slot_phasors(radar, map.velocity);
 }
 
-Complex ElementReader::weight(int64_t entry, int64_t velocity, int fold) const {
+Complex ElementReader::weight(int64_t entry, int64_t velocity, double fold) const {
   if (!compensate_) return 1.0;
   const int64_t slot = channel_[entry] / map_.num_receivers;
-  const double turns = static_cast<double>(fold * slot % map_.num_transmitters) / map_.num_transmitters;
+  const double turns = std::fmod(fold * static_cast<double>(slot), map_.num_transmitters) / map_.num_transmitters;
   return phasor_[slot * num_velocities_ + velocity] * std::polar(1.0, -kTwoPi * turns);
 }
 
 void ElementReader::read(int64_t velocity, int64_t first, int64_t count, Eigen::Ref<Eigen::MatrixXcd> values,
-                         int fold) const {
+                         double fold) const {
   for (int64_t element = 0; element < num_elements(); ++element) {
     const double share = 1.0 / static_cast<double>(first_[element + 1] - first_[element]);
     for (int64_t entry = first_[element]; entry < first_[element + 1]; ++entry) {

@@ -23,11 +23,11 @@ class ElementReader {
   int64_t num_ranges() const { return num_ranges_; }
 
   // Reads ranges [first, first + count) of one velocity into values [elements, count], sqrt(W). A target at v + 2 fold v_max
-  // has another phase between slots (tdm.h); `fold` has no effect without compensation.
-  void read(int64_t velocity, int64_t first, int64_t count, Eigen::Ref<Eigen::MatrixXcd> values, int fold = 0) const;
+  // has another phase between slots (tdm.h), also where `fold` is not whole; it has no effect without compensation.
+  void read(int64_t velocity, int64_t first, int64_t count, Eigen::Ref<Eigen::MatrixXcd> values, double fold = 0.0) const;
 
  private:
-  std::complex<double> weight(int64_t entry, int64_t velocity, int fold) const;
+  std::complex<double> weight(int64_t entry, int64_t velocity, double fold) const;
 
   const RangeDoppler& map_;
   int64_t num_velocities_, num_ranges_;

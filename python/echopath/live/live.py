@@ -18,7 +18,6 @@ from ..base.known_attributes import known_attributes
 from ..scene.scene import Scene
 from ..signals.parts import as_partition
 from ..tracing.edges import looks_for_edges
-from ..tracing.tessellation import warn_of_coarse_meshes
 from .changes import Changes
 from .edited_scene import EditedScene
 from .kept_signal import KeptSignal
@@ -161,7 +160,7 @@ class Live:
         progress: callable (stage, fraction), True for bars, or None; what it raises ends the update and is raised here
         Raises ValueError as `trace` does. Nothing is lost then: the next update shows what the scene is by then. Warns as `trace`
         of the scene, and of rays, mirrors and objects that are left out where all rays are shot; as `simulate` where nothing is
-        heard; and (RuntimeWarning) of rain and other radars, which views do not have.
+        heard; and (RuntimeWarning) of rain, other radars and faults of the receiver, which views do not have.
         """
         seen = self._snapshot()
         with self._busy:
@@ -169,7 +168,7 @@ class Live:
 
     @checked(self=anything, num_rays=count(1, MOST_RAYS))
     def preview(self, *, num_rays: int | float, progress: Progress = None) -> LiveView:
-        """The view with fewer rays, which are kept beside the others. Raises as `update`.
+        """The view with fewer rays, which are kept beside the others. Raises as `update`, and does not warn.
 
         num_rays: 1 to 1e10; as long as it stays the same, a preview after a change shoots only what that touches
         progress: as in `update`
@@ -217,7 +216,6 @@ class Live:
             return _Seen(Scene(self._scene), self._radar, self._window, self._zero_pad, self.number)
 
     def _view_of(self, kept: KeptSignal, seen: _Seen, *, is_preview: bool, progress) -> LiveView:
-        warn_of_coarse_meshes(seen.scene, seen.radar.waveform.start_frequency)
         if not is_preview:
             warn_of_scene(seen.scene, seen.radar, self._trace["start_time"])
         done = kept.update(seen.scene, seen.radar, progress)

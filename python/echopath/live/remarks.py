@@ -7,21 +7,26 @@ from ..scene.scene import Scene
 from ..signals.silence import warn_of_silence
 from ..tracing.edge_paths import warn_of_edge_paths
 from ..tracing.lost_rays import warn_of_record
+from ..tracing.tessellation import warn_of_coarse_meshes
 from ..weather.echoes import has_rain_echoes
 from .kept_signal import KeptSignal, Update
 
 
 def warn_of_scene(scene: Scene, radar, start_time: float) -> None:
-    """Warns (RuntimeWarning) as `trace` does of a scene by itself, and of what `simulate` hears in it and no path makes.
+    """Warns (RuntimeWarning, TessellationWarning) as `trace` does of a scene by itself, and of what `simulate` hears in it or
+    makes of it and no path does.
 
     start_time: s, of the frame
     """
+    warn_of_coarse_meshes(scene, radar.waveform.start_frequency)
     warn_of_bodies(scene, radar, start_time)
     if has_rain_echoes(scene, ()):
         warn_user("scene.weather: live views have no echoes of its rain, only its attenuation; simulate has both")
     if scene.interferers:
         warn_user(f"scene.interferers: live views have no signals of other radars, here {len(scene.interferers)}; simulate "
                   "has them")
+    if radar.receiver is not None and (faults := radar.receiver.plain()):
+        warn_user(f"radar.receiver: live views have no faults of the receiver, here {', '.join(faults)}; simulate has them")
 
 
 def warn_of_update(kept: KeptSignal, done: Update, radar) -> None:

@@ -63,6 +63,34 @@ def test_what_no_path_makes_is_told_to_be_missing():
     assert [text.split(":")[0] for text in told(live.update)] == ["scene.interferers"]
 
 
+def test_faults_of_the_receiver_are_told_to_be_missing_once_for_each_setting():
+    """By their names, as Python's own rule for warnings says the same words at one line once."""
+    scene, radar = plate_and_radar()
+    live = ep.Live(scene, radar.replace(receiver=ep.Receiver()), num_rays=500)
+    assert told(live.update) == []
+    noisy = ep.Receiver(phase_noise={"offsets": [1e5], "levels": [-90.0]}, leakage_db=[[-30.0, -40.0]])
+    settings = (noisy, noisy, ep.Receiver(adc={"bits": 8}))
+    with warnings.catch_warnings(record=True) as record:
+        warnings.simplefilter("default")
+        for receiver in settings:
+            live.radar = radar.replace(receiver=receiver)
+            live.preview(num_rays=200)
+            live.update()
+    texts = [str(one.message) for one in record]
+    assert [re.findall("here (.*);", text) for text in texts] == [["phase_noise, leakage_db"], ["adc"]]
+    assert all(text.startswith("radar.receiver: live views have no ") for text in texts)
+
+
+def test_previews_do_not_warn_of_coarse_meshes_and_updates_do():
+    """An icosahedron's edge of 0.32 m is far above 0.4 sqrt(radius wavelength) = 14 mm."""
+    scene, radar = plate_and_radar()
+    scene.add(ep.actors.sphere(0.3, subdivisions=1), name="ball", material="metal", position=(6.0, 1.0, 0.0))
+    live = ep.Live(scene, radar, num_rays=500)
+    assert told(lambda: live.preview(num_rays=200)) == []
+    with pytest.warns(ep.TessellationWarning, match="ball"):
+        live.update()
+
+
 def test_rays_that_touch_the_radar_are_told_of():
     scene, radar = plate_and_radar()
     scene["plate"].position = (3e-4, 0.0, 0.0)

@@ -23,13 +23,14 @@ class Drive(NamedTuple):
     """Maps of frames in time.
 
     times: [T] s, starts of the frames; level: f16 [T, V, R] dBm, mean over channels, with noise
-    velocity: [V] m/s, receding positive; range: [R] m
+    velocity: [V] m/s, receding positive; range: [R] m; static_speed: m/s, up to which echoes count as standing still
     """
 
     times: np.ndarray
     level: np.ndarray
     velocity: np.ndarray
     range: np.ndarray
+    static_speed: float = STATIC_SPEED
 
 
 def plot_drive(drive: Drive, *, num_frames=4, vmin=None, vmax=None, title=""):
@@ -77,7 +78,7 @@ class _Column(NamedTuple):
 def _columns(drive: Drive, floor: float) -> tuple[_Column, _Column]:
     """Range over time of what moves, where something does, and velocity over time."""
     ranges, velocities = _extent(drive, floor)
-    is_moving = np.abs(drive.velocity) > STATIC_SPEED
+    is_moving = np.abs(drive.velocity) > drive.static_speed
     moves = is_moving.any() and (_stands_out(drive, floor)[is_moving]).any()
     taken = is_moving if moves else np.ones_like(is_moving)
     by_range = np.stack([level[taken].max(axis=0) for level in drive.level]).astype(np.float32)

@@ -6,7 +6,7 @@ import math
 import numpy as np
 
 from ..arguments.checks import optional, real
-from ..signals.measures import SMALLEST_POWER, STATIC_SPEED, for_pictures, in_dbm, with_error
+from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm, static_speed, with_error
 from .style import MAP_COLOURS, axes_or_new, new_figure, set_title
 
 DYNAMIC_RANGE_DB = 70.0      # below the peak that a map shows at most
@@ -177,11 +177,11 @@ def _half_step(axis) -> float:
 def signal_extent(spectra, floor: float, is_moving_meant: bool = False):
     """Box (range, velocity) around the cells above `floor` in dBm, or None when there are none.
 
-    is_moving_meant: by range only around the cells that move, where some do.
+    is_moving_meant: by range only around the cells that move, where some do. The spectra have one axis of velocity.
     """
     cells = [_cells(spectrum, floor) for spectrum in spectra]
     distance, velocity = (np.concatenate(values) for values in zip(*cells))
-    is_moving = np.abs(velocity) > STATIC_SPEED
+    is_moving = np.abs(velocity) > static_speed(spectra[0].velocity, spectra[0].window, spectra[0].zero_pad)
     if is_moving_meant and is_moving.any():
         distance = distance[is_moving]
     if not len(distance):

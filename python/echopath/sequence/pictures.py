@@ -8,6 +8,7 @@ import numpy as np
 
 from ..arguments.checks import Progress
 from ..base.progress import with_progress
+from ..signals.measures import static_speed
 
 if TYPE_CHECKING:
     from ..plots import Drive
@@ -18,7 +19,7 @@ FASTEST = 25.0  # pictures of a film in a second
 class Frames(Protocol):
     """What has maps, as a `Row`."""
 
-    def _maps(self) -> tuple[int, Iterator[tuple]]: ...
+    def _maps(self) -> tuple[int, Iterator[tuple], tuple]: ...
 
 
 def drive_of(frames: Frames, progress: Progress = None) -> Drive:
@@ -28,11 +29,12 @@ def drive_of(frames: Frames, progress: Progress = None) -> Drive:
     """
     from ..plots import Drive
 
-    count, maps = frames._maps()
+    count, maps, looks = frames._maps()
     drive = None
     for place, (time, level, velocity, range) in enumerate(with_progress(maps, count, progress)):
         if drive is None:
-            drive = Drive(np.empty(count), np.empty((count, *level.shape), np.float16), velocity, range)
+            drive = Drive(np.empty(count), np.empty((count, *level.shape), np.float16), velocity, range,
+                          static_speed(velocity, *looks))
         drive.times[place], drive.level[place] = time, level
     if drive is None:
         raise ValueError("frames: must be one at least, got none")

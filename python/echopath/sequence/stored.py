@@ -98,14 +98,15 @@ class StoredSequence(Row[Frame | FrameMaps]):
                                   "called again")
         return read_frame(path, self.keep)
 
-    def _maps(self) -> tuple[int, Iterator[tuple]]:
+    def _maps(self) -> tuple[int, Iterator[tuple], tuple]:
         there = np.flatnonzero(self.is_there)
         paths, times = [self.paths_of_files[place] for place in there], self.times[there]
         found = power_of(paths[0]) if paths else None
         if paths and found is None:
             raise ValueError(f"{self.path}: must keep maps to be drawn, keeps labels alone")
-        return len(paths), ((float(time), found.read_file(path).T, found.axes["velocity"], found.axes["range"])
-                            for path, time in zip(paths, times))
+        levels = ((float(time), found.read_file(path).T, found.axes["velocity"], found.axes["range"])
+                  for path, time in zip(paths, times))
+        return len(paths), levels, (self.settings["window"], self.settings["zero_pad"])
 
     @property
     def truth(self) -> Truth:

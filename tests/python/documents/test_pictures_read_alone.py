@@ -41,7 +41,8 @@ def test_the_numbers_of_part_powers_stay_within_the_figure():
 
 
 def test_maps_of_parts_with_small_print_name_their_range():
-    spectrum = SimpleNamespace(values=np.ones((1, 1, 8, 8), complex), range=np.arange(8.0), velocity=np.arange(-4.0, 4.0))
+    spectrum = SimpleNamespace(values=np.ones((1, 1, 8, 8), complex), range=np.arange(8.0), velocity=np.arange(-4.0, 4.0),
+                           window="hann", zero_pad=1)
     figure = plots.plot_partition({"a": spectrum, "b": spectrum}, note="small print")
     assert [axes.get_xlabel() for axes in figure.axes[:2]] == ["Range in m"] * 2
 
@@ -71,7 +72,8 @@ def assert_whole(figure) -> None:
 
 
 def flat_map():
-    return SimpleNamespace(values=np.ones((1, 1, 8, 8), complex), range=np.arange(8.0), velocity=np.arange(-4.0, 4.0))
+    return SimpleNamespace(values=np.ones((1, 1, 8, 8), complex), range=np.arange(8.0), velocity=np.arange(-4.0, 4.0),
+                           window="hann", zero_pad=1)
 
 
 @pytest.mark.parametrize("num_parts", [1, 2, 3, 5])

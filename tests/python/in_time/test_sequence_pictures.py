@@ -10,7 +10,7 @@ import echopath as ep
 from echopath.plots import drive, save_png
 from echopath.plots.maps import limits_of_level
 from echopath.sequence.pictures import drive_of
-from support.frames_in_time import DISTANCE, INTERVAL, SPEED, make_sequence, signal_of
+from support.frames_in_time import DISTANCE, INTERVAL, SPEED, make_radar, make_sequence, signal_of
 
 
 @pytest.fixture(scope="module")
@@ -37,6 +37,20 @@ def test_a_picture_has_maps_and_range_and_velocity_over_time(stored, num_frames,
     assert np.allclose(axis[np.asarray(velocities).reshape(-1, 4).argmax(axis=0)], SPEED, atol=axis[1] - axis[0])
     assert all(np.allclose(one, other, rtol=0.0, atol=0.1) for one, other in zip(shown_in(made), shown_in(read), strict=True))
     assert [ax.get_title() for ax in read.subfigs[0].axes][:len(places)] == [f"{stored.times[place]:.3f} s" for place in places]
+
+
+def test_what_moves_is_not_the_main_lobe_of_what_stands(tmp_path):
+    """The lobe of Hann's window reaches two cells of 1.2 m/s: in it the corner that stands is the stronger one."""
+    scene, aside = ep.Scene(), np.array([np.cos(0.3), np.sin(0.3), 0.0])
+    scene.add(ep.actors.trihedral(0.3), name="standing", material="metal", position=(4.0, 0.0, 0.0))
+    scene.add(ep.actors.trihedral(0.1), name="moving", material="metal", position=DISTANCE * aside, yaw=0.3,
+              motion=ep.LinearMotion(-SPEED * aside))
+    made = ep.Sequence(scene, make_radar(), frames=2, interval=INTERVAL, num_rays=500, guard=False, window=("hann", "hann"))
+    for row in (made, made.save(tmp_path / "corners", keep="maps")):
+        figure = row.plot(num_frames=2)
+        assert figure.subfigs[1].axes[0].get_title() == "strongest of what moves"
+        ranges = np.asarray(shown_in(figure)[2]).reshape(-1, 2).argmax(axis=0) * made.radar.waveform.range_resolution
+        assert np.allclose(ranges, DISTANCE - SPEED * made.times, atol=0.45)  # a cell and the coupling to velocity
 
 
 @pytest.mark.parametrize("interval, num_frames", [(0.002, 2), (0.1, 2), (0.1, 7), (1000.0, 2)])
@@ -75,7 +89,8 @@ def test_pictures_of_many_frames_hold_two_bytes_a_cell_and_one_frame():
 
     class Frames:
         def _maps(self):
-            return len(levels), ((0.1 * place, level.astype(np.float32), *axes) for place, level in enumerate(levels))
+            maps = ((0.1 * place, level.astype(np.float32), *axes) for place, level in enumerate(levels))
+            return len(levels), maps, ("hann", 1)
 
     tracemalloc.start()
     try:

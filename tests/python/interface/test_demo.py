@@ -144,6 +144,7 @@ def test_velocity_extent_finds_the_lines_of_a_made_up_map():
     values[0, 0, 20, 1] = 1.0     # -3 m/s
     values[0, 0, 70, 2] = 0.04    # +2 m/s, 28 dB below
     values[0, 0, 90, 2] = 0.02    # +4 m/s, 34 dB below
-    assert velocity_extent(SimpleNamespace(values=values, velocity=velocity)) == pytest.approx((-3.0, 2.0))
-    still = SimpleNamespace(values=values * (np.abs(velocity) < 0.05)[:, None], velocity=velocity)
+    looks = {"velocity": velocity, "window": "hann", "zero_pad": 1}
+    assert velocity_extent(SimpleNamespace(values=values, **looks)) == pytest.approx((-3.0, 2.0))
+    still = SimpleNamespace(values=values * (np.abs(velocity) < 0.05)[:, None], **looks)
     assert velocity_extent(still) is None

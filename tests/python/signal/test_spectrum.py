@@ -5,6 +5,7 @@ import pytest
 
 import echopath as ep
 from echopath import _core
+from echopath.spectra.windows import main_lobe_half_width, samples_of
 from support.radars import build_radar
 
 C = 299792458.0
@@ -122,6 +123,18 @@ def test_window_names():
     assert (_core.window("rect", 8) == 1).all()
     with pytest.raises(ValueError, match="nearest: hamming"):
         _core.window("haming", 8)
+
+
+def chebyshev_null(count: int, sidelobe_db: float) -> float:
+    """Bins to the first null of Dolph's window: where its polynomial of degree count - 1 has its largest root."""
+    edge = np.cosh(np.arccosh(10.0 ** (sidelobe_db / 20.0)) / (count - 1))
+    return count / np.pi * np.arccos(np.cos(0.5 * np.pi / (count - 1)) / edge)
+
+
+@pytest.mark.parametrize("window, bins", [("rect", 1.0), ("hann", 2.0), ("hamming", 2.0), ("blackman_harris", 4.0),
+                                          (("chebyshev", 60.0), chebyshev_null(64, 60.0))])
+def test_main_lobes_end_at_the_first_null(window, bins):
+    assert main_lobe_half_width(samples_of(window, 64)) == pytest.approx(bins, abs=1.0 / 64.0)
 
 
 def test_bad_input_is_an_error():

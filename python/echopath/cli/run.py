@@ -14,8 +14,9 @@ from ..frame.simulate import simulate
 from ..frame_file import LeftOut, min_power_of_budget, save_frame
 from ..paths.families import families
 from ..paths.resolution import RESOLVED_DB
-from ..plots.frames import noise_words, title_of
+from ..plots.frames import limits_of_frame, noise_words, title_of
 from ..scene_file import SceneFile
+from ..signals.beside import leakage_map
 from ..signals.measures import for_pictures, with_error
 from ..signals.parts import parts_of_options
 from ..truth.places import true_places
@@ -109,7 +110,7 @@ def _write_pictures(frame: Frame, folder: Path, partitions) -> list:
         written.append(folder / f"{name}.png")
 
     write("scene", plots.plot_scene(frame.scene, frame.paths, power=frame.path_power))
-    vmin, vmax = plots.colour_limits(frame.spectrum)
+    vmin, vmax = limits_of_frame(frame)
     title = title_of(frame)
     mean = for_pictures(f"; in the mean {with_error(frame.mean_power)}")
     write("map", plots.plot_range_doppler(frame.spectrum, title=title + mean, vmin=vmin, vmax=vmax))
@@ -126,7 +127,9 @@ def _write_pictures(frame: Frame, folder: Path, partitions) -> list:
             write("overview", plots.plot_overview(frame.spectrum, spectra, title=title + mean, parts_title=words, **looks))
     if frame.range_azimuth is not None:
         maps = _maps_from_above(frame, next(iter(partitions), None), vmin)
-        write("range_azimuth", plots.plot_range_azimuth(maps, places=_places(frame)))
+        leaked = leakage_map(frame.radar, frame.spectrum.window, frame.spectrum.zero_pad)
+        write("range_azimuth", plots.plot_range_azimuth(maps, places=_places(frame),
+                                                        leaked=leaked and frame.range_azimuth_of(leaked)))
     return written
 
 

@@ -58,11 +58,11 @@ class FrameRun:
         require_names(self.partitions)
         has_rain_echoes(scene, trace.effects)  # raises
         require_interferers(scene, radar, trace.effects, (trace.start_time, trace.start_time + radar.frame_duration))
-        self._of_map, self._advised = {"window": signal.window, "zero_pad": signal.zero_pad}, set()
+        self.map_settings, self._advised = {"window": signal.window, "zero_pad": signal.zero_pad}, set()
         self.label_settings = as_label_settings(labels)
-        self._request = _label_request(scene, radar, self.label_settings, trace.batches or 1, self._of_map,
+        self._request = _label_request(scene, radar, self.label_settings, trace.batches or 1, self.map_settings,
                                        self.angle_settings)
-        self.detect_keywords = _detect_keywords(scene, radar, detections, self._request, self._of_map)
+        self.detect_keywords = _detect_keywords(scene, radar, detections, self._request, self.map_settings)
         self.truth_keywords = truth_keywords(scene, truth, self._request.objects if self._request else None)
 
     def frame_of(self, record: Callable[[], _core.Paths], progress=None) -> Frame:
@@ -143,7 +143,7 @@ class FrameRun:
         """A frame without maps and what is made of them."""
         signal = self.signal
         return Frame(scene=self.scene, radar=self.radar, paths=paths, cube=whole, parts=cubes, selections=self.selections,
-                     part_of_path=groups, noise_seed=signal.noise_seed, spectrum_settings=self._of_map,
+                     part_of_path=groups, noise_seed=signal.noise_seed, spectrum_settings=self.map_settings,
                      angle_settings=self.angle_settings, replay=signal.replay, evaluate=signal.evaluate,
                      retrace=signal.retrace, keyframes=signal.keyframes,
                      effect_choices=self.trace.effects,

@@ -249,12 +249,12 @@ def _read_settings(group, known: tuple) -> dict:
     settings = json.loads(read_attribute(group, "settings", str))
     if not isinstance(settings, dict) or not set(settings) <= set(known):
         raise _core.FileError(f"{group.name}: attribute 'settings' must have no keys but {', '.join(known)}, is {settings!r}")
-    return settings | {"window": _without_lists(settings["window"])} if "window" in settings else settings
+    return settings | {"window": without_lists(settings["window"])} if "window" in settings else settings
 
 
-def _without_lists(value):
+def without_lists(value):
     """Lists of JSON as the tuples that they were."""
-    return tuple(map(_without_lists, value)) if isinstance(value, list) else value
+    return tuple(map(without_lists, value)) if isinstance(value, list) else value
 
 
 @blames_group

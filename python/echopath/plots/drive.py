@@ -9,6 +9,7 @@ import numpy as np
 from ..signals.measures import STATIC_SPEED
 from .maps import (
     MAP_SIZE, NOISE_PEAK_DB, RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, chosen_limits, limits_above,
+    peak_of_scene,
 )
 from .style import MAP_COLOURS, new_figure, set_title
 from .time_maps import TIME_LABEL, image_over_time
@@ -24,6 +25,7 @@ class Drive(NamedTuple):
 
     times: [T] s, starts of the frames; level: f16 [T, V, R] dBm, mean over channels, with noise
     velocity: [V] m/s, receding positive; range: [R] m; static_speed: m/s, up to which echoes count as standing still
+    leaked: [V, R] dBm, what leaks into the receivers in each map, None: nothing
     """
 
     times: np.ndarray
@@ -31,6 +33,7 @@ class Drive(NamedTuple):
     velocity: np.ndarray
     range: np.ndarray
     static_speed: float = STATIC_SPEED
+    leaked: np.ndarray | None = None
 
 
 def plot_drive(drive: Drive, *, num_frames=4, vmin=None, vmax=None, title=""):
@@ -114,7 +117,7 @@ def _limits(drive: Drive) -> tuple[float, float]:
     order = np.argsort(levels)
     levels, up_to = levels[order], np.cumsum(counts[found][order])
     middle = levels[np.searchsorted(up_to, [(up_to[-1] - 1) // 2, up_to[-1] // 2], side="right")]
-    return limits_above(middle.mean(), levels[-1])
+    return limits_above(middle.mean(), max(peak_of_scene(level, drive.leaked) for level in drive.level))
 
 
 def _draw(axes, drive: Drive, place: int, vmin: float, vmax: float):

@@ -1,7 +1,8 @@
 """A frame in one picture: its map, and what was detected in it."""
 from __future__ import annotations
 
-from .maps import MAP_SIZE, draw_range_doppler, hold_points
+from ..signals.beside import leakage_map
+from .maps import MAP_SIZE, chosen_limits, colour_limits, draw_range_doppler, hold_points
 from .points import draw_points
 from .style import axes_or_new
 
@@ -16,14 +17,21 @@ def title_of(frame) -> str:
     return "Everything that the radar receives" + noise_words(frame)
 
 
+def limits_of_frame(frame) -> tuple[float, float]:
+    """(lowest, highest) level in dBm of the colour scale of the map of a whole frame."""
+    return colour_limits(frame.spectrum, leakage_map(frame.radar, frame.spectrum.window, frame.spectrum.zero_pad))
+
+
 def draw_frame(frame, *, ax=None, vmin=None, vmax=None, title=None):
     """The range-Doppler map of a frame with its noise, and all of its detections, where it has some, as points.
 
-    ax: axes to draw in, None: new ones; vmin, vmax: ends of the colour scale in dBm; title: None: what it shows
+    ax: axes to draw in, None: new ones; vmin, vmax: ends of the colour scale in dBm, None: `limits_of_frame`
+    title: None: what it shows
     Returns the axes, as `draw_range_doppler`. Raises ValueError for a record of paths alone.
     """
     if frame.spectrum is None:
         raise ValueError("frame: must have signals to draw, got a record of paths alone")
+    vmin, vmax = chosen_limits(limits_of_frame(frame), vmin, vmax)
     has_room = ax is None
     with axes_or_new(ax, *MAP_SIZE) as ax:
         draw_range_doppler(frame.spectrum, ax=ax, vmin=vmin, vmax=vmax, title=title_of(frame) if title is None else title)

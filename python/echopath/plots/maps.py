@@ -10,6 +10,7 @@ from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm, static_spee
 from .style import MAP_COLOURS, axes_or_new, new_figure, set_title
 
 DYNAMIC_RANGE_DB = 70.0      # below the peak that a map shows at most
+LEAKED_DB = 10.0             # below a cell: where leakage alone comes so near to it, the cell tells nothing of the scene
 MARGIN_OVER_MEDIAN_DB = 6.0  # the median of a map is its noise: the scale begins above it
 NOISE_PEAK_DB = 14.0         # over the median: the highest of 1e7 noise cells is at +13.7
 RANGE_MARGIN = 0.8           # m, shown around the signal
@@ -28,17 +29,27 @@ def power_dbm(spectrum):
     return in_dbm(power, SMALLEST_POWER)
 
 
-def colour_limits(spectrum) -> tuple[float, float]:
+def colour_limits(spectrum, leaked=None) -> tuple[float, float]:
     """(lowest, highest) level in dBm of the colour scale of a map, multiples of 5.
 
-    spectrum: RangeDoppler. Raises AttributeError for other objects.
+    spectrum: RangeDoppler; leaked: that of the leakage in it, which sets no scale, or None
+    Raises AttributeError for other objects.
     """
-    return limits_of_level(power_dbm(spectrum))
+    return limits_of_level(power_dbm(spectrum), None if leaked is None else power_dbm(leaked))
 
 
-def limits_of_level(level) -> tuple[float, float]:
-    """The same of levels in dBm, an array of any shape."""
-    return limits_above(np.median(level), level.max())
+def limits_of_level(level, leaked=None) -> tuple[float, float]:
+    """The same of levels in dBm, an array of any shape. leaked: as of `peak_of_scene`"""
+    return limits_above(np.median(level), peak_of_scene(level, leaked))
+
+
+def peak_of_scene(level, leaked=None) -> float:
+    """The highest of levels in dBm beside the cells of leakage; of all of them where there is no other.
+
+    leaked: levels of the leakage alone, of that shape, None: there is none
+    """
+    of_scene = level if leaked is None else level[leaked < level - LEAKED_DB]
+    return float((of_scene if of_scene.size else level).max())
 
 
 def limits_above(median: float, peak: float) -> tuple[float, float]:

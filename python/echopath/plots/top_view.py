@@ -27,18 +27,20 @@ LEGEND_LOOK = {"facecolor": "black", "labelcolor": "white", "framealpha": 1.0}
 LABEL_LOOK = {"color": "0.35", "fontsize": 7, "ha": "center", "va": "center"}
 
 
-def plot_range_azimuth(maps, *, title="Received power by range and azimuth, seen from above", vmin=None, vmax=None, places=None):
+def plot_range_azimuth(maps, *, title="Received power by range and azimuth, seen from above", vmin=None, vmax=None, places=None,
+                       leaked=None):
     """Range-azimuth maps as sectors seen from above, cropped to where there is signal, with one colour scale.
 
     maps: of `range_azimuth`, one or {title of its panel: map}; of several the first sets the scale; title: above them
     vmin, vmax: ends of the colour scale in dBm, None: the peak, and the noise or 70 dB less
     places: {object: (range in m, azimuth in rad)} that get a ring, in the first map with names; None: none
+    leaked: map of the leakage in the first map, which sets no scale, or None
     Returns a matplotlib figure: metres to the left across (right negative), metres ahead up, in the radar's frame. Raises
     TypeError or ValueError naming vmin or vmax.
     """
     maps = maps if isinstance(maps, dict) else {"": maps}
     first = next(iter(maps.values()))
-    vmin, vmax = chosen_limits(_colour_limits(first), vmin, vmax)
+    vmin, vmax = chosen_limits(_colour_limits(first, leaked), vmin, vmax)
     reach = max(_reach(one, vmin) for one in maps.values())
     aspect = _aspect(first)
     columns = min(len(maps), 3 if len(maps) % 2 and aspect < WIDE else 2)
@@ -114,9 +116,9 @@ def _in_dbm(power):
     return in_dbm(power, SMALLEST_POWER)
 
 
-def _colour_limits(one) -> tuple[float, float]:
-    """(lowest, highest) level in dBm, multiples of 5."""
-    return limits_of_level(_in_dbm(one.power))
+def _colour_limits(one, leaked=None) -> tuple[float, float]:
+    """(lowest, highest) level in dBm, multiples of 5. leaked: as of `plot_range_azimuth`"""
+    return limits_of_level(_in_dbm(one.power), None if leaked is None else _in_dbm(leaked.power))
 
 
 def _reach(one, floor: float) -> float:

@@ -8,9 +8,11 @@ import numpy as np
 
 from ..arguments.checks import Progress
 from ..base.progress import with_progress
+from ..signals.beside import leakage_map
 from ..signals.measures import static_speed
 
 if TYPE_CHECKING:
+    from .. import _core
     from ..plots import Drive
 
 FASTEST = 25.0  # pictures of a film in a second
@@ -19,7 +21,9 @@ FASTEST = 25.0  # pictures of a film in a second
 class Frames(Protocol):
     """What has maps, as a `Row`."""
 
-    def _maps(self) -> tuple[int, Iterator[tuple], tuple]: ...
+    radar: _core.Radar
+
+    def _maps(self) -> tuple[int, Iterator[tuple], dict]: ...
 
 
 def drive_of(frames: Frames, progress: Progress = None) -> Drive:
@@ -27,14 +31,15 @@ def drive_of(frames: Frames, progress: Progress = None) -> Drive:
 
     progress: as of `Row.plot`. Raises ValueError without frames or maps.
     """
-    from ..plots import Drive
+    from ..plots import Drive, power_dbm
 
     count, maps, looks = frames._maps()
     drive = None
     for place, (time, level, velocity, range) in enumerate(with_progress(maps, count, progress)):
         if drive is None:
+            leaked = leakage_map(frames.radar, **looks)
             drive = Drive(np.empty(count), np.empty((count, *level.shape), np.float16), velocity, range,
-                          static_speed(velocity, *looks))
+                          static_speed(velocity, **looks), None if leaked is None else power_dbm(leaked))
         drive.times[place], drive.level[place] = time, level
     if drive is None:
         raise ValueError("frames: must be one at least, got none")

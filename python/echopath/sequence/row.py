@@ -119,9 +119,9 @@ class Row(Generic[Item]):
         write_film_of(drive_of(self, progress), path, self.interval, frames_per_second=frames_per_second, vmin=vmin, vmax=vmax,
                       title=title)
 
-    def _maps(self) -> tuple[int, Iterator[tuple], tuple]:
-        """How many frames are there, (start in s, level [V, R] in dBm, velocity [V], range [R]) of each, and (window, zero_pad)
-        of their maps."""
+    def _maps(self) -> tuple[int, Iterator[tuple], dict]:
+        """How many frames are there, (start in s, level [V, R] in dBm, velocity [V], range [R]) of each, and the window and
+        zero_pad of their maps."""
         raise NotImplementedError
 
     def _items(self, places: Iterable[int]) -> Iterator[Item]:

@@ -121,8 +121,8 @@ class Sequence(Row[Frame]):
         finally:
             give_back_memory()  # of frames that the user has let go since, and of one made ahead that nobody takes
 
-    def _maps(self) -> tuple[int, Iterator[tuple], tuple]:
-        return len(self), self._levels(), (self._run.signal.window, self._run.signal.zero_pad)
+    def _maps(self) -> tuple[int, Iterator[tuple], dict]:
+        return len(self), self._levels(), self._run.map_settings
 
     def _levels(self) -> Iterator[tuple]:
         from ..plots import power_dbm

@@ -14,6 +14,7 @@ from ..arguments.checks import checked
 from ..arguments.checks import path as path_rule
 from ..frame.frame import Frame
 from ..frame.maps import FrameMaps
+from ..frame_file.frame import without_lists
 from ..scene.scene import Scene
 from ..truth import Truth
 from ..weather import Weather
@@ -98,7 +99,7 @@ class StoredSequence(Row[Frame | FrameMaps]):
                                   "called again")
         return read_frame(path, self.keep)
 
-    def _maps(self) -> tuple[int, Iterator[tuple], tuple]:
+    def _maps(self) -> tuple[int, Iterator[tuple], dict]:
         there = np.flatnonzero(self.is_there)
         paths, times = [self.paths_of_files[place] for place in there], self.times[there]
         found = power_of(paths[0]) if paths else None
@@ -106,7 +107,7 @@ class StoredSequence(Row[Frame | FrameMaps]):
             raise ValueError(f"{self.path}: must keep maps to be drawn, keeps labels alone")
         levels = ((float(time), found.read_file(path).T, found.axes["velocity"], found.axes["range"])
                   for path, time in zip(paths, times))
-        return len(paths), levels, (self.settings["window"], self.settings["zero_pad"])
+        return len(paths), levels, {"window": without_lists(self.settings["window"]), "zero_pad": self.settings["zero_pad"]}
 
     @property
     def truth(self) -> Truth:

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from .. import _core
 from ..arguments.part_names import INTERFERENCE, LEAKAGE, RAIN
 from ..receiver.leakage import leakage
 from ..receiver.slots import SlotTimes
@@ -14,6 +15,15 @@ def cubes_beside(frame) -> dict:
     receiver."""
     received = {INTERFERENCE: frame.interference_cube, RAIN: frame.rain_cube, LEAKAGE: _leaked(frame.radar)}
     return {name: demultiplex(cube, frame.radar) for name, cube in received.items() if cube is not None}
+
+
+def leakage_map(radar, window, zero_pad: int):
+    """Range-Doppler map of what the transmitters leak into the receivers alone, the same in all frames of a radar; None: nothing.
+
+    window, zero_pad: as of `range_doppler`
+    """
+    leaked = _leaked(radar)
+    return None if leaked is None else _core.range_doppler(demultiplex(leaked, radar), radar, window, zero_pad)
 
 
 def _leaked(radar):

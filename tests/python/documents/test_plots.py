@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath import plots
+from echopath.cli import run
 from echopath.plots import (colour_limits, plot_overview, plot_partition, plot_range_azimuth, plot_range_doppler, plot_scene,
                             power_dbm, save_png)
 from echopath.plots.clip import clip_triangles, outline
@@ -117,6 +119,52 @@ def test_parts_that_are_all_at_rest_are_shown_whole(spectrum):
 def test_the_colour_scale_begins_above_the_noise_and_ends_above_the_peak(spectrum):
     vmin, vmax = colour_limits(spectrum)
     assert np.median(power_dbm(spectrum)) < vmin < -70.0 <= vmax
+
+
+def test_leakage_sets_no_scale(spectrum):
+    """50 dB above the echo, in cells of its own: the scale is that of the same map without it."""
+    leakage, values = np.zeros_like(spectrum.values), spectrum.values.copy()
+    leakage[0, 0, 31:34, :3] = 3e-3
+    whole, leaked = (with_values(spectrum, some) for some in (values + leakage, leakage))
+    assert colour_limits(whole, leaked) == colour_limits(spectrum) != colour_limits(whole)
+    assert colour_limits(leaked, leaked) == colour_limits(leaked)  # where there is nothing else
+
+
+@pytest.fixture(scope="module")
+def leaking():
+    """(frame of a corner and a mover that the radar's array sees, the same with the leakage of its transmitter): each channel of
+    the leakage is 3 dBm."""
+    scene, aside = ep.Scene(), np.array([np.cos(0.3), np.sin(0.3), 0.0])
+    scene.add(ep.actors.trihedral(0.1), name="corner", material="metal", position=(15.0, 0.0, 0.0))
+    scene.add(ep.actors.trihedral(0.1), name="mover", material="metal", position=12.0 * aside, yaw=0.3,
+              motion=ep.LinearMotion(-3.0 * aside))
+    radar = build_radar(receivers=[(0, 1.9e-3 * k, 0) for k in range(4)], bandwidth=0.5e9, num_samples=128, num_chirps=32,
+                        transmit_power=0.02)
+    receiver = ep.Receiver(leakage_db=[[-10.0] * 4], leakage_delay=0.3e-9)
+    parts = {"mover": "T 'mover' R"}
+    return [ep.simulate(scene, one, num_rays=500, guard=False, parts=parts) for one in (radar, radar.replace(receiver=receiver))]
+
+
+def scale_of(axes) -> tuple[float, float]:
+    return (axes.get_images() or axes.collections)[0].get_clim()
+
+
+def test_frames_with_leakage_are_drawn_as_those_without(leaking):
+    clean, leaked = leaking
+    assert np.ptp(power_dbm(leaked.spectrum)) > 110.0  # dB: what a scale of 70 dB cannot hold
+    assert scale_of(leaked.plot()) == scale_of(clean.plot()) == colour_limits(clean.spectrum)
+
+
+def test_pictures_of_a_run_with_leakage_have_the_scale_of_the_scene(leaking, tmp_path, monkeypatch):
+    scales = []
+    for frame in leaking:
+        figures = {}
+        monkeypatch.setattr(plots, "save_png", lambda figure, path, **_: figures.update({path.name: figure}))
+        run._write_pictures(frame, tmp_path, ["parts"])
+        scales.append({name: {scale_of(axes) for axes in figure.axes if axes.get_images() or axes.get_aspect() == 1.0}
+                       for name, figure in figures.items() if name != "scene.png"})
+    assert scales[0].keys() == {"map.png", "parts.png", "overview.png", "range_azimuth.png"}
+    assert all(len(found) == 1 for found in scales[0].values()) and scales[0] == scales[1]
 
 
 def test_the_same_figure_gives_the_same_file(spectrum, tmp_path):

@@ -10,7 +10,7 @@ import echopath as ep
 from echopath.plots import drive, save_png
 from echopath.plots.maps import limits_of_level
 from echopath.sequence.pictures import drive_of
-from support.frames_in_time import DISTANCE, INTERVAL, SPEED, make_radar, make_sequence, signal_of
+from support.frames_in_time import DISTANCE, INTERVAL, SPEED, make_radar, make_scene, make_sequence, signal_of
 
 
 @pytest.fixture(scope="module")
@@ -53,6 +53,16 @@ def test_what_moves_is_not_the_main_lobe_of_what_stands(tmp_path):
         assert np.allclose(ranges, DISTANCE - SPEED * made.times, atol=0.45)  # a cell and the coupling to velocity
 
 
+def test_leakage_sets_no_scale_of_frames_in_time(tmp_path):
+    receiver = ep.Receiver(leakage_db=[[0.0]], leakage_delay=0.3e-9)  # 110 dB above the plate
+    clean, leaking = (ep.Sequence(make_scene(), make_radar(**some), frames=2, interval=INTERVAL, num_rays=500, guard=False)
+                      for some in ({}, {"receiver": receiver}))
+    wanted = drive._limits(drive_of(clean))
+    for row in (leaking, leaking.save(tmp_path / "leaking", keep="maps")):
+        assert drive._limits(drive_of(row)) == wanted
+        assert row.plot(num_frames=1).subfigs[0].axes[0].get_images()[0].get_clim() == wanted
+
+
 @pytest.mark.parametrize("interval, num_frames", [(0.002, 2), (0.1, 2), (0.1, 7), (1000.0, 2)])
 def test_numbers_of_the_time_axes_stand_apart(interval, num_frames, tmp_path):
     times = np.arange(num_frames) * interval
@@ -88,9 +98,11 @@ def test_pictures_of_many_frames_hold_two_bytes_a_cell_and_one_frame():
     axes = (np.linspace(-5.0, 5.0, shape[1]), np.linspace(0.0, 50.0, shape[2]))
 
     class Frames:
+        radar = make_radar()
+
         def _maps(self):
             maps = ((0.1 * place, level.astype(np.float32), *axes) for place, level in enumerate(levels))
-            return len(levels), maps, ("hann", 1)
+            return len(levels), maps, {"window": "hann", "zero_pad": 1}
 
     tracemalloc.start()
     try:

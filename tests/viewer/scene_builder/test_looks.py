@@ -72,6 +72,17 @@ def test_a_frame_without_signal_is_dark_and_draws_nothing(frame):
     assert session.parts.whole.level(0, 0).max() < low < high and len(session.shown_rays()) == 0
 
 
+def test_leakage_sets_no_colours(frame):
+    """10 dB of the transmit power: the maps are as bright as without it, where there is more in view than the leakage."""
+    leak = np.full((len(frame.radar.transmitters), len(frame.radar.receivers)), -10.0)
+    radars = frame.radar, frame.radar.replace(receiver=ep.Receiver(leakage_db=leak, leakage_delay=0.3e-9))
+    clean, leaking = (Session(from_frame(ep.simulate(frame.scene, radar, num_rays=800, seed=3, guard=False))) for radar in radars)
+    assert leaking.map_limits() == clean.map_limits()
+    assert leaking.parts.whole.level(0, 0).max() > leaking.map_limits()[1] + 30.0
+    near = leaking.map_limits((0.0, 0.1), (-0.1, 0.1))
+    assert near[1] > leaking.map_limits()[1] + 30.0  # what is in view of leakage alone is shown by its own scale
+
+
 def test_a_number_that_is_none_is_told_with_the_name_of_the_file(frame, tmp_path):
     """Also where the program that wrote it has made the check sum of it."""
     path, told = tmp_path / "frame.h5", set()

@@ -2,11 +2,14 @@
 from __future__ import annotations
 
 from collections import OrderedDict
+from functools import cached_property
 
 import numpy as np
 
 import echopath as ep
+from echopath.arguments.part_names import LEAKAGE
 from echopath.presentation.tables import edge_hits, event
+from echopath.signals.beside import leakage_map
 
 from .antennas import world_from_antenna
 from .maps.beams import beam_values, beam_weights, paths_in_beam
@@ -16,7 +19,7 @@ from .rays.columns import Columns, read_columns
 from .rays.filters import Filters
 from .frames.kept_orders import KEPT_CHANNEL
 from .palette import mesh_palette
-from .maps.part_set import WHOLE
+from .maps.part_set import WHOLE, Part
 from .rays.ray_sample import SAMPLINGS
 from .rays.segments import RayBundle
 from .session_layers import SessionLayers
@@ -221,8 +224,15 @@ class Session(SessionPaths, SessionLayers, SessionNodes):
 
         ranges in m, velocities in m/s: (first, last) of what is seen of them, None: all; what lies outside sets no limits.
         """
-        highest = self.parts.highest_level(*self.channel, ranges, velocities)
+        highest = self.parts.highest_level(*self.channel, ranges, velocities, self._leaked)
         return highest - self.dynamic_range_db, highest
+
+    @cached_property
+    def _leaked(self) -> Part | None:
+        """What the transmitters leak into the receivers, as the map of the whole has it; None: nothing."""
+        spectrum = self.parts.whole.spectrum
+        found = leakage_map(self.radar, spectrum.window, spectrum.zero_pad)
+        return None if found is None else Part(WHOLE, LEAKAGE, found, is_known=False)
 
     def why_no_rays(self) -> str:
         """Why no ray is lit in the selected cells; "" where some are or none are selected."""

@@ -5,6 +5,7 @@ import numpy as np
 
 import echopath as ep
 from echopath import _core
+from echopath.frame_file.frame import without_lists
 
 from .inputs import ViewInput, whole_part
 from ..maps.layers import Known
@@ -21,7 +22,7 @@ def from_maps(maps, stored, title: str = "") -> ViewInput:
     """
     scene, radar, settings = stored.scene, stored.radar, stored.settings
     paths = no_paths(scene, radar, maps.start_time, maps.seed)
-    spectrum_settings = {"window": _window(settings.get("window", "hann")), "zero_pad": int(settings.get("zero_pad", 1))}
+    spectrum_settings = {"window": without_lists(settings.get("window", "hann")), "zero_pad": int(settings.get("zero_pad", 1))}
     signals = Signals(paths, spectrum_settings)
     cube = signals.whole()
     parts = PartSet(whole_part(_with_power(signals.map_of(cube), maps)))
@@ -55,10 +56,6 @@ def no_paths(scene, radar, start_time: float, seed: int):
     # The core's own: that one ray is too few need not be said.
     traced = _core.trace(scene, radar, num_rays=1, max_bounces=1, start_time=start_time, seed=seed)
     return traced.select(np.zeros(traced.num_paths, bool))
-
-
-def _window(value):
-    return tuple(value) if isinstance(value, list) else value
 
 
 def _there(kept, name: str):

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from echopath.plots import power_dbm
+from echopath.plots.maps import peak_of_scene
 
 WHOLE = "whole"
 OWN_GROUP = "own"    # parts that were named in the viewer
@@ -97,16 +98,18 @@ class PartSet:
         groups = (WHOLE, partition, OWN_GROUP, MESH_GROUP)
         return [part for group in groups if group is not None for part in self.of_group(group)]
 
-    def highest_level(self, tx: int, rx: int, ranges=None, velocities=None) -> float:
+    def highest_level(self, tx: int, rx: int, ranges=None, velocities=None, leaked: Part | None = None) -> float:
         """The upper end of the colour scale in dBm: the peak of the whole, up to the next multiple of 5.
 
         ranges in m, velocities in m/s: (first, last), where the peak is looked for; None: everywhere. Without any signal
         it is so high that all maps are dark.
+        leaked: the leakage in the whole, which sets no scale; None: there is none
         """
         spectrum, level = self.whole.spectrum, self.whole.level(tx, rx)
         columns, rows = _within(spectrum.range, ranges), _within(spectrum.velocity, velocities)
-        seen = level[rows, columns]
-        peak = float((seen if seen.size else level).max())
+        if not level[rows, columns].size:
+            columns = rows = slice(None)
+        peak = peak_of_scene(level[rows, columns], None if leaked is None else leaked.level(tx, rx)[rows, columns])
         return NO_SIGNAL_DBM if peak <= _NOTHING_DBM else 5.0 * math.ceil(peak / 5.0)
 
 

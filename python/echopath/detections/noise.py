@@ -18,6 +18,8 @@ def warn_of_missing_noise(radar, power) -> None:
     """
     noise = _core.noise_power_in_cell(radar)
     if np.quantile(power, _QUANTILE) < _LEAST_SHARE * noise:
-        text = (f"spectrum: holds no noise of the radar ({10.0 * np.log10(noise) + 30.0:.0f} dBm in a cell), so that detections "
-                "are sidelobes and rounding; make the map of ep.add_noise(cube, radar)")
-        warn_user(text)
+        has_converter = radar.receiver is not None and radar.receiver.adc is not None
+        remedy = "its converter (Adc.gain_db) or a map without ep.add_noise has lost it" if has_converter else \
+            "make the map of ep.add_noise(cube, radar)"
+        warn_user(f"spectrum: holds no noise of the radar ({10.0 * np.log10(noise) + 30.0:.0f} dBm in a cell), so that "
+                  f"detections are sidelobes and rounding; {remedy}")

@@ -20,8 +20,9 @@ def _left_out(left_out) -> list[str]:
     """What was left out of the signals."""
     if left_out is None or not left_out.families:
         return []
-    return [f"{left_out.families} families can own no cell and have no signals of their own: {in_dbm(left_out.power):.0f} dBm "
-            f"together, at most {in_dbm(left_out.bound):.0f} dBm in a cell"]
+    who = "1 family can own no cell and has no signals of its own" if left_out.families == 1 else \
+        f"{left_out.families} families can own no cell and have no signals of their own"
+    return [f"{who}: {in_dbm(left_out.power):.0f} dBm together, at most {in_dbm(left_out.bound):.0f} dBm in a cell"]
 
 
 def _header(labels) -> str:

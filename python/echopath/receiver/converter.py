@@ -5,8 +5,12 @@ import math
 
 import numpy as np
 
+from ..base.callers import warn_user
 from .filters import beat_frequencies
 from .settings import Adc
+
+MOST_CLIPPED = 0.01  # of the samples, at full scale without a word
+ADVICE_DB = 5.0      # steps in which changes of the gain are advised, so that frames in a row say the same
 
 
 def converted(cube: np.ndarray, waveform, adc: Adc):
@@ -14,10 +18,33 @@ def converted(cube: np.ndarray, waveform, adc: Adc):
     branches = np.stack([cube.real] if waveform.real else [cube.real, cube.imag], axis=-1)
     gain_db = _automatic_gain(branches, waveform, adc) if adc.automatic_gain else adc.gain_db
     step = _full_scale(waveform, adc) * 10.0 ** (-gain_db / 20.0) / 2 ** (adc.bits - 1)
-    codes = np.clip(np.rint(branches / step), -2 ** (adc.bits - 1), 2 ** (adc.bits - 1) - 1).astype(np.int16)
+    steps = np.rint(branches / step)
+    codes = np.clip(steps, -2 ** (adc.bits - 1), 2 ** (adc.bits - 1) - 1).astype(np.int16)
+    _warn_of_codes(branches / step, np.mean(steps != codes), adc)
     values = codes * step
     cube = values[..., 0] + (0j if waveform.real else 1j * values[..., 1])
     return cube, codes, gain_db
+
+
+def _warn_of_codes(in_steps, clipped: float, adc: Adc) -> None:
+    """Warns (RuntimeWarning) where the converter clips a good part of the samples, or makes nothing of them.
+
+    in_steps: what it converts, in its steps; clipped: share of that beyond its ends
+    """
+    largest = float(np.max(np.abs(in_steps), initial=0.0))
+    if clipped > MOST_CLIPPED:
+        less = _advised_db(largest / 2 ** (adc.bits - 1))
+        warn_user(f"radar.receiver.adc: clips over {100.0 * MOST_CLIPPED:.0f} % of the samples at full scale; a gain_db lower by "
+                  f"{less:.0f} dB, or automatic_gain, takes them in")
+    elif 0.0 < largest <= 0.5:
+        more = _advised_db(1.0 / np.sqrt(np.mean(np.square(in_steps))))
+        warn_user("radar.receiver.adc: the signal and its noise stay below one step, so that all codes are 0; a gain_db higher "
+                  f"by {more:.0f} dB, or automatic_gain, lifts them over it")
+
+
+def _advised_db(ratio: float) -> float:
+    """A ratio of amplitudes in dB, up to the next of the steps."""
+    return ADVICE_DB * math.ceil(20.0 * math.log10(ratio) / ADVICE_DB)
 
 
 def _full_scale(waveform, adc: Adc) -> float:

@@ -1,5 +1,6 @@
 """The converter behind the receiver, receivers as values, and what is refused of them."""
 import pickle
+import warnings
 
 import numpy as np
 import pytest
@@ -26,11 +27,38 @@ def test_quantisation_noise_is_6_db_a_bit(bits, real):
 
 def test_the_converter_saturates_and_its_gain_adapts():
     adc = ep.Adc(bits=10, full_scale_dbm=0.0, gain_db=40.0)
-    out = received(tone(20, 1e-3), adc=adc)
+    with pytest.warns(RuntimeWarning, match="clips over 1 % of the samples at full scale; a gain_db lower by 4[05] dB"):
+        out = received(tone(20, 1e-3), adc=adc)
     assert out.codes.min() == -512 and out.codes.max() == 511
     automatic = received(tone(20, 1e-3), adc=adc.replace(automatic_gain=True, headroom_db=3.0, gain_step_db=2.0))
     assert automatic.gain_db == -4.0
     assert np.abs(automatic.codes.astype(int)).max() == round(512 * 10 ** (-4.0 / 20))
+
+
+@pytest.mark.parametrize("over_db, clips", [(-0.01, False), (0.3, True), (20.0, True)])
+def test_clipping_of_more_than_a_hundredth_is_said(over_db, clips):
+    """A sine of amplitude g full scales lies beyond them 1 - 2/pi asin(1/g) of the time: a sixth of it at 0.3 dB."""
+    adc = ep.Adc(bits=10, full_scale_dbm=0.0, gain_db=over_db)
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        out = received(tone(20.37, 1e-3), adc=adc)
+    share = 1.0 - 2.0 / np.pi * np.arcsin(10.0 ** (-over_db / 20.0)) if clips else 0.0
+    assert np.mean(np.isin(out.codes, (-512, 511))) == pytest.approx(share, abs=0.03)
+    assert ["clips" in str(one.message) for one in said] == [True] * clips
+
+
+@pytest.mark.parametrize("under_steps, is_lost", [(0.49, True), (0.6, False)])
+def test_a_signal_below_a_step_is_said_with_the_gain_that_lifts_it(under_steps, is_lost):
+    """The amplitude in steps of the converter, whose codes are rounded: from half a step on there is one that is not 0."""
+    adc = ep.Adc(bits=10, full_scale_dbm=0.0, gain_db=0.0)
+    power = 1e-3 * (under_steps / 512.0) ** 2
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        out = received(tone(20.37, power), adc=adc)
+    assert out.codes.any() != is_lost
+    assert [str(one.message) for one in said] == [
+        "radar.receiver.adc: the signal and its noise stay below one step, so that all codes are 0; a gain_db higher by 10 dB, or "
+        "automatic_gain, lifts them over it"] * is_lost  # 1 / (0.49 / sqrt 2) = 9.2 dB
 
 
 def test_jitter_makes_noise_by_the_square_of_the_frequency():
@@ -43,7 +71,7 @@ def test_jitter_makes_noise_by_the_square_of_the_frequency():
 
 
 def test_the_same_seed_gives_the_same_bits_and_frames_differ():
-    faults = dict(phase_noise=dict(offsets=[1e4, 1e6], levels=[-80, -100]), adc=dict(bits=12, clock_jitter=1e-12))
+    faults = dict(phase_noise=dict(offsets=[1e4, 1e6], levels=[-80, -100]), adc=dict(bits=12, full_scale_dbm=33.0, gain_db=0.0, clock_jitter=1e-12))
     one, same = (received(tone(60), seed=4, **faults).cube for _ in range(2))
     np.testing.assert_array_equal(one, same)
     radar = one_channel(receiver=ep.Receiver(**faults))

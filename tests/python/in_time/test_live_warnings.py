@@ -82,9 +82,9 @@ def test_faults_of_the_receiver_are_told_to_be_missing_once_for_each_setting():
 
 
 def test_previews_do_not_warn_of_coarse_meshes_and_updates_do():
-    """An icosahedron's edge of 0.32 m is far above 0.4 sqrt(radius wavelength) = 14 mm."""
+    """Edges of 0.1 m are far above 0.4 sqrt(radius wavelength) = 14 mm."""
     scene, radar = plate_and_radar()
-    scene.add(ep.actors.sphere(0.3, subdivisions=1), name="ball", material="metal", position=(6.0, 1.0, 0.0))
+    scene.add(ep.actors.sphere(0.3, subdivisions=3), name="ball", material="metal", position=(6.0, 1.0, 0.0))
     live = ep.Live(scene, radar, num_rays=500)
     assert told(lambda: live.preview(num_rays=200)) == []
     with pytest.warns(ep.TessellationWarning, match="ball"):

@@ -93,8 +93,8 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     noise_margin_db: dB from -300 to 300, with paths: as of `annotate`, above which the rule of labels tells an object from what
         hides it; None: that of labels where they are given, else 10
     progress: callable (stage, fraction), True for bars, or None
-    Returns Detections: range in m, velocity in m/s and the rest. Raises ValueError naming the argument, KeyboardInterrupt on
-    Ctrl-C. Warns (RuntimeWarning) where the map holds no noise of the radar.
+    Returns Detections: range in m, from 0 on, velocity in m/s and the rest. Raises ValueError naming the argument,
+    KeyboardInterrupt on Ctrl-C. Warns (RuntimeWarning) where the map holds no noise of the radar.
     """
     if parts is not None and labels is not None:
         raise ValueError("labels: cannot be given beside parts")
@@ -162,8 +162,9 @@ def _joined(radar, peaks: dict, power, directions: dict, columns: dict, echoes) 
     velocity = peaks["velocity"][index] + directions["fold"]
     # Beams have their power in the cell; what the windows lost between cells is put back to them too.
     in_beam = directions["power"] * (peaks["power"] / power)[index]
-    return Detections(cells=peaks["cells"][index], velocity=velocity,
-                      range=peaks["range"][index] - waveform.centre_frequency * velocity / waveform.slope,
+    # Noise or what velocity shifts may put what is next to the antennas below the first range, where nothing is.
+    distance = np.maximum(peaks["range"][index] - waveform.centre_frequency * velocity / waveform.slope, 0.0)
+    return Detections(cells=peaks["cells"][index], velocity=velocity, range=distance,
                       azimuth=directions["azimuth"], elevation=directions["elevation"],
                       power=np.where(np.isnan(in_beam), peaks["power"][index], in_beam), noise=peaks["noise"][index],
                       echoes=echoes, centre=centre_of(radar), **{name: values[index] for name, values in columns.items()})

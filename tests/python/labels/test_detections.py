@@ -184,6 +184,25 @@ def test_transmitters_that_send_at_once_have_no_slots_to_turn():
     assert len(found) and np.array_equal(found.azimuth, of_cells.azimuth)
 
 
+@pytest.mark.parametrize("real, beat, speed, expected", [
+    (False, -0.3, 0.0, 0.0), (False, 0.3, 0.0, 0.3), (False, 0.0, 4.0, 0.0), (False, 254.7, 0.0, 254.7),
+    (True, 0.0, 4.0, 0.0), (True, 5.3, 0.0, 5.3)])
+def test_no_detection_is_nearer_than_the_antennas(real, beat, speed, expected):
+    """Tones in closed form; beat and expected range in cells, a speed in m/s shifts an echo by carrier * speed / slope."""
+    radar = radar_with(receivers=4)
+    chirps = radar.waveform.replace(real=real)
+    radar = radar.replace(waveform=chirps)
+    sample, chirp = np.arange(chirps.num_samples), np.arange(chirps.num_chirps)[:, None]
+    turns = beat * sample / chirps.num_samples + 2.0 * speed / WAVELENGTH * chirp * chirps.chirp_interval
+    tone = 1e-3 * np.exp(2j * np.pi * turns)
+    cube = np.broadcast_to(tone.real if real else tone, (1, 4, *tone.shape))
+    spectrum = ep.range_doppler(ep.add_noise(cube, radar, seed=1), radar)
+    found = ep.detect(spectrum, radar)
+    i = int(found.power.argmax())
+    assert abs(found.velocity[i]) == pytest.approx(speed, abs=SPEED) and found.range.min() >= 0.0
+    assert found.range[i] == pytest.approx(expected * spectrum.range[1], abs=PLACE * spectrum.range[1])
+
+
 def test_one_antenna_gives_no_directions(spheres):
     radar = radar_with(receivers=1)
     spectrum = ep.range_doppler(ep.add_noise(np.zeros((1, 1, 64, 256), complex), radar, seed=1), radar)

@@ -8,8 +8,8 @@ import numpy as np
 
 from ..signals.measures import STATIC_SPEED
 from .maps import (
-    MAP_SIZE, NOISE_PEAK_DB, RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, chosen_limits, limits_above,
-    peak_of_scene,
+    MAP_SIZE, NOISE_PEAK_DB, RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, cells_of_scene, chosen_limits,
+    limits_above,
 )
 from .style import MAP_COLOURS, new_figure, set_title
 from .time_maps import TIME_LABEL, image_over_time
@@ -111,13 +111,14 @@ def _limits(drive: Drive) -> tuple[float, float]:
     """`limits_of_level` of all maps, taken one after the other: half precision has so few values that each is counted."""
     counts = np.zeros(2**16, np.int64)
     for level in drive.level:
-        counts += np.bincount(level.view(np.uint16).ravel(), minlength=len(counts))
+        cells = np.ascontiguousarray(cells_of_scene(level, drive.leaked))
+        counts += np.bincount(cells.view(np.uint16).ravel(), minlength=len(counts))
     found = np.flatnonzero(counts)
     levels = found.astype(np.uint16).view(np.float16).astype(float)
     order = np.argsort(levels)
     levels, up_to = levels[order], np.cumsum(counts[found][order])
     middle = levels[np.searchsorted(up_to, [(up_to[-1] - 1) // 2, up_to[-1] // 2], side="right")]
-    return limits_above(middle.mean(), max(peak_of_scene(level, drive.leaked) for level in drive.level))
+    return limits_above(middle.mean(), levels[-1])
 
 
 def _draw(axes, drive: Drive, place: int, vmin: float, vmax: float):

@@ -39,17 +39,18 @@ def colour_limits(spectrum, leaked=None) -> tuple[float, float]:
 
 
 def limits_of_level(level, leaked=None) -> tuple[float, float]:
-    """The same of levels in dBm, an array of any shape. leaked: as of `peak_of_scene`"""
-    return limits_above(np.median(level), peak_of_scene(level, leaked))
+    """The same of levels in dBm, an array of any shape. leaked: as of `cells_of_scene`"""
+    cells = cells_of_scene(level, leaked)
+    return limits_above(np.median(cells), cells.max())
 
 
-def peak_of_scene(level, leaked=None) -> float:
-    """The highest of levels in dBm beside the cells of leakage; of all of them where there is no other.
+def cells_of_scene(level, leaked=None):
+    """Those of levels in dBm that set the scale of colours: all but the cells of leakage, or all where there are no others.
 
     leaked: levels of the leakage alone, of that shape, None: there is none
     """
     of_scene = level if leaked is None else level[leaked < level - LEAKED_DB]
-    return float((of_scene if of_scene.size else level).max())
+    return of_scene if of_scene.size else level
 
 
 def limits_above(median: float, peak: float) -> tuple[float, float]:

@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 
 from echopath.plots import power_dbm
-from echopath.plots.maps import peak_of_scene
+from echopath.plots.maps import cells_of_scene
 
 WHOLE = "whole"
 OWN_GROUP = "own"    # parts that were named in the viewer
@@ -109,7 +109,8 @@ class PartSet:
         columns, rows = _within(spectrum.range, ranges), _within(spectrum.velocity, velocities)
         if not level[rows, columns].size:
             columns = rows = slice(None)
-        peak = peak_of_scene(level[rows, columns], None if leaked is None else leaked.level(tx, rx)[rows, columns])
+        seen = None if leaked is None else leaked.level(tx, rx)[rows, columns]
+        peak = float(cells_of_scene(level[rows, columns], seen).max())
         return NO_SIGNAL_DBM if peak <= _NOTHING_DBM else 5.0 * math.ceil(peak / 5.0)
 
 

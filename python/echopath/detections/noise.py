@@ -18,8 +18,16 @@ def warn_of_missing_noise(radar, power) -> None:
     """
     noise = _core.noise_power_in_cell(radar)
     if np.quantile(power, _QUANTILE) < _LEAST_SHARE * noise:
-        has_converter = radar.receiver is not None and radar.receiver.adc is not None
-        remedy = "its converter (Adc.gain_db) or a map without ep.add_noise has lost it" if has_converter else \
-            "make the map of ep.add_noise(cube, radar)"
         warn_user(f"spectrum: holds no noise of the radar ({10.0 * np.log10(noise) + 30.0:.0f} dBm in a cell), so that "
-                  f"detections are sidelobes and rounding; {remedy}")
+                  f"detections are sidelobes and rounding; {_way_out(radar.receiver)}")
+
+
+def _way_out(receiver) -> str:
+    """What brings the noise into the map; receiver: of the radar, None: an ideal one."""
+    if receiver is None:
+        return "make the map of ep.add_noise(cube, radar)"
+    if receiver.adc is None:
+        return "make the map of ep.receive(cube, radar, seed=1).cube"
+    setting = "lower headroom_db" if receiver.adc.automatic_gain else "raise gain_db"
+    return (f"if it came through the converter, the noise lies below a step of it: {setting} of receiver.adc or take more "
+            "bits; if not, make the map of ep.receive(cube, radar, seed=1).cube")

@@ -182,13 +182,13 @@ class FamilyPass:
                               for cube in self._pass.cubes(some, self._progress)]
 
     def _note_left_out(self, intervals: dict) -> None:
-        """Tells what was left out that sends anything back; powers of families that were not made by themselves are means over
+        """Tells which families with some power were left out; powers of families that were not made by themselves are means over
         the random phases."""
         owners = self._owners
         mean = np.array([intervals[family].power for family in owners.families])
         rest = np.flatnonzero(~self._is_made).tolist()
-        numbers = [number for rival in rest for number in owners.rivals[rival]]
-        owners.left_out = LeftOut(np.count_nonzero(mean[numbers]), float(mean[numbers].sum()),
+        numbers = [number for rival in rest for number in owners.rivals[rival] if mean[number] > 0.0]
+        owners.left_out = LeftOut(len(numbers), float(mean[numbers].sum()),
                                   float(self._bound_of_rival[rest].max(initial=0.0)))
         alone = [members[0] for members, made in zip(owners.rivals, self._is_made) if made and len(members) == 1]
         mean[alone] = owners.received[alone]

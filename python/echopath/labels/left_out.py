@@ -7,7 +7,7 @@ from typing import NamedTuple
 class LeftOut(NamedTuple):
     """Families of paths whose signals were not made for labels, because none of them can own a cell.
 
-    families: how many; power: W, the sum of their mean received powers
+    families: how many that have some power; power: W, the sum of their mean received powers
     bound: W, what the strongest of them can show in a cell at most
     """
 

@@ -20,9 +20,11 @@ def _left_out(left_out) -> list[str]:
     """What was left out of the signals."""
     if left_out is None or not left_out.families:
         return []
-    who = "1 family can own no cell and has no signals of its own" if left_out.families == 1 else \
-        f"{left_out.families} families can own no cell and have no signals of their own"
-    return [f"{who}: {in_dbm(left_out.power):.0f} dBm together, at most {in_dbm(left_out.bound):.0f} dBm in a cell"]
+    several = left_out.families > 1
+    words = "families can own no cell and have no signals of their own" if several else (
+        "family can own no cell and has no signal of its own")
+    return [f"{left_out.families} {words}: {in_dbm(left_out.power):.0f} dBm{' together' if several else ''}, at most "
+            f"{in_dbm(left_out.bound):.0f} dBm in a cell"]
 
 
 def _header(labels) -> str:

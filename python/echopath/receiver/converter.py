@@ -6,11 +6,12 @@ import math
 import numpy as np
 
 from ..base.callers import warn_user
+from ..base.counts import at_least
 from .filters import beat_frequencies
 from .settings import Adc
 
-MOST_CLIPPED = 0.01  # of the samples, at full scale without a word
-ADVICE_DB = 5.0      # steps in which changes of the gain are advised, so that frames in a row say the same
+CLIPPED = 0.01    # share of the codes: a converter that meets more than peaks beyond its range is set wrongly
+ROUNDING = 1e-9   # of an amplitude
 
 
 def converted(cube: np.ndarray, waveform, adc: Adc):
@@ -18,33 +19,37 @@ def converted(cube: np.ndarray, waveform, adc: Adc):
     branches = np.stack([cube.real] if waveform.real else [cube.real, cube.imag], axis=-1)
     gain_db = _automatic_gain(branches, waveform, adc) if adc.automatic_gain else adc.gain_db
     step = _full_scale(waveform, adc) * 10.0 ** (-gain_db / 20.0) / 2 ** (adc.bits - 1)
-    steps = np.rint(branches / step)
-    codes = np.clip(steps, -2 ** (adc.bits - 1), 2 ** (adc.bits - 1) - 1).astype(np.int16)
-    _warn_of_codes(branches / step, np.mean(steps != codes), adc)
+    codes = np.clip(np.rint(branches / step), -2 ** (adc.bits - 1), 2 ** (adc.bits - 1) - 1).astype(np.int16)
     values = codes * step
     cube = values[..., 0] + (0j if waveform.real else 1j * values[..., 1])
     return cube, codes, gain_db
 
 
-def _warn_of_codes(in_steps, clipped: float, adc: Adc) -> None:
-    """Warns (RuntimeWarning) where the converter clips a good part of the samples, or makes nothing of them.
+def warn_of_levels(cube: np.ndarray, codes: np.ndarray, waveform, adc: Adc, gain_db: float) -> None:
+    """Warns (RuntimeWarning) where the converter clips more than CLIPPED of the codes, or gives the same code for all.
 
-    in_steps: what it converts, in its steps; clipped: share of that beyond its ends
+    cube: before the converter, in sqrt(W); codes, gain_db: of `converted`
     """
-    largest = float(np.max(np.abs(in_steps), initial=0.0))
-    if clipped > MOST_CLIPPED:
-        less = _advised_db(largest / 2 ** (adc.bits - 1))
-        warn_user(f"radar.receiver.adc: clips over {100.0 * MOST_CLIPPED:.0f} % of the samples at full scale; a gain_db lower by "
-                  f"{less:.0f} dB, or automatic_gain, takes them in")
-    elif 0.0 < largest <= 0.5:
-        more = _advised_db(1.0 / np.sqrt(np.mean(np.square(in_steps))))
-        warn_user("radar.receiver.adc: the signal and its noise stay below one step, so that all codes are 0; a gain_db higher "
-                  f"by {more:.0f} dB, or automatic_gain, lifts them over it")
+    branches = (cube.real,) if waveform.real else (cube.real, cube.imag)
+    largest = max(float(np.max(np.abs(branch), initial=0.0)) for branch in branches)
+    full_scale = _full_scale(waveform, adc) * 10.0 ** (-gain_db / 20.0)
+    if largest == 0.0:
+        return
+    clipped = sum(np.count_nonzero(np.abs(branch) > full_scale * (1.0 + ROUNDING)) for branch in branches) / codes.size
+    if clipped > CLIPPED:
+        warn_user(f"receiver.adc: {at_least(int(100.0 * clipped))} % of the codes are clipped at full scale: lower gain_db by "
+                  f"{_in_steps(largest / full_scale)} dB, or let automatic_gain choose it")
+    if np.all(codes == codes[:1, :1, :1, :1]):
+        rms = math.sqrt(sum(np.var(branch) for branch in branches) / len(branches))
+        missing = _in_steps(full_scale / 2 ** (adc.bits - 1) / max(rms, ROUNDING * largest))
+        setting = "lower headroom_db" if adc.automatic_gain else "raise gain_db"
+        warn_user(f"receiver.adc: the signal with its noise stays below one step, and all codes are alike: {setting} by "
+                  f"{missing} dB, or take more bits")
 
 
-def _advised_db(ratio: float) -> float:
-    """A ratio of amplitudes in dB, up to the next of the steps."""
-    return ADVICE_DB * math.ceil(20.0 * math.log10(ratio) / ADVICE_DB)
+def _in_steps(ratio: float) -> int:
+    """A ratio of amplitudes in dB, up to the next multiple of 5: frames in a row need alike changes."""
+    return 5 * math.ceil(4.0 * math.log10(ratio) - ROUNDING)
 
 
 def _full_scale(waveform, adc: Adc) -> float:

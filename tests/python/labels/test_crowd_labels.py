@@ -1,4 +1,6 @@
 """Labels of a crowd keep few signals: they are those that the signals of all families give."""
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ from echopath.actors import shapes
 from echopath.arguments.settings import LabelSettings
 from echopath.labels import family_pass
 from echopath.labels.request import make_request
+from echopath.labels.left_out import LeftOut
 from echopath.labels.cell_owners import ALIKE, SHARED
 from echopath.labels.powers import parts_by_rival
 
@@ -139,6 +142,19 @@ def test_labels_say_what_was_left_out(paths, radar, families):
     assert f"{labels.left_out.families} families can own no cell" in str(labels)
     everything = ep.annotate(paths, None, radar, noise=False, dynamic_range_db=None)
     assert everything.left_out.families <= labels.left_out.families
+
+
+def test_families_without_power_are_not_left_out(radar):
+    """A corner alone owns its cells, and nothing else sends anything back; what is left out of others is counted in words."""
+    scene = ep.Scene()
+    scene.add(shapes.trihedral(0.1), name="corner", material="metal", position=(15.0, 0.0, 0.8))
+    labels = ep.annotate(ep.trace(scene, radar, num_rays=1_000, seed=4), None, radar)
+    assert labels.objects[0].cells > 0 and len(labels.ghosts) == 0
+    assert labels.left_out == (0, 0.0, 0.0) and "own no cell" not in str(labels)
+    one, two = (str(dataclasses.replace(labels, left_out=LeftOut(number, 1e-18, 1e-19))) for number in (1, 2))
+    assert one.endswith("\n1 family can own no cell and has no signal of its own: -150 dBm, at most -160 dBm in a cell")
+    assert two.endswith("\n2 families can own no cell and have no signals of their own: -150 dBm together, at most -160 dBm in a "
+                        "cell")
 
 
 @pytest.mark.parametrize("shown", [0.0, 1e-9, 1e-1, 1e12])

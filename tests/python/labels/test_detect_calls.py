@@ -103,6 +103,16 @@ def test_a_map_without_noise_is_told_of(spheres):
         ep.detect(ep.range_doppler(ep.add_noise(np.zeros((1, 8, 64, 256)), radar, seed=3), radar, zero_pad=2), radar)
 
 
+@pytest.mark.parametrize("adc, told", [
+    (None, r"make the map of ep.receive\(cube"), (ep.Adc(bits=8, gain_db=0.0), "if it came .*: raise gain_db of receiver.adc"),
+    (ep.Adc(bits=2, automatic_gain=True), "if it came .*: lower headroom_db of receiver.adc")])
+def test_a_map_without_noise_is_told_of_by_what_its_receiver_has(spheres, adc, told):
+    radar, paths, _ = spheres
+    radar = radar.replace(receiver=ep.Receiver(adc=adc))
+    with pytest.warns(RuntimeWarning, match=f"holds no noise of the radar .*{told}"):
+        ep.detect(ep.range_doppler(ep.synthesize(paths, spheres[0]), radar), radar)
+
+
 @pytest.mark.parametrize("other", [{"chirp_interval": 60e-6}, {"num_samples": 128}, {"num_chirps": 32}])
 def test_a_map_of_other_chirps_is_refused(spheres, other):
     with pytest.raises(ValueError, match="spectrum: must have been made with the chirps of this radar"):

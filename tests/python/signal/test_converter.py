@@ -27,7 +27,7 @@ def test_quantisation_noise_is_6_db_a_bit(bits, real):
 
 def test_the_converter_saturates_and_its_gain_adapts():
     adc = ep.Adc(bits=10, full_scale_dbm=0.0, gain_db=40.0)
-    with pytest.warns(RuntimeWarning, match="clips over 1 % of the samples at full scale; a gain_db lower by 4[05] dB"):
+    with pytest.warns(RuntimeWarning, match="^receiver.adc: at least 50 % of the codes are clipped .* lower gain_db by 40 dB"):
         out = received(tone(20, 1e-3), adc=adc)
     assert out.codes.min() == -512 and out.codes.max() == 511
     automatic = received(tone(20, 1e-3), adc=adc.replace(automatic_gain=True, headroom_db=3.0, gain_step_db=2.0))
@@ -35,30 +35,40 @@ def test_the_converter_saturates_and_its_gain_adapts():
     assert np.abs(automatic.codes.astype(int)).max() == round(512 * 10 ** (-4.0 / 20))
 
 
-@pytest.mark.parametrize("over_db, clips", [(-0.01, False), (0.3, True), (20.0, True)])
-def test_clipping_of_more_than_a_hundredth_is_said(over_db, clips):
-    """A sine of amplitude g full scales lies beyond them 1 - 2/pi asin(1/g) of the time: a sixth of it at 0.3 dB."""
-    adc = ep.Adc(bits=10, full_scale_dbm=0.0, gain_db=over_db)
-    with warnings.catch_warnings(record=True) as said:
+@pytest.mark.parametrize("excess_db, told", [(0.0, None), (0.0005, None), (3.5, "at least 50 %"), (0.05, "at least 5 %")])
+@pytest.mark.parametrize("real", [False, True])
+def test_clipping_is_told_by_its_share(excess_db, told, real):
+    """A tone of amplitude k over full scale is beyond it for 2 / pi acos(1 / k) of its time: .7 %, 53 % and 7 %."""
+    radar = one_channel(64, real=real, receiver=ep.Receiver(adc=ep.Adc(bits=12, full_scale_dbm=0.0, gain_db=20.0)))
+    cell = 33.317 + np.arange(64)[:, None] * 0.713
+    cube = np.sqrt(1e-5 * 10.0 ** (excess_db / 10.0)) * np.exp(2j * np.pi * cell * np.arange(COUNT) / COUNT)[None, None]
+    with warnings.catch_warnings(record=True) as record:
         warnings.simplefilter("always")
-        out = received(tone(20.37, 1e-3), adc=adc)
-    share = 1.0 - 2.0 / np.pi * np.arcsin(10.0 ** (-over_db / 20.0)) if clips else 0.0
-    assert np.mean(np.isin(out.codes, (-512, 511))) == pytest.approx(share, abs=0.03)
-    assert ["clips" in str(one.message) for one in said] == [True] * clips
+        out = ep.receive(np.sqrt(2.0) * cube.real + 0j if real else cube, radar, seed=None)
+    assert out.codes.max() == 2047 and len(record) == (told is not None)
+    if told:
+        assert str(record[0].message) == (f"receiver.adc: {told} of the codes are clipped at full scale: lower gain_db by 5 dB, "
+                                          "or let automatic_gain choose it")
+        assert record[0].filename == __file__
 
 
-@pytest.mark.parametrize("under_steps, is_lost", [(0.49, True), (0.6, False)])
-def test_a_signal_below_a_step_is_said_with_the_gain_that_lifts_it(under_steps, is_lost):
-    """The amplitude in steps of the converter, whose codes are rounded: from half a step on there is one that is not 0."""
-    adc = ep.Adc(bits=10, full_scale_dbm=0.0, gain_db=0.0)
-    power = 1e-3 * (under_steps / 512.0) ** 2
-    with warnings.catch_warnings(record=True) as said:
-        warnings.simplefilter("always")
-        out = received(tone(20.37, power), adc=adc)
-    assert out.codes.any() != is_lost
-    assert [str(one.message) for one in said] == [
-        "radar.receiver.adc: the signal and its noise stay below one step, so that all codes are 0; a gain_db higher by 10 dB, or "
-        "automatic_gain, lifts them over it"] * is_lost  # 1 / (0.49 / sqrt 2) = 9.2 dB
+def test_a_converter_that_swallows_all_is_told_of_and_the_gain_that_it_names_mends_it():
+    """Noise of -174 + 73 + 10 dBm in 20 MHz, steps of 8 bits below 10 dBm at -32 dBm: 62 dB are missing, of a branch."""
+    radar = one_channel(noise_figure_db=10.0)
+    level_db = 10.0 * np.log10(1.380649e-23 * 290.0 * RATE / 1e-3) + 10.0
+    missing = 5 * int(np.ceil((10.0 - 20.0 * np.log10(128.0) - level_db + 10.0 * np.log10(2.0)) / 5.0))
+    swallowed, mended = (radar.replace(receiver=ep.Receiver(adc=ep.Adc(bits=8, gain_db=gain))) for gain in (0.0, missing))
+    nothing = tone(20, 0.0)
+    with pytest.warns(RuntimeWarning, match=f"all codes are alike: raise gain_db by {missing} dB") as told:
+        assert not ep.receive(nothing, swallowed, seed=1).codes.any()
+    assert len(told) == 1
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert np.ptp(ep.receive(nothing, mended, seed=1).codes) > 4
+        assert not ep.receive(nothing, swallowed, seed=None).codes.any()  # of nothing, nothing is lost
+    headroom = ep.Receiver(adc=ep.Adc(bits=2, automatic_gain=True, headroom_db=40.0))
+    with pytest.warns(RuntimeWarning, match="all codes are alike: lower headroom_db by"):
+        ep.receive(nothing, radar.replace(receiver=headroom), seed=1)
 
 
 def test_jitter_makes_noise_by_the_square_of_the_frequency():
@@ -71,11 +81,11 @@ def test_jitter_makes_noise_by_the_square_of_the_frequency():
 
 
 def test_the_same_seed_gives_the_same_bits_and_frames_differ():
-    faults = dict(phase_noise=dict(offsets=[1e4, 1e6], levels=[-80, -100]), adc=dict(bits=12, full_scale_dbm=33.0, gain_db=0.0, clock_jitter=1e-12))
-    one, same = (received(tone(60), seed=4, **faults).cube for _ in range(2))
+    faults = dict(phase_noise=dict(offsets=[1e4, 1e6], levels=[-80, -100]), adc=dict(bits=12, clock_jitter=1e-12))
+    one, same = (received(tone(60, 1e-6), seed=4, **faults).cube for _ in range(2))
     np.testing.assert_array_equal(one, same)
     radar = one_channel(receiver=ep.Receiver(**faults))
-    assert not np.array_equal(one, ep.receive(tone(60), radar, seed=4, start_time=0.1).cube)
+    assert not np.array_equal(one, ep.receive(tone(60, 1e-6), radar, seed=4, start_time=0.1).cube)
 
 
 def test_receivers_are_values_that_files_keep(tmp_path):

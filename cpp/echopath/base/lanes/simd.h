@@ -41,7 +41,7 @@ const char* name_of(InstructionSet set);
 template <class Call>
 ECHOPATH_INLINE decltype(auto) with_instruction_set(Call call) {
 #ifdef ECHOPATH_X86_KERNELS
-  const InstructionSet set = instruction_set();
+  [[maybe_unused]] const InstructionSet set = instruction_set();
 #ifndef ECHOPATH_WITHOUT_AVX512
   if (set == InstructionSet::kAvx512) return call(std::integral_constant<InstructionSet, InstructionSet::kAvx512>{});
 #endif

@@ -91,7 +91,8 @@ def beamform(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLik
     overlaps: "average" of channels at one position, or the "first" of them
     compensate: take out the phase between transmit slots (`compensate_tdm`)
     diagonal_loading: of capon, added to the covariance relative to the mean power of the elements, 1e-9 to 1e3
-    velocity_neighbours, range_neighbours: of capon, cells on each side whose vectors make the covariance, 0 to 64
+    velocity_neighbours, range_neighbours: of capon, cells on each side whose vectors make the covariance, 0 to 64; the phase
+        between transmit slots is that of the cell's velocity in all of them
     forward_backward: of capon, also average the covariance of the mirrored array (symmetric arrays)
     progress: callable (stage, fraction), True for bars, or None
     Returns a BeamPower with power [elevation, azimuth, velocity, range] in W, of cells [elevation, azimuth, cell].

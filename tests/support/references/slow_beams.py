@@ -17,10 +17,13 @@ def channel_positions(radar):
     return transmitters[:, None] + receivers[None]
 
 
-def still_values(spectrum, radar):
-    """values [tx, rx, velocity, range] without what motion adds between slots."""
+def still_values(spectrum, radar, velocity=None):
+    """values [tx, rx, velocity, range] without what motion adds between slots.
+
+    velocity: m/s, for all cells, None: that of each
+    """
     wavelength = C / (radar.waveform.start_frequency + 0.5 * radar.waveform.bandwidth)
-    doppler = 2.0 * spectrum.velocity / wavelength
+    doppler = 2.0 * (spectrum.velocity if velocity is None else np.full(len(spectrum.velocity), velocity)) / wavelength
     slot = np.arange(len(radar.transmitters))[:, None] * radar.waveform.chirp_interval
     return spectrum.values * np.exp(-2j * np.pi * slot * doppler)[:, None, :, None]
 

@@ -35,7 +35,8 @@ SurfaceMap map_surfaces(const Scene& scene, const std::vector<NamedGlobs>& objec
 // Takes the objects that rays are aimed at: children of the root, without their flagged mirrors, that do not surround
 // `antenna` (world) at `time` (s); in the order of the scene. An object whose bounding sphere holds the antenna surrounds it
 // where the box along its principal axes, half a metre wider, holds the antenna too, as those of a tunnel and of the radar's
-// own vehicle do, or where it is flat (the smallest side of that box at most a tenth of the middle one), as a wall or a road.
+// own vehicle do, or where it is flat (the smallest side of that box is at most a tenth of the middle one), as a wall or a
+// road.
 SurfaceMap map_surfaces(const Scene& scene, double time, const Vec3& antenna);
 
 }  // namespace echopath

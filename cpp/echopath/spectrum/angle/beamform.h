@@ -52,6 +52,7 @@ struct BeamPower {
 //   Capon: |w^H x|^2 with w = R^-1 a / (a^H R^-1 a) and R the mean of x x^H over the cell and its neighbours, loaded
 //     (Capon 1969). One echo of power S in noise gives S + P / N at its direction, and less elsewhere than Bartlett. It
 //     resolves echoes closer than a beam when their phases differ from snapshot to snapshot (other velocities or ranges).
+//     The phase between TDM slots is taken out of all these cells at the velocity of the one, whose echoes they share.
 //     Its peaks are narrow: a grid with wider steps misses power, `estimate_angles` does not.
 // Runs in parallel over cells; the result does not depend on the threads. Capon costs elements^3 + directions x elements^2
 // per cell.

@@ -12,14 +12,15 @@ using Complex = std::complex<double>;
 ElementReader::ElementReader(const RangeDoppler& map, const VirtualArray& array, const Radar& radar, Overlaps overlaps,
                              bool compensate)
     : map_(map), num_velocities_(static_cast<int64_t>(map.velocity.size())),
-      num_ranges_(static_cast<int64_t>(map.range.size())),
-      compensate_(compensate && radar.takes_turns() && !map.is_tdm_compensated), first_{0} {
+      num_ranges_(static_cast<int64_t>(map.range.size())), compensate_(compensate && radar.takes_turns()), first_{0} {
   for (const VirtualElement& element : array.elements) {
     const auto end = overlaps == Overlaps::kFirst ? element.channels.begin() + 1 : element.channels.end();
     channel_.insert(channel_.end(), element.channels.begin(), end);
     first_.push_back(static_cast<int64_t>(channel_.size()));
   }
-  if (compensate_) phasor_ = slot_phasors(radar, map.velocity);
+  if (!compensate_) return;
+  if (map.is_tdm_compensated) phasor_.assign(radar.transmitters.size() * map.velocity.size(), 1.0);
+  else phasor_ = slot_phasors(radar, map.velocity);
 }
 
 Complex ElementReader::weight(int64_t entry, int64_t velocity, double fold) const {

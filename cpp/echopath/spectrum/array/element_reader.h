@@ -16,14 +16,14 @@ enum class Overlaps { kAverage, kFirst };
 // Reads snapshots. It keeps references to the map and the array.
 class ElementReader {
  public:
-  // `compensate` takes out the phase between TDM slots, unless that has been done already.
+  // `compensate` takes out the phase between TDM slots at the velocity of each cell, unless that has been done already.
   ElementReader(const RangeDoppler& map, const VirtualArray& array, const Radar& radar, Overlaps overlaps, bool compensate);
   int64_t num_elements() const { return static_cast<int64_t>(first_.size()) - 1; }
   int64_t num_velocities() const { return num_velocities_; }
   int64_t num_ranges() const { return num_ranges_; }
 
   // Reads ranges [first, first + count) of one velocity into values [elements, count], sqrt(W). A target at v + 2 fold v_max
-  // has another phase between slots (tdm.h), also where `fold` is not whole; it has no effect without compensation.
+  // has another phase between slots (tdm.h), also where `fold` is not whole; it has no effect without `compensate`.
   void read(int64_t velocity, int64_t first, int64_t count, Eigen::Ref<Eigen::MatrixXcd> values, double fold = 0.0) const;
 
  private:

@@ -1,7 +1,8 @@
 #include "echopath/validity/array_corners.h"
 
-#include <Eigen/Eigenvalues>
 #include <set>
+
+#include "echopath/base/principal_box.h"
 
 namespace echopath {
 namespace {
@@ -11,18 +12,13 @@ constexpr double kTie = 1e-9;       // of the extents: nearer than this, the ant
 
 // Returns positions along their principal axes, each scaled to -1 to 1; axes without extent are 0.
 std::vector<Vec3> normalised(const std::vector<Antenna>& antennas) {
-  Vec3 mean = Vec3::Zero();
-  for (const Antenna& antenna : antennas) mean += antenna.position / static_cast<double>(antennas.size());
-  Mat3 covariance = Mat3::Zero();
-  for (const Antenna& antenna : antennas) covariance += (antenna.position - mean) * (antenna.position - mean).transpose();
-  const Mat3 axes = Eigen::SelfAdjointEigenSolver<Mat3>(covariance).eigenvectors();
-  Eigen::AlignedBox3d box;
-  for (const Antenna& antenna : antennas) box.extend(Vec3(axes.transpose() * (antenna.position - mean)));
   std::vector<Vec3> positions;
-  for (const Antenna& antenna : antennas) {
-    Vec3 at = axes.transpose() * (antenna.position - mean) - box.center();
-    for (int axis = 0; axis < 3; ++axis) at[axis] = box.sizes()[axis] > kNoExtent ? 2.0 * at[axis] / box.sizes()[axis] : 0.0;
-    positions.push_back(at);
+  for (const Antenna& antenna : antennas) positions.push_back(antenna.position);
+  const PrincipalBox found = principal_box(positions);
+  const Vec3 sizes = found.box.sizes();
+  for (Vec3& at : positions) {
+    at = found.coordinates(at) - found.box.center();
+    for (int axis = 0; axis < 3; ++axis) at[axis] = sizes[axis] > kNoExtent ? 2.0 * at[axis] / sizes[axis] : 0.0;
   }
   return positions;
 }

@@ -1,11 +1,11 @@
 #include "echopath/label/objects/surfaces.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <limits>
 #include <set>
 
 #include "echopath/base/errors.h"
+#include "echopath/base/principal_box.h"
 #include "echopath/posed/posed_scene.h"
 #include "echopath/trace/strata/scene_objects.h"
 
@@ -108,16 +108,10 @@ Eigen::AlignedBox3d box_around(const Scene& scene, const PosedScene& pose, uint3
 
 // Returns whether what has these vertices is flat, or holds a point in the box along its own axes or close to it.
 bool is_flat_or_holds(const std::vector<Vec3>& vertices, const Vec3& point) {
-  Vec3 mean = Vec3::Zero();
-  for (const Vec3& vertex : vertices) mean += vertex / static_cast<double>(vertices.size());
-  Mat3 spread = Mat3::Zero();
-  for (const Vec3& vertex : vertices) spread += (vertex - mean) * (vertex - mean).transpose();
-  const Mat3 to_own = Eigen::SelfAdjointEigenSolver<Mat3>(spread).eigenvectors().transpose();
-  Eigen::AlignedBox3d own;
-  for (const Vec3& vertex : vertices) own.extend(to_own * (vertex - mean));
-  Vec3 sides = own.sizes();
+  const PrincipalBox own = principal_box(vertices);
+  Vec3 sides = own.box.sizes();
   std::sort(sides.begin(), sides.end());
-  return sides[0] <= kFlat * sides[1] || own.exteriorDistance(to_own * (point - mean)) <= kBeside;
+  return sides[0] <= kFlat * sides[1] || own.box.exteriorDistance(own.coordinates(point)) <= kBeside;
 }
 
 // Returns whether an object surrounds a point (world): it is all around, as a room or a vehicle is, or a wide surface beside
@@ -127,13 +121,13 @@ bool surrounds(const Scene& scene, const PosedScene& pose, const SceneObject& ob
   Eigen::AlignedBox3d box;
   for (const uint32_t mesh : object.mesh_ids) box.extend(box_around(scene, pose, mesh));
   if (box.exteriorDistance(point) > kSureOutside * 0.5 * box.diagonal().norm()) return false;
-  std::vector<std::vector<Vec3>> vertices(scene.meshes().size());
-  for (const uint32_t mesh : object.mesh_ids) vertices[mesh] = pose.world_vertices(mesh);
-  const VerticesOf vertices_of = [&](uint32_t mesh) -> const std::vector<Vec3>& { return vertices[mesh]; };
-  if (!bounding_sphere(vertices_of, object.mesh_ids).holds(point)) return false;
-  std::vector<Vec3> all;
-  for (const uint32_t mesh : object.mesh_ids) all.insert(all.end(), vertices[mesh].begin(), vertices[mesh].end());
-  return is_flat_or_holds(all, point);
+  std::vector<Vec3> vertices;
+  for (const uint32_t mesh : object.mesh_ids) {
+    const std::vector<Vec3> more = pose.world_vertices(mesh);
+    vertices.insert(vertices.end(), more.begin(), more.end());
+  }
+  const VerticesOf all = [&](uint32_t) -> const std::vector<Vec3>& { return vertices; };
+  return bounding_sphere(all, {0}).holds(point) && is_flat_or_holds(vertices, point);
 }
 
 }  // namespace

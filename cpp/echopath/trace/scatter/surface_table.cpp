@@ -1,9 +1,9 @@
 #include "echopath/trace/scatter/surface_table.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <array>
 #include <unordered_map>
+
+#include "echopath/base/principal_box.h"
 
 namespace echopath {
 namespace {
@@ -11,14 +11,7 @@ namespace {
 // Returns the middle one of the extents along the principal axes of the vertices: the width of a plate, the diameter of a
 // sphere.
 double middle_extent(const std::vector<Vec3>& vertices) {
-  Vec3 mean = Vec3::Zero();
-  for (const Vec3& vertex : vertices) mean += vertex / static_cast<double>(vertices.size());
-  Mat3 covariance = Mat3::Zero();
-  for (const Vec3& vertex : vertices) covariance += (vertex - mean) * (vertex - mean).transpose();
-  const Mat3 axes = Eigen::SelfAdjointEigenSolver<Mat3>(covariance).eigenvectors();
-  Eigen::AlignedBox3d box;
-  for (const Vec3& vertex : vertices) box.extend(Vec3(axes.transpose() * (vertex - mean)));
-  std::array<double, 3> extents = {box.sizes()[0], box.sizes()[1], box.sizes()[2]};
+  Vec3 extents = principal_box(vertices).box.sizes();
   std::sort(extents.begin(), extents.end());
   return extents[1];
 }

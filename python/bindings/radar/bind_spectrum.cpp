@@ -102,6 +102,10 @@ ValueError naming the argument.)");
       },
       py::arg("name"), py::arg("n"), py::arg("sidelobe_db") = 80.0,
       "Samples [n] of a window: cosines periodic; \"chebyshev\" symmetric, sidelobes `sidelobe_db` dB down.");
+  m.def(
+      "main_lobe_half_width",
+      [](const py::object& samples) { return main_lobe_half_width(as_vector<double>(samples, "samples")); },
+      py::arg("samples"), "Bins from a tone to the first null of its response under a window [n], to 1/64.");
 }
 
 }  // namespace echopath::bindings

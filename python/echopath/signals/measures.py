@@ -6,8 +6,9 @@ import re
 import numpy as np
 from numpy.typing import NDArray
 
+from .. import _core
 from ..arguments.checks import ArrayLike, checked
-from ..spectra.windows import main_lobe_half_width, of_velocity, samples_of
+from ..spectra.windows import of_velocity, samples_of
 
 STATIC_SPEED = 0.25       # m/s, below it an echo counts as standing still, however narrow the cells of velocity are
 EXTENT_BELOW_PEAK_DB = 30.0
@@ -66,7 +67,7 @@ def static_speed(velocity, window, zero_pad: int) -> float:
     if len(velocity) < 2:
         return STATIC_SPEED
     bin_width = zero_pad * (velocity[-1] - velocity[0]) / (len(velocity) - 1)
-    bins = main_lobe_half_width(samples_of(of_velocity(window), len(velocity) // zero_pad))
+    bins = _core.main_lobe_half_width(samples_of(of_velocity(window), len(velocity) // zero_pad))
     return max(STATIC_SPEED, float(bins * bin_width))
 
 

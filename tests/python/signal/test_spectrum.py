@@ -5,7 +5,8 @@ import pytest
 
 import echopath as ep
 from echopath import _core
-from echopath.spectra.windows import main_lobe_half_width, samples_of
+from echopath._core import main_lobe_half_width
+from echopath.spectra.windows import samples_of
 from support.radars import build_radar
 
 C = 299792458.0

@@ -17,24 +17,21 @@ def known_attributes(kind: Kind) -> Kind:
     have attributes of their own, take all unless their class is decorated, too.
     """
     set_attribute = kind.__setattr__
+    fields = {field.name for field in dataclasses.fields(kind)} if dataclasses.is_dataclass(kind) else set()
 
     def checked(self: object, name: str, value: Any) -> None:
-        if type(self) is kind and not name.startswith("_"):
-            _refuse_unknown(kind, name)
+        if type(self) is kind and not (name.startswith("_") or name in fields or hasattr(kind, name)):
+            raise _unknown(kind, name, fields)
         set_attribute(self, name, value)
 
     kind.__setattr__ = checked  # type: ignore[method-assign,assignment]
     return kind
 
 
-def _refuse_unknown(kind: type, name: str) -> None:
-    """Raises AttributeError unless objects of a class have an attribute of that name."""
-    fields = {field.name for field in dataclasses.fields(kind)} if dataclasses.is_dataclass(kind) else set()
-    if name in fields or hasattr(kind, name):
-        return
+def _unknown(kind: type, name: str, fields: set[str]) -> AttributeError:
+    """What says that objects of a class have no attribute of that name. fields: names of those of a dataclass"""
     meant = _core.meant_name(name, sorted(fields | _settable(kind)))
-    raise AttributeError(f"{name}: no attribute of {kind.__name__}"
-                         + (f", the nearest right one is '{meant}'" if meant else ""))
+    return AttributeError(f"{name}: no attribute of {kind.__name__}" + (f", the nearest right one is '{meant}'" if meant else ""))
 
 
 def _settable(kind: type) -> set[str]:

@@ -8,6 +8,7 @@ from pathlib import Path
 import echopath as ep
 
 from .. import plots
+from ..arguments.part_names import LEAKAGE
 from ..base.stages import StageClock
 from ..frame.frame import Frame
 from ..frame.simulate import simulate
@@ -16,7 +17,6 @@ from ..paths.families import families
 from ..paths.resolution import RESOLVED_DB
 from ..plots.frames import limits_of_frame, noise_words, title_of
 from ..scene_file import SceneFile
-from ..signals.beside import leakage_map
 from ..signals.measures import for_pictures, with_error
 from ..signals.parts import parts_of_options
 from ..truth.places import true_places
@@ -127,7 +127,7 @@ def _write_pictures(frame: Frame, folder: Path, partitions) -> list:
             write("overview", plots.plot_overview(frame.spectrum, spectra, title=title + mean, parts_title=words, **looks))
     if frame.range_azimuth is not None:
         maps = _maps_from_above(frame, next(iter(partitions), None), vmin)
-        leaked = leakage_map(frame.radar, frame.spectrum.window, frame.spectrum.zero_pad)
+        leaked = frame.beside_spectra.get(LEAKAGE)
         write("range_azimuth", plots.plot_range_azimuth(maps, places=_places(frame),
                                                         leaked=leaked and frame.range_azimuth_of(leaked)))
     return written

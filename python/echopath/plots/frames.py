@@ -1,7 +1,7 @@
 """A frame in one picture: its map, and what was detected in it."""
 from __future__ import annotations
 
-from ..signals.beside import leakage_map
+from ..arguments.part_names import LEAKAGE
 from .maps import MAP_SIZE, chosen_limits, colour_limits, draw_range_doppler, hold_points
 from .points import draw_points
 from .style import axes_or_new
@@ -19,7 +19,7 @@ def title_of(frame) -> str:
 
 def limits_of_frame(frame) -> tuple[float, float]:
     """(lowest, highest) level in dBm of the colour scale of the map of a whole frame."""
-    return colour_limits(frame.spectrum, leakage_map(frame.radar, frame.spectrum.window, frame.spectrum.zero_pad))
+    return colour_limits(frame.spectrum, frame.beside_spectra.get(LEAKAGE))
 
 
 def draw_frame(frame, *, ax=None, vmin=None, vmax=None, title=None):

@@ -6,6 +6,7 @@ import numpy as np
 from .. import _core
 from ..arguments.settings import FaintPower
 from ..base.callers import warn_user
+from ..base.counts import at_least
 
 SHARE_OF_NOISE = 0.025  # a cell as strong as the noise then sums up forty such paths or more, and fluctuates as with all
 MORE = 4.0              # as far over the noise another radar may hear the same paths: ten of them make a cell then
@@ -29,7 +30,8 @@ def warn_of_other_noise(paths: _core.Paths, radar: _core.Radar) -> None:
     more = _heard_of(radar) / _heard_of(paths.radar)
     if more > MORE:
         warn_user(f"radar: hears echoes {10.0 * np.log10(more):.0f} dB further above the noise than the radar of the trace, by "
-                  f"whose noise {left_out:,} faint paths were left out: few paths make the weak cells here. Trace with it")
+                  f"whose noise {at_least(left_out)} faint paths were left out: few paths make the weak cells here. Trace with "
+                  "it")
 
 
 def _heard_of(radar: _core.Radar) -> float:

@@ -2173,7 +2173,7 @@ class TraceFrame:
         ...
     def __getstate__(self) -> dict[typing.Any, typing.Any]:
         ...
-    def __init__(self, *, start_time: float, trace_time: float, transmitter: ArrayLike, receiver: ArrayLike, strata: typing.Sequence[Stratum], statistics: TraceStatistics, target_error_db: float = 0.0, error_db: float = 0.0, seed: int = 1, max_bounces: int = 4, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', num_batches: int = 1, scatterers: str = 'rays', edges: bool = False, attenuation: float = 0.0, faint_power: float = 0.0) -> None:
+    def __init__(self, *, start_time: float, trace_time: float, transmitter: ArrayLike, receiver: ArrayLike, strata: typing.Sequence[Stratum], statistics: TraceStatistics, target_error_db: float = 0.0, error_db: float = 0.0, objects_time: float | None = None, seed: int = 1, max_bounces: int = 4, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', num_batches: int = 1, scatterers: str = 'rays', edges: bool = False, attenuation: float = 0.0, faint_power: float = 0.0) -> None:
         ...
     def __setstate__(self, arg0: dict[typing.Any, typing.Any]) -> None:
         ...
@@ -2211,6 +2211,11 @@ class TraceFrame:
     def num_batches(self) -> int:
         """
         independent parts of the rays
+        """
+    @property
+    def objects_time(self) -> float | None:
+        """
+        s, when objects are told from what surrounds the antenna: in the first frame of a sequence; None: trace_time
         """
     @property
     def polarization(self) -> str:
@@ -3454,9 +3459,9 @@ def tessellation(mesh: Mesh) -> typing.Annotated[list[float], "FixedSize(4)"] | 
     """
     What echopath.tracing.tessellation.tessellation calls.
     """
-def trace(scene: Scene, radar: Radar, *, num_rays: int | None = None, start_time: float = 0.0, target_error_db: float | None = None, max_rays: int = 16777216, progress: typing.Any = None, kept: KeptGeometry | None = None, seed: int = 1, max_bounces: int = 4, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', num_batches: int = 1, scatterers: str = 'rays', edges: bool = False, attenuation: float = 0.0, faint_power: float = 0.0) -> Paths:
+def trace(scene: Scene, radar: Radar, *, num_rays: int | None = None, start_time: float = 0.0, target_error_db: float | None = None, max_rays: int = 16777216, progress: typing.Any = None, kept: KeptGeometry | None = None, objects_time: float | None = None, seed: int = 1, max_bounces: int = 4, polarization: str = 'scalar', footprint: str = 'second_order', sampler: str = 'lattice', num_batches: int = 1, scatterers: str = 'rays', edges: bool = False, attenuation: float = 0.0, faint_power: float = 0.0) -> Paths:
     """
-    What ep.trace calls. kept: KeptGeometry of the scene, or None.
+    What ep.trace calls. kept: KeptGeometry of the scene, or None; objects_time: s, as of TraceFrame.
     """
 def triangles_of_polygons(vertices: typing.Any, corners: typing.Any, counts: typing.Any) -> tuple[typing.Any, ...]:
     """

@@ -5,6 +5,7 @@
 #include <complex>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -123,6 +124,9 @@ struct TraceFrame : RecordSettings {
   TraceStatistics statistics;
   double target_error_db = 0.0;  // dB, the error of the received power that was asked for; 0: none
   double error_db = 0.0;         // dB, the one that was reached (sim/rays/trace_to_error.h); 0: not looked at
+  // s, when objects are told from what surrounds the antenna (label/objects/surfaces.h): that of the first frame of a
+  // sequence, so that all of its frames have the same objects; none: trace_time.
+  std::optional<double> objects_time = std::nullopt;
 
   bool operator==(const TraceFrame&) const = delete;  // that of the settings alone would stand for it
 

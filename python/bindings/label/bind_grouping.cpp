@@ -96,12 +96,12 @@ SurfaceMap surfaces_of(const Scene& scene, const Objects& objects) {
   return map_surfaces(scene, named);
 }
 
-SurfaceMap surfaces_of(const Scene& scene, const std::optional<Objects>& objects, double time, const Vec3& antenna) {
-  return objects ? surfaces_of(scene, *objects) : map_surfaces(scene, time, antenna);
+SurfaceMap surfaces_of(const Paths& paths, const std::optional<Objects>& objects) {
+  return objects ? surfaces_of(*paths.scene, *objects) : map_surfaces(paths);
 }
 
 py::tuple families_of(const Paths& paths, const std::optional<Objects>& objects) {
-  const SurfaceMap surfaces = surfaces_of(*paths.scene, objects, paths.frame.trace_time, paths.frame.transmitter);
+  const SurfaceMap surfaces = surfaces_of(paths, objects);
   Families found = run_job("families", py::none(), [&](Job& job) { return find_families(paths, surfaces, &job); });
   const std::vector<std::string> names(surfaces.names.begin(), surfaces.names.begin() + surfaces.num_objects);
   return py::make_tuple(names, found.families, numpy_take(std::move(found.family_of_path)), families_grouping(surfaces));
@@ -113,7 +113,8 @@ std::vector<ObjectVisibility> visibility_of(Scene scene, const Radar& radar, con
   return run_job("visibility", progress, [&](Job& job) {
     radar.validate();
     const Vec3 antenna = mean_position(radar.transmitters, radar.world_from_radar(at));
-    return visibility(scene, radar, surfaces_of(scene, objects, at, antenna), {at, num_directions}, &job);
+    const SurfaceMap surfaces = objects ? surfaces_of(scene, *objects) : map_surfaces(scene, at, antenna);
+    return visibility(scene, radar, surfaces, {at, num_directions}, &job);
   });
 }
 
@@ -122,7 +123,7 @@ std::vector<ObjectVisibility> visibility_of(Scene scene, const Radar& radar, con
 std::vector<ObjectVisibility> visibility_in_trace(const Paths& paths, const Radar& radar,
                                                   const std::optional<Objects>& objects, std::optional<double> time,
                                                   int num_directions, const py::object& progress) {
-  const SurfaceMap surfaces = surfaces_of(*paths.scene, objects, paths.frame.trace_time, paths.frame.transmitter);
+  const SurfaceMap surfaces = surfaces_of(paths, objects);
   const VisibilitySettings settings{time.value_or(paths.frame.trace_time), num_directions};
   const std::shared_ptr<KeptGeometry> kept = geometry_of(paths.scene);
   return run_job("visibility", progress,
@@ -133,7 +134,7 @@ std::vector<ObjectVisibility> visibility_in_trace(const Paths& paths, const Rada
 std::vector<std::string> may_appear_in_frame(const Paths& paths, const Radar& radar, const std::optional<Objects>& objects,
                                              const std::vector<std::string>& hidden, const std::vector<double>& shares,
                                              double hidden_share) {
-  const SurfaceMap surfaces = surfaces_of(*paths.scene, objects, paths.frame.trace_time, paths.frame.transmitter);
+  const SurfaceMap surfaces = surfaces_of(paths, objects);
   AppearingSettings settings;
   settings.time = paths.frame.trace_time;
   settings.hidden_share = hidden_share;

@@ -38,7 +38,7 @@ Effort effort_of(std::optional<int64_t> num_rays, int batches, std::optional<dou
 
 PathsPtr trace_paths(Scene scene, const Radar& radar, const RecordSettings& of_record, std::optional<int64_t> num_rays,
                      double start_time, std::optional<double> target_error_db, int64_t max_rays, const py::object& progress,
-                     const std::shared_ptr<KeptGeometry>& kept) {
+                     const std::shared_ptr<KeptGeometry>& kept, std::optional<double> objects_time) {
   const Effort effort = effort_of(num_rays, of_record.batches, target_error_db, max_rays);
   TraceSettings settings{of_record};
   settings.num_rays = effort.num_rays;
@@ -50,6 +50,7 @@ PathsPtr trace_paths(Scene scene, const Radar& radar, const RecordSettings& of_r
                          : trace_by_need(snapshot, radar, settings, &job, kept.get());
   }));
   if (kept) remember_geometry(paths->scene, kept);
+  paths->frame.objects_time = objects_time;
   const TraceFrame& frame = paths->frame;
   if (target_error_db && frame.error_db > frame.target_error_db) {
     warn_of_missed_target("trace: max_rays", frame.error_db, frame.target_error_db);
@@ -63,14 +64,15 @@ void bind_trace_paths(py::module_& m, ListOfKeywords<Keywords...> of_record) {
       "trace",
       [](Scene scene, const Radar& radar, std::optional<int64_t> num_rays, double start_time,
          std::optional<double> target_error_db, int64_t max_rays, const py::object& progress,
-         const std::shared_ptr<KeptGeometry>& kept, const typename Keywords::Argument&... settings) {
+         const std::shared_ptr<KeptGeometry>& kept, std::optional<double> objects_time,
+         const typename Keywords::Argument&... settings) {
         return trace_paths(std::move(scene), radar, decltype(of_record)::settings_of(settings...), num_rays, start_time,
-                           target_error_db, max_rays, progress, kept);
+                           target_error_db, max_rays, progress, kept, objects_time);
       },
       py::arg("scene"), py::arg("radar"), py::kw_only(), py::arg("num_rays") = py::none(), py::arg("start_time") = 0.0,
       py::arg("target_error_db") = py::none(), py::arg("max_rays") = kMaxRays, py::arg("progress") = py::none(),
-      py::arg("kept") = py::none(), Keywords::argument()...,
-      "What ep.trace calls. kept: KeptGeometry of the scene, or None.");
+      py::arg("kept") = py::none(), py::arg("objects_time") = py::none(), Keywords::argument()...,
+      "What ep.trace calls. kept: KeptGeometry of the scene, or None; objects_time: s, as of TraceFrame.");
   py::dict defaults;
   ((defaults[Keywords::name()] = Keywords::value(RecordSettings{})), ...);
   m.attr("RECORD_SETTINGS") = defaults;  // by keyword, as TraceFrame has them too

@@ -55,7 +55,8 @@ void bind_settings(py::class_<TraceFrame>& bound, ListOfKeywords<Keywords...> of
       [](Arg<"start_time", Real> start_time, Arg<"trace_time", Real> trace_time, Arg<"transmitter", Vector3> transmitter,
          Arg<"receiver", Vector3> receiver, Arg<"strata", List<Instance<Stratum>>> strata,
          Arg<"statistics", Instance<TraceStatistics>> statistics, Arg<"target_error_db", Number> target_error_db,
-         Arg<"error_db", Number> error_db, typename Keywords::Argument... settings) -> TraceFrame {
+         Arg<"error_db", Number> error_db, Arg<"objects_time", Optional<Real>> objects_time,
+         typename Keywords::Argument... settings) -> TraceFrame {
     return {decltype(of_record)::settings_of(settings...),
             *start_time,
             *trace_time,
@@ -64,11 +65,12 @@ void bind_settings(py::class_<TraceFrame>& bound, ListOfKeywords<Keywords...> of
             *strata,
             *statistics,
             *target_error_db,
-            *error_db};
+            *error_db,
+            *objects_time};
   };
   define_init(bound, +frame_of, py::kw_only(), py::arg("start_time"), py::arg("trace_time"), py::arg("transmitter"),
               py::arg("receiver"), py::arg("strata"), py::arg("statistics"), py::arg("target_error_db") = 0.0,
-              py::arg("error_db") = 0.0, Keywords::argument()...);
+              py::arg("error_db") = 0.0, py::arg("objects_time") = py::none(), Keywords::argument()...);
   (bound.def_property_readonly(
        Keywords::name(), [](const TraceFrame& self) { return Keywords::value(self); }, Keywords::doc()),
    ...);
@@ -76,7 +78,7 @@ void bind_settings(py::class_<TraceFrame>& bound, ListOfKeywords<Keywords...> of
              field("transmitter", &TraceFrame::transmitter), field("receiver", &TraceFrame::receiver),
              field("strata", &TraceFrame::strata), field("statistics", &TraceFrame::statistics),
              field("target_error_db", &TraceFrame::target_error_db), field("error_db", &TraceFrame::error_db),
-             Keywords::travelling()...);
+             field("objects_time", &TraceFrame::objects_time), Keywords::travelling()...);
 }
 
 }  // namespace
@@ -172,6 +174,9 @@ void bind_trace_frame(py::module_& m) {
                     "dB, error of the received power that was asked for; 0: none")
       .def_readonly("error_db", &TraceFrame::error_db,
                     "dB, the one that was reached, above the target where max_rays did not do; 0: not looked at")
+      .def_readonly(
+          "objects_time", &TraceFrame::objects_time,
+          "s, when objects are told from what surrounds the antenna: in the first frame of a sequence; None: trace_time")
       .def_readonly("statistics", &TraceFrame::statistics, "TraceStatistics");
 }
 

@@ -20,6 +20,7 @@ _NOISE_LIKE = ("u", "v", "weight")  # compression does not pay
 RECORD_SETTINGS: dict[str, object] = _core.RECORD_SETTINGS  # of the trace, with the values of files that lack one
 FIRST_SETTINGS = ("seed", "max_bounces", "polarization", "footprint", "sampler", "num_batches")  # which no file lacks
 FRAME_VALUES = ("start_time", "trace_time", "target_error_db", "error_db")
+LATER_FRAME_VALUES = ("objects_time",)  # which older files do not have, nor frames of no sequence
 STATISTICS = ("num_rays", "num_queries", "num_hits", "num_paths", "num_near_antenna", "num_grazing", "num_small_mirrors",
               "num_false_hits", "num_unaimed", "num_unfollowed_frusta")
 LATER_STATISTICS = ("num_unsplit_rays", "num_stopped_passes", "num_faint_paths")  # which older files do not have
@@ -110,6 +111,9 @@ def _check_indices(group, hits, columns: dict, scene) -> None:
 def _write_frame(group, frame) -> None:
     for name in (*FRAME_VALUES, *RECORD_SETTINGS):
         (write_seed if name == "seed" else write_attribute)(group, name, getattr(frame, name))
+    for name in LATER_FRAME_VALUES:
+        if getattr(frame, name) is not None:
+            write_attribute(group, name, getattr(frame, name))
     write_array(group, "transmitter", frame.transmitter, unit="m")
     write_array(group, "receiver", frame.receiver, unit="m")
     for name in STATISTICS + LATER_STATISTICS:
@@ -162,7 +166,8 @@ def _read_frame(group):
                             object=int(aimed_at[i]), num_mirrors=int(mirrors[i]), focus_of=int(focus_of[i]))
               for i in range(len(names))]
     statistics = _read_statistics(group)
-    values = {name: read_attribute(group, name, float) for name in FRAME_VALUES}
+    values = {name: read_attribute(group, name, float) for name in FRAME_VALUES + LATER_FRAME_VALUES
+              if name in group.attrs or name in FRAME_VALUES}
     return _core.TraceFrame(transmitter=read_array(group, "transmitter", np.float64, (3,)),
                             receiver=read_array(group, "receiver", np.float64, (3,)), strata=strata, statistics=statistics,
                             **values, **_read_settings(group))

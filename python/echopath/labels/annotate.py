@@ -49,7 +49,8 @@ def annotate(paths: _core.Paths, parts: Mapping | None = None, radar: _core.Rada
         outlives its use. None: all paths are "other"
     radar: that of the signals, None: of the parts or of the trace
     objects: as in `families`, what to report on; None leaves out mirrors and what surrounds the antenna: what it stands
-        within, as a tunnel or its own vehicle, and flat bodies whose bounding sphere holds it, as the road and walls beside it.
+        within, as a tunnel or its own vehicle, and flat bodies whose bounding sphere holds it, as the road and walls beside it,
+        in a `Sequence` at its first frame.
         Name those to have them labelled, too
     plane: "range_doppler" or "range_azimuth" (beams of each part); window, zero_pad: as in `range_doppler`
     angles: keywords of `range_azimuth` for that plane, None: {"combine": "peak"}; Bartlett beams only

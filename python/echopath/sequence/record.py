@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from .. import _core
 from ..arguments.settings import TraceSettings
-from ..tracing.traces import trace
+from ..tracing.traces import traced
 
 
 def start_time_of(first: float, interval: float, number: int) -> float:
@@ -16,9 +16,10 @@ def record_of(scene: _core.Scene, radar: _core.Radar, settings: TraceSettings, *
     """The record of frame `number` of a sequence: the same bits whichever frames were recorded before.
 
     The scene is traced anew. Unless the settings say otherwise, rough surfaces scatter from points of their own, which are the
-    same in all frames.
+    same in all frames. All have the objects of frame 0: what surrounds the antenna there does so throughout.
     settings: of the rays, with the start of frame 0; interval: s from start to start; progress: as in `trace`
     """
     start_time = start_time_of(settings.start_time, interval, number)
     scatterers = "surface" if settings.scatterers == "auto" else settings.scatterers
-    return trace(scene, radar, settings=settings.replace(start_time=start_time, scatterers=scatterers), progress=progress)
+    return traced(scene, radar, settings.replace(start_time=start_time, scatterers=scatterers),
+                  objects_time=settings.start_time + 0.5 * radar.frame_duration, progress=progress)

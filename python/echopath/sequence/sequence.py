@@ -49,7 +49,8 @@ class Sequence(Row[Frame]):
     A frame is simulated when it is asked for, and kept by nobody. Frame k starts at start_time + k interval; all motions, that
     of the radar too, go on between the frames. It has the same bits alone, in order and in reverse. While the signal of one is
     made in a loop over frames, a thread traces the next, unless ep.set_num_threads(1) was called. A slice is a Sequence of
-    frames of the same bits, `sequence[-1]` the last frame. Objects keep their mesh IDs; noise is that of the start time.
+    frames of the same bits, `sequence[-1]` the last frame. Objects keep their mesh IDs; what surrounds the antenna in frame 0
+    is no object of labels and truth in any frame (`families` tells the rule). Noise is that of the start time.
     scene: what is traced, as it is now: later changes of it do not matter; radar: that looks at it
     frames: number of frames K, at least 1; interval: s, from start to start, at least the duration of a frame
     start_time: s, of frame 0

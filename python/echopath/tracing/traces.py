@@ -11,7 +11,7 @@ from .. import _core
 from ..arguments.checks import ArrayLike, Progress, array, checked, flag, one_of, optional, positive, real, shown
 from ..arguments.effects import Choices
 from ..arguments.motions import require_frame
-from ..arguments.settings import Edges, FaintPower, Footprint, Polarization, Sampler, Scatterers, TraceSettings
+from ..arguments.settings import Edges, FaintPower, Footprint, Polarization, Sampler, Scatterers, TraceSettings, settings_among
 from ..cavities.cavity import Cavity
 from ..cavities.cross_sections import rcs_with_cavities
 from ..scene.bodies import warn_of_bodies
@@ -93,20 +93,32 @@ def trace(scene: _core.Scene, radar: _core.Radar, *, num_rays: int | float | Non
     in a closed body that hides the rest, the lengths of an object look like those of another unit, or paths around sharp
     edges are so many that signals of them take long.
     """
+    return traced(scene, radar, settings_among(TraceSettings, locals()), progress=progress)
+
+
+def traced(scene: _core.Scene, radar: _core.Radar, settings: TraceSettings, *, objects_time: float | None = None,
+           progress: Progress = None) -> _core.Paths:
+    """What `trace` returns, warns of and raises, for settings that hold everything.
+
+    objects_time: s, when the objects of the record are told from what surrounds the antenna; None: at mid-frame
+    """
+    start_time = settings.start_time
     require_frame("radar", radar, start_time)
     wavelength = _core.speed_of_light / radar.waveform.start_frequency
     is_first, geometry = _remembered(scene)
     if is_first:
         warn_of_bodies(scene, radar, start_time)
     warn_of_coarse_meshes(scene, radar.waveform.start_frequency)
-    model = chosen_model(polarization, scene, wavelength, antennas_of(radar), argument="polarization")
-    paths = _core.trace(scene, radar, num_rays=num_rays, max_bounces=max_bounces, seed=seed, start_time=start_time,
-                        polarization=model, footprint=footprint, sampler=sampler, num_batches=batches or 1,
-                        target_error_db=target_error_db, max_rays=max_rays,
-                        scatterers="rays" if scatterers == "auto" else scatterers,
-                        edges=looks_for_edges(edges, scene, radar, start_time),
-                        faint_power=faint_power_of(faint_power, radar),
-                        attenuation=attenuation_of(scene, radar, effects), progress=progress, kept=geometry)
+    model = chosen_model(settings.polarization, scene, wavelength, antennas_of(radar), argument="polarization")
+    paths = _core.trace(scene, radar, num_rays=settings.num_rays, max_bounces=settings.max_bounces, seed=settings.seed,
+                        start_time=start_time, polarization=model, footprint=settings.footprint, sampler=settings.sampler,
+                        num_batches=settings.batches or 1, target_error_db=settings.target_error_db,
+                        max_rays=settings.max_rays,
+                        scatterers="rays" if settings.scatterers == "auto" else settings.scatterers,
+                        edges=looks_for_edges(settings.edges, scene, radar, start_time),
+                        faint_power=faint_power_of(settings.faint_power, radar),
+                        attenuation=attenuation_of(scene, radar, settings.effects), progress=progress, kept=geometry,
+                        objects_time=objects_time)
     warn_of_record(paths.frame)
     warn_of_edge_paths(paths)
     return paths

@@ -115,6 +115,19 @@ TEST(SurfaceMap, LongObjectsBesideTheAntennaStayObjects) {
   EXPECT_EQ(map.num_objects, 2u);
 }
 
+TEST(SurfaceMap, ARecordTellsObjectsAtTheTimeThatItsFrameNames) {
+  auto scene = std::make_shared<Scene>();
+  add_box(*scene, "wall", {6, 4, -1}, {16, 4.2, 2});  // its sphere of 5.2 m holds the antenna from x = 7.6 to 14.3 m
+  Paths paths;
+  paths.scene = scene;
+  paths.radar = plain_radar(Vec3::Zero(), Vec3::Zero());
+  paths.radar.motion = std::make_shared<LinearMotion>(Vec3(10, 0, 0));
+  paths.frame.trace_time = 1.0;
+  EXPECT_EQ(map_surfaces(paths).num_objects, 0u);
+  paths.frame.objects_time = 0.0;
+  EXPECT_EQ(map_surfaces(paths).num_objects, 1u);
+}
+
 TEST(SurfaceMap, BadObjectsAreErrors) {
   EXPECT_NE(error_of({{"", {"street"}}}).find("objects: must have non-empty names"), std::string::npos);
   EXPECT_NE(error_of({{"a", {"street"}}, {"a", {"pedestrian"}}}).find("a twice"), std::string::npos);

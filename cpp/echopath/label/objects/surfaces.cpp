@@ -174,4 +174,9 @@ SurfaceMap map_surfaces(const Scene& scene, double time, const Vec3& antenna) {
   return map;
 }
 
+SurfaceMap map_surfaces(const Paths& paths) {
+  const double time = paths.frame.objects_time.value_or(paths.frame.trace_time);
+  return map_surfaces(*paths.scene, time, mean_position(paths.radar.transmitters, paths.radar.world_from_radar(time)));
+}
+
 }  // namespace echopath

@@ -39,4 +39,7 @@ SurfaceMap map_surfaces(const Scene& scene, const std::vector<NamedGlobs>& objec
 // road.
 SurfaceMap map_surfaces(const Scene& scene, double time, const Vec3& antenna);
 
+// Does the same for a record, as its frame says: at objects_time, for the mean position of the transmitters then.
+SurfaceMap map_surfaces(const Paths& paths);
+
 }  // namespace echopath

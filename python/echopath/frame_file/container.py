@@ -11,6 +11,8 @@ from .opening import reading
 SCHEMA_VERSION = 4  # grows when a reader of the old layout would misread the new one
 SUFFIXES = (".h5", ".hdf5")
 KINDS = FRAME, SEQUENCE = "frame", "sequence"
+_OTHER_KIND = {FRAME: "is a single frame, not a sequence: ep.load_frame reads it",
+               SEQUENCE: "is a sequence, not a single frame: ep.load_sequence reads its frames"}
 OLD_LAYOUT = "; files before version 4 have no check sums on texts, settings and small arrays: simulate again"
 
 
@@ -32,16 +34,17 @@ def write_head(file, kind: str) -> None:
 @contextmanager
 def our_file(path, kind: str = FRAME):
     """A file of a kind open for reading, its format and version checked."""
-    foreign = f"is an HDF5 file, but no {kind} file of echopath"
     with reading(path) as file:
         if "format" not in file.attrs or "schema_version" not in file.attrs:
-            raise _core.FileError(foreign)
+            raise _core.FileError(f"is an HDF5 file, but no {kind} file of echopath")
         version = read_attribute(file, "schema_version", int)
         if version != SCHEMA_VERSION:
             raise _core.FileError(f"has schema version {version}, this program reads {SCHEMA_VERSION}"
                                   f"{OLD_LAYOUT if version < SCHEMA_VERSION else ''}")
-        if read_attribute(file, "format", str) != f"echopath {kind}":
-            raise _core.FileError(foreign)
+        found = read_attribute(file, "format", str).removeprefix("echopath ")
+        if found != kind:
+            raise _core.FileError(_OTHER_KIND.get(found, f"is an HDF5 file, but no {kind} file of echopath")
+                                  + (f"; '{path}/frames/000000' is its first frame" if "frames" in file else ""))
         yield file
 
 

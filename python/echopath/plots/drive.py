@@ -8,11 +8,11 @@ import numpy as np
 
 from ..signals.measures import STATIC_SPEED
 from .maps import (
-    MAP_SIZE, NOISE_PEAK_DB, RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, cells_of_scene, chosen_limits,
-    limits_above,
+    MAP_SIZE, NOISE_PEAK_DB, RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, cells_of_scene, chosen_limits, half_step,
+    limits_above, margin_of,
 )
 from .style import MAP_COLOURS, new_figure, set_title
-from .time_maps import TIME_LABEL, image_over_time
+from .time_maps import TIME_LABEL, image_over_time, show_within
 
 SHEET_WIDTH, ROW_HEIGHT = 2.9, 3.0  # inches, of a map of the sheet, and of each row
 LEAST_WIDTH = 8.0                   # inches, of the sheet
@@ -59,7 +59,8 @@ def plot_drive(drive: Drive, *, num_frames=4, vmin=None, vmax=None, title=""):
         for axes, column in zip(below, _columns(drive, vmin)):
             image_over_time(axes, drive.times, column.values, column.level, cmap=MAP_COLOURS, vmin=vmin, vmax=vmax)
             low, high = column.extent
-            axes.set(xlabel=TIME_LABEL, ylabel=column.label, ylim=(max(low, column.values[0]), min(high, column.values[-1])))
+            axes.set(xlabel=TIME_LABEL, ylabel=column.label)
+            show_within(axes, column.values, low, high)
             axes.set_title(column.title)
             axes.locator_params(axis="x", nbins=MOST_TIMES)
         for part, shown in ((upper, panels), (lower, below)):
@@ -123,7 +124,7 @@ def _limits(drive: Drive) -> tuple[float, float]:
 
 def _draw(axes, drive: Drive, place: int, vmin: float, vmax: float):
     """The map as an image whose pixels are centred on their cells."""
-    half = [0.5 * (values[1] - values[0]) if len(values) > 1 else 0.5 for values in (drive.range, drive.velocity)]
+    half = [half_step(values) for values in (drive.range, drive.velocity)]
     extent = (drive.range[0] - half[0], drive.range[-1] + half[0], drive.velocity[0] - half[1], drive.velocity[-1] + half[1])
     return axes.imshow(drive.level[place].astype(np.float32), origin="lower", aspect="auto", extent=extent, cmap=MAP_COLOURS,
                        vmin=vmin, vmax=vmax, interpolation="nearest")
@@ -134,8 +135,8 @@ def _extent(drive: Drive, floor: float) -> tuple:
     stands_out, found = _stands_out(drive, floor), []
     for values, margin, is_there in ((drive.range, RANGE_MARGIN, stands_out.any(axis=0)),
                                      (drive.velocity, VELOCITY_MARGIN, stands_out.any(axis=1))):
-        shown = values[is_there] if is_there.any() else values
-        found.append((shown.min() - margin, shown.max() + margin))
+        shown, wide = values[is_there] if is_there.any() else values, margin_of(values, margin)
+        found.append((shown.min() - wide, shown.max() + wide))
     return tuple(found)
 
 

@@ -13,8 +13,9 @@ DYNAMIC_RANGE_DB = 70.0      # below the peak that a map shows at most
 LEAKED_DB = 10.0             # below a cell: where leakage alone comes so near to it, the cell tells nothing of the scene
 MARGIN_OVER_MEDIAN_DB = 6.0  # the median of a map is its noise: the scale begins above it
 NOISE_PEAK_DB = 14.0         # over the median: the highest of 1e7 noise cells is at +13.7
-RANGE_MARGIN = 0.8           # m, shown around the signal
-VELOCITY_MARGIN = 0.5        # m/s
+RANGE_MARGIN = 0.8           # m, shown around the signal at least
+VELOCITY_MARGIN = 0.5        # m/s, likewise
+CELLS_OF_MARGIN = 1.5        # likewise: the cell of the signal whole, and one beyond it
 MAP_SIZE = 9.0, 4.4          # inches, of one map
 LEVEL = optional(real(-1e4, 1e4, "dBm"))
 RANGE_LABEL, VELOCITY_LABEL = "Range in m", "Radial velocity in m/s (away: +)"
@@ -175,14 +176,15 @@ def _limits(spectrum, vmin, vmax):
 
 def _draw(axes, spectrum, vmin: float, vmax: float):
     """The map as an image whose pixels are centred on their cells."""
-    half_range, half_velocity = _half_step(spectrum.range), _half_step(spectrum.velocity)
+    half_range, half_velocity = half_step(spectrum.range), half_step(spectrum.velocity)
     extent = (spectrum.range[0] - half_range, spectrum.range[-1] + half_range,
               spectrum.velocity[0] - half_velocity, spectrum.velocity[-1] + half_velocity)
     return axes.imshow(power_dbm(spectrum), origin="lower", aspect="auto", extent=extent, cmap=MAP_COLOURS, vmin=vmin,
                        vmax=vmax, interpolation="nearest")
 
 
-def _half_step(axis) -> float:
+def half_step(axis) -> float:
+    """Half a cell of an axis [N]; 0.5 where there is only one."""
     return 0.5 * (axis[1] - axis[0]) if len(axis) > 1 else 0.5
 
 
@@ -192,14 +194,20 @@ def signal_extent(spectra, floor: float, is_moving_meant: bool = False):
     is_moving_meant: by range only around the cells that move, where some do. The spectra have one axis of velocity.
     """
     cells = [_cells(spectrum, floor) for spectrum in spectra]
+    margins = [margin_of(spectra[0].range, RANGE_MARGIN), margin_of(spectra[0].velocity, VELOCITY_MARGIN)]
     distance, velocity = (np.concatenate(values) for values in zip(*cells))
     is_moving = np.abs(velocity) > static_speed(spectra[0].velocity, spectra[0].window, spectra[0].zero_pad)
     if is_moving_meant and is_moving.any():
         distance = distance[is_moving]
     if not len(distance):
         return None
-    return (distance.min() - RANGE_MARGIN, distance.max() + RANGE_MARGIN,
-            velocity.min() - VELOCITY_MARGIN, velocity.max() + VELOCITY_MARGIN)
+    return (distance.min() - margins[0], distance.max() + margins[0],
+            velocity.min() - margins[1], velocity.max() + margins[1])
+
+
+def margin_of(axis, least: float) -> float:
+    """What is shown beyond the signal along an axis of cells [N], in its unit; least: however narrow the cells are."""
+    return max(least, CELLS_OF_MARGIN * 2.0 * half_step(axis))
 
 
 def _cells(spectrum, floor: float):

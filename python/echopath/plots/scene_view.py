@@ -73,6 +73,7 @@ def _collect(scene, shown, time: float) -> _Drawing:
     segments = {int(count): _segments(shown, points, count, transmitter, receiver)
                 for count in np.unique(shown.num_bounces)}
     corners = np.concatenate([points, transmitter[None], receiver[None], _object_vertices(scene, time)])
+    corners = np.concatenate([corners, _small_mirrors(scene, time, corners.min(axis=0), corners.max(axis=0))])
     low, high = corners.min(axis=0) - MARGIN, corners.max(axis=0) + MARGIN
     drawing = _Drawing([], [], [], [], [], segments, 0.5 * (transmitter + receiver), low, high, _names(scene, time), {})
     for mesh_id, mesh in enumerate(scene.meshes):
@@ -104,6 +105,20 @@ def _object_vertices(scene, time: float):
     vertices = [np.asarray(scene.world_vertices(mesh_id, time)) for mesh_id, mesh in enumerate(scene.meshes)
                 if not mesh.material.mirror]
     return np.concatenate([np.zeros((0, 3)), *vertices])
+
+
+def _small_mirrors(scene, time: float, low, high):
+    """Corners [N, 3] of the boxes of mirrors that reach into the box of the rest, from low to high, and are no longer than it:
+    vehicles and signs whose faces mirror are shown whole, walls and roads as far as the rest goes."""
+    found = [np.zeros((0, 3))]
+    for mesh_id, mesh in enumerate(scene.meshes):
+        if not mesh.material.mirror:
+            continue
+        vertices = np.asarray(scene.world_vertices(mesh_id, time))
+        ends = np.stack([vertices.min(axis=0), vertices.max(axis=0)])
+        if np.ptp(ends, axis=0).max() <= (high - low).max() and (ends[0] <= high).all() and (ends[1] >= low).all():
+            found.append(ends)
+    return np.concatenate(found)
 
 
 def _names(scene, time: float) -> dict:

@@ -5,7 +5,9 @@ import numpy as np
 
 from ..base.colours import colours_of
 from ..signals.measures import SMALLEST_POWER, in_dbm
-from .maps import NOISE_PEAK_DB, RANGE_LABEL, VELOCITY_LABEL, VELOCITY_MARGIN, chosen_limits, limits_of_level
+from .maps import (
+    NOISE_PEAK_DB, RANGE_LABEL, VELOCITY_LABEL, VELOCITY_MARGIN, chosen_limits, half_step, limits_above, margin_of,
+)
 from .style import MAP_COLOURS, axes_or_new
 
 TIME_LABEL = "Time in s"
@@ -25,13 +27,13 @@ def draw_time_map(map, *, ax=None, vmin=None, vmax=None, title=""):
     ValueError naming the argument.
     """
     level = in_dbm(map.power, SMALLEST_POWER)
-    vmin, vmax = chosen_limits(limits_of_level(level), vmin, vmax)
+    vmin, vmax = chosen_limits(_limits(level, map.noise_power), vmin, vmax)
     values = np.degrees(map.axis) if map.AXIS == "azimuth" else map.axis
     with axes_or_new(ax, *SIZE) as ax:
         for columns, ends in _trains(map):
             image = image_over_time(ax, map.times[columns], values, level[columns], ends, cmap=MAP_COLOURS, vmin=vmin, vmax=vmax)
         if map.AXIS == "velocity":
-            _crop(ax, values, level, vmin)
+            _crop(ax, values, level, vmin, map.noise_power)
         ax.set(xlabel=TIME_LABEL, ylabel=AXIS_LABELS[map.AXIS], title=title)
         ax.figure.colorbar(image, ax=ax, label="Received power in dBm", extend="both", pad=0.02, aspect=30)
     return ax
@@ -46,8 +48,7 @@ def draw_spectrogram_labels(labels, *, ax=None, title=""):
     from matplotlib.colors import ListedColormap
 
     level = in_dbm(labels.whole, SMALLEST_POWER)
-    vmin, vmax = limits_of_level(level)
-    vmin = min(max(vmin, float(in_dbm(labels.noise_power, SMALLEST_POWER))), vmax - 1.0)
+    vmin, vmax = _limits(level, labels.noise_power)
     names = labels.part_names
     colours = [tuple(channel / 255.0 for channel in colour) for colour in colours_of(names)]
     with axes_or_new(ax, *SIZE) as ax:
@@ -60,7 +61,7 @@ def draw_spectrogram_labels(labels, *, ax=None, title=""):
         seen = [number for number in range(len(names)) if np.any(labels.dominant == number)]
         for number in seen:
             ax.fill_between([], [], color=colours[number], label=names[number])
-        _crop(ax, labels.velocity, level, vmin)
+        _crop(ax, labels.velocity, level, vmin, labels.noise_power)
         ax.set(xlabel=TIME_LABEL, ylabel=VELOCITY_LABEL)
         columns = max(1, min(LEGEND_COLUMNS, LEGEND_LETTERS // max((len(names[number]) for number in seen), default=1)))
         ax.set_title(title, pad=8.0 + LEGEND_ROW * -(-len(seen) // columns))
@@ -93,8 +94,26 @@ def _edges(centres):
     return np.concatenate([[2.0 * centres[0] - middle[0]], middle, [2.0 * centres[-1] - middle[-1]]])
 
 
-def _crop(ax, velocity, level, floor: float) -> None:
+def _limits(level, noise_power: float) -> tuple[float, float]:
+    """Ends of the colour scale of levels in dBm: from the noise, of which there need be no cell that holds it alone.
+
+    noise_power: W, mean of the noise in a cell; 0: not known
+    """
+    return limits_above(_noise_level(level, noise_power), level.max())
+
+
+def _noise_level(level, noise_power: float) -> float:
+    return float(in_dbm(noise_power, SMALLEST_POWER) if noise_power > 0.0 else np.median(level))
+
+
+def _crop(ax, velocity, level, floor: float, noise_power: float) -> None:
     """To the velocities at which some cell stands out of the noise and of the floor of the colour scale."""
-    shown = velocity[(level > max(floor + 3.0, np.median(level) + NOISE_PEAK_DB)).any(axis=0)]
+    shown = velocity[(level > max(floor + 3.0, _noise_level(level, noise_power) + NOISE_PEAK_DB)).any(axis=0)]
     if len(shown):
-        ax.set_ylim(max(shown.min() - VELOCITY_MARGIN, velocity[0]), min(shown.max() + VELOCITY_MARGIN, velocity[-1]))
+        margin = margin_of(velocity, VELOCITY_MARGIN)
+        show_within(ax, velocity, shown.min() - margin, shown.max() + margin)
+
+
+def show_within(ax, values, low: float, high: float) -> None:
+    """Shows of the cells at values [X] up the axes those from low to high; the outermost stay whole."""
+    ax.set_ylim(max(low, values[0] - half_step(values)), min(high, values[-1] + half_step(values)))

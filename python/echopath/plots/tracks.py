@@ -6,6 +6,7 @@ import numpy as np
 from .style import CURVE_COLOURS, axes_or_new
 
 SIZE = 6.0, 5.2  # inches
+LINES = ("-", "--", ":", "-.")  # for more tracks than there are colours
 X_LABEL, Y_LABEL = "x in m (ahead)", "y in m (left: +)"
 
 
@@ -16,10 +17,11 @@ def draw_tracks(tracks, *, ax=None, title=""):
     Returns the axes: y in m across, left positive, x in m up. Raises TypeError naming `ax`.
     """
     with axes_or_new(ax, *SIZE) as ax:
-        for number in np.unique(tracks.track):
-            one, colour = tracks.of_track(number), CURVE_COLOURS[number % len(CURVE_COLOURS)]
+        for place, number in enumerate(np.unique(tracks.track)):
+            one, colour = tracks.of_track(number), CURVE_COLOURS[place % len(CURVE_COLOURS)]
+            line = LINES[place // len(CURVE_COLOURS) % len(LINES)]
             x, y = one.state[:, :2].T
-            ax.plot(y, x, color=colour, marker=".", markersize=3, label=_name(one, number))
+            ax.plot(y, x, line, color=colour, marker=".", markersize=3, label=_name(one, number))
             ax.plot(y[~one.is_detected], x[~one.is_detected], "x", color=colour, markersize=5)
             ax.annotate(str(number), (y[-1], x[-1]), xytext=(4, 4), textcoords="offset points", color="0.1")
         ax.set(xlabel=Y_LABEL, ylabel=X_LABEL, title=title, aspect="equal")

@@ -15,10 +15,11 @@ if TYPE_CHECKING:
 # what a name tells: words of it, and how large such a thing is at its largest, m
 _SIZES = {
     "a person": (("person", "people", "human", "pedestrian", "walker", "man", "woman", "boy", "girl", "child", "character",
-                  "body", "soldier"), 0.5, 2.6),
+                  "soldier"), 0.5, 2.6),
     "a bicycle": (("bike", "bicycle", "cyclist", "motorcycle", "motorbike", "scooter"), 0.8, 3.5),
     "an animal": (("animal", "dog", "cat", "fox", "wolf", "deer", "horse", "cow", "sheep", "goat", "pig", "boar"), 0.15, 4.0),
-    "a vehicle": (("car", "vehicle", "sedan", "suv", "taxi", "van", "truck", "bus", "lorry", "jeep", "pickup"), 1.5, 25.0),
+    "a vehicle": (("car", "vehicle", "sedan", "suv", "taxi", "van", "truck", "bus", "lorry", "jeep", "pickup",
+                   "chassis"), 1.5, 25.0),
 }
 _UNITS = {"mm": 1e-3, "cm": 1e-2, "inches": 0.0254, "feet": 0.3048, "m": 1.0, "km": 1e3}  # m
 SMALLEST, LARGEST = 0.02, 5e4  # m, of anything that a radar looks at

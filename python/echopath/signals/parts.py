@@ -158,7 +158,10 @@ def parts_of_options(texts) -> dict:
             raise ValueError(f"part: must be NAME=SELECTION, as in ghosts=\"T .* 'wall*' .* R\", got {option}")
         if name in parts:
             raise ValueError(f"part: must have a name of its own, got {name} twice")
-        parts[name] = Selection(expression)
+        try:
+            parts[name] = Selection(expression)
+        except ValueError as error:
+            raise ValueError(f"part: {name}: {error}") from None
     return parts
 
 
@@ -191,6 +194,7 @@ def decompose(paths: _core.Paths, radar: _core.Radar | None = None, parts: Views
     parts = {} if parts is None else parts
     is_one_view = not _is_table_of_views(parts)
     views = {"": parts} if is_one_view else parts
+    check_partitions({name or ONLY_PARTITION: view for name, view in views.items() if isinstance(view, Mapping)}, paths.scene)
     radar = paths.radar if radar is None else radar
     cubes = decompose_slots(paths, radar, [_grouping(view) for view in views.values()], tolerance=tolerance, method=method,
                             replay=replay, evaluate=evaluate, phase_tolerance=phase_tolerance, retrace=retrace,

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 
 import numpy as np
 
@@ -124,9 +125,15 @@ def _complaint(name: str, measured: Tessellation, wavelength: float, smooth: boo
     """What is wrong with a mesh that is too coarse."""
     coarser = SMOOTH_GAIN if smooth else 1.0
     ratio = measured.ratio(wavelength) / coarser
-    advice = f"edges of {1e3 * coarser * measured.good_edge(wavelength):.2g} mm would do"
+    advice = f"edges of {_rounded_down(1e3 * coarser * measured.good_edge(wavelength)):g} mm would do"
     if not smooth and ratio <= SMOOTH_GAIN * MAX_RATIO:
         advice += ", or smooth=True"
     error = f"about {facet_error_db(ratio):.1f} dB" if ratio <= EDGE_RATIOS[-1] else f"{ERRORS_DB[-1]:.0f} dB or more"
-    return (f"mesh '{name}': edges of {1e3 * measured.edge:.2g} mm on a surface curved with a radius of "
+    return (f"mesh '{name}': edges of {1e3 * measured.edge:.3g} mm on a surface curved with a radius of "
             f"{measured.radius:.2g} m err by {error} in its coherent echo; {advice}")
+
+
+def _rounded_down(value: float) -> float:
+    """To two digits: what would do is never said to be what is there."""
+    digit = 10.0 ** (math.floor(math.log10(value)) - 1)
+    return math.floor(value / digit) * digit

@@ -159,3 +159,36 @@ def test_axes_of_a_frame_hold_every_detection_that_its_legend_counts(frame, ax):
 def test_labels_without_parts_say_how_objects_are_seen(frame, ax):
     assert frame.labels["parts"].plot(ax=ax).get_title() == "Which part made each cell"
     assert 'plot("objects")' in ep.annotate(frame.paths).plot(ax=ax).get_title()
+
+
+@pytest.mark.parametrize("noise_dbm", [-110.0, -90.0])
+def test_maps_over_time_that_are_full_of_echoes_begin_at_the_noise(noise_dbm):
+    """Half of the cells at -80 dBm, the others at -100 dBm: none of them tells how strong the noise is."""
+    power = np.full((4, 8), 1e-11)
+    power[:, ::2] = 1e-13
+    noise = 10.0 ** (0.1 * noise_dbm - 3.0)
+    full = ep.AngleTime(times=np.arange(4.0), power=power, noise_power=noise, window="hann", zero_pad=1,
+                        azimuth=np.linspace(-1.0, 1.0, 8), combine="sum", velocity_gate=(-1.0, 1.0), range_gate=(0.0, 10.0))
+    low, high = full.plot().collections[0].get_clim()
+    assert high == -80.0 and low == max(-150.0, min(noise_dbm + 5.0, high - 10.0))
+
+
+def test_a_spectrogram_shows_wide_cells_whole():
+    """One echo in a cell of 5 m/s, ten times the margin in m/s."""
+    power = np.full((4, 16), 1e-15)
+    power[:, 8] = 1e-11
+    found = ep.Spectrogram(times=np.arange(4.0), power=power, noise_power=1e-15, window="hann", zero_pad=1,
+                           velocity=5.0 * (np.arange(16) - 8), train=np.zeros(4, np.int32), trains=np.array([[-0.5, 3.5]]),
+                           window_length=16, hop=4, range_gate=(0.0, 10.0))
+    assert found.plot().get_ylim() == pytest.approx((-7.5, 7.5))  # its cell and one on either side
+
+
+def test_tracks_that_share_a_colour_differ_in_their_lines(ax):
+    count = 15
+    tracks = ep.Tracks(track=np.repeat(np.arange(count, dtype=np.int32), 2), frame=np.tile([0, 1], count),
+                       time=np.tile([0.0, 1.0], count),
+                       state=np.arange(8.0 * count).reshape(-1, 4), covariance=np.zeros((2 * count, 4, 4)),
+                       is_detected=np.ones(2 * count, bool), object=np.full(2 * count, ""))
+    tracks.plot(ax=ax)
+    looks = [(line.get_color(), line.get_linestyle()) for line in ax.lines if line.get_marker() == "."]
+    assert len(looks) == count == len(set(looks))

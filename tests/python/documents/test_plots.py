@@ -63,6 +63,14 @@ def test_a_map_is_cropped_to_its_signal_and_keeps_it(spectrum):
     assert bottom < -1.2 < top and top - bottom < 4.0
 
 
+def test_wide_cells_are_shown_whole_with_their_neighbours(spectrum):
+    """The signal lies in one cell of 4 m/s and 6 m, much wider than the margins in m/s and m."""
+    spectrum.velocity, spectrum.range = np.arange(-32, 32) * 4.0, np.arange(128) * 6.0
+    axes = plot_range_doppler(spectrum).axes[0]
+    assert axes.get_xlim() == pytest.approx((240.0 - 9.0, 240.0 + 9.0))  # its cell and one on either side
+    assert axes.get_ylim() == pytest.approx((-48.0 - 6.0, -48.0 + 6.0))
+
+
 def test_all_parts_share_one_colour_scale(spectrum):
     weak = with_values(spectrum, 1e-3 * spectrum.values)
     figure = plot_partition({"strong": spectrum, "weak": weak}, whole=spectrum)
@@ -219,6 +227,17 @@ def test_a_picture_of_a_scene_names_its_objects():
     for axes in figure.axes[:2]:  # in perspective, from above
         assert {text.get_text().strip() for text in axes.texts} >= {"plate0", "plate1", "plate2"}
     assert "ground" in {text.get_text().strip() for text in figure.axes[0].texts}
+
+
+def test_a_body_of_mirrors_is_shown_whole_and_a_road_as_far_as_the_rest_goes():
+    scene = ep.Scene()
+    scene.add(ep.actors.ground(200.0), name="road", material=ep.Material.metal(mirror=True))
+    scene.add(ep.actors.plate(0.3, 0.3), name="plate", material="metal", position=(5.0, 0.0, 1.0))
+    scene.add(ep.actors.plate(2.0, 1.5), name="van", material=ep.Material.metal(mirror=True), position=(5.5, 0.1, 1.0),
+              yaw=0.5 * np.pi)  # reaches from x = 4.5 to 6.5 m
+    radar = build_radar([(0, 0, 1)], [(0, 0, 1)], num_samples=16, num_chirps=2, chirp_interval=1e-4)
+    left, right = plot_scene(scene, ep.trace(scene, radar, num_rays=500)).axes[1].get_xlim()
+    assert (left, right) == pytest.approx((-0.6, 6.5 + 0.6))
 
 
 def test_maps_from_above_of_nothing_and_of_one_cell_are_pictures_too(from_above, tmp_path):

@@ -47,7 +47,7 @@ def test_a_frame_in_the_file_is_named_as_if_it_lay_below_it(whole, simulated):
     assert list(ep.load_labels(whole.paths_of_files[2])) == ["parts"]
     with pytest.raises(ep.FileError, match="000009: .*no such group"):
         ep.load_frame(whole.path / "frames" / "000009")
-    with pytest.raises(ep.FileError, match="no frame file of echopath"):
+    with pytest.raises(ep.FileError, match="is a sequence, not a single frame: .*/frames/000000' is its first frame"):
         ep.load_frame(whole.path)
 
 
@@ -172,7 +172,7 @@ def test_a_file_grows_with_its_sequence_and_refuses_others(tmp_path, simulated):
         make_sequence(seed=5).save(path)
     assert list(tmp_path.iterdir()) == [path]
     ep.save_frame(make_sequence()[0], tmp_path / "frame.h5")
-    with pytest.raises(ValueError, match="^path: must be new, .*no sequence file of echopath"):
+    with pytest.raises(ValueError, match="^path: must be new, .*is a single frame, not a sequence: ep.load_frame"):
         make_sequence().save(tmp_path / "frame.h5")
 
 

@@ -71,7 +71,7 @@ def test_damaged_settings_are_told_by_their_file(folders, tmp_path):
     with pytest.raises(ep.FileError, match=r"sequence.h5: damaged settings \(keep 'some'\)"):
         ep.load_sequence(tmp_path)
     path.write_bytes((folders["maps"] / "frame_0000.h5").read_bytes())
-    with pytest.raises(ep.FileError, match="sequence.h5: is an HDF5 file, but no sequence file of echopath"):
+    with pytest.raises(ep.FileError, match="sequence.h5: is a single frame, not a sequence"):
         ep.load_sequence(tmp_path)
 
 

@@ -104,6 +104,14 @@ def test_a_folder_that_cannot_be_written_is_named_before_the_work(verb, scene_pa
     assert told == f"echopath: --out: must be a folder that can be written, got '{tmp_path / 'file/out'}' (Not a directory)\n"
 
 
+def test_a_file_in_the_place_of_the_folder_of_a_run_is_named_before_the_work(scene_path, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(ep._core, "trace", None)  # no work begins
+    (tmp_path / "file.txt").write_text("mine")
+    assert main(["run", str(scene_path), "--out", str(tmp_path / "file.txt")]) == 2
+    assert "--out: must be a folder that can be written" in capsys.readouterr().err
+    assert (tmp_path / "file.txt").read_text() == "mine"
+
+
 def test_a_folder_that_is_tried_is_not_left_behind(tmp_path):
     require_writable(tmp_path / "a" / "b", "--out")
     assert list(tmp_path.iterdir()) == []
@@ -185,7 +193,7 @@ def test_parts_and_selections_of_the_command_line(scene_path, tmp_path):
     (("--part", "a=T . R", "--part", "a=T R"), "echopath: part: must have a name of its own, got a twice"),
     (("--part", "a=T 'plat' R"), "echopath: parts.choice.a: path expression: expected a glob that takes a mesh, got 'plat'; "
                                  "nearest names: plate\n  T 'plat' R\n    ^\n"),
-    (("--part", "a=T . R & T"), "echopath: path expression: expected a hit"),
+    (("--part", "a=T . R & T"), "echopath: part: a: path expression: expected a hit"),
 ])
 def test_faults_of_parts_are_told_before_the_trace(scene_path, tmp_path, arguments, message):
     done = call("run", scene_path, "--out", tmp_path / "out", "--rays", MANY_RAYS, *arguments)

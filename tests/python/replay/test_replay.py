@@ -289,3 +289,12 @@ def test_mixed_views_are_refused():
     paths = ep.trace(ep.Scene(), radar, num_rays=10)
     with pytest.raises(ValueError, match="parts"):
         ep.decompose(paths, radar, {"a": "T . R", "b": {"c": "T . R"}})
+
+
+@pytest.mark.parametrize("parts, name", [({"a": "T .+ R", "b": "T 'none' R"}, "parts.b"),
+                                         ({"view": {"b": "T 'none' R"}}, "parts.view.b")])
+def test_the_part_that_names_no_mesh_is_named(parts, name):
+    radar = make_radar(num_chirps=2)
+    paths = ep.trace(ep.Scene(), radar, num_rays=10)
+    with pytest.raises(ValueError, match=f"^{name}: path expression: expected a glob that takes a mesh"):
+        ep.decompose(paths, radar, parts)

@@ -82,7 +82,7 @@ def test_coarse_spheres_are_warned_of_and_fine_ones_are_not():
     for subdivisions in (2, 3):
         (text,) = warnings_of(icosphere(2**subdivisions))
         assert "'thing'" in text and "mm" in text and "smooth=True" in text
-    assert "7.8 mm would do" in text  # 0.4 sqrt(0.1 m 3.89 mm) = 7.89 mm
+    assert "7.7 mm would do" in text  # 0.4 sqrt(97.5 mm 3.89 mm) = 7.79 mm, rounded down
     for subdivisions in (4, 5):
         assert warnings_of(icosphere(2**subdivisions)) == []
 

@@ -2416,7 +2416,7 @@ class Paths:
     @property
     def flags(self) -> numpy.typing.NDArray[numpy.uint32]:
         """
-        [P] bits: 1, recorded as the reversal of another path; 2, of the second half of the rays; 4, with a point on an edge: hit flags >> 8 & 63, for one of flags >> 16 pieces of it
+        [P] bits: 1, recorded as the reversal of another path; 2, of the second half of the rays; 4, with points on 1 + (flags >> 3 & 3) edges: hit flags >> 8 & 63 is the first, for one of flags >> 16 pieces of it; 32, beside 4, around an edge to a mirror; 64, diffuse, and counts for others that were left out
         """
     @property
     def frame(self) -> TraceFrame:

@@ -221,8 +221,9 @@ share hits; selections share all hits of their trace.)");
       .def_property_readonly("batch", path_column(&Paths::batch), "[P] batch of rays, 255: all of them (image method)")
       .def_property_readonly(
           "flags", path_column(&Paths::flags),
-          "[P] bits: 1, recorded as the reversal of another path; 2, of the second half of the rays; 4, with a point on an "
-          "edge: hit flags >> 8 & 63, for one of flags >> 16 pieces of it")
+          "[P] bits: 1, recorded as the reversal of another path; 2, of the second half of the rays; 4, with points on "
+          "1 + (flags >> 3 & 3) edges: hit flags >> 8 & 63 is the first, for one of flags >> 16 pieces of it; 32, beside 4, "
+          "around an edge to a mirror; 64, diffuse, and counts for others that were left out")
       .def_property_readonly("jones", &jones_of,
                              "[P, 2, 2] or [0, 2, 2] complex: (horizontal, vertical) at the receiver from the same at the "
                              "transmitter")

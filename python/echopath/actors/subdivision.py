@@ -42,7 +42,7 @@ def subdivided(cage):
     middles = vertices[edges.ends].mean(axis=1)
     beside = _sums(edges.of_quad.ravel(), np.repeat(faces, 4, axis=0), len(edges.ends)) / edges.count[:, None]
     on_edges = np.where(edges.sharp[:, None], middles, 0.5 * (middles + beside))
-    at = _moved(vertices, cage.quads, edges, _smooth_rule(vertices, cage.quads, edges, faces, middles), (6.0, 1.0))
+    at = _moved(vertices, edges, _smooth_rule(vertices, cage.quads, edges, faces, middles), (6.0, 1.0))
     a, e, f = cage.quads, num + edges.of_quad, num + len(edges.ends) + np.arange(len(cage.quads))
     quads = np.stack([np.stack([a[:, k], e[:, k], f, e[:, k - 1]], axis=-1) for k in range(4)], axis=1).reshape(-1, 4)
     creases = np.flatnonzero(edges.sharp)
@@ -58,7 +58,7 @@ def on_limit(cage):
     around = _neighbour_sums(vertices, edges)
     opposite = _sums(cage.quads.ravel(), vertices[np.roll(cage.quads, 2, axis=1)].reshape(-1, 3), len(vertices))
     smooth = (valence**2 * vertices + 4.0 * around + opposite) / (valence * (valence + 5.0))
-    return Cage(_moved(vertices, cage.quads, edges, smooth, (4.0, 1.0)), cage.quads, cage.labels, cage.sharp)
+    return Cage(_moved(vertices, edges, smooth, (4.0, 1.0)), cage.quads, cage.labels, cage.sharp)
 
 
 def triangulated(quads, vertices):
@@ -79,7 +79,7 @@ def _smooth_rule(vertices, quads, edges, faces, middles):
     return (face_mean + 2.0 * edge_mean + (valence - 3.0) * vertices) / valence
 
 
-def _moved(vertices, quads, edges, smooth, weights):
+def _moved(vertices, edges, smooth, weights):
     """Vertices by the smooth rule, by that of a crease (weights of itself and of its two neighbours) or left at corners."""
     ends = edges.ends[edges.sharp]
     num_sharp = np.bincount(ends.ravel(), minlength=len(vertices))

@@ -154,7 +154,6 @@ class ReplayKeywords(TypedDict):
     keyframes: int
 
 
-REPLAY_KEYWORDS = tuple(ReplayKeywords.__annotations__)
 LEAST_MARGIN_DB = -300.0  # of labels over the noise: far below anything
 FRAME_KEYWORDS = ("replay", "evaluate", "retrace", "keyframes")  # those of them that a Frame keeps
 

@@ -223,7 +223,7 @@ def _describe_meshes(meshes) -> list[str]:
         low, high = np.min(mesh.vertices, axis=0), np.max(mesh.vertices, axis=0)
         lines += [name, report.line("triangles, vertices", f"{len(mesh.triangles):,}, {len(mesh.vertices):,}"),
                   report.line("area", f"{mesh.area:.6g} m^2, {'closed' if mesh.is_closed else 'open'}"),
-                  report.line("from, to", f"{_point(low)}, {_point(high)} m"),
+                  report.line("from, to", f"{report.point(low)}, {report.point(high)} m"),
                   report.line("triangles removed", f"{mesh.num_removed_triangles}"),
                   report.line("vertices duplicated", f"{mesh.num_duplicated_vertices}")]
     return lines + _describe_overlaps(_scene_of(meshes), 0.0, [name for name, _ in meshes])
@@ -235,7 +235,3 @@ def _scene_of(meshes):
     for number, (_, mesh) in enumerate(meshes):
         scene.add(mesh, name=str(number), material="metal")
     return scene
-
-
-def _point(point) -> str:
-    return "(" + ", ".join(f"{value:.4g}" for value in point) + ")"

@@ -24,16 +24,12 @@ def describe_model(path: Path, model: ep.Model) -> list[str]:
     lines = [f"{path.name}: {model.format}", report.line("meshes, nodes", f"{len(meshes):,}, {len(model.nodes):,}"),
              report.line("triangles", f"{model.num_triangles:,}"),
              report.line("size", f"{size[0]:.4g} x {size[1]:.4g} x {size[2]:.4g} m (forward, left, up)"),
-             report.line("from, to", f"{_point(low)}, {_point(high)} m"),
+             report.line("from, to", f"{report.point(low)}, {report.point(high)} m"),
              report.line("axes", f"{model.up} is up in the file; x ahead, y left, z up here"),
              report.line("unit", f"{model.unit:g} m")]
     doubt = unit_doubt(float(size.max()), model.unit, names_of(model, path.stem), has_skin(model))
     lines += [report.line("unit?", doubt)] if doubt else []
     return lines + (_tree(model) + _materials(meshes) if meshes else []) + _animations(model) + _notes(model)
-
-
-def _point(point) -> str:
-    return "(" + ", ".join(f"{value:.4g}" for value in point) + ")"
 
 
 def _tree(model: ep.Model) -> list[str]:

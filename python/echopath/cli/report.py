@@ -28,6 +28,11 @@ def line(label: str, value: str) -> str:
     return f"  {label + ' ':<{LABEL_WIDTH}}{value}"
 
 
+def point(place) -> str:
+    """Coordinates of a place, (x, y, z)."""
+    return "(" + ", ".join(f"{value:.4g}" for value in place) + ")"
+
+
 def counts(paths) -> list[str]:
     """Rays, hits and paths of a trace."""
     return [line("rays", f"{paths.frame.statistics.num_rays:,}"), line("hits recorded", f"{len(paths.mesh_id):,}"),

@@ -141,7 +141,7 @@ def _labels_of(spectrum, cells, power, makers: _Makers, echoes) -> dict:
     found = labelling.CellLabels(len(cells))
     if paths is not None:
         of_paths = find_families(paths, objects)
-        found.take_families(*labelling.families_of_cells(paths, of_paths, echoes, cells, noise_floor), echoes.measured(cells),
+        found.take_families(*labelling.families_of_cells(of_paths, echoes, cells, noise_floor), echoes.measured(cells),
                             labelling.resolved_families(paths, of_paths))
     elif labels is not None:
         found.families = labelling.families_of_labels(labels, cells)

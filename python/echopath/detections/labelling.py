@@ -49,7 +49,7 @@ def label_powers(spectrum, labels, cells) -> tuple:
     return list(labels.part_names), labels.power[:, velocity, distance], labels.whole[velocity, distance]
 
 
-def families_of_cells(paths, families, echoes, cells, noise_floor: float) -> tuple:
+def families_of_cells(families, echoes, cells, noise_floor: float) -> tuple:
     """The family that has each of cells [N, 2] by the rule of labels, None without echoes, and power [N] of all as fields, W.
 
     Powers are means over the channels of the echoes' fields. noise_floor: W, from which on labels take a cell for more than noise

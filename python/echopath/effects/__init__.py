@@ -56,9 +56,9 @@ def effects(scene: _core.Scene, radar: _core.Radar, *, max_bounces: int = TraceS
                                                 effects)))
 
 
-def of_paths(paths, *, replay: str = "material", evaluate: str = "interpolated", retrace: str = "never",
-             noise_seed: int | None = None, effects: Choices = (), surroundings=None, rain_cube=None,
-             interference_cube=None) -> Effects:
+def of_paths(paths, *, replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,
+             retrace: Retrace = SignalSettings.retrace, noise_seed: int | None = None, effects: Choices = (),
+             surroundings=None, rain_cube=None, interference_cube=None) -> Effects:
     """The effects of a trace, from the scene, radar and settings that it recorded and what it left out; replay, evaluate,
     retrace, noise_seed, rain_cube, interference_cube: of later stages; surroundings: the scene whose weather and other radars
     they had."""

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from .. import _core
+from ..arguments.settings import SignalSettings
 from ..base.known_attributes import known_attributes
 from ..base.made_by import made_by
 from ..base.stages import Stage
@@ -74,10 +75,10 @@ class Frame:
     spectrum: object = None
     part_spectra: dict = dataclasses.field(default_factory=dict)
     angle_settings: dict = dataclasses.field(default_factory=dict)
-    replay: str = "material"
-    evaluate: str = "interpolated"
-    retrace: str = "never"
-    keyframes: int = 0
+    replay: str = SignalSettings.replay
+    evaluate: str = SignalSettings.evaluate
+    retrace: str = SignalSettings.retrace
+    keyframes: int = SignalSettings.keyframes
     effect_choices: tuple = ()
     labels: dict = dataclasses.field(default_factory=dict)
     detections: object = None

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..base.triangles import areas_of
 
-_STEPS = np.array([0.7548776662466927, 0.5698402909910532])  # 1/g and 1/g^2 with g^3 = g + 1: an even sequence in the square
+_STEPS = 0.7548776662466927 ** np.array([1.0, 2.0])  # 1/g and 1/g^2 with g^3 = g + 1: an even sequence in the square
 
 
 @dataclasses.dataclass(frozen=True)

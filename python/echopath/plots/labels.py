@@ -5,7 +5,7 @@ import numpy as np
 
 from ..arguments.checks import choice
 from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm
-from .maps import RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN
+from .maps import RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, half_step
 from .part_powers import draw_part_powers, part_colours
 from .style import axes_or_new, new_figure
 
@@ -89,7 +89,7 @@ def _draw_cells(axes, labels, areas: list) -> None:
             words = f"{name}: {_cells(np.count_nonzero(is_inside))}"
             axes.fill_between([], [], color=colour, alpha=FILL + 0.2, label=words)
     for limit, axis, first, last in ((axes.set_xlim, labels.range, near, far - 1), (axes.set_ylim, rows, bottom, top - 1)):
-        limit(axis[first] - 0.5 * _step(axis), axis[last] + 0.5 * _step(axis))  # whole cells, be it one
+        limit(axis[first] - half_step(axis), axis[last] + half_step(axis))  # whole cells, be it one
     axes.set_xlabel(f"{RANGE_LABEL}{_unseen(labels)}")
     axes.set_ylabel(_row_label(labels))
     if any(label.peak is not None for label in labels.objects):
@@ -106,8 +106,8 @@ def _draw_area(axes, distance, rows, is_inside, colour) -> None:
     """Fills and outlines the cells [V, R] where `is_inside`, along their edges."""
     from matplotlib.collections import LineCollection, PolyCollection
 
-    left, low = distance - 0.5 * _step(distance), rows - 0.5 * _step(rows)
-    right, high = left + _step(distance), low + _step(rows)
+    left, low = distance - half_step(distance), rows - half_step(rows)
+    right, high = left + 2.0 * half_step(distance), low + 2.0 * half_step(rows)
     v, r = np.nonzero(is_inside)
     corners = np.stack([[left[r], low[v]], [right[r], low[v]], [right[r], high[v]], [left[r], high[v]]], -1)  # [2, N, 4]
     axes.add_collection(PolyCollection(corners.transpose(1, 2, 0), facecolors=[colour], edgecolors="none", alpha=FILL,
@@ -215,7 +215,7 @@ def _strongest_ghosts(labels) -> list:
 def _draw_extents(panels, labels, rows: list) -> None:
     """A bar for the box of each label along range and along velocity or azimuth, a mark at its peak."""
     across, up = panels
-    half_range, half_row = 0.5 * _step(labels.range), 0.5 * _step(_rows(labels))
+    half_range, half_row = half_step(labels.range), half_step(_rows(labels))
     for place, label in enumerate(rows):
         colour = CLASSES[getattr(label, "ghost_type", "real")][1]
         _draw_span(across, place, [(label.box[0], label.box[1])], half_range, label.peak[0], colour)
@@ -237,9 +237,9 @@ def _draw_extents(panels, labels, rows: list) -> None:
         axes.autoscale_view(scaley=False)
 
 
-def _draw_span(axes, place: int, spans: list, half_step: float, peak: float, colour) -> None:
+def _draw_span(axes, place: int, spans: list, half: float, peak: float, colour) -> None:
     for low, high in spans:
-        axes.barh(place, high - low + 2.0 * half_step, left=low - half_step, height=0.6, color=colour, alpha=FILL + 0.2)
+        axes.barh(place, high - low + 2.0 * half, left=low - half, height=0.6, color=colour, alpha=FILL + 0.2)
     axes.plot([peak, peak], [place - 0.3, place + 0.3], color="black", linewidth=1.2)
 
 
@@ -272,7 +272,3 @@ def _row_label(labels) -> str:
 
 def _in_plot_units(labels, row: float) -> float:
     return row if labels.azimuth is None else float(np.degrees(row))
-
-
-def _step(axis) -> float:
-    return float(axis[1] - axis[0]) if len(axis) > 1 else 1.0

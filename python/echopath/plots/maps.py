@@ -92,7 +92,7 @@ def draw_range_doppler(spectrum, *, ax=None, vmin=None, vmax=None, title=""):
     with axes_or_new(ax, *MAP_SIZE) as ax:
         image = _draw_whole(ax, spectrum, vmin, vmax, title)
         ax.set_ylabel(VELOCITY_LABEL)
-        _colour_bar(ax.figure, image, [ax])
+        colour_bar(ax.figure, image, [ax])
     return ax
 
 
@@ -117,7 +117,7 @@ def plot_partition(spectra: dict, *, title="", vmin=None, vmax=None, whole=None,
                 axes.tick_params(labelbottom=True)
         figure.supylabel(VELOCITY_LABEL, fontsize=9)
         set_title(figure, title, 11)
-        _colour_bar(figure, image, panels[:len(spectra)])
+        colour_bar(figure, image, panels[:len(spectra)])
         _small_print(figure, note)
     return figure
 
@@ -140,8 +140,8 @@ def plot_overview(whole, spectra: dict, *, title="Everything that the radar rece
         lower.supxlabel(RANGE_LABEL, fontsize=9)
         for first in (axes, panels[0]):
             first.set_ylabel(VELOCITY_LABEL)
-        _colour_bar(upper, image, [axes])
-        _colour_bar(lower, image, panels)
+        colour_bar(upper, image, [axes])
+        colour_bar(lower, image, panels)
         _small_print(figure, note)
     return figure
 
@@ -241,5 +241,6 @@ def _small_print(figure, note: str) -> None:
         figure.supxlabel(note, x=0.995, fontsize=6.5, color="0.4", horizontalalignment="right")  # the layout leaves it room
 
 
-def _colour_bar(figure, image, panels) -> None:
+def colour_bar(figure, image, panels) -> None:
+    """Adds the scale of the colours of an image beside some axes."""
     figure.colorbar(image, ax=panels, label="Received power in dBm", extend="both", pad=0.02, aspect=30)

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm
-from .maps import NOISE_PEAK_DB, chosen_limits, limits_of_level
+from .maps import NOISE_PEAK_DB, chosen_limits, colour_bar, limits_of_level
 from .style import MAP_COLOURS, axes_or_new, new_figure, set_title
 
 FARTHER = 1.1                  # of the farthest signal: what is shown
@@ -59,7 +59,7 @@ def plot_range_azimuth(maps, *, title="Received power by range and azimuth, seen
         figure.supxlabel(LEFT_LABEL, fontsize=9)
         figure.supylabel(AHEAD_LABEL, fontsize=9)
         set_title(figure, title, 11)
-        _colour_bar(figure, image, panels[:len(maps)])
+        colour_bar(figure, image, panels[:len(maps)])
         if ring:
             figure.legend(handles=ring, loc="outside lower right", **LEGEND_LOOK)
     return figure
@@ -77,7 +77,7 @@ def draw_range_azimuth(map, *, ax=None, vmin=None, vmax=None, title=""):
         ax.set_xlabel(LEFT_LABEL)
         ax.set_ylabel(AHEAD_LABEL)
         ax.set_title(title)
-        _colour_bar(ax.figure, image, [ax])
+        colour_bar(ax.figure, image, [ax])
     return ax
 
 
@@ -106,10 +106,6 @@ def _name_places(axes, shown: dict, reach: float) -> None:
         axes.text(begin, height, name, color="white", fontsize=7, verticalalignment="center",
                   horizontalalignment="left" if side < 0.0 else "right",
                   path_effects=[withStroke(linewidth=2.0, foreground="black")])
-
-
-def _colour_bar(figure, image, panels) -> None:
-    figure.colorbar(image, ax=panels, label="Received power in dBm", extend="both", pad=0.02, aspect=30)
 
 
 def _in_dbm(power):

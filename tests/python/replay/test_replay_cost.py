@@ -55,7 +55,7 @@ def test_of_short_work_there_is_no_word(paths, settings):
         ep.synthesize(paths, build_radar(num_chirps=8), **settings)
 
 
-def test_what_stands_still_takes_no_time(one_thread):
+def test_of_what_stands_still_there_is_no_word(one_thread):
     scene = ep.Scene()
     scene.add(plate((9, 0, 0), (-1, 0, 0), 1.0), name="near", material=METAL)
     radar = build_radar(num_chirps=4096, num_samples=2048, chirp_interval=2e-4)

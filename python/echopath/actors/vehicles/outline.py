@@ -71,7 +71,7 @@ class Outline:
         return self.width / 2 - WHEEL_INSET - self.tyre_width / 2
 
 
-def full_cells(outline):
+def full_cells():
     """Full cells [X, Y, Z]: all but those of the four wheel arches."""
     full = np.ones((len(STATIONS) - 1, len(COLUMNS) - 1, ROWS), dtype=bool)
     for first in (AT["rear_arch_0"], AT["cowl"]):

@@ -20,7 +20,7 @@ def drive(outline, driving):
 
 def body_parts(outline):
     """(parts of the body at rest, its refined cage)."""
-    cage = refined(cage_of(lattice_points(outline), full_cells(outline), label_of(outline)), outline.levels)
+    cage = refined(cage_of(lattice_points(outline), full_cells(), label_of(outline)), outline.levels)
     cage = replace(cage, vertices=_fitted(outline, cage.vertices))
     return parts_of(cage, BODY_MATERIALS, flat_sheets=("underside",)), cage
 

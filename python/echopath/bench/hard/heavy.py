@@ -141,21 +141,21 @@ def disagreement(seed: int, count: int) -> float:
     scene = random_scene(seed)
     other, corners = _embreex_of(scene)
     origins, directions = random_rays(seed, count)
-    mesh_id, triangle_id, distance, _ = _core.bench.first_hits(scene, origins, directions)
+    mesh_id, triangle_id, _, _ = _core.bench.first_hits(scene, origins, directions)
     found = other.run(origins.astype(np.float32), directions.astype(np.float32), query="INTERSECT", output=True)
     firsts = np.cumsum([0] + [len(mesh.triangles) for mesh in scene.meshes])
     ours = np.where(mesh_id == NO_MESH, -1, firsts[np.minimum(mesh_id, len(firsts) - 1)] + triangle_id)
     theirs = found["primID"]
     differ = np.flatnonzero(ours != theirs)
-    return float(np.sum([not _is_close_call(corners, origins[i], directions[i], ours[i], theirs[i], distance[i])
+    return float(np.sum([not _is_close_call(corners, origins[i], directions[i], ours[i], theirs[i])
                          for i in differ]) / count)
 
 
 EDGE = 1e-5  # m: what single precision resolves over 10 m, a few units
 
 
-def _is_close_call(corners, origin, direction, one: int, two: int, distance: float) -> bool:
-    """Whether a ray passes within EDGE of an edge of one of both triangles, or both are met at the same distance."""
+def _is_close_call(corners, origin, direction, one: int, two: int) -> bool:
+    """Whether a ray passes within EDGE of an edge of one of both triangles."""
     return any(_edge_distance(corners[index], origin, direction) < EDGE for index in (one, two) if index >= 0)
 
 

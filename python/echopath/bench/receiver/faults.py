@@ -41,7 +41,7 @@ def _measured(chirps: int) -> Iterator[tuple[str, float, float]]:
     yield from _imbalance()
     yield from _compression()
     yield from _filters()
-    yield from _converter(chirps)
+    yield from _converter()
 
 
 def _received(cube, receiver: ep.Receiver, seed=None):
@@ -124,7 +124,7 @@ def _filters():
         yield f"filters at {f * 1e-6:.3g} MHz", _db(form), _db(_levels(_received(tone(cell), receiver))[cell])
 
 
-def _converter(chirps: int):
+def _converter():
     for bits in (8, 10, 12, 14):
         largest = 1.0 - 1.5 / 2 ** (bits - 1)
         cells = 33.317 + 0.713 * np.arange(64)[:, None]

@@ -149,7 +149,7 @@ def measure_synthesis(*, quick: bool = False, tell=None) -> dict:
     ep.set_num_threads(1)
     try:
         found = {"paths": paths, "chirps": chirps, "nodes": NODES, "samples": 512, "rows": _rows(paths, chirps, quick, tell),
-                 "sums": [_sum_row(method, chirps) for method in ("recurrence", "direct")]}
+                 "sums": [_sum_row(method) for method in ("recurrence", "direct")]}
     finally:
         ep.set_num_threads(threads)
     found["slow"] = [row for count in (QUICK_SLOW_COUNTS if quick else SLOW_COUNTS) for row in _against_slow_sum(count)]
@@ -187,7 +187,7 @@ def _rows(paths: int, chirps: int, quick: bool, tell) -> list[dict]:
     return rows
 
 
-def _sum_row(method: str, chirps: int) -> dict:
+def _sum_row(method: str) -> dict:
     """A sum without a grid. Its error: against phases in extended precision, for echoes at rest."""
     some = Echoes(SUM_PATHS, 4)
     seconds = min(some.trial(method=method)[1] for _ in range(3))

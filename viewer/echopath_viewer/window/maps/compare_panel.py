@@ -121,10 +121,6 @@ class ComparePanel(SeenPanel):
     def _whole_view(one) -> QtCore.QRectF:
         return QtCore.QRectF(one.range[0], one.velocity[0], one.range[-1] - one.range[0], one.velocity[-1] - one.velocity[0])
 
-    def show_view(self, view) -> None:
-        """What is seen of the maps: range in m, velocity in m/s."""
-        self._set_view(view)
-
     def _set_view(self, view) -> None:
         for panel in self.panels.values():
             panel.set_view(QtCore.QRectF(view))

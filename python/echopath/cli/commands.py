@@ -52,7 +52,7 @@ def run(options) -> None:
     if is_sequence(scene_file, options):
         print_resumable(run_sequence(scene_file, options, chosen), options.out)
         return
-    require_writable(out, "--out")
+    require_writable(out, "--out")  # a file could have been that of frames in time: the scene had to say
     with progress_bars() as progress:
         frame = simulate_file(scene_file, num_rays=options.rays, seed=options.seed,
                               batches=options.batches, extra_parts=chosen, truth=options.truth or None, progress=progress)

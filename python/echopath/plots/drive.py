@@ -8,8 +8,8 @@ import numpy as np
 
 from ..signals.measures import STATIC_SPEED
 from .maps import (
-    MAP_SIZE, NOISE_PEAK_DB, RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, cells_of_scene, chosen_limits, half_step,
-    limits_above, margin_of,
+    MAP_SIZE, NOISE_PEAK_DB, RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, cells_of_scene, chosen_limits,
+    draw_level, limits_above, margin_of,
 )
 from .style import MAP_COLOURS, new_figure, set_title
 from .time_maps import TIME_LABEL, image_over_time, show_within
@@ -123,11 +123,7 @@ def _limits(drive: Drive) -> tuple[float, float]:
 
 
 def _draw(axes, drive: Drive, place: int, vmin: float, vmax: float):
-    """The map as an image whose pixels are centred on their cells."""
-    half = [half_step(values) for values in (drive.range, drive.velocity)]
-    extent = (drive.range[0] - half[0], drive.range[-1] + half[0], drive.velocity[0] - half[1], drive.velocity[-1] + half[1])
-    return axes.imshow(drive.level[place].astype(np.float32), origin="lower", aspect="auto", extent=extent, cmap=MAP_COLOURS,
-                       vmin=vmin, vmax=vmax, interpolation="nearest")
+    return draw_level(axes, drive.level[place].astype(np.float32), drive.range, drive.velocity, vmin, vmax)
 
 
 def _extent(drive: Drive, floor: float) -> tuple:

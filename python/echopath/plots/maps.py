@@ -175,12 +175,15 @@ def _limits(spectrum, vmin, vmax):
 
 
 def _draw(axes, spectrum, vmin: float, vmax: float):
-    """The map as an image whose pixels are centred on their cells."""
-    half_range, half_velocity = half_step(spectrum.range), half_step(spectrum.velocity)
-    extent = (spectrum.range[0] - half_range, spectrum.range[-1] + half_range,
-              spectrum.velocity[0] - half_velocity, spectrum.velocity[-1] + half_velocity)
-    return axes.imshow(power_dbm(spectrum), origin="lower", aspect="auto", extent=extent, cmap=MAP_COLOURS, vmin=vmin,
-                       vmax=vmax, interpolation="nearest")
+    return draw_level(axes, power_dbm(spectrum), spectrum.range, spectrum.velocity, vmin, vmax)
+
+
+def draw_level(axes, level, distance, velocity, vmin: float, vmax: float):
+    """Levels [V, R] in dBm at [R] m and [V] m/s as an image whose pixels are centred on their cells."""
+    half_range, half_velocity = half_step(distance), half_step(velocity)
+    extent = (distance[0] - half_range, distance[-1] + half_range, velocity[0] - half_velocity, velocity[-1] + half_velocity)
+    return axes.imshow(level, origin="lower", aspect="auto", extent=extent, cmap=MAP_COLOURS, vmin=vmin, vmax=vmax,
+                       interpolation="nearest")
 
 
 def half_step(axis) -> float:

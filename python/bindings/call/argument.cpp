@@ -93,7 +93,9 @@ uint64_t checked_seed(py::handle value, const char* argument) {
 }
 
 int64_t checked_whole(py::handle value, const char* argument, int64_t low, int64_t high) {
-  const std::string rule = "must be a whole number from " + std::to_string(low) + " to " + std::to_string(high);
+  using Limits = std::numeric_limits<int64_t>;
+  std::string rule = "must be a whole number";
+  if (low > Limits::min() || high < Limits::max()) rule += " from " + std::to_string(low) + " to " + std::to_string(high);
   std::optional<int64_t> whole;
   if (PyIndex_Check(value.ptr()) && !is_bool(value)) {
     const py::object integer = py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr()));

@@ -8,7 +8,7 @@ import echopath as ep
 
 from ..base.stages import StageClock
 from ..frame.frame import Frame
-from ..scene.materials import data_folder
+from ..base.data_folder import data_folder
 from ..scene_file import load_scene
 from ..signals.measures import EXTENT_BELOW_PEAK_DB, residual
 from . import report

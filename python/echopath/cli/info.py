@@ -13,7 +13,8 @@ from ..frame_file import left_out, load_frame
 from ..frame_file.container import SUFFIXES as FRAME_SUFFIXES
 from ..frame_file.container import SEQUENCE, kind_of
 from ..frame_file.opening import file_and_group
-from ..presentation.tables import edge_hits, event
+from ..paths.edge_hits import edge_hits
+from ..presentation.tables import event
 from ..readers.load import READ_RULES, READERS, is_foreign, read_model
 from ..readers.options import ReadOptions
 from ..receiver.settings import receiver_text
@@ -24,17 +25,20 @@ from ..signals.measures import in_dbm, with_error
 from ..weather.weather import weather_of, weather_text
 from . import report
 from .model_info import describe_model
+from .run import FRAME_NAME
 
 
 def describe_file(path, selections=(), *, unit=None, up=None) -> list[str]:
     """Lines that say what is in a scene file or a template (TOML), a frame file (HDF5), a mesh file or a foreign scene
-    (load_model), and in a folder of frames in time or of a dataset.
+    (load_model), and in a folder of a frame, of frames in time or of a dataset.
 
     selections: of paths, also to be told of; of frame files
     unit, up: of foreign files, as of load_model; None: as the file says
     Raises ValueError for another kind of file and for bad selections, ep.FileError when it cannot be read.
     """
     path = Path(path)
+    if (path / FRAME_NAME).exists():
+        path = path / FRAME_NAME
     suffix = file_and_group(path)[0].suffix.lower()
     selections = [ep.Selection(selection) for selection in selections]
     if selections and suffix not in FRAME_SUFFIXES:

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import argparse
 
-from ..scene.materials import data_folder
+from ..base.data_folder import data_folder
 from . import commands as work
 from .numbers import natural, number_range, positive, seconds, shard
 

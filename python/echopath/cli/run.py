@@ -22,7 +22,7 @@ from ..signals.parts import parts_of_options
 from ..truth.places import true_places
 from .label_outputs import write_labels
 
-TRUTH_NAME = "truth.csv"
+FRAME_NAME, TRUTH_NAME = "frame.h5", "truth.csv"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -83,7 +83,7 @@ def write_outputs(frame: Frame, folder, partitions) -> Written:
     folder = Path(folder)
     clock = StageClock()
     with clock("frame file"):
-        frame_path = folder / "frame.h5"
+        frame_path = folder / FRAME_NAME
         left_out = save_frame(frame, frame_path, min_power=min_power_of_budget(frame))
         if frame.detections is not None:
             frame.detections.to_csv(folder / "detections.csv")

@@ -50,10 +50,11 @@ def effects(scene: _core.Scene, radar: _core.Radar, *, max_bounces: int = TraceS
     modelled ones first. Effects that nothing can ask for stand last, under reasons that begin with "out of scope" or "not
     modelled". Raises TypeError or ValueError naming the argument.
     """
-    batches = batches or 1
-    return _of_case(Case(scene, radar, Settings(max_bounces, footprint, polarization, sampler, batches, target_error_db,
-                                                scatterers, edges, faint_power, replay, evaluate, retrace, noise_seed,
-                                                effects)))
+    settings = Settings(max_bounces=max_bounces, footprint=footprint, polarization=polarization, sampler=sampler,
+                        batches=batches or 1, target_error_db=target_error_db, scatterers=scatterers, edges=edges,
+                        faint_power=faint_power, replay=replay, evaluate=evaluate, retrace=retrace, noise_seed=noise_seed,
+                        effects=effects)
+    return _of_case(Case(scene, radar, settings))
 
 
 def of_paths(paths, *, replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,
@@ -63,9 +64,10 @@ def of_paths(paths, *, replay: Replay = SignalSettings.replay, evaluate: Evaluat
     retrace, noise_seed, rain_cube, interference_cube: of later stages; surroundings: the scene whose weather and other radars
     they had."""
     frame = paths.frame
-    settings = Settings(frame.max_bounces, frame.footprint, frame.polarization, frame.sampler, frame.num_batches,
-                        frame.target_error_db or None, frame.scatterers, frame.edges, frame.faint_power, replay, evaluate,
-                        retrace, noise_seed, effects)
+    settings = Settings(max_bounces=frame.max_bounces, footprint=frame.footprint, polarization=frame.polarization,
+                        sampler=frame.sampler, batches=frame.num_batches, target_error_db=frame.target_error_db or None,
+                        scatterers=frame.scatterers, edges=frame.edges, faint_power=frame.faint_power, replay=replay,
+                        evaluate=evaluate, retrace=retrace, noise_seed=noise_seed, effects=effects)
     return _of_case(Case(paths.scene, paths.radar, settings, paths=paths, surroundings=surroundings, rain_cube=rain_cube,
                          interference_cube=interference_cube))
 

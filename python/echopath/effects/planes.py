@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..presentation.tables import edge_hits
+from ..paths.edge_hits import edge_hits
 
 NO_STRATUM = 65535     # of the paths of the image method
 FLAT = 1.0 / 16.0      # wavelengths by which triangles of one plane stray from it (trace/mirrors/plane_images.cpp)

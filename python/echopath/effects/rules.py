@@ -28,7 +28,7 @@ class Effect:
     reason: str
 
 
-@dataclasses.dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True, kw_only=True)
 class Settings:
     """How the case is traced and made a signal; names and values as in `trace`, `synthesize` and `simulate`."""
 

@@ -9,8 +9,8 @@ import numpy as np
 from ..arguments.checks import file
 from ..base.files import written_whole
 from ..base.libraries import needed_module
+from ..paths.edge_hits import edge_hits
 from ..paths.families import families
-from ..tracing.edge_paths import ON_EDGE
 
 _REVERSED = 1  # bit of Paths.flags
 _NO_MESH = -1         # beyond the last hit of a path
@@ -101,13 +101,6 @@ def _passes(paths) -> tuple:
         met[has_it, place] = mesh_id[offsets[:-1][has_it] + place]
     chains, chain_of_path = _distinct(met)
     return chain_of_path, [_BETWEEN.join(names[mesh] for mesh in chain if mesh != _NO_MESH) for chain in chains]
-
-
-def edge_hits(paths) -> np.ndarray:
-    """[P] uint64, bit k: hit k of the path lies on an edge; up to four in a row do."""
-    flags = np.asarray(paths.flags).astype(np.uint64)
-    one, count, first = np.uint64(1), (flags >> np.uint64(3) & np.uint64(3)) + np.uint64(1), flags >> np.uint64(8) & np.uint64(63)
-    return np.where(flags & np.uint64(ON_EDGE), ((one << count) - one) << first, np.uint64(0))
 
 
 def event(diffuse: int, edges: int, hit: int) -> str:

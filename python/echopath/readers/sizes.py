@@ -21,6 +21,9 @@ _SIZES = {
     "a vehicle": (("car", "vehicle", "sedan", "suv", "taxi", "van", "truck", "bus", "lorry", "jeep", "pickup",
                    "chassis"), 1.5, 25.0),
 }
+# words that make a place or a sign of such a thing, whose size tells nothing: a dog house, a bus stop, a car park
+_PLACES = {"house", "home", "kennel", "stop", "station", "park", "lot", "garage", "port", "wash", "lane", "path", "way", "track",
+           "crossing", "bridge", "sign", "rack", "stand", "shelter", "shed", "stable", "barn", "pen", "hole"}
 _UNITS = {"mm": 1e-3, "cm": 1e-2, "inches": 0.0254, "feet": 0.3048, "m": 1.0, "km": 1e3}  # m
 SMALLEST, LARGEST = 0.02, 5e4  # m, of anything that a radar looks at
 _FIGURE = ("a figure with a skeleton", 0.05, 10.0)
@@ -86,7 +89,7 @@ def _expected(names: list[str]) -> tuple[str, float, float] | None:
     for name in names:
         words = {word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+", name)}
         for what, (known, least, most) in _SIZES.items():
-            if words & set(known):
+            if words & set(known) and not words & _PLACES:
                 return what, least, most
     return None
 

@@ -16,7 +16,7 @@ Table = tuple[Row, ...]
 HIGHEST_LEVEL = 20.0  # dBc/Hz, of a phase that turns about at random: masks of radars are far below it
 
 
-def _row(unit: str = "") -> Rule:
+def _row() -> Rule:
     """Finite numbers [N] as a tuple."""
     rule = array("[N]", finite=True)
     return lambda argument, value: tuple(float(one) for one in rule(argument, value))

@@ -4,19 +4,10 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Mapping
 from functools import cached_property
-from importlib import resources
-from pathlib import Path
 
 from .. import _core
 from ..arguments.checks import refused
-
-
-def data_folder(name: str):
-    """A folder or file of the data that comes with echopath: of the installed package, or of the source tree beside it."""
-    try:
-        return resources.files("echopath.data") / name
-    except ModuleNotFoundError:
-        return Path(__file__).resolve().parents[3] / "data" / name
+from ..base.data_folder import data_folder
 
 
 class MaterialLibrary(Mapping):

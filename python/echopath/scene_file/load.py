@@ -10,6 +10,7 @@ from .. import _core
 from ..arguments.checks import refused
 from ..arguments.objects import named_globs
 from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
+from ..frame_file.container import SUFFIXES as FRAME_SUFFIXES
 from ..readers.load import is_foreign
 from ..readers.options import ReadOptions
 from ..scene.interferers import Interferer
@@ -110,6 +111,9 @@ def parse(path: Path) -> dict:
     except OSError as error:
         raise _core.FileError(f"{path}: cannot be read ({error.strerror})") from None
     except UnicodeDecodeError as error:
+        if path.suffix.lower() in FRAME_SUFFIXES:
+            raise ValueError(f"{path}: a frame file, where a scene file (.toml) is asked for; `echopath info {path}` says what "
+                             "it holds") from None
         raise ValueError(f"{path}: is not UTF-8 text (byte {error.start})") from None
     except RecursionError:
         raise ValueError(f"{path}: its tables or arrays are nested too deeply") from None

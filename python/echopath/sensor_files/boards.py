@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from .. import _core
 from ..arguments.checks import refused
-from ..scene.materials import data_folder
+from ..base.data_folder import data_folder
 
 
 class Board(NamedTuple):

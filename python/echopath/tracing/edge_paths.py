@@ -6,9 +6,9 @@ import numpy as np
 from .. import _core
 from ..base.callers import warn_user
 from ..base.counts import rounded
+from ..paths.edge_hits import first_edge_hit, is_around_edge
 from ..paths.subset import subset
 
-ON_EDGE = 4                # bit of Paths.flags
 SECONDS_OF_PATH = 1e-5     # of one thread for a channel, measured in a street; other paths take a tenth of that
 LONG = 5.0                 # s of one thread, from which on signals are worth a word
 _NAMED = 3                 # mirrors of which it tells, those that most of the paths meet
@@ -19,7 +19,7 @@ def warn_of_edge_paths(paths: _core.Paths) -> None:
     mirrors they are, and what to do."""
     if not paths.frame.edges:
         return
-    around = np.flatnonzero(paths.flags & ON_EDGE)
+    around = np.flatnonzero(is_around_edge(paths))
     radar = paths.radar
     seconds = SECONDS_OF_PATH * len(around) * len(radar.transmitters) * len(radar.receivers)
     if seconds > LONG:
@@ -30,7 +30,7 @@ def warn_of_edge_paths(paths: _core.Paths) -> None:
 
 def _num_edges(paths, around) -> int:
     """Triangles whose edges these paths meet first."""
-    hit = paths.offsets[around] + (paths.flags[around] >> 8 & 63)
+    hit = paths.offsets[around] + first_edge_hit(paths)[around]
     return len(np.unique(paths.mesh_id[hit].astype(np.int64) << 32 | paths.triangle_id[hit]))
 
 

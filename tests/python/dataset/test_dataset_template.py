@@ -33,8 +33,19 @@ def test_draws_have_their_distributions(path):
     assert abs(np.median(moving) / np.sqrt(0.1 * 4.0) - 1.0) < 0.5  # of a log-uniform variable
     sides = np.array([one.table["objects"][0]["position"][1] for one in drawn])
     assert np.abs(sides).max() <= 1.5 and abs(sides.std() - 0.4) < 0.05
-    shares = np.mean([dataset.Template(path).split_of(number) == "train" for number in range(600)])
-    assert abs(shares - 0.5) < 4 * np.sqrt(0.25 / 600)
+
+
+def test_splits_have_their_shares_of_any_scenes_in_a_row(tmp_path):
+    shares = {"train": 0.7, "val": 0.2, "test": 0.1}
+    split = "split = {train = 0.7, val = 0.2, test = 0.1}"
+    for seed in range(3):
+        head = HEAD.replace("split = {train = 0.5, test = 0.5}", split).replace("seed = 3", f"seed = {seed}")
+        template = dataset.Template(written(tmp_path, head + SCENE))
+        names = [template.split_of(number) for number in range(300)]
+        for first in range(0, 200, 7):
+            for count in range(1, 100):
+                there = names[first:first + count]
+                assert all(abs(there.count(name) - share * count) < 2.5 for name, share in shares.items())
 
 
 def test_objects_stand_apart_as_they_ask(path):

@@ -151,6 +151,9 @@ def test_info_tells_scenes_frames_and_meshes_apart(finished_run):
     assert "a plate" in call("info", scene).stdout
     told = call("info", out / "frame.h5").stdout
     assert "paths" in told and "95 % interval" in told
+    assert call("info", out).stdout == told
+    refused = call("run", out / "frame.h5", "--out", out)
+    assert refused.returncode == 2 and "frame.h5: a frame file, where a scene file (.toml) is asked for" in refused.stderr
     assert "1 m^2, open" in call("info", scene.with_name("plate.obj")).stdout
 
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.scene.materials import data_folder
+from echopath.base.data_folder import data_folder
 
 TWO_PLACES = 0.005     # the material file says it with two places
 THREE_PLACES = 0.0005  # with three

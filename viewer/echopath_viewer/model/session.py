@@ -8,7 +8,8 @@ import numpy as np
 
 import echopath as ep
 from echopath.arguments.part_names import LEAKAGE
-from echopath.presentation.tables import edge_hits, event
+from echopath.paths.edge_hits import edge_hits
+from echopath.presentation.tables import event
 from echopath.signals.beside import leakage_map
 
 from .antennas import world_from_antenna

@@ -89,6 +89,19 @@ ECHOPATH_INLINE Vec every_other(Vec a, Vec b) {
 #endif
 }
 
+// Returns a[0], b[0], a[1], b[1] and so on: the half kHalf (0 or 1) of them that fits a vector.
+template <int kHalf>
+ECHOPATH_INLINE Vec interleaved(Vec a, Vec b) {
+  constexpr int k = kHalf * kLanes / 2, l = k + kLanes;
+#if ECHOPATH_LANES == 8
+  return __builtin_shufflevector(a, b, k, l, k + 1, l + 1, k + 2, l + 2, k + 3, l + 3);
+#elif ECHOPATH_LANES == 4
+  return __builtin_shufflevector(a, b, k, l, k + 1, l + 1);
+#else
+  return __builtin_shufflevector(a, b, k, l);
+#endif
+}
+
 // Returns the lanes of a but the first, then the first of b.
 ECHOPATH_INLINE Vec without_first(Vec a, Vec b) {
 #if ECHOPATH_LANES == 8

@@ -4,7 +4,7 @@
 
 #include "echopath/base/lanes/lanes.h"
 #include "echopath/signal/echoes/echoes.h"
-#include "echopath/signal/echoes/logarithms.h"
+#include "echopath/signal/kernels/kernels.h"
 
 namespace echopath {
 namespace {
@@ -55,14 +55,6 @@ void copy_nodes(const Nodes& nodes, int count, EchoStates& state) {
   std::copy_n(nodes.amplitude, 2 * count, state.amplitude);
 }
 
-void undo_logarithms(int count, double* amplitude) {
-  for (int p = 0; p < count; ++p, amplitude += 2) {
-    const ComplexOf<double> plain = without_logarithm<ScalarMath>(amplitude[0], amplitude[1]);
-    amplitude[0] = plain.re;
-    amplitude[1] = plain.im;
-  }
-}
-
 template <int kChirps>
 void interpolate_at(const Nodes& nodes, int count, EchoStates* states) {
   run_simd_lanes<interpolate<8, kChirps>, interpolate<4, kChirps>>(nodes, count, states);
@@ -101,7 +93,7 @@ void evaluate_states(const Echoes& echoes, int chirp, int num_chirps, int64_t be
     else interpolate_at<1>(nodes, count, states);
     const int done = shared == 3 ? 2 : shared;
     for (int i = 0; sampling.rows == TimeSampling::Rows::kLogarithms && i < done; ++i)
-      undo_logarithms(count, states[i].amplitude);
+      signal_kernels().undo_logarithms(states[i].amplitude, count);
     chirp += done;
     states += done;
   }

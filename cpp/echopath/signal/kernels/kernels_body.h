@@ -121,7 +121,7 @@ void add_tile(const CarrierModel& model, const Spreading& spreading, const TileA
   else add_tile_to<PhasorError::kRounding>(model, spreading, tile, room);
 }
 
-constexpr SignalKernels kSignalKernels = {modulate, spread, add_tile};
+constexpr SignalKernels kSignalKernels = {undo_logarithms, modulate, spread, add_tile};
 
 }  // namespace
 }  // namespace echopath::ECHOPATH_KERNELS

@@ -3,15 +3,15 @@
 #include "echopath/base/lanes/lane_math.h"
 #include "echopath/base/lanes/phasor.h"
 #include "echopath/base/lanes/vecs.h"
-#include "echopath/signal/echoes/logarithms.h"
 #include "echopath/signal/kernels/kernels.h"
 
 namespace echopath::ECHOPATH_KERNELS {
 namespace {
 
+// The amplitude is (re + j im) e^{j pi turned}.
 template <int kCount>
 struct States {
-  Vecs<kCount> delay, rate, re, im;
+  Vecs<kCount> delay, rate, re, im, turned;
 };
 template <int kCount>
 struct Tones {
@@ -25,7 +25,8 @@ ECHOPATH_INLINE Tones<kCount> tones_of(const CarrierModel& model, const States<k
   const Vecs<kCount>& tau = states.delay;
   const Vecs<kCount> swept = tau * (model.slope * model.sample_interval);
   const Vecs<kCount> frequency = states.rate * (model.centre_frequency * model.sample_interval - swept) + swept;
-  const Vecs<kCount> beside = tau * (rest - tau * model.slope) + frequency * (2.0 * model.reference_offset);
+  const Vecs<kCount> beside =
+      (tau * (rest - tau * model.slope) + frequency * (2.0 * model.reference_offset)) - states.turned;
   const Vecs<kCount> turns = (tau * centre + beside) + kRoundingShift;
   const Vecs<kCount> left = exact_multiply_add(tau, centre, kRoundingShift - turns) + beside;
   const ComplexOf<Vecs<kCount>> phasor = phasor_of_half_turns<kError>(left);
@@ -43,13 +44,27 @@ ECHOPATH_INLINE Tones<kCount> tones_of(const CarrierModel& model, const States<k
   return out;
 }
 
-template <int kChirps>
-ECHOPATH_INLINE void undo_logarithms(States<kChirps>& states) {
+// Takes back the logarithms that stand as re and im. The phases go on into those of the carriers, which costs no phasor.
+template <int kCount>
+ECHOPATH_INLINE void undo_logarithms(States<kCount>& states) {
+  constexpr double kPerPi = 0.3183098861837907;
 #pragma GCC unroll 4
-  for (int c = 0; c < kChirps; ++c) {
-    const ComplexOf<Vec> amplitude = without_logarithm<LaneMath>(states.re.of[c], states.im.of[c]);
-    states.re.of[c] = amplitude.re;
-    states.im.of[c] = amplitude.im;
+  for (int i = 0; i < kCount; ++i) {
+    states.turned.of[i] = states.im.of[i] * kPerPi;
+    states.re.of[i] = LaneMath::exp(states.re.of[i]);
+    states.im.of[i] = Vec{};
+  }
+}
+
+// The arrays have room for whole vectors.
+void undo_logarithms(double* amplitude, int count) {
+  for (int p = 0; p < count; p += kLanes, amplitude += 2 * kLanes) {
+    const Vec first = load(amplitude), second = load(amplitude + kLanes);
+    const Vec size = LaneMath::exp(every_other<0>(first, second));
+    const ComplexOf<Vec> phasor = LaneMath::cis(every_other<1>(first, second));
+    const Vec re = size * phasor.re, im = size * phasor.im;
+    store(amplitude, interleaved<0>(re, im));
+    store(amplitude + kLanes, interleaved<1>(re, im));
   }
 }
 
@@ -57,7 +72,7 @@ void modulate(const CarrierModel& model, const EchoStates& states, int count, Ca
   for (int p = 0; p < count; p += kLanes) {
     const Vec first = load(states.amplitude + 2 * p), second = load(states.amplitude + 2 * p + kLanes);
     const Vec re = every_other<0>(first, second), im = every_other<1>(first, second);
-    const States<1> here{{load(states.delay + p)}, {load(states.rate + p)}, {re}, {im}};
+    const States<1> here{{load(states.delay + p)}, {load(states.rate + p)}, {re}, {im}, {}};
     const Tones<1> tones = tones_of<PhasorError::kRounding>(model, here);
     store(out.frequency + p, tones.frequency.of[0]);
     store(out.re + p, tones.re.of[0]);

@@ -11,7 +11,7 @@ from pathlib import Path
 from ...base.threads import num_threads, set_num_threads
 from ...dataset.folder import checksum
 from ...dataset.template import Template
-from ...scene.materials import data_folder
+from ...base.data_folder import data_folder
 from ...sequence.keep import write_frame
 from ..pace import told_at_reference, verdict
 

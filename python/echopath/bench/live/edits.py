@@ -16,7 +16,7 @@ import numpy as np
 
 import echopath as ep
 
-from ...scene.materials import data_folder
+from ...base.data_folder import data_folder
 from ...sequence.unused_memory import resident_memory
 from ..crowd.scenes import BACKDROPS, flat_city, radar, rounded_car, street
 from ..suite import describe_judged, judged_row

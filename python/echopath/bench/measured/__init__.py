@@ -16,7 +16,7 @@ import numpy as np
 import echopath as ep
 
 from ...base.files import write_texts
-from ...scene.materials import data_folder
+from ...base.data_folder import data_folder
 from ..steps import csv_text, told
 from .figure import draw_patterns
 from .targets import INCH, Target, almond, camera_box, cavity_of_cobra_duct, cobra_duct, cylindrical_duct, fan_in_a_duct

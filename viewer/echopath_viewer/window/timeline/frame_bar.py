@@ -144,7 +144,7 @@ class TimeStrip(QtWidgets.QWidget):
             painter.drawText(self.rect(), Qt.AlignmentFlag.AlignCenter, "the frames are read ...")
             return
         painter.drawImage(rect, self._image)
-        self._paint_axes(painter, rect, ink)
+        self._paint_axes(painter, rect)
         painter.setRenderHint(QtGui.QPainter.RenderHint.Antialiasing)
         painter.setClipRect(rect)
         self._paint_tracks(painter)
@@ -152,7 +152,7 @@ class TimeStrip(QtWidgets.QWidget):
         painter.setPen(QtGui.QPen(QtGui.QColor("#56b4e9"), 2))
         painter.drawRect(QtCore.QRectF(self.x_of(self._place) - 0.5 * width, rect.top() + 1, width, rect.height() - 2))
 
-    def _paint_axes(self, painter, rect, ink) -> None:
+    def _paint_axes(self, painter, rect) -> None:
         font = self.font()
         font.setPointSizeF(max(font.pointSizeF() - 1.5, 6.5))
         painter.setFont(font)

@@ -10,6 +10,7 @@
 #include "echopath/base/errors.h"
 #include "echopath/base/lanes/simd.h"
 #include "echopath/base/text/meant_name.h"
+#include "echopath/base/text/nearest_names.h"
 #include "echopath/base/threads/parallel.h"
 
 namespace echopath::bindings {

@@ -1377,6 +1377,12 @@ class Radar:
         tx, chirp: indices of the transmitter and of its chirp
         Returns s after the frame's start. Raises IndexError.
         """
+    def middle_of_frame(self, start_time: float = 0.0) -> float:
+        """
+        The time in s at which the rays of a frame that starts at `start_time` see the scene: its middle.
+
+        Raises TypeError or ValueError naming `start_time` unless it is a finite number.
+        """
     def replace(self, *, waveform: ChirpSequence = ..., transmitters: typing.Sequence[Antenna] = ..., receivers: typing.Sequence[Antenna] = ..., position: ArrayLike = ..., yaw: float = ..., pitch: float = ..., motion: Motion | None = ..., speed: float | None = ..., transmit_power: float = ..., noise_figure_db: float = ..., multiplexing: Literal['tdm', 'bpm', 'ddm', 'cdm'] = ..., empty_slots: int = ..., code_phases: ArrayLike | None = ..., receiver: Receiver | None = ...) -> Radar:
         """
         A copy with some arguments of the constructor changed.

@@ -29,9 +29,4 @@ void require(bool holds, std::string_view argument, std::string_view rule, const
   throw std::invalid_argument(text.str());
 }
 
-// Returns the candidates most like `word`, at most `count`, for texts such as "did you mean": those that it begins, then
-// those that share the most whole parts of a path with it from its beginning (walker/arms: walker/arm_left before
-// parker/arms), then by edit distance.
-std::vector<std::string> nearest_names(std::string_view word, const std::vector<std::string>& candidates, int count = 3);
-
 }  // namespace echopath

@@ -12,6 +12,10 @@ using Quaternion = Eigen::Quaterniond;
 // A transform T turns p_inner into p_outer = T * p_inner; its name reads from right to left, as in world_from_node.
 using Transform = Eigen::Affine3d;
 
+// Points and normals that are the same have the same component along this direction, and others seldom do by chance: things
+// made by people lie along their axes.
+inline const Vec3 kSortingDirection{0.7193, 0.5271, 0.4526};
+
 // Returns the distance from a point to the segment between two others, which may be one.
 inline double distance_to_segment(const Vec3& point, const Vec3& from, const Vec3& to) {
   const Vec3 along = to - from;

@@ -116,6 +116,8 @@ struct Radar {
   // codes that of its first slot.
   double chirp_time(int tx, int chirp) const;
   double frame_duration() const;  // s, from the first sample to the last
+  // Returns the middle of a frame that starts at `start_time`, when its rays see the scene, in s.
+  double middle_of_frame(double start_time) const { return start_time + 0.5 * frame_duration(); }
 };
 
 // Returns the radar with one of its transmitters and one of its receivers alone, which must be there.

@@ -8,6 +8,7 @@
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
 #include "echopath/base/text/meant_name.h"
+#include "echopath/base/text/nearest_names.h"
 
 namespace echopath {
 namespace {

@@ -34,7 +34,7 @@ TraceFrame make_frame(const Radar& radar, const TraceSettings& settings) {
   TraceFrame frame;
   static_cast<RecordSettings&>(frame) = settings;
   frame.start_time = settings.start_time;
-  frame.trace_time = settings.start_time + 0.5 * radar.frame_duration();
+  frame.trace_time = radar.middle_of_frame(settings.start_time);
   const Transform world_from_radar = radar.world_from_radar(frame.trace_time);
   frame.transmitter = mean_position(radar.transmitters, world_from_radar);
   frame.receiver = mean_position(radar.receivers, world_from_radar);

@@ -109,7 +109,7 @@ py::tuple families_of(const Paths& paths, const std::optional<Objects>& objects)
 
 std::vector<ObjectVisibility> visibility_of(Scene scene, const Radar& radar, const std::optional<Objects>& objects,
                                             std::optional<double> time, int num_directions, const py::object& progress) {
-  const double at = time.value_or(0.5 * radar.frame_duration());
+  const double at = time.value_or(radar.middle_of_frame(0.0));
   return run_job("visibility", progress, [&](Job& job) {
     radar.validate();
     const Vec3 antenna = mean_position(radar.transmitters, radar.world_from_radar(at));

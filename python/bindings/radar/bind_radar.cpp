@@ -180,6 +180,13 @@ a turn, which looks like degrees.)");
                              "slots that make one of the num_chirps: of \"tdm\" one per transmitter, of \"bpm\" the length "
                              "of its code, else 1")
       .def_property_readonly("frame_duration", &Radar::frame_duration, "s, from the first sample to the last")
+      .def(
+          "middle_of_frame",
+          [](const Radar& radar, Arg<"start_time", Number> start_time) { return radar.middle_of_frame(*start_time); },
+          py::arg("start_time") = 0.0,
+          R"(The time in s at which the rays of a frame that starts at `start_time` see the scene: its middle.
+
+Raises TypeError or ValueError naming `start_time` unless it is a finite number.)")
       .def("__repr__", [](const Radar& self) { return text_of(self); });
   define(type, "_repr_html_", from_package("presentation.notebook", "radar_html"), "A table for notebooks.");
   define(type, "chirp_time", &chirp_time, py::arg("tx"), py::arg("chirp"), R"(Time of the middle of a chirp.

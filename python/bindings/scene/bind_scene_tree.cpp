@@ -12,6 +12,7 @@
 #include "call/define.h"
 #include "call/shown.h"
 #include "echopath/base/errors.h"
+#include "echopath/base/text/nearest_names.h"
 #include "echopath/scene/scene.h"
 #include "scene/deformation_type.h"
 #include "values/array.h"

@@ -105,7 +105,7 @@ def _rays_of(trace) -> str:
 
 def _describe_scene_file(scene_file) -> list[str]:
     trace = scene_file.trace
-    trace_time = trace.start_time + 0.5 * scene_file.radar.frame_duration
+    trace_time = scene_file.radar.middle_of_frame(trace.start_time)
     lines = [scene_file.title or str(scene_file.path), *_describe_scene(scene_file.scene, trace_time),
              *_describe_radar(scene_file.radar),
              *report.folded_velocities(scene_file.scene, scene_file.radar, trace_time),

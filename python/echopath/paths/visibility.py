@@ -104,7 +104,7 @@ def visibility(scene: _core.Scene, radar: _core.Radar, objects: Objects = None, 
     Returns a list of ObjectVisibility, in the order of the objects; the same for any number of threads. Raises ValueError
     for bad names, globs that take no mesh and motions that do not cover the time.
     """
-    require_motion("radar", radar, (0.5 * radar.frame_duration if time is None else time,))
+    require_motion("radar", radar, (radar.middle_of_frame() if time is None else time,))
     return _as_objects(_core.visibility(scene, radar, named_globs(objects), time, num_directions, progress))
 
 

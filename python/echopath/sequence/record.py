@@ -22,4 +22,4 @@ def record_of(scene: _core.Scene, radar: _core.Radar, settings: TraceSettings, *
     start_time = start_time_of(settings.start_time, interval, number)
     scatterers = "surface" if settings.scatterers == "auto" else settings.scatterers
     return traced(scene, radar, settings.replace(start_time=start_time, scatterers=scatterers),
-                  objects_time=settings.start_time + 0.5 * radar.frame_duration, progress=progress)
+                  objects_time=radar.middle_of_frame(settings.start_time), progress=progress)

@@ -30,7 +30,7 @@ def synthesize_around_corners(scene: _core.Scene, radar: _core.Radar, *, start_t
     if len(radar.transmitters) > 1 and radar.multiplexing != "tdm":
         raise ValueError(f'radar: must have multiplexing "tdm", got {radar.multiplexing!r}')
     cube = np.zeros(signal_shape(radar), complex)
-    middle = start_time + 0.5 * radar.frame_duration
+    middle = radar.middle_of_frame(start_time)
     for number, hidden in enumerate(hidden_objects(scene, radar, middle, progress)):
         level = level_of(hidden.alone, radar, middle, num_rays, progress).power / len(hidden.points)
         phases = np.random.default_rng([_STREAM, seed, number]).random(len(hidden.points))

@@ -64,7 +64,7 @@ def _warn_of_silence(index: int, has_ways: bool) -> None:
 
 
 def _middle(radar, start_time: float) -> float:
-    return start_time + 0.5 * radar.frame_duration
+    return radar.middle_of_frame(start_time)
 
 
 def _direct_share(scene, radar, other, settings: TraceSettings) -> float:

@@ -8,7 +8,7 @@ def looks_for_edges(edges, scene, radar, start_time: float) -> bool:
     """edges: of `trace`; scene, radar; start_time: s, of the frame. "auto" is True where the strongest edge matters."""
     if edges != "auto":
         return edges
-    return edges_matter(*strongest_edge(scene, radar, start_time + 0.5 * radar.frame_duration))
+    return edges_matter(*strongest_edge(scene, radar, radar.middle_of_frame(start_time)))
 
 
 def strongest_edge(scene, radar, time: float) -> tuple[float, float]:

@@ -45,7 +45,7 @@ def rain_paths(scene, radar: _core.Radar, *, start_time: float, seed: int, effec
     """Paths over drops that nothing of the scene hides, None where there are none; arguments as of `rain_cube`."""
     weather = scene.weather
     random = np.random.default_rng([_STREAM, seed, np.float64(start_time).view(np.uint64)])
-    middle = start_time + 0.5 * radar.frame_duration
+    middle = radar.middle_of_frame(start_time)
     transmitter, receiver = (_mean_position(radar, antennas, middle) for antennas in (radar.transmitters, radar.receivers))
     points, volumes = _places(radar, middle, transmitter, random)
     seen = points[:, 2] > -math.inf

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "echopath/base/constants.h"
+#include "echopath/base/text/nearest_names.h"
 
 namespace echopath::test_errors {
 namespace {

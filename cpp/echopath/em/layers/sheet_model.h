@@ -18,6 +18,9 @@ struct SheetPassage {
   double offset = 0.0;                    // m, across the ray, toward the foot of the normal at the point of entry
 };
 
+constexpr double kMinSineOfModes =
+    1e-9;  // of incidence; below it both modes pass alike, and no plane of incidence is needed
+
 class SheetModel {
  public:
   // `material` has layers; `frequency` is in Hz.

@@ -6,6 +6,7 @@
 
 #include "echopath/base/errors.h"
 #include "echopath/base/principal_box.h"
+#include "echopath/base/text/nearest_names.h"
 #include "echopath/posed/posed_scene.h"
 #include "echopath/trace/strata/scene_objects.h"
 

@@ -4,13 +4,13 @@
 #include <cmath>
 
 #include "echopath/base/constants.h"
+#include "echopath/em/layers/sheet_model.h"
 
 namespace echopath {
 namespace {
 
 constexpr size_t kManyPasses = 4096;  // as many as it costs to make a table
 constexpr double kBeside = 0.5;       // of a triangle's edges: so far beside it a curved surface is followed
-constexpr double kLeastSine = 1e-9;   // of incidence: both modes pass alike below
 
 // Returns the unit vector across the ray that leads toward the normal through its point of entry.
 Vec3 toward_foot(const Vec3& direction, const Vec3& normal) {
@@ -85,7 +85,7 @@ FieldVector PathPassages::through(const LegOfAntenna& at, FieldVector field) con
   for (size_t k = 0; k < end - begin; ++k) {
     const Crossing met = crossing(at.is_forward ? begin + k : end - 1 - k, from, direction);
     const Vec3 across = direction.cross(met.normal);
-    const Vec3 te = across.norm() > kLeastSine ? Vec3(across.normalized()) : Vec3(Vec3::Zero());
+    const Vec3 te = across.norm() > kMinSineOfModes ? Vec3(across.normalized()) : Vec3(Vec3::Zero());
     field = met.passage.tm * field + (met.passage.te - met.passage.tm) * te.dot(field) * te;
   }
   return field;

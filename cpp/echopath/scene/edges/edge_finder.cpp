@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "echopath/base/constants.h"
+#include "echopath/base/geometry.h"
 
 namespace echopath {
 namespace {
@@ -83,8 +84,7 @@ class SharpEdgeFinder {
     const Vec3 direction = one_way((to - from).normalized());
     const Vec3 foot = from - middle_ - direction.dot(from - middle_) * direction;
     const double a = direction.dot(from - middle_), b = direction.dot(to - middle_);
-    // Any combination of coordinates serves in which lines seldom agree by chance.
-    const double key = foot.dot(Vec3(0.7193, 0.5271, 0.4526));
+    const double key = foot.dot(kSortingDirection);
     sides_.push_back({surface, triangle, side, from, to, direction, foot, std::min(a, b), std::max(a, b), key});
   }
 

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "echopath/base/lanes/interleave.h"
 #include "echopath/base/lanes/simd.h"
 #include "echopath/base/memory/recent_results.h"
 #include "echopath/fft/fft.h"
@@ -27,13 +28,6 @@ int grid_size_for(int num_samples, int width) {
 
 int64_t row_length_for(int grid_size, int width) {
   return (int64_t{grid_size} + width + NufftKernel::padded(width) + 7) / 8 * 8;
-}
-
-ECHOPATH_INLINE void interleave(const double* re, const double* im, int64_t count, double* __restrict out) {
-  for (int64_t i = 0; i < count; ++i) {
-    out[2 * i] = re[i];
-    out[2 * i + 1] = im[i];
-  }
 }
 
 // `values` and `out` are complex.

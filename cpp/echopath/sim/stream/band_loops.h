@@ -93,13 +93,6 @@ ECHOPATH_INLINE void add_product(const double* re, const double* im, const doubl
   }
 }
 
-ECHOPATH_INLINE void interleave(const double* re, const double* im, int64_t count, double* __restrict out) {
-  for (int64_t i = 0; i < count; ++i) {
-    out[2 * i] = re[i];
-    out[2 * i + 1] = im[i];
-  }
-}
-
 // Adds the squares of `count` complex values.
 ECHOPATH_INLINE void add_squares(const double* values, int64_t count, double* __restrict sum) {
   for (int64_t i = 0; i < count; ++i) sum[i] += values[2 * i] * values[2 * i] + values[2 * i + 1] * values[2 * i + 1];

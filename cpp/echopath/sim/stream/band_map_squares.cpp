@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "echopath/base/lanes/interleave.h"
 #include "echopath/base/lanes/simd.h"
 #include "echopath/sim/stream/band_loops.h"
 #include "echopath/sim/stream/band_map.h"
@@ -45,8 +46,8 @@ double BandMap::sum_of_transforms(const SummedGroups& of, int num_channels, cons
       const int64_t count = std::min(cells.first + cells.count, band.first + band.count) - begin;
       if (count <= 0) continue;
       std::fill_n(buffer.data(), size, 0.0);
-      run_simd<band_loops::interleave>(cells.re + (begin - cells.first), cells.im + (begin - cells.first), count,
-                                       reinterpret_cast<double*>(buffer.data()));
+      run_simd<interleave>(cells.re + (begin - cells.first), cells.im + (begin - cells.first), count,
+                           reinterpret_cast<double*>(buffer.data()));
       fft.transform(buffer);
       run_simd<band_loops::add_squares>(reinterpret_cast<const double*>(buffer.data()), size, squares.data());
     }

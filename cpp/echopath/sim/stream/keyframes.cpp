@@ -41,7 +41,7 @@ std::vector<Stretch> stretches_of(const Radar& radar, double start_time, int cou
     stretch.start_time = start_time + radar.waveform.slot_start(int64_t{stretch.first_chirp} * radar.num_slots());
     stretch.radar = radar;
     stretch.radar.waveform.num_chirps = bound(i + 1) - bound(i);
-    stretch.middle = stretch.start_time + 0.5 * stretch.radar.frame_duration();
+    stretch.middle = stretch.radar.middle_of_frame(stretch.start_time);
     stretches.push_back(std::move(stretch));
   }
   return stretches;

@@ -22,7 +22,7 @@ constexpr int64_t kNodesOfChirps = 128;
 constexpr int64_t kValuesInFlight = 150000;  // no power of two, as above
 constexpr int64_t kMinBlock = 64;            // fills the registers with vectors of joined echoes
 
-constexpr int64_t kBlocksOfChirps = 8;       // in flight: those of 32 left the second-level cache, which cost a sixth
+constexpr int64_t kBlocksOfChirps = 8;  // in flight: those of 32 left the second-level cache, which cost a sixth
 
 int64_t blocks_in_flight(int64_t num_rows) { return num_rows > kNodesOfChirps ? kBlocksOfChirps : kBlocksInFlight; }
 

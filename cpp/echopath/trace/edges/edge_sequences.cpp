@@ -4,6 +4,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "echopath/base/geometry.h"
+
 namespace echopath {
 namespace {
 
@@ -24,9 +26,8 @@ std::vector<EdgeSequences::OnPlane> EdgeSequences::sorted_faces(const Vec3& midd
     for (int face = 0; face < 2; ++face) {
       const Vec3& normal = edges_[i].wedge.faces[face].normal;
       const double offset = normal.dot(edges_[i].from - middle);
-      // Any combination serves in which planes seldom agree by chance.
-      faces.push_back({i, face, offset, offset + extent * normal.dot(Vec3(0.7193, 0.5271, 0.4526)),
-                       edges_[i].wedge.faces[face].inward, edges_[i].from, edges_[i].line()});
+      faces.push_back({i, face, offset, offset + extent * normal.dot(kSortingDirection), edges_[i].wedge.faces[face].inward,
+                       edges_[i].from, edges_[i].line()});
     }
   }
   std::sort(faces.begin(), faces.end(), [](const OnPlane& a, const OnPlane& b) {

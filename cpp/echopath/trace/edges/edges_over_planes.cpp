@@ -17,7 +17,6 @@ namespace {
 // Rims of mirrors and the ends of what is lit count for whole pieces, so that these are shorter than edge_filter asks for.
 constexpr double kFrontPhaseOverPlanes = 0.1;  // rad, quadratic phase over half a piece
 constexpr double kOfLitEdge = 1.0 / 16;        // of the edge, a piece at most
-constexpr double kCornerGap = 1.0 / 16.0;      // wavelengths: surfaces that lie so near to each other abut
 constexpr double kOfWave = 0.5;                // wavelengths, the shortest piece for that
 
 // An edge, and what the antennas light over planes of its faces.
@@ -222,7 +221,7 @@ class LitEdgeTracer {
   bool meets_next_plane(const LitPlane& over) {
     const int next = over.mirrors.back();
     const Plane& mirror = lit_.planes()[static_cast<size_t>(next)];
-    const double gap = std::max(kCornerGap * kSpeedOfLight / query_.settings.frequency, 4.0 * query_.geometry.lift());
+    const double gap = query_.geometry.plane_tolerance(kSpeedOfLight / query_.settings.frequency);
     for (const WedgeFace& face : edge_.wedge.faces) {
       const Vec3 from = point_ + gap * (face.inward + face.normal);
       RayHit met;

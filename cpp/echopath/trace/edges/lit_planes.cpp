@@ -3,23 +3,23 @@
 #include <algorithm>
 #include <cmath>
 
+#include "echopath/base/geometry.h"
 #include "echopath/record/hit_points.h"
 
 namespace echopath {
 namespace {
 
-constexpr double kStrays = 1.0 / 16.0;  // wavelengths by which facets of one plane may stray from it
-constexpr double kSlope = 2e-3;         // of the keys of planes that may be one
-constexpr double kApart = 4.0;          // distances of the antennas by which what they light may differ
-constexpr double kRaysBeside = 2.0;     // spacings of rays around a hit where others may have gone by
+constexpr double kSlope = 2e-3;      // of the keys of planes that may be one
+constexpr double kApart = 4.0;       // distances of the antennas by which what they light may differ
+constexpr double kRaysBeside = 2.0;  // spacings of rays around a hit where others may have gone by
 
 // The key of a direction and of its opposite are the same.
-double slope_key(const Vec3& normal) { return std::abs(normal.dot(Vec3(0.7193, 0.5271, 0.4526))); }
+double slope_key(const Vec3& normal) { return std::abs(normal.dot(kSortingDirection)); }
 
 }  // namespace
 
 LitPlanes::LitPlanes(const Scene& scene, const EmbreeScene& geometry, double wavelength)
-    : scene_(scene), geometry_(geometry), tolerance_(std::max(kStrays * wavelength, 4.0 * geometry.lift())) {}
+    : scene_(scene), geometry_(geometry), tolerance_(geometry.plane_tolerance(wavelength)) {}
 
 bool LitPlanes::may_mirror(const Hit& hit) const {
   const Node& node = scene_.node_of(hit.mesh_id);

@@ -96,7 +96,7 @@ void PlaneLegFinder::weigh(const Vec3& point, const Vec3& antenna, PlaneLeg& leg
 
 std::complex<double> PlaneLegFinder::field_beside_rims(const Vec3& point, const Vec3& antenna, const PlaneLeg& leg,
                                                        int64_t& num_queries) const {
-  const double wavelength = kSpeedOfLight / settings_.frequency, gap = std::max(wavelength / 16.0, 4.0 * geometry_.lift());
+  const double wavelength = kSpeedOfLight / settings_.frequency, gap = geometry_.plane_tolerance(wavelength);
   const RayHit& met = leg.bounces.front();
   const Vec3 next = leg.bounces.size() > 1 ? leg.bounces[1].position : antenna;
   const double behind = (met.position - point).norm();

@@ -1,5 +1,6 @@
 #pragma once
 // Holds the posed triangles of a scene and finds what rays meet of them.
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -121,7 +122,10 @@ class EmbreeScene {
   // Returns the point moved off its surface by a few units of single precision, so that a ray from there does not meet the
   // surface again.
   Vec3 lifted(const Vec3& point, const Vec3& normal) const { return point + lift_ * normal; }
-  double lift() const { return lift_; }    // m
+  double lift() const { return lift_; }  // m
+  // Returns how far apart surfaces may be, in m, to count as one plane or as abutting at this wavelength (m): so far that an
+  // echo turns by an eighth of a turn, and no less than vertices and rays are rounded in single precision.
+  double plane_tolerance(double wavelength) const { return std::max(wavelength / 16.0, 4.0 * lift_); }
   double reach() const { return reach_; }  // m, farther than from any point of the scene to any other
 
   // Returns the point of the scene's bounding box next to `near` (world), the best origin for rays from there. Where

@@ -9,9 +9,9 @@ namespace {
 constexpr double kSameCorner = 1e-6;  // m: the edge between corners this near has no direction
 constexpr double kOffPlane = 1e-6;    // m: occluders lie this far before the mirror's plane and behind that of the last one
 constexpr double kBefore = 1e-3;      // m: a surface this near to the mirror does not hide it
-constexpr int kMaxSurfaceSearches = 24;  // rays for one window; parts that they do not look at count as seen,
-                                         // so that no path is lost
-constexpr size_t kMaxPieces = 24;        // parts into which shadows cut one window; further shadows are not cut out
+constexpr int kMaxLooks = 24;         // rays for one window; parts that they do not look at count as seen,
+                                      // so that no path is lost
+constexpr size_t kMaxPieces = 24;     // parts into which shadows cut one window; further shadows are not cut out
 
 using Polygons = std::vector<std::vector<Vec3>>;
 
@@ -134,7 +134,7 @@ void FrustumShadows::shrink(const FrustumSource& source, const Mirror& target, s
   if (!is_hidden(centre_of(window))) return;
   Polygons unseen, seen, left;
   cut_out(window, source.apex, rims_of(occluder, source.apex), unseen);
-  for (int looks = 1; !unseen.empty() && looks < kMaxSurfaceSearches && unseen.size() < kMaxPieces; ++looks) {
+  for (int looks = 1; !unseen.empty() && looks < kMaxLooks && unseen.size() < kMaxPieces; ++looks) {
     if (!is_hidden(centre_of(unseen.back()))) {
       seen.push_back(std::move(unseen.back()));
       unseen.pop_back();

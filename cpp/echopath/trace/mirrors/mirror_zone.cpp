@@ -9,7 +9,6 @@ namespace echopath {
 namespace {
 
 constexpr double kAmple = 1.0 / 0.7;  // widths of the zone from which on edges count as none
-constexpr double kGap = 1.0 / 16.0;   // wavelengths: surfaces that lie so near to each other abut
 
 // Returns the direction and distance by which the lit point of the target moves when the point of the mirror moves by 1 m
 // along the axis.
@@ -129,7 +128,7 @@ std::array<ZoneAxis, 2> zone_axes(const MirrorView& view, double wavelength) {
 
 ZoneCover cover_of_zone(const EmbreeScene& geometry, const MirrorView& view, const ZoneTarget* target, double wavelength,
                         int64_t& num_queries) {
-  const double gap = std::max(kGap * wavelength, 4.0 * geometry.lift());
+  const double gap = geometry.plane_tolerance(wavelength);
   const SurfaceAround mirror(geometry, view.point, gap, num_queries);
   ZoneCover cover;
   if (!view.point.is_smooth && mirror.holds_circle(ample_squared(view, wavelength))) return cover;

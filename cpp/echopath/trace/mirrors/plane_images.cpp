@@ -10,11 +10,10 @@
 namespace echopath {
 namespace {
 
-constexpr double kSamePoint = 1e-3;           // m: paths whose points lie so near to each other are one
-constexpr double kNearSheet = 4.0;            // tolerances: from so near a sheet is looked at
-constexpr double kFlatPhase = 1.0 / 16.0;     // wavelengths by which a surface may stray from a plane of which it is a part
-constexpr double kAboutCorner = 4.0;          // half Fresnel zones between bounces at the same corner
-constexpr size_t kMostTriedPoints = 1 << 20;  // 24 MiB
+constexpr double kSamePoint = 1e-3;                            // m: paths whose points lie so near to each other are one
+constexpr double kNearSheet = 4.0;                             // tolerances: from so near a sheet is looked at
+constexpr double kAboutCorner = 4.0;                           // half Fresnel zones between bounces at the same corner
+constexpr size_t kMostTriedPoints = 1 << 20;                   // 24 MiB
 const Vec3 kLine = Vec3(0.5127, 0.6271, 0.5864).normalized();  // along no wall
 constexpr double kZoneShare = 1.0 - 1e-9;                      // of the Fresnel zone that each surface must cover
 
@@ -91,7 +90,7 @@ bool is_near(const std::vector<Vec3>& points, const std::vector<Vec3>& others) {
 
 PlaneImages::PlaneImages(const Scene& scene, const EmbreeScene& geometry, const SbrSettings& settings)
     : scene_(scene), geometry_(geometry), settings_(settings), wavelength_(kSpeedOfLight / settings.frequency),
-      tolerance_(std::max(kFlatPhase * wavelength_, 4.0 * geometry.lift())) {}
+      tolerance_(geometry.plane_tolerance(wavelength_)) {}
 
 void PlaneImages::add_chains(const PathBlock& block) {
   const size_t first = facets_.size();

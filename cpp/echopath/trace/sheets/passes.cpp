@@ -13,7 +13,6 @@ namespace {
 
 constexpr int64_t kPathsTogether = 1 << 12;
 constexpr double kLiftAbsolute = 1e-6, kLiftRelative = 0x1.0p-21;  // m, and of the coordinates: single precision
-constexpr double kLeastSine = 1e-9;                                // of incidence: both modes pass alike below
 
 using Matrix2 = Eigen::Matrix2cd;
 
@@ -137,7 +136,7 @@ class PassFinder {
     const TransverseBasis basis = transverse_basis(is_reversed ? Vec3(-direction) : direction);
     const Vec3 across = direction.cross(met.normal);
     const std::complex<double> co_polar = sheet_factor(passage, te_share(polarization_, direction, met.normal)).field;
-    if (across.norm() < kLeastSine || co_polar == 0.0) return;
+    if (across.norm() < kMinSineOfModes || co_polar == 0.0) return;
     const Vec3 te = across.normalized();
     const Eigen::Vector2cd axis(te.dot(basis.horizontal), te.dot(basis.vertical));
     const Matrix2 of_te = axis * axis.transpose(), of_tm = Matrix2::Identity() - of_te;

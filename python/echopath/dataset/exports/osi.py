@@ -78,7 +78,7 @@ def _version_text(version: Any) -> str:
 def _frame(messages: Any, dataset: Dataset, scene: int, one: Any) -> Any:
     """The SensorData of one frame."""
     found, stored = detections_of(dataset, one), dataset.sequence(scene)
-    time = float(stored.times[one.place]) + 0.5 * stored.radar.frame_duration
+    time = stored.radar.middle_of_frame(float(stored.times[one.place]))
     message = messages.SensorData()
     _set_version(message.version)
     _set_time(message.timestamp, time)

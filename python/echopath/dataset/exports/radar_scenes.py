@@ -82,7 +82,7 @@ def _write_sequence(dataset: Dataset, scene: int, folder: Path, name: str) -> di
     frames = dataset.of_scene(scene)
     points, odometry = [], np.zeros(len(frames), ODOMETRY)
     for row, one in enumerate(frames):
-        time = float(stored.times[one.place]) + 0.5 * radar.frame_duration
+        time = radar.middle_of_frame(float(stored.times[one.place]))
         pose = _pose(radar, time)
         odometry[row] = (round(MICRO * time), *pose.world[:2, 3], pose.yaw,
                          pose.velocity @ pose.world[:3, 0], pose.angular)

@@ -73,7 +73,7 @@ def tracks_of(glances):
     times = np.array([one.time for one in glances])
     if len(glances) < 2 or any(one.detections is None or one.radar is None for one in glances) or (np.diff(times) <= 0.0).any():
         return None
-    middles = times + 0.5 * np.array([one.radar.frame_duration for one in glances])
+    middles = np.array([one.radar.middle_of_frame(one.time) for one in glances])
     try:
         return ep.track([one.detections for one in glances], middles, radar=_radar_of_all(glances, middles))
     except ValueError:  # antennas that see no directions

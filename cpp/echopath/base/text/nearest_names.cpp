@@ -1,4 +1,4 @@
-#include "echopath/base/errors.h"
+#include "echopath/base/text/nearest_names.h"
 
 #include <algorithm>
 #include <tuple>

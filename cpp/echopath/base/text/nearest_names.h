@@ -1,0 +1,14 @@
+#pragma once
+// Tells which known names are like one that is unknown, for hints in errors.
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace echopath {
+
+// Returns the candidates most like `word`, at most `count`, for texts such as "did you mean": those that it begins, then
+// those that share the most whole parts of a path with it from its beginning (walker/arms: walker/arm_left before
+// parker/arms), then by edit distance.
+std::vector<std::string> nearest_names(std::string_view word, const std::vector<std::string>& candidates, int count = 3);
+
+}  // namespace echopath

@@ -1379,9 +1379,9 @@ class Radar:
         """
     def middle_of_frame(self, start_time: float = 0.0) -> float:
         """
-        The time in s at which the rays of a frame that starts at `start_time` see the scene: its middle.
+        When the rays of a frame see the scene.
 
-        Raises TypeError or ValueError naming `start_time` unless it is a finite number.
+        start_time: s, of the frame. Returns its middle in s. Raises TypeError or ValueError unless that is a finite number.
         """
     def replace(self, *, waveform: ChirpSequence = ..., transmitters: typing.Sequence[Antenna] = ..., receivers: typing.Sequence[Antenna] = ..., position: ArrayLike = ..., yaw: float = ..., pitch: float = ..., motion: Motion | None = ..., speed: float | None = ..., transmit_power: float = ..., noise_figure_db: float = ..., multiplexing: Literal['tdm', 'bpm', 'ddm', 'cdm'] = ..., empty_slots: int = ..., code_phases: ArrayLike | None = ..., receiver: Receiver | None = ...) -> Radar:
         """

@@ -116,6 +116,10 @@ py::array_t<double> world_from_radar(const Radar& self, const Arg<"time", Real>&
   return to_numpy(self.world_from_radar(*time));
 }
 
+double middle_of_frame(const Radar& self, const Arg<"start_time", Real>& start_time) {
+  return self.middle_of_frame(*start_time);
+}
+
 std::string text_of(const Radar& r) {
   std::ostringstream text;
   text << "Radar(" << part_text(r.waveform) << ", " << r.transmitters.size() << " transmitters, " << r.receivers.size()
@@ -180,19 +184,15 @@ a turn, which looks like degrees.)");
                              "slots that make one of the num_chirps: of \"tdm\" one per transmitter, of \"bpm\" the length "
                              "of its code, else 1")
       .def_property_readonly("frame_duration", &Radar::frame_duration, "s, from the first sample to the last")
-      .def(
-          "middle_of_frame",
-          [](const Radar& radar, Arg<"start_time", Number> start_time) { return radar.middle_of_frame(*start_time); },
-          py::arg("start_time") = 0.0,
-          R"(The time in s at which the rays of a frame that starts at `start_time` see the scene: its middle.
-
-Raises TypeError or ValueError naming `start_time` unless it is a finite number.)")
       .def("__repr__", [](const Radar& self) { return text_of(self); });
   define(type, "_repr_html_", from_package("presentation.notebook", "radar_html"), "A table for notebooks.");
   define(type, "chirp_time", &chirp_time, py::arg("tx"), py::arg("chirp"), R"(Time of the middle of a chirp.
 
 tx, chirp: indices of the transmitter and of its chirp
 Returns s after the frame's start. Raises IndexError.)");
+  define(type, "middle_of_frame", &middle_of_frame, py::arg("start_time") = 0.0, R"(When the rays of a frame see the scene.
+
+start_time: s, of the frame. Returns its middle in s. Raises TypeError or ValueError unless that is a finite number.)");
   define(type, "world_from_radar", &world_from_radar, py::arg("time"), R"(Where the radar's frame is in the world.
 
 time: s

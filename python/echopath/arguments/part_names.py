@@ -4,6 +4,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 INTERFERENCE, RAIN, LEAKAGE = "interference", "rain", "leakage"
+REST = "other"  # the part of all paths that no other part has
 BESIDE = (INTERFERENCE, RAIN, LEAKAGE)  # of which labels and detections have what stands in maps
 NOISE, OFFSET, CONVERTER = "noise", "offset", "converter"
 OF_RECEIVER = (INTERFERENCE, LEAKAGE, NOISE, OFFSET, CONVERTER)  # of which `receive_parts` adds what there is

@@ -65,9 +65,9 @@ def run(options) -> None:
                  *report.folded_velocities(frame.scene, frame.radar, frame.paths.frame.trace_time),
                  *report.effects(frame.effects), *report.stages(frame.stages),
                  *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
-                 *report.labels(frame.labels), *report.detections(frame.detections),
+                 *report.labels(frame.labels), *report.detections(frame.detections, frame.labels),
                  *report.truth(frame.kept_truth), *report.checks(frame.checks), *report.validity(certificate),
-                 *report.files(written), *report.unresolved(frame.unresolved)]:
+                 *report.files(written), *report.unresolved(frame.unresolved, frame.paths)]:
         print(text)
 
 

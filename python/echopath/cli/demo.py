@@ -67,4 +67,4 @@ def _report(street, frame: Frame, certificate, written, residuals: dict) -> list
             *(report.line(partition, f"{value:.1e}") for partition, value in residuals.items()),
             *report.labels({partition: frame.labels[partition] for partition in street.parts}),
             *report.checks(frame.checks), *report.validity(certificate), *report.files(written),
-            *report.unresolved(frame.unresolved)]
+            *report.unresolved(frame.unresolved, frame.paths)]

@@ -61,7 +61,8 @@ def describe_file(path, selections=(), *, unit=None, up=None) -> list[str]:
         return [*_describe_meshes(meshes), *_describe_foreign(path, unit, up)]
     if is_foreign(path):
         return _describe_foreign(path, unit, up)
-    raise ValueError(f"{path}: must be a .toml or .h5 file, or one of {', '.join(READERS)}")
+    raise ValueError(f"{path}: must be a .toml or .h5 file, or one of {', '.join(READERS)}; trajectories are read by "
+                     "ep.read_trajectories")
 
 
 def _describe_foreign(path, unit, up) -> list[str]:
@@ -187,7 +188,8 @@ def _describe_frame(path: Path, selections) -> list[str]:
     if frame.cube is not None:
         shape = report.line("shape [tx, rx, chirp, sample]", str(list(frame.cube.shape)))
         lines += ["cube", shape, *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
-                  *report.truth(frame.kept_truth), *report.checks(frame.checks), *report.unresolved(frame.unresolved, missing)]
+                  *report.truth(frame.kept_truth), *report.checks(frame.checks),
+                  *report.unresolved(frame.unresolved, frame.paths, missing)]
     return lines + chosen
 
 

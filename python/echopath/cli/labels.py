@@ -32,13 +32,13 @@ def label_file(path, folder, *, settings: LabelSettings, parts=(), cfar=None, pr
     if frame.spectrum is not None:
         frame.detections = detect_frame(frame, objects=settings.objects, progress=progress, **cfar or {})
         frame.detections.to_csv(folder / "detections.csv")
-        detections = report.detections(frame.detections)
+        detections = report.detections(frame.detections, frame.labels)
     save_labels(frame.labels, folder / "labels.h5")
     written = write_labels(frame, folder, frame.selections | chosen)
     return [str(path), *report.counts(frame.paths), report.omissions(missing, path), *report.labels(frame.labels),
             *detections, f"written to {folder}",
             f"  labels.h5, {', '.join(str(one.relative_to(folder)) for one in written)}",
-            *report.unresolved(_unresolved(frame, settings.objects, progress), missing)]
+            *report.unresolved(_unresolved(frame, settings.objects, progress), frame.paths, missing)]
 
 
 def _unresolved(frame, objects, progress) -> list:

@@ -27,7 +27,7 @@ def describe_model(path: Path, model: ep.Model) -> list[str]:
              report.line("from, to", f"{report.point(low)}, {report.point(high)} m"),
              report.line("axes", f"{model.up} is up in the file; x ahead, y left, z up here"),
              report.line("unit", f"{model.unit:g} m")]
-    doubt = unit_doubt(float(size.max()), model.unit, names_of(model, path.stem), has_skin(model))
+    doubt = unit_doubt(float(size.max()), model.unit, names_of(model, path.stem), has_skin(model), len(meshes) == 1)
     lines += [report.line("unit?", doubt)] if doubt else []
     return lines + (_tree(model) + _materials(meshes) if meshes else []) + _animations(model) + _notes(model)
 

@@ -5,6 +5,7 @@ import textwrap
 
 import numpy as np
 
+from ..arguments.names import first_names
 from ..labels.report import peak_words
 from ..paths.resolution import FAINT, RESOLVED_DB
 from ..scene.closing_speeds import closing_speeds
@@ -14,6 +15,7 @@ LABEL_WIDTH = 34
 MAX_WIDTH = 118  # columns
 MAX_LISTED = 40  # nodes or meshes named one by one
 MAX_UNRESOLVED = 20  # echoes named one by one
+PEAK_OF_CELLS = "strongest of its cells"
 UNRESOLVED_MEAN = "mean over random phases where not resolved (95 %)"
 ON_EACH_OTHER = "surfaces on each other"
 FOLDED = "velocities that are ambiguous"
@@ -120,11 +122,13 @@ def mean_powers(frame) -> list[str]:
     return lines
 
 
-def unresolved(found, left_out=None) -> list[str]:
+def unresolved(found, paths, left_out=None) -> list[str]:
     """The last lines of a run: which echoes above the noise the rays do not know to 0.3 dB, and what would resolve them.
 
-    found: list of ep.Unresolved; left_out: of the frame file that was asked, None: a whole record
+    found: list of ep.Unresolved of the paths; left_out: of the frame file that was asked, None: a whole record
     """
+    if not paths.num_paths:
+        return ["nothing is received: no path leads back to the radar, so that there is nothing to resolve"]
     if not found:
         whose = ", by the paths that the file keeps" if left_out and left_out.num_paths else ""
         return [f"resolved to {RESOLVED_DB:g} dB: every object and ghost above the noise{whose}"]
@@ -154,14 +158,23 @@ def labels(of_partitions: dict) -> list[str]:
     return lines + _objects(first) + _ghosts(first)
 
 
-def detections(found) -> list[str]:
-    """How many detections each part and object has; nothing where none were asked for."""
+def detections(found, of_partitions: dict) -> list[str]:
+    """How many detections each part and object has, and which objects have cells in {partition: Labels} but none; nothing
+    where none were asked for."""
     if found is None:
         return []
     owners = {"": "the surroundings", **{name: name for name in found.object if name}}
     counts = {words: int(np.sum((found.object == name) & ~found.is_noise)) for name, words in sorted(owners.items())}
     return [f"{len(found):,} detections, detections.csv", *(line(name, f"{count:8,}") for name, count in counts.items()),
-            line("noise alone", f"{int(found.is_noise.sum()):8,}")]
+            line("noise alone", f"{int(found.is_noise.sum()):8,}"), *_undetected(found, of_partitions)]
+
+
+def _undetected(found, of_partitions: dict) -> list[str]:
+    """A mean over cells about a cell hides what stands beside much stronger echoes; order statistics do not."""
+    labelled = next(iter(of_partitions.values())).objects if of_partitions else []
+    names = [label.name for label in labelled if label.status == "seen" and label.name not in found.object]
+    told = f"{first_names(names)}; method = \"os\" of [detections] finds more beside stronger echoes"
+    return [line("labelled, not detected", told)] if names else []
 
 
 def truth(found) -> list[str]:
@@ -179,7 +192,7 @@ def truth(found) -> list[str]:
 def _objects(of_cells) -> list[str]:
     if not of_cells.objects:
         return ["no objects"]
-    rows = [("objects", "status", "cells", "power", "peak", "in sight", "hidden by", UNRESOLVED_MEAN)]
+    rows = [("objects", "status", "cells", "power, anywhere", PEAK_OF_CELLS, "in sight", "hidden by", UNRESOLVED_MEAN)]
     for label in of_cells.objects:
         by = ", ".join(f"{name} {share:.0%}" for name, share in label.occluders.items() if share >= 0.005)
         rows.append((f"  {label.name}", label.status, f"{label.cells:,}", _power(label), _peak(label),
@@ -191,7 +204,7 @@ def _ghosts(of_cells) -> list[str]:
     shown = [ghost for ghost in of_cells.ghosts if ghost.cells]
     if not shown:
         return []
-    rows = [("ghosts", "type", "order", "class", "cells", "power", "peak", "via", UNRESOLVED_MEAN)]
+    rows = [("ghosts", "type", "order", "class", "cells", "power, anywhere", PEAK_OF_CELLS, "via", UNRESOLVED_MEAN)]
     for ghost in sorted(shown, key=lambda ghost: -ghost.power):
         rows.append((f"  {ghost.object}", str(ghost.ghost_type), str(ghost.order), str(ghost.class_code), f"{ghost.cells:,}",
                      _power(ghost), _peak(ghost), ", ".join(ghost.via), _interval(ghost)))
@@ -214,7 +227,7 @@ def _power(label) -> str:
 def _peak(label) -> str:
     if label.peak is None:
         return ""
-    return peak_words(label.peak, width=6)
+    return f"{peak_words(label.peak, width=6)} {_level(label.peak.power):>11}"
 
 
 def _interval(label) -> str:

@@ -79,6 +79,8 @@ class Dataset:
         """The DatasetFrame at a place, or a Dataset of a slice. Raises IndexError, ep.FileError for a damaged file."""
         if isinstance(place, slice):
             return self._with(self.numbers[place])
+        if not -len(self) <= place < len(self):
+            raise IndexError(f"a dataset of {len(self)} frames has no frame {place}")
         number = self.numbers[place]
         scene, at = divmod(number, self.template.settings.frames)
         return DatasetFrame(number, scene, at, self.template.split_of(scene), self._source.frame(scene, at))
@@ -109,7 +111,12 @@ class Dataset:
         return load_sequence(scene_folder(self.folder, scene))
 
     def drawn(self, scene: int) -> dict[str, Any]:
-        """{dotted path: value} of what the template drew for a scene. Raises ep.FileError where it is not there."""
+        """{dotted path: value} of what the template drew for a scene.
+
+        Raises IndexError for a scene that the template has not, ep.FileError where its file is not there.
+        """
+        if not 0 <= scene < self.template.settings.scenes:
+            raise IndexError(f"scene: must be from 0 to {self.template.settings.scenes - 1}, got {scene}")
         path = scene_folder(self.folder, scene) / DRAWN
         try:
             values: dict[str, Any] = json.loads(path.read_bytes())

@@ -50,6 +50,13 @@ class FrameMaps:
 
     __hash__ = None  # type: ignore[assignment]
 
+    @property
+    def truth(self) -> Truth:
+        """Truth of the objects, as `Frame.truth`. Raises ValueError where the run was not asked for one (`truth=`)."""
+        from ..truth import truth  # which knows this class
+
+        return truth(self)
+
     def __repr__(self) -> str:
         power = "no power" if self.power is None else f"power [{len(self.velocity)}, {len(self.range)}]"
         return f"FrameMaps(at {self.start_time:.6g} s, {power}, labels: {', '.join(self.labels) or 'none'})"

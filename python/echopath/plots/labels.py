@@ -220,7 +220,7 @@ def _draw_extents(panels, labels, rows: list) -> None:
         colour = CLASSES[getattr(label, "ghost_type", "real")][1]
         _draw_span(across, place, [(label.box[0], label.box[1])], half_range, label.peak[0], colour)
         _draw_span(up, place, _row_spans(labels, label), half_row, _in_plot_units(labels, label.peak[1]), colour)
-        words = for_pictures(f" {float(in_dbm(label.power)):.0f} dBm, {_cells(label.cells)}")
+        words = for_pictures(f" {float(in_dbm(label.peak.power)):.0f} dBm, {_cells(label.cells)}")
         up.annotate(words, (1.0, place), xycoords=("axes fraction", "data"), va="center", fontsize=7.5)
     across.set_yticks(range(len(rows)), [_row_name(label) for label in rows], fontsize=7.5)
     across.set_ylim(max(len(rows), FEWEST_ROWS) - 0.5, -0.5)
@@ -228,7 +228,7 @@ def _draw_extents(panels, labels, rows: list) -> None:
     up.set_xlabel(_row_label(labels))
     up.tick_params(left=False)
     num_hidden = max(0, sum(ghost.peak is not None for ghost in labels.ghosts) - MAX_GHOSTS)
-    words = "Where each echo appears: from its first to its last cell, line at its strongest"
+    words = "Where each echo appears: from its first to its last cell, line at its strongest, whose level is told"
     hidden = f"\n{num_hidden} weaker ghosts are not shown" if num_hidden else ""
     across.figure.suptitle(words + hidden if rows else "No cells of objects or ghosts", fontsize=10)
     for axes in panels:

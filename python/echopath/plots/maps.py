@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 
+from ..arguments.part_names import REST
 from ..arguments.checks import optional, real
 from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm, static_speed, with_error
 from .style import MAP_COLOURS, axes_or_new, new_figure, set_title
@@ -97,7 +98,7 @@ def draw_range_doppler(spectrum, *, ax=None, vmin=None, vmax=None, title=""):
 
 
 def plot_partition(spectra: dict, *, title="", vmin=None, vmax=None, whole=None, powers=None, note=""):
-    """The maps of the parts of a partition side by side, cropped to what moves, with one colour scale for all.
+    """The maps of the parts of a partition side by side, cropped to what moves in each, with one colour scale for all.
 
     spectra: {part: map of `range_doppler`}; vmin, vmax: ends of the colour scale in dBm, None: those of `whole` (of
     the strongest part when there is no `whole`); powers: {part: ep.ReceivedPower} to stand above the maps, or None;
@@ -161,13 +162,13 @@ def _draw_parts(panels: list, spectra: dict, vmin: float, vmax: float, powers):
         axes.set_title(part_title(name) + (f"\n{for_pictures(with_error(powers[name]))}" if powers else ""))
     for axes in panels[len(spectra):]:
         axes.remove()
-    _crop(panels[:len(spectra)], signal_extent(list(spectra.values()), vmin, is_moving_meant=True))
+    _crop(panels[:len(spectra)], extent_of_parts(spectra, vmin))
     return image
 
 
 def part_title(name: str) -> str:
     """What stands above the map of a part. name: of the part. Raises nothing."""
-    return name if name != "other" else "other: all the rest"
+    return name if name != REST else "other: all the rest"
 
 
 def _limits(spectrum, vmin, vmax):
@@ -189,6 +190,18 @@ def draw_level(axes, level, distance, velocity, vmin: float, vmax: float):
 def half_step(axis) -> float:
     """Half a cell of an axis [N]; 0.5 where there is only one."""
     return 0.5 * (axis[1] - axis[0]) if len(axis) > 1 else 0.5
+
+
+def extent_of_parts(spectra: dict, floor: float):
+    """Box (range, velocity) around the signal of parts {name: spectrum} above `floor` in dBm, or None where there is none.
+
+    By range around what moves in each part, around all of a part in which nothing does, and not around all the rest.
+    """
+    asked = [spectrum for name, spectrum in spectra.items() if name != REST] or list(spectra.values())
+    boxes = [signal_extent([spectrum], floor, is_moving_meant=True) for spectrum in asked]
+    ranges = np.array([box[:2] for box in boxes if box is not None])
+    whole = signal_extent(list(spectra.values()), floor)
+    return (ranges[:, 0].min(), ranges[:, 1].max(), *whole[2:]) if len(ranges) else whole
 
 
 def signal_extent(spectra, floor: float, is_moving_meant: bool = False):

@@ -15,6 +15,9 @@ MIRROR_COLOUR = (0.55, 0.65, 0.80)
 LIGHT = np.array([-0.55, -0.45, 0.70])  # towards the lamp
 CUT = 1e-6                              # m: what lies as near to the border of the picture was cut there
 MARGIN = 0.6                            # m around the rays
+ELEVATION, AZIMUTH = 22.0, -118.0       # degrees, of the eye
+WIDE = 2.2                              # width of the view in perspective over its height
+FILLED, MOST_ZOOM = 0.72, 1.75          # share of the height that a scene fills; the rest is for the labels of the axes
 RADAR_LABEL = "radar"
 MOST_NAMES = 12                         # objects that bear their names in a picture; more would hide each other
 NAME_LOOK = {"fontsize": 7, "color": "0.25"}
@@ -221,14 +224,26 @@ def _named_mirrors(drawing: _Drawing) -> dict:
     return drawing.mirror_names if len(drawing.mirror_names) <= MOST_NAMES else {}
 
 
+def _zoom(sides) -> float:
+    """How large a box of those sides [3] may be drawn: flat ones larger than high ones, whose labels would leave the axes.
+
+    Matplotlib draws all boxes of one diagonal alike at zoom 1, so that each fits from everywhere.
+    """
+    elevation, azimuth = np.radians((ELEVATION, AZIMUTH))
+    across = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
+    upward = np.array([-np.sin(elevation) * np.cos(azimuth), -np.sin(elevation) * np.sin(azimuth), np.cos(elevation)])
+    diagonal, width, height = np.linalg.norm(sides), np.abs(across) @ sides, np.abs(upward) @ sides
+    return float(min(MOST_ZOOM, FILLED * diagonal / height, FILLED * WIDE * diagonal / width))
+
+
 def _frame_box(axes, drawing: _Drawing) -> None:
     from matplotlib.ticker import MaxNLocator
 
     axes.set_xlim(drawing.low[0], drawing.high[0])
     axes.set_ylim(drawing.low[1], drawing.high[1])
     axes.set_zlim(drawing.low[2], drawing.high[2])
-    axes.set_box_aspect(drawing.high - drawing.low, zoom=1.75)
-    axes.view_init(elev=22.0, azim=-118.0)
+    axes.set_box_aspect(drawing.high - drawing.low, zoom=_zoom(drawing.high - drawing.low))
+    axes.view_init(elev=ELEVATION, azim=AZIMUTH)
     axes.set_xlabel("x in m")
     axes.set_ylabel("y in m")
     axes.set_zlabel("z in m")

@@ -26,7 +26,7 @@ _PLACES = {"house", "home", "kennel", "stop", "station", "park", "lot", "garage"
            "crossing", "bridge", "sign", "rack", "stand", "shelter", "shed", "stable", "barn", "pen", "hole"}
 _UNITS = {"mm": 1e-3, "cm": 1e-2, "inches": 0.0254, "feet": 0.3048, "m": 1.0, "km": 1e3}  # m
 SMALLEST, LARGEST = 0.02, 5e4  # m, of anything that a radar looks at
-_FIGURE = ("a figure with a skeleton", 0.05, 10.0)
+_FIGURE, _BODY = ("a figure with a skeleton", 0.05, 10.0), ("a single body", SMALLEST, 500.0)
 _NAMED = 12                    # topmost nodes of a model whose names are looked at
 
 
@@ -70,13 +70,14 @@ def _points_of_skins(model: Model) -> np.ndarray:
     return np.concatenate(points)
 
 
-def unit_doubt(extent: float, unit: float, names: list[str], is_figure: bool = False) -> str | None:
+def unit_doubt(extent: float, unit: float, names: list[str], is_figure: bool = False, is_body: bool = False) -> str | None:
     """What to say of a model of that greatest extent in m, None where nothing speaks against its unit.
 
     unit: m per unit of its file; names: of the file and of its topmost objects, which may say what it is
-    is_figure: whether it has a skeleton
+    is_figure: whether it has a skeleton; is_body: whether it is one mesh alone
     """
-    what, least, most = _expected(names) or (_FIGURE if is_figure else ("a scene", SMALLEST, LARGEST))
+    usual = _FIGURE if is_figure else _BODY if is_body else ("a scene", SMALLEST, LARGEST)
+    what, least, most = _expected(names) or usual
     if extent == 0.0 or least <= extent <= most:
         return None
     fits = [f"unit={value:g} ({name})" for name, value in _UNITS.items() if least <= extent / unit * value <= most]
@@ -95,6 +96,6 @@ def _expected(names: list[str]) -> tuple[str, float, float] | None:
 
 
 def _length(extent: float) -> str:
-    """A length in words: mm below 0.1 m, km from 10 km on."""
-    scale, unit = (1e3, "mm") if extent < 0.1 else (1e-3, "km") if extent >= 1e4 else (1.0, "m")
+    """A length in words: mm below 0.1 m, km from 1 km on."""
+    scale, unit = (1e3, "mm") if extent < 0.1 else (1e-3, "km") if extent >= 1e3 else (1.0, "m")
     return f"{extent * scale:.3g} {unit}"

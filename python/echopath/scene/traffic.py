@@ -9,15 +9,10 @@ from ..actors.laid_line import usual_speed
 from ..arguments.checks import an, anything, checked, optional, real, refused, text
 from ..base.made_by import made_by
 from ..readers.tree import fit_name
+from ..trajectories.kinds import usual_kind
 from ..trajectories.trajectory import Trajectory
 from .scene import Scene
 
-# Words of a kind -> name of an actor and its keywords; the first that is in the kind is taken.
-KINDS = (("truck", "truck", {}), ("trailer", "truck", {}), ("bus", "van", {"kind": "large"}),
-         ("delivery", "van", {"kind": "large"}),
-         ("van", "van", {"kind": "small"}), ("motorcycle", "motorcycle", {}), ("moped", "motorcycle", {}),
-         ("bicycle", "cyclist", {}), ("bike", "cyclist", {}), ("cyclist", "cyclist", {}), ("ped", "pedestrian", {}),
-         ("person", "pedestrian", {}), ("walk", "pedestrian", {}), ("dog", "dog", {}))
 ActorOf = Callable[[str, Trajectory], Any]
 
 
@@ -109,8 +104,7 @@ def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_o
 
 def usual_actor(name: str, trajectory: Trajectory):
     """The actor that is usual for the kind of a trajectory, which follows it."""
-    kind = trajectory.kind.lower()
-    actor, keywords = next(((actor, keywords) for word, actor, keywords in KINDS if word in kind), ("car", {}))
+    actor, keywords, _ = usual_kind(trajectory.kind)
     if actor == "pedestrian" and usual_speed(trajectory._track) > 2.0:
         actor = "runner"
     return getattr(actors, actor)(trajectory=trajectory, **keywords)

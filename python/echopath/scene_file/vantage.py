@@ -1,6 +1,8 @@
 """Where a radar stands well in a scene that has none: before an object, or in the open middle of a town."""
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ..readers.sizes import box_of
@@ -12,10 +14,20 @@ HEADROOM = 0.8       # m above the ground, up to which a surface is no obstacle
 CELLS = 200          # along each side of the map of obstacles
 DIRECTIONS = 32      # that are tried
 CLEARANCE = 12.0     # m to the next obstacle that is enough
+FARTHEST = 300.0     # m that the radar looks
 
 
-def vantage(scene: Scene) -> tuple[list[float], float, float]:
-    """(position [3] in m, yaw in degrees, distance in m up to which there is something to see) for a radar.
+class Vantage(NamedTuple):
+    """position: m; yaw: degrees; reach: m, up to which there is something to see; is_within: a town, not before an object."""
+
+    position: list[float]
+    yaw: float
+    reach: float
+    is_within: bool
+
+
+def vantage(scene: Scene) -> Vantage:
+    """Where a radar stands well in a scene.
 
     Objects of less than 30 m are seen from behind, along +x. In larger scenes it is the place nearest to the middle where
     nothing higher than a kerb is near, and the direction of the longest open way.
@@ -25,14 +37,14 @@ def vantage(scene: Scene) -> tuple[list[float], float, float]:
     if (high - low)[:2].max() < TOWN:
         distance = max(3.0, 2.0 * size)
         height = min(middle[2], low[2] + HEIGHT)
-        return _rounded([low[0] - distance, middle[1], height]), 0.0, 2.0 * distance + size
+        return Vantage(_rounded([low[0] - distance, middle[1], height]), 0.0, 2.0 * distance + size, False)
     blocked, step, ground = _obstacles(scene, low, high)
     if blocked.all():
-        return _rounded([low[0] - 10.0, middle[1], low[2] + HEIGHT]), 0.0, size + 20.0
+        return Vantage(_rounded([low[0] - 10.0, middle[1], low[2] + HEIGHT]), 0.0, min(size + 20.0, FARTHEST), False)
     row, column = _open_place(blocked, step)
     yaw, reach = _open_way(blocked, row, column)
     place = [low[0] + step * (row + 0.5), low[1] + step * (column + 0.5), ground[row, column] + HEIGHT]
-    return _rounded(place), yaw, float(np.clip(1.5 * reach * step, 50.0, 300.0))
+    return Vantage(_rounded(place), yaw, float(np.clip(1.5 * reach * step, 50.0, FARTHEST)), True)
 
 
 def _rounded(place) -> list[float]:

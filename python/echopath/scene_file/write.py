@@ -14,7 +14,7 @@ from .vantage import vantage
 
 CELLS = 256  # range cells up to the greatest distance
 TEXT = """title = {title}
-mark_mirrors = true  # what is made of planes larger than their Fresnel zone, so that ghosts over them are found
+mark_mirrors = {mirrors}  # what is made of planes larger than their Fresnel zone: so ghosts over them are found
 
 [radar]  # 77 GHz, one transmitter and four receivers half a wavelength apart, in the open and looking along the longest way
 transmit_power = 0.01
@@ -55,8 +55,9 @@ def write_scene_file(path: str | os.PathLike[str], out: str | os.PathLike[str], 
     model = load_model(path, unit=unit, up=up)
     scene = Scene()
     scene.add(model, name="model")
-    position, yaw, reach = vantage(scene)
-    text = TEXT.format(title=_quoted(path.stem), position=position, yaw=yaw, cell=reach / CELLS, reach=reach, samples=CELLS,
+    position, yaw, reach, is_town = vantage(scene)
+    text = TEXT.format(mirrors=str(is_town).lower(), title=_quoted(path.stem), position=position, yaw=yaw,
+                       cell=reach / CELLS, reach=reach, samples=CELLS,
                        bandwidth=CELLS * _core.speed_of_light / (2.0 * reach), receivers=_receivers(),
                        name=_quoted(fit_name(path.stem, "model")), model=_quoted(_relative(path, out.parent)),
                        settings=_settings(unit, up), notes="".join(f"# {_plain(note)}\n" for note in model.notes))

@@ -13,13 +13,13 @@ from ..arguments.checks import array, checked, is_writable, real, refused
 from ..arguments.checks import file as file_rule
 from ..base.callers import warn_user
 from .geodesy import east_north_up
+from .kinds import usual_kind
 from .markup import read_fcd, read_gpx
 from .samples import Samples, refuse
 from .smoothing import smoothed
 from .table import read_table
 from .trajectory import Trajectory
 
-SUMO_LENGTH = 5.0      # m, of a passenger car of SUMO whose type names no other
 MOST_SECONDS = 1e6     # from which on times are taken to count from some day long ago
 SUFFIXES = (".csv", ".txt", ".tsv", ".xml", ".gpx")
 
@@ -39,12 +39,12 @@ def _length_rule(argument: str, value):
         if not all(isinstance(kind, str) and is_writable(kind) for kind in value):
             raise refused(TypeError, argument, "a number in m, or a dict of them by types of vehicles", value)
         return {kind: rule(f"{argument}['{kind}']", one) for kind, one in value.items()}
-    return rule(argument, value)
+    return None if value is None else rule(argument, value)
 
 
 @checked(path=file_rule, origin=_origin_rule, smoothing=real(0.0, unit="m"), vehicle_length=_length_rule)
 def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None = None, smoothing: float = 0.0,
-                      vehicle_length: float | Mapping[str, float] = SUMO_LENGTH) -> dict[str, Trajectory]:
+                      vehicle_length: float | Mapping[str, float] | None = None) -> dict[str, Trajectory]:
     """Reads where objects were over time, by the suffix of the file.
 
     path: of the file, one of
@@ -58,7 +58,8 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
         are made metres east (x), north (y) and up (z), on the WGS 84 ellipsoid; None: the first position of the file
     smoothing: m, root mean square by which the positions of an object may be moved to make them smooth; 0: not at all
     vehicle_length: m, or {type: m}, by whose half the middle of a vehicle of SUMO lies behind the front bumper, of which its
-        files tell; types that are not among them have 5 m, those of SUMO's cars
+        files tell; None, and types that are not among them: as long as the actor that `add_traffic` takes for the type, so that
+        its front is where the file has it
     Returns {name: Trajectory}, in the order of the file, each with the kind that the file tells. Between positions it goes along
     a C2 spline, by distances that are monotone cubics over time, so that what stands stays. Times are those of the file; those of
     ISO 8601 and beyond 1e6 s, such as those since 1970, count from the first of the file. Warns (RuntimeWarning) of objects
@@ -90,8 +91,8 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
 def _length_of(vehicle_length):
     """type -> m"""
     if isinstance(vehicle_length, Mapping):
-        return lambda kind: vehicle_length.get(kind, SUMO_LENGTH)
-    return lambda kind: vehicle_length
+        return lambda kind: vehicle_length.get(kind, usual_kind(kind).length)
+    return lambda kind: usual_kind(kind).length if vehicle_length is None else vehicle_length
 
 
 def _check_order(path: Path, samples: Samples) -> None:

@@ -41,11 +41,22 @@ def write(folder, name, text):
     return path
 
 
+@pytest.mark.parametrize("kind", ["truck", "trailer", "bus", "delivery", "van", "motorcycle", "bicycle", "passenger"])
+def test_vehicles_of_sumo_have_their_fronts_where_the_file_has_them(tmp_path, kind):
+    fcd = FCD.replace('type="passenger"', f'type="{kind}"').replace('id="once"', 'id="flow/0"')
+    others = ("south", "walker", 'y="0.00" angle="0')
+    fcd = "\n".join(line for line in fcd.splitlines() if not any(words in line for words in others))
+    scene = ep.Scene()
+    (name,) = ep.add_traffic(scene, ep.read_trajectories(write(tmp_path, "fcd.xml", fcd)))
+    fronts = [scene.world_vertices(mesh.id, 1.0)[:, 0].max() for mesh in scene.meshes if mesh.name.startswith(name)]
+    assert max(fronts) == pytest.approx(20.0, abs=0.05)
+
+
 @pytest.mark.filterwarnings("ignore:.*single position")
 def test_vehicles_of_sumo_are_half_their_length_behind_their_bumpers(tmp_path):
     found = ep.read_trajectories(write(tmp_path, "fcd.xml", FCD), vehicle_length={"truck": 16.5})
     assert {name: one.kind for name, one in found.items()} == {"flow/0": "passenger", "walker": "pedestrian", "south": "truck"}
-    np.testing.assert_allclose(found["flow/0"].position([0.0, 1.5]), [[7.5, 0, 0], [22.5, 0, 0]], atol=1e-9)
+    np.testing.assert_allclose(found["flow/0"].position([0.0, 1.5]), [[7.85, 0, 0], [22.85, 0, 0]], atol=1e-9)  # of a compact car
     np.testing.assert_allclose(found["south"].position(2.0), [50, 32 + 8.25, 0], atol=1e-9)
     np.testing.assert_allclose(found["walker"].position(1.0), [3, 5, 0], atol=1e-9)
     assert [one.yaw(1.0) for one in found.values()] == pytest.approx([0.0, np.pi / 2, -np.pi / 2])

@@ -29,6 +29,10 @@ def test_all_frames_are_there_and_open(small_dataset):
     assert len(opened.split("train")) + len(opened.split("test")) == 12 and len(opened[3:5]) == 2
     one = opened[-1]
     assert (one.number, one.scene, one.place, one.split) == (11, 5, 1, dataset.Template(path).split_of(5))
+    with pytest.raises(IndexError, match="a dataset of 12 frames has no frame 12"):
+        opened[12]
+    with pytest.raises(IndexError, match="scene: must be from 0 to 5, got 6"):
+        opened.drawn(6)
     assert one.frame == opened.sequence(5)[1] and set(one.frame.labels) == {"parts"}
     assert one.frame.labels["parts"].objects and opened.drawn(5) == dataset.Template(path).draw(5).values
     with pytest.raises(ValueError, match="name: must be 'train' or 'test', got 'val'"):

@@ -106,6 +106,18 @@ def test_parts_are_cropped_to_what_moves_and_the_whole_is_not(spectrum):
     assert upper.get_images()[0].get_clim() == lower.get_images()[0].get_clim()
 
 
+def test_a_part_at_rest_beside_one_that_moves_is_shown_and_the_rest_is_not(spectrum):
+    def at(cell: int, row: int):
+        values = 1e-3 * spectrum.values
+        values[0, 0, 20, 40] = 0.0
+        values[0, 0, row, cell] = 1e-5
+        return with_values(spectrum, values)
+
+    walker, corner, clutter = at(40, 20), at(80, 32), at(120, 32)  # 6 m, 12 m at rest, 18 m at rest
+    left, right = plot_partition({"walker": walker, "corner": corner, "other": clutter}).axes[0].get_xlim()
+    assert left < 6.0 and 12.0 < right < 18.0
+
+
 @pytest.mark.parametrize("zero_pad, window", [(1, "hann"), (2, "rect"), (1, ("rect", "hann"))])
 def test_the_main_lobe_of_what_stands_does_not_move(spectrum, zero_pad, window):
     """Cells of 0.6 m/s: the null of Hann's window is 1.2 m/s away, that of a rectangle of half as many chirps too."""
@@ -227,6 +239,19 @@ def test_a_picture_of_a_scene_names_its_objects():
     for axes in figure.axes[:2]:  # in perspective, from above
         assert {text.get_text().strip() for text in axes.texts} >= {"plate0", "plate1", "plate2"}
     assert "ground" in {text.get_text().strip() for text in figure.axes[0].texts}
+
+
+@pytest.mark.parametrize("size", [(1.0, 1.0), (20.0, 20.0), (0.3, 40.0)])  # m, as the triangle is wide and high
+@pytest.mark.filterwarnings("error:constrained_layout")
+def test_high_scenes_have_room_for_their_labels(size, tmp_path):
+    scene = ep.Scene()
+    corners = np.array([[0.0, 0.0, 0.0], [0.0, size[0], 0.0], [0.0, 0.0, size[1]]])
+    scene.add(ep.Mesh(corners, np.array([[0, 2, 1]])), name="sail", material="metal", position=(3.0, 0.0, 0.0))
+    radar = build_radar([(0, 0, 1)], [(0, 0, 1)], num_samples=16, num_chirps=2, chirp_interval=1e-4)
+    figure = plot_scene(scene, ep.trace(scene, radar, num_rays=500))
+    save_png(figure, tmp_path / "scene.png")
+    boxes = [axes.get_tightbbox() for axes in figure.axes]
+    assert boxes[0].y0 > max(box.y1 for box in boxes[1:])  # that in perspective stands above the others
 
 
 def test_a_body_of_mirrors_is_shown_whole_and_a_road_as_far_as_the_rest_goes():

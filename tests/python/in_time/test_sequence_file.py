@@ -92,7 +92,7 @@ def test_speckle_maps_and_truth_of_a_person_go_on_after_a_kill(tmp_path, name):
     for place in (MANY - 1, 0, int(there.sum())):  # the first behind the kill, and in any order
         frame, kept = walk[place], stored[place]
         assert np.any(frame.paths.diffuse) and kept.power.max() > 0.0
-        assert kept == maps_of(frame, with_power=True) and kept.kept_truth == frame.truth
+        assert kept == maps_of(frame, with_power=True) and kept.kept_truth == kept.truth == frame.truth
     assert len(stored.truth) == MANY and np.diff(stored.truth.position[:, 0]).max() < 0.0
 
 

@@ -112,7 +112,7 @@ def test_a_part_may_be_called_noise(spheres, tmp_path):
     found.to_csv(tmp_path / "points.csv")
     with open(tmp_path / "points.csv", encoding="utf-8", newline="") as stream:
         assert [row["is_noise"] for row in csv.DictReader(stream)] == ["0"] * len(found)
-    assert report.detections(found)[-1].split()[-1] == "0"
+    assert report.detections(found, {})[-1].split()[-1] == "0"
 
 
 def test_objects_and_ghosts_are_those_of_the_paths():

@@ -169,8 +169,28 @@ def test_labels_and_detections_say_what_is_resolved(frame):
 
 
 def test_a_report_ends_with_what_is_not_resolved(frame):
-    head, line = report.unresolved(frame.unresolved)
+    head, line = report.unresolved(frame.unresolved, frame.paths)
     assert head.startswith("NOT resolved to 0.3 dB") and line.split()[0] == "sign" and "rays" in line
+
+
+def test_a_report_of_no_path_does_not_call_it_resolved(frame):
+    (line,) = report.unresolved([], frame.paths.select(np.zeros(frame.paths.num_paths, bool)))
+    assert line.startswith("nothing is received")
+
+
+def test_objects_that_are_labelled_and_not_detected_are_named(frame):
+    found = frame.detections
+    without = dataclasses.replace(found, object=np.where(found.object == "board", "", found.object))
+    assert not any("not detected" in line and "board" in line for line in report.detections(found, frame.labels))
+    (told,) = [line for line in report.detections(without, frame.labels) if "not detected" in line]
+    assert "board" in told and 'method = "os"' in told
+
+
+def test_tables_tell_the_level_of_the_cell_beside_its_place(frame):
+    row = next(line for line in report.labels(frame.labels) if line.startswith("  board ") and "m/s" in line)
+    peak = next(label.peak for label in frame.labels["parts"].objects if label.name == "board")
+    assert f"{peak.range:6.2f} m {peak.velocity:+6.2f} m/s" in row
+    assert f"{10.0 * np.log10(peak.power * 1e3):.1f} dBm" in row.partition("m/s")[2]
 
 
 def test_files_carry_what_is_resolved(frame, tmp_path):

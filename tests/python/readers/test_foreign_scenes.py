@@ -217,6 +217,21 @@ def test_sizes_that_cannot_be_say_which_unit_would_be_right(extent, unit, names,
     assert doubt is None if words is None else re.match(words, doubt)
 
 
+def test_one_body_of_kilometres_is_told_with_the_unit_that_would_be_right():
+    told = unit_doubt(4300.0, 1.0, ["lid"], is_body=True)
+    assert told is not None and told.startswith("a single body of 4.3 km is hardly right; with unit=0.001 (mm)")
+    assert unit_doubt(4300.0, 1.0, ["town"]) is None and unit_doubt(430.0, 1.0, ["hall"], is_body=True) is None
+
+
+def test_an_object_alone_is_no_mirror_in_the_scene_that_is_written_for_it(tmp_path, capsys):
+    corners = "v 0 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\n"  # half a square: the radar looks at the middle of its longest side
+    (tmp_path / "plate.obj").write_text(corners)
+    assert main(["scene", str(tmp_path / "plate.obj"), "--out", str(tmp_path / "plate.toml"), "--up", "z"]) == 0
+    found = ep.load_scene(tmp_path / "plate.toml")
+    assert not any(mesh.material.mirror for mesh in found.scene.meshes)
+    assert ep.trace(found.scene, found.radar, num_rays=2000).num_paths > 100
+
+
 def test_scene_writes_a_file_that_runs_with_the_radar_in_the_street(town, tmp_path, capsys):
     out = tmp_path / "run" / "town.toml"
     assert main(["scene", str(town), "--out", str(out)]) == 0

@@ -19,6 +19,15 @@ VELOCITY = (4.0, 1.5, 0.0)
 LATE = 0.7               # s, start of a frame that is not the first
 
 
+def test_the_middle_of_a_frame_is_halfway_from_its_first_sample_to_its_last():
+    waveform = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=101, sampling_rate=1e6, num_chirps=11,
+                                chirp_interval=1e-3)
+    radar = ep.Radar(waveform, transmitters=[ep.Antenna()], receivers=[ep.Antenna()])
+    assert radar.middle_of_frame(2.0) - 2.0 == pytest.approx(0.5 * (10 * 1e-3 + 100 / 1e6), rel=1e-9)
+    with pytest.raises(TypeError, match="start_time: "):
+        radar.middle_of_frame("now")
+
+
 def street():
     """A mirror wall, a rough body that walks and a curved one, ahead of the placed radar."""
     scene = ep.Scene()

@@ -1,5 +1,6 @@
 #include "echopath/label/expressions/expression.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "echopath/base/errors.h"
@@ -84,9 +85,11 @@ class ExpressionParser {
     const size_t position = at_;
     if (!is_digit(peek())) fail("expected " + expected);
     int number = 0;
-    for (; is_digit(peek()); ++at_) {
-      number = 10 * number + (peek() - '0');
-      if (number > kMaxRepeatCount) fail_at(position, "expected a count of at most " + std::to_string(kMaxRepeatCount));
+    for (; is_digit(peek()); ++at_) number = std::min(10 * number + (peek() - '0'), kMaxRepeatCount + 1);
+    if (number > kMaxRepeatCount) {
+      const std::string digits(text_.substr(position, at_ - position));
+      throw_expression_error(text_, position,
+                             "expected a count of at most " + std::to_string(kMaxRepeatCount) + ", got " + digits);
     }
     skip_space();
     return number;

@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include "echopath/label/expressions/expression.h"
@@ -71,7 +72,9 @@ class SelectionParser {
     double watts = 0.0;
     const auto [end, fault] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), watts);
     if (fault != std::errc() || !std::isfinite(watts)) fail_at_word("a power in W, such as 1e-15");
+    if (std::signbit(watts)) fail_at_word("a power in W from 0 on, such as 1e-13 for -100 dBm");
     at_ = static_cast<size_t>(end - text_.data());
+    if (std::string_view("dDmW").find(peek()) != std::string_view::npos) fail_at_word("no unit, as powers are in W, such as 1e-13 for -100 dBm");
     return watts;
   }
 

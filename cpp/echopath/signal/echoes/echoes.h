@@ -22,7 +22,8 @@ struct TimeSampling {
   enum class Rows {
     kValues,  // at a node
     // Likewise, but amplitudes stand as (natural logarithm of the size, phase in rad) and are interpolated as such: so few
-    // rows hold a phase that turns through many cycles. Phases go on beyond one turn from row to row. Sizes below e^-708 are 0.
+    // rows hold a phase that turns through many cycles. Phases go on beyond one turn from row to row. Sizes below e^-708
+    // are 0.
     kLogarithms,
     // The rows of a chirp are its own value, slope, second and third derivative, as many as the order; each has the weight 1
     // for what it is, and amplitudes have a value alone.

@@ -57,8 +57,8 @@ struct TileAtChirps {
 };
 
 struct SignalKernels {
-  // Turns (natural logarithm of the size, phase in rad) [count] into (re, im) in place (TimeSampling::Rows::kLogarithms). The
-  // array has room for a whole number of vectors of TileAtChirps::kLanes.
+  // Turns (natural logarithm of the size, phase in rad) [count] into (re, im) in place (TimeSampling::Rows::kLogarithms).
+  // The array has room for a whole number of vectors of TileAtChirps::kLanes.
   void (*undo_logarithms)(double* amplitude, int count);
   // Computes the carriers of the states.
   void (*modulate)(const CarrierModel& model, const EchoStates& states, int count, Carriers& out);

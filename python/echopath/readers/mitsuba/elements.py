@@ -86,7 +86,8 @@ class _Reader:
     def read(self, path: Path) -> Element:
         root = self._parse(path)
         if root.tag != "scene":
-            root.refuse("the file must be a scene of Mitsuba, whose first element is <scene>")
+            hint = "; ep.read_trajectories reads what SUMO writes" if root.tag == "fcd-export" else ""
+            root.refuse(f"the file must be a scene of Mitsuba, whose first element is <scene>{hint}")
         self._including.append(path)
         root.children = list(self._filled(root))
         self._including.pop()

@@ -1,0 +1,28 @@
+"""What moves along trajectories of files, by the words of its kind."""
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+
+class Kind(NamedTuple):
+    """actor: of `ep.actors`, that is usual for the kind; keywords: of it; length: m, twice from its middle to its front."""
+
+    actor: str
+    keywords: dict[str, Any]
+    length: float
+
+
+_CAR = Kind("car", {}, 4.3)
+_TRUCK, _BUS, _VAN = Kind("truck", {}, 16.6), Kind("van", {"kind": "large"}, 5.95), Kind("van", {"kind": "small"}, 4.95)
+_MOTORCYCLE, _CYCLIST = Kind("motorcycle", {}, 2.0), Kind("cyclist", {}, 1.95)
+_PERSON, _DOG = Kind("pedestrian", {}, 0.3), Kind("dog", {}, 1.2)
+# The first word that is in the name of a kind is taken.
+_KINDS = {"truck": _TRUCK, "trailer": _TRUCK, "bus": _BUS, "delivery": _BUS, "van": _VAN, "motorcycle": _MOTORCYCLE,
+          "moped": _MOTORCYCLE, "bicycle": _CYCLIST, "bike": _CYCLIST, "cyclist": _CYCLIST, "ped": _PERSON, "person": _PERSON,
+          "walk": _PERSON, "dog": _DOG}
+
+
+def usual_kind(name: str) -> Kind:
+    """What is usual for a kind of that name, as files have it; a compact car where no word of it is known."""
+    name = name.lower()
+    return next((kind for word, kind in _KINDS.items() if word in name), _CAR)

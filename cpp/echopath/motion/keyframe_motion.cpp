@@ -3,13 +3,12 @@
 #include <utility>
 
 #include "echopath/base/errors.h"
+#include "echopath/base/geometry.h"
 #include "echopath/motion/spline.h"
 
 namespace echopath {
 namespace {
 
-// A quaternion farther from length 1 than this is a mistake, such as another convention or angles.
-constexpr double kUnitTolerance = 1e-6;
 // A quaternion nearer to length 1 than this is left alone, so that saved ones keep their bits.
 constexpr double kUnitRounding = 1e-14;
 

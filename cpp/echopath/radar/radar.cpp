@@ -11,14 +11,13 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
+#include "echopath/base/geometry.h"
 #include "echopath/base/range_of_coordinates.h"
 #include "echopath/radar/largest_efficiency.h"
 
 namespace echopath {
 namespace {
 
-// Unit vectors and quaternions may be off by what single precision or six written digits leave.
-constexpr double kUnitTolerance = 1e-6;
 // A chirp may fill its slot: num_samples / sampling_rate may round above the interval by an ulp or two.
 constexpr double kSlotTolerance = 1e-9;
 // Of the sine of phases that are meant as signs, multiples of pi.

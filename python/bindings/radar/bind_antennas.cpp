@@ -11,6 +11,7 @@
 #include "call/plausible.h"
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
+#include "echopath/base/geometry.h"
 #include "echopath/base/range_of_coordinates.h"
 #include "echopath/radar/radar.h"
 #include "radar/place_text.h"
@@ -20,14 +21,14 @@
 namespace echopath::bindings {
 namespace {
 
-// A vector of unit length up to `kNormTolerance` is scaled to it; one that already is keeps its bits.
-constexpr double kNormTolerance = 1e-6, kNormRounding = 1e-14;
+// A vector of unit length up to `kUnitTolerance` is scaled to it; one that already is keeps its bits.
+constexpr double kNormRounding = 1e-14;
 constexpr double kLevel = 1e-9;  // rad, of antennas whose +y is level
 
 template <class Vector>
 void make_unit(Vector& vector, const char* argument) {
   const double norm = vector.norm();
-  require(std::abs(norm - 1.0) <= kNormTolerance, argument, "must have norm 1 within 1e-6", norm);
+  require(std::abs(norm - 1.0) <= kUnitTolerance, argument, "must have norm 1 within 1e-6", norm);
   if (std::abs(norm - 1.0) > kNormRounding) vector /= norm;
 }
 

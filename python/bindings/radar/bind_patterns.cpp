@@ -10,13 +10,12 @@
 #include "call/argument.h"
 #include "call/define.h"
 #include "echopath/base/errors.h"
+#include "echopath/base/geometry.h"
 #include "echopath/radar/radar.h"
 #include "values/value.h"
 
 namespace echopath::bindings {
 namespace {
-
-constexpr double kUnitTolerance = 1e-6;  // of directions
 
 constexpr auto kPatternKind = choice<AntennaPattern::Kind>("kind", "isotropic", "cosine_power", "table");
 

@@ -7,14 +7,13 @@
 
 #include "call/shown.h"
 #include "echopath/base/errors.h"
+#include "echopath/base/geometry.h"
 
 namespace echopath::bindings {
 namespace {
 
 constexpr py::ssize_t kAnySize = -1;
-// A quaternion this far from length 1 is a mistake and not rounding.
-constexpr double kUnitTolerance = 1e-6;
-// Nearer to length 1 than this it is left alone, so that values read back keep their bits.
+// A quaternion nearer to length 1 than this is left alone, so that values read back keep their bits.
 constexpr double kUnitRounding = 1e-14;
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(IndexTriple) == 3 * sizeof(uint32_t));

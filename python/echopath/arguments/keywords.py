@@ -41,10 +41,10 @@ def refuse_misplaced(callee: str, signature: inspect.Signature, values: Sequence
         written = ", ".join(f"{name}={shown(value)}" for name, value in
                             zip([name for name in by_name if name not in given], surplus))
         said = [name for name in by_place if name != "self"]
-        is_short = written and all(isinstance(value, str | bool | int | float | None) for value in surplus)  # no guess at types
+        may_be_guessed = written and all(isinstance(value, str | bool | int | float | None) for value in surplus)
         takes = f"{', '.join(said)} alone" if said else "nothing"
-        raise TypeError(f"{callee}: takes {takes} without a name" + (f"; write {written} if that is meant" if is_short else "")
-                        + f", got {shown(surplus[0])}")
+        guess = f"; write {written} if that is meant" if may_be_guessed else ""
+        raise TypeError(f"{callee}: takes {takes} without a name{guess}, got {shown(surplus[0])}")
     placed = set(by_place[:len(values)])
     for one in signature.parameters.values():
         if one.name in placed and one.name in given:

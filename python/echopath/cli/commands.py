@@ -65,7 +65,7 @@ def run(options) -> None:
                  *report.folded_velocities(frame.scene, frame.radar, frame.paths.frame.trace_time),
                  *report.effects(frame.effects), *report.stages(frame.stages),
                  *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
-                 *report.labels(frame.labels), *report.detections(frame.detections, frame.labels),
+                 *report.labels(frame.labels), *report.detections(frame.detections, frame.labels, _other_method(scene_file)),
                  *report.truth(frame.kept_truth), *report.checks(frame.checks), *report.validity(certificate),
                  *report.files(written), *report.unresolved(frame.unresolved, frame.paths)]:
         print(text)
@@ -75,6 +75,12 @@ def info(options) -> None:
     from .info import describe_file
 
     print("\n".join(describe_file(options.file, options.select, unit=options.unit, up=options.up)))
+
+
+def _other_method(scene_file) -> str:
+    """What to write for detections beside strong echoes, "" where a file asks for that already."""
+    asked = scene_file.detection_settings() or {}
+    return 'method = "os" of [detections]' if asked.get("method", "ca") == "ca" else ""
 
 
 def scene(options) -> None:

@@ -6,9 +6,10 @@ from pathlib import Path
 
 import echopath as ep
 
+from ..arguments.part_names import REST
+from ..base.data_folder import data_folder
 from ..base.stages import StageClock
 from ..frame.frame import Frame
-from ..base.data_folder import data_folder
 from ..scene_file import load_scene
 from ..signals.measures import EXTENT_BELOW_PEAK_DB, residual
 from . import report
@@ -57,7 +58,7 @@ def _check_sums(frame: Frame, progress) -> dict:
 
 def _report(street, frame: Frame, certificate, written, residuals: dict) -> list[str]:
     shown = {partition: cubes for partition, cubes in frame.parts.items() if partition != "limbs"}
-    shown["legs by route"] = {name: cube for name, cube in shown["legs by route"].items() if name != "other"}
+    shown["legs by route"] = {name: cube for name, cube in shown["legs by route"].items() if name != REST}
     limbs = frame.part_spectra["limbs"]
     return [street.title, *report.counts(frame.paths), *report.effects(frame.effects),
             *report.stages(frame.stages), *report.powers(frame.cube, shown), *report.mean_powers(frame),

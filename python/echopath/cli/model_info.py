@@ -13,6 +13,8 @@ from . import report
 
 MAX_MATERIALS = 60  # named one by one
 
+COMPACT = 0.1  # least side over the greatest, of a body rather than of a terrain or a town
+
 
 def describe_model(path: Path, model: ep.Model) -> list[str]:
     """Lines on the content, size, axes, unit, materials and animations of a model, and what its reader noted."""
@@ -27,7 +29,8 @@ def describe_model(path: Path, model: ep.Model) -> list[str]:
              report.line("from, to", f"{report.point(low)}, {report.point(high)} m"),
              report.line("axes", f"{model.up} is up in the file; x ahead, y left, z up here"),
              report.line("unit", f"{model.unit:g} m")]
-    doubt = unit_doubt(float(size.max()), model.unit, names_of(model, path.stem), has_skin(model), len(meshes) == 1)
+    is_body = len(meshes) == 1 and size.min() > COMPACT * size.max()
+    doubt = unit_doubt(float(size.max()), model.unit, names_of(model, path.stem), has_skin(model), is_body)
     lines += [report.line("unit?", doubt)] if doubt else []
     return lines + (_tree(model) + _materials(meshes) if meshes else []) + _animations(model) + _notes(model)
 

@@ -127,8 +127,8 @@ def unresolved(found, paths, left_out=None) -> list[str]:
 
     found: list of ep.Unresolved of the paths; left_out: of the frame file that was asked, None: a whole record
     """
-    if not paths.num_paths:
-        return ["nothing is received: no path leads back to the radar, so that there is nothing to resolve"]
+    if not (found or paths.num_paths or (left_out and left_out.num_paths)):
+        return ["no path leads back to the radar, and no object that the rays look for is in its sight"]
     if not found:
         whose = ", by the paths that the file keeps" if left_out and left_out.num_paths else ""
         return [f"resolved to {RESOLVED_DB:g} dB: every object and ghost above the noise{whose}"]
@@ -158,22 +158,23 @@ def labels(of_partitions: dict) -> list[str]:
     return lines + _objects(first) + _ghosts(first)
 
 
-def detections(found, of_partitions: dict) -> list[str]:
+def detections(found, of_partitions: dict, advice: str = "") -> list[str]:
     """How many detections each part and object has, and which objects have cells in {partition: Labels} but none; nothing
-    where none were asked for."""
+    where none were asked for. advice: what to ask for in place of the mean over cells (method="ca"), "" where it was not taken"""
     if found is None:
         return []
     owners = {"": "the surroundings", **{name: name for name in found.object if name}}
     counts = {words: int(np.sum((found.object == name) & ~found.is_noise)) for name, words in sorted(owners.items())}
     return [f"{len(found):,} detections, detections.csv", *(line(name, f"{count:8,}") for name, count in counts.items()),
-            line("noise alone", f"{int(found.is_noise.sum()):8,}"), *_undetected(found, of_partitions)]
+            line("noise alone", f"{int(found.is_noise.sum()):8,}"), *_undetected(found, of_partitions, advice)]
 
 
-def _undetected(found, of_partitions: dict) -> list[str]:
-    """A mean over cells about a cell hides what stands beside much stronger echoes; order statistics do not."""
+def _undetected(found, of_partitions: dict, advice: str) -> list[str]:
+    """Objects that are seen in the labels and have no detection; a mean over the cells about a cell hides what stands beside
+    much stronger echoes."""
     labelled = next(iter(of_partitions.values())).objects if of_partitions else []
     names = [label.name for label in labelled if label.status == "seen" and label.name not in found.object]
-    told = f"{first_names(names)}; method = \"os\" of [detections] finds more beside stronger echoes"
+    told = first_names(names) + (f"; {advice} may find what stands beside stronger echoes" if advice else "")
     return [line("labelled, not detected", told)] if names else []
 
 

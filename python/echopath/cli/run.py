@@ -8,7 +8,7 @@ from pathlib import Path
 import echopath as ep
 
 from .. import plots
-from ..arguments.part_names import LEAKAGE
+from ..arguments.part_names import LEAKAGE, REST
 from ..base.stages import StageClock
 from ..frame.frame import Frame
 from ..frame.simulate import simulate
@@ -150,4 +150,4 @@ def _maps_from_above(frame: Frame, partition, vmin: float) -> dict:
 def shown_parts(spectra: dict, vmin: float) -> dict:
     """The parts that a picture shows: "other" only when some of it reaches the colour scale."""
     return {name: spectrum for name, spectrum in spectra.items()
-            if name != "other" or plots.power_dbm(spectrum).max() > vmin}
+            if name != REST or plots.power_dbm(spectrum).max() > vmin}

@@ -107,7 +107,9 @@ class Dataset:
         return sorted({number // self.template.settings.frames for number in self.numbers})
 
     def sequence(self, scene: int) -> StoredSequence:
-        """The frames of a scene in time. Raises ep.FileError where it is not there."""
+        """The frames of a scene in time. Raises IndexError for a scene that the template has not, ep.FileError where its frames
+        are not there."""
+        self._check_scene(scene)
         return load_sequence(scene_folder(self.folder, scene))
 
     def drawn(self, scene: int) -> dict[str, Any]:
@@ -115,14 +117,17 @@ class Dataset:
 
         Raises IndexError for a scene that the template has not, ep.FileError where its file is not there.
         """
-        if not 0 <= scene < self.template.settings.scenes:
-            raise IndexError(f"scene: must be from 0 to {self.template.settings.scenes - 1}, got {scene}")
+        self._check_scene(scene)
         path = scene_folder(self.folder, scene) / DRAWN
         try:
             values: dict[str, Any] = json.loads(path.read_bytes())
             return values
         except (OSError, ValueError) as error:
             raise _core.FileError(f"{path}: cannot be read ({error})") from None
+
+    def _check_scene(self, scene: int) -> None:
+        if not 0 <= scene < self.template.settings.scenes:
+            raise IndexError(f"scene: must be from 0 to {self.template.settings.scenes - 1}, got {scene}")
 
     def to_xarray(self) -> XarrayDataset:
         """The maps of all frames as an xarray.Dataset that reads a frame when a value of it is asked for.

@@ -4,10 +4,10 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
+from ..paths.absent import NO_STRATUM
 from ..paths.edge_hits import edge_hits
 
-NO_STRATUM = 65535     # of the paths of the image method
-FLAT = 1.0 / 16.0      # wavelengths by which triangles of one plane stray from it (trace/mirrors/plane_images.cpp)
+FLAT = 1.0 / 16.0      # wavelengths by which triangles of one plane stray from it (EmbreeScene::plane_tolerance, rounding apart)
 
 
 def imaged_planes(paths) -> tuple[int, list[int]]:

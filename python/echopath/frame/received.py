@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from .._core import Grouping
-from ..arguments.part_names import RAIN
+from ..arguments.part_names import RAIN, REST
 from ..arguments.settings import FRAME_KEYWORDS
 from ..receiver.chain import transmitted_code
 from ..receiver.parts import receive_parts
@@ -14,7 +14,7 @@ from ..transmit.signals import decompose_slots
 
 def received_parts(frame) -> dict:
     """{partition: {part: cube}} in sqrt(W), which add up to what the receiver gives (`Frame.received`)."""
-    partitions = frame.parts or {ONLY_PARTITION: {"other": frame.cube}}
+    partitions = frame.parts or {ONLY_PARTITION: {REST: frame.cube}}
     rain = {} if frame.rain_cube is None else {RAIN: frame.rain_cube}
     return {partition: receive_parts({**_arriving(frame, partition, parts), **rain}, frame.radar, seed=frame.noise_seed,
                                      start_time=frame.paths.frame.start_time, interference=frame.interference_cube)

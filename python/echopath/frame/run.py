@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from .. import _core
 from ..arguments.checks import refused
-from ..arguments.part_names import require_names
+from ..arguments.part_names import REST, require_names
 from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
 from ..base.stages import StageClock
 from ..detections.checks import checked_keywords
@@ -102,7 +102,7 @@ class FrameRun:
                 frame.range_azimuth = frame.range_azimuth_of(frame.spectrum, progress)
         if self._request:
             with clock("labels of cells"):
-                parts_of = cubes or {ONLY_PARTITION: {"other": whole}}
+                parts_of = cubes or {ONLY_PARTITION: {REST: whole}}
                 frame.labels = label_frame(work, owners, parts_of, cubes_beside(frame))
         if self.detect_keywords is not None:
             with clock("detections"):

@@ -9,6 +9,7 @@ from typing import get_args
 import numpy as np
 
 from .. import _core
+from ..arguments.part_names import REST
 from ..arguments.checks import an, anything, checked, real, refused
 from ..arguments.keywords import parameters_of
 from ..arguments.settings import Evaluate, Replay, Retrace
@@ -279,7 +280,7 @@ def _read_partitions(file, frame: Frame) -> None:
         cubes = read_array(group, "cubes", np.complex128, (len(names), *_cube_shape(frame.radar)))
         frame.parts[partition] = dict(zip(names, cubes))
         expressions = read_texts(group, "expression", len(names))
-        frame.selections[partition] = {name: text for name, text in zip(names, expressions) if name != "other"}
+        frame.selections[partition] = {name: text for name, text in zip(names, expressions) if name != REST}
         frame.part_of_path[partition] = _read_part_of_path(group, frame.paths.num_paths, len(names))
 
 

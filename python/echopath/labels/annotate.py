@@ -9,7 +9,7 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import MapWindow, Progress, an, anything, checked, optional, refused, text
 from ..arguments.objects import Objects
-from ..arguments.part_names import require_names
+from ..arguments.part_names import REST, require_names
 from ..arguments.settings import Evaluate, LabelSettings, Method, Plane, Replay, Retrace, SignalSettings
 from ..paths.resolution import Interval, interval_of
 from ..paths.visibility import appearing_in_frame, visibility_in_trace
@@ -98,7 +98,7 @@ def owners_and_powers(work: Labelling, partitions: dict):
     is_whole = len(partitions) == 1 and not any(partitions.values())
     signals = FamilyPass(work, adds_up=is_whole)
     if is_whole:
-        cubes = {partition: {"other": signals.whole()} for partition in partitions}
+        cubes = {partition: {REST: signals.whole()} for partition in partitions}
         return signals.assign_cells, add_powers([CubeSet(radar, 1.0, cubes)], plane)
     num_parts = sum(len(group) + 1 for group in partitions.values())
     cubes = decomposed(paths, radar, partitions, num_parts, plane, settings) if partitions else []
@@ -125,7 +125,7 @@ def label_partitions(work: Labelling, owners, powers: dict, beside=()) -> dict:
     known = [Interval(power, power, power) for power in (first.received[name] for name in beside)]
     received = {partition: [*map(interval_of, work.mean.of_parts[partition]), *known]
                 for partition, of_parts in powers.items()
-                if [*work.selections.get(partition, {}), "other", *beside] == list(of_parts.cells)}
+                if [*work.selections.get(partition, {}), REST, *beside] == list(of_parts.cells)}
     intervals = dict(zip(work.families.families, map(interval_of, work.mean.of_families)))
     mask = work.request.masks(first)[1]
     owned = owners(mask, intervals)
@@ -212,7 +212,7 @@ def _selections_and_cubes(parts, radar, start_time: float, errors: bool):
         return {text("parts", name): selection_rule(f"parts.{name}", value) for name, value in parts.items()}, {}
     _check_cubes(parts, radar, start_time)
     selections = getattr(parts, "selections", None) or {}  # None: of families
-    if errors and [*selections, "other"] != list(parts):
+    if errors and [*selections, REST] != list(parts):
         raise ValueError("errors: need the selections of the parts, got cubes alone; give {name: selection} or Parts of "
                          "them")
     return dict(selections), dict(parts)

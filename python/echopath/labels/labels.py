@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 
 from ..arguments.checks import choice
-from ..arguments.part_names import BESIDE
+from ..arguments.part_names import BESIDE, REST
 from ..base.equality import has_same_fields
 from ..base.made_by import made_by
 from ..paths.resolution import Interval
@@ -227,7 +227,7 @@ class Labels(PartCells):
         """
         from ..plots import draw_labels
 
-        has_parts = not {"other", *BESIDE} >= set(self.part_names)
+        has_parts = not {REST, *BESIDE} >= set(self.part_names)
         of_parts = "Which part made each cell" if has_parts else 'Cells that have a label; plot("objects") tells whose'
         titles = {"parts": of_parts, "objects": "Objects and their ghosts"}
         title = titles[choice(*titles)("what", what)] if title is None else title

@@ -11,10 +11,10 @@ from ..arguments.checks import Progress, checked, count, real
 from ..base.made_by import made_by
 from ..base.mesh_names import object_of
 from ..tracing.polarization import polarization_of
+from .absent import NO_MESH
 from .resolution import Interval
 from .surface_points import SurfacePoints, surface_points
 
-NO_MESH = 2**32 - 1
 NUM_POINTS = 256  # of an object's surface that are looked at
 
 

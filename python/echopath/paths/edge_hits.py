@@ -3,7 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
-_ON_EDGE, _FIRST, _MORE = 4, 8, 3  # bit of a path with edge hits; where the number of the first begins, and how many more follow
+_ON_EDGE = 1 << 2        # set for a path with hits on edges
+_MORE, _FIRST = 3, 8     # lowest bits of how many hits on edges follow the first one, and of its number along the path
 
 
 def is_around_edge(paths) -> np.ndarray:

@@ -98,7 +98,8 @@ def draw_range_doppler(spectrum, *, ax=None, vmin=None, vmax=None, title=""):
 
 
 def plot_partition(spectra: dict, *, title="", vmin=None, vmax=None, whole=None, powers=None, note=""):
-    """The maps of the parts of a partition side by side, cropped to what moves in each, with one colour scale for all.
+    """The maps of the parts of a partition side by side, cropped together to what moves in any part, and to all of a part
+    in which nothing does, with one colour scale for all.
 
     spectra: {part: map of `range_doppler`}; vmin, vmax: ends of the colour scale in dBm, None: those of `whole` (of
     the strongest part when there is no `whole`); powers: {part: ep.ReceivedPower} to stand above the maps, or None;

@@ -18,6 +18,7 @@ MARGIN = 0.6                            # m around the rays
 ELEVATION, AZIMUTH = 22.0, -118.0       # degrees, of the eye
 WIDE = 2.2                              # width of the view in perspective over its height
 FILLED, MOST_ZOOM = 0.72, 1.75          # share of the height that a scene fills; the rest is for the labels of the axes
+NEARER = 0.35                           # how much larger the perspective draws the near end of a scene that is all depth
 RADAR_LABEL = "radar"
 MOST_NAMES = 12                         # objects that bear their names in a picture; more would hide each other
 NAME_LOOK = {"fontsize": 7, "color": "0.25"}
@@ -233,7 +234,9 @@ def _zoom(sides) -> float:
     across = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
     upward = np.array([-np.sin(elevation) * np.cos(azimuth), -np.sin(elevation) * np.sin(azimuth), np.cos(elevation)])
     diagonal, width, height = np.linalg.norm(sides), np.abs(across) @ sides, np.abs(upward) @ sides
-    return float(min(MOST_ZOOM, FILLED * diagonal / height, FILLED * WIDE * diagonal / width))
+    depth = np.abs(np.cross(across, upward)) @ sides
+    filled = FILLED / (1.0 + NEARER * depth / diagonal)
+    return float(min(MOST_ZOOM, filled * diagonal / height, filled * WIDE * diagonal / width))
 
 
 def _frame_box(axes, drawing: _Drawing) -> None:

@@ -74,7 +74,7 @@ def unit_doubt(extent: float, unit: float, names: list[str], is_figure: bool = F
     """What to say of a model of that greatest extent in m, None where nothing speaks against its unit.
 
     unit: m per unit of its file; names: of the file and of its topmost objects, which may say what it is
-    is_figure: whether it has a skeleton; is_body: whether it is one mesh alone
+    is_figure: whether it has a skeleton; is_body: whether it is one mesh alone, and no terrain
     """
     usual = _FIGURE if is_figure else _BODY if is_body else ("a scene", SMALLEST, LARGEST)
     what, least, most = _expected(names) or usual

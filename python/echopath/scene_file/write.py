@@ -14,9 +14,9 @@ from .vantage import vantage
 
 CELLS = 256  # range cells up to the greatest distance
 TEXT = """title = {title}
-mark_mirrors = {mirrors}  # what is made of planes larger than their Fresnel zone: so ghosts over them are found
+mark_mirrors = {mirrors}
 
-[radar]  # 77 GHz, one transmitter and four receivers half a wavelength apart, in the open and looking along the longest way
+[radar]  # 77 GHz, one transmitter and four receivers half a wavelength apart, {stands}
 transmit_power = 0.01
 noise_figure_db = 12.0
 position = {position}
@@ -44,6 +44,13 @@ max_bounces = 3
 """
 
 
+# By whether the radar stands within a town: whether planes are mirrors, and where it stands.
+_IN_TOWN = {True: ("true  # what is made of planes larger than their Fresnel zone, so that ghosts over them are found",
+                   "in the open and looking along the longest way"),
+            False: ("false  # true where walls and grounds are to make ghosts: a mirror has no echo but its image",
+                    "before the object")}
+
+
 def write_scene_file(path: str | os.PathLike[str], out: str | os.PathLike[str], *, unit: float | None = None,
                      up: str | None = None) -> Model:
     """Writes a scene file `out` whose one object is the foreign file `path`, and returns its Model.
@@ -56,7 +63,8 @@ def write_scene_file(path: str | os.PathLike[str], out: str | os.PathLike[str], 
     scene = Scene()
     scene.add(model, name="model")
     position, yaw, reach, is_town = vantage(scene)
-    text = TEXT.format(mirrors=str(is_town).lower(), title=_quoted(path.stem), position=position, yaw=yaw,
+    mirrors, stands = _IN_TOWN[is_town]
+    text = TEXT.format(mirrors=mirrors, stands=stands, title=_quoted(path.stem), position=position, yaw=yaw,
                        cell=reach / CELLS, reach=reach, samples=CELLS,
                        bandwidth=CELLS * _core.speed_of_light / (2.0 * reach), receivers=_receivers(),
                        name=_quoted(fit_name(path.stem, "model")), model=_quoted(_relative(path, out.parent)),

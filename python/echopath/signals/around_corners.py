@@ -6,7 +6,8 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import Progress, checked, count
 from ..arguments.number_rules import start_time_rule
-from ..paths.around_corners import NO_MESH, Hidden, hidden_objects, level_of, ways_to
+from ..paths.absent import NO_MESH
+from ..paths.around_corners import Hidden, hidden_objects, level_of, ways_to
 from ..transmit import signal_shape
 
 _STREAM = 0x65646765  # tells these random numbers from others of the same seed

@@ -5,7 +5,8 @@ from typing import Any, NamedTuple
 
 
 class Kind(NamedTuple):
-    """actor: of `ep.actors`, that is usual for the kind; keywords: of it; length: m, twice from its middle to its front."""
+    """actor: of `ep.actors`, that is usual for the kind; keywords: of it; length: m, twice from its middle to its front, of
+    vehicles, whose fronts files have."""
 
     actor: str
     keywords: dict[str, Any]
@@ -15,7 +16,7 @@ class Kind(NamedTuple):
 _CAR = Kind("car", {}, 4.3)
 _TRUCK, _BUS, _VAN = Kind("truck", {}, 16.6), Kind("van", {"kind": "large"}, 5.95), Kind("van", {"kind": "small"}, 4.95)
 _MOTORCYCLE, _CYCLIST = Kind("motorcycle", {}, 2.0), Kind("cyclist", {}, 1.95)
-_PERSON, _DOG = Kind("pedestrian", {}, 0.3), Kind("dog", {}, 1.2)
+_PERSON, _DOG = Kind("pedestrian", {}, 0.0), Kind("dog", {}, 0.0)  # files have their middles
 # The first word that is in the name of a kind is taken.
 _KINDS = {"truck": _TRUCK, "trailer": _TRUCK, "bus": _BUS, "delivery": _BUS, "van": _VAN, "motorcycle": _MOTORCYCLE,
           "moped": _MOTORCYCLE, "bicycle": _CYCLIST, "bike": _CYCLIST, "cyclist": _CYCLIST, "ped": _PERSON, "person": _PERSON,

@@ -59,7 +59,7 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
     smoothing: m, root mean square by which the positions of an object may be moved to make them smooth; 0: not at all
     vehicle_length: m, or {type: m}, by whose half the middle of a vehicle of SUMO lies behind the front bumper, of which its
         files tell; None, and types that are not among them: as long as the actor that `add_traffic` takes for the type, so that
-        its front is where the file has it
+        its front is where the file has it (with an `actor_of` of one's own, give the lengths of its actors)
     Returns {name: Trajectory}, in the order of the file, each with the kind that the file tells. Between positions it goes along
     a C2 spline, by distances that are monotone cubics over time, so that what stands stays. Times are those of the file; those of
     ISO 8601 and beyond 1e6 s, such as those since 1970, count from the first of the file. Warns (RuntimeWarning) of objects

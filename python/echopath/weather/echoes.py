@@ -8,6 +8,7 @@ import numpy as np
 from .. import _core
 from ..arguments.effects import RAIN_ECHOES, Choices, is_on
 from ..base.rotations import matrices
+from ..paths.absent import NO_BATCH, NO_STRATUM
 from ..paths.subset import HIT
 from ..signals.if_signal import synthesize
 from ..transmit import signal_shape
@@ -137,7 +138,7 @@ class _Record:
         columns = {"offsets": np.arange(count, dtype=np.int64), "num_bounces": np.ones(count, np.uint8),
                    "diffuse": np.ones(count, np.uint64),
                    "weight": (np.sqrt(0.25 * cross_sections) * phases).astype(np.complex64),
-                   "stratum": np.full(count, 65535, np.uint16), "batch": np.full(count, 255, np.uint8),
+                   "stratum": np.full(count, NO_STRATUM, np.uint16), "batch": np.full(count, NO_BATCH, np.uint8),
                    "flags": np.zeros(count, np.uint32)}
         if self._polarization == "jones":  # spheres keep the polarisation
             columns["jones"] = np.tile(np.diag([-1, 1]).astype(np.complex64), (count, 1, 1))

@@ -3,7 +3,7 @@ import numpy as np
 
 import echopath as ep
 from echopath.bench.worlds import crowd_scene, motion, moved
-from echopath.bench.worlds.city import NO_STRATUM
+from echopath.paths.absent import NO_STRATUM
 
 RAYS = 200
 

@@ -241,7 +241,8 @@ def test_a_picture_of_a_scene_names_its_objects():
     assert "ground" in {text.get_text().strip() for text in figure.axes[0].texts}
 
 
-@pytest.mark.parametrize("size", [(1.0, 1.0), (20.0, 20.0), (0.3, 40.0)])  # m, as the triangle is wide and high
+# m, as the triangle is wide and high
+@pytest.mark.parametrize("size", [(1.0, 1.0), (20.0, 20.0), (0.3, 40.0), (60.0, 5.0), (40.0, 0.3)])
 @pytest.mark.filterwarnings("error:constrained_layout")
 def test_high_scenes_have_room_for_their_labels(size, tmp_path):
     scene = ep.Scene()

@@ -13,6 +13,7 @@ from echopath.bench.crowd import coverage as crowd_coverage, echoes as crowd_ech
 from echopath.bench.physics import targets
 from echopath.bench.physics.closed_forms import WAVELENGTH
 from echopath.cli import main, report
+from echopath.frame_file import LeftOut
 from support.radars import build_radar
 
 SEEDS = 60
@@ -174,16 +175,23 @@ def test_a_report_ends_with_what_is_not_resolved(frame):
 
 
 def test_a_report_of_no_path_does_not_call_it_resolved(frame):
-    (line,) = report.unresolved([], frame.paths.select(np.zeros(frame.paths.num_paths, bool)))
-    assert line.startswith("nothing is received")
+    scene = ep.Scene()
+    scene.add(shapes.plate(0.01, 0.01), name="chip", material="metal", position=(5.0, 0.0, 0.0), yaw=np.pi)
+    missed = ep.trace(scene, frame.radar, num_rays=1)
+    aside = ep.Scene()
+    aside.add(shapes.plate(1.0, 1.0), name="m", material=ep.Material.metal(mirror=True), position=(5.0, 0, 0), yaw=0.75 * np.pi)
+    behind = ep.trace(aside, frame.radar, num_rays=10)
+    for paths, says in ((missed, "NOT resolved"), (behind, "no path leads back")):
+        assert paths.num_paths == 0 and report.unresolved(ep.unresolved(paths), paths)[0].startswith(says)
+    assert report.unresolved([], behind, LeftOut(1e-20, 3, 1e-19))[0].startswith("resolved")
 
 
 def test_objects_that_are_labelled_and_not_detected_are_named(frame):
     found = frame.detections
     without = dataclasses.replace(found, object=np.where(found.object == "board", "", found.object))
     assert not any("not detected" in line and "board" in line for line in report.detections(found, frame.labels))
-    (told,) = [line for line in report.detections(without, frame.labels) if "not detected" in line]
-    assert "board" in told and 'method = "os"' in told
+    (told,) = [line for line in report.detections(without, frame.labels, "--cfar os") if "not detected" in line]
+    assert "board" in told and "--cfar os may find" in told
 
 
 def test_tables_tell_the_level_of_the_cell_beside_its_place(frame):

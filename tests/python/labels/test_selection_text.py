@@ -97,7 +97,7 @@ def test_power_compares_like_the_powers_of_the_paths(paths):
 
 
 def test_the_text_of_a_power_keeps_every_bit(paths):
-    for watts in (1e-15, 0.1 + 0.2, 5e-324, 0.0, float(paths.power[0])):
+    for watts in (1e-15, 0.1 + 0.2, 5e-324, 0.0, -0.0, float(paths.power[0])):
         text = (ep.power >= watts).text
         assert float(text.removeprefix("power >= ")) == watts and ep.Selection(text).text == text
     assert str((ep.power > 1e-15) & ~ONE) == "(power > 1e-15) & ~(T . R)"
@@ -117,7 +117,7 @@ def test_powers_in_dbm_are_refused_with_what_they_are_in_watts():
         ep.power > -100
     for text, told in (("power > -100", "a power in W from 0 on, such as 1e-13 for -100 dBm, got '-100'"),
                        ("power > 100 dBm", "no unit, as powers are in W, such as 1e-13 for -100 dBm, got 'dBm'"),
-                       ("power > 1 W & T . R", "no unit, as powers are in W")):
+                       ("power > 1 W & T . R", "no unit, as powers are in W"), ("power > 5 pW", "no unit, .* got 'pW'")):
         with pytest.raises(ValueError, match=told):
             ep.Selection(text)
 

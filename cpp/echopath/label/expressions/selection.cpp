@@ -91,7 +91,7 @@ Selection Selection::num_bounces(int min, std::optional<int> max) {
 Selection Selection::power(Comparison comparison, double watts) {
   require(std::isfinite(watts) && watts >= 0.0, "power",
           "must be compared with a finite power in W from 0 on, such as 1e-13 for -100 dBm", watts);
-  return Term::make({.kind = Term::Kind::kPower, .comparison = comparison, .watts = watts});
+  return Term::make({.kind = Term::Kind::kPower, .comparison = comparison, .watts = watts + 0.0});  // no -0
 }
 
 Selection operator&(const Selection& a, const Selection& b) {

@@ -1,9 +1,9 @@
 #include "echopath/label/expressions/selection_text.h"
 
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <string>
-#include <string_view>
 #include <system_error>
 
 #include "echopath/label/expressions/expression.h"
@@ -72,9 +72,10 @@ class SelectionParser {
     double watts = 0.0;
     const auto [end, fault] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), watts);
     if (fault != std::errc() || !std::isfinite(watts)) fail_at_word("a power in W, such as 1e-15");
-    if (std::signbit(watts)) fail_at_word("a power in W from 0 on, such as 1e-13 for -100 dBm");
+    if (watts < 0.0) fail_at_word("a power in W from 0 on, such as 1e-13 for -100 dBm");
     at_ = static_cast<size_t>(end - text_.data());
-    if (std::string_view("dDmW").find(peek()) != std::string_view::npos) fail_at_word("no unit, as powers are in W, such as 1e-13 for -100 dBm");
+    if (std::isalpha(static_cast<unsigned char>(peek())) && peek() != 'T')
+      fail_at_word("no unit, as powers are in W, such as 1e-13 for -100 dBm");
     return watts;
   }
 

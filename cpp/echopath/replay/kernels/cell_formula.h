@@ -144,17 +144,30 @@ ECHOPATH_INLINE ComplexOf<Real> flat_cell_filter(const FootprintPhaseOf<Real>& p
   return {is_bent ? bent.re : flat, is_bent ? bent.im : flat * 0.0};
 }
 
+// Holds the phase over a cell on a cylinder, by the cylinder's own axes.
+template <class Real>
+struct CylinderPhase {
+  FootprintPhaseOf<Real> across;
+  Real along;  // gradient along the axis, rad per cell
+};
+template <class Real>
+ECHOPATH_INLINE CylinderPhase<Real> cylinder_phase(const CellShape& cell, const FootprintPhaseOf<Real>& phase) {
+  const double x = cell.across[0], y = cell.across[1];
+  CylinderPhase<Real> turned{};
+  turned.across.g1 = x * phase.g1 + y * phase.g2;
+  turned.across.h11 = x * x * phase.h11 + 2.0 * x * y * phase.h12 + y * y * phase.h22;
+  turned.along = x * phase.g2 - y * phase.g1;
+  return turned;
+}
+
 // Along the axis of a cylinder the facets are as long as the cylinder: the filter is flat-top there and of second order
 // across.
 template <class Math, class Real, class Turn>
 ECHOPATH_INLINE ComplexOf<Real> cylinder_cell_filter(const CellShape& cell, const FootprintPhaseOf<Real>& phase,
                                                      const CellFilter& filter, Turn& turn) {
-  const double x = cell.across[0], y = cell.across[1];
-  FootprintPhaseOf<Real> across{};
-  across.g1 = x * phase.g1 + y * phase.g2;
-  across.h11 = x * x * phase.h11 + 2.0 * x * y * phase.h12 + y * y * phase.h22;
-  const Real flat = flat_top_of<Math>(x * phase.g2 - y * phase.g1);
-  const ComplexOf<Real> bent = quadratic_footprint<Math>(across, filter, turn);
+  const CylinderPhase<Real> turned = cylinder_phase(cell, phase);
+  const Real flat = flat_top_of<Math>(turned.along);
+  const ComplexOf<Real> bent = quadratic_footprint<Math>(turned.across, filter, turn);
   return {flat * bent.re, flat * bent.im};
 }
 

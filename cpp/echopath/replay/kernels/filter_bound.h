@@ -72,12 +72,8 @@ ECHOPATH_INLINE Real largest_cell_filter(const CellShape& cell, const CellWaves<
     const Real flat = largest_flat_top<Math>(phase.g1, slack_g) + largest_flat_top<Math>(phase.g2, slack_g);
     return Math::larger(flat, largest_quadratic<Math>(phase, filter.spread, slack_g, slack_a));
   }
-  const double x = cell.across[0], y = cell.across[1];
-  FootprintPhaseOf<Real> across{};
-  across.g1 = x * phase.g1 + y * phase.g2;
-  across.h11 = x * x * phase.h11 + 2.0 * x * y * phase.h12 + y * y * phase.h22;
-  return largest_flat_top<Math>(x * phase.g2 - y * phase.g1, slack_g) +
-         largest_quadratic<Math>(across, filter.spread, slack_g, slack_a);
+  const CylinderPhase<Real> axes = cylinder_phase(cell, phase);
+  return largest_flat_top<Math>(axes.along, slack_g) + largest_quadratic<Math>(axes.across, filter.spread, slack_g, slack_a);
 }
 
 }  // namespace echopath

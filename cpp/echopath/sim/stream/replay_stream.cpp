@@ -22,13 +22,13 @@ constexpr int64_t kNodesOfChirps = 128;
 constexpr int64_t kValuesInFlight = 150000;  // no power of two, as above
 constexpr int64_t kMinBlock = 64;            // fills the registers with vectors of joined echoes
 
-constexpr int64_t kBlocksOfChirps = 8;  // in flight: those of 32 left the second-level cache, which cost a sixth
+constexpr int64_t kBlocksOfChirps = 16;  // in flight: 32, with their tiles, left the cache that all cores share
 
 int64_t blocks_in_flight(int64_t num_rows) { return num_rows > kNodesOfChirps ? kBlocksOfChirps : kBlocksInFlight; }
 
 int64_t block_size(int64_t num_channels, int64_t num_rows) {
   const int64_t values = num_channels * ((num_rows + kNodesOfAPath - 1) / kNodesOfAPath);
-  const int64_t most = std::clamp<int64_t>(kEchoesInFlight / (kBlocksInFlight * values), 1, kLargestBlock);
+  const int64_t most = std::clamp<int64_t>(kEchoesInFlight / (blocks_in_flight(num_rows) * values), 1, kLargestBlock);
   if (num_rows <= kNodesOfChirps) return most;
   return std::min(most, std::max(kMinBlock, kValuesInFlight / (blocks_in_flight(num_rows) * num_channels * num_rows)));
 }

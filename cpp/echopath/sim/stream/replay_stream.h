@@ -26,7 +26,7 @@ class PathWatcher {
 // Replays paths and sends their echoes to a sink, many blocks at a time. Blocks and their order depend on the paths alone.
 class ReplayStream {
  public:
-  static constexpr int64_t kBlocksInFlight = 32;  // fixed: results must not depend on the number of threads
+  static constexpr int64_t kBlocksInFlight = 32;  // at most; fixed: results must not depend on the number of threads
 
   // Tells which paths the echoes of some blocks belong to.
   struct EchoPaths {

@@ -8,10 +8,10 @@ from collections import Counter
 from importlib.resources import as_file
 from pathlib import Path
 
+from ...base.data_folder import data_folder
 from ...base.threads import num_threads, set_num_threads
 from ...dataset.folder import checksum
 from ...dataset.template import Template
-from ...base.data_folder import data_folder
 from ...sequence.keep import write_frame
 from ..pace import told_at_reference, verdict
 

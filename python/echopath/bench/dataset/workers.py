@@ -13,11 +13,11 @@ import uuid
 from importlib.resources import as_file
 from pathlib import Path
 
+from ...base.data_folder import data_folder
 from ...base.threads import set_num_threads
 from ...dataset.folder import prepare_folder
 from ...dataset.template import Template
 from ...dataset.workers import in_this_process, turned
-from ...base.data_folder import data_folder
 
 SCENES, QUICK_SCENES = 12, 4
 TEMPLATE = "crossing"

@@ -9,9 +9,10 @@ import echopath as ep
 from echopath import _core
 
 from ...actors import shapes
+from ...paths.absent import NO_MESH
 from ..physics import closed_forms as exact
 from .case import Cases
-from .scenes import (METAL, NO_MESH, POWER, ROUGH, UTM, broadside_rcs, decibels, edge_points, field, make_radar, misses,
+from .scenes import (METAL, POWER, ROUGH, UTM, broadside_rcs, decibels, edge_points, field, make_radar, misses,
                      plate_at, rcs_of, scene_of, traced)
 
 cases = Cases("Geometry")

@@ -10,13 +10,13 @@ import echopath as ep
 from echopath import _core
 
 from ...actors import shapes
+from ...paths.absent import NO_MESH
 from ..physics import closed_forms as exact
 from .case import Cases
 from .repeat import small_street
 from .scenes import METAL, POWER, ROUGH, decibels, edge_points, level_of, make_radar, misses, scene_of, traced
 
 cases = Cases("Large")
-NO_MESH = 2 ** 32 - 1
 
 
 @cases("10 million rays at edges of a cube", "share that leaks", bound=1e-6, unit="of them", heavy=True,

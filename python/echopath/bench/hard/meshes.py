@@ -7,8 +7,9 @@ import echopath as ep
 from echopath import _core
 
 from ...actors import shapes
+from ...paths.absent import NO_MESH
 from .case import Cases
-from .scenes import METAL, NO_MESH, UTM, decibels, field, level_of, make_radar, plate_at, rcs_of, scene_of, traced
+from .scenes import METAL, UTM, decibels, field, level_of, make_radar, plate_at, rcs_of, scene_of, traced
 
 cases = Cases("Meshes")
 

@@ -7,6 +7,7 @@ import echopath as ep
 from echopath import _core
 
 from ...actors import shapes
+from ...paths.absent import NO_MESH
 from .case import Cases
 from .scenes import METAL, POWER, ROUGH, make_radar, scene_of, traced, traced_quietly
 
@@ -75,7 +76,7 @@ def interpenetrating() -> float:
         directions = np.array([4.2, 0.0, 0.0]) + random.uniform(-0.6, 0.6, (1500, 3))
         mesh_id, _, distance, _ = _core.bench.first_hits(scene, np.zeros_like(directions), directions, time=time)
         _, expected = brute_force(scene, directions, time)
-        near = np.isclose(distance, expected, atol=1e-5) | ((mesh_id == 2 ** 32 - 1) & np.isinf(expected))
+        near = np.isclose(distance, expected, atol=1e-5) | ((mesh_id == NO_MESH) & np.isinf(expected))
         wrong += int(np.sum(~near))
     return float(wrong)
 
@@ -83,7 +84,7 @@ def interpenetrating() -> float:
 def brute_force(scene, directions, time: float):
     """Mesh and distance [N] of the nearest triangle from the origin: Moeller-Trumbore against all of them."""
     directions = directions / np.linalg.norm(directions, axis=1, keepdims=True)
-    best, owner = np.full(len(directions), np.inf), np.full(len(directions), 2 ** 32 - 1)
+    best, owner = np.full(len(directions), np.inf), np.full(len(directions), NO_MESH)
     for mesh in scene.meshes:
         corners = np.asarray(scene.world_vertices(mesh.id, time))[np.asarray(mesh.triangles, int)]
         for a, b, c in corners:

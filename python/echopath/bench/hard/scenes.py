@@ -9,10 +9,10 @@ import echopath as ep
 from echopath import _core
 
 from ...actors import shapes
+from ...paths.absent import NO_MESH
 from ..physics import closed_forms as exact
 
 UTM = np.array([450_000.0, 5_400_000.0, 120.0])  # m, a place in coordinates of maps
-NO_MESH = 2 ** 32 - 1  # of a ray that hits nothing
 METAL = ep.Material.metal()
 ROUGH = ep.Material(reflectivity=0.5, scattering=1.0)
 POWER = 0.01  # W
@@ -84,7 +84,7 @@ def misses(scene, origin, targets) -> int:
     """Rays from `origin` [3] through `targets` [N, 3] that meet nothing."""
     directions = np.asarray(targets, float) - origin
     mesh_id, *_ = _core.bench.first_hits(scene, np.broadcast_to(origin, directions.shape), directions)
-    return int(np.sum(mesh_id == 2 ** 32 - 1))
+    return int(np.sum(mesh_id == NO_MESH))
 
 
 def edge_points(mesh, count: int, seed: int = 1) -> np.ndarray:

@@ -12,6 +12,7 @@ import numpy as np
 
 import echopath as ep
 
+from ...paths.absent import NO_STRATUM
 from ..pace import told_at_reference, verdict
 from ..speed.tracer import bare_share
 from ..timing import processor_time
@@ -26,7 +27,6 @@ BOUNCES = 3                              # of traces; the slow search goes to tw
 DELAY_LIMIT = 1e-12                      # s
 LEVEL_LIMIT_DB = 0.01
 MESHES_LIMIT = 0.3                       # s, of the first trace
-NO_STRATUM = 65535                       # of paths by images
 AT_RIM = 1e-6                            # m: paths that pass a rim this near may be there or not
 
 

@@ -22,10 +22,11 @@ import numpy as np
 import echopath as ep
 
 from ...base.stages import StageClock
+from ...paths.absent import NO_STRATUM
 from ..suite import describe_judged, judged, judged_row
 from ..timing import processor_time
 from . import peer
-from .city import BOUNCES, DELAY_LIMIT, LEVEL_LIMIT_DB, NO_STRATUM
+from .city import BOUNCES, DELAY_LIMIT, LEVEL_LIMIT_DB
 
 FREQUENCY = 3.5e9        # Hz
 RAYS, QUICK_RAYS = 1_000_000, 20_000

@@ -209,7 +209,7 @@ def _with_margin(axis, indices, margin: float):
 
 def _strongest_ghosts(labels) -> list:
     ghosts = [ghost for ghost in labels.ghosts if ghost.peak is not None]
-    return sorted(ghosts, key=lambda ghost: -ghost.power)[:MAX_GHOSTS]
+    return sorted(ghosts, key=lambda ghost: -ghost.peak.power)[:MAX_GHOSTS]
 
 
 def _draw_extents(panels, labels, rows: list) -> None:

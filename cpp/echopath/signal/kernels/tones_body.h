@@ -56,8 +56,9 @@ ECHOPATH_INLINE void undo_logarithms(States<kCount>& states) {
   }
 }
 
-// The arrays have room for whole vectors.
+// What stands beyond the last echo, in the rest of its vector, need not be a logarithm: it counts as 0.
 void undo_logarithms(double* amplitude, int count) {
+  for (int p = count; p % kLanes != 0; ++p) amplitude[2 * p] = amplitude[2 * p + 1] = 0.0;
   for (int p = 0; p < count; p += kLanes, amplitude += 2 * kLanes) {
     const Vec first = load(amplitude), second = load(amplitude + kLanes);
     const Vec size = LaneMath::exp(every_other<0>(first, second));

@@ -12,8 +12,8 @@ using Quaternion = Eigen::Quaterniond;
 // A transform T turns p_inner into p_outer = T * p_inner; its name reads from right to left, as in world_from_node.
 using Transform = Eigen::Affine3d;
 
-// Unit vectors and quaternions that are given may be off by what single precision or six written digits leave; one farther off
-// is a mistake, such as another convention or angles.
+// Unit vectors and quaternions that are given may be off by what single precision or six written digits leave; one farther
+// off is a mistake, such as another convention or angles.
 constexpr double kUnitTolerance = 1e-6;
 
 // Points and normals that are the same have the same component along this direction, and others seldom do by chance: things

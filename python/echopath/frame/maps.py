@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..arguments.checks import refused
 from ..base.equality import has_same_fields
 from ..base.made_by import made_by
 from ..detections.detections import Detections
@@ -53,9 +54,9 @@ class FrameMaps:
     @property
     def truth(self) -> Truth:
         """Truth of the objects, as `Frame.truth`. Raises ValueError where the run was not asked for one (`truth=`)."""
-        from ..truth import truth  # which knows this class
-
-        return truth(self)
+        if self.kept_truth is None:
+            raise refused(ValueError, "frame", "of a run with truth=True", self)
+        return self.kept_truth
 
     def __repr__(self) -> str:
         power = "no power" if self.power is None else f"power [{len(self.velocity)}, {len(self.range)}]"

@@ -141,5 +141,5 @@ def test_the_data_are_found_beside_a_source_tree_that_is_not_installed(monkeypat
     def not_installed(name):
         raise ModuleNotFoundError(name)
 
-    monkeypatch.setattr("echopath.scene.materials.resources.files", not_installed)
+    monkeypatch.setattr("echopath.base.data_folder.resources.files", not_installed)
     assert (data_folder("materials") / "metal.toml").is_file()

@@ -60,12 +60,13 @@ def run(options) -> None:
         written = write_outputs(frame, options.out, partitions=frame.parts)
     if options.raw is not None:
         print(raw_line(options.raw, frame.save_raw(options.raw)))
+    advice = report.other_method(scene_file.detection_settings(), 'method = "os" of [detections]')
     for text in [scene_file.title or options.scene, *report.counts(frame.paths),
                  *report.overlaps(frame.scene, frame.paths.frame.trace_time),
                  *report.folded_velocities(frame.scene, frame.radar, frame.paths.frame.trace_time),
                  *report.effects(frame.effects), *report.stages(frame.stages),
                  *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
-                 *report.labels(frame.labels), *report.detections(frame.detections, frame.labels, _other_method(scene_file)),
+                 *report.labels(frame.labels), *report.detections(frame.detections, frame.labels, advice),
                  *report.truth(frame.kept_truth), *report.checks(frame.checks), *report.validity(certificate),
                  *report.files(written), *report.unresolved(frame.unresolved, frame.paths)]:
         print(text)
@@ -75,12 +76,6 @@ def info(options) -> None:
     from .info import describe_file
 
     print("\n".join(describe_file(options.file, options.select, unit=options.unit, up=options.up)))
-
-
-def _other_method(scene_file) -> str:
-    """What to write for detections beside strong echoes, "" where a file asks for that already."""
-    asked = scene_file.detection_settings() or {}
-    return 'method = "os" of [detections]' if asked.get("method", "ca") == "ca" else ""
 
 
 def scene(options) -> None:

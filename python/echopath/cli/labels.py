@@ -32,8 +32,7 @@ def label_file(path, folder, *, settings: LabelSettings, parts=(), cfar=None, pr
     if frame.spectrum is not None:
         frame.detections = detect_frame(frame, objects=settings.objects, progress=progress, **cfar or {})
         frame.detections.to_csv(folder / "detections.csv")
-        is_mean = (cfar or {}).get("method", "ca") == "ca"
-        detections = report.detections(frame.detections, frame.labels, "--cfar os" if is_mean else "")
+        detections = report.detections(frame.detections, frame.labels, report.other_method(cfar, "--cfar os"))
     save_labels(frame.labels, folder / "labels.h5")
     written = write_labels(frame, folder, frame.selections | chosen)
     return [str(path), *report.counts(frame.paths), report.omissions(missing, path), *report.labels(frame.labels),

@@ -169,6 +169,11 @@ def detections(found, of_partitions: dict, advice: str = "") -> list[str]:
             line("noise alone", f"{int(found.is_noise.sum()):8,}"), *_undetected(found, of_partitions, advice)]
 
 
+def other_method(asked, words: str) -> str:
+    """`words`, which ask for order statistics, unless keywords of a detector name another method than the mean over cells."""
+    return words if (asked or {}).get("method", "ca") == "ca" else ""
+
+
 def _undetected(found, of_partitions: dict, advice: str) -> list[str]:
     """Objects that are seen in the labels and have no detection; a mean over the cells about a cell hides what stands beside
     much stronger echoes."""

@@ -198,11 +198,14 @@ def extent_of_parts(spectra: dict, floor: float):
 
     By range around what moves in each part, around all of a part in which nothing does, and not around all the rest.
     """
-    asked = [spectrum for name, spectrum in spectra.items() if name != REST] or list(spectra.values())
-    boxes = [signal_extent([spectrum], floor, is_moving_meant=True) for spectrum in asked]
-    ranges = np.array([box[:2] for box in boxes if box is not None])
-    whole = signal_extent(list(spectra.values()), floor)
-    return (ranges[:, 0].min(), ranges[:, 1].max(), *whole[2:]) if len(ranges) else whole
+    asked = [name for name in spectra if name != REST] or list(spectra)
+    boxes = {name: signal_extent([spectrum], floor, is_moving_meant=name in asked) for name, spectrum in spectra.items()}
+    found = {name: box for name, box in boxes.items() if box is not None}
+    if not found:
+        return None
+    near, far, _, _ = zip(*([found[name] for name in asked if name in found] or found.values()))
+    _, _, low, high = zip(*found.values())
+    return min(near), max(far), min(low), max(high)
 
 
 def signal_extent(spectra, floor: float, is_moving_meant: bool = False):

@@ -69,7 +69,10 @@ def test_paths_of_a_peer_are_compared_one_by_one(tmp_path, floor, late, missing)
     assert lost["measured"] == missing and lost["holds"] == (missing == 0)
     assert row_of(rows, "floor, delays differ by, ps")["measured"] < 1e-3
     assert row_of(rows, "floor, powers differ by, dB")["measured"] < 1e-5
-    assert row_of(rows, "floor, paths missing with all planes marked")["measured"] == missing
+    assert row_of(rows, "floor, paths of its power")["measured"] == 1 - missing
+    marked = row_of(rows, "floor, all planes marked, paths of Sionna RT missing")
+    assert marked["measured"] == missing and marked["holds"] == (missing == 0)
+    assert row_of(rows, "floor, all planes marked, powers differ by, dB")["holds"]
     assert row_of(rows, "floor, time over Sionna RT's")["measured"] > 0.0
     assert row_of(rows, "floor, time of Sionna RT, its median, s")["measured"] == 2.0
 
@@ -78,6 +81,7 @@ def test_a_wrong_power_of_a_path_shows():
     delay, power = closed_form()
     found = public_cities.compare([[delay, power], [2.0 * delay, power]], [[delay, 10.0 ** 0.01 * power]])
     assert found["powers differ by, dB"] == pytest.approx(0.1) and found["paths of Sionna RT missing"] == 0
+    assert found["paths of its power"] == 0
     assert public_cities.compare(np.empty((0, 2)), [[delay, power]])["paths of Sionna RT missing"] == 1
 
 

@@ -3,6 +3,7 @@ import warnings
 
 import numpy as np
 import pytest
+from scipy import special
 
 import echopath as ep
 from echopath.bench.worlds import city as worlds
@@ -11,6 +12,7 @@ NO_STRATUM = 65535
 WEIGHT_TOLERANCE = 1e-6      # relative: single precision
 DELAY_TOLERANCE = 1e-12      # s
 LEVEL_TOLERANCE_DB = 0.01
+FAR, FADES = 40.0, 0.7       # half zones, where an edge is none, and from where it fades
 CONCRETE = ep.Material(permittivity=5.2 - 0.3j)
 
 
@@ -49,6 +51,64 @@ def test_a_building_has_the_echo_of_its_wall_s_image():
     expected = ep.speed_of_light / 77e9 * np.sqrt(paths.radar.transmit_power) * reflection / (4 * np.pi * length)
     assert abs(paths.amplitude[one]) == pytest.approx(expected, rel=1e-4)
     assert not np.any((np.asarray(paths.diffuse) == 0) & (np.asarray(paths.stratum) != NO_STRATUM))
+
+
+def beside_edges(within, *, turn=0.0, antennas=((0, 0, 10), (0, 0.05, 10)), across=FAR, material="metal"):
+    """The field over that of an endless metal plane, of a plane z = 0 whose edge passes `within` half zones beside the point of
+    reflection, turned by an angle in rad from the plane of incidence, and one across it by `across`."""
+    transmitter, receiver = np.array(antennas, float)
+    point = (receiver[2] * transmitter + transmitter[2] * receiver) / (transmitter[2] + receiver[2]) * [1, 1, 0]
+    before, behind = np.linalg.norm(point - transmitter), np.linalg.norm(point - receiver)
+    half = np.sqrt(ep.speed_of_light / 77e9 * before * behind / (before + behind))
+    slant = (point - transmitter) * [1, 1, 0]
+    along = slant / np.linalg.norm(slant) if np.any(slant) else np.array([1.0, 0.0, 0.0])
+    axes = half * np.array([along * before / transmitter[2], np.cross([0, 0, 1], along)])
+    out = np.array([np.cos(turn), np.sin(turn)])
+    aside = np.array([-out[1], out[0]])
+    corners = [a * out + b * aside for a, b in ((within, -FAR), (within, across), (-FAR, across), (-FAR, -FAR))]
+    scene = ep.Scene()
+    scene.add(ep.Mesh(point + corners @ axes, [[0, 1, 2], [0, 2, 3]]), name="plane", material=material)
+    paths = ep.trace(scene, radar(*antennas), num_rays=30_000, max_bounces=1, polarization="scalar")
+    endless = ep.speed_of_light / 77e9 / (4 * np.pi * (before + behind))
+    return np.sqrt(ep.received_power(paths).power / paths.radar.transmit_power) / endless, len(images(paths))
+
+
+def behind_an_edge(within):
+    """The field so many half zones inside the shadow of a half plane, over that without it: Born and Wolf, 8.7."""
+    sine, cosine = special.fresnel(np.sqrt(2.0) * within)
+    return abs(0.5 + cosine - 1j * (0.5 + sine)) / np.sqrt(2.0)
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.4, 2.0])
+@pytest.mark.parametrize("antennas", [((0, 0, 10), (0, 0.05, 10)), ((-6, 0, 4), (5, 1, 3))])
+def test_the_edge_of_a_plane_takes_its_part_of_the_field_whether_images_or_rays_carry_it(antennas, turn):
+    """Geometrical optics would be 5.8 dB too strong on the plane, and nothing beside it."""
+    for within in (-0.3, -0.05, 0.02, 0.1, 0.3, 0.6, 0.9, 1.2):
+        field, by_images = beside_edges(within, turn=turn, antennas=antennas)
+        assert by_images == (within > 0.0)
+        tolerance_db = 0.5 if within < FADES else 1.1  # rays and directions sample the plane; farther edges fade
+        assert 20.0 * np.log10(field / behind_an_edge(within)) == pytest.approx(0.0, abs=tolerance_db)
+
+
+def test_the_corner_of_a_plane_leaves_a_quarter_and_far_edges_leave_all():
+    assert beside_edges(1e-3, across=1e-3)[0] == pytest.approx(0.25, abs=0.01)
+    assert beside_edges(1.5, across=1.5)[0] == pytest.approx(1.0, abs=WEIGHT_TOLERANCE)
+
+
+def test_a_plane_marked_as_a_mirror_has_no_edges():
+    marked = ep.Material.metal(mirror=True)
+    assert beside_edges(0.02, material=marked)[0] == pytest.approx(1.0, abs=WEIGHT_TOLERANCE)
+
+
+def test_a_wall_that_rises_from_a_plane_is_no_edge_of_it():
+    """The image in the wall takes the place of the plane beyond: a half zone of 14 cm, and the wall 2 cm from the point."""
+    scene = ep.Scene()
+    for name, corner, up in (("floor", (0.02, -4, 0), (-8, 0, 0)), ("wall", (0.02, -4, 0), (0, 0, 12))):
+        corners = np.array([corner, np.add(corner, up), np.add(corner, up) + [0, 8, 0], np.add(corner, [0, 8, 0])])
+        scene.add(ep.Mesh(corners, [[0, 1, 2], [0, 2, 3]]), name=name, material="metal")
+    paths = ep.trace(scene, radar((0, 0, 10), (0, 0.05, 10)), num_rays=30_000, max_bounces=1, polarization="scalar")
+    weights = np.abs(np.asarray(paths.weight)[images(paths)])
+    assert weights == pytest.approx(np.ones(2), rel=WEIGHT_TOLERANCE)
 
 
 def test_marking_the_building_changes_nothing_between_the_antennas():

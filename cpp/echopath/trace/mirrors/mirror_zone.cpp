@@ -9,6 +9,8 @@ namespace echopath {
 namespace {
 
 constexpr double kAmple = 1.0 / 0.7;  // widths of the zone from which on edges count as none
+constexpr double kFades = 0.5;        // half zones from which on edges about a flat mirror fade
+constexpr int kDirections = 32;       // in which its edges are looked for: a straight one is met as by any number to 0.05 dB
 
 // Returns the direction and distance by which the lit point of the target moves when the point of the mirror moves by 1 m
 // along the axis.
@@ -105,6 +107,19 @@ class AxisCover {
   const LitSurface& lit_;
 };
 
+// Returns the share of the field that a flat mirror loses at its edge in the direction of `half`, which reaches to the end of
+// the half zone.
+std::complex<double> field_of_edge(const SurfaceAround& mirror, const Vec3& half) {
+  const double length = half.norm(), ample = kAmple * length;
+  const Vec3 along = half / length;
+  if (mirror.reaches(along, ample)) return 0.0;
+  const SurfaceEnd end = mirror.find_end(along, ample);
+  if (end.is_wall || end.distance >= ample) return 0.0;
+  const double distance = end.distance / length;
+  const double faded = std::clamp((distance - kFades) / (kAmple - kFades), 0.0, 1.0);
+  return std::polar(0.5 + 0.5 * std::cos(kPi * faded), -kPi * distance * distance);
+}
+
 }  // namespace
 
 std::array<ZoneAxis, 2> zone_axes(const MirrorView& view, double wavelength) {
@@ -139,6 +154,20 @@ ZoneCover cover_of_zone(const EmbreeScene& geometry, const MirrorView& view, con
     cover.field *= along.field;
   }
   return cover;
+}
+
+std::complex<double> field_of_flat_mirror(const EmbreeScene& geometry, const MirrorView& view, double wavelength,
+                                          int64_t& num_queries) {
+  const SurfaceAround mirror(geometry, view.point, geometry.plane_tolerance(wavelength), num_queries);
+  if (mirror.holds_circle(ample_squared(view, wavelength))) return 1.0;
+  const std::array<ZoneAxis, 2> axes = zone_axes(view, wavelength);
+  std::complex<double> of_edges = 0.0;
+  for (int k = 0; k < kDirections; ++k) {
+    const double angle = 2.0 * kPi * (k + 0.5) / kDirections;
+    const Vec3 half = std::cos(angle) * axes[0].half * axes[0].along + std::sin(angle) * axes[1].half * axes[1].along;
+    of_edges += field_of_edge(mirror, half);
+  }
+  return 1.0 - of_edges / static_cast<double>(kDirections);
 }
 
 // Uses the auxiliary functions of Fresnel's integrals to 2e-3: Abramowitz and Stegun (1964), 7.3.32 and 7.3.33.

@@ -146,8 +146,9 @@ bool PlaneImages::is_known(Facets chain, const std::vector<Vec3>& points) {
   return false;
 }
 
-// Returns whether each surface of the path covers its Fresnel zone.
-bool PlaneImages::holds_zones(const ImagePath& path, int64_t& num_queries) const {
+// Returns the field that the edges of its surfaces leave of a path; nothing where one does not cover its Fresnel zone.
+std::optional<std::complex<double>> PlaneImages::field_beside_edges(const ImagePath& path, int64_t& num_queries) const {
+  std::complex<double> field = 1.0;
   double whole = (settings_.receiver - path.points.back()).norm(), before = 0.0;
   for (size_t k = 0; k < path.points.size(); ++k)
     whole += (path.points[k] - (k == 0 ? settings_.transmitter : path.points[k - 1])).norm();
@@ -159,9 +160,10 @@ bool PlaneImages::holds_zones(const ImagePath& path, int64_t& num_queries) const
     point.position = path.points[k];
     point.normal = lit_normal(line, planes_[k].normal);
     const MirrorView view{point, line.normalized(), before, whole - before};
-    if (cover_of_zone(geometry_, view, nullptr, wavelength_, num_queries).share < kZoneShare) return false;
+    if (cover_of_zone(geometry_, view, nullptr, wavelength_, num_queries).share < kZoneShare) return std::nullopt;
+    field *= field_of_flat_mirror(geometry_, view, wavelength_, num_queries);
   }
-  return true;
+  return field;
 }
 
 bool PlaneImages::is_same_plane(const Mirror& plane, const Mirror& other) const {
@@ -194,9 +196,12 @@ PathBlock PlaneImages::find(const Job* job) {
     if (sequence.empty()) continue;
     ImageMethod images(geometry_, planes_, locator, settings_);
     if (!images.find_points(sequence, settings_.receiver, points) || is_known(chain, points)) continue;
-    const std::optional<ImagePath> path = images.path_over(sequence);
+    std::optional<ImagePath> path = images.path_over(sequence);
     block.statistics.num_queries += images.num_queries();
-    if (!path || !holds_zones(*path, block.statistics.num_queries)) continue;
+    if (!path) continue;
+    const std::optional<std::complex<double>> field = field_beside_edges(*path, block.statistics.num_queries);
+    if (!field) continue;
+    path->weight *= *field;
     const std::vector<int> planes = joined(sequence);
     if (!sequences_.insert(planes).second) continue;
     add_path(*path, block);

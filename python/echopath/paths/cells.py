@@ -9,6 +9,7 @@ from .. import _core
 from ..arguments.checks import ArrayLike, anything, array, checked, row_of_channel
 from ..base.made_by import made_by
 
+TURNING_STEP = 0.125  # chirps, over which the phase of an amplitude is followed: by less than half a turn
 OUTSIDE = -1  # index of a path that the anti-alias filter removes, or that lies beyond the axis
 _ENDS = array("[2]", kind="whole")
 _BLOCK = 1 << 15  # paths whose numbers stay in the cache
@@ -22,7 +23,7 @@ class PathCells:
 
     length: [P] m, from the transmitter by all hits to the receiver
     range: [P] m, where the map shows it: half the length and the shift that the velocity makes (range-Doppler coupling)
-    velocity: [P] m/s, half the rate of the length, receding positive; not folded into the axis of the map
+    velocity: [P] m/s, half the rate of the length as the phase tells it, receding positive; not folded into the axis of the map
     range_index, velocity_index: [P] i32, nearest cell of the map, velocities folded; both -1 for paths outside of it
     """
 
@@ -49,31 +50,35 @@ class PathCells:
 def path_cells(paths: _core.Paths, spectrum: _core.RangeDoppler, *, tx: int = 0, rx: int = 0) -> PathCells:
     """The cell of each path in a range-Doppler map of its radar.
 
-    Model: the beat frequency and the slow-time phase of cpp/echopath/signal/kernels/carrier.h at the middle of the frame. A path
-    whose velocity changes during the frame, and the window's main lobe, spread its power over neighbouring cells.
+    Model: the beat frequency and the slow-time phase of cpp/echopath/signal/kernels/carrier.h at the middle of the frame, with
+    the rate of the phase of the path's amplitude: where a point of reflection slides over a turning or curved surface, the
+    phase follows that point, and the length the piece of surface that the ray has hit. A path whose velocity changes during
+    the frame, and the window's main lobe, spread its power over neighbouring cells.
     paths: of `trace`, P of them; spectrum: RangeDoppler, any map of the radar that traced them, for its axes
     tx, rx: indices of the channel's antennas
     Returns PathCells, ranges in m, velocities in m/s. Raises IndexError for antennas that are not there.
     """
     row_of_channel(paths, tx, rx)
     before, length, after = _lengths(paths, tx, rx)
+    turning = _turning(paths, tx, rx)
     cells = PathCells(length, *(np.empty(len(length), kind) for kind in (float, float, np.int32, np.int32)))
     for first in range(0, len(length), _BLOCK):
         some = slice(first, first + _BLOCK)
-        places = _places(length[some], after[some] - before[some], paths.radar, spectrum)
+        places = _places(length[some], after[some] - before[some], turning[some], paths.radar, spectrum)
         for name, values in zip(_PLACES, places, strict=True):
             getattr(cells, name)[some] = values
     return cells
 
 
-def _places(length, longer, radar, spectrum) -> tuple:
-    """_PLACES, [P] each, of paths of some length in m that becomes `longer` by so many m during a chirp."""
+def _places(length, longer, turning, radar, spectrum) -> tuple:
+    """_PLACES, [P] each, of paths of some length in m that becomes `longer` by so many m during a chirp, and whose amplitudes
+    turn back by so many Hz."""
     waveform = radar.waveform
-    rate = longer / waveform.chirp_duration
-    delay, delay_rate = length / _core.speed_of_light, rate / _core.speed_of_light
+    delay = length / _core.speed_of_light
     carrier = waveform.start_frequency + waveform.slope * (waveform.window_centre - delay)
-    beat = waveform.slope * delay + carrier * delay_rate  # Hz, fast time
-    doppler = carrier * delay_rate                        # Hz, slow time
+    rate = longer / waveform.chirp_duration + _core.speed_of_light / carrier * turning
+    doppler = carrier * rate / _core.speed_of_light  # Hz, slow time
+    beat = waveform.slope * delay + doppler          # Hz, fast time
     range_index = _range_index(beat, waveform, spectrum.range)
     velocity_index = _velocity_index(0.5 * waveform.wavelength * doppler, spectrum.velocity, radar)
     velocity_index[range_index == OUTSIDE] = OUTSIDE
@@ -82,10 +87,21 @@ def _places(length, longer, radar, spectrum) -> tuple:
 
 def _lengths(paths, tx: int, rx: int):
     """Lengths [3, P] in m at the beginning, the middle and the end of a chirp in the middle of the frame."""
-    radar = paths.radar
-    first, last = (radar.chirp_time(tx, chirp) for chirp in (0, radar.waveform.num_chirps - 1))
-    middle, half = paths.frame.start_time + 0.5 * (first + last), 0.5 * radar.waveform.chirp_duration
+    middle, half = _middle(paths, tx), 0.5 * paths.radar.waveform.chirp_duration
     return paths.lengths([middle - half, middle, middle + half], tx, rx)
+
+
+def _turning(paths, tx: int, rx: int) -> np.ndarray:
+    """Rate [P] in Hz by which the phase of each amplitude falls in the middle of the frame."""
+    middle, half = _middle(paths, tx), 0.5 * TURNING_STEP * paths.radar.waveform.chirp_duration
+    before, after = (paths._echoes_at_receivers(time, tx, [rx])[1][0] for time in (middle - half, middle + half))
+    return np.angle(before * np.conj(after)) / (4.0 * np.pi * half)
+
+
+def _middle(paths, tx: int) -> float:
+    """Of the chirps of a transmitter, s."""
+    first, last = (paths.radar.chirp_time(tx, chirp) for chirp in (0, paths.radar.waveform.num_chirps - 1))
+    return paths.frame.start_time + 0.5 * (first + last)
 
 
 def _range_index(beat, waveform, axis):

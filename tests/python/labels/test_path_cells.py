@@ -107,3 +107,20 @@ def test_no_paths_give_no_cells():
     paths = traced(radar_of(False, 1)).select("T .{3} R")
     cells = ep.path_cells(paths, ep.range_doppler(np.zeros((1, 2, 64, 512), complex), paths.radar))
     assert cells.range.shape == cells.range_index.shape == cells.within((0, 9), (0, 9)).shape == (0,)
+
+
+def test_a_ball_that_spins_lies_where_it_is():
+    """Its surface moves at 14 m/s, its point of reflection not at all. The rays lie far apart, so that the phases of the wide
+    launch cells follow that point, and the places that the rays have hit go away by several cells of 0.3 m/s."""
+    radar = build_radar([(0, 0, 0)], [(0, 0.02, 0)], num_samples=128, num_chirps=64, chirp_interval=1e-4)
+    scene = ep.Scene()
+    scene.add(ep.actors.sphere(0.35), name="ball", material="metal", smooth=True, position=(8.0, 0.0, 0.0),
+              motion=ep.LinearMotion(angular_velocity=(0.0, 0.0, 40.0)))
+    paths = ep.trace(scene, radar, num_rays=500, max_bounces=1)
+    cells = ep.path_cells(paths, ep.range_doppler(np.zeros(cube_shape(radar), complex), radar))
+    strongest = np.argsort([power_of_one(paths, path, radar, 1).max() for path in range(paths.num_paths)])[-8:]
+    assert np.abs(cells.velocity[strongest]).max() < 0.2
+    assert cells.range[strongest] == pytest.approx(7.65, abs=0.05)
+    step = 1e-5  # s
+    before, after = paths.lengths([paths.frame.trace_time - step, paths.frame.trace_time + step], 0, 0)
+    assert np.abs(0.25 * (after - before)[strongest] / step).max() > 1.0

@@ -115,8 +115,8 @@ def image_paths(paths: ep.Paths) -> np.ndarray:
 
 
 def compare(found, peers) -> dict:
-    """The peer's paths one by one: how many, how many of ours are not within the limit of delay, the worst differences of delay in
-    ps and of power in dB of those that are, and how many of them have the peer's power within its limit.
+    """The peer's paths one by one: how many, how many of ours are not within the limit of delay, the worst differences of delay
+    in ps and of power in dB of those that are, and how many of them have the peer's power within its limit.
 
     found, peers: [N, 2] of (delay in s, power)
     """

@@ -35,13 +35,17 @@ class TimeMap:
         """Draws the map: time in s across, its other axis up, colours in dBm.
 
         ax: Matplotlib axes to draw in, None: new ones; title: above the map, None: what it shows
-        vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak
+        vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, as parts have no noise, to
+            the peak
         Returns the axes: velocities in m/s (receding positive), ranges in m or azimuths in degrees up. Raises TypeError or
         ValueError naming the argument.
         """
         from ..plots import draw_time_map
 
-        return draw_time_map(self, ax=ax, vmin=vmin, vmax=vmax, title=self.TITLE if title is None else title)
+        return draw_time_map(self, ax=ax, vmin=vmin, vmax=vmax, title=self._title() if title is None else title)
+
+    def _title(self) -> str:
+        return self.TITLE if self.part is None else f"{self.TITLE}: {self.part}"
 
     def to_xarray(self) -> DataArray:
         """The map as an xarray.DataArray, without a copy: W over time (s) and velocity (m/s), range (m) or azimuth (rad).

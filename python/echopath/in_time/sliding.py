@@ -61,7 +61,7 @@ class Stft:
                              f"{self._length}")
         ranges = self._axes.range[self._inside]
         return Spectrogram(times=np.concatenate(self._times), velocity=self._axes.velocity, power=np.concatenate(self._powers),
-                           noise_power=self._noise_power(), train=np.concatenate(self._train), trains=np.array(self._trains),
+                           noise_power=self.noise_power, train=np.concatenate(self._train), trains=np.array(self._trains),
                            window_length=self._length, hop=self._hop, window=self._window, zero_pad=self._zero_pad,
                            range_gate=(float(ranges[0]), float(ranges[-1])), part=text_of_part(part), channel=self._channel)
 
@@ -90,6 +90,8 @@ class Stft:
         self._profiles = None
         self._trains.append((self._begin, self._end))
 
-    def _noise_power(self) -> float:
+    @property
+    def noise_power(self) -> float:
+        """Mean of the receiver's noise in a cell, W; there is none before the first burst."""
         of_cell = _core.cell_noise_power(with_chirps(self._radar, self._length), self._window)
         return of_cell * np.count_nonzero(self._inside) / self._spread

@@ -7,21 +7,19 @@ import numpy as np
 
 from ..arguments.checks import refused
 from ..arguments.part_names import BESIDE
-from ..arguments.settings import FRAME_KEYWORDS, LabelSettings
+from ..arguments.settings import LabelSettings
 from ..frame.frame import Frame
 from ..frame.maps import FrameMaps
-from ..labels.ghost_names import ghost_name
-from ..labels.planes import with_receivers
-from ..labels.powers import parts_by_rival
-from ..paths.families import families
+from ..labels.part_cells import floor_over
 from ..signals.beside import cubes_beside
-from ..signals.parts import decompose
 from .bursts import Burst
+from .parts_of_frame import PartsOfFrame
 from .sliding import Stft
 from .spectrogram_labels import SpectrogramLabels, labels_of
 
 OBJECTS, FAMILIES = "objects", "families"  # views beside the partitions of frames
 GHOSTS, REST = "ghosts", "other"           # parts of these
+FAINT = 1e-2  # of the floor of the mask: ghosts that show no more, all of their paths in phase, have no part of their own
 
 
 class Views:
@@ -87,21 +85,14 @@ class Views:
         if taken:
             raise refused(ValueError, "labels", f"None for frames whose partitions are called '{OBJECTS}' or '{FAMILIES}'", taken)
         partitions = {view: {name: self._of_channel(cube) for name, cube in cubes.items()} for view, cubes in frame.parts.items()}
-        cubes = self._family_cubes(frame)
-        real = {family.object: cube for family, cube in cubes.items() if family.object and not family.is_ghost}
-        ghosts = {rival: group for rival, group in parts_by_rival(cubes).items() if group[0].is_ghost}
-        named = {_name_of(group): sum(cubes[family] for family in group) for group in ghosts.values()}
-        rest = {REST: sum(cube for family, cube in cubes.items() if not family.object)}
-        of_objects = real | ({GHOSTS: sum(named.values())} if named else {}) | rest
-        return partitions | {OBJECTS: of_objects, FAMILIES: real | named | rest}
+        found = PartsOfFrame(frame, self._settings.objects, FAINT * self._floor(), self._channel)
+        rest = {REST: found.rest}
+        of_objects = found.objects | ({GHOSTS: sum([*found.ghosts.values(), found.faint])} if found.has_ghosts else {}) | rest
+        return partitions | {OBJECTS: of_objects, FAMILIES: found.objects | found.ghosts | {REST: found.rest + found.faint}}
 
-    def _family_cubes(self, frame: Frame) -> dict:
-        """{Family: cube [tx, rx, chirp, sample] of the channels that are asked for}"""
-        tx, rx = self._channel or (None, None)
-        radar = frame.radar if rx is None else with_receivers(frame.radar, slice(rx, rx + 1))
-        settings = {name: getattr(frame, name) for name in FRAME_KEYWORDS}
-        cubes = decompose(frame.paths, radar, families(frame.paths, self._settings.objects), **settings)
-        return {family: cube if tx is None else cube[tx:tx + 1] for family, cube in cubes.items()}
+    def _floor(self) -> float:
+        """W, of the mask: what is below is in the noise."""
+        return floor_over(self._whole.noise_power, self._settings.margin_db)
 
     def _of_channel(self, cube):
         if self._channel is None:
@@ -109,10 +100,3 @@ class Views:
         tx, rx = self._channel
         return cube[tx:tx + 1, rx:rx + 1]
 
-
-def _name_of(ghosts: list) -> str:
-    """Of families that go over the same mirrors as often, there or back, which no map tells apart."""
-    if len(ghosts) == 1:
-        return ghost_name(ghosts[0])
-    first, types = ghosts[0], sorted({family.ghost_type for family in ghosts})
-    return f"{first.object}, type {' and '.join(map(str, types))}, order {first.order} via {', '.join(first.via)}"

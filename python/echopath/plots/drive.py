@@ -8,8 +8,8 @@ import numpy as np
 
 from ..signals.measures import STATIC_SPEED
 from .maps import (
-    MAP_SIZE, NOISE_PEAK_DB, RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, cells_of_scene, chosen_limits,
-    draw_level, limits_above, margin_of,
+    MAP_SIZE, RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, cells_of_scene, chosen_limits, draw_level,
+    limits_above, margin_of, noise_peak_db,
 )
 from .style import MAP_COLOURS, new_figure, set_title
 from .time_maps import TIME_LABEL, image_over_time, show_within
@@ -25,7 +25,7 @@ class Drive(NamedTuple):
 
     times: [T] s, starts of the frames; level: f16 [T, V, R] dBm, mean over channels, with noise
     velocity: [V] m/s, receding positive; range: [R] m; static_speed: m/s, up to which echoes count as standing still
-    leaked: [V, R] dBm, what leaks into the receivers in each map, None: nothing
+    leaked: [V, R] dBm, what leaks into the receivers in each map, None: nothing; num_channels: of which the levels are means
     """
 
     times: np.ndarray
@@ -34,6 +34,7 @@ class Drive(NamedTuple):
     range: np.ndarray
     static_speed: float = STATIC_SPEED
     leaked: np.ndarray | None = None
+    num_channels: int = 1
 
 
 def plot_drive(drive: Drive, *, num_frames=4, vmin=None, vmax=None, title=""):
@@ -139,7 +140,7 @@ def _extent(drive: Drive, floor: float) -> tuple:
 def _stands_out(drive: Drive, floor: float) -> np.ndarray:
     """Cells [V, R] that stand out of the noise and of the floor of the colour scale in some frame."""
     noise = np.median(drive.level[0].astype(np.float32))
-    return drive.level.max(axis=0) > max(floor + 3.0, noise + NOISE_PEAK_DB)
+    return drive.level.max(axis=0) > max(floor + 3.0, noise + noise_peak_db(drive.num_channels))
 
 
 def _crop(panels, drive: Drive, floor: float) -> None:

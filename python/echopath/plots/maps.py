@@ -1,6 +1,7 @@
 """Range-Doppler maps."""
 from __future__ import annotations
 
+import functools
 import math
 
 import numpy as np
@@ -13,13 +14,29 @@ from .style import MAP_COLOURS, axes_or_new, new_figure, set_title
 DYNAMIC_RANGE_DB = 70.0      # below the peak that a map shows at most
 LEAKED_DB = 10.0             # below a cell: where leakage alone comes so near to it, the cell tells nothing of the scene
 MARGIN_OVER_MEDIAN_DB = 6.0  # the median of a map is its noise: the scale begins above it
-NOISE_PEAK_DB = 14.0         # over the median: the highest of 1e7 noise cells is at +13.7
+NOISE_CELLS = 1e7            # of maps: the highest of as many cells of noise is taken for noise
 RANGE_MARGIN = 0.8           # m, shown around the signal at least
 VELOCITY_MARGIN = 0.5        # m/s, likewise
 CELLS_OF_MARGIN = 1.5        # likewise: the cell of the signal whole, and one beyond it
 MAP_SIZE = 9.0, 4.4          # inches, of one map
 LEVEL = optional(real(-1e4, 1e4, "dBm"))
 RANGE_LABEL, VELOCITY_LABEL = "Range in m", "Radial velocity in m/s (away: +)"
+
+
+@functools.cache
+def noise_peak_db(num_channels: int) -> float:
+    """dB from the median of noise, which is a mean over so many channels, to the highest of NOISE_CELLS cells."""
+    return 10.0 * math.log10(_noise_above(1.0 / NOISE_CELLS, num_channels) / _noise_above(0.5, num_channels))
+
+
+def _noise_above(share: float, num_channels: int) -> float:
+    """What a share of cells exceeds: sums of so many powers of mean 1, whose distribution is Erlang's, by bisection."""
+    low, high = 0.0, 10.0 * (num_channels - math.log(share))
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        logs = (k * math.log(middle) - middle - math.lgamma(k + 1.0) for k in range(num_channels))
+        low, high = (middle, high) if sum(map(math.exp, logs)) > share else (low, middle)
+    return low
 
 
 def power_dbm(spectrum):
@@ -233,7 +250,8 @@ def margin_of(axis, least: float) -> float:
 def _cells(spectrum, floor: float):
     """Range and velocity of the cells that stand out of the noise and of the floor of the colour scale, [N] each."""
     level = power_dbm(spectrum)
-    velocity, distance = np.nonzero(level > max(floor + 3.0, np.median(level) + NOISE_PEAK_DB))
+    noise_peak = np.median(level) + noise_peak_db(math.prod(spectrum.values.shape[:2]))
+    velocity, distance = np.nonzero(level > max(floor + 3.0, noise_peak))
     return spectrum.range[distance], spectrum.velocity[velocity]
 
 

@@ -6,7 +6,8 @@ import numpy as np
 from ..base.colours import colours_of
 from ..signals.measures import SMALLEST_POWER, in_dbm
 from .maps import (
-    NOISE_PEAK_DB, RANGE_LABEL, VELOCITY_LABEL, VELOCITY_MARGIN, chosen_limits, half_step, limits_above, margin_of,
+    DYNAMIC_RANGE_DB, MARGIN_OVER_MEDIAN_DB, RANGE_LABEL, VELOCITY_LABEL, VELOCITY_MARGIN, chosen_limits, half_step,
+    limits_above, margin_of, noise_peak_db,
 )
 from .style import MAP_COLOURS, axes_or_new
 
@@ -22,18 +23,19 @@ def draw_time_map(map, *, ax=None, vmin=None, vmax=None, title=""):
     """A Spectrogram, RangeTime or AngleTime in given axes, or in new ones (None): gaps between trains of chirps stay blank.
 
     map: as `ep.spectrogram` and its like give it; ax: axes to draw in; title: above them
-    vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak
+    vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, as parts have no noise, to the peak
     Returns the axes: time in s across; radial velocity in m/s, range in m or azimuth in degrees up. Raises TypeError or
     ValueError naming the argument.
     """
     level = in_dbm(map.power, SMALLEST_POWER)
-    vmin, vmax = chosen_limits(_limits(level, map.noise_power), vmin, vmax)
+    noise = _noise_level(level, map.noise_power) if map.part is None else level.max() - DYNAMIC_RANGE_DB - MARGIN_OVER_MEDIAN_DB
+    vmin, vmax = chosen_limits(limits_above(noise, level.max()), vmin, vmax)
     values = np.degrees(map.axis) if map.AXIS == "azimuth" else map.axis
     with axes_or_new(ax, *SIZE) as ax:
         for columns, ends in _trains(map):
             image = image_over_time(ax, map.times[columns], values, level[columns], ends, cmap=MAP_COLOURS, vmin=vmin, vmax=vmax)
         if map.AXIS == "velocity":
-            _crop(ax, values, level, vmin, map.noise_power)
+            _crop(ax, values, level, vmin, noise)
         ax.set(xlabel=TIME_LABEL, ylabel=AXIS_LABELS[map.AXIS], title=title)
         ax.figure.colorbar(image, ax=ax, label="Received power in dBm", extend="both", pad=0.02, aspect=30)
     return ax
@@ -48,7 +50,8 @@ def draw_spectrogram_labels(labels, *, ax=None, title=""):
     from matplotlib.colors import ListedColormap
 
     level = in_dbm(labels.whole, SMALLEST_POWER)
-    vmin, vmax = _limits(level, labels.noise_power)
+    noise = _noise_level(level, labels.noise_power)
+    vmin, vmax = limits_above(noise, level.max())
     names = labels.part_names
     colours = [tuple(channel / 255.0 for channel in colour) for colour in colours_of(names)]
     with axes_or_new(ax, *SIZE) as ax:
@@ -61,7 +64,7 @@ def draw_spectrogram_labels(labels, *, ax=None, title=""):
         seen = [number for number in range(len(names)) if np.any(labels.dominant == number)]
         for number in seen:
             ax.fill_between([], [], color=colours[number], label=names[number])
-        _crop(ax, labels.velocity, level, vmin, labels.noise_power)
+        _crop(ax, labels.velocity, level, vmin, noise)
         ax.set(xlabel=TIME_LABEL, ylabel=VELOCITY_LABEL)
         columns = max(1, min(LEGEND_COLUMNS, LEGEND_LETTERS // max((len(names[number]) for number in seen), default=1)))
         ax.set_title(title, pad=8.0 + LEGEND_ROW * -(-len(seen) // columns))
@@ -94,21 +97,17 @@ def _edges(centres):
     return np.concatenate([[2.0 * centres[0] - middle[0]], middle, [2.0 * centres[-1] - middle[-1]]])
 
 
-def _limits(level, noise_power: float) -> tuple[float, float]:
-    """Ends of the colour scale of levels in dBm: from the noise, of which there need be no cell that holds it alone.
+def _noise_level(level, noise_power: float) -> float:
+    """dBm of the noise in levels in dBm, of which there need be no cell that holds it alone.
 
     noise_power: W, mean of the noise in a cell; 0: not known
     """
-    return limits_above(_noise_level(level, noise_power), level.max())
-
-
-def _noise_level(level, noise_power: float) -> float:
     return float(in_dbm(noise_power, SMALLEST_POWER) if noise_power > 0.0 else np.median(level))
 
 
-def _crop(ax, velocity, level, floor: float, noise_power: float) -> None:
-    """To the velocities at which some cell stands out of the noise and of the floor of the colour scale."""
-    shown = velocity[(level > max(floor + 3.0, _noise_level(level, noise_power) + NOISE_PEAK_DB)).any(axis=0)]
+def _crop(ax, velocity, level, floor: float, noise: float) -> None:
+    """To the velocities at which some cell stands out of the noise and of the floor of the colour scale, both in dBm."""
+    shown = velocity[(level > max(floor + 3.0, noise + noise_peak_db(1))).any(axis=0)]
     if len(shown):
         margin = margin_of(velocity, VELOCITY_MARGIN)
         show_within(ax, velocity, shown.min() - margin, shown.max() + margin)

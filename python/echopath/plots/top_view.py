@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm
-from .maps import NOISE_PEAK_DB, chosen_limits, colour_bar, limits_of_level
+from .maps import chosen_limits, colour_bar, limits_of_level, noise_peak_db
 from .style import MAP_COLOURS, axes_or_new, new_figure, set_title
 
 FARTHER = 1.1                  # of the farthest signal: what is shown
@@ -120,7 +120,7 @@ def _colour_limits(one, leaked=None) -> tuple[float, float]:
 def _reach(one, floor: float) -> float:
     """Range in m up to which the map is worth showing."""
     level = _in_dbm(one.power.max(axis=0))
-    has_signal = np.flatnonzero(level > max(floor + 3.0, np.median(_in_dbm(one.power)) + NOISE_PEAK_DB))
+    has_signal = np.flatnonzero(level > max(floor + 3.0, np.median(_in_dbm(one.power)) + noise_peak_db(1)))
     last = max(has_signal.max(initial=0), LEAST_RANGES)
     return float(min(FARTHER * one.range[min(last, len(one.range) - 1)], one.range[-1])) or 1.0
 

@@ -7,27 +7,34 @@ from .style import CURVE_COLOURS, axes_or_new
 
 SIZE = 6.0, 5.2  # inches
 LINES = ("-", "--", ":", "-.")  # for more tracks than there are colours
+ROWS, COLUMNS = 22, 2           # of the legend at most, which names tracks of objects; all tracks have their numbers
+COLUMN_WIDTH = 1.5              # inches, of names
 X_LABEL, Y_LABEL = "x in m (ahead)", "y in m (left: +)"
 
 
 def draw_tracks(tracks, *, ax=None, title=""):
     """Tracks as lines from above, crosses where they went on without a detection, in given axes or new ones (None).
 
+    The legend has the tracks that follow objects, up to ROWS times COLUMNS of them, or all where none does.
     tracks: Tracks; title: above the axes
     Returns the axes: y in m across, left positive, x in m up. Raises TypeError naming `ax`.
     """
-    with axes_or_new(ax, *SIZE) as ax:
-        for place, number in enumerate(np.unique(tracks.track)):
+    numbers = np.unique(tracks.track)
+    named = set(tracks.track[tracks.object != ""].tolist()) or set(numbers[:ROWS].tolist())
+    listed = sorted(named)[:ROWS * COLUMNS]
+    columns = max(-(-len(listed) // ROWS), 1)
+    with axes_or_new(ax, SIZE[0] + COLUMN_WIDTH * (columns - 1), SIZE[1]) as ax:
+        for place, number in enumerate(numbers):
             one, colour = tracks.of_track(number), CURVE_COLOURS[place % len(CURVE_COLOURS)]
             line = LINES[place // len(CURVE_COLOURS) % len(LINES)]
             x, y = one.state[:, :2].T
-            ax.plot(y, x, line, color=colour, marker=".", markersize=3, label=_name(one, number))
+            ax.plot(y, x, line, color=colour, marker=".", markersize=3, label=_name(one, number) if number in listed else None)
             ax.plot(y[~one.is_detected], x[~one.is_detected], "x", color=colour, markersize=5)
             ax.annotate(str(number), (y[-1], x[-1]), xytext=(4, 4), textcoords="offset points", color="0.1")
         ax.set(xlabel=Y_LABEL, ylabel=X_LABEL, title=title, aspect="equal")
         ax.set_xlim(*sorted(ax.get_xlim(), reverse=True))
-        if tracks.num_tracks:
-            ax.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False)
+        if listed:
+            ax.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), ncols=columns, frameon=False)
     return ax
 
 

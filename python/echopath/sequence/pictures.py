@@ -38,8 +38,9 @@ def drive_of(frames: Frames, progress: Progress = None) -> Drive:
     for place, (time, level, velocity, range) in enumerate(with_progress(maps, count, progress)):
         if drive is None:
             leaked = leakage_map(frames.radar, **looks)
+            num_channels = len(frames.radar.transmitters) * len(frames.radar.receivers)
             drive = Drive(np.empty(count), np.empty((count, *level.shape), np.float16), velocity, range,
-                          static_speed(velocity, **looks), None if leaked is None else power_dbm(leaked))
+                          static_speed(velocity, **looks), None if leaked is None else power_dbm(leaked), num_channels)
         drive.times[place], drive.level[place] = time, level
     if drive is None:
         raise ValueError("frames: must be one at least, got none")

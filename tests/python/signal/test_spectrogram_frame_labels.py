@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.in_time import views
 from support.radars import build_radar
 
 SPEEDS = {"slow": 2.0, "fast": -5.0}
@@ -75,7 +76,7 @@ def test_they_are_those_of_spectrograms_of_each_part(frames, found):
 
 def test_ghosts_are_told_apart_as_in_maps():
     frames = frames_of(make_scene(["fast"], wall=True), 2, labels=True)
-    labels = ep.spectrogram(frames, window_length=32, labels=True, channel=(0, 1)).labels
+    labels = ep.spectrogram(frames, window_length=32, labels={"noise": False}, channel=(0, 1)).labels
     assert labels["objects"].part_names == ["fast", "ghosts", "other"]
     names = labels["families"].part_names
     assert names[0] == "fast" and names[-1] == "other" and all("via wall" in name for name in names[1:-1]) and len(names) > 2
@@ -85,6 +86,22 @@ def test_ghosts_are_told_apart_as_in_maps():
     assert np.array_equal(whole, labels["objects"].whole)
     ghosts = labels["objects"].power[1]
     assert ghosts.max() > 1e-6 * whole.max()
+
+
+@pytest.mark.parametrize("retrace", ["never", "invalid"])
+def test_ghosts_that_no_cell_shows_are_other_and_leave_all_labels_as_they_are(monkeypatch, retrace):
+    frames = frames_of(make_scene(["fast"], wall=True), 2, retrace=retrace)
+    some = ep.spectrogram(frames, window_length=32, labels=True).labels
+    monkeypatch.setattr(views, "FAINT", 0.0)
+    every = ep.spectrogram(frames, window_length=32, labels=True).labels
+    assert 2 < len(some["families"].part_names) < len(every["families"].part_names)
+    assert some["objects"].part_names == every["objects"].part_names
+    for view, labels in some.items():
+        other = every[view]
+        assert np.array_equal(labels.mask, other.mask) and labels.mask.any()
+        names, others = (np.array(one.part_names)[one.dominant[labels.mask]] for one in (labels, other))
+        assert np.array_equal(names, others)
+    assert np.allclose(some["objects"].power, every["objects"].power, rtol=1e-9, atol=1e-12 * some["objects"].power.max())
 
 
 def test_what_comes_later_has_no_power_before():

@@ -36,7 +36,7 @@ def run(options) -> None:
     from . import report
     from ..base.progress import progress_bars
     from .resumable import print_resumable
-    from .run import certify, chosen_partition, raw_line, simulate_file, write_outputs
+    from .run import DETECTIONS_NAME, certify, chosen_partition, raw_line, simulate_file, write_outputs
     from .run_sequence import is_sequence, run_sequence
     from ..scene_file import load_scene
 
@@ -66,7 +66,7 @@ def run(options) -> None:
                  *report.folded_velocities(frame.scene, frame.radar, frame.paths.frame.trace_time),
                  *report.effects(frame.effects), *report.stages(frame.stages),
                  *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
-                 *report.labels(frame.labels), *report.detections(frame.detections, frame.labels, advice),
+                 *report.labels(frame.labels), *report.detections(frame.detections, frame.labels, advice, file=DETECTIONS_NAME),
                  *report.truth(frame.kept_truth), *report.checks(frame.checks), *report.validity(certificate),
                  *report.files(written), *report.unresolved(frame.unresolved, frame.paths)]:
         print(text)

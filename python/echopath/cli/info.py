@@ -11,7 +11,8 @@ from .. import dataset
 from ..dataset.folder import TEMPLATE as DATASET_FILE
 from ..frame_file import left_out, load_frame
 from ..frame_file.container import SUFFIXES as FRAME_SUFFIXES
-from ..frame_file.container import SEQUENCE, kind_of
+from ..frame_file.container import FRAME, SEQUENCE, has_paths, kind_of
+from ..frame_file.maps import load_maps
 from ..frame_file.opening import file_and_group
 from ..paths.edge_hits import edge_hits
 from ..presentation.tables import event
@@ -54,6 +55,8 @@ def describe_file(path, selections=(), *, unit=None, up=None) -> list[str]:
         return _describe_dataset(dataset.open(path))
     if (path / SEQUENCE_FILE).exists() or (suffix in FRAME_SUFFIXES and path.is_file() and kind_of(path) == SEQUENCE):
         return _describe_sequence(ep.load_sequence(path))
+    if suffix in FRAME_SUFFIXES and not selections and kind_of(path) == FRAME and not has_paths(path):
+        return _describe_maps(path, load_maps(path))
     if suffix in FRAME_SUFFIXES:
         return _describe_frame(path, selections)
     if suffix in ep._core.MESH_SUFFIXES:
@@ -123,12 +126,33 @@ def _describe_scene_file(scene_file) -> list[str]:
 
 
 def _describe_scene(scene, time: float) -> list[str]:
-    meshes = list(scene.meshes)
-    lines = ["scene", report.line("meshes", str(len(meshes))), report.line("triangles", f"{scene.num_triangles:,}")]
-    lines += [report.line(f"  {mesh.name}", f"{len(mesh.mesh.triangles):,} triangles{_material(mesh)}")
-              for mesh in meshes[:report.MAX_LISTED]]
-    more = [f"    and {len(meshes) - report.MAX_LISTED} more"] if len(meshes) > report.MAX_LISTED else []
+    bodies = _bodies(scene)
+    lines = ["scene", report.line("meshes", str(len(scene.meshes))), report.line("triangles", f"{scene.num_triangles:,}")]
+    lines += [report.line(f"  {name}", _body(scene, meshes)) for name, meshes in list(bodies.items())[:report.MAX_LISTED]]
+    more = [f"    and {len(bodies) - report.MAX_LISTED} more"] if len(bodies) > report.MAX_LISTED else []
     return [*lines, *more, report.line("weather", weather_text(weather_of(scene))), *_describe_overlaps(scene, time)]
+
+
+def _bodies(scene) -> dict[str, list]:
+    """{name of a node: meshes at and below it}: objects of the scene, with their parts as far as the lines go."""
+    names = [mesh.name.split("/") for mesh in scene.meshes]
+    bodies: dict[str, list] = {}
+    for depth in range(1, max(map(len, names), default=0) + 1):
+        found: dict[str, list] = {}
+        for mesh, name in zip(scene.meshes, names):
+            found.setdefault("/".join(name[:depth]), []).append(mesh)
+        if bodies and len(found) > report.MAX_LISTED:
+            break
+        bodies = found
+    return bodies
+
+
+def _body(scene, meshes) -> str:
+    """Parts, triangles, material where all have one, and whether some move."""
+    materials = {_material(mesh) for mesh in meshes}
+    return ((f"{len(meshes)} meshes, " if len(meshes) > 1 else "")
+            + f"{sum(len(mesh.mesh.triangles) for mesh in meshes):,} triangles{materials.pop() if len(materials) == 1 else ''}"
+            + (", moving" if any(scene.is_moving(mesh.id) for mesh in meshes) else ""))
 
 
 def _describe_overlaps(scene, time: float, names=None) -> list[str]:
@@ -191,6 +215,20 @@ def _describe_frame(path: Path, selections) -> list[str]:
                   *report.truth(frame.kept_truth), *report.checks(frame.checks),
                   *report.unresolved(frame.unresolved, frame.paths, missing)]
     return lines + chosen
+
+
+def _describe_maps(path: Path, maps) -> list[str]:
+    """A frame of a run that keeps maps or labels alone."""
+    lines = [str(path), "maps and labels of a frame, without its paths",
+             report.line("start", f"{maps.start_time:.6g} s"),
+             report.line("cells", f"{len(maps.velocity)} of velocity, {len(maps.range)} of range"
+                         + (", with their powers" if maps.power is not None else ", whose powers are not kept"))]
+    if maps.power is not None:
+        velocity, distance = np.unravel_index(maps.power.argmax(), maps.power.shape)
+        lines.append(report.line("strongest cell", f"{in_dbm(float(maps.power.max())):.2f} dBm at {maps.range[distance]:.2f} m, "
+                                 f"{maps.velocity[velocity]:+.2f} m/s"))
+    return [*lines, *report.labels(maps.labels), *report.detections(maps.detections, maps.labels),
+            *report.truth(maps.kept_truth)]
 
 
 def _describe_selection(frame, selection) -> list[str]:

@@ -12,7 +12,7 @@ from ..frame_file import left_out, load_frame, save_labels
 from ..labels.of_frame import annotate_frame
 from . import report
 from .label_outputs import write_labels
-from .run import chosen_partition
+from .run import DETECTIONS_NAME, chosen_partition
 
 
 def label_file(path, folder, *, settings: LabelSettings, parts=(), cfar=None, progress=None) -> list[str]:
@@ -31,8 +31,8 @@ def label_file(path, folder, *, settings: LabelSettings, parts=(), cfar=None, pr
     detections = ["no detections: the file has paths alone, no signals"]
     if frame.spectrum is not None:
         frame.detections = detect_frame(frame, objects=settings.objects, progress=progress, **cfar or {})
-        frame.detections.to_csv(folder / "detections.csv")
-        detections = report.detections(frame.detections, frame.labels, report.other_method(cfar, "--cfar os"))
+        frame.detections.to_csv(folder / DETECTIONS_NAME)
+        detections = report.detections(frame.detections, frame.labels, report.other_method(cfar, "--cfar os"), file=DETECTIONS_NAME)
     save_labels(frame.labels, folder / "labels.h5")
     written = write_labels(frame, folder, frame.selections | chosen)
     return [str(path), *report.counts(frame.paths), report.omissions(missing, path), *report.labels(frame.labels),

@@ -158,14 +158,15 @@ def labels(of_partitions: dict) -> list[str]:
     return lines + _objects(first) + _ghosts(first)
 
 
-def detections(found, of_partitions: dict, advice: str = "") -> list[str]:
+def detections(found, of_partitions: dict, advice: str = "", *, file: str = "") -> list[str]:
     """How many detections each part and object has, and which objects have cells in {partition: Labels} but none; nothing
-    where none were asked for. advice: what to ask for in place of the mean over cells (method="ca"), "" where it was not taken"""
+    where none were asked for. advice: what to ask for in place of the mean over cells (method="ca"), "" where it was not taken
+    file: the name of the table that has them, "": none"""
     if found is None:
         return []
     owners = {"": "the surroundings", **{name: name for name in found.object if name}}
     counts = {words: int(np.sum((found.object == name) & ~found.is_noise)) for name, words in sorted(owners.items())}
-    return [f"{len(found):,} detections, detections.csv", *(line(name, f"{count:8,}") for name, count in counts.items()),
+    return [f"{len(found):,} detections{file and ', '}{file}", *(line(name, f"{count:8,}") for name, count in counts.items()),
             line("noise alone", f"{int(found.is_noise.sum()):8,}"), *_undetected(found, of_partitions, advice)]
 
 

@@ -22,7 +22,7 @@ from ..signals.parts import parts_of_options
 from ..truth.places import true_places
 from .label_outputs import write_labels
 
-FRAME_NAME, TRUTH_NAME = "frame.h5", "truth.csv"
+FRAME_NAME, TRUTH_NAME, DETECTIONS_NAME = "frame.h5", "truth.csv", "detections.csv"
 
 
 @dataclasses.dataclass(frozen=True)
@@ -86,7 +86,7 @@ def write_outputs(frame: Frame, folder, partitions) -> Written:
         frame_path = folder / FRAME_NAME
         left_out = save_frame(frame, frame_path, min_power=min_power_of_budget(frame))
         if frame.detections is not None:
-            frame.detections.to_csv(folder / "detections.csv")
+            frame.detections.to_csv(folder / DETECTIONS_NAME)
         if frame.kept_truth is not None:
             frame.kept_truth.to_csv(folder / TRUTH_NAME)
     with clock("pictures"):

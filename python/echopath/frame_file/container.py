@@ -59,11 +59,21 @@ def kind_of(path) -> str | None:
     return None
 
 
+def has_paths(path) -> bool:
+    """Whether a frame file holds the paths of its frame, as small files of a sequence do not. Raises ep.FileError."""
+    with our_file(path) as file:
+        return _has_paths(file)
+
+
+def _has_paths(file) -> bool:
+    return "record" in file or file.keys().isdisjoint(("maps", "labels"))
+
+
 @contextmanager
 def file_with_paths(path):
-    """A frame file open for reading that holds the paths of its frame, as small files of a sequence do not."""
+    """A frame file open for reading that holds the paths of its frame. Raises ep.FileError for others."""
     with our_file(path) as file:
-        if "record" not in file and not file.keys().isdisjoint(("maps", "labels")):
+        if not _has_paths(file):
             raise _core.FileError("holds no paths, only maps or labels of a frame: ep.load_labels reads its labels, "
                                   "ep.load_sequence all frames of its run")
         yield file

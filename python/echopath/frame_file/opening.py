@@ -55,6 +55,8 @@ def reading(path):
         if Path(path).suffix.lower() == ".toml":
             raise _core.FileError(f"{path}: a scene file, where a frame file (.h5) is asked for; `echopath run {path} --out "
                                   "DIR` makes DIR/frame.h5 of it") from None
+        if place.is_dir():
+            raise _core.FileError(f"{path}: a folder, where a frame file (.h5) is asked for, as those in it may be") from None
         raise _core.FileError(f"{path}: damaged or not an HDF5 file ({first_line(error)})") from error
 
 

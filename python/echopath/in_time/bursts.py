@@ -77,9 +77,13 @@ def channel_rule(argument: str, value) -> Channel:
     """None, or the indices (tx, rx) of a channel."""
     if value is None:
         return None
-    tx, rx = array("[2]", kind="whole")(argument, value)
+    rule = "a pair (tx, rx) of indices of at least 0"
+    try:
+        tx, rx = array("[2]", kind="whole")(argument, value)
+    except (TypeError, ValueError) as error:
+        raise refused(type(error), argument, rule, value) from None
     if min(tx, rx) < 0:
-        raise refused(ValueError, argument, "a pair (tx, rx) of indices of at least 0", value)
+        raise refused(ValueError, argument, rule, value)
     return int(tx), int(rx)
 
 

@@ -23,7 +23,8 @@ def draw_time_map(map, *, ax=None, vmin=None, vmax=None, title=""):
     """A Spectrogram, RangeTime or AngleTime in given axes, or in new ones (None): gaps between trains of chirps stay blank.
 
     map: as `ep.spectrogram` and its like give it; ax: axes to draw in; title: above them
-    vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, as parts have no noise, to the peak
+    vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, as parts have no noise, to the
+        peak
     Returns the axes: time in s across; radial velocity in m/s, range in m or azimuth in degrees up. Raises TypeError or
     ValueError naming the argument.
     """

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager
 from pathlib import Path
 
+from .. import _core
 from ..arguments.checks import refused
 from ..base.files import require_writable, written_whole
 from ..frame.frame import Frame
@@ -47,6 +48,8 @@ class FolderStore:
 
     def contents(self) -> Contents:
         """Of which sequence it is. Raises ep.FileError."""
+        if self.path.is_file():
+            raise _core.FileError(f"{self.path}: must be a folder of frames, or one file of them (.h5), got another file")
         return read_contents(self.head)
 
     def writing(self, contents: Contents, is_shared: bool) -> AbstractContextManager[None]:

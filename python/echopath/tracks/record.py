@@ -27,7 +27,8 @@ class Tracks:
     state: [N, 4], x, y in m, vx, vy in m/s, in the axes of the radar or, with a radar given, of the world
     covariance: [N, 4, 4] of the state, m^2, m^2/s, m^2/s^2
     is_detected: bool [N], whether a detection of that frame belongs to the track, which goes straight on otherwise
-    object: [N] text, of the truth that it follows in that frame, "" for none, or where no truth was given
+    object: [N] text, of the truth that it follows in that frame, each in one track at most; "" for none, or where no truth was
+        given
     """
 
     track: np.ndarray

@@ -38,7 +38,8 @@ def track(detections: Iterable[Detections] | Iterable[ArrayLike], times: ArrayLi
     detections: of each frame, in the order of time: Detections with azimuths, or points [D, 2] or [D, 3] in m in the radar's
         axes
     times: [F] s, ascending, of the frames: their middles, as `Truth` has them
-    truth: of the same frames, names the object of each track; None: no names
+    truth: of the same frames, names the object of each track, and of an object that shows in several places, as a guard rail
+        does, only the track that follows it best; None: no names
     radar: whose motion carries the points into the axes of the world; None: tracks are in the axes of the radar
     range_std, azimuth_std: m and rad, standard errors of a detection along and across the line of sight
     acceleration_std: m/s^2, of each coordinate from frame to frame; speed_std: m/s, of the speeds with which tracks begin
@@ -49,6 +50,7 @@ def track(detections: Iterable[Detections] | Iterable[ArrayLike], times: ArrayLi
     Returns Tracks, empty without any. Raises TypeError or ValueError naming the argument.
     """
     _check_times(times, detections)
+    _check_truth(truth, times)
     settings = {"range_std": range_std, "azimuth_std": azimuth_std, "merge_distance": merge_distance}
     gate = -2.0 * math.log1p(-gate_probability)  # of chi-square with two degrees of freedom
     tracker = _Tracker(acceleration_std, speed_std, gate, min_hits, max_misses)
@@ -64,6 +66,18 @@ def _check_times(times, detections) -> None:
         raise ValueError(f"times: must have one for each of the {len(detections)} frames of detections, got {len(times)}")
     if np.any(np.diff(times) <= 0.0):
         raise ValueError(f"times: must ascend, got {times}")
+
+
+def _check_truth(truth: Truth | None, times) -> None:
+    """Refuses the truth of other times, which would name objects by where they are then."""
+    if truth is None or len(times) < 2:
+        return
+    rows = np.flatnonzero((truth.frame >= 0) & (truth.frame < len(times)))
+    apart = np.abs(truth.time[rows] - np.asarray(times)[truth.frame[rows]])
+    if len(rows) and apart.max() > 0.5 * np.diff(times).min():
+        row = rows[apart.argmax()]
+        raise ValueError(f"truth: must be of the times of the detections, got {truth.time[row]:g} s for frame {truth.frame[row]} "
+                         f"of {times[truth.frame[row]]:g} s")
 
 
 class _Track:

@@ -64,7 +64,7 @@ def checked_speed(speed, over: str) -> np.ndarray:
     wrong = not len(table) or np.any(table[:, 1] < 0.0) or np.any(table[:, 1] > FASTEST) or not np.any(table[:, 1] > 0.0)
     if wrong or np.any(np.diff(table[:, 0]) <= 0.0):
         raise refused(ValueError, "speed", f"above 0 m/s, at most {FASTEST:g} m/s, or rows of ascending {unit} and speeds of at "
-                      "least 0 m/s", speed)
+                      "least 0 m/s, one of them above", speed)
     return table
 
 

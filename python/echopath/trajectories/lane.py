@@ -133,7 +133,7 @@ class Lane:
         Returns a Trajectory. Raises TypeError or ValueError naming the argument.
         """
         arguments = {name: value for name, value in locals().items() if name != "self"}
-        rows, sign = _checked_changes(changes), -1.0 if reverse else 1.0
+        rows, sign = _checked_changes(changes, self.length), -1.0 if reverse else 1.0
         center = checked_path(self._points[::-1], self._turn_radius) if reverse else self._path
         path = center
         if offset != 0.0 or len(rows):
@@ -154,8 +154,8 @@ class Lane:
         return f"Lane({self.length:.6g} m long, {self.width:g} m wide)"
 
 
-def _checked_changes(value) -> np.ndarray:
-    """Changes of lanes [N, 3], one after the other."""
+def _checked_changes(value, longest: float) -> np.ndarray:
+    """Changes of lanes [N, 3], one after the other, on a lane of `longest` m."""
     if isinstance(value, (tuple, list)) and len(value) == 0:
         return np.zeros((0, 3))
     rows = np.array(array("[N, 3]", finite=True)("changes", value), float)
@@ -164,4 +164,6 @@ def _checked_changes(value) -> np.ndarray:
     if is_out_of_range or np.any(ends[:-1] > rows[1:, 0] + 1e-9):
         raise refused(ValueError, "changes", "rows of a distance of at least 0 m, a length above 0 m and an offset, each behind "
                       "the one before", value)
+    if ends.max() > longest + 1e-6:
+        raise refused(ValueError, "changes", f"made within the {longest:g} m of the lane", rows[int(ends.argmax())].tolist())
     return rows

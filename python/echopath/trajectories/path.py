@@ -10,6 +10,7 @@ import numpy as np
 
 PIECES = 4, 128        # of each interval between knots, for the integral of the length: at first and at most
 DISTANCE_TOLERANCE = 1e-9   # m, of u over the distance
+TURNS_BACK = -1.0 + 1e-12   # cosine of the turn, from which on no arc leads from one line to the next
 NEWTON_STEPS = 5       # after which a distance is met to rounding, where the most pieces do not meet the tolerance
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 
@@ -230,6 +231,9 @@ def turned_path(points, radius: float):
     lengths = np.linalg.norm(steps, axis=-1)
     directions = steps / lengths[:, None]
     cosines = np.sum(directions[:-1] * directions[1:], axis=-1)
+    back = np.flatnonzero(cosines < TURNS_BACK)
+    if len(back):
+        raise ValueError(f"turn_radius: must be None where the path turns back, as it does at points[{back[0] + 1}], got {radius:g}")
     turns = np.arccos(np.clip(cosines, -1.0, 1.0))
     cut = np.concatenate([[0.0], radius * np.tan(0.5 * turns), [0.0]])     # of the lines, at each point
     left = lengths - cut[:-1] - cut[1:]

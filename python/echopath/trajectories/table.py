@@ -81,7 +81,7 @@ def _columns(path: Path, line: int, header: list[str]) -> dict[str, int]:
     groups = ("x", "y"), ("latitude", "longitude")
     if "time" not in found or not any(all(name in found for name in group) for group in groups):
         refuse(path, line, "must name columns: time, and x and y, or latitude and longitude; got "
-               + ", ".join(text.strip()[:30] for text in header)[:120])
+               + (", ".join(text.strip()[:30] for text in header)[:120] or "none"))
     return found
 
 

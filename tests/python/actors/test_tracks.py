@@ -56,6 +56,15 @@ def test_crossing_points_keep_their_tracks(seed, merge_distance):
         assert one.state[-1, 2:] == pytest.approx([4.0, 4.0 if one.object[0] == "up" else -4.0], abs=0.5)
 
 
+def test_the_truth_of_other_times_is_refused():
+    positions = crossing()
+    truth = truth_of(positions, ["up", "down"])
+    with pytest.raises(ValueError, match=r"^truth: must be of the times of the detections, got .* s for frame \d+ of .* s$"):
+        ep.track(list(positions), TIMES + 5.0, truth=truth, merge_distance=0.0)
+    early = TIMES - 0.4 * np.diff(TIMES).min()  # starts of the frames, whose middles the truth has
+    assert set(ep.track(list(positions), early, truth=truth, merge_distance=0.0).object) == {"up", "down"}
+
+
 def test_a_track_goes_on_through_gaps_and_ends_behind_long_ones():
     points = np.stack([10 + 2 * TIMES, 0 * TIMES], axis=1)[:, None]
     found = [points[number] if number not in (10, 11, 12) else [] for number in range(FRAMES)]

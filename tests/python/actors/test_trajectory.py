@@ -242,12 +242,22 @@ def test_wrong_arguments_are_named(name):
     ({"points": [(0, 0), (0, 0)]}, "points: must be at least"), ({"points": [(0, 0, 0), (0, 0, 5)]}, "points: .*straight above"),
     ({"yaw": [0, 1]}, "yaw: must be given with times"), ({"speed_over": "time", "stops": [(1, 1)]}, "speed_over"),
     ({"points": [(0, 0), (9, 0), (9, 9)], "turn_radius": 20.0}, "turn_radius: .*9 m is the largest"),
+    ({"points": [(0, 0), (9, 0), (0, 0)], "turn_radius": 1.0}, r"turn_radius: must be None where .* back, .* at points\[1\]"),
+    ({"speed": [(0, 0), (9, 0)]}, "speed: .*speeds of at least 0 m/s, one of them above"),
     ({"speed": None}, "speed: must be given"), ({"times": [0, 1], "speed": None, "stops": [(1, 1)]}, "stops: .*without times"),
     ({"times": [0, 1, 2], "speed": None}, "times: must be as many as the 2 points"),
     ({"times": [0, 1], "speed": [1, -1]}, "speed: ")])
 def test_what_makes_no_sense_is_refused(wrong, words):
     with pytest.raises(ValueError, match=words):
         ep.Trajectory(**{"points": [(0, 0), (9, 0)], "speed": 3.0} | wrong)
+
+
+@pytest.mark.parametrize("changes", [[(500, 40, 3.5)], [(50, 400, 3.5)], [(1, 5, 2.0), (8, 60, 0.0)]])
+def test_changes_beyond_the_end_of_the_lane_are_refused(changes):
+    lane = ep.Lane([(0, 0), (60, 0)])
+    with pytest.raises(ValueError, match=r"^changes: must be made within the 60 m of the lane, got \[\d+.0, \d+.0, \d.\d\]$"):
+        lane.trajectory(speed=5.0, changes=changes)
+    assert lane.trajectory(speed=5.0, changes=[(20, 40, 2.0)]).position(1e3)[1] == pytest.approx(2.0)
 
 
 def test_offsets_beyond_the_middle_of_a_curve_are_refused():

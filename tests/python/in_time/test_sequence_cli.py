@@ -161,9 +161,29 @@ def test_info_tells_of_a_folder_and_small_files_say_what_they_lack(scene_path, t
         assert main(["info", str(what)]) == 0
         told = " ".join(capsys.readouterr().out.split())
         assert "frames 3, 2 done" in told and "starts 0 to 0.2 s, every 0.1 s" in told and "kept maps" in told
-    for command in ("info", "view"):
-        assert main([command, str(out / "frame_0001.h5")]) == 2
+    small = out / "frame_0001.h5"
+    assert main(["info", str(small)]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    assert f"{small} maps and labels of a frame, without its paths start 0.1 s" in told and "with their powers" in told
+    assert "dBm at 5." in told and "no objects" not in told
+    for command in (["view", str(small)], ["labels", str(small), "--out", str(tmp_path / "labels")]):
+        assert main(command) == 2
         assert "frame_0001.h5: holds no paths, only maps or labels of a frame" in capsys.readouterr().err
+    assert main(["labels", str(out), "--out", str(tmp_path / "labels")]) == 2
+    assert f"{out}: a folder, where a frame file (.h5) is asked for" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("vehicles, shows_parts", [(1, True), (7, False)])
+def test_info_names_objects_or_their_parts_and_tells_which_move(tmp_path, capsys, vehicles, shows_parts):
+    cars = "".join(f"[[objects]]\nname = \"car_{k}\"\nactor = \"car\"\nposition = [{8.0 * (k + 1)}, 4.0, 0.0]\n"
+                   for k in range(vehicles))
+    (tmp_path / "street.toml").write_text(SCENE.replace("[trace]", cars + "[trace]"))
+    assert main(["info", str(tmp_path / "street.toml")]) == 0
+    lines = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert ["plate", "2", "triangles,", "metal,", "moving"] in lines
+    of_cars = [line for line in lines if line and line[0].startswith("car_0")]
+    assert of_cars and "moving" not in sum(of_cars, [])
+    assert all(("/" in line[0]) == shows_parts and line[2] == "meshes," for line in of_cars)
 
 
 def test_one_file_of_all_frames_is_written_goes_on_and_is_told_of(scene_path, tmp_path, capsys):
@@ -174,8 +194,8 @@ def test_one_file_of_all_frames_is_written_goes_on_and_is_told_of(scene_path, tm
     capsys.readouterr()
     assert main(["info", str(out)]) == 0
     assert "frames 2, 2 done" in " ".join(capsys.readouterr().out.split())
-    assert main(["info", str(out / "frames" / "000001")]) == 2
-    assert "000001: holds no paths, only maps" in capsys.readouterr().err
+    assert main(["info", str(out / "frames" / "000001")]) == 0
+    assert "000001 maps and labels of a frame" in " ".join(capsys.readouterr().out.split())
 
 
 def test_a_shard_of_the_frames_says_which_it_made(scene_path, tmp_path, capsys):

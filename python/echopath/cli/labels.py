@@ -32,7 +32,8 @@ def label_file(path, folder, *, settings: LabelSettings, parts=(), cfar=None, pr
     if frame.spectrum is not None:
         frame.detections = detect_frame(frame, objects=settings.objects, progress=progress, **cfar or {})
         frame.detections.to_csv(folder / DETECTIONS_NAME)
-        detections = report.detections(frame.detections, frame.labels, report.other_method(cfar, "--cfar os"), file=DETECTIONS_NAME)
+        detections = report.detections(frame.detections, frame.labels, report.other_method(cfar, "--cfar os"),
+                                       file=DETECTIONS_NAME)
     save_labels(frame.labels, folder / "labels.h5")
     written = write_labels(frame, folder, frame.selections | chosen)
     return [str(path), *report.counts(frame.paths), report.omissions(missing, path), *report.labels(frame.labels),

@@ -233,7 +233,8 @@ def turned_path(points, radius: float):
     cosines = np.sum(directions[:-1] * directions[1:], axis=-1)
     back = np.flatnonzero(cosines < TURNS_BACK)
     if len(back):
-        raise ValueError(f"turn_radius: must be None where the path turns back, as it does at points[{back[0] + 1}], got {radius:g}")
+        raise ValueError(f"turn_radius: must be None where the path turns back, as it does at points[{back[0] + 1}], got "
+                         f"{radius:g}")
     turns = np.arccos(np.clip(cosines, -1.0, 1.0))
     cut = np.concatenate([[0.0], radius * np.tan(0.5 * turns), [0.0]])     # of the lines, at each point
     left = lengths - cut[:-1] - cut[1:]

@@ -109,7 +109,8 @@ class Sums {
     const double edge = has_cell ? std::norm(arriving[kEdges * stride]) : 0.0;
     of_kind.edge_squares += edge * edge;
     const double power = std::norm(arriving[kAsLaunched * stride]), wide = std::norm(arriving[kHalfDensity * stride]);
-    if (has_cell && power > 0.0) {  // images are exact: no lattice can miss them
+    if (paths_.flags[static_cast<size_t>(path)] & kBesideEdge) of_kind.beside_edges += power;
+    if (has_cell && power > 0.0) {  // no lattice can miss images
       const double kept = std::min(wide / power, 1.0), steady = power * (kept * kept) * (kept * kept);
       sums.steady_power += steady;
       sums.steady_squares += steady * steady;

@@ -16,6 +16,7 @@ constexpr double kSmoothFacetPhase = 0.1;                                    // 
 constexpr double kPointsTimesField = 4.0, kPointsTimesFieldOfSeveral = 6.0;  // of one bounce and of several
 constexpr double kMostOfPoints = 2.5;
 constexpr double kOfSurface = 0.0025, kOfFacets = 0.01, kMostOfFacets = 0.015;
+constexpr double kOfNearEdge = 0.15;  // 1.2 dB: a straight edge is known to 1.1
 constexpr double kOfAHit = 0.5;
 constexpr double kEdgeCells = 8.0;  // twice the outline of a square, 4 sqrt(n) of n cells
 constexpr double kFewCells = 600.0;
@@ -99,6 +100,7 @@ FieldBias field_bias(const PowerEvidence& evidence, Lasting lasting) {
     points += squared(missing_of_points(kind, evidence.num_batches));
     const double smoothness = smoothness_of_edges(kind);
     const double of_edges = squared(std::lerp(kOfEdges, kOfSmoothEdges, smoothness));
+    if (lasting == Lasting::kCounted) surface += squared(kOfNearEdge) * kind.beside_edges;
     if (kind.has_cells) surface += squared(kOfSurface * size) + squared(of_facets(kind, lasting) * size);
     if (size == 0.0) {
       edges += of_edges * between_edges(kind, evidence.num_batches, 1.0);

@@ -23,7 +23,8 @@ struct CoherentKind {
   double power[kNumCellViews] = {};           // W, sum of |a|^2
   double edge_squares = 0.0;                  // W^2, sum of |a|^4 of kEdges
   double facet_phase = 0.0;                   // rad, by which the facets stray from a smooth surface (facet_phase.h)
-  bool has_cells = false;                     // else its paths are images, which are exact
+  double beside_edges = 0.0;                  // W, sum of |a|^2 of images beside the edge of a plane (kBesideEdge)
+  bool has_cells = false;                     // else its paths are images
   bool has_bounced = false;                   // off other surfaces before, flagged mirrors aside
 };
 
@@ -89,11 +90,12 @@ double power_between_rays(const CoherentKind& kind, int num_batches);
 //      0.
 //  (7) No field of launch cells is known better than to kOfSurface |F|, which the lattice and interpolated normals leave,
 //      and to min(kOfFacets facet_phase, kMostOfFacets) |F|: where facets stray from the smooth surface that they stand for,
-//      rays closer than facets see another field than rays farther apart.
+//      rays closer than facets see another field than rays farther apart. Images are exact, but for those beside the edge of
+//      an unflagged plane, whose fields are known to kOfNearEdge of each.
 // Sums over kinds: the changes (1) add up as fields, but to no less than their root sum of squares, and all other terms as
 // powers, so that kinds whose echoes cancel are known as well as they are one by one. (1) and (2) measure one error: of
-// their two squares the smaller one counts by half. What more rays hardly mend is the second term of (7) and the lower bound
-// of q in (6). Without a footprint filter nothing tells how coarse the rays are for the phases of a surface: its waves may
+// their two squares the smaller one counts by half. What more rays hardly mend is (7), but for its first term, and the
+// lower bound of q in (6). Without a footprint filter nothing tells how coarse the rays are for the phases of a surface: its waves may
 // cancel, or add up to coherent_at_most.
 //
 // The chance of several batches is their standard error times Student's t, and no less than the error of half a hit in each

@@ -61,6 +61,9 @@ inline constexpr uint32_t kEdgePath = 4;
 inline constexpr uint32_t kPastEdge = 32;
 // Marks a diffuse path that counts for others, too, which were left out by lot (power/faint_paths.h).
 inline constexpr uint32_t kStandsForOthers = 64;
+// Marks an image over planes that nobody flagged of which one ends near the point of reflection: its field is known as well as
+// field_of_flat_mirror tells it (trace/mirrors/mirror_zone.h).
+inline constexpr uint32_t kBesideEdge = 128;
 inline constexpr int kMostPieces = 65535, kMostEdges = 4;
 constexpr uint32_t edge_flags(int hit, int num_pieces, int num_edges = 1) {
   return kEdgePath | static_cast<uint32_t>(num_edges - 1) << 3 | static_cast<uint32_t>(hit) << 8 |
@@ -147,7 +150,7 @@ struct Paths {
   std::vector<std::complex<float>> weight;  // what neither motion nor antennas change (see replay/kernels/path_formula.h)
   std::vector<uint16_t> stratum;            // index into frame.strata; kNoStratum: none (image method)
   std::vector<uint8_t> batch;               // index of the batch of rays; 255: all of them (image method)
-  std::vector<uint32_t> flags;              // bits: kReversedPath, kSecondHalf, kStandsForOthers, kEdgePath with edge_flags
+  std::vector<uint32_t> flags;  // bits: kReversedPath, kSecondHalf, kStandsForOthers, kBesideEdge, kEdgePath with edge_flags
   // [P, 7] or empty: the launch cell behind curved specular bounces, at the physical-optics hit. T1 and T2 are in units of
   // the triangle's edges (du1, dv1, du2, dv2), then T_a.U_b in m (11, 12, 22). A flat chain has zeros.
   std::vector<std::array<float, 7>> curved_cell;

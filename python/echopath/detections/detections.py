@@ -82,9 +82,9 @@ class Detections:
     def paths(self, i: int) -> tuple:
         """The paths behind detection i: (indices i64 [N], shares [N] of the power), largest share first.
 
-        Model: lengths and amplitudes of at most 8 channels at mid-frame, the rate of the length and the change of that for
-        the first antennas, and the response of the windows; powers are means over the channels. Taken are the strongest that
-        hold 99.99 % of the sum of the powers of single paths, of which the shares are.
+        Model: lengths and amplitudes of at most 8 channels at mid-frame, the velocity of `path_cells` and its change over the
+        frame for the first antennas, and the response of the windows; powers are means over the channels. Taken are the
+        strongest that hold 99.99 % of the sum of the powers of single paths, of which the shares are.
         i: index, 0 to D - 1. Empty where is_noise. Raises ValueError where `detect` was given no paths, TypeError for what
         is no index, IndexError.
         """

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from .. import _core
-from ..paths.cells import OUTSIDE, path_cells
+from ..paths.cells import OUTSIDE, chirp_times, path_cells, turning_of
 from ..paths.subset import subset
 from ..spectra.windows import of_range, of_velocity, samples_of
 from ..transmit.signals import synthesize_slots
@@ -22,6 +22,7 @@ HELD = 0.9999          # of the power of single paths, by the paths that are nam
 MAX_CHANNELS = 8       # whose fields are made: an echo fades in one antenna, hardly ever in eight
 MAX_MEMORY = 2 ** 28   # bytes, of the fields of all paths
 LEFT_OUT = 1e-6        # of the power of single paths in a cell: those that together hold less
+FADED = 1e-20          # of the power of the strongest path: how the phases of weaker ones turn is rounding
 SAME_BIN = 0.25        # bins of range, up to which all channels have a path in the same place
 
 
@@ -83,8 +84,9 @@ class EchoFields:
     """The field that each path gives to each cell of a map of its radar, by its state in the middle of the frame.
 
     Model: delays and amplitudes of C channels, spread evenly over all: at most 8, and as many as 256 MiB hold, one at least;
-    the rate of the delay and the change of that for the first antennas. Cells are asked for together (`evaluate`): where one
-    channel tells how strong paths are in all, the others are evaluated only for those that hold a cell but for a millionth.
+    the velocity of `path_cells` and its change over the frame for the first antennas. Cells are asked for together
+    (`evaluate`): where one channel tells how strong paths are in all, the others are evaluated only for those that hold a cell
+    but for a millionth.
     paths: of `trace`, P of them; spectrum: RangeDoppler of the radar that traced them, values in sqrt(W)
     """
 
@@ -159,12 +161,14 @@ class EchoFields:
         index = inside[order]
         doppler = (cells.range[index] - 0.5 * cells.length[index]) * waveform.slope / waveform.centre_frequency
         bin_width = 2.0 * waveform.max_velocity(paths.radar.num_slots) / waveform.num_chirps
+        first = _lengths_and_fields(paths, 0, [0])[1][0, index]
+        power = np.abs(first) ** 2
+        sweep = np.where(power > FADED * power.max(initial=0.0), _speed_change(paths, cells.length)[index] / bin_width, 0.0)
         range_step = self._range_bin / pad
         return {"number": number[order], "index": index, "range": cells.range[index] / range_step,
                 "velocity": doppler / bin_width * pad + len(spectrum.velocity) // 2,
-                "sweep": _speed_change(paths, cells.length)[index] / bin_width,
-                "travel": cells.velocity[index] * _duration(paths) / (range_step * pad),
-                "length": cells.length[index], "first": _lengths_and_fields(paths, 0, [0])[1][0, index]}
+                "sweep": sweep, "first": first, "length": cells.length[index],
+                "travel": cells.velocity[index] * _duration(paths) / (range_step * pad)}
 
     def _strong_in(self, cells) -> dict:
         """Echoes that hold some cells, with "shift" and "field" of the channels, [C, P]."""
@@ -255,12 +259,6 @@ def _reach(samples) -> int:
     return int(np.ceil(np.flatnonzero(response > 10.0 ** (-FLOOR_DB / 20.0))[-1] / 8)) + 1
 
 
-def _chirp_times(paths, tx=0):
-    """First, middle and last of the frame for a transmitter, s."""
-    first, last = (paths.radar.chirp_time(tx, chirp) for chirp in (0, paths.radar.waveform.num_chirps - 1))
-    return paths.frame.start_time + np.array([first, 0.5 * (first + last), last])
-
-
 def _duration(paths) -> float:
     """Of all chirps of one transmitter and the slots between them, s."""
     radar = paths.radar
@@ -268,18 +266,21 @@ def _duration(paths) -> float:
 
 
 def _speed_change(paths, length):
-    """By how much half the rate of each length [P] in m rises over all chirps, m/s."""
-    first, _, last = _chirp_times(paths)
+    """By how much the velocity of each path of some length [P] in m rises over all chirps, m/s: with half the rate of the
+    length, and with the phase of the amplitude."""
+    first, _, last = chirp_times(paths)
     num_chirps = paths.radar.waveform.num_chirps
     if num_chirps < 3:
         return np.zeros(len(length))
     before, after = paths.lengths([first, last], 0, 0)
-    return 2.0 * (before + after - 2.0 * length) / (last - first) * num_chirps / (num_chirps - 1)
+    of_length = 2.0 * (before + after - 2.0 * length) / (last - first)
+    of_phase = 0.5 * paths.radar.waveform.wavelength * (turning_of(paths, last) - turning_of(paths, first))
+    return (of_length + of_phase) * num_chirps / (num_chirps - 1)
 
 
 def _lengths_and_fields(paths, tx: int, receivers: list) -> tuple:
     """Length [R, P] in m and signal, complex [R, P] in sqrt(W), of each path in the middle of the frame and of the chirp."""
-    waveform, middle = paths.radar.waveform, _chirp_times(paths, tx)[1]
+    waveform, middle = paths.radar.waveform, chirp_times(paths, tx)[1]
     length, amplitude = paths._echoes_at_receivers(middle, tx, receivers)
     delay = length / _core.speed_of_light
     cycles = (waveform.start_frequency + waveform.slope * waveform.window_centre) * delay - 0.5 * waveform.slope * delay ** 2

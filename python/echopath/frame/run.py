@@ -21,6 +21,7 @@ from ..receiver.chain import transmitted_code
 from ..receiver.channels import require_channels
 from ..signals.beside import cubes_beside
 from ..signals.interference_of_frame import has_interference, interference_cube, require_interferers
+from ..signals.part_pass import takes_a_pass
 from ..signals.parts import ONLY_PARTITION, as_partitions, check_partitions, decompose
 from ..signals.silence import warn_of_silence
 from ..spectra.azimuth_map import checked_settings, sees_azimuth
@@ -123,7 +124,7 @@ class FrameRun:
         """
         if not self.partitions and work is None:
             return {}, synthesize_slots(paths, self.radar, **settings, probe=probe), None
-        if work is None or settings["retrace"] != "never" or has_steps(self.radar):
+        if work is None or not takes_a_pass(self.radar, settings):
             return self._decomposed(paths, work, settings | {"probe": probe})
         if not self.partitions:
             signals = FamilyPass(work, adds_up=True, probe=probe)

@@ -3,17 +3,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from .. import _core
-from ..arguments.settings import FRAME_KEYWORDS, SignalSettings
+from ..arguments.settings import FRAME_KEYWORDS
 from ..frame.frame import Frame
 from ..labels.ghost_names import ghost_name
 from ..labels.planes import with_receivers
 from ..labels.powers import parts_by_rival
+from ..paths.cells import chirp_times
 from ..paths.families import Families, families
+from ..signals.part_pass import part_pass, takes_a_pass
 from ..signals.parts import decompose
-from ..transmit.signals import has_steps
-
-_OF_PASS = ("tolerance", "method", "replay", "evaluate", "phase_tolerance")  # keywords of `_core.PartPass`
 
 
 class PartsOfFrame:
@@ -27,7 +25,7 @@ class PartsOfFrame:
         """least: W, of a ghost whose paths add up in phase, up to which it is faint; objects, channel: as in `spectrogram`"""
         of_paths = families(frame.paths, objects)
         groups = list(parts_by_rival(of_paths.families).values())
-        in_phase = _in_phase(frame, of_paths)
+        in_phase = _in_phase(frame, of_paths, channel)
         numbers = {family: number for number, family in enumerate(of_paths.families)}
         members = [[numbers[family] for family in group] for group in groups]
         faint = [group[0].is_ghost and in_phase[some].sum() ** 2 <= least for group, some in zip(groups, members)]
@@ -41,11 +39,24 @@ class PartsOfFrame:
         self.rest = sum(cube for group, cube in zip(firsts, cubes) if not group[0].object)
 
 
-def _in_phase(frame: Frame, of_paths: Families) -> np.ndarray:
-    """Sum [F] in sqrt(W) of what the paths of each family have at the time of the trace, for the first antennas."""
-    paths = frame.paths
-    amplitude = np.abs(paths._echoes_at_receivers(paths.frame.trace_time, 0, [0])[1][0])
-    return np.bincount(of_paths.family_of_path, amplitude, len(of_paths))
+def _in_phase(frame: Frame, of_paths: Families, channel) -> np.ndarray:
+    """Sum [F] in sqrt(W) of the most that the paths of each family have at the begin, the middle and the end of the frame, for
+    antennas of every kind."""
+    paths, radar = frame.paths, frame.radar
+    senders, receivers = ([asked] if asked is not None else _one_of_each_look(antennas) for asked, antennas in
+                          zip(channel or (None, None), (radar.transmitters, radar.receivers)))
+    most = np.zeros(paths.num_paths)
+    for tx in senders:
+        for time in chirp_times(paths, tx):
+            for amplitude in paths._echoes_at_receivers(time, tx, receivers)[1]:
+                np.maximum(most, np.abs(amplitude), out=most)
+    return np.bincount(of_paths.family_of_path, most, len(of_paths))
+
+
+def _one_of_each_look(antennas) -> list[int]:
+    """Indices of one antenna of each pattern, orientation and polarisation."""
+    looks = [(one.pattern, tuple(one.orientation.ravel()), tuple(np.ravel(one.polarization))) for one in antennas]
+    return [index for index, look in enumerate(looks) if look not in looks[:index]]
 
 
 def _cubes(frame: Frame, of_paths: Families, parts: list, channel) -> list:
@@ -53,7 +64,7 @@ def _cubes(frame: Frame, of_paths: Families, parts: list, channel) -> list:
     tx, rx = channel or (None, None)
     radar = frame.radar if rx is None else with_receivers(frame.radar, slice(rx, rx + 1))
     settings = {name: getattr(frame, name) for name in FRAME_KEYWORDS}
-    if settings["retrace"] != "never" or has_steps(radar):
+    if not takes_a_pass(radar, settings):
         by_family = list(decompose(frame.paths, radar, of_paths, **settings).values())
         nothing = np.zeros_like(by_family[0])
         found = [sum((by_family[number] for number in part), nothing) for part in parts]
@@ -61,8 +72,7 @@ def _cubes(frame: Frame, of_paths: Families, parts: list, channel) -> list:
         part_of_family = np.empty(len(of_paths), np.uint32)
         for number, part in enumerate(parts):
             part_of_family[part] = number
-        signal = {name: settings.get(name, getattr(SignalSettings, name)) for name in _OF_PASS}
-        one_pass = _core.PartPass(frame.paths, radar, part_of_family[of_paths.family_of_path], len(parts), **signal)
+        one_pass = part_pass(frame.paths, radar, part_of_family[of_paths.family_of_path], len(parts), settings)
         one_pass.set_adds_up(False)
         found = one_pass.cubes([[number] for number in range(len(parts))], None)
     return [cube if tx is None else cube[tx:tx + 1] for cube in found]

@@ -64,9 +64,9 @@ def spectrogram(frames: Frames, radar: _core.Radar | None = None, *, window_leng
     start_times: [F] s, when the cubes begin, None: one behind the other from 0 on
     labels: of frames, as in `simulate`: True, LabelSettings or a dict of their keywords (objects, noise, noise_margin_db in dB,
         dynamic_range_db in dB): `.labels` then says, without noise, which part of each partition of the frames, which object and
-        which ghost made each cell. Ghosts that could hold no more than a hundredth of the noise margin, all of their paths in
-        phase, are "other". It takes the memory of the signals of all others of a frame, at one channel where `channel` names
-        one
+        which ghost made each cell. Ghosts that are 20 dB below the noise with its margin even where all of their paths are in
+        phase have no part of their own: in "families" they are "other". It takes the memory of the signals of all parts of a
+        frame, at one channel where `channel` names one
     Returns a Spectrogram with power [times, velocity] in W. Raises TypeError, ValueError or IndexError naming the argument,
     also for frames of different radars, out of order or shorter than a window.
     """

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 import numpy as np
 
 from ..arguments.checks import refused
-from ..arguments.part_names import BESIDE
+from ..arguments.part_names import BESIDE, REST
 from ..arguments.settings import LabelSettings
 from ..frame.frame import Frame
 from ..frame.maps import FrameMaps
@@ -18,7 +18,7 @@ from .sliding import Stft
 from .spectrogram_labels import SpectrogramLabels, labels_of
 
 OBJECTS, FAMILIES = "objects", "families"  # views beside the partitions of frames
-GHOSTS, REST = "ghosts", "other"           # parts of these
+GHOSTS = "ghosts"                          # a part of the first
 FAINT = 1e-2  # of the floor of the mask: ghosts that show no more, all of their paths in phase, have no part of their own
 
 

@@ -14,8 +14,8 @@ from ..arguments.settings import Evaluate, LabelSettings, Method, Plane, Replay,
 from ..paths.resolution import Interval, interval_of
 from ..paths.visibility import appearing_in_frame, visibility_in_trace
 from ..signals import same_radar
+from ..signals.part_pass import takes_a_pass
 from ..signals.parts import selection_rule
-from ..transmit.signals import has_steps
 from .family_pass import FamilyPass, owners_of_views
 from .labels import Labels
 from .objects import family_cells, label_ghosts, label_objects, occluded_objects
@@ -89,8 +89,7 @@ def owners_and_powers(work: Labelling, partitions: dict):
     """
     request, paths, families, settings = work.request, work.paths, work.families, work.settings
     radar, plane = request.radar, request.plane
-    # Families of later records are not known before, and those of chirps that differ have no common bounds.
-    if settings.get("retrace", "never") != "never" or has_steps(radar):
+    if not takes_a_pass(radar, settings):
         views = {_FAMILIES: families, **partitions}
         num_parts = len(families) + sum(len(group) + 1 for group in partitions.values())
         powers = add_powers(decomposed(paths, radar, views, num_parts, plane, settings), plane)

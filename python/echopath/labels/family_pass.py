@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import _core
-from ..arguments.settings import SignalSettings
+from ..signals.part_pass import part_pass
 from .cell_owners import SHARED, CellOwners
 from .left_out import LeftOut
 from .powers import ViewPowers, mean_square, parts_by_rival
@@ -22,7 +22,6 @@ SIGNALS_IN_MEMORY = 128 << 20  # bytes that the signals of families may take at 
 STEP = 0.1                     # ratio of powers: how far each round goes below the last
 SHOWN = 1e-3                   # of the noise floor: ranges where a family can show less are left out of its map at first
 APART = 0.5                    # of the floor of the mask, as far as it is known: power with which cells are divided early
-_OF_PASS = ("tolerance", "method", "replay", "evaluate", "phase_tolerance")
 
 
 class _Apart(NamedTuple):
@@ -48,8 +47,7 @@ class FamilyPass:
 
     def __init__(self, work, *, adds_up: bool, probe=None):
         families, request, settings, radar = work.families, work.request, work.settings, work.request.radar
-        signal = {name: settings.get(name, getattr(SignalSettings, name)) for name in _OF_PASS}
-        self._pass = _core.PartPass(work.paths, radar, families.family_of_path, len(families), probe=probe, **signal)
+        self._pass = part_pass(work.paths, radar, families.family_of_path, len(families), settings, probe)
         self._pass.set_adds_up(adds_up)
         self._radar, self._request, self._progress = radar, request, settings.get("progress")
         plane = request.plane

@@ -60,7 +60,7 @@ def path_cells(paths: _core.Paths, spectrum: _core.RangeDoppler, *, tx: int = 0,
     """
     row_of_channel(paths, tx, rx)
     before, length, after = _lengths(paths, tx, rx)
-    turning = _turning(paths, tx, rx)
+    turning = turning_of(paths, chirp_times(paths, tx)[1], tx, rx)
     cells = PathCells(length, *(np.empty(len(length), kind) for kind in (float, float, np.int32, np.int32)))
     for first in range(0, len(length), _BLOCK):
         some = slice(first, first + _BLOCK)
@@ -87,21 +87,22 @@ def _places(length, longer, turning, radar, spectrum) -> tuple:
 
 def _lengths(paths, tx: int, rx: int):
     """Lengths [3, P] in m at the beginning, the middle and the end of a chirp in the middle of the frame."""
-    middle, half = _middle(paths, tx), 0.5 * paths.radar.waveform.chirp_duration
+    _, middle, _ = chirp_times(paths, tx)
+    half = 0.5 * paths.radar.waveform.chirp_duration
     return paths.lengths([middle - half, middle, middle + half], tx, rx)
 
 
-def _turning(paths, tx: int, rx: int) -> np.ndarray:
-    """Rate [P] in Hz by which the phase of each amplitude falls in the middle of the frame."""
-    middle, half = _middle(paths, tx), 0.5 * TURNING_STEP * paths.radar.waveform.chirp_duration
-    before, after = (paths._echoes_at_receivers(time, tx, [rx])[1][0] for time in (middle - half, middle + half))
+def turning_of(paths, time: float, tx: int = 0, rx: int = 0) -> np.ndarray:
+    """Rate [P] in Hz by which the phase of each amplitude falls at a time in s; tx, rx: indices of the antennas."""
+    half = 0.5 * TURNING_STEP * paths.radar.waveform.chirp_duration
+    before, after = (paths._echoes_at_receivers(at, tx, [rx])[1][0] for at in (time - half, time + half))
     return np.angle(before * np.conj(after)) / (4.0 * np.pi * half)
 
 
-def _middle(paths, tx: int) -> float:
-    """Of the chirps of a transmitter, s."""
+def chirp_times(paths, tx: int = 0) -> np.ndarray:
+    """First chirp, middle and last chirp of the frame for a transmitter, [3] in s."""
     first, last = (paths.radar.chirp_time(tx, chirp) for chirp in (0, paths.radar.waveform.num_chirps - 1))
-    return paths.frame.start_time + 0.5 * (first + last)
+    return paths.frame.start_time + np.array([first, 0.5 * (first + last), last])
 
 
 def _range_index(beat, waveform, axis):

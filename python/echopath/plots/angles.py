@@ -4,11 +4,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..signals.measures import SMALLEST_POWER, in_dbm
-from .style import MAP_COLOURS, axes_or_new
+from .style import AZIMUTH_LABEL, ELEVATION_LABEL, MAP_COLOURS, POWER_LABEL, axes_or_new
 
 SHOWN_DB = 50.0  # below the peak
-AZIMUTH_LABEL, ELEVATION_LABEL = "Azimuth in degrees (left: +)", "Elevation in degrees (up: +)"
-POWER_LABEL = "Received power in dBm"
 
 
 def draw_angle_spectrum(spectrum, range=None, velocity=None, *, ax=None, title=""):

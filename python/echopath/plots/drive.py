@@ -11,7 +11,7 @@ from .maps import (
     MAP_SIZE, RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, cells_of_scene, chosen_limits, draw_level,
     limits_above, margin_of, noise_peak_db,
 )
-from .style import MAP_COLOURS, new_figure, set_title
+from .style import MAP_COLOURS, colour_bar, new_figure, set_title
 from .time_maps import TIME_LABEL, image_over_time, show_within
 
 SHEET_WIDTH, ROW_HEIGHT = 2.9, 3.0  # inches, of a map of the sheet, and of each row
@@ -65,7 +65,7 @@ def plot_drive(drive: Drive, *, num_frames=4, vmin=None, vmax=None, title=""):
             axes.set_title(column.title)
             axes.locator_params(axis="x", nbins=MOST_TIMES)
         for part, shown in ((upper, panels), (lower, below)):
-            part.colorbar(image, ax=shown, label="Received power in dBm", extend="both", pad=0.02, aspect=25)
+            colour_bar(part, image, shown, aspect=25)
         set_title(figure, title, 11)
     return figure
 
@@ -101,7 +101,7 @@ def film_pictures(drive: Drive, *, vmin=None, vmax=None, title="") -> Iterator[n
         image = _draw(axes, drive, 0, vmin, vmax)
         _crop([axes], drive, vmin)
         axes.set(xlabel=RANGE_LABEL, ylabel=VELOCITY_LABEL)
-        figure.colorbar(image, ax=axes, label="Received power in dBm", extend="both", pad=0.02, aspect=30)
+        colour_bar(figure, image, axes)
         for place, time in enumerate(drive.times):
             image.set_data(drive.level[place].astype(np.float32))
             axes.set_title(f"{title}{', ' if title else ''}{time:.3f} s")

@@ -7,9 +7,9 @@ from ..arguments.checks import choice
 from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm
 from .maps import RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, half_step
 from .part_powers import draw_part_powers, part_colours
-from .style import axes_or_new, new_figure
+from .style import AZIMUTH_LABEL, axes_or_new, new_figure
 
-AZIMUTH_LABEL, AZIMUTH_MARGIN = "Azimuth in degrees (left: +)", 4.0
+AZIMUTH_MARGIN = 4.0        # degrees
 FILL = 0.45                  # opacity of a label over the map
 MAX_UNSEEN, MAX_GHOSTS = 4, 14  # told one by one
 FEWEST_ROWS = 8              # that there is room for, so that few bars stay thin

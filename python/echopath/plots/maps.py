@@ -9,7 +9,7 @@ import numpy as np
 from ..arguments.part_names import REST
 from ..arguments.checks import optional, real
 from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm, static_speed, with_error
-from .style import MAP_COLOURS, axes_or_new, new_figure, set_title
+from .style import MAP_COLOURS, axes_or_new, colour_bar, new_figure, set_title
 
 DYNAMIC_RANGE_DB = 70.0      # below the peak that a map shows at most
 LEAKED_DB = 10.0             # below a cell: where leakage alone comes so near to it, the cell tells nothing of the scene
@@ -277,8 +277,3 @@ def hold_points(axes, distance, velocity) -> None:
 def _small_print(figure, note: str) -> None:
     if note:
         figure.supxlabel(note, x=0.995, fontsize=6.5, color="0.4", horizontalalignment="right")  # the layout leaves it room
-
-
-def colour_bar(figure, image, panels) -> None:
-    """Adds the scale of the colours of an image beside some axes."""
-    figure.colorbar(image, ax=panels, label="Received power in dBm", extend="both", pad=0.02, aspect=30)

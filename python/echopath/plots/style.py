@@ -4,6 +4,8 @@ from __future__ import annotations
 import textwrap
 from contextlib import contextmanager
 
+import numpy as np
+
 from ..base.files import written_whole
 from ..base.origin import origin_texts
 
@@ -13,6 +15,9 @@ MAP_COLOURS = "inferno"
 BOUNCE_COLOURS = ("#009e73", "#0072b2", "#d55e00", "#cc79a7", "#8c6d1f")
 
 CURVE_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9")  # of the same palette
+
+AZIMUTH_LABEL, ELEVATION_LABEL = "Azimuth in degrees (left: +)", "Elevation in degrees (up: +)"
+POWER_LABEL = "Received power in dBm"
 
 LETTER = 0.56  # width of a letter over the size of the font, more than the mean
 
@@ -50,6 +55,20 @@ def axes_or_new(ax, width: float, height: float):
 
             ax = pyplot.figure(figsize=(width, height), layout="constrained").subplots()
         yield ax
+
+
+def colour_bar(figure, image, panels, *, aspect: float = 30.0) -> None:
+    """Adds the scale of the colours of an image of powers beside some axes. aspect: its height over its width"""
+    figure.colorbar(image, ax=panels, label=POWER_LABEL, extend="both", pad=0.02, aspect=aspect)
+
+
+def cell_edges(centres) -> np.ndarray:
+    """Edges [N + 1] of the cells about the values of an axis [N]: half-way between them, and as far beyond the outermost."""
+    centres = np.asarray(centres)
+    if len(centres) == 1:
+        return centres[0] + np.array([-0.5, 0.5])
+    middle = 0.5 * (centres[1:] + centres[:-1])
+    return np.concatenate([[2.0 * centres[0] - middle[0]], middle, [2.0 * centres[-1] - middle[-1]]])
 
 
 def set_title(figure, text: str, size: float) -> None:

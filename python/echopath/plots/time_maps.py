@@ -7,12 +7,12 @@ from ..base.colours import colours_of
 from ..signals.measures import SMALLEST_POWER, in_dbm
 from .maps import (
     DYNAMIC_RANGE_DB, MARGIN_OVER_MEDIAN_DB, RANGE_LABEL, VELOCITY_LABEL, VELOCITY_MARGIN, chosen_limits, half_step,
-    limits_above, margin_of, noise_peak_db,
+    limits_above, margin_of,
 )
-from .style import MAP_COLOURS, axes_or_new
+from .style import AZIMUTH_LABEL, MAP_COLOURS, axes_or_new, cell_edges, colour_bar
 
 TIME_LABEL = "Time in s"
-AXIS_LABELS = {"velocity": VELOCITY_LABEL, "range": RANGE_LABEL, "azimuth": "Azimuth in degrees (left: +)"}
+AXIS_LABELS = {"velocity": VELOCITY_LABEL, "range": RANGE_LABEL, "azimuth": AZIMUTH_LABEL}
 SIZE = 9.0, 4.4         # inches
 LABEL_FILL = 0.6        # opacity of a label over the map
 LEGEND_COLUMNS, LEGEND_LETTERS = 4, 90  # at most, of all columns together
@@ -36,9 +36,9 @@ def draw_time_map(map, *, ax=None, vmin=None, vmax=None, title=""):
         for columns, ends in _trains(map):
             image = image_over_time(ax, map.times[columns], values, level[columns], ends, cmap=MAP_COLOURS, vmin=vmin, vmax=vmax)
         if map.AXIS == "velocity":
-            _crop(ax, values, level, vmin, noise)
+            _crop(ax, values, level, vmin)
         ax.set(xlabel=TIME_LABEL, ylabel=AXIS_LABELS[map.AXIS], title=title)
-        ax.figure.colorbar(image, ax=ax, label="Received power in dBm", extend="both", pad=0.02, aspect=30)
+        colour_bar(ax.figure, image, ax)
     return ax
 
 
@@ -51,8 +51,7 @@ def draw_spectrogram_labels(labels, *, ax=None, title=""):
     from matplotlib.colors import ListedColormap
 
     level = in_dbm(labels.whole, SMALLEST_POWER)
-    noise = _noise_level(level, labels.noise_power)
-    vmin, vmax = limits_above(noise, level.max())
+    vmin, vmax = limits_above(_noise_level(level, labels.noise_power), level.max())
     names = labels.part_names
     colours = [tuple(channel / 255.0 for channel in colour) for colour in colours_of(names)]
     with axes_or_new(ax, *SIZE) as ax:
@@ -65,13 +64,13 @@ def draw_spectrogram_labels(labels, *, ax=None, title=""):
         seen = [number for number in range(len(names)) if np.any(labels.dominant == number)]
         for number in seen:
             ax.fill_between([], [], color=colours[number], label=names[number])
-        _crop(ax, labels.velocity, level, vmin, noise)
+        _crop(ax, labels.velocity, level, vmin)
         ax.set(xlabel=TIME_LABEL, ylabel=VELOCITY_LABEL)
         columns = max(1, min(LEGEND_COLUMNS, LEGEND_LETTERS // max((len(names[number]) for number in seen), default=1)))
         ax.set_title(title, pad=8.0 + LEGEND_ROW * -(-len(seen) // columns))
         if seen:
             ax.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns, frameon=False, borderaxespad=0.2)
-        ax.figure.colorbar(grey, ax=ax, label="Received power in dBm", extend="both", pad=0.02, aspect=30)
+        colour_bar(ax.figure, grey, ax)
     return ax
 
 
@@ -84,18 +83,10 @@ def _trains(map) -> list:
 
 def image_over_time(ax, times, values, level, ends=None, **look):
     """The cells [T, X] as an image; ends: (begin, end) in s of the outermost columns, None: as wide as the others."""
-    edges = _edges(times)
+    edges = cell_edges(times)
     if ends is not None:
         edges[[0, -1]] = ends
-    return ax.pcolormesh(edges, _edges(values), np.transpose(level), shading="flat", rasterized=True, **look)
-
-
-def _edges(centres):
-    """[N + 1] half-way between the centres [N], and as far beyond the outermost."""
-    if len(centres) == 1:
-        return np.array([centres[0] - 0.5, centres[0] + 0.5])
-    middle = 0.5 * (centres[1:] + centres[:-1])
-    return np.concatenate([[2.0 * centres[0] - middle[0]], middle, [2.0 * centres[-1] - middle[-1]]])
+    return ax.pcolormesh(edges, cell_edges(values), np.transpose(level), shading="flat", rasterized=True, **look)
 
 
 def _noise_level(level, noise_power: float) -> float:
@@ -106,9 +97,10 @@ def _noise_level(level, noise_power: float) -> float:
     return float(in_dbm(noise_power, SMALLEST_POWER) if noise_power > 0.0 else np.median(level))
 
 
-def _crop(ax, velocity, level, floor: float, noise: float) -> None:
-    """To the velocities at which some cell stands out of the noise and of the floor of the colour scale, both in dBm."""
-    shown = velocity[(level > max(floor + 3.0, noise + noise_peak_db(1))).any(axis=0)]
+def _crop(ax, velocity, level, floor: float) -> None:
+    """To the velocities at which some cell stands out of the floor of the colour scale in dBm, which begins above the noise: a
+    cell is a sum over ranges and a mean over channels, whose noise hardly varies."""
+    shown = velocity[(level > floor + 3.0).any(axis=0)]
     if len(shown):
         margin = margin_of(velocity, VELOCITY_MARGIN)
         show_within(ax, velocity, shown.min() - margin, shown.max() + margin)

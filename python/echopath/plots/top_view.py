@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm
-from .maps import chosen_limits, colour_bar, limits_of_level, noise_peak_db
-from .style import MAP_COLOURS, axes_or_new, new_figure, set_title
+from .maps import chosen_limits, limits_of_level, noise_peak_db
+from .style import MAP_COLOURS, axes_or_new, cell_edges, colour_bar, new_figure, set_title
 
 FARTHER = 1.1                  # of the farthest signal: what is shown
 LEAST_RANGES = 8               # cells shown at least
@@ -143,7 +143,7 @@ def _box(one, reach: float) -> tuple[float, float, float, float]:
 def _draw(axes, one, reach: float, vmin: float, vmax: float):
     """One sector; returns the image."""
     shown = max(2, int(np.count_nonzero(one.range <= reach)))
-    edge_azimuth, edge_range = _edges(one.azimuth), np.maximum(_edges(one.range[:shown]), 0.0)
+    edge_azimuth, edge_range = cell_edges(one.azimuth), np.maximum(cell_edges(one.range[:shown]), 0.0)
     across = np.sin(edge_azimuth)[:, None] * edge_range
     ahead = np.cos(edge_azimuth)[:, None] * edge_range
     image = axes.pcolormesh(across, ahead, _in_dbm(one.power[:, :shown]), cmap=MAP_COLOURS, vmin=vmin, vmax=vmax,
@@ -154,15 +154,6 @@ def _draw(axes, one, reach: float, vmin: float, vmax: float):
     axes.set_ylim(back, front)
     axes.set_aspect("equal")
     return image
-
-
-def _edges(axis):
-    """Edges [N + 1] of the cells about the values of an axis [N]."""
-    axis = np.asarray(axis)
-    if len(axis) == 1:
-        return axis[0] + np.array([-0.5, 0.5])
-    middle = 0.5 * (axis[1:] + axis[:-1])
-    return np.concatenate([[2.0 * axis[0] - middle[0]], middle, [2.0 * axis[-1] - middle[-1]]])
 
 
 def _draw_grid(axes, one, reach: float) -> None:

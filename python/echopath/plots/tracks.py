@@ -15,13 +15,14 @@ X_LABEL, Y_LABEL = "x in m (ahead)", "y in m (left: +)"
 def draw_tracks(tracks, *, ax=None, title=""):
     """Tracks as lines from above, crosses where they went on without a detection, in given axes or new ones (None).
 
-    The legend has the tracks that follow objects, up to ROWS times COLUMNS of them, or all where none does.
+    The legend has the tracks that follow objects, or where none does all of them: the first ROWS times COLUMNS, and how many
+    more.
     tracks: Tracks; title: above the axes
     Returns the axes: y in m across, left positive, x in m up. Raises TypeError naming `ax`.
     """
     numbers = np.unique(tracks.track)
-    named = set(tracks.track[tracks.object != ""].tolist()) or set(numbers[:ROWS].tolist())
-    listed = sorted(named)[:ROWS * COLUMNS]
+    named = np.unique(tracks.track[tracks.object != ""]) if np.any(tracks.object != "") else numbers
+    listed, more = named[:ROWS * COLUMNS].tolist(), max(len(named) - ROWS * COLUMNS, 0)
     columns = max(-(-len(listed) // ROWS), 1)
     with axes_or_new(ax, SIZE[0] + COLUMN_WIDTH * (columns - 1), SIZE[1]) as ax:
         for place, number in enumerate(numbers):
@@ -33,6 +34,8 @@ def draw_tracks(tracks, *, ax=None, title=""):
             ax.annotate(str(number), (y[-1], x[-1]), xytext=(4, 4), textcoords="offset points", color="0.1")
         ax.set(xlabel=Y_LABEL, ylabel=X_LABEL, title=title, aspect="equal")
         ax.set_xlim(*sorted(ax.get_xlim(), reverse=True))
+        if more:
+            ax.plot([], [], " ", label=f"and {more} more")
         if listed:
             ax.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), ncols=columns, frameon=False)
     return ax

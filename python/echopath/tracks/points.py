@@ -1,7 +1,8 @@
 """What a tracker takes in: points in the plane with their covariances."""
 from __future__ import annotations
 
-from typing import NamedTuple
+import dataclasses
+import math
 
 import numpy as np
 
@@ -10,57 +11,105 @@ from ..arguments.iterables import iterable
 from ..detections import Detections
 
 _POINTS = array("[D, 2]", "[D, 3]", finite=True)
+_STEP = 1e-3  # s, of the differences that give the radar's velocity
+_NONE = np.zeros((0, 3)), np.zeros(0), np.zeros(0), np.zeros(3)
 
 
-class Points(NamedTuple):
-    """points: [M, 2] m; covariances: [M, 2, 2] m^2"""
+@dataclasses.dataclass(frozen=True)
+class Points:
+    """M points of a frame.
+
+    points: [M, 2] m; covariances: [M, 2, 2] m^2
+    speeds: [M] m/s, of the points along `sights` [M, 2], but for whole ambiguities; speed_std: m/s
+    ambiguity: m/s, 0: the speeds are not known, infinity: they are unique
+    """
 
     points: np.ndarray
     covariances: np.ndarray
+    speeds: np.ndarray
+    sights: np.ndarray
+    speed_std: float = 1.0
+    ambiguity: float = 0.0
+
+    @property
+    def log_of_any_speed(self) -> float:
+        """Minus twice the log likelihood of a speed of which nothing is known, beside that of a Gaussian without its constant."""
+        return 2.0 * math.log(self.ambiguity) - math.log(2.0 * math.pi) if 0.0 < self.ambiguity < math.inf else 0.0
+
+    def one(self, index: int) -> Points:
+        """A single one of them."""
+        some = slice(index, index + 1)
+        return dataclasses.replace(self, points=self.points[some], covariances=self.covariances[some],
+                                   speeds=self.speeds[some], sights=self.sights[some])
 
 
-def points_of(detections, world_from_radar, range_std: float, azimuth_std: float, merge_distance: float) -> Points:
-    """Points of one frame, those nearer than `merge_distance` in m to each other made one.
+@dataclasses.dataclass(frozen=True)
+class Carrier:
+    """What carries the points of a radar into the world at a time.
 
-    detections: Detections, or points [D, 2] or [D, 3] in m in the radar's frame; world_from_radar: [4, 4] or None, to leave
-        them there
-    range_std: m, azimuth_std: rad, of each
+    world_from_radar: [4, 4]; velocity: [3] m/s, of the radar in the world; ambiguity: m/s, of its radial velocities
     """
-    own, weights, centre = _own_points(detections)
-    own, weights = _merged(own, weights, merge_distance)
+
+    world_from_radar: np.ndarray
+    velocity: np.ndarray
+    ambiguity: float
+
+
+def carrier_of(radar, time: float) -> Carrier:
+    """Of a radar at a time in s."""
+    before, now, after = (radar.world_from_radar(time + step) for step in (-_STEP, 0.0, _STEP))
+    ambiguity = 2.0 * radar.waveform.max_velocity(radar.num_slots)
+    return Carrier(now, (after - before)[:3, 3] / (2.0 * _STEP), ambiguity)
+
+
+def points_of(detections, carrier: Carrier | None, range_std: float, azimuth_std: float, speed_std: float,
+              merge_distance: float) -> Points:
+    """Points of one frame, those nearer than `merge_distance` in m to each other made one, with the speed of the strongest.
+
+    detections: Detections, or points [D, 2] or [D, 3] in m in the radar's frame; carrier: into the world, None: to leave them
+        there, without speeds, as what is ambiguous and how the radar moves is not known
+    range_std: m, azimuth_std: rad, speed_std: m/s, of each
+    """
+    own, weights, speeds, centre = _own_points(detections)
+    own, speeds = _merged(own, weights, speeds, merge_distance)
     sight = own - centre
     distance = np.linalg.norm(sight, axis=1)
     along = sight[:, :2] / np.maximum(np.linalg.norm(sight[:, :2], axis=1), 1e-12)[:, None]
     across = np.stack([-along[:, 1], along[:, 0]], axis=1)
     covariances = range_std**2 * _outer(along) + (distance * azimuth_std)[:, None, None] ** 2 * _outer(across)
-    if world_from_radar is None:
-        return Points(own[:, :2], covariances)
-    turn = world_from_radar[:3, :3]
-    return Points((own @ turn.T + world_from_radar[:3, 3])[:, :2], turn[:2, :2] @ covariances @ turn[:2, :2].T)
+    if carrier is None:
+        return Points(own[:, :2], covariances, np.zeros(len(own)), np.zeros((len(own), 2)))
+    turn, shift = carrier.world_from_radar[:3, :3], carrier.world_from_radar[:3, 3]
+    sights = sight @ turn.T / np.maximum(distance, 1e-12)[:, None]
+    return Points((own @ turn.T + shift)[:, :2], turn[:2, :2] @ covariances @ turn[:2, :2].T,
+                  speeds + sights @ carrier.velocity, sights[:, :2], speed_std,
+                  0.0 if np.any(np.isnan(speeds)) else carrier.ambiguity)
 
 
 def _own_points(detections) -> tuple:
-    """Points [D, 3], weights [D] and the place [3] that they are counted from, in the radar's frame."""
+    """Points [D, 3], weights [D], radial velocities [D] in m/s, NaN where they are not known, and the place [3] that they are
+    counted from, in the radar's frame."""
     if isinstance(detections, Detections):
         points, weights = detections.points, detections.power
         is_known = np.isfinite(points).all(axis=1)
         if len(points) and not is_known.any():
             raise ValueError("detections: must have azimuths, which the radar's antennas cannot tell")
-        return points[is_known], weights[is_known], detections.centre
+        return points[is_known], weights[is_known], detections.velocity[is_known], detections.centre
     if isinstance(detections, np.ndarray) and detections.dtype.kind in "fiu" and detections.size == 0:
-        return np.zeros((0, 3)), np.zeros(0), np.zeros(3)
+        return _NONE
     if isinstance(detections, (list, tuple)) and not len(detections):
-        return np.zeros((0, 3)), np.zeros(0), np.zeros(3)
+        return _NONE
     points = _POINTS("detections", detections)
     flat = np.zeros((len(points), 3))
     flat[:, :points.shape[1]] = points
-    return flat, np.ones(len(points)), np.zeros(3)
+    return flat, np.ones(len(points)), np.full(len(points), np.nan), np.zeros(3)
 
 
-def _merged(points, weights, merge_distance: float) -> tuple:
-    """Means of the points that chains of steps shorter than `merge_distance` join, by weight, and their weights."""
+def _merged(points, weights, speeds, merge_distance: float) -> tuple:
+    """Means of the points that chains of steps shorter than `merge_distance` join, by weight, and the speed of the one of
+    the largest weight."""
     if merge_distance == 0.0 or len(points) < 2:
-        return points, weights
+        return points, speeds
     group = np.arange(len(points))
     is_near = np.linalg.norm(points[:, None] - points, axis=2) < merge_distance
     while True:
@@ -70,7 +119,7 @@ def _merged(points, weights, merge_distance: float) -> tuple:
         group = lowest
     members = group == np.unique(group)[:, None]
     total = members @ weights
-    return (members * weights) @ points / total[:, None], total
+    return (members * weights) @ points / total[:, None], speeds[(members * weights).argmax(axis=1)]
 
 
 def _outer(vectors):

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from statistics import NormalDist
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from ..detections import Detections
 from ..truth import Truth
 from .assignment import assigned
 from .kalman import Filter
-from .points import detections_rule, points_of
+from .points import carrier_of, detections_rule, points_of
 from .record import Tracks
 
 _DISTANCE = real(0.0, unit="m")
@@ -23,25 +24,28 @@ def _std(unit: str):
 
 
 @checked(detections=detections_rule, times=array("[F]", finite=True), truth=optional(an(Truth)), radar=optional(an(_core.Radar)),
-         range_std=_std("m"), azimuth_std=_std("rad"), acceleration_std=_std("m/s^2"), speed_std=_std("m/s"),
-         merge_distance=_DISTANCE, gate_probability=real(0.5, 1.0 - 1e-12), min_hits=count(1, 1000),
+         range_std=_std("m"), azimuth_std=_std("rad"), velocity_std=_std("m/s"), acceleration_std=_std("m/s^2"),
+         speed_std=_std("m/s"), merge_distance=_DISTANCE, gate_probability=real(0.5, 1.0 - 1e-12), min_hits=count(1, 1000),
          max_misses=count(0, 1000), truth_distance=_DISTANCE)
 def track(detections: Iterable[Detections] | Iterable[ArrayLike], times: ArrayLike, *, truth: Truth | None = None,
-          radar: _core.Radar | None = None, range_std: float = 0.2, azimuth_std: float = 0.02, acceleration_std: float = 2.0,
-          speed_std: float = 10.0, merge_distance: float = 1.0, gate_probability: float = 0.99, min_hits: int = 3,
-          max_misses: int = 3, truth_distance: float = 2.0) -> Tracks:
+          radar: _core.Radar | None = None, range_std: float = 0.2, azimuth_std: float = 0.02, velocity_std: float = 1.0,
+          acceleration_std: float = 2.0, speed_std: float = 10.0, merge_distance: float = 1.0,
+          gate_probability: float = 0.99, min_hits: int = 3, max_misses: int = 3, truth_distance: float = 2.0) -> Tracks:
     """Tracks of detections from frame to frame, for comparison with the truth.
 
     Model: points in the plane that go straight but for random accelerations, a Kalman filter for each; detections within the
-    gate of a track are assigned so that the sum of their log likelihoods is largest. Radial velocities are not used. Heights
-    are left out.
+    gate of a track are assigned so that the sum of their log likelihoods is largest. With `radar` the radial velocities of
+    Detections count, too, folded by its ambiguity, as soon as a track's speed along the line of sight is known to a quarter
+    of that: a track does not go on with what moves otherwise. Heights are left out.
     detections: of each frame, in the order of time: Detections with azimuths, or points [D, 2] or [D, 3] in m in the radar's
         axes
     times: [F] s, ascending, of the frames: their middles, as `Truth` has them
     truth: of the same frames, names the object of each track, and of an object that shows in several places, as a guard rail
         does, only the track that follows it best; None: no names
-    radar: whose motion carries the points into the axes of the world; None: tracks are in the axes of the radar
+    radar: whose motion carries the points into the axes of the world; None: tracks are in the axes of the radar, and radial
+        velocities are not used
     range_std, azimuth_std: m and rad, standard errors of a detection along and across the line of sight
+    velocity_std: m/s, by which the radial velocity of a detection differs from that of its object, with limbs and wheels
     acceleration_std: m/s^2, of each coordinate from frame to frame; speed_std: m/s, of the speeds with which tracks begin
     merge_distance: m, detections of a frame nearer to each other are one, in their mean weighted by power; 0: none are
     gate_probability: with which a detection of an object is within its gate, 0.5 to 1
@@ -51,12 +55,11 @@ def track(detections: Iterable[Detections] | Iterable[ArrayLike], times: ArrayLi
     """
     _check_times(times, detections)
     _check_truth(truth, times)
-    settings = {"range_std": range_std, "azimuth_std": azimuth_std, "merge_distance": merge_distance}
-    gate = -2.0 * math.log1p(-gate_probability)  # of chi-square with two degrees of freedom
-    tracker = _Tracker(acceleration_std, speed_std, gate, min_hits, max_misses)
+    settings = {"range_std": range_std, "azimuth_std": azimuth_std, "speed_std": velocity_std, "merge_distance": merge_distance}
+    tracker = _Tracker(acceleration_std, speed_std, gate_probability, min_hits, max_misses)
     for number, (found, time) in enumerate(zip(detections, times)):
-        world = None if radar is None else radar.world_from_radar(float(time))
-        tracker.take(number, float(time), points_of(found, world, **settings))
+        carrier = None if radar is None else carrier_of(radar, float(time))
+        tracker.take(number, float(time), points_of(found, carrier, **settings))
     rows = tracker.rows()
     return _as_tracks(rows, _objects_of(rows, truth, radar is not None, truth_distance))
 
@@ -92,8 +95,10 @@ class _Track:
 
 
 class _Tracker:
-    def __init__(self, acceleration_std, speed_std, gate, min_hits, max_misses):
-        self._acceleration_std, self._speed_std, self._gate = acceleration_std, speed_std, gate
+    def __init__(self, acceleration_std, speed_std, gate_probability, min_hits, max_misses):
+        self._acceleration_std, self._speed_std = acceleration_std, speed_std
+        self._gate = -2.0 * math.log1p(-gate_probability)  # of chi-square with two degrees of freedom
+        self._gate_of_speed = NormalDist().inv_cdf(0.5 + 0.5 * gate_probability) ** 2
         self._min_hits, self._max_misses = min_hits, max_misses
         self._live, self._ended, self._time = [], [], None
 
@@ -104,10 +109,10 @@ class _Tracker:
         pairs = dict(self._pairs(found))
         for index, one in enumerate(self._live):
             if index in pairs:
-                one.filter.update(found.points[pairs[index]], found.covariances[pairs[index]])
+                one.filter.update(found, pairs[index])
             one.note(frame, time, index in pairs)
         for point in sorted(set(range(len(found.points))) - set(pairs.values())):
-            begun = _Track(Filter(found.points[point], found.covariances[point], self._speed_std))
+            begun = _Track(Filter(found, point, self._speed_std))
             begun.note(frame, time, True)
             self._live.append(begun)
         self._ended += [one for one in self._live if one.misses > self._max_misses]
@@ -123,11 +128,10 @@ class _Tracker:
     def _pairs(self, found) -> list:
         if not self._live or not len(found.points):
             return []
-        squared, spread = zip(*(one.filter.distances(*found) for one in self._live))
-        squared, spread = np.array(squared), np.array(spread)
-        # A pair's log likelihood, shifted so that the cost at the rim of the gate is below that of no pair.
-        cost = np.where(squared <= self._gate, squared + spread, np.inf)
-        return assigned(cost, self._gate + float(spread.max()) + 1.0)
+        place, speed, cost = (np.array(values) for values in zip(*(one.filter.fit(found) for one in self._live)))
+        cost = np.where((place <= self._gate) & (speed <= self._gate_of_speed), cost, np.inf)
+        dearest = float(np.max(cost, where=np.isfinite(cost), initial=0.0))
+        return assigned(cost, dearest + self._gate + self._gate_of_speed)  # of a track without any
 
 
 def _objects_of(rows, truth, in_world: bool, truth_distance: float) -> list:

@@ -164,6 +164,6 @@ def _checked_changes(value, longest: float) -> np.ndarray:
     if is_out_of_range or np.any(ends[:-1] > rows[1:, 0] + 1e-9):
         raise refused(ValueError, "changes", "rows of a distance of at least 0 m, a length above 0 m and an offset, each behind "
                       "the one before", value)
-    if ends.max() > longest + 1e-6:
+    if len(rows) and ends.max() > longest + 1e-6:
         raise refused(ValueError, "changes", f"made within the {longest:g} m of the lane", rows[int(ends.argmax())].tolist())
     return rows

@@ -114,6 +114,67 @@ def test_errors_are_as_large_as_the_covariance_says():
     assert np.all(mean[1:] > low) and np.all(mean[1:] < high)
 
 
+# --- radial velocities ---
+
+def found_at(points, velocities, centre=(0.0, 0.0, 0.0)):
+    """Detections at points [N, 2] in m of the radar's axes with radial velocities [N] in m/s."""
+    count = len(points)
+    columns = {name: np.zeros(count) for name in ("elevation", "noise", "share")} | {
+        name: np.zeros(count, np.int32) for name in ("ghost_type", "order", "class_code")} | {
+        name: np.zeros(count, bool) for name in ("is_noise", "is_resolved")} | {
+        name: np.full(count, "", dtype=str) for name in ("part", "object")}
+    return ep.Detections(cells=np.zeros((count, 2), np.int64), velocity=np.asarray(velocities, float), power=np.ones(count),
+                         range=np.hypot(*np.transpose(points)), azimuth=np.arctan2(*np.transpose(points)[::-1]), echoes=None,
+                         centre=np.array(centre), **columns)
+
+
+def radar_of(ambiguity: float, speed: float = 0.0):
+    """Whose radial velocities are known up to so many m/s."""
+    return build_radar(num_samples=16, num_chirps=4, chirp_interval=0.5 * ep.speed_of_light / 77.5e9 / ambiguity, speed=speed)
+
+
+def meeting(seed: int):
+    """[F, 2, 2] m and [F, 2] m/s: two walkers who meet head-on, and the radial velocities of what shows of them."""
+    generator, there = np.random.default_rng(seed), TIMES - 2.0
+    points = np.stack([np.stack([30 + 1.5 * there, np.full(FRAMES, 0.1)], axis=1),
+                       np.stack([30 - 1.5 * there, np.full(FRAMES, -0.1)], axis=1)], axis=1)
+    points += generator.normal(0.0, 0.5, points.shape)
+    return points, np.array([1.5, -1.5]) + generator.normal(0.0, 0.3, points.shape[:2])
+
+
+def swaps(found, radar) -> bool:
+    """Whether the first track comes back to where it was in place of going on."""
+    tracks = ep.track(found, TIMES, radar=radar, range_std=0.5, azimuth_std=0.05, velocity_std=0.3, speed_std=2.0,
+                      acceleration_std=4.0, merge_distance=0.0, gate_probability=1.0 - 1e-9)
+    assert tracks.num_tracks == 2
+    one = tracks.of_track(0)
+    return (one.state[0, 0] > 30.0) == (one.state[-1, 0] > 30.0)
+
+
+@pytest.mark.parametrize("ambiguity, speed", [(60.0, 0.0), (4.0, 0.0), (8.0, 5.0)])
+def test_walkers_who_meet_are_told_apart_by_their_radial_velocities(ambiguity, speed):
+    """The radar may drive, and velocities beyond what it knows come folded: -6.5 m/s as 1.5 m/s."""
+    for seed in range(8):
+        positions, velocities = meeting(seed)
+        own = positions - np.stack([speed * TIMES, 0.0 * TIMES], axis=1)[:, None]
+        folded = (velocities - speed + 0.5 * ambiguity) % ambiguity - 0.5 * ambiguity
+        assert not swaps([found_at(points, speeds) for points, speeds in zip(own, folded)], radar_of(ambiguity, speed))
+
+
+def test_without_radial_velocities_walkers_who_meet_are_taken_for_each_other():
+    """Else the test before would tell nothing."""
+    assert sum(swaps(list(meeting(seed)[0]), None) for seed in range(12)) >= 2
+
+
+def test_a_speed_that_the_ambiguity_hides_is_taken_from_the_places():
+    """15 m/s with an ambiguity of 6 m/s: no fold may be taken for the speed before the places tell it."""
+    points = np.stack([10.0 + 15.0 * TIMES, 0.0 * TIMES], axis=1)[:, None]
+    found = [found_at(one, [(15.0 + 3.0) % 6.0 - 3.0]) for one in points]
+    tracks = ep.track(found, TIMES, radar=radar_of(6.0), range_std=0.1, azimuth_std=0.01, velocity_std=0.2)
+    assert tracks.num_tracks == 1 and len(tracks) == FRAMES
+    assert tracks.state[-1, 2:] == pytest.approx([15.0, 0.0], abs=0.05)
+
+
 # --- assignment ---
 
 def test_the_assignment_is_the_best_one():

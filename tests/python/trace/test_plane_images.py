@@ -95,6 +95,35 @@ def test_the_corner_of_a_plane_leaves_a_quarter_and_far_edges_leave_all():
     assert beside_edges(1.5, across=1.5)[0] == pytest.approx(1.0, abs=WEIGHT_TOLERANCE)
 
 
+@pytest.mark.parametrize("within", [0.0, 1e-6, 1e-4, 1e-3])
+def test_a_point_at_the_very_edge_has_half_of_the_field_once(within):
+    """Half zones of 14 cm: up to 0.1 micrometre, where either side of the edge has its share of the path."""
+    assert beside_edges(within)[0] == pytest.approx(0.5, abs=0.02)
+
+
+def test_the_seam_of_two_meshes_in_one_plane_is_no_edge():
+    """The point of reflection lies on it, to rounding or to the micrometre."""
+    for aside in (0.0, 1e-6, 1e-3):
+        scene = ep.Scene()
+        for name, side in (("left", 1.0), ("right", -1.0)):
+            corners = np.array([[-6, 0, 0], [6, 0, 0], [6, 6 * side, 0], [-6, 6 * side, 0]])[::int(side)] + [0.0, aside, 0.0]
+            scene.add(ep.Mesh(corners, [[0, 1, 2], [0, 2, 3]]), name=name, material="metal")
+        paths = ep.trace(scene, radar((0, 0, 10), (0.05, 0, 10)), num_rays=30_000, max_bounces=1, polarization="scalar")
+        assert np.abs(paths.weight[images(paths)]) == pytest.approx([1.0], rel=WEIGHT_TOLERANCE)
+
+
+def test_the_interval_of_an_echo_beside_an_edge_holds_its_error():
+    """That of one away from edges has no width."""
+    for within, least, most in ((0.1, 1.0, 1.5), (2.0, -1e-6, 1e-6)):
+        scene = ep.Scene()
+        corners = np.array([[within * 0.14, -6, 0], [within * 0.14, 6, 0], [-6, 6, 0], [-6, -6, 0]])
+        scene.add(ep.Mesh(corners, [[0, 1, 2], [0, 2, 3]]), name="plane", material="metal")
+        paths = ep.trace(scene, radar((0, 0, 10), (0, 0.05, 10)), num_rays=30_000, max_bounces=1, polarization="scalar")
+        found = ep.received_power(paths)
+        assert least <= 10.0 * np.log10(found.high / found.power) <= most
+        assert least <= 10.0 * np.log10(found.power / found.low) <= most
+
+
 def test_a_plane_marked_as_a_mirror_has_no_edges():
     marked = ep.Material.metal(mirror=True)
     assert beside_edges(0.02, material=marked)[0] == pytest.approx(1.0, abs=WEIGHT_TOLERANCE)

@@ -19,11 +19,11 @@ std::optional<ImagePath> ImageMethod::path_over(const std::vector<int>& sequence
   sequence_ = sequence;
   ImagePath path;
   for (const double side : {1.0, -1.0}) {
-    if (follow(settings_.receiver + side * kAside * kAsideDirection, path)) path.weight += 0.5;
+    if (follow(settings_.receiver + side * kAside * kAsideDirection, path)) path.share += 0.5;
   }
-  if (path.weight == 0.0) return std::nullopt;
+  if (path.share == 0.0) return std::nullopt;
+  path.weight = settings_.is_polarized ? 1.0 : field();
   if (settings_.is_polarized) path.jones = jones_matrix();
-  else path.weight = field() * path.weight.real();
   if (std::abs(path.weight) == 0) return std::nullopt;
   return path;
 }
@@ -99,7 +99,7 @@ std::complex<double> ImageMethod::field() const {
 
 void add_path(const ImagePath& path, PathBlock& block) {
   const int count = static_cast<int>(path.hits.size());
-  block.add(path.hits.data(), count, 0, std::complex<float>(path.weight), kNoStratum);
+  block.add(path.hits.data(), count, 0, std::complex<float>(path.weight * path.share), kNoStratum);
   if (path.jones) block.set_jones(*path.jones);
   block.statistics.num_hits += count;
 }

@@ -32,8 +32,9 @@ class MeshLocator final : public PointLocator {
 // Describes a path over planes alone: its hits, the points where it meets the planes, and its weight.
 struct ImagePath {
   std::vector<Hit> hits;
-  std::vector<Vec3> points;          // m
-  std::complex<double> weight;       // without the coefficients where polarised
+  std::vector<Vec3> points;     // m
+  std::complex<double> weight;  // without the share, and without the coefficients where polarised
+  double share = 0.0;  // of the field, that the sequence has: half of it for a path through an edge (mirror_paths.h)
   std::optional<JonesMatrix> jones;  // where polarised
 };
 
@@ -43,8 +44,7 @@ class ImageMethod {
   ImageMethod(const EmbreeScene& geometry, const std::vector<Mirror>& mirrors, const PointLocator& locator,
               const SbrSettings& settings)
       : geometry_(geometry), mirrors_(mirrors), locator_(locator), settings_(settings) {}
-  // Returns the path over the mirrors of these indices, in travel order; nothing where there is none. A path through an edge
-  // has half of its weight (mirror_paths.h).
+  // Returns the path over the mirrors of these indices, in travel order; nothing where there is none.
   std::optional<ImagePath> path_over(const std::vector<int>& sequence);
   // Finds the specular points toward a receiver on the planes, wherever these end; returns false where there are none.
   bool find_points(const std::vector<int>& sequence, const Vec3& receiver, std::vector<Vec3>& points) const;
@@ -68,7 +68,7 @@ class ImageMethod {
   std::vector<Vec3> points_;
 };
 
-// Adds an image path to a block.
+// Adds an image path with its share to a block.
 void add_path(const ImagePath& path, PathBlock& block);
 
 }  // namespace echopath

@@ -9,8 +9,12 @@ namespace echopath {
 namespace {
 
 constexpr double kAmple = 1.0 / 0.7;  // widths of the zone from which on edges count as none
-constexpr double kFades = 0.5;        // half zones from which on edges about a flat mirror fade
-constexpr int kDirections = 32;       // in which its edges are looked for: a straight one is met as by any number to 0.05 dB
+
+// Edges about the point of a flat mirror fade between these distances, in half zones.
+constexpr double kFades = 0.5, kFaded = kAmple;
+
+// Edges are looked for in so many directions. A corner takes some of them whole, so that it is known to 1 dB at its tip.
+constexpr int kDirections = 64;
 
 // Returns the direction and distance by which the lit point of the target moves when the point of the mirror moves by 1 m
 // along the axis.
@@ -110,13 +114,13 @@ class AxisCover {
 // Returns the share of the field that a flat mirror loses at its edge in the direction of `half`, which reaches to the end of
 // the half zone.
 std::complex<double> field_of_edge(const SurfaceAround& mirror, const Vec3& half) {
-  const double length = half.norm(), ample = kAmple * length;
+  const double length = half.norm(), reach = kFaded * length;
   const Vec3 along = half / length;
-  if (mirror.reaches(along, ample)) return 0.0;
-  const SurfaceEnd end = mirror.find_end(along, ample);
-  if (end.is_wall || end.distance >= ample) return 0.0;
+  if (mirror.reaches(along, reach)) return 0.0;
+  const SurfaceEnd end = mirror.find_end(along, reach);
+  if (end.is_wall || end.distance >= reach) return 0.0;
   const double distance = end.distance / length;
-  const double faded = std::clamp((distance - kFades) / (kAmple - kFades), 0.0, 1.0);
+  const double faded = std::clamp((distance - kFades) / (kFaded - kFades), 0.0, 1.0);
   return std::polar(0.5 + 0.5 * std::cos(kPi * faded), -kPi * distance * distance);
 }
 
@@ -156,10 +160,10 @@ ZoneCover cover_of_zone(const EmbreeScene& geometry, const MirrorView& view, con
   return cover;
 }
 
-std::complex<double> field_of_flat_mirror(const EmbreeScene& geometry, const MirrorView& view, double wavelength,
-                                          int64_t& num_queries) {
+FlatMirrorField field_of_flat_mirror(const EmbreeScene& geometry, const MirrorView& view, double wavelength,
+                                     int64_t& num_queries) {
   const SurfaceAround mirror(geometry, view.point, geometry.plane_tolerance(wavelength), num_queries);
-  if (mirror.holds_circle(ample_squared(view, wavelength))) return 1.0;
+  if (mirror.holds_circle(ample_squared(view, wavelength))) return {};
   const std::array<ZoneAxis, 2> axes = zone_axes(view, wavelength);
   std::complex<double> of_edges = 0.0;
   for (int k = 0; k < kDirections; ++k) {
@@ -167,7 +171,7 @@ std::complex<double> field_of_flat_mirror(const EmbreeScene& geometry, const Mir
     const Vec3 half = std::cos(angle) * axes[0].half * axes[0].along + std::sin(angle) * axes[1].half * axes[1].along;
     of_edges += field_of_edge(mirror, half);
   }
-  return 1.0 - of_edges / static_cast<double>(kDirections);
+  return {1.0 - of_edges / static_cast<double>(kDirections), of_edges != 0.0};
 }
 
 // Uses the auxiliary functions of Fresnel's integrals to 2e-3: Abramowitz and Stegun (1964), 7.3.32 and 7.3.33.

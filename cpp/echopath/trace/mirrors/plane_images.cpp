@@ -81,6 +81,13 @@ void name_triangles(const std::vector<Triangle>& triangles, const std::vector<ui
   }
 }
 
+// Returns whether two bounces in a row are at the common edge of their planes: each of their orders has its share of the path
+// then. A path through the seam of a plane, or through its rim, has the field that the surface about the point leaves, once.
+bool bounces_at_corner(const std::vector<Vec3>& points) {
+  return std::adjacent_find(points.begin(), points.end(),
+                            [](const Vec3& a, const Vec3& b) { return (a - b).norm() < kAtEdge; }) != points.end();
+}
+
 bool is_near(const std::vector<Vec3>& points, const std::vector<Vec3>& others) {
   return std::equal(points.begin(), points.end(), others.begin(), others.end(),
                     [](const Vec3& a, const Vec3& b) { return (a - b).norm() < kSamePoint; });
@@ -147,8 +154,8 @@ bool PlaneImages::is_known(Facets chain, const std::vector<Vec3>& points) {
 }
 
 // Returns the field that the edges of its surfaces leave of a path; nothing where one does not cover its Fresnel zone.
-std::optional<std::complex<double>> PlaneImages::field_beside_edges(const ImagePath& path, int64_t& num_queries) const {
-  std::complex<double> field = 1.0;
+std::optional<FlatMirrorField> PlaneImages::field_beside_edges(const ImagePath& path, int64_t& num_queries) const {
+  FlatMirrorField field;
   double whole = (settings_.receiver - path.points.back()).norm(), before = 0.0;
   for (size_t k = 0; k < path.points.size(); ++k)
     whole += (path.points[k] - (k == 0 ? settings_.transmitter : path.points[k - 1])).norm();
@@ -161,7 +168,9 @@ std::optional<std::complex<double>> PlaneImages::field_beside_edges(const ImageP
     point.normal = lit_normal(line, planes_[k].normal);
     const MirrorView view{point, line.normalized(), before, whole - before};
     if (cover_of_zone(geometry_, view, nullptr, wavelength_, num_queries).share < kZoneShare) return std::nullopt;
-    field *= field_of_flat_mirror(geometry_, view, wavelength_, num_queries);
+    const FlatMirrorField of_plane = field_of_flat_mirror(geometry_, view, wavelength_, num_queries);
+    field.of_endless *= of_plane.of_endless;
+    field.has_edge = field.has_edge || of_plane.has_edge;
   }
   return field;
 }
@@ -199,12 +208,14 @@ PathBlock PlaneImages::find(const Job* job) {
     std::optional<ImagePath> path = images.path_over(sequence);
     block.statistics.num_queries += images.num_queries();
     if (!path) continue;
-    const std::optional<std::complex<double>> field = field_beside_edges(*path, block.statistics.num_queries);
+    const std::optional<FlatMirrorField> field = field_beside_edges(*path, block.statistics.num_queries);
     if (!field) continue;
-    path->weight *= *field;
+    path->weight *= field->of_endless;
+    if (!bounces_at_corner(path->points)) path->share = 1.0;
     const std::vector<int> planes = joined(sequence);
     if (!sequences_.insert(planes).second) continue;
     add_path(*path, block);
+    if (field->has_edge) block.rows.flags[block.rows.size() - 1] |= kBesideEdge;
     leave_out(planes, path->points);
   }
   find_triangles();

@@ -4,13 +4,12 @@
 // Rays show the way: a coherent ray whose hits reflect it to within a few spacings of rays of the receiver names the planes
 // of one path (its chain), as in the method of shooting and bouncing rays with a sphere around the receiver. The image
 // method finds the path itself, to rounding. It counts where each of its surfaces is larger than its Fresnel zone
-// (mirror_zone.h): then the field is that of geometrical optics, with what an edge within the zone leaves of it, and the
-// echoes by physical optics that rays send over the same planes in the same order are left out, because they add up to the
-// same field. Everything
-// else stays with the rays: smaller surfaces, planes without a point of reflection, diffuse echoes, paths that meet anything
-// else. Source: Schaubach, Davis, Rappaport 1992 (sphere around the receiver).
+// (mirror_zone.h): then the field is that of geometrical optics, with what the edges near its points leave of it
+// (field_of_flat_mirror), and the echoes by physical optics that rays send over the same planes in the same order are left
+// out, because they add up to the same field. Everything else stays with the rays: smaller surfaces, planes without a point
+// of reflection, diffuse echoes, paths that meet anything else. Source: Schaubach, Davis, Rappaport 1992 (sphere around the
+// receiver).
 #include <compare>
-#include <complex>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -21,6 +20,7 @@
 #include "echopath/base/threads/job.h"
 #include "echopath/record/blocks/path_block.h"
 #include "echopath/trace/mirrors/image_method.h"
+#include "echopath/trace/mirrors/mirror_zone.h"
 #include "echopath/trace/mirrors/plane_doubles.h"
 
 namespace echopath {
@@ -50,7 +50,7 @@ class PlaneImages {
   void sort_chains();
   std::vector<int> planes_of(Facets chain);
   bool is_known(Facets chain, const std::vector<Vec3>& points);
-  std::optional<std::complex<double>> field_beside_edges(const ImagePath& path, int64_t& num_queries) const;
+  std::optional<FlatMirrorField> field_beside_edges(const ImagePath& path, int64_t& num_queries) const;
   std::vector<int> joined(const std::vector<int>& sequence);
   bool is_same_plane(const Mirror& plane, const Mirror& other) const;
   void leave_out(const std::vector<int>& planes, const std::vector<Vec3>& points);

@@ -95,8 +95,8 @@ double power_between_rays(const CoherentKind& kind, int num_batches);
 // Sums over kinds: the changes (1) add up as fields, but to no less than their root sum of squares, and all other terms as
 // powers, so that kinds whose echoes cancel are known as well as they are one by one. (1) and (2) measure one error: of
 // their two squares the smaller one counts by half. What more rays hardly mend is (7), but for its first term, and the
-// lower bound of q in (6). Without a footprint filter nothing tells how coarse the rays are for the phases of a surface: its waves may
-// cancel, or add up to coherent_at_most.
+// lower bound of q in (6). Without a footprint filter nothing tells how coarse the rays are for the phases of a surface: its
+// waves may cancel, or add up to coherent_at_most.
 //
 // The chance of several batches is their standard error times Student's t, and no less than the error of half a hit in each
 // batch. That of one batch is estimated from the record. Directions drawn at random give the variance sum p^2. A lattice

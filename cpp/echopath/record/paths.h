@@ -61,8 +61,8 @@ inline constexpr uint32_t kEdgePath = 4;
 inline constexpr uint32_t kPastEdge = 32;
 // Marks a diffuse path that counts for others, too, which were left out by lot (power/faint_paths.h).
 inline constexpr uint32_t kStandsForOthers = 64;
-// Marks an image over planes that nobody flagged of which one ends near the point of reflection: its field is known as well as
-// field_of_flat_mirror tells it (trace/mirrors/mirror_zone.h).
+// Marks an image over planes that nobody flagged of which one ends near the point of reflection: its field is known as well
+// as field_of_flat_mirror tells it (trace/mirrors/mirror_zone.h).
 inline constexpr uint32_t kBesideEdge = 128;
 inline constexpr int kMostPieces = 65535, kMostEdges = 4;
 constexpr uint32_t edge_flags(int hit, int num_pieces, int num_edges = 1) {

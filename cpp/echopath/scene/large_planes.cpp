@@ -10,7 +10,8 @@
 namespace echopath {
 namespace {
 
-constexpr double kZones = 2.0;  // widths of the Fresnel zone from which on a plane is large
+constexpr double kZones = 2.0;    // widths of the Fresnel zone from which on a plane is large
+constexpr int kPlanesOfBody = 3;  // large ones, of what may be a body: a wall has its two sides
 constexpr uint32_t kNoPatch = 0xFFFFFFFFu;
 
 // Measures the planes of one mesh.
@@ -30,12 +31,18 @@ class PlaneMeasure {
       for (const uint32_t triangle : patches[patch]) patch_of[triangle] = patch;
     }
     double whole = 0.0, large = 0.0;
+    int num_large = 0;
     for (const std::vector<uint32_t>& patch : patches) {
       const double area = area_of(patch);
       whole += area;
-      if (4.0 * area >= least_width_at(farthest_distance(patch)) * rim_of(patch, neighbours, patch_of)) large += area;
+      if (4.0 * area >= least_width_at(farthest_distance(patch)) * rim_of(patch, neighbours, patch_of)) {
+        large += area;
+        ++num_large;
+      }
     }
-    return whole > 0.0 && large >= rule_.least_area * whole;
+    const bool is_short = box.sizes().maxCoeff() < rule_.least_extent;
+    if (is_short && num_large >= kPlanesOfBody) return false;
+    return whole > 0.0 && large >= (is_short ? rule_.least_area_of_short : rule_.least_area) * whole;
   }
 
  private:

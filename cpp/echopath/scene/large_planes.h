@@ -12,6 +12,8 @@ struct LargePlaneRule {
   double time = 0.0;            // s
   double least_coherent = 0.0;  // share of the reflected power that keeps its phase, from which on a surface is a mirror
   double least_area = 0.0;      // share of a mesh's area that large planes must make up
+  double least_extent = 0.0;    // m, longest side of the box about a wall or a house; what is shorter may be a body
+  double least_area_of_short = 0.0;  // the same share of what is shorter
 };
 
 // Returns the IDs of the meshes that large planes make up, ascending. A plane is large where it is at least twice as wide as

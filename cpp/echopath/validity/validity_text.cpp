@@ -141,7 +141,7 @@ std::string object_lines(const Validity& report) {
     const std::string found = concerns(object);
     if (!found.empty() && ++count <= kMaxObjects) text += line("of '" + object.name + "' alone", found);
   }
-  if (count > kMaxObjects) text += line("and of", std::to_string(count - kMaxObjects) + " more objects");
+  if (count > kMaxObjects) text += "\n  and of " + std::to_string(count - kMaxObjects) + " more";
   return text;
 }
 

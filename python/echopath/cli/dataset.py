@@ -20,7 +20,8 @@ def lines_of(options) -> Iterator[str]:
         counts["there" if told.was_there and told.record.state == "done" else told.record.state] += 1
         if not told.was_there:
             yield _line(told)
-    yield ", ".join(f"{count} scenes {state}" for state, count in sorted(counts.items())) or "no scene was to be made"
+    told_counts = [f"{count} scene{'s' if count != 1 else ''} {state}" for state, count in sorted(counts.items())]
+    yield ", ".join(told_counts) or "no scene was to be made"
     if counts["failed"]:
         yield f"{options.out}/{MANIFEST} says why; --only-failed tries again"
 

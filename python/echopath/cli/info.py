@@ -61,16 +61,16 @@ def describe_file(path, selections=(), *, unit=None, up=None) -> list[str]:
         return _describe_frame(path, selections)
     if suffix in ep._core.MESH_SUFFIXES:
         meshes = ep.load_meshes(str(path), 1.0 if unit is None else unit)
-        return [*_describe_meshes(meshes), *_describe_foreign(path, unit, up)]
+        return [*_describe_meshes(meshes), *_describe_foreign(path, unit, up, with_overlaps=False)]
     if is_foreign(path):
         return _describe_foreign(path, unit, up)
     raise ValueError(f"{path}: must be a .toml or .h5 file, or one of {', '.join(READERS)}; trajectories are read by "
                      "ep.read_trajectories")
 
 
-def _describe_foreign(path, unit, up) -> list[str]:
+def _describe_foreign(path, unit, up, *, with_overlaps: bool = True) -> list[str]:
     """As `ep.load_model` reads it, which would also warn of a size that is among these lines."""
-    return describe_model(path, read_model(path, ReadOptions(READ_RULES["unit"]("unit", unit), up)))
+    return describe_model(path, read_model(path, ReadOptions(READ_RULES["unit"]("unit", unit), up)), with_overlaps=with_overlaps)
 
 
 def _describe_sequence(stored) -> list[str]:

@@ -16,8 +16,9 @@ MAX_MATERIALS = 60  # named one by one
 COMPACT = 0.1  # least side over the greatest, of a body rather than of a terrain or a town
 
 
-def describe_model(path: Path, model: ep.Model) -> list[str]:
-    """Lines on the content, size, axes, unit, materials and animations of a model, and what its reader noted."""
+def describe_model(path: Path, model: ep.Model, *, with_overlaps: bool = True) -> list[str]:
+    """Lines on the content, size, axes, unit, materials and animations of a model, what lies on each other in it, and what its
+    reader noted."""
     scene = ep.Scene()
     scene.add(model, name="model")
     low, high = box_of(scene)
@@ -32,7 +33,13 @@ def describe_model(path: Path, model: ep.Model) -> list[str]:
     is_body = len(meshes) == 1 and size.min() > COMPACT * size.max()
     doubt = unit_doubt(float(size.max()), model.unit, names_of(model, path.stem), has_skin(model), is_body)
     lines += [report.line("unit?", doubt)] if doubt else []
-    return lines + (_tree(model) + _materials(meshes) if meshes else []) + _animations(model) + _notes(model)
+    overlaps = _overlaps(scene) if with_overlaps else []
+    return lines + (_tree(model) + _materials(meshes) + overlaps if meshes else []) + _animations(model) + _notes(model)
+
+
+def _overlaps(scene: ep.Scene) -> list[str]:
+    names = [mesh.name.removeprefix("model/") for mesh in scene.meshes]
+    return report.overlaps(scene, 0.0, names) or [report.line(report.ON_EACH_OTHER, "none")]
 
 
 def _tree(model: ep.Model) -> list[str]:

@@ -129,6 +129,8 @@ def unresolved(found, paths, left_out=None) -> list[str]:
     """
     if not (found or paths.num_paths or (left_out and left_out.num_paths)):
         return ["no path leads back to the radar, and no object that the rays look for is in its sight"]
+    if not found and paths.num_paths and not np.any(paths.power):
+        return ["no path has any power: the antennas look away from all that the rays met"]
     if not found:
         whose = ", by the paths that the file keeps" if left_out and left_out.num_paths else ""
         return [f"resolved to {RESOLVED_DB:g} dB: every object and ghost above the noise{whose}"]

@@ -11,6 +11,7 @@ from .. import _core
 from ..arguments.checks import Progress, checked, real
 from ..arguments.objects import Objects, objects_rule
 from ..base.made_by import made_by
+from ..scene.large_planes import large_planes
 from ..signals.measures import in_dbm
 from .families import families as families_of
 from .visibility import visibility_in_trace
@@ -19,10 +20,8 @@ RESOLVED_DB = 0.3       # the 95 % interval of a resolved power reaches no furth
 MOST_TIMES = 100.0      # of the rays: what needs more is not a matter of rays
 UNSEEN_HITS = 3.0       # rays that may have met what none has met (95 % limit of a Poisson count)
 UNMET_DIRECTIONS = 512  # on each object: what is seen of it in slivers counts, too
-FRESNEL_ZONES = 4.0     # across a plane, from which on its image is the better answer
 FAINT = 0.01            # of the upper end of an interval
 SURROUNDINGS = "the surroundings"  # what belongs to no object
-_FLAT = 1e-6            # of a plane, relative to its width
 
 
 class Interval(NamedTuple):
@@ -132,10 +131,12 @@ def unresolved_of(paths, families, powers, objects=None, *, least_power=0.0, pro
 
     families: of the paths and objects; powers: [F] ep.ReceivedPower of these, in W
     """
+    in_doubt = [(family, power) for family, power in zip(families.families, powers)
+                if power.num_coherent_paths + power.num_diffuse_hits and not power.resolved]
+    flagged = set(large_planes(paths.scene, paths.radar, paths.frame.trace_time) if in_doubt else ())
+    planes = [mesh for mesh in paths.scene.meshes if mesh.id in flagged]
     found = [Unresolved(family.object or SURROUNDINGS, tuple(family.via), family.ghost_type, family.order,
-                        interval_of(power), _advice(paths, families, family, power))
-             for family, power in zip(families.families, powers)
-             if power.num_coherent_paths + power.num_diffuse_hits and not power.resolved]
+                        interval_of(power), _advice(paths, families, family, power, planes)) for family, power in in_doubt]
     met = {family.object for family, power in zip(families.families, powers) if not family.is_ghost and power.high > 0.0}
     found += _unseen(paths, objects, [name for name in families.objects if name not in met], progress)
     return sorted((one for one in found if one.interval.high > least_power),
@@ -144,11 +145,14 @@ def unresolved_of(paths, families, powers, objects=None, *, least_power=0.0, pro
 
 # --- advice ---
 
-def _advice(paths, families, family, power) -> str:
-    """What would resolve a power: mirrors for large planes, else as many rays as its interval asks for."""
-    planes = [] if power.diffuse > power.coherent else _wide_planes(paths, families, family)
-    if planes:
-        return f"mirror=True for {', '.join(planes)}"
+def _advice(paths, families, family, power, planes) -> str:
+    """What would resolve a power: mirrors for large planes, else as many rays as its interval asks for.
+
+    planes: meshes that `mark_mirrors` would flag
+    """
+    wide = [] if power.diffuse > power.coherent else _wide_planes(planes, families, family)
+    if wide:
+        return f"mirror=True for {', '.join(wide)}"
     if paths.frame.footprint == "none" and power.bias > power.chance:
         return "a footprint: without one nothing tells how coarse the rays are"
     if _is_known_but_for_the_mesh(power):
@@ -163,7 +167,7 @@ def _rays(paths, times: float) -> str:
     """So many times the rays of the paths, in words of two digits."""
     rays = paths.frame.statistics.num_rays * times
     step = 10.0 ** (math.floor(math.log10(max(rays, 10.0))) - 1)
-    return f"about {round(rays / step) * step:,.0f} rays"
+    return f"{round(rays / step) * step:,.0f} rays or more"
 
 
 def _is_known_but_for_the_mesh(power) -> bool:
@@ -172,7 +176,7 @@ def _is_known_but_for_the_mesh(power) -> bool:
 
 
 def _times_the_rays(power) -> float:
-    """Bias falls about as 1/rays, chance as their root at the latest."""
+    """Bias falls as 1/rays at best, chance as their root at the latest."""
     bias, chance = _missing(power)
     return max(2.0, bias, chance ** 2) if power.low > 0.0 else math.inf
 
@@ -189,24 +193,14 @@ def _belongs(mesh, name: str) -> bool:
     return mesh.name == name or mesh.name.startswith(name + "/")
 
 
-def _wide_planes(paths, families, family) -> list:
-    """Names of unmarked meshes that a family touches and that are planes of several Fresnel zones."""
+def _wide_planes(planes, families, family) -> list:
+    """Names of those of the planes that nobody marked that a family touches."""
     def is_touched(mesh):
-        if family.object:
-            return any(_belongs(mesh, name) for name in (family.object, *family.via))
+        if family.object:  # its own planes have images without being marked
+            return any(_belongs(mesh, name) for name in family.via)
         return not any(_belongs(mesh, name) for name in families.objects)
 
-    wavelength = _core.speed_of_light / paths.radar.waveform.start_frequency
-    time, found = paths.frame.trace_time, []
-    for mesh in paths.scene.meshes:
-        if mesh.material.mirror or not is_touched(mesh):
-            continue
-        vertices = np.asarray(paths.scene.world_vertices(mesh.id, time))
-        spread = np.linalg.svd(vertices - vertices.mean(axis=0), compute_uv=False) / math.sqrt(len(vertices))
-        distance = np.linalg.norm(vertices.mean(axis=0) - paths.frame.transmitter)
-        if spread[2] <= _FLAT * spread[0] and spread[1] > FRESNEL_ZONES * math.sqrt(wavelength * distance):
-            found.append(mesh.name)
-    return found
+    return [mesh.name for mesh in planes if is_touched(mesh)]
 
 
 # --- what no ray has met ---
@@ -234,8 +228,8 @@ def unmet_interval(paths, seen) -> Interval:
     """Of the mean power in W of an object that no ray of the paths has met. seen: its ObjectVisibility
 
     From 0, to the power of the largest surface that the rays may have missed, facing the radar: as large as three launch cells
-    there, or as all that is seen of the object; sigma = 4 pi A^2 / lambda^2 where it may reflect as a mirror does, and 4 A
-    (Lambert). [0, 0] where nothing of the object is in sight.
+    there, or as all that is seen of the object; sigma = 4 pi A^2 / lambda^2 where it may reflect as a mirror does, as far as
+    that is below pi d^2 of a mirror without end, and 4 A (Lambert). [0, 0] where nothing of the object is in sight.
     """
     if not (seen.transmitter.in_view and seen.receiver.in_view and seen.visible_share > 0.0):
         return Interval(0.0, 0.0, 0.0)
@@ -244,8 +238,9 @@ def unmet_interval(paths, seen) -> Interval:
     distances = seen.transmitter.distance, max(seen.receiver.distance, 1e-3)
     wavelength = _core.speed_of_light / radar.waveform.start_frequency
     area = solid_angle * distances[0] ** 2
+    most = math.pi * distances[0] * distances[1]  # of a mirror without end, whatever its area
     is_rough = all(mesh.material.scattering == 1.0 for mesh in paths.scene.meshes if _belongs(mesh, seen.name))
-    cross_section = 4.0 * area + (0.0 if is_rough else 4.0 * math.pi * area ** 2 / wavelength ** 2)
+    cross_section = 4.0 * area + (0.0 if is_rough else min(4.0 * math.pi * area ** 2 / wavelength ** 2, most))
     gain = math.prod(max(one.pattern.peak_gain for one in antennas) for antennas in (radar.transmitters, radar.receivers))
     high = (radar.transmit_power * gain * wavelength ** 2 * cross_section
             / ((4.0 * math.pi) ** 3 * max(distances[0], 1e-3) ** 2 * distances[1] ** 2))

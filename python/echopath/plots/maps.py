@@ -156,7 +156,9 @@ def plot_overview(whole, spectra: dict, *, title="Everything that the radar rece
         panels = list(lower.subplots(1, len(spectra), sharex=True, sharey=True, squeeze=False).flat)
         _draw_parts(panels, spectra, vmin, vmax, powers)
         set_title(lower, parts_title, 10)
-        lower.supxlabel(RANGE_LABEL, fontsize=9)
+        (near, far), (nearest, farthest) = panels[0].get_xlim(), axes.get_xlim()
+        is_cut = near > nearest + RANGE_MARGIN or far < farthest - RANGE_MARGIN
+        lower.supxlabel(f"{RANGE_LABEL}{', where the parts move' if is_cut else ''}", fontsize=9)
         for first in (axes, panels[0]):
             first.set_ylabel(VELOCITY_LABEL)
         colour_bar(upper, image, [axes])

@@ -1,6 +1,7 @@
 """Foreign files by their suffix."""
 from __future__ import annotations
 
+import dataclasses
 import importlib
 import os
 from collections.abc import Mapping
@@ -11,7 +12,7 @@ from ..arguments.checks import (
     Rule, checked, choice, flag, optional, path as file_or_folder, positive, real, refused, text)
 from ..base.callers import warn_user
 from ..scene.meshes import UNIT
-from .material_names import Meaning, checked_materials
+from .material_names import Meaning, checked_materials, note_of_unused
 from .model import Model
 from .options import ReadOptions
 from .sizes import figure_doubt
@@ -42,7 +43,7 @@ def load_model(path: str | os.PathLike[str], *, unit: float | None = None, up: s
     up: the file's vertical axis, "x", "y" or "z"; None: as the file says, or its format (glTF: "y"). The model stands with z
         up and looks along +x where the file follows its format
     materials: {pattern of names in the file: Material or a name in ep.materials}, before `ep.foreign_materials`; what is not
-        known there either gets a default, which the notes tell
+        known there either gets a default, and patterns may take nothing: the notes tell
     animation: name of one of the file's; None: its first one, if there is any; "": at rest
     loop: True: the animation begins anew at its end, without end; False: its last pose is held, but frames and motion captures
         end with it
@@ -66,9 +67,11 @@ def load_model(path: str | os.PathLike[str], *, unit: float | None = None, up: s
 def read_model(file: Path, options: ReadOptions) -> Model:
     """`load_model` without a word on its size."""
     try:
-        return importlib.import_module(f".{reader_of(file)}", __package__).read(file, options)
+        model = importlib.import_module(f".{reader_of(file)}", __package__).read(file, options)
     except RecursionError:
         raise _core.FileError(f"{file}: is nested too deeply") from None
+    notes = note_of_unused(options.materials, [node.foreign_material for node in model.nodes])
+    return dataclasses.replace(model, notes=(*model.notes, *notes)) if notes else model
 
 
 def is_foreign(path: Path) -> bool:

@@ -149,6 +149,17 @@ def material_of(name: str, own: Mapping[str, Meaning] | None = None) -> tuple[Me
         f"a mesh has no material: {DEFAULT} is taken")
 
 
+def note_of_unused(patterns: Iterable[str], names: Iterable[str]) -> list[str]:
+    """A sentence on patterns that take none of the names in a file: they may be misspelt. "*" takes all."""
+    names = sorted({name for name in names if name})
+    unused = [pattern for pattern in patterns
+              if pattern != "*" and not any(_takes(pattern, name, _words(name)) for name in names)]
+    if not unused:
+        return []
+    there = f"{', '.join(names[:8])}{', ...' if len(names) > 8 else ''}" if names else "none"
+    return [f"materials: nothing in the file is called {' or '.join(repr(one) for one in unused[:4])}; its materials are {there}"]
+
+
 def note_of_unknown(names: Iterable[str]) -> list[str]:
     """Sentences that count meshes whose materials (their names, one per mesh) nothing took; none for no names."""
     names = list(names)

@@ -6,7 +6,9 @@ from ..arguments.checks import an, checked, real
 from .scene import Scene
 
 LEAST_COHERENT = 0.1  # share of the reflected power that keeps its phase: rougher walls have next to no images
-LEAST_AREA = 0.95     # share of a mesh's area that large planes make up: the rest becomes mirrors with it
+LEAST_AREA = 0.8      # share of a mesh's area that large planes make up: the rest, such as the ends of a wall, mirrors with it
+LEAST_EXTENT = 4.0    # m, longest side of walls and houses; of what is shorter, which may be an object, more is asked:
+LEAST_AREA_OF_SHORT = 0.95  # nearly all of it, and on two sides at most
 
 
 @checked(scene=an(Scene), radar=an(_core.Radar), time=real(unit="s"))
@@ -14,8 +16,9 @@ def mark_mirrors(scene: Scene, radar: _core.Radar, *, time: float = 0.0) -> tupl
     """Flags what is made of planes larger than their Fresnel zone as mirrors, as `Material(mirror=True)` does one by one.
 
     Ghosts of small targets over walls and ground are then found by images, which rays alone nearly never hit. A mesh is
-    flagged where planes at least as wide as 4 sqrt(wavelength distance), twice the zone, make up 95 % of its area; the
-    distance is that of the antennas from the farthest corner of the plane, the width four times the area over the length of
+    flagged where planes at least as wide as 4 sqrt(wavelength distance), twice the zone, make up 80 % of its area, so that walls
+    may be as thick as a tenth of their height; what is shorter than 4 m may be an object, as a crate or a table is, unless two
+    such planes make up 95 % of it. The distance is that of the antennas from the farthest corner of the plane, the width four times the area over the length of
     the rim (the side of a square), windows and other holes counted to the rim. At least a tenth of what it reflects must keep
     its phase. Smooth and deforming meshes and sheets stay as they are, and so do planes that only several meshes make up
     together.
@@ -38,4 +41,5 @@ def mark_mirrors(scene: Scene, radar: _core.Radar, *, time: float = 0.0) -> tupl
 def large_planes(scene: _core.Scene, radar: _core.Radar, time: float) -> list[int]:
     """IDs of the meshes that `mark_mirrors` would flag at a time in s."""
     wavelength = _core.speed_of_light / radar.waveform.start_frequency
-    return _core.meshes_of_large_planes(scene, radar, wavelength, time, LEAST_COHERENT, LEAST_AREA)
+    return _core.meshes_of_large_planes(scene, radar, wavelength, time, LEAST_COHERENT, LEAST_AREA, LEAST_EXTENT,
+                                       LEAST_AREA_OF_SHORT)

@@ -12,7 +12,7 @@ TOWN = 30.0          # m, extent from which on the radar stands within the scene
 HEIGHT = 1.5         # m above the ground
 HEADROOM = 0.8       # m above the ground, up to which a surface is no obstacle
 CELLS = 200          # along each side of the map of obstacles
-DIRECTIONS = 32      # that are tried
+DIRECTIONS = 144     # that are tried
 CLEARANCE = 12.0     # m to the next obstacle that is enough
 FARTHEST = 300.0     # m that the radar looks
 
@@ -82,8 +82,10 @@ def _open_place(blocked, step: float) -> tuple[int, int]:
 
 
 def _open_way(blocked, row: int, column: int) -> tuple[float, int]:
-    """The direction in degrees of the longest way without obstacles that ends at one, and its length in cells."""
-    best = (0.0, 0)
+    """The direction in degrees of the longest way without obstacles that ends at one, and its length in cells; where no way
+    does, that of the middle of all obstacles."""
+    away = np.argwhere(blocked).mean(axis=0) - [row, column]
+    best = (float(np.degrees(np.arctan2(away[1], away[0]))), 0) if blocked.any() else (0.0, 0)
     for yaw in np.arange(DIRECTIONS) * 360.0 / DIRECTIONS - 180.0:
         ahead = np.array([np.cos(np.radians(yaw)), np.sin(np.radians(yaw))])
         for distance in range(1, 2 * CELLS):

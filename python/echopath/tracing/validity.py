@@ -28,7 +28,12 @@ def validity(paths: _core.Paths, radar: _core.Radar | None = None, *, replay: Re
     Returns a Validity. Raises TypeError or ValueError naming the argument, also for motions that do not cover the times,
     KeyboardInterrupt on Ctrl-C.
     """
-    return _core.validity(paths, radar, replay=replay, times=times, arrays=arrays, progress=progress)
+    try:
+        return _core.validity(paths, radar, replay=replay, times=times, arrays=arrays, progress=progress)
+    except ValueError as error:
+        if times is None or not str(error).startswith("time: "):
+            raise
+        raise ValueError(f"times: {str(error).removeprefix('time: ')}") from None
 
 
 @checked(radar=_RADAR, time=real(unit="s"))

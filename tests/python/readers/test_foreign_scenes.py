@@ -35,6 +35,29 @@ def test_usual_names_are_known(name, ours):
     assert material_of(name, {}) == (ours, None)
 
 
+def test_patterns_that_take_nothing_are_told(tmp_path):
+    path = tmp_path / "street.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl M_Asphalt\nf 1 2 3\n")
+    (note,) = [note for note in ep.load_model(path, materials={"M_Asphlt*": "metal"}).notes if note.startswith("materials")]
+    assert note == "materials: nothing in the file is called 'M_Asphlt*'; its materials are M_Asphalt"
+    for own in ({"M_Asph*": "metal"}, {"asphalt": "metal"}, {"*": "metal"}):
+        assert not [note for note in ep.load_model(path, materials=own).notes if note.startswith("materials")]
+
+
+def test_info_tells_what_lies_on_each_other_in_a_model(tmp_path, capsys):
+    pytest.importorskip("trimesh")
+    import trimesh
+
+    town = trimesh.Scene()
+    town.add_geometry(trimesh.creation.box((4.0, 0.3, 3.0)), node_name="wall", geom_name="wall")
+    poster = trimesh.creation.box((1.0, 0.3, 1.0))
+    town.add_geometry(poster, node_name="poster", geom_name="poster")
+    town.export(tmp_path / "town.glb")
+    assert main(["info", str(tmp_path / "town.glb")]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    assert "surfaces on each other (rounding decides" in told and "poster" in told.split("surfaces on each other")[1]
+
+
 def test_no_single_letter_and_no_two_tell_a_material():
     letters = string.ascii_letters
     for name in (*letters, *(a + b for a in letters for b in letters)):

@@ -72,6 +72,25 @@ def test_a_mesh_below_another_one_keeps_its_material():
     assert not scene["house/bell"].material.mirror and ep.mark_mirrors(scene, radar()) == ()  # once for all
 
 
+def box(*sides) -> ep.Mesh:
+    """A closed box of these sides in m about the origin."""
+    corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]) * sides
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    return ep.Mesh(corners, [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))])
+
+
+@pytest.mark.parametrize("sides, names", [
+    ((40.0, 0.3, 5.0), ("plate",)),   # walls, whose ends and tops are narrow
+    ((40.0, 0.5, 5.0), ("plate",)),
+    ((9.0, 8.0, 6.0), ("plate",)),    # a house
+    ((2.0, 1.8, 1.5), ()),            # a crate, which is an object
+    ((3.0, 0.05, 2.5), ("plate",)),   # a wall of a room
+    ((3.0, 0.5, 2.5), ()),            # a wardrobe
+    ((40.0, 0.5, 0.8), ())])          # a kerb, of which half is narrow
+def test_walls_have_a_thickness_and_bodies_are_no_walls(sides, names):
+    assert marked(box(*sides), position=(15.0, 4.15, 0.0)) == names
+
+
 @pytest.mark.parametrize("name", SHIPPED)
 def test_in_scenes_of_this_repository_it_marks_what_people_marked(name):
     with as_file(data_folder("scenes") / f"{name}.toml") as path:

@@ -5,6 +5,7 @@
 // another, so all names stand in a namespace of the instruction set, ECHOPATH_KERNELS.
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #if defined(__FMA__)
 #include <immintrin.h>
 #endif
@@ -207,7 +208,7 @@ struct LaneMath {
   }
 
   static ECHOPATH_INLINE ComplexOf<Vec> cis(Vec x) {
-    constexpr double kPerPi = 0.3183098861837907, kPiHigh = 3.141592653589793, kPiLow = 1.2246467991473532e-16;
+    constexpr double kPerPi = std::numbers::inv_pi, kPiHigh = 3.141592653589793, kPiLow = 1.2246467991473532e-16;
     const Vec shifted = x * kPerPi + kRoundingShift, half_turns = shifted - kRoundingShift;
     const Vec rest = exact_multiply_add(half_turns, all(-kPiHigh), x) - half_turns * kPiLow;
     const ComplexOf<Vec> phasor = phasor_of_half_turns(rest * kPerPi);

@@ -18,8 +18,8 @@ struct SheetPassage {
   double offset = 0.0;                    // m, across the ray, toward the foot of the normal at the point of entry
 };
 
-constexpr double kMinSineOfModes =
-    1e-9;  // of incidence; below it both modes pass alike, and no plane of incidence is needed
+// Gives the sine of the angle of incidence below which both modes pass alike, so that no plane of incidence is needed.
+inline constexpr double kMinSineOfModes = 1e-9;
 
 class SheetModel {
  public:

@@ -5,13 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "echopath/base/even_steps.h"
+
 namespace echopath {
 namespace {
 
 constexpr int kCells = VisibilityGrid::kSide * VisibilityGrid::kSide;  // of a block; as many as a packet has lanes
 static_assert(kCells == kPacketSize);
-// Two numbers whose multiples are even in both axes together (Roberts 2018, of the plastic number).
-constexpr double kAlong = 0.7548776662466927, kAcross = 0.5698402909980532;
 
 double fraction(double value) { return value - std::floor(value); }
 
@@ -36,7 +36,7 @@ VisibilityGrid::VisibilityGrid(const Stratum& stratum, int64_t num_cells) : dire
 // Sets the place in the domain of the direction of a square, `size` cells on a side; rows and columns are those of squares.
 void VisibilityGrid::direct(int64_t row, int64_t column, int size, int lane, LaneValues& x, LaneValues& y) const {
   const auto r = static_cast<double>(row), c = static_cast<double>(column);
-  const double along = size * (c + fraction(kAlong * r + 0.5)), across = size * (r + fraction(kAcross * c + 0.5));
+  const double along = size * (c + fraction(kEvenStep * r + 0.5)), across = size * (r + fraction(kOtherEvenStep * c + 0.5));
   x[lane] = half_[0] * (2.0 * along / (kSide * num_columns_) - 1.0);
   y[lane] = half_[1] * (2.0 * across / (kSide * num_rows_) - 1.0);
 }

@@ -1,5 +1,7 @@
 #pragma once
 // Computes the frequency and the phasor of echoes within a chirp, for a vector of echoes at a time.
+#include <numbers>
+
 #include "echopath/base/lanes/lane_math.h"
 #include "echopath/base/lanes/phasor.h"
 #include "echopath/base/lanes/vecs.h"
@@ -47,7 +49,7 @@ ECHOPATH_INLINE Tones<kCount> tones_of(const CarrierModel& model, const States<k
 // Takes back the logarithms that stand as re and im. The phases go on into those of the carriers, which costs no phasor.
 template <int kCount>
 ECHOPATH_INLINE void undo_logarithms(States<kCount>& states) {
-  constexpr double kPerPi = 0.3183098861837907;
+  constexpr double kPerPi = std::numbers::inv_pi;
 #pragma GCC unroll 4
   for (int i = 0; i < kCount; ++i) {
     states.turned.of[i] = states.im.of[i] * kPerPi;

@@ -5,6 +5,7 @@
 
 #include "echopath/base/constants.h"
 #include "echopath/base/errors.h"
+#include "echopath/base/even_steps.h"
 #include "echopath/base/random.h"
 #include "echopath/trace/launch/launch_lattice.h"
 
@@ -58,13 +59,11 @@ class FibonacciSpiral : public EqualShares {
   }
 };
 
-// Follows Roberts 2018, "The unreasonable effectiveness of quasirandom sequences".
 class R2Sequence : public EqualShares {
   using EqualShares::EqualShares;
   Eigen::Vector2d of_batch(int64_t index, int64_t, const Eigen::Vector2d& shift) const override {
-    constexpr double kStep = 1.0 / 1.32471795724474602596;  // of the plastic number, x^3 = x + 1
     const auto place = static_cast<double>(index);
-    return concentric(fraction(shift[0] + place * kStep), fraction(shift[1] + place * kStep * kStep));
+    return concentric(fraction(shift[0] + place * kEvenStep), fraction(shift[1] + place * kEvenStep * kEvenStep));
   }
 };
 

@@ -111,8 +111,8 @@ class AxisCover {
   const LitSurface& lit_;
 };
 
-// Returns the share of the field that a flat mirror loses at its edge in the direction of `half`, which reaches to the end of
-// the half zone.
+// Returns the share of the field that a flat mirror loses at its edge in the direction of `half`, which reaches to the end
+// of the half zone.
 std::complex<double> field_of_edge(const SurfaceAround& mirror, const Vec3& half) {
   const double length = half.norm(), reach = kFaded * length;
   const Vec3 along = half / length;

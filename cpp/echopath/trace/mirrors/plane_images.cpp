@@ -81,8 +81,9 @@ void name_triangles(const std::vector<Triangle>& triangles, const std::vector<ui
   }
 }
 
-// Returns whether two bounces in a row are at the common edge of their planes: each of their orders has its share of the path
-// then. A path through the seam of a plane, or through its rim, has the field that the surface about the point leaves, once.
+// Returns whether two bounces in a row are at the common edge of their planes: each of their orders has its share of the
+// path then. A path through the seam of a plane, or through its rim, has the field that the surface about the point leaves,
+// once.
 bool bounces_at_corner(const std::vector<Vec3>& points) {
   return std::adjacent_find(points.begin(), points.end(),
                             [](const Vec3& a, const Vec3& b) { return (a - b).norm() < kAtEdge; }) != points.end();

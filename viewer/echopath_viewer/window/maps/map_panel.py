@@ -229,7 +229,7 @@ class MapPanel(MapMouse, QtWidgets.QWidget):
             painter.drawLine(QtCore.QPointF(x, rect.bottom()), QtCore.QPointF(x, rect.bottom() + 4))
             box = QtCore.QRectF(x - 30, rect.bottom() + 3, 60, 14)
             painter.drawText(box, Qt.AlignmentFlag.AlignCenter, tick_text(value))
-        for value in nice_ticks(self.view.top(), self.view.bottom(), rect.height() / 32):
+        for value in nice_ticks(self.view.top(), self.view.bottom(), max(rect.height() / 32, min(3.0, rect.height() / 12))):
             y = self.to_pixel(0.0, value).y()
             painter.drawLine(QtCore.QPointF(rect.left() - 4, y), QtCore.QPointF(rect.left(), y))
             box = QtCore.QRectF(12, y - 8, rect.left() - 18, 16)

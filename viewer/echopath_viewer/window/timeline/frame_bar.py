@@ -45,7 +45,7 @@ class FrameBar(QtWidgets.QWidget):
         for widget in (self.play_button, self.back_button, self.on_button, self.follow_check, self.axis_box):
             row.addWidget(widget)
         row.insertWidget(3, self.slider, 1)
-        row.insertWidget(4, self.label, 1)
+        row.insertWidget(4, self.label, 2)  # names of frames of a dataset are long
         column = QtWidgets.QVBoxLayout(self)
         column.setContentsMargins(2, 2, 2, 2)
         column.addLayout(row)
@@ -162,11 +162,16 @@ class TimeStrip(QtWidgets.QWidget):
             painter.drawText(box, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter, tick_text(value))
         painter.drawText(QtCore.QRectF(0, rect.bottom() + 2, LEFT - 6, 16), Qt.AlignmentFlag.AlignRight, UNITS[self.axis])
         last = -1e9
-        for place, one in enumerate(self._glances):  # times need not be even: each stands under its own column
+        for place in range(len(self._glances)):  # times need not be even: each stands under its own column
             if self.x_of(place) - last > 70.0:
                 last = self.x_of(place)
                 painter.drawText(QtCore.QRectF(last - 34, rect.bottom() + 2, 68, 16), Qt.AlignmentFlag.AlignHCenter,
-                                 f"{tick_text(round(one.time, 4))} s")
+                                 self._mark_of(place))
+
+    def _mark_of(self, place: int) -> str:
+        """The time of a frame, or its number where times begin anew, as in the scenes of a dataset."""
+        times = np.array([one.time for one in self._glances])
+        return f"{tick_text(round(times[place], 4))} s" if np.all(np.diff(times) > 0.0) else f"frame {place + 1}"
 
     def _paint_tracks(self, painter) -> None:
         if self.tracks is None or not self.tracks.num_tracks:

@@ -11,10 +11,18 @@
 #include "echopath/base/threads/parallel.h"
 #include "echopath/power/facet_phase.h"
 #include "echopath/power/shared_phase.h"
+#include "echopath/record/near_antenna.h"
 #include "echopath/replay/replay.h"
 
 namespace echopath {
 namespace {
+
+// Returns the root of the gain that no antenna exceeds.
+double largest_field(const std::vector<Antenna>& antennas) {
+  double largest = 0.0;
+  for (const Antenna& antenna : antennas) largest = std::max(largest, antenna.pattern.largest_field());
+  return largest;
+}
 
 constexpr int64_t kBlock = 1 << 18;  // paths evaluated at a time: bounds the memory
 constexpr int64_t kNoPath = -1;
@@ -52,7 +60,7 @@ class KnownKinds {
   size_t index_of(uint64_t kind, std::vector<CoherentKind>& kinds) {
     if (!kinds.empty() && kind == last_) return last_index_;
     const auto [entry, is_new] = index_.try_emplace(kind, kinds.size());
-    if (is_new) kinds.emplace_back();
+    if (is_new) kinds.emplace_back().image_field = 0.0;  // so far
     last_ = kind;
     last_index_ = entry->second;
     return last_index_;
@@ -91,14 +99,16 @@ class Sums {
     if (paths_.flags[static_cast<size_t>(path)] & kStandsForOthers) open.lot_field += arriving;
   }
 
-  // `arriving` holds one field for each of kCellViews, `stride` apart.
-  void add_coherent(size_t group, int64_t path, uint64_t kind, const std::complex<double>* arriving, size_t stride) {
+  // `arriving` holds one field for each of kCellViews, `stride` apart; `image_field` is that of an endless mirror, sqrt(W).
+  void add_coherent(size_t group, int64_t path, uint64_t kind, const std::complex<double>* arriving, size_t stride,
+                    double image_field) {
     GroupSums& sums = groups_[group];
     sums.field[batch_of(path)] += arriving[kAsLaunched * stride];
     CoherentKind& of_kind = sums.kinds[kinds_[group].index_of(kind, sums.kinds)];
     const bool has_cell = paths_.is_of_a_ray(static_cast<size_t>(path));  // others hold nothing between rays
     of_kind.has_cells = of_kind.has_cells || has_cell;
     of_kind.has_bounced = has_bounced_before(kind);
+    of_kind.image_field = std::max(of_kind.image_field, image_field);
     const size_t num_views = has_cell ? kNumCellViews : kPoints;
     for (size_t view = 0; view < num_views; ++view) {
       const std::complex<double> field = arriving[view * stride];
@@ -159,7 +169,9 @@ class Sums {
 class Block {
  public:
   Block(const Paths& paths, const Radar& radar)
-      : paths_(paths), replayer_(paths, radar), turns_per_metre_(radar.waveform.start_frequency / kSpeedOfLight) {}
+      : paths_(paths), replayer_(paths, radar), turns_per_metre_(radar.waveform.start_frequency / kSpeedOfLight),
+        image_at_a_metre_(std::sqrt(radar.transmit_power) * largest_field(radar.transmitters) *
+                          largest_field(radar.receivers) / (2.0 * kTwoPi * turns_per_metre_)) {}
 
   void evaluate(int64_t begin, int64_t end, PowerAndLength* of_paths) {
     diffuse_.clear();
@@ -175,6 +187,7 @@ class Block {
     replayer_.evaluate(coherent_, paths_.frame.trace_time, kCellViews, lengths_, coherent_fields_);
     if (of_paths) note(coherent_, coherent_fields_, *of_paths);
     arrive(coherent_.size(), kNumCellViews, coherent_fields_);
+    coherent_lengths_ = lengths_;
   }
 
   void add_to(Sums& sums, std::span<const uint32_t> group_of_path) const {
@@ -183,7 +196,8 @@ class Block {
     }
     for (size_t i = 0; i < coherent_.size(); ++i) {
       const uint32_t group = group_of_path[static_cast<size_t>(coherent_[i])];
-      sums.add_coherent(group, coherent_[i], kinds_[i], coherent_fields_.data() + i, coherent_.size());
+      sums.add_coherent(group, coherent_[i], kinds_[i], coherent_fields_.data() + i, coherent_.size(),
+                        image_at_a_metre_ / std::max(coherent_lengths_[i], kNearAntenna));
     }
   }
 
@@ -213,9 +227,10 @@ class Block {
   const Paths& paths_;
   const Replayer replayer_;
   const double turns_per_metre_;
+  const double image_at_a_metre_;  // sqrt(W) m, what an endless mirror sends back over a length in m, times that
   std::vector<int64_t> diffuse_, coherent_;
   std::vector<uint64_t> kinds_;  // of the coherent ones
-  std::vector<double> lengths_;
+  std::vector<double> lengths_, coherent_lengths_;
   std::vector<std::complex<double>> diffuse_fields_, coherent_fields_;
 };
 

@@ -16,6 +16,7 @@ constexpr double kSmoothFacetPhase = 0.1;                                    // 
 constexpr double kPointsTimesField = 4.0, kPointsTimesFieldOfSeveral = 6.0;  // of one bounce and of several
 constexpr double kMostOfPoints = 2.5;
 constexpr double kOfSurface = 0.0025, kOfFacets = 0.01, kMostOfFacets = 0.015;
+constexpr double kMostOfImage = 2.0;
 constexpr double kOfNearEdge = 0.15;  // 1.2 dB: a straight edge is known to 1.1
 constexpr double kOfAHit = 0.5;
 constexpr double kEdgeCells = 8.0;  // twice the outline of a square, 4 sqrt(n) of n cells
@@ -64,7 +65,7 @@ double between_edges(const CoherentKind& kind, int num_batches, double in_phase)
 double missing_of_points(const CoherentKind& kind, int num_batches) {
   const double size = std::abs(kind.field[kAsLaunched]), points = between_points(kind, num_batches);
   const double times_field = kind.has_bounced ? kPointsTimesFieldOfSeveral : kPointsTimesField;
-  const double most = kMostOfPoints * std::sqrt(points);
+  const double most = std::min(kMostOfPoints * std::sqrt(points), kMostOfImage * kind.image_field);
   return size > 0.0 ? std::clamp(points / (times_field * size) - size, 0.0, most) : most;
 }
 
@@ -102,8 +103,9 @@ FieldBias field_bias(const PowerEvidence& evidence, Lasting lasting) {
     const double of_edges = squared(std::lerp(kOfEdges, kOfSmoothEdges, smoothness));
     if (lasting == Lasting::kCounted) surface += squared(kOfNearEdge) * kind.beside_edges;
     if (kind.has_cells) surface += squared(kOfSurface * size) + squared(of_facets(kind, lasting) * size);
+    const double most_of_edges = squared(kMostOfImage * kind.image_field);
     if (size == 0.0) {
-      edges += of_edges * between_edges(kind, evidence.num_batches, 1.0);
+      edges += std::min(of_edges * between_edges(kind, evidence.num_batches, 1.0), most_of_edges);
       continue;
     }
     const std::complex<double> change = kind.field[kHalfDensity] - kind.field[kAsLaunched];
@@ -115,7 +117,7 @@ FieldBias field_bias(const PowerEvidence& evidence, Lasting lasting) {
     const double in_phase = std::max(0.0, 1.0 - std::abs(kind.field[kHalfDensity]) / (kFaded * size));
     const double most = of_edges * between_edges(kind, evidence.num_batches, in_phase);
     const double still_changes = kind.has_bounced ? std::max(halving, kHalvingPerFiner * of_finer / size) : halving;
-    const double missing = share_of_edges(kind, still_changes, most, lasting) * most;
+    const double missing = std::min(share_of_edges(kind, still_changes, most, lasting) * most, most_of_edges);
     edges += missing;
     edges_below += smoothness * missing;
   }

@@ -1,5 +1,6 @@
 #pragma once
 // Computes the 95 % interval of a received power from what the launch cells take away and what chance adds.
+#include <cmath>
 #include <complex>
 #include <optional>
 #include <vector>
@@ -22,6 +23,7 @@ struct CoherentKind {
   std::complex<double> field[kNumCellViews];  // sqrt(W)
   double power[kNumCellViews] = {};           // W, sum of |a|^2
   double edge_squares = 0.0;                  // W^2, sum of |a|^4 of kEdges
+  double image_field = INFINITY;              // sqrt(W), what an endless mirror would send back over the shortest path
   double facet_phase = 0.0;                   // rad, by which the facets stray from a smooth surface (facet_phase.h)
   double beside_edges = 0.0;                  // W, sum of |a|^2 of images beside the edge of a plane (kBesideEdge)
   bool has_cells = false;                     // else its paths are images
@@ -88,6 +90,8 @@ double power_between_rays(const CoherentKind& kind, int num_batches);
 //      by that factor where errors fall with the square of a cell's side. There a field that is weaker than its edges may
 //      change little by chance: q is at least e / (kKnownAbove |F|^2) - 1, up to 1. Where F is 0, q and w are 1 and s q is
 //      0.
+//  A surface sends back no more than an endless mirror over the same way: (3) and (5) each add at most kMostOfImage times the
+//  field of that mirror, twice it because curved surfaces may gather.
 //  (7) No field of launch cells is known better than to kOfSurface |F|, which the lattice and interpolated normals leave,
 //      and to min(kOfFacets facet_phase, kMostOfFacets) |F|: where facets stray from the smooth surface that they stand for,
 //      rays closer than facets see another field than rays farther apart. Images are exact, but for those beside the edge of

@@ -35,6 +35,26 @@ TEST(PowerInterval, AKindThatIsKnownDoesNotSpeakForAnother) {
   EXPECT_GT(power_interval(evidence).high, 1.2);  // the field may be a tenth larger at least
 }
 
+// An endless mirror over the same way sends back a field of 0.01: no surface sends back more than twice that, whatever waves of
+// points and of edges the cells may hold.
+TEST(PowerInterval, NoSurfaceSendsBackMoreThanTwoEndlessMirrors) {
+  for (const double size : {0.0, 1e-6}) {
+    for (const CellViewIndex view : {kPoints, kEdges}) {
+      CoherentKind lost;
+      lost.has_cells = true;
+      lost.field[kAsLaunched] = size;
+      lost.power[view] = 1e4;
+      lost.edge_squares = view == kEdges ? 1e8 : 0.0;  // one cell
+      PowerEvidence evidence;
+      evidence.coherent = size * size;
+      evidence.kinds = {lost};
+      EXPECT_GT(power_interval(evidence).high, 1.0);
+      evidence.kinds[0].image_field = 0.01;
+      EXPECT_NEAR(std::sqrt(power_interval(evidence).high), 0.02, 1e-4) << size << " " << view;
+    }
+  }
+}
+
 // Two kinds that cancel, each known to a hundredth: the sum is known to a hundredth of either, not of itself.
 TEST(PowerInterval, KindsThatCancelAreKnownAsWellAsOneByOne) {
   PowerEvidence evidence;

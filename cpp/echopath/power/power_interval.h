@@ -90,8 +90,8 @@ double power_between_rays(const CoherentKind& kind, int num_batches);
 //      by that factor where errors fall with the square of a cell's side. There a field that is weaker than its edges may
 //      change little by chance: q is at least e / (kKnownAbove |F|^2) - 1, up to 1. Where F is 0, q and w are 1 and s q is
 //      0.
-//  A surface sends back no more than an endless mirror over the same way: (3) and (5) each add at most kMostOfImage times the
-//  field of that mirror, twice it because curved surfaces may gather.
+//  A surface sends back no more than an endless mirror over the same way: (3) and (5) each add at most kMostOfImage times
+//  the field of that mirror, twice it because curved surfaces may gather.
 //  (7) No field of launch cells is known better than to kOfSurface |F|, which the lattice and interpolated normals leave,
 //      and to min(kOfFacets facet_phase, kMostOfFacets) |F|: where facets stray from the smooth surface that they stand for,
 //      rays closer than facets see another field than rays farther apart. Images are exact, but for those beside the edge of

@@ -16,12 +16,12 @@ def mark_mirrors(scene: Scene, radar: _core.Radar, *, time: float = 0.0) -> tupl
     """Flags what is made of planes larger than their Fresnel zone as mirrors, as `Material(mirror=True)` does one by one.
 
     Ghosts of small targets over walls and ground are then found by images, which rays alone nearly never hit. A mesh is
-    flagged where planes at least as wide as 4 sqrt(wavelength distance), twice the zone, make up 80 % of its area, so that walls
-    may be as thick as a tenth of their height; what is shorter than 4 m may be an object, as a crate or a table is, unless two
-    such planes make up 95 % of it. The distance is that of the antennas from the farthest corner of the plane, the width four times the area over the length of
-    the rim (the side of a square), windows and other holes counted to the rim. At least a tenth of what it reflects must keep
-    its phase. Smooth and deforming meshes and sheets stay as they are, and so do planes that only several meshes make up
-    together.
+    flagged where planes at least as wide as 4 sqrt(wavelength distance), twice the zone, make up 80 % of its area, so that
+    walls may be as thick as a fifth of their height; what is shorter than 4 m may be an object, as a crate or a table is,
+    unless two such planes make up 95 % of it. The distance is that of the antennas from the farthest corner of the plane, the
+    width four times the area over the length of the rim (the side of a square), windows and other holes counted to the rim. At
+    least a tenth of what it reflects must keep its phase. Smooth and deforming meshes and sheets stay as they are, and so do
+    planes that only several meshes make up together.
     Each flagged plane costs time: paths go over up to two of them on each side of a target.
 
     scene: is changed

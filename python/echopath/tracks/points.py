@@ -57,18 +57,26 @@ class Carrier:
 
 def carrier_of(radar, time: float) -> Carrier:
     """Of a radar at a time in s."""
-    before, now, after = (radar.world_from_radar(time + step) for step in (-_STEP, 0.0, _STEP))
     ambiguity = 2.0 * radar.waveform.max_velocity(radar.num_slots)
-    return Carrier(now, (after - before)[:3, 3] / (2.0 * _STEP), ambiguity)
+    return Carrier(radar.world_from_radar(time), _velocity_of(radar, time), ambiguity)
 
 
-def points_of(detections, carrier: Carrier | None, range_std: float, azimuth_std: float, speed_std: float,
+def _velocity_of(radar, time: float) -> np.ndarray:
+    """[3] m/s in the world, at the ends of its motion on the side that it has."""
+    if radar.motion is None:
+        return np.zeros(3)
+    begin, end = radar.motion.span
+    before, after = max(time - _STEP, begin), min(time + _STEP, end)
+    return (radar.world_from_radar(after) - radar.world_from_radar(before))[:3, 3] / (after - before)
+
+
+def points_of(detections, carrier: Carrier | None, range_std: float, azimuth_std: float, speed_std: float | None,
               merge_distance: float) -> Points:
     """Points of one frame, those nearer than `merge_distance` in m to each other made one, with the speed of the strongest.
 
     detections: Detections, or points [D, 2] or [D, 3] in m in the radar's frame; carrier: into the world, None: to leave them
         there, without speeds, as what is ambiguous and how the radar moves is not known
-    range_std: m, azimuth_std: rad, speed_std: m/s, of each
+    range_std: m, azimuth_std: rad, speed_std: m/s, of each; speed_std None: the speeds tell nothing
     """
     own, weights, speeds, centre = _own_points(detections)
     own, speeds = _merged(own, weights, speeds, merge_distance)
@@ -81,9 +89,10 @@ def points_of(detections, carrier: Carrier | None, range_std: float, azimuth_std
         return Points(own[:, :2], covariances, np.zeros(len(own)), np.zeros((len(own), 2)))
     turn, shift = carrier.world_from_radar[:3, :3], carrier.world_from_radar[:3, 3]
     sights = sight @ turn.T / np.maximum(distance, 1e-12)[:, None]
-    return Points((own @ turn.T + shift)[:, :2], turn[:2, :2] @ covariances @ turn[:2, :2].T,
-                  speeds + sights @ carrier.velocity, sights[:, :2], speed_std,
-                  0.0 if np.any(np.isnan(speeds)) else carrier.ambiguity)
+    points, covariances = (own @ turn.T + shift)[:, :2], turn[:2, :2] @ covariances @ turn[:2, :2].T
+    if speed_std is None or np.any(np.isnan(speeds)):
+        return Points(points, covariances, np.zeros(len(own)), np.zeros((len(own), 2)))
+    return Points(points, covariances, speeds + sights @ carrier.velocity, sights[:, :2], speed_std, carrier.ambiguity)
 
 
 def _own_points(detections) -> tuple:

@@ -24,11 +24,11 @@ def _std(unit: str):
 
 
 @checked(detections=detections_rule, times=array("[F]", finite=True), truth=optional(an(Truth)), radar=optional(an(_core.Radar)),
-         range_std=_std("m"), azimuth_std=_std("rad"), velocity_std=_std("m/s"), acceleration_std=_std("m/s^2"),
+         range_std=_std("m"), azimuth_std=_std("rad"), velocity_std=optional(_std("m/s")), acceleration_std=_std("m/s^2"),
          speed_std=_std("m/s"), merge_distance=_DISTANCE, gate_probability=real(0.5, 1.0 - 1e-12), min_hits=count(1, 1000),
          max_misses=count(0, 1000), truth_distance=_DISTANCE)
 def track(detections: Iterable[Detections] | Iterable[ArrayLike], times: ArrayLike, *, truth: Truth | None = None,
-          radar: _core.Radar | None = None, range_std: float = 0.2, azimuth_std: float = 0.02, velocity_std: float = 1.0,
+          radar: _core.Radar | None = None, range_std: float = 0.2, azimuth_std: float = 0.02, velocity_std: float | None = 1.0,
           acceleration_std: float = 2.0, speed_std: float = 10.0, merge_distance: float = 1.0,
           gate_probability: float = 0.99, min_hits: int = 3, max_misses: int = 3, truth_distance: float = 2.0) -> Tracks:
     """Tracks of detections from frame to frame, for comparison with the truth.
@@ -45,7 +45,8 @@ def track(detections: Iterable[Detections] | Iterable[ArrayLike], times: ArrayLi
     radar: whose motion carries the points into the axes of the world; None: tracks are in the axes of the radar, and radial
         velocities are not used
     range_std, azimuth_std: m and rad, standard errors of a detection along and across the line of sight
-    velocity_std: m/s, by which the radial velocity of a detection differs from that of its object, with limbs and wheels
+    velocity_std: m/s, by which the radial velocity of a detection differs from that of its object, with limbs and wheels; None:
+        radial velocities are not used
     acceleration_std: m/s^2, of each coordinate from frame to frame; speed_std: m/s, of the speeds with which tracks begin
     merge_distance: m, detections of a frame nearer to each other are one, in their mean weighted by power; 0: none are
     gate_probability: with which a detection of an object is within its gate, 0.5 to 1

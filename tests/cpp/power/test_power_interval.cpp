@@ -35,8 +35,8 @@ TEST(PowerInterval, AKindThatIsKnownDoesNotSpeakForAnother) {
   EXPECT_GT(power_interval(evidence).high, 1.2);  // the field may be a tenth larger at least
 }
 
-// An endless mirror over the same way sends back a field of 0.01: no surface sends back more than twice that, whatever waves of
-// points and of edges the cells may hold.
+// An endless mirror over the same way sends back a field of 0.01: no surface sends back more than twice that, whatever waves
+// of points and of edges the cells may hold.
 TEST(PowerInterval, NoSurfaceSendsBackMoreThanTwoEndlessMirrors) {
   for (const double size : {0.0, 1e-6}) {
     for (const CellViewIndex view : {kPoints, kEdges}) {

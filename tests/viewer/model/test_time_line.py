@@ -88,11 +88,11 @@ def test_tracks_go_with_the_object(stored_run):
     assert track_values(rows, glances, "velocity")[-1] == pytest.approx(-4.0, rel=0, abs=1.5)
 
 
-def glance_of(time: float, radar, distance: float, detections=None):
+def glance_of(time: float, radar, distance: float, detections=None, velocity: float = 0.0):
     """A glance whose one detection is straight ahead of the radar."""
     found = dataclasses.replace(detections, **{name: value[:1] for name, value in vars(detections).items()
                                                if isinstance(value, np.ndarray) and len(value) == len(detections)})
-    found = dataclasses.replace(found, range=np.array([distance]), azimuth=np.zeros(1))
+    found = dataclasses.replace(found, range=np.array([distance]), azimuth=np.zeros(1), velocity=np.array([velocity]))
     axis = np.arange(2.0)
     return Glance(time, axis, axis, axis, axis, found, radar)
 
@@ -121,7 +121,8 @@ def test_velocities_of_tracks_need_no_motion_beyond_the_last_frame(stored_run):
     motion = ep.KeyframeMotion([0.0, end], [[0.0, 0.0, 0.0], [3.0 * end, 0.0, 0.0]], None, "linear")
     radar = short.replace(motion=motion)
     middles = times + 0.5 * radar.frame_duration
-    glances = [glance_of(time, radar, 9.0 - 3.0 * middle, stored_run[0].detections) for time, middle in zip(times, middles)]
+    glances = [glance_of(time, radar, 9.0 - 3.0 * middle, stored_run[0].detections, -3.0)
+               for time, middle in zip(times, middles)]
     tracks = tracks_of(glances)
     assert track_values(tracks, glances, "velocity") == pytest.approx(-3.0 * np.ones(3), abs=1e-5)
 

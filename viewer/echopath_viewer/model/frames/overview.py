@@ -75,14 +75,21 @@ def tracks_of(glances):
         return None
     middles = np.array([one.radar.middle_of_frame(one.time) for one in glances])
     try:
-        return ep.track([one.detections for one in glances], middles, radar=_radar_of_all(glances, middles))
+        return ep.track([one.detections for one in glances], middles, **_carried_by(glances, middles))
     except ValueError:  # antennas that see no directions
         return None
 
 
+def _carried_by(glances, times) -> dict:
+    """Keywords of `ep.track`: the radar of all frames; where files are of radars that were moved, rather than of one that moves,
+    one that is where each of them is, which does not tell how fast it goes."""
+    if all(one.radar == glances[0].radar for one in glances):
+        return {"radar": glances[0].radar}
+    return {"radar": _radar_of_all(glances, times), "velocity_std": None}
+
+
 def _radar_of_all(glances, times):
-    """The radar of the first frame, which at the time of each frame is where the radar of that one is: files may be of radars
-    that were moved, rather than of one that moves."""
+    """The radar of the first frame, which at the time of each frame is where the radar of that one is."""
     poses = np.array([one.radar.world_from_radar(float(time)) for one, time in zip(glances, times)])
     motion = ep.KeyframeMotion(times, poses[:, :3, 3], quaternions(poses[:, :3, :3]), "linear")
     return glances[0].radar.replace(position=(0.0, 0.0, 0.0), yaw=0.0, pitch=0.0, motion=motion)

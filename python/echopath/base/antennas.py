@@ -1,4 +1,4 @@
-"""Where the antennas of a radar are."""
+"""Where the antennas of a radar are, and which of them look the same way."""
 from __future__ import annotations
 
 import numpy as np
@@ -8,3 +8,8 @@ def centre_of(radar):
     """[3] m, in the radar's frame: half-way between the mean transmitter and the mean receiver."""
     return 0.5 * sum(np.mean([antenna.position for antenna in antennas], axis=0)
                      for antennas in (radar.transmitters, radar.receivers))
+
+
+def look_of(antenna) -> tuple:
+    """Pattern, orientation and polarisation: antennas of one look differ in their places alone."""
+    return antenna.pattern, antenna.orientation.tolist(), np.asarray(antenna.polarization).tolist()

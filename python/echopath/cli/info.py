@@ -130,7 +130,7 @@ def _describe_scene(scene, time: float) -> list[str]:
     lines = ["scene", report.line("meshes", str(len(scene.meshes))), report.line("triangles", f"{scene.num_triangles:,}")]
     lines += [report.line(f"  {name}", _body(scene, meshes)) for name, meshes in list(bodies.items())[:report.MAX_LISTED]]
     more = [f"    and {len(bodies) - report.MAX_LISTED} more"] if len(bodies) > report.MAX_LISTED else []
-    return [*lines, *more, report.line("weather", weather_text(weather_of(scene))), *_describe_overlaps(scene, time)]
+    return [*lines, *more, report.line("weather", weather_text(weather_of(scene))), *report.overlaps_or_none(scene, time)]
 
 
 def _bodies(scene) -> dict[str, list]:
@@ -153,10 +153,6 @@ def _body(scene, meshes) -> str:
     return ((f"{len(meshes)} meshes, " if len(meshes) > 1 else "")
             + f"{sum(len(mesh.mesh.triangles) for mesh in meshes):,} triangles{materials.pop() if len(materials) == 1 else ''}"
             + (", moving" if any(scene.is_moving(mesh.id) for mesh in meshes) else ""))
-
-
-def _describe_overlaps(scene, time: float, names=None) -> list[str]:
-    return report.overlaps(scene, time, names) or [report.line(report.ON_EACH_OTHER, "none")]
 
 
 def _material(mesh) -> str:
@@ -270,7 +266,7 @@ def _describe_meshes(meshes) -> list[str]:
                   report.line("from, to", f"{report.point(low)}, {report.point(high)} m"),
                   report.line("triangles removed", f"{mesh.num_removed_triangles}"),
                   report.line("vertices duplicated", f"{mesh.num_duplicated_vertices}")]
-    return lines + _describe_overlaps(_scene_of(meshes), 0.0, [name for name, _ in meshes])
+    return lines + report.overlaps_or_none(_scene_of(meshes), 0.0, [name for name, _ in meshes])
 
 
 def _scene_of(meshes):

@@ -39,7 +39,7 @@ def describe_model(path: Path, model: ep.Model, *, with_overlaps: bool = True) -
 
 def _overlaps(scene: ep.Scene) -> list[str]:
     names = [mesh.name.removeprefix("model/") for mesh in scene.meshes]
-    return report.overlaps(scene, 0.0, names) or [report.line(report.ON_EACH_OTHER, "none")]
+    return report.overlaps_or_none(scene, 0.0, names)
 
 
 def _tree(model: ep.Model) -> list[str]:

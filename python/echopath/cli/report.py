@@ -61,6 +61,11 @@ def overlaps(scene, time: float, names=None) -> list[str]:
     return [f"{ON_EACH_OTHER} (rounding decides which of the two a ray meets)", *lines, *more] if found else []
 
 
+def overlaps_or_none(scene, time: float, names=None) -> list[str]:
+    """The same, with a line that says so where none do."""
+    return overlaps(scene, time, names) or [line(ON_EACH_OTHER, "none")]
+
+
 def folded_velocities(scene, radar, time: float) -> list[str]:
     """Objects of a scene that move faster at `time` (s) than a map of velocity tells, and where it shows them; nothing where
     none do."""

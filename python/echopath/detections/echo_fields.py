@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from .. import _core
+from ..base.antennas import look_of
 from ..paths.cells import OUTSIDE, chirp_times, path_cells, turning_of
 from ..paths.subset import subset
 from ..spectra.windows import of_range, of_velocity, samples_of
@@ -219,8 +220,7 @@ class EchoFields:
     def _channels_are_alike(self) -> bool:
         """Whether a path that gives little in the first channel gives little in the others: antennas look the same way."""
         radar = self._paths.radar
-        looks = [[(one.pattern, one.orientation.tolist(), np.asarray(one.polarization).tolist()) for one in antennas]
-                 for antennas in (radar.transmitters, radar.receivers)]
+        looks = [[look_of(one) for one in antennas] for antennas in (radar.transmitters, radar.receivers)]
         return self._largest_shift < SAME_BIN and all(look == some[0] for some in looks for look in some)
 
     @cached_property

@@ -4,6 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arguments.settings import FRAME_KEYWORDS
+from ..base.antennas import look_of
 from ..frame.frame import Frame
 from ..labels.ghost_names import ghost_name
 from ..labels.planes import with_receivers
@@ -55,7 +56,7 @@ def _in_phase(frame: Frame, of_paths: Families, channel) -> np.ndarray:
 
 def _one_of_each_look(antennas) -> list[int]:
     """Indices of one antenna of each pattern, orientation and polarisation."""
-    looks = [(one.pattern, tuple(one.orientation.ravel()), tuple(np.ravel(one.polarization))) for one in antennas]
+    looks = [look_of(one) for one in antennas]
     return [index for index, look in enumerate(looks) if look not in looks[:index]]
 
 

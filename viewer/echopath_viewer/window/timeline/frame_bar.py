@@ -161,17 +161,13 @@ class TimeStrip(QtWidgets.QWidget):
             box = QtCore.QRectF(0, self._y_of(value) - 8, LEFT - 6, 16)
             painter.drawText(box, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter, tick_text(value))
         painter.drawText(QtCore.QRectF(0, rect.bottom() + 2, LEFT - 6, 16), Qt.AlignmentFlag.AlignRight, UNITS[self.axis])
-        last = -1e9
+        last, times = -1e9, np.array([one.time for one in self._glances])
+        ascend = bool(np.all(np.diff(times) > 0.0))  # they begin anew in each scene of a dataset
         for place in range(len(self._glances)):  # times need not be even: each stands under its own column
             if self.x_of(place) - last > 70.0:
                 last = self.x_of(place)
                 painter.drawText(QtCore.QRectF(last - 34, rect.bottom() + 2, 68, 16), Qt.AlignmentFlag.AlignHCenter,
-                                 self._mark_of(place))
-
-    def _mark_of(self, place: int) -> str:
-        """The time of a frame, or its number where times begin anew, as in the scenes of a dataset."""
-        times = np.array([one.time for one in self._glances])
-        return f"{tick_text(round(times[place], 4))} s" if np.all(np.diff(times) > 0.0) else f"frame {place + 1}"
+                                 f"{tick_text(round(times[place], 4))} s" if ascend else f"frame {place + 1}")
 
     def _paint_tracks(self, painter) -> None:
         if self.tracks is None or not self.tracks.num_tracks:

@@ -3362,7 +3362,7 @@ def mesh_traits(scene: Scene) -> tuple[typing.Any, ...]:
     """
     Of all meshes: (materials, each once; index of each mesh's [M]; whether it is smooth [M], moves [M], deforms [M]).
     """
-def meshes_of_large_planes(scene: Scene, radar: typing.Any, wavelength: float, time: float, least_coherent: float, least_area: float, least_extent: float, least_area_of_short: float) -> list[int]:
+def meshes_of_large_planes(scene: Scene, radar: typing.Any, wavelength: float, time: float, least_coherent: float, least_area: float, least_extent: float, least_area_of_short: float, vehicle_length: float, vehicle_width: float) -> list[int]:
     """
     IDs of the meshes that planes larger than their Fresnel zone make up at a wavelength in m and a time in s.
     """

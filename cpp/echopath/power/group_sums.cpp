@@ -187,7 +187,7 @@ class Block {
     replayer_.evaluate(coherent_, paths_.frame.trace_time, kCellViews, lengths_, coherent_fields_);
     if (of_paths) note(coherent_, coherent_fields_, *of_paths);
     arrive(coherent_.size(), kNumCellViews, coherent_fields_);
-    coherent_lengths_ = lengths_;
+    std::swap(coherent_lengths_, lengths_);
   }
 
   void add_to(Sums& sums, std::span<const uint32_t> group_of_path) const {

@@ -30,8 +30,9 @@ class PlaneMeasure {
     for (uint32_t patch = 0; patch < patches.size(); ++patch) {
       for (const uint32_t triangle : patches[patch]) patch_of[triangle] = patch;
     }
-    double whole = 0.0, large = 0.0;
+    double whole = 0.0, large = 0.0, widest = 0.0;
     int num_large = 0;
+    Vec3 normal = Vec3::UnitX();  // of the widest plane
     for (const std::vector<uint32_t>& patch : patches) {
       const double area = area_of(patch);
       whole += area;
@@ -39,9 +40,15 @@ class PlaneMeasure {
         large += area;
         ++num_large;
       }
+      if (area > widest) {
+        widest = area;
+        normal = normal_of(patch.front());
+      }
     }
-    const bool is_short = box.sizes().maxCoeff() < rule_.least_extent;
-    if (is_short && num_large >= kPlanesOfBody) return false;
+    const double longest = box.sizes().maxCoeff();
+    const bool is_short = longest < rule_.least_extent;
+    const bool is_as_vehicle = longest <= rule_.vehicle_length && depth_along(normal) <= rule_.vehicle_width;
+    if ((is_short || is_as_vehicle) && num_large >= kPlanesOfBody) return false;
     return whole > 0.0 && large >= (is_short ? rule_.least_area_of_short : rule_.least_area) * whole;
   }
 
@@ -71,13 +78,28 @@ class PlaneMeasure {
     return farthest;
   }
 
+  // Returns the cross product of two sides of a triangle, m^2.
+  Vec3 cross_of(uint32_t triangle) const {
+    const auto& [a, b, c] = triangles_[triangle];
+    return (vertices_[b] - vertices_[a]).cross(vertices_[c] - vertices_[a]);
+  }
+
   double area_of(const std::vector<uint32_t>& patch) const {
     double twice = 0.0;
-    for (const uint32_t triangle : patch) {
-      const auto& [a, b, c] = triangles_[triangle];
-      twice += (vertices_[b] - vertices_[a]).cross(vertices_[c] - vertices_[a]).norm();
-    }
+    for (const uint32_t triangle : patch) twice += cross_of(triangle).norm();
     return 0.5 * twice;
+  }
+
+  Vec3 normal_of(uint32_t triangle) const { return cross_of(triangle).normalized(); }
+
+  // Returns from where to where the mesh reaches along a direction, m.
+  double depth_along(const Vec3& direction) const {
+    double least = INFINITY, most = -INFINITY;
+    for (const Vec3& vertex : vertices_) {
+      least = std::min(least, vertex.dot(direction));
+      most = std::max(most, vertex.dot(direction));
+    }
+    return most - least;
   }
 
   // Returns the length in m of the edges that lead out of the patch.

@@ -14,6 +14,8 @@ struct LargePlaneRule {
   double least_area = 0.0;      // share of a mesh's area that large planes must make up
   double least_extent = 0.0;    // m, longest side of the box about a wall or a house; what is shorter may be a body
   double least_area_of_short = 0.0;  // the same share of what is shorter
+  // m, of road vehicles and containers: a body no longer than these, whose faces are large planes, is none of walls.
+  double vehicle_length = 0.0, vehicle_width = 0.0;
 };
 
 // Returns the IDs of the meshes that large planes make up, ascending. A plane is large where it is at least twice as wide as

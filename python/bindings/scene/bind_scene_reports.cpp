@@ -52,9 +52,10 @@ py::tuple traits_of_meshes(const Scene& scene) {
 }
 
 std::vector<uint32_t> large_planes(const Scene& scene, const Radar& radar, double wavelength, double time,
-                                   double least_coherent, double least_area, double least_extent,
-                                   double least_area_of_short) {
-  LargePlaneRule rule{{}, wavelength, time, least_coherent, least_area, least_extent, least_area_of_short};
+                                   double least_coherent, double least_area, double least_extent, double least_area_of_short,
+                                   double vehicle_length, double vehicle_width) {
+  LargePlaneRule rule{{},           wavelength,          time,           least_coherent, least_area,
+                      least_extent, least_area_of_short, vehicle_length, vehicle_width};
   for (const auto& antennas : {radar.transmitters, radar.receivers}) {
     for (const PosedAntenna& antenna : posed_antennas(antennas, radar.world_from_radar(time), Vec3::Zero()))
       rule.antennas.push_back(antenna.position);
@@ -79,6 +80,7 @@ void bind_scene_reports(py::module_& m) {
         "IDs of the meshes that reflect this share of the power in phase at a wavelength in m, mirrors left out.");
   m.def("meshes_of_large_planes", &large_planes, py::arg("scene"), py::arg("radar"), py::arg("wavelength"), py::arg("time"),
         py::arg("least_coherent"), py::arg("least_area"), py::arg("least_extent"), py::arg("least_area_of_short"),
+        py::arg("vehicle_length"), py::arg("vehicle_width"),
         "IDs of the meshes that planes larger than their Fresnel zone make up at a wavelength in m and a time in s.");
   m.def("look_at_bodies", &look_at_bodies, py::arg("scene"), py::arg("radar"), py::arg("time"),
         "Of the children of the root: (node [N]; sides [N, 2] in m, shortest and longest; closed [N]; those in which the "

@@ -9,6 +9,12 @@ class _Short(reprlib.Repr):
         super().__init__()
         self.maxstring = self.maxother = self.maxlong = 60
 
+    def repr1(self, value, level):
+        """Scalars of NumPy as the numbers that they are, -30.0, not np.float64(-30.0)."""
+        is_scalar = type(value).__module__ == "numpy" and getattr(value, "shape", None) == ()
+        plain = value.item() if is_scalar else value
+        return super().repr1(plain if isinstance(plain, (bool, int, float, complex, str)) else value, level)
+
     def repr_ndarray(self, value, level):
         return f"an array {list(value.shape)} of {value.dtype}" if value.ndim else repr(value[()])
 

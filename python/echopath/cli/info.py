@@ -10,10 +10,9 @@ import echopath as ep
 from .. import dataset
 from ..dataset.folder import TEMPLATE as DATASET_FILE
 from ..frame_file import left_out, load_frame
-from ..frame_file.container import SUFFIXES as FRAME_SUFFIXES
 from ..frame_file.container import FRAME, SEQUENCE, has_paths, kind_of
 from ..frame_file.maps import load_maps
-from ..frame_file.opening import file_and_group
+from ..frame_file.opening import SUFFIXES as FRAME_SUFFIXES, file_and_group
 from ..paths.edge_hits import edge_hits
 from ..presentation.tables import event
 from ..readers.load import READ_RULES, READERS, is_foreign, read_model

@@ -8,6 +8,7 @@ import numpy as np
 from ..arguments.names import first_names
 from ..labels.report import peak_words
 from ..paths.resolution import FAINT, RESOLVED_DB
+from ..paths.visibility import occluder_words
 from ..scene.closing_speeds import closing_speeds
 from ..signals.measures import in_dbm, power_dbm, velocity_extent, with_error
 
@@ -208,9 +209,8 @@ def _objects(of_cells) -> list[str]:
         return ["no objects"]
     rows = [("objects", "status", "cells", "power, anywhere", PEAK_OF_CELLS, "in sight", "hidden by", UNRESOLVED_MEAN)]
     for label in of_cells.objects:
-        by = ", ".join(f"{name} {share:.0%}" for name, share in label.occluders.items() if share >= 0.005)
         rows.append((f"  {label.name}", label.status, f"{label.cells:,}", _power(label), _peak(label),
-                     f"{label.visible_share:.0%}", by, _interval(label)))
+                     f"{label.visible_share:.0%}", occluder_words(label.occluders), _interval(label)))
     return _table(rows, right=(2, 3, 5))
 
 

@@ -9,7 +9,6 @@ from .h5 import read_attribute, write_attribute, writing
 from .opening import reading
 
 SCHEMA_VERSION = 4  # grows when a reader of the old layout would misread the new one
-SUFFIXES = (".h5", ".hdf5")
 KINDS = FRAME, SEQUENCE = "frame", "sequence"
 _OTHER_KIND = {FRAME: "is a single frame, not a sequence: ep.load_frame reads it",
                SEQUENCE: "is a sequence, not a single frame: ep.load_sequence reads its frames"}

@@ -12,6 +12,7 @@ from .changing import has_journal, mend
 from .h5 import FAULTS, first_line, read_group
 from .h5_items import library
 
+SUFFIXES = (".h5", ".hdf5")
 PATIENCE, PAUSE = 5.0, 0.005  # s that a reader waits for who changes the file, which takes milliseconds, and between its tries
 
 
@@ -55,6 +56,9 @@ def reading(path):
         if Path(path).suffix.lower() == ".toml":
             raise _core.FileError(f"{path}: a scene file, where a frame file (.h5) is asked for; `echopath run {path} --out "
                                   "DIR` makes DIR/frame.h5 of it") from None
+        if place.is_file() and place.suffix.lower() not in SUFFIXES:
+            raise _core.FileError(f"{path}: not a frame file (.h5); of a model, `echopath scene {path} --out SCENE.toml` makes a "
+                                  "scene file, and `echopath run SCENE.toml --out DIR` the frame of that") from None
         if place.is_dir():
             raise _core.FileError(f"{path}: a folder, where a frame file (.h5) is asked for, as those in it may be") from None
         raise _core.FileError(f"{path}: damaged or not an HDF5 file ({first_line(error)})") from error

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..paths.visibility import occluder_words
 from ..signals.measures import in_dbm
 
 
@@ -50,8 +51,8 @@ def _object(label) -> str:
 
 
 def _occluders(label) -> str:
-    hidden = ", ".join(f"{share:.0%} by {name}" for name, share in label.occluders.items() if share >= 0.005)
-    return f", hidden {hidden}" if hidden else ""
+    hidden = occluder_words(label.occluders)
+    return f", hidden by {hidden}" if hidden else ""
 
 
 def _with_cells(labels) -> list:

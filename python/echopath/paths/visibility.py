@@ -11,10 +11,16 @@ from ..arguments.objects import Objects, named_globs, objects_rule
 from ..base.made_by import made_by
 
 HIDDEN_SHARE = 0.05  # an object of which no more than this is in sight counts as hidden
+LEAST_HIDDEN = 0.005  # share of an object from which what hides it is named
 DIRECTIONS = 128  # on each object: labels and truth look at all objects of each frame
 DIRECTIONS_OF_PLACES = 256  # on each object: shares to .006 rms, for the question whether they are above HIDDEN_SHARE
 _KEPT: weakref.WeakKeyDictionary = weakref.WeakKeyDictionary()  # {record: geometry}, one entry at most
 FRAME_PLACES = (0.0, 1.0, 0.618, 0.236, 0.854)  # shares of a frame: its ends and irrational ones
+
+
+def occluder_words(occluders: dict) -> str:
+    """What hides an object and how much of it, "wall 40%, car 3%"; "" where nothing hides half a percent."""
+    return ", ".join(f"{name} {share:.0%}" for name, share in occluders.items() if share >= LEAST_HIDDEN)
 
 
 @made_by("ep.visibility")

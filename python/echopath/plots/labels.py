@@ -4,10 +4,11 @@ from __future__ import annotations
 import numpy as np
 
 from ..arguments.checks import choice
+from ..paths.visibility import occluder_words
 from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm
 from .maps import RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, half_step
-from .part_powers import draw_part_powers, part_colours
-from .style import AZIMUTH_LABEL, axes_or_new, new_figure
+from .part_powers import draw_part_powers
+from .style import AZIMUTH_LABEL, axes_or_new, new_figure, part_colours
 
 AZIMUTH_MARGIN = 4.0        # degrees
 FILL = 0.45                  # opacity of a label over the map
@@ -185,7 +186,7 @@ def _unseen(labels) -> str:
     unseen = [label for label in labels.objects if label.status != "seen"]
     lines = []
     for label in unseen[:MAX_UNSEEN]:
-        by = ", ".join(f"{name} {share:.0%}" for name, share in label.occluders.items() if share >= 0.005)
+        by = occluder_words(label.occluders)
         lines.append(f"\n{label.name}: {label.status}" + (f" (hidden by {by})" if by else ""))
     return "".join(lines) + (f"\nand {len(unseen) - MAX_UNSEEN} more without cells" if len(unseen) > MAX_UNSEEN else "")
 

@@ -3,17 +3,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..base.colours import colours_of
 from ..paths.resolution import RESOLVED_DB
 from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm, with_error
-from .style import new_figure
+from .style import new_figure, part_colours
 
 ROOM_BESIDE_DB = 6.0  # of the weakest and the strongest power
-
-
-def part_colours(names) -> list:
-    """The colours (red, green, blue), 0 to 1, of parts by their names."""
-    return [tuple(value / 255.0 for value in colour) for colour in colours_of(list(names))]
 
 
 def plot_part_powers(powers: dict, *, title="Received power by part"):

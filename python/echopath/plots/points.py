@@ -4,9 +4,8 @@ from __future__ import annotations
 import numpy as np
 
 from ..arguments.checks import choice, text
-from ..base.colours import colours_of
 from .maps import RANGE_LABEL, VELOCITY_LABEL
-from .style import axes_or_new
+from .style import axes_or_new, part_colours
 from .top_view import AHEAD_LABEL, LEFT_LABEL
 
 VIEWS = ("range_doppler", "above")
@@ -81,7 +80,7 @@ def _colours(names) -> dict:
     """{name: colour}; objects in the order of their names, then what is none."""
     rest = {name: colour for name, colour in REST_COLOURS.items() if name in names}
     own = sorted(set(names) - set(rest))
-    return {name: tuple(value / 255.0 for value in colour) for name, colour in zip(own, colours_of(own))} | rest
+    return dict(zip(own, part_colours(own))) | rest
 
 
 def _sizes(power):

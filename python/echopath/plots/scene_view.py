@@ -202,7 +202,8 @@ def _draw_perspective(axes, drawing: _Drawing) -> None:
     for count, segments in reversed(drawing.segments.items()):
         add(Line3DCollection, segments, 2, colors=_colour(count), linewidths=0.6, alpha=_ray_opacity(segments))
     add(Poly3DCollection, _of_equal_length(drawing.bodies), 3, facecolors=np.array(drawing.body_colours), edgecolors="none")
-    axes.plot(*drawing.radar[:, None], marker="s", color="black", markersize=5, zorder=4, clip_on=False)
+    # Matplotlib lays figures out before it projects: it would take the coordinates in m for a place on the page.
+    axes.plot(*drawing.radar[:, None], marker="s", color="black", markersize=5, zorder=4, clip_on=False, in_layout=False)
     axes.text(*drawing.radar, f"{RADAR_LABEL}   ", zorder=5, horizontalalignment="right")
     for name, (low, high) in drawing.names.items():
         axes.text(*0.5 * (low + high)[:2], high[2], f"{name}\n", zorder=5, horizontalalignment="center",
@@ -291,7 +292,8 @@ def _draw_flat_names(axes, drawing: _Drawing, plane: tuple) -> None:
     def write(name: str, place, offset: tuple, ha: str, **look) -> None:
         axes.annotate(name, place, xytext=offset, textcoords="offset points", ha=ha, path_effects=_halo(), **look)
 
-    write(RADAR_LABEL, drawing.radar[list(plane)], (0, 5), "center", **NAME_LOOK)
+    is_high = drawing.radar[plane[1]] > drawing.high[plane[1]] - 2.0 * MARGIN  # the title is right above
+    write(RADAR_LABEL, drawing.radar[list(plane)], (6, -9) if is_high else (0, 5), "left" if is_high else "center", **NAME_LOOK)
     for name, (low, high) in drawing.names.items() if plane == (0, 1) else ():
         write(name, (0.5 * (low[0] + high[0]), high[1]), (0, 3), "center", **NAME_LOOK)
     for name, (low, high) in _named_mirrors(drawing).items():

@@ -6,6 +6,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
+from ..base.colours import colours_of
 from ..base.files import written_whole
 from ..base.origin import origin_texts
 
@@ -55,6 +56,11 @@ def axes_or_new(ax, width: float, height: float):
 
             ax = pyplot.figure(figsize=(width, height), layout="constrained").subplots()
         yield ax
+
+
+def part_colours(names) -> list:
+    """The colours (red, green, blue), 0 to 1, of parts or objects by their names."""
+    return [tuple(value / 255.0 for value in colour) for colour in colours_of(list(names))]
 
 
 def colour_bar(figure, image, panels, *, aspect: float = 30.0) -> None:

@@ -3,13 +3,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..base.colours import colours_of
 from ..signals.measures import SMALLEST_POWER, in_dbm
 from .maps import (
     DYNAMIC_RANGE_DB, MARGIN_OVER_MEDIAN_DB, RANGE_LABEL, VELOCITY_LABEL, VELOCITY_MARGIN, chosen_limits, half_step,
     limits_above, margin_of,
 )
-from .style import AZIMUTH_LABEL, MAP_COLOURS, axes_or_new, cell_edges, colour_bar
+from .style import AZIMUTH_LABEL, MAP_COLOURS, axes_or_new, cell_edges, colour_bar, part_colours
 
 TIME_LABEL = "Time in s"
 AXIS_LABELS = {"velocity": VELOCITY_LABEL, "range": RANGE_LABEL, "azimuth": AZIMUTH_LABEL}
@@ -53,7 +52,7 @@ def draw_spectrogram_labels(labels, *, ax=None, title=""):
     level = in_dbm(labels.whole, SMALLEST_POWER)
     vmin, vmax = limits_above(_noise_level(level, labels.noise_power), level.max())
     names = labels.part_names
-    colours = [tuple(channel / 255.0 for channel in colour) for colour in colours_of(names)]
+    colours = part_colours(names)
     with axes_or_new(ax, *SIZE) as ax:
         owner = np.ma.masked_less(labels.dominant, 0)
         for columns, ends in _trains(labels):

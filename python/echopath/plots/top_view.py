@@ -118,10 +118,12 @@ def _colour_limits(one, leaked=None) -> tuple[float, float]:
 
 
 def _reach(one, floor: float) -> float:
-    """Range in m up to which the map is worth showing."""
+    """Range in m up to which the map is worth showing; all of it where nothing stands out."""
     level = _in_dbm(one.power.max(axis=0))
     has_signal = np.flatnonzero(level > max(floor + 3.0, np.median(_in_dbm(one.power)) + noise_peak_db(1)))
-    last = max(has_signal.max(initial=0), LEAST_RANGES)
+    if len(has_signal) == 0:
+        return float(one.range[-1]) or 1.0
+    last = max(has_signal.max(), LEAST_RANGES)
     return float(min(FARTHER * one.range[min(last, len(one.range) - 1)], one.range[-1])) or 1.0
 
 

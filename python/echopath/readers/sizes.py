@@ -24,6 +24,10 @@ _SIZES = {
 # words that make a place or a sign of such a thing, whose size tells nothing: a dog house, a bus stop, a car park
 _PLACES = {"house", "home", "kennel", "stop", "station", "park", "lot", "garage", "port", "wash", "lane", "path", "way", "track",
            "crossing", "bridge", "sign", "rack", "stand", "shelter", "shed", "stable", "barn", "pen", "hole"}
+_KNOWN = {word for known, _, _ in _SIZES.values() for word in known}
+# words of what stands about such things in a scene, which is as large as it likes
+_SURROUNDINGS = {"ground", "terrain", "road", "street", "pavement", "sidewalk", "wall", "walls", "house", "houses", "building",
+                 "buildings", "town", "city", "village", "forest", "sky"}
 _UNITS = {"mm": 1e-3, "cm": 1e-2, "inches": 0.0254, "feet": 0.3048, "m": 1.0, "km": 1e3}  # m
 SMALLEST, LARGEST = 0.02, 5e4  # m, of anything that a radar looks at
 _FIGURE, _BODY = ("a figure with a skeleton", 0.05, 10.0), ("a single body", SMALLEST, 500.0)
@@ -87,8 +91,10 @@ def unit_doubt(extent: float, unit: float, names: list[str], is_figure: bool = F
 
 def _expected(names: list[str]) -> tuple[str, float, float] | None:
     """(what it is, least and greatest extent in m) by the names; None: these do not say."""
-    for name in names:
-        words = {word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+", name)}
+    words_of_names = [{word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+", name)} for name in names]
+    if any(words & _SURROUNDINGS and not words & _KNOWN for words in words_of_names):
+        return None
+    for words in words_of_names:
         for what, (known, least, most) in _SIZES.items():
             if words & set(known) and not words & _PLACES:
                 return what, least, most

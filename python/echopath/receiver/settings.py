@@ -22,9 +22,16 @@ def _row() -> Rule:
     return lambda argument, value: tuple(float(one) for one in rule(argument, value))
 
 
-def _table(argument: str, value) -> Table:
-    """Finite numbers [A, B] as tuples, kept so that the value can be hashed."""
-    return tuple(tuple(float(one) for one in row) for row in array("[A, B]", finite=True)(argument, value))
+def _table(shape: str) -> Rule:
+    """Finite numbers of a shape with two axes, or none at all, as tuples: kept so that the value can be hashed."""
+    rule = array(shape, finite=True)
+
+    def check(argument: str, value) -> Table:
+        if isinstance(value, (tuple, list)) and not value:
+            return ()
+        return tuple(tuple(float(one) for one in row) for row in rule(argument, value))
+
+    return check
 
 
 def _pair(argument: str, value) -> tuple[float, float]:
@@ -159,8 +166,8 @@ class Receiver(Settings):
     adc: Adc | Mapping[str, object] | None = None
 
     RULES: ClassVar[Mapping[str, Rule]] = {
-        "phase_noise": optional(_value(PhaseNoise)), "frequency_error": _row(), "leakage_db": lambda name, value: _some(
-            name, value), "leakage_delay": real(0.0, unit="s"), "coupling_db": lambda name, value: _some(name, value),
+        "phase_noise": optional(_value(PhaseNoise)), "frequency_error": _row(), "leakage_db": _table("[tx, rx]"),
+        "leakage_delay": real(0.0, unit="s"), "coupling_db": _table("[rx, rx]"),
         "coupling_delay": real(0.0, unit="s"), "transmitter_gain_db": _row(), "transmitter_phase": _row(),
         "receiver_gain_db": _row(), "receiver_phase": _row(), "gain_drift_db": _row(), "phase_drift": _row(),
         "compression_dbm": optional(real(unit="dBm")), "high_pass": _row(), "low_pass": optional(real(above=0.0, unit="Hz")),
@@ -175,10 +182,6 @@ class Receiver(Settings):
     def plain(self) -> dict:
         """{keyword: value} of what is not the default, values of its values likewise: for files."""
         return _plain(self)
-
-
-def _some(argument: str, value) -> Table:
-    return () if isinstance(value, (tuple, list)) and not value else _table(argument, value)
 
 
 def _plain(value: Settings) -> dict:

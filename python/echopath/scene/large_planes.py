@@ -9,6 +9,7 @@ LEAST_COHERENT = 0.1  # share of the reflected power that keeps its phase: rough
 LEAST_AREA = 0.8      # share of a mesh's area that large planes make up: the rest, such as the ends of a wall, mirrors with it
 LEAST_EXTENT = 4.0    # m, longest side of walls and houses; of what is shorter, which may be an object, more is asked:
 LEAST_AREA_OF_SHORT = 0.95  # nearly all of it, and on two sides at most
+VEHICLE_LENGTH, VEHICLE_WIDTH = 19.0, 2.6  # m, of road trains (18.75) and reefers (2.6) at most: directive 96/53/EC
 
 
 @checked(scene=an(Scene), radar=an(_core.Radar), time=real(unit="s"))
@@ -18,9 +19,10 @@ def mark_mirrors(scene: Scene, radar: _core.Radar, *, time: float = 0.0) -> tupl
     Ghosts of small targets over walls and ground are then found by images, which rays alone nearly never hit. A mesh is
     flagged where planes at least as wide as 4 sqrt(wavelength distance), twice the zone, make up 80 % of its area, so that
     walls may be as thick as a fifth of their height; what is shorter than 4 m may be an object, as a crate or a table is,
-    unless two such planes make up 95 % of it. The distance is that of the antennas from the farthest corner of the plane, the
-    width four times the area over the length of the rim (the side of a square), windows and other holes counted to the rim. At
-    least a tenth of what it reflects must keep its phase. Smooth and deforming meshes and sheets stay as they are, and so do
+    unless two such planes make up 95 % of it, and so may what has three or more such planes and the size of a road vehicle: 19 m
+    by 2.6 m between the largest of them and what is opposite. The distance is that of the antennas from the farthest corner of
+    the plane, the width four times the area over the length of the rim (the side of a square), windows and other holes counted
+    to the rim. At least a tenth of what it reflects must keep its phase. Smooth and deforming meshes and sheets stay as they are, and so do
     planes that only several meshes make up together.
     Each flagged plane costs time: paths go over up to two of them on each side of a target.
 
@@ -42,4 +44,4 @@ def large_planes(scene: _core.Scene, radar: _core.Radar, time: float) -> list[in
     """IDs of the meshes that `mark_mirrors` would flag at a time in s."""
     wavelength = _core.speed_of_light / radar.waveform.start_frequency
     return _core.meshes_of_large_planes(scene, radar, wavelength, time, LEAST_COHERENT, LEAST_AREA, LEAST_EXTENT,
-                                       LEAST_AREA_OF_SHORT)
+                                       LEAST_AREA_OF_SHORT, VEHICLE_LENGTH, VEHICLE_WIDTH)

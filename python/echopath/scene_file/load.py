@@ -10,7 +10,7 @@ from .. import _core
 from ..arguments.checks import refused
 from ..arguments.objects import named_globs
 from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
-from ..frame_file.container import SUFFIXES as FRAME_SUFFIXES
+from ..frame_file.opening import SUFFIXES as FRAME_SUFFIXES
 from ..readers.load import is_foreign
 from ..readers.options import ReadOptions
 from ..scene.interferers import Interferer

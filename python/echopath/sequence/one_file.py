@@ -10,9 +10,9 @@ from ..arguments.checks import refused
 from ..base.files import flush, require_writable, written_whole
 from ..frame.frame import Frame
 from ..frame_file.changing import changing, mend_own, work_folder
-from ..frame_file.container import SEQUENCE, SUFFIXES, our_file
+from ..frame_file.container import SEQUENCE, our_file
 from ..frame_file.h5 import copy_items, read_group, writing
-from ..frame_file.opening import reading
+from ..frame_file.opening import SUFFIXES, reading
 from .contents import FRAMES, Contents, read_contents, read_settings, what_differs, write_contents, write_settings
 from .folder import NAME, FolderStore
 from .folder_lock import writing_to

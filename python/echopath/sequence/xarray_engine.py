@@ -9,9 +9,9 @@ from pathlib import Path
 
 from xarray.backends import BackendEntrypoint
 
-from ..frame_file.container import SEQUENCE, SUFFIXES, kind_of, our_file
+from ..frame_file.container import SEQUENCE, kind_of, our_file
 from ..frame_file.maps import start_time_in_file
-from ..frame_file.opening import file_and_group
+from ..frame_file.opening import SUFFIXES, file_and_group
 from .arrays import dataset_of_files
 from .folder import NAME
 from .stored import StoredSequence

@@ -41,7 +41,8 @@ def write(folder, name, text):
     return path
 
 
-@pytest.mark.parametrize("kind", ["truck", "trailer", "bus", "delivery", "van", "motorcycle", "bicycle", "passenger"])
+@pytest.mark.parametrize("kind", ["truck", "trailer", "bus", "coach", "tram", "delivery", "van", "motorcycle", "bicycle",
+                                  "passenger"])
 def test_vehicles_of_sumo_have_their_fronts_where_the_file_has_them(tmp_path, kind):
     fcd = FCD.replace('type="passenger"', f'type="{kind}"').replace('id="once"', 'id="flow/0"')
     others = ("south", "walker", 'y="0.00" angle="0')

@@ -255,6 +255,14 @@ def test_high_scenes_have_room_for_their_labels(size, tmp_path):
     assert boxes[0].y0 > max(box.y1 for box in boxes[1:])  # that in perspective stands above the others
 
 
+@pytest.mark.filterwarnings("error:constrained_layout")
+def test_a_radar_that_stands_far_from_the_origin_leaves_room_for_the_pictures(tmp_path):
+    scene = ep.Scene()
+    scene.add(ep.actors.plate(0.5, 0.5), name="plate", material="metal", position=(20.0, 500.0, 1.0))
+    radar = build_radar([(0, 0, 0)], [(0, 0, 0)], num_samples=16, num_chirps=2, chirp_interval=1e-4, position=(-3.0, 500.0, 1.0))
+    save_png(plot_scene(scene, ep.trace(scene, radar, num_rays=500)), tmp_path / "scene.png")
+
+
 def test_a_body_of_mirrors_is_shown_whole_and_a_road_as_far_as_the_rest_goes():
     scene = ep.Scene()
     scene.add(ep.actors.ground(200.0), name="road", material=ep.Material.metal(mirror=True))
@@ -264,6 +272,13 @@ def test_a_body_of_mirrors_is_shown_whole_and_a_road_as_far_as_the_rest_goes():
     radar = build_radar([(0, 0, 1)], [(0, 0, 1)], num_samples=16, num_chirps=2, chirp_interval=1e-4)
     left, right = plot_scene(scene, ep.trace(scene, radar, num_rays=500)).axes[1].get_xlim()
     assert (left, right) == pytest.approx((-0.6, 6.5 + 0.6))
+
+
+def test_a_map_from_above_of_noise_alone_is_shown_whole(from_above):
+    noise = SimpleNamespace(azimuth=from_above.azimuth, range=from_above.range, power=np.minimum(from_above.power, 3e-16))
+    figure = plot_range_azimuth(noise)
+    assert figure.axes[0].get_ylim()[1] > from_above.range[-1]
+    assert plot_range_azimuth(from_above).axes[0].get_ylim()[1] < from_above.range[-1]
 
 
 def test_maps_from_above_of_nothing_and_of_one_cell_are_pictures_too(from_above, tmp_path):

@@ -233,6 +233,7 @@ def test_a_file_without_surfaces_says_so(tmp_path, capsys):
     (141.0, 1.0, ["Fox"], "an animal of 141 m is hardly right; with unit=0.01 [(]cm[)]"),
     (1.8, 1.0, ["man"], None), (180.0, 1.0, ["town"], None), (4.5, 1.0, ["car"], None),
     (9.0, 1.0, ["dog_house"], None), (60.0, 1.0, ["BusStop"], None),
+    (60.0, 1.0, ["map", "house_left", "ground", "van0"], None), (60.0, 1.0, ["map", "van0"], "a vehicle of 60 m is hardly right"),
     (4.2, 1.0, ["thing", "Car_Body"], None), (4.2, 1.0, ["thing", "body", "wheel"], None),
 ])
 def test_sizes_that_cannot_be_say_which_unit_would_be_right(extent, unit, names, words):

@@ -1,5 +1,7 @@
 """Faults of receivers against their closed forms."""
 
+import re
+
 import numpy as np
 import pytest
 from support.radars import build_radar
@@ -247,6 +249,12 @@ def test_masks_of_phase_noise_above_the_carrier_are_refused():
     assert ep.PhaseNoise(offsets=[10.0], levels=[20.0]).levels == (20.0,)
     with pytest.raises(ValueError, match="^levels: must be at most 20 dBc/Hz, got"):
         ep.PhaseNoise(offsets=[1e4, 1e6], levels=[80.0, -90.0])
+
+
+@pytest.mark.parametrize("name, shape", [("leakage_db", "[tx, rx]"), ("coupling_db", "[rx, rx]")])
+def test_levels_between_channels_are_asked_for_by_their_channels(name, shape):
+    with pytest.raises(ValueError, match=re.escape(f"{name}: must be an array {shape} of finite real numbers, got -30")):
+        ep.Receiver(**{name: -30.0})
 
 
 def test_what_a_receiver_gives_is_told_in_a_line():

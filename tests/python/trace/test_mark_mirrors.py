@@ -86,9 +86,15 @@ def box(*sides) -> ep.Mesh:
     ((2.0, 1.8, 1.5), ()),            # a crate, which is an object
     ((3.0, 0.05, 2.5), ("plate",)),   # a wall of a room
     ((3.0, 0.5, 2.5), ()),            # a wardrobe
+    ((4.5, 1.9, 2.0), ()),            # a van
+    ((13.6, 2.6, 2.7), ()),           # a trailer
+    ((12.0, 3.5, 3.0), ("plate",)),   # a row of garages
     ((40.0, 0.5, 0.8), ())])          # a kerb, of which half is narrow
 def test_walls_have_a_thickness_and_bodies_are_no_walls(sides, names):
     assert marked(box(*sides), position=(15.0, 4.15, 0.0)) == names
+    c, s = np.cos(0.2), np.sin(0.2)
+    turned = ep.Mesh(box(*sides).vertices @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]), box(*sides).triangles)
+    assert marked(turned, position=(15.0, 4.15, 0.0)) == names  # whichever way it stands
 
 
 @pytest.mark.parametrize("name", SHIPPED)

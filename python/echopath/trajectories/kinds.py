@@ -19,8 +19,8 @@ _MOTORCYCLE, _CYCLIST = Kind("motorcycle", {}, 2.0), Kind("cyclist", {}, 1.95)
 _PERSON, _DOG = Kind("pedestrian", {}, 0.0), Kind("dog", {}, 0.0)  # files have their middles
 # The first word that is in the name of a kind is taken.
 _KINDS = {"truck": _TRUCK, "trailer": _TRUCK, "lorry": _TRUCK, "tram": _TRUCK, "bus": _BUS, "coach": _BUS, "delivery": _BUS,
-          "van": _VAN, "motorcycle": _MOTORCYCLE, "moped": _MOTORCYCLE, "bicycle": _CYCLIST, "bike": _CYCLIST, "cyclist": _CYCLIST,
-          "ped": _PERSON, "person": _PERSON, "walk": _PERSON, "dog": _DOG}
+          "van": _VAN, "motorcycle": _MOTORCYCLE, "moped": _MOTORCYCLE, "bicycle": _CYCLIST, "bike": _CYCLIST,
+          "cyclist": _CYCLIST, "ped": _PERSON, "person": _PERSON, "walk": _PERSON, "dog": _DOG}
 
 
 def usual_kind(name: str) -> Kind:

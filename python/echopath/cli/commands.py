@@ -36,7 +36,7 @@ def run(options) -> None:
     from . import report
     from ..base.progress import progress_bars
     from .resumable import print_resumable
-    from .run import DETECTIONS_NAME, certify, chosen_partition, raw_line, simulate_file, write_outputs
+    from .run import DETECTIONS_NAME, certify, chosen_partition, raw_line, simulate_file, unresolved, write_outputs
     from .run_sequence import is_sequence, run_sequence
     from ..scene_file import load_scene
 
@@ -60,6 +60,7 @@ def run(options) -> None:
         written = write_outputs(frame, options.out, partitions=frame.parts)
     if options.raw is not None:
         print(raw_line(options.raw, frame.save_raw(options.raw)))
+    objects = scene_file.labels.objects if scene_file.labels else None
     advice = report.other_method(scene_file.detection_settings(), 'method = "os" of [detections]')
     for text in [scene_file.title or options.scene, *report.counts(frame.paths),
                  *report.overlaps(frame.scene, frame.paths.frame.trace_time),
@@ -68,7 +69,7 @@ def run(options) -> None:
                  *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
                  *report.labels(frame.labels), *report.detections(frame.detections, frame.labels, advice, file=DETECTIONS_NAME),
                  *report.truth(frame.kept_truth), *report.checks(frame.checks), *report.validity(certificate),
-                 *report.files(written), *report.unresolved(frame.unresolved, frame.paths)]:
+                 *report.files(written), *report.unresolved(unresolved(frame, objects), frame.paths)]:
         print(text)
 
 

@@ -3,16 +3,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import echopath as ep
-
-from .._core import noise_power_in_cell
 from ..arguments.settings import LabelSettings
 from ..detections import detect_frame
 from ..frame_file import left_out, load_frame, save_labels
 from ..labels.of_frame import annotate_frame
 from . import report
 from .label_outputs import write_labels
-from .run import DETECTIONS_NAME, chosen_partition
+from .run import DETECTIONS_NAME, chosen_partition, unresolved
 
 
 def label_file(path, folder, *, settings: LabelSettings, parts=(), cfar=None, progress=None) -> list[str]:
@@ -39,14 +36,7 @@ def label_file(path, folder, *, settings: LabelSettings, parts=(), cfar=None, pr
     return [str(path), *report.counts(frame.paths), report.omissions(missing, path), *report.labels(frame.labels),
             *detections, f"written to {folder}",
             f"  labels.h5, {', '.join(str(one.relative_to(folder)) for one in written)}",
-            *report.unresolved(_unresolved(frame, settings.objects, progress), frame.paths, missing)]
-
-
-def _unresolved(frame, objects, progress) -> list:
-    """Of the objects that are labelled, with the noise of the frame's radar."""
-    if objects is None:
-        return frame.unresolved
-    return ep.unresolved(frame.paths, objects, least_power=noise_power_in_cell(frame.radar), progress=progress)
+            *report.unresolved(unresolved(frame, settings.objects, progress), frame.paths, missing)]
 
 
 def objects_of_options(texts) -> dict | None:

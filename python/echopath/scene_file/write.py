@@ -10,6 +10,7 @@ from ..base.files import written_whole
 from ..readers import Model, load_model
 from ..readers.names import fit_name
 from ..scene.scene import Scene
+from .things import things_of
 from .vantage import vantage
 
 CELLS = 256  # range cells up to the greatest distance
@@ -24,7 +25,7 @@ yaw_deg = {yaw:g}
 pattern = {{kind = "cosine_power", exponent = 2.0}}
 
 [radar.waveform]
-start_frequency = 77e9
+start_frequency = {frequency:g}
 bandwidth = {bandwidth:.4g}  # Hz: cells of {cell:.3g} m, {reach:.4g} m in all
 num_samples = {samples}
 sampling_rate = 10e6
@@ -38,11 +39,15 @@ position = [0.0, 0.0, 0.0]
 name = {name}
 model = {model}
 {settings}{notes}
-[trace]
+{labels}[trace]
 num_rays = 200000
 max_bounces = 3
 """
+LABELS = """[labels.objects]  # whose echoes and ghosts are told apart
+{objects}
 
+"""
+START_FREQUENCY = 77e9  # Hz
 
 # By whether the radar stands within a town: whether planes are mirrors, and where it stands.
 _IN_TOWN = {True: ("true  # what is made of planes larger than their Fresnel zone, so that ghosts over them are found",
@@ -60,22 +65,32 @@ def write_scene_file(path: str | os.PathLike[str], out: str | os.PathLike[str], 
     """
     path, out = Path(path), Path(out)
     model = load_model(path, unit=unit, up=up)
-    scene = Scene()
-    scene.add(model, name="model")
+    name, scene = fit_name(path.stem, "model"), Scene()
+    scene.add(model, name=name)
     position, yaw, reach, is_town = vantage(scene)
     mirrors, stands = _IN_TOWN[is_town]
     text = TEXT.format(mirrors=mirrors, stands=stands, title=_quoted(path.stem), position=position, yaw=yaw,
-                       cell=reach / CELLS, reach=reach, samples=CELLS,
+                       cell=reach / CELLS, reach=reach, samples=CELLS, frequency=START_FREQUENCY,
                        bandwidth=CELLS * _core.speed_of_light / (2.0 * reach), receivers=_receivers(),
-                       name=_quoted(fit_name(path.stem, "model")), model=_quoted(_relative(path, out.parent)),
-                       settings=_settings(unit, up), notes="".join(f"# {_plain(note)}\n" for note in model.notes))
+                       name=_quoted(name), model=_quoted(_relative(path, out.parent)),
+                       settings=_settings(unit, up), notes="".join(f"# {_plain(note)}\n" for note in model.notes),
+                       labels=_labels(scene, position) if is_town else "")
     with written_whole(out) as temporary:
         temporary.write_text(text, encoding="utf-8")
     return model
 
 
+def _labels(scene: Scene, position: list[float]) -> str:
+    """The table of what a town holds, by the names of its nodes."""
+    waveform = _core.ChirpSequence(start_frequency=START_FREQUENCY, bandwidth=1e9, num_samples=CELLS, sampling_rate=10e6)
+    radar = _core.Radar(waveform, transmitters=[_core.Antenna()], receivers=[_core.Antenna()], position=position)
+    things = things_of(scene, radar)
+    lines = [f"{_quoted(thing.split('/')[-1])} = {_quoted(thing)}" for thing in things]
+    return LABELS.format(objects="\n".join(lines)) if things else ""
+
+
 def _receivers() -> str:
-    spacing = _core.speed_of_light / 77e9 / 2.0
+    spacing = _core.speed_of_light / START_FREQUENCY / 2.0
     return "".join(f"\n[[radar.receivers]]\nposition = [0.0, {index * spacing:.6f}, 0.0]\n" for index in range(4))
 
 

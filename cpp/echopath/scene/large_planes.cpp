@@ -121,9 +121,17 @@ class PlaneMeasure {
   const LargePlaneRule& rule_;
 };
 
-bool may_be_mirror(const Node& node, const LargePlaneRule& rule) {
+// Returns whether a node is carried by a motion: what moves is a vehicle or a door, whose echo and label it would lose.
+bool moves(const Scene& scene, const Node& node) {
+  for (const Node* one = &node;; one = &scene.nodes()[static_cast<size_t>(one->parent)]) {
+    if (one->motion) return true;
+    if (one->parent < 0) return false;
+  }
+}
+
+bool may_be_mirror(const Scene& scene, const Node& node, const LargePlaneRule& rule) {
   const Material& material = *node.material;
-  return !material.mirror && !material.is_sheet() && !node.smooth && !node.deformation &&
+  return !material.mirror && !material.is_sheet() && !node.smooth && !node.deformation && !moves(scene, node) &&
          coherent_share(material, rule.wavelength) >= rule.least_coherent;
 }
 
@@ -134,7 +142,7 @@ std::vector<uint32_t> meshes_of_large_planes(const Scene& scene, const LargePlan
   std::vector<uint32_t> found;
   for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
     const Node& node = scene.node_of(id);
-    if (!may_be_mirror(node, rule)) continue;
+    if (!may_be_mirror(scene, node, rule)) continue;
     std::vector<Vec3> vertices = node.mesh->vertices();
     for (Vec3& vertex : vertices) vertex = placed[static_cast<size_t>(scene.meshes()[id].node)] * vertex;
     if (PlaneMeasure(vertices, node.mesh->triangles(), rule).is_large()) found.push_back(id);

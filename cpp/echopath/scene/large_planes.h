@@ -22,7 +22,7 @@ struct LargePlaneRule {
 // the first Fresnel zone of a wave that meets it head on at the vertex farthest from the antennas and goes on without end,
 // 2 sqrt(wavelength distance): its edges then matter next to nowhere. The width is four times the area over the length of
 // the rim, the side of a square and twice that of a long strip; holes count to the rim, so a front full of windows is as
-// wide as what is between them. Flagged mirrors, smooth meshes, sheets and what deforms are left out. A plane that several
+// wide as what is between them. Flagged mirrors, smooth meshes, sheets, and what moves or deforms are left out. A plane that several
 // meshes share is measured in each mesh by itself.
 std::vector<uint32_t> meshes_of_large_planes(const Scene& scene, const LargePlaneRule& rule);
 

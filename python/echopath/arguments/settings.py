@@ -155,7 +155,7 @@ class ReplayKeywords(TypedDict):
 
 
 LEAST_MARGIN_DB = -300.0  # of labels over the noise: far below anything
-FRAME_KEYWORDS = ("replay", "evaluate", "retrace", "keyframes")  # those of them that a Frame keeps
+FRAME_KEYWORDS = ("replay", "evaluate", "retrace", "keyframes")  # of SignalSettings, those that a Frame keeps
 
 
 @settings_class

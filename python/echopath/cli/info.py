@@ -52,6 +52,8 @@ def describe_file(path, selections=(), *, unit=None, up=None) -> list[str]:
         return _describe_scene_file(load_scene(path))
     if (path / DATASET_FILE).exists():
         return _describe_dataset(dataset.open(path))
+    if selections and suffix in FRAME_SUFFIXES and path.is_file() and kind_of(path) == SEQUENCE:
+        raise ValueError(f"{path}: must be the file of one frame for --select, such as {path}/frames/000000 of these frames")
     if (path / SEQUENCE_FILE).exists() or (suffix in FRAME_SUFFIXES and path.is_file() and kind_of(path) == SEQUENCE):
         return _describe_sequence(ep.load_sequence(path))
     if suffix in FRAME_SUFFIXES and not selections and kind_of(path) == FRAME and not has_paths(path):

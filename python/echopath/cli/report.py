@@ -10,12 +10,13 @@ from ..labels.report import peak_words
 from ..paths.resolution import FAINT, RESOLVED_DB
 from ..paths.visibility import occluder_words
 from ..scene.closing_speeds import closing_speeds
-from ..signals.measures import in_dbm, power_dbm, velocity_extent, with_error
+from ..signals.measures import SMALLEST_POWER, in_dbm, power_dbm, velocity_extent, with_error
 
 LABEL_WIDTH = 34
 MAX_WIDTH = 118  # columns
 MAX_LISTED = 40  # nodes or meshes named one by one
 MAX_UNRESOLVED = 20  # echoes named one by one
+VAGUE_DB, UNKNOWN_DB = 1.0, 20.0  # widths of an interval from which on it is told, and from which on its upper end alone
 PEAK_OF_CELLS = "strongest of its cells"
 UNRESOLVED_MEAN = "mean over random phases where not resolved (95 %)"
 ON_EACH_OTHER = "surfaces on each other"
@@ -197,11 +198,22 @@ def truth(found) -> list[str]:
     if found is None:
         return []
     rows = [("truth", "range", "azimuth", "radial", "in sight", "cross section")]
-    for name, distance, azimuth, velocity, share, rcs in zip(found.name, found.range, np.degrees(found.azimuth),
-                                                             found.radial_velocity, found.visible_share, found.rcs_dbsm):
+    for name, distance, azimuth, velocity, share, *rcs in zip(
+            found.name, found.range, np.degrees(found.azimuth), found.radial_velocity, found.visible_share,
+            found.rcs, found.rcs_low, found.rcs_high):
         rows.append((f"  {name}", f"{distance:.2f} m", f"{azimuth:+.1f} deg", f"{velocity:+.2f} m/s", f"{share:.0%}",
-                     f"{rcs:.1f} dBsm" if np.isfinite(rcs) else "none"))
+                     _cross_section(*rcs)))
     return _table(rows, right=(1, 2, 3, 4, 5))
+
+
+def _cross_section(rcs: float, low: float, high: float) -> str:
+    """A cross section in words, with its 95 % interval (all in m^2) where that is wider than VAGUE_DB."""
+    value, lowest, highest = (10.0 * np.log10(max(one, SMALLEST_POWER)) for one in (rcs, low, high))
+    if not np.isfinite([rcs, low, high]).all() or high <= 0.0:
+        return "none"
+    if highest - lowest <= VAGUE_DB:
+        return f"{value:.1f} dBsm"
+    return f"below {highest:.1f} dBsm" if highest - lowest > UNKNOWN_DB else f"{lowest:.1f} to {highest:.1f} dBsm"
 
 
 def _objects(of_cells) -> list[str]:

@@ -43,7 +43,8 @@ class Dataset:
     """The frames of a dataset that are done, made by `ep.dataset.open`: `len(dataset)`, `dataset[i]`, `for one in dataset`.
 
     Each is read when it is asked for, and kept by nobody; a slice is a Dataset.
-    folder: Path; template: Template of it; numbers: of the frames, ascending; source: what reads or makes them, None: the files
+    folder: Path; template: Template of it; numbers: of the frames, in their order here
+    source: what reads or makes them, None: the files
     """
 
     def __init__(self, folder: Path, template: Template, numbers: list[int], source: Source | None = None):

@@ -64,7 +64,7 @@ def in_processes(path: Path, folder: Path, scenes: Sequence[int], run: str, coun
     sayings = context.SimpleQueue()  # warnings, and the ep.FileError of a file that cannot be written
 
     def start(index: int) -> Any:
-        args = (str(path), str(folder), turned(scenes, index, count), run, threads, sayings)
+        args = (str(path), str(folder), turned(scenes, index, count), run, threads, sayings, os.getpid())
         process = context.Process(target=_work, args=args, daemon=True)
         with _libraries_take(threads):
             process.start()
@@ -134,14 +134,15 @@ def _watched(folder: Path, scenes: Sequence[int], processes: list[Any], start: C
     listener.repeat()
 
 
-def _work(path: str, folder: str, scenes: list[int], run: str, threads: int, sayings: Any) -> None:
+def _work(path: str, folder: str, scenes: list[int], run: str, threads: int, sayings: Any,
+          parent: int) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that started this one
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     set_num_threads(threads)
     warnings.showwarning = lambda message, *place: sayings.put(message)
     try:
         for _ in in_this_process(Template(Path(path)), Path(folder), scenes, run):
-            if os.getppid() == 1:  # the command was killed
+            if os.getppid() != parent:  # the command was killed
                 return
     except _core.FileError as error:
         sayings.put(error)

@@ -3,19 +3,21 @@ from __future__ import annotations
 
 import numpy as np
 
+from .._core import FileError
 from ..arguments.checks import file
 from ..base.files import written_whole
 from ..base.libraries import needed_module
 
-# Name in the file, what it is of the detections; LAS has them as extra dimensions.
-_EXTRA = {"velocity": "velocity", "range": "range", "azimuth": "azimuth", "elevation": "elevation", "snr_db": "snr_db"}
+# Of the detections, as PCD has them; LAS has them, and the ratio to the noise, as extra dimensions.
+_PLACE_AND_SPEED = ("velocity", "range", "azimuth", "elevation")
+_EXTRA = (*_PLACE_AND_SPEED, "snr_db")
 _LAS_STEP = 1e-4  # m
 
 
 def write_pcd(detections, path) -> None:
     """Binary, float32: x, y, z (m, in the radar's frame), intensity (dB over the noise), velocity, range, azimuth, elevation."""
     columns = {**dict(zip("xyz", detections.points.T)), "intensity": detections.snr_db}
-    columns |= {name: getattr(detections, _EXTRA[name]) for name in ("velocity", "range", "azimuth", "elevation")}
+    columns |= {name: getattr(detections, name) for name in _PLACE_AND_SPEED}
     table = np.stack([np.asarray(column, "<f4") for column in columns.values()], axis=-1).astype("<f4")
     head = ["# .PCD v0.7 - Point Cloud Data file format", "VERSION 0.7", "FIELDS " + " ".join(columns),
             *(f"{word} " + " ".join([value] * len(columns)) for word, value in (("SIZE", "4"), ("TYPE", "F"), ("COUNT", "1"))),
@@ -37,8 +39,11 @@ def write_las(detections, path) -> int:
     cloud.x, cloud.y, cloud.z = points.T
     snr = np.nan_to_num(detections.snr_db[is_placed], posinf=655.35, neginf=0.0)
     cloud.intensity = np.clip(np.rint(100.0 * snr), 0, 65535).astype(np.uint16)
-    for name, field in _EXTRA.items():
-        cloud[name] = getattr(detections, field)[is_placed]
+    for name in _EXTRA:
+        cloud[name] = getattr(detections, name)[is_placed]
     with written_whole(file("path", path)) as temporary:
-        cloud.write(str(temporary))
+        try:
+            cloud.write(str(temporary))
+        except laspy.errors.LaspyException as error:  # nothing is there that packs .laz
+            raise FileError(f"{path}: cannot be written ({error}); laspy[lazrs] packs .laz") from None
     return int(np.sum(~is_placed))

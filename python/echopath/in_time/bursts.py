@@ -11,6 +11,7 @@ from .._core import Selection
 from ..arguments.checks import ArrayLike, array, refused, row_of_channel, shown
 from ..arguments.iterables import iterable
 from ..arguments.part_names import BESIDE
+from ..arguments.settings import FRAME_KEYWORDS
 from ..frame.frame import Frame
 from ..frame.maps import FrameMaps
 from ..signals.beside import cubes_beside
@@ -105,7 +106,7 @@ def bursts(frames, radar, *, part: Part = None, channel: Channel = None, start_t
     Raises TypeError for maps alone, ValueError where time runs back.
     start_times: [F] s of cubes, None: without gaps from 0 on
     """
-    before = None
+    before, number = None, -1
     for number, one in enumerate(frames):
         if isinstance(one, Frame):
             burst = _of_frame(one, radar, part, start_times)
@@ -120,6 +121,8 @@ def bursts(frames, radar, *, part: Part = None, channel: Channel = None, start_t
         before = burst
     if before is None:
         raise ValueError("frames: must have one frame or cube at least, got none")
+    if start_times is not None and len(start_times) > number + 1:
+        raise _other_count(start_times)
 
 
 def _of_frame(frame, radar, part, start_times) -> Burst:
@@ -143,8 +146,12 @@ def _start_of(number: int, before: Burst | None, start_times) -> float:
     if start_times is None:
         return 0.0 if before is None else before.end_time
     if number >= len(start_times):
-        raise ValueError(f"start_times: must have one for each cube, got {len(start_times)}")
+        raise _other_count(start_times)
     return float(start_times[number])
+
+
+def _other_count(start_times) -> ValueError:
+    return ValueError(f"start_times: must have one for each cube, got {len(start_times)}")
 
 
 def _radar_of_cubes(radar, part):
@@ -219,5 +226,5 @@ def _selection(frame, part) -> Selection:
 
 
 def _selected_cube(frame, selection: Selection):
-    settings = {"replay": frame.replay, "evaluate": frame.evaluate, "retrace": frame.retrace, "keyframes": frame.keyframes}
+    settings = {name: getattr(frame, name) for name in FRAME_KEYWORDS}
     return decompose(frame.paths, frame.radar, {"part": selection}, **settings)["part"]

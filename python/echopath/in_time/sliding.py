@@ -26,6 +26,8 @@ class Stft:
         self._radar = self._profiles = self._begin = self._end = self._before = None
 
     def add(self, burst) -> None:
+        """Takes the next burst, whose profiles follow those that are kept; `_next` is the chirp of the train that the first of
+        these is, `_ahead` how many of them the next window leaves out."""
         if self._radar is None:
             self._prepare(burst)
         late = 0.0 if self._end is None else abs(burst.start_time - self._end)
@@ -34,7 +36,7 @@ class Stft:
         profiles = range_profiles(burst.cube, burst.radar, self._window, self._inside)
         if self._profiles is None:
             self._begin, self._middle = burst.start_time, burst.middle(0, self._length)
-            self._profiles, self._next = profiles, 0
+            self._profiles, self._next, self._ahead = profiles, 0, 0
         else:
             self._profiles = np.concatenate([self._profiles, profiles], axis=2)
         self._transform()
@@ -76,15 +78,16 @@ class Stft:
 
     def _transform(self) -> None:
         """The windows that are whole; what no later window needs is let go."""
-        starts = np.arange(0, self._profiles.shape[2] - self._length + 1, self._hop)
+        starts = np.arange(self._ahead, self._profiles.shape[2] - self._length + 1, self._hop)
         if not len(starts):
             return
         power = velocity_powers(self._profiles, starts, self._length, self._window, self._zero_pad)
         self._times.append(self._middle + (self._next + starts) * self._period)
         self._powers.append(power / self._spread)
         self._train.append(np.full(len(starts), len(self._trains), np.int32))
-        done = min(int(starts[-1]) + self._hop, self._profiles.shape[2])
-        self._profiles, self._next = self._profiles[:, :, done:].copy(), self._next + done
+        begin = int(starts[-1]) + self._hop  # of the next window, perhaps chirps beyond what is there
+        done = min(begin, self._profiles.shape[2])
+        self._profiles, self._next, self._ahead = self._profiles[:, :, done:].copy(), self._next + done, begin - done
 
     def _end_train(self) -> None:
         self._profiles = None

@@ -83,7 +83,7 @@ class Watch:
                 self._try_to_show_change()
                 while not self._stopping and not self._changes.wait_for_other(self._shown, LONGEST_WAIT):
                     pass
-        except Exception as error:
+        except BaseException as error:  # sys.exit() in `show`, too
             self._error = error
         with self._shown_one:
             self._shown_one.notify_all()

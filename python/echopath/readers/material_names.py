@@ -24,6 +24,7 @@ _NAMES: dict[str, str] = {
     "*fib*glass*": "plastic", "*carbon*fib*": "plastic", "*road*line*": "asphalt", "*lane*mark*": "asphalt",
     "*road*mark*": "asphalt", "*road*sign*": "metal", "*street*light*": "metal", "*traffic*": "metal", "*guard*rail*": "metal",
     "*head*light*": "plastic", "*tail*light*": "plastic", "*car*body*": "metal", "*body*work*": "metal", "*clear*coat*": "metal",
+    "*wood*fence*": "wood", "*fence*wood*": "wood", "*wood*pole*": "wood", "*snow*": "snow",
     "*glass*": "glass", "*window*": "glass", "*windshield*": "glass", "*windscreen*": "glass",
     "tree*": "wood", "*vegetation*": "wood", "*foliage*": "wood", "leaf*": "wood", "leaves": "wood", "bark*": "wood",
     "bush*": "wood", "hedge*": "wood", "trunk*": "wood",
@@ -40,7 +41,7 @@ _NAMES: dict[str, str] = {
     "gravel*": "dry_soil", "earth*": "soil", "*ground*": "soil", "lawn*": "soil", "*water*": "water",
     # metals and vehicles
     "*metal*": "metal", "*steel*": "metal", "iron*": "metal", "*alumin*": "metal", "*chrom*": "metal", "copper*": "metal",
-    "brass*": "metal", "bronze*": "metal", "zinc*": "metal", "gold*": "metal", "silver*": "metal", "tin": "metal",
+    "brass*": "metal", "bronze*": "metal", "zinc*": "metal", "gold*": "metal", "silver*": "metal", "tin": "metal", "alu": "metal",
     "titanium*": "metal", "*conductor*": "metal", "pec": "metal", "*car*paint*": "metal", "*body*paint*": "metal",
     "*vehicle*": "metal", "*chassis*": "metal", "rim": "metal", "rims": "metal", "fence*": "metal", "pole*": "metal",
     "rail*": "metal", "*license*plate*": "metal", "*rubber*": "rubber", "tire*": "rubber", "tyre*": "rubber", "wheel*": "rubber",
@@ -51,8 +52,9 @@ _NAMES: dict[str, str] = {
     "*fabric*": "clothing", "*textile*": "clothing", "shirt*": "clothing", "tshirt*": "clothing", "pants": "clothing",
     "trousers": "clothing", "jeans": "clothing", "denim*": "clothing", "jacket*": "clothing", "coat": "clothing",
     "dress": "clothing", "suit": "clothing", "cotton*": "clothing", "wool*": "clothing", "leather*": "clothing",
-    "shoe*": "clothing", "hair*": "clothing", "hat": "clothing", "carpet*": "clothing", "wood*": "wood", "*timber*": "wood",
-    "*wooden*": "wood", "oak": "wood", "pine": "wood", "parquet*": "wood", "floor*": "concrete", "ceiling*": "plasterboard",
+    "shoe*": "clothing", "hair*": "clothing", "hat": "clothing", "carpet*": "clothing", "*wood": "wood", "wood*": "wood",
+    "*timber*": "wood", "*wooden*": "wood", "oak": "wood", "pine": "wood", "parquet*": "wood", "floor*": "concrete",
+    "ceiling*": "plasterboard",
     "*light*": "plastic",  # of anything else that is light: wood, fabric
 }
 

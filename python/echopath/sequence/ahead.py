@@ -20,7 +20,7 @@ def one_ahead(works: Iterable[Work[Result]], progress=None) -> Iterator[Result]:
 
     A work is taken from `works` when the one before has ended, so there is one result at most that nobody has asked for.
     What a work raises is raised in its turn; its warnings name the line of the user, who asked for the result before it. Who
-    leaves early stops the thread, which waits for its end. With one thread for all loops (ep.set_num_threads) nothing is done
+    leaves early stops the thread and waits for its end. With one thread for all loops (ep.set_num_threads) nothing is done
     ahead.
     progress: callable (stage, fraction) or None; it is called in the thread of the caller, while that waits
     """

@@ -191,7 +191,8 @@ class Sequence(Row[Frame]):
         if Path(path).name == NAME:
             raise refused(ValueError, "path", f"a folder or a file of another name than {NAME}, which a folder has", str(path))
         contents = Contents(self._run.scene, self._run.radar, self._settings() | {"keep": keep})
-        return saved_frames(self.times, store_of(path), keep, lambda places: self._items(places, progress), contents, shard)
+        bars = automatic_bars() if progress is True else progress
+        return saved_frames(self.times, store_of(path), keep, lambda places: self._items(places, bars), contents, shard)
 
     def _settings(self) -> dict[str, Any]:
         """{keyword: value} of what makes the frames, and which of them are taken."""

@@ -34,7 +34,8 @@ class StoredSequence(Row[Frame | FrameMaps]):
     None is kept. `for frame in stored`, `stored[k]`, `len(stored)`; a slice is a StoredSequence. A frame is a Frame where the
     files keep all, else FrameMaps. One that has not been simulated yet raises ep.FileError.
     path: Path of the folder or the file; keep: "all", "maps" or "labels", what the files keep; scene, radar: what was simulated
-    settings: {keyword: value} of `Sequence`, with those that it was not given
+    settings: {keyword: value} of `Sequence`, with those that it was not given; beside them `first_number` and `number_step`,
+        which frames of the sequence these are, `keep` of `save`, and `weather`, that of the scene
     times: starts of the frames, [K] in s; interval: s, from start to start
     """
 

@@ -34,7 +34,7 @@ def resident_memory() -> int | None:
 
 
 class MemoryOfFrames:
-    """Keeps the memory of a process from growing in a loop over frames, which has one of its own.
+    """Keeps the memory of a process from growing in a loop over frames; each loop has a MemoryOfFrames of its own.
 
     Pages that the system has taken back must be cleared before they are used again, which costs a frame some 3 to 7 % of its
     time. So what the work on the first frames leaves stays with the process for the next ones, and unused memory goes back

@@ -6,6 +6,7 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import Progress, checked, count
 from ..arguments.number_rules import start_time_rule
+from ..arguments.shown import shown
 from ..paths.absent import NO_MESH
 from ..paths.around_corners import Hidden, hidden_objects, level_of, ways_to
 from ..transmit import signal_shape
@@ -23,11 +24,15 @@ def synthesize_around_corners(scene: _core.Scene, radar: _core.Radar, *, start_t
     their edges are followed over the frame; on the average over `seed` the power is that which `around_corners` tells of the
     middle of the frame, `resolved` there or not. A point that comes into sight, or whose edge changes within the frame, is left
     out.
-    scene, radar: of the frame, whose transmitters take turns; start_time: s, within 1e9 s of zero; seed: of the phases
+    scene, radar: of the frame, whose transmitters take turns, with chirps that are all alike
+    start_time: s, within 1e9 s of zero; seed: of the phases
     num_rays, progress: as there
     Returns an array in the shape of `synthesize`, in sqrt(W), without noise. Raises ValueError for transmitters that send at
-    once.
+    once and for steps of frequency or bandwidth.
     """
+    for steps in ("frequency_steps", "bandwidth_steps"):
+        if any(getattr(radar.waveform, steps)):
+            raise ValueError(f"radar: must have chirps that are all alike, got {steps} {shown(getattr(radar.waveform, steps))}")
     if len(radar.transmitters) > 1 and radar.multiplexing != "tdm":
         raise ValueError(f'radar: must have multiplexing "tdm", got {radar.multiplexing!r}')
     cube = np.zeros(signal_shape(radar), complex)
@@ -48,15 +53,14 @@ def _add(cube, scene, radar, hidden: Hidden, amplitudes, start_time) -> None:
     kept = np.all([is_kept for ways in ends.values() for _, is_kept in ways], axis=0) & (amplitudes != 0.0)
     if not kept.any():
         return
-    num_slots, waveform = len(radar.transmitters), radar.waveform
-    half = 0.5 * waveform.num_samples / waveform.sampling_rate
-    chirps = np.arange(waveform.num_chirps) * num_slots * waveform.chirp_interval + half
+    # Rows as far apart as they are on the average, by which delays change within a chirp.
+    waveform = radar.waveform.replace(chirp_interval=radar.waveform.mean_interval, extra_idle=())
     for i, (out, _) in enumerate(ends["out"]):
-        share = (chirps + i * waveform.chirp_interval) / radar.frame_duration
+        share = np.array([radar.chirp_time(i, chirp) for chirp in range(waveform.num_chirps)]) / radar.frame_duration
         for j, (back, _) in enumerate(ends["back"]):
             delays = _parabolas(share) @ (out + back)[:, kept] / _core.speed_of_light
             cube[i, j] += _core.synthesize_echoes(waveform, delays, np.broadcast_to(amplitudes[kept], delays.shape),
-                                                  num_slots=num_slots)
+                                                  num_slots=radar.num_slots)
 
 
 def _lengths(scene, radar, antenna, points, times) -> tuple[np.ndarray, np.ndarray]:

@@ -64,7 +64,7 @@ class _Body:
         velocity, gone = rate[:3, 3] + rate[:3, :3] @ centre, np.zeros(3)
         if not self._is_rigid():
             velocity = velocity + rotation @ rate_of(self._own_centroid, time, step)
-            gone = rotation @ (self._own_centroid(time) - self._own_centroid(0.0))
+            gone = rotation @ (self._own_centroid(time) - self._own_centroid(self._reference_time()))
         turning = rate[:3, :3] @ rotation.T
         spin = 0.5 * np.array([turning[2, 1] - turning[1, 2], turning[0, 2] - turning[2, 0], turning[1, 0] - turning[0, 1]])
         return origin + rotation @ centre, high - low, rotation, velocity, spin, origin + gone
@@ -91,6 +91,18 @@ class _Body:
             total, moment = total + area.sum(), moment + area @ corners.mean(axis=1)
         frame = self._frame(time)
         return (moment / total - frame[:3, 3]) @ frame[:3, :3]
+
+    def _reference_time(self) -> float:
+        """Time 0, or the nearest at which all that moves and deforms the meshes is defined, s."""
+        first, last = -np.inf, np.inf
+        for mesh in self._meshes:
+            index = mesh.node
+            while index >= 0:
+                for change in (self._nodes[index].motion, self._nodes[index].deformation):
+                    if change is not None:
+                        first, last = max(first, change.span[0]), min(last, change.span[1])
+                index = self._nodes[index].parent
+        return float(np.clip(0.0, first, last))
 
     def _is_rigid(self) -> bool:
         """Whether nothing between its node and its meshes moves or deforms by itself."""

@@ -76,6 +76,8 @@ def test_other_keys_and_more_scenes_change_no_draw(path, tmp_path):
     ("{uniform = [0.1, 0.3]}", "{uniform = [0.3, 0.1]}",
      "scene 0: objects.plate_1.parameters.height.uniform: must be [lowest, highest], got [0.3, 0.1]"),
     ("weights = [1, 3]", "weights = [1]", "objects.plate_1.material.weights: must be 2 numbers of at least 0"),
+    ('name = "plate"', 'name = "choice_plate"\nyaw = {choice = [0.0, 1.0], weights = [1]}',
+     "objects.choice_plate_1.yaw.weights: must be 2 numbers of at least 0"),
     ("{integer = [1, 3]}", "{integer = [1.5, 3]}", "objects.plate.count.integer: must be [lowest, highest], whole numbers"),
     ("{integer = [1, 3]}", "-1", "objects.plate.count: must be a whole number of at least 0, got -1"),
     ("chance = 0.5", "chance = 2.0", "objects.wall.chance: must be a number from 0 to 1, got 2.0"),

@@ -84,6 +84,14 @@ def test_pcd_files_hold_the_points_as_their_head_says(detections, tmp_path):
     assert set(lines["SIZE"].split()) == {"4"} and set(lines["TYPE"].split()) == {"F"}
 
 
+def test_files_that_nothing_packs_are_refused(detections, tmp_path, monkeypatch):
+    laspy = pytest.importorskip("laspy")
+    monkeypatch.setattr(laspy.LazBackend, "detect_available", classmethod(lambda cls: ()))
+    with pytest.raises(ep.FileError, match=r"points.laz: cannot be written .*; laspy\[lazrs\] packs .laz"):
+        detections.to_las(tmp_path / "points.laz")
+    assert not list(tmp_path.iterdir())
+
+
 def test_las_files_are_read_by_their_library(detections, tmp_path):
     laspy = pytest.importorskip("laspy")
     assert detections.to_las(tmp_path / "points.las") == 0

@@ -145,6 +145,20 @@ def test_the_signal_of_hidden_objects_has_their_power_range_and_speed(radar):
     assert place[0] == pytest.approx(2.0 * 10.0 / np.hypot(10.0, 1.6), abs=values.velocity[1] - values.velocity[0])
 
 
+def test_a_timing_that_is_told_in_two_ways_gives_one_signal(radar):
+    chirps = radar.waveform.replace(num_samples=256, num_chirps=8, chirp_interval=1e-4)
+    halves = chirps.replace(chirp_interval=5e-5, extra_idle=(5e-5,))
+    one, other = (ep.synthesize_around_corners(hidden_block(), radar.replace(waveform=waveform)) for waveform in (chirps, halves))
+    assert one.any() and np.abs(other - one).max() <= 1e-9 * np.abs(one).max()
+
+
+@pytest.mark.parametrize("steps", ["frequency_steps", "bandwidth_steps"])
+def test_steps_are_refused_in_signals_around_corners(radar, steps):
+    stepped = radar.replace(waveform=radar.waveform.replace(**{steps: (0.0, 1e6)}))
+    with pytest.raises(ValueError, match=f"radar: must have chirps that are all alike, got {steps}"):
+        ep.synthesize_around_corners(hidden_block(), stepped)
+
+
 def test_what_is_seen_adds_no_signal_and_codes_are_refused(radar):
     scene = ep.Scene()
     scene.add(ep.actors.pedestrian(height=1.78), name="person", position=(24.0, 3.0, 0.0))

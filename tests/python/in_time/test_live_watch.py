@@ -35,6 +35,17 @@ def test_a_watch_shows_the_latest_change_last(live):
     assert difference(shown[-1], fresh_view(live)) < ROUNDING
 
 
+def test_a_watch_that_its_view_leaves_is_told(live):
+    def leave(view):
+        raise SystemExit("closed")
+
+    watch = live.watch(leave)
+    with pytest.raises(SystemExit, match="closed"):
+        watch.wait(LONG)
+    with pytest.raises(SystemExit, match="closed"):
+        watch.stop()
+
+
 def test_a_watch_shows_what_is_edited_directly(live):
     shown = Shown()
     with live.watch(shown) as watch:

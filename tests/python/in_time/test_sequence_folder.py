@@ -75,6 +75,10 @@ def test_files_that_are_not_whole_are_made_again(tmp_path, unbroken):
     assert contents_of(tmp_path) == contents_of(unbroken["all"])
 
 
+def test_frames_are_saved_one_by_one_behind_bars(tmp_path, capsys):
+    assert len(list(make_sequence(frames=2).save_frames(tmp_path, progress=True))) == 2
+
+
 def test_a_folder_grows_with_its_sequence(tmp_path, unbroken):
     make_sequence(frames=2).save(tmp_path)
     told = list(make_sequence().save_frames(tmp_path))

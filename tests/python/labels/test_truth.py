@@ -131,6 +131,17 @@ def test_the_origin_goes_with_a_body_that_drives_by_itself(yaw):
             assert one.origin[0] == pytest.approx(start + speed * one.time[0] * ahead, abs=1e-3)  # m: spokes of wheels
 
 
+def test_what_moves_from_a_later_time_on_has_a_truth():
+    scene = box_scene(position=(8, 0, 0))
+    scene.add(ep.actors.plate(0.5, 0.5), name="door", parent="car", material="metal", position=(0.0, 1.0, 0.0),
+              motion=ep.KeyframeMotion(times=[1.0, 3.0], translations=[(0, 0, 0), (2, 0, 0)]))
+    found = ep.truth(trace(scene, start_time=2.0))
+    assert found.name.tolist() == ["car"] and np.all(np.isfinite(found.origin))
+    half_way = 1.0 + 0.5 * build_radar(num_chirps=16).frame_duration  # s since the door began to move, at 1 m/s
+    moved = 0.25 / (0.25 + 2 * (4 * 2 + 4 * 1.5 + 2 * 1.5)) * half_way  # of the centroid, by the door's share of the area
+    assert found.origin[0] == pytest.approx((8.0 + moved, 0.0, 0.0), abs=1e-9)
+
+
 def test_a_walking_person_goes_at_their_speed_in_the_mean():
     scene = ep.Scene()
     scene.add(ep.actors.pedestrian(speed=1.4, duration=3.0), name="walker", position=(8, 0, 0), yaw=np.pi)

@@ -29,7 +29,8 @@ ROUNDING = 1e-12
     ("fiberglass_panel", "plastic"), ("tire", "rubber"), ("Broadleaf_Leaves", "wood"), ("T-Shirt_cloth", "clothing"),
     ("skin_face", "skin"), ("car_body", "metal"), ("ClearCoat", "metal"), ("LightWood", "wood"), ("light_fabric", "clothing"),
     ("Head_Light_L", "plastic"), ("light.003", "plastic"), ("asphalt", "asphalt"), ("WoodenFloor", "wood"),
-    ("Aluminium", "metal"),
+    ("Aluminium", "metal"), ("Wood_Fence", "wood"), ("wooden_fence_01", "wood"), ("Fence_Wood", "wood"), ("Fence", "metal"),
+    ("Hardwood", "wood"), ("alu", "metal"), ("snow_ground", "snow"),
 ])
 def test_usual_names_are_known(name, ours):
     assert material_of(name, {}) == (ours, None)

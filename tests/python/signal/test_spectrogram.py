@@ -81,6 +81,16 @@ def test_no_window_spans_a_gap():
         assert len(apart.trains) == 4 and len(apart.times) == 12
 
 
+@pytest.mark.parametrize("window_length, hop", [(4, 6), (4, 10), (16, 5), (8, 19)])
+def test_windows_are_as_far_apart_over_cubes_as_within_one(window_length, hop):
+    radar = build_radar(num_chirps=8)
+    cubes = [random_cube(radar, seed) for seed in range(8)]
+    long = radar.replace(waveform=radar.waveform.replace(num_chirps=64))
+    settings = {"window_length": window_length, "hop": hop, "span_frames": True}
+    found, joined = ep.spectrogram(cubes, radar, **settings), ep.spectrogram(np.concatenate(cubes, axis=2), long, **settings)
+    assert found.times == pytest.approx(joined.times, rel=1e-12) and found.power == pytest.approx(joined.power, rel=1e-12)
+
+
 LEAKED = 0.01  # share of the power beyond the main lobe, of a plate whose points differ by 1 % in radial velocity
 
 
@@ -144,6 +154,8 @@ def test_what_cannot_follow_is_refused():
         ep.spectrogram(iter([]), radar)
     with pytest.raises(ValueError, match="start_times: must have one for each cube, got 1"):
         ep.spectrogram(cubes, radar, start_times=[0.0])
+    with pytest.raises(ValueError, match="start_times: must have one for each cube, got 3"):
+        ep.spectrogram(cubes, radar, start_times=[0.0, 1.0, 2.0])
     with pytest.raises(IndexError, match="channel: rx: must be below 1"):
         ep.spectrogram(cubes, radar, channel=(0, 1))
     with pytest.raises(ValueError, match=r"frames: cubes must have the shape \(1, 1, 32, 64\)"):

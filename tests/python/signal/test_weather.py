@@ -223,6 +223,8 @@ def test_effects_say_what_the_weather_takes_and_carries():
     asked = ep.effects(ball_scene(WET), radar)
     assert effect(asked, ATTENUATION).modelled and "rain 9" in effect(asked, ATTENUATION).reason
     assert effect(asked, RAIN_ECHOES).modelled and "dBm" in effect(asked, RAIN_ECHOES).reason
+    paths = ep.trace(ball_scene(WET), radar, num_rays=300)  # a record knows no weather but what it took from its fields
+    assert "a record has none" in effect(paths.effects, RAIN_ECHOES).reason
     off = ep.effects(ball_scene(WET), radar, effects={RAIN_ECHOES: False, ATTENUATION: False})
     for name in (ATTENUATION, RAIN_ECHOES):
         assert not effect(off, name).modelled and "effects has" in effect(off, name).reason

@@ -62,6 +62,7 @@ def test_rough_smooth_thin_and_deforming_surfaces_stay():
     shape = plate(side)
     bend = ep.VertexSequence(times=[0.0, 1.0], vertices=[shape.vertices, shape.vertices])
     assert marked(shape, motion=bend) == ()
+    assert marked(shape, speed=3.0) == ()
 
 
 def test_a_mesh_below_another_one_keeps_its_material():

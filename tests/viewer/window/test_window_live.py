@@ -9,7 +9,8 @@ import pytest
 
 import echopath as ep
 from echopath_viewer.model import CellBox, from_frame
-from echopath_viewer.model.frames.live_session import input_of_view
+from echopath_viewer.model.frames.live_session import input_of_view, live_of
+from echopath_viewer.model.session import Session
 from echopath_viewer.window.qt import Qt, QtCore, QtWidgets
 from support.window import LEFT, open_on_screen, project
 
@@ -40,6 +41,14 @@ def settled(qtbot, window) -> None:
 def middle_of_plate(window):
     """[3] m, where it is drawn."""
     return np.mean(window.view3d.builder.meshes.bounds_of([0])[0], axis=0)
+
+
+def test_a_scene_that_becomes_live_is_traced_as_before(moving_sequence):
+    traced = {"edges": True, "footprint": "first_order", "polarization": "jones", "scatterers": "surface", "max_bounces": 2}
+    frame = ep.simulate(moving_sequence.scene, moving_sequence.radar, num_rays=500, guard=False, **traced)
+    live = live_of(Session(from_frame(frame)), num_rays=500)
+    found = live.paths().frame
+    assert {name: getattr(found, name) for name in traced} == traced
 
 
 def test_what_is_moved_by_numbers_is_that_of_a_fresh_scene(qtbot, live_window):

@@ -77,7 +77,8 @@ def _log_uniform(table: dict[str, Any], place: str, random: np.random.Generator)
 
 def _normal(table: dict[str, Any], place: str, random: np.random.Generator) -> float:
     mean, deviation = _pair(table["normal"], place, "[mean, standard deviation]", lambda _, deviation: deviation >= 0.0)
-    low, high = _pair(table.get("within", [-1e300, 1e300]), place.replace("normal", "within"), "[lowest, highest]", _ascending)
+    within = place.removesuffix("normal") + "within"
+    low, high = _pair(table.get("within", [-1e300, 1e300]), within, "[lowest, highest]", _ascending)
     for _ in range(_MOST_TRIES):
         value = float(mean + deviation * random.standard_normal())
         if low <= value <= high:
@@ -100,7 +101,7 @@ def _choice(table: dict[str, Any], place: str, random: np.random.Generator) -> A
         weights = [1.0] * len(values)
     if not isinstance(weights, list) or len(weights) != len(values) or not all(map(_is_weight, weights)) or not any(weights):
         rule = f"{len(values)} numbers of at least 0, not all of them 0"
-        raise ValueError(f"{place.replace('choice', 'weights')}: must be {rule}, got {shown(weights)}")
+        raise ValueError(f"{place.removesuffix('choice')}weights: must be {rule}, got {shown(weights)}")
     return values[int(np.searchsorted(np.cumsum(weights) / np.sum(weights), random.random(), side="right"))]
 
 

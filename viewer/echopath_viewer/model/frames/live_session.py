@@ -10,13 +10,15 @@ from ..maps.signals import Signals
 from ..view_state import apply_state
 
 DEFAULT_RAYS, TITLE = 50_000, "live"
+# of the record that a live scene goes on from; rays are shot anew, in one batch
+AS_TRACED = ("max_bounces", "start_time", "seed", "faint_power", "polarization", "footprint", "sampler", "scatterers", "edges")
 
 
 def live_of(session, num_rays: int = DEFAULT_RAYS):
     """ep.Live of the scene, the radar and the start of the frame of a session; maps have its window and zero_pad."""
     frame = session.paths.frame
-    return ep.Live(session.scene, session.radar, num_rays=num_rays, max_bounces=frame.max_bounces, start_time=frame.start_time,
-                   seed=frame.seed, faint_power=frame.faint_power, **session.signals.spectrum_settings)
+    as_traced = {name: getattr(frame, name) for name in AS_TRACED}
+    return ep.Live(session.scene, session.radar, num_rays=num_rays, **as_traced, **session.signals.spectrum_settings)
 
 
 def session_of_view(live, view, state, spectrum_settings: dict):

@@ -11,20 +11,36 @@ THICKEST = 4.5  # m, of the second longest side: what stands yawed takes more th
 MOST = 40  # named one by one: a whole city would make a file of names
 
 
-def things_of(scene: Scene, radar: _core.Radar) -> list[str]:
-    """Names of the nodes of a scene that are told apart as objects, at time 0: those below the first that has several, without
-    what `mark_mirrors` flags and what is larger than a vehicle. Nothing where that is one alone, or more than MOST.
+Things = dict[str, list[int]]  # {name of a node: IDs of the meshes below it}
 
-    scene: one object, with all else below it; radar: where it stands, with its wavelength
+
+def things_of(scene: Scene) -> Things:
+    """The nodes of a scene that are no larger than a vehicle at time 0: of those below the first node that has several.
+
+    scene: one object, with all else below it
     """
-    mirrors = set(large_planes(scene, radar, 0.0))
-    of_thing: dict[str, list[int]] = {}
+    of_thing: Things = {}
     depth = _depth_of_several([mesh.name.split("/") for mesh in scene.meshes])
     for mesh in scene.meshes:
         of_thing.setdefault("/".join(mesh.name.split("/")[:depth]), []).append(mesh.id)
-    found = [name for name, meshes in of_thing.items()
-             if mirrors.isdisjoint(meshes) and not set("*?[") & set(name) and _is_thing(scene, meshes)]
+    return {name: meshes for name, meshes in of_thing.items() if _is_thing(box_of_meshes(scene, meshes))}
+
+
+def told_apart(scene: Scene, things: Things, radar: _core.Radar) -> list[str]:
+    """Names of the things that are objects of labels: what `mark_mirrors` flags is none. Nothing where that is one alone, or
+    more than MOST.
+
+    radar: where it stands, with its wavelength
+    """
+    mirrors = set(large_planes(scene, radar, 0.0))
+    found = [name for name, meshes in things.items() if mirrors.isdisjoint(meshes) and not set("*?[") & set(name)]
     return found if 2 <= len(found) <= MOST else []
+
+
+def box_of_meshes(scene: Scene, meshes: list[int]) -> np.ndarray:
+    """(lowest, highest) corner [2, 3] in m of the box about some meshes at time 0."""
+    vertices = np.concatenate([scene.world_vertices(mesh, 0.0) for mesh in meshes])
+    return np.stack([vertices.min(axis=0), vertices.max(axis=0)])
 
 
 def _depth_of_several(names: list[list[str]]) -> int:
@@ -33,7 +49,7 @@ def _depth_of_several(names: list[list[str]]) -> int:
     return next((depth for depth in range(1, deepest) if len({tuple(name[:depth]) for name in names}) > 1), deepest)
 
 
-def _is_thing(scene: Scene, meshes: list[int]) -> bool:
-    """Whether the box about some meshes is as long as a vehicle at most, and as high or wide as one, or slender, as a pole."""
-    sides = np.sort(np.ptp(np.concatenate([scene.world_vertices(mesh, 0.0) for mesh in meshes]), axis=0))
+def _is_thing(box) -> bool:
+    """Whether a box is as long as a vehicle at most, and as high or wide as one, or slender, as a pole."""
+    sides = np.sort(box[1] - box[0])
     return bool(sides[2] <= VEHICLE_LENGTH and sides[1] <= THICKEST)

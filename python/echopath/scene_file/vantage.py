@@ -1,4 +1,4 @@
-"""Where a radar stands well in a scene that has none: before an object, or in the open middle of a town."""
+"""Where a radar stands well in a scene that has none: before an object, or within a town, in sight of what stands there."""
 from __future__ import annotations
 
 from typing import NamedTuple
@@ -7,6 +7,8 @@ import numpy as np
 
 from ..readers.sizes import box_of
 from ..scene.scene import Scene
+from .sight import SPACE, Sight, best_sight
+from .things import Things, box_of_meshes
 
 TOWN = 30.0          # m, extent from which on the radar stands within the scene
 HEIGHT = 1.5         # m above the ground
@@ -26,11 +28,13 @@ class Vantage(NamedTuple):
     is_within: bool
 
 
-def vantage(scene: Scene) -> Vantage:
+def vantage(scene: Scene, things: Things | None = None) -> Vantage:
     """Where a radar stands well in a scene.
 
-    Objects of less than 30 m are seen from behind, along +x. In larger scenes it is the place nearest to the middle where
-    nothing higher than a kerb is near, and the direction of the longest open way.
+    Objects of less than 30 m are seen from behind, along +x. In larger scenes it is the place with most things in sight; where
+    there are none, that nearest to the middle where nothing higher than a kerb is near, and the direction of the longest open
+    way.
+    things: of `things_of`, None: there are none
     """
     low, high = box_of(scene)
     middle, size = 0.5 * (low + high), float((high - low).max())
@@ -41,10 +45,23 @@ def vantage(scene: Scene) -> Vantage:
     blocked, step, ground = _obstacles(scene, low, high)
     if blocked.all():
         return Vantage(_rounded([low[0] - 10.0, middle[1], low[2] + HEIGHT]), 0.0, min(size + 20.0, FARTHEST), False)
-    row, column = _open_place(blocked, step)
-    yaw, reach = _open_way(blocked, row, column)
+    if sight := _sight_of(scene, things or {}, blocked, step, low):
+        row, column, yaw, reach = sight.row, sight.column, float(np.degrees(sight.yaw)), sight.reach
+    else:
+        row, column = _open_place(blocked, step)
+        yaw, cells = _open_way(blocked, row, column)
+        reach = cells * step
     place = [low[0] + step * (row + 0.5), low[1] + step * (column + 0.5), ground[row, column] + HEIGHT]
-    return Vantage(_rounded(place), yaw, float(np.clip(1.5 * reach * step, 50.0, FARTHEST)), True)
+    return Vantage(_rounded(place), yaw, float(np.clip(1.5 * reach, 50.0, FARTHEST)), True)
+
+
+def _sight_of(scene: Scene, things: Things, blocked, step: float, low) -> Sight | None:
+    """The place from which most things are in sight, if one is."""
+    if not things:
+        return None
+    free = np.argwhere(_clearance(blocked, int(np.ceil(SPACE / step))) >= int(np.ceil(SPACE / step)))
+    boxes = np.array([box_of_meshes(scene, meshes)[:, :2] for meshes in things.values()])
+    return best_sight(blocked, free, step, (boxes - low[:2]) / step)
 
 
 def _rounded(place) -> list[float]:
@@ -69,16 +86,21 @@ def _obstacles(scene: Scene, low, high):
 
 def _open_place(blocked, step: float) -> tuple[int, int]:
     """The cell that is CLEARANCE away from obstacles, or as far as can be, and then nearest to the middle."""
-    clear = np.zeros(blocked.shape, int)
-    free = ~blocked
-    for _ in range(max(1, int(CLEARANCE / step))):
-        clear += free
-        grown = np.pad(free, 1, constant_values=False)
-        free = free & grown[:-2, 1:-1] & grown[2:, 1:-1] & grown[1:-1, :-2] & grown[1:-1, 2:]
+    clear = _clearance(blocked, max(1, int(CLEARANCE / step)))
     rows, columns = np.nonzero(clear == clear.max())
     middle = 0.5 * np.array(blocked.shape)
     best = int(((rows - middle[0]) ** 2 + (columns - middle[1]) ** 2).argmin())
     return int(rows[best]), int(columns[best])
+
+
+def _clearance(blocked, most: int):
+    """How many cells each is away from obstacles and from the border, [n, m] up to `most`."""
+    clear, free = np.zeros(blocked.shape, int), ~blocked
+    for _ in range(most):
+        clear += free
+        grown = np.pad(free, 1, constant_values=False)
+        free = free & grown[:-2, 1:-1] & grown[2:, 1:-1] & grown[1:-1, :-2] & grown[1:-1, 2:]
+    return clear
 
 
 def _open_way(blocked, row: int, column: int) -> tuple[float, int]:

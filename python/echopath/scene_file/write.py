@@ -10,7 +10,7 @@ from ..base.files import written_whole
 from ..readers import Model, load_model
 from ..readers.names import fit_name
 from ..scene.scene import Scene
-from .things import things_of
+from .things import Things, things_of, told_apart
 from .vantage import vantage
 
 CELLS = 256  # range cells up to the greatest distance
@@ -51,7 +51,7 @@ START_FREQUENCY = 77e9  # Hz
 
 # By whether the radar stands within a town: whether planes are mirrors, and where it stands.
 _IN_TOWN = {True: ("true  # what is made of planes larger than their Fresnel zone, so that ghosts over them are found",
-                   "in the open and looking along the longest way"),
+                   "in the open and looking at what stands there"),
             False: ("false  # true where walls and grounds are to make ghosts: a mirror has no echo but its image",
                     "before the object")}
 
@@ -67,26 +67,26 @@ def write_scene_file(path: str | os.PathLike[str], out: str | os.PathLike[str], 
     model = load_model(path, unit=unit, up=up)
     name, scene = fit_name(path.stem, "model"), Scene()
     scene.add(model, name=name)
-    position, yaw, reach, is_town = vantage(scene)
+    things = things_of(scene)
+    position, yaw, reach, is_town = vantage(scene, things)
     mirrors, stands = _IN_TOWN[is_town]
     text = TEXT.format(mirrors=mirrors, stands=stands, title=_quoted(path.stem), position=position, yaw=yaw,
                        cell=reach / CELLS, reach=reach, samples=CELLS, frequency=START_FREQUENCY,
                        bandwidth=CELLS * _core.speed_of_light / (2.0 * reach), receivers=_receivers(),
                        name=_quoted(name), model=_quoted(_relative(path, out.parent)),
                        settings=_settings(unit, up), notes="".join(f"# {_plain(note)}\n" for note in model.notes),
-                       labels=_labels(scene, position) if is_town else "")
+                       labels=_labels(scene, things, position) if is_town else "")
     with written_whole(out) as temporary:
         temporary.write_text(text, encoding="utf-8")
     return model
 
 
-def _labels(scene: Scene, position: list[float]) -> str:
+def _labels(scene: Scene, things: Things, position: list[float]) -> str:
     """The table of what a town holds, by the names of its nodes."""
     waveform = _core.ChirpSequence(start_frequency=START_FREQUENCY, bandwidth=1e9, num_samples=CELLS, sampling_rate=10e6)
     radar = _core.Radar(waveform, transmitters=[_core.Antenna()], receivers=[_core.Antenna()], position=position)
-    things = things_of(scene, radar)
-    lines = [f"{_quoted(thing.split('/')[-1])} = {_quoted(thing)}" for thing in things]
-    return LABELS.format(objects="\n".join(lines)) if things else ""
+    lines = [f"{_quoted(thing.split('/')[-1])} = {_quoted(thing)}" for thing in told_apart(scene, things, radar)]
+    return LABELS.format(objects="\n".join(lines)) if lines else ""
 
 
 def _receivers() -> str:

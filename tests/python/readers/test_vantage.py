@@ -6,6 +6,8 @@ import pytest
 
 import echopath as ep
 from echopath.cli import report
+from echopath.scene_file.sight import best_sight
+from echopath.scene_file.things import things_of
 from echopath.scene_file.vantage import vantage
 
 
@@ -19,6 +21,35 @@ def test_on_an_open_field_it_looks_at_what_stands_there(bodies):
     ways = np.array(bodies) - found.position[:2]
     bearings = np.degrees(np.arctan2(ways[:, 1], ways[:, 0])) - found.yaw
     assert found.is_within and np.abs((bearings + 180.0) % 360.0 - 180.0).min() < 15.0
+
+
+def test_between_walls_it_looks_along_the_street_at_what_stands_in_it():
+    scene = ep.Scene()
+    scene.add(ep.actors.ground((130.0, 60.0)), name="field", material="asphalt")
+    for name, side in (("left", 8.0), ("right", -8.0)):
+        scene.add(ep.actors.box((80.0, 0.3, 5.0)), name=name, material="concrete", position=(0.0, side, 2.5))
+    bins = {f"bin_{number}": (-20.0 + 8.0 * number, 5.0 if number % 2 else -5.0) for number in range(6)}
+    for name, place in bins.items():
+        scene.add(ep.actors.box((0.8, 0.8, 1.1)), name=name, material="metal", position=(*place, 0.6))
+    things = things_of(scene)
+    assert set(things) == set(bins)
+    found = vantage(scene, things)
+    x, y, z = found.position
+    assert abs(x) < 40.0 and abs(y) < 8.0 and z == pytest.approx(1.5)
+    ways = np.array(list(bins.values())) - (x, y)
+    off_axis = (np.degrees(np.arctan2(ways[:, 1], ways[:, 0])) - found.yaw + 180.0) % 360.0 - 180.0
+    assert np.count_nonzero(np.abs(off_axis) < 50.0) >= 4
+
+
+def test_what_stands_behind_a_wall_is_not_in_sight():
+    blocked = np.zeros((60, 40), bool)
+    blocked[:, 20] = True            # a wall along the rows
+    blocked[29:31, 30:32] = True     # one thing on its far side
+    thing = np.array([[[29.0, 30.0], [31.0, 32.0]]])
+    free = np.argwhere(~blocked)
+    found = best_sight(blocked, free, 1.0, thing)
+    assert found.column > 20
+    assert best_sight(blocked, free[free[:, 1] < 20], 1.0, thing) is None
 
 
 def test_a_radar_that_looks_away_is_told_that_no_path_has_power():

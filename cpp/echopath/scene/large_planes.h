@@ -14,7 +14,7 @@ struct LargePlaneRule {
   double least_area = 0.0;      // share of a mesh's area that large planes must make up
   double least_extent = 0.0;    // m, longest side of the box about a wall or a house; what is shorter may be a body
   double least_area_of_short = 0.0;  // the same share of what is shorter
-  // m, of road vehicles and containers: a body no longer than these, whose faces are large planes, is none of walls.
+  // m: what is no longer and no deeper than road vehicles and containers, and has large planes on three sides, is a body.
   double vehicle_length = 0.0, vehicle_width = 0.0;
 };
 
@@ -22,8 +22,8 @@ struct LargePlaneRule {
 // the first Fresnel zone of a wave that meets it head on at the vertex farthest from the antennas and goes on without end,
 // 2 sqrt(wavelength distance): its edges then matter next to nowhere. The width is four times the area over the length of
 // the rim, the side of a square and twice that of a long strip; holes count to the rim, so a front full of windows is as
-// wide as what is between them. Flagged mirrors, smooth meshes, sheets, and what moves or deforms are left out. A plane that several
-// meshes share is measured in each mesh by itself.
+// wide as what is between them. Flagged mirrors, smooth meshes, sheets, and what moves or deforms are left out. A plane
+// that several meshes share is measured in each mesh by itself.
 std::vector<uint32_t> meshes_of_large_planes(const Scene& scene, const LargePlaneRule& rule);
 
 }  // namespace echopath

@@ -61,7 +61,6 @@ class Case:
         self.weather, self.rain_cube = weather_of(around), rain_cube
         self.interferers, self.interference_cube = interferers_of(around), interference_cube
         self.scene, self.radar, self.settings, self.paths = scene, radar, settings, paths
-        self.knows_surroundings = paths is None or surroundings is not None  # records keep none
         self.statistics = statistics or (None if paths is None else paths.frame.statistics)
         self.wavelength = _core.speed_of_light / radar.waveform.start_frequency
         self.materials, self._of_mesh, self._smooth, self._moving, self._deforming = _core.mesh_traits(scene)

@@ -47,6 +47,7 @@ def test_a_scene_that_becomes_live_is_traced_as_before(moving_sequence):
     traced = {"edges": True, "footprint": "first_order", "polarization": "jones", "scatterers": "surface", "max_bounces": 2}
     frame = ep.simulate(moving_sequence.scene, moving_sequence.radar, num_rays=500, guard=False, **traced)
     live = live_of(Session(from_frame(frame)), num_rays=500)
+    live.update()
     found = live.paths().frame
     assert {name: getattr(found, name) for name in traced} == traced
 

@@ -52,9 +52,10 @@ def describe_file(path, selections=(), *, unit=None, up=None) -> list[str]:
         return _describe_scene_file(load_scene(path))
     if (path / DATASET_FILE).exists():
         return _describe_dataset(dataset.open(path))
-    if selections and suffix in FRAME_SUFFIXES and path.is_file() and kind_of(path) == SEQUENCE:
+    is_sequence_file = suffix in FRAME_SUFFIXES and path.is_file() and kind_of(path) == SEQUENCE
+    if is_sequence_file and selections:
         raise ValueError(f"{path}: must be the file of one frame for --select, such as {path}/frames/000000 of these frames")
-    if (path / SEQUENCE_FILE).exists() or (suffix in FRAME_SUFFIXES and path.is_file() and kind_of(path) == SEQUENCE):
+    if is_sequence_file or (path / SEQUENCE_FILE).exists():
         return _describe_sequence(ep.load_sequence(path))
     if suffix in FRAME_SUFFIXES and not selections and kind_of(path) == FRAME and not has_paths(path):
         return _describe_maps(path, load_maps(path))

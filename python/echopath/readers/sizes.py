@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -34,11 +35,14 @@ _FIGURE, _BODY = ("a figure with a skeleton", 0.05, 10.0), ("a single body", SMA
 _NAMED = 12                    # topmost nodes of a model whose names are looked at
 
 
-def box_of(scene: Scene, time: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-    """Least and greatest coordinates [3] in m of all meshes of a scene at `time` in s; zeros for a scene without meshes."""
+def box_of(scene: Scene, time: float = 0.0, mesh_ids: Iterable[int] | None = None) -> tuple[np.ndarray, np.ndarray]:
+    """Least and greatest coordinates [3] in m of meshes of a scene at `time` in s; zeros where there are none.
+
+    mesh_ids: of those that count, None: all
+    """
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    for mesh in scene.meshes:
-        vertices = scene.world_vertices(mesh.id, time)
+    for mesh_id in range(len(scene.meshes)) if mesh_ids is None else mesh_ids:
+        vertices = scene.world_vertices(mesh_id, time)
         low, high = np.minimum(low, vertices.min(axis=0)), np.maximum(high, vertices.max(axis=0))
     return (low, high) if np.isfinite(low).all() else (np.zeros(3), np.zeros(3))
 

@@ -53,9 +53,9 @@ def best_sight(blocked, free_cells, step: float, boxes) -> Sight | None:
 def _is_seen(blocked, places, boxes):
     """Whether nothing but the thing itself stands on the line from each place [P] to the middle of each thing [N]: [P, N]."""
     seen = np.empty((len(places), len(boxes)), bool)
-    along = np.linspace(0.0, 1.0, POINTS)[:, None]
+    along, middles = np.linspace(0.0, 1.0, POINTS)[:, None, None], boxes.mean(axis=1)
     for row, place in enumerate(places + 0.5):
-        points = place + along[:, None] * (boxes.mean(axis=1) - place)  # [points, things, 2]
+        points = place + along * (middles - place)  # [points, things, 2]
         own = np.all((points >= boxes[:, 0] - 1.0) & (points <= boxes[:, 1] + 1.0), axis=2)
         cells = np.clip(points.astype(int), 0, np.array(blocked.shape) - 1)
         seen[row] = ~np.any(blocked[cells[..., 0], cells[..., 1]] & ~own, axis=0)

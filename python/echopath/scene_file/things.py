@@ -4,6 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
+from ..readers.sizes import box_of
 from ..scene.large_planes import VEHICLE_LENGTH, large_planes
 from ..scene.scene import Scene
 
@@ -23,7 +24,7 @@ def things_of(scene: Scene) -> Things:
     depth = _depth_of_several([mesh.name.split("/") for mesh in scene.meshes])
     for mesh in scene.meshes:
         of_thing.setdefault("/".join(mesh.name.split("/")[:depth]), []).append(mesh.id)
-    return {name: meshes for name, meshes in of_thing.items() if _is_thing(box_of_meshes(scene, meshes))}
+    return {name: meshes for name, meshes in of_thing.items() if _is_thing(*box_of(scene, 0.0, meshes))}
 
 
 def told_apart(scene: Scene, things: Things, radar: _core.Radar) -> list[str]:
@@ -37,19 +38,13 @@ def told_apart(scene: Scene, things: Things, radar: _core.Radar) -> list[str]:
     return found if 2 <= len(found) <= MOST else []
 
 
-def box_of_meshes(scene: Scene, meshes: list[int]) -> np.ndarray:
-    """(lowest, highest) corner [2, 3] in m of the box about some meshes at time 0."""
-    vertices = np.concatenate([scene.world_vertices(mesh, 0.0) for mesh in meshes])
-    return np.stack([vertices.min(axis=0), vertices.max(axis=0)])
-
-
 def _depth_of_several(names: list[list[str]]) -> int:
     """How many segments of the names [M] it takes until they differ; all, where they never do."""
     deepest = max(map(len, names), default=1)
     return next((depth for depth in range(1, deepest) if len({tuple(name[:depth]) for name in names}) > 1), deepest)
 
 
-def _is_thing(box) -> bool:
-    """Whether a box is as long as a vehicle at most, and as high or wide as one, or slender, as a pole."""
-    sides = np.sort(box[1] - box[0])
+def _is_thing(low, high) -> bool:
+    """Whether a box between two corners is as long as a vehicle at most, and as high or wide as one, or slender, as a pole."""
+    sides = np.sort(high - low)
     return bool(sides[2] <= VEHICLE_LENGTH and sides[1] <= THICKEST)

@@ -8,7 +8,7 @@ import numpy as np
 from ..readers.sizes import box_of
 from ..scene.scene import Scene
 from .sight import SPACE, Sight, best_sight
-from .things import Things, box_of_meshes
+from .things import Things
 
 TOWN = 30.0          # m, extent from which on the radar stands within the scene
 HEIGHT = 1.5         # m above the ground
@@ -59,9 +59,9 @@ def _sight_of(scene: Scene, things: Things, blocked, step: float, low) -> Sight 
     """The place from which most things are in sight, if one is."""
     if not things:
         return None
-    free = np.argwhere(_clearance(blocked, int(np.ceil(SPACE / step))) >= int(np.ceil(SPACE / step)))
-    boxes = np.array([box_of_meshes(scene, meshes)[:, :2] for meshes in things.values()])
-    return best_sight(blocked, free, step, (boxes - low[:2]) / step)
+    space = int(np.ceil(SPACE / step))
+    boxes = np.array([box_of(scene, 0.0, meshes) for meshes in things.values()])[..., :2]
+    return best_sight(blocked, np.argwhere(_clearance(blocked, space) >= space), step, (boxes - low[:2]) / step)
 
 
 def _rounded(place) -> list[float]:

@@ -1,6 +1,7 @@
 #include "echopath/power/group_sums.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <optional>
@@ -10,6 +11,7 @@
 #include "echopath/base/lanes/phasor.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/power/facet_phase.h"
+#include "echopath/power/row_differences.h"
 #include "echopath/power/shared_phase.h"
 #include "echopath/record/near_antenna.h"
 #include "echopath/replay/replay.h"
@@ -80,7 +82,8 @@ class KnownKinds {
 
 class Sums {
  public:
-  Sums(const Paths& paths, size_t num_groups) : paths_(paths), open_(num_groups), kinds_(num_groups), groups_(num_groups) {
+  Sums(const Paths& paths, size_t num_groups)
+      : paths_(paths), open_(num_groups), rows_(num_groups), kinds_(num_groups), groups_(num_groups) {
     const auto num_entries = static_cast<size_t>(paths.frame.batches) + 1;
     for (GroupSums& group : groups_) {
       group.field.resize(num_entries);
@@ -132,6 +135,7 @@ class Sums {
     for (size_t group = 0; group < groups_.size(); ++group) {
       close(group);
       kinds_[group].set_facet_phases(phases, groups_[group].kinds);
+      for (const RowDifferences& rows : rows_[group]) groups_[group].row_variance += rows.variance();
     }
     return std::move(groups_);
   }
@@ -149,10 +153,14 @@ class Sums {
     sums.power[open.batch] += power;
     // Behind a diffuse hit a ray goes where chance sends it. Elsewhere chance has a share in what stands for others alone,
     // beside paths that are there for certain: of the sum of both fields it leaves the square of their own power aside.
-    const bool is_drawn = std::popcount(paths_.diffuse[static_cast<size_t>(open.path)]) > 1;
+    const auto path = static_cast<size_t>(open.path);
+    const bool is_drawn = paths_.frame.sampler == Sampler::kRandom || std::popcount(paths_.diffuse[path]) > 1;
     const double certain = is_drawn ? 0.0 : std::norm(open.field - open.lot_field);
     const double by_lot = is_drawn ? power : std::norm(open.lot_field);
+    const int turn = paths_.frame.sampler == Sampler::kLattice ? turn_of_ray(paths_.flags[path]) : 0;
+    if (turn > 0 && !is_drawn) rows_[group][paths_.passes_of(path).empty() ? 0 : 1].add(turn, certain);
     sums.lattice_squares += certain * certain;
+    if (turn == 0) sums.outline_squares += certain * certain;
     sums.drawn_squares += by_lot * by_lot + 2.0 * certain * by_lot;
     sums.strongest_hit = std::max(sums.strongest_hit, power);
     ++sums.num_diffuse_hits;
@@ -161,6 +169,8 @@ class Sums {
 
   const Paths& paths_;
   std::vector<OpenHit> open_;
+  // These are by group, of hits before and behind a sheet: packets of rays go on behind sheets one after the other.
+  std::vector<std::array<RowDifferences, 2>> rows_;
   std::vector<KnownKinds> kinds_;  // by group
   std::vector<GroupSums> groups_;
 };

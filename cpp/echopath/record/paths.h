@@ -74,6 +74,12 @@ constexpr uint32_t edge_flags(int hit, int num_pieces, int num_edges = 1) {
 constexpr int edge_hit(uint32_t flags) { return flags & kEdgePath ? static_cast<int>(flags >> 8 & 63u) : -1; }
 constexpr int num_edge_hits(uint32_t flags) { return flags & kEdgePath ? static_cast<int>(flags >> 3 & 3u) + 1 : 0; }
 constexpr int num_edge_pieces(uint32_t flags) { return static_cast<int>(flags >> 16); }
+// Paths of rays that leave along the rows of the launch lattice hold, in the place of a hit on an edge, which ray of its row
+// they are of: 1 to kRaysInTurn, over and over. Rays next to each other in this order are neighbours in the lattice. 0 is of
+// other rays.
+inline constexpr int kRaysInTurn = 63;
+constexpr uint32_t turn_flags(int64_t index) { return static_cast<uint32_t>(index % kRaysInTurn + 1) << 8; }
+constexpr int turn_of_ray(uint32_t flags) { return flags & kEdgePath ? 0 : static_cast<int>(flags >> 8 & 63u); }
 // Returns the flag of a ray's paths by its index: 0 or kSecondHalf. It is the parity of the index's digits (Thue and Morse),
 // so that both halves of any few rays in a row have as many of them, and no digit of the nets that rays share tells them
 // apart.
@@ -150,7 +156,8 @@ struct Paths {
   std::vector<std::complex<float>> weight;  // what neither motion nor antennas change (see replay/kernels/path_formula.h)
   std::vector<uint16_t> stratum;            // index into frame.strata; kNoStratum: none (image method)
   std::vector<uint8_t> batch;               // index of the batch of rays; 255: all of them (image method)
-  std::vector<uint32_t> flags;  // bits: kReversedPath, kSecondHalf, kStandsForOthers, kBesideEdge, kEdgePath with edge_flags
+  // bits: kReversedPath, kSecondHalf with turn_flags, kStandsForOthers, kBesideEdge, kEdgePath with edge_flags
+  std::vector<uint32_t> flags;
   // [P, 7] or empty: the launch cell behind curved specular bounces, at the physical-optics hit. T1 and T2 are in units of
   // the triangle's edges (du1, dv1, du2, dv2), then T_a.U_b in m (11, 12, 22). A flat chain has zeros.
   std::vector<std::array<float, 7>> curved_cell;

@@ -35,7 +35,7 @@ void PathBlock::begin_fan(const Hit& hit, int path_stratum, int max_bounces) {
   fan.hit = hit;
   fan.stratum = static_cast<uint16_t>(path_stratum);
   fan.batch = current_batch;
-  fan.flags = current_half;
+  fan.flags = current_ray;
   fan.max_bounces = static_cast<uint32_t>(max_bounces);
 }
 
@@ -87,7 +87,7 @@ void PathBlock::clear() {
   first_of_ray_ = first_chain_of_ray_ = first_lit_chain_of_ray_ = 0;
   used_depth_ = 0;
   current_batch = kNoBatch;
-  current_half = 0;
+  current_ray = 0;
 }
 
 // Writes the paths [begin, end) that are not of fans. `first_hit` is the index of the block's hits in the record, `row` that

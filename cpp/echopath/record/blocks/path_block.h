@@ -14,7 +14,7 @@ class PathBlock {
   std::vector<Hit> hits;
   PathColumns rows;                  // the paths that are not of fans
   uint8_t current_batch = kNoBatch;  // of the paths added from now on
-  uint32_t current_half = 0;         // for the same paths: 0 or kSecondHalf
+  uint32_t current_ray = 0;          // flags of the same paths: kSecondHalf, turn_flags
   // This column has a row for each path up to the last one that ends behind a curved bounce; rows of other paths are zeros.
   std::vector<std::array<float, 7>> curved_cell;
   std::vector<JonesMatrix> jones;      // has a row for each path up to the last polarised one, likewise
@@ -100,7 +100,7 @@ class PathBlock {
   void write_own(size_t begin, size_t end, int64_t first_hit, size_t row, PathRows& to, Paths& paths) const;
   static constexpr int64_t kOfRay = -1;
   void add_record(int64_t offset, int count, uint64_t diffuse_bits, std::complex<float> path_weight, int path_stratum) {
-    rows.add({offset, diffuse_bits, path_weight, current_half, static_cast<uint16_t>(path_stratum),
+    rows.add({offset, diffuse_bits, path_weight, current_ray, static_cast<uint16_t>(path_stratum),
               static_cast<uint8_t>(count), current_batch});
   }
 

@@ -48,7 +48,7 @@ void RayWalk<Weight>::shoot_lane(int lane, Scratch& scratch, PathBlock& block) c
   const auto k = static_cast<size_t>(lane);
   const FirstHits& first = scratch.first;
   block.current_batch = static_cast<uint8_t>(first.places.batches[k]);
-  block.current_half = half_of_ray(first.ray(lane));
+  block.current_ray = half_of_ray(first.ray(lane)) | (first.points ? 0 : turn_flags(first.ray(lane)));
   scratch.launch_index = first.index(lane);
   scratch.num_branches = 0;
   if (context_.geometry.has_sheets()) return shoot_lane_among_sheets(lane, scratch, block);

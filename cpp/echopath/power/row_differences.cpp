@@ -1,0 +1,48 @@
+#include "echopath/power/row_differences.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "echopath/record/paths.h"
+
+namespace echopath {
+namespace {
+
+constexpr double kAtOutlines = 0.34;  // of a disc: what a lattice errs there over what its rows differ
+constexpr int kFarApart = 3;          // rays between which no difference counts
+
+}  // namespace
+
+void RowDifferences::add(int turn, double power) {
+  if (turn != turn_) {
+    const int steps = turn_ == 0 ? kFarApart : (turn - turn_ + kRaysInTurn) % kRaysInTurn;
+    end_ray();
+    for (int i = 1; i < std::min(steps, kFarApart); ++i) push(0.0);
+    turn_ = turn;
+  }
+  open_ += power;
+}
+
+double RowDifferences::variance() const {
+  RowDifferences all = *this;
+  all.end_ray();
+  for (int i = 1; i < kFarApart; ++i) all.push(0.0);
+  if (all.next_ == 0.0) return 0.0;
+  const double exponent = std::clamp(std::log2(all.second_ / all.next_), 0.0, 1.0);
+  return all.next_ * std::pow(kAtOutlines, exponent);
+}
+
+void RowDifferences::push(double power) {
+  const double to_last = power - last_, to_before = power - before_;
+  next_ += 0.5 * to_last * to_last;
+  second_ += 0.5 * to_before * to_before;
+  before_ = last_;
+  last_ = power;
+}
+
+void RowDifferences::end_ray() {
+  push(open_);
+  open_ = 0.0;
+}
+
+}  // namespace echopath

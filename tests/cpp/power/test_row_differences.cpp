@@ -1,0 +1,105 @@
+// Errors of sums over a lattice, by differences between neighbours: against how much such sums scatter.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "echopath/power/row_differences.h"
+#include "echopath/record/paths.h"
+#include "echopath/trace/launch/launch_lattice.h"
+
+namespace echopath::test_row_differences {
+namespace {
+
+using Power = std::function<double(const Eigen::Vector2d&)>;  // of a ray at a point of the unit disc
+
+int turn_at(int64_t index) { return turn_of_ray(turn_flags(index)); }
+
+struct Scatter {
+  double variance = 0.0, estimate = 0.0;  // of the sums of many lattices; mean of what they say themselves
+};
+
+// Moves a lattice of `num_rays` at random. Rays that send nothing back are in no record.
+Scatter scatter_of(int64_t num_rays, const Power& power) {
+  constexpr int kLattices = 120;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform;
+  double sum_of_sums = 0.0, sum_of_squares = 0.0;
+  Scatter out;
+  for (int i = 0; i < kLattices; ++i) {
+    const LaunchLattice lattice(LaunchDomain{}, num_rays, Eigen::Vector2d(uniform(random), uniform(random)));
+    RowDifferences rows;
+    double sum = 0.0;
+    for (int64_t ray = 0; ray < lattice.size(); ++ray) {
+      const double of_ray = power(lattice.point(ray));
+      if (of_ray > 0.0) rows.add(turn_at(ray), of_ray);
+      sum += of_ray;
+    }
+    sum_of_sums += sum / kLattices;
+    sum_of_squares += sum * sum / kLattices;
+    out.estimate += rows.variance() / kLattices;
+  }
+  out.variance = sum_of_squares - sum_of_sums * sum_of_sums;
+  return out;
+}
+
+// A body with an outline, and many small ones. Their error is known to a factor of two, and is not told too small.
+TEST(RowDifferences, TellTheErrorOfALatticeOverDiscs) {
+  const auto is_in_disc = [](const Eigen::Vector2d& at, double x, double y, double radius) {
+    return (at - Eigen::Vector2d(x, y)).norm() < radius;
+  };
+  const Power one = [&](const Eigen::Vector2d& at) { return is_in_disc(at, 0.03, -0.02, 0.6) ? 1.0 : 0.0; };
+  const Power many = [&](const Eigen::Vector2d& at) {
+    double power = 0.0;
+    for (int k = 0; k < 40; ++k) {
+      if (is_in_disc(at, 0.7 * std::sin(12.9898 * k), 0.6 * std::sin(78.233 * k), 0.04 + 0.001 * k)) power = 0.3 + 0.02 * k;
+    }
+    return power;
+  };
+  for (const Power& power : {one, many}) {
+    for (const int64_t num_rays : {800, 4000}) {
+      const Scatter found = scatter_of(num_rays, power);
+      EXPECT_GT(std::sqrt(found.estimate / found.variance), 1.0) << num_rays;
+      EXPECT_LT(std::sqrt(found.estimate / found.variance), 2.2) << num_rays;
+    }
+  }
+}
+
+// Where no ray tells anything of the next, the variances of all rays add up, also that of whether a ray hits: a power u,
+// uniform in 0 to 1, of 60 % of the rays has the mean .3 and the mean square .2.
+TEST(RowDifferences, OfIndependentRaysAddUpTheirVariances) {
+  constexpr int64_t kRays = 200000;
+  constexpr double kShare = 0.6, kVarianceOfOne = 0.2 - 0.3 * 0.3, kChance = 0.03;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform;
+  RowDifferences rows;
+  for (int64_t ray = 0; ray < kRays; ++ray) {
+    if (uniform(random) < kShare) rows.add(turn_at(ray), uniform(random));
+  }
+  EXPECT_NEAR(rows.variance() / (kRays * kVarianceOfOne), 1.0, kChance);
+}
+
+// Lone hits are as uneven as their number. Several hits of one ray, which a sheet may part, are one power.
+TEST(RowDifferences, LoneHitsHaveTheVarianceOfACount) {
+  RowDifferences rows, parted;
+  for (int64_t k = 1; k <= 10; ++k) {
+    rows.add(turn_at(10 * k), 2.0);
+    for (int i = 0; i < 4; ++i) parted.add(turn_at(10 * k), 0.5);
+  }
+  EXPECT_DOUBLE_EQ(rows.variance(), 10 * 2.0 * 2.0);
+  EXPECT_DOUBLE_EQ(parted.variance(), rows.variance());
+  EXPECT_EQ(RowDifferences().variance(), 0.0);
+}
+
+// Rays that all send back the same err nowhere but at both ends of their row.
+TEST(RowDifferences, EvenRowsErrAtTheirEnds) {
+  constexpr double kAtOutlines = 0.34;
+  RowDifferences rows;
+  for (int64_t ray = 5; ray < 1005; ++ray) rows.add(turn_at(ray), 1.0);
+  EXPECT_DOUBLE_EQ(rows.variance(), kAtOutlines * (0.5 + 0.5));
+}
+
+}  // namespace
+}  // namespace echopath::test_row_differences

@@ -6,8 +6,8 @@ namespace echopath {
 // Takes what the rays of a lattice send back, ray by ray along its rows, and estimates the variance of the sum.
 //
 // Let g1 be half the sum of squared differences between next neighbours of a row, and g2 that between every other ray; rays
-// that send nothing back count as 0. Where neighbours are independent, as in the crown of a tree, g2 = g1, and the lattice is
-// no better than directions at random: the variance is g1. Where the power changes at outlines that are far apart, g2 =
+// that send nothing back count as 0. Where neighbours are independent, as in the crown of a tree, g2 = g1, and the lattice
+// is no better than directions at random: the variance is g1. Where the power changes at outlines that are far apart, g2 =
 // 2 g1, and the lattice errs less. Between them the variance is kAtOutlines^s g1, with g2 = 2^s g1 and s in 0 to 1, as for a
 // surface whose semivariogram rises with that power of the distance (Matheron 1963).
 class RowDifferences {

@@ -21,7 +21,7 @@ struct Stratum {
   int64_t num_rays = 0;
   double ray_density = 0.0;  // rays per sr inside, N_k p_k; exact, so that its integral may differ from num_rays
   std::string name;          // what it aims at
-  int object = -1;           // node of the scene that it aims at (a child of the root); -1: none
+  int object = -1;           // node of the scene that it aims at; -1: none
   int num_mirrors = 0;       // over which it aims there
   int focus_of = -1;         // index of the stratum in which it is a focus (trace/launch/launch_focus.h); -1: none
 

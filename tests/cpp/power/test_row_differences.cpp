@@ -21,7 +21,7 @@ struct Scatter {
   double variance = 0.0, estimate = 0.0;  // of the sums of many lattices; mean of what they say themselves
 };
 
-// Moves a lattice of `num_rays` at random. Rays that send nothing back are in no record.
+// Moves a lattice of `num_rays` at random, and the body a little. Rays that send nothing back are in no record.
 Scatter scatter_of(int64_t num_rays, const Power& power) {
   constexpr int kLattices = 120;
   std::mt19937 random(7);
@@ -30,10 +30,11 @@ Scatter scatter_of(int64_t num_rays, const Power& power) {
   Scatter out;
   for (int i = 0; i < kLattices; ++i) {
     const LaunchLattice lattice(LaunchDomain{}, num_rays, Eigen::Vector2d(uniform(random), uniform(random)));
+    const Eigen::Vector2d moved(0.05 * uniform(random), 0.05 * uniform(random));
     RowDifferences rows;
     double sum = 0.0;
     for (int64_t ray = 0; ray < lattice.size(); ++ray) {
-      const double of_ray = power(lattice.point(ray));
+      const double of_ray = power(lattice.point(ray) + moved);
       if (of_ray > 0.0) rows.add(turn_at(ray), of_ray);
       sum += of_ray;
     }
@@ -45,7 +46,8 @@ Scatter scatter_of(int64_t num_rays, const Power& power) {
   return out;
 }
 
-// A body with an outline, and many small ones. Their error is known to a factor of two, and is not told too small.
+// A body with an outline, and many small ones. 120 lattices know their error to 7 %; it is told at most a fifth too small,
+// and twice too large.
 TEST(RowDifferences, TellTheErrorOfALatticeOverDiscs) {
   const auto is_in_disc = [](const Eigen::Vector2d& at, double x, double y, double radius) {
     return (at - Eigen::Vector2d(x, y)).norm() < radius;
@@ -61,8 +63,8 @@ TEST(RowDifferences, TellTheErrorOfALatticeOverDiscs) {
   for (const Power& power : {one, many}) {
     for (const int64_t num_rays : {800, 4000}) {
       const Scatter found = scatter_of(num_rays, power);
-      EXPECT_GT(std::sqrt(found.estimate / found.variance), 1.0) << num_rays;
-      EXPECT_LT(std::sqrt(found.estimate / found.variance), 2.2) << num_rays;
+      EXPECT_GT(std::sqrt(found.estimate / found.variance), 0.8) << num_rays;
+      EXPECT_LT(std::sqrt(found.estimate / found.variance), 2.0) << num_rays;
     }
   }
 }

@@ -58,11 +58,14 @@ double missing_db(const ReceivedPower& power, double least) {
   return level > 0 ? 10.0 * std::log10(1.0 + half / level) : 0.0;
 }
 
-// Marks the object nodes below which something moves.
-std::vector<bool> moving_objects(const Scene& scene) {
+// Marks the nodes at which or below which something moves.
+std::vector<bool> moving_nodes(const Scene& scene) {
   std::vector<bool> moves(scene.nodes().size());
   for (uint32_t mesh = 0; mesh < scene.meshes().size(); ++mesh) {
-    if (scene.is_moving(mesh)) moves[static_cast<size_t>(scene.meshes()[mesh].object)] = true;
+    if (!scene.is_moving(mesh)) continue;
+    for (int node = scene.meshes()[mesh].node; node >= 0; node = scene.nodes()[static_cast<size_t>(node)].parent) {
+      moves[static_cast<size_t>(node)] = true;
+    }
   }
   return moves;
 }
@@ -168,7 +171,7 @@ RayNeeds ray_needs(const Paths& paths, const WantedError& wanted, Job* job) {
   const std::vector<ReceivedPower> powers = power_of_strata(paths, job);
   const double least =
       wanted.floor == EchoFloor::kNoise ? noise_power_in_cell(paths.radar) : kDynamicRange * strongest_of(powers);
-  const std::vector<bool> moves = moving_objects(*paths.scene);
+  const std::vector<bool> moves = moving_nodes(*paths.scene);
   const RayShares launched = shares_of(paths.frame.strata);
   RayNeeds needs;
   for (size_t k = 0; k < paths.frame.strata.size(); ++k) {

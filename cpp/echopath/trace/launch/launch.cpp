@@ -74,13 +74,13 @@ Stratum focus_stratum(const LaunchFocus& asked, const Stratum& owner, int index_
 // the field of view.
 std::vector<double> default_shares(const std::vector<RayTarget>& targets, bool field_owns_any) {
   double moving = 0.0, resting = 0.0;
-  for (const RayTarget& target : targets) (target.moves ? moving : resting) += weight_of_target(target.stratum.num_mirrors);
+  for (const RayTarget& target : targets) (target.moves ? moving : resting) += target.weight;
   const double aimed = targets.empty() ? 0.0 : field_owns_any ? 1.0 - kFieldShare : 1.0;
   const double moving_share = moving == 0 ? 0.0 : std::max(moving / (moving + resting), resting == 0 ? 1.0 : kMovingShare);
   std::vector<double> shares;
   for (const RayTarget& target : targets) {
     const double of_tier = target.moves ? moving_share / moving : (1.0 - moving_share) / resting;
-    shares.push_back(aimed * of_tier * weight_of_target(target.stratum.num_mirrors));
+    shares.push_back(aimed * of_tier * target.weight);
   }
   shares.push_back(1.0 - aimed);
   return shares;

@@ -20,13 +20,15 @@ namespace echopath {
 // Distributes the rays of a launch over strata of directions. `strata` holds first one stratum for each object, fitted to
 // its outline as seen from the transmitter (fit_stratum.h), then one for each image of an object over mirrors, then the foci
 // that a guide may set into these strata (launch_focus.h), and last the antenna's field of view. Objects are the children of
-// the scene's root, without their mirrors.
+// the scene's root, without their mirrors. Where one surrounds the transmitter, as a town does, the things that it consists
+// of take its place (ray_targets.h).
 //
 // Each stratum counts the echoes that it owns (ray_owners.h). The field of view owns the echoes of objects that surround the
 // transmitter, of objects and images without a stratum of their own, and the diffuse echoes of mirrors. It gets 15 % of the
 // rays where it owns anything; the others are aimed. By default, moving objects get at least half of the aimed rays. Apart
-// from that, objects and images over one mirror get equal shares, and images over two mirrors a quarter of such a share. A
-// stratum that would get fewer than kFewestRays rays is left out. LaunchSettings::by_object has another rule.
+// from that, objects and images over one mirror get equal shares, and images over two mirrors a quarter of such a share; the
+// things of one object share what it would get. A stratum that would get fewer than kFewestRays rays is left out.
+// LaunchSettings::by_object has another rule.
 struct LaunchPlan {
   static constexpr int64_t kFewestRays = 4;
 

@@ -33,13 +33,13 @@ std::vector<int64_t> rays_by_object(const Scene& scene, const std::vector<RayTar
   const auto all = static_cast<double>(num_rays);
   const double aimed = field_owns_any ? (1.0 - field_share) * all : all;
   double weights = 0.0;
-  for (const RayTarget& target : targets) weights += weight_of_target(target.stratum.num_mirrors);
+  for (const RayTarget& target : targets) weights += target.weight;
   std::vector<int64_t> rays;
   double dropped = 0.0;
   for (const RayTarget& target : targets) {
     const std::string& name = scene.nodes()[static_cast<size_t>(target.stratum.object)].name;
     const double of_object = rounded(aimed / weights, name);
-    const double of_target = of_object * weight_of_target(target.stratum.num_mirrors);
+    const double of_target = of_object * target.weight;
     const int64_t own = std::llround(of_target);
     const bool is_dropped = own < LaunchPlan::kFewestRays;
     rays.push_back(is_dropped ? 0 : own);

@@ -10,7 +10,7 @@
 namespace echopath {
 
 // Returns the number of rays of each target, and last that of the field of view, which gets `field_share` of num_rays where
-// it owns anything. The other rays go to the targets by weight_of_target, whether they move or not. What comes to an object
+// it owns anything. The other rays go to the targets by their weights, whether they move or not. What comes to an object
 // is rounded to a power of sqrt(2) times a number that hangs on the object's name alone, so that an object has the rays of
 // before unless the sum of all weights passes a step of its own: where the sum grows by a twentieth, one object in seven has
 // others. A target that would get too few rays to have any leaves them to the field of view, where they are rounded

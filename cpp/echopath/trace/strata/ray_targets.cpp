@@ -12,13 +12,15 @@ namespace {
 
 // Largest number of targets: with the field of view they stay below kNoStratum.
 constexpr size_t kMaxAims = 65000;
+// Largest number of things of one object, and of their images: more would have too few rays each.
+constexpr size_t kMostThings = 256;
 // Strata are the same within this difference of axes and solid angles, relative to the latter.
 constexpr double kSameStratum = 1e-6;
 
 class Target {
  public:
   Target(const Scene& scene, const EmbreeScene& geometry, const SceneObject& of, int index)
-      : object(index), node(of.node), name(scene.nodes()[static_cast<size_t>(of.node)].name), geometry_(geometry),
+      : object(index), node(of.node), name(scene.nodes()[static_cast<size_t>(of.node)].name), geometry_(&geometry),
         mesh_ids_(of.mesh_ids) {
     sphere = bounding_sphere([&](uint32_t id) -> const std::vector<Vec3>& { return geometry.vertices(id); }, mesh_ids_);
     BitSum sum;
@@ -34,21 +36,21 @@ class Target {
   // Returns the vertices of all its meshes, which are put together when they are first asked for.
   const std::vector<Vec3>& vertices() {
     for (; num_together_ < mesh_ids_.size(); ++num_together_) {
-      const std::vector<Vec3>& own = geometry_.vertices(mesh_ids_[num_together_]);
+      const std::vector<Vec3>& own = geometry_->vertices(mesh_ids_[num_together_]);
       vertices_.insert(vertices_.end(), own.begin(), own.end());
     }
     return vertices_;
   }
 
-  const int object, node;
-  const std::string name;
+  int object, node;
+  std::string name;
   Sphere sphere;
   uint64_t bits = 0;  // sum of those of the vertices
   bool moves = false;
 
  private:
-  const EmbreeScene& geometry_;
-  const std::vector<uint32_t>& mesh_ids_;
+  const EmbreeScene* geometry_;
+  std::vector<uint32_t> mesh_ids_;
   std::vector<Vec3> vertices_;  // of the first meshes
   size_t num_together_ = 0;
 };
@@ -123,7 +125,7 @@ class RayTargetFinder {
     if (!stratum || stratum->solid_angle() > settings_.largest_solid_angle) return std::nullopt;
     stratum->object = target.node;
     stratum->num_mirrors = num_mirrors;
-    RayTarget made{std::move(*stratum), target.object, {}, target.moves};
+    RayTarget made{std::move(*stratum), target.object, {}, target.moves, weight_of_target(num_mirrors)};
     if (num_mirrors == 0) made.sequences.push_back(kNoMirrors);
     return made;
   }
@@ -141,11 +143,12 @@ class RayTargetFinder {
   const RayTargetSettings& settings_;
 };
 
+bool has_fewer_mirrors(const RayTarget& a, const RayTarget& b) { return a.stratum.num_mirrors < b.stratum.num_mirrors; }
+
 // Leaves out the images over the most mirrors first, then the objects that fill the least of the view.
 void limit(std::vector<RayTarget>& objects, std::vector<RayTarget>& images, RayTargets& out) {
   const size_t all = objects.size() + images.size();
-  std::stable_sort(images.begin(), images.end(),
-                   [](const RayTarget& a, const RayTarget& b) { return a.stratum.num_mirrors < b.stratum.num_mirrors; });
+  std::stable_sort(images.begin(), images.end(), has_fewer_mirrors);
   if (objects.size() > kMaxAims) {
     const auto wider = [](const RayTarget& a, const RayTarget& b) {
       return a.stratum.solid_angle() > b.stratum.solid_angle();
@@ -158,6 +161,115 @@ void limit(std::vector<RayTarget>& objects, std::vector<RayTarget>& images, RayT
   out.any_unaimed = out.any_unaimed || out.num_left_out > 0;
 }
 
+// Finds the targets of one object after the other.
+class TargetSearch {
+ public:
+  TargetSearch(const Scene& scene, const EmbreeScene& geometry, const std::vector<Mirror>& mirrors,
+               const RayTargetSettings& settings, RayTargets& out)
+      : scene_(scene), geometry_(geometry), settings_(settings), finder_(scene, mirrors, settings), out_(out) {}
+
+  // Aims at an object and its images, or else at the things that it consists of.
+  void take(const SceneObject& object) {
+    Target target = new_target(object);
+    if (std::optional<RayTarget> direct = finder_.at_object(target)) {
+      objects_.push_back(std::move(*direct));
+      append(finder_.at_images(target), images_);
+      return;
+    }
+    out_.any_unaimed = true;
+    std::vector<Thing> things;
+    find_things(object, things);
+    take_nearest(things);
+  }
+
+  void finish() {
+    limit(objects_, images_, out_);
+    out_.targets = std::move(objects_);
+    append(std::move(images_), out_.targets);
+  }
+
+ private:
+  struct Thing {
+    Target target;
+    RayTarget direct;
+    double distance;  // m, of the ball that holds it
+  };
+
+  static void append(std::vector<RayTarget> more, std::vector<RayTarget>& to) {
+    std::move(more.begin(), more.end(), std::back_inserter(to));
+  }
+
+  Target new_target(const SceneObject& object) {
+    const int index = out_.num_objects++;
+    for (const uint32_t id : object.mesh_ids) out_.object_of_mesh[id] = index;
+    return Target(scene_, geometry_, object, index);
+  }
+
+  // Finds the largest parts of an object that a stratum holds, as far as they are in sight.
+  void find_things(const SceneObject& object, std::vector<Thing>& things) {
+    const std::vector<SceneObject> parts = parts_of(scene_, object);
+    const bool is_whole = parts.size() == 1 && parts.front().node == object.node;
+    if (is_whole || out_.num_objects + std::ssize(parts) > settings_.most_objects) return;
+    for (const SceneObject& part : parts) {
+      Target target = new_target(part);
+      std::optional<RayTarget> direct = finder_.at_object(target);
+      if (!direct) {
+        find_things(part, things);
+      } else if (is_in_sight(target)) {
+        const double distance = (target.sphere.centre - settings_.transmitter).norm() - target.sphere.radius;
+        things.push_back({std::move(target), std::move(*direct), distance});
+      }
+    }
+  }
+
+  // Returns whether a ray to any of a few vertices, evenly taken of all, meets the target or what lies behind it.
+  bool is_in_sight(Target& target) const {
+    const std::vector<Vec3>& vertices = target.vertices();
+    LaneVectors directions;
+    LaneValues reach;
+    for (int lane = 0; lane < kPacketSize; ++lane) {
+      const Vec3 there = vertices[vertices.size() * static_cast<size_t>(lane) / kPacketSize] - settings_.transmitter;
+      reach[lane] = there.norm();
+      const Vec3 direction = reach[lane] > 0.0 ? Vec3(there / reach[lane]) : Vec3(Vec3::UnitX());
+      directions.set(lane, {direction.x(), direction.y(), direction.z()});
+    }
+    EmbreeScene::PacketHits hits;
+    geometry_.intersect(settings_.transmitter, directions, kPacketSize, hits);
+    for (int lane = 0; lane < kPacketSize; ++lane) {
+      const auto k = static_cast<size_t>(lane);
+      const bool meets_other = hits.verdicts[k] == EmbreeScene::Verdict::kHit && hits.distance[lane] < reach[lane] &&
+                               out_.object_of_mesh[hits.met[k].mesh_id] != target.object;
+      if (!meets_other) return true;
+    }
+    return false;
+  }
+
+  // Echoes fall with the fourth power of the distance, so that the nearest things are what a radar sees most of. Together
+  // they have the weight of one object, and their images no more than that.
+  void take_nearest(std::vector<Thing>& things) {
+    std::stable_sort(things.begin(), things.end(), [](const Thing& a, const Thing& b) { return a.distance < b.distance; });
+    if (things.size() > kMostThings) things.erase(things.begin() + kMostThings, things.end());
+    const double share = 1.0 / static_cast<double>(things.size());
+    std::vector<RayTarget> images;
+    for (Thing& thing : things) {
+      thing.direct.weight *= share;
+      objects_.push_back(std::move(thing.direct));
+      append(finder_.at_images(thing.target), images);
+    }
+    std::stable_sort(images.begin(), images.end(), has_fewer_mirrors);
+    if (images.size() > kMostThings) images.resize(kMostThings);
+    for (RayTarget& image : images) image.weight *= std::min(share, 1.0 / static_cast<double>(images.size()));
+    append(std::move(images), images_);
+  }
+
+  const Scene& scene_;
+  const EmbreeScene& geometry_;
+  const RayTargetSettings& settings_;
+  const RayTargetFinder finder_;
+  RayTargets& out_;
+  std::vector<RayTarget> objects_, images_;
+};
+
 }  // namespace
 
 double weight_of_target(int num_mirrors) { return num_mirrors < 2 ? 1.0 : std::pow(0.25, num_mirrors - 1); }
@@ -167,29 +279,13 @@ RayTargets find_ray_targets(const Scene& scene, const EmbreeScene& geometry, con
   RayTargets out;
   if (settings.fitted) settings.fitted->begin_plan();
   const std::vector<SceneObject> scene_objects = objects_of(scene);
-  out.num_objects = static_cast<int>(scene_objects.size());
   out.object_of_mesh.assign(scene.meshes().size(), -1);
-  out.any_unaimed = out.num_objects > settings.most_objects;
-  if (out.any_unaimed) out.num_left_out = out.num_objects;
+  out.any_unaimed = std::ssize(scene_objects) > settings.most_objects;
+  if (out.any_unaimed) out.num_left_out = std::ssize(scene_objects);
   if (out.any_unaimed || scene_objects.empty()) return out;
-  const RayTargetFinder finder(scene, mirrors, settings);
-  std::vector<RayTarget> objects, images;
-  for (int index = 0; index < out.num_objects; ++index) {
-    const SceneObject& object = scene_objects[static_cast<size_t>(index)];
-    for (const uint32_t id : object.mesh_ids) out.object_of_mesh[id] = index;
-    Target target(scene, geometry, object, index);
-    std::optional<RayTarget> direct = finder.at_object(target);
-    if (!direct) {
-      out.any_unaimed = true;
-      continue;
-    }
-    objects.push_back(std::move(*direct));
-    std::vector<RayTarget> more = finder.at_images(target);
-    std::move(more.begin(), more.end(), std::back_inserter(images));
-  }
-  limit(objects, images, out);
-  out.targets = std::move(objects);
-  std::move(images.begin(), images.end(), std::back_inserter(out.targets));
+  TargetSearch search(scene, geometry, mirrors, settings, out);
+  for (const SceneObject& object : scene_objects) search.take(object);
+  search.finish();
   return out;
 }
 

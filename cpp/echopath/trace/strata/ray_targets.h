@@ -10,12 +10,16 @@
 
 namespace echopath {
 
+// A target is an object (scene_objects.h). Where no stratum holds it, because it surrounds the transmitter as a town does,
+// the things that it consists of are targets: the largest of its parts, and of theirs in turn, that a stratum holds. These
+// are the nearest ones that are in sight of the transmitter, and rays of the field of view meet the others.
 struct RayTarget {
   Stratum stratum;  // holds the target; without rays
-  int object = 0;   // index into objects_of(scene)
+  int object = 0;   // index into the objects and parts, as RayTargets::object_of_mesh
   // Rays find it over these; planes at right angles have one image in both orders.
   std::vector<MirrorSequence> sequences;
   bool moves = false;
+  double weight = 1.0;  // in the sharing of the rays; the things of one object share the weight of that
 };
 
 // Returns the weight of an image over that many mirrors (0: of the object itself) in the sharing of the rays.
@@ -33,8 +37,8 @@ struct RayTargetSettings {
 struct RayTargets {
   std::vector<RayTarget> targets;   // objects first, then images
   std::vector<int> object_of_mesh;  // by mesh ID, -1: a mirror
-  int num_objects = 0;
-  bool any_unaimed = false;  // some object has no stratum
+  int num_objects = 0;              // with the parts of those that surround the transmitter
+  bool any_unaimed = false;         // some object has no stratum
   int64_t num_left_out =
       0;  // beyond the strata that a record can tell apart; all objects where these are too many to aim at
 };

@@ -2,23 +2,47 @@
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
+#include <utility>
 
 namespace echopath {
 
-std::vector<SceneObject> objects_of(const Scene& scene) {
-  std::vector<SceneObject> objects;
-  std::vector<int> place(scene.nodes().size(), -1);  // among the objects, by node
-  for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
-    if (scene.node_of(id).material->mirror) continue;
-    const int node = scene.meshes()[id].object;
-    int& index = place[static_cast<size_t>(node)];
-    if (index < 0) {
-      index = static_cast<int>(objects.size());
-      objects.push_back({node, {}});
-    }
-    objects[static_cast<size_t>(index)].mesh_ids.push_back(id);
+namespace {
+
+// Gathers meshes by a node above them.
+class ByNode {
+ public:
+  void add(int node, uint32_t mesh_id) {
+    const auto [entry, is_new] = place_.try_emplace(node, objects.size());
+    if (is_new) objects.push_back({node, {}});
+    objects[entry->second].mesh_ids.push_back(mesh_id);
   }
-  return objects;
+
+  std::vector<SceneObject> objects;
+
+ private:
+  std::unordered_map<int, size_t> place_;  // among the objects, by node
+};
+
+}  // namespace
+
+std::vector<SceneObject> objects_of(const Scene& scene) {
+  ByNode found;
+  for (uint32_t id = 0; id < scene.meshes().size(); ++id) {
+    if (!scene.node_of(id).material->mirror) found.add(scene.meshes()[id].object, id);
+  }
+  return std::move(found.objects);
+}
+
+std::vector<SceneObject> parts_of(const Scene& scene, const SceneObject& object) {
+  ByNode found;
+  for (const uint32_t id : object.mesh_ids) {
+    int node = scene.meshes()[id].node;
+    const auto parent = [&] { return scene.nodes()[static_cast<size_t>(node)].parent; };
+    while (node != object.node && parent() != object.node) node = parent();
+    found.add(node, id);
+  }
+  return std::move(found.objects);
 }
 
 Sphere bounding_sphere(const VerticesOf& vertices_of, const std::vector<uint32_t>& mesh_ids) {

@@ -23,6 +23,10 @@ struct SceneObject {
 // Returns the objects in the order of their first mesh.
 std::vector<SceneObject> objects_of(const Scene& scene);
 
+// Returns what an object consists of, in the order of their first mesh: the mesh of its own node, and what is below each
+// child of that node. Its parts may have parts in turn; that of a node without children is the object itself.
+std::vector<SceneObject> parts_of(const Scene& scene, const SceneObject& object);
+
 // Returns the vertices of a mesh in the axes of the caller.
 using VerticesOf = std::function<const std::vector<Vec3>&(uint32_t mesh_id)>;
 

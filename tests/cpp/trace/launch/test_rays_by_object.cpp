@@ -30,6 +30,7 @@ struct Plan {
     target.stratum.name = name + " over " + std::to_string(num_mirrors);
     target.stratum.object = *scene.find(name);
     target.stratum.num_mirrors = num_mirrors;
+    target.weight = weight_of_target(num_mirrors);
   }
   std::vector<int64_t> rays(bool field_owns_any = true, int64_t num_rays = kNumRays) const {
     return rays_by_object(scene, targets, field_owns_any, kFieldShare, num_rays);

@@ -21,13 +21,13 @@ def automatic_bars() -> Bars:
     return Bars(lambda stage: tqdm(total=100.0, desc=stage, leave=False, delay=DELAY, bar_format=_FORMAT))
 
 
-def with_progress(items: Iterable[Item], num_items: int, progress: Callable[[str, float], object] | bool | None
-                  ) -> Iterator[Item]:
-    """The items, after each of which a progress callable is told the share of those that were there; True: bars."""
+def with_progress(items: Iterable[Item], num_items: int, progress: Callable[[str, float], object] | bool | None,
+                  stage: str = "frames") -> Iterator[Item]:
+    """The items, after each of which a progress callable is told the stage and the share of those that were there; True: bars."""
     bars = automatic_bars() if progress is True else progress
     for done, item in enumerate(items, 1):
         if callable(bars):
-            bars("frames", done / num_items)
+            bars(stage, done / num_items)
         yield item
 
 

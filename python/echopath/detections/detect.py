@@ -111,7 +111,7 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     cells, power = peaks["cells"], found.power[tuple(peaks["cells"].T)]
     echoes = None if paths is None else EchoFields(paths, spectrum)
     floor = _noise_floor(spectrum, radar, labels, noise_margin_db)
-    columns = _labels_of(spectrum, cells, power, _Makers(paths, parts, labels, beside, objects, floor), echoes)
+    columns = _labels_of(spectrum, cells, power, _Makers(paths, parts, labels, beside, objects, floor), echoes, progress)
     directions = directions_of(spectrum, radar, cells, peaks["velocity"], angles or {}, progress)
     found = _joined(radar, peaks, power, directions, columns, echoes)
     return found if paths is None else dataclasses.replace(found, seed=paths.frame.seed)
@@ -135,14 +135,14 @@ def _noise_floor(spectrum, radar, labels, margin_db: float | None) -> float:
     return floor_over(_core.cell_noise_power(radar, spectrum.window), margin_db)
 
 
-def _labels_of(spectrum, cells, power, makers: _Makers, echoes) -> dict:
-    """part, share, object, ghost_type, order and class_code [N] of cells [N, 2]."""
+def _labels_of(spectrum, cells, power, makers: _Makers, echoes, progress) -> dict:
+    """part, share, object, ghost_type, order and class_code [N] of cells [N, 2]; progress: as in `detect`."""
     paths, parts, labels, beside, objects, noise_floor = makers
     found = labelling.CellLabels(len(cells))
     if paths is not None:
         of_paths = find_families(paths, objects)
-        found.take_families(*labelling.families_of_cells(of_paths, echoes, cells, noise_floor), echoes.measured(cells),
-                            labelling.resolved_families(paths, of_paths))
+        families, whole = labelling.families_of_cells(of_paths, echoes, cells, noise_floor=noise_floor, progress=progress)
+        found.take_families(families, whole, echoes.measured(cells), labelling.resolved_families(paths, of_paths, progress))
     elif labels is not None:
         found.families = labelling.families_of_labels(labels, cells)
         found.resolved = labelling.resolved_labels(labels)

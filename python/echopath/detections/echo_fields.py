@@ -7,15 +7,13 @@ import numpy as np
 
 from .. import _core
 from ..base.antennas import look_of
+from ..base.progress import with_progress
 from ..paths.cells import OUTSIDE, chirp_times, path_cells, turning_of
 from ..paths.subset import subset
-from ..spectra.windows import of_range, of_velocity, samples_of
+from ..spectra.windows import of_range, of_velocity
 from ..transmit.signals import synthesize_slots
+from .response import MAX_SWEEP, Response
 
-FLOOR_DB = 60.0        # below its peak, a window's response is followed so far
-STEPS_PER_BIN = 16     # of the table of responses, linear between them: 0.5 % of the peak
-SWEEP_STEP = 0.25      # bins, nearest: a phase of 0.1 rad at the ends of the frame; within segments, of each of them
-MAX_SWEEP = 32.0       # bins
 SEGMENTS_PER_BIN = 4   # of the frame, for echoes that go on to other bins of range during it
 MAX_SEGMENTS = 32
 BYTES_PER_FIELD = 12   # place and field of a path in a channel
@@ -23,62 +21,10 @@ HELD = 0.9999          # of the power of single paths, by the paths that are nam
 MAX_CHANNELS = 8       # whose fields are made: an echo fades in one antenna, hardly ever in eight
 MAX_MEMORY = 2 ** 28   # bytes, of the fields of all paths
 LEFT_OUT = 1e-6        # of the power of single paths in a cell: those that together hold less
+STRONGEST = 0.99       # of the bounds of the powers in a cell: those that tell how much power there is at least
 FADED = 1e-20          # of the power of the strongest path: how the phases of weaker ones turn is rounding
 SAME_BIN = 0.25        # bins of range, up to which all channels have a path in the same place
-
-
-class Response:
-    """Response of a windowed transform of n samples to a tone y bins away whose frequency rises by `sweep` bins, 1 at 0.
-
-    In parts, one for each segment of the samples. reach: bins, within which it is known
-    Model: p^2 = 2 c p - c^2 + (p - c)^2 about the centre c of a segment: it sees a tone c sweep bins nearer, whose sweep
-    bends it by the square of the segment's length less. So S segments need steps S^2 as wide for the same error.
-    Memory: the table has 8 bytes for each segment, sweep (257 / S^2 at most) and sixteenth of a bin: 33 kB a sample at most.
-    """
-
-    def __init__(self, window, n: int, largest_sweep: float = 0.0, segments: int = 1):
-        samples = samples_of(window, n)
-        self._n = n
-        self._step = SWEEP_STEP * segments ** 2
-        self._largest = min(largest_sweep, MAX_SWEEP)
-        self._middle = int(np.ceil(self._largest / self._step - 0.5))
-        self.reach = min(_reach(samples) + 0.5 * self._largest, 0.5 * n)
-        self._half = int((min(self.reach + 0.5 * self._largest, 0.5 * n) + 1.0) * STEPS_PER_BIN)
-        place = (np.arange(n) - 0.5 * (n - 1)) / n
-        parts = np.array_split(np.arange(n), segments)
-        self.centres = np.array([place[part].mean() for part in parts])  # [segments], -1/2 to 1/2
-        self._table = np.stack([self._transform(samples / samples.sum(), place - centre, part)
-                                for centre, part in zip(self.centres, parts)])
-
-    @property
-    def table_bytes(self) -> int:
-        return self._table.nbytes
-
-    def __call__(self, y, sweep=0.0):
-        """y: bins [N], folded into the axis, or [rows, N] for one segment; sweep: bins [N] or one.
-
-        Returns complex [segments or rows, N].
-        """
-        sweep, centre = np.clip(sweep, -self._largest, self._largest), self.centres[:, None]
-        y = y - centre * sweep
-        turns = np.rint(y / self._n)
-        sign = 1.0 - 2.0 * np.mod(turns * (self._n - 1), 2)  # phases are those of the samples' middle
-        row = np.clip(np.rint(sweep / self._step).astype(int) + self._middle, 0, 2 * self._middle)
-        step = (y - turns * self._n) * STEPS_PER_BIN + self._half
-        low = np.clip(step.astype(int), 0, 2 * self._half - 1)
-        part = np.clip(step - low, 0.0, 1.0)
-        segment = np.arange(len(self.centres))[:, None]
-        between = (1.0 - part) * self._table[segment, row, low] + part * self._table[segment, row, low + 1]
-        return sign * np.exp(-1j * np.pi * sweep * centre ** 2) * between
-
-    def _transform(self, samples, place, part):
-        """Of the samples of a segment, places counted from its centre, at the steps of the table, [sweeps, steps]."""
-        sweeps = self._step * np.arange(-self._middle, self._middle + 1)
-        rows = np.zeros((len(sweeps), self._n), complex)
-        rows[:, part] = samples[part] * np.exp(1j * np.pi * np.outer(sweeps, place[part] ** 2))
-        steps = np.arange(-self._half, self._half + 1)
-        values = np.fft.fft(rows, self._n * STEPS_PER_BIN)[:, steps % (self._n * STEPS_PER_BIN)]
-        return (values * np.exp(1j * np.pi * steps / STEPS_PER_BIN * (self._n - 1) / self._n)).astype(np.complex64)
+SAME_LINE = 0.1        # bins of range, over which a response is a straight line: 0.4 % of the peak
 
 
 class EchoFields:
@@ -86,14 +32,14 @@ class EchoFields:
 
     Model: delays and amplitudes of C channels, spread evenly over all: at most 8, and as many as 256 MiB hold, one at least;
     the velocity of `path_cells` and its change over the frame for the first antennas. Cells are asked for together
-    (`evaluate`): where one channel tells how strong paths are in all, the others are evaluated only for those that hold a cell
-    but for a millionth.
+    (`evaluate`). Those paths of a cell are left out that together hold less than a millionth of its power, as far as the windows
+    bound what each may give.
     paths: of `trace`, P of them; spectrum: RangeDoppler of the radar that traced them, values in sqrt(W)
     """
 
     def __init__(self, paths, spectrum):
         self._paths, self._spectrum = paths, spectrum
-        self._echoes_of_cell = {}  # {(velocity, range): echoes, as _strong_in gives them}
+        self._echoes_of_cell = {}  # {(velocity, range): (echoes with those of the channels, places [N] of its own in them)}
 
     @cached_property
     def channels(self) -> np.ndarray:
@@ -117,18 +63,20 @@ class EchoFields:
         values = _core.range_doppler(cube, radar, spectrum.window, spectrum.zero_pad)
         return float(_core.mean_power(values).max(initial=0.0))
 
-    def evaluate(self, cells) -> None:
-        """Evaluates the paths of cells [N, 2] together, which takes little more than one does."""
+    def evaluate(self, cells, progress=None) -> None:
+        """Evaluates the paths of cells [N, 2] together, which takes little more than one does; progress: as in `detect`."""
         asked = [_key(cell) for cell in cells if _key(cell) not in self._echoes_of_cell]
         if asked:
-            self._echoes_of_cell |= dict.fromkeys(asked, self._strong_in(asked))
+            held = [self._holding(cell) for cell in with_progress(asked, len(asked), progress, "paths of cells")]
+            keep = np.unique(np.concatenate(held))
+            echoes = self._in_channels({name: values[keep] for name, values in self._echoes.items()})
+            self._echoes_of_cell |= {cell: (echoes, np.searchsorted(keep, some)) for cell, some in zip(asked, held)}
 
     def fields(self, cell) -> tuple:
-        """(indices i64 [N], fields complex [C, N] in sqrt(W)) of the paths that may give to a cell (velocity, range)."""
+        """(indices i64 [N], fields complex [C, N] in sqrt(W)) of the paths that hold a cell (velocity, range)."""
         self.evaluate([cell])
-        echoes = self._echoes_of_cell[_key(cell)]
-        near = self._candidates(echoes["number"], *_key(cell))
-        return echoes["index"][near], self._gains(echoes, near, cell, echoes["shift"]) * echoes["field"][:, near]
+        echoes, held = self._echoes_of_cell[_key(cell)]
+        return echoes["index"][held], (self._gains(echoes, held, cell) * echoes["field"][:, held]).astype(complex)
 
     def paths(self, cell) -> tuple:
         """(indices i64 [N], shares [N]) of the strongest paths of a cell (velocity, range), largest first."""
@@ -141,13 +89,24 @@ class EchoFields:
         count = int(np.searchsorted(held, HELD * held[-1])) + 1
         return index[order[:count]], power[order[:count]] / held[-1]
 
-    def _gains(self, echoes: dict, near, cell, shifts) -> np.ndarray:
-        """What a cell has of the fields of some echoes, complex [C, N]; shifts: bins [C, P] of the channels."""
+    def _gains(self, echoes: dict, some, cell) -> np.ndarray:
+        """What a cell has of the fields of some echoes in the channels, complex64 [C, N]."""
+        gain, shift = self._gain(echoes, some, cell), echoes["shift"][:, some]
+        gains = np.empty(shift.shape, np.complex64)
+        for rows in self._neighbours:
+            low, high = shift[rows].min(axis=0), shift[rows].max(axis=0)
+            at_low = gain(low)
+            rise = gain(high) - at_low if len(rows) > 1 else 0.0
+            gains[rows] = at_low + (shift[rows] - low) / np.maximum(high - low, np.finfo(np.float32).tiny) * rise
+        return gains
+
+    def _gain(self, echoes: dict, some, cell):
+        """Function of a shift in range, in bins: what a cell has of the fields of some echoes so far away, complex64 [N]."""
         (velocity, distance), pad = _key(cell), self._spectrum.zero_pad
-        along = self._velocity_response((velocity - echoes["velocity"][near]) / pad, echoes["sweep"][near])
-        onward = np.outer(self._velocity_response.centres, echoes["travel"][near])
-        place = (distance - echoes["range"][near]) / pad - onward
-        return np.array([np.sum(along * self._range_response(place - shift), axis=0) for shift in shifts[:, near]])
+        along = self._velocity_response((velocity - echoes["velocity"][some]) / pad, echoes["sweep"][some])
+        onward = np.outer(self._velocity_response.centres, echoes["travel"][some])
+        place = (distance - echoes["range"][some]) / pad - onward
+        return lambda shift: np.sum(along * self._range_response(place - shift), axis=0)
 
     @cached_property
     def _echoes(self) -> dict:
@@ -171,26 +130,35 @@ class EchoFields:
                 "sweep": sweep, "first": first, "length": cells.length[index],
                 "travel": cells.velocity[index] * _duration(paths) / (range_step * pad)}
 
-    def _strong_in(self, cells) -> dict:
-        """Echoes that hold some cells, with "shift" and "field" of the channels, [C, P]."""
-        echoes = self._echoes
-        keep = np.zeros(len(echoes["index"]), bool)
-        for cell in cells:
-            near = self._candidates(echoes["number"], *cell)
-            keep[near[self._holds(echoes, near, cell)] if self._channels_are_alike else near] = True
-        chosen = {name: values[keep] for name, values in echoes.items()}
-        return chosen | dict(zip(("shift", "field"), self._of_channels(chosen)))
+    @cached_property
+    def _power(self) -> np.ndarray:
+        """Power [P] of each echo in W, in the first channel where it tells that of all, else in the strongest."""
+        field = self._echoes["first"] if self._channels_are_alike else self._in_channels(self._echoes)["field"]
+        return np.max(np.abs(np.atleast_2d(field)) ** 2, axis=0)
 
-    def _holds(self, echoes: dict, near, cell) -> np.ndarray:
-        """bool [N], the echoes that hold nearly all of the power of a cell in the first channel."""
-        gains = self._gains(echoes, near, cell, np.zeros((1, len(echoes["index"]))))[0]
-        power = np.abs(gains * echoes["first"][near]) ** 2
-        ascending = np.sort(power)
-        held = np.cumsum(ascending)
-        return power >= ascending[np.searchsorted(held, LEFT_OUT * held[-1])] if len(held) else np.zeros(0, bool)
+    def _holding(self, cell) -> np.ndarray:
+        """Places in the echoes of those that hold a cell but for LEFT_OUT of its power, [N] ascending.
 
-    def _of_channels(self, echoes: dict) -> tuple:
-        """Bins of range by which each channel has some echoes farther away than the first antennas, and fields, [C, N]."""
+        How much power there is at least is told by the echoes of the largest bounds.
+        """
+        near = self._candidates(self._echoes["number"], *cell)
+        bounds = self._bounds(near, cell)
+        strongest = near[_without_weakest(bounds, (1.0 - STRONGEST) * bounds.sum())]
+        power = np.abs(self._gain(self._echoes, strongest, cell)(0.0)) ** 2 * self._power[strongest]
+        return near[_without_weakest(bounds, LEFT_OUT * power.sum())]
+
+    def _bounds(self, some, cell) -> np.ndarray:
+        """The largest power in W that some echoes may give to a cell in a channel, [N]."""
+        (velocity, distance), pad = cell, self._spectrum.zero_pad
+        echoes = {name: self._echoes[name][some] for name in ("velocity", "range", "sweep", "travel")}
+        travel, sweep = np.abs(echoes["travel"]), np.minimum(np.abs(echoes["sweep"]), MAX_SWEEP)
+        along = self._velocity_response.bound((velocity - echoes["velocity"]) / pad, travel + sweep)
+        across = self._range_response.bound((distance - echoes["range"]) / pad, travel + 2.0 * self._largest_shift)
+        return self._power[some] * (along * across) ** 2
+
+    def _in_channels(self, echoes: dict) -> dict:
+        """Some echoes with "shift", bins of range by which each channel has them farther away than the first antennas, and
+        "field", [C, N]."""
         ascending = np.sort(echoes["index"])
         paths, column = subset(self._paths, ascending), np.searchsorted(ascending, echoes["index"])
         shift = np.empty((len(self.channels), len(column)), np.float32)
@@ -200,7 +168,7 @@ class EchoFields:
             length, start = _lengths_and_fields(paths, int(tx), self.channels[rows, 1].tolist())
             shift[rows] = 0.5 * (length[:, column] - echoes["length"]) / self._range_bin
             field[rows] = start[:, column]
-        return shift, field
+        return echoes | {"shift": shift, "field": field}
 
     @property
     def _range_bin(self) -> float:
@@ -209,12 +177,28 @@ class EchoFields:
         return _core.speed_of_light * waveform.sampling_rate / (2.0 * waveform.slope * waveform.num_samples)
 
     @cached_property
+    def _apart(self) -> np.ndarray:
+        """Bins of range by which the length of a path may differ between two channels, at most, [C, C]."""
+        tx, rx = (np.array([antennas[index].position for index in indices]) for antennas, indices in zip(
+            (self._paths.radar.transmitters, self._paths.radar.receivers), self.channels.T))
+        return sum(0.5 * np.linalg.norm(places[:, None] - places, axis=-1) / self._range_bin for places in (tx, rx))
+
+    @property
     def _largest_shift(self) -> float:
-        """Bins of range by which the length of a path may differ between channels, at most."""
-        tx, rx = (np.array([antenna.position for antenna in antennas])
-                  for antennas in (self._paths.radar.transmitters, self._paths.radar.receivers))
-        apart = [np.linalg.norm(places - places[0], axis=1).max() for places in (tx, rx)]
-        return 0.5 * sum(apart) / self._range_bin
+        """Bins of range by which the length of a path may differ from that of the first channel, at most."""
+        return float(self._apart[0].max())
+
+    @cached_property
+    def _neighbours(self) -> list:
+        """Lists of channels between which no path goes farther than SAME_LINE."""
+        groups = []
+        for channel, apart in enumerate(self._apart):
+            near = next((group for group in groups if apart[group].max() <= SAME_LINE), None)
+            if near is None:
+                groups.append([channel])
+            else:
+                near.append(channel)
+        return groups
 
     @cached_property
     def _channels_are_alike(self) -> bool:
@@ -253,10 +237,11 @@ def _key(cell) -> tuple:
     return int(cell[0]), int(cell[1])
 
 
-def _reach(samples) -> int:
-    """Bins beyond which the response stays FLOOR_DB below its peak."""
-    response = np.abs(np.fft.rfft(samples, 8 * len(samples))) / samples.sum()
-    return int(np.ceil(np.flatnonzero(response > 10.0 ** (-FLOOR_DB / 20.0))[-1] / 8)) + 1
+def _without_weakest(power, least: float) -> np.ndarray:
+    """bool [N], all of some powers [N] in W but the weakest that together have no more than `least` W."""
+    ascending = np.sort(power)
+    held = np.cumsum(ascending)
+    return power >= ascending[np.searchsorted(held, min(least, held[-1]))] if len(held) else np.zeros(0, bool)
 
 
 def _duration(paths) -> float:

@@ -5,6 +5,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import array
+from ..base.progress import with_progress
 from ..labels.cell_owners import CellOwners
 from ..paths.resolution import mean_powers
 from .detections import NOISE
@@ -49,17 +50,18 @@ def label_powers(spectrum, labels, cells) -> tuple:
     return list(labels.part_names), labels.power[:, velocity, distance], labels.whole[velocity, distance]
 
 
-def families_of_cells(families, echoes, cells, noise_floor: float) -> tuple:
+def families_of_cells(families, echoes, cells, *, noise_floor: float, progress=None) -> tuple:
     """The family that has each of cells [N, 2] by the rule of labels, None without echoes, and power [N] of all as fields, W.
 
-    Powers are means over the channels of the echoes' fields. noise_floor: W, from which on labels take a cell for more than noise
+    Powers are means over the channels of the echoes' fields.
+    noise_floor: W, from which on labels take a cell for more than noise; progress: as in `detect`
     """
     owners = CellOwners((len(cells),), families.families, noise_floor)
     own, joint = np.zeros((len(families), len(cells))), np.zeros((len(owners.rivals), len(cells)))
     rival_of_family = owners.rival_of_family
     whole = np.zeros(len(cells))
-    echoes.evaluate(cells)
-    for i, cell in enumerate(cells):
+    echoes.evaluate(cells, progress)
+    for i, cell in enumerate(with_progress(cells, len(cells), progress, "families of cells")):
         index, field = echoes.fields(cell)
         sums = _sums(field, families.family_of_path[index], len(families))
         own[:, i] = np.mean(np.abs(sums) ** 2, axis=0)
@@ -95,9 +97,9 @@ def families_of_labels(labels, cells) -> list:
     return [family(cell) for cell in cells]
 
 
-def resolved_families(paths, families) -> set:
-    """The families whose mean received power the rays know."""
-    powers = mean_powers(paths, families, {}).of_families
+def resolved_families(paths, families, progress=None) -> set:
+    """The families whose mean received power the rays know; progress: as in `detect`."""
+    powers = mean_powers(paths, families, {}, progress).of_families
     return {family for family, power in zip(families.families, powers) if power.resolved}
 
 

@@ -34,6 +34,15 @@ def test_a_file_that_cannot_be_written_leaves_none(spheres, tmp_path):
         ep.detect(spectrum, radar).to_csv(tmp_path / "file" / "points.csv")
 
 
+def test_progress_tells_of_the_paths_behind_the_cells(spheres):
+    radar, paths, spectrum = spheres
+    seen = {}
+    found = ep.detect(spectrum, radar, paths=paths, progress=lambda stage, fraction: seen.setdefault(stage, []).append(fraction))
+    for stage in ("paths of cells", "families of cells"):
+        np.testing.assert_allclose(seen[stage], np.arange(1, len(found) + 1) / len(found))
+    assert {"cfar", "find_peaks", "received power", "estimate_angles"} <= set(seen)
+
+
 def test_nothing_found_is_a_well_shaped_result(spheres, tmp_path):
     radar, paths, _ = spheres
     empty = ep.range_doppler(np.zeros((1, 8, 64, 256), complex), radar)
@@ -132,9 +141,9 @@ def test_a_map_whose_power_is_not_finite_is_refused():
 def test_detections_of_a_frame_have_the_noise_margin_of_its_labels(spheres, monkeypatch, labels, margin_db):
     floors = []
 
-    def watched(*arguments):
-        floors.append(arguments[-1])
-        return of_cells(*arguments)
+    def watched(*arguments, noise_floor, **others):
+        floors.append(noise_floor)
+        return of_cells(*arguments, noise_floor=noise_floor, **others)
 
     of_cells = labelling.families_of_cells
     monkeypatch.setattr(labelling, "families_of_cells", watched)

@@ -5,14 +5,20 @@ import numpy as np
 import pytest
 
 import echopath as ep
-from echopath.detections.echo_fields import EchoFields, Response
-from support.scenes.small_spheres import TARGETS, at, nearest, radar_with
+from echopath.detections import echo_fields
+from echopath.detections.echo_fields import EchoFields
+from echopath.detections.response import Response
+from echopath.spectra.windows import samples_of
+from support.scenes.small_spheres import TARGETS, WAVELENGTH, at, nearest, radar_with, scene_of
 from support.shapes import lambert
 
 TABLE = 0.006  # of the peak: straight lines between the steps of the table
 NEAREST_SWEEP = 0.04  # of the peak: 0.1 rad at the ends of the frame, where it is most, averaged over the frame
 MODEL = 0.1    # of fields: the third derivative of a length, and the first antennas' states for all chirps
 HELD = 0.95    # of a cell's power, by the paths named
+LEFT_OUT = 1e-5  # of the power of single paths in a cell; ten times what the bounds promise
+LINE = 0.02    # of the peak: two tables, and straight lines between channels
+BEYOND = 2.0   # times its bound may be the field of a single tone that moves, where responses have deep gaps
 
 
 def synthesised_power(paths, chosen, radar, spectrum, cell):
@@ -72,17 +78,75 @@ def test_paths_that_are_left_out_change_next_to_nothing(movers, monkeypatch):
     """Against the fields of all paths within reach of a cell, of which fewer have its power but for a millionth."""
     radar, paths, cube = movers
     spectrum = ep.range_doppler(ep.add_noise(cube, radar, seed=2), radar)
+    cells = ep.detect(spectrum, radar, paths=paths).cells[:6]
     some = EchoFields(paths, spectrum)
-    assert some._channels_are_alike
-    monkeypatch.setattr(EchoFields, "_channels_are_alike", False)
+    some.evaluate(cells)
+    monkeypatch.setattr(echo_fields, "LEFT_OUT", 0.0)
     everything, counts = EchoFields(paths, spectrum), []
-    for cell in ep.detect(spectrum, radar, paths=paths).cells[:6]:
+    for cell in cells:
         (index, field), (all_of_them, exact) = (one.fields(cell) for one in (some, everything))
         counts.append(len(index) / len(all_of_them))
         power = np.sum(np.abs(exact) ** 2, axis=1)
         np.testing.assert_allclose(field, exact[:, np.isin(all_of_them, index)], rtol=1e-6)  # single precision
-        assert np.all(np.sum(np.abs(field) ** 2, axis=1) > (1.0 - 1e-4) * power)
+        assert np.all(np.sum(np.abs(field) ** 2, axis=1) > (1.0 - LEFT_OUT) * power)
     assert min(counts) < 0.6
+
+
+@pytest.mark.parametrize("spacing, is_alike", [(0.5 * WAVELENGTH, True), (0.008, True), (0.05, False)])
+def test_the_field_of_a_single_path_is_that_of_its_signal(spacing, is_alike):
+    """At an echo and beside it, in each of eight channels: in one place of the map, in several, and bins of range apart."""
+    radar = radar_with(receivers=8, spacing=spacing)
+    paths = ep.trace(scene_of(TARGETS), radar, num_rays=300, max_bounces=1)
+    spectrum = ep.range_doppler(ep.synthesize(paths, radar), radar)
+    echoes = EchoFields(paths, spectrum)
+    assert echoes._channels_are_alike == is_alike
+    nearest_cell = ep.path_cells(paths, spectrum)
+    for chosen in (np.argmax(np.where(paths.mesh_id[paths.offsets] == number, np.abs(paths.amplitude), 0.0))
+                   for number in range(len(TARGETS))):
+        alone = ep.synthesize(paths.select(np.arange(paths.num_paths) == chosen), radar, method="direct")
+        values = ep.range_doppler(alone, radar).values[0]
+        for slow, far in ((0, 0), (1, -1), (-2, 1)):
+            cell = nearest_cell.velocity_index[chosen] + slow, nearest_cell.range_index[chosen] + far
+            index, field = echoes.fields(cell)
+            model, exact = field[:, np.flatnonzero(index == chosen)[0]], values[:, *cell]
+            turn = exact[0] * np.conj(model[0]) / np.abs(exact[0] * model[0])  # of all fields of a cell: where samples begin
+            np.testing.assert_allclose(turn * model, exact, rtol=0, atol=LINE * np.abs(values).max())
+
+
+def test_an_echo_counts_that_only_the_last_antennas_have_in_the_cell():
+    """Seen from the first ones it is bins away from a stronger echo, which they alone have there."""
+    radar, scene = radar_with(receivers=8, spacing=0.4), ep.Scene()
+    distance, azimuth, aperture = 10.0, 0.8, 7 * 0.4
+    weak = (4.0 * distance ** 2 - aperture ** 2) / (4.0 * distance - 2.0 * aperture * np.sin(azimuth))  # law of cosines
+    for name, radius, place, angle in (("strong", 0.9, distance, 0.0), ("weak", 0.02, weak, azimuth)):
+        scene.add(ep.actors.sphere(radius), name=name, material="metal", smooth=True, position=tuple(at(place + radius, angle)))
+    paths = ep.trace(scene, radar, num_rays=3000, max_bounces=1)
+    spectrum = ep.range_doppler(ep.synthesize(paths, radar), radar)
+    cells, mesh = ep.path_cells(paths, spectrum), paths.mesh_id[paths.offsets]
+    far = cells.range_index[np.argmax(np.abs(paths.amplitude))]
+    assert np.median(cells.range_index[mesh == 1]) > far + 4
+    echoes = EchoFields(paths, spectrum)
+    index, field = echoes.fields((len(spectrum.velocity) // 2, far))
+    weak_power = np.abs(field[:, mesh[index] == 1].sum(axis=1)) ** 2
+    assert weak_power[-1] > 1e4 * weak_power[0]
+
+
+@pytest.mark.parametrize("window", ["rect", "hann", "hamming"])
+@pytest.mark.parametrize("travel", [0.0, 0.3, 1.0, 8.0])
+@pytest.mark.parametrize("sweep", [0.0, 0.5, 8.0])
+def test_no_path_gives_more_to_a_cell_than_its_bound(window, travel, sweep):
+    """Of tones that move on in range and in velocity during the frame, summed over all samples; power on the mean."""
+    n, rng = 64, np.random.default_rng(5)
+    samples = samples_of(window, n) / samples_of(window, n).sum()
+    place = (np.arange(n) - 0.5 * (n - 1)) / n
+    slow, far = rng.uniform(-16.0, 16.0, 400), rng.uniform(-16.0, 16.0, 400)
+    across = np.exp(-2j * np.pi * (far[:, None] - travel * place)[..., None] * place) @ samples  # [tones, chirps]
+    along = np.exp(-2j * np.pi * np.outer(slow, place) + 1j * np.pi * sweep * place ** 2)
+    field = np.abs((along * across) @ samples)
+    response = Response(window, n, largest_sweep=sweep)
+    bound = response.bound(slow, travel + sweep) * response.bound(far, travel)
+    assert np.all(field <= BEYOND * bound) and np.sum(field ** 2) < np.sum(bound ** 2)
+    assert bound.max() <= 1.0
 
 
 def test_several_receivers_at_once_have_the_echoes_that_each_has_by_itself(movers):

@@ -1,0 +1,90 @@
+"""The response of a windowed transform to tones."""
+from __future__ import annotations
+
+import numpy as np
+
+from ..spectra.windows import samples_of
+
+FLOOR_DB = 60.0        # below its peak, a window's response is followed so far
+STEPS_PER_BIN = 16     # of the table of responses, linear between them: 0.5 % of the peak
+SWEEP_STEP = 0.25      # bins, nearest: a phase of 0.1 rad at the ends of the frame; within segments, of each of them
+MAX_SWEEP = 32.0       # bins
+
+
+class Response:
+    """Response of a windowed transform of n samples to a tone y bins away whose frequency rises by `sweep` bins, 1 at 0.
+
+    In parts, one for each segment of the samples. reach: bins, within which it is known
+    Model: p^2 = 2 c p - c^2 + (p - c)^2 about the centre c of a segment: it sees a tone c sweep bins nearer, whose sweep
+    bends it by the square of the segment's length less. So S segments need steps S^2 as wide for the same error.
+    Memory: the table has 8 bytes for each segment, sweep (257 / S^2 at most) and sixteenth of a bin: 33 kB a sample at most.
+    """
+
+    def __init__(self, window, n: int, largest_sweep: float = 0.0, segments: int = 1):
+        samples = samples_of(window, n)
+        self._n = n
+        self._step = SWEEP_STEP * segments ** 2
+        self._largest = min(largest_sweep, MAX_SWEEP)
+        self._middle = int(np.ceil(self._largest / self._step - 0.5))
+        self._envelope = _envelope(samples)
+        self.reach = min(_reach(self._envelope) + 0.5 * self._largest, 0.5 * n)
+        self._half = int((min(self.reach + 0.5 * self._largest, 0.5 * n) + 1.0) * STEPS_PER_BIN)
+        place = (np.arange(n) - 0.5 * (n - 1)) / n
+        parts = np.array_split(np.arange(n), segments)
+        self.centres = np.array([place[part].mean() for part in parts])  # [segments], -1/2 to 1/2
+        self._table = np.stack([self._transform(samples / samples.sum(), place - centre, part)
+                                for centre, part in zip(self.centres, parts)])
+
+    @property
+    def table_bytes(self) -> int:
+        return self._table.nbytes
+
+    def __call__(self, y, sweep=0.0):
+        """y: bins [N], folded into the axis, or [rows, N] for one segment; sweep: bins [N] or one.
+
+        Returns complex64 [segments or rows, N].
+        """
+        sweep, centre = np.clip(sweep, -self._largest, self._largest), self.centres[:, None]
+        y = y - centre * sweep
+        turns = np.rint(y / self._n)
+        sign = 1 - 2 * (turns.astype(int) * (self._n - 1) & 1)  # phases are those of the samples' middle
+        row = np.clip(np.rint(sweep / self._step).astype(int) + self._middle, 0, 2 * self._middle)
+        step = (y - turns * self._n) * STEPS_PER_BIN + self._half
+        low = np.clip(step.astype(int), 0, 2 * self._half - 1)
+        part = (sign * np.clip(step - low, 0.0, 1.0)).astype(np.float32)
+        _, num_rows, num_steps = self._table.shape
+        place = (np.arange(len(centre))[:, None] * num_rows + row) * num_steps + low
+        first, second = self._table.take(place), self._table.take(place + 1)
+        between = sign.astype(np.float32) * first + part * (second - first)
+        bend = (np.pi * sweep * centre ** 2).astype(np.float32)
+        return (np.cos(bend) - 1j * np.sin(bend)) * between
+
+    def bound(self, y, spread):
+        """The largest that the response may be, [N], for a tone y [N] bins away that passes over `spread` [N] bins.
+
+        Model: that of the tone's nearest bin, and no less than FLOOR_DB below the peak. Single tones may exceed it where
+        they move, twice at most for windows without flat sidelobes; the power of many does not.
+        """
+        far = np.abs(y - np.rint(y / self._n) * self._n) - 0.5 * spread
+        step = np.clip((far * STEPS_PER_BIN).astype(int), 0, len(self._envelope) - 1)
+        return np.maximum(self._envelope.take(step), 10.0 ** (-FLOOR_DB / 20.0))
+
+    def _transform(self, samples, place, part):
+        """Of the samples of a segment, places counted from its centre, at the steps of the table, [sweeps, steps]."""
+        sweeps = self._step * np.arange(-self._middle, self._middle + 1)
+        rows = np.zeros((len(sweeps), self._n), complex)
+        rows[:, part] = samples[part] * np.exp(1j * np.pi * np.outer(sweeps, place[part] ** 2))
+        steps = np.arange(-self._half, self._half + 1)
+        values = np.fft.fft(rows, self._n * STEPS_PER_BIN)[:, steps % (self._n * STEPS_PER_BIN)]
+        return (values * np.exp(1j * np.pi * steps / STEPS_PER_BIN * (self._n - 1) / self._n)).astype(np.complex64)
+
+
+def _envelope(samples) -> np.ndarray:
+    """The largest response to a tone that is so many steps of the table away or farther, up to half the axis."""
+    response = np.abs(np.fft.rfft(samples, STEPS_PER_BIN * len(samples))) / samples.sum()
+    return np.maximum.accumulate(response[::-1])[::-1]
+
+
+def _reach(envelope) -> int:
+    """Bins beyond which the response stays FLOOR_DB below its peak."""
+    return int(np.ceil(np.flatnonzero(envelope > 10.0 ** (-FLOOR_DB / 20.0))[-1] / STEPS_PER_BIN)) + 1

@@ -147,7 +147,8 @@ def test_command_writes_numbers_and_picture(tmp_path, capsys, monkeypatch):
     assert (tmp_path / "b" / "crowd.png").stat().st_size > 10_000
     assert [len(street["rows"]) for street in results["streets"]] == [len(names)] * 2
     assert {row["kind"] for row in results["coverage"]["rows"]} == {echo.kind for echo in of_class.values()}
-    assert [row["kind"] for row in results["coverage"]["classes"]] == ["coherent", "diffuse", "ghost", "two bounces"]
+    assert [row["kind"] for row in results["coverage"]["classes"]] == ["coherent", "diffuse", "ghost", "two bounces",
+                                                                        "one batch"]
     assert [row["mirrors"] for row in results["mirrors"]] == [51] and sum(results["mirrors"][0]["paths"]) > 0
     told = capsys.readouterr().out
     assert "person at 40 m among 2400 flat objects" in told and "must reach" in told

@@ -1,4 +1,5 @@
-"""How often the interval that a run claims covers the true value: coherent, diffuse, ghost and two-bounce echoes."""
+"""How often the interval that a run claims covers the true value: coherent, diffuse, ghost and two-bounce echoes, and crowns by
+one batch of rays."""
 from __future__ import annotations
 
 import numpy as np
@@ -11,13 +12,12 @@ from ..steps import told
 from .echoes import Echo, all_echoes, class_of
 
 # Scenes of each body, by class of echoes: the slow ones get fewer, so that all together take some ten minutes.
-NUM_SEEDS = {"coherent": 40, "diffuse": 60, "ghost": 40, "two bounces": 20}
+NUM_SEEDS = {"coherent": 40, "diffuse": 60, "ghost": 40, "two bounces": 20, "one batch": 60}
 QUICK_SEEDS = 4
 RAYS, QUICK_RAYS = (2 ** 12, 2 ** 14, 2 ** 16), (2 ** 12,)
 TRUE_RAYS, TRUE_RAYS_OF_EACH, QUICK_TRUE_RAYS = 2 ** 22, 2 ** 20, 2 ** 16
 TRUE_DB = 0.1           # a trace that does not know a power to this is no truth, half its own interval
 MOST_DRAWN = 2          # times as many seeds as are wanted, to find scenes whose truth is known
-BATCHES = 8
 WANTED = (0.90, 0.98)   # of a class of echoes
 WANTED_OF_ONE = 0.80    # at least, of one body and number of rays
 FIRST_SEED = 1000
@@ -43,7 +43,7 @@ def measure_coverage(*, quick: bool, seeds: int | None = None, progress=None) ->
 
 def _claims(echo: Echo, drawn: list, rays: tuple) -> dict:
     """{rays: (what runs claim, the truth), both by seed}"""
-    return {count: ([power_of(echo, scene, num_rays=count, seed=seed, batches=BATCHES) for seed, scene, _ in drawn],
+    return {count: ([_claim(echo, scene, num_rays=count, seed=seed) for seed, scene, _ in drawn],
                     [truth for _, _, truth in drawn]) for count in rays}
 
 
@@ -104,6 +104,11 @@ def covered(found: list, truths: list, num_independent: int | None = None) -> di
             "mean_error_db": float(10.0 * np.log10(max(np.mean(ratios), 1e-12))),
             "claimed_db": float(np.median([half for _, half in found])),
             "unresolved": int(sum(not one.resolved for one, _ in found))}
+
+
+def _claim(echo: Echo, scene, **settings):
+    """What a run with the echo's own batches and sampler claims, as `power_of`."""
+    return power_of(echo, scene, batches=echo.batches, sampler=echo.sampler, **settings)
 
 
 def power_of(echo: Echo, scene, **settings):

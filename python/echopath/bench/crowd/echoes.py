@@ -27,14 +27,15 @@ FAR = 4e4                         # m
 RADII = (0.3, 2.0)                # m, of spheres; geometrical optics of smaller ones errs by .04 dB itself
 RANGES = (20.0, 100.0)            # radii
 AWAY = (0.7, 0.3)                 # m, of the flank along x and y to both sides
+BATCHES = 8                       # of rays
 EDGE = 0.4                        # of the root of the least radius of curvature times the wavelength: a tenth of what shows
 
 
 @dataclasses.dataclass(frozen=True)
 class Echo:
     """kind: for people, the class of echoes before a comma; draw: callable (seed) -> (scene, truth in W, or None for the mean
-    power of many rays); selection: of its paths; objects: names of what they touch first, for what no ray has met; max_bounces:
-    of the trace; differs: whether each seed has a scene of its own"""
+    power of many rays); selection: of its paths; objects: names of what they touch first, for what no ray has met; max_bounces,
+    batches, sampler: of the trace; differs: whether each seed has a scene of its own"""
 
     kind: str
     draw: Callable
@@ -42,6 +43,8 @@ class Echo:
     objects: dict | None = None
     max_bounces: int = 1
     differs: bool = False
+    batches: int = BATCHES
+    sampler: str = "lattice"
 
     @property
     def of_class(self) -> str:
@@ -68,7 +71,10 @@ def all_echoes() -> list[Echo]:
             Echo("two bounces, ball then flank", lambda seed: _flank_and_ball(seed, ("ball", "flank")), "T 'ball' 'flank' R",
                  None, 2),
             Echo("two bounces, flank then ball", lambda seed: _flank_and_ball(seed, ("flank", "ball")), "T 'flank' 'ball' R",
-                 None, 2)]
+                 None, 2),
+            Echo("one batch, tree", lambda seed: (_tree(), None), "T 'tree/*' R", batches=1),
+            Echo("one batch, tree by random directions", lambda seed: (_tree(), None), "T 'tree/*' R", batches=1,
+                 sampler="random")]
 
 
 def ellipsoids(bodies: dict):
@@ -143,6 +149,13 @@ def _direction(draw):
     """Uniform over the sphere."""
     vector = draw.normal(size=3)
     return vector / np.linalg.norm(vector)
+
+
+def _tree():
+    """A crown, of which neighbouring rays meet leaves that face any way."""
+    scene = ep.Scene()
+    scene.add(ep.actors.tree(), name="tree", position=(15.0, 0.0, 0.0))
+    return scene
 
 
 def _far_patch():

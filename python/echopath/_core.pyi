@@ -2422,7 +2422,7 @@ class Paths:
     @property
     def flags(self) -> numpy.typing.NDArray[numpy.uint32]:
         """
-        [P] bits: 1, recorded as the reversal of another path; 2, of the second half of the rays; 4, with points on 1 + (flags >> 3 & 3) edges: hit flags >> 8 & 63 is the first, for one of flags >> 16 pieces of it; 32, beside 4, around an edge to a mirror; 64, diffuse, and counts for others that were left out
+        [P] bits: 1, recorded as the reversal of another path; 2, of the second half of the rays; 4, with points on 1 + (flags >> 3 & 3) edges: hit flags >> 8 & 63 is the first, for one of flags >> 16 pieces of it; 32, beside 4, around an edge to a mirror; 64, diffuse, and counts for others that were left out; without 4, flags >> 8 & 63 is the place of its ray among its neighbours in the lattice: 1 to 63 over and over, 0 not known
         """
     @property
     def frame(self) -> TraceFrame:
@@ -3486,7 +3486,7 @@ def virtual_array(radar: Radar) -> VirtualArray:
     """
 def visibility(scene: Scene, radar: Radar, objects: collections.abc.Sequence[tuple[str, collections.abc.Sequence[str]]] | None, time: float | None, num_directions: int, progress: typing.Any) -> list[typing.Any]:
     """
-    [(name, of the transmitter, of the receiver), ...], each a tuple of the fields of echopath.VisibilityFromEnd.
+    [(name, mesh IDs, of the transmitter, of the receiver), ...], the last two each a tuple of the fields of echopath.VisibilityFromEnd.
     """
 def visibility_in_trace(paths: Paths, radar: Radar, objects: collections.abc.Sequence[tuple[str, collections.abc.Sequence[str]]] | None, time: float | None, num_directions: int, progress: typing.Any) -> list[typing.Any]:
     """

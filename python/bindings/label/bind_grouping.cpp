@@ -161,7 +161,8 @@ py::tuple visibility_tuple(const VisibilityFromEnd& seen) {
 py::list sight_list(const std::vector<ObjectVisibility>& seen) {
   py::list out;
   for (const ObjectVisibility& object : seen) {
-    out.append(py::make_tuple(object.name, visibility_tuple(object.transmitter), visibility_tuple(object.receiver)));
+    out.append(py::make_tuple(object.name, py::tuple(py::cast(object.mesh_ids)), visibility_tuple(object.transmitter),
+                              visibility_tuple(object.receiver)));
   }
   return out;
 }
@@ -200,7 +201,8 @@ void bind_visibility(py::module_& m) {
       },
       py::arg("scene"), py::arg("radar"), py::arg("objects"), py::arg("time"), py::arg("num_directions"),
       py::arg("progress"),
-      "[(name, of the transmitter, of the receiver), ...], each a tuple of the fields of echopath.VisibilityFromEnd.");
+      "[(name, mesh IDs, of the transmitter, of the receiver), ...], the last two each a tuple of the fields of "
+      "echopath.VisibilityFromEnd.");
 }
 
 void bind_family(py::module_& m) {

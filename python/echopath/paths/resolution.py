@@ -220,7 +220,7 @@ def _unseen(paths, objects, names, progress) -> list:
 def _advice_to_meet(paths, seen) -> str:
     if paths.num_paths < paths.frame.statistics.num_paths:
         return "its paths may be among those that were left out of this record"
-    times = max(2.0, UNSEEN_HITS / max(_ray_density(paths, seen.name) * _visible_angle(seen), 1e-9))
+    times = max(2.0, UNSEEN_HITS / max(_ray_density(paths, seen.mesh_ids) * _visible_angle(seen), 1e-9))
     return f"{_rays(paths, times)} to meet it"
 
 
@@ -233,13 +233,13 @@ def unmet_interval(paths, seen) -> Interval:
     """
     if not (seen.transmitter.in_view and seen.receiver.in_view and seen.visible_share > 0.0):
         return Interval(0.0, 0.0, 0.0)
-    density, radar = _ray_density(paths, seen.name), paths.radar
+    density, radar = _ray_density(paths, seen.mesh_ids), paths.radar
     solid_angle = min(_visible_angle(seen), UNSEEN_HITS / max(density, 1e-300))
     distances = seen.transmitter.distance, max(seen.receiver.distance, 1e-3)
     wavelength = _core.speed_of_light / radar.waveform.start_frequency
     area = solid_angle * distances[0] ** 2
     most = math.pi * distances[0] * distances[1]  # of a mirror without end, whatever its area
-    is_rough = all(mesh.material.scattering == 1.0 for mesh in paths.scene.meshes if _belongs(mesh, seen.name))
+    is_rough = all(paths.scene.meshes[mesh].material.scattering == 1.0 for mesh in seen.mesh_ids)
     cross_section = 4.0 * area + (0.0 if is_rough else min(4.0 * math.pi * area ** 2 / wavelength ** 2, most))
     gain = math.prod(max(one.pattern.peak_gain for one in antennas) for antennas in (radar.transmitters, radar.receivers))
     high = (radar.transmit_power * gain * wavelength ** 2 * cross_section
@@ -251,7 +251,21 @@ def _visible_angle(seen) -> float:
     return seen.transmitter.solid_angle * seen.transmitter.visible_share
 
 
-def _ray_density(paths, name: str) -> float:
-    """Rays per sr of the stratum that aims at an object, or of the field of view."""
+def _ray_density(paths, mesh_ids) -> float:
+    """Rays per sr of the stratum that aims at an object, or of the thinnest of those at its things, or of the field of view."""
     strata = paths.frame.strata
-    return next((stratum.ray_density for stratum in strata if stratum.name == name), strata[-1].ray_density if strata else 0.0)
+    above = _nodes_above(paths.scene, mesh_ids)
+    own = [stratum.ray_density for stratum in strata if stratum.object in above and not stratum.num_mirrors
+           and stratum.focus_of < 0]
+    return min(own, default=strata[-1].ray_density if strata else 0.0)
+
+
+def _nodes_above(scene, mesh_ids) -> set:
+    """Indices of the nodes of meshes and of all above them."""
+    nodes, meshes, above = scene.nodes, scene.meshes, set()
+    for mesh in mesh_ids:
+        node = meshes[mesh].node
+        while node >= 0 and node not in above:
+            above.add(node)
+            node = nodes[node].parent
+    return above

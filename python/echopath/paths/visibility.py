@@ -58,10 +58,12 @@ class ObjectVisibility:
     """How much of an object the radar can see; made by `visibility`.
 
     name: of the object
+    mesh_ids: tuple of the IDs of its meshes
     transmitter, receiver: visibility from each end, with distances in m
     """
 
     name: str
+    mesh_ids: tuple
     transmitter: VisibilityFromEnd
     receiver: VisibilityFromEnd
 
@@ -157,5 +159,5 @@ def _keep_geometry(paths) -> None:
 
 
 def _as_objects(found) -> list:
-    return [ObjectVisibility(name, VisibilityFromEnd(*transmitter), VisibilityFromEnd(*receiver))
-            for name, transmitter, receiver in found]
+    return [ObjectVisibility(name, mesh_ids, VisibilityFromEnd(*transmitter), VisibilityFromEnd(*receiver))
+            for name, mesh_ids, transmitter, receiver in found]

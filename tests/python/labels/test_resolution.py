@@ -141,6 +141,20 @@ def test_what_no_ray_has_met_is_not_known_to_be_nothing():
     assert "rays or more to meet it" in patch.advice
 
 
+def test_what_may_be_there_does_not_hang_on_the_name_that_an_object_has_for_labels():
+    """A metal plate below a node that surrounds the radar, too small for so few rays to meet it."""
+    scene = ep.Scene()
+    town = scene.add(None, name="town")
+    scene.add(shapes.ground((200.0, 200.0), z=-1.0), name="ground", material=ep.Material(reflectivity=0.3, scattering=1.0),
+              parent=town)
+    scene.add(shapes.plate(0.01, 0.01), name="plate", material=ep.Material.metal(), parent=town, position=(40.0, 0.0, 0.0))
+    paths = ep.trace(scene, targets.radar(), max_bounces=1, num_rays=2)
+    by_name, by_label = (next(one for one in ep.unresolved(paths, objects) if one.name == name)
+                         for name, objects in (("town/plate", ["town/plate"]), ("sign", {"sign": "town/plate"})))
+    assert by_label.interval == by_name.interval
+    assert by_label.interval.high > 0.0
+
+
 def test_a_name_for_a_power_that_the_rays_know_is_not_given():
     paths = ep.trace(far_patch(), build_radar(), num_rays=1 << 15, max_bounces=1)
     assert ep.unresolved(paths) == []

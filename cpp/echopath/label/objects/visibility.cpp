@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "echopath/base/errors.h"
 #include "echopath/base/threads/parallel.h"
@@ -199,9 +200,10 @@ std::vector<ObjectVisibility> visibility(const Scene& scene, const Radar& radar,
   if (job) job->start(surfaces.num_objects);
   parallel_for(surfaces.num_objects, [&](int64_t i) {
     const auto object = static_cast<uint32_t>(i);
-    const auto distances = nearest.distances({ends[0].position, ends[1].position}, surfaces.meshes_of(object));
+    std::vector<uint32_t> mesh_ids = surfaces.meshes_of(object);
+    const auto distances = nearest.distances({ends[0].position, ends[1].position}, mesh_ids);
     const auto visibilities = visibilities_of(*geometry, surfaces, object, ends, distances, settings.num_directions);
-    seen[object] = {surfaces.names[object], visibilities[0], visibilities[1]};
+    seen[object] = {surfaces.names[object], std::move(mesh_ids), visibilities[0], visibilities[1]};
   }, job);
   return seen;
 }

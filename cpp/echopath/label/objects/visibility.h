@@ -1,5 +1,6 @@
 #pragma once
 // Finds by shadow rays which objects a radar can see: the share of each that nothing else hides.
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,6 +28,7 @@ struct VisibilityFromEnd {
 
 struct ObjectVisibility {
   std::string name;
+  std::vector<uint32_t> mesh_ids;
   VisibilityFromEnd transmitter, receiver;
 };
 

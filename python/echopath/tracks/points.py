@@ -8,10 +8,10 @@ import numpy as np
 
 from ..arguments.checks import array, refused
 from ..arguments.iterables import iterable
+from ..base.rates import radar_rate
 from ..detections import Detections
 
 _POINTS = array("[D, 2]", "[D, 3]", finite=True)
-_STEP = 1e-3  # s, of the differences that give the radar's velocity
 _NONE = np.zeros((0, 3)), np.zeros(0), np.zeros(0), np.zeros(3)
 
 
@@ -58,16 +58,7 @@ class Carrier:
 def carrier_of(radar, time: float) -> Carrier:
     """Of a radar at a time in s."""
     ambiguity = 2.0 * radar.waveform.max_velocity(radar.num_slots)
-    return Carrier(radar.world_from_radar(time), _velocity_of(radar, time), ambiguity)
-
-
-def _velocity_of(radar, time: float) -> np.ndarray:
-    """[3] m/s in the world, at the ends of its motion on the side that it has."""
-    if radar.motion is None:
-        return np.zeros(3)
-    begin, end = radar.motion.span
-    before, after = max(time - _STEP, begin), min(time + _STEP, end)
-    return (radar.world_from_radar(after) - radar.world_from_radar(before))[:3, 3] / (after - before)
+    return Carrier(radar.world_from_radar(time), radar_rate(radar, time)[:3, 3], ambiguity)
 
 
 def points_of(detections, carrier: Carrier | None, range_std: float, azimuth_std: float, speed_std: float | None,

@@ -7,9 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import _core
+from ..base.rates import rate_of, step_within
 from ..base.triangles import areas_of
-
-STEP = 5e-5  # s, of differences over time; their error for a point 0.3 m from an axis of 50 turns/s is below 1e-5 m/s
 
 
 class Boxes(NamedTuple):
@@ -32,17 +31,10 @@ def boxes_at(scene, globs_of_objects, time: float, duration: float) -> Boxes:
 
     globs_of_objects: list [N] of lists of globs; duration: s, of the frame about that time, which differences stay within
     """
-    step = min(STEP, 0.25 * duration) if duration > 0.0 else STEP
-    rows = [_Body(scene, globs).box(time, step) for globs in globs_of_objects]
+    rows = [_Body(scene, globs).box(time, step_within(duration)) for globs in globs_of_objects]
     columns = zip(*rows) if rows else [[]] * len(Boxes._fields)
     shapes = {"rotation": (-1, 3, 3)}
     return Boxes(*(np.array(column, float).reshape(shapes.get(name, (-1, 3))) for name, column in zip(Boxes._fields, columns)))
-
-
-def rate_of(value, time: float, step: float):
-    """Derivative at `time` in s of value(time), an array, by differences of fourth order; 0 of what stays."""
-    near, far = (value(time + reach) - value(time - reach) for reach in (step, 2.0 * step))
-    return (8.0 * near - far) / (12.0 * step)
 
 
 class _Body:

@@ -11,11 +11,12 @@ from ..arguments.checks import checked, refused
 from ..arguments.iterables import iterable
 from ..arguments.objects import Objects, named_globs, objects_rule
 from ..base.antennas import centre_of
+from ..base.rates import radar_rate
 from ..frame.frame import Frame
 from ..frame.maps import FrameMaps
 from ..paths.families import families
 from ..paths.visibility import visibility_in_trace
-from .boxes import STEP, boxes_at, rate_of
+from .boxes import boxes_at
 from .cross_section import isotropic_power
 from .record import Truth
 
@@ -87,8 +88,7 @@ def truth_of_frame(frame, objects=None, number: int = 0) -> Truth:
 
 def _in_radar(boxes, radar, time: float) -> dict:
     """The fields of Truth in the axes of the radar."""
-    step = min(STEP, 0.25 * radar.frame_duration) if radar.frame_duration > 0.0 else STEP
-    world, rate = radar.world_from_radar(time), rate_of(radar.world_from_radar, time, step)
+    world, rate = radar.world_from_radar(time), radar_rate(radar, time)
     way = boxes.centre - world[:3, 3]
     position = way @ world[:3, :3]
     velocity = (boxes.velocity - rate[:3, 3]) @ world[:3, :3] + way @ rate[:3, :3]

@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.base.rates import radar_rate
 from echopath.signals import same_radar
 from support.radars import build_radar
 from support.references import slow_lengths
@@ -14,6 +15,7 @@ from support.signals.placed_radar import antennas_in_world, make_radars, quatern
 ROUNDING = 1e-8          # relative: phases of 1e5 rad from coordinates that were rounded on different ways
 LENGTH_TOLERANCE = 1e-12  # m
 SHARE_ROUNDING = 1e-9
+RATE_ERROR = 1e-6        # m/s and 1/s: places that are rounded to 1e-15 m over steps of 50 us, and a little
 POSITION, YAW, PITCH = (3.0, -2.0, 1.2), 0.5, 0.1
 VELOCITY = (4.0, 1.5, 0.0)
 LATE = 0.7               # s, start of a frame that is not the first
@@ -26,6 +28,24 @@ def test_the_middle_of_a_frame_is_halfway_from_its_first_sample_to_its_last():
     assert radar.middle_of_frame(2.0) - 2.0 == pytest.approx(0.5 * (10 * 1e-3 + 100 / 1e6), rel=1e-9)
     with pytest.raises(TypeError, match="start_time: "):
         radar.middle_of_frame("now")
+
+
+def test_the_rate_of_a_radar_that_drives_and_turns():
+    """The axes R of a radar that turns by omega have the rate omega x R, its place that of the motion's velocity."""
+    spin = np.array([0.0, 0.0, 2.0])
+    motion = ep.LinearMotion(velocity=VELOCITY, angular_velocity=spin)
+    radar = build_radar(num_chirps=16, position=POSITION, yaw=YAW, motion=motion)
+    world, rate = radar.world_from_radar(LATE), radar_rate(radar, LATE)
+    assert rate[:3, 3] == pytest.approx(VELOCITY, abs=RATE_ERROR)
+    assert rate[:3, :3] == pytest.approx(np.cross(spin, world[:3, :3], axisb=0, axisc=0), abs=RATE_ERROR)
+    assert not radar_rate(radar.replace(motion=None), LATE).any()
+
+
+@pytest.mark.parametrize("time", [-0.5, -0.5 + 1e-5, 0.0, 1.5])
+def test_a_radar_has_its_velocity_up_to_the_ends_of_its_motion(time):
+    ends = np.array([POSITION, POSITION + 2.0 * np.array(VELOCITY)])
+    radar = build_radar(num_chirps=16, motion=ep.KeyframeMotion(times=[-0.5, 1.5], translations=ends))
+    assert radar_rate(radar, time)[:3, 3] == pytest.approx(VELOCITY, abs=RATE_ERROR)
 
 
 def street():

@@ -6,6 +6,7 @@ import dataclasses
 import numpy as np
 
 import echopath as ep
+from echopath.base.rates import radar_rate
 from echopath.base.rotations import quaternions
 from echopath.frame.maps import mean_power
 from echopath.frame_file.container import our_file
@@ -105,9 +106,7 @@ def track_values(tracks, glances, axis: str):
     distance = np.linalg.norm(way, axis=1)
     if axis == "range":
         return distance
-    # Motions need not go on beyond the frame, of which these times are the middles.
-    step = 0.25 * np.array([radar.frame_duration for radar in radars])
-    own = (_origins(radars, times + step) - _origins(radars, times - step)) / (2.0 * step[:, None])
+    own = np.array([radar_rate(radar, float(time))[:2, 3] for radar, time in zip(radars, times)]).reshape(-1, 2)
     return np.einsum("ni,ni->n", way, tracks.state[:, 2:] - own) / np.maximum(distance, 1e-9)
 
 

@@ -164,8 +164,6 @@ def _material(mesh) -> str:
 
 def _describe_radar(radar) -> list[str]:
     waveform = radar.waveform
-    cell = 0.5 * ep.speed_of_light / waveform.bandwidth
-    max_range = cell * waveform.num_samples * (0.5 if waveform.real else 1.0)
     return ["radar",
             report.line("antennas", f"{len(radar.transmitters)} transmitting, {len(radar.receivers)} receiving"),
             report.line("multiplexing", radar.multiplexing), report.line("receiver", receiver_text(radar)),
@@ -174,7 +172,7 @@ def _describe_radar(radar) -> list[str]:
             report.line("frequency", f"{waveform.start_frequency / 1e9:g} GHz + {waveform.bandwidth / 1e9:g} GHz"),
             report.line("samples, chirps", f"{waveform.num_samples} at {waveform.sampling_rate / 1e6:g} MHz, "
                         f"{waveform.num_chirps} every {waveform.chirp_interval * 1e6:g} us"),
-            report.line("range", f"to {max_range:.2f} m, resolution {cell:.3f} m"),
+            report.line("range", f"to {waveform.max_range:.2f} m, resolution {waveform.range_resolution:.3f} m"),
             report.line("velocity", f"+-{waveform.max_velocity(radar.num_slots):.2f} m/s, resolution "
                         f"{waveform.velocity_resolution(radar.num_slots):.3f} m/s")]
 

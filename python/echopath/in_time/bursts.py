@@ -12,6 +12,7 @@ from ..arguments.checks import ArrayLike, array, refused, row_of_channel, shown
 from ..arguments.iterables import iterable
 from ..arguments.part_names import BESIDE
 from ..arguments.settings import FRAME_KEYWORDS
+from ..base.chirps import chirp_period, chirps_duration
 from ..frame.frame import Frame
 from ..frame.maps import FrameMaps
 from ..signals.beside import cubes_beside
@@ -46,7 +47,7 @@ class Burst(NamedTuple):
     @property
     def end_time(self) -> float:
         """s, when the next chirp would begin."""
-        return self.start_time + self.cube.shape[2] * chirp_period(self.radar)
+        return self.start_time + chirps_duration(self.radar)
 
     def goes_on_from(self, before: Burst) -> bool:
         """Whether the scatterers of a burst before are known to go on in this one."""
@@ -58,11 +59,6 @@ class Burst(NamedTuple):
         """s, of `count` chirps from chirp `begin` on, mean over the transmitters."""
         first = np.mean([self.radar.chirp_time(slot, 0) for slot in self.transmitters])
         return float(self.start_time + first + (begin + 0.5 * (count - 1)) * chirp_period(self.radar))
-
-
-def chirp_period(radar) -> float:
-    """s, between the chirps of one transmitter."""
-    return radar.num_slots * radar.waveform.mean_interval
 
 
 def frames_rule(argument: str, value):

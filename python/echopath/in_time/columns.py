@@ -10,10 +10,11 @@ from .. import _core
 from ..arguments.checks import ArrayLike, MapWindow, anything, checked, one_of
 from ..arguments.gates import gate, in_gate
 from ..arguments.settings import SignalSettings
+from ..base.chirps import chirp_period
 from ..spectra.angles import Combine, range_azimuth
 from ..spectra.azimuth_map import checked_settings, sees_azimuth
 from ..spectra.windows import of_range, of_velocity
-from .bursts import Burst, Channel, Frames, Part, bursts, chirp_period, text_of_part
+from .bursts import Burst, Channel, Frames, Part, bursts, text_of_part
 from .maps import AngleTime, RangeTime
 from .spectrogram import IN_TIME_RULES
 from .stft import noise_bandwidth, with_chirps

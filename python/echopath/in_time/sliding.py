@@ -7,8 +7,9 @@ import numpy as np
 
 from .. import _core
 from ..arguments.gates import in_gate
+from ..base.chirps import chirp_period
 from ..spectra.windows import of_range
-from .bursts import chirp_period, text_of_part
+from .bursts import text_of_part
 from .maps import Spectrogram
 from .stft import axes_of, noise_bandwidth, range_profiles, velocity_powers, with_chirps
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import Progress, checked, count, real
+from ..base.chirps import start_with_middle
 from ..base.made_by import made_by
 from ..base.mesh_names import object_of
 from ..tracing.polarization import polarization_of
@@ -142,7 +143,7 @@ def level_of(alone, radar, time, num_rays, progress=None) -> Interval:
     """W that a scene and its sharp edges send straight back."""
     from ..tracing.traces import trace
 
-    begin = time - 0.5 * radar.frame_duration  # rays see the scene at the middle of a frame
+    begin = start_with_middle(radar, time)  # rays see the scene at the middle of a frame
     paths = trace(alone, radar, num_rays=num_rays, max_bounces=1, start_time=begin, edges=True, progress=progress)
     power = _core.received_power(paths, progress=progress)
     return Interval(power.power, power.low, power.high)

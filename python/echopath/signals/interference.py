@@ -12,6 +12,7 @@ from .. import _core
 from ..arguments.checks import an, checked, optional, real
 from ..arguments.motions import require_motion
 from ..arguments.settings import Replay, SignalSettings
+from ..base.chirps import chirps_duration
 from ..transmit import code_of, radar_of_noise
 from .interference_crossing import FINE, Chirps, add_crossing
 from .interference_ways import Ways
@@ -74,7 +75,7 @@ def _slots_under_way(other, begin: float, duration: float, delay: float) -> Iter
     """The chirps that may be heard from `begin` on (s, of its own time) for a duration, over ways of a delay (s) or less."""
     code, longest = code_of(other), delay + other.waveform.chirp_duration
     starts = np.array([other.waveform.slot_start(slot) for slot in range(code.shape[1])])
-    period = code.shape[1] * other.waveform.mean_interval
+    period = chirps_duration(other)
     for frame in range(int(np.floor((begin - longest) / period)), int(np.floor((begin + duration) / period)) + 1):
         for slot in np.flatnonzero((frame * period + starts > begin - longest) & (frame * period + starts < begin + duration)):
             senders = np.flatnonzero(code[:, slot])

@@ -8,6 +8,7 @@ from ..arguments.effects import INTERFERENCE, Choices, is_on
 from ..arguments.motions import require_motion
 from ..arguments.settings import TraceSettings
 from ..base.callers import warn_user
+from ..base.chirps import start_with_middle
 from ..scene.interferers import interferers_of
 from ..tracing.traces import trace
 from ..transmit import signal_shape
@@ -63,13 +64,9 @@ def _warn_of_silence(index: int, has_ways: bool) -> None:
     warn_user(f"interferers[{index}]: is never heard in the frame: {why}")
 
 
-def _middle(radar, start_time: float) -> float:
-    return radar.middle_of_frame(start_time)
-
-
 def _direct_share(scene, radar, other, settings: TraceSettings) -> float:
     """What the scene leaves of the field of the direct way in the middle of the frame: 0 where something stands in it."""
-    time = _middle(radar, settings.start_time)
+    time = radar.middle_of_frame(settings.start_time)
     between = interference_radar(radar, other, time=time)
     sent, heard = (np.mean([one.position for one in antennas], axis=0)
                    for antennas in (between.transmitters, between.receivers))
@@ -80,7 +77,7 @@ def _direct_share(scene, radar, other, settings: TraceSettings) -> float:
 
 def _one_way_paths(scene, radar, other, settings: TraceSettings, progress):
     """Paths from the other radar to this one, both as they stand in the middle of the frame, through the scene of then."""
-    time = _middle(radar, settings.start_time)
+    time = radar.middle_of_frame(settings.start_time)
     between = interference_radar(radar, other, time=time)
     between = between.replace(multiplexing="tdm", code_phases=None, waveform=between.waveform.replace(num_chirps=1))
-    return trace(scene, between, settings=settings.replace(start_time=time - 0.5 * between.frame_duration), progress=progress)
+    return trace(scene, between, settings=settings.replace(start_time=start_with_middle(between, time)), progress=progress)

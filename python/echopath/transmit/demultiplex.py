@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..arguments.checks import ArrayLike, checked, refused
+from ..base.chirps import chirp_period
 from .code import code_of, hadamard, is_coded, num_frame_slots
 from .doppler_division import undo_doppler_division
 
@@ -47,7 +48,7 @@ def _undo_signs(signal, radar):
     """Slot i of a chirp is i / length of the chirp's interval late: e^{-j 2 pi f i} takes that out of cell f of the chirps."""
     num_rx, _, num_samples = signal.shape
     length, num_chirps = radar.num_slots, radar.waveform.num_chirps
-    late = np.array([radar.waveform.slot_start(slot) for slot in range(length)]) / radar.waveform.mean_interval / length
+    late = np.array([radar.waveform.slot_start(slot) for slot in range(length)]) / chirp_period(radar)
     by_slot = np.fft.fft(signal.reshape(num_rx, num_chirps, length, num_samples), axis=1)
     by_slot *= np.exp(-2j * np.pi * np.fft.fftfreq(num_chirps)[:, None] * late)[:, :, None]
     signs = hadamard(length)[:len(radar.transmitters)] / length

@@ -1,12 +1,11 @@
 """What comes in beside the echoes is no echo in the exports and the statistics of datasets."""
 
-import numpy as np
 import pytest
 
 import echopath as ep
 from echopath import dataset
 from echopath.dataset import statistics
-from echopath.dataset.exports import osi
+from echopath.dataset.exports import cross_sections_dbsm, osi
 
 WAVEFORM = ep.ChirpSequence(start_frequency=77e9, bandwidth=1e9, num_samples=512, sampling_rate=20e6, num_chirps=32,
                             chirp_interval=60e-6)
@@ -26,7 +25,7 @@ def frame():
 def test_interference_is_clutter_that_does_not_exist_in_osi(frame):
     messages = pytest.importorskip("osi3.osi_sensordata_pb2")
     radar = messages.SensorData().feature_data.radar_sensor.add()
-    osi._add_detections(radar, frame.detections, np.eye(4), frame.radar, 0.0, {"ball": 0})
+    osi._add_detections(radar, frame.detections, cross_sections_dbsm(frame.detections, frame.radar, 0.0), {"ball": 0})
     told = {(str(part), one.existence_probability, one.classification)
             for part, one in zip(frame.detections.part, radar.detection)}
     assert told == {("interference", 0.0, 3), ("", 1.0, 1)}  # CLASSIFICATION_CLUTTER and CLASSIFICATION_OTHER

@@ -7,12 +7,15 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ..._core import Radar
 from ...arguments.checks import refused
 from ...base.files import folder_written_whole, require_writable
 from ...detections import detect_frame
 from ...detections.detections import Detections
 from ...frame.frame import Frame
+from ...truth.cross_section import isotropic_power
 from ..opened import Dataset, DatasetFrame
 
 
@@ -44,3 +47,13 @@ def detections_of(dataset: Dataset, one: DatasetFrame) -> Detections:
     if len(found) and np.isnan(found.azimuth).any():
         raise refused(ValueError, "dataset", "of a radar whose antennas tell azimuths apart", "directions that are not known")
     return found
+
+
+def cross_sections_dbsm(found: Detections, radar: Radar, time: float) -> NDArray[np.float64]:
+    """[D] dB re 1 m^2 of detections whose directions are known, by the radar equation with the gains of the first antennas.
+
+    radar: that the detections are of, as it stands at `time` in s
+    """
+    world = radar.world_from_radar(time)
+    places = found.points @ world[:3, :3].T + world[:3, 3]
+    return np.asarray(10.0 * np.log10(found.power / isotropic_power(radar, places, time)))

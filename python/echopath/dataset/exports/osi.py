@@ -14,10 +14,9 @@ from ...arguments.checks import path as folder_rule
 from ...base.files import written_whole
 from ...base.libraries import needed_module
 from ...detections.detections import Detections
-from ...truth.cross_section import isotropic_power
 from ..classes import classes_of
 from ..opened import Dataset, dataset_rule
-from . import detections_of, exported
+from . import cross_sections_dbsm, detections_of, exported
 
 FOLDER = "traces"
 SENSOR = 1
@@ -91,7 +90,7 @@ def _frame(messages: Any, dataset: Dataset, scene: int, one: Any) -> Any:
     radar.header.cycle_counter, radar.header.number_of_valid_detections = one.place, len(found)
     radar.header.sensor_id.value = SENSOR
     radar.header.data_qualifier = 2  # available
-    _add_detections(radar, found, world, stored.radar, time, _numbers(dataset, scene))
+    _add_detections(radar, found, cross_sections_dbsm(found, stored.radar, time), _numbers(dataset, scene))
     return message
 
 
@@ -102,10 +101,8 @@ def _numbers(dataset: Dataset, scene: int) -> dict[str, int]:
     return {one["name"]: place for place, one in enumerate(objects) if kinds[one["name"]] != "static"}
 
 
-def _add_detections(radar: Any, found: Detections, world: np.ndarray, simulated: Any, time: float,
-                    numbers: dict[str, int]) -> None:
-    places = found.points @ world[:3, :3].T + world[:3, 3]
-    cross_sections = 10.0 * np.log10(found.power / isotropic_power(simulated, places, time))
+def _add_detections(radar: Any, found: Detections, cross_sections: np.ndarray, numbers: dict[str, int]) -> None:
+    """cross_sections: [D] dBsm; numbers: {name: place} of the objects that have one"""
     for index in range(len(found)):
         one = radar.detection.add()
         is_echo = not found.is_noise[index] and found.part[index] not in part_names.BESIDE

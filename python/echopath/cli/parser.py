@@ -8,6 +8,26 @@ from . import commands as work
 from .numbers import natural, number_range, positive, seconds, shard
 
 
+# What `echopath bench` measures, and what it tells of it.
+BENCHES = {
+    "physics": "levels of canonical targets",
+    "replay": "one record against tracing every chirp and antenna",
+    "labels": "cost of parts, rate of path expressions",
+    "hard": "cases that break ray tracers and coherent sums, each with its bound",
+    "speed": "synthesis beside FINUFFT, frames, memory",
+    "crowd": "objects of a crowded scene against themselves alone",
+    "certificate": "objects of random moving scenes against traces of every 8th chirp, and what `validity` says of them",
+    "targets": "a pedestrian, a road and spheres beside published levels",
+    "actors": "cross sections of vehicles, people and the rest over aspect",
+    "measured": "plates, boxes, ducts and an almond of metal beside measurement and method of moments, with and without sharp "
+                "edges",
+    "worlds": "crowds, and cities of many walls and meshes, their mirror paths against a search over all walls, public ones "
+              "beside Sionna RT, and files of others",
+    "live": "scenes that change and go on in time, a drive through a city street",
+    "receiver": "faults of receivers beside closed forms, codes of transmitters beside turns, and what they cost",
+    "dataset": "frames of datasets by second and core, what each stage takes, growth and memory of workers"}
+
+
 class _Command(argparse.ArgumentParser):
     """A command that says itself, with its own usage, which of its options are wrong; none may be shortened."""
 
@@ -36,13 +56,21 @@ def command_parser() -> argparse.ArgumentParser:
     parser = _Command(prog="echopath", description="FMCW radar simulation by ray tracing.")
     parser.add_argument("--version", action="version", version=f"echopath {ep.__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    for add_command in (_add_demo, _add_run, _add_view, _add_info, _add_scene, _add_labels, _add_dataset, _add_dataset_report,
+                        _add_bench):
+        add_command(commands)
+    return parser
 
+
+def _add_demo(commands) -> None:
     demo = commands.add_parser("demo", help="simulate a pedestrian in a street and show what every ray touched")
     demo.add_argument("--out", default="out/demo", metavar="DIR", help="folder of the results (default: %(default)s)")
     _add_trace_options(demo, default_rays=100_000)
     demo.add_argument("--view", action="store_true", help="then open it in the viewer")
     demo.set_defaults(command=work.demo)
 
+
+def _add_run(commands) -> None:
     run = commands.add_parser("run", help="simulate a scene file")
     run.add_argument("scene", metavar="SCENE.toml", help=f"scene file (keys: {data_folder('README.md')})")
     run.add_argument("--out", required=True, metavar="DIR",
@@ -56,6 +84,8 @@ def command_parser() -> argparse.ArgumentParser:
     _add_sequence_options(run)
     run.set_defaults(command=work.run)
 
+
+def _add_view(commands) -> None:
     view = commands.add_parser("view", help="see which rays made which cell of a frame, or of frames in time")
     view.add_argument("frames", metavar="FRAME.h5", nargs="*",
                       help="frame file; several, a pattern or a folder of frames, a sequence or a dataset open as one time line "
@@ -66,6 +96,8 @@ def command_parser() -> argparse.ArgumentParser:
     view.add_argument("--scale", type=int, default=1, metavar="N", help="of a PNG: N times the pixels (default: %(default)s)")
     view.set_defaults(command=work.view)
 
+
+def _add_info(commands) -> None:
     info = commands.add_parser("info", help="say what is in a scene, template, frame, mesh or foreign file, or in a folder of "
                                             "frames or of a dataset")
     info.add_argument("file", metavar="FILE", help=".toml, .h5, or a file or folder that load_model reads (.usd, .xml, .obj ...)")
@@ -75,48 +107,13 @@ def command_parser() -> argparse.ArgumentParser:
     _add_unit_and_up(info)
     info.set_defaults(command=work.info)
 
+
+def _add_scene(commands) -> None:
     scene = commands.add_parser("scene", help="write a scene file for a foreign scene, ready to run and to be edited")
     scene.add_argument("file", metavar="FILE", help="what load_model reads (.usd, .xml, .obj ...)")
     scene.add_argument("--out", required=True, metavar="SCENE.toml", help="scene file to be written")
     _add_unit_and_up(scene)
     scene.set_defaults(command=work.scene)
-
-    _add_labels(commands)
-    _add_dataset(commands)
-
-    bench = commands.add_parser("bench", help="measure error and speed side by side")
-    bench.add_argument("what", choices=["physics", "replay", "labels", "hard", "speed", "crowd", "certificate", "targets",
-                                           "actors", "measured", "worlds", "live", "receiver", "dataset"],
-                       help="physics: levels of canonical targets; replay: one record against tracing every chirp and "
-                            "antenna; labels: cost of parts, rate of path expressions; hard: cases that break ray tracers "
-                            "and coherent sums, each with its bound; speed: synthesis beside FINUFFT, frames, memory; "
-                            "crowd: objects of a crowded scene against themselves alone; certificate: objects of random "
-                            "moving scenes against traces of every 8th chirp, and what `validity` says of them; targets: a "
-                            "pedestrian, a road and spheres beside published levels; actors: cross sections of vehicles, "
-                            "people and the rest over aspect; measured: plates, boxes, ducts and an almond of metal beside "
-                            "measurement and method of moments, with and without sharp edges; worlds: crowds, and cities of many "
-                            "walls and meshes, their mirror paths against a search over all walls, public ones beside "
-                            "Sionna RT, and files of others; live: scenes that change and "
-                            "go on in time, a drive through a city street; receiver: faults of receivers beside closed forms, "
-                            "codes of transmitters beside turns, and what they cost; dataset: frames of datasets by second and "
-                            "core, what each stage takes, growth and memory of workers")
-    bench.add_argument("--out", required=True, metavar="DIR", help="folder of its results")
-    bench.add_argument("--quick", action="store_true", help="few shifts and rays, for a look; hard: without the heavy cases")
-    bench.add_argument("--rays-max", type=positive, default=2**16, metavar="N",
-                       help="physics: most rays of a trace (default: %(default)s)")
-    bench.add_argument("--scenes", type=positive, default=None, metavar="N", help="certificate: how many (default: a few dozen)")
-    bench.add_argument("--seeds", type=positive, default=None, metavar="N",
-                       help="crowd: scenes of each echo whose coverage is measured (default: 20 to 60, some ten minutes in all)")
-    bench.add_argument("--suite", default=None, metavar="DIR",
-                       help="measured: a checkout of the Austin RCS Benchmark Suite, for its PRIME aircraft, too")
-    bench.add_argument("--cities", default=None, metavar="DIR",
-                       help="worlds: a folder of scenes as sionna-rt ships them (default: its own, where it is installed)")
-    bench.add_argument("--sionna", default=None, metavar="PYTHON",
-                       help="worlds: a Python that has sionna-rt, whose paths and seconds stand beside ours (default: this one)")
-    bench.add_argument("--models", default=None, metavar="DIR",
-                       help="worlds: a folder of models and cities, each of which is read in one call")
-    bench.set_defaults(command=work.bench)
-    return parser
 
 
 def _add_labels(commands) -> None:
@@ -156,10 +153,34 @@ def _add_dataset(commands) -> None:
                          help="the scenes alone that one of the frames A to B - 1 belongs to, from 0 (default: all)")
     dataset.add_argument("--only-failed", action="store_true", help="make those scenes again, and no others, that failed")
     dataset.set_defaults(command=work.dataset)
+
+
+def _add_dataset_report(commands) -> None:
     report = commands.add_parser("dataset-report", help="write a page about what a dataset holds")
     report.add_argument("folder", metavar="DIR", help="folder of the dataset")
     report.add_argument("--out", default=None, metavar="PAGE.html", help="(default: DIR/report.html)")
     report.set_defaults(command=work.dataset_report)
+
+
+def _add_bench(commands) -> None:
+    bench = commands.add_parser("bench", help="measure error and speed side by side")
+    bench.add_argument("what", choices=list(BENCHES), help="; ".join(f"{what}: {measured}" for what, measured in BENCHES.items()))
+    bench.add_argument("--out", required=True, metavar="DIR", help="folder of its results")
+    bench.add_argument("--quick", action="store_true", help="few shifts and rays, for a look; hard: without the heavy cases")
+    bench.add_argument("--rays-max", type=positive, default=2**16, metavar="N",
+                       help="physics: most rays of a trace (default: %(default)s)")
+    bench.add_argument("--scenes", type=positive, default=None, metavar="N", help="certificate: how many (default: a few dozen)")
+    bench.add_argument("--seeds", type=positive, default=None, metavar="N",
+                       help="crowd: scenes of each echo whose coverage is measured (default: 20 to 60, some ten minutes in all)")
+    bench.add_argument("--suite", default=None, metavar="DIR",
+                       help="measured: a checkout of the Austin RCS Benchmark Suite, for its PRIME aircraft, too")
+    bench.add_argument("--cities", default=None, metavar="DIR",
+                       help="worlds: a folder of scenes as sionna-rt ships them (default: its own, where it is installed)")
+    bench.add_argument("--sionna", default=None, metavar="PYTHON",
+                       help="worlds: a Python that has sionna-rt, whose paths and seconds stand beside ours (default: this one)")
+    bench.add_argument("--models", default=None, metavar="DIR",
+                       help="worlds: a folder of models and cities, each of which is read in one call")
+    bench.set_defaults(command=work.bench)
 
 
 def _add_trace_options(parser, default_rays) -> None:

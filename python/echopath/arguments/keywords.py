@@ -73,3 +73,8 @@ def known_keywords(function: Callable[Parameters, Result], callee: str = "") -> 
 def parameters_of(function: Callable[..., object]) -> tuple[str, ...]:
     """Names of a function's parameters, in their order."""
     return tuple(inspect.signature(function).parameters)
+
+
+def default_of(function: Callable[..., object], parameter: str) -> Any:
+    """What a parameter of a function is unless it is given."""
+    return inspect.signature(function).parameters[parameter].default

@@ -14,6 +14,7 @@ from ..frame_file.container import FRAME, SEQUENCE, has_paths, kind_of
 from ..frame_file.maps import load_maps
 from ..frame_file.opening import SUFFIXES as FRAME_SUFFIXES, file_and_group
 from ..paths.edge_hits import edge_hits
+from ..paths.resolution import RESOLVED_DB
 from ..presentation.tables import event
 from ..readers.load import READ_RULES, READERS, is_foreign, read_model
 from ..readers.options import ReadOptions
@@ -106,7 +107,9 @@ def _describe_template(template) -> list[str]:
 def _rays_of(trace) -> str:
     if trace.num_rays is not None:
         return f"{trace.num_rays:,}"
-    return "as many as the target asks for" if trace.target_error_db is not None else "as many as 0.3 dB for each object asks for"
+    if trace.target_error_db is not None:
+        return "as many as the target asks for"
+    return f"as many as {RESOLVED_DB:g} dB for each object asks for"
 
 
 def _describe_scene_file(scene_file) -> list[str]:

@@ -2,11 +2,19 @@
 from __future__ import annotations
 
 import argparse
+from typing import get_args
 
+import echopath as ep
+
+from ..arguments.keywords import default_of
+from ..arguments.settings import LabelSettings, Plane
 from ..base.data_folder import data_folder
+from ..readers.options import AXES
+from ..sequence.keep import Keep
+from ..spectra.range_doppler import CfarMethod, cfar
 from . import commands as work
+from .demo import run_demo
 from .numbers import natural, number_range, positive, seconds, shard
-
 
 # What `echopath bench` measures, and what it tells of it.
 BENCHES = {
@@ -51,8 +59,6 @@ class _Command(argparse.ArgumentParser):
 
 
 def command_parser() -> argparse.ArgumentParser:
-    import echopath as ep
-
     parser = _Command(prog="echopath", description="FMCW radar simulation by ray tracing.")
     parser.add_argument("--version", action="version", version=f"echopath {ep.__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
@@ -64,8 +70,9 @@ def command_parser() -> argparse.ArgumentParser:
 
 def _add_demo(commands) -> None:
     demo = commands.add_parser("demo", help="simulate a pedestrian in a street and show what every ray touched")
-    demo.add_argument("--out", default="out/demo", metavar="DIR", help="folder of the results (default: %(default)s)")
-    _add_trace_options(demo, default_rays=100_000)
+    demo.add_argument("--out", default=default_of(run_demo, "out"), metavar="DIR",
+                      help="folder of the results (default: %(default)s)")
+    _add_trace_options(demo, default_rays=default_of(run_demo, "num_rays"))
     demo.add_argument("--view", action="store_true", help="then open it in the viewer")
     demo.set_defaults(command=work.demo)
 
@@ -93,7 +100,8 @@ def _add_view(commands) -> None:
     view.add_argument("--state", metavar="VIEW.json", help="show it as a saved view says")
     view.add_argument("--picture", metavar="OUT.png", help="write what it shows and close it: .png the window, .svg or .pdf its "
                       "maps, .gif or .mp4 a film through frames or chirps, .html its scene with rays to be picked")
-    view.add_argument("--scale", type=int, default=1, metavar="N", help="of a PNG: N times the pixels (default: %(default)s)")
+    view.add_argument("--scale", type=int, default=default_of(ep.view, "scale"), metavar="N",
+                      help="of a PNG: N times the pixels (default: %(default)s)")
     view.set_defaults(command=work.view)
 
 
@@ -124,15 +132,16 @@ def _add_labels(commands) -> None:
     labels.add_argument("--object", action="append", default=[], metavar="NAME=GLOB",
                         help="an object to report on, instead of the children of the scene's root; may be repeated, the "
                              "first that a path touches owns it")
-    labels.add_argument("--plane", choices=["range_doppler", "range_azimuth"], default="range_doppler",
+    labels.add_argument("--plane", choices=get_args(Plane), default=LabelSettings.plane,
                         help="whose cells are labelled (default: %(default)s)")
-    labels.add_argument("--dynamic-range", type=float, default=60.0, metavar="DB",
+    labels.add_argument("--dynamic-range", type=float, default=LabelSettings.dynamic_range_db, metavar="DB",
                         help="how far below the peak of the echoes cells are labelled (default: %(default)s)")
-    labels.add_argument("--noise-margin", type=float, default=10.0, metavar="DB",
+    labels.add_argument("--noise-margin", type=float, default=LabelSettings.noise_margin_db, metavar="DB",
                         help="by how much they stand out of the noise (default: %(default)s)")
     labels.add_argument("--errors", action="store_true", help="standard errors too, of frames traced with batches")
-    labels.add_argument("--cfar", choices=["ca", "os"], default="ca", help="how echoes are detected (default: %(default)s)")
-    labels.add_argument("--false-alarm-rate", type=float, default=1e-6, metavar="P",
+    labels.add_argument("--cfar", choices=get_args(CfarMethod), default=default_of(cfar, "method"),
+                        help="how echoes are detected (default: %(default)s)")
+    labels.add_argument("--false-alarm-rate", type=float, default=default_of(cfar, "false_alarm_rate"), metavar="P",
                         help="of a cell of noise (default: %(default)s)")
     labels.set_defaults(command=work.labels)
 
@@ -203,14 +212,14 @@ def _add_sequence_options(parser) -> None:
     parser.add_argument("--shard", type=shard, default=None, metavar="K/N",
                         help="every N-th frame alone, from the K-th on, while other processes write the other shards to the "
                              "same folder")
-    parser.add_argument("--keep", choices=["all", "maps", "labels"], default=None,
+    parser.add_argument("--keep", choices=get_args(Keep), default=None,
                         help="what the file of each frame keeps: all, maps with labels and detections, or labels and "
                              "detections alone (default: that of the scene file, or all)")
 
 
 def _add_unit_and_up(parser) -> None:
     parser.add_argument("--unit", type=float, metavar="M", help="m per unit of a foreign file (default: as it says)")
-    parser.add_argument("--up", choices=["x", "y", "z"], help="vertical axis of a foreign file (default: as it says)")
+    parser.add_argument("--up", choices=sorted(AXES), help="vertical axis of a foreign file (default: as it says)")
 
 
 def _add_part_option(parser) -> None:

@@ -4,17 +4,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..presentation.xarray_maps import AXES, xarray_module
+from .fields import FIELDS, SIDES, XYZ
 
-_AXIS, _SIDE = ("x", "y", "z"), ("length", "width", "height")
-# Field of Truth: its dimensions beside frame and object, and unit.
-_VARIABLES = {
-    "position": (("axis",), "m"), "velocity": (("axis",), "m/s"), "heading": ((), "rad"), "size": (("side",), "m"),
-    "rotation": (("axis", "side"), "1"), "yaw": ((), "rad"), "angular_velocity": (("axis",), "rad/s"),
-    "origin": (("axis",), "m"), "position_in_radar": (("axis",), "m"), "velocity_in_radar": (("axis",), "m/s"),
-    "yaw_in_radar": ((), "rad"), "rotation_in_radar": (("axis", "side"), "1"), "direction_in_radar": (("axis",), "1"),
-    "range": ((), "m"), "azimuth": ((), "rad"), "elevation": ((), "rad"),
-    "radial_velocity": ((), "m/s"), "visible_share": ((), "1"), "received": ((), "W"), "rcs": ((), "m^2"),
-    "rcs_low": ((), "m^2"), "rcs_high": ((), "m^2")}
+_OF_ROWS = ("frame", "time", "name")  # what tells rows apart becomes coordinates
 
 
 def truth_dataset(truth):
@@ -29,7 +21,7 @@ def truth_dataset(truth):
 
 def coordinates(truth, prefix: str = "") -> dict:
     """{dimension: its values} of `variables`; prefix: of all of them"""
-    found = {"object": list(dict.fromkeys(truth.name.tolist())), "axis": list(_AXIS), "side": list(_SIDE)}
+    found = {"object": list(dict.fromkeys(truth.name.tolist())), "axis": list(XYZ), "side": list(SIDES)}
     return {prefix + name: (prefix + name, np.array(values, dtype=str)) for name, values in found.items()}
 
 
@@ -41,10 +33,10 @@ def variables(truth, places, num_frames: int, prefix: str = "") -> dict:
     names = list(dict.fromkeys(truth.name.tolist()))
     columns = np.array([names.index(name) for name in truth.name.tolist()], int)
     found = {}
-    for field, (dims, unit) in _VARIABLES.items():
-        given = getattr(truth, field)
+    for field in (one for one in truth.__dataclass_fields__ if one not in _OF_ROWS):
+        given, (_, unit, dims) = getattr(truth, field), FIELDS[field]
         values = np.full((num_frames, len(names), *given.shape[1:]), np.nan)
         values[places, columns] = given
         named = ("time", *(prefix + dim for dim in ("object", *dims)))
-        found[prefix + field] = named, values, {"units": unit}
+        found[prefix + field] = named, values, {"units": unit or "1"}
     return found

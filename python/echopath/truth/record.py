@@ -12,28 +12,12 @@ from ..base.equality import has_same_fields
 from ..base.made_by import made_by
 from ..base.rotations import quaternions
 from ..presentation.tables import make_table, write_csv
+from .fields import FIELDS, UNITS
 
 if TYPE_CHECKING:
     from ..base.foreign_types import DataFrame, Dataset
 
-_XYZ = ("x", "y", "z")
 _SIGNS = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
-# Field of Truth: names of its columns in a table, unit.
-_COLUMNS = {
-    "frame": (("frame",), ""), "time": (("time",), "s"), "name": (("name",), ""),
-    "position": (_XYZ, "m"), "velocity": (("vx", "vy", "vz"), "m/s"), "heading": (("heading",), "rad"),
-    "size": (("length", "width", "height"), "m"), "yaw": (("yaw",), "rad"),
-    "angular_velocity": (("angular_velocity_x", "angular_velocity_y", "angular_velocity_z"), "rad/s"),
-    "origin": (("origin_x", "origin_y", "origin_z"), "m"),
-    "position_in_radar": (("radar_x", "radar_y", "radar_z"), "m"),
-    "velocity_in_radar": (("radar_vx", "radar_vy", "radar_vz"), "m/s"), "yaw_in_radar": (("radar_yaw",), "rad"),
-    "range": (("range",), "m"), "azimuth": (("azimuth",), "rad"), "elevation": (("elevation",), "rad"),
-    "radial_velocity": (("radial_velocity",), "m/s"), "visible_share": (("visible_share",), ""),
-    "received": (("received",), "W"), "rcs": (("rcs",), "m^2"), "rcs_low": (("rcs_low",), "m^2"),
-    "rcs_high": (("rcs_high",), "m^2"), "rotation": (tuple(f"rotation_{row}{column}" for row in _XYZ for column in _XYZ), ""),
-    "rotation_in_radar": (tuple(f"radar_rotation_{row}{column}" for row in _XYZ for column in _XYZ), ""),
-    "direction_in_radar": (("radar_direction_x", "radar_direction_y", "radar_direction_z"), "")}
-_UNITS = {column: unit for columns, unit in _COLUMNS.values() for column in columns if unit}
 
 
 @made_by("ep.truth")
@@ -135,14 +119,14 @@ class Truth:
         rcs (m^2) with its interval, rotation and radar_rotation row by row; units in `attrs["units"]`. Needs pandas, raises
         ModuleNotFoundError without it.
         """
-        return make_table(self._columns(), _UNITS)
+        return make_table(self._columns(), UNITS)
 
     def to_csv(self, path: str | os.PathLike[str]) -> None:
         """Writes the same table, whole or not at all; names of columns end with the unit (range_m, vx_m_per_s).
 
         path: of the file; unknown numbers are left empty. Raises ep.FileError.
         """
-        write_csv(path, self._columns(), _UNITS)
+        write_csv(path, self._columns(), UNITS)
 
     def to_xarray(self) -> Dataset:
         """The same as an xarray.Dataset over time (middle of each frame, s), object and, of vectors, axis (x, y, z) or side of
@@ -187,10 +171,9 @@ class Truth:
     def _columns(self) -> dict:
         """{column: values [N]} of the table."""
         found = {}
-        for field, (columns, _) in _COLUMNS.items():
-            values = getattr(self, field)
-            flat = values.reshape(len(self), len(columns)) if len(columns) > 1 else values[:, None]
-            found |= {column: flat[:, index] for index, column in enumerate(columns)}
+        for name, field in FIELDS.items():
+            flat = getattr(self, name).reshape(len(self), len(field.columns))
+            found |= {column: flat[:, index] for index, column in enumerate(field.columns)}
         return found
 
     def __eq__(self, other) -> bool:

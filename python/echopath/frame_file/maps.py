@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..frame.maps import FrameMaps
+from ..frame.maps import FrameMaps, mean_power
 from .container import new_file, our_file
 from .detections import read_detections, write_detections
 from .h5 import check_sums, read_array, read_attribute, read_group, write_array, write_attribute
@@ -70,3 +70,28 @@ def start_time_in_file(file) -> float:
     """Start in s of the frame in an open file, of either kind. Raises ep.FileError."""
     group = read_group(file, "maps") if "maps" in file else read_group(read_group(file, "record"), "frame")
     return read_attribute(group, "start_time", float)
+
+
+def axes_in_file(file) -> dict[str, np.ndarray]:
+    """{axis: values} of the range-Doppler map in an open file of either kind, in m and m/s. Raises ep.FileError."""
+    group = _map_group(file)
+    return {name: read_array(group, name, np.float64, (None,)) for name in ("range", "velocity")}
+
+
+def has_power(file) -> bool:
+    """Whether an open file of either kind keeps the powers of its range-Doppler map. Raises ep.FileError."""
+    return "maps" not in file or "power" in _map_group(file)
+
+
+def power_in_file(file, shape: tuple = (None, None)) -> np.ndarray:
+    """Power of the range-Doppler map with its noise in such a file, mean over channels: f32 [V, R] in W.
+
+    shape: of a small file, None: any number. Raises ep.FileError.
+    """
+    if "maps" in file:
+        return read_array(_map_group(file), "power", np.float32, shape)
+    return mean_power(read_array(_map_group(file), "values", np.complex128, (None,) * 4))
+
+
+def _map_group(file):
+    return read_group(file, "maps" if "maps" in file else "spectra")

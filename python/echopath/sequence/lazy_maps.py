@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import _core
-from ..frame.maps import mean_power
 from ..frame_file.container import our_file
 from ..frame_file.h5 import read_array, read_attribute, read_group
 from ..frame_file.labels import CELL_FIELDS, PLANES, read_names
+from ..frame_file.maps import axes_in_file, has_power, power_in_file
 from ..labels.ghost_names import ghost_name
 from ..labels.labels import NONE
 from ..presentation.xarray_maps import xarray_module
@@ -77,20 +77,14 @@ def over_time(paths: list[Path], map: Map):
 
 def _power(file) -> dict[str, Map]:
     """The map with noise of a file that has one."""
-    group = read_group(file, "maps" if "maps" in file else "spectra")
-    if "maps" in file and "power" not in group:
+    if not has_power(file):
         return {}
-    axes = {name: read_array(group, name, np.float64, (None,)) for name in ("range", "velocity")}
     attrs = {"units": "dBm", "long_name": "received power with noise, mean over channels"}
-    return {"power": Map(("range", "velocity"), axes, np.dtype(np.float32), attrs, _read_power)}
+    return {"power": Map(("range", "velocity"), axes_in_file(file), np.dtype(np.float32), attrs, _read_power)}
 
 
 def _read_power(file, _place: int) -> np.ndarray:
-    if "maps" in file:
-        power = read_array(read_group(file, "maps"), "power", np.float32, (None, None))
-    else:
-        power = mean_power(read_array(read_group(file, "spectra"), "values", np.complex128, (None,) * 4))
-    return in_dbm(power.T.astype(np.float64), SMALLEST_POWER).astype(np.float32)
+    return in_dbm(power_in_file(file).T.astype(np.float64), SMALLEST_POWER).astype(np.float32)
 
 
 def _partition(group) -> tuple[str, tuple, dict]:

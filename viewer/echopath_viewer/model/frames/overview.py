@@ -8,10 +8,10 @@ import numpy as np
 import echopath as ep
 from echopath.base.rates import radar_rate
 from echopath.base.rotations import quaternions
-from echopath.frame.maps import mean_power
 from echopath.frame_file.container import our_file
 from echopath.frame_file.detections import read_detections
-from echopath.frame_file.h5 import read_array, read_group
+from echopath.frame_file.h5 import read_group
+from echopath.frame_file.maps import axes_in_file, has_power, power_in_file
 from echopath.frame_file.radar import read_radar
 from echopath.signals.measures import SMALLEST_POWER, in_dbm
 
@@ -38,24 +38,15 @@ class Glance:
 def glance_at(moment) -> Glance:
     """Reads the map and the detections of a frame of a time line, not its paths. Raises ep.FileError."""
     with our_file(moment.path) as file:
-        power, axes = _power_in(file)
+        if "maps" not in file and "spectra" not in file:
+            raise ep.FileError("holds paths alone, no map")
+        axes = axes_in_file(file)
         shape = len(axes["velocity"]), len(axes["range"])
+        power = power_in_file(file, shape) if has_power(file) else np.zeros(shape, np.float32)
         seeds = {"seed": 0, "noise_seed": None}
         found = read_detections(read_group(file, "detections"), shape, **seeds) if "detections" in file else None
         radar = read_radar(read_group(file, "radar")) if "radar" in file else getattr(moment.stored, "radar", None)
     return Glance(moment.start_time, axes["velocity"], axes["range"], power.sum(axis=1), power.sum(axis=0), found, radar)
-
-
-def _power_in(file) -> tuple:
-    """(W, f32 [V, R], mean over channels, {axis: values})"""
-    if "maps" not in file and "spectra" not in file:
-        raise ep.FileError("holds paths alone, no map")
-    group = read_group(file, "maps" if "maps" in file else "spectra")
-    axes = {name: read_array(group, name, np.float64, (None,)) for name in AXES}
-    if "maps" in file:
-        shape = len(axes["velocity"]), len(axes["range"])
-        return read_array(group, "power", np.float32, shape) if "power" in group else np.zeros(shape, np.float32), axes
-    return mean_power(read_array(group, "values", np.complex128, (None, None, None, None))), axes
 
 
 def level_image(glances, axis: str):

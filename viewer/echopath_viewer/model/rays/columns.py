@@ -68,20 +68,6 @@ class Columns:
         """Mesh IDs of the hits of a path, in order of travel: [B]."""
         return self.mesh_id[self.offsets[path]:self.offsets[path] + self.num_bounces[path]]
 
-    def count_by_mesh(self, shown, num_meshes: int):
-        """How many of the paths `shown` (bool [P]) hit each mesh, once or more: [M]."""
-        counts = np.zeros(num_meshes, np.int64)
-        chosen = np.flatnonzero(shown)
-        offsets, num_bounces = self.offsets[chosen], self.num_bounces[chosen]
-        for order in range(int(num_bounces.max(initial=0))):
-            at = offsets[num_bounces > order]
-            mesh = self.mesh_id[at + order]
-            is_new = np.ones(len(at), bool)
-            for earlier in range(order):
-                is_new &= self.mesh_id[at + earlier] != mesh
-            counts += np.bincount(mesh[is_new], minlength=num_meshes)
-        return counts
-
 
 def read_columns(paths, spectrum, tx: int = 0, rx: int = 0) -> tuple:
     """(the columns of a record at a channel, complex64 [P] amplitudes in sqrt(W)); spectrum: any map of the radar, for its

@@ -7,11 +7,10 @@ from functools import cached_property
 import numpy as np
 
 import echopath as ep
+from echopath.paths.cells import OUTSIDE
 from echopath.signals.measures import SMALLEST_POWER, in_dbm
 
-
 CLOSE = 1e-9  # of a power: nearer ones are compared in decibels
-OUTSIDE = -1  # cell of a path that no map shows
 
 
 @dataclasses.dataclass(frozen=True)
@@ -77,7 +76,7 @@ def read_columns(paths, spectrum, tx: int = 0, rx: int = 0) -> tuple:
     amplitude = amplitude.astype(np.complex64)
     cells, num_ranges = ep.path_cells(paths, spectrum, tx=tx, rx=rx), len(spectrum.range)
     cell = cells.velocity_index * np.int32(num_ranges) + cells.range_index
-    cell[cells.range_index < 0] = OUTSIDE
+    cell[cells.range_index == OUTSIDE] = OUTSIDE
     columns = Columns(paths=paths, tx=tx, rx=rx, power=power, range=cells.range.astype(np.float32),
                       velocity=cells.velocity.astype(np.float32), cell=cell, num_ranges=num_ranges)
     return columns, amplitude

@@ -25,6 +25,7 @@ from ..sequence.folder import NAME as SEQUENCE_FILE
 from ..signals.measures import in_dbm, with_error
 from ..weather.weather import weather_of, weather_text
 from . import report
+from .lists import more_line
 from .model_info import describe_model
 from .run import FRAME_NAME
 
@@ -134,8 +135,8 @@ def _describe_scene(scene, time: float) -> list[str]:
     bodies = _bodies(scene)
     lines = ["scene", report.line("meshes", str(len(scene.meshes))), report.line("triangles", f"{scene.num_triangles:,}")]
     lines += [report.line(f"  {name}", _body(scene, meshes)) for name, meshes in list(bodies.items())[:report.MAX_LISTED]]
-    more = [f"    and {len(bodies) - report.MAX_LISTED} more"] if len(bodies) > report.MAX_LISTED else []
-    return [*lines, *more, report.line("weather", weather_text(weather_of(scene))), *report.overlaps_or_none(scene, time)]
+    lines += more_line(len(bodies), report.MAX_LISTED)
+    return [*lines, report.line("weather", weather_text(weather_of(scene))), *report.overlaps_or_none(scene, time)]
 
 
 def _bodies(scene) -> dict[str, list]:

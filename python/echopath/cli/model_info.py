@@ -10,6 +10,7 @@ import echopath as ep
 
 from ..readers.sizes import box_of, has_skin, names_of, unit_doubt
 from . import report
+from .lists import more_line
 
 MAX_MATERIALS = 60  # named one by one
 
@@ -55,8 +56,7 @@ def _tree(model: ep.Model) -> list[str]:
     listed = [index for index in _in_order(model) if depth[index] <= deepest][:report.MAX_LISTED]
     lines = [report.line("  " * (1 + int(depth[i])) + model.nodes[i].name, f"{triangles[i]:,} triangles{_words(model.nodes[i])}")
              for i in listed]
-    left = len(model.nodes) - len(listed)
-    return ["tree", *lines] + ([f"    and {left:,} more nodes"] if left else [])
+    return ["tree", *lines, *more_line(len(model.nodes), len(listed), " nodes")]
 
 
 def _in_order(model: ep.Model) -> list[int]:
@@ -83,8 +83,7 @@ def _materials(meshes) -> list[str]:
     pairs = Counter((node.foreign_material or "(none)", _meaning(node.material)) for node in meshes)
     lines = [report.line(f"  {name}", f"{meaning}, {count:,} mesh{'es' if count > 1 else ''}")
              for (name, meaning), count in pairs.most_common(MAX_MATERIALS)]
-    more = [f"    and {len(pairs) - MAX_MATERIALS} more"] if len(pairs) > MAX_MATERIALS else []
-    return ["materials, and what they are taken for", *lines, *more]
+    return ["materials, and what they are taken for", *lines, *more_line(len(pairs), MAX_MATERIALS)]
 
 
 def _meaning(material) -> str:

@@ -147,11 +147,14 @@ def row_of_channel(paths_or_radar, tx: int, rx: int) -> None:
 
 # --- functions ---
 
+MOST_NEIGHBOURS = 64  # cells on each side of one whose channels make a covariance
+
 # Rules of arguments that are the same wherever they are asked for.
 COMMON: dict[str, Rule] = {
     "radar": an(_core.Radar), "paths": an(_core.Paths), "scene": an(_core.Scene), "spectrum": an(_core.RangeDoppler),
     "cube": array("[T, R, C, S]", kind="complex"), "window": map_window, "zero_pad": count(1, 64), "progress": progress,
     "seed": seed, "tx": count(0, LARGEST_COUNT), "rx": count(0, LARGEST_COUNT), "path": file,
+    "velocity_neighbours": count(0, MOST_NEIGHBOURS), "range_neighbours": count(0, MOST_NEIGHBOURS), "max_peaks": count(1, 64),
 }
 
 
@@ -192,7 +195,7 @@ def _spread(argument: str, kind: type, given: dict, known: tuple) -> dict:
     return {name: getattr(holder, name) for name in holder.__dataclass_fields__ if name in known} | given
 
 
-__all__ = ["ArrayLike", "COMMON", "LARGEST_COUNT", "MapWindow", "Progress", "Rule", "Window", "an", "anything", "array",
-           "checked", "choice", "count", "file", "flag", "flag_or_auto", "is_writable", "keywords", "map_window",
-           "number_or_auto", "one_of", "optional", "path", "positive", "progress", "real", "refused", "row_of_channel", "seed",
-           "shown", "text", "vector", "window"]
+__all__ = ["ArrayLike", "COMMON", "LARGEST_COUNT", "MOST_NEIGHBOURS", "MapWindow", "Progress", "Rule", "Window", "an",
+           "anything", "array", "checked", "choice", "count", "file", "flag", "flag_or_auto", "is_writable", "keywords",
+           "map_window", "number_or_auto", "one_of", "optional", "path", "positive", "progress", "real", "refused",
+           "row_of_channel", "seed", "shown", "text", "vector", "window"]

@@ -14,7 +14,9 @@ from collections.abc import Mapping
 from typing import ClassVar, Literal, TypedDict, TypeVar, dataclass_transform
 
 from .. import _core
-from .checks import LARGEST_COUNT, MapWindow, Rule, count, flag, flag_or_auto, number_or_auto, one_of, optional, positive, real
+from .checks import (
+    COMMON, LARGEST_COUNT, MapWindow, Rule, count, flag, flag_or_auto, number_or_auto, one_of, optional, positive, real,
+)
 from .checks import map_window as window_rule
 from .checks import seed as seed_rule
 from .effects import Choices, effects_rule
@@ -134,7 +136,7 @@ class SignalSettings(Settings):
     RULES: ClassVar[Mapping[str, Rule]] = {
         "tolerance": real(1e-13, 0.1), "method": one_of(Method), "replay": one_of(Replay), "evaluate": one_of(Evaluate),
         "phase_tolerance": positive("rad"), "retrace": one_of(Retrace), "keyframes": count(0, LARGEST_COUNT),
-        "noise_seed": optional(seed_rule), "window": window_rule, "zero_pad": count(1, 64)}
+        "noise_seed": optional(seed_rule), "window": window_rule, "zero_pad": COMMON["zero_pad"]}
 
     def of_replay(self) -> ReplayKeywords:
         """The keywords of `synthesize` and `decompose` alone."""

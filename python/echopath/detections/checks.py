@@ -4,7 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import Rule, count
+from ..arguments.checks import COMMON, Rule
 from ..arguments.keywords import refuse_unknown
 from ..arguments.objects import objects_rule
 from ..labels.planes import with_receivers
@@ -12,7 +12,7 @@ from ..paths.families import check_objects
 from ..spectra.range_doppler import CFAR_RULES
 
 # Of the keywords of `detect_frame`.
-RULES: dict[str, Rule] = {**CFAR_RULES, "objects": objects_rule, "max_peaks": count(1, 64)}
+RULES: dict[str, Rule] = {**CFAR_RULES, "objects": objects_rule, "max_peaks": COMMON["max_peaks"]}
 
 
 def checked_keywords(scene, radar, spectrum_settings: dict, keywords: dict) -> dict:

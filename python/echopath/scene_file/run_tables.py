@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
-from ..arguments.checks import map_window, window
+from ..arguments.checks import MOST_NEIGHBOURS, map_window, window
 from ..arguments.effects import effects_rule
 from ..arguments.gates import gate
 from ..arguments.settings import (
@@ -104,7 +104,7 @@ class AngleTable(Table):
     window: Window = Field("rect", description="over the array, of bartlett; others than rect for grids of equal steps")
     diagonal_loading: Annotated[float, Field(ge=1e-9, le=1e3)] = Field(
         0.01, description="of capon, relative to the mean power of the elements")
-    range_neighbours: int = Field(2, ge=0, le=64, description="of capon, cells on each side in the covariance")
+    range_neighbours: int = Field(2, ge=0, le=MOST_NEIGHBOURS, description="of capon, cells on each side in the covariance")
     forward_backward: bool = Field(False, description="of capon, for arrays symmetric about their centre")
 
     @model_validator(mode="after")

@@ -16,8 +16,7 @@ _ANGLES = optional(array("[]", "[N]"))
 _CELLS = array("[N, 2]", kind="whole")
 _BEAM_RULES = {
     "azimuth": _ANGLES, "elevation": _ANGLES, "method": one_of(BeamMethod), "overlaps": one_of(Overlaps), "compensate": flag,
-    "diagonal_loading": real(1e-9, 1e3), "velocity_neighbours": count(0, 64), "range_neighbours": count(0, 64),
-    "forward_backward": flag, "window": window_rule}
+    "diagonal_loading": real(1e-9, 1e3), "forward_backward": flag, "window": window_rule}
 
 
 @checked()
@@ -134,8 +133,8 @@ def range_azimuth(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: Arr
                                forward_backward=forward_backward, progress=progress)
 
 
-@checked(**_BEAM_RULES, cells=_CELLS, velocity=optional(array("[N]")), max_peaks=count(1, 64),
-         peak_range_db=real(0.0, 200.0, unit="dB"), folds=count(0, LARGEST_COUNT))
+@checked(**_BEAM_RULES, cells=_CELLS, velocity=optional(array("[N]")), peak_range_db=real(0.0, 200.0, unit="dB"),
+         folds=count(0, LARGEST_COUNT))
 def estimate_angles(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLike | None = None,
                     elevation: ArrayLike | None = None, *, cells: ArrayLike, velocity: ArrayLike | None = None,
                     max_peaks: int = 1, peak_range_db: float = 10.0, folds: int = 0, method: BeamMethod = "bartlett",

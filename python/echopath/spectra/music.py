@@ -9,11 +9,9 @@ from ..arguments.checks import ArrayLike, array, checked, count, flag
 
 _CELLS = array("[N, 2]", kind="whole")
 _DIRECTIONS = array("[A]", finite=True)
-_NEIGHBOURS = count(0, 64)
 
 
-@checked(azimuth=_DIRECTIONS, cells=_CELLS, num_sources=count(1, 64), velocity_neighbours=_NEIGHBOURS,
-         range_neighbours=_NEIGHBOURS, forward_backward=flag)
+@checked(azimuth=_DIRECTIONS, cells=_CELLS, num_sources=count(1, 64), forward_backward=flag)
 def music(spectrum: _core.RangeDoppler, radar: _core.Radar, azimuth: ArrayLike, *, cells: ArrayLike, num_sources: int = 2,
           velocity_neighbours: int = 1, range_neighbours: int = 2, forward_backward: bool = False) -> NDArray[np.float64]:
     """Pseudo-spectrum over azimuth of some cells: high where a plane wave has no share in the space of the noise.

@@ -8,6 +8,7 @@ import numpy as np
 import echopath as ep
 
 from .. import dataset
+from ..base.decibels import in_dbm
 from ..dataset.folder import TEMPLATE as DATASET_FILE
 from ..frame_file import left_out, load_frame
 from ..frame_file.container import FRAME, SEQUENCE, has_paths, kind_of
@@ -22,7 +23,7 @@ from ..receiver.settings import receiver_text
 from ..scene_file import load_scene
 from ..scene_file.load import parse
 from ..sequence.folder import NAME as SEQUENCE_FILE
-from ..signals.measures import in_dbm, with_error
+from ..signals.measures import with_error
 from ..weather.weather import weather_of, weather_text
 from . import report
 from .lists import more_line

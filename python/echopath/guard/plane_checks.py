@@ -10,9 +10,9 @@ import numpy as np
 
 from .. import _core
 from ..arguments.settings import LabelSettings
+from ..base.decibels import in_dbm
 from ..paths.subset import subset
 from ..scene.large_planes import large_planes
-from ..signals.measures import in_dbm
 from .check import Check
 
 NAME = "single rays over planes that are no mirrors"

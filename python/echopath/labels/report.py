@@ -3,8 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..base.decibels import in_dbm
 from ..paths.visibility import occluder_words
-from ..signals.measures import in_dbm
 
 
 def text_of(labels) -> str:

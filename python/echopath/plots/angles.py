@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..signals.measures import SMALLEST_POWER, in_dbm
+from ..base.decibels import SMALLEST_POWER, in_dbm
 from .style import AZIMUTH_LABEL, ELEVATION_LABEL, MAP_COLOURS, POWER_LABEL, axes_or_new
 
 SHOWN_DB = 50.0  # below the peak

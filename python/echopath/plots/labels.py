@@ -4,8 +4,9 @@ from __future__ import annotations
 import numpy as np
 
 from ..arguments.checks import choice
+from ..base.decibels import SMALLEST_POWER, in_dbm
 from ..paths.visibility import occluder_words
-from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm
+from ..signals.measures import for_pictures
 from .maps import RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, half_step
 from .part_powers import draw_part_powers
 from .style import AZIMUTH_LABEL, axes_or_new, new_figure, part_colours

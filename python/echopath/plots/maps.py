@@ -8,7 +8,8 @@ import numpy as np
 
 from ..arguments.part_names import REST
 from ..arguments.checks import optional, real
-from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm, static_speed, with_error
+from ..base.decibels import SMALLEST_POWER, in_dbm
+from ..signals.measures import for_pictures, static_speed, with_error
 from .style import MAP_COLOURS, axes_or_new, colour_bar, new_figure, set_title
 
 DYNAMIC_RANGE_DB = 70.0      # below the peak that a map shows at most

@@ -3,8 +3,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..base.decibels import SMALLEST_POWER, in_dbm
 from ..paths.resolution import RESOLVED_DB
-from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm, with_error
+from ..signals.measures import for_pictures, with_error
 from .style import new_figure, part_colours
 
 ROOM_BESIDE_DB = 6.0  # of the weakest and the strongest power

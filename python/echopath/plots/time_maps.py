@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..signals.measures import SMALLEST_POWER, in_dbm
+from ..base.decibels import SMALLEST_POWER, in_dbm
 from .maps import (
     DYNAMIC_RANGE_DB, MARGIN_OVER_MEDIAN_DB, RANGE_LABEL, VELOCITY_LABEL, VELOCITY_MARGIN, chosen_limits, half_step,
     limits_above, margin_of,

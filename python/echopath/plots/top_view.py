@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from ..signals.measures import SMALLEST_POWER, for_pictures, in_dbm
+from ..base.decibels import SMALLEST_POWER, in_dbm
+from ..signals.measures import for_pictures
 from .maps import chosen_limits, limits_of_level, noise_peak_db
 from .style import MAP_COLOURS, axes_or_new, cell_edges, colour_bar, new_figure, set_title
 

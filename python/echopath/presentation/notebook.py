@@ -9,8 +9,8 @@ import html
 
 import numpy as np
 
+from ..base.decibels import SMALLEST_POWER, in_dbm
 from ..receiver.settings import receiver_text
-from ..signals.measures import SMALLEST_POWER, in_dbm
 from ..signals.same_radar import WAVEFORM_LISTS
 from ..weather.weather import weather_of, weather_text
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .. import _core
+from ..base.decibels import SMALLEST_POWER, in_dbm
 from ..frame_file.container import our_file
 from ..frame_file.h5 import read_array, read_attribute, read_group
 from ..frame_file.labels import CELL_FIELDS, PLANES, read_names
@@ -16,7 +17,6 @@ from ..frame_file.maps import axes_in_file, has_power, power_in_file
 from ..labels.ghost_names import ghost_name
 from ..labels.labels import NONE
 from ..presentation.xarray_maps import xarray_module
-from ..signals.measures import SMALLEST_POWER, in_dbm
 
 _INDICES = {"dominant": "dominant", "object": "object_map", "ghost": "ghost_map"}  # variable: field of Labels
 

@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 
 from .. import _core
 from ..arguments.checks import ArrayLike, checked
+from ..base.decibels import SMALLEST_POWER, in_dbm
 from ..spectra.windows import of_velocity, samples_of
 
 STATIC_SPEED = 0.25       # m/s, below it an echo counts as standing still, however narrow the cells of velocity are
 EXTENT_BELOW_PEAK_DB = 30.0
-SMALLEST_POWER = 1e-300   # W, stands for zero on a logarithmic scale
 
 
 def power_dbm(cube) -> float:
@@ -21,12 +21,6 @@ def power_dbm(cube) -> float:
     Of this one realisation of the random phases; `ep.received_power` has the mean over them and its standard error.
     """
     return in_dbm(float(np.mean(cube.real**2 + cube.imag**2)))
-
-
-def in_dbm(power, least: float = 0.0):
-    """A power in W, or an array of them, in dB re 1 mW; -inf for none unless `least` W stand for all that is smaller."""
-    with np.errstate(divide="ignore"):
-        return 10.0 * np.log10(np.maximum(power, least) * 1e3)
 
 
 @checked()

@@ -123,6 +123,21 @@ def test_listed_imports_stand_in_functions_and_close_a_circle(imports, edge):
     assert circle_of(other for other in imports if other == edge or other not in CLOSING)
 
 
+# Packages, the first of which stands on nothing of the second, not even within functions; the second uses the first.
+ONE_WAY = (("paths", "signals"),)
+
+
+def between(imports, source: str, target: str) -> list:
+    """Imports of anything in a package of echopath by anything in another."""
+    return [edge for edge in imports if edge[0].split(".")[:2] == ["echopath", source]
+            and edge[1].split(".")[:2] == ["echopath", target]]
+
+
+@pytest.mark.parametrize("below, above", ONE_WAY, ids=["-".join(pair) for pair in ONE_WAY])
+def test_packages_import_one_way(imports, below, above):
+    assert between(imports, below, above) == [] and between(imports, above, below)
+
+
 def test_the_package_loads_without_its_viewer(imports):
     outward = [edge for edge, is_late in imports.items()
                if not is_late and edge[0].split(".")[0] == "echopath" and edge[1].split(".")[0] != "echopath"]

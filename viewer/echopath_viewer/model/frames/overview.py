@@ -6,6 +6,7 @@ import dataclasses
 import numpy as np
 
 import echopath as ep
+from echopath.base.decibels import SMALLEST_POWER, in_dbm
 from echopath.base.rates import radar_rate
 from echopath.base.rotations import quaternions
 from echopath.frame_file.container import our_file
@@ -13,7 +14,6 @@ from echopath.frame_file.detections import read_detections
 from echopath.frame_file.h5 import read_group
 from echopath.frame_file.maps import axes_in_file, has_power, power_in_file
 from echopath.frame_file.radar import read_radar
-from echopath.signals.measures import SMALLEST_POWER, in_dbm
 
 AXES = ("velocity", "range")
 

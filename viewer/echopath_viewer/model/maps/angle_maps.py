@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 
 import echopath as ep
-from echopath.signals.measures import SMALLEST_POWER, in_dbm
+from echopath.base.decibels import SMALLEST_POWER, in_dbm
 
 SPECTROGRAM_COLUMNS = 48
 SHORTEST_WINDOW = 16  # chirps

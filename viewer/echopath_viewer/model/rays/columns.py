@@ -7,8 +7,8 @@ from functools import cached_property
 import numpy as np
 
 import echopath as ep
+from echopath.base.decibels import SMALLEST_POWER, in_dbm
 from echopath.paths.cells import OUTSIDE
-from echopath.signals.measures import SMALLEST_POWER, in_dbm
 
 CLOSE = 1e-9  # of a power: nearer ones are compared in decibels
 

@@ -3,7 +3,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from echopath.signals.measures import SMALLEST_POWER, for_pictures, in_dbm
+from echopath.base.decibels import SMALLEST_POWER, in_dbm
+from echopath.signals.measures import for_pictures
 
 from ...model.maps.attribution import Attribution
 from ..background_work import BackgroundWork

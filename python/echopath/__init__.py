@@ -28,6 +28,7 @@ from .effects import Effect, effects
 from .frame.frame import Frame
 from .frame.maps import FrameMaps
 from .frame.simulate import simulate
+from .frame.truth import truth
 from .frame_file import load_frame, load_labels, save_frame, save_labels
 from .guard import Check, GuardWarning, check_rays, check_signal
 from .in_time import (
@@ -74,7 +75,7 @@ from .tracing.validity import renew, validity
 from .tracks import Tracks, track
 from .trajectories import Lane, Trajectory, read_trajectories
 from .transmit import demultiplex
-from .truth import Truth, truth
+from .truth import Truth
 from .weather import Weather
 
 __all__ = [

@@ -21,6 +21,7 @@ from ..signals.beside import cubes_beside
 from ..spectra.angles import range_azimuth
 from ..spectra.azimuth_map import sees_azimuth
 from ..transmit import demultiplex
+from ..truth import truth_of_frame
 from .received import received_parts
 
 if TYPE_CHECKING:
@@ -222,8 +223,6 @@ class Frame:
     @cached_property
     def truth(self):
         """ep.Truth of the objects in the middle of the frame: places in m, velocities in m/s, boxes, cross sections in m^2."""
-        from ..truth import truth_of_frame
-
         return truth_of_frame(self) if self.kept_truth is None else self.kept_truth
 
     @cached_property

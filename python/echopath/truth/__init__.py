@@ -2,6 +2,6 @@
 from .boxes import Boxes, boxes_at
 from .cross_section import isotropic_power
 from .record import Truth
-from .truth import joined, truth, truth_of_frame
+from .truth import joined, truth_of_frame
 
-__all__ = ["Boxes", "Truth", "boxes_at", "isotropic_power", "joined", "truth", "truth_of_frame"]
+__all__ = ["Boxes", "Truth", "boxes_at", "isotropic_power", "joined", "truth_of_frame"]

@@ -14,7 +14,6 @@ CLOSING = {
     ("echopath.presentation.viewing", "echopath_viewer"): "ep.view and ep.plot_rays start the viewer",
     ("echopath.frame.frame", "echopath_viewer"): "Frame.show makes a page with what draws scenes in the viewer",
     ("echopath.scene.scene", "echopath_viewer"): "Scene.to_pyvista makes blocks with the viewer's code",
-    ("echopath.frame.frame", "echopath.truth"): "Frame.truth asks for the truth, which also takes rows of frames",
     ("echopath.frame.frame", "echopath.frame_file"): "Frame.save writes with what also reads frames",
     ("echopath.frame.frame", "echopath.sensor_files"): "Frame.save_raw writes with what writes several frames",
     ("echopath.readers.model", "echopath.readers.along"): "Model.along makes another model of its nodes",
@@ -124,7 +123,7 @@ def test_listed_imports_stand_in_functions_and_close_a_circle(imports, edge):
 
 
 # Packages, the first of which stands on nothing of the second, not even within functions; the second uses the first.
-ONE_WAY = (("paths", "signals"),)
+ONE_WAY = (("paths", "signals"), ("truth", "frame"))
 
 
 def between(imports, source: str, target: str) -> list:

@@ -26,6 +26,7 @@ from .cavities.cavity import Cavity
 from .detections import Detections, detect, detect_frame
 from .effects import Effect, effects
 from .frame.frame import Frame
+from .frame.labels import annotate_frame
 from .frame.maps import FrameMaps
 from .frame.simulate import simulate
 from .frame.truth import truth
@@ -34,7 +35,7 @@ from .guard import Check, GuardWarning, check_rays, check_signal
 from .in_time import (
     AngleTime, RangeTime, Spectrogram, SpectrogramLabels, angle_time, range_time, spectrogram, spectrogram_labels,
 )
-from .labels import GhostLabel, Labels, ObjectLabel, annotate, annotate_frame, save_label_images
+from .labels import GhostLabel, Labels, ObjectLabel, annotate, save_label_images
 from .live import Live, LiveView, Watch
 from .paths.around_corners import AroundCorner, around_corners
 from .paths.cells import PathCells, path_cells

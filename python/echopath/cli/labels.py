@@ -5,8 +5,8 @@ from pathlib import Path
 
 from ..arguments.settings import LabelSettings
 from ..detections import detect_frame
+from ..frame.labels import annotate_frame
 from ..frame_file import left_out, load_frame, save_labels
-from ..labels.of_frame import annotate_frame
 from . import report
 from .label_outputs import write_labels
 from .run import DETECTIONS_NAME, chosen_partition, unresolved

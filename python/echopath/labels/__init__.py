@@ -2,7 +2,5 @@
 from .annotate import annotate
 from .images import save_label_images
 from .labels import AzimuthBox, AzimuthPeak, Box, GhostLabel, Labels, ObjectLabel, Peak
-from .of_frame import annotate_frame
 
-__all__ = ["AzimuthBox", "AzimuthPeak", "Box", "GhostLabel", "Labels", "ObjectLabel", "Peak", "annotate",
-           "annotate_frame", "save_label_images"]
+__all__ = ["AzimuthBox", "AzimuthPeak", "Box", "GhostLabel", "Labels", "ObjectLabel", "Peak", "annotate", "save_label_images"]

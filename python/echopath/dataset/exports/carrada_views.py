@@ -17,7 +17,7 @@ from ... import _core
 from ...arguments.checks import refused
 from ...arguments.settings import LabelSettings
 from ...frame.frame import Frame
-from ...labels import annotate_frame
+from ...frame.labels import annotate_frame
 from ...labels.labels import Labels
 from ...spectra.angles import beamform
 from ..classes import ClassName

@@ -7,13 +7,13 @@ from ..arguments.checks import Progress, an, anything, checked
 from ..arguments.objects import Objects
 from ..arguments.part_names import require_names
 from ..arguments.settings import FRAME_KEYWORDS, LabelSettings, Plane
-from ..frame.frame import Frame
+from ..labels.annotate import label_partitions, owners_and_powers
+from ..labels.labels import Labels
+from ..labels.powers import CubeSet, add_powers, join
+from ..labels.request import labelling_of, make_request
 from ..signals.beside import cubes_beside
 from ..signals.parts import ONLY_PARTITION, as_partitions, check_partitions
-from .annotate import label_partitions, owners_and_powers
-from .labels import Labels
-from .powers import CubeSet, add_powers, join
-from .request import labelling_of, make_request
+from .frame import Frame
 
 
 @checked({"settings": LabelSettings}, **LabelSettings.RULES, frame=an(Frame), parts=anything)

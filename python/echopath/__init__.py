@@ -44,7 +44,6 @@ from .paths.powers import received_power, received_powers
 from .paths.resolution import Interval, Unresolved, unresolved
 from .paths.selections import first, hits, last, num_bounces, passes, power
 from .paths.visibility import ObjectVisibility, VisibilityFromEnd, visibility
-from .presentation.viewing import plot_rays, view
 from .readers import Model, ModelNode, foreign_materials, load_model
 from .receiver import Adc, PhaseNoise, Receiver, Reception, receive, receive_parts
 from .scene.foreign import mesh_from
@@ -77,6 +76,7 @@ from .tracks import Tracks, track
 from .trajectories import Lane, Trajectory, read_trajectories
 from .transmit import demultiplex
 from .truth import Truth
+from .viewing.viewer import plot_rays, view
 from .weather import Weather
 
 __all__ = [

@@ -1,1 +1,1 @@
-"""Results as tables, notebooks, xarray and the viewer show them."""
+"""Results as tables, in notebooks and as xarray show them."""

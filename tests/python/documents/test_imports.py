@@ -11,7 +11,7 @@ PACKAGES = (ROOT / "python" / "echopath", ROOT / "viewer" / "echopath_viewer")
 
 # Imports within functions that close a circle, and why each may.
 CLOSING = {
-    ("echopath.presentation.viewing", "echopath_viewer"): "ep.view and ep.plot_rays start the viewer",
+    ("echopath.viewing.viewer", "echopath_viewer"): "ep.view and ep.plot_rays start the viewer",
     ("echopath.frame.frame", "echopath_viewer"): "Frame.show makes a page with what draws scenes in the viewer",
     ("echopath.scene.scene", "echopath_viewer"): "Scene.to_pyvista makes blocks with the viewer's code",
     ("echopath.frame.frame", "echopath.frame_file"): "Frame.save writes with what also reads frames",
@@ -123,7 +123,7 @@ def test_listed_imports_stand_in_functions_and_close_a_circle(imports, edge):
 
 
 # Packages, the first of which stands on nothing of the second, not even within functions; the second uses the first.
-ONE_WAY = (("paths", "signals"), ("truth", "frame"), ("labels", "frame"))
+ONE_WAY = (("paths", "signals"), ("truth", "frame"), ("labels", "frame"), ("presentation", "frame"), ("presentation", "sequence"))
 
 
 def between(imports, source: str, target: str) -> list:

@@ -123,7 +123,7 @@ def test_every_public_function_is_tried(good):
 
 def test_wrong_arguments_are_named(good, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr("echopath.presentation.viewing._viewer", lambda: _NoViewer)
+    monkeypatch.setattr("echopath.viewing.viewer._viewer", lambda: _NoViewer)
     total, found = 0, {}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")

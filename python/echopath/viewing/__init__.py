@@ -1,0 +1,1 @@
+"""The way from results to the viewer: ep.view and ep.plot_rays."""

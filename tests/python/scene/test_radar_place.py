@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.base.chirps import start_with_middle
 from echopath.base.rates import radar_rate
 from echopath.signals import same_radar
 from support.radars import build_radar
@@ -26,6 +27,7 @@ def test_the_middle_of_a_frame_is_halfway_from_its_first_sample_to_its_last():
                                 chirp_interval=1e-3)
     radar = ep.Radar(waveform, transmitters=[ep.Antenna()], receivers=[ep.Antenna()])
     assert radar.middle_of_frame(2.0) - 2.0 == pytest.approx(0.5 * (10 * 1e-3 + 100 / 1e6), rel=1e-9)
+    assert start_with_middle(radar, radar.middle_of_frame(2.0)) == pytest.approx(2.0, rel=1e-12)
     with pytest.raises(TypeError, match="start_time: "):
         radar.middle_of_frame("now")
 

@@ -4,6 +4,7 @@ import pytest
 from support.radars import build_radar
 
 import echopath as ep
+from echopath.base.chirps import chirp_period, chirps_duration
 
 C = ep.speed_of_light
 ROUNDING = 1e-12      # of sums of a few hundred terms, relative to the largest
@@ -155,6 +156,8 @@ def test_staggered_slots_begin_later_by_the_idle_times_before_them():
     starts = [radar.waveform.slot_start(slot) for slot in range(6)]
     assert starts == pytest.approx([0, 61e-6, 125e-6, 185e-6, 246e-6, 310e-6], rel=1e-12)
     assert radar.frame_duration == pytest.approx(310e-6 + 63 / 20e6, rel=1e-12)
+    assert chirps_duration(radar) == pytest.approx(radar.waveform.slot_start(6), rel=1e-12)
+    assert chirp_period(radar) == pytest.approx(370e-6 / 6, rel=1e-12)
     speed, paths = 8.0, plates(8.0, radar=radar)
     phases = np.unwrap(np.angle(ep.synthesize(paths, radar)[0, 0, :, 32]))
     even = np.unwrap(np.angle(ep.synthesize(paths, build_radar(num_chirps=6))[0, 0, :, 32]))

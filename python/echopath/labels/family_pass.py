@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .. import _core
 from ..signals.part_pass import part_pass
 from .cell_owners import SHARED, CellOwners
 from .left_out import LeftOut
@@ -102,7 +101,7 @@ class FamilyPass:
         """Power [rivals] in W where the paths of a rival in two neighbouring cells of range add up in phase, at the time of the
         trace and for the first antennas, and the power of the strongest path in W."""
         amplitude, waveform = np.sqrt(mean.of_paths), self._radar.waveform
-        cell = mean.lengths * (waveform.slope * waveform.num_samples / (waveform.sampling_rate * _core.speed_of_light))
+        cell = mean.lengths / (2.0 * waveform.range_resolution)
         rival_of = self._owners.rival_of_family
         powers = np.zeros(len(self._owners.rivals))
         for shift in (0.0, 0.5):

@@ -15,6 +15,7 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import checked
 from ..arguments.checks import path as file_or_folder
+from ..base.decibels import in_dbm
 from ..base.files import write_texts
 from ..paths.resolution import RESOLVED_DB
 from ..plots.style import CURVE_COLOURS, new_figure
@@ -96,7 +97,7 @@ def _histograms(found: Statistics) -> Iterable[str]:
         for axes, label, values in (
                 (left, "Range of the strongest cell in m", [[one.range for one in ones] for ones in seen.values()]),
                 (right, "Power of the strongest cell in dBm",
-                 [[10.0 * np.log10(1e3 * one.power) for one in ones if one.power] for ones in seen.values()])):
+                 [[in_dbm(one.power) for one in ones if one.power] for ones in seen.values()])):
             axes.hist(values, bins=24, stacked=True, color=colours, label=list(seen))
             axes.set_xlabel(label)
             axes.set_ylabel("Objects in frames")

@@ -5,6 +5,7 @@ import numpy as np
 
 from .. import _core
 from ..base.callers import warn_user
+from ..base.decibels import in_dbm
 
 # A quarter of the cells of thermal noise alone has less than .29 of its mean power, of several channels more; clutter adds to
 # it. Maps of the fewest cells keep far above this share.
@@ -18,7 +19,7 @@ def warn_of_missing_noise(radar, power) -> None:
     """
     noise = _core.noise_power_in_cell(radar)
     if np.quantile(power, _QUANTILE) < _LEAST_SHARE * noise:
-        warn_user(f"spectrum: holds no noise of the radar ({10.0 * np.log10(noise) + 30.0:.0f} dBm in a cell), so that "
+        warn_user(f"spectrum: holds no noise of the radar ({in_dbm(noise):.0f} dBm in a cell), so that "
                   f"detections are sidelobes and rounding; {_way_out(radar.receiver)}")
 
 

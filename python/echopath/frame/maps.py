@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,10 +9,8 @@ from ..arguments.checks import refused
 from ..base.equality import has_same_fields
 from ..base.made_by import made_by
 from ..detections.detections import Detections
+from ..truth import Truth
 from .frame import Frame
-
-if TYPE_CHECKING:
-    from ..truth import Truth
 
 # Fields of Labels that small files keep for cells of the mask alone.
 _OF_THE_MASK = ("power", "whole", "mean_power", "mean_share", "power_error", "share_error")

@@ -4,14 +4,14 @@ from __future__ import annotations
 import argparse
 from typing import get_args
 
-import echopath as ep
-
+from .. import _core
 from ..arguments.keywords import default_of
 from ..arguments.settings import LabelSettings, Plane
 from ..base.data_folder import data_folder
 from ..readers.options import AXES
 from ..sequence.keep import Keep
 from ..spectra.range_doppler import CfarMethod, cfar
+from ..viewing.viewer import view as open_viewer
 from . import commands as work
 from .demo import run_demo
 from .numbers import natural, number_range, positive, seconds, shard
@@ -49,8 +49,6 @@ class _Command(argparse.ArgumentParser):
         return options, unknown
 
     def _nearest_option(self, unknown) -> str:
-        from .. import _core
-
         wrong = next((word for word in unknown if word.startswith("--")), "")
         known = [option.removeprefix("--").replace("-", "_") for option in self._option_string_actions
                  if option.startswith("--")]
@@ -60,7 +58,7 @@ class _Command(argparse.ArgumentParser):
 
 def command_parser() -> argparse.ArgumentParser:
     parser = _Command(prog="echopath", description="FMCW radar simulation by ray tracing.")
-    parser.add_argument("--version", action="version", version=f"echopath {ep.__version__}")
+    parser.add_argument("--version", action="version", version=f"echopath {_core.__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for add_command in (_add_demo, _add_run, _add_view, _add_info, _add_scene, _add_labels, _add_dataset, _add_dataset_report,
                         _add_bench):
@@ -100,7 +98,7 @@ def _add_view(commands) -> None:
     view.add_argument("--state", metavar="VIEW.json", help="show it as a saved view says")
     view.add_argument("--picture", metavar="OUT.png", help="write what it shows and close it: .png the window, .svg or .pdf its "
                       "maps, .gif or .mp4 a film through frames or chirps, .html its scene with rays to be picked")
-    view.add_argument("--scale", type=int, default=default_of(ep.view, "scale"), metavar="N",
+    view.add_argument("--scale", type=int, default=default_of(open_viewer, "scale"), metavar="N",
                       help="of a PNG: N times the pixels (default: %(default)s)")
     view.set_defaults(command=work.view)
 

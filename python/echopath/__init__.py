@@ -23,8 +23,9 @@ from .actors import Actor, Part
 from .arguments.settings import LabelSettings, SignalSettings, TraceSettings
 from .base.threads import num_threads, set_num_threads
 from .cavities.cavity import Cavity
-from .detections import Detections, detect, detect_frame
+from .detections import Detections, detect
 from .effects import Effect, effects
+from .frame.detections import detect_frame
 from .frame.frame import Frame
 from .frame.labels import annotate_frame
 from .frame.maps import FrameMaps

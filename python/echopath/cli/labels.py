@@ -4,7 +4,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from ..arguments.settings import LabelSettings
-from ..detections import detect_frame
+from ..frame.detections import detect_frame
 from ..frame.labels import annotate_frame
 from ..frame_file import left_out, load_frame, save_labels
 from . import report

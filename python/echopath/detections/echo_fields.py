@@ -7,6 +7,7 @@ import numpy as np
 
 from .. import _core
 from ..base.antennas import look_of
+from ..base.chirps import chirps_duration
 from ..base.progress import with_progress
 from ..paths.cells import OUTSIDE, chirp_times, path_cells, turning_of
 from ..paths.subset import subset
@@ -124,11 +125,11 @@ class EchoFields:
         first = _lengths_and_fields(paths, 0, [0])[1][0, index]
         power = np.abs(first) ** 2
         sweep = np.where(power > FADED * power.max(initial=0.0), _speed_change(paths, cells.length)[index] / bin_width, 0.0)
-        range_step = self._range_bin / pad
+        range_step = waveform.range_resolution / pad
         return {"number": number[order], "index": index, "range": cells.range[index] / range_step,
                 "velocity": doppler / bin_width * pad + len(spectrum.velocity) // 2,
                 "sweep": sweep, "first": first, "length": cells.length[index],
-                "travel": cells.velocity[index] * _duration(paths) / (range_step * pad)}
+                "travel": cells.velocity[index] * chirps_duration(paths.radar) / (range_step * pad)}
 
     @cached_property
     def _power(self) -> np.ndarray:
@@ -166,22 +167,17 @@ class EchoFields:
         for tx in np.unique(self.channels[:, 0]):
             rows = np.flatnonzero(self.channels[:, 0] == tx)
             length, start = _lengths_and_fields(paths, int(tx), self.channels[rows, 1].tolist())
-            shift[rows] = 0.5 * (length[:, column] - echoes["length"]) / self._range_bin
+            shift[rows] = 0.5 * (length[:, column] - echoes["length"]) / self._paths.radar.waveform.range_resolution
             field[rows] = start[:, column]
         return echoes | {"shift": shift, "field": field}
-
-    @property
-    def _range_bin(self) -> float:
-        """Width of a bin of range, m."""
-        waveform = self._paths.radar.waveform
-        return _core.speed_of_light * waveform.sampling_rate / (2.0 * waveform.slope * waveform.num_samples)
 
     @cached_property
     def _apart(self) -> np.ndarray:
         """Bins of range by which the length of a path may differ between two channels, at most, [C, C]."""
         tx, rx = (np.array([antennas[index].position for index in indices]) for antennas, indices in zip(
             (self._paths.radar.transmitters, self._paths.radar.receivers), self.channels.T))
-        return sum(0.5 * np.linalg.norm(places[:, None] - places, axis=-1) / self._range_bin for places in (tx, rx))
+        apart = sum(0.5 * np.linalg.norm(places[:, None] - places, axis=-1) for places in (tx, rx))
+        return apart / self._paths.radar.waveform.range_resolution
 
     @property
     def _largest_shift(self) -> float:
@@ -242,12 +238,6 @@ def _without_weakest(power, least: float) -> np.ndarray:
     ascending = np.sort(power)
     held = np.cumsum(ascending)
     return power >= ascending[np.searchsorted(held, min(least, held[-1]))] if len(held) else np.zeros(0, bool)
-
-
-def _duration(paths) -> float:
-    """Of all chirps of one transmitter and the slots between them, s."""
-    radar = paths.radar
-    return radar.waveform.num_chirps * radar.num_slots * radar.waveform.mean_interval
 
 
 def _speed_change(paths, length):

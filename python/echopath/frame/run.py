@@ -10,7 +10,6 @@ from ..arguments.part_names import REST, require_names
 from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
 from ..base.stages import StageClock
 from ..detections.checks import checked_keywords
-from ..detections.of_frame import detect_frame
 from ..guard import check_planes, check_rays, check_signal, warn_of
 from ..labels.annotate import label_frame, owners_of_cubes
 from ..labels.family_pass import FamilyPass
@@ -31,6 +30,7 @@ from ..transmit.signals import has_steps
 from ..truth import truth_of_frame
 from ..truth.asked import truth_keywords
 from ..weather.echoes import has_rain_echoes, rain_cube
+from .detections import detect_frame
 from .frame import Frame, with_spectra
 
 _FAMILIES = object()  # a view that has the name of no partition

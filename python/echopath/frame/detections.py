@@ -7,11 +7,10 @@ from .. import _core
 from ..arguments.checks import Progress, an, checked
 from ..arguments.objects import Objects
 from ..arguments.settings import LEAST_MARGIN_DB
-from ..frame.frame import Frame
+from ..detections import Detections, detect
+from ..detections.checks import RULES
 from ..spectra.range_doppler import FALSE_ALARM_RATE, RANK, CfarMethod
-from .checks import RULES
-from .detect import detect
-from .detections import Detections
+from .frame import Frame
 
 
 @checked(**RULES, frame=an(Frame))

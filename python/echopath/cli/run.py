@@ -127,7 +127,8 @@ def _write_pictures(frame: Frame, folder: Path, partitions) -> list:
     write("map", plots.plot_range_doppler(frame.spectrum, title=title + mean, vmin=vmin, vmax=vmax))
     for index, partition in enumerate(partitions):
         spectra = shown_parts(frame.part_spectra[partition], vmin)
-        looks = {"vmin": vmin, "vmax": vmax, "powers": frame.mean_part_powers[partition]}
+        looks = {"vmin": vmin, "vmax": vmax, "powers": frame.mean_part_powers[partition],
+                 "radar_moves": frame.radar.motion is not None}
         words = "taken apart" + (f" by {partition}" if partition != "parts" else "") + ", without noise"
         words += "; mean power of all ranges together and its 95 % interval"
         if not all(power.resolved for power in frame.mean_part_powers[partition].values()):

@@ -4,7 +4,7 @@ Functions named plot_* return a figure without a window; those named draw_* draw
 return the axes: they are what the methods `plot` of the results call.
 """
 from .angles import draw_angle_spectrum
-from .drive import Drive, film_pictures, plot_drive
+from .drive import Drive, Driving, film_pictures, plot_drive
 from .frames import draw_frame
 from .labels import draw_labels, plot_ghosts, plot_labels
 from .maps import (
@@ -18,7 +18,7 @@ from .time_maps import draw_spectrogram_labels, draw_time_map
 from .top_view import draw_range_azimuth, plot_range_azimuth
 from .tracks import draw_tracks
 
-__all__ = ["Drive", "colour_limits", "draw_angle_spectrum", "draw_detections", "draw_frame", "draw_labels",
+__all__ = ["Drive", "Driving", "colour_limits", "draw_angle_spectrum", "draw_detections", "draw_frame", "draw_labels",
            "draw_range_azimuth", "draw_range_doppler", "draw_spectrogram_labels", "draw_time_map", "draw_tracks",
            "part_title", "plot_ghosts", "plot_labels", "plot_overview", "plot_part_powers", "plot_partition",
            "plot_range_azimuth", "plot_range_doppler", "plot_scene", "power_dbm", "save_png"]

@@ -8,10 +8,10 @@ import numpy as np
 
 from ..signals.measures import STATIC_SPEED
 from .maps import (
-    MAP_SIZE, RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, cells_of_scene, chosen_limits, draw_level,
-    limits_above, margin_of, noise_peak_db,
+    CELLS_OF_MARGIN, MAP_SIZE, RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, cells_of_scene, chosen_limits,
+    draw_level, half_step, limits_above, margin_of, noise_peak_db,
 )
-from .style import MAP_COLOURS, colour_bar, new_figure, set_title
+from .style import MAP_COLOURS, cell_edges, colour_bar, new_figure, set_title
 from .time_maps import TIME_LABEL, image_over_time, show_within
 
 SHEET_WIDTH, ROW_HEIGHT = 2.9, 3.0  # inches, of a map of the sheet, and of each row
@@ -20,12 +20,24 @@ MOST_TIMES = 5                      # steps between ticks of a time axis, whose 
 FILM_DPI = 110
 
 
+class Driving(NamedTuple):
+    """Of a radar that moves, in whose maps standing echoes have velocities, too, those of its own motion.
+
+    own_speed: [T] m/s, of the radar in the world; movers: list [T] of arrays [N, 4], where what moves in the world is seen:
+        nearest and farthest range in m, lowest and highest radial velocity in m/s, not folded
+    """
+
+    own_speed: np.ndarray
+    movers: list
+
+
 class Drive(NamedTuple):
     """Maps of frames in time.
 
     times: [T] s, starts of the frames; level: f16 [T, V, R] dBm, mean over channels, with noise
     velocity: [V] m/s, receding positive; range: [R] m; static_speed: m/s, up to which echoes count as standing still
     leaked: [V, R] dBm, what leaks into the receivers in each map, None: nothing; num_channels: of which the levels are means
+    driving: of a radar that moves, None: it stands
     """
 
     times: np.ndarray
@@ -35,11 +47,14 @@ class Drive(NamedTuple):
     static_speed: float = STATIC_SPEED
     leaked: np.ndarray | None = None
     num_channels: int = 1
+    driving: Driving | None = None
 
 
 def plot_drive(drive: Drive, *, num_frames=4, vmin=None, vmax=None, title=""):
     """Some of the maps in a row, evenly over time, and below them range and velocity over time, on one colour scale.
 
+    Range over time is that of what moves, where something does: to a radar that stands, what has a velocity; to one that moves,
+    what moves in the world. Where the radar moves, a dashed line marks the velocity of what stands straight ahead.
     drive: Drive; num_frames: maps in the row; title: above all
     vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak
     Returns a matplotlib figure: range in m across and radial velocity in m/s up (receding positive), below them time in s across.
@@ -64,6 +79,8 @@ def plot_drive(drive: Drive, *, num_frames=4, vmin=None, vmax=None, title=""):
             show_within(axes, column.values, low, high)
             axes.set_title(column.title)
             axes.locator_params(axis="x", nbins=MOST_TIMES)
+        if drive.driving is not None:
+            _draw_own_speed(below[1], drive)
         for part, shown in ((upper, panels), (lower, below)):
             colour_bar(part, image, shown, aspect=25)
         set_title(figure, title, 11)
@@ -83,13 +100,50 @@ class _Column(NamedTuple):
 def _columns(drive: Drive, floor: float) -> tuple[_Column, _Column]:
     """Range over time of what moves, where something does, and velocity over time."""
     ranges, velocities = _extent(drive, floor)
-    is_moving = np.abs(drive.velocity) > drive.static_speed
-    moves = is_moving.any() and (_stands_out(drive, floor)[is_moving]).any()
-    taken = is_moving if moves else np.ones_like(is_moving)
-    by_range = np.stack([level[taken].max(axis=0) for level in drive.level]).astype(np.float32)
+    moving = _moving(drive, floor)
+    words, by_range = moving or ("all velocities", np.stack([level.max(axis=0) for level in drive.level]))
     by_velocity = drive.level.max(axis=2).astype(np.float32)
-    return (_Column(drive.range, RANGE_LABEL, by_range, ranges, f"strongest of {'what moves' if moves else 'all velocities'}"),
+    return (_Column(drive.range, RANGE_LABEL, by_range.astype(np.float32), ranges, f"strongest of {words}"),
             _Column(drive.velocity, VELOCITY_LABEL, by_velocity, velocities, "strongest of all ranges"))
+
+
+def _moving(drive: Drive, floor: float) -> tuple[str, np.ndarray] | None:
+    """(what it is, [T, R] dBm its strongest) of what moves, None where nothing does that stands out.
+
+    To a radar that stands that is what has a velocity. One that moves sees velocities of all: there the cells count that the
+    moving meshes of the scene are in, and all others are as dark as `floor`.
+    """
+    if drive.driving is None:
+        is_moving = np.abs(drive.velocity) > drive.static_speed
+        if not _stands_out(drive, floor)[is_moving].any():
+            return None
+        return "what moves", np.stack([level[is_moving].max(axis=0) for level in drive.level])
+    shown, least, is_there = [], _least_signal(drive, floor), False
+    for level, moves in zip(drive.level, _cells_of_movers(drive)):
+        shown.append(np.where(moves, level, floor).max(axis=0))
+        is_there |= bool((level[moves] > least).any())
+    return ("what moves in the world", np.stack(shown)) if is_there else None
+
+
+def _cells_of_movers(drive: Drive) -> Iterator[np.ndarray]:
+    """Of each frame the cells [V, R] that what moves in the world is in, with the main lobe about it; velocities are folded."""
+    step = 2.0 * half_step(drive.velocity)
+    margin, period = max(drive.static_speed, step), step * len(drive.velocity)
+    beside = CELLS_OF_MARGIN * 2.0 * half_step(drive.range)
+    for boxes in drive.driving.movers:
+        near, far, slow, fast = boxes.T[..., None]
+        in_range = (drive.range >= near - beside) & (drive.range <= far + beside)
+        in_velocity = (drive.velocity - (slow - margin)) % period <= fast - slow + 2.0 * margin
+        yield in_velocity.T.astype(np.float32) @ in_range.astype(np.float32) > 0.0
+
+
+def _draw_own_speed(axes, drive: Drive) -> None:
+    """Where what stands straight ahead of a radar that moves is seen, folded as the axis is."""
+    step = 2.0 * half_step(drive.velocity)
+    low, period = drive.velocity[0] - 0.5 * step, step * len(drive.velocity)
+    seen = (-drive.driving.own_speed - low) % period + low
+    axes.stairs(seen, cell_edges(drive.times), baseline=None, color="white", linestyle="--", linewidth=1.2)
+    axes.set_title(f"{axes.get_title()}; dashed: what stands straight ahead")
 
 
 def film_pictures(drive: Drive, *, vmin=None, vmax=None, title="") -> Iterator[np.ndarray]:
@@ -139,8 +193,13 @@ def _extent(drive: Drive, floor: float) -> tuple:
 
 def _stands_out(drive: Drive, floor: float) -> np.ndarray:
     """Cells [V, R] that stand out of the noise and of the floor of the colour scale in some frame."""
+    return drive.level.max(axis=0) > _least_signal(drive, floor)
+
+
+def _least_signal(drive: Drive, floor: float) -> float:
+    """dBm, above which a cell is more than noise and stands out of the colour scale."""
     noise = np.median(drive.level[0].astype(np.float32))
-    return drive.level.max(axis=0) > max(floor + 3.0, noise + noise_peak_db(drive.num_channels))
+    return max(floor + 3.0, noise + noise_peak_db(drive.num_channels))
 
 
 def _crop(panels, drive: Drive, floor: float) -> None:

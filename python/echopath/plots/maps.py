@@ -115,14 +115,14 @@ def draw_range_doppler(spectrum, *, ax=None, vmin=None, vmax=None, title=""):
     return ax
 
 
-def plot_partition(spectra: dict, *, title="", vmin=None, vmax=None, whole=None, powers=None, note=""):
+def plot_partition(spectra: dict, *, title="", vmin=None, vmax=None, whole=None, powers=None, note="", radar_moves=False):
     """The maps of the parts of a partition side by side, cropped together to what moves in any part, and to all of a part
-    in which nothing does, with one colour scale for all.
+    in which nothing does, with one colour scale for all; to all of each part where the radar itself moves.
 
     spectra: {part: map of `range_doppler`}; vmin, vmax: ends of the colour scale in dBm, None: those of `whole` (of
     the strongest part when there is no `whole`); powers: {part: ep.ReceivedPower} to stand above the maps, or None;
-    note: small print; title: above the maps. Returns a matplotlib figure with the axes of `plot_range_doppler`. Raises TypeError
-    or ValueError naming vmin or vmax.
+    note: small print; title: above the maps; radar_moves: to it what stands has velocities, too
+    Returns a matplotlib figure with the axes of `plot_range_doppler`. Raises TypeError or ValueError naming vmin or vmax.
     """
     strongest = max(spectra.values(), key=lambda spectrum: np.abs(spectrum.values).max())
     vmin, vmax = _limits(whole if whole is not None else strongest, vmin, vmax)
@@ -130,7 +130,7 @@ def plot_partition(spectra: dict, *, title="", vmin=None, vmax=None, whole=None,
     rows = -(-len(spectra) // columns)
     with new_figure(3.4 * columns + 1.2, 3.4 * rows + 0.5) as figure:
         panels = list(figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).flat)
-        image = _draw_parts(panels, spectra, vmin, vmax, powers)
+        image = _draw_parts(panels, spectra, vmin, vmax, powers, radar_moves)
         for number, axes in enumerate(panels[:len(spectra)]):  # the small print is the figure's own label
             if number + columns >= len(spectra):
                 axes.set_xlabel(RANGE_LABEL)
@@ -143,10 +143,11 @@ def plot_partition(spectra: dict, *, title="", vmin=None, vmax=None, whole=None,
 
 
 def plot_overview(whole, spectra: dict, *, title="Everything that the radar receives", parts_title="", vmin=None, vmax=None,
-                  powers=None, note=""):
+                  powers=None, note="", radar_moves=False):
     """The whole map above the maps of its parts, on one colour scale.
 
-    whole, spectra, powers, note, vmin, vmax (dBm): as of `plot_partition`; title: above the whole; parts_title: above the parts
+    whole, spectra, powers, note, vmin, vmax (dBm), radar_moves: as of `plot_partition`; title: above the whole; parts_title:
+        above the parts
     Returns a matplotlib figure with the axes of `plot_range_doppler`. Raises TypeError or ValueError naming vmin or vmax.
     """
     vmin, vmax = _limits(whole, vmin, vmax)
@@ -155,11 +156,12 @@ def plot_overview(whole, spectra: dict, *, title="Everything that the radar rece
         axes = upper.subplots()
         image = _draw_whole(axes, whole, vmin, vmax, title)
         panels = list(lower.subplots(1, len(spectra), sharex=True, sharey=True, squeeze=False).flat)
-        _draw_parts(panels, spectra, vmin, vmax, powers)
+        _draw_parts(panels, spectra, vmin, vmax, powers, radar_moves)
         set_title(lower, parts_title, 10)
         (near, far), (nearest, farthest) = panels[0].get_xlim(), axes.get_xlim()
         is_cut = near > nearest + RANGE_MARGIN or far < farthest - RANGE_MARGIN
-        lower.supxlabel(f"{RANGE_LABEL}{', where the parts move' if is_cut else ''}", fontsize=9)
+        where = f", where the parts {'are' if radar_moves else 'move'}"
+        lower.supxlabel(f"{RANGE_LABEL}{where if is_cut else ''}", fontsize=9)
         for first in (axes, panels[0]):
             first.set_ylabel(VELOCITY_LABEL)
         colour_bar(upper, image, [axes])
@@ -176,14 +178,14 @@ def _draw_whole(axes, spectrum, vmin: float, vmax: float, title: str):
     return image
 
 
-def _draw_parts(panels: list, spectra: dict, vmin: float, vmax: float, powers):
+def _draw_parts(panels: list, spectra: dict, vmin: float, vmax: float, powers, radar_moves: bool):
     """The parts in as many panels, the panels left over removed; returns the last image."""
     for axes, (name, spectrum) in zip(panels, spectra.items()):
         image = _draw(axes, spectrum, vmin, vmax)
         axes.set_title(part_title(name) + (f"\n{for_pictures(with_error(powers[name]))}" if powers else ""))
     for axes in panels[len(spectra):]:
         axes.remove()
-    _crop(panels[:len(spectra)], extent_of_parts(spectra, vmin))
+    _crop(panels[:len(spectra)], extent_of_parts(spectra, vmin, radar_moves))
     return image
 
 
@@ -213,13 +215,15 @@ def half_step(axis) -> float:
     return 0.5 * (axis[1] - axis[0]) if len(axis) > 1 else 0.5
 
 
-def extent_of_parts(spectra: dict, floor: float):
+def extent_of_parts(spectra: dict, floor: float, radar_moves: bool = False):
     """Box (range, velocity) around the signal of parts {name: spectrum} above `floor` in dBm, or None where there is none.
 
-    By range around what moves in each part, around all of a part in which nothing does, and not around all the rest.
+    By range around what moves in each part, around all of a part in which nothing does, and not around all the rest. To a radar
+    that moves itself what stands has a velocity, and none tells what moves: around all of each part.
     """
     asked = [name for name in spectra if name != REST] or list(spectra)
-    boxes = {name: signal_extent([spectrum], floor, is_moving_meant=name in asked) for name, spectrum in spectra.items()}
+    boxes = {name: signal_extent([spectrum], floor, is_moving_meant=name in asked and not radar_moves)
+             for name, spectrum in spectra.items()}
     found = {name: box for name, box in boxes.items() if box is not None}
     if not found:
         return None

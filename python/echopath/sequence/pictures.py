@@ -10,10 +10,12 @@ from ..arguments.checks import Progress
 from ..base.progress import with_progress
 from ..signals.beside import leakage_map
 from ..signals.measures import static_speed
+from .movers import movers_at, own_speed
 
 if TYPE_CHECKING:
     from .. import _core
-    from ..plots import Drive
+    from ..plots import Drive, Driving
+    from ..scene.scene import Scene
 
 FASTEST = 25.0  # pictures of a film in a second
 
@@ -22,6 +24,7 @@ class Frames(Protocol):
     """What has maps, as a `Row`."""
 
     radar: _core.Radar
+    scene: Scene
 
     def _maps(self) -> tuple[int, Iterator[tuple], dict]: ...
 
@@ -44,7 +47,16 @@ def drive_of(frames: Frames, progress: Progress = None) -> Drive:
         drive.times[place], drive.level[place] = time, level
     if drive is None:
         raise ValueError("frames: must be one at least, got none")
-    return drive
+    return drive if frames.radar.motion is None else drive._replace(driving=_driving(frames, drive.times))
+
+
+def _driving(frames: Frames, times) -> Driving:
+    """What the maps of a radar that moves do not tell: how fast it was, and where what moves in the world was."""
+    from ..plots import Driving
+
+    scene, middles = frames.scene, [frames.radar.middle_of_frame(time) for time in times]
+    return Driving(np.array([own_speed(frames.radar, time) for time in middles]),
+                   [movers_at(scene, frames.radar, time) for time in middles])
 
 
 def write_film_of(drive: Drive, path, interval: float, *, frames_per_second=None, vmin=None, vmax=None, title="") -> None:

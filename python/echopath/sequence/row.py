@@ -88,6 +88,9 @@ class Row(Generic[Item]):
              progress: Progress = None) -> Figure:
         """Draws all frames at a glance: some of their maps in a row, below them range and radial velocity over time.
 
+        Range over time is that of what moves, where something does: to a radar that stands, what has a velocity, and to one that
+        moves, what moves in the world; there a dashed line marks the velocity of what stands straight ahead.
+
         num_frames: maps in the row, 1 to 16, evenly over time; title: above all
         vmin, vmax: ends of the colour scale in dBm, None: from the noise, or 70 dB below the peak, to the peak
         progress: callable (stage, fraction of the frames), True for bars, or None

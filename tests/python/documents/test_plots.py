@@ -106,6 +106,16 @@ def test_parts_are_cropped_to_what_moves_and_the_whole_is_not(spectrum):
     assert upper.get_images()[0].get_clim() == lower.get_images()[0].get_clim()
 
 
+def test_parts_are_shown_whole_to_a_radar_that_moves(spectrum):
+    """To it what stands has a velocity, too: none tells what moves."""
+    part, whole = with_clutter(spectrum), with_clutter(spectrum)
+    whole.values[0, 0, 20, 10] = 1e-5  # nearer than all of the part
+    figure = plot_overview(whole, {"all of it": part}, radar_moves=True)
+    lower = [axes for axes in figure.axes if axes.get_images()][1]
+    assert 3.0 < lower.get_xlim()[0] < 6.0 and lower.get_xlim()[1] > 16.5
+    assert figure.subfigs[1].get_supxlabel() == "Range in m, where the parts are"
+
+
 def test_a_part_at_rest_beside_one_that_moves_is_shown_and_the_rest_is_not(spectrum):
     def at(cell: int, row: int):
         values = 1e-3 * spectrum.values

@@ -9,6 +9,7 @@ import pytest
 import echopath as ep
 from echopath.plots import drive, save_png
 from echopath.plots.maps import limits_of_level
+from echopath.sequence.movers import movers_at, own_speed
 from echopath.sequence.pictures import drive_of
 from support.frames_in_time import DISTANCE, INTERVAL, SPEED, make_radar, make_scene, make_sequence, signal_of
 
@@ -51,6 +52,48 @@ def test_what_moves_is_not_the_main_lobe_of_what_stands(tmp_path):
         assert figure.subfigs[1].axes[0].get_title() == "strongest of what moves"
         ranges = np.asarray(shown_in(figure)[2]).reshape(-1, 2).argmax(axis=0) * made.radar.waveform.range_resolution
         assert np.allclose(ranges, DISTANCE - SPEED * made.times, atol=0.45)  # a cell and the coupling to velocity
+
+
+def corner_at(scene: ep.Scene, name: str, x: float, y: float, speed: float = 0.0) -> None:
+    scene.add(ep.actors.trihedral(0.2), name=name, material="metal", position=(x, y, 0.0), yaw=np.arctan2(y, x),
+              motion=ep.LinearMotion((speed, 0.0, 0.0)) if speed else None)
+
+
+def test_what_moves_before_a_radar_that_drives_is_what_moves_in_the_world(tmp_path):
+    """What stands has a velocity to it, and what drives as fast as it does has none."""
+    scene, drives = ep.Scene(), 12.0
+    corner_at(scene, "standing", 6.0, 2.0)
+    corner_at(scene, "as fast", 9.0, 0.0, drives)
+    corner_at(scene, "oncoming", 15.0, -1.5, 6.0 - drives)
+    made = ep.Sequence(scene, make_radar(speed=drives), frames=2, interval=INTERVAL, num_rays=2000, guard=False)
+    for row in (made, made.save(tmp_path / "drive", keep="maps")):
+        figure = row.plot(num_frames=2)
+        ranges, velocities = figure.subfigs[1].axes[:2]
+        assert ranges.get_title() == "strongest of what moves in the world"
+        assert velocities.get_title() == "strongest of all ranges; dashed: what stands straight ahead"
+        (ahead,) = (patch for patch in velocities.patches if hasattr(patch, "get_data"))
+        assert np.allclose(ahead.get_data().values, -drives)
+        shown = np.asarray(shown_in(figure)[2]).reshape(-1, 2)
+        vmin = figure.subfigs[0].axes[0].get_images()[0].get_clim()[0]
+        axis = np.arange(len(shown)) * made.radar.waveform.range_resolution
+        for place, time in enumerate(made.times):
+            signal = axis[shown[:, place] > vmin + 15.0]
+            far = np.hypot(15.0 - 18.0 * time, 1.5)
+            assert np.all(np.minimum(np.abs(signal - 9.0), np.abs(signal - far)) < 1.2)  # main lobe: 2 cells
+            assert np.abs(signal - 9.0).min() < 0.6 and np.abs(signal - far).min() < 0.6
+
+
+def test_movers_are_what_moves_in_the_world_but_the_car_of_the_radar():
+    scene, radar = ep.Scene(), make_radar(speed=12.0, position=(0.0, 0.0, 0.6))
+    scene.add(ep.actors.box((4.0, 1.8, 1.5)), name="own", material="metal", position=(-1.9, 0.0, 0.0),
+              motion=ep.LinearMotion((12.0, 0.0, 0.0)))
+    scene.add(ep.actors.plate(0.5, 0.5), name="waits", material="metal", position=(9.0, 2.0, 0.0),
+              motion=ep.KeyframeMotion(times=[0.0, 1.0, 2.0], translations=[(0, 0, 0), (0, 0, 0), (0, 0, 0)]))
+    scene.add(ep.actors.plate(0.5, 0.5), name="stands", material="metal", position=(9.0, 0.0, 0.0))
+    assert movers_at(scene, radar, 1.0).shape == (0, 4) and own_speed(radar, 1.0) == pytest.approx(12.0)
+    corner_at(scene, "oncoming", 36.0, 0.0, -12.0)
+    (near, far, slow, fast), = movers_at(scene, radar, 1.0)
+    assert 11.5 < near <= far < 12.5 and slow == pytest.approx(-24.0, abs=0.1) and fast == pytest.approx(-24.0, abs=0.1)
 
 
 def test_leakage_sets_no_scale_of_frames_in_time(tmp_path):

@@ -1,0 +1,91 @@
+"""What moves in the world, as a radar that moves itself sees it."""
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..base.antennas import centre_of
+from ..base.mesh_names import object_of
+from ..signals.measures import STATIC_SPEED
+from ..truth.boxes import STEP, boxes_at
+
+BESIDE = 0.5  # m, from the box of an object: an antenna that is as near stands in or on it
+
+
+class _Instant(NamedTuple):
+    """Of a scene and its radar: the middle of the antennas [3] in m and how it moves, [3] in m/s, at a time, and a step in s."""
+
+    antenna: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    time: float
+    step: float
+
+
+class _Mover(NamedTuple):
+    """A mesh that moves: where its vertices are that do, and its row of `movers_at`.
+
+    low, high: [3] m, corners of the box along the axes of the world
+    """
+
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+    row: tuple
+
+
+def own_speed(radar, time: float) -> float:
+    """How fast the middle of a radar's antennas moves in the world at a time in s, m/s."""
+    return float(np.linalg.norm(_instant(radar, time).velocity))
+
+
+def movers_at(scene, radar, time: float) -> NDArray[np.float64]:
+    """Where the map of a radar has what moves in the world at a time in s, whether the radar moves or not.
+
+    Returns, for each mesh that moves faster than STATIC_SPEED, nearest and farthest range in m and lowest and highest radial
+    velocity in m/s as the radar sees it (receding positive, not folded), [N, 4]. The velocities are those of the mesh as a whole:
+    wheels that roll have points that stand. The object that the radar stands in or on, such as the car that carries it, is left
+    out.
+    """
+    now, found = _instant(radar, time), {}
+    for mesh in scene.meshes:
+        if scene.is_moving(mesh.id) and (mover := _mover(scene, mesh.id, now)) is not None:
+            found.setdefault(object_of(mesh.name), []).append(mover)
+    rows = [mover.row for name, parts in found.items() if not _carries(scene, radar, name, parts, now) for mover in parts]
+    return np.array(rows, float).reshape(-1, 4)
+
+
+def _instant(radar, time: float) -> _Instant:
+    step = min(STEP, 0.25 * radar.frame_duration)
+    before, antenna, after = (_middle_of_antennas(radar, time + late) for late in (-step, 0.0, step))
+    return _Instant(antenna, (after - before) / (2.0 * step), time, step)
+
+
+def _middle_of_antennas(radar, time: float) -> NDArray[np.float64]:
+    world_from_radar = radar.world_from_radar(time)
+    return world_from_radar[:3, :3] @ centre_of(radar) + world_from_radar[:3, 3]
+
+
+def _mover(scene, mesh_id: int, now: _Instant) -> _Mover | None:
+    """None for a mesh that stands. Large triangles may be nearer than their corners: the nearest point of the box counts."""
+    before, after = (scene.world_vertices(mesh_id, now.time + late) for late in (-now.step, now.step))
+    velocity = (after - before) / (2.0 * now.step)
+    moves = np.linalg.norm(velocity, axis=1) > STATIC_SPEED
+    if not moves.any():
+        return None
+    corners = 0.5 * (before + after)[moves]
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    way = np.vstack([corners, np.clip(now.antenna, low, high)]) - now.antenna
+    distance = np.linalg.norm(way, axis=1)
+    rate = way @ (velocity[moves].mean(axis=0) - now.velocity) / np.maximum(distance, 1e-9)  # of an antenna on a corner: 0
+    return _Mover(low, high, (distance.min(), distance.max(), rate.min(), rate.max()))
+
+
+def _carries(scene, radar, name: str, parts: list[_Mover], now: _Instant) -> bool:
+    """Whether the antennas are in or on an object of these parts, by its box along its own axes."""
+    low, high = np.min([part.low for part in parts], axis=0), np.max([part.high for part in parts], axis=0)
+    if np.any(now.antenna < low - BESIDE) or np.any(now.antenna > high + BESIDE):
+        return False
+    box = boxes_at(scene, [[name]], now.time, radar.frame_duration)
+    own = (now.antenna - box.centre[0]) @ box.rotation[0]
+    return bool(np.all(np.abs(own) <= 0.5 * box.size[0] + BESIDE))

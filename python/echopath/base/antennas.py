@@ -10,6 +10,12 @@ def centre_of(radar):
                      for antennas in (radar.transmitters, radar.receivers))
 
 
+def middle_of_antennas(radar, time: float):
+    """[3] m, in the world at a time in s: `centre_of`."""
+    world_from_radar = radar.world_from_radar(time)
+    return world_from_radar[:3, :3] @ centre_of(radar) + world_from_radar[:3, 3]
+
+
 def look_of(antenna) -> tuple:
     """Pattern, orientation and polarisation: antennas of one look differ in their places alone."""
     return antenna.pattern, antenna.orientation.tolist(), np.asarray(antenna.polarization).tolist()

@@ -9,7 +9,7 @@ from ..arguments.names import first_names
 from ..labels.report import peak_words
 from ..paths.resolution import FAINT, RESOLVED_DB
 from ..paths.visibility import occluder_words
-from ..scene.closing_speeds import closing_speeds
+from ..scene.closing_speeds import bodies_faster_than
 from ..signals.measures import SMALLEST_POWER, in_dbm, power_dbm, velocity_extent, with_error
 
 LABEL_WIDTH = 34
@@ -69,13 +69,12 @@ def overlaps_or_none(scene, time: float, names=None) -> list[str]:
 
 
 def folded_velocities(scene, radar, time: float) -> list[str]:
-    """Objects of a scene that move faster at `time` (s) than a map of velocity tells, and where it shows them; nothing where
-    none do."""
+    """Objects of a scene, or parts of them, that move faster at `time` (s) than a map of velocity tells, and where it shows them;
+    nothing where none do."""
     limit = radar.waveform.max_velocity(radar.num_slots)
-    speeds = {name: speed for name, speed in closing_speeds(scene, radar, time).items() if abs(speed) > limit}
-    found = sorted(speeds.items(), key=lambda item: -abs(item[1]))
-    lines = [line("  " + name, f"{speed:+.2f} m/s, shown at {(speed + limit) % (2.0 * limit) - limit:+.2f} m/s")
-             for name, speed in found[:MAX_LISTED]]
+    found = bodies_faster_than(limit, scene, radar, time)
+    lines = [line("  " + body.name, f"{'' if body.as_whole else 'up to '}{body.speed:+.2f} m/s, "
+                  f"shown at {(body.speed + limit) % (2.0 * limit) - limit:+.2f} m/s") for body in found[:MAX_LISTED]]
     more = [f"    and {len(found) - MAX_LISTED} more"] if len(found) > MAX_LISTED else []
     return [f"{FOLDED} (the map of velocity repeats itself every {2.0 * limit:.4g} m/s)", *lines, *more] if found else []
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..base.antennas import centre_of
+from ..base.antennas import middle_of_antennas
 from ..base.mesh_names import object_of
 from ..signals.measures import STATIC_SPEED
 from ..truth.boxes import STEP, boxes_at
@@ -57,13 +57,8 @@ def movers_at(scene, radar, time: float) -> NDArray[np.float64]:
 
 def _instant(radar, time: float) -> _Instant:
     step = min(STEP, 0.25 * radar.frame_duration)
-    before, antenna, after = (_middle_of_antennas(radar, time + late) for late in (-step, 0.0, step))
+    before, antenna, after = (middle_of_antennas(radar, time + late) for late in (-step, 0.0, step))
     return _Instant(antenna, (after - before) / (2.0 * step), time, step)
-
-
-def _middle_of_antennas(radar, time: float) -> NDArray[np.float64]:
-    world_from_radar = radar.world_from_radar(time)
-    return world_from_radar[:3, :3] @ centre_of(radar) + world_from_radar[:3, 3]
 
 
 def _mover(scene, mesh_id: int, now: _Instant) -> _Mover | None:

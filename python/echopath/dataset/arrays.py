@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..frame.frame import Frame
 from ..frame.maps import FrameMaps, mean_power
-from ..presentation.xarray_maps import axis, xarray_module
+from ..presentation.xarray_maps import axis, words_of, xarray_module
 from .classes import CODES, ClassName, classes_of
 
 if TYPE_CHECKING:
@@ -33,18 +33,20 @@ def lazy_arrays(dataset: Dataset) -> XarrayDataset:
     def maps(read: Callable[[DatasetFrame], NDArray[Any]], dtype: str, attributes: dict[str, Any]) -> Any:
         return ("frame", "velocity", "range"), _lazy(dataset, read, shape, dtype), attributes
 
-    variables = {}
+    variables: dict[str, Any] = {}
+    words: dict[str, Any] = {}
     if dataset.keep != "labels":
         variables["power"] = maps(_power, "f4", {"units": "W", "long_name": "power with noise, mean over channels"})
     if first.labels:
         kinds = _Kinds(dataset)
-        variables["cell"] = maps(_cells, "i1", {"names": list(CELLS)})
-        variables["kind"] = maps(kinds.of, "i1", {"names": list(KINDS)})
+        variables["cell"] = maps(_cells, "i1", {})
+        variables["kind"] = maps(kinds.of, "i1", {})
+        words = words_of("cell", CELLS) | words_of("kind", KINDS)
     per_scene = dataset.template.settings.frames
     scenes = np.array([number // per_scene for number in dataset.numbers])
     splits = {scene: dataset.template.split_of(int(scene)) for scene in np.unique(scenes)}
     coordinates = {"frame": dataset.numbers, "scene": ("frame", scenes), "split": ("frame", [splits[one] for one in scenes]),
-                   "velocity": axis("velocity", velocity), "range": axis("range", range_)}
+                   "velocity": axis("velocity", velocity), "range": axis("range", range_)} | words
     return xarray.Dataset(variables, coords=coordinates)
 
 

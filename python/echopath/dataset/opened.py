@@ -134,8 +134,8 @@ class Dataset:
         """The maps of all frames as an xarray.Dataset that reads a frame when a value of it is asked for.
 
         power: f32 [frame, velocity, range] W, mean over channels, with noise; not with keep="labels"
-        cell: i8, nothing, object or ghost; kind: i8, class of the object or of the ghost's object, -1: none; both indices of
-            `attrs["names"]`, where there are labels
+        cell: i8, nothing, object or ghost; kind: i8, class of the object or of the ghost's object, -1: none; indices of the
+            coordinates cell_names and kind_names, where there are labels
         Coordinates: frame, the numbers; scene and split of each; velocity (m/s) and range (m) of the first frame. Needs xarray,
         raises ModuleNotFoundError without it, IndexError without frames, ValueError on reading a map of another size.
         """

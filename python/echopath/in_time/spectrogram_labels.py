@@ -44,8 +44,8 @@ class SpectrogramLabels(PartCells):
 
     def to_xarray(self) -> Dataset:
         """The maps as an xarray.Dataset, without a copy: power (W) and share by part, time (s) and velocity (m/s); whole (W),
-        mask, above_noise and dominant, an index of `attrs["names"]`, -1: none. Needs xarray, raises ModuleNotFoundError
-        without it.
+        mask, above_noise and dominant, an index of the coordinate dominant_names, -1: none. Needs xarray, raises
+        ModuleNotFoundError without it.
         """
         return spectrogram_labels_dataset(self)
 

@@ -200,8 +200,8 @@ class Labels(PartCells):
 
     def to_xarray(self) -> Dataset:
         """The maps as an xarray.Dataset, without a copy: power (W) and share by part, velocity (m/s) or azimuth (rad), and
-        range (m); whole (W), mask, dominant, object and ghost by cell, the last three indices of `attrs["names"]`, -1: none;
-        errors where they are known. Needs xarray, raises ModuleNotFoundError without it.
+        range (m); whole (W), mask, dominant, object and ghost by cell, the last three indices of the coordinates dominant_names,
+        object_names and ghost_names, -1: none; errors where they are known. Needs xarray, raises ModuleNotFoundError without it.
         """
         return dataset_of(self)
 

@@ -13,6 +13,7 @@ AXES = {
     "sin_azimuth": {"units": "1", "long_name": "direction cosine along the columns of the array, left positive"},
     "sin_elevation": {"units": "1", "long_name": "direction cosine along the rows of the array, up positive"},
 }
+_LARGEST = 2 ** 31 - 1  # whole number in netCDF 3
 _RECORD = ("offsets", "num_bounces", "diffuse", "weight", "stratum", "batch", "flags")
 _HITS = ("mesh_id", "triangle_id", "u", "v")
 
@@ -24,6 +25,19 @@ def xarray_module():
 def axis(name: str, values):
     """One of AXES as a coordinate of that name: (dimension, values, attributes)."""
     return name, values, AXES[name]
+
+
+def words_of(variable: str, words) -> dict:
+    """What the indices of a variable mean, as the coordinate VARIABLE_names: files of netCDF 3 take no list of words beside one
+    variable, as an attribute would be. It is no index, so that those of other words are never joined as if they were the same."""
+    return {f"{variable}_names": (f"{variable}_number", np.array(words, dtype=str))}
+
+
+def attributes_of(result, *names: str) -> dict:
+    """Fields of a result as attributes of files: without those that are not known, large whole numbers as text."""
+    values = {name: getattr(result, name) for name in names}
+    return {name: str(value) if isinstance(value, int) and abs(value) > _LARGEST else value
+            for name, value in values.items() if value is not None}
 
 
 def range_doppler_array(map):
@@ -55,12 +69,14 @@ def time_map_array(map):
 
 def spectrogram_labels_dataset(labels):
     """SpectrogramLabels as a Dataset; see SpectrogramLabels.to_xarray."""
-    cells = {"whole": {"units": "W"}, "mask": {}, "above_noise": {}, "dominant": {"names": labels.part_names}}
+    cells = {"whole": {"units": "W"}, "mask": {}, "above_noise": {}, "dominant": {}}
     variables = {name: (("time", "velocity"), getattr(labels, name), attrs) for name, attrs in cells.items()}
     for name, unit in (("power", "W"), ("share", "1")):
         variables[name] = ("part", "time", "velocity"), getattr(labels, name), {"units": unit}
-    coords = {"part": labels.part_names, "time": axis("time", labels.times), "velocity": axis("velocity", labels.velocity)}
-    attrs = {name: getattr(labels, name) for name in ("noise_power", "noise_margin_db", "dynamic_range_db")}
+    coords = {"part": np.array(labels.part_names, dtype=str), "time": axis("time", labels.times),
+              "velocity": axis("velocity", labels.velocity)}
+    coords |= words_of("dominant", labels.part_names)
+    attrs = attributes_of(labels, "noise_power", "noise_margin_db", "dynamic_range_db")
     return xarray_module().Dataset(variables, coords=coords, attrs=attrs)
 
 

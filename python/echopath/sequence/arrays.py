@@ -9,7 +9,7 @@ import numpy as np
 from .. import _core
 from ..frame_file.container import our_file
 from ..frame_file.truth import truth_in
-from ..presentation.xarray_maps import axis, xarray_module
+from ..presentation.xarray_maps import axis, words_of, xarray_module
 from ..truth import Truth, joined
 from ..truth.arrays import coordinates
 from ..truth.arrays import variables as truth_variables
@@ -29,6 +29,8 @@ def dataset_of_files(paths: list[Path], times, has_truth: bool, attrs: dict):
     """The files of frames of one sequence, or of one frame, as a Dataset; times: starts of the frames in s"""
     xarray, maps = xarray_module(), maps_of(paths)
     coords = {name: axis(name, values) for map in maps.values() for name, values in map.axes.items()}
+    for name, map in maps.items():
+        coords |= {} if map.words is None else words_of(name, map.words)
     coords["time"] = "time", times, {"units": "s", "long_name": "start of the frame"}
     variables = {name: over_time(paths, map) for name, map in maps.items()}
     if has_truth:

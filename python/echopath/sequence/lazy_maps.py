@@ -25,6 +25,7 @@ class Map(NamedTuple):
     """A variable of frames: its axes, type and shape in each, and how it is read from the open file of one.
 
     dims: names of its axes; axes: {name: values}; dtype: of read(file, place) [range, row]; attrs: of the variable
+    words: what its values are indices of, None: they are none
     """
 
     dims: tuple
@@ -32,6 +33,7 @@ class Map(NamedTuple):
     dtype: np.dtype
     attrs: dict
     read: Callable
+    words: list[str] | None = None
 
     def read_file(self, path: Path, place: int = 0) -> np.ndarray:
         """Its values of the frame in a file. Raises ep.FileError, also for maps of another size."""
@@ -57,13 +59,12 @@ def maps_of(paths: list[Path]) -> dict[str, Map]:
     words = [_words(path) for path in paths] if planes else []
     for group, (partition, dims, axes) in planes.items():
         for name, field in (_INDICES | {"mask": "mask"}).items():
-            known, attrs = None, {}
+            names, known = None, None
             if name != "mask":
                 names, known = _numbered([one[group][field] for one in words])
-                attrs = {"names": names}
             variable = name if len(planes) == 1 or name != "dominant" else f"{name}_{partition}"
             read = functools.partial(_read_labels, f"labels/{group}", field, known)
-            found[variable] = Map(dims, axes, np.dtype(bool if known is None else np.int16), attrs, read)
+            found[variable] = Map(dims, axes, np.dtype(bool if known is None else np.int16), {}, read, names)
     return found
 
 

@@ -122,9 +122,9 @@ class StoredSequence(Row[Frame | FrameMaps]):
         """The maps of all frames that are there as an xarray.Dataset, with names and units on every axis.
 
         power: f32 [time, range, velocity] in dBm, mean over channels, with noise; not of files of keep="labels"
-        dominant, or dominant_NAME for each of several partitions: i16, index of the part; object, ghost: i16, indices into
-            `attrs["names"]`, the same in all frames; mask: bool; all [time, range, velocity] (or azimuth), -1: none; where there
-            are labels
+        dominant, or dominant_NAME for each of several partitions: i16, index of the part; object, ghost: i16; indices of the
+            coordinates dominant_names, object_names and ghost_names, the same in all frames; mask: bool; all
+            [time, range, velocity] (or azimuth), -1: none; where there are labels
         truth_position [time, truth_object, truth_axis] and so on: the fields of Truth, where the files keep it
         Times are the starts of the frames in s. Nothing is held: `maps.power[3]` reads one file, `maps.power.mean("time")` all,
         `maps.load()` keeps them, 11 bytes for each cell of each frame, and `maps.chunk(time=1)` hands them to dask.

@@ -52,6 +52,6 @@ def test_xarray_reads_the_frames_that_are_asked_for_and_no_others(tmp_path, monk
     np.testing.assert_array_equal(values, [opened[place].frame.power[:, 4] for place in (3, 4)])
     labels = opened[2].frame.labels["parts"]
     np.testing.assert_array_equal(arrays.cell.sel(frame=2) > 0, labels.mask)
-    names = arrays.kind.attrs["names"]
-    assert {names[index] for index in np.unique(arrays.kind[2]) if index >= 0} == {"static"}
+    names = arrays.kind_names.values
+    assert {str(names[index]) for index in np.unique(arrays.kind[2]) if index >= 0} == {"static"}
     assert list(arrays.split.values) == [one.split for one in opened] and list(arrays.scene.values) == [0, 0, 1, 1, 2, 2]

@@ -49,6 +49,18 @@ def test_a_dataset_reads_the_frames_that_are_asked_for_and_no_others(drive, open
     assert np.allclose(third, 10.0 * np.log10(drive[2].power.T / 1e-3), atol=1e-4, rtol=0.0)
 
 
+@pytest.mark.parametrize("engine", ["scipy", "h5netcdf"])
+def test_datasets_become_netcdf(drive, engine, tmp_path):
+    """Those of SciPy are of the third kind, which has no lists of words beside a variable and no whole numbers of 64 bits."""
+    pytest.importorskip(engine)
+    frame = make_sequence(frames=1, seed=2 ** 40)[0]
+    for name, made in {"maps": drive.to_xarray(), "one": drive[1:2].to_xarray(), "truth": drive.truth.to_xarray(),
+                       "labels": frame.labels["parts"].to_xarray()}.items():
+        made.to_netcdf(tmp_path / f"{name}.nc", engine=engine)
+        with xarray.open_dataset(tmp_path / f"{name}.nc", engine=engine) as read:
+            assert read.equals(made) and read.attrs.keys() == made.attrs.keys()
+
+
 KEYS = [0, -1, slice(None), slice(None, None, -2), slice(2, 2), np.array([3, 0]), np.array([], int)]
 
 
@@ -101,6 +113,6 @@ def test_names_are_the_same_in_all_frames_where_objects_come_and_go(tmp_path):
     from echopath.sequence.arrays import dataset_of_files
 
     maps = dataset_of_files([tmp_path / "frame_0.h5", tmp_path / "frame_1.h5"], [0.0, 1.0], False, {})
-    assert maps.object.attrs["names"] == ["left", "right"] and maps.object.dtype == np.int16
+    assert maps.object_names.values.tolist() == ["left", "right"] and maps.object.dtype == np.int16
     found = [first.labels["parts"].object_map.T, second.labels["parts"].object_map.T]
     assert np.array_equal(maps.object[0], found[0]) and np.array_equal(maps.object[1], np.where(found[1] == 0, 1, -1))

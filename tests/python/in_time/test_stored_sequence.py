@@ -97,7 +97,7 @@ def test_the_maps_of_all_frames_are_one_dataset(folders, keep):
         labels = frame.labels["parts"]
         assert np.array_equal(maps.mask[place].T, labels.mask) and np.array_equal(maps.dominant[place].T, labels.dominant)
         assert np.array_equal(maps.object[place].T, labels.object_map)
-    assert maps.object.attrs["names"] == ["plate"] and maps.dominant.attrs["names"] == ["plate", "other"]
+    assert maps.object_names.values.tolist() == ["plate"] and maps.dominant_names.values.tolist() == ["plate", "other"]
     moved = maps.range.values[maps.power.max("velocity").argmax("range")]
     assert np.allclose(moved, DISTANCE + SPEED * stored.times, atol=0.3)  # a cell
 

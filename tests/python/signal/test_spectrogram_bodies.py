@@ -152,7 +152,18 @@ def test_maps_become_xarray(passing):
     assert found.to_xarray().dims == ("time", "velocity") and ranges.to_xarray().dims == ("time", "range")
     assert angles.to_xarray().attrs["units"] == "W" and angles.to_xarray().azimuth.attrs["units"] == "rad"
     assert np.shares_memory(found.to_xarray().values, found.power)
-    assert labels.to_xarray().dominant.attrs["names"] == ["ball"]
+    assert labels.to_xarray().dominant_names.values.tolist() == ["ball"]
+
+
+@pytest.mark.parametrize("engine", ["scipy", "h5netcdf"])
+def test_maps_become_netcdf(passing, engine, tmp_path):
+    xarray = pytest.importorskip("xarray")
+    pytest.importorskip(engine)
+    for number, one in enumerate(values_of(passing)):
+        one.to_xarray().to_netcdf(tmp_path / f"{number}.nc", engine=engine)
+        with xarray.open_dataset(tmp_path / f"{number}.nc", engine=engine) as read:
+            named = one.to_xarray()
+            assert read.equals(named if isinstance(named, xarray.Dataset) else named.to_dataset())
 
 
 def test_maps_are_drawn(passing):

@@ -55,11 +55,12 @@ def test_colours_differ_and_stay_with_their_place():
 
 def test_xarray_has_the_cells_by_name(labels):
     named = labels.to_xarray()
-    assert dict(named.sizes) == {"velocity": labels.shape[0], "range": labels.shape[1], "part": 3}
+    assert dict(named.sizes) == {"velocity": labels.shape[0], "range": labels.shape[1], "part": 3, "dominant_number": 3,
+                                 "object_number": len(labels.objects), "ghost_number": len(labels.ghosts)}
     assert np.array_equal(named.power.sel(part="the van"), labels.power[0]) and named.power.attrs["units"] == "W"
     v, r = np.argwhere(labels.object_map >= 0)[0]
     found = int(named.object.sel(velocity=labels.velocity[v], range=labels.range[r]))
-    assert named.object.attrs["names"][found] == labels.objects[labels.object_map[v, r]].name
+    assert named.object_names[found] == labels.objects[labels.object_map[v, r]].name
     assert np.shares_memory(named.share.values, labels.share) and "share_error" in named
     assert named.attrs["plane"] == "range_doppler" and named.range.attrs["units"] == "m"
 

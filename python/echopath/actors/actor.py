@@ -7,6 +7,7 @@ from typing import Any
 
 from .. import _core
 from ..arguments.checks import refused
+from ..base.counts import counted
 
 
 @dataclass(frozen=True)
@@ -56,7 +57,7 @@ class Actor:
         return sum(len(part.mesh.triangles) for part in self.parts)
 
     def __repr__(self):
-        return f"Actor({len(self.parts)} parts, {self.num_triangles} triangles)"
+        return f"Actor({counted(len(self.parts), 'part')}, {counted(self.num_triangles, 'triangle')})"
 
 
 @dataclass(frozen=True)

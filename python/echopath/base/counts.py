@@ -1,5 +1,22 @@
-"""Numbers in warnings, so coarse that frames in a row do not say the same in many ways: Python shows each text once."""
+"""Numbers in words: of one thing and of several, and in warnings so coarse that frames in a row do not say the same in many
+ways, as Python shows each text once."""
 from __future__ import annotations
+
+_LONG_ENDS = ("s", "x", "sh", "ch")
+
+
+def counted(count: int, thing: str) -> str:
+    """A count with the word for one thing or for several: "1 mesh", "2 meshes", "1,000 rays"."""
+    return f"{count:,} {named(count, thing)}"
+
+
+def named(count: int, thing: str) -> str:
+    """The word for one thing, or for several: "mesh", "meshes"."""
+    if count == 1:
+        return thing
+    if thing.endswith("vertex"):
+        return f"{thing[:-2]}ices"
+    return f"{thing}es" if thing.endswith(_LONG_ENDS) else f"{thing}s"
 
 
 def at_least(count: int) -> str:

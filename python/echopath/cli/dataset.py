@@ -4,6 +4,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 
+from ..base.counts import counted
 from ..dataset import Forecast, MadeScene, make
 from ..dataset.folder import MANIFEST
 from .numbers import duration_words
@@ -20,7 +21,7 @@ def lines_of(options) -> Iterator[str]:
         counts["there" if told.was_there and told.record.state == "done" else told.record.state] += 1
         if not told.was_there:
             yield _line(told)
-    told_counts = [f"{count} scene{'s' if count != 1 else ''} {state}" for state, count in sorted(counts.items())]
+    told_counts = [f"{counted(count, 'scene')} {state}" for state, count in sorted(counts.items())]
     yield ", ".join(told_counts) or "no scene was to be made"
     if counts["failed"]:
         yield f"{options.out}/{MANIFEST} says why; --only-failed tries again"
@@ -30,7 +31,7 @@ def _forecast_line(forecast: Forecast) -> str:
     if forecast.frames == 0:
         return "all frames are there"
     time = "a time that depends on the workers" if forecast.seconds is None else f"about {duration_words(forecast.seconds)}"
-    return f"{forecast.frames} frames to be made, in {time}, {max(1, forecast.bytes >> 20)} MiB"
+    return f"{counted(forecast.frames, 'frame')} to be made, in {time}, {max(1, forecast.bytes >> 20)} MiB"
 
 
 def _line(made: MadeScene) -> str:

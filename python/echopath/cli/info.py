@@ -8,6 +8,7 @@ import numpy as np
 import echopath as ep
 
 from .. import dataset
+from ..base.counts import counted
 from ..base.decibels import in_dbm
 from ..dataset.folder import TEMPLATE as DATASET_FILE
 from ..frame_file import left_out, load_frame
@@ -100,7 +101,7 @@ def _describe_template(template) -> list[str]:
     lines = [str(template.path), "template of scenes", report.line("scenes", str(made.scenes)),
              report.line("frames of each", f"{made.frames}{interval}"), report.line("kept", made.keep),
              report.line("split", ", ".join(f"{name} {share:g}" for name, share in made.split.items())),
-             f"drawn for scene 0: {len(drawn)} values"]
+             f"drawn for scene 0: {counted(len(drawn), 'value')}"]
     lines += [report.line(f"  {place}", f"{value:.6g}" if isinstance(value, float) else str(value))
               for place, value in list(drawn.items())[:report.MAX_LISTED]]
     return [*lines, "scene 0", *_describe_scene_file(first)]
@@ -158,7 +159,8 @@ def _body(scene, meshes) -> str:
     """Parts, triangles, material where all have one, and whether some move."""
     materials = {_material(mesh) for mesh in meshes}
     return ((f"{len(meshes)} meshes, " if len(meshes) > 1 else "")
-            + f"{sum(len(mesh.mesh.triangles) for mesh in meshes):,} triangles{materials.pop() if len(materials) == 1 else ''}"
+            + counted(sum(len(mesh.mesh.triangles) for mesh in meshes), "triangle")
+            + (materials.pop() if len(materials) == 1 else "")
             + (", moving" if any(scene.is_moving(mesh.id) for mesh in meshes) else ""))
 
 
@@ -263,7 +265,7 @@ def _route(paths, path: int) -> str:
 
 
 def _describe_meshes(meshes) -> list[str]:
-    lines = [f"{len(meshes)} mesh" + ("es" if len(meshes) != 1 else "")]
+    lines = [counted(len(meshes), "mesh")]
     for name, mesh in meshes:
         low, high = np.min(mesh.vertices, axis=0), np.max(mesh.vertices, axis=0)
         lines += [name, report.line("triangles, vertices", f"{len(mesh.triangles):,}, {len(mesh.vertices):,}"),

@@ -1,10 +1,13 @@
 """Lists that are cut off in reports."""
 from __future__ import annotations
 
+from ..base.counts import named
 
-def more_line(count: int, shown: int, what: str = "") -> list[str]:
+
+def more_line(count: int, shown: int, thing: str = "") -> list[str]:
     """The line behind the first `shown` of `count` rows that tells how many more there are; none where all are shown.
 
-    what: they are, " nodes"
+    thing: the word for one of them, "node"
     """
-    return [f"    and {count - shown:,} more{what}"] if count > shown else []
+    left = count - shown
+    return [f"    and {left:,} more" + (f" {named(left, thing)}" if thing else "")] if left > 0 else []

@@ -8,6 +8,7 @@ import numpy as np
 
 import echopath as ep
 
+from ..base.counts import counted
 from ..readers.sizes import box_of, has_skin, names_of, unit_doubt
 from . import report
 from .lists import more_line
@@ -54,9 +55,9 @@ def _tree(model: ep.Model) -> list[str]:
         depth[index] = 0 if node.parent < 0 else depth[node.parent] + 1
     deepest = max((level for level in range(depth.max(initial=0) + 1) if (depth <= level).sum() <= report.MAX_LISTED), default=0)
     listed = [index for index in _in_order(model) if depth[index] <= deepest][:report.MAX_LISTED]
-    lines = [report.line("  " * (1 + int(depth[i])) + model.nodes[i].name, f"{triangles[i]:,} triangles{_words(model.nodes[i])}")
-             for i in listed]
-    return ["tree", *lines, *more_line(len(model.nodes), len(listed), " nodes")]
+    lines = [report.line("  " * (1 + int(depth[i])) + model.nodes[i].name,
+                         counted(triangles[i], "triangle") + _words(model.nodes[i])) for i in listed]
+    return ["tree", *lines, *more_line(len(model.nodes), len(listed), "node")]
 
 
 def _in_order(model: ep.Model) -> list[int]:
@@ -81,7 +82,7 @@ def _words(node) -> str:
 def _materials(meshes) -> list[str]:
     """Foreign names with what they are taken for, those of most meshes first."""
     pairs = Counter((node.foreign_material or "(none)", _meaning(node.material)) for node in meshes)
-    lines = [report.line(f"  {name}", f"{meaning}, {count:,} mesh{'es' if count > 1 else ''}")
+    lines = [report.line(f"  {name}", f"{meaning}, {counted(count, 'mesh')}")
              for (name, meaning), count in pairs.most_common(MAX_MATERIALS)]
     return ["materials, and what they are taken for", *lines, *more_line(len(pairs), MAX_MATERIALS)]
 

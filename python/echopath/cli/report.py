@@ -6,6 +6,7 @@ import textwrap
 import numpy as np
 
 from ..arguments.names import first_names
+from ..base.counts import counted, named
 from ..labels.report import peak_words
 from ..paths.resolution import FAINT, RESOLVED_DB
 from ..paths.visibility import occluder_words
@@ -58,7 +59,7 @@ def overlaps(scene, time: float, names=None) -> list[str]:
     names = names or [mesh.name for mesh in scene.meshes]
     found = sorted(scene.coplanar_overlaps(time=time), key=lambda overlap: -overlap.area)
     lines = [line("  " + " and ".join(dict.fromkeys(names[mesh_id] for mesh_id in overlap.mesh_ids)),
-                  f"{overlap.num_triangles:,} triangles, {overlap.area:.4g} m^2") for overlap in found[:MAX_LISTED]]
+                  f"{counted(overlap.num_triangles, 'triangle')}, {overlap.area:.4g} m^2") for overlap in found[:MAX_LISTED]]
     more = [f"    and {len(found) - MAX_LISTED} more"] if len(found) > MAX_LISTED else []
     return [f"{ON_EACH_OTHER} (rounding decides which of the two a ray meets)", *lines, *more] if found else []
 
@@ -158,11 +159,11 @@ def labels(of_partitions: dict) -> list[str]:
     first = next(iter(of_partitions.values()))
     lines = []
     for partition, of_cells in of_partitions.items():
-        words = f"{np.count_nonzero(of_cells.mask):,} of {of_cells.mask.size:,} cells labelled, {partition}"
+        words = f"{np.count_nonzero(of_cells.mask):,} of {counted(of_cells.mask.size, 'cell')} labelled, {partition}"
         if of_cells.certain is not None:
             words += f" ({np.count_nonzero(of_cells.certain):,} certain)"
         counts = [np.count_nonzero(of_cells.dominant == index) for index in range(len(of_cells.part_names))]
-        lines += [words, *(line(name, f"{count:8,} cells") for name, count in zip(of_cells.part_names, counts))]
+        lines += [words, *(line(name, f"{count:8,} {named(count, 'cell')}") for name, count in zip(of_cells.part_names, counts))]
     return lines + _objects(first) + _ghosts(first)
 
 
@@ -174,7 +175,8 @@ def detections(found, of_partitions: dict, advice: str = "", *, file: str = "") 
         return []
     owners = {"": "the surroundings", **{name: name for name in found.object if name}}
     counts = {words: int(np.sum((found.object == name) & ~found.is_noise)) for name, words in sorted(owners.items())}
-    return [f"{len(found):,} detections{file and ', '}{file}", *(line(name, f"{count:8,}") for name, count in counts.items()),
+    return [f"{counted(len(found), 'detection')}{file and ', '}{file}",
+            *(line(name, f"{count:8,}") for name, count in counts.items()),
             line("noise alone", f"{int(found.is_noise.sum()):8,}"), *_undetected(found, of_partitions, advice)]
 
 
@@ -294,4 +296,8 @@ def omissions(left_out, path) -> str:
     if left_out.num_paths == 0:
         return line(path.name, f"{size}all paths")
     power = _power_text(in_dbm(left_out.power)).strip()
-    return line(path.name, f"{size}without the {left_out.num_paths:,} weakest paths ({power} in sum)")
+    return line(path.name, f"{size}without the {_weakest(left_out.num_paths)} ({power} in sum)")
+
+
+def _weakest(count: int) -> str:
+    return f"{count:,} weakest paths" if count > 1 else "weakest path"

@@ -10,6 +10,7 @@ import echopath as ep
 from .. import plots
 from .._core import noise_power_in_cell
 from ..arguments.part_names import LEAKAGE, REST
+from ..base.counts import counted
 from ..base.stages import StageClock
 from ..frame.frame import Frame
 from ..frame.simulate import simulate
@@ -110,7 +111,7 @@ def write_outputs(frame: Frame, folder, partitions) -> Written:
 
 def raw_line(path, num_bytes: int) -> str:
     """What to say of a file of raw data."""
-    return f"wrote {path}: {num_bytes} bytes of raw data"
+    return f"wrote {path}: {counted(num_bytes, 'byte')} of raw data"
 
 
 def _write_pictures(frame: Frame, folder: Path, partitions) -> list:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from .. import plots
 from ..base.callers import warn_user
+from ..base.counts import counted
 from ..base.progress import progress_bars
 from ..scene_file import SceneFile
 from ..sensor_files import save_raw
@@ -42,7 +43,7 @@ def run_sequence(scene_file: SceneFile, options, extra_parts: dict) -> Iterator[
     if keep == "labels" and keywords["labels"] is None:
         keywords["labels"] = True
     sequence = Sequence(scene_file.scene, scene_file.radar, frames=frames, interval=interval, **keywords)
-    yield f"{scene_file.title or scene_file.path}: {frames} frames every {interval:g} s"
+    yield f"{scene_file.title or scene_file.path}: {counted(frames, 'frame')} every {interval:g} s"
     with progress_bars() as progress:
         for saved in sequence.save_frames(options.out, keep=keep or "all", shard=options.shard, progress=progress):
             yield _line(saved, frames)

@@ -10,6 +10,7 @@ from typing import Any, Literal, NamedTuple
 from .. import _core
 from ..arguments.checks import refused
 from ..arguments.shown import shown
+from ..base.counts import counted
 from ..base.files import write_texts
 from ..scene_file.load import parse
 from .template import Template
@@ -149,7 +150,7 @@ def _what_differs(theirs: dict[str, Any], ours: dict[str, Any]) -> str:
     own, other = dict(mine.pop("dataset", {})), dict(there.pop("dataset", {}))
     scenes, before = own.pop("scenes", 0), other.pop("scenes", 0)
     if scenes < before:
-        return f"it has {before} scenes"
+        return f"it has {counted(before, 'scene')}"
     for name in sorted(mine.keys() | there.keys()):
         if mine.get(name) != there.get(name):
             return f"[{name}] differs"

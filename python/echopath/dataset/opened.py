@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, overload
 from .. import _core
 from ..arguments.checks import checked, refused
 from ..arguments.checks import path as folder_rule
+from ..base.counts import counted
 from ..frame.frame import Frame
 from ..frame.maps import FrameMaps
 from ..sequence import StoredSequence, load_sequence
@@ -142,7 +143,8 @@ class Dataset:
         return lazy_arrays(self)
 
     def __repr__(self) -> str:
-        return f"Dataset('{self.folder}', {len(self)} frames of {len(self.scenes)} scenes, keep='{self.keep}')"
+        frames, scenes = counted(len(self), "frame"), counted(len(self.scenes), "scene")
+        return f"Dataset('{self.folder}', {frames} of {scenes}, keep='{self.keep}')"
 
 
 def dataset_rule(argument: str, value: Any) -> Dataset:

@@ -1,6 +1,7 @@
 """Effects of motion during a frame."""
 from __future__ import annotations
 
+from ..base.counts import counted
 from .rules import Case, rule
 
 SURFACE_SEARCHES = 32  # stretches in which new surface is looked for (sim/stream/keyframes.h)
@@ -49,4 +50,4 @@ def _bypass(case: Case):
     if case.radar.motion is not None:
         return False, "the radar moves"
     still = case.num_meshes - len(case.moving)
-    return still > 0, f"{still} of {case.num_meshes} meshes and the radar stand still" if still else "all meshes move"
+    return still > 0, f"{still} of {counted(case.num_meshes, 'mesh')} and the radar stand still" if still else "all meshes move"

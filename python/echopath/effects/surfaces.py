@@ -7,6 +7,7 @@ import numpy as np
 
 from .. import _core
 from .._core import speed_of_light
+from ..base.counts import counted
 from ..base.decibels import in_dbm
 from ..scene.sheets import sheet_coefficients
 from ..tracing.edges import edges_matter, strongest_edge
@@ -126,7 +127,9 @@ def _found_passes(paths) -> str:
     through = paths.select("T .* P .* R") if len(paths.passes) else None
     if through is None or through.num_paths == 0:
         return "no path goes through them"
-    return f"{through.num_paths} paths go through them, {in_dbm(_core.received_power(through).power):.1f} dBm in all"
+    go = "go" if through.num_paths > 1 else "goes"
+    power = _core.received_power(through).power
+    return f"{counted(through.num_paths, 'path')} {go} through them, {in_dbm(power):.1f} dBm in all"
 
 
 @rule("diffuse lobe, random phase", "Material.scattering")

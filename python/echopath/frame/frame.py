@@ -10,6 +10,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.settings import SignalSettings
+from ..base.counts import counted
 from ..base.known_attributes import known_attributes
 from ..base.made_by import made_by
 from ..base.stages import Stage
@@ -241,7 +242,7 @@ class Frame:
         partitions = ", ".join(self.parts) or "none"
         cube = None if self.cube is None else list(self.cube.shape)
         labels = f", labels: {', '.join(self.labels)}" if self.labels else ""
-        found = "" if self.detections is None else f", {len(self.detections)} detections"
+        found = "" if self.detections is None else f", {counted(len(self.detections), 'detection')}"
         return f"Frame(paths={self.paths.num_paths}, cube={cube}, partitions: {partitions}{labels}{found})"
 
 

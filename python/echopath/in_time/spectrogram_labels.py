@@ -10,6 +10,7 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import an, checked, optional, refused
 from ..arguments.settings import LabelSettings
+from ..base.counts import counted
 from ..base.equality import has_same_fields, is_same
 from ..base.made_by import made_by
 from ..labels.part_cells import PartCells, floor_over, masks_of
@@ -65,7 +66,8 @@ class SpectrogramLabels(PartCells):
     __hash__ = None
 
     def __repr__(self) -> str:
-        counts = (f"{name}: {np.count_nonzero(self.dominant == number)} cells" for number, name in enumerate(self.part_names))
+        counts = (f"{name}: {counted(np.count_nonzero(self.dominant == number), 'cell')}"
+                  for number, name in enumerate(self.part_names))
         return f"SpectrogramLabels({list(self.whole.shape)}, {np.count_nonzero(self.mask)} labelled, {', '.join(counts)})"
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from ..arguments.checks import choice
 from ..arguments.part_names import BESIDE, REST
+from ..base.counts import counted
 from ..base.equality import has_same_fields
 from ..base.made_by import made_by
 from ..paths.resolution import Interval
@@ -247,5 +248,5 @@ class Labels(PartCells):
         return text_of(self)
 
     def __repr__(self) -> str:
-        return (f"Labels({self.plane}, {list(self.shape)}, parts: {', '.join(self.part_names)}, {len(self.objects)} "
-                f"objects, {len(self.ghosts)} ghosts)")
+        return (f"Labels({self.plane}, {list(self.shape)}, parts: {', '.join(self.part_names)}, "
+                f"{counted(len(self.objects), 'object')}, {counted(len(self.ghosts), 'ghost')})")

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..base.counts import counted, named
 from ..base.decibels import in_dbm
 from ..paths.visibility import occluder_words
 
@@ -12,7 +13,7 @@ def text_of(labels) -> str:
     rows = [_header(labels), *_parts(labels), *map(_object, labels.objects),
             *(_ghost(ghost) for ghost in _with_cells(labels))]
     hidden = len(labels.ghosts) - len(_with_cells(labels))
-    rows += [f"{hidden} more ghosts have no cells"] if hidden else []
+    rows += [f"{hidden:,} more {named(hidden, 'ghost')} {'have' if hidden > 1 else 'has'} no cells"] if hidden else []
     rows += _left_out(labels.left_out)
     return "\n".join(rows)
 
@@ -32,7 +33,7 @@ def _header(labels) -> str:
     rows, columns = labels.shape
     above, labelled = np.count_nonzero(labels.above_noise), np.count_nonzero(labels.mask)
     certain = "" if labels.certain is None else f", {np.count_nonzero(labels.certain)} of them certain"
-    return (f"{labels.plane.replace('_', '-')} map of {rows} x {columns} cells: {above} above the noise, "
+    return (f"{labels.plane.replace('_', '-')} map of {rows} x {counted(columns, 'cell')}: {above} above the noise, "
             f"{labelled} labelled{certain}")
 
 
@@ -43,7 +44,7 @@ def _parts(labels) -> list[str]:
 
 def cell_words(count) -> str:
     """1 cell, 2 cells."""
-    return f"{count} cell" if count == 1 else f"{count} cells"
+    return counted(count, "cell")
 
 
 def _object(label) -> str:

@@ -14,6 +14,7 @@ from ..arguments.settings import (
     MOST_RAYS, Edges, Evaluate, FaintPower, Footprint, Method, Polarization, Replay, Sampler, Scatterers, SignalSettings,
     TraceSettings,
 )
+from ..base.counts import counted
 from ..base.known_attributes import known_attributes
 from ..scene.scene import Scene
 from ..signals.parts import as_partition
@@ -232,4 +233,4 @@ class Live:
                         "and make a Live of them")
 
     def __repr__(self) -> str:
-        return f"Live({len(self._scene)} objects, {self.num_rays} rays, change {self.number})"
+        return f"Live({counted(len(self._scene), 'object')}, {counted(self.num_rays, 'ray')}, change {self.number})"

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from .. import _core
+from ..base.counts import counted
 from ..base.made_by import made_by
 from ..signals.parts import Parts
 
@@ -44,5 +45,5 @@ class LiveView:
 
     def __repr__(self) -> str:
         kind = "preview" if self.is_preview else "view"
-        return (f"LiveView({kind} of change {self.number}: {self.num_rays_shot} of {self.num_rays} rays shot, "
-                f"{self.num_paths_changed} paths changed, {1e3 * self.seconds:.0f} ms)")
+        return (f"LiveView({kind} of change {self.number}: {self.num_rays_shot} of {counted(self.num_rays, 'ray')} shot, "
+                f"{counted(self.num_paths_changed, 'path')} changed, {1e3 * self.seconds:.0f} ms)")

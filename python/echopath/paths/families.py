@@ -9,6 +9,7 @@ import numpy as np
 from .. import _core
 from ..arguments.checks import an, checked
 from ..arguments.objects import Objects, named_globs, objects_rule
+from ..base.counts import counted
 from ..base.equality import is_same
 from ..base.made_by import made_by
 
@@ -80,7 +81,7 @@ class Families:
         return iter(self.families)
 
     def __repr__(self) -> str:
-        return f"Families({len(self)} of {len(self.objects)} objects, paths={len(self.family_of_path)})"
+        return f"Families({len(self)} of {counted(len(self.objects), 'object')}, paths={len(self.family_of_path)})"
 
 
 def check_objects(scene, objects) -> None:

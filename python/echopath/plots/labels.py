@@ -4,6 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arguments.checks import choice
+from ..base.counts import counted
 from ..base.decibels import SMALLEST_POWER, in_dbm
 from ..paths.visibility import occluder_words
 from ..signals.measures import for_pictures
@@ -255,13 +256,13 @@ def _row_spans(labels, label) -> list:
 def _row_name(label) -> str:
     if not hasattr(label, "ghost_type"):
         return f"{label.name} itself"
-    return f"{label.object} via {' + '.join(label.via)} (type {label.ghost_type}, {label.order} bounces)"
+    return f"{label.object} via {' + '.join(label.via)} (type {label.ghost_type}, {counted(label.order, 'bounce')})"
 
 
 # --- what they share ---
 
 def _cells(count: int) -> str:
-    return f"{count:,} cell{'' if count == 1 else 's'}"
+    return counted(count, "cell")
 
 
 def _rows(labels):

@@ -4,6 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..arguments.checks import choice, text
+from ..base.counts import counted
 from .maps import RANGE_LABEL, VELOCITY_LABEL
 from .style import axes_or_new, part_colours
 from .top_view import AHEAD_LABEL, LEFT_LABEL
@@ -41,7 +42,7 @@ def draw_detections(detections, *, view="range_doppler", ax=None, title=""):
             ax.set_xlabel(RANGE_LABEL)
             ax.set_ylabel(VELOCITY_LABEL)
         ax.grid(alpha=0.25)
-        ax.set_title(text("title", title) or f"{len(detections)} detections")
+        ax.set_title(text("title", title) or counted(len(detections), "detection"))
     return ax
 
 

@@ -9,6 +9,7 @@ import html
 
 import numpy as np
 
+from ..base.counts import counted
 from ..base.decibels import SMALLEST_POWER, in_dbm
 from ..receiver.settings import receiver_text
 from ..signals.same_radar import WAVEFORM_LISTS
@@ -25,7 +26,8 @@ def scene_html(scene) -> str:
              "moves" if scene.is_moving(mesh.id) else "at rest") for mesh in meshes[:MOST_ROWS]]
     weather = weather_of(scene)
     air = "" if weather is None else f", {weather_text(weather)}"
-    return _table(f"Scene: {len(scene.nodes)} nodes, {len(meshes)} meshes, {scene.num_triangles:,} triangles{air}",
+    return _table(f"Scene: {counted(len(scene.nodes), 'node')}, {counted(len(meshes), 'mesh')}, "
+                  f"{counted(scene.num_triangles, 'triangle')}{air}",
                   ("mesh", "triangles", "area in m²", "material", "motion"), rows, len(meshes))
 
 
@@ -36,9 +38,10 @@ def radar_html(radar) -> str:
     steps = ", slots differ" if any(getattr(waveform, name) for name in WAVEFORM_LISTS) else ""
     return _pairs("Radar", {
         "band": f"{1e-9 * waveform.start_frequency:.6g} GHz + {1e-6 * waveform.bandwidth:.6g} MHz",
-        "chirps": f"{waveform.num_chirps} of {waveform.num_samples} samples at {1e-6 * waveform.sampling_rate:.6g} MHz, "
-                  f"every {1e6 * waveform.chirp_interval:.6g} µs{steps}",
-        "antennas": f"{num_transmitters} transmitters, {len(radar.receivers)} receivers, {radar.multiplexing}",
+        "chirps": f"{waveform.num_chirps} of {counted(waveform.num_samples, 'sample')} at "
+                  f"{1e-6 * waveform.sampling_rate:.6g} MHz, every {1e6 * waveform.chirp_interval:.6g} µs{steps}",
+        "antennas": f"{counted(num_transmitters, 'transmitter')}, {counted(len(radar.receivers), 'receiver')}, "
+                    f"{radar.multiplexing}",
         "receiver": receiver_text(radar),
         "range": f"cells of {waveform.range_resolution:.4g} m up to {waveform.max_range:.4g} m",
         "velocity": f"up to ±{waveform.max_velocity(radar.num_slots):.4g} m/s",
@@ -55,7 +58,7 @@ def paths_html(paths) -> str:
         here = bounces == count
         rows.append((int(count), f"{np.count_nonzero(here & ~is_diffuse):,}", f"{np.count_nonzero(here & is_diffuse):,}"))
     frame = paths.frame
-    title = (f"Paths: {paths.num_paths:,} of {frame.statistics.num_rays:,} rays, {paths.num_hits:,} hits, "
+    title = (f"Paths: {paths.num_paths:,} of {counted(frame.statistics.num_rays, 'ray')}, {counted(paths.num_hits, 'hit')}, "
              f"{frame.polarization}, seed {frame.seed}, at {frame.trace_time:.6g} s")
     return _table(title, ("bounces", "coherent", "diffuse"), rows, len(rows))
 
@@ -66,9 +69,9 @@ def range_doppler_html(spectrum) -> str:
     row, column = np.unravel_index(int(power.argmax()), power.shape)
     tx, rx, velocities, ranges = spectrum.values.shape
     return _pairs("RangeDoppler", {
-        "channels": f"{tx} transmitters x {rx} receivers",
-        "velocity": f"{velocities} cells, {spectrum.velocity[0]:.4g} to {spectrum.velocity[-1]:.4g} m/s",
-        "range": f"{ranges} cells, {spectrum.range[0]:.4g} to {spectrum.range[-1]:.4g} m",
+        "channels": f"{counted(tx, 'transmitter')} x {counted(rx, 'receiver')}",
+        "velocity": f"{counted(velocities, 'cell')}, {spectrum.velocity[0]:.4g} to {spectrum.velocity[-1]:.4g} m/s",
+        "range": f"{counted(ranges, 'cell')}, {spectrum.range[0]:.4g} to {spectrum.range[-1]:.4g} m",
         "window": f"{spectrum.window}, zero_pad {spectrum.zero_pad}",
         "strongest cell": f"{_dbm(power[row, column])} at {spectrum.range[column]:.4g} m, {spectrum.velocity[row]:+.4g} m/s",
         "median cell": _dbm(float(np.median(power)))})
@@ -89,13 +92,13 @@ def labels_html(labels) -> str:
     """The parts of the map, its objects, and how many ghosts have cells."""
     counts = np.bincount(labels.dominant[labels.mask].astype(np.int64), minlength=len(labels.part_names))
     num_rows, num_columns = labels.shape
-    parts = _table(f"Labels: {labels.plane.replace('_', '-')} map of {num_rows} x {num_columns} cells, "
+    parts = _table(f"Labels: {labels.plane.replace('_', '-')} map of {num_rows} x {counted(num_columns, 'cell')}, "
                    f"{np.count_nonzero(labels.mask):,} labelled", ("part", "cells"),
                    list(zip(labels.part_names, counts))[:MOST_ROWS], len(labels.part_names))
     rows = [(label.name, label.status, label.cells, _dbm(label.power), f"{label.visible_share:.0%}")
             for label in labels.objects[:MOST_ROWS]]
     with_cells = sum(ghost.cells > 0 for ghost in labels.ghosts)
-    return parts + _table(f"Objects, and {with_cells} ghosts with cells of {len(labels.ghosts)}",
+    return parts + _table(f"Objects, and {counted(with_cells, 'ghost')} with cells of {len(labels.ghosts)}",
                           ("object", "status", "cells", "power", "visible"), rows, len(labels.objects))
 
 
@@ -129,15 +132,15 @@ def template_html(template) -> str:
         "scenes": made.scenes, "frames of each": f"{made.frames}{interval}", "kept": made.keep, "seed": made.seed,
         "split": ", ".join(f"{name} {share:.4g}" for name, share in made.split.items())})
     rows = [(place, f"{value:.6g}" if isinstance(value, float) else value) for place, value in drawn.items()]
-    return told + _table(f"Drawn for scene 0: {len(rows)} values", ("value", "drawn"), rows[:MOST_ROWS], len(rows))
+    return told + _table(f"Drawn for scene 0: {counted(len(rows), 'value')}", ("value", "drawn"), rows[:MOST_ROWS], len(rows))
 
 
 def validity_html(report) -> str:
     """Whether one trace serves, what does not hold, and the objects."""
     rows = [(name, "yes" if one.ok else "no", f"{one.new_surface:.1%}", f"{one.disappears:.1%}", f"{one.error_db:+.2f}")
             for name, one in list(report.objects.items())[:MOST_ROWS]]
-    verdict = "one trace serves" if report.ok else f"{len(report.warnings)} warnings"
-    table = _table(f"Validity: {verdict}, {report.num_paths:,} paths, phase error {report.rms_phase_error:.3g} rad rms",
+    verdict = "one trace serves" if report.ok else counted(len(report.warnings), "warning")
+    table = _table(f"Validity: {verdict}, {counted(report.num_paths, 'path')}, phase error {report.rms_phase_error:.3g} rad rms",
                    ("object", "served", "new surface", "disappears", "error in dB"), rows, len(report.objects))
     return table + "".join(f"<p>{html.escape(warning)}</p>" for warning in report.warnings)
 

@@ -8,6 +8,7 @@ from fnmatch import translate
 
 from .. import _core
 from ..arguments.checks import refused
+from ..base.counts import counted
 from ..scene.materials import known_material, materials
 
 Meaning = _core.Material | str
@@ -169,10 +170,10 @@ def note_of_unknown(names: Iterable[str]) -> list[str]:
     more = ", ..." if len(known) > 8 else ""
     notes = []
     if known:
-        notes.append(f"{len(known)} material{'s' if len(known) > 1 else ''} without an entry in ep.foreign_materials "
+        notes.append(f"{counted(len(known), 'material')} without an entry in ep.foreign_materials "
                      f"{'are' if len(known) > 1 else 'is'} taken for {DEFAULT}: {', '.join(known[:8])}{more}")
     if "" in names:
         count = names.count("")
-        notes.append(f"{count} mesh{'es' if count > 1 else ''} without a material {'are' if count > 1 else 'is'} taken for "
+        notes.append(f"{counted(count, 'mesh')} without a material {'are' if count > 1 else 'is'} taken for "
                      f"{DEFAULT}: materials={{\"*\": \"metal\"}} says otherwise")
     return notes

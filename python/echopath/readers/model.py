@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
+from ..base.counts import counted
 
 if TYPE_CHECKING:
     from ..trajectories import Trajectory
@@ -83,4 +84,4 @@ class Model:
 
     def __repr__(self) -> str:
         meshes = sum(node.mesh is not None for node in self.nodes)
-        return f"Model({self.format}, {meshes} meshes, {self.num_triangles} triangles)"
+        return f"Model({self.format}, {counted(meshes, 'mesh')}, {counted(self.num_triangles, 'triangle')})"

@@ -28,7 +28,7 @@ def closing_speeds(scene, radar, time: float) -> Speeds:
     """{mesh: how fast the distance of each vertex changes, [V] m/s, receding positive} of those that move towards the radar or
     from it.
 
-    time: s, of the scene; the distance is that from the middle of the antennas. Differences of second order over `STEP` meet the
+    time: s, of the scene; the distance is that from the middle of the antennas. Differences of second order meet the
         speed of a wheel of 0.3 m and 50 turns/s to 0.01 m/s.
     """
     step = step_within(radar.frame_duration)

@@ -5,6 +5,7 @@ import numpy as np
 
 from .. import _core
 from ..arguments.checks import flag, real, refused, vector
+from ..base.counts import counted
 from ..base.made_by import made_by
 from ..trajectories.trajectory import Trajectory
 from . import placements
@@ -182,7 +183,8 @@ class SceneNode:
             return f"SceneNode('{self._name}', removed)"
         position = ", ".join(f"{value:g}" for value in self.position)
         hidden = "" if self._scene._takes_part(self._index) else ", not visible"
-        return f"SceneNode('{self._name}', position=({position}) m, yaw={self.yaw:g} rad, {len(self.meshes)} meshes{hidden})"
+        meshes = counted(len(self.meshes), "mesh")
+        return f"SceneNode('{self._name}', position=({position}) m, yaw={self.yaw:g} rad, {meshes}{hidden})"
 
 
 def split_motion(motion, mesh, name: str) -> tuple:

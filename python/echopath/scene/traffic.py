@@ -7,6 +7,7 @@ from typing import Any
 from .. import actors
 from ..actors.laid_line import usual_speed
 from ..arguments.checks import an, anything, checked, optional, real, refused, text
+from ..base.counts import counted
 from ..base.made_by import made_by
 from ..readers.tree import fit_name
 from ..trajectories.kinds import usual_kind
@@ -33,7 +34,7 @@ class Traffic(Mapping[str, Trajectory]):
         return len(self._trajectories)
 
     def __repr__(self) -> str:
-        return f"Traffic({len(self)} objects)"
+        return f"Traffic({counted(len(self), 'object')})"
 
     def present(self, begin: float, end: float | None = None) -> list[str]:
         """Names of the objects whose trajectories have begun and not ended, at a time or at some time of a span.

@@ -20,6 +20,7 @@ from ..arguments.settings import (
     Edges, Evaluate, FaintPower, Footprint, LabelSettings, Method, Polarization, Replay, Retrace, Sampler, Scatterers,
     SignalSettings, TraceSettings, settings_among,
 )
+from ..base.counts import counted
 from ..base.progress import automatic_bars
 from ..base.work_at_hand import at_work_on
 from ..frame.frame import Frame
@@ -204,7 +205,7 @@ class Sequence(Row[Frame]):
                     "truth": run.truth_keywords, "weather": None if weather is None else weather.keywords()}
 
     def __repr__(self) -> str:
-        return f"Sequence({len(self)} frames {self._span()}, every {self.interval:.6g} s)"
+        return f"Sequence({counted(len(self), 'frame')} {self._span()}, every {self.interval:.6g} s)"
 
     def _repr_html_(self) -> str:
         from ..presentation.notebook import sequence_html

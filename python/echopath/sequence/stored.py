@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from .. import _core
 from ..arguments.checks import checked
 from ..arguments.checks import path as path_rule
+from ..base.counts import counted
 from ..frame.frame import Frame
 from ..frame.maps import FrameMaps
 from ..frame_file.frame import without_lists
@@ -135,7 +136,7 @@ class StoredSequence(Row[Frame | FrameMaps]):
         return dataset_of(self, np.flatnonzero(self.is_there))
 
     def __repr__(self) -> str:
-        return (f"StoredSequence('{self.path}', {len(self)} frames {self._span()}, {int(self.is_done.sum())} done, "
+        return (f"StoredSequence('{self.path}', {counted(len(self), 'frame')} {self._span()}, {int(self.is_done.sum())} done, "
                 f"keep='{self.keep}')")
 
     def _repr_html_(self) -> str:

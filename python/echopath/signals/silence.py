@@ -4,6 +4,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..base.callers import warn_user
+from ..base.counts import counted
 from ..base.rotations import matrices
 
 
@@ -13,8 +14,7 @@ def warn_of_silence(paths, radar, cube: np.ndarray) -> None:
     paths: _core.Paths; radar: that hears them; cube: sqrt(W), their signal
     """
     if paths.num_paths and not cube.any():
-        count = f"{paths.num_paths:,} paths" if paths.num_paths > 1 else "1 path"
-        warn_user(f"no signal of {count}: {'; '.join(_reasons(paths, radar))}")
+        warn_user(f"no signal of {counted(paths.num_paths, 'path')}: {'; '.join(_reasons(paths, radar))}")
 
 
 def _reasons(paths, radar) -> list[str]:

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from ..base.callers import warn_user
-from ..base.counts import at_least
+from ..base.counts import at_least, counted
 
 LOST_SHARE = 0.01  # of the rays
 
@@ -31,7 +31,7 @@ def warn_of_unfollowed_frusta(statistics) -> None:
     """Warns (RuntimeWarning) where not every sequence of mirrors was tried."""
     count = statistics.num_unfollowed_frusta
     if count:
-        warn_user(f"{at_least(count)} sequences of mirrors were not followed further: echoes over more mirrors are left out. "
+        warn_user(f"{at_least(count)} {_sequences(count)} not followed further: echoes over more mirrors are left out. "
                   "Fewer flagged mirrors or a smaller max_bounces see all")
 
 
@@ -40,7 +40,7 @@ def warn_of_unaimed(statistics, strata=()) -> None:
     more than the rays reach for."""
     count = num_unaimed(statistics, [stratum for stratum in strata if stratum.num_mirrors == 0])
     if count:
-        warn_user(f"{at_least(count)} objects and images have no rays of their own: only rays of the field of view find them. "
+        warn_user(f"{at_least(count)} {_without_rays(count)}: only rays of the field of view meet such ones. "
                   "More rays reach more objects, and objects put under one parent are aimed at as one")
 
 
@@ -53,19 +53,30 @@ def num_unaimed(statistics, strata=()) -> int:
 def unaimed(statistics, strata=()) -> str:
     """How many objects and images a trace did not aim at; "" for none. strata: those of its frame"""
     count = num_unaimed(statistics, strata)
-    return f"{count:,} objects and images have no rays of their own" if count else ""
+    return f"{count:,} {_without_rays(count)}" if count else ""
+
+
+def _without_rays(count: int) -> str:
+    return "objects and images have no rays of their own" if count > 1 else "object or image has no rays of its own"
+
+
+def _sequences(count: int) -> str:
+    return "sequences of mirrors were" if count > 1 else "sequence of mirrors was"
 
 
 def unfollowed_frusta(statistics) -> str:
     """How many sequences of mirrors a trace did not follow further; "" for none."""
     count = statistics.num_unfollowed_frusta
-    return f"{count:,} sequences of mirrors were not followed further" if count else ""
+    return f"{count:,} {_sequences(count)} not followed further" if count else ""
 
 
 def unfollowed_sheets(statistics) -> str:
     """Where a trace did not split rays at sheets, and how many legs it took to end at one; "" for none."""
     unsplit, stopped = statistics.num_unsplit_rays, statistics.num_stopped_passes
-    texts = [f"{unsplit:,} rays were not reflected at a sheet because they had split at too many before"] if unsplit else []
+    texts = []
+    if unsplit:
+        were = "were" if unsplit > 1 else "was"
+        texts.append(f"{counted(unsplit, 'ray')} {were} not reflected at a sheet after splitting at too many before")
     if stopped:
-        texts.append(f"{stopped:,} legs end behind 64 sheets")
+        texts.append(f"{counted(stopped, 'leg')} {'end' if stopped > 1 else 'ends'} behind 64 sheets")
     return "; ".join(texts)

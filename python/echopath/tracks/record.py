@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arguments.checks import refused
+from ..base.counts import counted
 from ..base.equality import has_same_fields
 from ..base.made_by import made_by
 from ..presentation.tables import make_table, write_csv
@@ -105,4 +106,4 @@ class Tracks:
         return len(self.track)
 
     def __repr__(self) -> str:
-        return f"Tracks({self.num_tracks} tracks, {len(self)} rows)"
+        return f"Tracks({counted(self.num_tracks, 'track')}, {counted(len(self), 'row')})"

@@ -12,6 +12,7 @@ from .. import _core
 from ..arguments.checks import array, checked, is_writable, real, refused
 from ..arguments.checks import file as file_rule
 from ..base.callers import warn_user
+from ..base.counts import counted
 from .geodesy import east_north_up
 from .kinds import usual_kind
 from .markup import read_fcd, read_gpx
@@ -106,7 +107,8 @@ def _check_order(path: Path, samples: Samples) -> None:
 def _trajectories(path: Path, tracks: dict[str, Samples], origin, smoothing: float) -> dict[str, Trajectory]:
     single = [name for name, samples in tracks.items() if len(samples.times) < 2]
     if single:
-        warn_user(f"{path}: {len(single)} objects have a single position and are left out, such as '{single[0][:60]}'")
+        warn_user(f"{path}: {counted(len(single), 'object')} with a single position "
+                  f"{'are' if len(single) > 1 else 'is'} left out, such as '{single[0][:60]}'")
     found = {}
     for name, samples in tracks.items():
         if len(samples.times) < 2:

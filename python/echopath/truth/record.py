@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arguments.checks import LARGEST_COUNT, count, refused
+from ..base.counts import counted
 from ..base.equality import has_same_fields
 from ..base.made_by import made_by
 from ..base.rotations import quaternions
@@ -187,7 +188,8 @@ class Truth:
     def __repr__(self) -> str:
         names = list(dict.fromkeys(self.name.tolist()))
         shown = ", ".join(names[:8]) + (", ..." if len(names) > 8 else "")
-        return f"Truth({len(self)} rows, {len(np.unique(self.frame))} frames, {len(names)} objects: {shown})"
+        frames = counted(len(np.unique(self.frame)), "frame")
+        return f"Truth({counted(len(self), 'row')}, {frames}, {counted(len(names), 'object')}: {shown})"
 
 
 def _fields() -> list[str]:

@@ -9,6 +9,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 from pydantic import AfterValidator, Field
 
+from ...base.counts import counted
 from ...scene_file import SceneFile
 from ...scene_file.errors import validated
 from ...scene_file.load import parse, scene_file_of
@@ -80,8 +81,8 @@ class Template:
 
     def __repr__(self) -> str:
         made = self.settings
-        frames = f"{made.frames} frames" if made.frames > 1 else "1 frame"
-        return f"Template('{self.path}', {made.scenes} scenes of {frames}, keep='{made.keep}', seed={made.seed})"
+        scenes, frames = counted(made.scenes, "scene"), counted(made.frames, "frame")
+        return f"Template('{self.path}', {scenes} of {frames}, keep='{made.keep}', seed={made.seed})"
 
     def _repr_html_(self) -> str:
         from ...presentation.notebook import template_html

@@ -273,7 +273,7 @@ def test_rows_travel(frame, tmp_path):
     assert len(empty) == 0 and ep.Truth.from_records(empty.to_records()) == empty and len(empty.corners) == 0
     with pytest.raises(ValueError, match="records: must be a structured array as Truth.to_records"):
         ep.Truth.from_records(np.zeros(3))
-    assert "1 rows, 1 frames, 1 objects: car" in repr(found)
+    assert "1 row, 1 frame, 1 object: car" in repr(found)
 
 
 def test_tables_have_names_and_units(frame, tmp_path):

@@ -20,6 +20,7 @@ from ..paths.resolution import RESOLVED_DB
 from ..presentation.tables import event
 from ..readers.load import READ_RULES, READERS, is_foreign, read_model
 from ..readers.options import ReadOptions
+from ..receiver.converter import step_text
 from ..receiver.settings import receiver_text
 from ..scene_file import load_scene
 from ..scene_file.load import parse
@@ -174,7 +175,7 @@ def _describe_radar(radar) -> list[str]:
     return ["radar",
             report.line("antennas", f"{len(radar.transmitters)} transmitting, {len(radar.receivers)} receiving"),
             report.line("multiplexing", radar.multiplexing), report.line("receiver", receiver_text(radar)),
-            *_describe_array(ep.virtual_array(radar)),
+            *_describe_converter(radar), *_describe_array(ep.virtual_array(radar)),
             report.line("place", _place(radar)),
             report.line("frequency", f"{waveform.start_frequency / 1e9:g} GHz + {waveform.bandwidth / 1e9:g} GHz"),
             report.line("samples, chirps", f"{waveform.num_samples} at {waveform.sampling_rate / 1e6:g} MHz, "
@@ -182,6 +183,11 @@ def _describe_radar(radar) -> list[str]:
             report.line("range", f"to {waveform.max_range:.2f} m, resolution {waveform.range_resolution:.3f} m"),
             report.line("velocity", f"+-{waveform.max_velocity(radar.num_slots):.2f} m/s, resolution "
                         f"{waveform.velocity_resolution(radar.num_slots):.3f} m/s")]
+
+
+def _describe_converter(radar) -> list[str]:
+    has_converter = radar.receiver is not None and radar.receiver.adc is not None
+    return report.wrapped("converter", step_text(radar)) if has_converter else []
 
 
 def _place(radar) -> str:

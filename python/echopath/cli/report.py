@@ -33,6 +33,12 @@ def line(label: str, value: str) -> str:
     return f"  {label + ' ':<{LABEL_WIDTH}}{value}"
 
 
+def wrapped(label: str, value: str) -> list[str]:
+    """`line` in as many lines as its width asks for."""
+    indent = " " * (LABEL_WIDTH + 2)
+    return textwrap.wrap(line(label, value), MAX_WIDTH, subsequent_indent=indent, break_on_hyphens=False)
+
+
 def point(place) -> str:
     """Coordinates of a place, (x, y, z)."""
     return "(" + ", ".join(f"{value:.4g}" for value in place) + ")"
@@ -87,9 +93,7 @@ def effects(all_effects) -> list[str]:
         lines.append(title)
         for effect in all_effects:
             if effect.modelled == modelled:
-                text = line(effect.name, effect.reason)
-                indent = " " * (LABEL_WIDTH + 2)
-                lines += textwrap.wrap(text, MAX_WIDTH, subsequent_indent=indent, break_on_hyphens=False)
+                lines += wrapped(effect.name, effect.reason)
     return lines
 
 

@@ -9,7 +9,7 @@ from .. import _core
 from ..arguments.checks import ArrayLike, array, checked, optional, real, refused, seed as seed_rule
 from ..transmit import code_of, is_coded, radar_of_noise
 from .channels import coupled, receiver_factors, require_channels, transmitter_factors
-from .converter import converted, jittered, warn_of_levels
+from .converter import converted, jittered, noise_of_branch, warn_of_levels
 from .filters import filtered, has_filters
 from .imbalance import compressed, compression, unbalanced, with_offset
 from .leakage import leakage
@@ -54,7 +54,8 @@ def receive(cube: ArrayLike, radar: _core.Radar, *, seed: int | None, start_time
     interference: what other radars send (`interference`), of the shape of the cube in sqrt(W), or None: the errors of the
         radar's transmitters are not in it, and its own oscillator turns it by its phase of now, whatever the delay
     Returns Reception. Raises TypeError or ValueError naming the argument, also where the receiver has tables of other
-    antennas. Warns (RuntimeWarning) where the converter clips more than 1 % of the codes, or gives the same one for all.
+    antennas. Warns (RuntimeWarning) where the converter clips more than 1 % of the codes, gives the same one for
+    all, or has steps that add more to the noise than it has itself.
     """
     other = None if interference is None else np.asarray(interference, np.complex128)
     if other is not None and other.shape != np.shape(cube):
@@ -93,7 +94,7 @@ def _received(cube, radar, receiver: Receiver, seed: int | None, start_time: flo
         return Reception(cube)
     cube = chain.sampled(cube)
     out, codes, gain_db = converted(cube, radar.waveform, receiver.adc)
-    warn_of_levels(cube, codes, radar.waveform, receiver.adc, gain_db)
+    warn_of_levels(cube, codes, radar.waveform, receiver.adc, gain_db, 0.0 if seed is None else noise_of_branch(radar))
     return Reception(out, codes, gain_db)
 
 

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.cli.info import _describe_radar
+from echopath.receiver.converter import noise_of_branch, step_text
 from support.signals.received_tones import COUNT, LEVEL, RATE, db, one_channel, received, tone
 
 
@@ -115,3 +117,45 @@ def test_bad_receivers_are_refused_by_name(keywords, told):
 def test_tables_of_other_antennas_are_refused():
     with pytest.raises(ValueError, match=r"^receiver.leakage_db: must be of the shape \(1, 1\)"):
         received(tone(3), leakage_db=[[1.0, 2.0]])
+
+
+@pytest.mark.parametrize("real", [False, True])
+def test_steps_that_swamp_the_noise_are_told_of_with_what_mends_them(real):
+    """Noise of -174 + 73 + 10 dBm in 20 MHz, half of it in a branch, is .3 of a step of 14 bits below 10 dBm at a gain that
+    leaves it there: next to nothing but -1, 0 and 1 is given. Steps of the noise itself are 10 dB smaller."""
+    noise = 0.5 * 1.380649e-23 * 290.0 * RATE * 10.0
+    full_scale = 1e-2 * (2.0 if real else 1.0)
+    gain = db(full_scale / 4 ** 13 / noise) + 20.0 * np.log10(0.25)
+    radar = one_channel(noise_figure_db=10.0, real=real, receiver=ep.Receiver(adc=ep.Adc(bits=14, gain_db=gain)))
+    told = rf"^receiver.adc: its steps of -81.9 dBm swamp the noise of -94.0 dBm in a branch, and 3 of 16,384 codes are used: "
+    with pytest.warns(RuntimeWarning, match=f"{told}raise gain_db by 15 dB, or take more bits$"):
+        codes = ep.receive(tone(20, 0.0), radar, seed=1).codes
+    assert len(np.unique(codes)) == 3
+    assert "the steps swamp the noise, which uses 3 codes of 16,384: raise gain_db by 15 dB" in step_text(radar)
+    mended = radar.replace(receiver=ep.Receiver(adc=ep.Adc(bits=14, gain_db=gain + 15.0)))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ep.receive(tone(20, 0.0), mended, seed=1)
+        ep.receive(tone(20, 1e-9), radar, seed=None)  # without noise there is none to be swamped
+    assert "swamp" not in step_text(mended)
+
+
+def test_behind_a_strong_echo_only_more_bits_bring_the_noise_back():
+    radar = one_channel(noise_figure_db=10.0, receiver=ep.Receiver(adc=ep.Adc(bits=8, automatic_gain=True)))
+    with pytest.warns(RuntimeWarning, match=r"and at least \d+ of 256 codes are used: take \d bits more, as more gain would clip"):
+        ep.receive(tone(20, 1e-6), radar, seed=1)
+    assert step_text(radar) == "8 bits, gain chosen for each frame"
+
+
+@pytest.mark.parametrize("real", [False, True])
+def test_filters_take_noise_before_it_is_converted(real):
+    radar = one_channel(64, real=real, noise_figure_db=10.0, receiver=ep.Receiver(low_pass=3e6, high_pass=[1e6]))
+    behind = ep.receive(tone(20, 0.0, 64), radar, seed=1).cube
+    assert db(np.var(behind.real)) == pytest.approx(20.0 * np.log10(noise_of_branch(radar)), abs=0.1)
+
+
+def test_info_tells_of_a_converter():
+    radar = one_channel(noise_figure_db=10.0, receiver=ep.Receiver(adc=ep.Adc(bits=8, gain_db=40.0)))
+    told = " ".join(line.strip() for line in _describe_radar(radar))
+    assert "converter" in told and "the steps swamp the noise, which uses" in told
+    assert "converter" not in " ".join(_describe_radar(radar.replace(receiver=None)))

@@ -127,7 +127,7 @@ def test_steps_that_swamp_the_noise_are_told_of_with_what_mends_them(real):
     full_scale = 1e-2 * (2.0 if real else 1.0)
     gain = db(full_scale / 4 ** 13 / noise) + 20.0 * np.log10(0.25)
     radar = one_channel(noise_figure_db=10.0, real=real, receiver=ep.Receiver(adc=ep.Adc(bits=14, gain_db=gain)))
-    told = rf"^receiver.adc: its steps of -81.9 dBm swamp the noise of -94.0 dBm in a branch, and 3 of 16,384 codes are used: "
+    told = r"^receiver.adc: its steps of -81.9 dBm swamp the noise of -94.0 dBm in a branch, and 3 of 16,384 codes are used: "
     with pytest.warns(RuntimeWarning, match=f"{told}raise gain_db by 15 dB, or take more bits$"):
         codes = ep.receive(tone(20, 0.0), radar, seed=1).codes
     assert len(np.unique(codes)) == 3
@@ -142,7 +142,8 @@ def test_steps_that_swamp_the_noise_are_told_of_with_what_mends_them(real):
 
 def test_behind_a_strong_echo_only_more_bits_bring_the_noise_back():
     radar = one_channel(noise_figure_db=10.0, receiver=ep.Receiver(adc=ep.Adc(bits=8, automatic_gain=True)))
-    with pytest.warns(RuntimeWarning, match=r"and at least \d+ of 256 codes are used: take \d bits more, as more gain would clip"):
+    told = r"and at least \d+ of 256 codes are used: take \d bits more, as more gain would clip"
+    with pytest.warns(RuntimeWarning, match=told):
         ep.receive(tone(20, 1e-6), radar, seed=1)
     assert step_text(radar) == "8 bits, gain chosen for each frame"
 

@@ -1,4 +1,4 @@
-"""The radar equation: received power of a target of 1 m^2."""
+"""The radar equation: received power of a target of 1 m^2, and cross sections by it."""
 from __future__ import annotations
 
 import numpy as np
@@ -20,6 +20,16 @@ def isotropic_power(radar, points, time: float):
     wavelength = _core.speed_of_light / radar.waveform.start_frequency
     spread = (4.0 * np.pi) ** 3 * distance_out**2 * distance_in**2
     return radar.transmit_power * gain_out * gain_in * wavelength**2 / spread
+
+
+def cross_section_dbsm(power, radar, points, time: float):
+    """The cross section in dBsm [N] of what sends so much power [N] in W back from points, as of `isotropic_power`.
+
+    Minus infinity for no power, NaN where the antennas hear nothing.
+    """
+    unit = isotropic_power(radar, points, time)
+    with np.errstate(divide="ignore"):
+        return 10.0 * np.log10(power / np.where(unit > 0.0, unit, np.nan))
 
 
 def _leg(antenna, points) -> tuple:

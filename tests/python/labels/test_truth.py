@@ -2,12 +2,14 @@
 import copy
 import csv
 import pickle
+import warnings
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.truth.cross_section import cross_section_dbsm, isotropic_power
 from support.radars import build_radar
 
 ROOT = Path(__file__).parents[3]
@@ -298,3 +300,15 @@ def test_a_scene_without_objects_has_no_rows():
 def test_records_that_are_no_array_are_refused_by_name():
     with pytest.raises(ValueError, match="records: must be a structured array as Truth.to_records makes it"):
         ep.Truth.from_records(np)
+
+
+def test_cross_sections_of_nulls_are_told_without_a_warning():
+    """An echo of no power has none, and where the antennas hear nothing nobody knows it."""
+    pattern = ep.CosinePower(2.0)
+    radar = build_radar([(0, 0, 0)], [(0, 0, 0)], num_samples=16, num_chirps=4)
+    ahead = radar.replace(transmitters=[ep.Antenna(pattern=pattern)], receivers=[ep.Antenna(pattern=pattern)])
+    places = np.array([(10.0, 0.0, 0.0), (10.0, 0.0, 0.0), (-10.0, 0.0, 0.0)])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = cross_section_dbsm(np.array([isotropic_power(ahead, places[:1], 0.0)[0], 0.0, 1e-12]), ahead, places, 0.0)
+    assert found[0] == pytest.approx(0.0, abs=1e-9) and found[1] == -np.inf and np.isnan(found[2])

@@ -15,7 +15,7 @@ from ...base.files import folder_written_whole, require_writable
 from ...frame.detections import detect_frame
 from ...detections.detections import Detections
 from ...frame.frame import Frame
-from ...truth.cross_section import isotropic_power
+from ...truth.cross_section import cross_section_dbsm
 from ..opened import Dataset, DatasetFrame
 
 
@@ -56,4 +56,4 @@ def cross_sections_dbsm(found: Detections, radar: Radar, time: float) -> NDArray
     """
     world = radar.world_from_radar(time)
     places = found.points @ world[:3, :3].T + world[:3, 3]
-    return np.asarray(10.0 * np.log10(found.power / isotropic_power(radar, places, time)))
+    return cross_section_dbsm(found.power, radar, places, time)

@@ -18,10 +18,9 @@ from ...arguments.checks import path as folder_rule
 from ...base.files import write_texts, written_whole
 from ...detections.detections import Detections
 from ...frame_file.h5 import writing
-from ...truth.cross_section import isotropic_power
 from ..classes import CODES, classes_of
 from ..opened import Dataset, dataset_rule
-from . import detections_of, exported
+from . import cross_sections_dbsm, detections_of, exported
 
 FOLDER = "data"
 SENSOR = 1
@@ -111,7 +110,7 @@ def _points_of(found: Detections, number: int, scene: int, radar: Any, time: flo
     kinds = [classes.get(name, "static") for name in found.object]
     rows["timestamp"], rows["sensor_id"] = round(MICRO * time), SENSOR
     rows["range_sc"], rows["azimuth_sc"] = found.range, found.azimuth
-    rows["rcs"] = 10.0 * np.log10(found.power / isotropic_power(radar, world, time))
+    rows["rcs"] = cross_sections_dbsm(found, radar, time)
     rows["vr"], rows["vr_compensated"] = found.velocity, found.velocity - _own_velocity(found, own, pose)
     rows["x_cc"], rows["y_cc"], rows["x_seq"], rows["y_seq"] = own[:, 0], own[:, 1], world[:, 0], world[:, 1]
     rows["uuid"] = [_identity(number, index) for index in range(len(found))]

@@ -7,6 +7,7 @@ from typing import Any
 from .. import actors
 from ..actors.laid_line import usual_speed
 from ..arguments.checks import an, anything, checked, optional, real, refused, text
+from ..arguments.names import first_names
 from ..base.counts import counted
 from ..base.made_by import made_by
 from ..readers.tree import fit_name
@@ -79,20 +80,23 @@ def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_o
                 parent: str | None = None, time: float | None = None) -> Traffic:
     """Puts an object for each trajectory into a scene, under its name; what a name of the scene must not hold becomes '_'.
 
+    Trajectories whose names become alike by that are numbered.
     trajectories: {name: Trajectory}, such as read_trajectories returns
     actor_of: (name, trajectory) -> what Scene.add takes, such as `ep.actors.car(kind="suv", trajectory=trajectory)`; what does
         not follow the trajectory by itself is moved by it as a whole; None back: no object. None: by the words of
         `trajectory.kind`: truck, bus, van, motorcycle, bicycle, pedestrian, dog, else a compact car
     parent: full name of the object whose axes the trajectories are in; None: the world
     time: s; what is not there at that time is not visible; None: everything is, at any time. `Traffic.show` changes it
-    Returns the Traffic. Raises TypeError or ValueError naming the argument.
+    Returns the Traffic. Raises TypeError or ValueError naming the argument, also where the scene has an object of such a
+    name, as after the same call before; nothing is added then.
     """
     time = None if time is None else real(unit="s")("time", time)
+    made = {name: (actor_of or usual_actor)(name, trajectory) for name, trajectory in trajectories.items()}
+    present = {name: actor for name, actor in made.items() if actor is not None}
+    _require_new(scene, present, parent)
     added = {}
-    for name, trajectory in trajectories.items():
-        actor = (actor_of or usual_actor)(name, trajectory)
-        if actor is None:
-            continue
+    for name, actor in present.items():
+        trajectory = trajectories[name]
         follows = getattr(actor, "motion", None) is not None
         full_name = scene.add(actor, name=_free_name(scene, fit_name(name, "object"), parent), parent=parent,
                               motion=None if follows else trajectory)
@@ -101,6 +105,16 @@ def add_traffic(scene: Scene, trajectories: Mapping[str, Trajectory], *, actor_o
     if time is not None:
         traffic.show(time)
     return traffic
+
+
+def _require_new(scene, names, parent: str | None) -> None:
+    """Raises ValueError where the scene has objects of these names already, such as those of a call before."""
+    above = f"{parent}/" if parent else ""
+    there = [name for name in names if above + fit_name(name, "object") in scene]
+    if there:
+        whose = f"'{parent}'" if parent else "the scene"
+        raise refused(ValueError, "trajectories", f"of names that {whose} does not have yet (scene.remove takes out what is "
+                      "there, another parent has names of its own)", first_names(there))
 
 
 def usual_actor(name: str, trajectory: Trajectory):

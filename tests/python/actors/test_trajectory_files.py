@@ -196,9 +196,26 @@ def test_traffic_is_in_the_scene_while_it_is_on_its_way(tmp_path):
     mesh = scene["south"].meshes[0].id
     np.testing.assert_allclose(scene.world_vertices(mesh, 1.5).mean(axis=0)[:2], traffic["south"].position(1.5)[:2], atol=1e-5)
     assert traffic.present(0.0, 9.0) == list(traffic) and traffic.present(-1.0) == []
-    more = ep.add_traffic(scene, {"walker": traffic["walker"], "none": traffic["walker"]},
-                          actor_of=lambda name, one: None if name == "none" else box_of(name, one))
-    assert list(more) == ["walker_2"]
+    more = ep.add_traffic(scene, {"a/b": traffic["walker"], "a_b": traffic["walker"], "walker": traffic["walker"]},
+                          actor_of=lambda name, one: None if name == "walker" else box_of(name, one))
+    assert list(more) == ["a_b", "a_b_2"]
+
+
+def test_traffic_that_is_there_is_not_added_twice():
+    scene, found = ep.Scene(), {name: ep.Trajectory([(0, 0), (9, 0)], speed=3.0) for name in ("car", "a/b")}
+    ep.add_traffic(scene, found, actor_of=box_of)
+    before = [node.name for node in scene.nodes]
+    told = r"^trajectories: must be of names that the scene does not have yet \(scene.remove .*\), got 'car, a/b'$"
+    with pytest.raises(ValueError, match=told):
+        ep.add_traffic(scene, found | {"new": found["car"]}, actor_of=box_of)
+    assert [node.name for node in scene.nodes] == before
+    scene.add(name="west")
+    assert list(ep.add_traffic(scene, found, actor_of=box_of, parent="west")) == ["west/car", "west/a_b"]
+    with pytest.raises(ValueError, match="^trajectories: must be of names that 'west' does not have yet"):
+        ep.add_traffic(scene, found, actor_of=box_of, parent="west")
+    for name in ("car", "a_b"):
+        scene.remove(name)
+    assert list(ep.add_traffic(scene, found, actor_of=box_of)) == ["car", "a_b"]
 
 
 @pytest.mark.filterwarnings("ignore:.*single position")

@@ -125,6 +125,26 @@ def test_tracks_last_over_the_frames_of_a_scene_alone(written):
     assert set(data["track_id"][data["label_id"] == Label.STATIC.value]) == {b""}
 
 
+def test_clutter_is_static_or_left_out(written, tmp_path):
+    """Thresholds just above the noise have it detected: what is left out is all of it, and nothing else."""
+    (tmp_path / "noisy.toml").write_text(TEMPLATE.replace("scenes = 4", "scenes = 1").replace(
+        "[detections]\n", "[detections]\nfalse_alarm_rate = 1e-3\n"))
+    list(dataset.make(tmp_path / "noisy.toml", tmp_path / "made"))
+    made = dataset.open(tmp_path / "made")
+    for clutter in ("static", "omit"):
+        dataset.write_radar_scenes(made, tmp_path / clutter, clutter=clutter)
+    everything, echoes = (Sequence.from_json(str(tmp_path / clutter / "data" / "sequence_1" / "scenes.json"))
+                          for clutter in ("static", "omit"))
+    is_noise = np.concatenate([one.frame.detections.is_noise for one in made])
+    assert 0 < is_noise.sum() < len(is_noise) == len(everything.radar_data)
+    assert set(everything.radar_data["label_id"][is_noise]) == {Label.STATIC.value}
+    np.testing.assert_array_equal(echoes.radar_data, everything.radar_data[~is_noise])
+    kept = [len(scene.radar_data) for scene in echoes.scenes()]
+    assert kept == [np.count_nonzero(~one.frame.detections.is_noise) for one in made]
+    with pytest.raises(ValueError, match="^clutter: must be"):
+        dataset.write_radar_scenes(made, tmp_path / "other", clutter="noise")
+
+
 def test_a_dataset_without_detections_is_refused(written, tmp_path):
     (tmp_path / "plain.toml").write_text(TEMPLATE.replace("[detections]\n", "").replace("scenes = 4", "scenes = 1"))
     list(dataset.make(tmp_path / "plain.toml", tmp_path / "made"))

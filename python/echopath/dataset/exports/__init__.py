@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..._core import Radar
+from ...arguments import part_names
 from ...arguments.checks import refused
 from ...base.files import folder_written_whole, require_writable
 from ...frame.detections import detect_frame
@@ -33,6 +34,12 @@ def exported(dataset: Dataset, folder: str | os.PathLike[str], name: str) -> Ite
         raise refused(ValueError, "dataset", "one with a frame at least", dataset)
     with folder_written_whole(root) as begun:
         yield begun
+
+
+def are_echoes(found: Detections) -> NDArray[np.bool_]:
+    """Which detections are echoes of the scene, [D]: neither noise nor what comes in beside them, as interference, rain and
+    leakage do."""
+    return ~(found.is_noise | np.isin(found.part, part_names.BESIDE))
 
 
 def detections_of(dataset: Dataset, one: DatasetFrame) -> Detections:

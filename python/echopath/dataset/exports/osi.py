@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from ...arguments import part_names
 from ...arguments.checks import checked
 from ...arguments.checks import path as folder_rule
 from ...base.files import written_whole
@@ -16,7 +15,7 @@ from ...base.libraries import needed_module
 from ...detections.detections import Detections
 from ..classes import classes_of
 from ..opened import Dataset, dataset_rule
-from . import cross_sections_dbsm, detections_of, exported
+from . import are_echoes, cross_sections_dbsm, detections_of, exported
 
 FOLDER = "traces"
 SENSOR = 1
@@ -103,9 +102,8 @@ def _numbers(dataset: Dataset, scene: int) -> dict[str, int]:
 
 def _add_detections(radar: Any, found: Detections, cross_sections: np.ndarray, numbers: dict[str, int]) -> None:
     """cross_sections: [D] dBsm; numbers: {name: place} of the objects that have one"""
-    for index in range(len(found)):
+    for index, is_echo in enumerate(are_echoes(found).tolist()):
         one = radar.detection.add()
-        is_echo = not found.is_noise[index] and found.part[index] not in part_names.BESIDE
         one.position.distance, one.position.azimuth = float(found.range[index]), float(found.azimuth[index])
         one.position.elevation = float(np.nan_to_num(found.elevation[index]))
         one.radial_velocity, one.rcs = float(found.velocity[index]), float(cross_sections[index])

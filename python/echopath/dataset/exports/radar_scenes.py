@@ -8,24 +8,25 @@ import hashlib
 import json
 import os
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arguments.checks import checked
+from ...arguments.checks import checked, one_of
 from ...arguments.checks import path as folder_rule
 from ...base.files import write_texts, written_whole
 from ...detections.detections import Detections
 from ...frame_file.h5 import writing
 from ..classes import CODES, classes_of
 from ..opened import Dataset, dataset_rule
-from . import cross_sections_dbsm, detections_of, exported
+from . import are_echoes, cross_sections_dbsm, detections_of, exported
 
 FOLDER = "data"
 SENSOR = 1
 MICRO = 1e6  # timestamps are whole microseconds
 _STEP = 1e-4  # s, either side, of the differences that make the radar's velocity
+Clutter = Literal["static", "omit"]
 _CATEGORIES = {"train": "train", "val": "validation", "validation": "validation"}  # other splits keep their names
 
 POINTS = np.dtype([("timestamp", "i8"), ("sensor_id", "u1"), ("range_sc", "f4"), ("azimuth_sc", "f4"), ("rcs", "f4"),
@@ -47,19 +48,23 @@ class _Pose(NamedTuple):
         return float(np.arctan2(self.world[1, 0], self.world[0, 0]))
 
 
-@checked(dataset=dataset_rule, folder=folder_rule)
-def write_radar_scenes(dataset: Dataset, folder: str | os.PathLike[str]) -> None:
+@checked(dataset=dataset_rule, folder=folder_rule, clutter=one_of(Clutter))
+def write_radar_scenes(dataset: Dataset, folder: str | os.PathLike[str], *, clutter: Clutter = "static") -> None:
     """Writes the detections of a dataset as RadarScenes has them: data/sequences.json, data/sensors.json, and for each scene
     data/sequence_<k>/radar_data.h5 and scenes.json, k from 1.
 
     dataset: as of `open`, of a template with an array that tells azimuths apart and [detections]; else with keep = "all", or
         its `remade()`: then detections are those of `ep.detect_frame`
     folder: new or empty; it gets the folder data, whole or not at all: after a kill, the same call writes it anew.
+    clutter: what becomes of detections that are no echoes: noise, interference, rain and leakage. "static": they are points of
+        label_id 11 (static) without a track, as RadarScenes, which has no class of its own for them, labels all points that no
+        moving road user makes; "omit": they are left out. `write_osi` has them as CLUTTER of existence_probability 0
     Fields of radar_data, in its order: timestamp (us), sensor_id, range_sc (m), azimuth_sc (rad, left positive), rcs (dBsm, by
     the radar equation with the gains of the first antennas), vr and vr_compensated (m/s, receding positive; the second without
     the radar's own motion), x_cc, y_cc (m, car frame), x_seq, y_seq (m, world), uuid, track_id ("" of what is static or
-    noise), label_id; and behind them ghost_label, the label of the Radar Ghost Dataset (Kraus et al. 2021): 1000 times its class
-    and 111 for real echoes, 112, 122, 124 for ghosts, 0 for the background. A ghost has the track and the label_id of its object.
+    clutter), label_id; and behind them ghost_label, the label of the Radar Ghost Dataset (Kraus et al. 2021): 1000 times its
+    class and 111 for real echoes, 112, 122, 124 for ghosts, 0 for the background. A ghost has the track and the label_id of its
+    object.
     odometry has timestamp, x_seq, y_seq, yaw_seq, vx (m/s), yaw_rate (rad/s), a row for each frame.
     Raises ValueError naming `dataset` where it has no frames, or no detections with azimuths, and naming `folder` where that has
     a folder data; ep.FileError where files cannot be written.
@@ -68,12 +73,12 @@ def write_radar_scenes(dataset: Dataset, folder: str | os.PathLike[str]) -> None
         sequences = {}
         for number, scene in enumerate(dataset.scenes, 1):
             name = f"sequence_{number}"
-            sequences[name] = _write_sequence(dataset, scene, data / name, name)
+            sequences[name] = _write_sequence(dataset, scene, data / name, name, clutter)
         write_texts(data, {"sequences.json": _json({"sequences": sequences}),
                            "sensors.json": _json({f"radar_{SENSOR}": {"id": SENSOR, "x": 0.0, "y": 0.0, "yaw": 0.0}})})
 
 
-def _write_sequence(dataset: Dataset, scene: int, folder: Path, name: str) -> dict[str, Any]:
+def _write_sequence(dataset: Dataset, scene: int, folder: Path, name: str, clutter: Clutter) -> dict[str, Any]:
     """Writes one scene; returns what sequences.json says of it."""
     stored, template = dataset.sequence(scene), dataset.template
     radar = stored.radar
@@ -85,7 +90,9 @@ def _write_sequence(dataset: Dataset, scene: int, folder: Path, name: str) -> di
         pose = _pose(radar, time)
         odometry[row] = (round(MICRO * time), *pose.world[:2, 3], pose.yaw,
                          pose.velocity @ pose.world[:3, 0], pose.angular)
-        points.append(_points_of(detections_of(dataset, one), one.number, scene, radar, time, pose, classes))
+        found = detections_of(dataset, one)
+        rows = _points_of(found, one.number, scene, radar, time, pose, classes)
+        points.append(rows if clutter == "static" else rows[are_echoes(found)])
     _write_data(folder / "radar_data.h5", np.concatenate(points), odometry)
     category = _CATEGORIES.get(template.split_of(scene), template.split_of(scene))
     scenes = _scenes(odometry["timestamp"], [len(one) for one in points])

@@ -35,8 +35,9 @@ def view(options) -> None:
 def run(options) -> None:
     from . import report
     from ..base.progress import progress_bars
+    from ..frame.unresolved import unresolved_of_frame
     from .resumable import print_resumable
-    from .run import DETECTIONS_NAME, certify, chosen_partition, raw_line, simulate_file, unresolved, write_outputs
+    from .run import DETECTIONS_NAME, certify, chosen_partition, raw_line, simulate_file, write_outputs
     from .run_sequence import is_sequence, run_sequence
     from ..scene_file import load_scene
 
@@ -69,7 +70,7 @@ def run(options) -> None:
                  *report.powers(frame.cube, frame.parts), *report.mean_powers(frame),
                  *report.labels(frame.labels), *report.detections(frame.detections, frame.labels, advice, file=DETECTIONS_NAME),
                  *report.truth(frame.kept_truth), *report.checks(frame.checks), *report.validity(certificate),
-                 *report.files(written), *report.unresolved(unresolved(frame, objects), frame.paths)]:
+                 *report.files(written), *report.unresolved(unresolved_of_frame(frame, objects), frame.paths)]:
         print(text)
 
 

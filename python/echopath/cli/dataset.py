@@ -7,22 +7,27 @@ from collections.abc import Iterator
 from ..base.counts import counted
 from ..dataset import Forecast, MadeScene, make
 from ..dataset.folder import MANIFEST
+from ..dataset.unresolved import UnresolvedEchoes, summary
 from .numbers import duration_words
 
 
 def lines_of(options) -> Iterator[str]:
     """Makes what the options ask for; yields a line for each scene that is made, and what came of all."""
     counts: Counter[str] = Counter()
+    unresolved: list[UnresolvedEchoes] = []
     for told in make(options.template, options.out, workers=options.workers, shard=options.shard, frames=options.frames,
                      only_failed=options.only_failed, scheduler=options.scheduler):
         if isinstance(told, Forecast):
             yield _forecast_line(told)
             continue
         counts["there" if told.was_there and told.record.state == "done" else told.record.state] += 1
+        if told.unresolved is not None:
+            unresolved.append(told.unresolved)
         if not told.was_there:
             yield _line(told)
     told_counts = [f"{counted(count, 'scene')} {state}" for state, count in sorted(counts.items())]
     yield ", ".join(told_counts) or "no scene was to be made"
+    yield from summary(unresolved)
     if counts["failed"]:
         yield f"{options.out}/{MANIFEST} says why; --only-failed tries again"
 

@@ -6,10 +6,11 @@ from pathlib import Path
 from ..arguments.settings import LabelSettings
 from ..frame.detections import detect_frame
 from ..frame.labels import annotate_frame
+from ..frame.unresolved import unresolved_of_frame
 from ..frame_file import left_out, load_frame, save_labels
 from . import report
 from .label_outputs import write_labels
-from .run import DETECTIONS_NAME, chosen_partition, unresolved
+from .run import DETECTIONS_NAME, chosen_partition
 
 
 def label_file(path, folder, *, settings: LabelSettings, parts=(), cfar=None, progress=None) -> list[str]:
@@ -36,7 +37,7 @@ def label_file(path, folder, *, settings: LabelSettings, parts=(), cfar=None, pr
     return [str(path), *report.counts(frame.paths), report.omissions(missing, path), *report.labels(frame.labels),
             *detections, f"written to {folder}",
             f"  labels.h5, {', '.join(str(one.relative_to(folder)) for one in written)}",
-            *report.unresolved(unresolved(frame, settings.objects, progress), frame.paths, missing)]
+            *report.unresolved(unresolved_of_frame(frame, settings.objects, progress), frame.paths, missing)]
 
 
 def objects_of_options(texts) -> dict | None:

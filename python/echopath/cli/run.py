@@ -8,7 +8,6 @@ from pathlib import Path
 import echopath as ep
 
 from .. import plots
-from .._core import noise_power_in_cell
 from ..arguments.part_names import LEAKAGE, REST
 from ..base.counts import counted
 from ..base.stages import StageClock
@@ -53,16 +52,6 @@ def keywords_of(scene_file: SceneFile, *, num_rays=None, seed=None, batches=None
     instead = {"num_rays": num_rays, "seed": seed, "batches": batches, "truth": truth}
     keywords = scene_file.keywords() | {name: value for name, value in instead.items() if value is not None}
     return keywords | {"parts": keywords["parts"] | (extra_parts or {})}
-
-
-def unresolved(frame, objects=None, progress=None) -> list:
-    """Echoes of the objects that are labelled that the rays do not know, above the noise of the frame's radar.
-
-    objects: of the labels, None: the children of the scene's root
-    """
-    if objects is None:
-        return frame.unresolved
-    return ep.unresolved(frame.paths, objects, least_power=noise_power_in_cell(frame.radar), progress=progress)
 
 
 def chosen_partition(texts, taken) -> dict:

@@ -89,6 +89,14 @@ def checksum(path: Path) -> str:
     return digest.hexdigest()
 
 
+def read_or_nothing(path: Path) -> bytes:
+    """The content of a file, nothing of one that cannot be read."""
+    try:
+        return path.read_bytes()
+    except OSError:
+        return b""
+
+
 def prepare_folder(folder: Path, template: Template) -> None:
     """Makes the folder of a template, or makes sure that it is of this one; a template of more scenes takes it over.
 

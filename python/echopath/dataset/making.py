@@ -19,9 +19,11 @@ from ..sequence.folder import NAME as CONTENTS
 from ..sequence.saving import Shard, shard_rule
 from .address import Address, is_address
 from .cluster import in_dask
-from .folder import SceneRecord, prepare_folder, read_record, write_manifest
+from .folder import SceneRecord, prepare_folder, read_or_nothing, read_record, scene_name, write_manifest
 from .scene_work import is_done, tidy
 from .template import Template
+from .unresolved import NAME as UNRESOLVED
+from .unresolved import UnresolvedEchoes, unresolved_in
 from .workers import Done, forget, in_processes, in_this_process
 
 _LOOKED_AT, _BUILT = 1000, 8  # scenes at most that are drawn, and made ready to trace, before the first frame
@@ -43,6 +45,7 @@ class MadeScene(NamedTuple):
 
     scene: its number; split: name of its split; record: SceneRecord; was_there: whether nothing was to be done
     done, total: how many of how many scenes of this run have been looked at; seconds_left: None: not known yet
+    unresolved: UnresolvedEchoes of its first frame, None: not known, as of scenes that failed
     """
 
     scene: int
@@ -52,6 +55,7 @@ class MadeScene(NamedTuple):
     done: int
     total: int
     seconds_left: float | None
+    unresolved: UnresolvedEchoes | None = None
 
 
 def _frames_rule(argument: str, value: Any) -> tuple[int, int] | None:
@@ -83,6 +87,10 @@ class _LocalFolder:
             return SceneRecord("to do")
         tidy(self.folder, scene)
         return record
+
+    def get(self, name: str) -> bytes:
+        """The content of a file, nothing where there is none."""
+        return read_or_nothing(self.folder / name)
 
     def forget(self, scenes: list[int]) -> None:
         forget(self.folder, scenes)
@@ -163,7 +171,7 @@ def _made(plan: Template, place: _LocalFolder | Address, scenes: list[int], fron
     yield _forecast(plan, place, missing, workers) if missing else Forecast(0, 0.0, 0)
     there = [scene for scene in scenes if scene not in set(missing)]
     for done, scene in enumerate(there, 1):
-        yield MadeScene(scene, plan.split_of(scene), records[scene], True, done, len(scenes), None)
+        yield MadeScene(scene, plan.split_of(scene), records[scene], True, done, len(scenes), None, _unresolved(place, scene))
     if not missing:
         place.write_manifest(plan)
         return
@@ -171,9 +179,14 @@ def _made(plan: Template, place: _LocalFolder | Address, scenes: list[int], fron
     try:
         for number, (scene, record) in enumerate(front(missing, run), 1):
             left = (time.perf_counter() - begin) / number * (len(missing) - number)
-            yield MadeScene(scene, plan.split_of(scene), record, False, len(there) + number, len(scenes), left)
+            yield MadeScene(scene, plan.split_of(scene), record, False, len(there) + number, len(scenes), left,
+                            _unresolved(place, scene))
     finally:
         place.write_manifest(plan)
+
+
+def _unresolved(place: _LocalFolder | Address, scene: int) -> UnresolvedEchoes | None:
+    return unresolved_in(place.get(f"{scene_name(scene)}/{UNRESOLVED}"))
 
 
 def _forecast(plan: Template, place: _LocalFolder | Address, missing: list[int], workers: int | None) -> Forecast:

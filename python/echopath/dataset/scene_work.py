@@ -12,10 +12,17 @@ from pathlib import Path
 from .. import _core
 from ..base.callers import warn_user
 from ..base.files import write_texts
+from ..frame.frame import Frame
+from ..sequence import Sequence
 from ..sequence.folder import NAME as CONTENTS
 from ..sequence.folder import frame_path
-from .folder import DRAWN, RECORD, SceneRecord, checksum, damaged_files, read_record, scene_folder, write_record
+from ..sequence.keep import Keep
+from .folder import (
+    DRAWN, RECORD, SceneRecord, checksum, damaged_files, read_or_nothing, read_record, scene_folder, write_record,
+)
 from .template import Template
+from .unresolved import NAME as UNRESOLVED
+from .unresolved import unresolved_in, write_unresolved
 
 _CLAIM, _BEGUN = ".claim", ".begun"
 _MOST_DEATHS = 2  # of workers of one run at one scene
@@ -93,14 +100,27 @@ def _made(template: Template, folder: Path, scene: int) -> SceneRecord:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # what a frame warns of is in its labels and checks
-            for _ in sequence.save_frames(own, keep=template.settings.keep):
-                pass
+            _save(sequence, own, template.settings.keep)
     except _core.FileError:
         raise  # a disk that is full or away is no fault of the scene
     except (ValueError, RuntimeError, MemoryError) as error:
         return _failed(error)
-    paths = [own / CONTENTS, own / DRAWN, *(frame_path(own, place) for place in range(frames))]
+    paths = [own / CONTENTS, own / DRAWN, own / UNRESOLVED, *(frame_path(own, place) for place in range(frames))]
     return SceneRecord("done", {path.name: checksum(path) for path in paths})
+
+
+def _save(sequence: Sequence, own: Path, keep: Keep) -> None:
+    """Makes the frames that are missing, and tells of the first what its rays do not resolve."""
+    labels = sequence._settings()["labels"]
+
+    def look(frame: Frame) -> None:
+        if frame.paths.frame.start_time == sequence.times[0]:
+            write_unresolved(own, frame, labels)
+
+    for _ in sequence._save_frames(own, keep, look=look):
+        pass
+    if unresolved_in(read_or_nothing(own / UNRESOLVED)) is None:  # the frame was there
+        look(sequence[0])
 
 
 def _failed(error: Exception) -> SceneRecord:

@@ -5,7 +5,8 @@ import functools
 import itertools
 import math
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -185,6 +186,11 @@ class Sequence(Row[Frame]):
         progress: of the stages of each frame, callable (stage, fraction), True for bars, or None
         Raises what `save` raises, with the first frame.
         """
+        return self._save_frames(path, keep, shard, progress)
+
+    def _save_frames(self, path, keep: Keep, shard: Shard | None = None, progress: Progress = None,
+                     look: Callable[[Frame], None] | None = None) -> Iterator[SavedFrame]:
+        """As `save_frames`; look: is called with each frame that is made, before it is written."""
         if keep == "labels" and self._run.label_settings is None:
             raise refused(ValueError, "keep", "'all' or 'maps' for a sequence without labels", keep)
         if len(self) == 0:
@@ -193,7 +199,8 @@ class Sequence(Row[Frame]):
             raise refused(ValueError, "path", f"a folder or a file of another name than {NAME}, which a folder has", str(path))
         contents = Contents(self._run.scene, self._run.radar, self._settings() | {"keep": keep})
         bars = automatic_bars() if progress is True else progress
-        return saved_frames(self.times, store_of(path), keep, lambda places: self._items(places, bars), contents, shard)
+        return saved_frames(self.times, store_of(path), keep, lambda places: _seen(self._items(places, bars), look), contents,
+                            shard)
 
     def _settings(self) -> dict[str, Any]:
         """{keyword: value} of what makes the frames, and which of them are taken."""
@@ -211,6 +218,16 @@ class Sequence(Row[Frame]):
         from ..presentation.notebook import sequence_html
 
         return sequence_html(self, "Sequence", {})
+
+
+def _seen(frames: Iterator[Frame], look: Callable[[Frame], None] | None) -> Iterator[Frame]:
+    """The frames, each of which `look` is called with before."""
+    with closing(frames):
+        for frame in frames:
+            if look is not None:
+                look(frame)
+            yield frame
+            del frame  # none is kept while the next is made
 
 
 def _name_of(place: int) -> str:

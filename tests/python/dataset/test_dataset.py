@@ -7,8 +7,10 @@ import pytest
 
 import echopath as ep
 from echopath import dataset
+from echopath.cli import main
 from echopath.cli.info import describe_file
 from echopath.dataset.folder import scene_folder
+from echopath.dataset.unresolved import UnresolvedEchoes, summary
 from support.files.small_dataset import HEAD, SCENE, bytes_of, make, written
 
 
@@ -153,3 +155,32 @@ def test_a_folder_without_a_dataset_is_told(tmp_path):
 def test_wrong_arguments_are_named(path, tmp_path, options, told):
     with pytest.raises((TypeError, ValueError), match=f"^{told}: must be"):
         list(dataset.make(path, tmp_path / "out", **options))
+
+
+def test_the_command_ends_with_what_the_rays_do_not_resolve(small_dataset, tmp_path, capsys):
+    """400 rays know next to nothing; a run that finds all frames there tells the same."""
+    path, folder = small_dataset
+    made = make(path, folder)
+    first = dataset.open(folder).remade()[0].frame
+    assert made[0].unresolved.num_rays == first.paths.frame.statistics.num_rays == 400
+    echoes = {f"ghosts of {one.name}" if one.via else one.name for one in first.unresolved}
+    assert set(made[0].unresolved.echoes) == echoes != set()
+    for out in (tmp_path / "new", folder):
+        main(["dataset", str(path), "--out", str(out)])
+        told = capsys.readouterr().out.splitlines()[-1]
+        doubtful = sum(bool(one.unresolved.echoes) for one in made)
+        assert told.startswith(f"{doubtful} of the first frames of 6 scenes have echoes above the noise that 400 rays do not "
+                               "resolve to 0.3 dB: ")
+    own = scene_folder(tmp_path / "new", 0)
+    for name in ("unresolved.json", "record.json"):
+        (own / name).unlink()
+    assert make(path, tmp_path / "new")[-1].unresolved == made[0].unresolved and bytes_of(tmp_path / "new") == bytes_of(folder)
+
+
+def test_a_summary_of_what_is_resolved_is_one_line():
+    assert summary([]) == []
+    some = [UnresolvedEchoes(1000, ("car", "ghosts of car")), UnresolvedEchoes(2000, ("car",)), UnresolvedEchoes(1000, ())]
+    assert summary(some) == ["2 of the first frames of 3 scenes have echoes above the noise that 1,000 to 2,000 rays do not "
+                             "resolve to 0.3 dB: car (2), ghosts of car (1); more num_rays of [trace] do"]
+    (alone,) = summary(some[2:])
+    assert alone == "the first frame of 1 scene: 1,000 rays resolve every object and ghost above the noise to 0.3 dB"

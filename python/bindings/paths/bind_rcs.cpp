@@ -12,6 +12,7 @@
 
 #include "call/run_job.h"
 #include "call/warn.h"
+#include "echopath/base/constants.h"
 #include "echopath/em/mie.h"
 #include "echopath/sim/rcs.h"
 #include "paths/error_target.h"
@@ -160,11 +161,20 @@ std::vector<RcsCavity> cavities_of(const std::vector<CavityTuple>& tuples) {
   return cavities;
 }
 
-void warn_of_missed_targets(const std::vector<RadarCrossSection>& entries, double target_error_db) {
+// Returns the cross section in m^2 up to which one is an exact null, such as the cross-polarised one of a plate, of which
+// rounding leaves as much.
+double largest_of_null(double frequency) {
+  constexpr double kNull = 1e-15;  // of the square of the wavelength
+  const double wavelength = kSpeedOfLight / frequency;
+  return kNull * wavelength * wavelength;
+}
+
+void warn_of_missed_targets(const std::vector<RadarCrossSection>& entries, double target_error_db, double null) {
   int64_t missed = 0;
   double worst = 0.0;
   for (const RadarCrossSection& entry : entries) {
-    if (entry.error_db <= target_error_db || entry.total == 0) continue;  // rays that miss the target need no more rays
+    // Rays that miss the target need no more rays.
+    if (entry.error_db <= target_error_db || entry.total == 0 || entry.high <= null) continue;
     ++missed;
     worst = std::max(worst, entry.error_db);
   }
@@ -183,11 +193,11 @@ bool is_unknown(const std::vector<RadarCrossSection>& entries, size_t index, siz
   return entries[index].high > kKnown * entries[index].total && entries[index].high > kNull * beside;
 }
 
-void warn_of_few_rays(const std::vector<RadarCrossSection>& entries, size_t num_channels, int64_t num_rays) {
+void warn_of_few_rays(const std::vector<RadarCrossSection>& entries, size_t num_channels, int64_t num_rays, double null) {
   int64_t unknown = 0;
   double most = 0.0;
   for (size_t i = 0; i < entries.size(); ++i) {
-    if (!is_unknown(entries, i, num_channels)) continue;
+    if (entries[i].high <= null || !is_unknown(entries, i, num_channels)) continue;
     ++unknown;
     most = std::max(most, entries[i].high);
   }
@@ -228,9 +238,9 @@ py::object rcs_of(Scene scene, double frequency, const py::object& incidence, co
   tracing.edges = edges;
   const auto entries = run_job("rcs", progress, [&](Job& job) { return rcs(scene, pairs, settings, &job); });
   if (target_error_db) {
-    warn_of_missed_targets(entries, *target_error_db);
+    warn_of_missed_targets(entries, *target_error_db, largest_of_null(frequency));
   } else if (tracing.footprint != Footprint::kNone) {  // without one nothing tells whether they are few
-    warn_of_few_rays(entries, channels.rows.size(), effort.num_rays);
+    warn_of_few_rays(entries, channels.rows.size(), effort.num_rays, largest_of_null(frequency));
   }
   Shape shape;
   if (!is_one) shape.push_back(static_cast<py::ssize_t>(pairs.size()));

@@ -51,6 +51,16 @@ TEST(NearestNames, OfATypoInAPartIsThePartWithFewestEdits) {
   EXPECT_EQ(nearest_names("street/poedestrian", parts, 1), Names{"street/pedestrian"});
 }
 
+TEST(NearestNames, OfAWordThatPartsHaveAreThoseParts) {
+  const Names parts = {"car", "car/wheel", "car/wheel/front_left/tyre", "walker", "walker/arm_left", "walker/leg_left"};
+  EXPECT_EQ(nearest_names("arm", parts, 1), Names{"walker/arm_left"});
+  EXPECT_EQ(nearest_names("legs", parts, 1), Names{"walker/leg_left"});
+  EXPECT_EQ(nearest_names("wheels", parts, 1), Names{"car/wheel"});
+  EXPECT_EQ(nearest_names("*/wheels/*", parts, 1), Names{"car/wheel"});
+  EXPECT_EQ(nearest_names("tyres", parts, 1), Names{"car/wheel/front_left/tyre"});
+  EXPECT_EQ(nearest_names("cat", parts, 1), Names{"car"});
+}
+
 TEST(NearestNames, KeepsTheGivenOrderAmongEquals) { EXPECT_EQ(nearest_names("x", {"b", "a", "c"}), (Names{"b", "a", "c"})); }
 
 TEST(NearestNames, GivesAtMostTheCountAskedFor) {

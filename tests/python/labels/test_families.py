@@ -78,7 +78,7 @@ def test_family_is_a_value(street):
         again = pickle.loads(pickle.dumps(family))
         assert again == family and hash(again) == hash(family) and str(again) == str(family)
     assert len({*found}) == len(found) and found.families[0] != found.families[1]
-    assert repr(found) == f"Families({len(found)} of 1 objects, paths=500)"
+    assert repr(found) == f"Families({len(found)} of 1 object, paths=500)"
     assert repr(found.families[0]) == "<Family pedestrian>" and str(found.families[-1]) == "background"
     assert found.families[1].is_ghost and not found.families[0].is_ghost and not found.families[-1].is_ghost
 

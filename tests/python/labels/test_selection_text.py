@@ -155,3 +155,14 @@ def test_a_selection_joined_with_itself_stays_as_long_as_it_was(paths, join):
         joined = join(joined, joined)
     assert joined.text == chosen.text
     assert np.array_equal(paths.select(joined).offsets, paths.select(chosen).offsets)
+
+
+@pytest.mark.parametrize("asked, meant", [("wheels", "car/wheel"), ("*/wheels/*", "car/wheel"), ("legs", "walker/leg_left"),
+                                          ("walker/arms", "walker/arm_left"), ("tyres", "car/wheel/front_left/tyre"),
+                                          ("cat", "car")])
+def test_globs_that_take_nothing_are_answered_with_groups_and_parts(asked, meant):
+    scene = ep.Scene()
+    for name, actor in (("car", ep.actors.car()), ("walker", ep.actors.pedestrian())):
+        scene.add(actor, name=name, position=(9.0, 0.0, 0.0))
+    with pytest.raises(ValueError, match=f"nearest names: {meant},"):
+        ep.Selection(f"T .* '{asked}' .* R").check(scene)

@@ -151,6 +151,15 @@ def test_few_rays_are_warned_of():
         ep.rcs(plate_scene(1.0), **PLATE_ASKEW)
 
 
+@pytest.mark.parametrize("effort", [{}, {"return_error": True}, {"target_error_db": 0.5}, {"edges": True}])
+@pytest.mark.parametrize("polarization", ["vh", ["vv", "vh"]])
+def test_exact_nulls_are_not_warned_of(effort, polarization):
+    """A plate that faces the radar turns no polarisation: rounding leaves 1e-28 m^2 of 80."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ep.rcs(plate_scene(0.1), frequency=FREQUENCY, incidence=(1, 0, 0), polarization=polarization, num_rays=20_000, **effort)
+
+
 @pytest.mark.parametrize("rays", [500, 2000, 5000])
 def test_errors_hold_what_footprints_take_away(rays):
     """Upright edges of a plate that is seen aslant: all cells along one are in phase."""

@@ -163,4 +163,4 @@ def test_an_object_with_a_single_position(tmp_path):
     with warnings.catch_warnings(record=True) as record:
         warnings.simplefilter("always")
         ep.read_trajectories(table)
-    assert _lines(record, "have a single position") == [__file__]
+    assert _lines(record, "with a single position") == [__file__]

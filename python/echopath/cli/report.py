@@ -7,11 +7,13 @@ import numpy as np
 
 from ..arguments.names import first_names
 from ..base.counts import counted, named
+from ..base.decibels import SMALLEST_POWER, in_dbm
 from ..labels.report import peak_words
 from ..paths.resolution import FAINT, RESOLVED_DB
 from ..paths.visibility import occluder_words
 from ..scene.closing_speeds import bodies_faster_than
-from ..signals.measures import SMALLEST_POWER, in_dbm, power_dbm, velocity_extent, with_error
+from ..signals.measures import power_dbm, velocity_extent, with_error
+from .lists import more_line
 
 LABEL_WIDTH = 34
 MAX_WIDTH = 118  # columns
@@ -66,8 +68,10 @@ def overlaps(scene, time: float, names=None) -> list[str]:
     found = sorted(scene.coplanar_overlaps(time=time), key=lambda overlap: -overlap.area)
     lines = [line("  " + " and ".join(dict.fromkeys(names[mesh_id] for mesh_id in overlap.mesh_ids)),
                   f"{counted(overlap.num_triangles, 'triangle')}, {overlap.area:.4g} m^2") for overlap in found[:MAX_LISTED]]
-    more = [f"    and {len(found) - MAX_LISTED} more"] if len(found) > MAX_LISTED else []
-    return [f"{ON_EACH_OTHER} (rounding decides which of the two a ray meets)", *lines, *more] if found else []
+    if not found:
+        return []
+    more = more_line(len(found), MAX_LISTED)
+    return [f"{ON_EACH_OTHER} (rounding decides which of the two a ray meets)", *lines, *more]
 
 
 def overlaps_or_none(scene, time: float, names=None) -> list[str]:
@@ -82,8 +86,10 @@ def folded_velocities(scene, radar, time: float) -> list[str]:
     found = bodies_faster_than(limit, scene, radar, time)
     lines = [line("  " + body.name, f"{'' if body.as_whole else 'up to '}{body.speed:+.2f} m/s, "
                   f"shown at {(body.speed + limit) % (2.0 * limit) - limit:+.2f} m/s") for body in found[:MAX_LISTED]]
-    more = [f"    and {len(found) - MAX_LISTED} more"] if len(found) > MAX_LISTED else []
-    return [f"{FOLDED} (the map of velocity repeats itself every {2.0 * limit:.4g} m/s)", *lines, *more] if found else []
+    if not found:
+        return []
+    more = more_line(len(found), MAX_LISTED)
+    return [f"{FOLDED} (the map of velocity repeats itself every {2.0 * limit:.4g} m/s)", *lines, *more]
 
 
 def effects(all_effects) -> list[str]:
@@ -146,7 +152,7 @@ def unresolved(found, paths, left_out=None) -> list[str]:
         whose = ", by the paths that the file keeps" if left_out and left_out.num_paths else ""
         return [f"resolved to {RESOLVED_DB:g} dB: every object and ghost above the noise{whose}"]
     lines = _table([(f"  {one.title}", f"{one.interval}; {one.advice}") for one in found[:MAX_UNRESOLVED]])
-    rest = [f"  and {len(found) - MAX_UNRESOLVED:,} more"] if len(found) > MAX_UNRESOLVED else []
+    rest = more_line(len(found), MAX_UNRESOLVED, indent=2)
     return [f"NOT resolved to {RESOLVED_DB:g} dB (95 % interval)", *lines, *rest]
 
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ...arguments.checks import checked, one_of
 from ...arguments.checks import path as folder_rule
 from ...base.files import write_texts, written_whole
+from ...base.rates import radar_rate
 from ...detections.detections import Detections
 from ...frame_file.h5 import writing
 from ..classes import CODES, classes_of
@@ -25,7 +26,6 @@ from . import are_echoes, cross_sections_dbsm, detections_of, exported
 FOLDER = "data"
 SENSOR = 1
 MICRO = 1e6  # timestamps are whole microseconds
-_STEP = 1e-4  # s, either side, of the differences that make the radar's velocity
 Clutter = Literal["static", "omit"]
 _CATEGORIES = {"train": "train", "val": "validation", "validation": "validation"}  # other splits keep their names
 
@@ -103,9 +103,8 @@ def _write_sequence(dataset: Dataset, scene: int, folder: Path, name: str, clutt
 
 
 def _pose(radar: Any, time: float) -> _Pose:
-    before, world, after = (np.asarray(radar.world_from_radar(time + step)) for step in (-_STEP, 0.0, _STEP))
-    turn = after[:3, :3] @ before[:3, :3].T
-    return _Pose(world, (after[:3, 3] - before[:3, 3]) / (2 * _STEP), float(np.arctan2(turn[1, 0], turn[0, 0])) / (2 * _STEP))
+    world, rate = np.asarray(radar.world_from_radar(time)), radar_rate(radar, time)
+    return _Pose(world, rate[:3, 3], float((rate[:3, :3] @ world[:3, :3].T)[1, 0]))
 
 
 def _points_of(found: Detections, number: int, scene: int, radar: Any, time: float, pose: _Pose,

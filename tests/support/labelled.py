@@ -60,5 +60,5 @@ def trace_plates_and_wall():
     # The rays see the scene in the middle of the frame: the positions above are those at that time.
     # Rough plates have speckle, of which one in ten echoes has a fade below the noise: with this seed none has.
     radar = make_radar()
-    paths = ep.trace(scene, radar, num_rays=20_000, start_time=-0.5 * radar.frame_duration, seed=5)
+    paths = ep.trace(scene, radar, num_rays=20_000, start_time=-0.5 * radar.frame_duration, seed=6)
     return paths, parts | {"wall": "T 'wall' R"}, truth

@@ -49,9 +49,57 @@ def test_things_are_known_as_well_as_objects_that_stand_by_themselves(town):
     assert abs(10.0 * np.log10(found.power / truth)) < WITHIN_DB
 
 
-def test_rays_are_aimed_at_what_is_in_sight_and_does_not_surround_the_radar(town):
+def test_rays_are_aimed_at_what_does_not_surround_the_radar(town):
     strata = _strata(ep.trace(town, targets.radar(), max_bounces=1, num_rays=RAYS))
-    assert {name for name in strata if "focus" not in name} == {"town/ball", "town/wall", "town/yard/bin", "field of view"}
+    assert {name for name in strata if "focus" not in name} == {"town/ball", "town/wall", "town/yard/bin", "town/yard/hidden",
+                                                               "field of view"}
+
+
+def test_ghosts_of_a_thing_that_only_a_mirror_shows_are_found():
+    """A ball behind a screen, and a metal wall aside, each an object or all below one node."""
+    powers = []
+    for has_parent in (False, True):
+        scene = ep.Scene()
+        town = scene.add(None, name="town") if has_parent else None
+        for mesh, name, material, position in (
+                (shapes.ground((200.0, 200.0), z=-1.0), "ground", ROUGH, (0.0, 0.0, 0.0)),
+                (shapes.box((0.2, 2.0, 2.0)), "screen", ROUGH, (8.0, 0.0, 0.0)),
+                (shapes.sphere(0.3, edge=0.05), "ball", ROUGH, (15.0, 0.0, 0.0)),
+                (shapes.wall(80.0, 20.0), "wall", ep.Material.metal(mirror=True), (0.0, 4.0, -10.0))):
+            scene.add(mesh, name=name, material=material, position=position, parent=town)
+        paths = ep.trace(scene, targets.radar(), max_bounces=3, num_rays=30000)
+        powers.append(ep.received_power(paths.select("T '*wall' '*ball' '*wall' R")))
+    apart, below = powers
+    assert apart.interval_db < WITHIN_DB and below.interval_db < WITHIN_DB
+    assert abs(10.0 * np.log10(below.power / apart.power)) < WITHIN_DB
+
+
+def test_things_that_stand_apart_are_aimed_at_one_by_one():
+    """A yard before the radar, of which one stratum holds all: a bus would have most of the rays, and a ball next to none."""
+    scene = ep.Scene()
+    yard = scene.add(None, name="yard", position=(30.0, 0.0, 0.0))
+    scene.add(shapes.box((10.0, 2.5, 3.0)), name="bus", material=ROUGH, parent=yard, position=(0.0, 8.0, 0.0))
+    scene.add(shapes.sphere(0.15, edge=0.03), name="ball", material=ROUGH, parent=yard, position=(0.0, -6.0, 0.0))
+    row = scene.add(None, name="fence", position=(20.0, 15.0, 0.0))  # its pales stand apart, but fill what holds them
+    for index in range(20):
+        scene.add(shapes.plate(0.1, 1.2), name=f"pale_{index}", material=ROUGH, parent=row, position=(0.0, 0.15 * index, 0.0))
+    paths = ep.trace(scene, targets.radar(), max_bounces=1, num_rays=8000)
+    assert set(_strata(paths)) == {"yard/bus", "yard/ball", "fence", "field of view"}
+    assert _direct(paths, "ball").interval_db < 0.5 * WITHIN_DB
+
+
+def test_rays_that_an_error_asks_for_are_not_taken_from_what_is_known():
+    """A bicycle needs many rays, balls few: they keep those with which they were known."""
+    scene = ep.Scene()
+    scene.add(ep.actors.bicycle(), name="bicycle", position=(20.0, 5.0, 0.0), yaw=0.5)
+    for index in range(3):
+        scene.add(shapes.sphere(0.3, edge=0.05), name=f"ball_{index}", material=ROUGH, position=(15.0, -3.0 * index, 0.5))
+    first = _strata(ep.trace(scene, targets.radar(), max_bounces=1, num_rays=4000, batches=1))
+    paths = ep.trace(scene, targets.radar(), max_bounces=1, num_rays=4000, target_error_db=1.0, max_rays=64000)
+    last = _strata(paths)
+    for index in range(3):
+        assert last[f"ball_{index}"] >= first[f"ball_{index}"] / 2 and _direct(paths, f"ball_{index}").interval_db < WITHIN_DB
+    assert last["bicycle"] > 4 * first["bicycle"]
 
 
 def test_all_echoes_count_once(town):
@@ -83,6 +131,8 @@ def test_more_things_than_rays_can_serve_are_left_to_the_field_of_view():
         scene.add(shapes.box((0.05, 0.05, 0.2)), name=f"pole_{index}", material=ROUGH, parent=town,
                   position=(distance * np.cos(angle), distance * np.sin(angle), 0.0))
     nearest = {f"town/pole_{index}" for index in range(256)}
-    assert set(_strata(ep.trace(scene, targets.radar(), max_bounces=1, num_rays=RAYS))) == {*nearest, "field of view"}
+    with pytest.warns(RuntimeWarning, match="at least 100 objects and images have no rays of their own"):
+        paths = ep.trace(scene, targets.radar(), max_bounces=1, num_rays=RAYS)
+    assert set(_strata(paths)) == {*nearest, "field of view"} and paths.frame.statistics.num_unaimed == 144
     few = ep.trace(scene, targets.radar(), max_bounces=1, num_rays=600)
     assert set(_strata(few)) == {"field of view"}

@@ -9,14 +9,14 @@
 #include "echopath/power/received_power.h"
 #include "echopath/signal/noise.h"
 #include "echopath/sim/rays/plan_foci.h"
+#include "echopath/trace/launch/launch.h"
 #include "echopath/trace/strata/fitted_strata.h"
 #include "echopath/trace/strata/ray_targets.h"
 
 namespace echopath {
 namespace {
 
-constexpr double kDynamicRange = 1e-6;  // of the strongest echo
-constexpr double kMinGrowth = 1.0 / 16.0;
+constexpr double kDynamicRange = 1e-6;            // of the strongest echo
 constexpr double kUnseenGrowth = 0.25;            // of strata that send nothing back
 constexpr double kMovingTarget = 0.25;            // of the target: what moves is what a radar looks for
 constexpr double kImageWeight = 0.5;              // beside that of the target
@@ -76,17 +76,18 @@ double growth_of(double missing_db, double target_db, RayLaw law) {
   return (std::pow(10.0, 0.1 * missing_db) - 1.0) / (std::pow(10.0, 0.1 * target_db) - 1.0);
 }
 
-RayNeed need_of(const Stratum& stratum, double num_rays, const ReceivedPower& power, double growth) {
+// `least` is the growth of what needs no more rays.
+RayNeed need_of(const Stratum& stratum, double num_rays, const ReceivedPower& power, double growth, double least) {
   RayNeed need;
   need.stratum = stratum.name;
   need.echo = {power.power, power.high_of_rays};
   need.is_image = stratum.num_mirrors > 0;
   need.weight = weight_of_target(stratum.num_mirrors) * (need.is_image ? kImageWeight : 1.0);
-  growth = power.high_of_rays > 0 ? std::clamp(growth, kMinGrowth, kMaxGrowth) : kUnseenGrowth;
+  growth = power.high_of_rays > 0 ? std::clamp(growth, least, kMaxGrowth) : std::max(kUnseenGrowth, least);
   // The field of view sees many surfaces, of which the strongest would speak for all, so it keeps the rays that it has.
   if (stratum.object < 0) growth = 1.0;
   need.is_bounded = growth < kMaxGrowth;
-  need.rays = growth * num_rays;
+  need.rays = growth * std::max(num_rays, static_cast<double>(LaunchPlan::kFewestRays));
   return need;
 }
 
@@ -181,7 +182,7 @@ RayNeeds ray_needs(const Paths& paths, const WantedError& wanted, Job* job) {
     const bool is_moving = stratum.object >= 0 && moves[static_cast<size_t>(stratum.object)];
     const double target = is_moving && stratum.num_mirrors == 0 ? kMovingTarget * wanted.db : wanted.db;
     const double growth = growth_of(missing, target, wanted.law);
-    needs.strata.push_back(need_of(stratum, launched.at(stratum.name), powers[k], growth));
+    needs.strata.push_back(need_of(stratum, launched.at(stratum.name), powers[k], growth, wanted.least_growth));
     needs.strata.back().is_resolved = missing <= target || powers[k].high_of_rays <= least;
     if (powers[k].high_of_rays > least) needs.worst_db = std::max(needs.worst_db, missing);
   }

@@ -37,6 +37,8 @@ struct WantedError {
   double db = 0.3;  // half the 95 % interval of each echo, as far as rays mend it
   EchoFloor floor = EchoFloor::kStrongest;
   RayLaw law = RayLaw::kByDecibels;
+  // Echoes that are known better give back all of their rays but this share; 1: none, so that what is known stays known.
+  double least_growth = 1.0 / 16.0;
 };
 
 struct RayNeeds {
@@ -50,7 +52,8 @@ struct RayNeeds {
 // (PowerInterval::high_of_rays), to what is wanted, for objects that move, but not for their images, to a quarter of it.
 // The interval of a coherent echo falls about with the rays, that of a diffuse one with their root; both get rays in
 // proportion to the error over the target, within a factor of kMaxGrowth. An echo that is known better gives rays back,
-// down to a sixteenth; a stratum that sends nothing back keeps a quarter. Raises Cancelled.
+// down to WantedError::least_growth; a stratum that sends nothing back keeps a quarter, or that if it is more. One that was
+// too small to have rays is counted as if it had the fewest that a stratum has. Raises Cancelled.
 RayNeeds ray_needs(const Paths& paths, const WantedError& wanted, Job* job = nullptr);
 inline constexpr double kMaxGrowth = 32.0;
 

@@ -34,7 +34,7 @@ Paths trace_to_error(const SceneSnapshot& scene, const Radar& radar, const Trace
   if (!kept) kept = &own;
   FittedStrata fitted;
   TraceSettings launch = settings;
-  const WantedError wanted{.db = target.error_db, .floor = target.floor};
+  const WantedError wanted{.db = target.error_db, .floor = target.floor, .least_growth = 1.0};
   for (;;) {
     Paths paths = trace(scene, radar, launch, job, kept, &fitted);
     const RayNeeds needs = ray_needs(paths, wanted, job);

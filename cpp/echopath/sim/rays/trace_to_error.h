@@ -20,7 +20,8 @@ struct ErrorTarget {
 };
 
 // Traces with settings.num_rays and then, as long as the echo of some stratum above the floor misses the target, with
-// at least twice as many, shared out by what each stratum needs (ray_allocation.h), until max_rays. The error is half
+// at least twice as many, shared out by what each stratum needs (ray_allocation.h), until max_rays; none gets fewer than
+// before, as long as there are enough. The error is half
 // the 95 % interval of the worst of them (power/received_power.h), of the footprint's bias and chance together, without
 // what more rays hardly mend (PowerInterval::high_of_rays). Each trace is a fresh one: a finer lattice errs nearly like
 // 1/rays, while more batches of the same lattice would win the square root only; all traces together cost less than

@@ -20,8 +20,8 @@ namespace echopath {
 // Distributes the rays of a launch over strata of directions. `strata` holds first one stratum for each object, fitted to
 // its outline as seen from the transmitter (fit_stratum.h), then one for each image of an object over mirrors, then the foci
 // that a guide may set into these strata (launch_focus.h), and last the antenna's field of view. Objects are the children of
-// the scene's root, without their mirrors. Where one surrounds the transmitter, as a town does, the things that it consists
-// of take its place (ray_targets.h).
+// the scene's root, without their mirrors. Where one surrounds the transmitter, as a town does, or is a group of things that
+// stand apart, these take its place (ray_targets.h).
 //
 // Each stratum counts the echoes that it owns (ray_owners.h). The field of view owns the echoes of objects that surround the
 // transmitter, of objects and images without a stratum of their own, and the diffuse echoes of mirrors. It gets 15 % of the

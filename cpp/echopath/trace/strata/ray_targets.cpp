@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "echopath/base/bit_sum.h"
 #include "echopath/trace/strata/fit_stratum.h"
@@ -14,6 +15,10 @@ namespace {
 constexpr size_t kMaxAims = 65000;
 // Largest number of things of one object, and of their images: more would have too few rays each.
 constexpr size_t kMostThings = 256;
+constexpr int kLooks = 64;  // at a thing, until it is taken to be hidden
+static_assert(kLooks % kPacketSize == 0);
+// Share of the stratum of an object that the strata of its parts fill, above which they are not aimed at one by one.
+constexpr double kMostlyFilled = 0.5;
 // Strata are the same within this difference of axes and solid angles, relative to the latter.
 constexpr double kSameStratum = 1e-6;
 
@@ -157,7 +162,7 @@ void limit(std::vector<RayTarget>& objects, std::vector<RayTarget>& images, RayT
     objects.resize(kMaxAims);
   }
   images.resize(std::min(images.size(), kMaxAims - objects.size()));
-  out.num_left_out = static_cast<int64_t>(all - objects.size() - images.size());
+  out.num_left_out += static_cast<int64_t>(all - objects.size() - images.size());
   out.any_unaimed = out.any_unaimed || out.num_left_out > 0;
 }
 
@@ -171,15 +176,17 @@ class TargetSearch {
   // Aims at an object and its images, or else at the things that it consists of.
   void take(const SceneObject& object) {
     Target target = new_target(object);
-    if (std::optional<RayTarget> direct = finder_.at_object(target)) {
+    std::optional<RayTarget> direct = finder_.at_object(target);
+    std::vector<Thing> things;
+    if (!direct || has_parts_apart(object)) find_things(object, things);
+    if (direct && (things.empty() || solid_angle_of(things) > kMostlyFilled * direct->stratum.solid_angle())) {
+      own(object, target.object);
       objects_.push_back(std::move(*direct));
       append(finder_.at_images(target), images_);
-      return;
+    } else {
+      out_.any_unaimed = out_.any_unaimed || !direct;
+      take_strongest(things);
     }
-    out_.any_unaimed = true;
-    std::vector<Thing> things;
-    find_things(object, things);
-    take_nearest(things);
   }
 
   void finish() {
@@ -192,7 +199,7 @@ class TargetSearch {
   struct Thing {
     Target target;
     RayTarget direct;
-    double distance;  // m, of the ball that holds it
+    double echo;  // 1/m^2: grows with the echo, as the square of its size over the square of its distance
   };
 
   static void append(std::vector<RayTarget> more, std::vector<RayTarget>& to) {
@@ -201,54 +208,104 @@ class TargetSearch {
 
   Target new_target(const SceneObject& object) {
     const int index = out_.num_objects++;
-    for (const uint32_t id : object.mesh_ids) out_.object_of_mesh[id] = index;
+    own(object, index);
     return Target(scene_, geometry_, object, index);
   }
 
-  // Finds the largest parts of an object that a stratum holds, as far as they are in sight.
+  void own(const SceneObject& object, int index) {
+    for (const uint32_t id : object.mesh_ids) out_.object_of_mesh[id] = index;
+  }
+
+  static double solid_angle_of(const std::vector<Thing>& things) {  // sr, the sum
+    return std::accumulate(things.begin(), things.end(), 0.0,
+                           [](double sum, const Thing& thing) { return sum + thing.direct.stratum.solid_angle(); });
+  }
+
+  double distance_of(const Sphere& sphere) const { return (sphere.centre - settings_.transmitter).norm(); }
+
+  // Returns whether most parts of an object have boxes that touch no other's, as those of a row of cars.
+  bool has_parts_apart(const SceneObject& object) const {
+    const std::vector<SceneObject> parts = parts_below(object);
+    if (parts.size() < 2 || parts.size() > kMostThings) return false;
+    std::vector<Eigen::AlignedBox3d> boxes(parts.size());
+    for (size_t i = 0; i < parts.size(); ++i) {
+      for (const uint32_t id : parts[i].mesh_ids) boxes[i].extend(geometry_.box(id));
+    }
+    const auto num_apart = std::count_if(boxes.begin(), boxes.end(), [&](const Eigen::AlignedBox3d& box) {
+      return std::none_of(boxes.begin(), boxes.end(),
+                          [&](const Eigen::AlignedBox3d& other) { return &other != &box && other.intersects(box); });
+    });
+    return 2 * num_apart >= std::ssize(parts);
+  }
+
+  // Returns the parts of an object, or those of its part where there is but one: of nodes one below the other.
+  std::vector<SceneObject> parts_below(const SceneObject& object) const {
+    std::vector<SceneObject> parts = parts_of(scene_, object);
+    for (int node = object.node; parts.size() == 1 && parts.front().node != node;) {
+      node = parts.front().node;
+      parts = parts_of(scene_, parts.front());
+    }
+    return parts;
+  }
+
+  // Finds the largest parts of an object that a stratum holds.
   void find_things(const SceneObject& object, std::vector<Thing>& things) {
-    const std::vector<SceneObject> parts = parts_of(scene_, object);
-    const bool is_whole = parts.size() == 1 && parts.front().node == object.node;
-    if (is_whole || out_.num_objects + std::ssize(parts) > settings_.most_objects) return;
+    const std::vector<SceneObject> parts = parts_below(object);
+    if (parts.size() == 1 || out_.num_objects + std::ssize(parts) > settings_.most_objects) return;
     for (const SceneObject& part : parts) {
       Target target = new_target(part);
       std::optional<RayTarget> direct = finder_.at_object(target);
-      if (!direct) {
+      if (direct) {
+        const double distance = distance_of(target.sphere);
+        const double echo = std::pow(target.sphere.radius / (distance * distance), 2);
+        things.push_back({std::move(target), std::move(*direct), echo});
+      } else {
+        out_.any_unaimed = true;
         find_things(part, things);
-      } else if (is_in_sight(target)) {
-        const double distance = (target.sphere.centre - settings_.transmitter).norm() - target.sphere.radius;
-        things.push_back({std::move(target), std::move(*direct), distance});
       }
     }
   }
 
-  // Returns whether a ray to any of a few vertices, evenly taken of all, meets the target or what lies behind it.
+  // Returns whether a ray to any of kLooks vertices, evenly taken of all, meets the target or what lies behind it.
   bool is_in_sight(Target& target) const {
     const std::vector<Vec3>& vertices = target.vertices();
-    LaneVectors directions;
-    LaneValues reach;
-    for (int lane = 0; lane < kPacketSize; ++lane) {
-      const Vec3 there = vertices[vertices.size() * static_cast<size_t>(lane) / kPacketSize] - settings_.transmitter;
-      reach[lane] = there.norm();
-      const Vec3 direction = reach[lane] > 0.0 ? Vec3(there / reach[lane]) : Vec3(Vec3::UnitX());
-      directions.set(lane, {direction.x(), direction.y(), direction.z()});
-    }
-    EmbreeScene::PacketHits hits;
-    geometry_.intersect(settings_.transmitter, directions, kPacketSize, hits);
-    for (int lane = 0; lane < kPacketSize; ++lane) {
-      const auto k = static_cast<size_t>(lane);
-      const bool meets_other = hits.verdicts[k] == EmbreeScene::Verdict::kHit && hits.distance[lane] < reach[lane] &&
-                               out_.object_of_mesh[hits.met[k].mesh_id] != target.object;
-      if (!meets_other) return true;
+    for (int first = 0; first < kLooks; first += kPacketSize) {
+      LaneVectors directions;
+      LaneValues reach;
+      for (int lane = 0; lane < kPacketSize; ++lane) {
+        const size_t at =
+            vertices.size() * static_cast<size_t>(lane * (kLooks / kPacketSize) + first / kPacketSize) / kLooks;
+        const Vec3 there = vertices[at] - settings_.transmitter;
+        reach[lane] = there.norm();
+        directions.set(lane, unpacked(reach[lane] > 0.0 ? Vec3(there / reach[lane]) : Vec3(Vec3::UnitX())));
+      }
+      EmbreeScene::PacketHits hits;
+      geometry_.intersect(settings_.transmitter, directions, kPacketSize, hits);
+      for (int lane = 0; lane < kPacketSize; ++lane) {
+        const auto k = static_cast<size_t>(lane);
+        const bool meets_other = hits.verdicts[k] == EmbreeScene::Verdict::kHit && hits.distance[lane] < reach[lane] &&
+                                 out_.object_of_mesh[hits.met[k].mesh_id] != target.object;
+        if (!meets_other) return true;
+      }
     }
     return false;
   }
 
-  // Echoes fall with the fourth power of the distance, so that the nearest things are what a radar sees most of. Together
-  // they have the weight of one object, and their images no more than that.
-  void take_nearest(std::vector<Thing>& things) {
-    std::stable_sort(things.begin(), things.end(), [](const Thing& a, const Thing& b) { return a.distance < b.distance; });
-    if (things.size() > kMostThings) things.erase(things.begin() + kMostThings, things.end());
+  // Of too many things, those that are in sight and have the strongest echoes get rays of their own.
+  void take_strongest(std::vector<Thing>& things) {
+    if (things.size() > kMostThings) {
+      std::erase_if(things, [&](Thing& thing) { return !is_in_sight(thing.target); });
+      std::stable_sort(things.begin(), things.end(), [](const Thing& a, const Thing& b) { return a.echo > b.echo; });
+    }
+    const size_t kept = std::min(things.size(), kMostThings);
+    out_.num_left_out += std::ssize(things) - static_cast<int64_t>(kept);
+    if (kept < things.size()) out_.any_unaimed = true;
+    things.erase(things.begin() + static_cast<int64_t>(kept), things.end());
+    aim_at(things);
+  }
+
+  // Together the things have the weight of one object, and their images no more than that.
+  void aim_at(std::vector<Thing>& things) {
     const double share = 1.0 / static_cast<double>(things.size());
     std::vector<RayTarget> images;
     for (Thing& thing : things) {

@@ -13,6 +13,7 @@
 #include "echopath/power/facet_phase.h"
 #include "echopath/power/row_differences.h"
 #include "echopath/power/shared_phase.h"
+#include "echopath/power/triangle_points.h"
 #include "echopath/record/near_antenna.h"
 #include "echopath/replay/replay.h"
 
@@ -83,7 +84,8 @@ class KnownKinds {
 class Sums {
  public:
   Sums(const Paths& paths, size_t num_groups)
-      : paths_(paths), open_(num_groups), rows_(num_groups), kinds_(num_groups), groups_(num_groups) {
+      : paths_(paths), open_(num_groups), rows_(num_groups), triangles_(num_groups), kinds_(num_groups),
+        groups_(num_groups) {
     const auto num_entries = static_cast<size_t>(paths.frame.batches) + 1;
     for (GroupSums& group : groups_) {
       group.field.resize(num_entries);
@@ -135,7 +137,8 @@ class Sums {
     for (size_t group = 0; group < groups_.size(); ++group) {
       close(group);
       kinds_[group].set_facet_phases(phases, groups_[group].kinds);
-      for (const RowDifferences& rows : rows_[group]) groups_[group].row_variance += rows.variance();
+      for (const RowDifferences& rows : rows_[group]) groups_[group].even_variance += rows.variance();
+      groups_[group].even_variance += triangles_[group].variance();
     }
     return std::move(groups_);
   }
@@ -157,21 +160,33 @@ class Sums {
     const bool is_drawn = paths_.frame.sampler == Sampler::kRandom || std::popcount(paths_.diffuse[path]) > 1;
     const double certain = is_drawn ? 0.0 : std::norm(open.field - open.lot_field);
     const double by_lot = is_drawn ? power : std::norm(open.lot_field);
-    const int turn = paths_.frame.sampler == Sampler::kLattice ? turn_of_ray(paths_.flags[path]) : 0;
-    if (turn > 0 && !is_drawn) rows_[group][paths_.passes_of(path).empty() ? 0 : 1].add(turn, certain);
-    sums.lattice_squares += certain * certain;
-    if (turn == 0) sums.outline_squares += certain * certain;
+    if (!is_drawn) add_even(group, path, certain);
     sums.drawn_squares += by_lot * by_lot + 2.0 * certain * by_lot;
     sums.strongest_hit = std::max(sums.strongest_hit, power);
     ++sums.num_diffuse_hits;
     open.path = kNoPath;
   }
 
+  // Adds what even directions, or even points of surfaces, are there for certain to have found.
+  void add_even(size_t group, size_t path, double power) {
+    GroupSums& sums = groups_[group];
+    sums.lattice_squares += power * power;
+    const int turn = paths_.frame.sampler == Sampler::kLattice ? turn_of_ray(paths_.flags[path]) : 0;
+    if (turn > 0) {
+      rows_[group][paths_.passes_of(path).empty() ? 0 : 1].add(turn, power);
+    } else if (paths_.frame.scatterers == Scatterers::kSurface) {
+      triangles_[group].add(paths_.hits_of(static_cast<int64_t>(path))[std::countr_zero(paths_.diffuse[path])], power);
+    } else {
+      sums.outline_squares += power * power;
+    }
+  }
+
   const Paths& paths_;
   std::vector<OpenHit> open_;
   // These are by group, of hits before and behind a sheet: packets of rays go on behind sheets one after the other.
   std::vector<std::array<RowDifferences, 2>> rows_;
-  std::vector<KnownKinds> kinds_;  // by group
+  std::vector<TrianglePoints> triangles_;  // by group, as the next two
+  std::vector<KnownKinds> kinds_;
   std::vector<GroupSums> groups_;
 };
 

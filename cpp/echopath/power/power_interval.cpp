@@ -141,7 +141,7 @@ double power_of(const PowerEvidence& evidence, CellViewIndex view) {
 double chance_of_record(const PowerEvidence& evidence) {
   const double num_hits = effective_number(evidence.diffuse, evidence.lattice_squares + evidence.drawn_squares);
   const double along_outlines = squared(kOutline) * evidence.outline_squares / std::sqrt(num_hits);
-  const double diffuse = evidence.drawn_squares + evidence.row_variance + along_outlines;
+  const double diffuse = evidence.drawn_squares + evidence.even_variance + along_outlines;
   const double num_rays = effective_number(evidence.steady_power, evidence.steady_squares);
   const double unfiltered = power_of(evidence, kUnfiltered);
   const double hard = unfiltered > 0.0 ? std::min(power_of(evidence, kAsLaunched) / unfiltered, 1.0) : 0.0;

@@ -156,6 +156,29 @@ def unresolved(found, paths, left_out=None) -> list[str]:
     return [f"NOT resolved to {RESOLVED_DB:g} dB (95 % interval)", *lines, *rest]
 
 
+def unresolved_in_frames(found) -> list[str]:
+    """The last lines of a run of frames in time: what the rays do not know in some of them, with the widest of its intervals.
+
+    found: of each frame that was made, a list of ep.Unresolved
+    """
+    if not found:
+        return []
+    made = f"in {counted(len(found), 'frame')}" if len(found) > 1 else "in the frame"
+    by_title: dict = {}
+    for one in (one for frame in found for one in frame):
+        by_title.setdefault(one.title, []).append(one)
+    if not by_title:
+        return [f"resolved to {RESOLVED_DB:g} dB {made} that {'were' if len(found) > 1 else 'was'} made: "
+                "every object and ghost above the noise"]
+    rows = sorted(by_title.items(), key=lambda row: (-len(row[1]), -max(one.interval.high for one in row[1])))
+    worst = {title: max(echoes, key=lambda one: one.interval.high / max(one.interval.low, 1e-300)) for title, echoes in rows}
+    lines = _table([(f"  {title}", f"{len(echoes)} of {len(found)}, at worst {worst[title].interval}; {worst[title].advice}")
+                    for title, echoes in rows[:MAX_UNRESOLVED]])
+    return [f"NOT resolved to {RESOLVED_DB:g} dB (95 % interval) {made} that {'were' if len(found) > 1 else 'was'} made", *lines,
+            *more_line(len(rows), MAX_UNRESOLVED, indent=2)]
+
+
+
 def _aligned(text: str) -> str:
     """Levels below those of `powers`, words two columns in."""
     level, unit, error = text.partition(" dBm")

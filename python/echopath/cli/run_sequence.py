@@ -8,10 +8,12 @@ from .. import plots
 from ..base.callers import warn_user
 from ..base.counts import counted
 from ..base.progress import progress_bars
+from ..frame.unresolved import unresolved_of_frame
 from ..scene_file import SceneFile
 from ..sensor_files import save_raw
 from ..sequence import Sequence, load_sequence
 from ..sequence.pictures import drive_of, write_film_of
+from . import report
 from .numbers import duration_words
 from .run import TRUTH_NAME, keywords_of, raw_line
 
@@ -44,8 +46,10 @@ def run_sequence(scene_file: SceneFile, options, extra_parts: dict) -> Iterator[
         keywords["labels"] = True
     sequence = Sequence(scene_file.scene, scene_file.radar, frames=frames, interval=interval, **keywords)
     yield f"{scene_file.title or scene_file.path}: {counted(frames, 'frame')} every {interval:g} s"
+    objects, unresolved = scene_file.labels.objects if scene_file.labels else None, []
     with progress_bars() as progress:
-        for saved in sequence.save_frames(options.out, keep=keep or "all", shard=options.shard, progress=progress):
+        for saved in sequence._save_frames(options.out, keep or "all", options.shard, progress,
+                                           look=lambda frame: unresolved.append(unresolved_of_frame(frame, objects))):
             yield _line(saved, frames)
     stored = load_sequence(options.out)
     yield f"wrote {stored}"
@@ -57,6 +61,7 @@ def run_sequence(scene_file: SceneFile, options, extra_parts: dict) -> Iterator[
         yield f"wrote {path}"
     if stored.keep != "labels" and stored.is_done.all():
         yield from _write_pictures(stored, scene_file.title)
+    yield from report.unresolved_in_frames(unresolved)
 
 
 def _write_pictures(stored, title: str) -> Iterator[str]:

@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 
 from ..base.antennas import middle_of_antennas
 from ..base.mesh_names import object_of
+from ..base.rates import step_within
 from ..signals.measures import STATIC_SPEED
-from ..truth.boxes import STEP, boxes_at
+from ..truth.boxes import boxes_at
 
 BESIDE = 0.5  # m, from the box of an object: an antenna that is as near stands in or on it
 
@@ -56,7 +57,7 @@ def movers_at(scene, radar, time: float) -> NDArray[np.float64]:
 
 
 def _instant(radar, time: float) -> _Instant:
-    step = min(STEP, 0.25 * radar.frame_duration)
+    step = step_within(radar.frame_duration)
     before, antenna, after = (middle_of_antennas(radar, time + late) for late in (-step, 0.0, step))
     return _Instant(antenna, (after - before) / (2.0 * step), time, step)
 

@@ -47,16 +47,34 @@ def run(scene: Path, out: Path, *options) -> int:
 def test_a_run_tells_of_each_frame_and_goes_on(scene_path, tmp_path, capsys):
     out = tmp_path / "out"
     assert run(scene_path, out, "--frames", 2, "--interval", 0.1) == 0
+    first = capsys.readouterr().out.splitlines()
     assert run(scene_path, out, "--frames", 4, "--interval", 0.1) == 0
     lines = [re.sub(r"\d+\.\d s", "# s", line) for line in capsys.readouterr().out.splitlines()]
-    assert lines[1].startswith("frame 1 of 2 at 0 s: ") and lines[1].endswith(" left")
-    assert lines[7] == "frame 1 of 4 at 0 s: is there" and lines[8] == "frame 2 of 4 at # s: is there"
-    assert lines[10] == "frame 4 of 4 at # s: # s"
-    assert lines[11].startswith("wrote StoredSequence(") and "4 done" in lines[11]
-    assert lines[12:] == [f"wrote {out / name}" for name in ("overview.png", "film.gif")]
+    assert first[1].startswith("frame 1 of 2 at 0 s: ") and first[1].endswith(" left")
+    assert lines[1] == "frame 1 of 4 at 0 s: is there" and lines[2] == "frame 2 of 4 at # s: is there"
+    assert lines[4] == "frame 4 of 4 at # s: # s"
+    assert lines[5].startswith("wrote StoredSequence(") and "4 done" in lines[5]
+    assert lines[6:8] == [f"wrote {out / name}" for name in ("overview.png", "film.gif")]
+    assert "resolved to 0.3 dB" in lines[8] and "in 2 frames that were made" in lines[8]
     scene_file = ep.load_scene(scene_path)
     alone = ep.simulate(scene_file.scene, scene_file.radar, trace=scene_file.trace.replace(start_time=3 * 0.1), guard=False)
     assert (ep.load_sequence(out)[3].noisy_cube == alone.noisy_cube).all()
+
+
+def test_a_run_ends_with_what_its_rays_do_not_resolve_in_some_frame(scene_path, tmp_path, capsys):
+    """The last lines, of the frames that were made; those that were there are not asked."""
+    plate = 'actor = "plate"\nparameters = {width = 1.0, height = 1.0}\nmaterial = "metal"'
+    scene_path.write_text(SCENE.replace(plate, 'actor = "pedestrian"'))
+    out, options = tmp_path / "out", ("--frames", 2, "--interval", 0.1, "--rays", 200)
+    assert run(scene_path, out, *options) == 0
+    told = capsys.readouterr().out
+    assert "\nNOT resolved to 0.3 dB (95 % interval) in 2 frames that were made\n" in told
+    frames = [ep.load_sequence(out)[place] for place in range(2)]
+    missing = [{one.title for one in frame.unresolved} for frame in frames]
+    for title in missing[0] | missing[1]:
+        assert f"  {title} " in told and f" {sum(title in some for some in missing)} of 2, at worst " in told
+    assert run(scene_path, out, *options) == 0
+    assert "resolved to" not in capsys.readouterr().out
 
 
 def test_frames_are_read_once_for_their_pictures_whose_failure_is_a_warning(scene_path, tmp_path, capsys, monkeypatch):

@@ -172,6 +172,16 @@ void bind_visibility(py::module_& m) {
       "check_objects", [](const Scene& scene, const Objects& objects) { surfaces_of(scene, objects); }, py::arg("scene"),
       py::arg("objects"), "Raises what find_families would for objects [(name, [glob, ...]), ...].");
   m.def(
+      "meshes_of_objects",
+      [](const Scene& scene, const Objects& objects) {
+        const SurfaceMap surfaces = surfaces_of(scene, objects);
+        py::dict meshes;
+        for (uint32_t i = 0; i < surfaces.num_objects; ++i) meshes[py::str(surfaces.names[i])] = surfaces.meshes_of(i);
+        return meshes;
+      },
+      py::arg("scene"), py::arg("objects"),
+      "{name: IDs of its meshes} of objects [(name, [glob, ...]), ...]; raises what find_families would.");
+  m.def(
       "visibility_in_trace",
       [](const Paths& paths, const Radar& radar, const std::optional<Objects>& objects, std::optional<double> time,
          int num_directions, const py::object& progress) {

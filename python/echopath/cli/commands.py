@@ -58,10 +58,10 @@ def run(options) -> None:
         frame = simulate_file(scene_file, num_rays=options.rays, seed=options.seed,
                               batches=options.batches, extra_parts=chosen, truth=options.truth or None, progress=progress)
         certificate = certify(frame, progress=progress)
-        written = write_outputs(frame, options.out, partitions=frame.parts)
+        objects = scene_file.labels.objects if scene_file.labels else None
+        written = write_outputs(frame, options.out, partitions=frame.parts, objects=objects)
     if options.raw is not None:
         print(raw_line(options.raw, frame.save_raw(options.raw)))
-    objects = scene_file.labels.objects if scene_file.labels else None
     advice = report.other_method(scene_file.detection_settings(), 'method = "os" of [detections]')
     for text in [scene_file.title or options.scene, *report.counts(frame.paths),
                  *report.overlaps(frame.scene, frame.paths.frame.trace_time),

@@ -74,12 +74,13 @@ def certify(frame: Frame, *, progress=None):
     return certificate
 
 
-def write_outputs(frame: Frame, folder, partitions) -> Written:
+def write_outputs(frame: Frame, folder, partitions, objects=None) -> Written:
     """Writes frame.h5, detections.csv and truth.csv where they were asked for, and pictures; adds its stages to the frame's.
 
     The pictures: scene.png, map.png, a PNG for each of `partitions`, overview.png (map and first partition) and, where
     the radar tells azimuths apart, range_azimuth.png (the whole and the first partition from above); with labels also
     objects_and_ghosts.png, labels_NAME.png for each partition and label_maps/ for programs.
+    objects: that pictures name, as in `families`; None: the children of the scene's root
     """
     folder = Path(folder)
     clock = StageClock()
@@ -91,7 +92,7 @@ def write_outputs(frame: Frame, folder, partitions) -> Written:
         if frame.kept_truth is not None:
             frame.kept_truth.to_csv(folder / TRUTH_NAME)
     with clock("pictures"):
-        pictures = _write_pictures(frame, folder, partitions)
+        pictures = _write_pictures(frame, folder, partitions, objects)
         if frame.labels:
             pictures += write_labels(frame, folder, {name: frame.selections[name] for name in partitions})
     frame.stages += clock.stages
@@ -103,14 +104,14 @@ def raw_line(path, num_bytes: int) -> str:
     return f"wrote {path}: {counted(num_bytes, 'byte')} of raw data"
 
 
-def _write_pictures(frame: Frame, folder: Path, partitions) -> list:
+def _write_pictures(frame: Frame, folder: Path, partitions, objects=None) -> list:
     written = []
 
     def write(name: str, figure) -> None:
         plots.save_png(figure, folder / f"{name}.png", seed=frame.paths.frame.seed, noise_seed=frame.noise_seed)
         written.append(folder / f"{name}.png")
 
-    write("scene", plots.plot_scene(frame.scene, frame.paths, power=frame.path_power))
+    write("scene", plots.plot_scene(frame.scene, frame.paths, power=frame.path_power, objects=objects))
     vmin, vmax = limits_of_frame(frame)
     title = title_of(frame)
     mean = for_pictures(f"; in the mean {with_error(frame.mean_power)}")
@@ -130,15 +131,15 @@ def _write_pictures(frame: Frame, folder: Path, partitions) -> list:
     if frame.range_azimuth is not None:
         maps = _maps_from_above(frame, next(iter(partitions), None), vmin)
         leaked = frame.beside_spectra.get(LEAKAGE)
-        write("range_azimuth", plots.plot_range_azimuth(maps, places=_places(frame),
+        write("range_azimuth", plots.plot_range_azimuth(maps, places=_places(frame, objects),
                                                         leaked=leaked and frame.range_azimuth_of(leaked)))
     return written
 
 
-def _places(frame: Frame) -> dict:
-    """Where the objects of the frame truly are, in its range-azimuth map."""
+def _places(frame: Frame, objects) -> dict:
+    """Where the objects of the frame truly are, in its range-azimuth map. objects: as in `families`"""
     time = frame.paths.frame.trace_time
-    return true_places(frame.scene, frame.radar, families(frame.paths).objects, time)
+    return true_places(frame.scene, frame.radar, families(frame.paths).objects if objects is None else objects, time)
 
 
 def _maps_from_above(frame: Frame, partition, vmin: float) -> dict:

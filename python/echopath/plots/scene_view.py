@@ -5,6 +5,8 @@ import dataclasses
 
 import numpy as np
 
+from .. import _core
+from ..arguments.objects import named_globs
 from ..base.mesh_names import object_of
 from ..paths.subset import first_group, strongest, strongest_of_each, subset
 from .clip import clip_triangles, outline
@@ -47,19 +49,22 @@ class _Drawing:
     mirror_names: dict
 
 
-def plot_scene(scene, paths, *, num_rays=300, time=None, power=None, title="The scene, and the strongest rays to each object"):
+def plot_scene(scene, paths, *, num_rays=300, time=None, power=None, objects=None,
+               title="The scene, and the strongest rays to each object"):
     """A scene with its strongest rays.
 
     paths: of `trace`; num_rays: drawn at most, half of them the strongest of each object, half the strongest of all that hit
         anything but mirrors (of all, where none does)
     time: of the picture in s, None: the time of the trace; power: of the paths [P] in W where it is known already
+    objects: as in `families`, such as those of labels; None: the children of the scene's root
     Mirrors are drawn translucent, dashed where they go on beyond the picture; up to 12 objects bear their names.
     title: above them. Returns a matplotlib figure with three views in metres. Raises AttributeError for other objects.
     """
     time = paths.frame.trace_time if time is None else time
     power = paths.power if power is None else power
-    chosen = _chosen(scene, paths, power, num_rays)
-    drawing = _collect(scene, subset(paths, chosen), time)
+    names = _names_of_meshes(scene, objects)
+    chosen = _chosen(names, paths, power, num_rays)
+    drawing = _collect(scene, subset(paths, chosen), time, names if objects is None else _named(names, objects))
     with new_figure(10.5, 8.0) as figure:
         grid = figure.add_gridspec(2, 2, height_ratios=(1.75, 1.0))
         perspective = figure.add_subplot(grid[0, :], projection="3d", computed_zorder=False)
@@ -71,7 +76,25 @@ def plot_scene(scene, paths, *, num_rays=300, time=None, power=None, title="The 
     return figure
 
 
-def _collect(scene, shown, time: float) -> _Drawing:
+def _names_of_meshes(scene, objects) -> list:
+    """Name of the object of each mesh, None of mirrors; what is in none of `objects` belongs to the root's child above it."""
+    meshes = scene.meshes
+    names = [None if mesh.material.mirror else object_of(mesh.name) for mesh in meshes]
+    if objects is not None:
+        for name, mesh_ids in _core.meshes_of_objects(scene, named_globs(objects)).items():
+            for mesh_id in mesh_ids:
+                names[mesh_id] = name
+    return names
+
+
+def _named(names, objects) -> list:
+    """Of names of meshes those of `objects`, None elsewhere."""
+    known = {name for name, _ in named_globs(objects)}
+    return [name if name in known else None for name in names]
+
+
+def _collect(scene, shown, time: float, names) -> _Drawing:
+    """names: of the objects of meshes that bear one in the picture, None of others"""
     transmitter, receiver = np.asarray(shown.frame.transmitter), np.asarray(shown.frame.receiver)
     points = np.asarray(shown.points(time)).reshape(-1, 3)
     segments = {int(count): _segments(shown, points, count, transmitter, receiver)
@@ -79,18 +102,18 @@ def _collect(scene, shown, time: float) -> _Drawing:
     corners = np.concatenate([points, transmitter[None], receiver[None], _object_vertices(scene, time)])
     corners = np.concatenate([corners, _small_mirrors(scene, time, corners.min(axis=0), corners.max(axis=0))])
     low, high = corners.min(axis=0) - MARGIN, corners.max(axis=0) + MARGIN
-    drawing = _Drawing([], [], [], [], [], segments, 0.5 * (transmitter + receiver), low, high, _names(scene, time), {})
+    middle = 0.5 * (transmitter + receiver)
+    drawing = _Drawing([], [], [], [], [], segments, middle, low, high, _places_of(scene, names, time), {})
     for mesh_id, mesh in enumerate(scene.meshes):
         vertices = np.asarray(scene.world_vertices(mesh_id, time))
         _add_mesh(drawing, vertices[np.asarray(mesh.mesh.triangles)], mesh)
     return drawing
 
 
-def _chosen(scene, paths, power, num_rays: int):
-    """Indices of the paths that are drawn."""
+def _chosen(names, paths, power, num_rays: int):
+    """Indices of the paths that are drawn; names: of the objects of meshes, None of mirrors"""
     numbers = {}
-    of_mesh = np.array([-1 if mesh.material.mirror else numbers.setdefault(object_of(mesh.name), len(numbers))
-                        for mesh in scene.meshes], np.int64)
+    of_mesh = np.array([-1 if name is None else numbers.setdefault(name, len(numbers)) for name in names], np.int64)
     of_path = first_group(paths, of_mesh)
     return strongest_of_each(power, of_path, len(numbers), num_rays) if (of_path >= 0).any() else strongest(power, num_rays)
 
@@ -125,12 +148,12 @@ def _small_mirrors(scene, time: float, low, high):
     return np.concatenate(found)
 
 
-def _names(scene, time: float) -> dict:
-    """(lowest, highest) corner [3] of each object, {name: corners}; {} of too many."""
+def _places_of(scene, names, time: float) -> dict:
+    """(lowest, highest) corner [3] of each object, {name: corners}; {} of too many. names: of the objects of meshes, or None"""
     objects = {}
-    for mesh_id, mesh in enumerate(scene.meshes):
-        if not mesh.material.mirror:
-            objects.setdefault(object_of(mesh.name), []).append(np.asarray(scene.world_vertices(mesh_id, time)))
+    for mesh_id, name in enumerate(names):
+        if name is not None:
+            objects.setdefault(name, []).append(np.asarray(scene.world_vertices(mesh_id, time)))
     if len(objects) > MOST_NAMES:
         return {}
     vertices = {name: np.concatenate(parts) for name, parts in objects.items()}

@@ -111,6 +111,7 @@ def test_true_places_are_seen_from_the_radar():
     scene.add(ep.actors.sphere(0.5), name="ball", material="metal", position=(4, 8, 1))
     places = true_places(scene, small_radar((4, 3, 0)), ["ball"], 0.0)  # 5 m along y, where the radar looks
     assert np.allclose(places["ball"], (5.0, 0.0), atol=1e-6)
+    assert true_places(scene, small_radar((4, 3, 0)), {"it": ["ball"]}, 0.0) == {"it": places["ball"]}
 
 
 def test_each_object_has_rays_and_surfaces_say_where_they_are_cut():

@@ -251,6 +251,22 @@ def test_a_picture_of_a_scene_names_its_objects():
     assert "ground" in {text.get_text().strip() for text in figure.axes[0].texts}
 
 
+def test_a_picture_of_a_town_names_the_objects_of_its_labels_and_shows_rays_to_each():
+    scene = ep.Scene()
+    town = scene.add(None, name="town")
+    for k, size in enumerate((2.0, 0.4)):
+        scene.add(ep.actors.plate(size, size), name=f"plate{k}", material="metal", position=(6.0, 2.0 * k, 1.0), parent=town)
+    scene.add(ep.actors.plate(0.3, 0.3), name="rest", material="metal", position=(5.0, -2.0, 1.0), parent=town)
+    radar = build_radar([(0, 0, 1)], [(0, 0, 1)], num_samples=16, num_chirps=2, chirp_interval=1e-4)
+    paths = ep.trace(scene, radar, num_rays=2000)
+    figure = plot_scene(scene, paths, objects={"large": "town/plate0", "small": ["town/plate1"]})
+    names = {text.get_text().strip() for text in figure.axes[1].texts}
+    assert {"large", "small"} <= names and not names & {"town", "rest"}
+    drawn = np.concatenate([segment for lines in figure.axes[1].collections if hasattr(lines, "get_segments")
+                            for segment in lines.get_segments()])
+    assert np.any(np.hypot(*(drawn - (6.0, 2.0)).T) < 0.1)  # at the small one, whose echo is the weakest
+
+
 # m, as the triangle is wide and high
 @pytest.mark.parametrize("size", [(1.0, 1.0), (20.0, 20.0), (0.3, 40.0), (60.0, 5.0), (40.0, 0.3)])
 @pytest.mark.filterwarnings("error:constrained_layout")

@@ -254,9 +254,10 @@ def test_a_picture_of_a_scene_names_its_objects():
 def test_a_picture_of_a_town_names_the_objects_of_its_labels_and_shows_rays_to_each():
     scene = ep.Scene()
     town = scene.add(None, name="town")
+    rough = ep.Material(reflectivity=0.3, scattering=1.0)
     for k, size in enumerate((2.0, 0.4)):
-        scene.add(ep.actors.plate(size, size), name=f"plate{k}", material="metal", position=(6.0, 2.0 * k, 1.0), parent=town)
-    scene.add(ep.actors.plate(0.3, 0.3), name="rest", material="metal", position=(5.0, -2.0, 1.0), parent=town)
+        scene.add(ep.actors.plate(size, size), name=f"plate{k}", material=rough, position=(6.0, 2.0 * k, 1.0), parent=town)
+    scene.add(ep.actors.plate(0.3, 0.3), name="rest", material=rough, position=(5.0, -2.0, 1.0), parent=town)
     radar = build_radar([(0, 0, 1)], [(0, 0, 1)], num_samples=16, num_chirps=2, chirp_interval=1e-4)
     paths = ep.trace(scene, radar, num_rays=2000)
     figure = plot_scene(scene, paths, objects={"large": "town/plate0", "small": ["town/plate1"]})

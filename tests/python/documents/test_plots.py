@@ -265,7 +265,7 @@ def test_a_picture_of_a_town_names_the_objects_of_its_labels_and_shows_rays_to_e
     assert {"large", "small"} <= names and not names & {"town", "rest"}
     drawn = np.concatenate([segment for lines in figure.axes[1].collections if hasattr(lines, "get_segments")
                             for segment in lines.get_segments()])
-    assert np.any(np.hypot(*(drawn - (6.0, 2.0)).T) < 0.1)  # at the small one, whose echo is the weakest
+    assert np.any(np.hypot(*(drawn - (6.0, 2.0)).T) < 0.3)  # at the small one, whose echo is the weakest
 
 
 # m, as the triangle is wide and high

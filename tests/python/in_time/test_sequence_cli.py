@@ -221,7 +221,7 @@ def test_a_shard_of_the_frames_says_which_it_made(scene_path, tmp_path, capsys):
     assert run(scene_path, out, "--frames", 4, "--interval", 0.1, "--shard", "2/2") == 0
     told = capsys.readouterr().out.splitlines()
     assert [line[:12] for line in told if line.startswith("frame")] == ["frame 2 of 4", "frame 4 of 4"]
-    assert "2 done" in told[-1]
+    assert "2 done" in told[-2] and "in 2 frames that were made" in told[-1]
 
 
 @pytest.mark.parametrize("shard", ["0/2", "3/2", "1", "a/b", "1/2/3", "-1/2", ""])

@@ -182,7 +182,7 @@ def test_scene_files_take_sensors_and_runs_write_raw_data(written, tmp_path, cap
     arguments = ["run", str(tmp_path / "scene.toml"), "--out", str(tmp_path / "out"), "--raw", str(tmp_path / "two.bin")]
     assert not main([*arguments, "--frames", "2", "--interval", "0.05"])
     size = 64 * 4 * COUNT * 4
-    assert (tmp_path / "two.bin").stat().st_size == 2 * size and f"{2 * size} bytes of raw data" in capsys.readouterr().out
+    assert (tmp_path / "two.bin").stat().st_size == 2 * size and f"{2 * size:,} bytes of raw data" in capsys.readouterr().out
     assert main([*arguments, "--frames", "2", "--interval", "0.05", "--keep", "maps"])
     assert "--raw: needs the signals of all frames" in capsys.readouterr().err
 

@@ -86,8 +86,9 @@ RayNeed need_of(const Stratum& stratum, double num_rays, const ReceivedPower& po
   growth = power.high_of_rays > 0 ? std::clamp(growth, least, kMaxGrowth) : std::max(kUnseenGrowth, least);
   // The field of view sees many surfaces, of which the strongest would speak for all, so it keeps the rays that it has.
   if (stratum.object < 0) growth = 1.0;
+  else num_rays = std::max(num_rays, static_cast<double>(LaunchPlan::kFewestRays));
   need.is_bounded = growth < kMaxGrowth;
-  need.rays = growth * std::max(num_rays, static_cast<double>(LaunchPlan::kFewestRays));
+  need.rays = growth * num_rays;
   return need;
 }
 

@@ -223,7 +223,8 @@ class TargetSearch {
 
   double distance_of(const Sphere& sphere) const { return (sphere.centre - settings_.transmitter).norm(); }
 
-  // Returns whether most parts of an object have boxes that touch no other's, as those of a row of cars.
+  // Returns whether most parts of an object are farther from all others, by their boxes, than half their own length. Posts
+  // of a guard rail are not: they carry it.
   bool has_parts_apart(const SceneObject& object) const {
     const std::vector<SceneObject> parts = parts_below(object);
     if (parts.size() < 2 || parts.size() > kMostThings) return false;
@@ -232,8 +233,10 @@ class TargetSearch {
       for (const uint32_t id : parts[i].mesh_ids) boxes[i].extend(geometry_.box(id));
     }
     const auto num_apart = std::count_if(boxes.begin(), boxes.end(), [&](const Eigen::AlignedBox3d& box) {
-      return std::none_of(boxes.begin(), boxes.end(),
-                          [&](const Eigen::AlignedBox3d& other) { return &other != &box && other.intersects(box); });
+      const double near = 0.5 * box.diagonal().norm();
+      return std::none_of(boxes.begin(), boxes.end(), [&](const Eigen::AlignedBox3d& other) {
+        return &other != &box && other.exteriorDistance(box) <= near;
+      });
     });
     return 2 * num_apart >= std::ssize(parts);
   }

@@ -2422,7 +2422,7 @@ class Paths:
     @property
     def flags(self) -> numpy.typing.NDArray[numpy.uint32]:
         """
-        [P] bits: 1, recorded as the reversal of another path; 2, of the second half of the rays; 4, with points on 1 + (flags >> 3 & 3) edges: hit flags >> 8 & 63 is the first, for one of flags >> 16 pieces of it; 32, beside 4, around an edge to a mirror; 64, diffuse, and counts for others that were left out; without 4, flags >> 8 & 63 is the place of its ray among its neighbours in the lattice: 1 to 63 over and over, 0 not known
+        [P] bits: 1, recorded as the reversal of another path; 2, of the second half of the rays; 4, with points on 1 + (flags >> 3 & 3) edges: hit flags >> 8 & 63 is the first, for one of flags >> 16 pieces of it; 32, beside 4, around an edge to a mirror; 64, diffuse, and counts for others that were left out. Without 4, flags >> 8 & 63 is the place of its ray among its neighbours in the lattice: 1 to 63 over and over, 0 not known
         """
     @property
     def frame(self) -> TraceFrame:

@@ -171,7 +171,8 @@ def _found_edges(paths) -> str:
 def _expected_edge(power: float, noise: float) -> str:
     if power <= 0.0:
         return "no sharp edge lies in the pattern"
-    return f"the strongest would carry {in_dbm(power):.1f} dBm, the noise of a cell is {in_dbm(noise):.1f} dBm"
+    return (f"the strongest would carry {in_dbm(power):.1f} dBm straight back, and may carry more over mirrors; the noise of a "
+            f"cell is {in_dbm(noise):.1f} dBm")
 
 
 def _without_edges(case: Case, conductors) -> str:

@@ -51,7 +51,7 @@ class Interval(NamedTuple):
         if self.low > 0.0:
             return f"{in_dbm(self.power):.1f} dBm, {in_dbm(self.low):.1f} to {high}"
         if self.power < FAINT * self.high:  # so far below what may be there that it tells nothing
-            return f"below {high}" if self.power > 0.0 else f"no path, below {high}"
+            return f"below {high}" if self.power > 0.0 else f"no power yet, below {high}"
         return f"{in_dbm(self.power):.1f} dBm, below {high}"
 
 

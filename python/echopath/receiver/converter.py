@@ -8,7 +8,7 @@ import numpy as np
 from .. import _core
 from ..base.callers import warn_user
 from ..base.counts import at_least, counted
-from ..signals.measures import in_dbm
+from ..base.decibels import in_dbm
 from ..transmit import radar_of_noise
 from .filters import beat_frequencies, has_filters, response
 from .settings import Adc

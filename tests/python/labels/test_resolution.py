@@ -307,7 +307,7 @@ def test_rough_echoes_need_no_footprint():
 
 
 @pytest.mark.parametrize("power, low, high, text", [
-    (6e-30, 0.0, 2e-13, "below -97.0 dBm"), (0.0, 0.0, 2e-13, "no path, below -97.0 dBm"), (0.0, 0.0, 0.0, "nothing"),
+    (6e-30, 0.0, 2e-13, "below -97.0 dBm"), (0.0, 0.0, 2e-13, "no power yet, below -97.0 dBm"), (0.0, 0.0, 0.0, "nothing"),
     (1e-13, 0.0, 2e-13, "-100.0 dBm, below -97.0 dBm"), (1e-13, 5e-14, 2e-13, "-100.0 dBm, -103.0 to -97.0 dBm"),
     (1e-13, 1e-13, 1e-13, "-100.00 dBm")])
 def test_intervals_in_words(power, low, high, text):

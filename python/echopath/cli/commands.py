@@ -58,7 +58,7 @@ def run(options) -> None:
         frame = simulate_file(scene_file, num_rays=options.rays, seed=options.seed,
                               batches=options.batches, extra_parts=chosen, truth=options.truth or None, progress=progress)
         certificate = certify(frame, progress=progress)
-        objects = scene_file.labels.objects if scene_file.labels else None
+        objects = scene_file.label_objects()
         written = write_outputs(frame, options.out, partitions=frame.parts, objects=objects)
     if options.raw is not None:
         print(raw_line(options.raw, frame.save_raw(options.raw)))

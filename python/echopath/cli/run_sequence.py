@@ -46,7 +46,7 @@ def run_sequence(scene_file: SceneFile, options, extra_parts: dict) -> Iterator[
         keywords["labels"] = True
     sequence = Sequence(scene_file.scene, scene_file.radar, frames=frames, interval=interval, **keywords)
     yield f"{scene_file.title or scene_file.path}: {counted(frames, 'frame')} every {interval:g} s"
-    objects, unresolved = scene_file.labels.objects if scene_file.labels else None, []
+    objects, unresolved = scene_file.label_objects(), []
     with progress_bars() as progress:
         for saved in sequence._save_frames(options.out, keep or "all", options.shard, progress,
                                            look=lambda frame: unresolved.append(unresolved_of_frame(frame, objects))):

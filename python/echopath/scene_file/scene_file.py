@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, TypedDict
 import numpy as np
 
 from .._core import Selection
+from ..arguments.objects import Objects
 from ..arguments.settings import LabelSettings, SignalSettings, TraceSettings
 from ..base.made_by import made_by
 from ..signals.parts import Selections, as_partitions
@@ -72,8 +73,11 @@ class SceneFile:
         """`detections` of `ep.simulate`: keywords of `ep.detect_frame`, None: no detections."""
         if self.detections is None:
             return None
-        objects = None if self.labels is None else self.labels.objects
-        return self.detections.model_dump() | {"objects": objects}
+        return self.detections.model_dump() | {"objects": self.label_objects()}
+
+    def label_objects(self) -> Objects:
+        """The objects that the labels of the file name, as in `families`; None: it names none."""
+        return None if self.labels is None else self.labels.objects
 
     def truth_settings(self) -> dict[str, object] | None:
         """`truth` of `ep.simulate`: keywords of `ep.truth`, None: not asked for."""

@@ -21,12 +21,12 @@ struct ErrorTarget {
 
 // Traces with settings.num_rays and then, as long as the echo of some stratum above the floor misses the target, with
 // at least twice as many, shared out by what each stratum needs (ray_allocation.h), until max_rays; none gets fewer than
-// before, as long as there are enough. The error is half
-// the 95 % interval of the worst of them (power/received_power.h), of the footprint's bias and chance together, without
-// what more rays hardly mend (PowerInterval::high_of_rays). Each trace is a fresh one: a finer lattice errs nearly like
-// 1/rays, while more batches of the same lattice would win the square root only; all traces together cost less than
-// twice the last. frame.target_error_db and frame.error_db tell the outcome. It stops at once where no ray meets
-// anything. Raises as `trace`. All traces share one geometry: `kept`, as in `trace`, or their own.
+// before, as long as there are enough. The error is half the 95 % interval of the worst of them (power/received_power.h),
+// of the footprint's bias and chance together, without what more rays hardly mend (PowerInterval::high_of_rays). Each trace
+// is a fresh one: a finer lattice errs nearly like 1/rays, while more batches of the same lattice would win the square root
+// only; all traces together cost less than twice the last. frame.target_error_db and frame.error_db tell the outcome. It
+// stops at once where no ray meets anything. Raises as `trace`. All traces share one geometry: `kept`, as in `trace`, or
+// their own.
 Paths trace_to_error(const SceneSnapshot& scene, const Radar& radar, const TraceSettings& settings,
                      const ErrorTarget& target, Job* job = nullptr, KeptGeometry* kept = nullptr);
 

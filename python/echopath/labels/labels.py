@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 NONE = -1  # in a map of indices: no label
 COMES_INTO_VIEW = "comes into view"
+UNRESOLVED = "unresolved"
 
 
 class Peak(NamedTuple):
@@ -82,6 +83,8 @@ class ObjectLabel:
         "comes into view": as "occluded" at the time of the trace, but not at others of the frame: what it sends then is in no
             path of the trace (retrace="invalid" adds it)
         "occluded": others hide it (visible_share is at most 5 %) and none of its cells is above the noise; see `occluders`
+        "unresolved": none of its cells is above the noise, but the rays leave open whether its echoes are (`received`): more
+            rays tell, see `ep.unresolved`
         "hidden in noise": it has echoes, none of them above the noise
         "not seen": it has no echo, for example because it mirrors all away from the radar
     cells: how many cells of the mask it has: where no ghost, no other object and not the surroundings are stronger; a ghost of

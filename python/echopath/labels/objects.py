@@ -7,15 +7,15 @@ import numpy as np
 
 from .. import _core
 from ..paths.resolution import Interval, unmet_interval
-from .labels import COMES_INTO_VIEW, NONE, GhostLabel, ObjectLabel, is_occluded
+from .labels import COMES_INTO_VIEW, NONE, UNRESOLVED, GhostLabel, ObjectLabel, is_occluded
 
 
 class FamilyCells(NamedTuple):
     """The cells of all families: list of Family; received: power of each, [F] W; regions: of each, dict or None;
 
     strongest: i16 [V, R], index of the family that a cell belongs to, -1: none; is_above_noise: [F] whether the family's
-    own power is above the noise in some cell; intervals: of each, list [F] of Interval in W; of_object: {object: indices of
-    its families}.
+    own power is above the noise in some cell; peak: W, of each in its strongest cell, [F]; intervals: of each, list [F] of
+    Interval in W; of_object: {object: indices of its families}; noise_floor: W, that echoes must exceed to stand out.
     """
 
     families: list
@@ -23,8 +23,10 @@ class FamilyCells(NamedTuple):
     regions: list
     strongest: np.ndarray
     is_above_noise: list
+    peak: list
     intervals: list
     of_object: dict
+    noise_floor: float
 
 
 def family_cells(owners, mask, noise_floor: float, plane, intervals: dict) -> FamilyCells:
@@ -35,13 +37,14 @@ def family_cells(owners, mask, noise_floor: float, plane, intervals: dict) -> Fa
         of_object.setdefault(family.object, []).append(number)
     return FamilyCells(families=families, received=owners.received.tolist(),
                        regions=_core.label_regions(strongest, owners.own, len(families), plane.rows_wrap),
-                       strongest=strongest, is_above_noise=(owners.peak > noise_floor).tolist(),
-                       intervals=[intervals.get(family) for family in families], of_object=of_object)
+                       strongest=strongest, is_above_noise=(owners.peak > noise_floor).tolist(), peak=owners.peak.tolist(),
+                       intervals=[intervals.get(family) for family in families], of_object=of_object,
+                       noise_floor=noise_floor)
 
 
 def occluded_objects(names, found: FamilyCells, visibility: dict, plane) -> list:
     """Names of the objects of which nothing but what hides them at the time of the trace explains that they have no cells."""
-    return [name for name in names if _status_of(name, found, visibility[name], False, plane) == "occluded"]
+    return [name for name in names if _status_of(name, found, visibility[name], False, plane, None) == "occluded"]
 
 
 def label_objects(names, found: FamilyCells, visibility: dict, appearing, plane, paths):
@@ -79,10 +82,10 @@ def label_ghosts(found: FamilyCells, plane):
 
 def _object_label(name, real, found: FamilyCells, seen, appears: bool, plane, paths) -> ObjectLabel:
     region = None if real is None else found.regions[real]
-    return ObjectLabel(name=name, status=_status_of(name, found, seen, appears, plane),
+    received = _unmet(paths, seen) if real is None else found.intervals[real]
+    return ObjectLabel(name=name, status=_status_of(name, found, seen, appears, plane, received),
                        power=0.0 if real is None else found.received[real], visible_share=seen.visible_share,
-                       occluders=dict(seen.occluders), **_cells(region, plane),
-                       received=_unmet(paths, seen) if real is None else found.intervals[real])
+                       occluders=dict(seen.occluders), **_cells(region, plane), received=received)
 
 
 def _unmet(paths, seen) -> Interval | None:
@@ -90,8 +93,11 @@ def _unmet(paths, seen) -> Interval | None:
     return unmet_interval(paths, seen) if paths.num_paths == paths.frame.statistics.num_paths else None
 
 
-def _status_of(name: str, found: FamilyCells, seen, appears: bool, plane) -> str:
-    """Why there are cells of an object, or why there are none; the first that holds (labels.ObjectLabel)."""
+def _status_of(name: str, found: FamilyCells, seen, appears: bool, plane, received: Interval | None) -> str:
+    """Why there are cells of an object, or why there are none; the first that holds (labels.ObjectLabel).
+
+    received: of its direct echoes
+    """
     real, mine = _families_of(name, found)
     is_above_noise = real is not None and found.is_above_noise[real]
     reasons = {"seen": real is not None and found.regions[real] is not None,
@@ -100,8 +106,24 @@ def _status_of(name: str, found: FamilyCells, seen, appears: bool, plane) -> str
                "masked": is_above_noise,
                COMES_INTO_VIEW: appears,
                "occluded": is_occluded(seen),
+               UNRESOLVED: received is not None and _may_stand_out(real, found, received),
                "hidden in noise": real is not None and found.received[real] > 0.0}
     return next((status for status, holds in reasons.items() if holds), "not seen")
+
+
+def _may_stand_out(real: int | None, found: FamilyCells, received: Interval) -> bool:
+    """Whether direct echoes may be above the noise, as far as the rays know. real: index of their family, None: no paths"""
+    return received.is_in_doubt and _most_in_a_cell(real, found, received) > found.noise_floor
+
+
+def _most_in_a_cell(real: int | None, found: FamilyCells, received: Interval) -> float:
+    """W, of direct echoes at the upper end of their interval: spread over cells as those of their paths, or in one cell.
+
+    A cell has the mean power of what is in it alone; echoes that the map had no need to show have no peak.
+    """
+    if real is None or not found.peak[real] > 0.0:
+        return received.high
+    return found.peak[real] / found.received[real] * received.high
 
 
 def _cells(region, plane) -> dict:

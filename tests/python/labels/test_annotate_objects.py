@@ -79,6 +79,23 @@ def test_why_an_object_is_not_in_the_map():
     assert all(label.cells == 0 and label.box is None for name, label in found.items() if name != "near")
 
 
+@pytest.mark.parametrize("transmit_power, status", [(1e-3, "not seen"), (1.0, "unresolved")])
+def test_what_no_ray_has_met_is_called_unresolved_where_it_may_be_above_the_noise(transmit_power, status):
+    """A plate of metal of 5 cm at 31 m may send sigma = 4 pi A^2 / lambda^2 where it faces the radar: -104 dBm with 1 W, 16 dB
+    above a floor of -121 dBm."""
+    scene, radar = ep.Scene(), make_radar(transmit_power=transmit_power)
+    scene.add(ep.actors.plate(0.05, 0.05), name="far", material=ep.Material.metal(), position=(30, 9, 1), yaw=np.pi + 0.1)
+    paths = ep.trace(scene, radar, num_rays=3)
+    assert paths.num_paths == 0
+    found = ep.annotate(paths, {})
+    (far,) = found.objects
+    wavelength, distance, area = 299_792_458.0 / radar.waveform.start_frequency, np.hypot(30, 9), 0.05 ** 2
+    mirror = transmit_power * wavelength ** 2 * 4 * np.pi * area ** 2 / wavelength ** 2 / ((4 * np.pi) ** 3 * distance ** 4)
+    assert far.received.high == pytest.approx(mirror, rel=0.15)  # its solid angle is that of its turned outline
+    assert (10 * found.noise_power < mirror) == (status == "unresolved")  # cells stand 10 dB out of the noise
+    assert far.status == status
+
+
 def test_an_echo_under_a_stronger_one_is_masked():
     scene = ep.Scene()
     add_plate(scene, "large", (10, 0.3, 1), size=0.3)

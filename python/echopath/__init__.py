@@ -49,6 +49,7 @@ from .readers import Model, ModelNode, foreign_materials, load_model
 from .receiver import Adc, PhaseNoise, Receiver, Reception, receive, receive_parts
 from .scene.foreign import mesh_from
 from .scene.interferers import Interferer
+from .scene.found_objects import find_objects
 from .scene.large_planes import mark_mirrors
 from .scene.materials import materials
 from .scene.meshes import load_mesh, load_meshes
@@ -95,7 +96,7 @@ __all__ = [
     "VisibilityFromEnd", "Watch", "Weather", "actors", "add_noise", "add_traffic", "angle_fft", "angle_time", "annotate",
     "annotate_frame", "around_corners",
     "beamform", "boltzmann", "cfar", "check_rays", "check_signal", "compensate_tdm", "decompose", "demultiplex",
-    "detect", "detect_frame", "effects", "estimate_angles", "families", "first", "foreign_materials", "hits",
+    "detect", "detect_frame", "effects", "estimate_angles", "families", "find_objects", "first", "foreign_materials", "hits",
     "interference", "interference_radar", "last", "load_antenna", "load_frame", "load_labels", "load_mesh",
     "load_meshes", "load_model", "load_radar", "load_scene", "load_sensor", "load_sequence", "mark_mirrors", "materials",
     "mesh_from", "mie_rcs", "music", "noise_power", "num_bounces", "num_threads", "passes", "path_cells", "plot_rays", "plots",

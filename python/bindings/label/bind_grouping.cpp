@@ -152,6 +152,12 @@ std::vector<std::string> may_appear_in_frame(const Paths& paths, const Radar& ra
   return names;
 }
 
+py::dict meshes_by_name(const SurfaceMap& surfaces) {
+  py::dict meshes;
+  for (uint32_t i = 0; i < surfaces.num_objects; ++i) meshes[py::str(surfaces.names[i])] = surfaces.meshes_of(i);
+  return meshes;
+}
+
 py::tuple visibility_tuple(const VisibilityFromEnd& seen) {
   py::dict occluders;
   for (const auto& [name, share] : seen.occluders) occluders[py::str(name)] = share;
@@ -173,14 +179,18 @@ void bind_visibility(py::module_& m) {
       py::arg("objects"), "Raises what find_families would for objects [(name, [glob, ...]), ...].");
   m.def(
       "meshes_of_objects",
-      [](const Scene& scene, const Objects& objects) {
-        const SurfaceMap surfaces = surfaces_of(scene, objects);
-        py::dict meshes;
-        for (uint32_t i = 0; i < surfaces.num_objects; ++i) meshes[py::str(surfaces.names[i])] = surfaces.meshes_of(i);
-        return meshes;
-      },
+      [](const Scene& scene, const Objects& objects) { return meshes_by_name(surfaces_of(scene, objects)); },
       py::arg("scene"), py::arg("objects"),
       "{name: IDs of its meshes} of objects [(name, [glob, ...]), ...]; raises what find_families would.");
+  m.def(
+      "meshes_of_usual_objects",
+      [](const Scene& scene, const Radar& radar, double time) {
+        radar.validate();
+        const Vec3 antenna = mean_position(radar.transmitters, radar.world_from_radar(time));
+        return meshes_by_name(map_surfaces(scene, time, antenna));
+      },
+      py::arg("scene"), py::arg("radar"), py::arg("time"),
+      "{name: IDs of its meshes} of the objects that find_families has where none are named, at a time in s.");
   m.def(
       "visibility_in_trace",
       [](const Paths& paths, const Radar& radar, const std::optional<Objects>& objects, std::optional<double> time,

@@ -9,7 +9,8 @@ import numpy as np
 import echopath as ep
 
 from ..base.counts import counted
-from ..readers.sizes import box_of, has_skin, names_of, unit_doubt
+from ..readers.sizes import has_skin, names_of, unit_doubt
+from ..scene.boxes import box_of
 from . import report
 from .lists import more_line
 

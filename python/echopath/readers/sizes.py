@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +9,6 @@ import numpy as np
 from .. import _core
 
 if TYPE_CHECKING:
-    from ..scene.scene import Scene
     from .model import Model
 
 # what a name tells: words of it, and how large such a thing is at its largest, m
@@ -33,18 +31,6 @@ _UNITS = {"mm": 1e-3, "cm": 1e-2, "inches": 0.0254, "feet": 0.3048, "m": 1.0, "k
 SMALLEST, LARGEST = 0.02, 5e4  # m, of anything that a radar looks at
 _FIGURE, _BODY = ("a figure with a skeleton", 0.05, 10.0), ("a single body", SMALLEST, 500.0)
 _NAMED = 12                    # topmost nodes of a model whose names are looked at
-
-
-def box_of(scene: Scene, time: float = 0.0, mesh_ids: Iterable[int] | None = None) -> tuple[np.ndarray, np.ndarray]:
-    """Least and greatest coordinates [3] in m of meshes of a scene at `time` in s; zeros where there are none.
-
-    mesh_ids: of those that count, None: all
-    """
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    for mesh_id in range(len(scene.meshes)) if mesh_ids is None else mesh_ids:
-        vertices = scene.world_vertices(mesh_id, time)
-        low, high = np.minimum(low, vertices.min(axis=0)), np.maximum(high, vertices.max(axis=0))
-    return (low, high) if np.isfinite(low).all() else (np.zeros(3), np.zeros(3))
 
 
 def figure_doubt(model: Model, stem: str) -> str | None:

@@ -14,7 +14,9 @@ from ..frame_file.opening import SUFFIXES as FRAME_SUFFIXES
 from ..readers.load import is_foreign
 from ..readers.options import ReadOptions
 from ..scene.interferers import Interferer
+from ..scene.found_objects import find_objects
 from ..scene.large_planes import mark_mirrors
+from ..scene.scene import Scene
 from ..sensor_files import load_radar
 from ..sensor_files.antenna_patterns import load_antenna
 from ..signals.parts import check_partitions
@@ -24,7 +26,7 @@ from .foreign import foreign_scene
 from .objects import build_scene, motion_of
 from .scene_file import SceneFile
 from .radar_tables import RadarTable
-from .run_tables import AngleTable
+from .run_tables import FOUND, AngleTable
 from .schema import SceneTable
 from .trajectories import Trajectories
 
@@ -55,8 +57,8 @@ def scene_file_of(table: dict, path: Path) -> SceneFile:
             mark_mirrors(scene, radar, time=settings.trace.start_time)
         scene_file = SceneFile(path=path, title=settings.title, scene=scene, radar=radar, trace=_trace(settings),
                                signal=_signal(settings), angle=settings.angle, parts=dict(settings.parts),
-                               labels=_labels(settings), detections=settings.detections, guard=settings.guard,
-                               sequence=settings.sequence, truth=settings.truth)
+                               detections=settings.detections, guard=settings.guard, sequence=settings.sequence,
+                               **_tables_of_objects(settings, scene, radar))
         with blamed("angle"):
             checked_settings(scene_file.radar, scene_file.angle_settings())
         check_partitions(scene_file.partitions(), scene_file.scene)
@@ -85,9 +87,22 @@ def _signal(settings: SceneTable) -> SignalSettings:
         return noisy.replace(window=settings.spectrum.window, zero_pad=settings.spectrum.zero_pad)
 
 
-def _labels(settings: SceneTable) -> LabelSettings | None:
-    with blamed("labels"):
-        return None if settings.labels is None else LabelSettings(**settings.labels.model_dump())
+def _tables_of_objects(settings: SceneTable, scene: Scene, radar: _core.Radar) -> dict:
+    """`labels` and `truth` of a SceneFile, with the names of objects that are to be found in its scene."""
+    found = {}
+    for key in ("labels", "truth"):
+        table = getattr(settings, key)
+        is_asked = table is not None and table.objects == FOUND
+        found[key] = table.model_copy(update={"objects": _found_objects(settings, scene, radar)}) if is_asked else table
+    if found["labels"] is not None:
+        with blamed("labels"):
+            found["labels"] = LabelSettings(**found["labels"].model_dump())
+    return found
+
+
+def _found_objects(settings: SceneTable, scene: Scene, radar: _core.Radar) -> dict[str, str]:
+    """Of the middle of the first frame, as usual objects are."""
+    return find_objects(scene, radar, time=radar.middle_of_frame(settings.trace.start_time))
 
 
 def _check_objects(scene_file: SceneFile) -> None:

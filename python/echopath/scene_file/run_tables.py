@@ -16,6 +16,7 @@ from ..spectra.range_doppler import FALSE_ALARM_RATE, RANK, CfarMethod
 from ..weather import Weather
 from .table import Number, Positive, Table, Vector3, broken_rule, by_check, is_number
 
+FOUND = "found"  # instead of names of objects: those of `find_objects`
 Window = Annotated[Any, by_check(window)]
 MapWindow = Annotated[Any, by_check(map_window)]
 
@@ -119,10 +120,12 @@ class NoiseTable(Table):
 
 
 def _label_objects(value):
+    if value == FOUND:
+        return value
     globs = list(value.values()) if isinstance(value, dict) else [value]
     lists = [[glob] if isinstance(glob, str) else glob for glob in globs]
     if not all(isinstance(one, list) and one and all(isinstance(glob, str) and glob for glob in one) for one in lists):
-        raise ValueError("must be globs in an array, or a table of name = glob or name = [globs]")
+        raise ValueError(f'must be globs in an array, a table of name = glob or name = [globs], or "{FOUND}"')
     return value
 
 
@@ -130,7 +133,8 @@ class LabelsTable(Table):
     plane: Plane = Field(LabelSettings.plane, description="whose cells are labelled")
     objects: Annotated[Any, AfterValidator(_label_objects)] | None = Field(
         LabelSettings.objects,
-        description="globs, or name = glob or globs; none: the children of the scene's root that are no mirrors")
+        description="globs, or name = glob or globs; none: the children of the scene's root that are no mirrors; \"found\": "
+                    "these and the things in a town that is one object (`ep.find_objects`)")
     noise: bool = Field(LabelSettings.noise, description="cells must stand out of the noise")
     noise_margin_db: Number = Field(LabelSettings.noise_margin_db, description="dB, by so much")
     dynamic_range_db: Annotated[float, Field(ge=0, allow_inf_nan=False)] = Field(
@@ -151,7 +155,7 @@ class DetectionsTable(Table):
 
 class TruthTable(Table):
     objects: Annotated[Any, AfterValidator(_label_objects)] | None = Field(
-        None, description="globs, or name = glob or globs; none: those of [labels]")
+        None, description="globs, or name = glob or globs, or \"found\", as in [labels]; none: those of [labels]")
 
 
 class SequenceTable(Table):

@@ -5,10 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..readers.sizes import box_of
+from ..scene.boxes import box_of
+from ..scene.found_objects import Things
 from ..scene.scene import Scene
 from .sight import SPACE, Sight, best_sight
-from .things import Things
 
 TOWN = 30.0          # m, extent from which on the radar stands within the scene
 HEIGHT = 1.5         # m above the ground

@@ -9,8 +9,8 @@ from .. import _core
 from ..base.files import written_whole
 from ..readers import Model, load_model
 from ..readers.names import fit_name
+from ..scene.found_objects import find_objects, things_of
 from ..scene.scene import Scene
-from .things import Things, things_of, told_apart
 from .vantage import vantage
 
 CELLS = 256  # range cells up to the greatest distance
@@ -43,10 +43,11 @@ model = {model}
 num_rays = 200000
 max_bounces = 3
 """
-LABELS = """[labels.objects]  # whose echoes and ghosts are told apart
-{objects}
+LABELS = """[labels]
+objects = "found"  # what stands in the town{names}, and what is added to the scene
 
 """
+NAMED = 12  # things of a town that a comment names
 START_FREQUENCY = 77e9  # Hz
 
 # By whether the radar stands within a town: whether planes are mirrors, and where it stands.
@@ -75,18 +76,19 @@ def write_scene_file(path: str | os.PathLike[str], out: str | os.PathLike[str], 
                        bandwidth=CELLS * _core.speed_of_light / (2.0 * reach), receivers=_receivers(),
                        name=_quoted(name), model=_quoted(_relative(path, out.parent)),
                        settings=_settings(unit, up), notes="".join(f"# {_plain(note)}\n" for note in model.notes),
-                       labels=_labels(scene, things, position) if is_town else "")
+                       labels=_labels(scene, position) if is_town else "")
     with written_whole(out) as temporary:
         temporary.write_text(text, encoding="utf-8")
     return model
 
 
-def _labels(scene: Scene, things: Things, position: list[float]) -> str:
-    """The table of what a town holds, by the names of its nodes."""
+def _labels(scene: Scene, position: list[float]) -> str:
+    """The table that asks for labels of what a town holds, with the names of that; nothing where it holds nothing."""
     waveform = _core.ChirpSequence(start_frequency=START_FREQUENCY, bandwidth=1e9, num_samples=CELLS, sampling_rate=10e6)
     radar = _core.Radar(waveform, transmitters=[_core.Antenna()], receivers=[_core.Antenna()], position=position)
-    lines = [f"{_quoted(thing.split('/')[-1])} = {_quoted(thing)}" for thing in told_apart(scene, things, radar)]
-    return LABELS.format(objects="\n".join(lines)) if lines else ""
+    names = list(find_objects(scene, radar))
+    more = f" and {len(names) - NAMED:,} more" if len(names) > NAMED else ""
+    return LABELS.format(names=_plain(f" ({', '.join(names[:NAMED])}{more})")) if names else ""
 
 
 def _receivers() -> str:

@@ -6,8 +6,8 @@ import pytest
 
 import echopath as ep
 from echopath.cli import report
+from echopath.scene.found_objects import things_of
 from echopath.scene_file.sight import best_sight
-from echopath.scene_file.things import things_of
 from echopath.scene_file.vantage import vantage
 
 

@@ -1,0 +1,138 @@
+"""What of a scene labels tell apart, also within a town that was read as one object: things as large as vehicles."""
+from __future__ import annotations
+
+from collections import Counter
+from typing import NamedTuple
+
+import numpy as np
+
+from .. import _core
+from ..arguments.checks import an, checked, optional, real
+from ..arguments.motions import require_motion
+from .boxes import box_of
+from .large_planes import VEHICLE_LENGTH, large_planes
+from .scene import Scene
+
+THICKEST = 4.5  # m, of the second longest side: what stands yawed takes more than the 4 m of a lorry
+GLOB_LETTERS = set("*?[")  # a name that has any stands for others, too
+GAP = 0.1    # m, along the axis that separates two boxes most: parts of one body touch
+CHUNK = 256  # boxes that are compared with all others at a time
+
+Box = tuple[np.ndarray, np.ndarray]  # least and greatest coordinates [3], m
+Things = dict[str, list[int]]        # {name of a node: IDs of the meshes below it}
+
+
+@checked(scene=an(Scene), radar=an(_core.Radar), time=optional(real(unit="s")))
+def find_objects(scene: Scene, radar: _core.Radar, *, time: float | None = None) -> dict[str, str]:
+    """Finds what labels of a scene tell apart: its usual objects, and what stands in a town that was read as one.
+
+    Usual objects are those that `families` has by itself, children of the scene's root. One that is larger than a road vehicle
+    (19 m long, and 4.5 m across, or slender, as a pole) and whose parts stand apart, as those of a parked row do, gives way to
+    its parts. A child that surrounds the radar, as a town, a room or a tunnel does, is no object: here the things in it are, the
+    nodes below the first one that has several, or below a larger one whose parts stand apart, as far as they are no larger
+    than a vehicle. What carries the radar is no larger itself, and has no things. No thing or part is what is a mirror or such
+    as `mark_mirrors` would flag. Names with *, ? or [ are left out, since globs cannot take them alone.
+
+    scene: of `Scene` or `load_scene`; radar: with its antennas in the scene
+    time: s, at which it is looked at, with its antennas and all that moves; None: the middle of a frame that starts at 0
+    Returns {name: glob}, to be given as `objects` of `families`, `annotate`, `simulate` and others: names of children of the
+    root as they are, of others the last part of their path where no other object has it, else the whole path. Raises TypeError
+    or ValueError naming the argument.
+    """
+    time = radar.middle_of_frame() if time is None else time
+    require_motion("radar", radar, (time,))
+    usual = _core.meshes_of_usual_objects(scene, radar, time)
+    names = [name for name in _names_of(scene, radar, usual, time) if not GLOB_LETTERS & set(name)]
+    lasts = Counter(name.split("/")[-1] for name in names)
+    return {name if lasts[last := name.split("/")[-1]] > 1 else last: name for name in names}
+
+
+def things_of(scene: Scene) -> Things:
+    """The nodes that are no larger than a vehicle at time 0, of those below the first node that has several, and of those below
+    larger ones of these whose parts stand apart, as the cars of a group do and the walls of a house do not."""
+    return {part.name: list(part.meshes) for part in _things_among(_everything(scene, 0.0).parts())}
+
+
+def _names_of(scene: Scene, radar: _core.Radar, usual: Things, time: float) -> list[str]:
+    """Names of the usual objects, or of their parts, and of the things in what surrounds the radar."""
+    of_usual = {mesh: name for name, meshes in usual.items() for mesh in meshes}
+    found = []
+    for child in _everything(scene, time).parts(depth=1):
+        own = child.among(of_usual)
+        found += _things_among([own], keeps_larger=True) if own.meshes else []
+        rest = child.without(of_usual)
+        found += _things_among(rest.parts()) if rest.meshes and not child.is_thing else []
+    mirrors = {mesh.id for mesh in scene.meshes if mesh.material.mirror}.union(large_planes(scene, radar, time))
+    return [part.name for part in found if part.name in usual or mirrors.isdisjoint(part.meshes)]
+
+
+class _Part(NamedTuple):
+    """A node and what is below it. meshes: {ID: the segments of its name}; boxes: {ID: its Box}, of all meshes"""
+
+    name: str
+    meshes: dict[int, list[str]]
+    boxes: dict[int, Box]
+
+    def parts(self, depth: int | None = None) -> list[_Part]:
+        """The nodes below the first one that has several, or `depth` segments below the root."""
+        depth = depth or _depth_of_several(list(self.meshes.values()))
+        found: dict[str, dict[int, list[str]]] = {}
+        for mesh, path in self.meshes.items():
+            found.setdefault("/".join(path[:depth]), {})[mesh] = path
+        return [self._replace(name=name, meshes=meshes) for name, meshes in found.items()]
+
+    def among(self, some) -> _Part:
+        """Its meshes that are among some."""
+        return self._replace(meshes={mesh: path for mesh, path in self.meshes.items() if mesh in some})
+
+    def without(self, some) -> _Part:
+        return self._replace(meshes={mesh: path for mesh, path in self.meshes.items() if mesh not in some})
+
+    @property
+    def box(self) -> Box:
+        lows, highs = zip(*(self.boxes[mesh] for mesh in self.meshes))
+        return np.min(lows, axis=0), np.max(highs, axis=0)
+
+    @property
+    def is_thing(self) -> bool:
+        """Whether it is as long as a vehicle at most, and as high or wide as one, or slender, as a pole."""
+        low, high = self.box
+        sides = np.sort(high - low)
+        return bool(sides[2] <= VEHICLE_LENGTH and sides[1] <= THICKEST)
+
+
+def _everything(scene: Scene, time: float) -> _Part:
+    return _Part("", {mesh.id: mesh.name.split("/") for mesh in scene.meshes},
+                 {mesh.id: box_of(scene, time, [mesh.id]) for mesh in scene.meshes})
+
+
+def _things_among(parts: list[_Part], keeps_larger: bool = False) -> list[_Part]:
+    """Those of some parts that are things, in their order, and those below larger ones whose own parts stand apart.
+
+    keeps_larger: whether larger ones whose parts do not are among them
+    """
+    found = []
+    for part in parts:
+        below = [] if part.is_thing else part.parts()
+        if len(below) > 1 and _stand_apart([one.box for one in below]):
+            found += _things_among(below, keeps_larger)
+        elif part.is_thing or keeps_larger:
+            found.append(part)
+    return found
+
+
+def _depth_of_several(names: list[list[str]]) -> int:
+    """How many segments of the names [M] it takes until they differ; all, where they never do."""
+    deepest = max(map(len, names), default=1)
+    return next((depth for depth in range(1, deepest) if len({tuple(name[:depth]) for name in names}) > 1), deepest)
+
+
+def _stand_apart(boxes: list[Box]) -> bool:
+    """Whether more than half of the boxes are farther than GAP from all others."""
+    lows, highs = map(np.array, zip(*boxes))
+    num_apart = 0
+    for first in range(0, len(boxes), CHUNK):
+        some = slice(first, first + CHUNK)
+        gaps = np.maximum(lows[None] - highs[some, None], lows[some, None] - highs[None]).max(axis=2)
+        num_apart += np.count_nonzero(np.count_nonzero(gaps <= GAP, axis=1) == 1)  # itself alone
+    return 2 * num_apart > len(boxes)

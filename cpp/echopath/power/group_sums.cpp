@@ -11,6 +11,7 @@
 #include "echopath/base/lanes/phasor.h"
 #include "echopath/base/threads/parallel.h"
 #include "echopath/power/facet_phase.h"
+#include "echopath/power/plane_rims.h"
 #include "echopath/power/row_differences.h"
 #include "echopath/power/shared_phase.h"
 #include "echopath/power/triangle_points.h"
@@ -25,6 +26,12 @@ double largest_field(const std::vector<Antenna>& antennas) {
   double largest = 0.0;
   for (const Antenna& antenna : antennas) largest = std::max(largest, antenna.pattern.largest_field());
   return largest;
+}
+
+// Returns what an endless mirror sends back over a length in m, times that, sqrt(W) m.
+double image_at_a_metre(const Radar& radar) {
+  return std::sqrt(radar.transmit_power) * largest_field(radar.transmitters) * largest_field(radar.receivers) *
+         kSpeedOfLight / (2.0 * kTwoPi * radar.waveform.start_frequency);
 }
 
 constexpr int64_t kBlock = 1 << 18;  // paths evaluated at a time: bounds the memory
@@ -57,6 +64,14 @@ uint64_t kind_of(const Paths& paths, int64_t path) {
 
 bool has_bounced_before(uint64_t kind) { return kind != kMirrorsAlone && (kind & 1) != 0; }
 
+// Returns whether rays of a stratum go straight to all of a mesh: as of those of the object that it belongs to.
+bool is_aimed_at(const Stratum& stratum, const Scene& scene, uint32_t mesh) {
+  if (stratum.num_mirrors > 0 || stratum.focus_of >= 0) return false;
+  int node = scene.meshes()[mesh].node;
+  while (node >= 0 && node != stratum.object) node = scene.nodes()[static_cast<size_t>(node)].parent;
+  return node >= 0;
+}
+
 // Numbers the kinds that a group has so far. Paths that follow each other are mostly of one kind.
 class KnownKinds {
  public:
@@ -69,13 +84,39 @@ class KnownKinds {
     return last_index_;
   }
 
-  void set_facet_phases(FacetPhases& phases, std::vector<CoherentKind>& kinds) const {
+  // Counts a ray that found a path of the kind that was looked up last, and met this triangle of a mesh of so many.
+  void count_ray(uint16_t stratum, uint32_t triangle, size_t num_triangles) {
+    if (num_triangles > PlaneRims::kMostTriangles) return;
+    if (last_index_ >= rays_.size()) rays_.resize(last_index_ + 1);
+    std::vector<RaysOfStratum>& known = rays_[last_index_];
+    auto found = std::find_if(known.begin(), known.end(), [&](const auto& one) { return one.stratum == stratum; });
+    if (found == known.end()) found = known.insert(known.end(), {stratum, std::vector<int64_t>(num_triangles)});
+    ++found->at_triangle[triangle];
+  }
+
+  void set_shapes(const Paths& paths, FacetPhases& phases, PlaneRims& rims, double image_at_a_metre,
+                  std::vector<CoherentKind>& kinds) const {
     for (const auto& [kind, index] : index_) {
-      if (kind != kMirrorsAlone) kinds[index].facet_phase = phases.of(static_cast<uint32_t>(kind >> 1));
+      if (kind == kMirrorsAlone) continue;
+      const auto mesh = static_cast<uint32_t>(kind >> 1);
+      kinds[index].facet_phase = phases.of(mesh);
+      if (!kinds[index].is_straight || index >= rays_.size()) continue;
+      for (const RaysOfStratum& rays : rays_[index]) {
+        const Stratum& stratum = paths.frame.strata[rays.stratum];
+        if (!is_aimed_at(stratum, *paths.scene, mesh)) continue;
+        const double most = rims.of(mesh).at_most(rays.at_triangle, stratum.ray_density);
+        kinds[index].rims_at_most = std::min(kinds[index].rims_at_most, image_at_a_metre * most);
+      }
     }
   }
 
  private:
+  struct RaysOfStratum {
+    uint16_t stratum;
+    std::vector<int64_t> at_triangle;  // number [F]
+  };
+
+  std::vector<std::vector<RaysOfStratum>> rays_;  // by index of the kind
   std::unordered_map<uint64_t, size_t> index_;
   uint64_t last_ = 0;
   size_t last_index_ = 0;
@@ -113,6 +154,8 @@ class Sums {
     const bool has_cell = paths_.is_of_a_ray(static_cast<size_t>(path));  // others hold nothing between rays
     of_kind.has_cells = of_kind.has_cells || has_cell;
     of_kind.has_bounced = has_bounced_before(kind);
+    of_kind.is_straight = of_kind.is_straight && has_cell && paths_.num_bounces[static_cast<size_t>(path)] == 1;
+    if (of_kind.is_straight) count_ray(group, path);
     of_kind.image_field = std::max(of_kind.image_field, image_field);
     const size_t num_views = has_cell ? kNumCellViews : kPoints;
     for (size_t view = 0; view < num_views; ++view) {
@@ -133,10 +176,10 @@ class Sums {
     ++sums.num_coherent_paths;
   }
 
-  std::vector<GroupSums> finish(FacetPhases& phases) {
+  std::vector<GroupSums> finish(FacetPhases& phases, PlaneRims& rims, double image_at_a_metre) {
     for (size_t group = 0; group < groups_.size(); ++group) {
       close(group);
-      kinds_[group].set_facet_phases(phases, groups_[group].kinds);
+      kinds_[group].set_shapes(paths_, phases, rims, image_at_a_metre, groups_[group].kinds);
       for (const RowDifferences& rows : rows_[group]) groups_[group].even_variance += rows.variance();
       groups_[group].even_variance += triangles_[group].variance();
     }
@@ -146,6 +189,12 @@ class Sums {
  private:
   size_t batch_of(int64_t path) const {
     return std::min<size_t>(paths_.batch[static_cast<size_t>(path)], static_cast<size_t>(paths_.frame.batches));
+  }
+
+  void count_ray(size_t group, int64_t path) {
+    const Hit& hit = *paths_.hits_of(path);
+    kinds_[group].count_ray(paths_.stratum[static_cast<size_t>(path)], hit.triangle_id,
+                            paths_.scene->node_of(hit.mesh_id).mesh->triangles().size());
   }
 
   void close(size_t group) {
@@ -195,8 +244,7 @@ class Block {
  public:
   Block(const Paths& paths, const Radar& radar)
       : paths_(paths), replayer_(paths, radar), turns_per_metre_(radar.waveform.start_frequency / kSpeedOfLight),
-        image_at_a_metre_(std::sqrt(radar.transmit_power) * largest_field(radar.transmitters) *
-                          largest_field(radar.receivers) / (2.0 * kTwoPi * turns_per_metre_)) {}
+        image_at_a_metre_(image_at_a_metre(radar)) {}
 
   void evaluate(int64_t begin, int64_t end, PowerAndLength* of_paths) {
     diffuse_.clear();
@@ -252,7 +300,7 @@ class Block {
   const Paths& paths_;
   const Replayer replayer_;
   const double turns_per_metre_;
-  const double image_at_a_metre_;  // sqrt(W) m, what an endless mirror sends back over a length in m, times that
+  const double image_at_a_metre_;
   std::vector<int64_t> diffuse_, coherent_;
   std::vector<uint64_t> kinds_;  // of the coherent ones
   std::vector<double> lengths_, coherent_lengths_;
@@ -283,8 +331,9 @@ std::vector<std::vector<GroupSums>> sum_groups(const Paths& paths, const Radar& 
     if (job) job->advance(end - begin);
   }
   FacetPhases phases(*paths.scene, kTwoPi * radar.waveform.start_frequency / kSpeedOfLight, paths.frame.trace_time);
+  PlaneRims rims(*paths.scene, radar, paths.frame.trace_time);
   std::vector<std::vector<GroupSums>> found;
-  for (Sums& of_sorting : sums) found.push_back(of_sorting.finish(phases));
+  for (Sums& of_sorting : sums) found.push_back(of_sorting.finish(phases, rims, image_at_a_metre(radar)));
   return found;
 }
 

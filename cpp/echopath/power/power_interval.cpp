@@ -103,7 +103,7 @@ FieldBias field_bias(const PowerEvidence& evidence, Lasting lasting) {
     const double of_edges = squared(std::lerp(kOfEdges, kOfSmoothEdges, smoothness));
     if (lasting == Lasting::kCounted) surface += squared(kOfNearEdge) * kind.beside_edges;
     if (kind.has_cells) surface += squared(kOfSurface * size) + squared(of_facets(kind, lasting) * size);
-    const double most_of_edges = squared(kMostOfImage * kind.image_field);
+    const double most_of_edges = squared(std::min(kMostOfImage * kind.image_field, kind.rims_at_most));
     if (size == 0.0) {
       edges += std::min(of_edges * between_edges(kind, evidence.num_batches, 1.0), most_of_edges);
       continue;

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Protocol
 if TYPE_CHECKING:
     from matplotlib.axes import Axes as Axes
     from matplotlib.colors import Colormap as Colormap
-    from matplotlib.figure import Figure as Figure
+    from matplotlib.figure import Figure as Figure, SubFigure as SubFigure
     from pandas import DataFrame as DataFrame  # type: ignore[import-untyped,import-not-found,unused-ignore]
     from pyvista import Plotter as Plotter  # type: ignore[import-not-found,unused-ignore]
     from PySide6.QtWidgets import QMainWindow as QMainWindow  # type: ignore[import-not-found,unused-ignore]

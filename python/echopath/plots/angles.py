@@ -1,15 +1,22 @@
 """Angle spectra: received power by direction in one cell of the map."""
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ..base.decibels import SMALLEST_POWER, in_dbm
 from .style import AZIMUTH_LABEL, ELEVATION_LABEL, MAP_COLOURS, POWER_LABEL, axes_or_new
 
+if TYPE_CHECKING:
+    from .. import _core
+    from ..base.foreign_types import Axes
+
 SHOWN_DB = 50.0  # below the peak
 
 
-def draw_angle_spectrum(spectrum, range=None, velocity=None, *, ax=None, title=""):
+def draw_angle_spectrum(spectrum: _core.AngleSpectrum, range: float | None = None, velocity: float | None = None, *,
+                        ax: Axes | None = None, title: str = "") -> Axes:
     """Power by direction in one cell: a curve, or a map where the array is a plane.
 
     spectrum: AngleSpectrum; range: m, velocity: m/s, of the cell, the nearest is taken; None: those of the strongest cell

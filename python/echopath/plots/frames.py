@@ -1,10 +1,16 @@
 """A frame in one picture: its map, and what was detected in it."""
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from ..arguments.part_names import LEAKAGE
 from .maps import MAP_SIZE, chosen_limits, colour_limits, draw_range_doppler, hold_points
 from .points import draw_points
 from .style import axes_or_new
+
+if TYPE_CHECKING:
+    from ..base.foreign_types import Axes
+    from ..frame.frame import Frame
 
 
 def noise_words(frame) -> str:
@@ -22,7 +28,8 @@ def limits_of_frame(frame) -> tuple[float, float]:
     return colour_limits(frame.spectrum, frame.beside_spectra.get(LEAKAGE))
 
 
-def draw_frame(frame, *, ax=None, vmin=None, vmax=None, title=None):
+def draw_frame(frame: Frame, *, ax: Axes | None = None, vmin: float | None = None, vmax: float | None = None,
+               title: str | None = None) -> Axes:
     """The range-Doppler map of a frame with its noise, and all of its detections, where it has some, as points.
 
     ax: axes to draw in, None: new ones; vmin, vmax: ends of the colour scale in dBm, None: `limits_of_frame`

@@ -1,6 +1,9 @@
 """Labels of maps: cells by part, object and ghost."""
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ..arguments.checks import choice
@@ -11,6 +14,11 @@ from ..signals.measures import for_pictures
 from .maps import RANGE_LABEL, RANGE_MARGIN, VELOCITY_LABEL, VELOCITY_MARGIN, half_step
 from .part_powers import draw_part_powers
 from .style import AZIMUTH_LABEL, axes_or_new, new_figure, part_colours
+
+if TYPE_CHECKING:
+    from .. import _core
+    from ..base.foreign_types import Axes, Figure
+    from ..labels.labels import Labels
 
 AZIMUTH_MARGIN = 4.0        # degrees
 FILL = 0.45                  # opacity of a label over the map
@@ -26,7 +34,8 @@ CLASSES = {"real": ("the object itself", "#009e73"), 1: ("ghost, type 1: last bo
            2: ("ghost, type 2: last bounce on a mirror", "#cc79a7")}
 
 
-def plot_labels(labels, *, title="Which part made each cell", powers=None):
+def plot_labels(labels: Labels, *, title: str = "Which part made each cell",
+                powers: Mapping[str, _core.ReceivedPower] | None = None) -> Figure:
     """The map in grey, its cells coloured and outlined by the part that dominates, and the power of each part.
 
     labels: Labels; title: above the map; powers: {part: ep.ReceivedPower}, None: none are drawn
@@ -41,7 +50,7 @@ def plot_labels(labels, *, title="Which part made each cell", powers=None):
     return figure
 
 
-def plot_ghosts(labels, *, title="Objects and their ghosts"):
+def plot_ghosts(labels: Labels, *, title: str = "Objects and their ghosts") -> Figure:
     """Cells of objects and of their ghosts in the map, and the extent of each ghost with its class and its mirrors.
 
     labels: Labels; title: above the map. Returns a matplotlib figure; left as `plot_labels`, right a row for each object and
@@ -56,7 +65,7 @@ def plot_ghosts(labels, *, title="Objects and their ghosts"):
     return figure
 
 
-def draw_labels(labels, *, what="parts", ax=None, title=""):
+def draw_labels(labels: Labels, *, what: str = "parts", ax: Axes | None = None, title: str = "") -> Axes:
     """The map of `plot_labels` (what="parts") or of `plot_ghosts` ("objects") in given axes, or in new ones (None).
 
     labels: Labels; ax: axes to draw in; title: above them

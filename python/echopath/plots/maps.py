@@ -3,6 +3,8 @@ from __future__ import annotations
 
 import functools
 import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,6 +13,10 @@ from ..arguments.checks import optional, real
 from ..base.decibels import SMALLEST_POWER, in_dbm
 from ..signals.measures import for_pictures, static_speed, with_error
 from .style import MAP_COLOURS, axes_or_new, colour_bar, new_figure, set_title
+
+if TYPE_CHECKING:
+    from .. import _core
+    from ..base.foreign_types import Axes, Figure
 
 DYNAMIC_RANGE_DB = 70.0      # below the peak that a map shows at most
 LEAKED_DB = 10.0             # below a cell: where leakage alone comes so near to it, the cell tells nothing of the scene
@@ -40,7 +46,7 @@ def _noise_above(share: float, num_channels: int) -> float:
     return low
 
 
-def power_dbm(spectrum):
+def power_dbm(spectrum: _core.RangeDoppler) -> np.ndarray:
     """Mean power of the channels, [velocity, range] in dB re 1 mW.
 
     spectrum: RangeDoppler. Raises AttributeError for other objects.
@@ -49,7 +55,7 @@ def power_dbm(spectrum):
     return in_dbm(power, SMALLEST_POWER)
 
 
-def colour_limits(spectrum, leaked=None) -> tuple[float, float]:
+def colour_limits(spectrum: _core.RangeDoppler, leaked: _core.RangeDoppler | None = None) -> tuple[float, float]:
     """(lowest, highest) level in dBm of the colour scale of a map, multiples of 5.
 
     spectrum: RangeDoppler; leaked: that of the leakage in it, which sets no scale, or None
@@ -86,7 +92,8 @@ def chosen_limits(limits: tuple[float, float], vmin, vmax) -> tuple[float, float
     return (limits[0] if lowest is None else lowest), (limits[1] if highest is None else highest)
 
 
-def plot_range_doppler(spectrum, *, title="Received power by range and radial velocity", vmin=None, vmax=None, note=""):
+def plot_range_doppler(spectrum: _core.RangeDoppler, *, title: str = "Received power by range and radial velocity",
+                       vmin: float | None = None, vmax: float | None = None, note: str = "") -> Figure:
     """One range-Doppler map, cropped to where there is signal, at rest or moving.
 
     spectrum: of `range_doppler`; title: above the map; vmin, vmax: ends of the colour scale in dBm, None: `colour_limits`
@@ -100,7 +107,8 @@ def plot_range_doppler(spectrum, *, title="Received power by range and radial ve
     return figure
 
 
-def draw_range_doppler(spectrum, *, ax=None, vmin=None, vmax=None, title=""):
+def draw_range_doppler(spectrum: _core.RangeDoppler, *, ax: Axes | None = None, vmin: float | None = None,
+                       vmax: float | None = None, title: str = "") -> Axes:
     """One range-Doppler map in given axes, or in new ones.
 
     spectrum: of `range_doppler`; ax: axes to draw in, None: new ones; title: above them
@@ -115,7 +123,9 @@ def draw_range_doppler(spectrum, *, ax=None, vmin=None, vmax=None, title=""):
     return ax
 
 
-def plot_partition(spectra: dict, *, title="", vmin=None, vmax=None, whole=None, powers=None, note="", radar_moves=False):
+def plot_partition(spectra: Mapping[str, _core.RangeDoppler], *, title: str = "", vmin: float | None = None,
+                   vmax: float | None = None, whole: _core.RangeDoppler | None = None,
+                   powers: Mapping[str, _core.ReceivedPower] | None = None, note: str = "", radar_moves: bool = False) -> Figure:
     """The maps of the parts of a partition side by side, cropped together to what moves in any part, and to all of a part
     in which nothing does, with one colour scale for all; to all of each part where the radar itself moves.
 
@@ -142,8 +152,10 @@ def plot_partition(spectra: dict, *, title="", vmin=None, vmax=None, whole=None,
     return figure
 
 
-def plot_overview(whole, spectra: dict, *, title="Everything that the radar receives", parts_title="", vmin=None, vmax=None,
-                  powers=None, note="", radar_moves=False):
+def plot_overview(whole: _core.RangeDoppler, spectra: Mapping[str, _core.RangeDoppler], *,
+                  title: str = "Everything that the radar receives", parts_title: str = "", vmin: float | None = None,
+                  vmax: float | None = None, powers: Mapping[str, _core.ReceivedPower] | None = None, note: str = "",
+                  radar_moves: bool = False) -> Figure:
     """The whole map above the maps of its parts, on one colour scale.
 
     whole, spectra, powers, note, vmin, vmax (dBm), radar_moves: as of `plot_partition`; title: above the whole; parts_title:

@@ -1,6 +1,9 @@
 """Received power by part, with its interval."""
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ..base.decibels import SMALLEST_POWER, in_dbm
@@ -8,10 +11,14 @@ from ..paths.resolution import RESOLVED_DB
 from ..signals.measures import for_pictures, with_error
 from .style import new_figure, part_colours
 
+if TYPE_CHECKING:
+    from .. import _core
+    from ..base.foreign_types import Figure
+
 ROOM_BESIDE_DB = 6.0  # of the weakest and the strongest power
 
 
-def plot_part_powers(powers: dict, *, title="Received power by part"):
+def plot_part_powers(powers: Mapping[str, _core.ReceivedPower], *, title: str = "Received power by part") -> Figure:
     """The mean received power of each part with its 95 % interval; hollow where it is not resolved.
 
     powers: {part: ep.ReceivedPower}; title: above them. Returns a matplotlib figure: power in dBm across.

@@ -1,6 +1,8 @@
 """Detections as points, in the plane of the map or seen from above."""
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ..arguments.checks import choice, text
@@ -8,6 +10,10 @@ from ..base.counts import counted
 from .maps import RANGE_LABEL, VELOCITY_LABEL
 from .style import axes_or_new, part_colours
 from .top_view import AHEAD_LABEL, LEFT_LABEL
+
+if TYPE_CHECKING:
+    from ..base.foreign_types import Axes
+    from ..detections.detections import Detections
 
 VIEWS = ("range_doppler", "above")
 MOST_NAMES, FEW_NAMES = 14, 5  # in the legend beside the axes and within them; the rest are "other objects"
@@ -19,7 +25,7 @@ REST_COLOURS = {SURROUNDINGS: "0.45", "other objects": "0.75", "other": "0.45", 
 BESIDE = {"loc": "center left", "bbox_to_anchor": (1.01, 0.5), "frameon": False}
 
 
-def draw_detections(detections, *, view="range_doppler", ax=None, title=""):
+def draw_detections(detections: Detections, *, view: str = "range_doppler", ax: Axes | None = None, title: str = "") -> Axes:
     """A point for each detection, coloured by the object whose echo it is, larger where it is stronger, hollow for ghosts.
 
     detections: Detections; title: above the axes

@@ -2,15 +2,20 @@
 from __future__ import annotations
 
 import dataclasses
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .. import _core
-from ..arguments.objects import named_globs
+from ..arguments.checks import an
+from ..arguments.objects import Objects, named_globs
 from ..base.mesh_names import object_of
 from ..paths.subset import first_group, strongest, strongest_of_each, subset
 from .clip import clip_triangles, outline
 from .style import BOUNCE_COLOURS, new_figure
+
+if TYPE_CHECKING:
+    from ..base.foreign_types import Figure
 
 BODY_COLOUR = np.array([0.35, 0.38, 0.44])
 MIRROR_COLOUR = (0.55, 0.65, 0.80)
@@ -49,8 +54,9 @@ class _Drawing:
     mirror_names: dict
 
 
-def plot_scene(scene, paths, *, num_rays=300, time=None, power=None, objects=None,
-               title="The scene, and the strongest rays to each object"):
+def plot_scene(scene: _core.Scene, paths: _core.Paths, *, num_rays: int = 300, time: float | None = None,
+               power: np.ndarray | None = None, objects: Objects = None,
+               title: str = "The scene, and the strongest rays to each object") -> Figure:
     """A scene with its strongest rays.
 
     paths: of `trace`; num_rays: drawn at most, half of them the strongest of each object, half the strongest of all that hit
@@ -58,8 +64,10 @@ def plot_scene(scene, paths, *, num_rays=300, time=None, power=None, objects=Non
     time: of the picture in s, None: the time of the trace; power: of the paths [P] in W where it is known already
     objects: as in `families`, such as those of labels; None: the children of the scene's root
     Mirrors are drawn translucent, dashed where they go on beyond the picture; up to 12 objects bear their names.
-    title: above them. Returns a matplotlib figure with three views in metres. Raises AttributeError for other objects.
+    title: above them. Returns a matplotlib figure with three views in metres. Raises TypeError naming scene or paths.
     """
+    an(_core.Scene)("scene", scene)
+    an(_core.Paths)("paths", paths)
     time = paths.frame.trace_time if time is None else time
     power = paths.power if power is None else power
     names = _names_of_meshes(scene, objects)

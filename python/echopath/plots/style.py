@@ -1,14 +1,20 @@
 """What all pictures have in common."""
 from __future__ import annotations
 
+import os
 import textwrap
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..arguments.checks import refused
 from ..base.colours import colours_of
 from ..base.files import written_whole
 from ..base.origin import origin_texts
+
+if TYPE_CHECKING:
+    from ..base.foreign_types import Axes, Figure, SubFigure
 
 DPI = 160
 MAP_COLOURS = "inferno"
@@ -93,13 +99,21 @@ def _filled(line: str, width: int) -> str:
     return "\n".join(lines)
 
 
-def save_png(figure, path, *, seed=None, noise_seed=None) -> None:
+def save_png(figure: Figure | SubFigure | Axes, path: str | os.PathLike[str], *, seed: int | None = None,
+             noise_seed: int | None = None) -> None:
     """Writes a figure as PNG, whole or not at all, with what made it as text chunks; the same figure gives the same bytes.
 
-    figure: of matplotlib; path: of the file; seed: of the rays, noise_seed: of the thermal noise; None: there are none
-    Raises OSError where the file cannot be written.
+    figure: of matplotlib, or axes in it; path: of the file; seed: of the rays, noise_seed: of the thermal noise; None: there
+        are none
+    Raises OSError where the file cannot be written, TypeError naming the argument.
     """
     import matplotlib
+    from matplotlib.axes import Axes
+    from matplotlib.figure import FigureBase
+
+    drawn = figure.figure if isinstance(figure, Axes) else figure
+    if not isinstance(drawn, FigureBase):
+        raise refused(TypeError, "figure", "a figure of matplotlib, or axes in it", figure)
 
     with matplotlib.rc_context(_SETTINGS), written_whole(path) as temporary:
-        figure.savefig(temporary, format="png", dpi=DPI, metadata=origin_texts(seed, noise_seed))
+        drawn.figure.savefig(temporary, format="png", dpi=DPI, metadata=origin_texts(seed, noise_seed))

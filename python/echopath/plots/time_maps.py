@@ -1,6 +1,8 @@
 """Maps over time: spectrograms, their labels, range and azimuth over time."""
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from ..base.decibels import SMALLEST_POWER, in_dbm
@@ -10,6 +12,11 @@ from .maps import (
 )
 from .style import AZIMUTH_LABEL, MAP_COLOURS, axes_or_new, cell_edges, colour_bar, part_colours
 
+if TYPE_CHECKING:
+    from ..base.foreign_types import Axes
+    from ..in_time.maps import TimeMap
+    from ..in_time.spectrogram_labels import SpectrogramLabels
+
 TIME_LABEL = "Time in s"
 AXIS_LABELS = {"velocity": VELOCITY_LABEL, "range": RANGE_LABEL, "azimuth": AZIMUTH_LABEL}
 SIZE = 9.0, 4.4         # inches
@@ -18,7 +25,8 @@ LEGEND_COLUMNS, LEGEND_LETTERS = 4, 90  # at most, of all columns together
 LEGEND_ROW = 15.0       # points
 
 
-def draw_time_map(map, *, ax=None, vmin=None, vmax=None, title=""):
+def draw_time_map(map: TimeMap, *, ax: Axes | None = None, vmin: float | None = None, vmax: float | None = None,
+                  title: str = "") -> Axes:
     """A Spectrogram, RangeTime or AngleTime in given axes, or in new ones (None): gaps between trains of chirps stay blank.
 
     map: as `ep.spectrogram` and its like give it; ax: axes to draw in; title: above them
@@ -41,7 +49,7 @@ def draw_time_map(map, *, ax=None, vmin=None, vmax=None, title=""):
     return ax
 
 
-def draw_spectrogram_labels(labels, *, ax=None, title=""):
+def draw_spectrogram_labels(labels: SpectrogramLabels, *, ax: Axes | None = None, title: str = "") -> Axes:
     """The whole in grey under the cells of the mask, coloured by the part that dominates, in given axes or new ones (None).
 
     labels: SpectrogramLabels; title: above the axes
@@ -85,6 +93,8 @@ def image_over_time(ax, times, values, level, ends=None, **look):
     edges = cell_edges(times)
     if ends is not None:
         edges[[0, -1]] = ends
+    elif len(times) == 1:
+        ax.set_xticks(times)  # its width means nothing
     return ax.pcolormesh(edges, cell_edges(values), np.transpose(level), shading="flat", rasterized=True, **look)
 
 

@@ -3,6 +3,8 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,6 +12,11 @@ from ..base.decibels import SMALLEST_POWER, in_dbm
 from ..signals.measures import for_pictures
 from .maps import chosen_limits, limits_of_level, noise_peak_db
 from .style import MAP_COLOURS, axes_or_new, cell_edges, colour_bar, new_figure, set_title
+
+if TYPE_CHECKING:
+    from .. import _core
+    from ..arguments.checks import ArrayLike
+    from ..base.foreign_types import Axes, Figure
 
 FARTHER = 1.1                  # of the farthest signal: what is shown
 LEAST_RANGES = 8               # cells shown at least
@@ -28,8 +35,10 @@ LEGEND_LOOK = {"facecolor": "black", "labelcolor": "white", "framealpha": 1.0}
 LABEL_LOOK = {"color": "0.35", "fontsize": 7, "ha": "center", "va": "center"}
 
 
-def plot_range_azimuth(maps, *, title="Received power by range and azimuth, seen from above", vmin=None, vmax=None, places=None,
-                       leaked=None):
+def plot_range_azimuth(maps: _core.RangeAzimuth | dict[str, _core.RangeAzimuth], *,
+                       title: str = "Received power by range and azimuth, seen from above", vmin: float | None = None,
+                       vmax: float | None = None, places: Mapping[str, ArrayLike] | None = None,
+                       leaked: _core.RangeAzimuth | None = None) -> Figure:
     """Range-azimuth maps as sectors seen from above, cropped to where there is signal, with one colour scale.
 
     maps: of `range_azimuth`, one or {title of its panel: map}; of several the first sets the scale; title: above them
@@ -66,7 +75,8 @@ def plot_range_azimuth(maps, *, title="Received power by range and azimuth, seen
     return figure
 
 
-def draw_range_azimuth(map, *, ax=None, vmin=None, vmax=None, title=""):
+def draw_range_azimuth(map: _core.RangeAzimuth, *, ax: Axes | None = None, vmin: float | None = None,
+                       vmax: float | None = None, title: str = "") -> Axes:
     """One map in given axes, or in new ones, otherwise as `plot_range_azimuth`.
 
     map: of `range_azimuth`; ax: axes to draw in, None: new ones; vmin, vmax: ends of the colour scale in dBm; title: above them

@@ -1,9 +1,15 @@
 """Tracks as seen from above."""
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
 from .style import CURVE_COLOURS, axes_or_new
+
+if TYPE_CHECKING:
+    from ..base.foreign_types import Axes
+    from ..tracks import Tracks
 
 SIZE = 6.0, 5.2  # inches
 LINES = ("-", "--", ":", "-.")  # for more tracks than there are colours
@@ -12,7 +18,7 @@ COLUMN_WIDTH = 1.5              # inches, of names
 X_LABEL, Y_LABEL = "x in m (ahead)", "y in m (left: +)"
 
 
-def draw_tracks(tracks, *, ax=None, title=""):
+def draw_tracks(tracks: Tracks, *, ax: Axes | None = None, title: str = "") -> Axes:
     """Tracks as lines from above, crosses where they went on without a detection, in given axes or new ones (None).
 
     The legend has the tracks that follow objects, or where none does all of them: the first ROWS times COLUMNS, and how many

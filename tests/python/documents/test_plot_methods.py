@@ -66,6 +66,27 @@ def test_what_are_no_axes_is_refused_by_name(frame, kind):
         results(frame)[kind].plot(ax="here")
 
 
+def test_axes_are_saved_as_their_figure_is(frame, tmp_path):
+    ep.plots.save_png(frame.plot(), tmp_path / "axes.png")
+    ep.plots.save_png(frame.plot().figure, tmp_path / "figure.png")
+    assert (tmp_path / "axes.png").read_bytes() == (tmp_path / "figure.png").read_bytes()
+    with pytest.raises(TypeError, match="figure: must be a figure of matplotlib, or axes in it, got Frame"):
+        ep.plots.save_png(frame, tmp_path / "frame.png")
+
+
+@pytest.mark.parametrize("scene, paths, argument", [("radar", "paths", "scene"), ("scene", "radar", "paths")])
+def test_the_picture_of_a_scene_refuses_by_name_what_is_none(frame, scene, paths, argument):
+    with pytest.raises(TypeError, match=f"^{argument}: must be a"):
+        ep.plots.plot_scene(getattr(frame, scene), getattr(frame, paths))
+
+
+def test_one_frame_over_time_has_the_time_of_its_middle_alone(frame, ax):
+    """0.5 s to either side of it were shown before, of a frame of milliseconds."""
+    ep.range_time(frame).plot(ax=ax)
+    middle = 0.5 * frame.radar.waveform.num_chirps * frame.radar.waveform.chirp_interval
+    assert ax.get_xticks() == pytest.approx([middle], rel=0.05)
+
+
 def test_the_colour_scale_of_a_map_is_the_one_asked_for(frame, ax):
     image = frame.spectrum.plot(ax=ax, vmin=-120.0, vmax=-90.0).get_images()[0]
     assert image.get_clim() == (-120.0, -90.0)

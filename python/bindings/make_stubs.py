@@ -42,7 +42,7 @@ PLAIN = [
     (r"\*\*kwargs\)", "**kwargs: typing.Any)"),
     (r"\*\*kwargs: typing\.Any(?=\) -> AntennaPattern)", "**kwargs: object"),  # those of its kind
     (r"\*args,", "*args: typing.Any,"),
-    (r"(def __eq__\(self, [^:]*: )[^)]*\) -> [^:]*:", r"\1object) -> bool:"),
+    (r"(def __eq__\(self, [^:]*: )[^)]*\) -> (?!Selection)[^:]*:", r"\1object) -> bool:"),
     (r"numpy\.ndarray(?!\[)", "numpy.ndarray[typing.Any, typing.Any]"),
     (r"(\w+: [A-Z]\w+) = None", r"\1 | None = None"),
     (r"    def __setattr__\(self, .*\n        \.\.\.\n", ""),                   # says what to write instead

@@ -30,7 +30,6 @@ from .frame.frame import Frame
 from .frame.labels import annotate_frame
 from .frame.maps import FrameMaps
 from .frame.simulate import simulate
-from .frame.truth import truth
 from .frame_file import load_frame, load_labels, save_frame, save_labels
 from .guard import Check, GuardWarning, check_rays, check_signal
 from .in_time import (
@@ -78,6 +77,7 @@ from .tracks import Tracks, track
 from .trajectories import Lane, Trajectory, read_trajectories
 from .transmit import demultiplex
 from .truth import Truth
+from .frame.truth import truth  # the function, which comes behind the package of its name: type checkers take the last one
 from .viewing.viewer import plot_rays, view
 from .weather import Weather
 

@@ -25,7 +25,7 @@ class Part:
     mesh: _core.Mesh
     material: _core.Material | str
     motion: _core.Motion | _core.Deformation | None = None
-    position: tuple = (0.0, 0.0, 0.0)
+    position: Sequence[float] = (0.0, 0.0, 0.0)
     smooth: bool = False
 
 
@@ -52,7 +52,7 @@ class Actor:
                 raise ValueError(f"parts must have different names, got {name!r} twice")
 
     @property
-    def num_triangles(self):
+    def num_triangles(self) -> int:
         """Of all parts."""
         return sum(len(part.mesh.triangles) for part in self.parts)
 

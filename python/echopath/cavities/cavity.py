@@ -38,7 +38,7 @@ class Cavity:
         object.__setattr__(self, "walls", tuple(names))
         object.__setattr__(self, "mouth", tuple(tuple(map(float, corner)) for corner in corners))
 
-    def meshes_in(self, scene: _core.Scene) -> list:
+    def meshes_in(self, scene: _core.Scene) -> list[_core.SceneMesh]:
         """Its walls in a scene, a list of SceneMesh. Raises KeyError naming what the scene does not have."""
         found = {mesh.id: mesh for name in self.walls for mesh in scene[name].meshes}
         return [found[number] for number in sorted(found)]

@@ -79,7 +79,7 @@ class Detections:
         """[D, 3] m, in the radar's frame; in the xy-plane where no elevation is known, NaN where no azimuth is."""
         return self.centre + self.range[:, None] * toward(self.azimuth, np.nan_to_num(self.elevation))
 
-    def paths(self, i: int) -> tuple:
+    def paths(self, i: int) -> tuple[np.ndarray, np.ndarray]:
         """The paths behind detection i: (indices i64 [N], shares [N] of the power), largest share first.
 
         Model: lengths and amplitudes of at most 8 channels at mid-frame, the velocity of `path_cells` and its change over the

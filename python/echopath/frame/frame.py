@@ -3,8 +3,8 @@ from __future__ import annotations
 
 import dataclasses
 import os
-from typing import TYPE_CHECKING
 from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -26,8 +26,21 @@ from ..truth import truth_of_frame
 from .received import received_parts
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ..arguments.checks import Progress
     from ..base.foreign_types import Axes, Page
+    from ..detections.detections import Detections
+    from ..effects import Effect
     from ..frame_file import LeftOut
+    from ..guard import Check
+    from ..labels.labels import Labels
+    from ..paths.resolution import Unresolved
+    from ..receiver.chain import Reception
+    from ..truth import Truth
+
+    Cube = NDArray[np.complex128]
+    # `| Any` stands for what is None unless it was asked for: who did so needs no check for None.
 
 _WHOLE = object()  # a partition of one part, beside those that have names
 
@@ -62,34 +75,34 @@ class Frame:
     stages: time and peak memory of each stage
     """
 
-    scene: object
-    radar: object
-    paths: object
-    cube: object
-    parts: dict
-    selections: dict
-    part_of_path: dict
+    scene: _core.Scene
+    radar: _core.Radar
+    paths: _core.Paths
+    cube: Cube
+    parts: dict[str, dict[str, Cube]]
+    selections: dict[str, dict[str, str]]
+    part_of_path: dict[str, NDArray[np.uint16]]
     noise_seed: int | None
     spectrum_settings: dict
-    rain_cube: object = None
-    interference_cube: object = None
-    coded_cube: object = None
-    spectrum: object = None
-    part_spectra: dict = dataclasses.field(default_factory=dict)
+    rain_cube: Cube | None = None
+    interference_cube: Cube | None = None
+    coded_cube: Cube | None = None
+    spectrum: _core.RangeDoppler | Any = None
+    part_spectra: dict[str, dict[str, _core.RangeDoppler]] = dataclasses.field(default_factory=dict)
     angle_settings: dict = dataclasses.field(default_factory=dict)
     replay: str = SignalSettings.replay
     evaluate: str = SignalSettings.evaluate
     retrace: str = SignalSettings.retrace
     keyframes: int = SignalSettings.keyframes
     effect_choices: tuple = ()
-    labels: dict = dataclasses.field(default_factory=dict)
-    detections: object = None
-    kept_truth: object = None
-    checks: list = dataclasses.field(default_factory=list)
+    labels: dict[str, Labels] = dataclasses.field(default_factory=dict)
+    detections: Detections | Any = None
+    kept_truth: Truth | None = None
+    checks: list[Check] = dataclasses.field(default_factory=list)
     stages: list[Stage] = dataclasses.field(default_factory=list)
 
     @property
-    def noisy_cube(self):
+    def noisy_cube(self) -> Cube:
         """The cube with rain, interference, thermal noise and the faults of the receiver, complex [tx, rx, chirp, sample],
         sqrt(W): the same bits at every call. Codes of transmitters are undone (`demultiplex`).
 
@@ -99,13 +112,13 @@ class Frame:
         return received if self.coded_cube is None else demultiplex(received, self.radar)
 
     @property
-    def received(self):
+    def received(self) -> Reception:
         """Reception: what the converter of the receiver gives, before `demultiplex`, made anew at every call."""
         return reception(self._arriving_cube, self.radar, self.noise_seed, self.paths.frame.start_time,
                          self.interference_cube)
 
     @property
-    def received_parts(self) -> dict:
+    def received_parts(self) -> dict[str, dict[str, Cube]]:
         """What the receiver makes of each part: {partition: {part: cube}} in the shape of `received.cube`, sqrt(W), which add up
         to it, made anew at every call; "parts" with the part "other" without partitions.
 
@@ -172,30 +185,30 @@ class Frame:
         return frame_html(self)
 
     @property
-    def effects(self) -> list:
+    def effects(self) -> list[Effect]:
         """Which effects the frame models, which not, and why: list [E] of Effect, those of the paths and of the signal."""
         return of_paths(self.paths, replay=self.replay, evaluate=self.evaluate, retrace=self.retrace,
                         noise_seed=self.noise_seed, effects=self.effect_choices, surroundings=self.scene,
                         rain_cube=self.rain_cube, interference_cube=self.interference_cube)
 
     @cached_property
-    def beside_spectra(self) -> dict:
+    def beside_spectra(self) -> dict[str, _core.RangeDoppler]:
         """Range-Doppler maps of what no path makes, without noise: {"interference", "rain" or "leakage" (of the transmitters
         into the receivers): RangeDoppler}, values in sqrt(W); {} where there is nothing of it."""
         return {name: _core.range_doppler(cube, self.radar, **self.spectrum_settings)
                 for name, cube in cubes_beside(self).items()}
 
     @cached_property
-    def path_power(self):
+    def path_power(self) -> NDArray[np.float64]:
         """Power of each path at the trace time for the first antennas, [P] in W."""
         return self.paths.power
 
     @cached_property
-    def range_azimuth(self):
+    def range_azimuth(self) -> _core.RangeAzimuth | Any:
         """Range-azimuth map of the cube with noise, power [azimuth, range] in W; None where the radar sees no azimuth."""
         return self.range_azimuth_of(self.spectrum) if sees_azimuth(self.radar, self.angle_settings) else None
 
-    def range_azimuth_of(self, spectrum, progress=None):
+    def range_azimuth_of(self, spectrum: _core.RangeDoppler, progress: Progress = None) -> _core.RangeAzimuth:
         """Range-azimuth map of a part by the settings of the frame, power [azimuth, range] in W.
 
         spectrum: RangeDoppler of the frame's radar; progress: callable (stage, fraction), True for bars, or None
@@ -204,25 +217,25 @@ class Frame:
         return range_azimuth(spectrum, self.radar, **self.angle_settings, progress=progress)
 
     @cached_property
-    def mean_power(self):
+    def mean_power(self) -> _core.ReceivedPower:
         """ep.ReceivedPower of all paths, in W: the mean over the random phases, with its interval."""
         return self._mean_powers.of_parts[_WHOLE][0]
 
     @cached_property
-    def mean_part_powers(self) -> dict:
+    def mean_part_powers(self) -> dict[str, dict[str, _core.ReceivedPower]]:
         """The same of each part, {partition: {part: ep.ReceivedPower}}, in W."""
         return {partition: dict(zip(self.parts[partition], self._mean_powers.of_parts[partition]))
                 for partition in self.part_of_path}
 
     @cached_property
-    def unresolved(self) -> list:
+    def unresolved(self) -> list[Unresolved]:
         """Objects, ghosts and surroundings above the noise whose mean power the rays do not know to 0.3 dB: list of
         Unresolved, as `ep.unresolved` gives them, with the noise of the radar."""
         return unresolved_of(self.paths, self._families, self._mean_powers.of_families,
                              least_power=_core.noise_power_in_cell(self.radar))
 
     @cached_property
-    def truth(self):
+    def truth(self) -> Truth:
         """ep.Truth of the objects in the middle of the frame: places in m, velocities in m/s, boxes, cross sections in m^2."""
         return truth_of_frame(self) if self.kept_truth is None else self.kept_truth
 

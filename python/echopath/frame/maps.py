@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+from typing import Any
 
 import numpy as np
 
@@ -9,6 +10,7 @@ from ..arguments.checks import refused
 from ..base.equality import has_same_fields
 from ..base.made_by import made_by
 from ..detections.detections import Detections
+from ..labels.labels import Labels
 from ..truth import Truth
 from .frame import Frame
 
@@ -34,8 +36,8 @@ class FrameMaps:
     start_time: float
     seed: int
     noise_seed: int | None
-    labels: dict
-    detections: Detections | None
+    labels: dict[str, Labels]
+    detections: Detections | Any  # None unless it was asked for
     velocity: np.ndarray
     range: np.ndarray
     power: np.ndarray | None = None

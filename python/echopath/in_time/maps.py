@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -100,13 +100,13 @@ class Spectrogram(TimeMap):
     trains: np.ndarray
     window_length: int
     hop: int
-    range_gate: tuple
-    channel: tuple | None = None
-    labels: dict[str, SpectrogramLabels] | None = None
+    range_gate: tuple[float, float]
+    channel: tuple[int, int] | None = None
+    labels: dict[str, SpectrogramLabels] | Any = None  # None unless they were asked for
 
     AXIS, TITLE = "velocity", "Received power by time and radial velocity"
 
-    def extent(self, below_peak_db: float = 30.0) -> tuple:
+    def extent(self, below_peak_db: float = 30.0) -> tuple[np.ndarray, np.ndarray]:
         """How far the velocities of each time reach: those within so many dB of its strongest cell.
 
         below_peak_db: dB, 0 or more
@@ -141,8 +141,8 @@ class RangeTime(TimeMap):
 
     range: np.ndarray
     combine: str
-    velocity_gate: tuple
-    channel: tuple | None = None
+    velocity_gate: tuple[float, float]
+    channel: tuple[int, int] | None = None
 
     AXIS, TITLE = "range", "Received power by time and range"
 
@@ -162,7 +162,7 @@ class AngleTime(TimeMap):
 
     azimuth: np.ndarray
     combine: str
-    range_gate: tuple
-    velocity_gate: tuple | None = None
+    range_gate: tuple[float, float]
+    velocity_gate: tuple[float, float] | None = None
 
     AXIS, TITLE = "azimuth", "Received power by time and azimuth"

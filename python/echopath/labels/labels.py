@@ -106,7 +106,7 @@ class ObjectLabel:
     peak: Peak | AzimuthPeak | None
     box: Box | AzimuthBox | None
     visible_share: float
-    occluders: dict
+    occluders: dict[str, float]
     received: Interval | None
 
     @property
@@ -136,7 +136,7 @@ class GhostLabel:
     object: str
     ghost_type: int
     order: int
-    via: tuple
+    via: tuple[str, ...]
     class_code: int
     cells: int
     power: float
@@ -184,9 +184,9 @@ class Labels(PartCells):
     velocity: np.ndarray | None
     azimuth: np.ndarray | None
     range: np.ndarray
-    objects: list
+    objects: list[ObjectLabel]
     object_map: np.ndarray
-    ghosts: list
+    ghosts: list[GhostLabel]
     ghost_map: np.ndarray
     seed: int
     mean_power: np.ndarray | None = None
@@ -194,11 +194,11 @@ class Labels(PartCells):
     power_error: np.ndarray | None = None
     share_error: np.ndarray | None = None
     certain: np.ndarray | None = None
-    part_received: list | None = None
+    part_received: list[Interval] | None = None
     left_out: LeftOut | None = None
 
     @property
-    def shape(self) -> tuple:
+    def shape(self) -> tuple[int, int]:
         """(V, R), number of cells along velocity or azimuth, and along range."""
         return self.whole.shape
 

@@ -12,7 +12,7 @@ from .. import _core
 class PartCells:
     """The powers of parts in the cells of a map, and which cells have a label; the classes that have it say what each is."""
 
-    part_names: list
+    part_names: list[str]
     power: np.ndarray
     whole: np.ndarray
     share: np.ndarray

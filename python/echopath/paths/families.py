@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Iterator
 from functools import cached_property
 
 import numpy as np
@@ -27,10 +28,10 @@ class Families:
     grouping: the rule, which `decompose` applies to later records of a frame too
     """
 
-    objects: tuple
-    families: tuple
+    objects: tuple[str, ...]
+    families: tuple[_core.Family, ...]
     family_of_path: np.ndarray
-    grouping: object
+    grouping: _core.Grouping
 
     @cached_property
     def object_of_path(self) -> np.ndarray:
@@ -53,7 +54,7 @@ class Families:
         """Family.class_code of each path; i32 [P]."""
         return self._of_paths(lambda family: family.class_code)
 
-    def paths_of(self, family) -> np.ndarray:
+    def paths_of(self, family: _core.Family) -> np.ndarray:
         """Indices of the paths of a Family, i64 [N]; none where it does not occur.
 
         family: one of `families` or of another record of the scene
@@ -77,7 +78,7 @@ class Families:
     def __len__(self) -> int:
         return len(self.families)
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[_core.Family]:
         return iter(self.families)
 
     def __repr__(self) -> str:

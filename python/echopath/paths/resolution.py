@@ -66,7 +66,7 @@ class Unresolved:
     """
 
     name: str
-    via: tuple
+    via: tuple[str, ...]
     ghost_type: int
     order: int
     interval: Interval

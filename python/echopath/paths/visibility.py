@@ -38,7 +38,7 @@ class VisibilityFromEnd:
     """
 
     visible_share: float
-    occluders: dict
+    occluders: dict[str, float]
     in_view: bool
     distance: float
     solid_angle: float
@@ -63,7 +63,7 @@ class ObjectVisibility:
     """
 
     name: str
-    mesh_ids: tuple
+    mesh_ids: tuple[int, ...]
     transmitter: VisibilityFromEnd
     receiver: VisibilityFromEnd
 
@@ -78,7 +78,7 @@ class ObjectVisibility:
         return self.worse.visible_share
 
     @property
-    def occluders(self) -> dict:
+    def occluders(self) -> dict[str, float]:
         """{name: share of the solid angle that it hides} from that end, largest first."""
         return self.worse.occluders
 

@@ -109,7 +109,7 @@ class SceneNode:
         self._change(placement=placements.matrix4(value))
 
     @property
-    def motion(self):
+    def motion(self) -> _core.Motion | _core.Deformation | None:
         """A LinearMotion, KeyframeMotion, CurveMotion, VertexSequence, MorphTargets or Skin, in the axes of the parent about
         the object's own origin (`Scene.add`); None: at rest. To set a Skin the object must be a part of a mesh, as
         `Scene.add` makes them."""
@@ -117,7 +117,7 @@ class SceneNode:
         return node.deformation or node.motion
 
     @motion.setter
-    def motion(self, value) -> None:
+    def motion(self, value: _core.Motion | _core.Deformation | None) -> None:
         with self._scene._edit():
             mesh = self._node.mesh
             if isinstance(value, _core.Skin) and mesh is not None and mesh.whole is None:

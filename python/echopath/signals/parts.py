@@ -1,7 +1,8 @@
 """Signals of parts of the paths, which remember what the parts are."""
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Mapping
+from typing import Any
 
 from .. import _core
 from .._core import Grouping, Selection
@@ -13,9 +14,9 @@ from ..paths.families import Families
 from ..transmit.signals import decompose_slots
 from .if_signal import RULES
 
-View = Mapping[str, Selection | str] | Families | Grouping
-Selections = Mapping[str, Selection | str] | Mapping[str, Mapping[str, Selection | str]]  # one partition, or several
-Views = View | Mapping[Hashable, View] | None
+View = Mapping[Any, Selection | str] | Families | Grouping
+Selections = Mapping[str, Selection | str | Mapping[str, Selection | str]]  # one partition, or several
+Views = Mapping[Any, Selection | str | View] | Families | Grouping | None  # one view, or several
 _VIEWS = (Mapping, Families, Grouping)
 
 _ONE_KIND = "all selections (one partition) or all tables of selections (several)"
@@ -23,7 +24,7 @@ ONLY_PARTITION = "parts"  # name of a partition that is the only one and has non
 
 
 @made_by("ep.decompose")
-class Parts(dict):
+class Parts(dict[Any, Any]):
     """{name: cube [tx, rx, chirp, sample] in sqrt(W)} of one partition, "other" last; made by `decompose`.
 
     cubes: as above; selections: {name: selection} as they were given, without "other"; None for parts by families
@@ -177,7 +178,7 @@ def decompose(paths: _core.Paths, radar: _core.Radar | None = None, parts: Views
               replay: Replay = SignalSettings.replay, evaluate: Evaluate = SignalSettings.evaluate,
               phase_tolerance: float = SignalSettings.phase_tolerance, retrace: Retrace = SignalSettings.retrace,
               keyframes: int = SignalSettings.keyframes, settings: SignalSettings | None = None,
-              probe: _core.SignalProbe | None = None, progress: Progress = None) -> Parts | dict[Hashable, Parts]:
+              probe: _core.SignalProbe | None = None, progress: Progress = None) -> Parts | Any:
     """The signals of parts of the paths, in one pass.
 
     paths: of `trace`; radar: another waveform, array or motion than that of the trace, or None

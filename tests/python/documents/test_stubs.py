@@ -53,6 +53,13 @@ def look(map: ep.RangeDoppler, film: ep.Spectrogram, labels: ep.Labels, truth: e
     truth.to_xarray().data_vars
     film.plot(ax=3)
     labels.plot("ghosts")
+""",
+    "framed.py": """import echopath as ep
+def look(frame: ep.Frame) -> None:
+    frame.spectrum.valuez
+    frame.labels["parts"].objects[0].state
+    frame.paths + 1
+    count: int = ep.num_bounces == 3
 """}
 
 
@@ -64,7 +71,8 @@ def complaints(tmp_path_factory):
     folder = tmp_path_factory.mktemp("typing")
     for name, text in WRONG.items():
         (folder / name).write_text(text)
-    files = [ROOT / "tests" / "typing" / "first_experiment.py", ROOT / "python" / "echopath" / "_core.pyi",
+    files = [ROOT / "tests" / "typing" / "first_experiment.py", ROOT / "tests" / "typing" / "with_frames.py",
+             ROOT / "python" / "echopath" / "_core.pyi",
              *(folder / name for name in WRONG)]
     settings = ROOT / "tests" / "typing" / "mypy.ini"
     command = [sys.executable, "-m", "mypy", "--config-file", settings, "--cache-dir", os.devnull, *files]
@@ -76,6 +84,16 @@ def complaints(tmp_path_factory):
 
 def test_type_checker_is_content_with_what_a_user_writes(complaints):
     assert complaints["first_experiment.py"] == []
+
+
+def test_type_checker_is_content_with_what_pages_do_with_frames(complaints):
+    assert complaints["with_frames.py"] == []
+
+
+def test_type_checker_knows_what_a_frame_holds(complaints):
+    told = complaints["framed.py"]
+    words = '"RangeDoppler | Any" has no attribute "valuez"', '"ObjectLabel" has no attribute "state"', '"Paths"', '"Selection"'
+    assert len(told) == 4 and all(word in line for word, line in zip(words, told)), told
 
 
 def test_the_first_experiment_sees_its_ball():

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ..arguments.checks import choice
+from ..arguments.checks import choice, refused
 from ..base.counts import counted
 from ..base.decibels import SMALLEST_POWER, in_dbm
 from ..paths.visibility import occluder_words
@@ -40,8 +40,9 @@ def plot_labels(labels: Labels, *, title: str = "Which part made each cell",
 
     labels: Labels; title: above the map; powers: {part: ep.ReceivedPower}, None: none are drawn
     Returns a matplotlib figure: range in m across, radial velocity in m/s (receding positive) or azimuth in degrees up.
-    Raises AttributeError for other objects.
+    Raises TypeError naming labels.
     """
+    _require_labels(labels)
     with new_figure(13.0 if powers else 9.0, 4.8) as figure:
         panels = figure.subfigures(1, 2 if powers else 1, squeeze=False, width_ratios=(2.3, 1.0) if powers else None)[0]
         _draw_map(panels[0], labels, _part_areas(labels), title)
@@ -55,14 +56,21 @@ def plot_ghosts(labels: Labels, *, title: str = "Objects and their ghosts") -> F
 
     labels: Labels; title: above the map. Returns a matplotlib figure; left as `plot_labels`, right a row for each object and
     each of the strongest ghosts: range in m, radial velocity in m/s or azimuth in degrees, power in dBm.
-    Raises AttributeError for other objects.
+    Raises TypeError naming labels.
     """
+    _require_labels(labels)
     rows = [label for label in labels.objects if label.peak is not None] + _strongest_ghosts(labels)
     with new_figure(14.5, max(4.8, 1.6 + 0.27 * len(rows))) as figure:
         left, right = figure.subfigures(1, 2, width_ratios=(1.0, 1.35))
         _draw_map(left, labels, _class_areas(labels), title)
         _draw_extents(right.subplots(1, 2, sharey=True, width_ratios=(1.0, 1.0)), labels, rows)
     return figure
+
+
+def _require_labels(labels) -> None:
+    """Raises unless they are labels of one partition, not those of a frame by partitions."""
+    if not hasattr(labels, "part_names"):  # the class itself draws with this module
+        raise refused(TypeError, "labels", "Labels, as frame.labels['parts'] is", labels)
 
 
 def draw_labels(labels: Labels, *, what: str = "parts", ax: Axes | None = None, title: str = "") -> Axes:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..arguments.part_names import REST
-from ..arguments.checks import optional, real
+from ..arguments.checks import optional, real, refused
 from ..base.decibels import SMALLEST_POWER, in_dbm
 from ..signals.measures import for_pictures, static_speed, with_error
 from .style import MAP_COLOURS, axes_or_new, colour_bar, new_figure, set_title
@@ -132,8 +132,10 @@ def plot_partition(spectra: Mapping[str, _core.RangeDoppler], *, title: str = ""
     spectra: {part: map of `range_doppler`}; vmin, vmax: ends of the colour scale in dBm, None: those of `whole` (of
     the strongest part when there is no `whole`); powers: {part: ep.ReceivedPower} to stand above the maps, or None;
     note: small print; title: above the maps; radar_moves: to it what stands has velocities, too
-    Returns a matplotlib figure with the axes of `plot_range_doppler`. Raises TypeError or ValueError naming vmin or vmax.
+    Returns a matplotlib figure with the axes of `plot_range_doppler`. Raises TypeError or ValueError naming spectra, vmin or
+    vmax.
     """
+    _require_maps(spectra)
     strongest = max(spectra.values(), key=lambda spectrum: np.abs(spectrum.values).max())
     vmin, vmax = _limits(whole if whole is not None else strongest, vmin, vmax)
     columns = len(spectra) if len(spectra) <= 3 else 2
@@ -160,8 +162,10 @@ def plot_overview(whole: _core.RangeDoppler, spectra: Mapping[str, _core.RangeDo
 
     whole, spectra, powers, note, vmin, vmax (dBm), radar_moves: as of `plot_partition`; title: above the whole; parts_title:
         above the parts
-    Returns a matplotlib figure with the axes of `plot_range_doppler`. Raises TypeError or ValueError naming vmin or vmax.
+    Returns a matplotlib figure with the axes of `plot_range_doppler`. Raises TypeError or ValueError naming spectra, vmin or
+    vmax.
     """
+    _require_maps(spectra)
     vmin, vmax = _limits(whole, vmin, vmax)
     with new_figure(3.2 * max(2, len(spectra)) + 0.8, 6.8) as figure:
         upper, lower = figure.subfigures(2, 1, height_ratios=(1.0, 1.05))
@@ -180,6 +184,15 @@ def plot_overview(whole: _core.RangeDoppler, spectra: Mapping[str, _core.RangeDo
         colour_bar(lower, image, panels)
         _small_print(figure, note)
     return figure
+
+
+def _require_maps(spectra) -> None:
+    """Raises unless they are maps by the names of parts: those of one partition, not the partitions of a frame."""
+    rule = "one map at least by the names of parts, as frame.part_spectra['parts'] has them"
+    if not isinstance(spectra, Mapping) or any(isinstance(one, Mapping) for one in spectra.values()):
+        raise refused(TypeError, "spectra", rule, spectra)
+    if not spectra:
+        raise refused(ValueError, "spectra", rule, spectra)
 
 
 def _draw_whole(axes, spectrum, vmin: float, vmax: float, title: str):

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..arguments.checks import refused
 from ..base.decibels import SMALLEST_POWER, in_dbm
 from ..signals.measures import for_pictures
 from .maps import chosen_limits, limits_of_level, noise_peak_db
@@ -46,8 +47,10 @@ def plot_range_azimuth(maps: _core.RangeAzimuth | dict[str, _core.RangeAzimuth],
     places: {object: (range in m, azimuth in rad)} that get a ring, in the first map with names; None: none
     leaked: map of the leakage in the first map, which sets no scale, or None
     Returns a matplotlib figure: metres to the left across (right negative), metres ahead up, in the radar's frame. Raises
-    TypeError or ValueError naming vmin or vmax.
+    TypeError or ValueError naming maps, vmin or vmax.
     """
+    if maps is None:
+        raise refused(TypeError, "maps", "a RangeAzimuth, which frames have whose antennas tell azimuths apart", maps)
     maps = maps if isinstance(maps, dict) else {"": maps}
     first = next(iter(maps.values()))
     vmin, vmax = chosen_limits(_colour_limits(first, leaked), vmin, vmax)

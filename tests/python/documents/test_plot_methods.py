@@ -80,6 +80,18 @@ def test_the_picture_of_a_scene_refuses_by_name_what_is_none(frame, scene, paths
         ep.plots.plot_scene(getattr(frame, scene), getattr(frame, paths))
 
 
+@pytest.mark.parametrize("draw, argument, got", [
+    (lambda frame: ep.plots.plot_partition(frame.part_spectra), "spectra", "{'parts'"),
+    (lambda frame: ep.plots.plot_partition({}), "spectra", "{}"),
+    (lambda frame: ep.plots.plot_overview(frame.spectrum, frame.part_spectra), "spectra", "{'parts'"),
+    (lambda frame: ep.plots.plot_labels(frame.labels), "labels", "{'parts'"),
+    (lambda frame: ep.plots.plot_ghosts(frame), "labels", "Frame"),
+    (lambda frame: ep.plots.plot_range_azimuth(None), "maps", "None")])
+def test_pictures_refuse_by_name_what_a_frame_holds_elsewhere(frame, draw, argument, got):
+    with pytest.raises((TypeError, ValueError), match=f"^{argument}: must be .*, got {got}"):
+        draw(frame)
+
+
 def test_one_frame_over_time_has_the_time_of_its_middle_alone(frame, ax):
     """0.5 s to either side of it were shown before, of a frame of milliseconds."""
     ep.range_time(frame).plot(ax=ax)

@@ -12,7 +12,7 @@ from ..base.counts import counted
 from ..base.decibels import in_dbm
 from ..dataset.folder import TEMPLATE as DATASET_FILE
 from ..frame_file import left_out, load_frame
-from ..frame_file.container import FRAME, SEQUENCE, has_paths, kind_of
+from ..frame_file.container import FRAME, SEQUENCE, has_maps, has_paths, kind_of
 from ..frame_file.maps import load_maps
 from ..frame_file.opening import SUFFIXES as FRAME_SUFFIXES, file_and_group
 from ..paths.edge_hits import edge_hits
@@ -63,7 +63,7 @@ def describe_file(path, selections=(), *, unit=None, up=None) -> list[str]:
     if is_sequence_file or (path / SEQUENCE_FILE).exists():
         return _describe_sequence(ep.load_sequence(path))
     if suffix in FRAME_SUFFIXES and not selections and kind_of(path) == FRAME and not has_paths(path):
-        return _describe_maps(path, load_maps(path))
+        return _describe_maps(path, load_maps(path)) if has_maps(path) else _describe_labels(path, ep.load_labels(path))
     if suffix in FRAME_SUFFIXES:
         return _describe_frame(path, selections)
     if suffix in ep._core.MESH_SUFFIXES:
@@ -238,6 +238,11 @@ def _describe_maps(path: Path, maps) -> list[str]:
                                  f"{maps.velocity[velocity]:+.2f} m/s"))
     return [*lines, *report.labels(maps.labels), *report.detections(maps.detections, maps.labels),
             *report.truth(maps.kept_truth)]
+
+
+def _describe_labels(path: Path, labels) -> list[str]:
+    """What `ep.save_labels` wrote."""
+    return [str(path), "labels of a frame, without its map and paths", *report.labels(labels)]
 
 
 def _describe_selection(frame, selection) -> list[str]:

@@ -64,6 +64,12 @@ def has_paths(path) -> bool:
         return _has_paths(file)
 
 
+def has_maps(path) -> bool:
+    """Whether a file without paths is the frame of a sequence; else it holds labels alone. Raises ep.FileError."""
+    with our_file(path) as file:
+        return "maps" in file
+
+
 def _has_paths(file) -> bool:
     return "record" in file or file.keys().isdisjoint(("maps", "labels"))
 

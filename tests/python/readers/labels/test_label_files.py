@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import echopath as ep
+from echopath.cli.info import describe_file
 from support.files.frame_edits import edited
 
 SAME_SHARES = 1e-9  # of doubles summed by other groups; of the strongest cell
@@ -32,6 +33,14 @@ def test_labels_of_a_frame_file_are_the_same_bits(frame, labels, saved):
     for partition, one in loaded.items():
         assert_same(one, frame.labels[partition])
     assert list(ep.load_labels(saved)) == list(loaded)
+
+
+def test_info_tells_of_a_file_of_labels_alone(frame, tmp_path):
+    ep.save_labels(frame.labels, tmp_path / "labels.h5")
+    told = "\n".join(describe_file(tmp_path / "labels.h5"))
+    cells = {name: np.count_nonzero(of.mask) for name, of in frame.labels.items()}
+    assert "labels of a frame, without its map and paths" in told
+    assert all(f"{count:,} of" in told and f"labelled, {name}" in told for name, count in cells.items())
 
 
 def test_labels_of_a_file_of_their_own_are_the_same_bits(frame, labels, tmp_path):

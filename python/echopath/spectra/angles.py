@@ -23,7 +23,8 @@ _BEAM_RULES = {
 def virtual_array(radar: _core.Radar) -> _core.VirtualArray:
     """The virtual array of a radar's transmitters and receivers.
 
-    Each pair receives the phase of one antenna at the sum of both positions, in m in the radar's frame. Positions closer than
+    Each pair receives the phase of one antenna at the sum of both positions, in m in the radar's frame: a far point at rest along
+    the unit vector u has e^{-j 2 pi u . position / wavelength} in its cell of a range-Doppler map. Positions closer than
     0.01 wavelengths are one element (an overlap). Equal steps along a line, or along two perpendicular axes of a plane, are
     found as a grid, from a fifth of a wavelength on; its points without an element are gaps.
     radar: whose antennas count

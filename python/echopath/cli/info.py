@@ -276,7 +276,7 @@ def _route(paths, path: int) -> str:
 
 
 def _describe_meshes(meshes) -> list[str]:
-    lines = [counted(len(meshes), "mesh")]
+    lines = [f"{counted(len(meshes), 'mesh')}, in the axes of the file"]
     for name, mesh in meshes:
         low, high = np.min(mesh.vertices, axis=0), np.max(mesh.vertices, axis=0)
         lines += [name, report.line("triangles, vertices", f"{len(mesh.triangles):,}, {len(mesh.vertices):,}"),

@@ -18,7 +18,8 @@ def validity(paths: _core.Paths, radar: _core.Radar | None = None, *, replay: Re
     of reflection that slide, whether these still lie on their surface, shadow rays of all legs, cosines; and traces the scene
     at these times for surface that was hidden from the trace. Exact parts of the replay (single bounces, images in mirrors)
     have no phase error. Of paths that end in a rough surface at most 16384 of each object and number of bounces are looked
-    at. What more than 256 times would have to follow is a warning.
+    at. What more than 256 times would have to follow is a warning. Where the report asks for parts of the frame by themselves,
+    `retrace` of `synthesize` and `simulate` does so, in as many stretches with keyframes=0.
     paths: of a trace, all or a selection of them, which asks about these alone
     radar: another waveform, array or motion than that of the trace, or None
     replay: of the replay that is to be certified, as in `synthesize`

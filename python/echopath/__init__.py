@@ -11,6 +11,8 @@ from ._startup import answer_ctrl_c_while_loading, answer_version_before_loading
 answer_ctrl_c_while_loading()
 answer_version_before_loading()
 
+from typing import TYPE_CHECKING
+
 from . import actors, plots
 from ._core import (
     AngleEstimates, AngleSpectrum, Antenna, AntennaPattern, BeamPower, CfarResult, ChirpSequence, CoplanarOverlap,
@@ -109,15 +111,18 @@ __all__ = [
 ]
 
 
-def __getattr__(name: str):
-    """`ep.dataset`, which takes its time to import, when it is asked for."""
-    if name == "dataset":
-        from importlib import import_module
+if TYPE_CHECKING:
+    from . import dataset as dataset
+else:  # to type checkers it would have every name
+    def __getattr__(name: str):
+        """`ep.dataset`, which takes its time to import, when it is asked for."""
+        if name == "dataset":
+            from importlib import import_module
 
-        return import_module(".dataset", __name__)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+            return import_module(".dataset", __name__)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
     """What users need; the modules behind it are there, but do not show."""
-    return [*__all__, "__version__"]
+    return [*__all__, "__version__", "dataset"]

@@ -40,6 +40,7 @@ def test_package_says_that_it_is_typed():
 # What a user may write wrong, by the name of a file. The type checker would be content with anything if it did not find
 # the stubs.
 WRONG = {
+    "name.py": "import echopath as ep\nep.simulat\nep.dataset.opem\nep.dataset.open('walkers').split('train')\n",
     "keyword.py": "import echopath as ep\nep.ChirpSequence(num_sample=5)\nep.ChirpSequence(num_samples='5')\n",
     "replaced.py": "import echopath as ep\nep.ChirpSequence().replace(num_chirp=4)\n"
                    "chirps: ep.ChirpSequence = ep.ChirpSequence().replace(num_chirps=4)\nchirps.num_chirps = 5\n",
@@ -125,6 +126,11 @@ def test_type_checker_knows_axes_and_arrays_of_other_libraries(complaints):
     told = "\n".join(complaints["foreign.py"])
     assert '"Axes" has no attribute "set_titel"' in told and 'has type "DataArray"' in told and 'has type "Dataset"' in told, told
     assert told.count("error:") == 5, told
+
+
+def test_type_checker_knows_which_names_there_are(complaints):
+    told = complaints["name.py"]
+    assert len(told) == 2 and 'has no attribute "simulat"' in told[0] and 'has no attribute "opem"' in told[1], told
 
 
 def test_replace_has_the_arguments_of_the_constructor(complaints):

@@ -106,6 +106,6 @@ def test_settings_of_another_kind_are_refused():
 
 def test_what_shows_is_what_users_need():
     shown = dir(ep)
-    assert set(shown) == {*ep.__all__, "__version__"} and "plots" in shown and ep.plots.plot_range_doppler
+    assert set(shown) == {*ep.__all__, "__version__", "dataset"} and "plots" in shown and ep.plots.plot_range_doppler
     modules = {name for name in shown if inspect.ismodule(getattr(ep, name))}
-    assert modules == {"actors", "plots"}
+    assert modules == {"actors", "dataset", "plots"}

@@ -2,9 +2,9 @@
 
     scene = ep.Scene()
     scene.add(ep.load_mesh("wall.obj"), name="wall", material="concrete")
-    paths = ep.trace(scene, radar, num_rays=1_000_000)                     # once
-    cube = ep.synthesize(paths, radar)                                     # [tx, rx, chirp, sample]
-    parts = ep.decompose(paths, radar, {"ghosts": "T .* 'wall' .* R"})     # and "other"
+    paths = ep.trace(scene, radar, num_rays=1_000_000)                                     # once
+    cube = ep.synthesize(paths, radar)                                                     # [tx, rx, chirp, sample]
+    parts = ep.decompose(paths, radar, {"ghosts": "T .* 'wall' .* R & ~(T 'wall'+ R)"})    # and "other"
 """
 from ._startup import answer_ctrl_c_while_loading, answer_version_before_loading
 

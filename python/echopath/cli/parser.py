@@ -222,5 +222,5 @@ def _add_unit_and_up(parser) -> None:
 
 def _add_part_option(parser) -> None:
     parser.add_argument("--part", action="append", default=[], metavar="NAME=SELECTION",
-                        help="a part of a partition \"choice\" of its own, as in ghosts=\"T .* 'wall*' .* R\"; may be "
+                        help="a part of a partition \"choice\" of its own, as in walls=\"T .* 'wall*' .* R\"; may be "
                              "repeated, the first that takes a path has it")

@@ -156,7 +156,7 @@ def parts_of_options(texts) -> dict:
         name, equals, expression = option.partition("=")
         name = name.strip()
         if not (name and equals):
-            raise ValueError(f"part: must be NAME=SELECTION, as in ghosts=\"T .* 'wall*' .* R\", got {option}")
+            raise ValueError(f"part: must be NAME=SELECTION, as in walls=\"T .* 'wall*' .* R\", got {option}")
         if name in parts:
             raise ValueError(f"part: must have a name of its own, got {name} twice")
         try:

@@ -37,6 +37,16 @@ def labelled(scene: ep.Scene, radar: ep.Radar) -> ep.Detections:
     return frame.detections
 
 
+def measured(scene: ep.Scene) -> None:
+    """Cross sections, a receiver with faults, and a scene file."""
+    turns = np.column_stack([-np.cos([0.0, 0.1]), np.sin([0.0, 0.1]), np.zeros(2)])
+    print(10.0 * np.log10(ep.rcs(scene, frequency=77e9, incidence=turns)))
+    print(ep.rcs(scene, frequency=77e9, incidence=(-1, 0, 0), components=True)["coherent"])
+    loaded = ep.load_scene("street.toml")
+    frame = ep.simulate(loaded.scene, loaded.radar.replace(receiver=ep.Receiver(adc=ep.Adc(bits=12))), parts=loaded.parts)
+    print(frame.received.codes.dtype, 10.0 * np.log10(np.mean(np.abs(frame.interference_cube) ** 2)))
+
+
 def in_time(scene: ep.Scene, radar: ep.Radar) -> None:
     """Frames in a row, their truth and tracks."""
     sequence = ep.Sequence(scene, radar, frames=3, interval=0.1, detections=True, parts={"legs": "T 'walker/leg_*'+ R"})

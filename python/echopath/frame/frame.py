@@ -84,9 +84,9 @@ class Frame:
     part_of_path: dict[str, NDArray[np.uint16]]
     noise_seed: int | None
     spectrum_settings: dict
-    rain_cube: Cube | None = None
-    interference_cube: Cube | None = None
-    coded_cube: Cube | None = None
+    rain_cube: Cube | Any = None
+    interference_cube: Cube | Any = None
+    coded_cube: Cube | Any = None
     spectrum: _core.RangeDoppler | Any = None
     part_spectra: dict[str, dict[str, _core.RangeDoppler]] = dataclasses.field(default_factory=dict)
     angle_settings: dict = dataclasses.field(default_factory=dict)

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+from typing import Any
 
 import numpy as np
 
@@ -30,7 +31,7 @@ class Reception:
     """
 
     cube: np.ndarray
-    codes: np.ndarray | None = None
+    codes: np.ndarray | Any = None  # None without a converter
     gain_db: float | None = None
 
     def __repr__(self) -> str:

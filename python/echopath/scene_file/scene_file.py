@@ -5,7 +5,7 @@ import dataclasses
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, TypedDict
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 
@@ -49,7 +49,7 @@ class SceneFile:
     path: Path
     title: str
     scene: Scene
-    radar: _core.Radar | None
+    radar: _core.Radar | Any  # None of a foreign scene
     trace: TraceSettings
     signal: SignalSettings
     angle: AngleTable

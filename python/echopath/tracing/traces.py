@@ -2,10 +2,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import _core
 from ..arguments.checks import ArrayLike, Progress, array, checked, flag, one_of, optional, positive, real, shown
@@ -24,7 +23,7 @@ from .polarization import FIELD_VECTORS, SCALAR, antennas_of, chosen_model
 from .tessellation import warn_of_coarse_meshes
 
 Channel = Literal["vv", "hh", "vh", "hv"]  # transmitted, received
-CrossSections = float | NDArray[np.float64]
+CrossSections = Any  # float of one direction, array of several; dicts of them by polarisation or component; pairs with errors
 
 HIGHEST_FREQUENCY = 1e15  # Hz, of visible light
 
@@ -163,8 +162,7 @@ def rcs(scene: _core.Scene, *, frequency: float, incidence: ArrayLike, observati
         footprint: Footprint = TraceSettings.footprint, sampler: Sampler = TraceSettings.sampler, batches: int | None = None,
         target_error_db: float | None = None, max_rays: int | float = TraceSettings.max_rays,
         edges: bool = False, cavities: Cavity | Sequence[Cavity] | None = None, components: bool = False,
-        return_error: bool = False, progress: Progress = None
-        ) -> CrossSections | dict[str, CrossSections] | tuple[CrossSections | dict[str, CrossSections], ...]:
+        return_error: bool = False, progress: Progress = None) -> CrossSections:
     """Radar cross section of a scene in m^2, far field, at time 0.
 
     Model: physical optics at every bounce, both antennas isotropic. Coherent echoes add as fields; diffuse ones as powers,

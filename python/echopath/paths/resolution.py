@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+import sys
 from typing import NamedTuple
 
 import numpy as np
@@ -182,10 +183,10 @@ def _times_the_rays(power) -> float:
 
 
 def _missing(power) -> tuple[float, float]:
-    """Bias and chance that more rays mend, over what a resolved power may have; infinite where it has none."""
-    if not power.power > 0.0:
-        return math.inf, math.inf
+    """Bias and chance that more rays mend, over what a resolved power may have; infinite where it has none, or next to none."""
     wanted = power.power * (10.0 ** (0.1 * RESOLVED_DB) - 1.0)
+    if wanted < sys.float_info.min:
+        return math.inf, math.inf
     return power.bias_of_rays / wanted, 2.0 * power.chance / wanted
 
 

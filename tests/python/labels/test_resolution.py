@@ -320,3 +320,19 @@ def test_labels_of_a_selection_say_nothing_of_what_it_leaves_out(frame):
     board = next(label for label in labels.objects if label.name == "board")
     assert board.received is None and "NOT resolved" not in next(
         line for line in str(labels).splitlines() if line.startswith("object board"))
+
+
+def test_an_echo_whose_power_is_next_to_nothing_is_named_as_others_are():
+    """Wide cells fade the echo of a plate askew by any factor: to the smallest number that there is, before it is gone."""
+    def paths_at(angle_deg):
+        scene = ep.Scene()
+        scene.add(ep.actors.plate(1, 1), name="plate", material="metal", position=(9, 0, 0), yaw=np.radians(angle_deg))
+        return ep.trace(scene, build_radar([(0, 0, 0)], [(0, 0, 0)]), num_rays=30)
+
+    low, high = 20.0, 30.0
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if ep.received_power(paths_at(middle)).power > 0.0 else (low, middle)
+    paths = paths_at(low)
+    assert 0.0 < ep.received_power(paths).power < 3e-323
+    assert [one.name for one in ep.unresolved(paths)] == ["plate"]

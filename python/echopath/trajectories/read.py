@@ -13,6 +13,7 @@ from ..arguments.checks import array, checked, is_writable, real, refused
 from ..arguments.checks import file as file_rule
 from ..base.callers import warn_user
 from ..base.counts import counted
+from .doubts import doubts_of
 from .geodesy import east_north_up
 from .kinds import usual_kind
 from .markup import read_fcd, read_gpx
@@ -51,7 +52,8 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
     path: of the file, one of
     .csv, .txt, .tsv: a line of names of columns, then a row for each position: time (s, or ISO 8601), x and y (m), or lat and lon
         (degrees), and, where it has them, z or ele (m), id or name, type, yaw (rad, from x to y) or yaw_deg, speed (m/s). Names
-        may be written in other usual ways ("Timestamp [s]", "track_id"); other columns are left out. Commas, semicolons or tabs
+        may be written in other usual ways ("Timestamp [s]", "track_id"), with a usual unit in brackets ("t [ms]", "x [cm]",
+        "speed (km/h)"); other columns are left out. Commas, semicolons or tabs
     .xml: floating car data of SUMO (--fcd-output), in m; vehicles and persons. Speeds are those of the positions
     .gpx: tracks of a GPS receiver
 
@@ -64,7 +66,8 @@ def read_trajectories(path: str | os.PathLike[str], *, origin: ArrayLike | None 
     Returns {name: Trajectory}, in the order of the file, each with the kind that the file tells. Between positions it goes along
     a C2 spline, by distances that are monotone cubics over time, so that what stands stays. Times are those of the file; those of
     ISO 8601 and beyond 1e6 s, such as those since 1970, count from the first of the file. Warns (RuntimeWarning) of objects
-    with a single position, which are left out.
+    with a single position, which are left out, and of speeds and yaws that the positions contradict, as those in km/h and in
+    degrees do.
     Raises FileError naming the file, the line, the rule and the value, TypeError or ValueError naming the argument.
     """
     path = Path(path)
@@ -109,16 +112,19 @@ def _trajectories(path: Path, tracks: dict[str, Samples], origin, smoothing: flo
     if single:
         warn_user(f"{path}: {counted(len(single), 'object')} with a single position "
                   f"{'are' if len(single) > 1 else 'is'} left out, such as '{single[0][:60]}'")
-    found = {}
+    found, doubts = {}, []
     for name, samples in tracks.items():
         if len(samples.times) < 2:
             continue
         places = np.array(samples.places)
         if origin is not None:
             places = east_north_up(places[:, 0], places[:, 1], places[:, 2], origin)
+        doubts += [f"'{name[:60]}' {words}" for words in doubts_of(np.array(samples.times), places, samples.yaws, samples.speeds)]
         try:
             found[name] = Trajectory(smoothed(np.array(samples.times), places, smoothing), times=samples.times,
                                      yaw=samples.yaws or None, speed=samples.speeds or None, kind=samples.kind)
         except ValueError as error:
             refuse(path, samples.lines[0], f"'{name[:60]}': {error}")
+    if doubts:
+        warn_user(f"{path}: {doubts[0]}" + (f" ({len(doubts) - 1} more alike)" if len(doubts) > 1 else ""))
     return found

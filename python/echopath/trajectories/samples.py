@@ -44,10 +44,10 @@ def number(path: Path, line: int, name: str, text: str, most: float = 1e9) -> fl
     return value
 
 
-def instant(path: Path, line: int, name: str, text: str) -> float:
-    """A time in s, or one of ISO 8601 in s since 1970."""
+def instant(path: Path, line: int, name: str, text: str, unit: float = 1.0) -> float:
+    """A time in s, of a number of units of so many s, or of ISO 8601 in s since 1970."""
     try:
-        return number(path, line, name, text, 1e12)
+        return unit * number(path, line, name, text, 1e12 / unit)
     except _core.FileError:
         if "-" not in text[1:]:
             raise

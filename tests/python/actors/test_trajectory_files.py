@@ -88,6 +88,39 @@ def test_yaw_and_speed_of_a_table_are_kept(tmp_path):
     np.testing.assert_allclose(one.speed([0, 1, 2]), [3, 5, 3])
 
 
+def test_units_in_brackets_are_taken(tmp_path):
+    """10 m/s straight on along y, 36 km/h, in the units of others; the other file has the same in those of ours."""
+    names = "t [ms],x (cm),y [mm],z (ft),yaw (\u00b0),speed [km/h]\n"
+    (one,) = ep.read_trajectories(write(tmp_path, "a.csv", names + "0,150,0,10,90,36\n500,150,5000,10,90,36\n")).values()
+    (same,) = ep.read_trajectories(write(tmp_path, "b.csv", "t [s],x [m],y [m],z [m],yaw [rad],speed [m/s]\n"
+                                         "0,1.5,0,3.048,1.5707963267948966,10\n.5,1.5,5,3.048,1.5707963267948966,10\n")).values()
+    assert (one.begin, one.end) == (0.0, 0.5)
+    np.testing.assert_allclose(one.position([0.0, 0.25, 0.5]), [[1.5, 0, 3.048], [1.5, 2.5, 3.048], [1.5, 5, 3.048]], atol=1e-9)
+    np.testing.assert_allclose(one.position(0.3), same.position(0.3), atol=1e-9)
+    np.testing.assert_allclose([one.speed(0.2), one.yaw(0.2)], [10.0, np.pi / 2], atol=1e-9)
+    days = "t [us],x,y\n1767225600000000,0,0\n1767225601500000,1,0\n"
+    (since_1970,) = ep.read_trajectories(write(tmp_path, "c.csv", days)).values()
+    assert (since_1970.begin, since_1970.end) == pytest.approx((0.0, 1.5))
+
+
+@pytest.mark.parametrize("columns, rows, words", [
+    ("time,x,y,speed", "0,0,0,36\n1,10,0,36\n2,20,0,36\n", "'a' goes 72 m by its speeds and 20 m by its positions"),
+    ("time,x,y,yaw", "0,0,0,90\n1,0,10,90\n2,0,20,90\n", "'a' has a yaw of up to 90 rad, .*call the column yaw_deg")])
+def test_columns_that_the_positions_contradict_are_told(tmp_path, columns, rows, words):
+    with pytest.warns(RuntimeWarning, match=words):
+        ep.read_trajectories(write(tmp_path, "a.csv", f"{columns}\n{rows}"))
+
+
+@pytest.mark.filterwarnings("error")
+def test_columns_that_the_positions_bear_out_are_taken_without_a_word(tmp_path):
+    """Two turns of a circle of 10 m, yaws without jumps; stop and go, whose speeds tell nothing of the way between rows."""
+    turns = np.linspace(0.0, 4 * np.pi, 41)
+    circle = [(t, 10 * math.sin(t), -10 * math.cos(t), t, 10.0) for t in turns.tolist()]
+    rows = "".join(f"{','.join(map(repr, row))}\n" for row in circle)
+    ep.read_trajectories(write(tmp_path, "a.csv", f"time,x,y,yaw,speed\n{rows}"))
+    ep.read_trajectories(write(tmp_path, "a.csv", "time,x,y,speed\n0,0,0,0\n9,60,0,0\n18,120,0,0\n"))
+
+
 def test_east_north_up_is_that_of_published_examples():
     """MathWorks, documentation of geodetic2enu (the Matterhorn from Zermatt); Octave Forge, the same function."""
     matterhorn = east_north_up(np.array([45.976]), np.array([7.658]), np.array([4531.0]), (46.017, 7.750, 1673.0))
@@ -136,7 +169,8 @@ WRONG = {
     "a.csv": [("", "must name columns"), ("a,b\n1,2\n", "line 1: must name columns"), ("t,x,y\n", "holds no positions"),
               ("t,x,y\n0,0,0\n1,nan,0\n", "line 3: x: must be a number"), ("t,x,y\n0,0,0\n1,5\n", "line 3: must have at least 3"),
               ("t,x,y\n0,0,0\n0,5,0\n", "line 3: time: must be later"), ("t,x,y,heading\n0,0,0,1\n", "line 1: column 'heading'"),
-              ("t,x,y,t\n", "line 1: column 't'"), ("t,x,y\n0,0,0\n1,1e9,0\n", "line 3: x: .*1e\\+07.* got '1e9'"),
+              ("t,x,y,t\n", "line 1: column 't'"), ("t [fortnights],x,y\n", "column 't .*its unit must be one of s, .*nights"),
+              ("t,x,y\n0,0,0\n1,1e9,0\n", "line 3: x: .*1e\\+07.* got '1e9'"),
               ("t,lat,lon\n0,91,0\n", "line 2: latitude"), ("t,x,y,speed\n0,0,0,-3\n", "line 2: speed: must be at least 0"),
               ("t,x,y\nnoon,0,0\n", "line 2: time: must be"), ("t,x,y\n2026-13-01T00:00:00Z,0,0\n", "line 2: time: must be")],
     "a.xml": [("", "is no XML"), ("<net/>", "must begin with <fcd-export>"), ("<fcd-export/>", "holds no positions"),

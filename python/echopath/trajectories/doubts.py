@@ -1,0 +1,45 @@
+"""Speeds and yaws of a file that its positions contradict, as those in other units do."""
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+LEAST_WAY = 5.0        # m, below which nothing is said
+STEADY = 0.5           # of two speeds in a row the smaller over the larger, from which on their mean tells the way between
+MOST_RATIO = 1.5       # of a way by speeds and by positions: corners and rounding make less, km/h 3.6
+LEAST_STEP = 0.2       # m, of positions that tell a direction
+BETTER = 0.05          # mean cosine by which yaws in degrees lie nearer to the way than they do in rad
+
+
+def doubts_of(times: NDArray[np.float64], places: NDArray[np.float64], yaws: list[float], speeds: list[float]) -> list[str]:
+    """What is said of an object of a file, none where its columns agree.
+
+    times: [P] s; places: [P, 3] m; yaws: [P] rad or empty; speeds: [P] m/s or empty
+    """
+    said = [_of_speeds(times, places, np.array(speeds)) if speeds else "", _of_yaws(places, np.array(yaws)) if yaws else ""]
+    return [words for words in said if words]
+
+
+def _of_speeds(times: NDArray[np.float64], places: NDArray[np.float64], speeds: NDArray[np.float64]) -> str:
+    before, after = speeds[:-1], speeds[1:]
+    is_steady = np.minimum(before, after) > STEADY * np.maximum(before, after)
+    by_speed = float(np.sum((0.5 * (before + after) * np.diff(times))[is_steady]))
+    by_place = float(np.sum(np.linalg.norm(np.diff(places, axis=0), axis=1)[is_steady]))
+    if max(by_speed, by_place) < LEAST_WAY or by_place < MOST_RATIO * by_speed < MOST_RATIO**2 * by_place:
+        return ""
+    return (f"goes {by_speed:.3g} m by its speeds and {by_place:.3g} m by its positions; a unit in brackets, such as "
+            "'speed [km/h]', says in which a column is")
+
+
+def _of_yaws(places: NDArray[np.float64], yaws: NDArray[np.float64]) -> str:
+    steps = np.diff(places, axis=0)
+    moves = np.hypot(steps[:, 0], steps[:, 1]) > LEAST_STEP
+    if not moves.any() or np.abs(yaws).max() <= 2.0 * math.pi:
+        return ""
+    bearings, middles = np.arctan2(steps[moves, 1], steps[moves, 0]), 0.5 * (yaws[:-1] + yaws[1:])[moves]
+    nearness = np.mean(np.cos(middles - bearings))
+    if np.mean(np.cos(np.radians(middles) - bearings)) < nearness + BETTER:
+        return ""
+    return f"has a yaw of up to {np.abs(yaws).max():.4g} rad, which points along its way as degrees; call the column yaw_deg"

@@ -71,24 +71,24 @@ def written(tmp_path_factory):
     return folder
 
 
-def sequences(written) -> list:
-    return [Sequence.from_json(str(path)) for path in sorted((written / "out" / "data").glob("sequence_*/scenes.json"))]
+def sequences_of(folder) -> list:
+    return [Sequence.from_json(str(path)) for path in sorted((folder / "out" / "data").glob("sequence_*/scenes.json"))]
 
 
 def test_their_reader_finds_every_frame_and_both_splits(written):
     made = dataset.open(written / "made")
-    assert [len(one) for one in sequences(written)] == [3] * 4
+    assert [len(one) for one in sequences_of(written)] == [3] * 4
     names = str(written / "out" / "data" / "sequences.json")
     splits = {"train": get_training_sequences(names), "val": get_validation_sequences(names)}
     assert {split: len(found) for split, found in splits.items()} == {split: len(made.split(split)) // 3 for split in splits}
-    for one in sequences(written):
+    for one in sequences_of(written):
         times = [scene.timestamp for scene in one.scenes()]
         assert times == one.timestamps == [scene.timestamp for scene in one.scenes(sensor_id=1)]
         assert np.diff(times).tolist() == [50_000, 50_000]
 
 
 def test_points_are_where_the_targets_are(written):
-    for scene in (scene for one in sequences(written) for scene in one.scenes()):
+    for scene in (scene for one in sequences_of(written) for scene in one.scenes()):
         time = scene.timestamp / 1e6
         assert scene.odometry_data["x_seq"] == pytest.approx(1.0 + EGO * time, abs=1e-5)
         assert scene.odometry_data["vx"] == pytest.approx(EGO, rel=1e-6) and abs(scene.odometry_data["yaw_rate"]) < 1e-6
@@ -104,7 +104,7 @@ def test_points_are_where_the_targets_are(written):
 
 
 def test_velocities_and_cross_sections_are_those_of_the_targets(written):
-    for scene in (scene for one in sequences(written) for scene in one.scenes()):
+    for scene in (scene for one in sequences_of(written) for scene in one.scenes()):
         points = scene.radar_data
         ball = points[np.argmax(np.where(points["label_id"] == Label.STATIC.value, points["rcs"], -99.0))]
         assert abs(ball["vr_compensated"]) < 0.5 * VELOCITY_CELL
@@ -118,11 +118,65 @@ def test_velocities_and_cross_sections_are_those_of_the_targets(written):
 
 def test_tracks_last_over_the_frames_of_a_scene_alone(written):
     tracks = [{point["track_id"] for point in one.radar_data if point["label_id"] == Label.PEDESTRIAN.value}
-              for one in sequences(written)]
+              for one in sequences_of(written)]
     assert all(len(found) == 1 for found in tracks) and len(set.union(*tracks)) == 4
-    data = sequences(written)[0].radar_data
+    data = sequences_of(written)[0].radar_data
     assert len(set(data["uuid"])) == len(data)
     assert set(data["track_id"][data["label_id"] == Label.STATIC.value]) == {b""}
+
+
+TURN, AHEAD, LEFT = 0.6, 2.3, 0.4  # rad/s of a radar that turns; m, of its antennas in its frame
+
+
+def test_antennas_at_the_bumper_of_a_turning_car_are_told(tmp_path):
+    """Whoever goes from the car to the sensor and from there by range and azimuth gets to the ball, in both layouts."""
+    reader = pytest.importorskip("osi3trace.osi_trace")
+    motion = f"motion = {{kind = 'linear', velocity = [{EGO}, 0.0, 0.0], angular_velocity = [0.0, 0.0, {TURN}]}}"
+    text = TEMPLATE.replace("scenes = 4", "scenes = 1").replace(f"speed = {EGO}\n", f"{motion}\n", 1)
+    for k in range(8):
+        text = text.replace(f"position = [0.0, {0.00195 * k:.5f}, 0.0]", f"position = [{AHEAD}, {LEFT + 0.00195 * k:.5f}, 0.0]")
+    text = text.replace("position = [0.0, 0.0, 0.0]", f"position = [{AHEAD}, {LEFT}, 0.0]")
+    (tmp_path / "turning.toml").write_text(text)
+    list(dataset.make(tmp_path / "turning.toml", tmp_path / "made"))
+    made = dataset.open(tmp_path / "made")
+    dataset.write_radar_scenes(made, tmp_path / "out")
+    sensor = json.loads((tmp_path / "out" / "data" / "sensors.json").read_text())["radar_1"]
+    assert [sensor["x"], sensor["y"]] == pytest.approx([AHEAD, LEFT + 0.0136 / 4], abs=1e-4)
+    one, = sequences_of(tmp_path)
+    for scene in one.scenes():
+        points, pose = scene.radar_data[scene.radar_data["label_id"] == Label.STATIC.value], scene.odometry_data
+        ball, time = points[np.argmax(points["rcs"])], scene.timestamp / 1e6
+        yaw, mount = TURN * time, sensor["x"] + 1j * sensor["y"]
+        place = 1.0 + EGO * time + mount * np.exp(1j * yaw)
+        way = PLACE[0] + 1j * PLACE[1] - place
+        assert ball["range_sc"] == pytest.approx(abs(way) - RADIUS, abs=0.5 * RANGE_CELL)
+        assert ball["azimuth_sc"] == pytest.approx(np.angle(way) - yaw, abs=0.03)
+        in_car = mount + ball["range_sc"] * np.exp(1j * ball["azimuth_sc"])
+        assert [ball["x_cc"], ball["y_cc"]] == pytest.approx([in_car.real, in_car.imag], abs=1e-4)
+        assert [pose["vx"], pose["yaw_rate"]] == pytest.approx([EGO * np.cos(yaw), TURN], abs=1e-5)
+        assert abs(ball["vr_compensated"]) < 0.5 * VELOCITY_CELL
+    dataset.write_osi(made, tmp_path / "osi")
+    trace, = (tmp_path / "osi" / "traces").iterdir()
+    for message in reader.OSITrace(str(trace), "SensorData"):
+        radar, = message.feature_data.radar_sensor
+        pose, ball = radar.header.mounting_position, max(radar.detection, key=lambda one: one.rcs).position
+        place = pose.position.x + 1j * pose.position.y + ball.distance * np.exp(1j * (ball.azimuth + pose.orientation.yaw))
+        assert abs(place - (PLACE[0] + 1j * PLACE[1])) == pytest.approx(RADIUS, abs=0.4)
+
+
+def test_sensors_are_as_many_as_places_of_antennas(tmp_path):
+    text = TEMPLATE.replace("position = [0.0, 0.0, 0.0]", "position = [{choice = [0.0, 1.0]}, 0.0, 0.0]", 1)
+    (tmp_path / "drawn.toml").write_text(text.replace("frames = 3", "frames = 1"))
+    list(dataset.make(tmp_path / "drawn.toml", tmp_path / "made"))
+    dataset.write_radar_scenes(dataset.open(tmp_path / "made"), tmp_path / "out")
+    sensors = json.loads((tmp_path / "out" / "data" / "sensors.json").read_text())
+    assert sorted(one["x"] for one in sensors.values()) == [0.0, 0.5]  # half-way to the receivers
+    for one in sequences_of(tmp_path):
+        points = one.radar_data
+        sensor = sensors[f"radar_{points['sensor_id'][0]}"]
+        way = sensor["x"] + points["range_sc"] * np.cos(points["azimuth_sc"])
+        assert len(points) and len(set(points["sensor_id"])) == 1
+        np.testing.assert_allclose(points["x_cc"], way, atol=1e-5)
 
 
 def test_clutter_is_static_or_left_out(written, tmp_path):
@@ -176,7 +230,7 @@ def _check_message(place: int, message) -> None:
     time = 0.05 * place + MIDDLE
     assert radar.header.cycle_counter == place and radar.header.number_of_valid_detections == len(radar.detection) > 1
     pose = radar.header.mounting_position
-    assert [pose.position.x, pose.position.y, pose.position.z] == pytest.approx([1.0 + EGO * time, 0.0, 1.0], abs=1e-6)
+    assert [pose.position.x, pose.position.y, pose.position.z] == pytest.approx([1.0 + EGO * time, 0.0136 / 4, 1.0], abs=2e-5)
     assert [pose.orientation.yaw, pose.orientation.pitch, pose.orientation.roll] == pytest.approx([0.0] * 3, abs=1e-9)
     ball = max((one for one in radar.detection if one.object_id.value == 2 ** 64 - 1), key=lambda one: one.rcs)
     way = PLACE[:2] - [1.0 + EGO * time, 0.0136 / 4]

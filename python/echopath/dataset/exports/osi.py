@@ -10,6 +10,7 @@ import numpy as np
 
 from ...arguments.checks import checked
 from ...arguments.checks import path as folder_rule
+from ...base.antennas import middle_of_antennas
 from ...base.files import written_whole
 from ...base.libraries import needed_module
 from ...detections.detections import Detections
@@ -34,7 +35,8 @@ def write_osi(dataset: Dataset, folder: str | os.PathLike[str]) -> None:
     folder: new or empty; it gets the folder traces, whole or not at all: after a kill, the same call writes it anew. Names of
         files are those of the interface, with time 0 of the scene.
     feature_data.radar_sensor has one sensor: header (measurement_time in the middle of the frame, cycle_counter the place of
-    the frame, mounting_position in the world at that time) and detections: position (distance m, azimuth and elevation rad, in
+    the frame, mounting_position in the world at that time: between transmitters and receivers, from where detections count
+    (`Detections.centre`), with the radar's axes) and detections: position (distance m, azimuth and elevation rad, in
     the sensor's frame), radial_velocity (m/s, as measured, receding positive), rcs (dBsm, by the radar equation with the gains
     of the first antennas), snr (dB), object_id (place in the scene's objects; 2^64 - 1: the surroundings or noise),
     existence_probability 0 of noise and of what comes in beside the echoes (interference, rain, leakage), 1 of echoes;
@@ -82,7 +84,8 @@ def _frame(messages: Any, dataset: Dataset, scene: int, one: Any) -> Any:
     _set_time(message.timestamp, time)
     message.sensor_id.value = SENSOR
     radar = message.feature_data.radar_sensor.add()
-    world = np.asarray(stored.radar.world_from_radar(time))
+    world = np.array(stored.radar.world_from_radar(time))
+    world[:3, 3] = middle_of_antennas(stored.radar, time)
     for header in (message, radar.header):
         _set_pose(header.mounting_position, world)
     _set_time(radar.header.measurement_time, time)

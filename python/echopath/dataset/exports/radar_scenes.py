@@ -1,6 +1,7 @@
 """Datasets in the layout of RadarScenes, which its own tools read (Schumann et al. 2021, doi 10.5281/zenodo.4559821).
 
-The radar is the only sensor, number 1, and the car at once: the car's frame is that of the radar, level with the road.
+The car's frame is that of the radar, level with the road. Sensors are where its antennas are in it: one, number 1, where they are
+at the same place in all scenes.
 """
 from __future__ import annotations
 
@@ -13,8 +14,9 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arguments.checks import checked, one_of
+from ...arguments.checks import checked, one_of, refused
 from ...arguments.checks import path as folder_rule
+from ...base.antennas import centre_of
 from ...base.files import write_texts, written_whole
 from ...base.rates import radar_rate
 from ...detections.detections import Detections
@@ -24,7 +26,7 @@ from ..opened import Dataset, dataset_rule
 from . import are_echoes, cross_sections_dbsm, detections_of, exported
 
 FOLDER = "data"
-SENSOR = 1
+MOST_SENSORS = 255  # of one byte, from 1 on
 MICRO = 1e6  # timestamps are whole microseconds
 Clutter = Literal["static", "omit"]
 _CATEGORIES = {"train": "train", "val": "validation", "validation": "validation"}  # other splits keep their names
@@ -37,15 +39,22 @@ ODOMETRY = np.dtype([("timestamp", "i8"), ("x_seq", "f8"), ("y_seq", "f8"), ("ya
 
 
 class _Pose(NamedTuple):
-    """Where the radar is: world_from_radar [4, 4]; velocity [3] m/s in the world; angular: rad/s about z."""
+    """Where the radar is: world_from_radar [4, 4], and its rate [4, 4] per s."""
 
     world: NDArray[np.float64]
-    velocity: NDArray[np.float64]
-    angular: float
+    rate: NDArray[np.float64]
 
     @property
     def yaw(self) -> float:
         return float(np.arctan2(self.world[1, 0], self.world[0, 0]))
+
+    @property
+    def yaw_rate(self) -> float:
+        return float((self.rate[:3, :3] @ self.world[:3, :3].T)[1, 0])
+
+    def velocity_of(self, place: NDArray[np.float64]) -> NDArray[np.float64]:
+        """[3] m/s over ground of a place [3] in m of the radar's frame, in its axes."""
+        return np.asarray((self.rate[:3, :3] @ place + self.rate[:3, 3]) @ self.world[:3, :3])
 
 
 @checked(dataset=dataset_rule, folder=folder_rule, clutter=one_of(Clutter))
@@ -65,21 +74,28 @@ def write_radar_scenes(dataset: Dataset, folder: str | os.PathLike[str], *, clut
     clutter), label_id; and behind them ghost_label, the label of the Radar Ghost Dataset (Kraus et al. 2021): 1000 times its
     class and 111 for real echoes, 112, 122, 124 for ghosts, 0 for the background. A ghost has the track and the label_id of its
     object.
-    odometry has timestamp, x_seq, y_seq, yaw_seq, vx (m/s), yaw_rate (rad/s), a row for each frame.
-    Raises ValueError naming `dataset` where it has no frames, or no detections with azimuths, and naming `folder` where that has
-    a folder data; ep.FileError where files cannot be written.
+    Ranges and azimuths count from where sensors.json has the sensor in the car: between transmitters and receivers
+    (`Detections.centre`). odometry has timestamp, x_seq, y_seq, yaw_seq, vx (m/s), yaw_rate (rad/s), a row for each frame.
+    Raises ValueError naming `dataset` where it has no frames, no detections with azimuths, or antennas at more than 255 places,
+    and naming `folder` where that has a folder data; ep.FileError where files cannot be written.
     """
     with exported(dataset, folder, FOLDER) as data:
-        sequences = {}
+        sequences: dict[str, dict[str, Any]] = {}
+        sensors: dict[tuple[float, float], int] = {}
         for number, scene in enumerate(dataset.scenes, 1):
-            name = f"sequence_{number}"
-            sequences[name] = _write_sequence(dataset, scene, data / name, name, clutter)
+            name, place = f"sequence_{number}", centre_of(dataset.sequence(scene).radar)
+            sensor = sensors.setdefault((float(place[0]), float(place[1])), len(sensors) + 1)
+            if sensor > MOST_SENSORS:
+                raise refused(ValueError, "dataset", f"of antennas at {MOST_SENSORS} places of the car at most",
+                              str(dataset.folder))
+            sequences[name] = _write_sequence(dataset, scene, data / name, name, sensor, clutter)
         write_texts(data, {"sequences.json": _json({"sequences": sequences}),
-                           "sensors.json": _json({f"radar_{SENSOR}": {"id": SENSOR, "x": 0.0, "y": 0.0, "yaw": 0.0}})})
+                           "sensors.json": _json({f"radar_{sensor}": {"id": sensor, "x": x, "y": y, "yaw": 0.0}
+                                                  for (x, y), sensor in sensors.items()})})
 
 
-def _write_sequence(dataset: Dataset, scene: int, folder: Path, name: str, clutter: Clutter) -> dict[str, Any]:
-    """Writes one scene; returns what sequences.json says of it."""
+def _write_sequence(dataset: Dataset, scene: int, folder: Path, name: str, sensor: int, clutter: Clutter) -> dict[str, Any]:
+    """Writes one scene of the sensor of a number; returns what sequences.json says of it."""
     stored, template = dataset.sequence(scene), dataset.template
     radar = stored.radar
     classes = classes_of(template.draw(scene).table["objects"], template.settings.classes)
@@ -89,13 +105,14 @@ def _write_sequence(dataset: Dataset, scene: int, folder: Path, name: str, clutt
         time = radar.middle_of_frame(float(stored.times[one.place]))
         pose = _pose(radar, time)
         odometry[row] = (round(MICRO * time), *pose.world[:2, 3], pose.yaw,
-                         pose.velocity @ pose.world[:3, 0], pose.angular)
+                         pose.velocity_of(np.zeros(3))[0], pose.yaw_rate)
         found = detections_of(dataset, one)
         rows = _points_of(found, one.number, scene, radar, time, pose, classes)
+        rows["sensor_id"] = sensor
         points.append(rows if clutter == "static" else rows[are_echoes(found)])
     _write_data(folder / "radar_data.h5", np.concatenate(points), odometry)
     category = _CATEGORIES.get(template.split_of(scene), template.split_of(scene))
-    scenes = _scenes(odometry["timestamp"], [len(one) for one in points])
+    scenes = _scenes(odometry["timestamp"], [len(one) for one in points], sensor)
     ends = {"first_timestamp": int(odometry["timestamp"][0]), "last_timestamp": int(odometry["timestamp"][-1])}
     head = {"sequence_name": name, "category": category} | ends
     write_texts(folder, {"scenes.json": _json(head | {"scenes": scenes})})
@@ -103,18 +120,17 @@ def _write_sequence(dataset: Dataset, scene: int, folder: Path, name: str, clutt
 
 
 def _pose(radar: Any, time: float) -> _Pose:
-    world, rate = np.asarray(radar.world_from_radar(time)), radar_rate(radar, time)
-    return _Pose(world, rate[:3, 3], float((rate[:3, :3] @ world[:3, :3].T)[1, 0]))
+    return _Pose(np.asarray(radar.world_from_radar(time)), radar_rate(radar, time))
 
 
 def _points_of(found: Detections, number: int, scene: int, radar: Any, time: float, pose: _Pose,
                classes: dict[str, Any]) -> NDArray[Any]:
-    """The rows of one frame."""
+    """The rows of one frame, but for the number of the sensor."""
     rows = np.zeros(len(found), POINTS)
     own = found.points                                     # in the radar's frame
     world = own @ pose.world[:3, :3].T + pose.world[:3, 3]
     kinds = [classes.get(name, "static") for name in found.object]
-    rows["timestamp"], rows["sensor_id"] = round(MICRO * time), SENSOR
+    rows["timestamp"] = round(MICRO * time)
     rows["range_sc"], rows["azimuth_sc"] = found.range, found.azimuth
     rows["rcs"] = cross_sections_dbsm(found, radar, time)
     rows["vr"], rows["vr_compensated"] = found.velocity, found.velocity - _own_velocity(found, own, pose)
@@ -130,8 +146,7 @@ def _own_velocity(found: Detections, own: NDArray[np.float64], pose: _Pose) -> N
     """Radial velocity in m/s that a point at rest would have, [D]: what the radar's own motion makes."""
     ways = own - found.centre
     directions = ways / np.linalg.norm(ways, axis=1, keepdims=True)
-    moved = pose.velocity @ pose.world[:3, :3] + np.cross([0.0, 0.0, pose.angular], found.centre)
-    return np.asarray(-directions @ moved)
+    return np.asarray(-directions @ pose.velocity_of(found.centre))
 
 
 def _identity(*parts: object) -> str:
@@ -139,7 +154,7 @@ def _identity(*parts: object) -> str:
     return hashlib.md5("/".join(map(str, parts)).encode("utf-8", "surrogatepass"), usedforsecurity=False).hexdigest()
 
 
-def _scenes(timestamps: NDArray[np.int64], counts: list[int]) -> dict[str, Any]:
+def _scenes(timestamps: NDArray[np.int64], counts: list[int], sensor: int) -> dict[str, Any]:
     """What scenes.json says of each frame, by its timestamp."""
     times, ends = [int(time) for time in timestamps], np.cumsum([0, *counts]).tolist()
     scenes = {}
@@ -147,7 +162,7 @@ def _scenes(timestamps: NDArray[np.int64], counts: list[int]) -> dict[str, Any]:
         before = times[index - 1] if index else None
         after = times[index + 1] if index + 1 < len(times) else None
         scenes[str(time)] = {
-            "sensor_id": SENSOR, "prev_timestamp": before, "next_timestamp": after, "prev_timestamp_same_sensor": before,
+            "sensor_id": sensor, "prev_timestamp": before, "next_timestamp": after, "prev_timestamp_same_sensor": before,
             "next_timestamp_same_sensor": after, "odometry_timestamp": time, "odometry_index": index,
             "image_name": f"{time}.jpg", "radar_indices": [ends[index], ends[index + 1]]}
     return scenes

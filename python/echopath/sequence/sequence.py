@@ -33,6 +33,7 @@ from ..tracing.traces import keep_geometry
 from ..weather.weather import weather_of
 from .ahead import one_ahead
 from .contents import Contents
+from .ends import warn_of_ends
 from .folder import NAME
 from .keep import Keep
 from .one_file import store_of
@@ -62,8 +63,8 @@ class Sequence(Row[Frame]):
     parts, tolerance, method, replay, evaluate, phase_tolerance (rad), retrace, keyframes, noise_seed, window, zero_pad, angles,
         labels, detections, truth, guard, trace, signal: as in `simulate`
     times: starts of the frames, [K] in s
-    Raises TypeError or ValueError naming the argument, also where a motion does not cover all frames. A frame raises and warns
-    as that of `simulate` does.
+    Raises TypeError or ValueError naming the argument, also where a motion does not cover all frames. Warns (RuntimeWarning) of
+    trajectories that begin or end within the frames, at some speed. A frame raises and warns as that of `simulate` does.
     """
 
     @checked({"trace": TraceSettings, "signal": SignalSettings}, **TraceSettings.RULES, **SignalSettings.RULES,
@@ -91,6 +92,7 @@ class Sequence(Row[Frame]):
         end = _checked_end(scene, radar, start_time, frames, interval)
         require_interferers(scene, radar, effects, (start_time, end))
         self._run = FrameRun(Scene(scene), radar, tracing, signals, parts, angles, labels, detections, truth, guard)
+        warn_of_ends(scene, radar, start_time, end)
         self._numbers, self._start_time, self._interval = range(frames), start_time, interval
 
     @property

@@ -18,6 +18,7 @@ from .template import Template
 State = Literal["done", "failed", "to do"]
 
 TEMPLATE, MANIFEST, RECORD, DRAWN = "dataset.toml", "manifest.json", "record.json", "drawn.json"
+ORIGIN = "origin.json"  # where the template is that dataset.toml is a copy of
 SCENES = "scenes"  # folder of the folders of scenes
 _BLOCK = 1 << 20  # bytes that are hashed at a time
 
@@ -106,8 +107,20 @@ def prepare_folder(folder: Path, template: Template) -> None:
     theirs = parse(kept) if kept.exists() else None
     if theirs is None and any(folder.glob(f"{SCENES}/*")):
         raise without_template(str(folder))
-    if takes_over(theirs, template, str(folder)):
+    is_new = takes_over(theirs, template, str(folder))
+    if is_new:
         write_texts(folder, {TEMPLATE: template.path.read_text(encoding="utf-8-sig")})
+    if (is_new or not (folder / ORIGIN).exists()) and template.path.resolve() != kept.resolve():
+        write_texts(folder, {ORIGIN: json.dumps({"template": template.path.resolve().as_posix()}) + "\n"})
+
+
+def _folder_of_files(folder: Path) -> Path:
+    """Where the template of a dataset was when it was made, and with it the files that it names; the dataset's own without it."""
+    try:
+        origin = Path(json.loads(read_or_nothing(folder / ORIGIN))["template"]).parent
+    except (ValueError, KeyError, TypeError):
+        return folder
+    return origin if origin.is_dir() else folder
 
 
 def without_template(folder: str) -> Exception:
@@ -149,7 +162,7 @@ def open_template(folder: Path) -> Template:
     path = folder / TEMPLATE
     if not path.exists():
         raise _core.FileError(f"{folder}: is no dataset, it has no {TEMPLATE}")
-    return Template(path)
+    return Template(path, _folder_of_files(folder))
 
 
 def _what_differs(theirs: dict[str, Any], ours: dict[str, Any]) -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
 from .. import _core
-from ..arguments.checks import checked, refused
+from ..arguments.checks import anything, checked, optional, refused
 from ..arguments.checks import path as folder_rule
 from ..base.counts import counted
 from ..frame.frame import Frame
@@ -57,14 +57,17 @@ class Dataset:
         """What a frame holds, "all", "maps" or "labels", as the template says it; "all" of `remade`."""
         return self._source.keep
 
-    def remade(self) -> Dataset:
+    @checked(self=anything, folder=optional(folder_rule))
+    def remade(self, folder: str | os.PathLike[str] | None = None) -> Dataset:
         """The same frames, each simulated again from the template when it is asked for, with all that keep = "all" keeps.
 
         The bits are those of a dataset of this template with keep = "all". So a dataset that keeps maps or labels has exports
-        that need the signals of all antennas, and any frame can be made again alone: `dataset.remade()[137]`. Files that the
-        template names must still be there. Raises nothing; its frames ValueError where they are not.
+        that need the signals of all antennas, and any frame can be made again alone: `dataset.remade()[137]`.
+        folder: of the files that the template names, None: that in which it was when the dataset was made, or where there
+            is none (any more) that of the dataset. Raises TypeError naming it; frames ep.FileError where files are not there.
         """
-        return self._with(self.numbers, Remade(self.template))
+        template = self.template if folder is None else Template(self.template.path, Path(folder))
+        return self._with(self.numbers, Remade(template))
 
     def _with(self, numbers: list[int], source: Source | None = None) -> Dataset:
         return Dataset(self.folder, self.template, numbers, source or self._source)

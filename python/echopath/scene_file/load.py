@@ -42,17 +42,18 @@ def read_scene(path: Path, options: ReadOptions) -> SceneFile:
     return scene_file_of(parse(path), path)
 
 
-def scene_file_of(table: dict, path: Path) -> SceneFile:
-    """What a scene file says, of its table; path: of the file, for messages and for what it names beside it.
+def scene_file_of(table: dict, path: Path, folder: Path | None = None) -> SceneFile:
+    """What a scene file says, of its table; path: of the file, for messages; folder: of what it names, None: that of the file.
 
     Raises ValueError as `load_scene` does.
     """
     try:
         settings = validated(SceneTable, table)
-        trajectories = Trajectories(path.parent)
-        scene = build_scene(settings, path.parent, trajectories)
-        scene.interferers = _build_interferers(settings, path.parent, trajectories)
-        radar = _build_radar(settings.radar, path.parent, trajectories)
+        folder = folder or path.parent
+        trajectories = Trajectories(folder)
+        scene = build_scene(settings, folder, trajectories)
+        scene.interferers = _build_interferers(settings, folder, trajectories)
+        radar = _build_radar(settings.radar, folder, trajectories)
         if settings.mark_mirrors:
             mark_mirrors(scene, radar, time=settings.trace.start_time)
         scene_file = SceneFile(path=path, title=settings.title, scene=scene, radar=radar, trace=_trace(settings),

@@ -1,4 +1,5 @@
 """Datasets: every frame is there once, with the same bits, whoever makes it."""
+import json
 import shutil
 from pathlib import Path
 
@@ -122,11 +123,13 @@ def test_a_dataset_grows_and_is_not_mixed_with_another(small_dataset, tmp_path):
     make(smaller, tmp_path / "out")
     larger = written(tmp_path)
     assert [one.scene for one in make(larger, tmp_path / "out") if not one.was_there] == [4, 5]
-    assert bytes_of(tmp_path / "out") == bytes_of(folder)
+    assert json.loads((tmp_path / "out" / "origin.json").read_text()) == {"template": str(larger)}
+    grown, at_once = (bytes_of(one) for one in (tmp_path / "out", folder))
+    assert grown.keys() == at_once.keys() and {name for name in grown if grown[name] != at_once[name]} == {"origin.json"}
     other = written(tmp_path, HEAD + SCENE.replace("num_rays = 400", "num_rays = 500"))
     with pytest.raises(ValueError, match=r"folder: must be new, or of this template \(\[trace\] differs\)"):
         make(other, tmp_path / "out")
-    assert bytes_of(tmp_path / "out") == bytes_of(folder)
+    assert bytes_of(tmp_path / "out") == grown
 
 
 def test_the_forecast_is_near_what_is_made(small_dataset, tmp_path):

@@ -1,6 +1,7 @@
 """Exports of datasets: there whole or not at all, and of datasets that keep less than they need, whose frames are made again."""
 import hashlib
 import pickle
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -8,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import echopath as ep
 from echopath import dataset
 
 TEMPLATE = """
@@ -111,3 +113,19 @@ def test_remade_frames_go_to_other_processes(made):
     frames = dataset.open(made["labels"]).remade()
     first = frames[0].frame.cube
     assert np.array_equal(pickle.loads(pickle.dumps(frames))[0].frame.cube, first)
+
+
+def test_files_that_a_template_names_are_found_from_where_it_was(tmp_path):
+    """A wall beside the template, a dataset elsewhere: until that is moved away, and then by the folder that is given."""
+    (tmp_path / "work" / "models").mkdir(parents=True)
+    (tmp_path / "work" / "models" / "wall.obj").write_text("v 8 -2 0\nv 8 2 0\nv 8 2 3\nv 8 -2 3\nf 1 2 3 4\n")
+    wall = '[[objects]]\nname = "wall"\nmodel = "models/wall.obj"\nmaterial = "brick"\n[trace]'
+    (tmp_path / "work" / "walls.toml").write_text(TEMPLATE.format(keep="maps").replace("[trace]", wall))
+    list(dataset.make(tmp_path / "work" / "walls.toml", tmp_path / "disk" / "made"))
+    made = dataset.open(tmp_path / "disk" / "made")
+    assert "wall" in made.remade()[1].frame.paths.scene
+    np.testing.assert_array_equal(made.remade()[1].frame.labels["parts"].object_map, made[1].frame.labels["parts"].object_map)
+    shutil.move(tmp_path / "work", tmp_path / "away")
+    with pytest.raises(ep.FileError, match=r"made.dataset.toml: scene 0: .*models.wall.obj: "):
+        dataset.open(made.folder).remade()[1]
+    assert "wall" in made.remade(tmp_path / "away")[1].frame.paths.scene

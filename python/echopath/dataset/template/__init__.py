@@ -58,13 +58,13 @@ class DrawnScene(NamedTuple):
 class Template:
     """A template file (keys: data/README.md). Raises what `load_scene` raises, naming the file.
 
-    path: of the file; settings: DatasetTable
+    path: of the file; folder: of the files that it names, None: that of the file; settings: DatasetTable
     A value is a function of the seed, the number of the scene and the dotted path of its key alone, so that keys that are
     added, and scenes that are added, change no other.
     """
 
-    def __init__(self, path: Path):
-        self.path = path
+    def __init__(self, path: Path, folder: Path | None = None):
+        self.path, self.folder = path, folder or path.parent
         self.table = parse(path)
         scene = copy.deepcopy(self.table)
         self._faults = Faults(path, self.table)
@@ -139,4 +139,4 @@ class Template:
 
     def _scene_file_of(self, scene: DrawnScene) -> SceneFile:
         with self._faults.of(scene.number, scene.table):
-            return scene_file_of(scene.table, self.path)
+            return scene_file_of(scene.table, self.path, self.folder)

@@ -15,6 +15,7 @@ from ..scene.closing_speeds import bodies_faster_than
 from ..signals.measures import power_dbm, velocity_extent, with_error
 from .lists import more_line
 
+NOTHING_DBM = -300.0  # of filters and tails that numbers alone can hold, 100 dB and more below any receiver
 LABEL_WIDTH = 34
 MAX_WIDTH = 118  # columns
 MAX_LISTED = 40  # nodes or meshes named one by one
@@ -27,7 +28,7 @@ FOLDED = "velocities that are ambiguous"
 
 
 def _power_text(power: float) -> str:
-    return f"{power:8.2f} dBm" if np.isfinite(power) else "  nothing"
+    return f"{power:8.2f} dBm" if power > NOTHING_DBM else "  nothing"
 
 
 def line(label: str, value: str) -> str:
@@ -273,7 +274,7 @@ def _ghosts(of_cells) -> list[str]:
 
 
 def _level(power: float) -> str:
-    return f"{in_dbm(power):.1f} dBm" if power > 0.0 else "nothing"
+    return f"{in_dbm(power):.1f} dBm" if in_dbm(power) > NOTHING_DBM else "nothing"
 
 
 def _power(label) -> str:

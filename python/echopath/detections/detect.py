@@ -17,6 +17,7 @@ from ..base.antennas import centre_of
 from ..labels.labels import Labels
 from ..labels.part_cells import floor_over
 from ..paths.families import families as find_families
+from ..receiver.echo_gains import EchoGains
 from ..signals.parts import decompose
 from ..signals.same_radar import difference
 from ..spectra.angles import estimate_angles
@@ -77,8 +78,9 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     window, directions by `estimate_angles`, without the phase that transmit slots (TDM) add at that velocity between the cells.
     A detection has the part of the largest power in its cell without noise, and its object or ghost by the rule of labels
     (ObjectLabel.cells); it is "noise" where echoes hold less than half of its power: those of the parts or labels in all
-    channels, of paths alone by a model of their fields in at most 8 channels, compared with the power in those.
-    spectrum: RangeDoppler with values [tx, rx, velocity, range] in sqrt(W), with noise
+    channels, of paths alone by a model of their fields in at most 8 channels, compared with the power in those. Errors of
+    chains, filters and imbalance of `radar.receiver` count; images and skirts that it makes of echoes elsewhere are noise.
+    spectrum: RangeDoppler with values [tx, rx, velocity, range] in sqrt(W), with noise, as the receiver gives it
     radar: that of the spectrum
     method, false_alarm_rate, guard_velocity, guard_range, training_velocity, training_range, rank: as in `cfar`, in cells
     angles: keywords of `estimate_angles`, such as {"max_peaks": 2} for several directions of a cell
@@ -106,12 +108,13 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     found = cfar(spectrum, radar, method=method, false_alarm_rate=false_alarm_rate, guard_velocity=guard_velocity,
                  guard_range=guard_range, training_velocity=training_velocity, training_range=training_range, rank=rank,
                  progress=progress)
-    warn_of_missing_noise(radar, found.power)
+    gains = EchoGains(radar, spectrum.range, 0.0 if paths is None else paths.frame.start_time)
+    warn_of_missing_noise(radar, found.power, gains.of_filters)
     peaks = _core.find_peaks(spectrum, radar, found, progress)
     cells, power = peaks["cells"], found.power[tuple(peaks["cells"].T)]
     echoes = None if paths is None else EchoFields(paths, spectrum)
     floor = _noise_floor(spectrum, radar, labels, noise_margin_db)
-    columns = _labels_of(spectrum, cells, power, _Makers(paths, parts, labels, beside, objects, floor), echoes, progress)
+    columns = _labels_of(spectrum, cells, power, _Makers(paths, parts, labels, beside, objects, floor, gains), echoes, progress)
     directions = directions_of(spectrum, radar, cells, peaks["velocity"], angles or {}, progress)
     found = _joined(radar, peaks, power, directions, columns, echoes)
     return found if paths is None else dataclasses.replace(found, seed=paths.frame.seed)
@@ -126,6 +129,7 @@ class _Makers(NamedTuple):
     beside: dict
     objects: object
     noise_floor: float  # W
+    gains: EchoGains
 
 
 def _noise_floor(spectrum, radar, labels, margin_db: float | None) -> float:
@@ -137,21 +141,22 @@ def _noise_floor(spectrum, radar, labels, margin_db: float | None) -> float:
 
 def _labels_of(spectrum, cells, power, makers: _Makers, echoes, progress) -> dict:
     """part, share, object, ghost_type, order and class_code [N] of cells [N, 2]; progress: as in `detect`."""
-    paths, parts, labels, beside, objects, noise_floor = makers
+    paths, parts, labels, beside, objects, noise_floor, gains = makers
     found = labelling.CellLabels(len(cells))
     if paths is not None:
         of_paths = find_families(paths, objects)
-        families, whole = labelling.families_of_cells(of_paths, echoes, cells, noise_floor=noise_floor, progress=progress)
+        families, whole = labelling.families_of_cells(of_paths, echoes, cells, gains, noise_floor=noise_floor,
+                                                       progress=progress)
         found.take_families(families, whole, echoes.measured(cells), labelling.resolved_families(paths, of_paths, progress))
     elif labels is not None:
         found.families = labelling.families_of_labels(labels, cells)
         found.resolved = labelling.resolved_labels(labels)
     if labels is not None:
-        found.take_parts(*labelling.label_powers(spectrum, labels, cells), power)
+        found.take_parts(*labelling.label_powers(spectrum, labels, cells, gains), power)
     elif parts is not None:
-        found.take_parts(*labelling.part_powers(parts | beside, cells), power)
+        found.take_parts(*labelling.part_powers(parts | beside, cells, gains), power)
     elif beside:
-        found.take_beside(*labelling.part_powers(beside, cells)[:2])
+        found.take_beside(*labelling.part_powers(beside, cells, gains)[:2])
     found.leave((*BESIDE, *beside))
     return found.columns()
 

@@ -13,12 +13,16 @@ from .detections import NOISE
 HALF = 0.5  # of a cell's power: what echoes without noise hold less of was made by noise
 
 
-def part_powers(maps: dict, cells) -> tuple:
-    """Names [K], powers [K, N] of maps of parts in cells [N, 2] and power [N] of their sum as fields, W, mean over channels."""
+def part_powers(maps: dict, cells, gains) -> tuple:
+    """Names [K], powers [K, N] of maps of parts in cells [N, 2] and power [N] of their sum as fields, W, mean over channels.
+
+    gains: EchoGains of the receiver, through which the parts have not gone
+    """
     velocity, distance = cells[:, 0], cells[:, 1]
     powers, whole = [], 0.0
-    for part in maps.values():
-        values = part.values[:, :, velocity, distance]
+    for name, part in maps.items():
+        tx, rx = (np.arange(count) for count in part.values.shape[:2])
+        values = part.values[:, :, velocity, distance] * gains.of(name, tx[:, None, None], rx[:, None], distance)
         powers.append(np.mean(np.abs(values) ** 2, axis=(0, 1)))
         whole = whole + values
     return list(maps), np.array(powers), np.mean(np.abs(whole) ** 2, axis=(0, 1))
@@ -42,19 +46,28 @@ def _map_of(argument: str, name: str, part, spectrum, radar):
     return part
 
 
-def label_powers(spectrum, labels, cells) -> tuple:
-    """As part_powers, from Labels of the range-Doppler map."""
+def label_powers(spectrum, labels, cells, gains) -> tuple:
+    """As part_powers, from Labels of the range-Doppler map: with the gain in the mean over the channels."""
     if labels.plane != "range_doppler" or labels.whole.shape != spectrum.values.shape[2:]:
         raise ValueError(f"labels: must be of the spectrum's cells {spectrum.values.shape[2:]}, got {labels!r}")
     velocity, distance = cells[:, 0], cells[:, 1]
-    return list(labels.part_names), labels.power[:, velocity, distance], labels.whole[velocity, distance]
+    tx, rx = (np.arange(count) for count in spectrum.values.shape[:2])
+    powers = [labels.power[k, velocity, distance] * _mean_gain(gains.of(name, tx[:, None, None], rx[:, None], distance))
+              for k, name in enumerate(labels.part_names)]
+    of_echoes = _mean_gain(gains.of("", tx[:, None, None], rx[:, None], distance))
+    return list(labels.part_names), np.array(powers), labels.whole[velocity, distance] * of_echoes
 
 
-def families_of_cells(families, echoes, cells, *, noise_floor: float, progress=None) -> tuple:
+def _mean_gain(gains) -> np.ndarray:
+    """Of powers, [N], of gains of amplitudes [tx, rx, N]."""
+    return np.mean(gains ** 2, axis=(0, 1))
+
+
+def families_of_cells(families, echoes, cells, gains, *, noise_floor: float, progress=None) -> tuple:
     """The family that has each of cells [N, 2] by the rule of labels, None without echoes, and power [N] of all as fields, W.
 
-    Powers are means over the channels of the echoes' fields.
-    noise_floor: W, from which on labels take a cell for more than noise; progress: as in `detect`
+    Powers are means over the channels of the echoes' fields, that of all behind the receiver.
+    gains: EchoGains; noise_floor: W, from which on labels take a cell for more than noise; progress: as in `detect`
     """
     owners = CellOwners((len(cells),), families.families, noise_floor)
     own, joint = np.zeros((len(families), len(cells))), np.zeros((len(owners.rivals), len(cells)))
@@ -66,7 +79,7 @@ def families_of_cells(families, echoes, cells, *, noise_floor: float, progress=N
         sums = _sums(field, families.family_of_path[index], len(families))
         own[:, i] = np.mean(np.abs(sums) ** 2, axis=0)
         joint[:, i] = np.mean(np.abs(_sums(sums, rival_of_family, len(owners.rivals))) ** 2, axis=0)
-        whole[i] = np.mean(np.abs(field.sum(axis=1)) ** 2)
+        whole[i] = np.mean(np.abs(gains.of("", *echoes.channels.T, cell[1]) * field.sum(axis=1)) ** 2)
     for rival, power in enumerate(joint):
         owners.add(rival, power, 0.0)
     for rival in owners.faded():

@@ -12,13 +12,13 @@ from ..base.decibels import in_dbm
 _QUANTILE, _LEAST_SHARE = 0.25, 0.05
 
 
-def warn_of_missing_noise(radar, power) -> None:
+def warn_of_missing_noise(radar, power, of_filters) -> None:
     """Warns (RuntimeWarning) where a map has far less power in its weak cells than the radar's noise alone.
 
-    radar: of the map; power: [velocity, range] in W, mean over channels
+    radar: of the map; power: [velocity, range] in W, mean over channels; of_filters: gains [range] of amplitudes
     """
     noise = _core.noise_power_in_cell(radar)
-    if np.quantile(power, _QUANTILE) < _LEAST_SHARE * noise:
+    if np.mean(power < _LEAST_SHARE * noise * of_filters ** 2) > _QUANTILE:
         warn_user(f"spectrum: holds no noise of the radar ({in_dbm(noise):.0f} dBm in a cell), so that "
                   f"detections are sidelobes and rounding; {_way_out(radar.receiver)}")
 

@@ -1,0 +1,61 @@
+"""What the linear faults of a receiver make of an echo where it stands in a map."""
+from __future__ import annotations
+
+import numpy as np
+
+from ..arguments.part_names import INTERFERENCE, LEAKAGE
+from .channels import receiver_factors, require_channels, transmitter_factors
+from .filters import NEGATIVE_SHARE, has_filters, response
+from .settings import Receiver
+from .slots import SlotTimes
+
+_WITHOUT_TRANSMITTERS = (INTERFERENCE, LEAKAGE)  # the one has not their errors, the other has them already
+
+
+class EchoGains:
+    """By how much a receiver makes the amplitudes of echoes larger, by channels and by the cells of range of a map.
+
+    Model: errors of the chains, of the receivers as the root of their mean square over the frame; the filters at the beat
+    frequency of the range; the share that the imbalance leaves where it was. Coupling, phase noise and compression count for
+    nothing.
+    radar: that has the receiver; ranges: [R] m, of the map; start_time: s, of the frame
+    of_filters: [R], also that of noise
+    """
+
+    def __init__(self, radar, ranges, start_time: float = 0.0):
+        receiver = Receiver() if radar.receiver is None else radar.receiver
+        require_channels(receiver, radar)
+        self.of_filters = _filter_gains(receiver, radar.waveform, ranges)
+        self._of_receivers = _kept(receiver, radar.waveform) * _mean_of_receivers(receiver, radar, start_time)
+        self._of_transmitters = _sizes(transmitter_factors(receiver, radar), len(radar.transmitters))
+
+    def of(self, part: str, tx, rx, distance) -> np.ndarray:
+        """The gains of a part of this name.
+
+        tx, rx, distance: indices of antennas and of cells of range, of shapes that broadcast to that of the result
+        """
+        gains = self._of_receivers[rx] * self.of_filters[distance]
+        return gains * (1.0 if part in _WITHOUT_TRANSMITTERS else self._of_transmitters[tx])
+
+
+def _filter_gains(receiver: Receiver, waveform, ranges) -> np.ndarray:
+    if not has_filters(receiver):
+        return np.ones(len(ranges))
+    beat = np.asarray(ranges) / waveform.range_resolution * waveform.sampling_rate / waveform.num_samples
+    is_negative = (not waveform.real) & (beat >= (1.0 - NEGATIVE_SHARE) * waveform.sampling_rate)
+    return np.abs(response(receiver, beat - is_negative * waveform.sampling_rate))
+
+
+def _kept(receiver: Receiver, waveform) -> float:
+    """What is left of an echo beside its image: `unbalanced`."""
+    turn = 10.0 ** (receiver.iq_gain_db / 20.0) * np.exp(1j * receiver.iq_phase)
+    return 1.0 if waveform.real else 0.5 * float(np.abs(1.0 + turn))
+
+
+def _mean_of_receivers(receiver: Receiver, radar, start_time: float) -> np.ndarray:
+    factors = receiver_factors(receiver, radar, SlotTimes(radar, start_time))
+    return np.ones(len(radar.receivers)) if factors is None else np.sqrt(np.mean(np.abs(factors) ** 2, axis=(0, 2, 3)))
+
+
+def _sizes(factors, count: int) -> np.ndarray:
+    return np.ones(count) if factors is None else np.abs(factors)

@@ -1,0 +1,68 @@
+"""Detections in what a faulty receiver gives: what is noise against the signal of the echoes behind the same receiver."""
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from support.scenes.small_spheres import TARGETS, nearest
+
+FAULTS = {
+    "receivers": dict(receiver_gain_db=[6.0] * 8), "a receiver": dict(receiver_gain_db=[15.0] + [0.0] * 7),
+    "transmitters": dict(transmitter_gain_db=[5.0]), "drift": dict(gain_drift_db=[300.0] * 8),
+    "weak receivers": dict(receiver_gain_db=[-9.0] * 8), "filters": dict(high_pass=[2e6, 2e6], low_pass=6e6)}
+FALSE_ALARMS = 0.01
+BORDERLINE = 0.02  # of detections, whose echoes hold nearly half of their power
+
+
+@pytest.mark.parametrize("start_time", [0.0, 0.02])
+@pytest.mark.parametrize("fault", FAULTS)
+def test_noise_is_what_echoes_behind_the_receiver_hold_less_than_half_of(spheres, fault, start_time):
+    radar, paths, _ = spheres
+    radar = radar.replace(receiver=ep.Receiver(**FAULTS[fault]))
+    paths = ep.trace(paths.scene, radar, num_rays=6000, max_bounces=1, start_time=start_time)
+    parts = ep.decompose(paths, radar, {name: f"T '{name}' R" for name in TARGETS})
+    spectrum = ep.range_doppler(ep.receive(sum(parts.values()), radar, seed=1, start_time=start_time).cube, radar)
+    received = ep.receive_parts(parts, radar, seed=1, start_time=start_time)
+    echoes = ep.range_doppler(sum(received[name] for name in TARGETS), radar)
+    for source in [{"parts": parts}, {}]:
+        found = ep.detect(spectrum, radar, false_alarm_rate=FALSE_ALARMS, paths=paths, **source)
+        share, power = (np.mean(np.abs(one.values) ** 2, axis=(0, 1))[tuple(found.cells.T)] for one in (echoes, spectrum))
+        wrong = found.is_noise != (share < 0.5 * power)
+        assert found.is_noise.sum() > 20 and wrong.mean() <= BORDERLINE, np.count_nonzero(wrong)
+        assert [found.object[nearest(found, name)] for name in TARGETS] == list(TARGETS)
+
+
+def test_images_of_echoes_are_noise_and_the_echoes_are_not(spheres):
+    """Of a branch Q that is 9 dB too strong an echo keeps 5.6 dB more than it had, and its image has the rest."""
+    radar, paths, _ = spheres
+    radar = radar.replace(receiver=ep.Receiver(iq_gain_db=9.0))
+    paths = ep.trace(paths.scene, radar, num_rays=6000, max_bounces=1)
+    spectrum = ep.range_doppler(ep.receive(ep.synthesize(paths, radar), radar, seed=1).cube, radar)
+    found = ep.detect(spectrum, radar, paths=paths)
+    assert sorted(found.object) == ["", "", "", *sorted(TARGETS)] and np.array_equal(found.is_noise, found.object == "")
+    far = [-TARGETS[name][0] % radar.waveform.max_range for name in TARGETS]
+    assert sorted(found.range[found.is_noise]) == pytest.approx(sorted(far), abs=radar.waveform.range_resolution)
+
+
+def test_labels_tell_noise_behind_the_receiver_too(spheres):
+    radar, paths, _ = spheres
+    radar = radar.replace(receiver=ep.Receiver(receiver_gain_db=[6.0] * 8))
+    cube = ep.synthesize(paths, radar)
+    labels = ep.annotate(paths, ep.decompose(paths, radar, {"near": "T 'near' R"}), radar)
+    found = ep.detect(ep.range_doppler(ep.receive(cube, radar, seed=1).cube, radar), radar, labels=labels)
+    assert not found.is_noise.any() and set(found.object) == set(TARGETS)
+
+
+@pytest.mark.parametrize("receiver", [dict(low_pass=4e6), dict(high_pass=[3e6] * 3)])
+def test_filters_do_not_count_as_missing_noise(spheres, receiver):
+    radar, paths, _ = spheres
+    radar = radar.replace(receiver=ep.Receiver(**receiver))
+    cube = ep.synthesize(paths, radar)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        ep.detect(ep.range_doppler(ep.receive(cube, radar, seed=1).cube, radar), radar)
+    with pytest.warns(RuntimeWarning, match="holds no noise"):
+        ep.detect(ep.range_doppler(ep.receive(cube, radar, seed=None).cube, radar), radar)

@@ -25,8 +25,8 @@ from ..spectra.range_doppler import CFAR_RULES, FALSE_ALARM_RATE, RANK, CfarMeth
 from . import labelling
 from .detections import Detections
 from .directions import directions_of
-from .echo_fields import EchoFields
 from .noise import warn_of_missing_noise
+from .uneven_fields import echo_fields
 
 
 def _parts(argument: str, value):
@@ -112,7 +112,7 @@ def detect(spectrum: _core.RangeDoppler, radar: _core.Radar, *, method: CfarMeth
     warn_of_missing_noise(radar, found.power, gains.of_filters)
     peaks = _core.find_peaks(spectrum, radar, found, progress)
     cells, power = peaks["cells"], found.power[tuple(peaks["cells"].T)]
-    echoes = None if paths is None else EchoFields(paths, spectrum)
+    echoes = None if paths is None else echo_fields(paths, spectrum)
     floor = _noise_floor(spectrum, radar, labels, noise_margin_db)
     columns = _labels_of(spectrum, cells, power, _Makers(paths, parts, labels, beside, objects, floor, gains), echoes, progress)
     directions = directions_of(spectrum, radar, cells, peaks["velocity"], angles or {}, progress)

@@ -14,7 +14,7 @@ from ..arguments.checks import an, anything, checked, real, refused
 from ..arguments.keywords import parameters_of
 from ..arguments.settings import Evaluate, Replay, Retrace
 from ..base.interrupts import interrupts_are_kept
-from ..detections.echo_fields import EchoFields
+from ..detections.uneven_fields import echo_fields
 from ..frame.frame import Frame, with_spectra
 from ..scene.scene import Scene
 from ..spectra.angles import range_azimuth
@@ -131,7 +131,7 @@ def read_frame(path, meshes: KeptMeshes | None = None) -> Frame:
         if "detections" in file:
             frame.detections = read_detections(read_group(file, "detections"), frame.spectrum.values.shape[2:],
                                                seed=paths.frame.seed, noise_seed=frame.noise_seed,
-                                               echoes=EchoFields(paths, frame.spectrum))
+                                               echoes=echo_fields(paths, frame.spectrum))
     return frame
 
 

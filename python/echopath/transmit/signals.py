@@ -56,14 +56,15 @@ def _kinds_of_chirp(radar: _core.Radar) -> Iterator[tuple]:
     waveform, num_tx = radar.waveform, len(radar.transmitters)
     chirps = np.arange(waveform.num_chirps) * radar.num_slots
     slots = chirps + (0 if is_coded(radar) else np.arange(num_tx)[:, None]) + np.zeros((num_tx, 1), int)
-    kinds = np.stack([_repeated(steps, slots) for steps in (waveform.frequency_steps, waveform.bandwidth_steps)], axis=-1)
+    kinds = np.stack([repeated(steps, slots) for steps in (waveform.frequency_steps, waveform.bandwidth_steps)], axis=-1)
     for kind in np.unique(kinds.reshape(-1, 2), axis=0):
         plain = waveform.replace(start_frequency=waveform.start_frequency + kind[0],
                                  bandwidth=waveform.bandwidth + kind[1], frequency_steps=(), bandwidth_steps=())
         yield (radar.replace(waveform=plain), *np.nonzero(np.all(kinds == kind, axis=-1)))
 
 
-def _repeated(steps, slots) -> np.ndarray:
+def repeated(steps, slots) -> np.ndarray:
+    """The steps of slots, an array of their shape; 0 without steps."""
     return np.take(steps, slots % len(steps)) if len(steps) else np.zeros(slots.shape)
 
 

@@ -1,0 +1,67 @@
+"""Detections where chirps differ from slot to slot, against the signals of single paths and of families."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import echopath as ep
+from echopath.detections.uneven_fields import echo_fields
+from support.scenes.small_spheres import TARGETS, radar_with, scene_of
+from support.shapes import lambert
+
+MODEL = 0.02  # of the peak; 0.005 found
+HELD = 0.95   # of a cell's power, by the paths named
+SLOTS = {
+    "staggered": dict(extra_idle=(0.0, 20e-6, 7e-6)), "hopping": dict(frequency_steps=(0.0, 170e6, 60e6, 110e6, 20e6)),
+    "wider": dict(bandwidth_steps=(0.0, 40e6)),
+    "all": dict(extra_idle=(0.0, 9e-6), frequency_steps=(0.0, 8e7, 3e7), bandwidth_steps=(0.0, -3e7, 2e7, 1e7))}
+
+
+def uneven(radar, slots):
+    return radar.replace(waveform=radar.waveform.replace(**slots))
+
+
+@pytest.mark.parametrize("window, zero_pad", [("hann", 1), ("rect", 2)])
+@pytest.mark.parametrize("slots", SLOTS.values(), ids=SLOTS)
+def test_the_field_of_a_single_path_is_that_of_its_signal_at_all_velocities(slots, window, zero_pad):
+    radar = uneven(radar_with(receivers=2, transmitters=2), slots)
+    paths = ep.trace(scene_of(TARGETS), radar, num_rays=2000, max_bounces=1, start_time=0.01)
+    spectrum = ep.range_doppler(ep.synthesize(paths, radar), radar, window, zero_pad)
+    echoes, nearest_cell = echo_fields(paths, spectrum), ep.path_cells(paths, spectrum)
+    for chosen in (np.argmax(np.where(paths.mesh_id[paths.offsets] == number, np.abs(paths.amplitude), 0.0))
+                   for number in range(len(TARGETS))):
+        alone = ep.synthesize(paths.select(np.arange(paths.num_paths) == chosen), radar, method="direct")
+        values = ep.range_doppler(alone, radar, window, zero_pad).values.reshape(4, *spectrum.values.shape[2:])
+        far = nearest_cell.range_index[chosen]
+        for cell in [(slow, far + beside) for slow in range(0, values.shape[1], 13) for beside in (0, 1)]:
+            index, field = echoes.fields(cell)
+            model = field[:, index == chosen].sum(axis=1)
+            exact = values[:, *cell]
+            turn = np.vdot(model, exact) / max(abs(np.vdot(model, exact)), 1e-300)  # of all fields of a cell: where samples begin
+            np.testing.assert_allclose(turn * model, exact, rtol=0.0, atol=MODEL * np.abs(values).max())
+
+
+@pytest.mark.parametrize("slots", SLOTS.values(), ids=SLOTS)
+def test_detections_have_the_strongest_family_of_their_cells_and_the_paths_behind_them(slots):
+    scene = ep.Scene()
+    scene.add(ep.actors.pedestrian(height=1.78, speed=1.5), name="walker", position=(8, 0, -1), yaw=np.pi)
+    scene.add(ep.actors.plate(0.3, 0.3), name="plate", material=lambert(0.27), position=(14, -1, 0),
+              motion=ep.LinearMotion(velocity=(30.0, 0, 0)))
+    radar = uneven(radar_with(receivers=2, transmitters=2, num_chirps=128, chirp_interval=60e-6), slots)
+    paths = ep.trace(scene, radar, num_rays=3000, max_bounces=1)
+    maps = {family.object: ep.range_doppler(cube, radar).values
+            for family, cube in ep.decompose(paths, radar, ep.families(paths)).items()}
+    spectrum = ep.range_doppler(ep.add_noise(ep.synthesize(paths, radar), radar, seed=2), radar)
+    found = ep.detect(spectrum, radar, paths=paths)
+    powers = np.array([np.mean(np.abs(values) ** 2, axis=(0, 1))[tuple(found.cells.T)] for values in maps.values()])
+    echoes = np.mean(np.abs(sum(maps.values())) ** 2, axis=(0, 1))[tuple(found.cells.T)]
+    measured = np.mean(np.abs(spectrum.values) ** 2, axis=(0, 1))[tuple(found.cells.T)]
+    sure = np.abs(echoes / measured - 0.5) > 0.1
+    assert np.array_equal(found.is_noise[sure], (echoes < 0.5 * measured)[sure]) and {"walker", "plate"} <= set(found.object)
+    clear = sure & ~found.is_noise & (powers.max(axis=0) > 2.0 * np.sort(powers, axis=0)[-2])
+    assert list(found.object[clear]) == [list(maps)[best] for best in powers[:, clear].argmax(axis=0)]
+    for i in np.argsort(-found.snr_db)[:3]:
+        index, _ = found.paths(i)
+        alone = ep.synthesize(paths.select(np.isin(np.arange(paths.num_paths), index)), radar)
+        held = np.mean(np.abs(ep.range_doppler(alone, radar).values[:, :, *found.cells[i]]) ** 2)
+        assert held == pytest.approx(echoes[i], rel=1.0 - HELD, abs=0.0)

@@ -26,9 +26,9 @@ def interference(radar: _core.Radar, other: _core.Radar, paths: _core.Paths | No
 
     Model: the other radar sends its chirps over and over, frame after frame; each is mixed with the chirp of the radar that is
     under way, and the filter before the converter leaves what lies within the band: a crossing of slopes m and n lasts
-    sampling_rate / |m - n|. It sends while it samples. Both radars and the scene move through the frame: each chirp has the
-    delays and the Doppler of its own time. The direct way has the spreading of one way and both antennas' gains toward each
-    other, without anything in between; polarisation counts for nothing.
+    sampling_rate / |m - n|, of real samples on both sides of its middle. It sends while it samples. Both radars and the scene
+    move through the frame: each chirp has the delays and the Doppler of its own time. The direct way has the spreading of one
+    way and both antennas' gains toward each other, without anything in between; polarisation counts for nothing.
     radar: that receives, its own position, motion and antennas; other: that sends, likewise, with a waveform of its own
     paths: one-way paths from the other radar to this one, instead of the direct way: those of a trace by a radar that has the
         transmitters of the other and the receivers of this one, both as they stand in the middle of the frame
@@ -91,9 +91,13 @@ def _chirp(waveform, slot: int) -> tuple:
 
 
 def _filtered(fine, waveform):
-    """[rx, sample] of signals [rx, FINE x sample]: what the filter before the converter leaves of them."""
+    """[rx, sample] of signals [rx, FINE x sample]: what the filter before the converter leaves of them.
+
+    The one branch of real samples does not tell differences of frequency below 0 from those above: both are left.
+    """
     if not fine.any():
         return fine[:, ::FINE]
-    spectrum = np.fft.fft(fine)
-    spectrum[:, waveform.num_samples // 2 if waveform.real else waveform.num_samples:] = 0.0
+    spectrum, count = np.fft.fft(fine), waveform.num_samples
+    removed = slice((count + 1) // 2, fine.shape[1] - (count - 1) // 2) if waveform.real else slice(count, None)
+    spectrum[:, removed] = 0.0
     return np.fft.ifft(spectrum)[:, ::FINE]

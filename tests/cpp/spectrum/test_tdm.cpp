@@ -18,6 +18,42 @@ TEST(Tdm, TenMetresPerSecondTurnASlotByItsPublishedPhase) {
   EXPECT_NEAR(std::arg(phasors[2]), -2 * 0.974568, 2 * kLastDigit);
 }
 
+TEST(Tdm, IdleTimesCountAsTheyComeBetweenTheSlots) {
+  Radar radar = testing::line_radar(1);
+  radar.transmitters.resize(3, radar.transmitters.front());
+  radar.waveform.chirp_interval = 30e-6;
+  radar.waveform.extra_idle = {4e-6, 0.0, 11e-6};
+  const std::vector<double> delays = slot_delays(radar);
+  EXPECT_EQ(delays[0], 0.0);
+  EXPECT_NEAR(delays[1], 34e-6, 1e-18);
+  EXPECT_NEAR(delays[2], 64e-6, 1e-18);
+  // Every second slot waits: of two chirps in a row one transmitter is late by 30 us and by 40 us.
+  radar.waveform.extra_idle = {0.0, 10e-6};
+  EXPECT_NEAR(slot_delays(radar)[1], 35e-6, 1e-18);
+  EXPECT_NEAR(slot_delays(radar)[2], 70e-6, 1e-18);
+}
+
+TEST(Tdm, CarriersThatDifferTurnAnEchoByItsDelay) {
+  Radar radar = testing::line_radar(1);
+  radar.transmitters.resize(2, radar.transmitters.front());
+  EXPECT_TRUE(carrier_phasors(radar, {30.0}).empty());
+  radar.waveform.frequency_steps = {0.0, 1e6};
+  const auto phasors = carrier_phasors(radar, {0.0, 30.0});
+  EXPECT_EQ(phasors[1], Complex(1.0));
+  EXPECT_EQ(phasors[2], Complex(1.0));
+  EXPECT_NEAR(std::arg(phasors[3]), -1.257507, kLastDigit);  // 0.2001385 turns: 60 m at 1 MHz
+  // A wider sweep has a higher carrier in its middle.
+  radar.waveform.frequency_steps = {};
+  radar.waveform.bandwidth_steps = {0.0, 1e6};
+  const double middle = 0.5 * (radar.waveform.num_samples - 1) / radar.waveform.num_samples;
+  EXPECT_NEAR(std::arg(carrier_phasors(radar, {0.0, 30.0})[3]), -1.257507 * middle, kLastDigit);
+  radar.waveform.bandwidth_steps = {0.0, 1e6, 2e6};  // those of a transmitter change from chirp to chirp
+  EXPECT_TRUE(carrier_phasors(radar, {30.0}).empty());
+  radar.waveform.bandwidth_steps = {0.0, 1e6};
+  radar.multiplexing = Multiplexing::kDdm;
+  EXPECT_TRUE(carrier_phasors(radar, {30.0}).empty());
+}
+
 TEST(Tdm, TransmittersThatSendAtOnceHaveNoPhaseBetweenThem) {
   Radar radar = testing::line_radar(1);
   radar.transmitters.resize(3, radar.transmitters.front());

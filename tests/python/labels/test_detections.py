@@ -156,9 +156,11 @@ def test_folds_give_the_velocity_and_the_range_without_its_shift():
 @pytest.mark.parametrize("method", ["bartlett", "capon"])
 @pytest.mark.parametrize("folds", [0, 1])
 @pytest.mark.parametrize("beside", [0.0, 0.25, 0.49, 0.75])
-def test_targets_that_move_between_slots_are_where_they_are_whatever_their_speed_in_the_cell(beside, folds, method):
-    """Between slots a target turns by 2 pi beside / (3 * 16) more than its cell's middle, as half a wavelength would look."""
+@pytest.mark.parametrize("extra_idle", [(), (2e-6, 24e-6, 0.0)], ids=["even", "staggered"])
+def test_targets_that_move_between_slots_are_where_they_are_whatever_their_speed_in_the_cell(extra_idle, beside, folds, method):
+    """Between even slots a target turns by 2 pi beside / (3 * 16) more than its cell's middle, as half a wavelength would."""
     radar = radar_with(receivers=4, transmitters=3, num_chirps=16, chirp_interval=25e-6)
+    radar = radar.replace(waveform=radar.waveform.replace(extra_idle=extra_idle))
     radar = radar.replace(transmit_power=1e3 * radar.transmit_power)  # what noise adds to directions is below the tolerance
     speed = (3 + beside) * radar.waveform.velocity_resolution(3) + 2 * folds * radar.waveform.max_velocity(3)
     paths = ep.trace(scene_of({"ball": (12.0, 0.35, speed)}), radar, num_rays=3000, max_bounces=1)

@@ -197,6 +197,19 @@ def test_fast_targets_unfold_by_their_slots():
     assert abs(ep.estimate_angles(spectrum, radar, cells=[cell]).azimuth[0] - 0.4) > 2 * DEGREE
 
 
+@pytest.mark.parametrize("steps", [dict(frequency_steps=(0.0, 3e6, 1e6)), dict(bandwidth_steps=(0.0, -2e6, 3e6)),
+                                   dict(frequency_steps=(1e6, 0.0, 1e6), bandwidth_steps=(2e6, 0.0, 0.0))])
+def test_transmitters_that_send_on_carriers_of_their_own_see_the_same_direction(steps):
+    """1 MHz more turns an echo from 8 m by 0.34 rad, which looks like half a degree of four elements."""
+    radar = three_by_four(chirps=waveform(num_chirps=16).replace(**steps))
+    spectrum = spectrum_of(scene_of_spheres(at(8.0, 0.3, 0.0)), radar)
+    cells = [strongest_cell(spectrum)]
+    for found in (ep.estimate_angles(spectrum, radar, cells=cells),
+                  ep.estimate_angles(ep.compensate_tdm(spectrum, radar), radar, cells=cells)):
+        assert found.azimuth[0] == pytest.approx(0.3, abs=DIRECTION_TOLERANCE)
+    assert abs(ep.estimate_angles(spectrum, radar, cells=cells, compensate=False).azimuth[0] - 0.3) > 3 * DIRECTION_TOLERANCE
+
+
 def test_virtual_arrays_tell_what_they_are():
     array = ep.virtual_array(mimo([(0, 0), (3, 0)], LINE, height=1.0))
     assert array.positions.shape == (2, 4, 3) and array.elements.shape == (7, 3)

@@ -19,14 +19,20 @@ ElementReader::ElementReader(const RangeDoppler& map, const VirtualArray& array,
     first_.push_back(static_cast<int64_t>(channel_.size()));
   }
   if (!compensate_) return;
-  if (map.is_tdm_compensated) phasor_.assign(radar.transmitters.size() * map.velocity.size(), 1.0);
-  else phasor_ = slot_phasors(radar, map.velocity);
+  const double period = radar.num_slots() * radar.waveform.mean_interval();
+  for (const double delay : slot_delays(radar)) turns_of_fold_.push_back(delay / period);
+  if (map.is_tdm_compensated) {
+    phasor_.assign(radar.transmitters.size() * map.velocity.size(), 1.0);
+    return;
+  }
+  phasor_ = slot_phasors(radar, map.velocity);
+  carrier_ = carrier_phasors(radar, map.range);
 }
 
 Complex ElementReader::weight(int64_t entry, int64_t velocity, double fold) const {
   if (!compensate_) return 1.0;
   const int64_t slot = channel_[entry] / map_.num_receivers;
-  const double turns = std::fmod(fold * static_cast<double>(slot), map_.num_transmitters) / map_.num_transmitters;
+  const double turns = std::fmod(fold * turns_of_fold_[slot], 1.0);
   return phasor_[slot * num_velocities_ + velocity] * std::polar(1.0, -kTwoPi * turns);
 }
 
@@ -38,8 +44,11 @@ void ElementReader::read(int64_t velocity, int64_t first, int64_t count, Eigen::
       const Complex factor = share * weight(entry, velocity, fold);
       const Complex* row = map_.values.data() + (channel_[entry] * num_velocities_ + velocity) * num_ranges_ + first;
       const bool is_first = entry == first_[element];
+      const Complex* carrier =
+          carrier_.empty() ? nullptr : &carrier_[channel_[entry] / map_.num_receivers * num_ranges_ + first];
       for (int64_t i = 0; i < count; ++i) {
-        values(element, i) = is_first ? factor * row[i] : values(element, i) + factor * row[i];
+        const Complex value = carrier ? factor * carrier[i] * row[i] : factor * row[i];
+        values(element, i) = is_first ? value : values(element, i) + value;
       }
     }
   }

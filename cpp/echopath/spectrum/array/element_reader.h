@@ -32,9 +32,11 @@ class ElementReader {
   const RangeDoppler& map_;
   int64_t num_velocities_, num_ranges_;
   bool compensate_;
-  std::vector<int64_t> first_;                // [elements + 1] into channel_
-  std::vector<int64_t> channel_;              // tx * num_receivers + rx
-  std::vector<std::complex<double>> phasor_;  // [tx, V]
+  std::vector<int64_t> first_;                 // [elements + 1] into channel_
+  std::vector<int64_t> channel_;               // tx * num_receivers + rx
+  std::vector<std::complex<double>> phasor_;   // [tx, V]
+  std::vector<std::complex<double>> carrier_;  // [tx, R], empty: 1
+  std::vector<double> turns_of_fold_;          // [tx], by which an echo turns until the slot of a transmitter for each fold
 };
 
 }  // namespace echopath

@@ -31,15 +31,36 @@ void require_axes(const RangeDoppler& map, const Radar& radar) {
           map.velocity.back() - map.velocity.front());
 }
 
+// Whether a list of steps, repeated from slot to slot, gives all chirps of a transmitter the same one.
+bool repeats_with(const std::vector<double>& steps, size_t num_tx) { return steps.empty() || num_tx % steps.size() == 0; }
+
+double repeated(const std::vector<double>& steps, size_t slot) { return steps.empty() ? 0.0 : steps[slot % steps.size()]; }
+
 }  // namespace
 
-std::vector<std::complex<double>> slot_phasors(const Radar& radar, const std::vector<double>& velocity) {
+std::vector<double> slot_delays(const Radar& radar) {
+  const auto num_tx = static_cast<int64_t>(radar.transmitters.size());
+  std::vector<double> delays(radar.transmitters.size(), 0.0);
+  if (!radar.takes_turns()) return delays;
   const ChirpSequence& waveform = radar.waveform;
+  // Where idle times do not repeat with the transmitters, the chirps of one of them are late by different times.
+  const bool is_even = waveform.extra_idle.empty() || num_tx % static_cast<int64_t>(waveform.extra_idle.size()) == 0;
+  const int64_t num_chirps = is_even ? 1 : waveform.num_chirps;
+  for (int64_t tx = 0; tx < num_tx; ++tx) {
+    double sum = 0.0;
+    for (int64_t chirp = 0; chirp < num_chirps; ++chirp) {
+      sum += waveform.slot_start(chirp * num_tx + tx) - waveform.slot_start(chirp * num_tx);
+    }
+    delays[tx] = sum / static_cast<double>(num_chirps);
+  }
+  return delays;
+}
+
+std::vector<std::complex<double>> slot_phasors(const Radar& radar, const std::vector<double>& velocity) {
   std::vector<std::complex<double>> phasors;
-  for (int tx = 0; tx < static_cast<int>(radar.transmitters.size()); ++tx) {
-    const int slot = radar.takes_turns() ? tx : 0;
+  for (const double delay : slot_delays(radar)) {
     for (const double v : velocity) {
-      phasors.push_back(std::polar(1.0, -2.0 * kTwoPi * v / waveform.wavelength() * slot * waveform.mean_interval()));
+      phasors.push_back(std::polar(1.0, -2.0 * kTwoPi * v / radar.waveform.wavelength() * delay));
     }
   }
   return phasors;
@@ -56,6 +77,27 @@ void require_map_of(const RangeDoppler& map, const Radar& radar) {
   require_axes(map, radar);
 }
 
+std::vector<std::complex<double>> carrier_phasors(const Radar& radar, const std::vector<double>& range) {
+  const ChirpSequence& waveform = radar.waveform;
+  const size_t num_tx = radar.transmitters.size();
+  if (!radar.takes_turns() ||
+      !(repeats_with(waveform.frequency_steps, num_tx) && repeats_with(waveform.bandwidth_steps, num_tx))) {
+    return {};
+  }
+  const double middle = waveform.window_centre() * waveform.sampling_rate / waveform.num_samples;  // of the sweep
+  std::vector<double> step;
+  for (size_t tx = 0; tx < num_tx; ++tx) {
+    step.push_back(repeated(waveform.frequency_steps, tx) + middle * repeated(waveform.bandwidth_steps, tx));
+  }
+  if (std::all_of(step.begin(), step.end(), [&](double one) { return one == step.front(); })) return {};
+  std::vector<std::complex<double>> phasors;
+  for (size_t tx = 0; tx < num_tx; ++tx) {
+    for (const double r : range)
+      phasors.push_back(std::polar(1.0, -2.0 * kTwoPi * (step[tx] - step[0]) * r / kSpeedOfLight));
+  }
+  return phasors;
+}
+
 RangeDoppler compensate_tdm(const RangeDoppler& map, const Radar& radar, int fold, Job* job) {
   radar.validate();
   require_map_of(map, radar);
@@ -65,14 +107,16 @@ RangeDoppler compensate_tdm(const RangeDoppler& map, const Radar& radar, int fol
   result.is_tdm_compensated = true;
   const double span = 2.0 * radar.waveform.max_velocity(radar.num_slots());
   for (double& v : result.velocity) v += fold * span;
-  const auto phasors = slot_phasors(radar, result.velocity);
+  const auto phasors = slot_phasors(radar, result.velocity), carriers = carrier_phasors(radar, result.range);
   const int64_t num_velocities = static_cast<int64_t>(map.velocity.size());
   const int64_t num_ranges = static_cast<int64_t>(map.range.size());
   parallel_for(map.num_transmitters * map.num_receivers * num_velocities, [&](int64_t row) {
     if (job) job->throw_if_cancelled();
     const int64_t slot = row / (map.num_receivers * num_velocities);
     const std::complex<double> phasor = phasors[slot * num_velocities + row % num_velocities];
-    for (int64_t r = row * num_ranges; r < (row + 1) * num_ranges; ++r) result.values[r] *= phasor;
+    for (int64_t r = 0; r < num_ranges; ++r) {
+      result.values[row * num_ranges + r] *= carriers.empty() ? phasor : phasor * carriers[slot * num_ranges + r];
+    }
   });
   return result;
 }

@@ -5,7 +5,7 @@ import hashlib
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, get_args
 
 from .. import _core
 from ..arguments.checks import refused
@@ -57,9 +57,11 @@ def record_of(content: bytes) -> SceneRecord:
     """What the content of a record says; nothing that can be read: to do."""
     try:
         table = json.loads(content)
-        return SceneRecord(table["state"], dict(table.get("files", {})), str(table.get("reason", "")))
-    except (ValueError, KeyError, TypeError):
+        state, files, reason = table["state"], table.get("files", {}), table.get("reason", "")
+    except (ValueError, KeyError, TypeError, RecursionError):
         return SceneRecord("to do")
+    is_sound = state in get_args(State) and isinstance(files, dict) and all(isinstance(digest, str) for digest in files.values())
+    return SceneRecord(state, files, str(reason)) if is_sound else SceneRecord("to do")
 
 
 def record_text(record: SceneRecord) -> str:
@@ -85,7 +87,7 @@ def checksum(path: Path) -> str:
         with path.open("rb") as file:
             while block := file.read(_BLOCK):
                 digest.update(block)
-    except OSError:
+    except (OSError, ValueError):  # ValueError: NUL in the name
         return ""
     return digest.hexdigest()
 

@@ -126,9 +126,11 @@ class Dataset:
         path = scene_folder(self.folder, scene) / DRAWN
         try:
             values: dict[str, Any] = json.loads(path.read_bytes())
-            return values
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, RecursionError) as error:
             raise _core.FileError(f"{path}: cannot be read ({error})") from None
+        if not isinstance(values, dict):
+            raise _core.FileError(f"{path}: must hold an object of JSON, {{path: value}}")
+        return values
 
     def _check_scene(self, scene: int) -> None:
         if not 0 <= scene < self.template.settings.scenes:

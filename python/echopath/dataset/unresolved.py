@@ -37,7 +37,7 @@ def unresolved_in(content: bytes) -> UnresolvedEchoes | None:
     try:
         told = json.loads(content)
         return UnresolvedEchoes(int(told["num_rays"]), tuple(map(str, told["echoes"])))
-    except (ValueError, KeyError, TypeError):
+    except (ValueError, KeyError, TypeError, OverflowError, RecursionError):
         return None
 
 

@@ -10,8 +10,8 @@ import echopath as ep
 from echopath import dataset
 from echopath.cli import main
 from echopath.cli.info import describe_file
-from echopath.dataset.folder import scene_folder
-from echopath.dataset.unresolved import UnresolvedEchoes, summary
+from echopath.dataset.folder import SceneRecord, damaged_files, scene_folder, write_manifest
+from echopath.dataset.unresolved import UnresolvedEchoes, summary, unresolved_in
 from support.files.small_dataset import HEAD, SCENE, bytes_of, make, written
 
 
@@ -77,6 +77,41 @@ def test_damaged_and_missing_frames_are_made_again(small_dataset, tmp_path, work
         made = [one.scene for one in make(path, copied, workers=workers) if not one.was_there]
     assert {damaged.name, "sequence.h5"} <= {str(one.message).split(":")[0].split("/")[-1] for one in said}
     assert sorted(made) == [1, 2, 4, 5] and bytes_of(copied) == bytes_of(folder)
+
+
+@pytest.mark.parametrize("content", [
+    "[" * 50_000, '{"state": "odd"}', '{"state": []}', '{"state": "done", "files": [["a", "b"]]}',
+    '{"state": "done", "files": {"a": 3}}'],
+    ids=["nested", "odd", "list", "pairs", "number"])
+def test_a_record_that_no_run_writes_is_none(small_dataset, tmp_path, content):
+    """A scene whose record says nothing is still to be made."""
+    copied = tmp_path / "copy"
+    shutil.copytree(small_dataset[1], copied)
+    (scene_folder(copied, 1) / "record.json").write_text(content)
+    opened = dataset.open(copied)
+    assert opened.scenes == [0, 2, 3, 4, 5]
+    write_manifest(copied, opened.template)
+    assert json.loads((copied / "manifest.json").read_text())["count"] == {"done": 5, "failed": 0, "to do": 1}
+
+
+def test_a_file_that_no_folder_can_have_is_damaged(tmp_path):
+    (path,) = damaged_files(tmp_path, 0, SceneRecord("done", {"a\0b": "0" * 64}))
+    assert path.name == "a\0b"
+
+
+@pytest.mark.parametrize("content", [b"", b"3", b"[" * 50_000, b'{"num_rays": Infinity, "echoes": []}'],
+                         ids=["empty", "number", "nested", "inf"])
+def test_what_nobody_wrote_of_unresolved_echoes_says_nothing(content):
+    assert unresolved_in(content) is None
+
+
+@pytest.mark.parametrize("content", ["[" * 50_000, "[1]", "3"], ids=["nested", "list", "number"])
+def test_drawn_values_that_are_none_are_told_by_their_file(small_dataset, tmp_path, content):
+    copied = tmp_path / "copy"
+    shutil.copytree(small_dataset[1], copied)
+    (scene_folder(copied, 1) / "drawn.json").write_text(content)
+    with pytest.raises(ep.FileError, match="drawn.json: (cannot be read|must hold an object)"):
+        dataset.open(copied).drawn(1)
 
 
 @pytest.mark.parametrize("workers", [1, 2])

@@ -95,7 +95,8 @@ class Template:
             drawing = Drawing(self.settings.seed, number)
             table = drawing.of(self._rest, "")
             for name in ("trace", "noise"):
-                table.setdefault(name, {}).setdefault("seed", int(drawing.random(f"{name}.seed").integers(_SEEDS)))
+                if isinstance(settings := table.setdefault(name, {}), dict):  # else the schema of the scene refuses it
+                    settings.setdefault("seed", int(drawing.random(f"{name}.seed").integers(_SEEDS)))
             table["objects"] = DrawnObjects(drawing).of(self._objects)
             return DrawnScene(number, table, drawing.values)
         except ValueError as error:

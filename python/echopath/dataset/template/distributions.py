@@ -11,6 +11,8 @@ import numpy as np
 from ...arguments.shown import shown
 
 _MORE = {"choice": {"weights"}, "normal": {"within"}}  # keys that may stand beside that of a kind
+MOST = 1e300                                       # of a number, so that nothing that is drawn of it overflows
+_BEYOND = 2**63                                    # whole numbers of 64 bits
 _MOST_TRIES = 10_000                                   # of a normal distribution that is to lie within limits
 
 
@@ -54,9 +56,13 @@ def drawn(table: dict[str, Any], place: str, random: np.random.Generator) -> Any
     return KINDS[kind](table, f"{place}.{kind}", random)
 
 
-def _pair(values: list[Any], place: str, rule: str, holds: Callable[[float, float], bool]) -> tuple[float, float]:
-    are_numbers = all(isinstance(one, (int, float)) and not isinstance(one, bool) and math.isfinite(one) for one in values)
-    if len(values) != 2 or not are_numbers or not holds(*values):
+def is_number(value: Any) -> bool:
+    """Whether a value is a number that can be computed with: none of NaN, of infinities and of whole numbers beyond MOST."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and abs(value) <= MOST
+
+
+def _pair(values: Any, place: str, rule: str, holds: Callable[[float, float], bool]) -> tuple[float, float]:
+    if not isinstance(values, list) or len(values) != 2 or not all(map(is_number, values)) or not holds(*values):
         raise ValueError(f"{place}: must be {rule}, got {shown(values)}")
     return values[0], values[1]
 
@@ -71,25 +77,26 @@ def _uniform(table: dict[str, Any], place: str, random: np.random.Generator) -> 
 
 
 def _log_uniform(table: dict[str, Any], place: str, random: np.random.Generator) -> float:
-    low, high = _pair(table["log_uniform"], place, "[lowest, highest], both above 0", lambda low, high: 0.0 < low <= high)
+    low, high = _pair(table["log_uniform"], place, "[lowest, highest], both above 0",
+                      lambda low, high: 0.0 < low <= high and high / low < math.inf)
     return float(low * (high / low) ** random.random())
 
 
 def _normal(table: dict[str, Any], place: str, random: np.random.Generator) -> float:
     mean, deviation = _pair(table["normal"], place, "[mean, standard deviation]", lambda _, deviation: deviation >= 0.0)
     within = place.removesuffix("normal") + "within"
-    low, high = _pair(table.get("within", [-1e300, 1e300]), within, "[lowest, highest]", _ascending)
+    low, high = _pair(table.get("within", [-MOST, MOST]), within, "[lowest, highest]", _ascending)
     for _ in range(_MOST_TRIES):
         value = float(mean + deviation * random.standard_normal())
         if low <= value <= high:
             return value
-    rule = f"a distribution with a good share of its values within {shown(table['within'])}"
+    rule = f"a distribution with a good share of its values within {shown([low, high])}"
     raise ValueError(f"{place}: must be {rule}, got {shown([mean, deviation])}")
 
 
 def _integer(table: dict[str, Any], place: str, random: np.random.Generator) -> int:
     low, high = _pair(table["integer"], place, "[lowest, highest], whole numbers, both included",
-                      lambda low, high: low <= high and low == int(low) and high == int(high))
+                      lambda low, high: -_BEYOND <= low <= high < _BEYOND and low == int(low) and high == int(high))
     return int(random.integers(int(low), int(high), endpoint=True))
 
 
@@ -102,11 +109,12 @@ def _choice(table: dict[str, Any], place: str, random: np.random.Generator) -> A
     if not isinstance(weights, list) or len(weights) != len(values) or not all(map(_is_weight, weights)) or not any(weights):
         rule = f"{len(values)} numbers of at least 0, not all of them 0"
         raise ValueError(f"{place.removesuffix('choice')}weights: must be {rule}, got {shown(weights)}")
-    return values[int(np.searchsorted(np.cumsum(weights) / np.sum(weights), random.random(), side="right"))]
+    shares = np.cumsum(weights, dtype=float) / np.sum(weights, dtype=float)
+    return values[int(np.searchsorted(shares, random.random(), side="right"))]
 
 
 def _is_weight(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and 0.0 <= value < math.inf
+    return is_number(value) and value >= 0.0
 
 
 KINDS: dict[str, Callable[[dict[str, Any], str, np.random.Generator], Any]] = {

@@ -2,15 +2,15 @@
 from __future__ import annotations
 
 import hashlib
-import math
 from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from ...arguments.shown import shown
-from .distributions import drawn, is_distribution, refuse_misspelt
+from .distributions import drawn, is_distribution, is_number, refuse_misspelt
 
+_MOST_COPIES = 10_000                   # of an entry
 _MOST_PLACES = 1000                     # that are tried for an object that is to stand apart from others
 _OF_NAMES = (".objects", ".materials")  # tables, beside parts, whose keys are names, which may be any
 
@@ -62,8 +62,8 @@ class DrawnObjects:
         place = f"objects.{name}"
         chance = self._number(entry.pop("chance", 1.0), f"{place}.chance", "a number from 0 to 1", lambda x: 0.0 <= x <= 1.0)
         is_row = "count" in entry
-        count = self._number(entry.pop("count", 1), f"{place}.count", "a whole number of at least 0",
-                             lambda x: x == int(x) and x >= 0)
+        count = self._number(entry.pop("count", 1), f"{place}.count", f"a whole number from 0 to {_MOST_COPIES}",
+                             lambda x: 0 <= x <= _MOST_COPIES and x == int(x))
         if self._drawing.random(f"{place}.presence").random() >= chance:
             count = 0
         names = [f"{name}_{number}" for number in range(1, int(count) + 1)] if is_row else [name] * int(count)
@@ -71,7 +71,7 @@ class DrawnObjects:
 
     def _number(self, value: Any, place: str, rule: str, holds: Callable[[float], bool]) -> float:
         number = self._drawing.of(value, place)
-        if isinstance(number, bool) or not isinstance(number, (int, float)) or not holds(number):
+        if not is_number(number) or not holds(number):
             raise ValueError(f"{place}: must be {rule}, got {shown(number)}")
         return float(number)
 
@@ -79,7 +79,7 @@ class DrawnObjects:
         apart, position = entry.pop("apart", None), entry.pop("position", None)
         made: dict[str, Any] = {"name": name} | self._drawing.of(entry, place)
         if apart is not None:
-            radius = self._number(apart, f"{place}.apart", "a number of m, at least 0", lambda x: 0.0 <= x < math.inf)
+            radius = self._number(apart, f"{place}.apart", "a number of m, at least 0", lambda x: x >= 0.0)
             made["position"] = self._free_place(position, radius, place)
         elif position is not None:
             made["position"] = self._drawing.of(position, f"{place}.position")
@@ -90,10 +90,10 @@ class DrawnObjects:
         for attempt in range(_MOST_PLACES):
             found: list[float] = self._drawing.of(position, f"{place}.position", f"/try {attempt}")
             try:
-                above = np.array(found, float)[:2]
+                above = np.atleast_1d(np.array(found, float))[:2]
                 if above.shape != (2,) or not np.isfinite(above).all():
                     raise ValueError
-            except (TypeError, ValueError):
+            except (TypeError, ValueError, OverflowError):
                 raise ValueError(f"{place}.position: must be [x, y, z] in m beside apart, got {shown(found)}") from None
             if all(np.hypot(*(above - other)) >= radius + own for other, own in self._places):
                 self._places.append((above, radius))

@@ -57,7 +57,8 @@ class Faults:
         place = _PLACE.match(text)
         if drawn is None or place is None:
             return text
-        name = drawn["objects"][int(place[1])].get("name")
+        named = drawn["objects"][int(place[1]):][:1]
+        name = named[0].get("name") if named and isinstance(named[0], dict) else None
         return f"objects.{name}{text[place.end():]}" if isinstance(name, str) else text
 
     def _line_of(self, key: str) -> int | None:

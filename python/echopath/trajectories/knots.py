@@ -36,7 +36,7 @@ def curve_through(function: Function, junctions, tolerance: float) -> _core.Curv
         cuts = _cuts(begins, ends)
         begins, ends = np.concatenate([begins, cuts]), np.concatenate([cuts, ends])
         if len(begins) > MOST_KEYS:
-            raise ValueError(f"trajectory: must be followed by at most {MOST_KEYS} keys; it is too long or too wild")
+            raise _too_many_keys()
     begins, ends = np.concatenate(done, axis=1)
     order = np.argsort(begins)
     return _curve(function, begins[order], ends[order])
@@ -46,12 +46,18 @@ def _intervals(junctions):
     if len(junctions) == 1:
         return np.zeros(0), np.zeros(0)
     begin, end = junctions[0], junctions[-1]
+    if end - begin > MOST_KEYS * LONGEST:
+        raise _too_many_keys()
     grid = np.arange(np.ceil(begin / LONGEST), np.ceil(end / LONGEST)) * LONGEST
     knots = np.unique(np.concatenate([junctions, grid]))
     apart = np.concatenate([[True], np.diff(knots) > 1e-9])      # of two that are one, the earlier
     apart[-1] = True
     knots = knots[apart]
     return knots[:-1], knots[1:]
+
+
+def _too_many_keys() -> ValueError:
+    return ValueError(f"trajectory: must be followed by at most {MOST_KEYS} keys; it is too long or too wild")
 
 
 def _cuts(begins, ends):

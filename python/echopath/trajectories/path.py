@@ -12,6 +12,7 @@ PIECES = 4, 128        # of each interval between knots, for the integral of the
 DISTANCE_TOLERANCE = 1e-9   # m, of u over the distance
 TURNS_BACK = -1.0 + 1e-12   # cosine of the turn, from which on no arc leads from one line to the next
 NEWTON_STEPS = 5       # after which a distance is met to rounding, where the most pieces do not meet the tolerance
+SLOWEST = 1e-30        # |p'|, which vanishes where a path turns back on itself
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
@@ -43,6 +44,8 @@ class Path:
         inside = np.clip(distances, 0.0, self.length)
         point, first, second = self.jets(self._parameters(inside))
         squared = np.sum(first**2, axis=-1, keepdims=True)
+        turns_back = squared[:, 0] == 0.0
+        first[turns_back], squared[turns_back] = _unit(second[turns_back]), 1.0   # where it goes on
         tangent = first / np.sqrt(squared)
         bend = (second - np.sum(second * tangent, axis=-1, keepdims=True) * tangent) / squared
         beyond = (np.asarray(distances, float) - inside)[:, None]
@@ -84,7 +87,7 @@ class Path:
         ends = []
         for at in (self._u[:-1] + inside, self._u[1:] - inside):
             _, first, second = self.jets(at)
-            speed = np.linalg.norm(first, axis=-1)
+            speed = np.maximum(np.linalg.norm(first, axis=-1), SLOWEST)
             ends.append((1.0 / speed, -np.sum(first * second, axis=-1) / speed**4))
         steps, rise = np.diff(self._s), np.diff(self._u)
         (d0, b0), (d1, b1) = ((slope * steps, bend * steps**2) for slope, bend in ends)
@@ -112,7 +115,8 @@ class Path:
     def _polished(self, u, low, high, wanted):
         """Parameters [N] from a start, by Newton steps until the distances [N] from `low` are as wanted."""
         for _ in range(NEWTON_STEPS):
-            step = (self._integral(low, u) - wanted) / np.linalg.norm(self.slopes_at(u), axis=-1)
+            speed = np.maximum(np.linalg.norm(self.slopes_at(u), axis=-1), SLOWEST)
+            step = (self._integral(low, u) - wanted) / speed
             u = np.clip(u - step, low, high)
             if np.abs(step).max(initial=0.0) < 1e-14 * self._u[-1]:
                 break
@@ -128,6 +132,12 @@ class Path:
     @staticmethod
     def _bearing(tangent):
         return np.arctan2(tangent[:, 1], tangent[:, 0])
+
+
+def _unit(vectors):
+    """Of their directions [N, 3], +x of one that has none."""
+    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.where(lengths > 0.0, vectors / np.where(lengths > 0.0, lengths, 1.0), [1.0, 0.0, 0.0])
 
 
 def turn_of(tangent, bend):

@@ -2,7 +2,8 @@
 
 The smoothed positions z make |y - z|^2 + w |z''|^2 least (E. T. Whittaker, "On a new method of graduation", Proc. Edinburgh
 Math. Soc. 41 (1923) 63-75), z'' being second divided differences in time; the weight w is the one that moves the positions by
-the root mean square that is asked for.
+the root mean square that is asked for. With the differences D, y - z is D^T m, where (D D^T + 1/w) m = D y: that system, unlike
+the one of z itself, can be solved where times lie far and near, too.
 """
 import numpy as np
 
@@ -42,17 +43,21 @@ def _solved(times, positions, step, weight):
     """The least of |y - z|^2 + weight |z''|^2."""
     h = np.diff(times) / step
     rows = np.stack([1.0 / h[:-1], -1.0 / h[:-1] - 1.0 / h[1:], 1.0 / h[1:]]) * (2.0 / (h[:-1] + h[1:]))
-    banded = _normal(rows, weight, len(times))
-    return _by_cholesky(banded, positions)
-
-
-def _normal(rows, weight, count):
-    """The diagonal and the two above it [3, N] of 1 + weight D^T D, with second differences D of `rows` [3, N-2]."""
-    bands = np.zeros((3, count))
-    bands[0] = 1.0
+    count = rows.shape[1]
+    bends = sum(rows[i][:, None] * positions[i:i + count] for i in range(3))
+    multipliers = _by_cholesky(_normal(rows, weight), bends)
+    moved = np.zeros(positions.shape)
     for i in range(3):
-        for j in range(i, 3):
-            bands[j - i, i:i + count - 2] += weight * rows[i] * rows[j]
+        moved[i:i + count] += rows[i][:, None] * multipliers
+    return positions - moved
+
+
+def _normal(rows, weight):
+    """The diagonal and the two above it [3, N-2] of D D^T + 1 / weight, with second differences D of `rows` [3, N-2]."""
+    bands = np.zeros(rows.shape)
+    bands[0] = np.sum(rows**2, axis=0) + 1.0 / weight
+    bands[1, :-1] = rows[1, :-1] * rows[0, 1:] + rows[2, :-1] * rows[1, 1:]
+    bands[2, :-2] = rows[2, :-2] * rows[0, 2:]
     return bands
 
 

@@ -2,6 +2,7 @@
 import inspect
 import math
 import pickle
+import time
 
 import numpy as np
 import pytest
@@ -250,6 +251,29 @@ def test_wrong_arguments_are_named(name):
 def test_what_makes_no_sense_is_refused(wrong, words):
     with pytest.raises(ValueError, match=words):
         ep.Trajectory(**{"points": [(0, 0), (9, 0)], "speed": 3.0} | wrong)
+
+
+def test_what_lasts_too_long_is_refused_at_once():
+    """Each second would have a key: of 1e7 s they would fill the memory for minutes."""
+    begin = time.process_time()
+    with pytest.raises(ValueError, match="^trajectory: must be followed by at most 2000000 keys"):
+        ep.Trajectory([(0, 0), (9, 0)], times=[0, 9e6])
+    assert time.process_time() - begin < 1.0
+
+
+@pytest.mark.parametrize("points", [[(0, 0), (4, 0), (0, 0)], [(0, 0), (1, 0), (2, 0), (1, 0), (0, 0)],
+                                    [(0, 0), (3, 3), (0, 0)]])
+def test_whoever_walks_there_and_back_turns_where_the_way_does(points):
+    """The way lies on a line, so that the place is the distance, there and back, and each second has as much of it."""
+    walk = ep.Trajectory(points, speed=1.0)
+    times = np.linspace(0.0, walk.end, 101)
+    farthest = 0.5 * walk.length
+    assert farthest == pytest.approx(np.linalg.norm(points, axis=-1).max(), abs=1e-9)
+    found = np.linalg.norm(walk.position(times), axis=-1)
+    np.testing.assert_allclose(found, farthest - np.abs(times - farthest), atol=MICROMETRES)
+    of_core = [walk.translation.at(float(time)) for time in times]
+    np.testing.assert_allclose(of_core, walk.position(times), atol=MICROMETRES)
+    assert np.isfinite(walk.yaw(times)).all() and np.isfinite(walk.yaw_rate(times)).all()
 
 
 @pytest.mark.parametrize("changes", [[(500, 40, 3.5)], [(50, 400, 3.5)], [(1, 5, 2.0), (8, 60, 0.0)]])

@@ -1,13 +1,14 @@
 """Trajectories of files: tables, SUMO's floating car data, GPX, scene files; what is wrong is refused by file and line."""
 import math
 import re
+from fractions import Fraction
 
 import numpy as np
 import pytest
 
 import echopath as ep
 from echopath.trajectories.geodesy import east_north_up
-from echopath.trajectories.smoothing import smoothed
+from echopath.trajectories.smoothing import _solved, smoothed
 
 # Written by hand after the description of the format (sumo.dlr.de, "FCDOutput"): positions are those of the middle of the front
 # bumper, angles go clockwise from north.
@@ -183,6 +184,33 @@ WRONG = {
     "a.gpx": [("<gpx/>", "holds no positions"),
               (GPX.replace("<time>2026-05-01T12:00:00Z</time>", ""), "line 2: <trkpt>: time is"),
               (GPX.replace("46.0171", "x"), "line 3: lat: must be a number")], "a.json": [("{}", "must end in .csv")]}
+
+
+@pytest.mark.parametrize("times", [[0, 1, 1e7], [0, 1e-6, 1e7 - 1, 1e7], [0, 0.02, 0.5, 0.51, 3, 3.3]])
+def test_smoothing_bears_times_that_lie_far_and_near(times):
+    """What is smoothed solves (1 + w D^T D) z = y, here in fractions, for the second divided differences D in mean steps."""
+    places, weight = [Fraction(value) for value in (0.0, 1.0, -0.5, 0.25, 2.0, 1.0)[:len(times)]], Fraction(10) ** 4
+    steps = [Fraction(after) - Fraction(before) for before, after in zip(times, times[1:])]
+    mean = Fraction(float(np.mean(np.diff(times))))
+    system = [[Fraction(int(row == column)) for column in range(len(times))] + [places[row]] for row in range(len(times))]
+    for at, (h, g) in enumerate(zip(steps, steps[1:])):
+        h, g = h / mean, g / mean
+        second = [2 / (h + g) / h, -2 / (h * g), 2 / (h + g) / g]
+        for row, column in np.ndindex(3, 3):
+            system[at + row][at + column] += weight * second[row] * second[column]
+    exact = [float(value) for value in solved_exactly(system)]
+    found = _solved(np.array(times, float), np.array(places, float)[:, None], float(mean), float(weight))
+    np.testing.assert_allclose(found[:, 0], exact, atol=1e-9)
+
+
+def solved_exactly(system):
+    """The solution of a linear system of fractions [N, N + 1], by Gauss and Jordan."""
+    for k, pivot in enumerate(system):
+        system[k] = [value / pivot[k] for value in pivot]
+        for row in range(len(system)):
+            if row != k:
+                system[row] = [value - system[row][k] * other for value, other in zip(system[row], system[k])]
+    return [row[-1] for row in system]
 
 
 @pytest.mark.parametrize("name, text, words", [(name, *one) for name, cases in WRONG.items() for one in cases])

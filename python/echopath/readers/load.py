@@ -7,6 +7,8 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
+import numpy as np
+
 from .. import _core
 from ..arguments.checks import (
     Rule, checked, choice, flag, optional, path as file_or_folder, positive, real, refused, text)
@@ -67,7 +69,9 @@ def load_model(path: str | os.PathLike[str], *, unit: float | None = None, up: s
 def read_model(file: Path, options: ReadOptions) -> Model:
     """`load_model` without a word on its size."""
     try:
-        model = importlib.import_module(f".{reader_of(file)}", __package__).read(file, options)
+        reader = importlib.import_module(f".{reader_of(file)}", __package__)
+        with np.errstate(all="ignore"):  # of numbers that no model can have, which are refused by name where they are checked
+            model = reader.read(file, options)
     except RecursionError:
         raise _core.FileError(f"{file}: is nested too deeply") from None
     notes = note_of_unused(options.materials, [node.foreign_material for node in model.nodes])

@@ -101,6 +101,7 @@ def _grid(names: list, samples: dict):
 
 
 def _pattern(azimuth_deg, elevation_deg, gain_db, phase_deg, normalize: bool):
-    return _core.GainTable(azimuth=np.radians(azimuth_deg), elevation=np.radians(elevation_deg),
-                           gain=10.0 ** (gain_db / 10.0), phase=None if phase_deg is None else np.radians(phase_deg),
-                           normalize=normalize)
+    with np.errstate(over="ignore"):  # which the table refuses
+        gain = 10.0 ** (gain_db / 10.0)
+    return _core.GainTable(azimuth=np.radians(azimuth_deg), elevation=np.radians(elevation_deg), gain=gain,
+                           phase=None if phase_deg is None else np.radians(phase_deg), normalize=normalize)

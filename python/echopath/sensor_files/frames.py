@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from .cfg import Command, Lines
 
+MOST_CHIRPS = 512  # of one loop, whose indices end at 511 (mmWave SDK, chirpCfg)
 ADVANCED = 3  # dfeDataOutputMode of frames that have sub-frames
 
 
@@ -35,27 +36,39 @@ def plans_of(lines: Lines) -> list[FramePlan]:
     if modes and modes[-1]["mode"] != 1:
         raise modes[-1].error(f"mode: must be 1 (frames) or {ADVANCED} (sub-frames), got {modes[-1]['mode']}")
     frame = lines.one("frameCfg")
-    count = _positive(frame, "last", frame["last"] - frame["first"] + 1)
+    count = _num_chirps(frame, "last", frame["last"] - frame["first"] + 1)
     return [FramePlan(frame, 0, frame["first"], count, _positive(frame, "num_loops", frame["num_loops"]), -1, 0.0,
-                      1e-3 * frame["period_ms"], frame["num_frames"])]
+                      1e-3 * _from_zero(frame, "period_ms"), _from_zero(frame, "num_frames"))]
 
 
 def _subframes(lines: Lines) -> list[FramePlan]:
     frame = lines.one("advFrameCfg")
     given = {command["subframe"]: command for command in lines.of("subFrameCfg")}
     plans, start = [], 0.0
-    interval = sum(1e-3 * command["period_ms"] for command in given.values())
+    interval = sum(1e-3 * _from_zero(command, "period_ms") for command in given.values())
     for index in range(_positive(frame, "num_subframes", frame["num_subframes"])):
         if index not in given:
             raise frame.error(f"num_subframes: subFrameCfg {index} is missing")
         command = given[index]
         if command["num_bursts"] * command["num_burst_loops"] != 1:
             raise command.error("num_bursts, num_burst_loops: must be 1, other bursts are not known")
-        plans.append(FramePlan(command, index, command["first"], _positive(command, "num_chirps", command["num_chirps"]),
+        plans.append(FramePlan(command, index, command["first"], _num_chirps(command, "num_chirps", command["num_chirps"]),
                                _positive(command, "num_loops", command["num_loops"]), command["forced_profile"], start,
-                               interval, frame["num_frames"]))
+                               interval, _from_zero(frame, "num_frames")))
         start += 1e-3 * command["period_ms"]
     return plans
+
+
+def _num_chirps(command: Command, name: str, value: int) -> int:
+    if _positive(command, name, value) > MOST_CHIRPS:
+        raise command.error(f"{name}: must leave at most {MOST_CHIRPS}, got {value}")
+    return value
+
+
+def _from_zero(command: Command, name: str):
+    if command[name] < 0:
+        raise command.error(f"{name}: must be at least 0, got {command[name]:g}")
+    return command[name]
 
 
 def _positive(command: Command, name: str, value: int) -> int:

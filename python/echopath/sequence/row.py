@@ -133,8 +133,10 @@ class Row(Generic[Item]):
             yield self._item(place)
 
     def _span(self) -> str:
-        times = self.times
-        return f"from {times[0]:.6g} to {times[-1]:.6g} s" if len(times) else "none"
+        if not len(self):
+            return "none"
+        first, last = (self._time_of(self._numbers[place]) for place in (0, -1))
+        return f"from {first:.6g} to {last:.6g} s"
 
 
 def _place_in(place, count: int) -> int:

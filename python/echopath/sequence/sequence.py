@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from .. import _core
-from ..arguments.checks import LARGEST_COUNT, MapWindow, Progress, anything, checked, count, flag, one_of, real, refused
+from ..arguments.checks import MapWindow, Progress, anything, checked, count, flag, one_of, real, refused
 from ..arguments.checks import path as path_rule
 from ..arguments.effects import Choices
 from ..arguments.motions import require_motion
@@ -40,7 +40,7 @@ from .one_file import store_of
 from .record import record_of, start_time_of
 from .row import Row
 from .saving import SavedFrame, Shard, places_of, saved_frames, shard_rule
-from .stored import StoredSequence
+from .stored import LONGEST, StoredSequence
 from .unused_memory import MemoryOfFrames, give_back_memory
 
 _ROUNDING = 1e-9  # relative, of an interval that is the duration of a frame by another sum
@@ -55,7 +55,7 @@ class Sequence(Row[Frame]):
     frames of the same bits, `sequence[-1]` the last frame. Objects keep their mesh IDs; what surrounds the antenna in frame 0
     is no object of labels and truth in any frame (`families` tells the rule). Noise is that of the start time.
     scene: what is traced, as it is now: later changes of it do not matter; radar: that looks at it
-    frames: number of frames K, at least 1; interval: s, from start to start, at least the duration of a frame
+    frames: number of frames K, 1 to 1e6; interval: s, from start to start, at least the duration of a frame
     start_time: s, of frame 0
     num_rays, max_bounces, seed, polarization, footprint, sampler, batches, target_error_db (dB), max_rays, scatterers,
         edges, faint_power (W), effects: as in `trace`; the seed serves all frames, and "auto" scatterers are those of the
@@ -68,7 +68,7 @@ class Sequence(Row[Frame]):
     """
 
     @checked({"trace": TraceSettings, "signal": SignalSettings}, **TraceSettings.RULES, **SignalSettings.RULES,
-             self=anything, frames=count(1, LARGEST_COUNT), interval=real(unit="s"), parts=anything, angles=anything,
+             self=anything, frames=count(1, LONGEST), interval=real(unit="s"), parts=anything, angles=anything,
              labels=anything, detections=anything, truth=anything, guard=flag)
     def __init__(self, scene: _core.Scene, radar: _core.Radar, *, frames: int, interval: float,
                  start_time: float = TraceSettings.start_time, num_rays: int | float | None = TraceSettings.num_rays,

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _core
-from ..arguments.checks import checked
+from ..arguments.checks import checked, count, real
 from ..arguments.checks import path as path_rule
 from ..base.counts import counted
 from ..frame.frame import Frame
@@ -27,6 +27,8 @@ from .row import Row
 
 if TYPE_CHECKING:
     from ..base.foreign_types import Dataset
+
+LONGEST = 1_000_000  # frames that files may speak of: one look at each is taken in seconds
 
 
 class StoredSequence(Row[Frame | FrameMaps]):
@@ -52,11 +54,14 @@ class StoredSequence(Row[Frame | FrameMaps]):
         """Times and kind of the files; raises ep.FileError for settings that are none."""
         try:
             self.keep: Keep = settings["keep"]
-            count, first, step = (int(settings[name]) for name in ("frames", "first_number", "number_step"))
-            self._start_time, self._interval = float(settings["start_time"]), float(settings["interval"])
-            self._of_place = range(first, first + step * count, step)
+            frames, first, step = (count(least, LONGEST)(name, settings[name]) for name, least in (
+                ("frames", 0), ("first_number", 0), ("number_step", -LONGEST)))
+            self._start_time, self._interval = (real()(name, settings[name]) for name in ("start_time", "interval"))
+            self._of_place = range(first, first + step * frames, step)
             if self.keep not in get_args(Keep):
                 raise ValueError(f"keep {self.keep!r}")
+            weather = settings.get("weather")
+            self._weather = None if weather is None else Weather(**weather)
         except (KeyError, TypeError, ValueError) as error:
             raise _core.FileError(f"{self._store.head}: damaged settings ({error})") from None
         self._numbers = range(len(self._of_place))
@@ -72,8 +77,7 @@ class StoredSequence(Row[Frame | FrameMaps]):
     @property
     def scene(self) -> Scene:
         """A copy of the scene that was simulated, in its weather and with its other radars."""
-        weather = self.settings.get("weather")
-        return Scene(self._scene, weather=None if weather is None else Weather(**weather))
+        return Scene(self._scene, weather=self._weather)
 
     @property
     def paths_of_files(self) -> list[Path]:

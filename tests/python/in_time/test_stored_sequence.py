@@ -75,6 +75,20 @@ def test_damaged_settings_are_told_by_their_file(folders, tmp_path):
         ep.load_sequence(tmp_path)
 
 
+@pytest.mark.parametrize("name, text, told", [
+    ("frames", "Infinity", "frames: must be a whole number"), ("frames", "1000000000", "whole number from 0 to 1000000,"),
+    ("start_time", "NaN", "start_time: must be a finite number"), ("interval", "[]", "interval: must be a finite number"),
+    ("number_step", "0", r"range\(\) arg 3 must not be zero"), ("weather", "3", "must be a mapping"),
+    ("weather", '{"rain": 1}', "rain"), ("frames", "[" * 50_000, "settings")], ids=lambda value: value[:12])
+def test_settings_that_no_run_writes_are_told_by_their_file(folders, tmp_path, name, text, told):
+    path = tmp_path / "sequence.h5"
+    path.write_bytes((folders["maps"] / "sequence.h5").read_bytes())
+    with h5py.File(path, "r+") as file:
+        file["settings"].attrs[name] = np.bytes_(text)
+    with pytest.raises(ep.FileError, match=f"sequence.h5: .*{told}"):
+        ep.load_sequence(tmp_path)
+
+
 def test_frames_that_are_not_done_say_so(tmp_path):
     next(iter(make_sequence().save_frames(tmp_path)))
     stored = ep.load_sequence(tmp_path)

@@ -165,6 +165,10 @@ def test_sub_frames_are_sequences_and_one_file(written, tmp_path):
     (dict(adcbufCfg="adcbufCfg -1 0 x 1 1"), "sensor.cfg:5: adcbufCfg: swap: must be a number"),
     (dict(adcCfg="adcCfg 2.5 1"), "sensor.cfg:4: adcCfg: bits: must be a whole number"),
     (dict(frameCfg="frameCfg 0 2 32 0 50 1 0"), "sensor.cfg:9: frameCfg: chirp 2: has no chirpCfg"),
+    (dict(frameCfg="frameCfg 0 99999999999999 1 0 50 1 0", chirpCfg="chirpCfg 0 99999999999999 0 0 0 0 0 1"),
+     "sensor.cfg:9: frameCfg: last: must leave at most 512, got 100000000000000"),
+    (dict(frameCfg="frameCfg 0 1 32 0 -50 1 0"), "sensor.cfg:9: frameCfg: period_ms: must be at least 0, got -50"),
+    (dict(frameCfg="frameCfg 0 1 32 -3 50 1 0"), "sensor.cfg:9: frameCfg: num_frames: must be at least 0, got -3"),
     (dict(frameCfg="sensorStop"), "sensor.cfg: has no frameCfg"),
     (dict(dfeDataOutputMode="dfeDataOutputMode 2"), "sensor.cfg:2: dfeDataOutputMode: mode: must be 1"),
 ])

@@ -8,10 +8,12 @@ from random import Random
 import numpy as np
 
 import echopath as ep
+from echopath.trajectories import knots
 from fuzz.folder import memory_folder
 from fuzz.mutate import damaged, mistaken
 from support.scenes.sensor_text import CONFIGURATION
 
+MANY_KEYS = 50_000  # of a trajectory: up to 2 million are made, at 30 microseconds each, which is no fault of a reader
 STEPS = range(4)
 TABLES = ["time,id,x,y,z,yaw,speed,type\n" + "".join(f"{0.5 * k},a,{k},{0.1 * k * k},0,{0.1 * k},{2 + 0.1 * k},car\n"
                                                      f"{0.5 * k},b,{-k},0,0,0,2,bus\n" for k in STEPS),
@@ -34,6 +36,7 @@ NUMBERS = ["0", "-1", "2", "0.5", "1e-7", "1e5", "1e300", "1e309", "nan", "inf",
 
 def feed_tracks(suffix: str, seeds: list):
     """Cases of one kind of file of trajectories: tracks that are finite throughout, or an error that names the file."""
+    knots.MOST_KEYS = MANY_KEYS
     folder = memory_folder()
     path = Path(folder.name) / f"drive{suffix}"
     for seed in seeds:

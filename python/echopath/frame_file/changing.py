@@ -13,9 +13,11 @@ import io
 import os
 import time
 import zipfile
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from tokenize import TokenError
 
 import numpy as np
 
@@ -175,7 +177,7 @@ def _read_journal(path) -> dict[str, np.ndarray]:
     try:
         with np.load(_journal_of(path)) as journal:
             return {name: journal[name] for name in ("number", "page", "size", "inode", "ends")}
-    except (ValueError, KeyError, EOFError, zipfile.BadZipFile):
+    except (ValueError, KeyError, EOFError, SyntaxError, NotImplementedError, zipfile.BadZipFile, zlib.error, TokenError):
         raise OSError(errno.EINVAL, f"{_journal_of(path)} is damaged") from None
 
 

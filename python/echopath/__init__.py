@@ -39,7 +39,7 @@ from .in_time import (
 )
 from .labels import GhostLabel, Labels, ObjectLabel, annotate, save_label_images
 from .live import Live, LiveView, Watch
-from .paths.around_corners import AroundCorner, around_corners
+from .tracing.around_corners import AroundCorner, around_corners
 from .paths.cells import PathCells, path_cells
 from .paths.families import Families, families
 from .paths.powers import received_power, received_powers

@@ -15,8 +15,8 @@ namespace echopath {
 // one, along straight sides, is a wave from each end and one from the point next to the antennas.
 struct RimWaves {
   double own = 0.0;  // 1/m, sum of the sizes of these waves; infinite where the plane reflects, or is not known
-  // This is the most, 1/m, that the rim of a shadow on the plane is taken to have: what hides a part of it is upright, or has
-  // sides along those of the plane.
+  // This is the most, 1/m, that the rim of a shadow on the plane is taken to have. What hides a part of it is upright then,
+  // or has sides along those of the plane.
   double of_shadow = 0.0;
   double solid_angle = 0.0;  // sr
 };
@@ -27,8 +27,8 @@ struct PlaneWaves {
   std::vector<RimWaves> planes;
   std::vector<uint32_t> plane_of;  // [F] index into planes or kFarSide; empty where the waves of the mesh are not known
 
-  // Returns the most that the planes send back, 1/m. `num_rays` [F] of an even `density` (rays per sr), with which all of the
-  // mesh was aimed at, have met each triangle: what is hidden of a plane adds rims.
+  // Returns the most that the planes send back, 1/m. `num_rays` [F] of an even `density` (rays per sr), with which all of
+  // the mesh was aimed at, have met each triangle: what is hidden of a plane adds rims.
   double at_most(const std::vector<int64_t>& num_rays, double density) const;
 };
 

@@ -1,7 +1,11 @@
-"""Where the antennas of a radar are, and which of them look the same way."""
+"""Where the antennas of a radar are, which of them look the same way, and how they are polarised."""
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
+
+CO_POLARISED = 0.99  # cosine between the polarisations of two antennas that count as equal
 
 
 def centre_of(radar):
@@ -19,3 +23,21 @@ def middle_of_antennas(radar, time: float):
 def look_of(antenna) -> tuple:
     """Pattern, orientation and polarisation: antennas of one look differ in their places alone."""
     return antenna.pattern, antenna.orientation.tolist(), np.asarray(antenna.polarization).tolist()
+
+
+def antennas_of(radar) -> list:
+    """Transmitters and receivers."""
+    return [*radar.transmitters, *radar.receivers]
+
+
+def are_crossed(antennas: Iterable) -> bool:
+    """Whether one antenna has another polarisation, in the radar's frame, than the first."""
+    polarizations = [polarization_of(antenna) for antenna in antennas]
+    return any(abs(polarizations[0] @ other) < CO_POLARISED for other in polarizations[1:])
+
+
+def polarization_of(antenna) -> np.ndarray:
+    """[3] unit vector in the radar's frame."""
+    real, imaginary = antenna.orientation[0], antenna.orientation[1:]
+    cross = np.cross(imaginary, antenna.polarization)
+    return antenna.polarization + 2.0 * (real * cross + np.cross(imaginary, cross))

@@ -1,7 +1,8 @@
 """Effects of antennas, waveform and receiver."""
 from __future__ import annotations
 
-from ..tracing.polarization import FIELD_VECTORS, antennas_of, are_crossed, need_of_field_vectors
+from ..base.antennas import antennas_of, are_crossed
+from ..tracing.polarization import FIELD_VECTORS, need_of_field_vectors
 from .rules import Case, rule
 
 

@@ -14,7 +14,8 @@ from ..arguments.names import MOST_NAMES, first_names
 from ..arguments.settings import Edges, FaintPower
 from ..base.made_by import made_by
 from ..scene.interferers import interferers_of
-from ..tracing.polarization import COHERENT_SHARE, antennas_of, chosen_model, coherent_share
+from ..base.antennas import antennas_of
+from ..tracing.polarization import COHERENT_SHARE, chosen_model, coherent_share
 from ..weather.weather import weather_of
 
 

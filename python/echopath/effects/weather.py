@@ -5,7 +5,7 @@ import numpy as np
 
 from ..arguments.effects import ATTENUATION, RAIN_ECHOES, is_on
 from ..base.decibels import in_dbm
-from ..weather.echoes import rain_power
+from ..signals.rain_echoes import rain_power
 from ..weather.weather import DB_PER_NEPER, attenuation_of_weather
 from .rules import Case, rule
 

@@ -29,7 +29,7 @@ from ..transmit import coded_cube, is_coded, synthesize_slots
 from ..transmit.signals import has_steps
 from ..truth import truth_of_frame
 from ..truth.asked import truth_keywords
-from ..weather.echoes import has_rain_echoes, rain_cube
+from ..signals.rain_echoes import has_rain_echoes, rain_cube
 from .detections import detect_frame
 from .frame import Frame, with_spectra
 

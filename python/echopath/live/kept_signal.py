@@ -10,7 +10,8 @@ import numpy as np
 from .. import _core
 from ..signals.parts import ONLY_PARTITION, Parts, check_partitions
 from ..tracing.faint_paths import faint_power_of
-from ..tracing.polarization import antennas_of, chosen_model
+from ..base.antennas import antennas_of
+from ..tracing.polarization import chosen_model
 from ..transmit.signals import decompose_slots, synthesize_slots
 from ..weather.weather import attenuation_of
 

@@ -8,7 +8,7 @@ from ..signals.silence import warn_of_silence
 from ..tracing.edge_paths import warn_of_edge_paths
 from ..tracing.lost_rays import warn_of_record
 from ..tracing.tessellation import warn_of_coarse_meshes
-from ..weather.echoes import has_rain_echoes
+from ..signals.rain_echoes import has_rain_echoes
 from .kept_signal import KeptSignal, Update
 
 

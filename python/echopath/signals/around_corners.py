@@ -8,7 +8,7 @@ from ..arguments.checks import Progress, checked, count
 from ..arguments.number_rules import start_time_rule
 from ..arguments.shown import shown
 from ..paths.absent import NO_MESH
-from ..paths.around_corners import Hidden, hidden_objects, level_of, ways_to
+from ..tracing.around_corners import Hidden, hidden_objects, level_of, ways_to
 from ..transmit import signal_shape
 
 _STREAM = 0x65646765  # tells these random numbers from others of the same seed

@@ -7,9 +7,9 @@ import numpy as np
 
 from .. import _core
 from ..arguments.names import MOST_NAMES, first_names
+from ..base.antennas import are_crossed
 
 COHERENT_SHARE = 0.01  # of the reflected power, below it a surface has no coherent echo
-CO_POLARISED = 0.99    # cosine between the polarisations of two antennas that count as equal
 AUTO, SCALAR, FIELD_VECTORS = "auto", "scalar", "jones"
 MODELS = (AUTO, SCALAR, FIELD_VECTORS)
 
@@ -56,21 +56,3 @@ def chosen_model(model: str, scene, wavelength: float, antennas: Iterable = (), 
     if _core.coherent_meshes(scene, wavelength, COHERENT_SHARE):  # their names take longer
         return FIELD_VECTORS
     return FIELD_VECTORS if need_of_field_vectors(scene, wavelength, antennas) else SCALAR
-
-
-def antennas_of(radar) -> list:
-    """Transmitters and receivers."""
-    return [*radar.transmitters, *radar.receivers]
-
-
-def are_crossed(antennas: Iterable) -> bool:
-    """Whether one antenna has another polarisation, in the radar's frame, than the first."""
-    polarizations = [polarization_of(antenna) for antenna in antennas]
-    return any(abs(polarizations[0] @ other) < CO_POLARISED for other in polarizations[1:])
-
-
-def polarization_of(antenna) -> np.ndarray:
-    """[3] unit vector in the radar's frame."""
-    real, imaginary = antenna.orientation[0], antenna.orientation[1:]
-    cross = np.cross(imaginary, antenna.polarization)
-    return antenna.polarization + 2.0 * (real * cross + np.cross(imaginary, cross))

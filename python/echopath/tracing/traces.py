@@ -19,7 +19,8 @@ from .edge_paths import warn_of_edge_paths
 from .edges import looks_for_edges
 from .faint_paths import faint_power_of
 from .lost_rays import warn_of_record
-from .polarization import FIELD_VECTORS, SCALAR, antennas_of, chosen_model
+from ..base.antennas import antennas_of
+from .polarization import FIELD_VECTORS, SCALAR, chosen_model
 from .tessellation import warn_of_coarse_meshes
 
 Channel = Literal["vv", "hh", "vh", "hv"]  # transmitted, received

@@ -1,5 +1,4 @@
 """Exports of datasets: there whole or not at all, and of datasets that keep less than they need, whose frames are made again."""
-import hashlib
 import pickle
 import shutil
 import subprocess
@@ -11,6 +10,7 @@ import pytest
 
 import echopath as ep
 from echopath import dataset
+from support.files.small_dataset import bytes_of
 
 TEMPLATE = """
 [dataset]
@@ -67,12 +67,6 @@ def write(name: str, given, out: Path) -> None:
     if name == "osi":
         pytest.importorskip("osi3")
     getattr(dataset, f"write_{name}")(given, out)
-
-
-def bytes_of(folder: Path) -> dict:
-    """{path in the folder: digest} of all its files."""
-    return {str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
-            for path in sorted(folder.rglob("*")) if path.is_file()}
 
 
 def test_a_frame_that_is_remade_alone_is_the_one_that_was_made(made):

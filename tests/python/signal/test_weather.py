@@ -8,7 +8,8 @@ import scipy.special
 
 import echopath as ep
 from echopath.arguments.effects import ATTENUATION, RAIN_ECHOES
-from echopath.weather import drops, echoes, fog, gas, rain
+from echopath.signals import rain_echoes
+from echopath.weather import drops, fog, gas, rain
 from echopath.weather.weather import DB_PER_NEPER
 from support.files.scene_text import ANTENNAS, WAVEFORM
 from support.radars import build_radar
@@ -158,7 +159,7 @@ def rain_radar():
 def test_rain_has_the_power_of_the_radar_equation_in_each_range():
     """Of a volume: Pt lambda^2 eta/((4 pi)^3 r^2) dr times the integral of both gains, e^{-4 a r}."""
     radar, scene, seeds = rain_radar(), ep.Scene(weather=WET), range(6)
-    maps = [ep.range_doppler(echoes.rain_cube(scene, radar, start_time=0.0, seed=seed), radar, window="blackman_harris")
+    maps = [ep.range_doppler(rain_echoes.rain_cube(scene, radar, start_time=0.0, seed=seed), radar, window="blackman_harris")
             for seed in seeds]
     power = np.mean([np.sum(np.abs(one.values[0, 0])**2, 0) for one in maps], 0) / NOISE_BANDWIDTH**2
     ranges = maps[0].range
@@ -181,7 +182,7 @@ def test_rain_has_the_power_of_the_radar_equation_in_each_range():
 def test_rain_speckles_and_moves_with_the_wind():
     radar = rain_radar()
     blown = WET.replace(wind=(5.0, 0, 0), turbulence=0.3)
-    cube = echoes.rain_cube(ep.Scene(weather=blown), radar, start_time=0.0, seed=1)
+    cube = rain_echoes.rain_cube(ep.Scene(weather=blown), radar, start_time=0.0, seed=1)
     first = np.abs(ep.range_doppler(cube, radar, window="rect").values[0, 0])**2
     velocity = ep.range_doppler(cube, radar).velocity
     mean = (first.sum(1) * velocity).sum() / first.sum()
@@ -194,7 +195,7 @@ def test_rain_behind_a_wall_is_not_seen():
     scene = ep.Scene(weather=WET)
     scene.add(ep.Mesh([[20, -80, -80], [20, 80, -80], [20, 80, 80], [20, -80, 80]], [[0, 1, 2], [0, 2, 3]]), name="wall",
               material="metal")
-    paths = echoes.rain_paths(scene, rain_radar(), start_time=0.0, seed=1)
+    paths = rain_echoes.rain_paths(scene, rain_radar(), start_time=0.0, seed=1)
     assert paths.points(paths.frame.trace_time)[:, 0].max() < 20.0
 
 

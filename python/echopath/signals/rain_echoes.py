@@ -10,10 +10,10 @@ from ..arguments.effects import RAIN_ECHOES, Choices, is_on
 from ..base.rotations import matrices
 from ..paths.absent import NO_BATCH, NO_STRATUM
 from ..paths.subset import HIT
-from ..signals.if_signal import synthesize
 from ..transmit import signal_shape
-from .drops import DIAMETERS, fall_speeds, reflectivities
-from .weather import Weather, attenuation_of, weather_of
+from ..weather.drops import DIAMETERS, fall_speeds, reflectivities
+from ..weather.weather import Weather, attenuation_of, weather_of
+from .if_signal import synthesize
 
 NUM_DROPS = 16384     # each stands for the rain in a part of the volume
 NEAREST = 0.5         # m, of the drops

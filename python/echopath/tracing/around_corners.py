@@ -11,10 +11,11 @@ from ..arguments.checks import Progress, checked, count, real
 from ..base.chirps import start_with_middle
 from ..base.made_by import made_by
 from ..base.mesh_names import object_of
-from ..tracing.polarization import polarization_of
-from .absent import NO_MESH
-from .resolution import Interval
-from .surface_points import SurfacePoints, surface_points
+from ..base.antennas import polarization_of
+from ..paths.absent import NO_MESH
+from ..paths.resolution import Interval
+from ..paths.surface_points import SurfacePoints, surface_points
+from .traces import trace
 
 NUM_POINTS = 256  # of an object's surface that are looked at
 
@@ -141,8 +142,6 @@ def ways_to(scene, radar, antenna, points, time, *, edges=True, progress=None) -
 
 def level_of(alone, radar, time, num_rays, progress=None) -> Interval:
     """W that a scene and its sharp edges send straight back."""
-    from ..tracing.traces import trace
-
     begin = start_with_middle(radar, time)  # rays see the scene at the middle of a frame
     paths = trace(alone, radar, num_rays=num_rays, max_bounces=1, start_time=begin, edges=True, progress=progress)
     power = _core.received_power(paths, progress=progress)

@@ -101,8 +101,9 @@ def _filled(line: str, width: int) -> str:
 
 def save_png(figure: Figure | SubFigure | Axes, path: str | os.PathLike[str], *, seed: int | None = None,
              noise_seed: int | None = None) -> None:
-    """Writes a figure as PNG, whole or not at all, with what made it as text chunks; the same figure gives the same bytes.
+    """Writes a figure as PNG, whole or not at all, with what made it as text chunks.
 
+    A figure that is made anew gives the same bytes; one that is saved again may not, as matplotlib goes on with its layout.
     figure: of matplotlib, or axes in it; path: of the file; seed: of the rays, noise_seed: of the thermal noise; None: there
         are none
     Raises OSError where the file cannot be written, TypeError naming the argument.
